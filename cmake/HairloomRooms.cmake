@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# hairloom_room: one library per folder. hairloom_test: one test program per room, registered with ctest.
+
+# hairloom_room(NAME SOURCES file... [PUBLIC target...] [PRIVATE target...])
+# makes hairloom_NAME (alias hairloom::NAME); includes are written from the top of the repository.
+function(hairloom_room name)
+    cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+    add_library(hairloom_${name} STATIC ${ARG_SOURCES})
+    add_library(hairloom::${name} ALIAS hairloom_${name})
+    target_include_directories(hairloom_${name} PUBLIC "${PROJECT_SOURCE_DIR}")
+    target_link_libraries(hairloom_${name} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} hairloom_warnings)
+endfunction()
+
+# hairloom_program(NAME SOURCES file... LINK target...)
+function(hairloom_program name)
+    cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+    add_executable(${name} ${ARG_SOURCES})
+    target_link_libraries(${name} PRIVATE ${ARG_LINK} hairloom_warnings)
+endfunction()
+
+# hairloom_test(NAME SOURCES file... LINK target... [TIMEOUT seconds])
+# Each gtest case becomes a ctest entry NAME.Suite.Case. Tests find the repository through HAIRLOOM_SOURCE_DIR.
+function(hairloom_test name)
+    cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LINK" ${ARGN})
+    if(NOT ARG_TIMEOUT)
+        set(ARG_TIMEOUT 120)
+    endif()
+    hairloom_program(test_${name} SOURCES ${ARG_SOURCES} LINK ${ARG_LINK} GTest::gtest_main GTest::gmock)
+    target_compile_definitions(test_${name} PRIVATE HAIRLOOM_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+    gtest_discover_tests(test_${name} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60
+        PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS ${name})
+endfunction()

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Language level, output folders, warnings, sanitizers and the faster linker, for every target of the project.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
+
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+    set(CMAKE_BUILD_TYPE Release)
+endif()
+
+set(HAIRLOOM_SANITIZE "" CACHE STRING "Sanitizers to build with: empty, address+undefined or thread")
+set_property(CACHE HAIRLOOM_SANITIZE PROPERTY STRINGS "" "address+undefined" "thread")
+
+# Warnings are errors in our own code only; third-party headers come in as system headers.
+add_library(hairloom_warnings INTERFACE)
+if(MSVC)
+    target_compile_options(hairloom_warnings INTERFACE /W4 /WX /permissive- /utf-8 /bigobj)
+    target_compile_definitions(hairloom_warnings INTERFACE NOMINMAX _USE_MATH_DEFINES)
+else()
+    target_compile_options(hairloom_warnings INTERFACE
+        -Wall -Wextra -Werror -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor
+        -Woverloaded-virtual -Wold-style-cast)
+    # Contracting a*b+c differently in two places would break the promise of equal bits for any thread count.
+    add_compile_options(-ffp-contract=off)
+endif()
+
+if(HAIRLOOM_SANITIZE STREQUAL "address+undefined")
+    add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+    add_link_options(-fsanitize=address,undefined)
+    add_compile_definitions(HAIRLOOM_ADDRESS_SANITIZER=1)
+elseif(HAIRLOOM_SANITIZE STREQUAL "thread")
+    add_compile_options(-fsanitize=thread -fno-omit-frame-pointer)
+    add_link_options(-fsanitize=thread)
+elseif(NOT HAIRLOOM_SANITIZE STREQUAL "")
+    message(FATAL_ERROR "HAIRLOOM_SANITIZE is '${HAIRLOOM_SANITIZE}'; expected nothing, address+undefined or thread")
+endif()
+
+find_program(HAIRLOOM_CCACHE ccache)
+if(HAIRLOOM_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+    set(CMAKE_CXX_COMPILER_LAUNCHER "${HAIRLOOM_CCACHE}")
+endif()

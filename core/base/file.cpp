@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/base/file.h"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <memory>
+#include <system_error>
+
+#ifdef _WIN32
+#include <io.h>
+#include <process.h>
+#else
+#include <unistd.h>
+#endif
+
+namespace hairloom {
+namespace {
+
+struct FileCloser {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using FileHandle = std::unique_ptr<std::FILE, FileCloser>;
+
+FileHandle openFile(const std::filesystem::path& path, const char* mode) {
+#ifdef _WIN32
+    const std::wstring wideMode(mode, mode + std::strlen(mode));
+    return FileHandle(_wfopen(path.c_str(), wideMode.c_str()));
+#else
+    return FileHandle(std::fopen(path.c_str(), mode));
+#endif
+}
+
+std::string systemMessage(int code) { return std::generic_category().message(code); }
+
+bool flushToDisk(std::FILE* file) {
+    if (std::fflush(file) != 0) return false;
+#ifdef _WIN32
+    return _commit(_fileno(file)) == 0;
+#else
+    return fsync(fileno(file)) == 0;
+#endif
+}
+
+int processId() {
+#ifdef _WIN32
+    return _getpid();
+#else
+    return getpid();
+#endif
+}
+
+template <class Container>
+Result<Container> readWhole(const std::filesystem::path& path, std::uint64_t maxBytes) {
+    const std::string name = path.string();
+    std::error_code code;
+    const auto status = std::filesystem::status(path, code);
+    if (!std::filesystem::exists(status)) return failIn(name, {}, "no such file", "expected a readable file");
+    if (std::filesystem::is_directory(status)) return failIn(name, {}, "is a folder", "expected a file");
+    const FileHandle file = openFile(path, "rb");
+    if (!file) return failIn(name, {}, fmt::format("cannot be read: {}", systemMessage(errno)));
+    const std::uint64_t size = std::filesystem::file_size(path, code);
+    if (code) return failIn(name, {}, fmt::format("has no size: {}", code.message()), "expected a regular file");
+    if (size > maxBytes) {
+        return failIn(name, {}, fmt::format("is {} bytes long", size), fmt::format("expected at most {}", maxBytes));
+    }
+    Container content(static_cast<std::size_t>(size), typename Container::value_type{});
+    const std::size_t got = std::fread(content.data(), 1, content.size(), file.get());
+    if (got != content.size()) {
+        return failIn(name, Byte{got}, "reading stopped early", fmt::format("expected {} bytes", size));
+    }
+    return content;
+}
+
+}  // namespace
+
+Result<std::vector<std::byte>> readFile(const std::filesystem::path& path, std::uint64_t maxBytes) {
+    return readWhole<std::vector<std::byte>>(path, maxBytes);
+}
+
+Result<std::string> readTextFile(const std::filesystem::path& path, std::uint64_t maxBytes) {
+    return readWhole<std::string>(path, maxBytes);
+}
+
+Status writeFileAtomically(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+    static std::atomic<unsigned> serial{0};
+    std::filesystem::path temporary = path;
+    temporary += fmt::format(".{}-{}.part", processId(), serial++);
+    const auto giveUp = [&](const std::string& why) {
+        std::error_code ignored;
+        std::filesystem::remove(temporary, ignored);
+        return failIn(path.string(), {}, "cannot be written: " + why, "expected a writable folder with free space");
+    };
+    FileHandle file = openFile(temporary, "wb");
+    if (!file) return giveUp(systemMessage(errno));
+    if (std::fwrite(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) return giveUp(systemMessage(errno));
+    if (!flushToDisk(file.get())) return giveUp(systemMessage(errno));
+    file.reset();
+    std::error_code code;
+    std::filesystem::rename(temporary, path, code);
+    if (code) return giveUp(code.message());
+    return {};
+}
+
+Status writeFileAtomically(const std::filesystem::path& path, std::string_view text) {
+    return writeFileAtomically(path, std::as_bytes(std::span(text.data(), text.size())));
+}
+
+Status ByteReader::seek(std::uint64_t offset, std::string_view what) {
+    if (offset > bytes_.size()) {
+        return tl::unexpected(error(fmt::format("{} would start at byte {}", what, offset),
+                                    fmt::format("the file has {} bytes", bytes_.size())));
+    }
+    position_ = offset;
+    return {};
+}
+
+Status ByteReader::readInto(std::span<std::byte> target, std::string_view what) {
+    if (target.size() > remaining()) return tl::unexpected(tooShort(what, target.size(), 1));
+    if (!target.empty()) std::memcpy(target.data(), bytes_.data() + position_, target.size());
+    position_ += target.size();
+    return {};
+}
+
+Error ByteReader::tooShort(std::string_view what, std::uint64_t count, std::size_t elementSize) const {
+    return error(fmt::format("{} needs {} × {} bytes", what, count, elementSize),
+                 fmt::format("only {} bytes are left of {}", remaining(), size()));
+}
+
+}  // namespace hairloom

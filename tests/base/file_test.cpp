@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/base/file.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace hairloom {
+namespace {
+
+namespace fs = std::filesystem;
+
+class FileTest : public testing::Test {
+  protected:
+    void SetUp() override {
+        folder = fs::path(testing::TempDir()) /
+                 (std::string("hairloom-file-") + testing::UnitTest::GetInstance()->current_test_info()->name());
+        fs::remove_all(folder);
+        fs::create_directories(folder);
+    }
+    void TearDown() override { fs::remove_all(folder); }
+    std::size_t filesInFolder() const {
+        return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+    }
+    fs::path folder;
+};
+
+TEST_F(FileTest, WritesReplacesAndLeavesNoTemporaryFile) {
+    const fs::path path = folder / "a.txt";
+    ASSERT_TRUE(writeFileAtomically(path, std::string_view("first")));
+    ASSERT_TRUE(writeFileAtomically(path, std::string_view("second")));
+    EXPECT_EQ(readTextFile(path).value(), "second");
+    EXPECT_EQ(filesInFolder(), 1u);
+}
+
+TEST_F(FileTest, FailedWriteLeavesNothing) {
+    const auto status = writeFileAtomically(folder / "missing" / "a.txt", std::string_view("x"));
+    ASSERT_FALSE(status);
+    EXPECT_NE(status.error().message().find("cannot be written"), std::string::npos);
+    EXPECT_EQ(filesInFolder(), 0u);
+
+    fs::create_directories(folder / "taken");
+    EXPECT_FALSE(writeFileAtomically(folder / "taken", std::string_view("x")));
+    EXPECT_EQ(filesInFolder(), 1u);
+}
+
+TEST_F(FileTest, ReadingNamesWhatIsWrong) {
+    EXPECT_NE(readFile(folder / "none").error().message().find("no such file"), std::string::npos);
+    EXPECT_NE(readFile(folder).error().message().find("is a folder"), std::string::npos);
+    ASSERT_TRUE(writeFileAtomically(folder / "long", std::string_view("12345")));
+    EXPECT_NE(readFile(folder / "long", 4).error().message().find("5 bytes"), std::string::npos);
+}
+
+TEST(ByteReader, RefusesCountsBeyondTheEndBeforeAllocating) {
+    ByteWriter writer;
+    writer.write(std::uint32_t{7});
+    writer.write(1.5f);
+    ByteReader reader("x.bin", writer.bytes());
+    EXPECT_EQ(reader.read<std::uint32_t>("count").value(), 7u);
+    const auto tooMany = reader.readArray<float>(std::uint64_t{1} << 62u, "positions");
+    ASSERT_FALSE(tooMany);
+    EXPECT_NE(tooMany.error().message().find("x.bin@4: positions"), std::string::npos);
+    EXPECT_EQ(reader.readArray<float>(1, "positions").value().front(), 1.5f);
+    EXPECT_FALSE(reader.read<std::uint8_t>("tail"));
+    EXPECT_FALSE(reader.seek(9, "table"));
+}
+
+}  // namespace
+}  // namespace hairloom
