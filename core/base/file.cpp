@@ -84,10 +84,15 @@ Result<std::string> readTextFile(const std::filesystem::path& path, std::uint64_
     return readWhole<std::string>(path, maxBytes);
 }
 
-Status writeFileAtomically(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+std::filesystem::path temporaryBeside(const std::filesystem::path& path) {
     static std::atomic<unsigned> serial{0};
     std::filesystem::path temporary = path;
     temporary += fmt::format(".{}-{}.part", processId(), serial++);
+    return temporary;
+}
+
+Status writeFileAtomically(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+    const std::filesystem::path temporary = temporaryBeside(path);
     const auto giveUp = [&](const std::string& why) {
         std::error_code ignored;
         std::filesystem::remove(temporary, ignored);

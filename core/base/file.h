@@ -31,6 +31,9 @@ Result<std::string> readTextFile(const std::filesystem::path& path,
 Status writeFileAtomically(const std::filesystem::path& path, std::span<const std::byte> bytes);
 Status writeFileAtomically(const std::filesystem::path& path, std::string_view text);
 
+/// A name beside `path` that no other writer uses, for content that is renamed to `path` when it is whole.
+std::filesystem::path temporaryBeside(const std::filesystem::path& path);
+
 /// Reads plain values from a block of memory; never past its end.
 class ByteReader {
   public:
