@@ -78,7 +78,7 @@ Result<Groom> loadDocument(const std::string& path) {
     if (isProject(path)) return loadProject(path);
     auto imported = importStrands(path, {});
     if (!imported) return tl::unexpected(imported.error());
-    for (const std::string& warning : imported->warnings) log::warning("{}: {}", path, warning);
+    logFindings(path, imported->warnings);
     return std::move(imported->groom);
 }
 
@@ -98,15 +98,13 @@ Result<Opened> openAny(const std::string& path, const std::string& unit) {
         opened.groom = std::move(imported->groom);
         opened.format = imported->format;
         opened.findings = validate(opened.groom);
-        for (const auto& dropped : imported->dropped) {
-            opened.findings.push_back({Severity::Error, "strand cannot be used: " + dropped.reason,
-                                       fmt::format("strand {}", dropped.strand), "remove it, or import to drop it"});
-        }
-        for (const std::string& warning : imported->warnings) {
-            opened.findings.push_back({Severity::Warning, warning, "file", ""});
+        opened.findings.insert(opened.findings.end(), imported->warnings.begin(), imported->warnings.end());
+        for (const DroppedStrand& dropped : imported->dropped) {
+            opened.findings.push_back({Severity::Error, std::string(dropReasonName(dropped.reason)),
+                                       fmt::format("strand {}", dropped.strand), "import drops such strands"});
         }
         return opened;
-    } else if (looksLikeStrands(path)) {
+    } else if (looksLikeStrandFile(path)) {
         return tl::unexpected(imported.error());
     }
     auto scene = importSceneWithUnit(path, unit);
@@ -167,6 +165,18 @@ Result<std::vector<float>> readVertexMask(const std::string& path, const ScalpMe
         mask[v] = perSourceVertex[source];
     }
     return mask;
+}
+
+void logFindings(const std::string& path, const std::vector<Finding>& findings) {
+    for (const Finding& finding : findings) {
+        log::warning("{}: {}: {}{}{}", path, finding.where, finding.what, finding.fix.empty() ? "" : "; ", finding.fix);
+    }
+}
+
+Report toReport(const std::vector<Finding>& findings) {
+    Report rows = Report::array();
+    for (const Finding& finding : findings) rows.push_back(toReport(finding));
+    return rows;
 }
 
 Report toReport(const Finding& finding) {

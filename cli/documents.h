@@ -38,7 +38,11 @@ Result<std::vector<CollisionSphere>> readSpheres(const std::string& path);
 /// One number in [0, 1] per vertex of the mesh file, separated by white space; given back per vertex of the mesh.
 Result<std::vector<float>> readVertexMask(const std::string& path, const ScalpMesh& mesh);
 
+/// Says findings on standard error, as warnings about `path`.
+void logFindings(const std::string& path, const std::vector<Finding>& findings);
+
 Report toReport(const Finding& finding);
+Report toReport(const std::vector<Finding>& findings);
 Report toReport(const Vec3f& vector);
 /// JSON has no infinities.
 Report finiteOrNull(double value);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <map>
 #include <memory>
 
 #include "cli/documents.h"
@@ -21,17 +22,22 @@ struct ImportOptions {
     std::string up = "y";
     std::uint32_t segments = 0;
     std::string order = "auto";
+    std::string particle = "edge";
     std::string output;
 };
+
+const std::map<std::string, RibbonOrder> kOrders{{"auto", RibbonOrder::Detect},
+                                                 {"interleaved", RibbonOrder::Interleaved},
+                                                 {"edges", RibbonOrder::EdgeAfterEdge},
+                                                 {"around", RibbonOrder::Around}};
 
 StrandImportOptions strandOptions(const ImportOptions& options) {
     StrandImportOptions strands;
     if (!options.unit.empty()) strands.metresPerUnit = metresPerUnit(options.unit);
-    strands.zUp = options.up == "z";
-    strands.segments = options.segments;
-    strands.order = options.order == "interleaved" ? RibbonOrder::Interleaved
-                    : options.order == "edges"     ? RibbonOrder::EdgeByEdge
-                                                   : RibbonOrder::Detect;
+    strands.up = options.up == "z" ? UpAxis::Z : UpAxis::Y;
+    strands.ribbonSegments = options.segments;
+    strands.ribbonOrder = kOrders.at(options.order);
+    strands.ribbonParticle = options.particle == "centre" ? RibbonParticle::Centre : RibbonParticle::FirstEdge;
     return strands;
 }
 
@@ -57,17 +63,17 @@ Result<Report> import(const ImportOptions& options) {
     auto imported = importStrands(options.file, strandsAs);
     if (!imported) return tl::unexpected(imported.error());
     Groom& groom = imported->groom;
-    for (const std::string& warning : imported->warnings) log::warning("{}: {}", options.file, warning);
+    logFindings(options.file, imported->warnings);
 
     Report report;
     report["strands"] = groom.strandCount();
     report["points"] = groom.pointCount();
     report["dropped"] = Report::array();
     for (const auto& dropped : imported->dropped) {
-        report["dropped"].push_back(Report{{"strand", dropped.strand}, {"reason", dropped.reason}});
+        report["dropped"].push_back(Report{{"strand", dropped.strand}, {"reason", dropReasonName(dropped.reason)}});
     }
     report["format"] = imported->format;
-    report["warnings"] = imported->warnings;
+    report["warnings"] = toReport(imported->warnings);
     if (mesh && groom.strandCount() > 0) {
         report["root_distance"] = bindingReport(bindToScalp(groom, mesh, std::move(faces)));
         groom.scalpExpression = options.scalp;
@@ -100,7 +106,9 @@ void addImportJob(Jobs& jobs) {
                    "Segments per strand of a Cinema 4D OBJ; 0 finds them from its faces")
         ->check(CLI::Range(0, 65535));
     job.add_option("--order", options->order, "Vertex order of a Cinema 4D OBJ")
-        ->check(CLI::IsMember({"auto", "interleaved", "edges"}));
+        ->check(CLI::IsMember({"auto", "interleaved", "edges", "around"}));
+    job.add_option("--particle", options->particle, "Where a Cinema 4D ribbon's particles are")
+        ->check(CLI::IsMember({"edge", "centre"}));
     job.add_option("-o,--output", options->output, "Project to write")->required();
 }
 
