@@ -19,10 +19,10 @@ struct Finding {
     std::string fix;    ///< what to do about it; may be empty
 };
 
-/// Structure (offsets, array lengths and types), geometry (finite, ≥ 2 points, no zero-length segment, plausible
-/// size), binding (triangle in the selection, barycentrics, root on the scalp), spheres, layers, groups, and every
-/// setting within its range. One finding per kind with the first place and the number of places. Errors are what
-/// would break a consumer; an empty list means none.
+/// Structure (offsets, array lengths and types), geometry (finite, ≥ 2 points, no zero-length segment,
+/// plausible size), binding (triangle in the selection, barycentrics, root on the scalp), spheres, layers,
+/// groups, and every setting within its range. One finding per kind with the first place and the number of
+/// places. Errors are what would break a consumer; an empty list means none.
 std::vector<Finding> validate(const Groom& groom);
 
 bool hasErrors(const std::vector<Finding>& findings);
