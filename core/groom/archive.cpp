@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cstring>
 #include <limits>
+#include <tuple>
 
 #include "core/base/file.h"
 #include "core/base/hash.h"
@@ -34,6 +35,14 @@ constexpr std::uint64_t aligned(std::uint64_t bytes) {
 
 std::size_t elementSize(const AttributeData& data) {
     return std::visit([](const auto& array) { return sizeof(array[0]); }, data);
+}
+
+bool isUtf8(const std::string& text) {
+    try {
+        return !nlohmann::json(text).dump().empty();
+    } catch (const nlohmann::json::exception&) {
+        return false;
+    }
 }
 
 bool allZero(std::span<const std::byte> bytes) {
@@ -63,6 +72,7 @@ Result<std::vector<std::byte>> ArchiveWriter::finish(const nlohmann::ordered_jso
     std::uint64_t offset = 0;
     for (std::size_t i = 0; i < arrays_.size(); ++i) {
         const Array& array = arrays_[i];
+        if (!isUtf8(array.name)) return fail(fmt::format("the name of array {} is not UTF-8", i));
         table[array.name] = {{"type", array.type},
                              {"count", array.count},
                              {"offset", offset},

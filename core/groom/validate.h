@@ -25,6 +25,11 @@ struct Finding {
 /// places. Errors are what would break a consumer; an empty list means none.
 std::vector<Finding> validate(const Groom& groom);
 
+/// What every consumer leans on before it looks at a value: offsets, array lengths and types, indices into
+/// strands, scalp, layers and groups. Error: the first thing that does not hold. Loading and saving a project
+/// check it.
+Status checkStructure(const Groom& groom);
+
 bool hasErrors(const std::vector<Finding>& findings);
 
 }  // namespace hairloom
