@@ -21,12 +21,16 @@ constexpr std::array<std::pair<const char*, float>, 5> kUnits{
     {{"m", 1.0f}, {"dm", 0.1f}, {"cm", 0.01f}, {"mm", 0.001f}, {"inch", 0.0254f}}};
 
 Error sphereError(const std::string& path, std::size_t index, const std::string& problem) {
-    return {path, {}, fmt::format("/{}: {}", index, problem),
+    return {path,
+            {},
+            fmt::format("/{}: {}", index, problem),
             R"(expected {"name": text, "centre": [x, y, z], "radius": above 0, "bone": text})"};
 }
 
 Result<CollisionSphere> readSphere(const nlohmann::json& entry, const std::string& path, std::size_t index) {
-    const auto wrong = [&](const std::string& problem) { return tl::unexpected(sphereError(path, index, problem)); };
+    const auto wrong = [&](const std::string& problem) {
+        return tl::unexpected(sphereError(path, index, problem));
+    };
     if (!entry.is_object()) return wrong("is no object");
     CollisionSphere sphere;
     for (const auto& [key, value] : entry.items()) {
@@ -101,7 +105,8 @@ Result<Opened> openAny(const std::string& path, const std::string& unit) {
         opened.findings.insert(opened.findings.end(), imported->warnings.begin(), imported->warnings.end());
         for (const DroppedStrand& dropped : imported->dropped) {
             opened.findings.push_back({Severity::Error, std::string(dropReasonName(dropped.reason)),
-                                       fmt::format("strand {}", dropped.strand), "import drops such strands"});
+                                       fmt::format("strand {}", dropped.strand),
+                                       "import drops such strands"});
         }
         return opened;
     } else if (looksLikeStrandFile(path)) {
@@ -126,7 +131,8 @@ Result<std::vector<CollisionSphere>> readSpheres(const std::string& path) {
     if (!text) return tl::unexpected(text.error());
     const auto list = nlohmann::json::parse(*text, nullptr, false);
     if (list.is_discarded() || !list.is_array()) {
-        return failIn(path, {}, "is no JSON list of spheres", "expected [{\"centre\": [x, y, z], \"radius\": r}, …]");
+        return failIn(path, {}, "is no JSON list of spheres",
+                      "expected [{\"centre\": [x, y, z], \"radius\": r}, …]");
     }
     std::vector<CollisionSphere> spheres;
     for (std::size_t i = 0; i < list.size(); ++i) {
@@ -169,7 +175,8 @@ Result<std::vector<float>> readVertexMask(const std::string& path, const ScalpMe
 
 void logFindings(const std::string& path, const std::vector<Finding>& findings) {
     for (const Finding& finding : findings) {
-        log::warning("{}: {}: {}{}{}", path, finding.where, finding.what, finding.fix.empty() ? "" : "; ", finding.fix);
+        log::warning("{}: {}: {}{}{}", path, finding.where, finding.what, finding.fix.empty() ? "" : "; ",
+                     finding.fix);
     }
 }
 
@@ -186,8 +193,12 @@ Report toReport(const Finding& finding) {
                   {"fix", finding.fix}};
 }
 
-Report toReport(const Vec3f& vector) { return Report::array({vector.x(), vector.y(), vector.z()}); }
+Report toReport(const Vec3f& vector) {
+    return Report::array({vector.x(), vector.y(), vector.z()});
+}
 
-Report finiteOrNull(double value) { return std::isfinite(value) ? Report(value) : Report(nullptr); }
+Report finiteOrNull(double value) {
+    return std::isfinite(value) ? Report(value) : Report(nullptr);
+}
 
 }  // namespace hairloom::cli

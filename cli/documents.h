@@ -35,7 +35,8 @@ Result<Opened> openAny(const std::string& path, const std::string& unit);
 /// The list of {"name", "centre": [x, y, z], "radius", "bone"} that `spheres` takes; metres, radius > 0.
 Result<std::vector<CollisionSphere>> readSpheres(const std::string& path);
 
-/// One number in [0, 1] per vertex of the mesh file, separated by white space; given back per vertex of the mesh.
+/// One number in [0, 1] per vertex of the mesh file, separated by white space; given back per vertex of the
+/// mesh.
 Result<std::vector<float>> readVertexMask(const std::string& path, const ScalpMesh& mesh);
 
 /// Says findings on standard error, as warnings about `path`.

@@ -16,10 +16,11 @@ Result<std::unique_ptr<HeadMotion>> makeMotion(const std::string& name, const st
     if (file.empty()) return fail("the groom names no file with clips", "expected --character FILE");
     auto scene = importSceneWithUnit(file, "");
     if (!scene) return tl::unexpected(scene.error());
-    auto actor = Actor::make(std::make_shared<const ScalpMesh>(std::move(scene->mesh)), std::move(scene->skeleton),
-                             std::move(scene->clips), std::move(scene->skin));
+    auto actor = Actor::make(std::make_shared<const ScalpMesh>(std::move(scene->mesh)),
+                             std::move(scene->skeleton), std::move(scene->clips), std::move(scene->skin));
     if (!actor) return tl::unexpected(inFile(actor.error(), file));
-    auto motion = makeClipMotion(std::make_shared<const Actor>(std::move(*actor)), name.substr(kClip.size()), groom);
+    auto motion =
+        makeClipMotion(std::make_shared<const Actor>(std::move(*actor)), name.substr(kClip.size()), groom);
     if (!motion) return tl::unexpected(inFile(motion.error(), file));
     return motion;
 }

@@ -8,8 +8,8 @@
 
 namespace hairloom::cli {
 
-/// The motion that --motion names: none, spin, nod or clip:NAME. Clips come from `character`, or where that is empty
-/// from the file that the groom's scalp came from.
+/// The motion that --motion names: none, spin, nod or clip:NAME. Clips come from `character`, or where that
+/// is empty from the file that the groom's scalp came from.
 Result<std::unique_ptr<HeadMotion>> makeMotion(const std::string& name, const std::string& character,
                                                const Groom& groom);
 

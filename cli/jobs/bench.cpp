@@ -41,7 +41,7 @@ Report rowOf(Measurement measurement) {
     std::sort(times.begin(), times.end());
     const std::size_t middle = times.size() / 2;
     const double median = times.size() % 2 == 1 ? times[middle] : 0.5 * (times[middle - 1] + times[middle]);
-    return Report{{"name", measurement.name}, {"n", times.size()},      {"median", median},
+    return Report{{"name", measurement.name}, {"n", times.size()},   {"median", median},
                   {"min", times.front()},     {"max", times.back()}, {"unit", measurement.unit}};
 }
 
@@ -49,13 +49,14 @@ Result<Report> bench(const BenchOptions& options) {
     ChildLimits limits;
     limits.time = std::chrono::hours(1);
     limits.residentBytes = std::uint64_t{16} << 30u;
-    const auto output = runChild("the benchmark", programFolder() / ("bench_" + options.name),
-                                 {"--benchmark_format=json", fmt::format("--benchmark_repetitions={}", options.repetitions)},
-                                 limits);
+    const auto output = runChild(
+        "the benchmark", programFolder() / ("bench_" + options.name),
+        {"--benchmark_format=json", fmt::format("--benchmark_repetitions={}", options.repetitions)}, limits);
     if (!output) return tl::unexpected(output.error());
     const char* const text = reinterpret_cast<const char*>(output->data());
     const auto result = nlohmann::json::parse(text, text + output->size(), nullptr, false);
-    if (result.is_discarded()) return fail("the benchmark wrote no JSON", "expected Google Benchmark's format");
+    if (result.is_discarded())
+        return fail("the benchmark wrote no JSON", "expected Google Benchmark's format");
     Report rows = Report::array();
     for (Measurement& measurement : measurementsOf(result)) rows.push_back(rowOf(std::move(measurement)));
     return Report{{"name", options.name}, {"rows", std::move(rows)}};
@@ -70,7 +71,8 @@ void addBenchJob(Jobs& jobs) {
     job.add_option("name", options->name, "What to measure")
         ->required()
         ->check(CLI::IsMember({"interpolate", "io", "place", "project", "render", "sim"}));
-    job.add_option("--repetitions", options->repetitions, "Runs of each measurement")->check(CLI::Range(1, 1000));
+    job.add_option("--repetitions", options->repetitions, "Runs of each measurement")
+        ->check(CLI::Range(1, 1000));
 }
 
 }  // namespace hairloom::cli

@@ -30,6 +30,8 @@ Result<Report> devices() {
 
 }  // namespace
 
-void addDevicesJob(Jobs& jobs) { jobs.add("devices", "List the GPUs and what each supports", "--json", devices); }
+void addDevicesJob(Jobs& jobs) {
+    jobs.add("devices", "List the GPUs and what each supports", "--json", devices);
+}
 
 }  // namespace hairloom::cli

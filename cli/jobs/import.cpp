@@ -37,7 +37,8 @@ StrandImportOptions strandOptions(const ImportOptions& options) {
     strands.up = options.up == "z" ? UpAxis::Z : UpAxis::Y;
     strands.ribbonSegments = options.segments;
     strands.ribbonOrder = kOrders.at(options.order);
-    strands.ribbonParticle = options.particle == "centre" ? RibbonParticle::Centre : RibbonParticle::FirstEdge;
+    strands.ribbonParticle =
+        options.particle == "centre" ? RibbonParticle::Centre : RibbonParticle::FirstEdge;
     return strands;
 }
 
@@ -70,7 +71,8 @@ Result<Report> import(const ImportOptions& options) {
     report["points"] = groom.pointCount();
     report["dropped"] = Report::array();
     for (const auto& dropped : imported->dropped) {
-        report["dropped"].push_back(Report{{"strand", dropped.strand}, {"reason", dropReasonName(dropped.reason)}});
+        report["dropped"].push_back(
+            Report{{"strand", dropped.strand}, {"reason", dropReasonName(dropped.reason)}});
     }
     report["format"] = imported->format;
     report["warnings"] = toReport(imported->warnings);
@@ -81,7 +83,8 @@ Result<Report> import(const ImportOptions& options) {
         if (auto triangulation = triangulateRoots(*mesh, groom.scalpSelection, groom.rootBindings())) {
             groom.triangulation = std::move(*triangulation);
         } else {
-            log::warning("{}: roots have no triangulation: {}", options.file, triangulation.error().message());
+            log::warning("{}: roots have no triangulation: {}", options.file,
+                         triangulation.error().message());
         }
     }
     if (auto saved = saveProject(groom, options.output); !saved) return tl::unexpected(saved.error());
@@ -93,15 +96,18 @@ Result<Report> import(const ImportOptions& options) {
 
 void addImportJob(Jobs& jobs) {
     const auto options = std::make_shared<ImportOptions>();
-    CLI::App& job = jobs.add("import", "Bring in strands from another program; the format is found from the content",
-                             "hair.tfx --mesh head.obj -o hair.hairloom", [options] { return import(*options); });
-    job.add_option("file", options->file, "Cinema 4D hair OBJ, OBJ lines, TressFX .tfx or Yuksel .hair")->required();
+    CLI::App& job =
+        jobs.add("import", "Bring in strands from another program; the format is found from the content",
+                 "hair.tfx --mesh head.obj -o hair.hairloom", [options] { return import(*options); });
+    job.add_option("file", options->file, "Cinema 4D hair OBJ, OBJ lines, TressFX .tfx or Yuksel .hair")
+        ->required();
     job.add_option("--mesh", options->mesh, "Head mesh to bind the roots to");
     job.add_option("--scalp", options->scalp, "Faces of the mesh that carry hair, as for create");
     addUnitOption(job, options->unit);
     job.add_option("--mesh-unit", options->meshUnit, "Unit of the head mesh where its file states none")
         ->check(CLI::IsMember({"m", "dm", "cm", "mm", "inch"}));
-    job.add_option("--up", options->up, "Axis that points up in the hair file")->check(CLI::IsMember({"y", "z"}));
+    job.add_option("--up", options->up, "Axis that points up in the hair file")
+        ->check(CLI::IsMember({"y", "z"}));
     job.add_option("--segments", options->segments,
                    "Segments per strand of a Cinema 4D OBJ; 0 finds them from its faces")
         ->check(CLI::Range(0, 65535));

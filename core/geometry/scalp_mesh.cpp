@@ -2,6 +2,7 @@
 #include "core/geometry/scalp_mesh.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "core/geometry/mesh_repair.h"
@@ -14,12 +15,13 @@ Vec3d edgeBetween(const std::vector<Vec3f>& positions, std::uint32_t from, std::
 }
 
 /// Face normals weighted by the angle at the vertex (Thürmer and Wüthrich 1998). Never zero.
-std::vector<Vec3d> angleWeightedNormals(const RepairedTriangles& mesh) {
-    std::vector<Vec3d> sums(mesh.positions.size(), Vec3d::Zero()), anyNormal(mesh.positions.size());
-    for (const Triangle& triangle : mesh.triangles)
+std::vector<Vec3d> angleWeightedNormals(const std::vector<Vec3f>& positions,
+                                        const std::vector<Triangle>& triangles) {
+    std::vector<Vec3d> sums(positions.size(), Vec3d::Zero()), anyNormal(positions.size(), Vec3d::UnitY());
+    for (const Triangle& triangle : triangles)
         for (std::size_t i = 0; i < 3; ++i) {
-            const Vec3d a = edgeBetween(mesh.positions, triangle[i], triangle[(i + 1) % 3]).normalized();
-            const Vec3d b = edgeBetween(mesh.positions, triangle[i], triangle[(i + 2) % 3]).normalized();
+            const Vec3d a = edgeBetween(positions, triangle[i], triangle[(i + 1) % 3]).normalized();
+            const Vec3d b = edgeBetween(positions, triangle[i], triangle[(i + 2) % 3]).normalized();
             const Vec3d cross = a.cross(b);
             const Vec3d normal = cross.normalized();
             sums[triangle[i]] += normal * std::atan2(cross.norm(), a.dot(b));
@@ -33,7 +35,7 @@ std::vector<Vec3d> angleWeightedNormals(const RepairedTriangles& mesh) {
 
 /// Means of the file's normals; computed ones where it has none that are usable.
 std::vector<Vec3f> vertexNormals(const PolygonSoup& soup, RepairedTriangles& mesh) {
-    const std::vector<Vec3d> computed = angleWeightedNormals(mesh);
+    const std::vector<Vec3d> computed = angleWeightedNormals(mesh.positions, mesh.triangles);
     std::vector<Vec3d> given(mesh.positions.size(), Vec3d::Zero());
     if (!soup.normals.empty())
         for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -93,6 +95,16 @@ bool buildConnectivity(const RepairedTriangles& mesh, ScalpMesh::Connectivity& c
     return true;
 }
 
+OpenMesh::VertexHandle vertexHandle(std::size_t vertex) {
+    return OpenMesh::VertexHandle(static_cast<int>(vertex));
+}
+
+void setNormals(const std::vector<Vec3f>& normals, ScalpMesh::Connectivity& connectivity) {
+    for (std::size_t v = 0; v < normals.size(); ++v) {
+        connectivity.set_normal(vertexHandle(v), {normals[v].x(), normals[v].y(), normals[v].z()});
+    }
+}
+
 }  // namespace
 
 Result<ScalpMesh> ScalpMesh::make(const PolygonSoup& soup) {
@@ -104,10 +116,7 @@ Result<ScalpMesh> ScalpMesh::make(const PolygonSoup& soup) {
     if (!buildConnectivity(*repaired, mesh.connectivity_))
         return fail("the faces of the mesh cannot be joined to a surface",
                     "edges shared by at most two faces");
-    for (std::size_t v = 0; v < mesh.normals_.size(); ++v) {
-        const Vec3f& n = mesh.normals_[v];
-        mesh.connectivity_.set_normal(OpenMesh::VertexHandle(static_cast<int>(v)), {n.x(), n.y(), n.z()});
-    }
+    setNormals(mesh.normals_, mesh.connectivity_);
     mesh.triangleGroups_ = spreadOverTriangles(soup.faceGroups, repaired->sourceFaces);
     mesh.triangleMaterials_ = spreadOverTriangles(soup.faceMaterials, repaired->sourceFaces);
     mesh.groupNames_ = namesOrDefault(soup.groupNames);
@@ -117,6 +126,19 @@ Result<ScalpMesh> ScalpMesh::make(const PolygonSoup& soup) {
     mesh.sourceFaces_ = std::move(repaired->sourceFaces);
     mesh.sourceVertices_ = std::move(repaired->sourceVertices);
     mesh.repairs_ = std::move(repaired->repairs);
+    return mesh;
+}
+
+ScalpMesh ScalpMesh::moved(std::vector<Vec3f> positions) const {
+    assert(positions.size() == positions_.size());
+    ScalpMesh mesh = *this;
+    const std::vector<Vec3d> normals = angleWeightedNormals(positions, triangles_);
+    for (std::size_t v = 0; v < positions.size(); ++v) {
+        mesh.normals_[v] = normals[v].cast<float>();
+        mesh.connectivity_.set_point(vertexHandle(v), {positions[v].x(), positions[v].y(), positions[v].z()});
+    }
+    setNormals(mesh.normals_, mesh.connectivity_);
+    mesh.positions_ = std::move(positions);
     return mesh;
 }
 

@@ -41,9 +41,10 @@ Result<std::unique_ptr<HeadMotion>> makeClipMotion(std::shared_ptr<const Actor> 
     const auto index = actor->findClip(clip);
     if (!index) return tl::unexpected(index.error());
     if (!groom.scalp || !sameMesh(actor->mesh(), *groom.scalp)) {
-        return fail(fmt::format("the character's mesh has {} vertices and {} triangles and is not the groom's scalp",
-                                actor->mesh().vertexCount(), actor->mesh().triangleCount()),
-                    "expected the file that the groom was created on");
+        return fail(
+            fmt::format("the character's mesh has {} vertices and {} triangles and is not the groom's scalp",
+                        actor->mesh().vertexCount(), actor->mesh().triangleCount()),
+            "expected the file that the groom was created on");
     }
     return std::make_unique<ClipMotion>(std::move(actor), *index, groom.spheres);
 }

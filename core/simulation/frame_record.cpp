@@ -29,7 +29,9 @@ struct Header {
 static_assert(sizeof(Header) == 48);
 
 /// A frame is the hash of what follows it, then points, vertices and sphere centres as three floats each.
-std::uint64_t vectorsPerFrame(const Header& header) { return header.points + header.vertices + header.spheres; }
+std::uint64_t vectorsPerFrame(const Header& header) {
+    return header.points + header.vertices + header.spheres;
+}
 std::uint64_t bytesPerFrame(const Header& header) {
     return sizeof(std::uint64_t) + vectorsPerFrame(header) * sizeof(Vec3f);
 }
@@ -90,7 +92,8 @@ Result<FrameRecorder> FrameRecorder::open(const std::filesystem::path& path, con
     for (const CollisionSphere& sphere : groom.spheres) impl->sphereRest.push_back(sphere.centre);
     impl->file.open(impl->temporary, std::ios::binary | std::ios::trunc);
     const Header unfinished;
-    if (!impl->file.write(reinterpret_cast<const char*>(&unfinished), sizeof(unfinished))) return impl->writeError();
+    if (!impl->file.write(reinterpret_cast<const char*>(&unfinished), sizeof(unfinished)))
+        return impl->writeError();
     return FrameRecorder(std::move(impl));
 }
 
@@ -102,7 +105,8 @@ Status FrameRecorder::add(std::span<const Vec3f> positions_ws, const HeadPose& p
     const auto bytes = std::as_bytes(std::span(values));
     const std::uint64_t hash = hashBytes(bytes);
     impl_->file.write(reinterpret_cast<const char*>(&hash), sizeof(hash));
-    impl_->file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    impl_->file.write(reinterpret_cast<const char*>(bytes.data()),
+                      static_cast<std::streamsize>(bytes.size()));
     if (!impl_->file) return impl_->writeError();
     ++impl_->header.frames;
     return {};
@@ -127,18 +131,21 @@ Result<RecordedFrame> readFrame(const std::filesystem::path& path, const Groom& 
     Header header;
     if (!file) return failIn(name, {}, "cannot be read", "expected a record of frames");
     if (!file.read(reinterpret_cast<char*>(&header), sizeof(header)) || header.magic != kMagic) {
-        return failIn(name, Byte{0}, "is no record of frames", "expected a file that simulate --record wrote");
+        return failIn(name, Byte{0}, "is no record of frames",
+                      "expected a file that simulate --record wrote");
     }
     if (header.version > kVersion) {
         return failIn(name, Byte{8}, fmt::format("is version {}", header.version),
                       fmt::format("this program reads versions up to {}", kVersion));
     }
     const Header wanted = headerFor(groom);
-    if (header.points != wanted.points || header.vertices != wanted.vertices || header.spheres != wanted.spheres) {
-        return failIn(name, Byte{24},
-                      fmt::format("has {} points, {} vertices and {} spheres a frame", header.points, header.vertices,
-                                  header.spheres),
-                      fmt::format("this groom has {}, {} and {}", wanted.points, wanted.vertices, wanted.spheres));
+    if (header.points != wanted.points || header.vertices != wanted.vertices ||
+        header.spheres != wanted.spheres) {
+        return failIn(
+            name, Byte{24},
+            fmt::format("has {} points, {} vertices and {} spheres a frame", header.points, header.vertices,
+                        header.spheres),
+            fmt::format("this groom has {}, {} and {}", wanted.points, wanted.vertices, wanted.spheres));
     }
     if (index >= header.frames) {
         return failIn(name, {}, fmt::format("has no frame {}", index),
@@ -149,10 +156,12 @@ Result<RecordedFrame> readFrame(const std::filesystem::path& path, const Groom& 
     std::vector<Vec3f> values(vectorsPerFrame(header));
     file.seekg(static_cast<std::streamoff>(start));
     file.read(reinterpret_cast<char*>(&hash), sizeof(hash));
-    file.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(values.size() * sizeof(Vec3f)));
+    file.read(reinterpret_cast<char*>(values.data()),
+              static_cast<std::streamsize>(values.size() * sizeof(Vec3f)));
     if (!file) return failIn(name, Byte{start}, "is cut short", fmt::format("expected frame {} here", index));
     if (hash != hashOf(std::span<const Vec3f>(values))) {
-        return failIn(name, Byte{start}, fmt::format("frame {} is damaged", index), "its checksum does not match");
+        return failIn(name, Byte{start}, fmt::format("frame {} is damaged", index),
+                      "its checksum does not match");
     }
 
     RecordedFrame frame;

@@ -35,8 +35,8 @@ class RestMotion : public HeadMotion {
     HeadPose poseAt(float) const override { return {}; }
 };
 
-/// Radians. The angular speed rises over half a second as a smoothstep, so that the start is no blow; the integral
-/// of 3s² − 2s³ over the ramp is half its length.
+/// Radians. The angular speed rises over half a second as a smoothstep, so that the start is no blow; the
+/// integral of 3s² − 2s³ over the ramp is half its length.
 float spinAngle(float time) {
     constexpr float kTurnsPerSecond = 1.0f;
     constexpr float kRamp = 0.5f;

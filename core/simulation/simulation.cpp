@@ -18,7 +18,9 @@ namespace {
 using runtime::Effect;
 using runtime::StageId;
 
-runtime::Float3 toFloat3(const Vec3f& v) { return {v.x(), v.y(), v.z()}; }
+runtime::Float3 toFloat3(const Vec3f& v) {
+    return {v.x(), v.y(), v.z()};
+}
 
 runtime::Host applicationHost() {
     runtime::Host host;
@@ -33,15 +35,22 @@ runtime::Host applicationHost() {
 /// The effect that a stage is there for; stages that every strand needs have none.
 std::optional<Effect> effectOf(StageId stage) {
     switch (stage) {
-        case StageId::gravity: return Effect::gravity;
-        case StageId::drag: return Effect::drag;
-        case StageId::wind: return Effect::wind;
-        case StageId::angular: return Effect::angular;
+        case StageId::gravity:
+            return Effect::gravity;
+        case StageId::drag:
+            return Effect::drag;
+        case StageId::wind:
+            return Effect::wind;
+        case StageId::angular:
+            return Effect::angular;
         case StageId::length:
-        case StageId::extension: return Effect::length;
-        case StageId::collision: return Effect::collision;
+        case StageId::extension:
+            return Effect::length;
+        case StageId::collision:
+            return Effect::collision;
         case StageId::roots:
-        case StageId::integrate: return std::nullopt;
+        case StageId::integrate:
+            return std::nullopt;
     }
     return std::nullopt;
 }
@@ -96,8 +105,8 @@ std::vector<runtime::RootFrame> Simulation::Impl::rootsAt(const HeadPose& pose) 
 std::vector<runtime::Sphere> Simulation::Impl::spheresAt(const HeadPose& pose) const {
     std::vector<runtime::Sphere> spheres(groom.spheres.size());
     for (std::size_t s = 0; s < spheres.size(); ++s) {
-        const Vec3f centre_ws =
-            pose.sphereCentres_ws.empty() ? Vec3f(pose.head_ws * groom.spheres[s].centre) : pose.sphereCentres_ws[s];
+        const Vec3f centre_ws = pose.sphereCentres_ws.empty() ? Vec3f(pose.head_ws * groom.spheres[s].centre)
+                                                              : pose.sphereCentres_ws[s];
         spheres[s] = {toFloat3(centre_ws), groom.spheres[s].radius};
     }
     return spheres;
@@ -133,7 +142,8 @@ Result<Simulation> Simulation::make(const Groom& groom, const HeadPose& start) {
     auto made = runtime::Engine::make(strands, groom.simulation, applicationHost());
     if (!made.engine) return fail(made.error);
 
-    auto impl = std::unique_ptr<Impl>(new Impl{groom, groom.rootBindings(), std::move(*made.engine), 0, {}, {}, 0, {}});
+    auto impl = std::unique_ptr<Impl>(
+        new Impl{groom, groom.rootBindings(), std::move(*made.engine), 0, {}, {}, 0, {}});
     impl->positions_ws.resize(groom.pointCount());
     impl->engine.reset(impl->rootsAt(start));
     impl->readPositions();
@@ -160,7 +170,9 @@ void Simulation::step(float dt, const HeadPose& pose) {
     impl_->gather(impl_->engine.lastStep());
 }
 
-std::span<const Vec3f> Simulation::positions_ws() const { return impl_->positions_ws; }
+std::span<const Vec3f> Simulation::positions_ws() const {
+    return impl_->positions_ws;
+}
 
 SimulationStats Simulation::stats() const {
     SimulationStats stats = impl_->stats;
@@ -174,24 +186,28 @@ SimulationStats Simulation::stats() const {
         const auto effect = static_cast<Effect>(index);
         stats.effects.push_back({runtime::effectName(effect), impl_->engine.plan().on(effect),
                                  reasonAlone(impl_->engine.plan().why(effect)),
-                                 impl_->effectMilliseconds[index] / frames, impl_->engine.effectBytes(effect)});
+                                 impl_->effectMilliseconds[index] / frames,
+                                 impl_->engine.effectBytes(effect)});
     }
     return stats;
 }
 
 Groom posedGroom(const Groom& groom, std::span<const Vec3f> positions_ws, const HeadPose& pose) {
     Groom posed = groom;
-    posed.pointAttributes.set(attribute::kPosition, std::vector<Vec3f>(positions_ws.begin(), positions_ws.end()));
+    posed.pointAttributes.set(attribute::kPosition,
+                              std::vector<Vec3f>(positions_ws.begin(), positions_ws.end()));
     if (groom.scalp) {
         std::vector<Vec3f> vertices = pose.scalpPositions_ws;
         if (vertices.empty()) {
-            for (const Vec3f& position : groom.scalp->positions()) vertices.push_back(pose.head_ws * position);
+            for (const Vec3f& position : groom.scalp->positions())
+                vertices.push_back(pose.head_ws * position);
         }
         posed.scalp = std::make_shared<const ScalpMesh>(groom.scalp->moved(std::move(vertices)));
     }
     for (std::size_t s = 0; s < posed.spheres.size(); ++s) {
-        posed.spheres[s].centre = pose.sphereCentres_ws.empty() ? Vec3f(pose.head_ws * groom.spheres[s].centre)
-                                                                : pose.sphereCentres_ws[s];
+        posed.spheres[s].centre = pose.sphereCentres_ws.empty()
+                                      ? Vec3f(pose.head_ws * groom.spheres[s].centre)
+                                      : pose.sphereCentres_ws[s];
     }
     return posed;
 }
