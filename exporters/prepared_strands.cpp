@@ -57,7 +57,7 @@ Usability usability(std::span<const Vec3f> strand) {
     for (std::size_t i = 0; i < strand.size(); ++i) {
         if (!strand[i].allFinite()) return Usability::Unusable;
         if (i == 0) continue;
-        const bool same = strand[i] == strand[i - 1];
+        const bool same = (strand[i] - strand[i - 1]).norm() <= kCoincidentPoints;
         coincident = coincident || same;
         extended = extended || !same;
     }

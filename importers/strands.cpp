@@ -16,8 +16,6 @@
 namespace hairloom {
 namespace {
 
-constexpr float kCoincident = 1e-8f;  ///< metres; closer points are one
-
 bool isTfx(std::span<const std::byte> bytes) {
     float version = 0;
     if (bytes.size() < sizeof version) return false;
@@ -92,7 +90,8 @@ class Cleaner {
                 written_ = start;
                 return drop(DropReason::NotFinite);
             }
-            if (written_ > start && (position - raw_.positions[written_ - 1]).norm() <= kCoincident) continue;
+            if (written_ > start && (position - raw_.positions[written_ - 1]).norm() <= kCoincidentPoints)
+                continue;
             place(point, position);
         }
         const std::size_t kept = written_ - start;

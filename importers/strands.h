@@ -44,6 +44,9 @@ struct StrandImportOptions {
     const ScalpMesh* scalp = nullptr;
 };
 
+/// Metres. A point that is not farther from the one before it is taken for the same and removed.
+inline constexpr float kCoincidentPoints = 1e-8f;
+
 enum class DropReason : std::uint8_t {
     TooFewPoints,  ///< fewer than two points in the file
     NotFinite,     ///< a coordinate is infinite or not a number
