@@ -35,6 +35,21 @@ struct MeshRepair {
     std::size_t count;
 };
 
+/// The stored arrays of a ScalpMesh; what its accessors of the same names return.
+struct ScalpMeshParts {
+    std::vector<Vec3f> positions;
+    std::vector<Vec3f> normals;
+    std::vector<Triangle> triangles;
+    std::vector<Vec2f> cornerUvs;
+    std::vector<std::uint32_t> sourceFaces;
+    std::vector<std::uint32_t> sourceVertices;
+    std::vector<std::uint32_t> triangleGroups;
+    std::vector<std::uint32_t> triangleMaterials;
+    std::vector<std::string> groupNames;
+    std::vector<std::string> materialNames;
+    std::vector<MeshRepair> repairs;
+};
+
 /// A triangle mesh whose every edge has at most two faces of consistent orientation and whose every vertex has one
 /// fan. Immutable once made, so that documents share it.
 class ScalpMesh {
@@ -53,6 +68,11 @@ class ScalpMesh {
     /// splits non-manifold edges and vertices, turns n-gons into triangles, computes missing normals) and lists it.
     /// Errors: no face left, a corner that names no vertex, a coordinate that is not finite.
     static Result<ScalpMesh> make(const PolygonSoup& soup);
+
+    /// The mesh that had these arrays, in the same order and unrepaired, as project files keep it. Errors: lengths
+    /// that do not fit each other, indices out of range, values that are not finite, connectivity that make() would
+    /// have had to repair.
+    static Result<ScalpMesh> fromParts(ScalpMeshParts parts);
 
     ScalpMesh() = default;
 

@@ -27,20 +27,20 @@ Version versionOf(const AttributeData& data);
 /// The names that Hairloom itself gives meaning to. Others are kept, saved and passed through.
 namespace attribute {
 // Per point
-inline constexpr std::string_view kPosition = "position";  ///< float3, metres, in the scalp's rest space
-inline constexpr std::string_view kRadius = "radius";      ///< float, metres, half the fibre's diameter
-inline constexpr std::string_view kPointColour = "colour"; ///< float3, linear RGB in [0, 1]
+inline constexpr std::string_view kPosition = "position";   ///< float3, metres, in the scalp's rest space
+inline constexpr std::string_view kRadius = "radius";       ///< float, metres, half the fibre's diameter
+inline constexpr std::string_view kPointColour = "colour";  ///< float3, linear RGB in [0, 1]
 inline constexpr std::string_view kTransparency = "transparency";  ///< float in [0, 1], 0 is opaque
 // Per strand
-inline constexpr std::string_view kRootTriangle = "root_triangle";        ///< uint32, triangle of the scalp mesh
+inline constexpr std::string_view kRootTriangle = "root_triangle";  ///< uint32, triangle of the scalp mesh
 inline constexpr std::string_view kRootBarycentric = "root_barycentric";  ///< float3, ≥ 0, sum 1
 inline constexpr std::string_view kRootUv = "root_uv";                    ///< float2
-inline constexpr std::string_view kGroup = "group";      ///< uint32, index into Groom::groupNames
-inline constexpr std::string_view kGuide = "guide";      ///< uint8, 1 for strands that are simulated
-inline constexpr std::string_view kFrozen = "frozen";    ///< uint8, 1 where brushes must not touch
-inline constexpr std::string_view kLayer = "layer";      ///< uint32, index into Groom::layers
+inline constexpr std::string_view kGroup = "group";          ///< uint32, index into Groom::groupNames
+inline constexpr std::string_view kGuide = "guide";          ///< uint8, 1 for strands that are simulated
+inline constexpr std::string_view kFrozen = "frozen";        ///< uint8, 1 where brushes must not touch
+inline constexpr std::string_view kLayer = "layer";          ///< uint32, index into Groom::layers
 inline constexpr std::string_view kStrandColour = "colour";  ///< float3, linear RGB in [0, 1]
-inline constexpr std::string_view kStrandId = "id";      ///< uint32, kept while strands come and go
+inline constexpr std::string_view kStrandId = "id";          ///< uint32, kept while strands come and go
 }  // namespace attribute
 
 /// Attributes of one domain; every array has the domain's element count (validate() checks).
@@ -71,7 +71,9 @@ class AttributeSet {
     void set(std::string_view name, std::vector<T> values) {
         arrays_.insert_or_assign(std::string(name), AttributeData(CowArray<T>(std::move(values))));
     }
-    void set(std::string_view name, AttributeData data) { arrays_.insert_or_assign(std::string(name), std::move(data)); }
+    void set(std::string_view name, AttributeData data) {
+        arrays_.insert_or_assign(std::string(name), std::move(data));
+    }
     void erase(std::string_view name) {
         if (const auto found = arrays_.find(name); found != arrays_.end()) arrays_.erase(found);
     }

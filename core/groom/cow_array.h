@@ -10,8 +10,8 @@
 
 namespace hairloom {
 
-/// A number that no other content has had in this run of the program. Equal versions mean equal content, so caches
-/// and the GPU re-upload only when it changed.
+/// A number that no other content has had in this run of the program. Equal versions mean equal content, so
+/// caches and the GPU re-upload only when it changed.
 using Version = std::uint64_t;
 
 inline Version nextVersion() {
@@ -19,8 +19,8 @@ inline Version nextVersion() {
     return ++last;
 }
 
-/// Copying is cheap and shares; `edit()` separates and renews the version. Distinct CowArrays may be read and edited
-/// on different threads at once, also while they share.
+/// Copying is cheap and shares; `edit()` separates and renews the version. Distinct CowArrays may be read and
+/// edited on different threads at once, also while they share.
 template <class T>
 class CowArray {
   public:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// The document: strands on a scalp, with everything an artist authored. Copying is cheap (arrays are shared until
-// written), so undo, jobs and snapshots hold whole grooms.
+// The document: strands on a scalp, with everything an artist authored. Copying is cheap (arrays are shared
+// until written), so undo, jobs and snapshots hold whole grooms.
 
 #include <cstdint>
 #include <memory>
@@ -34,10 +34,11 @@ struct Layer {
 
 /// How follow hairs come from guides (thesis §4.2).
 struct InterpolationSettings {
-    std::uint32_t followPerGuide = 0;  ///< follow hairs for each guide, 0 … 4096; 0 shows the strands themselves
-    float wispRadiusRoot = 0.002f;     ///< metres, 0 … 0.1; radius of a wisp's cross-section at the root
-    float wispRadiusTip = 0.004f;      ///< metres, 0 … 0.1; at the tip
-    float blend = 0.5f;                ///< 0 … 1; 0 follows one strand (wisps), 1 the three of a root triangle
+    std::uint32_t followPerGuide =
+        0;  ///< follow hairs for each guide, 0 … 4096; 0 shows the strands themselves
+    float wispRadiusRoot = 0.002f;  ///< metres, 0 … 0.1; radius of a wisp's cross-section at the root
+    float wispRadiusTip = 0.004f;   ///< metres, 0 … 0.1; at the tip
+    float blend = 0.5f;             ///< 0 … 1; 0 follows one strand (wisps), 1 the three of a root triangle
     std::uint64_t seed = 1;
 };
 
@@ -81,13 +82,16 @@ struct Groom {
 /// A groom of these strands with position and offsets and nothing else. `offsets` as in Groom.
 Groom makeGroom(std::vector<std::uint32_t> offsets, std::vector<Vec3f> positions);
 
-/// Straight strands along the interpolated scalp normals (thesis §4.1), bound to the scalp, each with `points` ≥ 2
-/// points over `length` metres, with ids, root UVs, radius and the Delaunay triangulation of the roots.
+/// Straight strands along the interpolated scalp normals (thesis §4.1), bound to the scalp, each with
+/// `points` ≥ 2 points over `length` metres, with ids, root UVs, radius tapered as the material says, and the
+/// Delaunay triangulation of the roots (three of them at least). Errors: no scalp, a root beside it, a length
+/// or number of points out of range, roots that cannot be triangulated.
 Result<Groom> growStraight(std::shared_ptr<const ScalpMesh> scalp, FaceSet selection,
                            std::span<const SurfacePoint> roots, float length, std::uint32_t points);
 
-/// Binds each root to the nearest point of the selection (all of the scalp where it is empty), replaces scalp and
-/// selection of the groom, and returns the distance of each root to its binding, metres.
+/// Binds each root to the nearest point of the selection (all of the scalp where it is empty), replaces scalp
+/// and selection of the groom, empties the triangulation, and returns the distance of each root to its
+/// binding, metres. `scalp` has triangles; strands have points.
 std::vector<float> bindToScalp(Groom& groom, std::shared_ptr<const ScalpMesh> scalp, FaceSet selection);
 
 }  // namespace hairloom
