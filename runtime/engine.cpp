@@ -129,7 +129,7 @@ void Engine::replan(std::span<const Sphere> spheres, std::span<const Float3> sph
 
 void Engine::allocateForPlan() {
     if (plan_.on(Effect::angular) == !state_.pull.empty()) return;
-    state_.pull = Floats(plan_.on(Effect::angular) ? shape_->planeFloats : 0, 0.0f);
+    state_.pull = Floats(plan_.on(Effect::angular) ? shape_->planeFloats * kPullPlanes : 0, 0.0f);
     state_.pullSubstep = 0.0f;
 }
 
@@ -251,8 +251,7 @@ void Engine::runBlock(std::size_t block, const Frame& frame) {
     enterFrame(block, view, lanes, frame);
     if (frame.rescale != 1.0f) kernels().rescale(view, frame.rescale);
     if (frame.newPull) {
-        fillPull(*shape_, settings_, frame.context.h, block,
-                 state_.pull.data() + shape_->blocks[block].firstPlane);
+        fillPull(*shape_, settings_, frame.context.h, block, state_);
     }
     if (frame.windy) {
         kernels().sampleWind(view, lanes, frame.context.h, wind_, frame.windFrom.data(), frame.windTo.data());

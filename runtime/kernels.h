@@ -44,6 +44,7 @@ struct BlockView {
     /// Share of the way to its rest place that the end of a segment goes in a substep; null unless angular
     /// springs are on.
     const float* pull;
+    const float* settle;  ///< share of that move that does not become speed; null likewise
 };
 
 /// What the strands of a block go through in one frame; lives on the stack of the thread that runs the block.

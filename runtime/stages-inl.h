@@ -108,7 +108,8 @@ void integrate(const BlockView& block, LaneFrame& lanes, const SubstepContext& c
 }
 
 /// Each point goes the share `pull` of the way to its rest place beside its parent (Rünz 2012, Eq. 4 and the
-/// cheaper of its two directions), then the frame of reference turns with the segment.
+/// cheaper of its two directions), then the frame of reference turns with the segment. Of that move the share
+/// `settle` leaves the speed alone: without it each segment would drive the next one at its resonance.
 void bendBack(const BlockView& block, LaneFrame& lanes, const SubstepContext&) {
     alignas(64) float carried[4][kBlockLanes];
     for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth)
@@ -121,8 +122,10 @@ void bendBack(const BlockView& block, LaneFrame& lanes, const SubstepContext&) {
             const V3 target = rotate(frame, load3(block.rest, s));
             const V3 parent = load3(block.position, s);
             const V3 segment = load3(block.position, i) - parent;
-            const V3 bent = segment + (target - segment) * hn::Load(D(), block.pull + s);
+            const V3 move = (target - segment) * hn::Load(D(), block.pull + s);
+            const V3 bent = segment + move;
             store3(parent + bent, block.position, i);
+            store3(load3(block.previous, i) + move * hn::Load(D(), block.settle + s), block.previous, i);
             store4(multiply(shortestArc(target, bent), frame), carried, lane);
         }
     }

@@ -2,6 +2,7 @@
 #include "runtime/state.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <numeric>
 
@@ -136,6 +137,7 @@ BlockView viewOf(const RestShape& shape, State& state, std::size_t index, std::u
     const std::size_t size = planeSize(block);
     const float* rest = shape.planes.data() + block.firstPlane * kRestPlanes;
     float* moving = state.planes.data() + block.firstPlane * kStatePlanes;
+    const float* pull = state.pull.empty() ? nullptr : state.pull.data() + block.firstPlane * kPullPlanes;
     return {block.points,
             clampedPoints,
             {moving, moving + size, moving + 2 * size},
@@ -143,7 +145,8 @@ BlockView viewOf(const RestShape& shape, State& state, std::size_t index, std::u
             {rest, rest + size, rest + 2 * size},
             rest + 3 * size,
             rest + 4 * size,
-            state.pull.empty() ? nullptr : state.pull.data() + block.firstPlane};
+            pull,
+            pull == nullptr ? nullptr : pull + size};
 }
 
 void placeAtRest(const RestShape& shape, State& state, std::size_t index) {
@@ -165,10 +168,13 @@ void placeAtRest(const RestShape& shape, State& state, std::size_t index) {
 }
 
 void fillPull(const RestShape& shape, const SimulationSettings& settings, float h, std::size_t index,
-              float* pull) {
+              State& state) {
     constexpr float kFrequency = 100.0f;  // rad/s
     constexpr float kSegment = 0.01f;     // metres
     const Block& block = shape.blocks[index];
+    constexpr float kDamping = 2.0f;  // ζ: twice critical
+    float* const pull = state.pull.data() + block.firstPlane * kPullPlanes;
+    float* const settle = pull + planeSize(block);
     const float* lengths = shape.planes.data() + block.firstPlane * kRestPlanes + 3 * planeSize(block);
     for (std::uint32_t s = 0; s + 1 < block.points; ++s) {
         const float along = static_cast<float>(s) / static_cast<float>(block.points - 1);
@@ -179,8 +185,10 @@ void fillPull(const RestShape& shape, const SimulationSettings& settings, float 
         for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
             const std::size_t i = std::size_t{s} * kBlockLanes + lane;
             const float ratio = share / std::max(lengths[i], 1e-9f);
-            const float x = std::min(ratio * ratio * (stiffness / compliance), 1e12f);
-            pull[i] = x / (1.0f + x);
+            const float x = std::min(ratio * std::sqrt(stiffness / compliance), 1e9f);
+            const float both = x * x + 2.0f * kDamping * x;
+            pull[i] = both / (1.0f + both);
+            settle[i] = 2.0f * kDamping / (x + 2.0f * kDamping);
         }
     }
 }
