@@ -9,7 +9,7 @@
 #include <string_view>
 #include <unordered_map>
 
-#include "importers/obj_lines.h"
+#include "importers/obj_text.h"
 
 namespace hairloom {
 namespace {

@@ -183,6 +183,7 @@ void members(Archive& archive, Scene& scene) {
 
 ByteWriter writeRawScene(const Result<RawScene>& scene) {
     ByteWriter out;
+    out.reserve(std::size_t{1} << 20u);
     Writer writer(out);
     if (scene) {
         out.write(kScene);

@@ -2,6 +2,7 @@
 #include "importers/mesh_reader/assimp_scene.h"
 
 #include <assimp/config.h>
+#include <assimp/importerdesc.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "importers/obj_lines.h"
+#include "importers/obj_text.h"
 
 #include <algorithm>
 #include <charconv>
