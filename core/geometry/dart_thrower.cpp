@@ -13,6 +13,9 @@ constexpr int kBuckets = 256;  // powers of two from 2^-160 m² on
 constexpr int kSmallestPower = -160;
 constexpr float kRounding = 4e-6f;  // of a float distance, relative
 constexpr float kSmallest = 5e-4f;  // of the radius: size of fragments that are let go
+// Fragments below this many radii are finished at once: they hold one root at most, and their
+// neighbourhood is still in the cache.
+constexpr float kAtOnce = 1.6f;
 constexpr float kLeastDensity = 1.0f / 64;
 
 int bucketOf(float area) {
@@ -69,9 +72,10 @@ DartThrower::DartThrower(const ScalpMesh& mesh, const FaceSet& faces, std::span<
       apart_(radius * (1 + kRounding)),
       random_(seed),
       grid_(mesh.bounds().min(), 2 * apart_),
-      buckets_(kBuckets) {
+      buckets_(kBuckets),
+      smallestUsed_(kBuckets - 1) {
     for (const std::uint32_t face : faces)
-        push({{Vec2f(0, 0), Vec2f(1, 0), Vec2f(0, 1)}, face, mesh.triangleArea(face)});
+        push({{Vec2f(0, 0), Vec2f(1, 0), Vec2f(0, 1)}, face, mesh.triangleArea(face), false});
 }
 
 float DartThrower::densityAt(std::uint32_t triangle, const Vec3f& weights) const {
@@ -83,14 +87,23 @@ float DartThrower::localRadius(float density) const {
 }
 
 DartThrower::Places DartThrower::placesOf(const Fragment& fragment) const {
+    const Triangle& t = mesh_.triangles()[fragment.triangle];
+    const Vec3f origin = mesh_.positions()[t[0]];
+    const Vec3f alongB = mesh_.positions()[t[1]] - origin, alongC = mesh_.positions()[t[2]] - origin;
     Places places;
-    float most = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const Vec3f weights = barycentric(fragment.corners[i]);
-        places.corners[i] = mesh_.pointAt(fragment.triangle, weights);
-        most = std::max(most, densityAt(fragment.triangle, weights));
+    for (std::size_t i = 0; i < 3; ++i)
+        places.corners[i] = origin + fragment.corners[i].x() * alongB + fragment.corners[i].y() * alongC;
+    places.radius = places.widest = apart_;
+    places.bare = false;
+    if (!mask_.empty()) {
+        Vec3f densities;
+        for (int i = 0; i < 3; ++i)
+            densities[i] =
+                densityAt(fragment.triangle, barycentric(fragment.corners[static_cast<std::size_t>(i)]));
+        places.radius = localRadius(densities.maxCoeff());
+        places.widest = localRadius(densities.minCoeff());
+        places.bare = densities.maxCoeff() < kLeastDensity;
     }
-    places.radius = localRadius(most);
     return places;
 }
 
@@ -104,18 +117,22 @@ bool DartThrower::covers(const RootGrid::Entry& root, const Places& places, floa
 
 void DartThrower::push(const Fragment& fragment) {
     if (!(fragment.area > 0)) return;
-    Bucket& bucket = buckets_[static_cast<std::size_t>(bucketOf(fragment.area))];
-    bucket.fragments.push_back(fragment);
-    bucket.area += fragment.area;
+    const auto k = static_cast<std::size_t>(bucketOf(fragment.area));
+    largest_ = std::max(largest_, k);
+    smallestUsed_ = std::min(smallestUsed_, k);
+    buckets_[k].fragments.push_back(fragment);
+    buckets_[k].area += fragment.area;
+    ++active_;
 }
 
 /// A fragment drawn with probability in proportion to its area.
 DartThrower::Fragment DartThrower::take() {
+    while (buckets_[largest_].fragments.empty()) --largest_;
     double total = 0;
-    for (const Bucket& bucket : buckets_) total += bucket.area;
+    for (std::size_t k = smallestUsed_; k <= largest_; ++k) total += buckets_[k].area;
     double left = random_.uniformDouble() * total;
-    std::size_t chosen = buckets_.size();
-    for (std::size_t k = buckets_.size(); k-- > 0 && (chosen == buckets_.size() || left >= 0);) {
+    std::size_t chosen = largest_;
+    for (std::size_t k = largest_ + 1; k-- > smallestUsed_ && left >= 0;) {
         if (buckets_[k].fragments.empty()) continue;
         chosen = k;
         left -= buckets_[k].area;
@@ -128,14 +145,15 @@ DartThrower::Fragment DartThrower::take() {
     const Fragment fragment = bucket.fragments[index];
     bucket.fragments[index] = bucket.fragments.back();
     bucket.fragments.pop_back();
+    --active_;
     bucket.area = bucket.fragments.empty() ? 0 : bucket.area - fragment.area;
     return fragment;
 }
 
-void DartThrower::gatherNear(const Vec3f& place, float range) {
+void DartThrower::gatherNear(const Vec3f& center, float range) {
     near_.clear();
-    grid_.search(place, range, [&](const RootGrid::Entry& entry) {
-        near_.push_back(entry);
+    grid_.search(center, range, [&](const RootGrid::Entry& entry) {
+        if ((entry.position - center).squaredNorm() < range * range) near_.push_back(entry);
         return false;
     });
 }
@@ -144,7 +162,7 @@ bool DartThrower::coveredByNear(const Places& places) const {
     return std::any_of(near_.begin(), near_.end(), [&](const auto& root) { return covers(root, places, 1); });
 }
 
-void DartThrower::throwAt(const Fragment& fragment) {
+void DartThrower::throwDart(const Fragment& fragment) {
     float a = random_.uniform(), b = random_.uniform();
     if (a + b > 1) {
         a = 1 - a;
@@ -156,54 +174,73 @@ void DartThrower::throwAt(const Fragment& fragment) {
     const Vec3f place = mesh_.pointAt(fragment.triangle, weights);
     const float density = densityAt(fragment.triangle, weights);
     const float radius = localRadius(density);
-    gatherNear(place, radius);
-    const bool free =
-        density >= kLeastDensity && std::none_of(near_.begin(), near_.end(), [&](const auto& root) {
-            const float apart = std::min(root.radius, radius);
-            return (root.position - place).squaredNorm() < apart * apart;
-        });
-    if (free) {
-        roots_.push_back({fragment.triangle, weights});
-        near_.push_back({place, radius});
-        grid_.add(near_.back());
+    if (density < kLeastDensity && !mask_.empty()) return;
+    if (!fragment.small) gatherNear(place, radius);
+    for (const RootGrid::Entry& root : near_) {
+        const float apart = std::min(root.radius, radius);
+        if ((root.position - place).squaredNorm() < apart * apart) return;
     }
-    if (!coveredByNear(placesOf(fragment))) splitAndKeep(fragment);
+    roots_.push_back({fragment.triangle, weights});
+    near_.push_back({place, radius});
+    grid_.add(near_.back());
 }
 
+/// Splits what no single root covers into four; small parts wait in small_, others in the buckets.
 void DartThrower::splitAndKeep(const Fragment& fragment) {
     const auto& [a, b, c] = fragment.corners;
     const Vec2f ab = (a + b) / 2, bc = (b + c) / 2, ca = (c + a) / 2;
     const std::array<std::array<Vec2f, 3>, 4> children = {
         {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {bc, ca, ab}}};
     for (const auto& corners : children) {
-        const Fragment child{corners, fragment.triangle, fragment.area / 4};
+        Fragment child{corners, fragment.triangle, fragment.area / 4, false};
         const Places places = placesOf(child);
-        const float size = std::max({(places.corners[0] - places.corners[1]).squaredNorm(),
-                                     (places.corners[1] - places.corners[2]).squaredNorm(),
-                                     (places.corners[2] - places.corners[0]).squaredNorm()});
-        const bool bare = places.radius > apart_ && places.radius >= localRadius(kLeastDensity) &&
-                          densityAt(fragment.triangle, barycentric(corners[0])) < kLeastDensity &&
-                          densityAt(fragment.triangle, barycentric(corners[1])) < kLeastDensity &&
-                          densityAt(fragment.triangle, barycentric(corners[2])) < kLeastDensity;
+        const float size = places.squaredSize();
         const float smallest = kSmallest * places.radius;
-        if (!bare && size > smallest * smallest && !coveredByNear(places)) push(child);
+        if (places.bare || size <= smallest * smallest || coveredByNear(places)) continue;
+        child.small = size < kAtOnce * kAtOnce * apart_ * apart_;
+        if (child.small && fragment.small)
+            small_.push_back(child);
+        else
+            push(child);
     }
 }
 
-bool DartThrower::run(std::size_t most) {
-    const auto anyLeft = [&] {
-        return std::any_of(buckets_.begin(), buckets_.end(),
-                           [](const Bucket& b) { return !b.fragments.empty(); });
-    };
-    while (anyLeft()) {
-        if (roots_.size() >= most) return false;
-        throwAt(take());
+/// Fills what is left of a small fragment; all roots that matter to it are gathered once.
+void DartThrower::fill(const Fragment& fragment, std::size_t most) {
+    const Places places = placesOf(fragment);
+    const Vec3f center = (places.corners[0] + places.corners[1] + places.corners[2]) / 3;
+    float reach = 0;
+    for (const Vec3f& corner : places.corners) reach = std::max(reach, (corner - center).norm());
+    gatherNear(center, reach + places.widest);
+    if (coveredByNear(places)) return;
+    small_.push_back(fragment);
+    while (!small_.empty() && roots_.size() < most) {
+        const Fragment part = small_.back();
+        small_.pop_back();
+        throwDart(part);
+        if (!coveredByNear(placesOf(part))) splitAndKeep(part);
     }
-    return true;
+    for (const Fragment& part : small_) push(part);
+    small_.clear();
+}
+
+bool DartThrower::run(std::size_t most) {
+    while (active_ > 0 && roots_.size() < most) {
+        const Fragment fragment = take();
+        if (fragment.small) {
+            fill(fragment, most);
+            continue;
+        }
+        near_.clear();
+        throwDart(fragment);
+        if (!coveredByNear(placesOf(fragment))) splitAndKeep(fragment);
+    }
+    return active_ == 0;
 }
 
 bool DartThrower::gapWithin(const Fragment& fragment, float factor, int depth) const {
     const Places places = placesOf(fragment);
+    if (places.bare) return true;
     const Vec3f middle = (places.corners[0] + places.corners[1] + places.corners[2]) / 3;
     const auto reached = [&](const RootGrid::Entry& root) {
         const float reach = factor * places.radius;
@@ -219,7 +256,7 @@ bool DartThrower::gapWithin(const Fragment& fragment, float factor, int depth) c
     const std::array<std::array<Vec2f, 3>, 4> children = {
         {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {bc, ca, ab}}};
     return std::all_of(children.begin(), children.end(), [&](const auto& corners) {
-        return gapWithin({corners, fragment.triangle, fragment.area / 4}, factor, depth + 1);
+        return gapWithin({corners, fragment.triangle, fragment.area / 4, false}, factor, depth + 1);
     });
 }
 

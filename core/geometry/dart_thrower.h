@@ -3,6 +3,7 @@
 // Hierarchical dart throwing on triangles (Cline, Jeschke, White, Razdan and Wonka 2009). Private to
 // core/geometry.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -83,6 +84,7 @@ class DartThrower {
         std::array<Vec2f, 3> corners;
         std::uint32_t triangle;
         float area;
+        bool small;  ///< finished at once when its turn comes
     };
     /// Fragments whose areas lie between 2^k and 2^(k+1).
     struct Bucket {
@@ -91,7 +93,12 @@ class DartThrower {
     };
     struct Places {
         std::array<Vec3f, 3> corners;
-        float radius;  ///< smallest local radius in the fragment
+        float radius, widest;  ///< smallest and largest local radius in the fragment
+        bool bare;             ///< the mask is 0 all over the fragment
+        float squaredSize() const {
+            return std::max({(corners[0] - corners[1]).squaredNorm(), (corners[1] - corners[2]).squaredNorm(),
+                             (corners[2] - corners[0]).squaredNorm()});
+        }
     };
 
     static Vec3f barycentric(const Vec2f& part) {
@@ -103,9 +110,10 @@ class DartThrower {
     static bool covers(const RootGrid::Entry& root, const Places& places, float factor);
     void push(const Fragment& fragment);
     Fragment take();
-    /// Throws one dart at the fragment; keeps what of the fragment is left uncovered.
-    void throwAt(const Fragment& fragment);
-    void gatherNear(const Vec3f& place, float range);
+    /// Throws one dart at the fragment. Afterwards near_ holds the roots that can concern it.
+    void throwDart(const Fragment& fragment);
+    void fill(const Fragment& fragment, std::size_t most);
+    void gatherNear(const Vec3f& center, float range);
     bool coveredByNear(const Places& places) const;
     void splitAndKeep(const Fragment& fragment);
     bool gapWithin(const Fragment& fragment, float factor, int depth) const;
@@ -117,6 +125,9 @@ class DartThrower {
     Random random_;
     RootGrid grid_;
     std::vector<Bucket> buckets_;
+    std::size_t largest_ = 0, smallestUsed_;  ///< range of buckets_ that may hold fragments
+    std::size_t active_ = 0;                  ///< fragments in all buckets
+    std::vector<Fragment> small_;  ///< parts of the fragment in work, finished before the next is drawn
     std::vector<SurfacePoint> roots_;
     std::vector<RootGrid::Entry> near_;
 };
