@@ -14,7 +14,7 @@
 namespace hairloom {
 
 struct ChildLimits {
-    std::chrono::milliseconds time{10'000};                 ///< then the child is killed
+    std::chrono::milliseconds time{8'000};                  ///< then the child is killed
     std::uint64_t residentBytes = std::uint64_t{3} << 29u;  ///< 1.5 GiB; then the child is killed
     std::uint64_t outputBytes = std::uint64_t{1} << 29u;    ///< 512 MiB; then the child is killed
 };

@@ -23,8 +23,8 @@ Status validateNames(const std::vector<std::uint32_t>& perFace, const std::vecto
 
 Status validateFaces(const PolygonSoup& soup) {
     if (soup.offsets.size() < 2) {
-        return fail(fmt::format("has no faces, only {} points", soup.positions.size()),
-                    "expected a mesh with polygons; strands are imported as hair");
+        return fail(fmt::format("has no faces ({} points)", soup.positions.size()),
+                    "expected a mesh with polygons");
     }
     if (soup.offsets.front() != 0 || soup.offsets.back() != soup.corners.size() ||
         !std::ranges::is_sorted(soup.offsets)) {

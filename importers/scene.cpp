@@ -15,6 +15,7 @@
 #include "importers/length_unit.h"
 #include "importers/mesh_format.h"
 #include "importers/obj_mesh.h"
+#include "importers/ply_mesh.h"
 #include "importers/raw_scene.h"
 #include "importers/raw_scene_stream.h"
 #include "importers/utf8.h"
@@ -70,10 +71,17 @@ Result<RawScene> readInChild(const std::filesystem::path& path, MeshFormat forma
 }
 
 Result<RawScene> readRaw(const std::filesystem::path& path, MeshFormat format) {
-    if (format != MeshFormat::Obj) return readInChild(path, format);
-    const auto text = readTextFile(path, kLargestFile);
-    if (!text) return tl::unexpected(text.error());
-    return readObjMesh(path, *text);
+    if (format == MeshFormat::Obj) {
+        const auto text = readTextFile(path, kLargestFile);
+        if (!text) return tl::unexpected(text.error());
+        return readObjMesh(path, *text);
+    }
+    if (format == MeshFormat::Ply) {
+        const auto bytes = readFile(path, kLargestFile);
+        if (!bytes) return tl::unexpected(bytes.error());
+        return readPlyMesh(path.string(), *bytes);
+    }
+    return readInChild(path, format);
 }
 
 void cleanNames(RawScene& scene) {

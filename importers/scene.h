@@ -30,9 +30,9 @@ struct ImportedScene {
     float metresPerUnit = 1;  ///< that the file's lengths were multiplied with
 };
 
-/// Reads a file by its content; its name plays no part. FBX, glTF, PLY and STL are read in a process of their
+/// Reads a file by its content; its name plays no part. FBX, glTF and STL are read in a process of their
 /// own (hairloom-mesh-reader, found beside the running program or named by the environment variable
-/// HAIRLOOM_MESH_READER), within 10 s and 1.5 GiB. Errors: missing or unreadable file, no supported format,
+/// HAIRLOOM_MESH_READER), within 8 s and 1.5 GiB. Errors: missing or unreadable file, no supported format,
 /// damaged or too large for these limits, no faces, nothing left after repair.
 Result<ImportedScene> importScene(const std::filesystem::path& path, const MeshImportOptions& options = {});
 

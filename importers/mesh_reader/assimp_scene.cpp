@@ -79,7 +79,8 @@ class Converter {
 
     RawScene convert() {
         Eigen::Affine3f toWorld = Eigen::Affine3f::Identity();
-        if (format_ == MeshFormat::Gltf || format_ == MeshFormat::Glb) scene_.metresPerUnit = 1;
+        const bool isGltf = format_ == MeshFormat::Gltf || format_ == MeshFormat::Glb;
+        if (isGltf) scene_.metresPerUnit = 1;
         if (format_ == MeshFormat::Fbx && source_.mMetaData) {
             float centimetres = 1;
             source_.mMetaData->Get("UnitScaleFactor", centimetres);
@@ -90,8 +91,7 @@ class Converter {
             anyUvs_ = anyUvs_ || source_.mMeshes[mesh]->HasTextureCoords(0);
             allNormals_ = allNormals_ && source_.mMeshes[mesh]->HasNormals();
         }
-        if (hasMaterials()) addMaterials();
-        SkeletonBuilder skeleton(source_, toWorld, scene_);
+        SkeletonBuilder skeleton(source_, toWorld, isGltf, scene_);
         addNodes(skeleton);
         skeleton.addClips();
         finish();
@@ -99,13 +99,23 @@ class Converter {
     }
 
   private:
-    bool hasMaterials() const { return format_ != MeshFormat::Ply && format_ != MeshFormat::Stl; }
+    bool hasMaterials() const { return format_ != MeshFormat::Stl; }
 
-    void addMaterials() {
-        for (unsigned index = 0; index < source_.mNumMaterials; ++index) {
-            const std::string name = source_.mMaterials[index]->GetName().C_Str();
-            scene_.soup.materialNames.push_back(name.empty() ? fmt::format("material {}", index) : name);
-        }
+    /// Materials in the order of their first use; several of one name are one.
+    std::uint32_t materialOf(const aiMesh& mesh) {
+        std::string name = "default";
+        if (mesh.mMaterialIndex < source_.mNumMaterials)
+            name = source_.mMaterials[mesh.mMaterialIndex]->GetName().C_Str();
+        if (name.empty()) name = fmt::format("material {}", mesh.mMaterialIndex);
+        return indexOf(name, materials_, scene_.soup.materialNames);
+    }
+
+    static std::uint32_t indexOf(const std::string& name,
+                                 std::unordered_map<std::string, std::uint32_t>& indices,
+                                 std::vector<std::string>& names) {
+        const auto [entry, added] = indices.try_emplace(name, static_cast<std::uint32_t>(names.size()));
+        if (added) names.push_back(name);
+        return entry->second;
     }
 
     /// Depth first, children in the file's order.
@@ -124,10 +134,7 @@ class Converter {
     std::uint32_t groupOf(const aiMesh& mesh, const aiNode& node) {
         std::string name = hasMaterials() ? node.mName.C_Str() : mesh.mName.C_Str();
         if (name.empty() || name.front() == '<') name = "default";
-        const auto next = static_cast<std::uint32_t>(scene_.soup.groupNames.size());
-        const auto [entry, added] = groups_.try_emplace(name, next);
-        if (added) scene_.soup.groupNames.push_back(name);
-        return entry->second;
+        return indexOf(name, groups_, scene_.soup.groupNames);
     }
 
     void addMesh(const aiMesh& mesh, const aiNode& node, SkeletonBuilder& skeleton) {
@@ -139,6 +146,7 @@ class Converter {
             soup.positions.push_back(toWorld * Vec3f(p.x, p.y, p.z));
         }
         const std::uint32_t group = groupOf(mesh, node);
+        const std::uint32_t material = hasMaterials() ? materialOf(mesh) : 0;
         const Mat3f normalMatrix = cofactors(toWorld.linear());
         const bool mirrored = toWorld.linear().determinant() < 0;
         for (unsigned index = 0; index < mesh.mNumFaces; ++index) {
@@ -153,7 +161,7 @@ class Converter {
             }
             soup.offsets.push_back(static_cast<std::uint32_t>(soup.corners.size()));
             soup.faceGroups.push_back(group);
-            if (hasMaterials()) soup.faceMaterials.push_back(mesh.mMaterialIndex);
+            if (hasMaterials()) soup.faceMaterials.push_back(material);
         }
         skeleton.addWeights(mesh, node, toWorld);
     }
@@ -204,7 +212,7 @@ class Converter {
     const aiScene& source_;
     MeshFormat format_;
     RawScene scene_;
-    std::unordered_map<std::string, std::uint32_t> groups_;
+    std::unordered_map<std::string, std::uint32_t> groups_, materials_;
     bool anyUvs_ = false;
     bool allNormals_ = true;
     std::size_t leftOut_ = 0;

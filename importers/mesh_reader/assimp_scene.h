@@ -6,7 +6,7 @@
 
 namespace hairloom {
 
-/// The scene of a PLY, STL, FBX, glTF or GLB file, or assimp's reason why not. May throw, crash or never
+/// The scene of an STL, FBX, glTF or GLB file, or assimp's reason why not. May throw, crash or never
 /// return on damaged files; nothing of the result is validated.
 Result<RawScene> readWithAssimp(const char* file, MeshFormat format);
 

@@ -62,8 +62,9 @@ Eigen::Affine3f toAffine(const aiMatrix4x4& m) {
     return matrix;
 }
 
-SkeletonBuilder::SkeletonBuilder(const aiScene& source, const Eigen::Affine3f& toWorld, RawScene& scene)
-    : source_(source), toWorld_(toWorld), scene_(scene) {
+SkeletonBuilder::SkeletonBuilder(const aiScene& source, const Eigen::Affine3f& toWorld,
+                                 bool ignoreSkinnedNodes, RawScene& scene)
+    : source_(source), toWorld_(toWorld), ignoreSkinnedNodes_(ignoreSkinnedNodes), scene_(scene) {
     std::vector<const aiNode*> waiting{source.mRootNode};
     while (!waiting.empty()) {
         const aiNode* node = waiting.back();
@@ -122,6 +123,7 @@ Eigen::Affine3f SkeletonBuilder::worldOf(const aiNode& node) const {
 }
 
 Eigen::Affine3f SkeletonBuilder::meshToWorld(const aiMesh& mesh, const aiNode& node) const {
+    if (!ignoreSkinnedNodes_) return worldOf(node);
     const aiNode* topmost = nullptr;
     const aiBone* joint = nullptr;
     unsigned least = std::numeric_limits<unsigned>::max();

@@ -20,10 +20,11 @@ Eigen::Affine3f toAffine(const aiMatrix4x4& matrix);
 class SkeletonBuilder {
   public:
     /// Fills scene.bones. `toWorld` turns the file's axes so that Y is up.
-    SkeletonBuilder(const aiScene& source, const Eigen::Affine3f& toWorld, RawScene& scene);
+    SkeletonBuilder(const aiScene& source, const Eigen::Affine3f& toWorld, bool ignoreSkinnedNodes,
+                    RawScene& scene);
 
-    /// From the mesh's own space to the world at rest: through its node, or, for a skinned mesh, where the
-    /// topmost of its joints carries it (glTF has the node of a skinned mesh ignored).
+    /// From the mesh's own space to the world at rest: through its node, or, where a skinned mesh's node is
+    /// to be ignored as in glTF, where the topmost of its joints carries it.
     Eigen::Affine3f meshToWorld(const aiMesh& mesh, const aiNode& node) const;
 
     /// Appends skin weights for the vertices of one mesh of that node.
@@ -43,6 +44,7 @@ class SkeletonBuilder {
 
     const aiScene& source_;
     Eigen::Affine3f toWorld_;
+    bool ignoreSkinnedNodes_;
     RawScene& scene_;
     std::unordered_map<const aiNode*, std::uint32_t> boneOfNode_;
     std::unordered_map<std::string, const aiNode*> nodeOfName_;

@@ -52,8 +52,8 @@ bool writeOut(std::span<const std::byte> bytes) {
 
 int run(int count, char** arguments) {
     const auto format = count == 3 ? meshFormatNamed(arguments[1]) : std::nullopt;
-    if (!format) {
-        std::fputs("usage: hairloom-mesh-reader obj|ply|stl|fbx|gltf|glb FILE > SCENE\n", stderr);
+    if (!format || *format == MeshFormat::Obj || *format == MeshFormat::Ply) {
+        std::fputs("usage: hairloom-mesh-reader stl|fbx|gltf|glb FILE > SCENE\n", stderr);
         return 2;
     }
     limitMemory();

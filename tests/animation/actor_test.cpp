@@ -6,8 +6,8 @@
 namespace hairloom {
 namespace {
 
-/// Two triangles: one on a hip that never moves, one on a head that turns a quarter about Y through (0, 1, 0) and
-/// rises by 1 m over one second.
+/// Two triangles: one on a hip that never moves, one on a head that turns a quarter about Y through (0, 1, 0)
+/// and rises by 1 m over one second.
 class ActorTest : public testing::Test {
   protected:
     void SetUp() override {
@@ -26,7 +26,8 @@ class ActorTest : public testing::Test {
         Channel turn;
         turn.bone = 1;
         turn.translation = {{0.0f, 1.0f}, {{0, 1, 0}, {0, 2, 0}}};
-        turn.rotation = {{0.0f, 1.0f}, {Quatf::Identity(), Quatf(Eigen::AngleAxisf(kPi / 2, Vec3f::UnitY()))}};
+        turn.rotation = {{0.0f, 1.0f},
+                         {Quatf::Identity(), Quatf(Eigen::AngleAxisf(kPi / 2, Vec3f::UnitY()))}};
         SkinWeights skin;
         for (const std::uint32_t source : mesh->sourceVertices()) {
             skin.bones.push_back({source < 3 ? 0u : 1u, 0, 0, 0});
@@ -65,7 +66,8 @@ TEST_F(ActorTest, VerticesSpheresAndRootsFollowTheirBones) {
         const Vec3f expected = rest.y() > 0.5f ? expectedOnHead(rest) : rest;
         EXPECT_LT((pose.positions_ws[vertex] - expected).norm(), 1e-5f);
     }
-    const std::vector<CollisionSphere> spheres{{"skull", {0.5f, 1.2f, 0}, 0.1f, "head"}, {"box", {0, 0, 0}, 0.1f, ""}};
+    const std::vector<CollisionSphere> spheres{{"skull", {0.5f, 1.2f, 0}, 0.1f, "head"},
+                                               {"box", {0, 0, 0}, 0.1f, ""}};
     const auto transforms = actor.sphereTransforms(spheres, pose);
     EXPECT_LT((transforms[0] * spheres[0].centre - expectedOnHead(spheres[0].centre)).norm(), 1e-5f);
     EXPECT_TRUE(transforms[1].matrix().isIdentity());
@@ -78,7 +80,8 @@ TEST_F(ActorTest, VerticesSpheresAndRootsFollowTheirBones) {
 }
 
 TEST_F(ActorTest, PlacementMovesEverythingRigidly) {
-    const Eigen::Isometry3f placement = Eigen::Translation3f(3, -1, 2) * Eigen::AngleAxisf(0.8f, Vec3f::UnitZ());
+    const Eigen::Isometry3f placement =
+        Eigen::Translation3f(3, -1, 2) * Eigen::AngleAxisf(0.8f, Vec3f::UnitZ());
     const ActorPose before = actor.poseAt(0, 0.5f, Wrap::Clamp);
     actor.setPlacement(placement);
     const ActorPose after = actor.poseAt(0, 0.5f, Wrap::Clamp);

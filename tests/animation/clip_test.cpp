@@ -8,7 +8,9 @@
 namespace hairloom {
 namespace {
 
-Quatf turn(float angle, const Vec3f& axis) { return Quatf(Eigen::AngleAxisf(angle, axis.normalized())); }
+Quatf turn(float angle, const Vec3f& axis) {
+    return Quatf(Eigen::AngleAxisf(angle, axis.normalized()));
+}
 
 TEST(Clip, RotationBetweenTwoKeysTurnsEvenlyAboutOneAxis) {
     const Vec3f axis = Vec3f(1, 2, -0.5f).normalized();

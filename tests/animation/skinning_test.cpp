@@ -23,13 +23,15 @@ Eigen::Affine3f randomRigid(Random& random) {
 
 TEST(Skinning, BlendsTransformedPointsByWeight) {
     Random random(1);
-    const std::vector<Eigen::Affine3f> matrices{randomRigid(random), randomRigid(random), randomRigid(random)};
+    const std::vector<Eigen::Affine3f> matrices{randomRigid(random), randomRigid(random),
+                                                randomRigid(random)};
     const std::vector<Vec3f> rest{randomVector(random), randomVector(random), randomVector(random)};
     SkinWeights skin{{{0, 1, 2, 0}, {2, 0, 0, 0}, {0, 0, 0, 0}},
                      {{0.5f, 0.3f, 0.2f, 0}, {1, 0, 0, 0}, {0, 0, 0, 0}}};
     std::vector<Vec3f> posed(3);
     skinPositions(rest, skin, matrices, posed);
-    const Vec3d blended = 0.5 * (matrices[0] * rest[0]).cast<double>() + 0.3 * (matrices[1] * rest[0]).cast<double>() +
+    const Vec3d blended = 0.5 * (matrices[0] * rest[0]).cast<double>() +
+                          0.3 * (matrices[1] * rest[0]).cast<double>() +
                           0.2 * (matrices[2] * rest[0]).cast<double>();
     EXPECT_LT((posed[0].cast<double>() - blended).norm(), 1e-6);
     EXPECT_LT((posed[1] - matrices[2] * rest[1]).norm(), 1e-6f);
@@ -66,7 +68,8 @@ TEST(Skinning, TheSameBitsForAnyNumberOfThreads) {
     skin.weights.resize(kCount);
     for (std::size_t vertex = 0; vertex < kCount; ++vertex) {
         rest[vertex] = randomVector(random);
-        setStrongest(skin, vertex, {{random.below(40), random.uniform()}, {random.below(40), random.uniform()}});
+        setStrongest(skin, vertex,
+                     {{random.below(40), random.uniform()}, {random.below(40), random.uniform()}});
     }
     setThreadCount(1);
     skinPositions(rest, skin, matrices, one);
