@@ -22,6 +22,7 @@ void writeHairHeader(ByteWriter& writer, const HairFile& file) {
 
 Bytes fullHair(std::uint32_t strands, std::uint32_t points) {
     ByteWriter writer;
+    writer.reserve(4096);
     writeHairHeader(writer, {strands, strands * points, 31, 0});
     for (std::uint32_t s = 0; s < strands; ++s) writer.write(static_cast<std::uint16_t>(points - 1));
     for (std::uint32_t s = 0; s < strands; ++s) {
@@ -44,6 +45,7 @@ Bytes fullTfx4(std::uint32_t strands, std::uint32_t points) {
     const std::uint32_t thickness = pointUvs + total * 8;
     const std::uint32_t colours = thickness + strands * 4;
     ByteWriter writer;
+    writer.reserve(4096);
     writer.write(4.0f);
     for (const std::uint32_t value : {strands, points, 160u, strandUvs, pointUvs, thickness, colours}) {
         writer.write(value);
@@ -65,6 +67,7 @@ Bytes fullTfx4(std::uint32_t strands, std::uint32_t points) {
 
 Bytes plainTfx3(std::uint32_t strands, std::uint32_t points) {
     ByteWriter writer;
+    writer.reserve(4096);
     writer.write(3.0f);
     for (const std::uint32_t value : {strands, points, 0u, 0u}) writer.write(value);
     for (int i = 0; i < 31; ++i) writer.write(0u);
@@ -79,8 +82,8 @@ Bytes plainTfx3(std::uint32_t strands, std::uint32_t points) {
     return bytesOf(writer);
 }
 
-std::string ribbonObj(std::size_t strands, std::size_t segments, RibbonOrder order,
-                      RibbonFaces faces, float width) {
+std::string ribbonObj(std::size_t strands, std::size_t segments, RibbonOrder order, RibbonFaces faces,
+                      float width) {
     const std::size_t n = segments + 1;
     const auto left = [&](std::size_t i) { return order == RibbonOrder::Interleaved ? 2 * i : i; };
     const auto right = [&](std::size_t i) {
