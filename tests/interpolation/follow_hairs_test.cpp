@@ -41,6 +41,7 @@ Groom field(std::uint32_t points, Lean lean, bool withScalp = true) {
         offsets.push_back(static_cast<std::uint32_t>(positions.size()));
     }
     Groom groom = makeGroom(std::move(offsets), std::move(positions));
+    if (withScalp) bindToScalp(groom, plate(), {});  // which forgets the triangulation
     for (std::uint32_t z = 0; z + 1 < kSide; ++z) {
         for (std::uint32_t x = 0; x + 1 < kSide; ++x) {
             const std::uint32_t a = z * kSide + x;
@@ -48,7 +49,6 @@ Groom field(std::uint32_t points, Lean lean, bool withScalp = true) {
             groom.triangulation.triangles.push_back({a + 1, a + kSide, a + kSide + 1});
         }
     }
-    if (withScalp) bindToScalp(groom, plate(), {});
     return groom;
 }
 
