@@ -82,7 +82,8 @@ TEST(StrandsTfx, Version4ReadsEverySection) {
     ASSERT_TRUE(imported) << imported.error().message();
     EXPECT_EQ(imported->format, "TressFX 4");
     expectCurls(imported->groom, 5, 8);
-    EXPECT_EQ(imported->groom.strandAttributes.view<Vec2f>(attribute::kRootUv)[2], Vec2f(0.04f, 0.05f));
+    EXPECT_TRUE(
+        imported->groom.strandAttributes.view<Vec2f>(attribute::kRootUv)[2].isApprox(Vec2f(0.04f, 0.05f)));
     EXPECT_FLOAT_EQ(imported->groom.strandAttributes.view<float>("thickness_scale")[3], 0.3f);
     EXPECT_EQ(imported->groom.pointAttributes.view<Vec3f>(attribute::kPointColour)[4],
               Vec3f::Constant(0.25f));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Damaged and malicious files: an error or a groom that holds together, never a crash or a large allocation.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "core/base/random.h"

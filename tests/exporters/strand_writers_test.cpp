@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Round trips through the writers, and what their reports say.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "core/base/file.h"
+#include "exporters/strands.h"
+
+namespace hairloom {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class StrandWriters : public testing::Test {
+  protected:
+    void SetUp() override {
+        folder =
+            fs::path(testing::TempDir()) /
+            (std::string("hairloom-export-") + testing::UnitTest::GetInstance()->current_test_info()->name());
+        fs::remove_all(folder);
+        fs::create_directories(folder);
+    }
+    void TearDown() override { fs::remove_all(folder); }
+    fs::path folder;
+};
+
+/// Strand s has counts[s] points on a helix.
+Groom helices(const std::vector<std::uint32_t>& counts) {
+    std::vector<std::uint32_t> offsets{0};
+    std::vector<Vec3f> positions;
+    for (std::size_t s = 0; s < counts.size(); ++s) {
+        for (std::uint32_t i = 0; i < counts[s]; ++i) {
+            const float t = static_cast<float>(i) / static_cast<float>(counts[s] - 1);
+            positions.emplace_back(0.01f * static_cast<float>(s) + 0.02f * std::cos(4 * t), 1.7f - 0.2f * t,
+                                   0.02f * std::sin(4 * t));
+        }
+        offsets.push_back(static_cast<std::uint32_t>(positions.size()));
+    }
+    return makeGroom(std::move(offsets), std::move(positions));
+}
+
+template <class T>
+std::vector<T> ramp(std::size_t count, T scale) {
+    std::vector<T> values(count);
+    for (std::size_t i = 0; i < count; ++i)
+        values[i] = scale * (static_cast<float>(i + 1) / static_cast<float>(count));
+    return values;
+}
+
+Groom decorated(const std::vector<std::uint32_t>& counts) {
+    Groom groom = helices(counts);
+    const std::size_t points = groom.pointCount();
+    groom.pointAttributes.set(attribute::kRadius, ramp(points, 0.00007f));
+    groom.pointAttributes.set(attribute::kTransparency, ramp(points, 0.5f));
+    groom.pointAttributes.set(attribute::kPointColour, ramp(points, Vec3f(0.3f, 0.6f, 0.9f)));
+    groom.strandAttributes.set(attribute::kRootUv, ramp(groom.strandCount(), Vec2f(1, 0.5f)));
+    return groom;
+}
+
+void expectSamePositions(const Groom& a, const Groom& b) {
+    ASSERT_EQ(std::vector(a.offsets.view().begin(), a.offsets.view().end()),
+              std::vector(b.offsets.view().begin(), b.offsets.view().end()));
+    for (std::size_t i = 0; i < a.pointCount(); ++i) ASSERT_EQ(a.positions()[i], b.positions()[i]);
+}
+
+template <class T>
+void expectSameValues(const AttributeSet& a, const AttributeSet& b, std::string_view name) {
+    ASSERT_FALSE(a.view<T>(name).empty());
+    EXPECT_THAT(b.view<T>(name), testing::ElementsAreArray(a.view<T>(name).begin(), a.view<T>(name).end()))
+        << name;
+}
+
+bool says(const ExportReport& report, std::string_view what) {
+    return std::any_of(report.findings.begin(), report.findings.end(),
+                       [&](const Finding& finding) { return finding.what.find(what) != std::string::npos; });
+}
+
+TEST_F(StrandWriters, HairRoundTripIsExact) {
+    const Groom groom = decorated({2, 17, 5, 64, 100});
+    const auto report = writeHair(groom, folder / "a.hair");
+    ASSERT_TRUE(report) << report.error().message();
+    EXPECT_EQ(report->strands, 5u);
+    EXPECT_EQ(report->points, 188u);
+    EXPECT_EQ(report->maxErrorMm, 0.0);
+    EXPECT_EQ(report->bytes, fs::file_size(folder / "a.hair"));
+    const auto back = importStrands(folder / "a.hair");
+    ASSERT_TRUE(back) << back.error().message();
+    expectSamePositions(groom, back->groom);
+    expectSameValues<float>(groom.pointAttributes, back->groom.pointAttributes, attribute::kRadius);
+    expectSameValues<float>(groom.pointAttributes, back->groom.pointAttributes, attribute::kTransparency);
+    expectSameValues<Vec3f>(groom.pointAttributes, back->groom.pointAttributes, attribute::kPointColour);
+}
+
+TEST_F(StrandWriters, TfxRoundTripIsExact) {
+    const Groom groom = decorated({16, 16, 16});
+    const auto report = writeTfx(groom, folder / "a.tfx");
+    ASSERT_TRUE(report) << report.error().message();
+    EXPECT_EQ(report->maxErrorMm, 0.0);
+    EXPECT_FALSE(says(*report, "resampled"));
+    const auto back = importStrands(folder / "a.tfx");
+    ASSERT_TRUE(back) << back.error().message();
+    expectSamePositions(groom, back->groom);
+    expectSameValues<Vec2f>(groom.strandAttributes, back->groom.strandAttributes, attribute::kRootUv);
+    expectSameValues<Vec3f>(groom.pointAttributes, back->groom.pointAttributes, attribute::kPointColour);
+}
+
+TEST_F(StrandWriters, TfxLayoutIsWhatTressFxReads) {
+    ASSERT_TRUE(writeTfx(helices({8, 8}), folder / "a.tfx"));
+    const auto bytes = readFile(folder / "a.tfx").value();
+    ByteReader reader("a.tfx", bytes);
+    EXPECT_EQ(reader.read<float>("version").value(), 4.0f);
+    EXPECT_EQ(reader.read<std::uint32_t>("strands").value(), 2u);
+    EXPECT_EQ(reader.read<std::uint32_t>("vertices").value(), 8u);
+    EXPECT_EQ(reader.read<std::uint32_t>("positions").value(), 160u);
+    // Loaders seek to the UVs whatever the offset says, so it is never 0.
+    EXPECT_EQ(reader.read<std::uint32_t>("UVs").value(), 160u + 16u * 16u);
+    ASSERT_EQ(bytes.size(), 160u + 16u * 16u + 2u * 8u);
+    for (std::size_t vertex = 0; vertex < 16; ++vertex) {
+        float inverseMass = -1;
+        std::memcpy(&inverseMass, bytes.data() + 160 + vertex * 16 + 12, sizeof inverseMass);
+        EXPECT_EQ(inverseMass, vertex % 8 < 2 ? 0.0f : 1.0f) << vertex;
+    }
+}
+
+TEST_F(StrandWriters, TfxResamplesToTheNearestAllowedCountAndSaysSo) {
+    for (const auto& [points, expected] :
+         {std::pair{5u, 4u}, {7u, 8u}, {20u, 16u}, {50u, 64u}, {200u, 64u}}) {
+        const Groom groom = helices({points, points});
+        const auto report = writeTfx(groom, folder / "a.tfx");
+        ASSERT_TRUE(report) << report.error().message();
+        EXPECT_EQ(report->points, 2u * expected) << points;
+        EXPECT_TRUE(says(*report, "resampled"));
+        EXPECT_GT(report->maxErrorMm, 0.0);
+        EXPECT_LT(report->maxErrorMm, 20.0);
+        const auto back = importStrands(folder / "a.tfx");
+        ASSERT_TRUE(back);
+        EXPECT_EQ(back->groom.strand(1).front(), groom.strand(1).front());
+        EXPECT_EQ(back->groom.strand(1).back(), groom.strand(1).back());
+    }
+    StrandExportOptions options;
+    options.pointsPerStrand = 32;
+    EXPECT_EQ(writeTfx(helices({20, 7}), folder / "b.tfx", options)->points, 64u);
+    options.pointsPerStrand = 20;
+    const auto refused = writeTfx(helices({20}), folder / "c.tfx", options);
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().message(), HasSubstr("4, 8, 16, 32 or 64"));
+    EXPECT_FALSE(fs::exists(folder / "c.tfx"));
+}
+
+TEST_F(StrandWriters, UnitsAndAxesComeBack) {
+    StrandExportOptions options;
+    options.metresPerUnit = 0.0254f;
+    options.up = UpAxis::Z;
+    const Groom groom = helices({8, 8});
+    for (const auto& report :
+         {writeHair(groom, folder / "a.hair", options), writeTfx(groom, folder / "a.tfx", options)}) {
+        ASSERT_TRUE(report) << report.error().message();
+        EXPECT_LT(report->maxErrorMm, 1e-3);
+    }
+    // Read as if Y were up: height is in z, 1.7 m are 66.9 inches.
+    const auto raw = importStrands(folder / "a.hair");
+    ASSERT_TRUE(raw);
+    EXPECT_NEAR(raw->groom.strand(0)[0].z(), 1.7f / 0.0254f, 1e-4f);
+}
+
+TEST_F(StrandWriters, UnusableStrandsAreLeftOutAndReported) {
+    Groom groom = helices({8, 8, 8, 8});
+    auto& positions = groom.pointAttributes.edit<Vec3f>(attribute::kPosition);
+    positions[9].x() = std::numeric_limits<float>::quiet_NaN();
+    for (std::size_t i = 17; i < 24; ++i) positions[i] = positions[16];
+    positions[26] = positions[25];
+    const auto report = writeHair(groom, folder / "a.hair");
+    ASSERT_TRUE(report) << report.error().message();
+    EXPECT_EQ(report->strands, 2u);
+    EXPECT_TRUE(says(*report, "2 strands of no length"));
+    EXPECT_TRUE(says(*report, "segments of no length"));
+    EXPECT_TRUE(says(*report, "no widths"));
+    EXPECT_LT(report->maxErrorMm, 1e-4);
+    for (const Finding& finding : report->findings) {
+        if (finding.severity != Severity::Info) EXPECT_FALSE(finding.fix.empty()) << finding.what;
+    }
+}
+
+TEST_F(StrandWriters, HairRefusesMoreSegmentsThanItCanCount) {
+    const Groom groom = helices({65537});
+    const auto report = writeHair(groom, folder / "a.hair");
+    ASSERT_FALSE(report);
+    EXPECT_THAT(report.error().message(), HasSubstr("at most 65535"));
+    EXPECT_TRUE(writeHair(helices({65536}), folder / "a.hair"));
+}
+
+TEST_F(StrandWriters, RootsFarFromTheScalpAreReported) {
+    PolygonSoup soup;
+    soup.positions = {{-1, 1.69f, -1}, {-1, 1.69f, 1}, {1, 1.69f, 1}, {1, 1.69f, -1}};
+    soup.corners = {0, 1, 2, 3};
+    soup.offsets = {0, 4};
+    Groom groom = helices({8, 8});
+    groom.scalp = std::make_shared<const ScalpMesh>(ScalpMesh::make(soup).value());
+    const auto report = writeHair(groom, folder / "a.hair");
+    ASSERT_TRUE(report) << report.error().message();
+    EXPECT_TRUE(says(*report, "roots lie up to 10 mm"));
+}
+
+TEST_F(StrandWriters, FailuresLeaveTheOldFile) {
+    const auto path = folder / "a.tfx";
+    ASSERT_TRUE(writeTfx(helices({8}), path));
+    const auto before = readFile(path).value();
+    EXPECT_FALSE(writeTfx(Groom(), path));
+    StrandExportOptions options;
+    options.metresPerUnit = -1;
+    EXPECT_FALSE(writeTfx(helices({8}), path, options));
+    EXPECT_FALSE(writeHair(helices({8}), folder / "missing" / "a.hair"));
+    EXPECT_EQ(readFile(path).value(), before);
+}
+
+TEST_F(StrandWriters, ReportAsJson) {
+    const auto report = writeTfx(helices({8}), folder / "a.tfx");
+    ASSERT_TRUE(report);
+    const auto json = toJson(*report);
+    EXPECT_EQ(json.at("strands"), 1);
+    EXPECT_EQ(json.at("points"), 8);
+    EXPECT_EQ(json.at("bytes"), report->bytes);
+    EXPECT_EQ(json.at("max_error_mm"), 0.0);
+    ASSERT_FALSE(json.at("findings").empty());
+    for (const char* key : {"severity", "what", "where", "fix"})
+        EXPECT_TRUE(json["findings"][0].contains(key)) << key;
+}
+
+TEST_F(StrandWriters, RealHairSurvivesBothFormats) {
+    const auto path = fs::path(HAIRLOOM_SOURCE_DIR) / "../shared/data/strands/sintel_16pt.tfx";
+    if (!fs::exists(path)) GTEST_SKIP() << path << " is not there";
+    const auto original = importStrands(path);
+    ASSERT_TRUE(original);
+    ASSERT_TRUE(writeHair(original->groom, folder / "a.hair"));
+    ASSERT_TRUE(writeTfx(original->groom, folder / "a.tfx"));
+    for (const char* name : {"a.hair", "a.tfx"}) {
+        const auto back = importStrands(folder / name);
+        ASSERT_TRUE(back);
+        expectSamePositions(original->groom, back->groom);
+    }
+}
+
+}  // namespace
+}  // namespace hairloom
