@@ -90,7 +90,7 @@ double skull(const Vec3d& p, const Vec3d& s) {
     d = join(d, ellipsoid(p, {0, 32, 22}, {66, 66, 69}), 30.0);
     d = join(d, ellipsoid(p, {0, -12, -12}, {67, 62, 70}), 30.0);
     d = join(d, ellipsoid(p, {0, -36, 30}, {57, 74, 58}), 25.0);
-    d = join(d, limb(s, {51, -58, 8}, {14, -97, 70}, 14, 14), 26.0);
+    d = join(d, limb(s, {48, -58, 8}, {14, -97, 70}, 14, 14), 26.0);
     d = join(d, ellipsoid(s, {43, -24, 50}, {21, 17, 26}), 34.0);
     d = join(d, ellipsoid(s, {27, -44, 56}, {24, 30, 26}), 30.0);
     return d;
@@ -112,7 +112,7 @@ double eyes(double d, const Vec3d& s) {
 double nose(double d, const Vec3d& p, const Vec3d& s) {
     d = join(d, limb(p, {0, 12, 82}, {0, -38, 100}, 7.0, 9.0), 18.0);
     d = join(d, ellipsoid(p, {0, -39, 102}, {10.5, 9.0, 11.0}), 11.0);
-    d = join(d, ellipsoid(s, {11.5, -44, 94}, {6.0, 6.5, 10.0}), 9.0);
+    d = join(d, ellipsoid(s, {11.5, -43, 94}, {6.0, 6.5, 10.0}), 9.0);
     return carve(d, ellipsoid(s, {6.0, -51.5, 100}, {3.4, 4.5, 5.5}), 4.0);
 }
 
@@ -189,8 +189,8 @@ double border(Border which, const Vec3d& point) {
         case Border::Hairline: {
             // Height of the hairline over the angle about the vertical, 0 in front, 1 at the back.
             const double turn = std::atan2(s.x(), s.z() + 5.0) / 3.14159265358979;
-            double line = 71.0 + 6.0 * bell(turn - 0.17, 0.10);
-            line += (18.0 - line) * ramp(0.19, 0.36, turn);
+            double line = 71.0 + 5.0 * bell(turn - 0.16, 0.10);
+            line += (18.0 - line) * ramp(0.15, 0.37, turn);
             line += (-26.0 - line) * ramp(0.35, 0.46, turn);
             line += (-68.0 - line) * ramp(0.54, 0.84, turn);
             return 0.001 * (line - p.y());

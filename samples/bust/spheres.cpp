@@ -14,14 +14,14 @@ constexpr double kWantedDepth = 0.005;  ///< of the spheres below the scalp
 constexpr int kHeadSpheres = 10;
 
 double rounded(double metres) {
-    return std::round(metres * 1e4) * 1e-4;
+    return std::round(metres * 1e4) / 1e4;
 }
 
 /// Largest radius at a centre for which the sphere stands out by no more than kProtrusion.
 double radiusAt(const Vec3d& centre, const PatchMesh& mesh) {
     double nearest = 1e9;
     for (const Vec3d& p : mesh.positions) nearest = std::min(nearest, (p - centre).norm());
-    return std::floor((nearest + 0.9 * kProtrusion) * 1e4) * 1e-4;
+    return std::floor((nearest + 0.9 * kProtrusion) * 1e4) / 1e4;
 }
 
 std::vector<Vec3d> scalpPoints(const PatchMesh& mesh) {
@@ -45,7 +45,7 @@ std::vector<Candidate> candidates(const PatchMesh& mesh) {
     for (double x = 0.0; x < 0.07; x += kGrid) {
         for (double y = -0.09; y < 0.1; y += kGrid) {
             for (double z = -0.09; z < 0.09; z += kGrid) {
-                const Vec3d centre(x, rounded(kEyeHeight + y), rounded(z));
+                const Vec3d centre(rounded(x), rounded(kEyeHeight + y), rounded(z));
                 if (surface(centre) > -0.02) continue;
                 result.push_back({centre, radiusAt(centre, mesh)});
             }
@@ -103,10 +103,11 @@ std::vector<Sphere> fitSpheres(const PatchMesh& mesh) {
         add(spheres, "skull_" + std::to_string(number++), *best, 2);
     }
     const auto fixed = [&](const char* name, const Vec3d& place, int bone) {
-        const Vec3d centre = place + Vec3d(0, kEyeHeight, 0);
+        const Vec3d centre(place.x(), rounded(place.y() + kEyeHeight), place.z());
         add(spheres, name, {centre, radiusAt(centre, mesh)}, bone);
     };
     fixed("neck", {0.0, -0.125, -0.032}, 1);
+    fixed("neck_base", {0.0, -0.175, -0.040}, 1);
     fixed("chest", {0.0, -0.225, -0.040}, 0);
     fixed("shoulder", {0.080, -0.235, -0.046}, 0);
     return spheres;
