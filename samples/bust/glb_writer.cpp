@@ -182,7 +182,9 @@ std::vector<std::byte> glbBytes(const UnwrappedMesh& mesh) {
     glb.json["scenes"].push_back({{"name", "bust"}, {"nodes", roots}});
     for (int i = 0; i < kGroupCount; ++i) {
         const Vec3d c = groupColour(static_cast<Group>(i));
-        glb.json["nodes"].push_back({{"name", kGroupNames[i]}, {"mesh", i}, {"skin", 0}});
+        // Readers find bones by node name, and one of them is called neck too.
+        glb.json["nodes"].push_back(
+            {{"name", std::string("bust_") + kGroupNames[i]}, {"mesh", i}, {"skin", 0}});
         glb.json["meshes"].push_back(
             {{"name", kGroupNames[i]},
              {"primitives", Json::array({primitive(glb, mesh, static_cast<Group>(i))})}});

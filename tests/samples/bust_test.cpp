@@ -49,7 +49,9 @@ TEST_P(BustFileTest, IsOneClosedOrientedSphere) {
 }
 
 TEST_P(BustFileTest, HasEvenTrianglesOnTheSurface) {
-    for (const Vec3d& p : file.positions) ASSERT_LT(std::abs(surface(p)), 2e-5);
+    // Five digits in the text file, and creases of the ears where Newton's steps do not settle. A changed
+    // shape whose files were not made anew fails here.
+    for (const Vec3d& p : file.positions) ASSERT_LT(std::abs(surface(p)), 5e-5);
     std::size_t thin = 0;
     for (std::size_t t = 0; t < file.triangles.size(); ++t) {
         const auto& v = file.triangles[t];
