@@ -62,6 +62,7 @@ struct BufferDesc {
     std::uint64_t size = 0;  ///< bytes, > 0, at most DeviceInfo::maxBufferBytes
     Usage usage = Usage::ShaderRead;
     MemoryKind memory = MemoryKind::Device;
+    std::uint32_t elementBytes = 0;  ///< of one element of a structured buffer; 0 for all others
     Format typedFormat =
         Format::Unknown;  ///< set for Buffer<T>/RWBuffer<T>; left alone for structured buffers
 };

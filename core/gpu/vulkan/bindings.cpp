@@ -49,8 +49,8 @@ void CommandListImpl::bind(std::span<const Binding> bindings) {
     if (pass_ == PassKind::None) return wrong("bind outside a pass");
     for (const Binding& binding : bindings) {
         bound_[bindingNumber(binding)] = binding;
-        if (binding.buffer) keep(binding.buffer);
-        if (binding.texture) keep(binding.texture);
+        if (binding.buffer) static_cast<void>(keep(binding.buffer));
+        if (binding.texture) static_cast<void>(keep(binding.texture));
         if (binding.sampler) keep(binding.sampler);
     }
     set_ = VK_NULL_HANDLE;

@@ -91,12 +91,6 @@ bool CommandListImpl::requireOutside(const char* call) {
     return false;
 }
 
-template <class T>
-T* CommandListImpl::keep(const std::shared_ptr<T>& object) {
-    recording_->retained.push_back(object);
-    return object.get();
-}
-
 BufferImpl* CommandListImpl::keep(const BufferPtr& buffer) {
     recording_->retained.push_back(buffer);
     return static_cast<BufferImpl*>(buffer.get());

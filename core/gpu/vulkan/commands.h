@@ -102,8 +102,7 @@ class CommandListImpl final : public CommandList {
     void wrong(const Error& error);
     bool requirePass(PassKind kind, const char* call);
     bool requireOutside(const char* call);
-    template <class T>
-    T* keep(const std::shared_ptr<T>& object);
+    void keep(std::shared_ptr<const void> object) { recording_->retained.push_back(std::move(object)); }
     BufferImpl* keep(const BufferPtr& buffer);
     TextureImpl* keep(const TexturePtr& texture);
 
