@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/documents.h"
+
+#include <fmt/format.h>
+
+#include <CLI/Validators.hpp>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include "core/base/file.h"
+#include "core/base/log.h"
+#include "core/groom/project_file.h"
+#include "importers/strands.h"
+
+namespace hairloom::cli {
+namespace {
+
+constexpr std::array<std::pair<const char*, float>, 5> kUnits{
+    {{"m", 1.0f}, {"dm", 0.1f}, {"cm", 0.01f}, {"mm", 0.001f}, {"inch", 0.0254f}}};
+
+Error sphereError(const std::string& path, std::size_t index, const std::string& problem) {
+    return {path,
+            {},
+            fmt::format("/{}: {}", index, problem),
+            R"(expected {"name": text, "centre": [x, y, z], "radius": above 0, "bone": text})"};
+}
+
+Result<CollisionSphere> readSphere(const nlohmann::json& entry, const std::string& path, std::size_t index) {
+    const auto wrong = [&](const std::string& problem) {
+        return tl::unexpected(sphereError(path, index, problem));
+    };
+    if (!entry.is_object()) return wrong("is no object");
+    CollisionSphere sphere;
+    for (const auto& [key, value] : entry.items()) {
+        if (key == "name" && value.is_string()) {
+            sphere.name = value.get<std::string>();
+        } else if (key == "bone" && value.is_string()) {
+            sphere.bone = value.get<std::string>();
+        } else if (key == "radius" && value.is_number()) {
+            sphere.radius = value.get<float>();
+        } else if (key == "centre" && value.is_array() && value.size() == 3 && value[0].is_number() &&
+                   value[1].is_number() && value[2].is_number()) {
+            sphere.centre = Vec3f(value[0].get<float>(), value[1].get<float>(), value[2].get<float>());
+        } else {
+            return wrong(fmt::format("'{}' is unknown or of the wrong kind", key));
+        }
+    }
+    if (!entry.contains("centre") || !entry.contains("radius")) return wrong("has no centre or no radius");
+    if (!sphere.centre.allFinite() || !std::isfinite(sphere.radius) || sphere.radius <= 0) {
+        return wrong("is not a sphere");
+    }
+    return sphere;
+}
+
+}  // namespace
+
+void addUnitOption(CLI::App& job, std::string& unit) {
+    job.add_option("--unit", unit, "Unit of lengths where the file states none: m, dm, cm, mm or inch")
+        ->check(CLI::IsMember({"m", "dm", "cm", "mm", "inch"}));
+}
+
+float metresPerUnit(const std::string& unit) {
+    for (const auto& [name, metres] : kUnits) {
+        if (unit == name) return metres;
+    }
+    return 1.0f;
+}
+
+Result<ImportedScene> importSceneWithUnit(const std::string& path, const std::string& unit) {
+    MeshImportOptions options;
+    if (!unit.empty()) options.metresPerUnit = metresPerUnit(unit);
+    auto scene = importScene(path, options);
+    if (scene) {
+        for (const std::string& warning : scene->warnings) log::warning("{}: {}", path, warning);
+    }
+    return scene;
+}
+
+Result<Groom> loadDocument(const std::string& path) {
+    if (isProject(path)) return loadProject(path);
+    auto imported = importStrands(path, {});
+    if (!imported) return tl::unexpected(imported.error());
+    logFindings(path, imported->warnings);
+    return std::move(imported->groom);
+}
+
+Result<Opened> openAny(const std::string& path, const std::string& unit) {
+    Opened opened;
+    if (isProject(path)) {
+        auto groom = loadProject(path);
+        if (!groom) return tl::unexpected(groom.error());
+        opened.groom = std::move(*groom);
+        opened.format = "hairloom";
+        opened.findings = validate(opened.groom);
+        return opened;
+    }
+    StrandImportOptions options;
+    if (!unit.empty()) options.metresPerUnit = metresPerUnit(unit);
+    if (auto imported = importStrands(path, options)) {
+        opened.groom = std::move(imported->groom);
+        opened.format = imported->format;
+        opened.findings = validate(opened.groom);
+        opened.findings.insert(opened.findings.end(), imported->warnings.begin(), imported->warnings.end());
+        for (const DroppedStrand& dropped : imported->dropped) {
+            opened.findings.push_back({Severity::Error, std::string(dropReasonName(dropped.reason)),
+                                       fmt::format("strand {}", dropped.strand),
+                                       "import drops such strands"});
+        }
+        return opened;
+    } else if (looksLikeStrandFile(path)) {
+        return tl::unexpected(imported.error());
+    }
+    auto scene = importSceneWithUnit(path, unit);
+    if (!scene) return tl::unexpected(scene.error());
+    opened.format = scene->format;
+    for (const MeshRepair& repair : scene->mesh.repairs()) {
+        opened.findings.push_back(
+            {Severity::Warning, repair.what, fmt::format("{} places", repair.count), "mended when imported"});
+    }
+    for (const std::string& warning : scene->warnings) {
+        opened.findings.push_back({Severity::Warning, warning, "file", ""});
+    }
+    opened.groom.scalp = std::make_shared<const ScalpMesh>(std::move(scene->mesh));
+    return opened;
+}
+
+Result<std::vector<CollisionSphere>> readSpheres(const std::string& path) {
+    const auto text = readTextFile(path, 16u << 20u);
+    if (!text) return tl::unexpected(text.error());
+    const auto list = nlohmann::json::parse(*text, nullptr, false);
+    if (list.is_discarded() || !list.is_array()) {
+        return failIn(path, {}, "is no JSON list of spheres",
+                      "expected [{\"centre\": [x, y, z], \"radius\": r}, …]");
+    }
+    std::vector<CollisionSphere> spheres;
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        auto sphere = readSphere(list[i], path, i);
+        if (!sphere) return tl::unexpected(sphere.error());
+        spheres.push_back(std::move(*sphere));
+    }
+    return spheres;
+}
+
+Result<std::vector<float>> readVertexMask(const std::string& path, const ScalpMesh& mesh) {
+    const auto text = readTextFile(path);
+    if (!text) return tl::unexpected(text.error());
+    std::vector<float> perSourceVertex;
+    std::uint64_t line = 1;
+    const char* at = text->data();
+    const char* const end = at + text->size();
+    while (true) {
+        while (at != end && (*at == ' ' || *at == '\t' || *at == '\r' || *at == '\n')) line += *at++ == '\n';
+        if (at == end) break;
+        float value = 0;
+        const auto [next, code] = std::from_chars(at, end, value);
+        if (code != std::errc() || !(value >= 0 && value <= 1)) {
+            return failIn(path, Line{line}, "is no density", "expected a number from 0 to 1");
+        }
+        perSourceVertex.push_back(value);
+        at = next;
+    }
+    std::vector<float> mask(mesh.vertexCount());
+    for (std::size_t v = 0; v < mask.size(); ++v) {
+        const std::uint32_t source = mesh.sourceVertices()[v];
+        if (source >= perSourceVertex.size()) {
+            return failIn(path, {}, fmt::format("has {} densities", perSourceVertex.size()),
+                          "expected one for each vertex of the mesh file");
+        }
+        mask[v] = perSourceVertex[source];
+    }
+    return mask;
+}
+
+void logFindings(const std::string& path, const std::vector<Finding>& findings) {
+    for (const Finding& finding : findings) {
+        log::warning("{}: {}: {}{}{}", path, finding.where, finding.what, finding.fix.empty() ? "" : "; ",
+                     finding.fix);
+    }
+}
+
+Report toReport(const std::vector<Finding>& findings) {
+    Report rows = Report::array();
+    for (const Finding& finding : findings) rows.push_back(toReport(finding));
+    return rows;
+}
+
+Report toReport(const Finding& finding) {
+    return Report{{"severity", severityName(finding.severity)},
+                  {"what", finding.what},
+                  {"where", finding.where},
+                  {"fix", finding.fix}};
+}
+
+Report toReport(const Vec3f& vector) {
+    return Report::array({vector.x(), vector.y(), vector.z()});
+}
+
+Report finiteOrNull(double value) {
+    return std::isfinite(value) ? Report(value) : Report(nullptr);
+}
+
+}  // namespace hairloom::cli

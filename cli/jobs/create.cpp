@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <memory>
+
+#include "cli/documents.h"
+#include "cli/job.h"
+#include "cli/stopwatch.h"
+#include "core/base/log.h"
+#include "core/geometry/placement.h"
+#include "core/geometry/selection.h"
+#include "core/groom/groom.h"
+#include "core/groom/project_file.h"
+#include "importers/scene.h"
+
+namespace hairloom::cli {
+namespace {
+
+struct CreateOptions {
+    std::string mesh;
+    std::string scalp = "all";
+    std::size_t count = 0;
+    double density = 0;
+    std::string placement = "dart";
+    float length = 0.15f;
+    std::uint32_t points = 16;
+    std::uint64_t seed = 0;
+    std::string unit;
+    std::string mask;
+    std::string output;
+};
+
+Result<Placement> place(const ScalpMesh& mesh, const FaceSet& faces, const CreateOptions& options) {
+    PlacementRequest request;
+    request.count = options.count;
+    request.densityPerCm2 = options.density;
+    request.seed = options.seed;
+    std::vector<float> mask;
+    if (!options.mask.empty()) {
+        auto read = readVertexMask(options.mask, mesh);
+        if (!read) return tl::unexpected(read.error());
+        mask = std::move(*read);
+        request.mask = mask;
+    }
+    return options.placement == "random" ? placeRandom(mesh, faces, request)
+                                         : placeDarts(mesh, faces, request);
+}
+
+Result<Report> create(const CreateOptions& options) {
+    const Stopwatch watch;
+    auto scene = importSceneWithUnit(options.mesh, options.unit);
+    if (!scene) return tl::unexpected(scene.error());
+    const auto mesh = std::make_shared<const ScalpMesh>(std::move(scene->mesh));
+    auto faces = selectFaces(*mesh, options.scalp);
+    if (!faces) return tl::unexpected(faces.error());
+    const double areaCm2 = selectionArea(*mesh, *faces) * 1e4;
+    const auto placement = place(*mesh, *faces, options);
+    if (!placement) return tl::unexpected(placement.error());
+    auto groom = growStraight(mesh, std::move(*faces), placement->roots, options.length, options.points);
+    if (!groom) return tl::unexpected(groom.error());
+    groom->scalpExpression = options.scalp;
+    groom->characterFile = options.mesh;
+    groom->interpolation.seed = options.seed;
+    if (auto saved = saveProject(*groom, options.output); !saved) return tl::unexpected(saved.error());
+
+    Report report;
+    report["strands"] = groom->strandCount();
+    report["points"] = groom->pointCount();
+    report["scalp_area_cm2"] = areaCm2;
+    report["min_root_distance"] = finiteOrNull(minimumRootDistance(*mesh, placement->roots));
+    report["triangles"] = groom->triangulation.triangles.size();
+    report["repairs"] = Report::array();
+    for (const MeshRepair& repair : mesh->repairs()) {
+        report["repairs"].push_back(Report{{"what", repair.what}, {"count", repair.count}});
+    }
+    report["seconds"] = watch.seconds();
+    report["output"] = options.output;
+    return report;
+}
+
+}  // namespace
+
+void addCreateJob(Jobs& jobs) {
+    const auto options = std::make_shared<CreateOptions>();
+    CLI::App& job = jobs.add(
+        "create", "Select a scalp on a head mesh, place roots and grow strands along its normals",
+        "--mesh head.obj --scalp group:scalp --count 3000 --placement dart --length 0.25 -o hair.hairloom",
+        [options] { return create(*options); });
+    job.add_option("--mesh", options->mesh, "Head mesh: OBJ, PLY, STL, FBX, glTF or GLB")->required();
+    job.add_option(
+        "--scalp", options->scalp,
+        "Faces that carry hair: all, group:NAME, material:NAME, cap:DEGREES, above:F, faces:FILE, grow:N, "
+        "shrink:N, invert, connected; a comma means and");
+    auto* count =
+        job.add_option("--count", options->count, "Number of roots")->check(CLI::Range(1, 10'000'000));
+    auto* density =
+        job.add_option("--density", options->density, "Roots per cm²")->check(CLI::PositiveNumber);
+    count->excludes(density);
+    job.add_option("--placement", options->placement, "How roots are placed")
+        ->check(CLI::IsMember({"random", "dart"}));
+    job.add_option("--mask", options->mask, "Text file with a density in [0, 1] per vertex of the mesh file");
+    job.add_option("--length", options->length, "Strand length, metres")->check(CLI::Range(1e-4, 10.0));
+    job.add_option("--points", options->points, "Points per strand")->check(CLI::Range(2, 1024));
+    job.add_option("--seed", options->seed, "Seed of every random choice");
+    addUnitOption(job, options->unit);
+    job.add_option("-o,--output", options->output, "Project to write")->required();
+    job.final_callback([count, density] {
+        if (count->count() + density->count() == 0) throw CLI::RequiredError("--count or --density");
+    });
+}
+
+}  // namespace hairloom::cli

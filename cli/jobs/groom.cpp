@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <memory>
+
+#include "cli/documents.h"
+#include "cli/job.h"
+#include "cli/stopwatch.h"
+#include "core/base/file.h"
+#include "core/groom/brushes/script.h"
+#include "core/groom/project_file.h"
+
+namespace hairloom::cli {
+namespace {
+
+struct GroomOptions {
+    std::string input;
+    std::string script;
+    std::string output;
+};
+
+Result<Report> replay(const GroomOptions& options) {
+    const Stopwatch watch;
+    auto groom = loadDocument(options.input);
+    if (!groom) return tl::unexpected(groom.error());
+    const auto text = readTextFile(options.script);
+    if (!text) return tl::unexpected(text.error());
+    const auto script = parseScript(*text, options.script);
+    if (!script) return tl::unexpected(script.error());
+    const auto outcome = runScript(*groom, *script);
+    if (!outcome) return tl::unexpected(outcome.error());
+    if (auto saved = saveProject(*groom, options.output); !saved) return tl::unexpected(saved.error());
+    return Report{{"strokes", outcome->strokes},
+                  {"touched_strands", outcome->touchedStrands},
+                  {"seconds", watch.seconds()},
+                  {"output", options.output}};
+}
+
+}  // namespace
+
+void addGroomJob(Jobs& jobs) {
+    const auto options = std::make_shared<GroomOptions>();
+    CLI::App& job =
+        jobs.add("groom", "Replay a list of grooming operations on a groom",
+                 "hair.hairloom --script bob.json -o bob.hairloom", [options] { return replay(*options); });
+    job.add_option("groom", options->input, "Groom to work on")->required();
+    job.add_option("--script", options->script, "Operations (docs/formats/script.md)")->required();
+    job.add_option("-o,--output", options->output, "Project to write")->required();
+}
+
+}  // namespace hairloom::cli

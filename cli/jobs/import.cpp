@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <map>
+#include <memory>
+
+#include "cli/documents.h"
+#include "cli/job.h"
+#include "core/base/log.h"
+#include "core/geometry/selection.h"
+#include "core/groom/project_file.h"
+#include "importers/strands.h"
+
+namespace hairloom::cli {
+namespace {
+
+struct ImportOptions {
+    std::string file;
+    std::string mesh;
+    std::string scalp = "all";
+    std::string unit;
+    std::string meshUnit;
+    std::string up = "y";
+    std::uint32_t segments = 0;
+    std::string order = "auto";
+    std::string particle = "edge";
+    std::string output;
+};
+
+const std::map<std::string, RibbonOrder> kOrders{{"auto", RibbonOrder::Detect},
+                                                 {"interleaved", RibbonOrder::Interleaved},
+                                                 {"edges", RibbonOrder::EdgeAfterEdge},
+                                                 {"around", RibbonOrder::Around}};
+
+StrandImportOptions strandOptions(const ImportOptions& options) {
+    StrandImportOptions strands;
+    if (!options.unit.empty()) strands.metresPerUnit = metresPerUnit(options.unit);
+    strands.up = options.up == "z" ? UpAxis::Z : UpAxis::Y;
+    strands.ribbonSegments = options.segments;
+    strands.ribbonOrder = kOrders.at(options.order);
+    strands.ribbonParticle =
+        options.particle == "centre" ? RibbonParticle::Centre : RibbonParticle::FirstEdge;
+    return strands;
+}
+
+/// Distances of roots to the scalp they were bound to, in the words of a report.
+Report bindingReport(std::vector<float> distances) {
+    std::sort(distances.begin(), distances.end());
+    return Report{{"median_mm", distances[distances.size() / 2] * 1e3}, {"max_mm", distances.back() * 1e3}};
+}
+
+Result<Report> import(const ImportOptions& options) {
+    StrandImportOptions strandsAs = strandOptions(options);
+    std::shared_ptr<const ScalpMesh> mesh;
+    FaceSet faces;
+    if (!options.mesh.empty()) {
+        auto scene = importSceneWithUnit(options.mesh, options.meshUnit);
+        if (!scene) return tl::unexpected(scene.error());
+        mesh = std::make_shared<const ScalpMesh>(std::move(scene->mesh));
+        auto selected = selectFaces(*mesh, options.scalp);
+        if (!selected) return tl::unexpected(selected.error());
+        faces = std::move(*selected);
+        strandsAs.scalp = mesh.get();
+    }
+    auto imported = importStrands(options.file, strandsAs);
+    if (!imported) return tl::unexpected(imported.error());
+    Groom& groom = imported->groom;
+    logFindings(options.file, imported->warnings);
+
+    Report report;
+    report["strands"] = groom.strandCount();
+    report["points"] = groom.pointCount();
+    report["dropped"] = Report::array();
+    for (const auto& dropped : imported->dropped) {
+        report["dropped"].push_back(
+            Report{{"strand", dropped.strand}, {"reason", dropReasonName(dropped.reason)}});
+    }
+    report["format"] = imported->format;
+    report["warnings"] = toReport(imported->warnings);
+    if (mesh && groom.strandCount() > 0) {
+        report["root_distance"] = bindingReport(bindToScalp(groom, mesh, std::move(faces)));
+        groom.scalpExpression = options.scalp;
+        groom.characterFile = options.mesh;
+        if (auto triangulation = triangulateRoots(*mesh, groom.scalpSelection, groom.rootBindings())) {
+            groom.triangulation = std::move(*triangulation);
+        } else {
+            log::warning("{}: roots have no triangulation: {}", options.file,
+                         triangulation.error().message());
+        }
+    }
+    if (auto saved = saveProject(groom, options.output); !saved) return tl::unexpected(saved.error());
+    report["output"] = options.output;
+    return report;
+}
+
+}  // namespace
+
+void addImportJob(Jobs& jobs) {
+    const auto options = std::make_shared<ImportOptions>();
+    CLI::App& job =
+        jobs.add("import", "Bring in strands from another program; the format is found from the content",
+                 "hair.tfx --mesh head.obj -o hair.hairloom", [options] { return import(*options); });
+    job.add_option("file", options->file, "Cinema 4D hair OBJ, OBJ lines, TressFX .tfx or Yuksel .hair")
+        ->required();
+    job.add_option("--mesh", options->mesh, "Head mesh to bind the roots to");
+    job.add_option("--scalp", options->scalp, "Faces of the mesh that carry hair, as for create");
+    addUnitOption(job, options->unit);
+    job.add_option("--mesh-unit", options->meshUnit, "Unit of the head mesh where its file states none")
+        ->check(CLI::IsMember({"m", "dm", "cm", "mm", "inch"}));
+    job.add_option("--up", options->up, "Axis that points up in the hair file")
+        ->check(CLI::IsMember({"y", "z"}));
+    job.add_option("--segments", options->segments,
+                   "Segments per strand of a Cinema 4D OBJ; 0 finds them from its faces")
+        ->check(CLI::Range(0, 65535));
+    job.add_option("--order", options->order, "Vertex order of a Cinema 4D OBJ")
+        ->check(CLI::IsMember({"auto", "interleaved", "edges", "around"}));
+    job.add_option("--particle", options->particle, "Where a Cinema 4D ribbon's particles are")
+        ->check(CLI::IsMember({"edge", "centre"}));
+    job.add_option("-o,--output", options->output, "Project to write")->required();
+}
+
+}  // namespace hairloom::cli

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <memory>
+
+#include "cli/documents.h"
+#include "cli/job.h"
+#include "core/geometry/selection.h"
+#include "core/groom/project_file.h"
+
+namespace hairloom::cli {
+namespace {
+
+Report attributeNames(const AttributeSet& attributes) {
+    Report names = Report::array();
+    for (const auto& [name, data] : attributes.all())
+        names.push_back(name + ": " + std::string(typeName(data)));
+    return names;
+}
+
+Report scalpReport(const Groom& groom) {
+    return Report{{"vertices", groom.scalp->vertexCount()},
+                  {"triangles", groom.scalp->triangleCount()},
+                  {"groups", groom.scalp->groupNames()},
+                  {"materials", groom.scalp->materialNames()},
+                  {"selected_triangles", groom.scalpSelection.size()},
+                  {"selected_area_cm2", selectionArea(*groom.scalp, groom.scalpSelection) * 1e4},
+                  {"character", groom.characterFile}};
+}
+
+Result<Report> info(const std::string& path, const std::string& unit) {
+    const auto opened = openAny(path, unit);
+    if (!opened) return tl::unexpected(opened.error());
+    const Groom& groom = opened->groom;
+    Report report;
+    report["strands"] = groom.strandCount();
+    report["points"] = groom.pointCount();
+    report["guides"] = groom.guideCount();
+    report["spheres"] = groom.spheres.size();
+    const Box3f bounds = groom.strandCount() > 0 || !groom.scalp ? groom.bounds() : groom.scalp->bounds();
+    report["bounds"] = bounds.isEmpty()
+                           ? Report(nullptr)
+                           : Report{{"min", toReport(bounds.min())}, {"max", toReport(bounds.max())}};
+    report["format"] = opened->format;
+    report["version"] = opened->format == "hairloom" ? Report(kProjectVersion) : Report(nullptr);
+    report["strand_attributes"] = attributeNames(groom.strandAttributes);
+    report["point_attributes"] = attributeNames(groom.pointAttributes);
+    if (groom.scalp) report["scalp"] = scalpReport(groom);
+    return report;
+}
+
+}  // namespace
+
+void addInfoJob(Jobs& jobs) {
+    struct Options {
+        std::string file, unit;
+    };
+    const auto options = std::make_shared<Options>();
+    CLI::App& job = jobs.add("info", "Say what is in a project, hair file or mesh", "hair.hairloom --json",
+                             [options] { return info(options->file, options->unit); });
+    job.add_option("file", options->file, "Project, hair file or mesh")->required();
+    addUnitOption(job, options->unit);
+}
+
+}  // namespace hairloom::cli

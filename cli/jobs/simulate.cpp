@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+
+#include "cli/documents.h"
+#include "cli/job.h"
+#include "cli/motions.h"
+#include "cli/progress.h"
+#include "cli/vectors.h"
+#include "core/groom/project_file.h"
+#include "core/simulation/frame_record.h"
+#include "core/simulation/simulation.h"
+
+namespace hairloom::cli {
+namespace {
+
+struct SimulateOptions {
+    std::string input;
+    std::uint64_t frames = 60;
+    float framesPerSecond = 60;
+    std::string backend = "cpu";
+    std::string integrator;
+    std::uint32_t substeps = 0;
+    std::string wind;
+    std::string motion = "none";
+    std::string character;
+    std::string record;
+    std::string output;
+};
+
+/// The settings of the groom with what the command line says instead.
+Status overrideSettings(Groom& groom, const SimulateOptions& options) {
+    if (options.substeps > 0) groom.simulation.substeps = options.substeps;
+    if (!options.wind.empty()) {
+        const auto wind = parseVector(options.wind, "--wind");
+        if (!wind) return tl::unexpected(wind.error());
+        const float speed = wind->norm();
+        groom.simulation.windSpeed = speed;
+        if (speed > 0) {
+            const Vec3f direction = *wind / speed;
+            groom.simulation.windDirection = {direction.x(), direction.y(), direction.z()};
+        }
+    }
+    return {};
+}
+
+Report effectsReport(const std::vector<EffectReport>& effects) {
+    Report rows = Report::array();
+    for (const EffectReport& effect : effects) {
+        rows.push_back(Report{{"name", effect.name},
+                              {"on", effect.on},
+                              {"why", effect.why},
+                              {"ms", effect.milliseconds},
+                              {"bytes", effect.bytes}});
+    }
+    return rows;
+}
+
+Report statsReport(const Groom& groom, const SimulationStats& stats) {
+    Report report;
+    report["strands"] = groom.strandCount();
+    report["points"] = groom.pointCount();
+    report["frames"] = stats.frames;
+    report["ms_per_frame"] = stats.millisecondsPerFrame;
+    report["ns_per_particle_substep"] = stats.nanosecondsPerParticleSubstep;
+    report["max_stretch"] = finiteOrNull(stats.maxStretch);
+    report["max_penetration_mm"] = finiteOrNull(stats.maxPenetrationMm);
+    report["energy"] = finiteOrNull(stats.energy);
+    report["nan_count"] = stats.nanCount;
+    report["state_hash"] = fmt::format("{:016x}", stats.stateHash);
+    report["effects"] = effectsReport(stats.effects);
+    return report;
+}
+
+Result<Report> simulate(const SimulateOptions& options) {
+    auto groom = loadDocument(options.input);
+    if (!groom) return tl::unexpected(groom.error());
+    if (auto status = overrideSettings(*groom, options); !status) return tl::unexpected(status.error());
+    const auto motion = makeMotion(options.motion, options.character, *groom);
+    if (!motion) return tl::unexpected(motion.error());
+    HeadPose pose = (*motion)->poseAt(0);
+    auto simulation = Simulation::make(*groom, pose);
+    if (!simulation) return tl::unexpected(simulation.error());
+    std::optional<FrameRecorder> recorder;
+    if (!options.record.empty()) {
+        auto opened = FrameRecorder::open(options.record, *groom, options.framesPerSecond);
+        if (!opened) return tl::unexpected(opened.error());
+        recorder.emplace(std::move(*opened));
+    }
+
+    Progress progress("simulating", options.frames);
+    for (std::uint64_t frame = 1; frame <= options.frames; ++frame) {
+        pose = (*motion)->poseAt(static_cast<float>(frame) / options.framesPerSecond);
+        simulation->step(1.0f / options.framesPerSecond, pose);
+        if (recorder) {
+            if (auto added = recorder->add(simulation->positions_ws(), pose); !added) {
+                return tl::unexpected(added.error());
+            }
+        }
+        progress.done(frame);
+    }
+
+    Report report = statsReport(*groom, simulation->stats());
+    if (recorder) {
+        if (auto finished = recorder->finish(); !finished) return tl::unexpected(finished.error());
+        report["record"] = options.record;
+    }
+    if (!options.output.empty()) {
+        const Groom moved = posedGroom(*groom, simulation->positions_ws(), pose);
+        if (auto saved = saveProject(moved, options.output); !saved) return tl::unexpected(saved.error());
+        report["output"] = options.output;
+    }
+    return report;
+}
+
+}  // namespace
+
+void addSimulateJob(Jobs& jobs) {
+    const auto options = std::make_shared<SimulateOptions>();
+    CLI::App& job =
+        jobs.add("simulate", "Run the simulation and say how it went",
+                 "hair.hairloom --frames 120 --fps 60 --wind 3,0,1 --motion nod --record hair.frames",
+                 [options] { return simulate(*options); });
+    job.add_option("groom", options->input, "Project or hair file")->required();
+    job.add_option("--frames", options->frames, "Frames to simulate")->check(CLI::Range(1, 1'000'000));
+    job.add_option("--fps", options->framesPerSecond, "Frames per second")->check(CLI::Range(10.0, 1000.0));
+    job.add_option("--backend", options->backend, "What runs it")->check(CLI::IsMember({"cpu"}));
+    job.add_option("--integrator", options->integrator, "How motion is advanced")
+        ->check(CLI::IsMember({"verlet"}));
+    job.add_option("--substeps", options->substeps, "Steps per frame, instead of the groom's own")
+        ->check(CLI::Range(1, 64));
+    job.add_option("--wind", options->wind, "Velocity of the air X,Y,Z in m/s, instead of the groom's own");
+    job.add_option("--motion", options->motion, "How the head moves: none, spin, nod or clip:NAME");
+    job.add_option("--character", options->character,
+                   "File with the skeleton and clips, instead of the one the scalp came from");
+    job.add_option("--record", options->record, "File to write every frame to");
+    job.add_option("-o,--output", options->output, "Project to write with the hair as it ends");
+}
+
+}  // namespace hairloom::cli

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Curves through strand points: uniform Catmull-Rom (thesis Eq. 54–56), resampling, frames.
+
+#include <span>
+#include <vector>
+
+#include "core/base/math.h"
+
+namespace hairloom {
+
+/// Position and derivative with respect to x in [0, 1] over the whole curve of points.size() ≥ 2. End
+/// segments repeat the end points. x = 1 is the last point (thesis erratum, Eq. 55).
+Vec3f catmullRom(std::span<const Vec3f> points, float x);
+Vec3f catmullRomDerivative(std::span<const Vec3f> points, float x);
+
+/// Sum of the segment lengths, metres.
+float polylineLength(std::span<const Vec3f> points);
+
+/// `count` ≥ 2 points evenly spaced by arc length along the polyline; the ends are kept exactly.
+std::vector<Vec3f> resampleEvenly(std::span<const Vec3f> points, std::size_t count);
+
+/// The shortest rotation from unit vector `from` to unit vector `to`, stable at 180° (Melax 2000).
+Quatf shortestArc(const Vec3f& from, const Vec3f& to);
+
+/// Rotation-minimising frames along a polyline: columns are (normal, binormal, tangent), orthonormal,
+/// right-handed. `firstNormal` is made perpendicular to the first tangent.
+std::vector<Mat3f> parallelTransportFrames(std::span<const Vec3f> points, const Vec3f& firstNormal);
+
+}  // namespace hairloom

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The document: strands on a scalp, with everything an artist authored. Copying is cheap (arrays are shared
+// until written), so undo, jobs and snapshots hold whole grooms.
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/geometry/root_triangulation.h"
+#include "core/geometry/scalp_mesh.h"
+#include "core/groom/attributes.h"
+#include "core/groom/material.h"
+#include "runtime/settings.h"
+
+namespace hairloom {
+
+/// A sphere that strands collide with, fixed to a bone.
+struct CollisionSphere {
+    std::string name;
+    Vec3f centre = Vec3f::Zero();  ///< metres, in the scalp's rest space
+    float radius = 0.1f;           ///< metres, > 0
+    std::string bone;              ///< bone it moves with; empty: with the scalp as a rigid whole
+};
+
+/// Strands that are shown, locked and edited together.
+struct Layer {
+    std::string name = "Hair";
+    bool visible = true;
+    bool locked = false;
+};
+
+/// How follow hairs come from guides (thesis §4.2).
+struct InterpolationSettings {
+    std::uint32_t followPerGuide =
+        0;  ///< follow hairs for each guide, 0 … 4096; 0 shows the strands themselves
+    float wispRadiusRoot = 0.002f;  ///< metres, 0 … 0.1; radius of a wisp's cross-section at the root
+    float wispRadiusTip = 0.004f;   ///< metres, 0 … 0.1; at the tip
+    float blend = 0.5f;             ///< 0 … 1; 0 follows one strand (wisps), 1 the three of a root triangle
+    std::uint64_t seed = 1;
+};
+
+struct Groom {
+    /// Strand s owns points [offsets[s], offsets[s + 1]), root first. Size: strands + 1, first 0, ascending.
+    CowArray<std::uint32_t> offsets{std::vector<std::uint32_t>{0}};
+    AttributeSet strandAttributes;
+    AttributeSet pointAttributes;
+
+    std::vector<Layer> layers{Layer{}};
+    std::vector<std::string> groupNames;
+    std::vector<CollisionSphere> spheres;
+    HairMaterial material;
+    runtime::SimulationSettings simulation;
+    InterpolationSettings interpolation;
+
+    /// The mesh that strands are rooted on; null for hair that came without one. Shared and immutable.
+    std::shared_ptr<const ScalpMesh> scalp;
+    FaceSet scalpSelection;           ///< triangles of `scalp` that may carry hair
+    std::string scalpExpression;      ///< how the selection was made, for people; may be empty
+    RootTriangulation triangulation;  ///< over the strands' roots; empty until made
+    std::string characterFile;        ///< file that the scalp came from (mesh, skeleton, clips); may be empty
+
+    std::size_t strandCount() const { return offsets.empty() ? 0 : offsets.size() - 1; }
+    std::size_t pointCount() const { return offsets.empty() ? 0 : offsets[offsets.size() - 1]; }
+
+    std::span<const Vec3f> positions() const { return pointAttributes.view<Vec3f>(attribute::kPosition); }
+    std::span<const Vec3f> strand(std::size_t index) const {
+        return positions().subspan(offsets[index], offsets[index + 1] - offsets[index]);
+    }
+
+    /// Strands whose guide flag is set; all of them where there are no flags.
+    std::size_t guideCount() const;
+    Box3f bounds() const;
+
+    /// Per strand, where the root binding attributes are; empty for unbound hair.
+    std::vector<SurfacePoint> rootBindings() const;
+    void setRootBindings(std::span<const SurfacePoint> roots);
+};
+
+/// A groom of these strands with position and offsets and nothing else. `offsets` as in Groom.
+Groom makeGroom(std::vector<std::uint32_t> offsets, std::vector<Vec3f> positions);
+
+/// Straight strands along the interpolated scalp normals (thesis §4.1), bound to the scalp, each with
+/// `points` ≥ 2 points over `length` metres, with ids, root UVs, radius tapered as the material says, and the
+/// Delaunay triangulation of the roots (three of them at least). Errors: no scalp, a root beside it, a length
+/// or number of points out of range, roots that cannot be triangulated.
+Result<Groom> growStraight(std::shared_ptr<const ScalpMesh> scalp, FaceSet selection,
+                           std::span<const SurfacePoint> roots, float length, std::uint32_t points);
+
+/// Binds each root to the nearest point of the selection (all of the scalp where it is empty), replaces scalp
+/// and selection of the groom, empties the triangulation, and returns the distance of each root to its
+/// binding, metres. `scalp` has triangles; strands have points.
+std::vector<float> bindToScalp(Groom& groom, std::shared_ptr<const ScalpMesh> scalp, FaceSet selection);
+
+}  // namespace hairloom

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/groom/validate.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/groom/fields.h"
+#include "core/groom/findings.h"
+
+namespace hairloom {
+namespace {
+
+void findSpheres(const Groom& groom, std::vector<Finding>& findings) {
+    Places places;
+    for (const CollisionSphere& sphere : groom.spheres) {
+        const bool good = sphere.centre.allFinite() && std::isfinite(sphere.radius) && sphere.radius > 0;
+        if (!good) places.named(fmt::format("sphere '{}' (radius {} m)", sphere.name, sphere.radius));
+    }
+    places.report(findings, Severity::Error, "a collision sphere has no finite place or no positive radius",
+                  "delete the sphere or set its centre and radius");
+}
+
+void findLayers(const Groom& groom, std::vector<Finding>& findings) {
+    if (!groom.layers.empty()) return;
+    findings.push_back(
+        {Severity::Error, "there are no layers", "layers", "add one; every groom has at least one"});
+}
+
+void findSettings(const Groom& groom, std::vector<Finding>& findings) {
+    const auto report = [&](std::string_view which, const std::vector<std::string>& problems) {
+        for (const std::string& problem : problems) {
+            findings.push_back({Severity::Error, problem, std::string(which), "set it within its range"});
+        }
+    };
+    report("material", fieldsOutOfRange(groom.material));
+    report("interpolation", fieldsOutOfRange(groom.interpolation));
+    std::vector<std::string> simulation;
+    for (const auto& problem : runtime::validate(groom.simulation)) simulation.push_back(problem.message);
+    report("simulation", simulation);
+}
+
+}  // namespace
+
+std::string_view severityName(Severity severity) {
+    switch (severity) {
+        case Severity::Info:
+            return "info";
+        case Severity::Warning:
+            return "warning";
+        case Severity::Error:
+            break;
+    }
+    return "error";
+}
+
+std::vector<Finding> validateSettings(const Groom& groom) {
+    std::vector<Finding> findings;
+    findLayers(groom, findings);
+    findSpheres(groom, findings);
+    findSettings(groom, findings);
+    return findings;
+}
+
+std::vector<Finding> validate(const Groom& groom) {
+    std::vector<Finding> findings = validateSettings(groom);
+    if (!findStructure(groom, findings)) return findings;
+    findGeometry(groom, findings);
+    findBinding(groom, findings);
+    return findings;
+}
+
+Status checkStructure(const Groom& groom) {
+    std::vector<Finding> findings;
+    if (findStructure(groom, findings)) return {};
+    return fail(fmt::format("{} ({})", findings.front().what, findings.front().where), findings.front().fix);
+}
+
+bool hasErrors(const std::vector<Finding>& findings) {
+    return std::any_of(findings.begin(), findings.end(),
+                       [](const Finding& finding) { return finding.severity == Severity::Error; });
+}
+
+}  // namespace hairloom

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <array>
+
+#include "core/groom/findings.h"
+
+namespace hairloom {
+namespace {
+
+struct KnownAttribute {
+    std::string_view name;
+    std::string_view type;
+};
+constexpr std::array<KnownAttribute, 4> kPointTypes = {{{attribute::kPosition, "float3"},
+                                                        {attribute::kRadius, "float"},
+                                                        {attribute::kPointColour, "float3"},
+                                                        {attribute::kTransparency, "float"}}};
+constexpr std::array<KnownAttribute, 9> kStrandTypes = {{{attribute::kRootTriangle, "uint32"},
+                                                         {attribute::kRootBarycentric, "float3"},
+                                                         {attribute::kRootUv, "float2"},
+                                                         {attribute::kGroup, "uint32"},
+                                                         {attribute::kGuide, "uint8"},
+                                                         {attribute::kFrozen, "uint8"},
+                                                         {attribute::kLayer, "uint32"},
+                                                         {attribute::kStrandColour, "float3"},
+                                                         {attribute::kStrandId, "uint32"}}};
+
+bool findOffsets(const Groom& groom, std::vector<Finding>& findings) {
+    const auto offsets = groom.offsets.view();
+    const auto wrong = [&](std::string what, std::string where) {
+        findings.push_back({Severity::Error, std::move(what), std::move(where),
+                            "rebuild the offsets: strands + 1 "
+                            "numbers that begin with 0 and ascend to the number of points"});
+        return false;
+    };
+    if (offsets.empty()) return wrong("there are no offsets", "offsets");
+    if (offsets[0] != 0) return wrong(fmt::format("offsets begin with {}", offsets[0]), "offset 0");
+    for (std::size_t s = 0; s + 1 < offsets.size(); ++s) {
+        if (offsets[s + 1] < offsets[s]) return wrong("offsets descend", fmt::format("strand {}", s));
+    }
+    return true;
+}
+
+bool findArrays(const AttributeSet& attributes, std::span<const KnownAttribute> known,
+                std::string_view domain, std::size_t count, std::vector<Finding>& findings) {
+    Places lengths;
+    Places types;
+    for (const auto& [name, data] : attributes.all()) {
+        const std::string where = fmt::format("{} attribute '{}'", domain, name);
+        if (sizeOf(data) != count) lengths.named(fmt::format("{} ({} values)", where, sizeOf(data)));
+        const auto entry =
+            std::find_if(known.begin(), known.end(), [&](const auto& k) { return k.name == name; });
+        if (entry != known.end() && entry->type != typeName(data)) {
+            types.named(fmt::format("{} is {}, expected {}", where, typeName(data), entry->type));
+        }
+    }
+    const std::size_t before = findings.size();
+    lengths.report(findings, Severity::Error,
+                   fmt::format("an attribute does not have one value for each of the {} {}s", count, domain),
+                   "remove the attribute or give it as many values");
+    types.report(findings, Severity::Error, "an attribute that Hairloom gives meaning to has the wrong type",
+                 "remove the attribute or store it with the expected type");
+    return findings.size() == before;
+}
+
+void findShortStrands(const Groom& groom, std::vector<Finding>& findings) {
+    Places places;
+    for (std::size_t s = 0; s < groom.strandCount(); ++s) {
+        if (groom.offsets[s + 1] - groom.offsets[s] < 2) places.strand(s);
+    }
+    places.report(findings, Severity::Error, "a strand has fewer than 2 points", "delete the strand");
+}
+
+void findIndices(const Groom& groom, std::string_view name, std::size_t limit, std::string_view into,
+                 std::vector<Finding>& findings) {
+    const auto indices = groom.strandAttributes.view<std::uint32_t>(name);
+    Places places;
+    for (std::size_t s = 0; s < indices.size(); ++s) {
+        if (indices[s] >= limit) places.strand(s);
+    }
+    places.report(findings, Severity::Error, fmt::format("{} is no index into the {} {}", name, limit, into),
+                  fmt::format("assign the strands to one that exists"));
+}
+
+void findSelection(const Groom& groom, std::vector<Finding>& findings) {
+    const std::size_t triangles = groom.scalp ? groom.scalp->triangleCount() : 0;
+    Places places;
+    for (std::size_t i = 0; i < groom.scalpSelection.size(); ++i) {
+        const bool ascends = i == 0 || groom.scalpSelection[i - 1] < groom.scalpSelection[i];
+        if (!ascends || groom.scalpSelection[i] >= triangles) places.other("selected triangle", i);
+    }
+    places.report(findings, Severity::Error,
+                  fmt::format("the scalp selection does not ascend over the scalp's {} triangles", triangles),
+                  "select the scalp again");
+}
+
+void findTriangulation(const Groom& groom, std::vector<Finding>& findings) {
+    Places places;
+    const std::size_t strands = groom.strandCount();
+    const auto& triangles = groom.triangulation.triangles;
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        const auto [a, b, c] = triangles[t];
+        if (a >= strands || b >= strands || c >= strands) places.other("root triangle", t);
+    }
+    const auto& coincident = groom.triangulation.coincident;
+    for (std::size_t i = 0; i < coincident.size(); ++i) {
+        if (coincident[i].root >= strands || coincident[i].sameAs >= strands)
+            places.other("coincident root", i);
+    }
+    places.report(findings, Severity::Error, "the triangulation of the roots names strands that do not exist",
+                  "triangulate the roots again");
+}
+
+}  // namespace
+
+bool findStructure(const Groom& groom, std::vector<Finding>& findings) {
+    if (!findOffsets(groom, findings)) return false;
+    if (groom.pointCount() > 0 && !groom.pointAttributes.has(attribute::kPosition)) {
+        findings.push_back({Severity::Error, "points have no positions", "point attribute 'position'",
+                            "import or grow the strands again"});
+        return false;
+    }
+    const bool points = findArrays(groom.pointAttributes, kPointTypes, "point", groom.pointCount(), findings);
+    const bool strands =
+        findArrays(groom.strandAttributes, kStrandTypes, "strand", groom.strandCount(), findings);
+    if (!points || !strands) return false;
+    const std::size_t before = findings.size();
+    findShortStrands(groom, findings);
+    findIndices(groom, attribute::kGroup, groom.groupNames.size(), "groups", findings);
+    findIndices(groom, attribute::kLayer, groom.layers.size(), "layers", findings);
+    if (groom.scalp) {
+        findIndices(groom, attribute::kRootTriangle, groom.scalp->triangleCount(), "triangles of the scalp",
+                    findings);
+    }
+    findSelection(groom, findings);
+    findTriangulation(groom, findings);
+    return findings.size() == before;
+}
+
+}  // namespace hairloom

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Recorded motion on disk: for each frame the strands' points and the scalp's vertices. Layout in
+// docs/formats/frames.md.
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/base/math.h"
+#include "core/base/result.h"
+#include "core/simulation/motion.h"
+
+namespace hairloom {
+
+struct RecordedFrame {
+    std::vector<Vec3f> positions_ws;
+    HeadPose pose;
+};
+
+/// Writes frames as they come into a temporary file; `finish` puts it under the name asked for. A recorder
+/// that is destroyed unfinished leaves nothing.
+class FrameRecorder {
+  public:
+    static Result<FrameRecorder> open(const std::filesystem::path& path, const Groom& groom,
+                                      float framesPerSecond);
+    FrameRecorder(FrameRecorder&&) noexcept;
+    FrameRecorder& operator=(FrameRecorder&&) noexcept;
+    ~FrameRecorder();
+
+    Status add(std::span<const Vec3f> positions_ws, const HeadPose& pose);
+    Status finish();
+
+  private:
+    struct Impl;
+    explicit FrameRecorder(std::unique_ptr<Impl> impl);
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Frame `index` of a record made from this groom. Errors: damage with its place, a record of another groom
+/// (other point or vertex count), an index past the end (naming the number of frames).
+Result<RecordedFrame> readFrame(const std::filesystem::path& path, const Groom& groom, std::uint64_t index);
+
+}  // namespace hairloom

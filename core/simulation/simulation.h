@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Runs the strand engine on a groom: roots follow the posed scalp, settings and spheres come from the groom.
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/simulation/motion.h"
+
+namespace hairloom {
+
+/// What an effect is doing and what it costs.
+struct EffectReport {
+    std::string name;
+    bool on;
+    std::string why;      ///< "no sphere within reach of a strand"
+    double milliseconds;  ///< per frame, mean since the start; 0 while off
+    std::uint64_t bytes;  ///< memory of its own; 0 while off
+};
+
+struct SimulationStats {
+    std::uint64_t frames = 0;
+    double millisecondsPerFrame = 0;  ///< mean
+    double nanosecondsPerParticleSubstep = 0;
+    double maxStretch = 0;        ///< largest |length / rest length − 1| of a segment, over all frames
+    double maxPenetrationMm = 0;  ///< deepest point inside a sphere after a frame, over all frames
+    double energy = 0;  ///< kinetic energy after the last frame, joules for strands of unit mass per point
+    std::uint64_t nanCount = 0;   ///< points that are not finite, over all frames
+    std::uint64_t stateHash = 0;  ///< equal for any number of threads
+    std::vector<EffectReport> effects;
+};
+
+class Simulation {
+  public:
+    /// The groom's strands at rest on `start`. Errors: no strands, a groom that validate() finds errors in,
+    /// settings out of range.
+    static Result<Simulation> make(const Groom& groom, const HeadPose& start);
+    Simulation(Simulation&&) noexcept;
+    Simulation& operator=(Simulation&&) noexcept;
+    ~Simulation();
+
+    /// Advances by `dt` seconds (0 < dt ≤ 0.1) to `pose`.
+    void step(float dt, const HeadPose& pose);
+
+    /// Points in the order of the groom's points; metres, world space.
+    std::span<const Vec3f> positions_ws() const;
+    SimulationStats stats() const;
+
+  private:
+    struct Impl;
+    explicit Simulation(std::unique_ptr<Impl> impl);
+    std::unique_ptr<Impl> impl_;
+};
+
+/// The groom as it stands in a pose: strands at `positions_ws`, scalp and spheres moved with them.
+Groom posedGroom(const Groom& groom, std::span<const Vec3f> positions_ws, const HeadPose& pose);
+
+}  // namespace hairloom

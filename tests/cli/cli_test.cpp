@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The command line as docs/cli.md promises it, on the sample head.
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "tests/cli/command.h"
+
+namespace hairloom::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+class Cli : public CommandLineTest {
+  protected:
+    std::string createArguments(const std::string& more = "") const {
+        return "create --mesh '" + bustFile() +
+               "' --scalp group:scalp --count 300 --placement dart --length 0.2 " +
+               "--points 12 --seed 7 -o hair.hairloom " + more;
+    }
+    std::size_t filesInFolder() const {
+        return static_cast<std::size_t>(
+            std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+    }
+};
+
+TEST_F(Cli, WrongUsageEndsWith2AndHelpWith0) {
+    EXPECT_EQ(run("").exitCode, 2);
+    EXPECT_EQ(run("braid hair.hairloom").exitCode, 2);
+    EXPECT_EQ(run("create --mesh x.obj --count minus -o g").exitCode, 2);
+    EXPECT_EQ(run("create --mesh x.obj -o g").exitCode, 2) << "neither count nor density";
+    EXPECT_EQ(run("--help").exitCode, 0);
+}
+
+TEST_F(Cli, EveryJobHasHelpWithAnExample) {
+    for (const char* job : {"create", "info", "import", "export", "validate", "groom", "spheres", "set",
+                            "simulate", "render", "devices", "bench"}) {
+        const Outcome help = run(std::string(job) + " --help");
+        EXPECT_EQ(help.exitCode, 0) << job;
+        EXPECT_THAT(help.output, HasSubstr(std::string("hairloom-cli ") + job));
+    }
+}
+
+TEST_F(Cli, CreateReportsWhatItMade) {
+    const auto report = runJson(createArguments());
+    EXPECT_EQ(report["strands"], 300);
+    EXPECT_EQ(report["points"], 300 * 12);
+    EXPECT_GT(report["scalp_area_cm2"], 300.0);
+    EXPECT_GT(report["min_root_distance"], 0.003);
+    EXPECT_GT(report["triangles"], 300);
+    const auto info = runJson("info hair.hairloom");
+    EXPECT_EQ(info["strands"], 300);
+    EXPECT_EQ(info["guides"], 300);
+    EXPECT_EQ(info["format"], "hairloom");
+    const auto validated = runJson("validate hair.hairloom");
+    EXPECT_TRUE(validated["valid"].get<bool>()) << validated.dump(2);
+}
+
+TEST_F(Cli, SameSeedSameBytesForAnyNumberOfThreads) {
+    runJson(createArguments("--threads 1"));
+    const std::string one = readText(folder / "hair.hairloom");
+    runJson(createArguments("--threads 4"));
+    EXPECT_EQ(one, readText(folder / "hair.hairloom"));
+    runJson(createArguments("--seed 8"));
+    EXPECT_NE(one, readText(folder / "hair.hairloom"));
+}
+
+TEST_F(Cli, ErrorsNameFileAndExpectationAndLeaveNothingBehind) {
+    const Outcome missing = run("create --mesh none.obj --count 10 -o hair.hairloom");
+    EXPECT_EQ(missing.exitCode, 1);
+    EXPECT_THAT(missing.errors, StartsWith("error: none.obj: "));
+    const Outcome group =
+        run("create --mesh '" + bustFile() + "' --scalp group:beard --count 10 -o hair.hairloom");
+    EXPECT_EQ(group.exitCode, 1);
+    EXPECT_THAT(group.errors, HasSubstr("scalp")) << "the groups there are";
+    const Outcome dense =
+        run("create --mesh '" + bustFile() + "' --scalp group:scalp --density 1e9 -o hair.hairloom");
+    EXPECT_EQ(dense.exitCode, 1);
+    EXPECT_THAT(dense.errors, HasSubstr("cm²"));
+    EXPECT_EQ(filesInFolder(), 0u);
+}
+
+TEST_F(Cli, ADamagedProjectIsRefusedWithThePlace) {
+    runJson(createArguments());
+    std::string bytes = readText(folder / "hair.hairloom");
+    bytes[bytes.size() - 40] = static_cast<char>(bytes[bytes.size() - 40] ^ 0x10);
+    std::ofstream(folder / "hair.hairloom", std::ios::binary) << bytes;
+    const Outcome damaged = run("info hair.hairloom");
+    EXPECT_EQ(damaged.exitCode, 1);
+    EXPECT_THAT(damaged.errors, StartsWith("error: hair.hairloom"));
+}
+
+TEST_F(Cli, SimulationDoesNotDependOnThreadsAndKeepsLengths) {
+    runJson(createArguments());
+    const std::string arguments = "simulate hair.hairloom --frames 30 --fps 60 --wind 3,0,1 --motion nod ";
+    const auto one = runJson(arguments + "--threads 1");
+    const auto four = runJson(arguments + "--threads 4");
+    EXPECT_EQ(one["state_hash"], four["state_hash"]);
+    EXPECT_EQ(one["nan_count"], 0);
+    EXPECT_LT(one["max_stretch"], 0.02);
+    EXPECT_NE(one["state_hash"], runJson("simulate hair.hairloom --frames 30 --fps 60")["state_hash"]);
+    bool windIsOn = false;
+    for (const auto& effect : one["effects"]) {
+        EXPECT_FALSE(effect["why"].get<std::string>().empty()) << effect.dump();
+        windIsOn |= effect["name"] == "wind" && effect["on"].get<bool>();
+    }
+    EXPECT_TRUE(windIsOn);
+}
+
+TEST_F(Cli, ClipOfTheSampleHeadMovesTheHair) {
+    runJson(createArguments());
+    const auto moved = runJson("simulate hair.hairloom --frames 20 --fps 30 --motion clip:nod_and_turn");
+    const auto still = runJson("simulate hair.hairloom --frames 20 --fps 30");
+    EXPECT_NE(moved["state_hash"], still["state_hash"]);
+    const Outcome unknown = run("simulate hair.hairloom --motion clip:dance");
+    EXPECT_EQ(unknown.exitCode, 1);
+    EXPECT_THAT(unknown.errors, HasSubstr("nod_and_turn")) << "the clips there are";
+}
+
+TEST_F(Cli, ExportedAssetsComeBackTheSame) {
+    runJson(createArguments("--points 16"));
+    for (const char* format : {"hair", "tfx"}) {
+        const std::string name = std::string("hair.") + format;
+        const auto exported = runJson(std::string("export hair.hairloom --format ") + format + " -o " + name);
+        EXPECT_EQ(exported["strands"], 300) << format;
+        EXPECT_EQ(exported["bytes"], fs::file_size(folder / name)) << format;
+        EXPECT_LT(exported["max_error_mm"], 1e-3) << format;
+        EXPECT_TRUE(fs::exists(folder / (name + ".report.json"))) << format;
+        const auto back = runJson("import " + name + " -o back.hairloom");
+        EXPECT_EQ(back["strands"], 300) << format;
+        EXPECT_TRUE(back["dropped"].empty()) << format;
+    }
+}
+
+TEST_F(Cli, SettingsAreCheckedByNameAndRange) {
+    runJson(createArguments());
+    const auto set =
+        runJson("set hair.hairloom simulation.windSpeed=4 material.shininess=90 -o hair.hairloom");
+    EXPECT_EQ(set["changed"], 2);
+    const Outcome range = run("set hair.hairloom simulation.friction=7 -o hair.hairloom");
+    EXPECT_EQ(range.exitCode, 1);
+    EXPECT_THAT(range.errors, HasSubstr("0 to 1"));
+    const Outcome name = run("set hair.hairloom simulation.wobble=1 -o hair.hairloom");
+    EXPECT_EQ(name.exitCode, 1);
+    EXPECT_THAT(name.errors, HasSubstr("friction")) << "the fields there are";
+}
+
+TEST_F(Cli, RenderWritesAPictureAndSaysWhatItCost) {
+    runJson(createArguments());
+    const auto report = runJson("render hair.hairloom -o hair.png --size 160x120 --camera front");
+    EXPECT_FALSE(report["device"].get<std::string>().empty());
+    EXPECT_EQ(report["hairs"], 300);
+    EXPECT_FALSE(report["passes"].empty());
+    const std::string picture = readText(folder / "hair.png");
+    EXPECT_THAT(picture, StartsWith("\x89PNG"));
+    EXPECT_GT(picture.size(), 2000u);
+}
+
+TEST_F(Cli, RecordedFramesCanBePictured) {
+    runJson(createArguments());
+    runJson("simulate hair.hairloom --frames 10 --fps 30 --motion spin --record hair.frames");
+    runJson("render hair.hairloom --record hair.frames --frame 9 -o moved.png --size 120x120");
+    runJson("render hair.hairloom -o rest.png --size 120x120");
+    EXPECT_NE(readText(folder / "moved.png"), readText(folder / "rest.png"));
+    const Outcome late =
+        run("render hair.hairloom --record hair.frames --frame 10 -o late.png --size 120x120");
+    EXPECT_EQ(late.exitCode, 1);
+    EXPECT_THAT(late.errors, HasSubstr("10 frames"));
+    EXPECT_FALSE(fs::exists(folder / "late.png"));
+}
+
+}  // namespace
+}  // namespace hairloom::test

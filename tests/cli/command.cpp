@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/cli/command.h"
+
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+namespace hairloom::test {
+
+namespace fs = std::filesystem;
+
+void CommandLineTest::SetUp() {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    folder = fs::path(testing::TempDir()) /
+             (std::string("hairloom-cli-") + info->test_suite_name() + "-" + info->name());
+    fs::remove_all(folder);
+    fs::create_directories(folder);
+}
+
+void CommandLineTest::TearDown() {
+    fs::remove_all(folder);
+}
+
+Outcome CommandLineTest::run(const std::string& arguments) const {
+    const fs::path out = folder / "stdout.txt";
+    const fs::path err = folder / "stderr.txt";
+    const std::string command = "cd '" + folder.string() + "' && '" + HAIRLOOM_CLI + "' " + arguments +
+                                " > '" + out.string() + "' 2> '" + err.string() + "'";
+    const int status = std::system(command.c_str());
+    const Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, readText(out), readText(err)};
+    fs::remove(out);
+    fs::remove(err);
+    return outcome;
+}
+
+nlohmann::json CommandLineTest::runJson(const std::string& arguments) const {
+    const Outcome outcome = run(arguments + " --json");
+    EXPECT_EQ(outcome.exitCode, 0) << arguments << "\n" << outcome.errors;
+    if (outcome.exitCode != 0) return {};
+    return outcome.json();
+}
+
+std::string bustFile() {
+    return std::string(HAIRLOOM_SOURCE_DIR) + "/samples/bust/bust.glb";
+}
+
+std::string dataFile(const std::string& name) {
+    const fs::path path = fs::path(HAIRLOOM_SOURCE_DIR) / ".." / "shared" / "data" / name;
+    return fs::exists(path) ? path.string() : std::string();
+}
+
+std::string readText(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+}
+
+}  // namespace hairloom::test

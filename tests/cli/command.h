@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Runs the command line program as a user would, in a folder of the test's own.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace hairloom::test {
+
+struct Outcome {
+    int exitCode;
+    std::string output;  ///< standard output
+    std::string errors;  ///< standard error
+
+    /// The one JSON object on standard output.
+    nlohmann::json json() const { return nlohmann::json::parse(output); }
+};
+
+class CommandLineTest : public testing::Test {
+  protected:
+    void SetUp() override;
+    void TearDown() override;
+
+    /// Runs `hairloom-cli ARGUMENTS` through the shell with the test's folder as the working one.
+    Outcome run(const std::string& arguments) const;
+    /// As run, with --json, and a failure of the test when the job fails.
+    nlohmann::json runJson(const std::string& arguments) const;
+
+    std::filesystem::path folder;
+};
+
+/// The sample head, for --mesh.
+std::string bustFile();
+/// A file of the data from elsewhere, or empty when this checkout has none.
+std::string dataFile(const std::string& name);
+std::string readText(const std::filesystem::path& path);
+
+}  // namespace hairloom::test
