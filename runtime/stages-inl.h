@@ -12,7 +12,7 @@ HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {
 namespace HWY_NAMESPACE {
 
-inline V lerp(V a, V b, V t) {
+HWY_INLINE V lerp(V a, V b, V t) {
     return a + (b - a) * t;
 }
 
@@ -189,8 +189,8 @@ void holdLength(const BlockView& block, LaneFrame&, const SubstepContext& contex
 
 /// Impulse with restitution (Rünz 2012, Eq. 20) and Coulomb friction, then the place p_a on the sphere (Eq.
 /// 21, to which the centre is added). A point at the very centre leaves it upwards.
-inline void respond(const BlockView& block, const SubstepContext& context, std::size_t i, hn::Mask<D> inside,
-                    V3 offset, V squared, V3 centre, V reach, V3 centreStep) {
+HWY_INLINE void respond(const BlockView& block, const SubstepContext& context, std::size_t i,
+                        hn::Mask<D> inside, V3 offset, V squared, V3 centre, V reach, V3 centreStep) {
     const V zero = hn::Zero(D()), one = all(1.0f);
     const V distance = hn::Sqrt(squared);
     const auto centred = distance < all(1e-9f);
@@ -289,7 +289,7 @@ void rescale(const BlockView& block, float factor) {
 }
 
 /// Displacement of the air per substep at one place: the mean flow and its gusts.
-inline V3 windAt(const Wind& wind, const float* phases, V3 place_ws) {
+HWY_INLINE V3 windAt(const Wind& wind, const float* phases, V3 place_ws) {
     V3 sum = all3(wind.mean);
     for (std::uint32_t m = 0; m < kWindModes; ++m) {
         const V turns = dot(place_ws, all3(wind.modes[m].waveVector)) + all(phases[m]);
