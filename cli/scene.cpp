@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/scene.h"
+
+#include <algorithm>
+
+#include "core/animation/root_motion.h"
+#include "core/base/file.h"
+#include "core/groom/json_reader.h"
+#include "core/interpolation/follow_hairs.h"
+#include "core/simulation/simulation.h"
+
+namespace hairloom::cli {
+namespace {
+
+constexpr double kAnyPlace = 1e6;  // metres
+
+render::Camera readCamera(JsonReader reader) {
+    render::Camera camera;
+    camera.eye_ws = reader.vector("eye", -kAnyPlace, kAnyPlace, "m");
+    camera.target_ws = reader.vector("target", -kAnyPlace, kAnyPlace, "m");
+    if (reader.has("up")) camera.up_ws = reader.vector("up", -1, 1);
+    camera.verticalFov = static_cast<float>(reader.number("fov_y_deg", 1, 150, "degrees"));
+    reader.finish();
+    return camera;
+}
+
+render::Light readLight(JsonReader& reader) {
+    static constexpr std::string_view kKinds[] = {"directional"};
+    render::Light light;
+    reader.choice("type", kKinds);
+    light.toLight_ws = reader.vector("to_light", -kAnyPlace, kAnyPlace);
+    light.irradiance = reader.vector("irradiance", 0, 1e6);
+    reader.finish();
+    return light;
+}
+
+/// The scattering parameters of the other shading models may stand in a view; Kajiya-Kay has no use for them.
+void readHair(JsonReader reader, ViewFile& view) {
+    view.rootRadius = static_cast<float>(reader.number("radius_m", 1e-6, 0.01, "m"));
+    if (reader.has("tip_scale")) view.tipScale = static_cast<float>(reader.number("tip_scale", 0, 1));
+}
+
+float luminance(const Vec3f& colour) {
+    return colour.dot(Vec3f(0.2126f, 0.7152f, 0.0722f));
+}
+
+render::HairMaterial materialOf(const HairMaterial& authored, const ViewFile& view) {
+    render::HairMaterial material;
+    material.albedo = authored.tipColour;
+    material.tipBrightness = 1;
+    material.rootBrightness = std::clamp(
+        luminance(authored.rootColour) / std::max(luminance(authored.tipColour), 1e-4f), 0.0f, 4.0f);
+    material.variation = authored.colourVariation;
+    material.radius = view.rootRadius.value_or(authored.rootRadius);
+    material.tipScale = view.tipScale.value_or(authored.tipScale);
+    // One authored highlight drives both of the shader's: the light's own colour, narrow, and the fibre's,
+    // wide.
+    material.primary = Vec3f::Constant(0.32f * authored.specular);
+    material.primaryExponent = 1.5f * authored.shininess;
+    material.secondary = Vec3f::Constant(1.1f * authored.specular);
+    material.secondaryExponent = 0.4f * authored.shininess;
+    material.primaryShift = 2 * authored.scaleTiltDegrees;
+    material.secondaryShift = -3 * authored.scaleTiltDegrees;
+    return material;
+}
+
+/// Skin, and where hair grows half its colour: roots too fine to be drawn one by one shade the skin between
+/// them.
+std::vector<Vec3f> headColours(const Groom& groom, const Vec3f& skin) {
+    std::vector<Vec3f> albedo(groom.scalp->triangleCount(), skin);
+    if (groom.strandCount() == 0) return albedo;
+    for (const std::uint32_t triangle : groom.scalpSelection) {
+        albedo[triangle] = 0.5f * skin + 0.5f * groom.material.rootColour;
+    }
+    return albedo;
+}
+
+std::vector<Quatf> rootRotations(const Groom& rest, const Groom& posed, const FollowBindings& bindings) {
+    const std::vector<SurfacePoint> all = rest.rootBindings();
+    if (!rest.scalp || all.empty()) return {};
+    std::vector<SurfacePoint> roots;
+    for (const std::uint32_t strand : bindings.guideStrands) roots.push_back(all[strand]);
+    std::vector<Quatf> rotations;
+    for (const auto& transform : rootTransforms(*rest.scalp, posed.scalp->positions(), roots)) {
+        rotations.emplace_back(transform.linear());
+    }
+    return rotations;
+}
+
+}  // namespace
+
+Result<ViewFile> readViewFile(const std::string& path) {
+    const auto text = readTextFile(path, kMaxJsonBytes);
+    if (!text) return tl::unexpected(text.error());
+    const auto document = parseJson(path, *text);
+    if (!document) return tl::unexpected(document.error());
+    JsonReader reader(*document, path);
+    ViewFile view;
+    if (reader.has("camera")) view.camera = readCamera(reader.object("camera"));
+    if (reader.has("size")) {
+        const auto& size = (*document)["size"];
+        const bool pair = size.is_array() && size.size() == 2 && size[0].is_number_unsigned() &&
+                          size[1].is_number_unsigned();
+        if (!pair) {
+            reader.complain("size", "is no size", "expected [width, height] in pixels");
+        } else {
+            view.size = {size[0].get<std::uint32_t>(), size[1].get<std::uint32_t>()};
+        }
+    }
+    if (reader.has("lights")) {
+        for (JsonReader& light : reader.objects("lights")) view.lights.push_back(readLight(light));
+    }
+    if (reader.has("head_albedo")) view.headAlbedo = reader.vector("head_albedo", 0, 1);
+    if (reader.has("hair")) readHair(reader.object("hair"), view);
+    reader.finish();
+    if (auto status = reader.status(); !status) return tl::unexpected(status.error());
+    return view;
+}
+
+Result<GroomScene> GroomScene::make(const Groom& groom, const std::vector<Vec3f>* positions_ws,
+                                    const HeadPose* pose, const ViewFile& view) {
+    GroomScene scene;
+    scene.posed_ = pose ? posedGroom(groom, *positions_ws, *pose) : groom;
+    scene.material_ = materialOf(groom.material, view);
+    if (groom.scalp) {
+        for (const Triangle& triangle : groom.scalp->triangles()) {
+            scene.indices_.insert(scene.indices_.end(), triangle.begin(), triangle.end());
+        }
+        scene.triangleAlbedo_ = headColours(groom, view.headAlbedo.value_or(render::RenderMesh().albedo));
+    }
+    if (groom.interpolation.followPerGuide == 0 || groom.strandCount() == 0) return scene;
+
+    const auto bindings = bindFollowHairs(groom, groom.interpolation);
+    if (!bindings) return tl::unexpected(bindings.error());
+    const std::vector<Vec3f> guides_ws = guidePositions(scene.posed_, *bindings);
+    const std::vector<Quatf> rotations = rootRotations(groom, scene.posed_, *bindings);
+    scene.hairPositions_ws_.resize(bindings->hairCount() * bindings->pointsPerHair);
+    evaluateFollowHairs(*bindings, {guides_ws, {}, rotations}, {}, scene.hairPositions_ws_);
+    for (std::size_t hair = 0; hair <= bindings->hairCount(); ++hair) {
+        scene.hairOffsets_.push_back(static_cast<std::uint32_t>(hair * bindings->pointsPerHair));
+    }
+    return scene;
+}
+
+render::RenderScene GroomScene::scene() const {
+    render::RenderScene scene;
+    if (posed_.scalp) {
+        render::RenderMesh mesh;
+        mesh.positions_ws = posed_.scalp->positions();
+        mesh.normals_ws = posed_.scalp->normals();
+        mesh.indices = indices_;
+        mesh.triangleAlbedo = triangleAlbedo_;
+        scene.meshes.push_back(mesh);
+    }
+    if (posed_.strandCount() == 0) return scene;
+    render::RenderStrands strands;
+    strands.material = material_;
+    if (hairOffsets_.empty()) {
+        strands.offsets = posed_.offsets.view();
+        strands.positions_ws = posed_.positions();
+        strands.radii = posed_.pointAttributes.view<float>(attribute::kRadius);
+        strands.colours = posed_.strandAttributes.view<Vec3f>(attribute::kStrandColour);
+    } else {
+        strands.offsets = hairOffsets_;
+        strands.positions_ws = hairPositions_ws_;
+    }
+    scene.strands.push_back(strands);
+    return scene;
+}
+
+}  // namespace hairloom::cli

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// A groom as the renderer takes it.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/groom/groom.h"
+#include "core/render/picture.h"
+#include "core/simulation/motion.h"
+
+namespace hairloom::cli {
+
+/// What a view file (--view) says; docs/cli.md lists its members.
+struct ViewFile {
+    std::optional<render::Camera> camera;
+    std::optional<std::pair<std::uint32_t, std::uint32_t>> size;
+    std::vector<render::Light> lights;
+    std::optional<Vec3f> headAlbedo;
+    std::optional<float> rootRadius;  ///< metres
+    std::optional<float> tipScale;
+};
+Result<ViewFile> readViewFile(const std::string& path);
+
+/// Owns the arrays that a RenderScene looks at.
+class GroomScene {
+  public:
+    /// The groom at rest, or where the frame of a record has it. Follow hairs are made where the groom asks
+    /// for some.
+    static Result<GroomScene> make(const Groom& groom, const std::vector<Vec3f>* positions_ws,
+                                   const HeadPose* pose, const ViewFile& view);
+
+    /// Meshes and strands; camera and lights are the caller's. Valid while this object lives and is not
+    /// moved.
+    render::RenderScene scene() const;
+
+  private:
+    Groom posed_;
+    std::vector<std::uint32_t> indices_;  ///< of the head's triangles
+    std::vector<Vec3f> triangleAlbedo_;   ///< skin, tinted by hair where the scalp is
+    std::vector<std::uint32_t>
+        hairOffsets_;  ///< of follow hairs; empty where the strands themselves are drawn
+    std::vector<Vec3f> hairPositions_ws_;
+    render::HairMaterial material_;
+};
+
+}  // namespace hairloom::cli
