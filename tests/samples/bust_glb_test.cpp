@@ -37,6 +37,26 @@ TEST(BustGlb, WeightsAddUpAndTheScalpFollowsTheHead) {
     }
 }
 
+TEST(BustGlb, NormalsAreThoseOfTheSurface) {
+    Assimp::Importer importer;
+    const aiScene* scene = readBust(importer, "bust.glb");
+    ASSERT_NE(scene, nullptr) << importer.GetErrorString();
+    std::size_t count = 0;
+    std::size_t close = 0;
+    for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
+        const aiMesh& mesh = *scene->mMeshes[m];
+        ASSERT_TRUE(mesh.HasNormals());
+        for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+            const Vec3d p(mesh.mVertices[v].x, mesh.mVertices[v].y, mesh.mVertices[v].z);
+            const Vec3d n(mesh.mNormals[v].x, mesh.mNormals[v].y, mesh.mNormals[v].z);
+            ASSERT_NEAR(n.norm(), 1.0, 1e-5);
+            ++count;
+            close += n.dot(gradient(p).normalized()) > 0.999;
+        }
+    }
+    EXPECT_GT(static_cast<double>(close), 0.99 * static_cast<double>(count));
+}
+
 TEST(BustGlb, ClipTurnsThreeBonesForTwoSecondsAndLoops) {
     Assimp::Importer importer;
     const aiScene* scene = readBust(importer, "bust.glb");
