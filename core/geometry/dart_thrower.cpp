@@ -13,8 +13,8 @@ constexpr int kBuckets = 256;  // powers of two from 2^-160 m² on
 constexpr int kSmallestPower = -160;
 constexpr float kRounding = 4e-6f;  // of a float distance, relative
 constexpr float kSmallest = 5e-4f;  // of the radius: size of fragments that are let go
-// Fragments below this many radii are finished at once: they hold one root at most, and their
-// neighbourhood is still in the cache.
+// Fragments below this many radii are finished at once: the roots around them are few and are
+// gathered once for all their parts.
 constexpr float kAtOnce = 1.6f;
 constexpr float kLeastDensity = 1.0f / 64;
 
