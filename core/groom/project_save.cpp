@@ -14,10 +14,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json vectorToJson(const Vec3f& v) {
-    return {readableDecimal(v.x()), readableDecimal(v.y()), readableDecimal(v.z())};
-}
-
 Json layersToJson(const Groom& groom) {
     Json list = Json::array();
     for (const Layer& layer : groom.layers) {
@@ -30,7 +26,7 @@ Json spheresToJson(const Groom& groom) {
     Json list = Json::array();
     for (const CollisionSphere& sphere : groom.spheres) {
         list.push_back({{"name", sphere.name},
-                        {"centre", vectorToJson(sphere.centre)},
+                        {"centre", valueToJson(sphere.centre)},
                         {"radius", readableDecimal(sphere.radius)},
                         {"bone", sphere.bone}});
     }
