@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -34,6 +35,13 @@ inline constexpr double kLargestSeed = 18446744073709551615.0;
 std::span<const Field<HairMaterial>> fieldsOf(const HairMaterial&);
 std::span<const Field<InterpolationSettings>> fieldsOf(const InterpolationSettings&);
 
+/// False for member types that are larger than S: no field has one, and compilers warn of reading beyond S
+/// there.
+template <class S, class Member>
+constexpr bool mayHold() {
+    return sizeof(std::declval<S&>().*std::declval<Member>()) <= sizeof(S);
+}
+
 /// 3 for a vector, else 1.
 template <class S>
 std::uint32_t componentCount(const Field<S>& field) {
@@ -46,7 +54,9 @@ template <class S>
 double fieldValue(const S& settings, const Field<S>& field, std::uint32_t component = 0) {
     return std::visit(
         [&](auto member) -> double {
-            if constexpr (std::is_same_v<decltype(member), Vec3f S::*>) {
+            if constexpr (!mayHold<S, decltype(member)>()) {
+                return 0;
+            } else if constexpr (std::is_same_v<decltype(member), Vec3f S::*>) {
                 return static_cast<double>((settings.*member)[component]);
             } else {
                 return static_cast<double>(settings.*member);

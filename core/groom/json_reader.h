@@ -51,7 +51,11 @@ class JsonReader {
     void fields(S& settings) {
         for (const Field<S>& field : fieldsOf(S())) {
             if (has(field.name))
-                std::visit([&](auto member) { read(field, settings.*member); }, field.member);
+                std::visit(
+                    [&](auto member) {
+                        if constexpr (mayHold<S, decltype(member)>()) read(field, settings.*member);
+                    },
+                    field.member);
         }
     }
 
@@ -101,6 +105,18 @@ class JsonReader {
 /// The shortest decimal number that gives the same float again.
 double readableDecimal(float value);
 
+inline nlohmann::ordered_json valueToJson(float value) {
+    return readableDecimal(value);
+}
+inline nlohmann::ordered_json valueToJson(const Vec3f& v) {
+    return {readableDecimal(v.x()), readableDecimal(v.y()), readableDecimal(v.z())};
+}
+template <class T>
+nlohmann::ordered_json valueToJson(T value) {
+    static_assert(std::is_integral_v<T>);
+    return value;
+}
+
 /// All fields of the table as an object, in its order.
 template <class S>
 nlohmann::ordered_json fieldsToJson(const S& settings) {
@@ -108,15 +124,8 @@ nlohmann::ordered_json fieldsToJson(const S& settings) {
     for (const Field<S>& field : fieldsOf(settings)) {
         std::visit(
             [&](auto member) {
-                const auto& value = settings.*member;
-                if constexpr (std::is_same_v<decltype(member), Vec3f S::*>) {
-                    json[field.name] = {readableDecimal(value.x()), readableDecimal(value.y()),
-                                        readableDecimal(value.z())};
-                } else if constexpr (std::is_same_v<decltype(member), float S::*>) {
-                    json[field.name] = readableDecimal(value);
-                } else {
-                    json[field.name] = value;
-                }
+                if constexpr (mayHold<S, decltype(member)>())
+                    json[field.name] = valueToJson(settings.*member);
             },
             field.member);
     }

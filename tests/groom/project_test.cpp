@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gmock/gmock.h>
+
+#include <cstring>
+
+#include "core/base/file.h"
+#include "core/groom/archive.h"
+#include "core/groom/groom_hash.h"
+#include "core/groom/project_file.h"
+#include "core/groom/project_sections.h"
+#include "core/groom/validate.h"
+#include "tests/groom/groom_samples.h"
+
+namespace hairloom {
+namespace {
+
+using testing::HasSubstr;
+using Json = nlohmann::ordered_json;
+
+std::string loadError(const std::filesystem::path& path) {
+    const auto loaded = loadProject(path);
+    return loaded ? "it was loaded" : loaded.error().message();
+}
+
+TEST(Project, SavesAndLoadsEverything) {
+    const TemporaryFolder folder;
+    const Groom groom = fullGroom();
+    ASSERT_TRUE(saveProject(groom, folder / "a.hairloom"));
+    const auto loaded = loadProject(folder / "a.hairloom");
+    ASSERT_TRUE(loaded) << loaded.error().message();
+    EXPECT_TRUE(sameContent(*loaded, groom));
+    EXPECT_EQ(loaded->layers[1].name, "Fringe \"β\"");
+    EXPECT_EQ(loaded->interpolation.seed, 0xfedcba9876543210ull);
+    EXPECT_TRUE(loaded->simulation == groom.simulation);
+    EXPECT_THAT(validate(*loaded), testing::IsEmpty());
+    EXPECT_EQ(loaded->scalp->connectivity().n_faces(), groom.scalp->triangleCount());
+    ASSERT_TRUE(saveProject(*loaded, folder / "b.hairloom"));
+    EXPECT_EQ(readFile(folder / "a.hairloom").value(), readFile(folder / "b.hairloom").value());
+}
+
+TEST(Project, KeepsAnEmptyGroomAndOneWithoutScalp) {
+    const TemporaryFolder folder;
+    Groom bare = makeGroom({0, 2}, {Vec3f(0, 0, 0), Vec3f(0, 0.1f, 0)});
+    for (const Groom& groom : {Groom(), bare}) {
+        ASSERT_TRUE(saveProject(groom, folder / "a.hairloom"));
+        const auto loaded = loadProject(folder / "a.hairloom");
+        ASSERT_TRUE(loaded) << loaded.error().message();
+        EXPECT_TRUE(sameContent(*loaded, groom));
+    }
+}
+
+TEST(Project, SavesFlawedValuesButNoFileThatCouldNotBeLoaded) {
+    const TemporaryFolder folder;
+    Groom groom = fullGroom();
+    groom.pointAttributes.edit<Vec3f>(attribute::kPosition)[3].x() = std::numeric_limits<float>::infinity();
+    ASSERT_TRUE(saveProject(groom, folder / "a.hairloom"));
+    EXPECT_TRUE(sameContent(*loadProject(folder / "a.hairloom"), groom));
+    const auto before = readFile(folder / "a.hairloom").value();
+    groom.material.shininess = 0;
+    const auto refused = saveProject(groom, folder / "a.hairloom");
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().message(), HasSubstr("shininess is 0; expected 1 to 1000"));
+    EXPECT_EQ(readFile(folder / "a.hairloom").value(), before) << "the old file stands";
+}
+
+TEST(Project, TruncatedAnywhereIsRefused) {
+    const TemporaryFolder folder;
+    const auto path = folder / "a.hairloom";
+    ASSERT_TRUE(saveProject(fullGroom(), path));
+    const auto whole = readFile(path).value();
+    for (std::size_t length = 0; length < whole.size(); ++length) {
+        const auto archive =
+            ArchiveReader::open("a", {whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(length)},
+                                section::kKind, kProjectVersion);
+        ASSERT_FALSE(archive) << length << " of " << whole.size() << " bytes";
+    }
+    for (const std::size_t length :
+         {std::size_t{0}, std::size_t{7}, std::size_t{31}, whole.size() / 2, whole.size() - 1}) {
+        ASSERT_TRUE(writeFileAtomically(path, std::span(whole).first(length)));
+        EXPECT_FALSE(loadProject(path));
+    }
+    auto longer = whole;
+    longer.push_back(std::byte{0});
+    ASSERT_TRUE(writeFileAtomically(path, longer));
+    EXPECT_THAT(loadError(path), HasSubstr("follow the last array"));
+}
+
+TEST(Project, AByteChangedAnywhereIsRefused) {
+    const TemporaryFolder folder;
+    const auto path = folder / "a.hairloom";
+    ASSERT_TRUE(saveProject(fullGroom(), path));
+    auto bytes = readFile(path).value();
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+        for (const auto flip : {std::byte{0x01}, std::byte{0xff}}) {
+            bytes[i] ^= flip;
+            ASSERT_FALSE(ArchiveReader::open("a", bytes, section::kKind, kProjectVersion)) << "byte " << i;
+            bytes[i] ^= flip;
+        }
+    }
+    EXPECT_TRUE(ArchiveReader::open("a", bytes, section::kKind, kProjectVersion));
+}
+
+TEST(Project, NamesThePlaceOfDamage) {
+    const TemporaryFolder folder;
+    const auto path = folder / "a.hairloom";
+    ASSERT_TRUE(saveProject(fullGroom(), path));
+    auto bytes = readFile(path).value();
+    const auto text = std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const float x = fullGroom().positions()[0].x();
+    const std::size_t place = text.find(std::string_view(reinterpret_cast<const char*>(&x), 4), 2048);
+    ASSERT_NE(place, std::string_view::npos);
+    bytes[place + 5] ^= std::byte{4};
+    ASSERT_TRUE(writeFileAtomically(path, bytes));
+    EXPECT_THAT(loadError(path),
+                HasSubstr(fmt::format("@{}: array '", place / kArchiveAlignment * kArchiveAlignment)));
+    EXPECT_THAT(loadError(path), HasSubstr("does not match its checksum"));
+    ASSERT_TRUE(writeFileAtomically(path, std::string_view("v 0 0 0\n")));
+    EXPECT_THAT(loadError(path), HasSubstr("is no Hairloom file"));
+}
+
+/// A project whose parts a test bends before it is sealed with right checksums, as a hostile program would
+/// write it.
+struct Forger {
+    Json head;
+    std::map<std::string, AttributeData> arrays;
+    std::string kind = "project";
+    std::uint32_t version = 1;
+
+    explicit Forger(const TemporaryFolder& folder) : path(folder / "forged.hairloom") {
+        EXPECT_TRUE(saveProject(fullGroom(), path));
+        const auto archive = ArchiveReader::open("a", readFile(path).value(), kind, version).value();
+        head = Json::parse(archive.head().dump());
+        for (const auto& [name, entry] : head["arrays"].items()) arrays[name] = archive.readAny(name).value();
+        for (const char* added : {"arrays", "kind", "version"}) head.erase(added);
+    }
+    std::vector<std::byte> sealed() const {
+        ArchiveWriter writer(kind, version);
+        for (const auto& [name, data] : arrays) writer.add(name, data);
+        return writer.finish(head).value();
+    }
+    std::string error() const {
+        EXPECT_TRUE(writeFileAtomically(path, sealed()));
+        return loadError(path);
+    }
+    std::filesystem::path path;
+};
+
+TEST(HostileProject, UnchangedItLoads) {
+    const TemporaryFolder folder;
+    EXPECT_EQ(Forger(folder).error(), "it was loaded");
+}
+
+TEST(HostileProject, VersionsAndKindsAreNamed) {
+    const TemporaryFolder folder;
+    Forger newer(folder);
+    newer.version = 7;
+    EXPECT_THAT(newer.error(), HasSubstr("project is version 7; this program reads versions up to 1"));
+    Forger other(folder);
+    other.kind = "cache";
+    EXPECT_THAT(other.error(), HasSubstr("/kind is 'cache'; expected 'project'"));
+    auto bytes = Forger(folder).sealed();
+    bytes[8] = std::byte{9};
+    ASSERT_TRUE(writeFileAtomically(other.path, bytes));
+    EXPECT_THAT(loadError(other.path),
+                HasSubstr("container is version 9; this program reads versions up to 1"));
+}
+
+TEST(HostileProject, HeadsAreReadStrictly) {
+    const std::vector<std::pair<std::function<void(Json&)>, std::string>> cases = {
+        {[](Json& h) { h.erase("layers"); }, "/layers is missing"},
+        {[](Json& h) { h["layers"] = Json::array(); }, "/layers is empty"},
+        {[](Json& h) { h["layers"][1]["name"] = 3; }, "/layers/1/name is 3"},
+        {[](Json& h) { h["layers"][0]["colour"] = 3; }, "/layers/0/colour is not known"},
+        {[](Json& h) { h["future"] = 1; }, "/future is not known to this program"},
+        {[](Json& h) { h["material"]["specular"] = 7; },
+         "/material/specular is 7; expected a number from 0 to 2"},
+        {[](Json& h) { h["material"]["glitter"] = 1; }, "/material/glitter is not known"},
+        {[](Json& h) {
+             h["material"]["rootColour"] = {0, 1};
+         },
+         "/material/rootColour is no such vector"},
+        {[](Json& h) { h["simulation"]["integrator"] = "leapfrog"; },
+         "/simulation/integrator is \"leapfrog\""},
+        {[](Json& h) { h["simulation"]["substeps"] = 1.5; }, "/simulation/substeps is 1.5"},
+        {[](Json& h) { h["spheres"][1]["radius"] = 0; }, "/spheres/1/radius is 0"},
+        {[](Json& h) { h["spheres"][0]["centre"] = "here"; }, "/spheres/0/centre"},
+        {[](Json& h) { h["interpolation"]["seed"] = -1; }, "/interpolation/seed is -1"},
+        {[](Json& h) { h["strands"] = 4; }, "the head names 4 strands"},
+        {[](Json& h) { h["points"] = 4294967296u * 9ull; }, "/points is 38654705664"},
+        {[](Json& h) { h["groups"] = {"front"}; }, "1 groups"},
+        {[](Json& h) { h["scalp"]["groups"] = {"a"}; }, "is of group 1"},
+        {[](Json& h) { h.erase("scalp"); }, "'scalp/corner_uvs' is not known"},
+    };
+    const TemporaryFolder folder;
+    for (const auto& [bend, expected] : cases) {
+        Forger forger(folder);
+        bend(forger.head);
+        EXPECT_THAT(forger.error(), HasSubstr(expected));
+    }
+}
+
+TEST(HostileProject, ArraysAreReadStrictly) {
+    using Arrays = std::map<std::string, AttributeData>;
+    const auto numbers = [](Arrays& a, const char* name) -> std::vector<std::uint32_t>& {
+        return std::get<CowArray<std::uint32_t>>(a.at(name)).edit();
+    };
+    const std::vector<std::pair<std::function<void(Arrays&)>, std::string>> cases = {
+        {[](Arrays& a) { a.erase("offsets"); }, "array 'offsets' is missing"},
+        {[](Arrays& a) { a["unknown"] = a["offsets"]; }, "array 'unknown' is not known"},
+        {[](Arrays& a) { a["offsets"] = CowArray<float>(std::vector<float>(6)); },
+         "'offsets' is of type float; expected uint32"},
+        {[&](Arrays& a) { numbers(a, "offsets")[2] = 4000000000u; }, "offsets descend"},
+        {[&](Arrays& a) { numbers(a, "offsets").back() = 4000000000u; },
+         "describes 5 strands of 4000000000 points"},
+        {[&](Arrays& a) { numbers(a, "strand/group").pop_back(); },
+         "'strand/group' has 4 values; expected 5"},
+        {[&](Arrays& a) { numbers(a, "strand/root_triangle")[0] = 32; }, "triangles of the scalp"},
+        {[&](Arrays& a) { numbers(a, "triangulation/triangles").pop_back(); },
+         "has 5 values; expected a multiple of 3"},
+        {[&](Arrays& a) { numbers(a, "triangulation/triangles")[0] = 77; },
+         "names strands that do not exist"},
+        {[&](Arrays& a) { numbers(a, "scalp/triangles")[4] = 77; }, "has corner"},
+        {[&](Arrays& a) { numbers(a, "scalp/triangles")[0] = numbers(a, "scalp/triangles")[1]; },
+         "three different vertices"},
+        {[&](Arrays& a) { numbers(a, "scalp/source_faces").pop_back(); }, "31 source faces; expected 32"},
+        {[&](Arrays& a) { numbers(a, "scalp_selection")[0] = 31; }, "does not ascend"},
+        {[](Arrays& a) { std::get<CowArray<Vec3f>>(a.at("scalp/positions")).edit()[0].x() = NAN; },
+         "not finite"},
+        {[](Arrays& a) { a.erase("point/position"); }, "no positions"},
+    };
+    const TemporaryFolder folder;
+    for (const auto& [bend, expected] : cases) {
+        Forger forger(folder);
+        bend(forger.arrays);
+        EXPECT_THAT(forger.error(), HasSubstr(expected));
+    }
+}
+
+}  // namespace
+}  // namespace hairloom
