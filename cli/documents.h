@@ -18,7 +18,9 @@ void addUnitOption(CLI::App& job, std::string& unit);
 /// Metres of one such unit, 1 for an empty name. The name is one that addUnitOption lets through.
 float metresPerUnit(const std::string& unit);
 
-/// The mesh, skeleton and clips of a file; its warnings go to the log. `unit` may be empty.
+/// The mesh, skeleton and clips of a file; its warnings go to the log.
+Result<ImportedScene> importSceneLoud(const std::string& path, const MeshImportOptions& options);
+/// The same with the unit of --unit, which may be empty.
 Result<ImportedScene> importSceneWithUnit(const std::string& path, const std::string& unit);
 
 /// A groom from a project, or from a hair file of any supported format.

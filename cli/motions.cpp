@@ -14,7 +14,10 @@ Result<std::unique_ptr<HeadMotion>> makeMotion(const std::string& name, const st
     if (name.rfind(kClip, 0) != 0) return makeRigidMotion(name, groom);
     const std::string file = character.empty() ? groom.characterFile : character;
     if (file.empty()) return fail("the groom names no file with clips", "expected --character FILE");
-    auto scene = importSceneWithUnit(file, "");
+    MeshImportOptions options;
+    if (character.empty() && groom.characterMetresPerUnit > 0)
+        options.metresPerUnit = groom.characterMetresPerUnit;
+    auto scene = importSceneLoud(file, options);
     if (!scene) return tl::unexpected(scene.error());
     auto actor = Actor::make(std::make_shared<const ScalpMesh>(std::move(scene->mesh)),
                              std::move(scene->skeleton), std::move(scene->clips), std::move(scene->skin));

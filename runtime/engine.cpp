@@ -68,7 +68,7 @@ struct Engine::Frame {
     std::array<float, kWindModes> windFrom, windTo;
     bool windy;
     float rescale;  ///< new substep over old, 1 when equal
-    bool newPull;
+    bool newBend;
 };
 
 Engine::Made Engine::make(const StrandsView& strands, const SimulationSettings& settings, Host host) {
@@ -104,6 +104,7 @@ void Engine::reset(std::span<const RootFrame> roots_ws) {
         placeAtRest(*shape_, state_, b);
     }
     state_.spheres.clear();
+    state_.bend.clear();
     state_.substep = 0.0f;
     FrameInput here;
     here.roots_ws = roots_ws;
@@ -115,7 +116,7 @@ std::string Engine::setSettings(const SimulationSettings& settings) {
     if (std::string error = whyRefused(settings); !error.empty()) return error;
     settings_ = settings;
     wind_ = makeWind(settings);
-    state_.pullSubstep = 0.0f;
+    state_.bendSubstep = 0.0f;
     replan({}, {}, state_.rootsMin_ws, state_.rootsMax_ws);
     return {};
 }
@@ -128,9 +129,9 @@ void Engine::replan(std::span<const Sphere> spheres, std::span<const Float3> sph
 }
 
 void Engine::allocateForPlan() {
-    if (plan_.on(Effect::angular) == !state_.pull.empty()) return;
-    state_.pull = Floats(plan_.on(Effect::angular) ? shape_->planeFloats : 0, 0.0f);
-    state_.pullSubstep = 0.0f;
+    if (plan_.on(Effect::angular) == !state_.bend.empty()) return;
+    state_.bend = Floats(plan_.on(Effect::angular) ? shape_->planeFloats * kBendPlanes : 0, 0.0f);
+    state_.bendSubstep = 0.0f;
 }
 
 void Engine::takeRootBounds(const FrameInput& input) {
@@ -215,7 +216,7 @@ void Engine::step(const FrameInput& input) {
         frame.windTo = windPhases(wind_, time);
     }
     frame.rescale = state_.substep > 0.0f ? h / state_.substep : 1.0f;
-    frame.newPull = plan_.on(Effect::angular) && state_.pullSubstep != h;
+    frame.newBend = plan_.on(Effect::angular) && state_.bendSubstep != h;
 
     const std::size_t blocks = shape_->blocks.size();
     const Host::Body body = [&](std::size_t first, std::size_t end) {
@@ -230,7 +231,7 @@ void Engine::step(const FrameInput& input) {
 
     state_.spheres.assign(usableSpheres_.begin(), usableSpheres_.end());
     state_.substep = h;
-    if (frame.newPull) state_.pullSubstep = h;
+    if (frame.newBend) state_.bendSubstep = h;
     if (host_.nanoseconds) {
         report_.milliseconds = static_cast<double>(host_.nanoseconds() - begin) * 1e-6;
         sumTimes();
@@ -250,9 +251,8 @@ void Engine::runBlock(std::size_t block, const Frame& frame) {
     LaneFrame lanes;
     enterFrame(block, view, lanes, frame);
     if (frame.rescale != 1.0f) kernels().rescale(view, frame.rescale);
-    if (frame.newPull) {
-        fillPull(*shape_, settings_, frame.context.h, block,
-                 state_.pull.data() + shape_->blocks[block].firstPlane);
+    if (frame.newBend) {
+        fillBend(*shape_, settings_, frame.context.h, block, state_);
     }
     if (frame.windy) {
         kernels().sampleWind(view, lanes, frame.context.h, wind_, frame.windFrom.data(), frame.windTo.data());

@@ -110,7 +110,7 @@ Measurements Engine::measure() const {
 std::size_t Engine::effectBytes(Effect effect) const {
     switch (effect) {
         case Effect::angular:
-            return state_.pull.size() * sizeof(float);
+            return state_.bend.size() * sizeof(float);
         case Effect::wind:
             return plan_.on(effect) ? sizeof(Wind) : 0;
         case Effect::collision:

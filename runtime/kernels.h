@@ -41,9 +41,11 @@ struct BlockView {
                                  ///< [s · kBlockLanes + lane]; metres
     const float* length;         ///< of each segment, likewise
     const float* inverseLength;  ///< 0 for a segment without length
-    /// Share of the way to its rest place that the end of a segment goes in a substep; null unless angular
-    /// springs are on.
-    const float* pull;
+    // Of the angular springs, null while they are off; at segments like `rest`.
+    const float*
+        pull;  ///< share of its offset from its rest place that a segment's end goes back in a substep
+    const float* damp;  ///< share of the change of that offset that it goes back
+    Planes offset;      ///< from the segment's end to its rest place, after the last substep
 };
 
 /// What the strands of a block go through in one frame; lives on the stack of the thread that runs the block.

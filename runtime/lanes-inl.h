@@ -30,77 +30,77 @@ struct V4 {
     V x, y, z, w;
 };
 
-inline V all(float value) {
+HWY_INLINE V all(float value) {
     return hn::Set(D(), value);
 }
-inline V3 all3(Float3 v) {
+HWY_INLINE V3 all3(Float3 v) {
     return {all(v.x), all(v.y), all(v.z)};
 }
-inline V3 zero3() {
+HWY_INLINE V3 zero3() {
     return {hn::Zero(D()), hn::Zero(D()), hn::Zero(D())};
 }
 
-inline V3 load3(const Planes& p, std::size_t i) {
+HWY_INLINE V3 load3(const Planes& p, std::size_t i) {
     return {hn::Load(D(), p.x + i), hn::Load(D(), p.y + i), hn::Load(D(), p.z + i)};
 }
-inline V3 load3(const ConstPlanes& p, std::size_t i) {
+HWY_INLINE V3 load3(const ConstPlanes& p, std::size_t i) {
     return {hn::Load(D(), p.x + i), hn::Load(D(), p.y + i), hn::Load(D(), p.z + i)};
 }
-inline V3 load3(const float (*p)[kBlockLanes], std::size_t i) {
+HWY_INLINE V3 load3(const float (*p)[kBlockLanes], std::size_t i) {
     return {hn::Load(D(), p[0] + i), hn::Load(D(), p[1] + i), hn::Load(D(), p[2] + i)};
 }
-inline V4 load4(const float (*p)[kBlockLanes], std::size_t i) {
+HWY_INLINE V4 load4(const float (*p)[kBlockLanes], std::size_t i) {
     return {hn::Load(D(), p[0] + i), hn::Load(D(), p[1] + i), hn::Load(D(), p[2] + i),
             hn::Load(D(), p[3] + i)};
 }
-inline void store3(V3 v, const Planes& p, std::size_t i) {
+HWY_INLINE void store3(V3 v, const Planes& p, std::size_t i) {
     hn::Store(v.x, D(), p.x + i);
     hn::Store(v.y, D(), p.y + i);
     hn::Store(v.z, D(), p.z + i);
 }
-inline void store3(V3 v, float (*p)[kBlockLanes], std::size_t i) {
+HWY_INLINE void store3(V3 v, float (*p)[kBlockLanes], std::size_t i) {
     store3(v, Planes{p[0], p[1], p[2]}, i);
 }
-inline void store4(V4 v, float (*p)[kBlockLanes], std::size_t i) {
+HWY_INLINE void store4(V4 v, float (*p)[kBlockLanes], std::size_t i) {
     store3({v.x, v.y, v.z}, p, i);
     hn::Store(v.w, D(), p[3] + i);
 }
 
-inline V3 operator+(V3 a, V3 b) {
+HWY_INLINE V3 operator+(V3 a, V3 b) {
     return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
-inline V3 operator-(V3 a, V3 b) {
+HWY_INLINE V3 operator-(V3 a, V3 b) {
     return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
-inline V3 operator*(V3 a, V s) {
+HWY_INLINE V3 operator*(V3 a, V s) {
     return {a.x * s, a.y * s, a.z * s};
 }
-inline V dot(V3 a, V3 b) {
+HWY_INLINE V dot(V3 a, V3 b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
-inline V3 cross(V3 a, V3 b) {
+HWY_INLINE V3 cross(V3 a, V3 b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-inline V3 select(hn::Mask<D> which, V3 yes, V3 no) {
+HWY_INLINE V3 select(hn::Mask<D> which, V3 yes, V3 no) {
     return {hn::IfThenElse(which, yes.x, no.x), hn::IfThenElse(which, yes.y, no.y),
             hn::IfThenElse(which, yes.z, no.z)};
 }
 
-inline V3 rotate(V4 q, V3 v) {
+HWY_INLINE V3 rotate(V4 q, V3 v) {
     const V3 axis{q.x, q.y, q.z};
     const V3 half = cross(axis, v);
     const V3 twice = half + half;
     return v + twice * q.w + cross(axis, twice);
 }
 /// First b, then a.
-inline V4 multiply(V4 a, V4 b) {
+HWY_INLINE V4 multiply(V4 a, V4 b) {
     return {a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y, a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
             a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
 }
 
 /// The shortest rotation from one direction to another (Melax 2000), for vectors of any length. Opposite
 /// vectors turn by 180° about an axis across them; a vector without length turns nothing.
-inline V4 shortestArc(V3 from, V3 to) {
+HWY_INLINE V4 shortestArc(V3 from, V3 to) {
     const V zero = hn::Zero(D()), one = all(1.0f);
     const V sizes = hn::Sqrt(dot(from, from) * dot(to, to));
     const V3 across = cross(from, to);
@@ -126,16 +126,16 @@ inline V4 shortestArc(V3 from, V3 to) {
 }
 
 /// sin(2π·turns) to 0.1 %: a parabola, refined once by its own square.
-inline V sineOfTurns(V turns) {
+HWY_INLINE V sineOfTurns(V turns) {
     const V part = turns - hn::Round(turns);
     const V parabola = all(16.0f) * part * (all(0.5f) - hn::Abs(part));
     return all(0.775f) * parabola + all(0.225f) * parabola * hn::Abs(parabola);
 }
 
-inline float laneLeast(V v) {
+HWY_INLINE float laneLeast(V v) {
     return hn::GetLane(hn::MinOfLanes(D(), v));
 }
-inline float laneMost(V v) {
+HWY_INLINE float laneMost(V v) {
     return hn::GetLane(hn::MaxOfLanes(D(), v));
 }
 
@@ -151,7 +151,7 @@ struct Box {
 };
 
 /// World box of a block's free points after `step` substeps of the frame.
-inline Box boundsOf(const BlockView& block, const LaneFrame& lanes, float step) {
+HWY_INLINE Box boundsOf(const BlockView& block, const LaneFrame& lanes, float step) {
     V3 low = all3({1e30f, 1e30f, 1e30f}), high = all3({-1e30f, -1e30f, -1e30f});
     for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
         V3 least = all3({1e30f, 1e30f, 1e30f}), most = all3({-1e30f, -1e30f, -1e30f});

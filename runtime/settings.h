@@ -41,8 +41,8 @@ struct SimulationSettings {
     /// Extension of a segment that is never exceeded, as a share of its length, 0…0.48 (hair breaks at 0.48).
     /// Only while lengthIterations is not 0.
     float maximalExtension = 0.005f;
-    /// 0…1. How strongly hair returns to its authored shape; 0 is off, 1 is rigid. At 0.5 a 1 cm segment
-    /// swings about its rest direction at 100 rad/s.
+    /// 0…1. How strongly hair returns to its authored shape; 0 is off, 1 is rigid. At
+    /// 0.5 a 1 cm segment on a fixed one swings about its rest direction at 100 rad/s.
     float angularStiffness = 0.3f;
     /// 0…1. angularStiffness at the tip as a share of that at the root. Lower: looser tips.
     float angularTipShare = 0.5f;

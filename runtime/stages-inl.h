@@ -12,7 +12,7 @@ HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {
 namespace HWY_NAMESPACE {
 
-inline V lerp(V a, V b, V t) {
+HWY_INLINE V lerp(V a, V b, V t) {
     return a + (b - a) * t;
 }
 
@@ -107,8 +107,10 @@ void integrate(const BlockView& block, LaneFrame& lanes, const SubstepContext& c
     }
 }
 
-/// Each point goes the share `pull` of the way to its rest place beside its parent (Rünz 2012, Eq. 4 and the
-/// cheaper of its two directions), then the frame of reference turns with the segment.
+/// Angular springs: each point is pulled to its rest place beside its parent (Rünz 2012, Eq. 4 and the
+/// cheaper of its two directions), by the share `pull` of its offset from there and the share `damp` of that
+/// offset's change; then the frame of reference turns with the segment. The parent feels no reaction: without
+/// the damper each segment would drive the next one at its resonance.
 void bendBack(const BlockView& block, LaneFrame& lanes, const SubstepContext&) {
     alignas(64) float carried[4][kBlockLanes];
     for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth)
@@ -120,8 +122,12 @@ void bendBack(const BlockView& block, LaneFrame& lanes, const SubstepContext&) {
             const V4 frame = load4(carried, lane);
             const V3 target = rotate(frame, load3(block.rest, s));
             const V3 parent = load3(block.position, s);
-            const V3 segment = load3(block.position, i) - parent;
-            const V3 bent = segment + (target - segment) * hn::Load(D(), block.pull + s);
+            const V3 offset = target - (load3(block.position, i) - parent);
+            const V3 change = offset - load3(block.offset, s);
+            const V3 left =
+                offset - offset * hn::Load(D(), block.pull + s) - change * hn::Load(D(), block.damp + s);
+            const V3 bent = target - left;
+            store3(left, block.offset, s);
             store3(parent + bent, block.position, i);
             store4(multiply(shortestArc(target, bent), frame), carried, lane);
         }
@@ -183,8 +189,8 @@ void holdLength(const BlockView& block, LaneFrame&, const SubstepContext& contex
 
 /// Impulse with restitution (Rünz 2012, Eq. 20) and Coulomb friction, then the place p_a on the sphere (Eq.
 /// 21, to which the centre is added). A point at the very centre leaves it upwards.
-inline void respond(const BlockView& block, const SubstepContext& context, std::size_t i, hn::Mask<D> inside,
-                    V3 offset, V squared, V3 centre, V reach, V3 centreStep) {
+HWY_INLINE void respond(const BlockView& block, const SubstepContext& context, std::size_t i,
+                        hn::Mask<D> inside, V3 offset, V squared, V3 centre, V reach, V3 centreStep) {
     const V zero = hn::Zero(D()), one = all(1.0f);
     const V distance = hn::Sqrt(squared);
     const auto centred = distance < all(1e-9f);
@@ -264,11 +270,11 @@ void limitExtension(const BlockView& block, LaneFrame& lanes, const SubstepConte
             const V3 move = select(wrong, fixed - edge, zero3());
             const V3 previous = load3(block.previous, i);
             const V3 moving = position - previous - step;
-            const V3 slowed = moving + move;
-            const auto faster = dot(slowed, slowed) > dot(moving, moving);
+            const V braking = (zero - dot(moving, move)) / (dot(move, move) + all(1e-30f));
+            const V counted = hn::Min(hn::Max(braking, zero), one);
             parent = position + move;
             store3(parent, block.position, i);
-            store3(select(faster, previous + move, previous), block.previous, i);
+            store3(previous + move * (one - counted), block.previous, i);
         }
     }
 }
@@ -283,7 +289,7 @@ void rescale(const BlockView& block, float factor) {
 }
 
 /// Displacement of the air per substep at one place: the mean flow and its gusts.
-inline V3 windAt(const Wind& wind, const float* phases, V3 place_ws) {
+HWY_INLINE V3 windAt(const Wind& wind, const float* phases, V3 place_ws) {
     V3 sum = all3(wind.mean);
     for (std::uint32_t m = 0; m < kWindModes; ++m) {
         const V turns = dot(place_ws, all3(wind.modes[m].waveVector)) + all(phases[m]);

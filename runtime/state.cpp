@@ -2,6 +2,7 @@
 #include "runtime/state.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <numeric>
 
@@ -136,14 +137,21 @@ BlockView viewOf(const RestShape& shape, State& state, std::size_t index, std::u
     const std::size_t size = planeSize(block);
     const float* rest = shape.planes.data() + block.firstPlane * kRestPlanes;
     float* moving = state.planes.data() + block.firstPlane * kStatePlanes;
-    return {block.points,
-            clampedPoints,
-            {moving, moving + size, moving + 2 * size},
-            {moving + 3 * size, moving + 4 * size, moving + 5 * size},
-            {rest, rest + size, rest + 2 * size},
-            rest + 3 * size,
-            rest + 4 * size,
-            state.pull.empty() ? nullptr : state.pull.data() + block.firstPlane};
+    BlockView view{};
+    view.points = block.points;
+    view.firstFree = clampedPoints;
+    view.position = {moving, moving + size, moving + 2 * size};
+    view.previous = {moving + 3 * size, moving + 4 * size, moving + 5 * size};
+    view.rest = {rest, rest + size, rest + 2 * size};
+    view.length = rest + 3 * size;
+    view.inverseLength = rest + 4 * size;
+    if (!state.bend.empty()) {
+        float* bend = state.bend.data() + block.firstPlane * kBendPlanes;
+        view.pull = bend;
+        view.damp = bend + size;
+        view.offset = {bend + 2 * size, bend + 3 * size, bend + 4 * size};
+    }
+    return view;
 }
 
 void placeAtRest(const RestShape& shape, State& state, std::size_t index) {
@@ -164,11 +172,14 @@ void placeAtRest(const RestShape& shape, State& state, std::size_t index) {
     }
 }
 
-void fillPull(const RestShape& shape, const SimulationSettings& settings, float h, std::size_t index,
-              float* pull) {
+void fillBend(const RestShape& shape, const SimulationSettings& settings, float h, std::size_t index,
+              State& state) {
     constexpr float kFrequency = 100.0f;  // rad/s
     constexpr float kSegment = 0.01f;     // metres
     const Block& block = shape.blocks[index];
+    constexpr float kDamping = 2.0f;  // ζ: twice critical
+    float* const pull = state.bend.data() + block.firstPlane * kBendPlanes;
+    float* const damp = pull + planeSize(block);
     const float* lengths = shape.planes.data() + block.firstPlane * kRestPlanes + 3 * planeSize(block);
     for (std::uint32_t s = 0; s + 1 < block.points; ++s) {
         const float along = static_cast<float>(s) / static_cast<float>(block.points - 1);
@@ -179,8 +190,10 @@ void fillPull(const RestShape& shape, const SimulationSettings& settings, float 
         for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
             const std::size_t i = std::size_t{s} * kBlockLanes + lane;
             const float ratio = share / std::max(lengths[i], 1e-9f);
-            const float x = std::min(ratio * ratio * (stiffness / compliance), 1e12f);
-            pull[i] = x / (1.0f + x);
+            const float x = std::min(ratio * std::sqrt(stiffness / compliance), 1e9f);
+            const float damping = 2.0f * kDamping * x;
+            pull[i] = x * x / (1.0f + x * x + damping);
+            damp[i] = damping / (1.0f + x * x + damping);
         }
     }
 }

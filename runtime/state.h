@@ -62,17 +62,18 @@ std::shared_ptr<const RestShape> makeRestShape(const StrandsView& strands);
 struct State {
     Floats planes;  ///< per block: position x, y, z, previous x, y, z
     Floats roots;   ///< per block: position x, y, z, rotation x, y, z, w of each lane at the last frame's end
-    Floats pull;    ///< per block, one plane; empty unless angular springs are on
+    Floats bend;    ///< per block: pull, damp, offset x, y, z; empty unless angular springs are on
     std::vector<Sphere> spheres;      ///< of the last frame
     Float3 rootsMin_ws, rootsMax_ws;  ///< box of the last frame's roots
     float substep = 0.0f;             ///< seconds of the last substep; 0 before the first
-    float pullSubstep = 0.0f;         ///< substep that `pull` was made for
+    float bendSubstep = 0.0f;         ///< substep that `bend` was made for
 
     std::uint64_t hash() const;
 };
 
 inline constexpr std::size_t kRestPlanes = 5;
 inline constexpr std::size_t kStatePlanes = 6;
+inline constexpr std::size_t kBendPlanes = 5;
 inline constexpr std::size_t kRootRows = 7;
 
 BlockView viewOf(const RestShape& shape, State& state, std::size_t block, std::uint32_t clampedPoints);
@@ -80,11 +81,11 @@ BlockView viewOf(const RestShape& shape, State& state, std::size_t block, std::u
 /// Places block `b` at rest on its rows of state.roots, without speed.
 void placeAtRest(const RestShape& shape, State& state, std::size_t block);
 
-/// Shares of the way back for substeps of h seconds: x / (1 + x) with x = (ω·h)², the implicit step of a
-/// spring of angular frequency ω, and ω² = (100 rad/s)² · s/(1 − s) · (1 cm / segment length)², s the
-/// stiffness at the segment. It never overshoots, tends to the same spring for ever smaller substeps, and
-/// bends to the same curvature however finely a strand is divided.
-void fillPull(const RestShape& shape, const SimulationSettings& settings, float h, std::size_t block,
-              float* pull);
+/// Shares of the way back for substeps of h seconds: the implicit step of a damped spring towards the rest
+/// place, pull = x² / (1 + x² + 2ζx) and damp = 2ζx / (1 + x² + 2ζx), with x = ω·h, ζ = 2, ω² = (100 rad/s)²
+/// · s/(1 − s) · (1 cm / segment length)² and s the stiffness at the segment. No stiffness or substep
+/// overshoots, and for ever smaller substeps it tends to the spring of frequency ω damped by ζ.
+void fillBend(const RestShape& shape, const SimulationSettings& settings, float h, std::size_t block,
+              State& state);
 
 }  // namespace hairloom::runtime

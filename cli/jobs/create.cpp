@@ -58,6 +58,7 @@ Result<Report> create(const CreateOptions& options) {
     if (!groom) return tl::unexpected(groom.error());
     groom->scalpExpression = options.scalp;
     groom->characterFile = options.mesh;
+    if (!options.unit.empty()) groom->characterMetresPerUnit = metresPerUnit(options.unit);
     groom->interpolation.seed = options.seed;
     if (auto saved = saveProject(*groom, options.output); !saved) return tl::unexpected(saved.error());
 

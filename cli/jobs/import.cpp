@@ -80,6 +80,7 @@ Result<Report> import(const ImportOptions& options) {
         report["root_distance"] = bindingReport(bindToScalp(groom, mesh, std::move(faces)));
         groom.scalpExpression = options.scalp;
         groom.characterFile = options.mesh;
+        if (!options.meshUnit.empty()) groom.characterMetresPerUnit = metresPerUnit(options.meshUnit);
         if (auto triangulation = triangulateRoots(*mesh, groom.scalpSelection, groom.rootBindings())) {
             groom.triangulation = std::move(*triangulation);
         } else {

@@ -88,6 +88,13 @@ Result<std::string> readTextFile(const std::filesystem::path& path, std::uint64_
     return readWhole<std::string>(path, maxBytes);
 }
 
+std::vector<std::byte> readBeginning(const std::filesystem::path& path, std::size_t count) {
+    std::vector<std::byte> bytes(count);
+    const FileHandle file = openFile(path, "rb");
+    bytes.resize(file ? std::fread(bytes.data(), 1, count, file.get()) : 0);
+    return bytes;
+}
+
 std::filesystem::path temporaryBeside(const std::filesystem::path& path) {
     static std::atomic<unsigned> serial{0};
     std::filesystem::path temporary = path;

@@ -27,6 +27,9 @@ Result<std::vector<std::byte>> readFile(const std::filesystem::path& path,
 Result<std::string> readTextFile(const std::filesystem::path& path,
                                  std::uint64_t maxBytes = std::uint64_t{4} << 30u);
 
+/// The first bytes of a file, at most `count` of them; none where it cannot be read.
+std::vector<std::byte> readBeginning(const std::filesystem::path& path, std::size_t count);
+
 /// Writes a temporary file beside `path`, flushes it to the disk and renames it: readers see the old content
 /// or the new one, never a part. On error nothing is left under either name.
 Status writeFileAtomically(const std::filesystem::path& path, std::span<const std::byte> bytes);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Curves through strand points: centripetal-free uniform Catmull-Rom (thesis Eq. 54–56), resampling, frames.
+// Curves through strand points: uniform Catmull-Rom (thesis Eq. 54–56), resampling, frames.
 
 #include <span>
 #include <vector>

@@ -61,6 +61,7 @@ struct Groom {
     std::string scalpExpression;      ///< how the selection was made, for people; may be empty
     RootTriangulation triangulation;  ///< over the strands' roots; empty until made
     std::string characterFile;        ///< file that the scalp came from (mesh, skeleton, clips); may be empty
+    float characterMetresPerUnit = 0;  ///< metres in one unit of that file; 0 as the file states
 
     std::size_t strandCount() const { return offsets.empty() ? 0 : offsets.size() - 1; }
     std::size_t pointCount() const { return offsets.empty() ? 0 : offsets[offsets.size() - 1]; }

@@ -9,12 +9,11 @@
 #include "core/groom/json_reader.h"
 #include "core/groom/project_file.h"
 #include "core/groom/project_sections.h"
+#include "core/groom/settings_json.h"
 #include "core/groom/validate.h"
 
 namespace hairloom {
 namespace {
-
-constexpr double kAnyFloat = static_cast<double>(std::numeric_limits<float>::max());
 
 void readLayers(JsonReader& head, Groom& groom) {
     groom.layers.clear();
@@ -23,46 +22,6 @@ void readLayers(JsonReader& head, Groom& groom) {
         entry.finish();
     }
     if (groom.layers.empty()) head.complain("layers", "is empty", "expected at least one layer");
-}
-
-void readSpheres(JsonReader& head, Groom& groom) {
-    for (JsonReader& entry : head.objects("spheres")) {
-        CollisionSphere sphere;
-        sphere.name = entry.string("name");
-        sphere.centre = entry.vector("centre", -kAnyFloat, kAnyFloat, "m");
-        sphere.radius = static_cast<float>(entry.number("radius", 0, kAnyFloat, "m"));
-        sphere.bone = entry.string("bone");
-        if (entry.ok() && !(sphere.radius > 0)) entry.complain("radius", "is 0", "expected more than 0 m");
-        entry.finish();
-        groom.spheres.push_back(std::move(sphere));
-    }
-}
-
-void readSimulation(JsonReader reader, runtime::SimulationSettings& settings) {
-    for (const runtime::FieldInfo& field : runtime::fields()) {
-        if (!reader.has(field.name)) continue;
-        const auto set = [&](double value, std::uint32_t component = 0) {
-            if (!reader.ok() || runtime::setFieldValue(settings, field, value, component)) return;
-            reader.complain(field.name, fmt::format("is {}", value),
-                            "expected " + rangeText(field.min, field.max, field.unit));
-        };
-        if (!field.choices.empty()) {
-            const std::vector<std::string_view> choices(field.choices.begin(), field.choices.end());
-            set(static_cast<double>(reader.choice(field.name, choices)));
-        } else if (runtime::componentCount(field) == 3) {
-            const Vec3f v = reader.vector(field.name, field.min, field.max, field.unit);
-            for (std::uint32_t c = 0; c < 3; ++c) set(static_cast<double>(v[c]), c);
-        } else {
-            set(reader.number(field.name, field.min, field.max, field.unit));
-        }
-    }
-    reader.finish();
-}
-
-template <class S>
-void readSettings(JsonReader reader, S& settings) {
-    reader.fields(settings);
-    reader.finish();
 }
 
 struct Counts {
@@ -78,11 +37,12 @@ Counts readHead(JsonReader& head, Groom& groom, ScalpMeshParts& scalp) {
     const Counts counts{head.count("strands", 0, kMost), head.count("points", 0, kMost)};
     readLayers(head, groom);
     groom.groupNames = head.strings("groups");
-    readSpheres(head, groom);
+    for (JsonReader& entry : head.objects("spheres")) groom.spheres.push_back(readSphere(entry));
     readSettings(head.object("material"), groom.material);
-    readSimulation(head.object("simulation"), groom.simulation);
+    readSettings(head.object("simulation"), groom.simulation);
     readSettings(head.object("interpolation"), groom.interpolation);
     groom.characterFile = head.string("character_file");
+    groom.characterMetresPerUnit = static_cast<float>(head.number("character_metres_per_unit", 0, 1e6));
     groom.scalpExpression = head.string("scalp_expression");
     if (head.has("scalp")) {
         JsonReader reader = head.object("scalp");
@@ -194,6 +154,10 @@ Status takeArrays(const ArchiveReader& archive, const Counts& counts, Groom& gro
 }
 
 }  // namespace
+
+bool looksLikeProject(const std::filesystem::path& path) {
+    return startsAsArchive(readBeginning(path, 8));
+}
 
 Result<Groom> loadProject(const std::filesystem::path& path) {
     HAIRLOOM_PROFILE("groom: load project");

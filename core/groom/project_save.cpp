@@ -7,6 +7,7 @@
 #include "core/groom/json_reader.h"
 #include "core/groom/project_file.h"
 #include "core/groom/project_sections.h"
+#include "core/groom/settings_json.h"
 #include "core/groom/validate.h"
 
 namespace hairloom {
@@ -14,46 +15,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json vectorToJson(const Vec3f& v) {
-    return {readableDecimal(v.x()), readableDecimal(v.y()), readableDecimal(v.z())};
-}
-
 Json layersToJson(const Groom& groom) {
     Json list = Json::array();
     for (const Layer& layer : groom.layers) {
         list.push_back({{"name", layer.name}, {"visible", layer.visible}, {"locked", layer.locked}});
     }
     return list;
-}
-
-Json spheresToJson(const Groom& groom) {
-    Json list = Json::array();
-    for (const CollisionSphere& sphere : groom.spheres) {
-        list.push_back({{"name", sphere.name},
-                        {"centre", vectorToJson(sphere.centre)},
-                        {"radius", readableDecimal(sphere.radius)},
-                        {"bone", sphere.bone}});
-    }
-    return list;
-}
-
-Json simulationToJson(const runtime::SimulationSettings& settings) {
-    Json json = Json::object();
-    for (const runtime::FieldInfo& field : runtime::fields()) {
-        const auto value = [&](std::uint32_t component) {
-            return readableDecimal(static_cast<float>(runtime::fieldValue(settings, field, component)));
-        };
-        if (!field.choices.empty()) {
-            json[field.name] = field.choices[static_cast<std::size_t>(runtime::fieldValue(settings, field))];
-        } else if (runtime::componentCount(field) == 3) {
-            json[field.name] = {value(0), value(1), value(2)};
-        } else if (std::holds_alternative<std::uint32_t runtime::SimulationSettings::*>(field.member)) {
-            json[field.name] = static_cast<std::uint32_t>(runtime::fieldValue(settings, field));
-        } else {
-            json[field.name] = value(0);
-        }
-    }
-    return json;
 }
 
 Json scalpToJson(const ScalpMesh& scalp) {
@@ -71,11 +38,12 @@ Json headOf(const Groom& groom) {
     head["points"] = groom.pointCount();
     head["layers"] = layersToJson(groom);
     head["groups"] = groom.groupNames;
-    head["spheres"] = spheresToJson(groom);
-    head["material"] = fieldsToJson(groom.material);
-    head["simulation"] = simulationToJson(groom.simulation);
-    head["interpolation"] = fieldsToJson(groom.interpolation);
+    head["spheres"] = toJson(groom.spheres);
+    head["material"] = toJson(groom.material);
+    head["simulation"] = toJson(groom.simulation);
+    head["interpolation"] = toJson(groom.interpolation);
     head["character_file"] = groom.characterFile;
+    head["character_metres_per_unit"] = readableDecimal(groom.characterMetresPerUnit);
     head["scalp_expression"] = groom.scalpExpression;
     if (groom.scalp) head["scalp"] = scalpToJson(*groom.scalp);
     return head;

@@ -2,6 +2,7 @@
 #pragma once
 // The scalp as brushes meet it: how far away, and which way is out.
 
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -24,7 +25,12 @@ class Skin {
         const SurfaceTree::Hit hit = tree_.closest(point);
         const Vec3f normal = scalp_->normalAt(hit.surface.triangle, hit.surface.barycentric);
         const Vec3f away = point - hit.position;
-        const float side = away.dot(normal) < 0 ? -1.0f : 1.0f;
+        const float lean = away.dot(normal);
+        // Near an edge the interpolated normal may point across `away`; the tree then looks at the faces
+        // around.
+        constexpr float kUnclear = 0.5f;
+        const bool unclear = std::abs(lean) < kUnclear * hit.distance;
+        const float side = (unclear ? tree_.signedDistance(point) : lean) < 0 ? -1.0f : 1.0f;
         // Within a hundredth of a millimetre the difference is mostly rounding.
         constexpr float kTouching = 1e-5f;
         const Vec3f outward = hit.distance > kTouching ? Vec3f(away * (side / hit.distance)) : normal;

@@ -13,8 +13,6 @@ namespace hairloom {
 namespace {
 
 constexpr std::size_t kGrain = 64;
-constexpr double kAnywhere = 1000;  ///< metres from the origin
-
 constexpr Field<Region> kRegionFields[] = {
     {"point", "m", -kAnywhere, kAnywhere, "a point of the plane that bounds the region", &Region::point},
     {"normal", "", -kAnywhere, kAnywhere, "side of the plane that is reached; zero reaches all strands",

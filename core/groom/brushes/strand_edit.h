@@ -13,6 +13,8 @@
 
 namespace hairloom {
 
+inline constexpr double kAnywhere = 1000;  ///< metres; largest coordinate that a setting may name
+
 /// Which strands a brush reaches: those whose root lies on the side of a plane that `normal` points to. A
 /// normal of zero reaches all.
 struct Region {

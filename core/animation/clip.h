@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Recorded motion of bones.
+
+#include <string>
+#include <vector>
+
+#include "core/animation/skeleton.h"
+
+namespace hairloom {
+
+/// Values at times. Times are seconds, strictly ascending; both arrays are equally long.
+template <class T>
+struct Track {
+    std::vector<float> times;
+    std::vector<T> values;
+};
+
+/// The motion of one bone relative to its parent: scaled, then rotated, then moved. A bone with a channel
+/// leaves its rest transform wholly; a track without keys stands for no movement, no rotation or scale one.
+struct Channel {
+    std::uint32_t bone = 0;
+    Track<Vec3f> translation;  ///< metres
+    Track<Quatf> rotation;     ///< unit length
+    Track<Vec3f> scale;        ///< factors
+};
+
+struct Clip {
+    std::string name;
+    float duration = 0;  ///< seconds, ≥ 0
+    std::vector<Channel> channels;
+};
+
+/// What holds outside [0, duration].
+enum class Wrap { Clamp, Loop };
+
+/// Errors: a channel for a bone that the skeleton lacks, tracks of unequal arrays, times that do not ascend,
+/// values that are not finite, a rotation of length zero.
+Status validate(const Clip& clip, const Skeleton& skeleton);
+
+/// Linear between keys, the end keys' values outside them; `empty` where there are none.
+Vec3f sample(const Track<Vec3f>& track, float time, const Vec3f& empty);
+/// Spherical linear along the shorter arc (Shoemake 1985); the identity where there are no keys.
+Quatf sample(const Track<Quatf>& track, float time);
+
+/// From each bone's space to its parent's at `time` seconds; bones without a channel rest.
+std::vector<Eigen::Affine3f> localMatrices(const Skeleton& skeleton, const Clip& clip, float time, Wrap wrap);
+/// At rest.
+std::vector<Eigen::Affine3f> localMatrices(const Skeleton& skeleton);
+
+/// From the mesh's rest space to the world, per bone: world matrix × inverse bind matrix.
+std::vector<Eigen::Affine3f> skinMatrices(const Skeleton& skeleton, std::span<const Eigen::Affine3f> local);
+
+}  // namespace hairloom

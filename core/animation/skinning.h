@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Linear blend skinning.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/base/math.h"
+#include "core/base/result.h"
+
+namespace hairloom {
+
+/// Up to four bones per vertex. Weights are ≥ 0 and add up to 1, or are all 0 for a vertex that nothing
+/// moves.
+struct SkinWeights {
+    std::vector<std::array<std::uint32_t, 4>> bones;
+    std::vector<std::array<float, 4>> weights;
+
+    std::size_t vertexCount() const { return weights.size(); }
+};
+
+/// Errors: unequal arrays, a bone beyond `boneCount`, a weight that is negative or not finite, weights whose
+/// sum is neither 0 nor 1 within 1e-3.
+Status validate(const SkinWeights& skin, std::size_t boneCount);
+
+/// The strongest four of any number of influences, scaled to add up to 1.
+void setStrongest(SkinWeights& skin, std::size_t vertex,
+                  std::vector<std::pair<std::uint32_t, float>> influences);
+
+/// Posed positions, metres. All arrays have one entry per vertex; `matrices` one per bone, from
+/// skinMatrices().
+void skinPositions(std::span<const Vec3f> rest, const SkinWeights& skin,
+                   std::span<const Eigen::Affine3f> matrices, std::span<Vec3f> posed);
+
+/// Posed normals, unit length: the blended matrix' cofactors applied to the rest normal, which stays
+/// perpendicular under any scale. A matrix that flattens the normal away leaves it at rest.
+void skinNormals(std::span<const Vec3f> rest, const SkinWeights& skin,
+                 std::span<const Eigen::Affine3f> matrices, std::span<Vec3f> posed);
+
+}  // namespace hairloom

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/gpu/vulkan/commands.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace hairloom::gpu::vulkan {
+namespace {
+
+constexpr std::uint64_t kArenaBytes = 1u << 20u;
+constexpr std::uint64_t kArenaAlignment = 256;
+constexpr Use kCopyRead{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
+                        VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, false, false};
+constexpr Use kCopyWrite{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                         VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, true, false};
+
+bool inRange(std::uint64_t offset, std::uint64_t size, std::uint64_t total) {
+    return offset <= total && size <= total - offset;
+}
+
+VkBufferImageCopy wholeImage(const TextureImpl& texture, std::uint64_t bufferOffset) {
+    VkBufferImageCopy copy{};
+    copy.bufferOffset = bufferOffset;
+    copy.imageSubresource = {texture.aspect(), 0, 0, 1};
+    copy.imageExtent = {texture.desc().width, texture.desc().height, 1};
+    return copy;
+}
+
+}  // namespace
+
+Recording::~Recording() {
+    for (VkDescriptorPool p : descriptorPools) vkDestroyDescriptorPool(context->device, p, nullptr);
+    vkDestroyQueryPool(context->device, queries, nullptr);
+    vkDestroyCommandPool(context->device, pool, nullptr);
+}
+
+Result<std::unique_ptr<CommandListImpl>> CommandListImpl::create(ContextPtr context,
+                                                                 std::function<void()> onClose) {
+    auto recording = std::make_unique<Recording>(context);
+    auto pool = make<VkCommandPoolCreateInfo>(VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO);
+    pool.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
+    pool.queueFamilyIndex = context->queueFamily;
+    VkResult r = vkCreateCommandPool(context->device, &pool, nullptr, &recording->pool);
+    if (r != VK_SUCCESS) return context->failed(r, "creating a command list");
+    auto info = make<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
+    info.commandPool = recording->pool;
+    info.commandBufferCount = 1;
+    r = vkAllocateCommandBuffers(context->device, &info, &recording->commands);
+    if (r != VK_SUCCESS) return context->failed(r, "creating a command list");
+    auto begin = make<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
+    begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+    r = vkBeginCommandBuffer(recording->commands, &begin);
+    if (r != VK_SUCCESS) return context->failed(r, "creating a command list");
+    if (context->info.timestampPeriodNs > 0) {
+        auto query = make<VkQueryPoolCreateInfo>(VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO);
+        query.queryType = VK_QUERY_TYPE_TIMESTAMP;
+        query.queryCount = 2 * kMaxPasses;
+        r = vkCreateQueryPool(context->device, &query, nullptr, &recording->queries);
+        if (r != VK_SUCCESS) return context->failed(r, "creating a command list");
+        vkCmdResetQueryPool(recording->commands, recording->queries, 0, 2 * kMaxPasses);
+    }
+    return std::unique_ptr<CommandListImpl>(new CommandListImpl(std::move(recording), std::move(onClose)));
+}
+
+CommandListImpl::CommandListImpl(std::unique_ptr<Recording> recording, std::function<void()> onClose)
+    : recording_(std::move(recording)), onClose_(std::move(onClose)) {}
+
+CommandListImpl::~CommandListImpl() {
+    if (onClose_) onClose_();
+}
+
+void CommandListImpl::wrong(const std::string& what) {
+    const std::string where = pass_ == PassKind::None ? std::string() : "pass '" + passDesc_.name + "': ";
+    wrong(Error{{}, {}, where + what, {}});
+}
+
+void CommandListImpl::wrong(const Error& error) {
+    if (!error_) error_ = error;
+}
+
+bool CommandListImpl::requirePass(PassKind kind, const char* call) {
+    if (pass_ == kind) return true;
+    wrong(std::string(call) +
+          (kind == PassKind::Graphics ? " outside a graphics pass" : " outside a compute pass"));
+    return false;
+}
+
+bool CommandListImpl::requireOutside(const char* call) {
+    if (pass_ == PassKind::None) return true;
+    wrong(std::string(call) + " inside a pass");
+    return false;
+}
+
+BufferImpl* CommandListImpl::keep(const BufferPtr& buffer) {
+    recording_->retained.push_back(buffer);
+    return static_cast<BufferImpl*>(buffer.get());
+}
+
+TextureImpl* CommandListImpl::keep(const TexturePtr& texture) {
+    recording_->retained.push_back(texture);
+    return static_cast<TextureImpl*>(texture.get());
+}
+
+Result<CommandListImpl::Staged> CommandListImpl::stage(std::span<const std::byte> bytes) {
+    const std::uint64_t needed = (bytes.size() + kArenaAlignment - 1) / kArenaAlignment * kArenaAlignment;
+    if (arena_.buffer == nullptr || arenaUsed_ + needed > arena_.buffer->desc().size) {
+        BufferDesc desc;
+        desc.name = "upload";
+        desc.size = std::max(kArenaBytes, needed);
+        desc.usage = Usage::Constant;
+        auto buffer = BufferImpl::create(recording_->context, desc, MemoryUse::Upload);
+        if (!buffer) return tl::unexpected(buffer.error());
+        recording_->retained.push_back(*buffer);
+        arena_.buffer = *buffer;
+        arenaUsed_ = 0;
+    }
+    Staged staged{arena_.buffer, arenaUsed_};
+    std::memcpy(arena_.buffer->memory.mapped() + arenaUsed_, bytes.data(), bytes.size());
+    arenaUsed_ += needed;
+    stagedBytes_ += needed;
+    return staged;
+}
+
+void CommandListImpl::writeTimestamp(bool end) {
+    if (recording_->queries == VK_NULL_HANDLE) return;
+    const auto query = static_cast<std::uint32_t>(2 * (recording_->passNames.size() - 1) + (end ? 1 : 0));
+    vkCmdWriteTimestamp2(recording_->commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, recording_->queries,
+                         query);
+}
+
+void CommandListImpl::updateBuffer(const BufferPtr& target, std::uint64_t offset,
+                                   std::span<const std::byte> bytes) {
+    if (!requireOutside("updateBuffer")) return;
+    if (target == nullptr || !inRange(offset, bytes.size(), target->desc().size) || bytes.empty()) {
+        return wrong("updateBuffer: range outside buffer '" + (target ? target->desc().name : "(none)") +
+                     "'");
+    }
+    const auto staged = stage(bytes);
+    if (!staged) return wrong(staged.error());
+    BufferImpl* buffer = keep(target);
+    barriers_.use(*buffer, kCopyWrite);
+    barriers_.flush(recording_->commands);
+    const VkBufferCopy copy{staged->offset, offset, bytes.size()};
+    vkCmdCopyBuffer(recording_->commands, staged->buffer->handle, buffer->handle, 1, &copy);
+}
+
+void CommandListImpl::updateTexture(const TexturePtr& target, std::span<const std::byte> bytes) {
+    const auto staged = stage(bytes);
+    if (!staged) return wrong(staged.error());
+    TextureImpl* texture = keep(target);
+    barriers_.use(*texture, kCopyWrite);
+    barriers_.flush(recording_->commands);
+    const VkBufferImageCopy copy = wholeImage(*texture, staged->offset);
+    vkCmdCopyBufferToImage(recording_->commands, staged->buffer->handle, texture->handle,
+                           VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
+}
+
+void CommandListImpl::copyBuffer(const BufferPtr& source, std::uint64_t sourceOffset, const BufferPtr& target,
+                                 std::uint64_t targetOffset, std::uint64_t size) {
+    if (!requireOutside("copyBuffer")) return;
+    if (source == nullptr || target == nullptr || source == target) {
+        return wrong("copyBuffer needs two different buffers");
+    }
+    if (size == 0 || !inRange(sourceOffset, size, source->desc().size)) {
+        return wrong("copyBuffer: range outside buffer '" + source->desc().name + "'");
+    }
+    if (!inRange(targetOffset, size, target->desc().size)) {
+        return wrong("copyBuffer: range outside buffer '" + target->desc().name + "'");
+    }
+    BufferImpl* from = keep(source);
+    BufferImpl* to = keep(target);
+    barriers_.use(*from, kCopyRead);
+    barriers_.use(*to, kCopyWrite);
+    barriers_.flush(recording_->commands);
+    const VkBufferCopy copy{sourceOffset, targetOffset, size};
+    vkCmdCopyBuffer(recording_->commands, from->handle, to->handle, 1, &copy);
+}
+
+void CommandListImpl::copyTextureToBuffer(const TexturePtr& source, const BufferPtr& target,
+                                          std::uint64_t targetOffset) {
+    if (!requireOutside("copyTextureToBuffer")) return;
+    if (source == nullptr || target == nullptr)
+        return wrong("copyTextureToBuffer needs a texture and a buffer");
+    const TextureDesc& desc = source->desc();
+    if (desc.samples != 1) return wrong("copy of multisampled texture '" + desc.name + "': resolve it first");
+    const std::uint64_t size = std::uint64_t{desc.width} * desc.height * bytesPerTexel(desc.format);
+    if (targetOffset % 16 != 0 || !inRange(targetOffset, size, target->desc().size)) {
+        return wrong("copyTextureToBuffer: range outside buffer '" + target->desc().name + "'");
+    }
+    TextureImpl* from = keep(source);
+    BufferImpl* to = keep(target);
+    barriers_.use(*from, kCopyRead);
+    barriers_.use(*to, kCopyWrite);
+    barriers_.flush(recording_->commands);
+    const VkBufferImageCopy copy = wholeImage(*from, targetOffset);
+    vkCmdCopyImageToBuffer(recording_->commands, from->handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                           to->handle, 1, &copy);
+}
+
+Result<std::unique_ptr<Recording>> CommandListImpl::finish() {
+    if (pass_ != PassKind::None) wrong("the pass was not ended");
+    if (error_) return tl::unexpected(*error_);
+    auto barrier = make<VkMemoryBarrier2>(VK_STRUCTURE_TYPE_MEMORY_BARRIER_2);
+    barrier.srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+    barrier.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
+    barrier.dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT;
+    barrier.dstAccessMask = VK_ACCESS_2_HOST_READ_BIT;
+    auto info = make<VkDependencyInfo>(VK_STRUCTURE_TYPE_DEPENDENCY_INFO);
+    info.memoryBarrierCount = 1;
+    info.pMemoryBarriers = &barrier;
+    vkCmdPipelineBarrier2(recording_->commands, &info);
+    const VkResult r = vkEndCommandBuffer(recording_->commands);
+    if (r != VK_SUCCESS) return recording_->context->failed(r, "recording commands");
+    return std::move(recording_);
+}
+
+}  // namespace hairloom::gpu::vulkan

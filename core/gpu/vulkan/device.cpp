@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/gpu/vulkan/device.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <utility>
+
+#include "core/gpu/vulkan/backend.h"
+
+namespace hairloom::gpu::vulkan {
+namespace {
+
+constexpr std::uint64_t kUploadFlushBytes = std::uint64_t{64} << 20u;
+
+std::string lower(std::string text) {
+    std::ranges::transform(text, text.begin(),
+                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
+}
+
+// A GPU before a software rasteriser; among GPUs the discrete one.
+int rank(DeviceType type) {
+    switch (type) {
+        case DeviceType::Discrete:
+            return 0;
+        case DeviceType::Integrated:
+            return 1;
+        case DeviceType::Virtual:
+            return 2;
+        case DeviceType::Other:
+            return 3;
+        case DeviceType::Cpu:
+            break;
+    }
+    return 4;
+}
+
+Result<DeviceInfo> choose(const std::vector<DeviceInfo>& infos, const DeviceOptions& options) {
+    const DeviceInfo* best = nullptr;
+    const DeviceInfo* refused = nullptr;
+    for (const DeviceInfo& info : infos) {
+        if (options.index && *options.index != info.index) continue;
+        if (lower(info.name).find(lower(options.name)) == std::string::npos) continue;
+        if (!info.usable) {
+            refused = &info;
+        } else if (best == nullptr || rank(info.type) < rank(best->type)) {
+            best = &info;
+        }
+    }
+    if (best != nullptr) return *best;
+    if (refused != nullptr)
+        return fail("GPU '" + refused->name + "' cannot be used: " + refused->whyUnusable);
+    std::string names;
+    for (const DeviceInfo& info : infos)
+        names += fmt::format("{}{}: {}", names.empty() ? "" : ", ", info.index, info.name);
+    return fail("no such GPU", "one of " + names);
+}
+
+Status openDevice(Context& context) {
+    const int family = findQueueFamily(context.physical);
+    context.queueFamily = static_cast<std::uint32_t>(family);
+    const float priority = 1;
+    auto queue = make<VkDeviceQueueCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO);
+    queue.queueFamilyIndex = context.queueFamily;
+    queue.queueCount = 1;
+    queue.pQueuePriorities = &priority;
+
+    VkPhysicalDeviceFeatures offered;
+    vkGetPhysicalDeviceFeatures(context.physical, &offered);
+    auto f2 = make<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2);
+    auto f13 = make<VkPhysicalDeviceVulkan13Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES);
+    f2.pNext = &f13;
+    f13.dynamicRendering = f13.synchronization2 = VK_TRUE;
+    f2.features.tessellationShader = offered.tessellationShader;
+    f2.features.depthClamp = offered.depthClamp;
+    f2.features.fillModeNonSolid = offered.fillModeNonSolid;
+    f2.features.independentBlend = offered.independentBlend;
+    f2.features.sampleRateShading = offered.sampleRateShading;
+    f2.features.fragmentStoresAndAtomics = offered.fragmentStoresAndAtomics;
+    f2.features.vertexPipelineStoresAndAtomics = offered.vertexPipelineStoresAndAtomics;
+    f2.features.shaderStorageImageWriteWithoutFormat = offered.shaderStorageImageWriteWithoutFormat;
+
+    auto info = make<VkDeviceCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO);
+    info.pNext = &f2;
+    info.queueCreateInfoCount = 1;
+    info.pQueueCreateInfos = &queue;
+    const VkResult r = vkCreateDevice(context.physical, &info, nullptr, &context.device);
+    if (r != VK_SUCCESS) return failed(r, "opening GPU '" + context.info.name + "'");
+    vkGetDeviceQueue(context.device, context.queueFamily, 0, &context.queue);
+    context.allocator.init(context.physical, context.device);
+    return {};
+}
+
+Status checkDesc(const DeviceInfo& info, const BufferDesc& desc, std::size_t content) {
+    const auto wrong = [&](const std::string& what) { return fail("buffer '" + desc.name + "': " + what); };
+    if (desc.size == 0) return wrong("a size of 0 bytes");
+    if (desc.size > info.maxBufferBytes) {
+        return wrong(fmt::format("{} bytes, the device allows {}", desc.size, info.maxBufferBytes));
+    }
+    if (content != 0 && content != desc.size) return wrong("the content does not have the buffer's size");
+    if (content != 0 && desc.memory == MemoryKind::ReadBack)
+        return wrong("a read-back buffer has no first content");
+    return {};
+}
+
+Status checkDesc(const DeviceInfo& info, const TextureDesc& desc, std::size_t content) {
+    const auto wrong = [&](const std::string& what) { return fail("texture '" + desc.name + "': " + what); };
+    const std::uint32_t texel = bytesPerTexel(desc.format);
+    if (texel == 0) return wrong("no format");
+    if (desc.width == 0 || desc.height == 0 || desc.width > info.maxTextureSize ||
+        desc.height > info.maxTextureSize) {
+        return wrong(
+            fmt::format("{}x{} pixels, 1 to {} are possible", desc.width, desc.height, info.maxTextureSize));
+    }
+    if (std::ranges::find(info.sampleCounts, desc.samples) == info.sampleCounts.end()) {
+        return wrong(fmt::format("the device has no {} samples a pixel", desc.samples));
+    }
+    if (has(desc.usage, Usage::DepthStencil) != (desc.format == Format::D32Float) &&
+        (has(desc.usage, Usage::DepthStencil) || has(desc.usage, Usage::RenderTarget))) {
+        return wrong("depth formats are for depth targets, colour formats for colour targets");
+    }
+    if (content != 0 && (desc.samples != 1 || content != std::uint64_t{desc.width} * desc.height * texel)) {
+        return wrong("the content does not have the texture's size");
+    }
+    return {};
+}
+
+}  // namespace
+
+Context::~Context() {
+    if (device == VK_NULL_HANDLE) return;
+    vkDeviceWaitIdle(device);
+    allocator.destroy();
+    vkDestroyDevice(device, nullptr);
+}
+
+tl::unexpected<Error> Context::failed(VkResult result, const std::string& what) {
+    if (result == VK_ERROR_DEVICE_LOST) lost = true;
+    return vulkan::failed(result, what);
+}
+
+Status Context::checkAlive() const {
+    if (lost) return fail("GPU '" + info.name + "' is lost", "a new device");
+    return {};
+}
+
+Result<std::unique_ptr<gpu::Device>> DeviceImpl::create(const DeviceOptions& options) {
+    auto context = std::make_shared<Context>();
+    auto instance = Instance::create(options.validation);
+    if (!instance) return tl::unexpected(instance.error());
+    context->instance = std::move(*instance);
+    const auto physical = context->instance->physicalDevices();
+    if (!physical) return tl::unexpected(physical.error());
+    std::vector<DeviceInfo> infos;
+    for (VkPhysicalDevice device : *physical) {
+        infos.push_back(describe(device, static_cast<std::uint32_t>(infos.size())));
+    }
+    const auto chosen = choose(infos, options);
+    if (!chosen) return tl::unexpected(chosen.error());
+    context->info = *chosen;
+    context->physical = (*physical)[chosen->index];
+    context->timeoutSeconds = options.timeoutSeconds;
+    if (auto status = openDevice(*context); !status) return tl::unexpected(status.error());
+    return std::unique_ptr<gpu::Device>(std::make_unique<DeviceImpl>(std::move(context)));
+}
+
+Result<std::unique_ptr<gpu::Device>> createDevice(const DeviceOptions& options) {
+    return DeviceImpl::create(options);
+}
+
+DeviceImpl::~DeviceImpl() {
+    uploads_.reset();
+    for (const auto& submission : running_) static_cast<void>(submission->wait());
+}
+
+void DeviceImpl::retire() {
+    while (!running_.empty() && running_.front()->isDone()) running_.pop_front();
+}
+
+Status DeviceImpl::upload(const std::function<void(CommandListImpl&)>& record) {
+    if (uploads_ == nullptr) {
+        auto list = CommandListImpl::create(context_, {});
+        if (!list) return tl::unexpected(list.error());
+        uploads_ = std::move(*list);
+    }
+    record(*uploads_);
+    // The resource is new: no other list can have an opinion about its state yet.
+    uploads_->commit();
+    return uploads_->stagedBytes() > kUploadFlushBytes ? flushUploads() : Status{};
+}
+
+Status DeviceImpl::flushUploads() {
+    if (uploads_ == nullptr) return {};
+    auto recording = std::exchange(uploads_, nullptr)->finish();
+    if (!recording) return tl::unexpected(recording.error());
+    std::vector<std::unique_ptr<Recording>> recordings;
+    recordings.push_back(std::move(*recording));
+    const auto submission = run(std::move(recordings));
+    if (!submission) return tl::unexpected(submission.error());
+    return {};
+}
+
+Result<BufferPtr> DeviceImpl::createBuffer(const BufferDesc& desc, std::span<const std::byte> content) {
+    if (auto status = context_->checkAlive(); !status) return tl::unexpected(status.error());
+    if (auto status = checkDesc(context_->info, desc, content.size()); !status) {
+        return tl::unexpected(status.error());
+    }
+    const MemoryUse use = desc.memory == MemoryKind::ReadBack ? MemoryUse::ReadBack : MemoryUse::DeviceLocal;
+    auto buffer = BufferImpl::create(context_, desc, use);
+    if (!buffer) return tl::unexpected(buffer.error());
+    if (!content.empty()) {
+        auto status = upload([&](CommandListImpl& list) { list.updateBuffer(*buffer, 0, content); });
+        if (!status) return tl::unexpected(status.error());
+    }
+    return BufferPtr(std::move(*buffer));
+}
+
+Result<TexturePtr> DeviceImpl::createTexture(const TextureDesc& desc, std::span<const std::byte> content) {
+    if (auto status = context_->checkAlive(); !status) return tl::unexpected(status.error());
+    if (auto status = checkDesc(context_->info, desc, content.size()); !status) {
+        return tl::unexpected(status.error());
+    }
+    auto texture = TextureImpl::create(context_, desc);
+    if (!texture) return tl::unexpected(texture.error());
+    if (!content.empty()) {
+        auto status = upload([&](CommandListImpl& list) { list.updateTexture(*texture, content); });
+        if (!status) return tl::unexpected(status.error());
+    }
+    return TexturePtr(std::move(*texture));
+}
+
+Result<SamplerPtr> DeviceImpl::createSampler(const SamplerDesc& desc) {
+    auto sampler = SamplerImpl::create(context_, desc);
+    if (!sampler) return tl::unexpected(sampler.error());
+    return SamplerPtr(std::move(*sampler));
+}
+
+Result<ShaderPtr> DeviceImpl::createShader(const ShaderDesc& desc) {
+    auto shader = ShaderImpl::create(context_, desc);
+    if (!shader) return tl::unexpected(shader.error());
+    return ShaderPtr(std::move(*shader));
+}
+
+Result<GraphicsPipelinePtr> DeviceImpl::createGraphicsPipeline(const GraphicsPipelineDesc& desc) {
+    return createPipeline(context_, desc);
+}
+
+Result<ComputePipelinePtr> DeviceImpl::createComputePipeline(const ComputePipelineDesc& desc) {
+    return createPipeline(context_, desc);
+}
+
+Result<std::unique_ptr<CommandList>> DeviceImpl::createCommandList() {
+    if (auto status = context_->checkAlive(); !status) return tl::unexpected(status.error());
+    if (*listOpen_) return fail("another command list is open", "submit or destroy it first");
+    retire();
+    auto list = CommandListImpl::create(context_, [open = listOpen_] { *open = false; });
+    if (!list) return tl::unexpected(list.error());
+    *listOpen_ = true;
+    return std::unique_ptr<CommandList>(std::move(*list));
+}
+
+Result<SubmissionPtr> DeviceImpl::submit(std::unique_ptr<CommandList> list) {
+    if (auto status = context_->checkAlive(); !status) return tl::unexpected(status.error());
+    if (list == nullptr) return fail("no command list to submit");
+    auto& impl = static_cast<CommandListImpl&>(*list);
+    auto recording = impl.finish();
+    if (!recording) return tl::unexpected(recording.error());
+    std::vector<std::unique_ptr<Recording>> recordings;
+    if (uploads_ != nullptr) {
+        auto uploads = std::exchange(uploads_, nullptr)->finish();
+        if (!uploads) return tl::unexpected(uploads.error());
+        recordings.push_back(std::move(*uploads));
+    }
+    recordings.push_back(std::move(*recording));
+    auto submission = run(std::move(recordings));
+    if (submission) impl.commit();
+    return submission;
+}
+
+Result<SubmissionPtr> DeviceImpl::run(std::vector<std::unique_ptr<Recording>> recordings) {
+    auto submission = std::make_shared<SubmissionImpl>(context_, std::move(recordings));
+    if (auto status = submission->start(); !status) return tl::unexpected(status.error());
+    running_.push_back(submission);
+    return SubmissionPtr(std::move(submission));
+}
+
+}  // namespace hairloom::gpu::vulkan

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <deque>
+
+#include "core/gpu/vulkan/commands.h"
+
+namespace hairloom::gpu::vulkan {
+
+class SubmissionImpl final : public Submission {
+  public:
+    SubmissionImpl(ContextPtr context, std::vector<std::unique_ptr<Recording>> recordings)
+        : context_(std::move(context)), recordings_(std::move(recordings)) {}
+    ~SubmissionImpl() override;
+    Status start();
+    bool isDone() override;
+    Status wait() override;
+    Result<std::vector<PassTime>> passTimes() override;
+
+  private:
+    void finish();
+    ContextPtr context_;
+    std::vector<std::unique_ptr<Recording>> recordings_;  // the caller's list is the last
+    std::vector<PassTime> times_;
+    VkFence fence_ = VK_NULL_HANDLE;
+    bool done_ = false;
+};
+
+class DeviceImpl final : public gpu::Device {
+  public:
+    static Result<std::unique_ptr<gpu::Device>> create(const DeviceOptions& options);
+    explicit DeviceImpl(ContextPtr context) : context_(std::move(context)) {}
+    ~DeviceImpl() override;
+
+    const DeviceInfo& info() const override { return context_->info; }
+    Result<BufferPtr> createBuffer(const BufferDesc& desc, std::span<const std::byte> content) override;
+    Result<TexturePtr> createTexture(const TextureDesc& desc, std::span<const std::byte> content) override;
+    Result<SamplerPtr> createSampler(const SamplerDesc& desc) override;
+    Result<ShaderPtr> createShader(const ShaderDesc& desc) override;
+    Result<GraphicsPipelinePtr> createGraphicsPipeline(const GraphicsPipelineDesc& desc) override;
+    Result<ComputePipelinePtr> createComputePipeline(const ComputePipelineDesc& desc) override;
+    Result<std::unique_ptr<CommandList>> createCommandList() override;
+    Result<SubmissionPtr> submit(std::unique_ptr<CommandList> list) override;
+    Status readMapped(const BufferPtr& buffer, std::uint64_t offset, std::span<std::byte> target) override;
+    Status readBuffer(const BufferPtr& buffer, std::uint64_t offset, std::span<std::byte> target) override;
+    Status readTexture(const TexturePtr& texture, std::span<std::byte> target) override;
+    std::vector<std::string> validationMessages() const override { return context_->instance->messages(); }
+
+  private:
+    Status upload(const std::function<void(CommandListImpl&)>& record);
+    Status flushUploads();
+    Result<SubmissionPtr> run(std::vector<std::unique_ptr<Recording>> recordings);
+    Result<BufferPtr> createReadBack(std::uint64_t size);
+    void retire();
+
+    ContextPtr context_;
+    std::unique_ptr<CommandListImpl> uploads_;
+    std::shared_ptr<bool> listOpen_ = std::make_shared<bool>(false);
+    std::deque<std::shared_ptr<SubmissionImpl>> running_;
+};
+
+}  // namespace hairloom::gpu::vulkan

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/gpu/vulkan/reflection.h"
+
+#include <fmt/format.h>
+
+#include <map>
+
+namespace hairloom::gpu::vulkan {
+namespace {
+
+// SPIR-V 1.3 specification, sections 3.20 and 3.32: the few numbers needed here.
+enum Op : std::uint32_t {
+    kTypeImage = 25,
+    kTypeSampler = 26,
+    kTypeStruct = 30,
+    kTypePointer = 32,
+    kVariable = 59,
+    kDecorate = 71
+};
+enum Decoration : std::uint32_t { kBlock = 2, kBufferBlock = 3, kBinding = 33 };
+enum StorageClass : std::uint32_t { kUniformConstant = 0, kUniform = 2, kStorageBuffer = 12 };
+constexpr std::uint32_t kMagic = 0x07230203;
+constexpr std::uint32_t kDimBuffer = 5;
+
+struct Type {
+    std::uint32_t op = 0;
+    std::uint32_t pointee = 0;
+    bool isBuffer = false;
+    bool isStorage = false;
+};
+
+struct Module {
+    std::map<std::uint32_t, Type> types;
+    std::map<std::uint32_t, std::uint32_t> bindings;  // id -> binding
+    std::map<std::uint32_t, bool> bufferBlocks;
+    struct Variable {
+        std::uint32_t id, pointerType, storage;
+    };
+    std::vector<Variable> variables;
+};
+
+void readInstruction(Module& module, std::uint32_t op, std::span<const std::uint32_t> w) {
+    if (op == kTypeImage && w.size() >= 8) {
+        module.types[w[1]] = {op, 0, w[3] == kDimBuffer, w[7] == 2};
+    } else if (op == kTypeSampler || op == kTypeStruct) {
+        if (w.size() >= 2) module.types[w[1]] = {op, 0, false, false};
+    } else if (op == kTypePointer && w.size() >= 4) {
+        module.types[w[1]] = {op, w[3], false, false};
+    } else if (op == kVariable && w.size() >= 4) {
+        module.variables.push_back({w[2], w[1], w[3]});
+    } else if (op == kDecorate && w.size() >= 3) {
+        if (w[2] == kBinding && w.size() >= 4) module.bindings[w[1]] = w[3];
+        if (w[2] == kBufferBlock) module.bufferBlocks[w[1]] = true;
+    }
+}
+
+Result<VkDescriptorType> descriptorType(const Module& module, const Module::Variable& variable) {
+    const auto pointer = module.types.find(variable.pointerType);
+    if (pointer == module.types.end()) return fail("a resource of unknown type");
+    const auto found = module.types.find(pointer->second.pointee);
+    if (found == module.types.end()) return fail("an array of resources", "one resource a register");
+    const Type& type = found->second;
+    switch (type.op) {
+        case kTypeStruct: {
+            const bool storage =
+                variable.storage == kStorageBuffer || module.bufferBlocks.contains(pointer->second.pointee);
+            return storage ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER : VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+        }
+        case kTypeSampler:
+            return VK_DESCRIPTOR_TYPE_SAMPLER;
+        case kTypeImage:
+            if (type.isBuffer) {
+                return type.isStorage ? VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER
+                                      : VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
+            }
+            return type.isStorage ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE : VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
+        default:
+            return fail("a resource of unknown type");
+    }
+}
+
+}  // namespace
+
+std::string registerName(std::uint32_t binding) {
+    if (binding >= kWriteShift) return fmt::format("u{}", binding - kWriteShift);
+    if (binding >= kSamplerShift) return fmt::format("s{}", binding - kSamplerShift);
+    if (binding >= kReadShift) return fmt::format("t{}", binding - kReadShift);
+    return fmt::format("b{}", binding);
+}
+
+Result<std::vector<ReflectedBinding>> reflect(std::span<const std::uint32_t> words,
+                                              VkShaderStageFlags stage) {
+    if (words.size() < 5 || words[0] != kMagic) return fail("not SPIR-V", "the magic number 0x07230203");
+    Module module;
+    for (std::size_t at = 5; at < words.size();) {
+        const std::uint32_t length = words[at] >> 16u;
+        if (length == 0 || length > words.size() - at) return fail("truncated SPIR-V");
+        readInstruction(module, words[at] & 0xffffu, words.subspan(at, length));
+        at += length;
+    }
+    std::vector<ReflectedBinding> result;
+    for (const auto& variable : module.variables) {
+        const bool resource = variable.storage == kUniformConstant || variable.storage == kUniform ||
+                              variable.storage == kStorageBuffer;
+        const auto binding = module.bindings.find(variable.id);
+        if (!resource || binding == module.bindings.end()) continue;
+        const auto type = descriptorType(module, variable);
+        if (!type) return tl::unexpected(type.error());
+        result.push_back({binding->second, *type, stage});
+    }
+    return result;
+}
+
+}  // namespace hairloom::gpu::vulkan

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Submitting, waiting, timestamps and reading back.
+#include <algorithm>
+#include <cstring>
+
+#include "core/gpu/vulkan/device.h"
+
+namespace hairloom::gpu::vulkan {
+
+SubmissionImpl::~SubmissionImpl() {
+    if (fence_ == VK_NULL_HANDLE) return;
+    if (!done_) vkDeviceWaitIdle(context_->device);
+    vkDestroyFence(context_->device, fence_, nullptr);
+}
+
+Status SubmissionImpl::start() {
+    const auto fence = make<VkFenceCreateInfo>(VK_STRUCTURE_TYPE_FENCE_CREATE_INFO);
+    VkFence created = VK_NULL_HANDLE;
+    VkResult r = vkCreateFence(context_->device, &fence, nullptr, &created);
+    if (r != VK_SUCCESS) return context_->failed(r, "submitting work");
+    std::vector<VkCommandBufferSubmitInfo> commands;
+    for (const auto& recording : recordings_) {
+        auto info = make<VkCommandBufferSubmitInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO);
+        info.commandBuffer = recording->commands;
+        commands.push_back(info);
+    }
+    auto info = make<VkSubmitInfo2>(VK_STRUCTURE_TYPE_SUBMIT_INFO_2);
+    info.commandBufferInfoCount = static_cast<std::uint32_t>(commands.size());
+    info.pCommandBufferInfos = commands.data();
+    r = vkQueueSubmit2(context_->queue, 1, &info, created);
+    if (r != VK_SUCCESS) {
+        vkDestroyFence(context_->device, created, nullptr);
+        return context_->failed(r, "submitting work");
+    }
+    fence_ = created;
+    return {};
+}
+
+void SubmissionImpl::finish() {
+    if (done_) return;
+    done_ = true;
+    const Recording& last = *recordings_.back();
+    std::vector<std::uint64_t> ticks(2 * last.passNames.size(), 0);
+    if (last.queries != VK_NULL_HANDLE && !ticks.empty()) {
+        vkGetQueryPoolResults(context_->device, last.queries, 0, static_cast<std::uint32_t>(ticks.size()),
+                              ticks.size() * 8, ticks.data(), 8, VK_QUERY_RESULT_64_BIT);
+    }
+    for (std::size_t i = 0; i < last.passNames.size(); ++i) {
+        const double spent = static_cast<double>(ticks[2 * i + 1] - ticks[2 * i]);
+        times_.push_back({last.passNames[i], spent * context_->info.timestampPeriodNs * 1e-6});
+    }
+    recordings_.clear();
+}
+
+bool SubmissionImpl::isDone() {
+    if (!done_ && vkGetFenceStatus(context_->device, fence_) == VK_SUCCESS) finish();
+    return done_;
+}
+
+Status SubmissionImpl::wait() {
+    if (done_) return {};
+    const auto nanoseconds = static_cast<std::uint64_t>(std::clamp(context_->timeoutSeconds, 0.0, 1e6) * 1e9);
+    const VkResult r = vkWaitForFences(context_->device, 1, &fence_, VK_TRUE, nanoseconds);
+    if (r != VK_SUCCESS) return context_->failed(r, "waiting for the GPU");
+    finish();
+    return {};
+}
+
+Result<std::vector<PassTime>> SubmissionImpl::passTimes() {
+    if (auto status = wait(); !status) return tl::unexpected(status.error());
+    return times_;
+}
+
+Result<BufferPtr> DeviceImpl::createReadBack(std::uint64_t size) {
+    BufferDesc desc;
+    desc.name = "read back";
+    desc.size = size;
+    desc.usage = Usage::None;
+    desc.memory = MemoryKind::ReadBack;
+    // Only copies touch it, so the limit on what shaders see does not apply.
+    auto buffer = BufferImpl::create(context_, desc, MemoryUse::ReadBack);
+    if (!buffer) return tl::unexpected(buffer.error());
+    return BufferPtr(std::move(*buffer));
+}
+
+Status DeviceImpl::readMapped(const BufferPtr& buffer, std::uint64_t offset, std::span<std::byte> target) {
+    if (buffer == nullptr || buffer->desc().memory != MemoryKind::ReadBack) {
+        return fail("reading a buffer that is not made for reading back");
+    }
+    const std::uint64_t size = buffer->desc().size;
+    if (offset > size || target.size() > size - offset) {
+        return fail("reading outside buffer '" + buffer->desc().name + "'");
+    }
+    const auto& impl = static_cast<const BufferImpl&>(*buffer);
+    std::memcpy(target.data(), impl.memory.mapped() + offset, target.size());
+    return {};
+}
+
+Status DeviceImpl::readBuffer(const BufferPtr& buffer, std::uint64_t offset, std::span<std::byte> target) {
+    if (target.empty()) return {};
+    const auto readBack = createReadBack(target.size());
+    if (!readBack) return tl::unexpected(readBack.error());
+    auto list = createCommandList();
+    if (!list) return tl::unexpected(list.error());
+    (*list)->copyBuffer(buffer, offset, *readBack, 0, target.size());
+    const auto submission = submit(std::move(*list));
+    if (!submission) return tl::unexpected(submission.error());
+    if (auto status = (*submission)->wait(); !status) return status;
+    return readMapped(*readBack, 0, target);
+}
+
+Status DeviceImpl::readTexture(const TexturePtr& texture, std::span<std::byte> target) {
+    if (texture == nullptr) return fail("no texture to read");
+    const TextureDesc& desc = texture->desc();
+    if (target.size() != std::uint64_t{desc.width} * desc.height * bytesPerTexel(desc.format)) {
+        return fail("reading texture '" + desc.name + "' into memory of another size");
+    }
+    const auto readBack = createReadBack(target.size());
+    if (!readBack) return tl::unexpected(readBack.error());
+    auto list = createCommandList();
+    if (!list) return tl::unexpected(list.error());
+    (*list)->copyTextureToBuffer(texture, *readBack, 0);
+    const auto submission = submit(std::move(*list));
+    if (!submission) return tl::unexpected(submission.error());
+    if (auto status = (*submission)->wait(); !status) return status;
+    return readMapped(*readBack, 0, target);
+}
+
+}  // namespace hairloom::gpu::vulkan

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string_view>
+
+#include "core/base/math.h"
+#include "core/base/result.h"
+
+namespace hairloom::render {
+
+/// A perspective camera; world space, metres.
+struct Camera {
+    Vec3f eye_ws{0, 1.6f, 1};
+    Vec3f target_ws{0, 1.6f, 0};
+    Vec3f up_ws = Vec3f::UnitY();
+    float verticalFov = 22;  ///< degrees, 1…150
+};
+
+enum class View { Front, Back, Left, Right, ThreeQuarter };
+
+/// "front", "back", "left", "right", "three-quarter". The head looks along +Z; left is the head's left (+X).
+Result<View> parseView(std::string_view name);
+
+/// A camera that sees all of `bounds_ws` with a small margin. `aspect` = width / height. Empty bounds are
+/// taken as a cube of 0.3 m around the origin.
+Camera frame(View view, const Box3f& bounds_ws, float aspect);
+
+/// Errors: not finite, no viewing direction, up along it, field of view out of range.
+Status check(const Camera& camera);
+
+/// Right-handed view space (-Z forward) from world space.
+Mat4f viewMatrix(const Camera& camera);
+/// Clip space with depth 0 (near) … 1 (far).
+Mat4f projectionMatrix(float verticalFovDegrees, float aspect, float nearPlane, float farPlane);
+
+}  // namespace hairloom::render

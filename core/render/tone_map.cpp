@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/render/tone_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/parallel.h"
+
+namespace hairloom::render {
+namespace {
+
+// Hable 2010, "Uncharted 2: HDR Lighting", the published constants.
+float hable(float x) {
+    constexpr float a = 0.15f, b = 0.50f, c = 0.10f, d = 0.20f, e = 0.02f, f = 0.30f;
+    return (x * (a * x + c * b) + d * e) / (x * (a * x + b) + d * f) - e / f;
+}
+
+std::uint8_t toByte(float value) {
+    return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255));
+}
+
+}  // namespace
+
+float encodeSrgb(float linear) {
+    const float x = std::clamp(linear, 0.0f, 1.0f);
+    return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f;
+}
+
+float filmic(float linear) {
+    return hable(std::max(linear, 0.0f)) / hable(kFilmicWhite);
+}
+
+Image toneMap(const LinearImage& linear, float exposure) {
+    Image image{linear.width, linear.height, std::vector<std::uint8_t>(linear.rgba.size())};
+    parallelFor(linear.rgba.size() / 4, 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            for (std::size_t c = 0; c < 3; ++c) {
+                image.rgba[4 * i + c] = toByte(encodeSrgb(filmic(linear.rgba[4 * i + c] * exposure)));
+            }
+            image.rgba[4 * i + 3] = toByte(linear.rgba[4 * i + 3]);
+        }
+    });
+    return image;
+}
+
+}  // namespace hairloom::render

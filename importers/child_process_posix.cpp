@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <fstream>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "importers/child_process.h"
+
+extern char** environ;
+
+namespace hairloom {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Memory is looked at this often; a child can take about 100 MiB in between.
+constexpr std::chrono::milliseconds kWatchInterval{20};
+
+std::string systemMessage(int code) {
+    return std::generic_category().message(code);
+}
+
+class Descriptor {
+  public:
+    explicit Descriptor(int number = -1) : number_(number) {}
+    Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+    Descriptor& operator=(Descriptor&& other) noexcept {
+        std::swap(number_, other.number_);
+        return *this;
+    }
+    ~Descriptor() {
+        if (number_ >= 0) close(number_);
+    }
+    int number() const { return number_; }
+
+  private:
+    int number_;
+};
+
+/// Kills and collects the child when it goes out of scope.
+class Child {
+  public:
+    explicit Child(pid_t id) : id_(id) {}
+    Child(const Child&) = delete;
+    Child& operator=(const Child&) = delete;
+    ~Child() {
+        if (id_ <= 0) return;
+        kill(id_, SIGKILL);
+        wait();
+    }
+    pid_t id() const { return id_; }
+
+    int wait() {
+        int status = 0;
+        while (waitpid(id_, &status, 0) < 0 && errno == EINTR) {
+        }
+        id_ = -1;
+        return status;
+    }
+
+    std::optional<int> poll() {
+        int status = 0;
+        if (waitpid(id_, &status, WNOHANG) != id_) return std::nullopt;
+        id_ = -1;
+        return status;
+    }
+
+  private:
+    pid_t id_;
+};
+
+/// Memory of a process that is in use, bytes; 0 where the system does not tell.
+std::uint64_t residentBytes(pid_t process) {
+    std::ifstream file(fmt::format("/proc/{}/statm", process));
+    std::uint64_t total = 0, resident = 0;
+    file >> total >> resident;
+    return file ? resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)) : 0;
+}
+
+struct Spawned {
+    pid_t process;
+    Descriptor output;
+};
+
+Result<Spawned> spawn(const std::string& name, const std::filesystem::path& program,
+                      const std::vector<std::string>& arguments) {
+    std::array<int, 2> ends{};
+    if (pipe2(ends.data(), O_CLOEXEC) != 0)
+        return fail(fmt::format("no pipe to {}: {}", name, systemMessage(errno)));
+    Descriptor readEnd(ends[0]);
+    const Descriptor writeEnd(ends[1]);
+
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_adddup2(&actions, writeEnd.number(), STDOUT_FILENO);
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+    std::vector<std::string> words{program.string()};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<char*> pointers;
+    for (std::string& word : words) pointers.push_back(word.data());
+    pointers.push_back(nullptr);
+    pid_t process = 0;
+    const int code =
+        posix_spawn(&process, words.front().c_str(), &actions, nullptr, pointers.data(), environ);
+    posix_spawn_file_actions_destroy(&actions);
+    if (code != 0) {
+        return fail(fmt::format("{} cannot be started: {}", name, systemMessage(code)),
+                    fmt::format("expected the program {}", program.string()));
+    }
+    return Spawned{process, std::move(readEnd)};
+}
+
+Status explainEnd(const std::string& name, int status) {
+    if (WIFSIGNALED(status)) {
+        const int number = WTERMSIG(status);
+        return fail(fmt::format("{} crashed on this file (signal {}, {})", name, number, strsignal(number)),
+                    "the file is damaged; nothing was changed");
+    }
+    if (WEXITSTATUS(status) != 0) {
+        return fail(fmt::format("{} gave up on this file (status {})", name, WEXITSTATUS(status)),
+                    "the file is damaged; nothing was changed");
+    }
+    return {};
+}
+
+/// Watches one child until it ends or goes over a limit.
+class Watch {
+  public:
+    Watch(std::string name, const ChildLimits& limits, pid_t process)
+        : name_(std::move(name)),
+          limits_(limits),
+          process_(process),
+          start_(Clock::now()),
+          nextLook_(start_) {}
+
+    Status check(std::size_t outputBytes) {
+        const auto now = Clock::now();
+        if (now - start_ >= limits_.time) {
+            return over(fmt::format("did not finish within {} s",
+                                    static_cast<double>(limits_.time.count()) / 1000.0));
+        }
+        if (outputBytes > limits_.outputBytes) {
+            return over(fmt::format("found more than {} MiB of data", limits_.outputBytes >> 20u));
+        }
+        if (now < nextLook_) return {};
+        nextLook_ = now + kWatchInterval;
+        if (residentBytes(process_) > limits_.residentBytes) {
+            return over(fmt::format("needed more than {} MiB of memory", limits_.residentBytes >> 20u));
+        }
+        return {};
+    }
+
+  private:
+    Status over(const std::string& what) const {
+        return fail(fmt::format("{} {} for this file and was stopped", name_, what),
+                    "the file is damaged or too large");
+    }
+
+    std::string name_;
+    ChildLimits limits_;
+    pid_t process_;
+    Clock::time_point start_;
+    Clock::time_point nextLook_;
+};
+
+/// Appends what can be read; false at the end of the pipe.
+bool readSome(int descriptor, std::vector<std::byte>& output) {
+    constexpr std::size_t kPiece = std::size_t{1} << 16u;
+    std::array<std::byte, kPiece> piece;
+    const ssize_t got = read(descriptor, piece.data(), piece.size());
+    if (got > 0) output.insert(output.end(), piece.begin(), piece.begin() + got);
+    return got > 0 || (got < 0 && errno == EINTR);
+}
+
+}  // namespace
+
+Result<std::vector<std::byte>> runChild(const std::string& name, const std::filesystem::path& program,
+                                        const std::vector<std::string>& arguments,
+                                        const ChildLimits& limits) {
+    auto spawned = spawn(name, program, arguments);
+    if (!spawned) return tl::unexpected(spawned.error());
+    Child child(spawned->process);
+    Watch watch(name, limits, spawned->process);
+    std::vector<std::byte> output;
+    pollfd waiting{spawned->output.number(), POLLIN, 0};
+    for (bool open = true; open;) {
+        const int ready = poll(&waiting, 1, static_cast<int>(kWatchInterval.count()));
+        if (ready > 0) open = readSome(waiting.fd, output);
+        if (auto status = watch.check(output.size()); !status) return tl::unexpected(status.error());
+    }
+    // A child may close its output and linger.
+    std::optional<int> end;
+    while (!(end = child.poll())) {
+        if (auto status = watch.check(output.size()); !status) return tl::unexpected(status.error());
+        usleep(200);
+    }
+    if (auto status = explainEnd(name, *end); !status) return tl::unexpected(status.error());
+    return output;
+}
+
+std::filesystem::path programFolder() {
+    std::error_code code;
+    const auto program = std::filesystem::read_symlink("/proc/self/exe", code);
+    return code ? std::filesystem::path() : program.parent_path();
+}
+
+}  // namespace hairloom

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Whether a size can be a head's or a human's, and in which unit it could.
+
+#include <optional>
+#include <string>
+
+namespace hairloom {
+
+/// Empty when `size` units of `metresPerUnit` metres, the largest extent of a mesh, can be a head, a bust or
+/// a whole human (0.12 … 2.6 m). Else a sentence that names the size and the unit (m, dm, cm, mm, inch) that
+/// would fit best.
+std::optional<std::string> implausibleSize(double size, double metresPerUnit);
+
+}  // namespace hairloom

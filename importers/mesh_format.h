@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Which mesh format a file is in, by its content.
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+namespace hairloom {
+
+enum class MeshFormat { Obj, Ply, Stl, Fbx, Gltf, Glb };
+
+/// "obj", "ply", "stl", "fbx", "gltf", "glb".
+std::string_view name(MeshFormat format);
+std::optional<MeshFormat> meshFormatNamed(std::string_view name);
+
+/// How many bytes of a file's start meshFormatOf() wants to see.
+inline constexpr std::size_t kMeshFormatHead = 64 * 1024;
+
+/// From the first kMeshFormatHead bytes (fewer when the file is shorter) and the file's size. The file's name
+/// plays no part. Empty for what is none of the formats.
+std::optional<MeshFormat> meshFormatOf(std::span<const std::byte> head, std::uint64_t fileSize);
+
+/// For messages.
+inline constexpr std::string_view kMeshFormatsRead =
+    "expected a mesh in OBJ, PLY, STL, FBX, glTF or GLB format";
+
+}  // namespace hairloom

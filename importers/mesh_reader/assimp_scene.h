@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "importers/mesh_format.h"
+#include "importers/raw_scene.h"
+
+namespace hairloom {
+
+/// The scene of an STL, FBX, glTF or GLB file, or assimp's reason why not. May throw, crash or never
+/// return on damaged files; nothing of the result is validated.
+Result<RawScene> readWithAssimp(const char* file, MeshFormat format);
+
+}  // namespace hairloom

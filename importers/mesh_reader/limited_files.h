@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The only files that assimp gets to see: the one asked for, and regular files of sane size that it names.
+
+#include <assimp/DefaultIOSystem.h>
+
+#include <string>
+
+namespace hairloom {
+
+/// Gives the file out under a name whose extension is that of its content, which is what assimp chooses a
+/// reader by.
+class LimitedFiles : public Assimp::DefaultIOSystem {
+  public:
+    LimitedFiles(std::string path, const std::string& extension);
+
+    /// The name to ask assimp for.
+    const std::string& alias() const { return alias_; }
+
+    bool Exists(const char* file) const override;
+    Assimp::IOStream* Open(const char* file, const char* mode) override;
+
+  private:
+    std::string real(const char* file) const;
+
+    std::string path_;
+    std::string alias_;
+};
+
+}  // namespace hairloom

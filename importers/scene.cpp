@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "importers/scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <system_error>
+
+#include "core/base/file.h"
+#include "importers/child_process.h"
+#include "importers/length_unit.h"
+#include "importers/mesh_format.h"
+#include "importers/obj_mesh.h"
+#include "importers/ply_mesh.h"
+#include "importers/raw_scene.h"
+#include "importers/raw_scene_stream.h"
+#include "importers/utf8.h"
+
+namespace hairloom {
+namespace {
+
+constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 30u;
+
+struct FileHead {
+    std::vector<std::byte> bytes;
+    std::uint64_t fileSize;
+};
+
+Result<FileHead> readHead(const std::filesystem::path& path) {
+    const std::string file = path.string();
+    std::error_code code;
+    const auto status = std::filesystem::status(path, code);
+    if (!std::filesystem::exists(status)) return failIn(file, {}, "no such file", "expected a mesh file");
+    if (!std::filesystem::is_regular_file(status))
+        return failIn(file, {}, "is no regular file", "expected a mesh file");
+    FileHead head;
+    head.fileSize = std::filesystem::file_size(path, code);
+    if (code) return failIn(file, {}, fmt::format("cannot be read: {}", code.message()));
+    if (head.fileSize == 0) return failIn(file, {}, "is empty", std::string(kMeshFormatsRead));
+    if (head.fileSize > kLargestFile) {
+        return failIn(file, {}, fmt::format("is {} bytes long", head.fileSize),
+                      fmt::format("expected at most {}", kLargestFile));
+    }
+    head.bytes.resize(static_cast<std::size_t>(std::min<std::uint64_t>(head.fileSize, kMeshFormatHead)));
+    std::ifstream stream(path, std::ios::binary);
+    stream.read(reinterpret_cast<char*>(head.bytes.data()), static_cast<std::streamsize>(head.bytes.size()));
+    if (!stream) return failIn(file, {}, "cannot be read", "expected a readable file");
+    return head;
+}
+
+bool startsWithUtf16Mark(const std::vector<std::byte>& bytes) {
+    if (bytes.size() < 2) return false;
+    const auto first = std::to_integer<int>(bytes[0]), second = std::to_integer<int>(bytes[1]);
+    return (first == 0xff && second == 0xfe) || (first == 0xfe && second == 0xff);
+}
+
+std::filesystem::path meshReaderProgram() {
+    if (const char* named = std::getenv("HAIRLOOM_MESH_READER"); named && *named) return named;
+    return programFolder() / "hairloom-mesh-reader";
+}
+
+Result<RawScene> readInChild(const std::filesystem::path& path, MeshFormat format) {
+    const auto output = runChild("the mesh reader", meshReaderProgram(),
+                                 {std::string(name(format)), std::filesystem::absolute(path).string()}, {});
+    if (!output) return tl::unexpected(output.error());
+    return readRawScene(path.string(), *output);
+}
+
+Result<RawScene> readRaw(const std::filesystem::path& path, MeshFormat format) {
+    if (format == MeshFormat::Obj) {
+        const auto text = readTextFile(path, kLargestFile);
+        if (!text) return tl::unexpected(text.error());
+        return readObjMesh(path, *text);
+    }
+    if (format == MeshFormat::Ply) {
+        const auto bytes = readFile(path, kLargestFile);
+        if (!bytes) return tl::unexpected(bytes.error());
+        return readPlyMesh(path.string(), *bytes);
+    }
+    return readInChild(path, format);
+}
+
+void cleanNames(RawScene& scene) {
+    const auto clean = [](std::string& name) { name = cleanUtf8(name); };
+    std::ranges::for_each(scene.soup.groupNames, clean);
+    std::ranges::for_each(scene.soup.materialNames, clean);
+    std::ranges::for_each(scene.warnings, clean);
+    for (Bone& bone : scene.bones) clean(bone.name);
+    for (Clip& clip : scene.clips) clean(clip.name);
+}
+
+/// Decides the unit, says so where a user should know, and turns all lengths into metres.
+float convertToMetres(RawScene& scene, const MeshImportOptions& options) {
+    const bool stated = scene.metresPerUnit > 0 && std::isfinite(scene.metresPerUnit);
+    const float metresPerUnit = stated ? scene.metresPerUnit : options.metresPerUnit.value_or(1.0f);
+    if (stated && options.metresPerUnit && std::abs(*options.metresPerUnit / metresPerUnit - 1) > 1e-4f) {
+        scene.warnings.push_back(
+            fmt::format("the file states its unit, {} m; the unit asked for is not used", metresPerUnit));
+    }
+    scaleLengths(scene, metresPerUnit);
+    return metresPerUnit;
+}
+
+double largestExtent(const PolygonSoup& soup) {
+    Box3f bounds;
+    for (const std::uint32_t corner : soup.corners) bounds.extend(soup.positions[corner]);
+    return bounds.isEmpty() ? 0.0 : bounds.sizes().cast<double>().maxCoeff();
+}
+
+/// Weights of the mesh's vertices from those of the file's.
+SkinWeights followVertices(const SkinWeights& skin, std::span<const std::uint32_t> sourceVertices) {
+    SkinWeights followed;
+    if (skin.vertexCount() == 0) return followed;
+    followed.bones.reserve(sourceVertices.size());
+    followed.weights.reserve(sourceVertices.size());
+    for (const std::uint32_t source : sourceVertices) {
+        followed.bones.push_back(skin.bones[source]);
+        followed.weights.push_back(skin.weights[source]);
+    }
+    return followed;
+}
+
+Result<ImportedScene> finishScene(RawScene raw, MeshFormat format, const MeshImportOptions& options) {
+    if (auto status = validate(raw); !status) return tl::unexpected(status.error());
+    cleanNames(raw);
+    ImportedScene scene;
+    scene.metresPerUnit = convertToMetres(raw, options);
+    if (auto status = validate(raw); !status) return tl::unexpected(status.error());
+    const double metres = largestExtent(raw.soup);
+    if (auto strange = implausibleSize(metres / scene.metresPerUnit, scene.metresPerUnit)) {
+        raw.warnings.push_back(std::move(*strange));
+    }
+    auto mesh = ScalpMesh::make(raw.soup);
+    if (!mesh) return tl::unexpected(mesh.error());
+    auto skeleton = Skeleton::make(std::move(raw.bones));
+    if (!skeleton) return tl::unexpected(skeleton.error());
+    scene.mesh = std::move(*mesh);
+    scene.skeleton = std::move(*skeleton);
+    scene.clips = std::move(raw.clips);
+    scene.skin = followVertices(raw.skin, scene.mesh.sourceVertices());
+    scene.warnings = std::move(raw.warnings);
+    scene.format = name(format);
+    return scene;
+}
+
+}  // namespace
+
+Result<ImportedScene> importScene(const std::filesystem::path& path, const MeshImportOptions& options) {
+    assert(!options.metresPerUnit || *options.metresPerUnit > 0);
+    const std::string file = path.string();
+    const auto head = readHead(path);
+    if (!head) return tl::unexpected(head.error());
+    if (startsWithUtf16Mark(head->bytes)) return failIn(file, {}, "is UTF-16 text", "expected UTF-8");
+    const auto format = meshFormatOf(head->bytes, head->fileSize);
+    if (!format)
+        return failIn(file, {}, "is in no mesh format that can be read", std::string(kMeshFormatsRead));
+    auto raw = readRaw(path, *format);
+    if (!raw) return tl::unexpected(inFile(raw.error(), file));
+    auto scene = finishScene(std::move(*raw), *format, options);
+    if (!scene) return tl::unexpected(inFile(scene.error(), file));
+    return scene;
+}
+
+}  // namespace hairloom

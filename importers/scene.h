@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Characters from mesh files: OBJ, PLY, STL, FBX, glTF and GLB. docs/formats/meshes.md says what is read of
+// each.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/animation/clip.h"
+#include "core/animation/skinning.h"
+#include "core/geometry/scalp_mesh.h"
+
+namespace hairloom {
+
+struct MeshImportOptions {
+    /// Metres in one unit of a file that states none (OBJ, PLY, STL), > 0; metres where this is empty. Files
+    /// that state their unit (FBX, glTF) keep it, with a warning.
+    std::optional<float> metresPerUnit;
+};
+
+struct ImportedScene {
+    ScalpMesh mesh;  ///< metres, Y up, at rest
+    Skeleton skeleton;
+    std::vector<Clip> clips;
+    SkinWeights skin;  ///< per vertex of `mesh`; empty when nothing moves it
+    std::vector<std::string> warnings;
+    std::string format;       ///< "obj", "ply", "stl", "fbx", "gltf", "glb"
+    float metresPerUnit = 1;  ///< that the file's lengths were multiplied with
+};
+
+/// Reads a file by its content; its name plays no part. FBX, glTF and STL are read in a process of their
+/// own (hairloom-mesh-reader, found beside the running program or named by the environment variable
+/// HAIRLOOM_MESH_READER), within 8 s and 1.5 GiB. Errors: missing or unreadable file, no supported format,
+/// damaged or too large for these limits, no faces, nothing left after repair.
+Result<ImportedScene> importScene(const std::filesystem::path& path, const MeshImportOptions& options = {});
+
+}  // namespace hairloom

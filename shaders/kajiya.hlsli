@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Kajiya and Kay 1989 as Rünz 2012 condenses it, Eq. 25; core/shading/kajiya_kay.h is its reference.
+
+float kajiyaDiffuse(float3 tangent, float3 toLight) {
+    const float lt = dot(toLight, tangent);
+    return sqrt(saturate(1.0 - lt * lt));
+}
+
+// cos^m of the angle between the view and the cone of mirrored light.
+float kajiyaSpecular(float3 tangent, float3 toLight, float3 toView, float exponent) {
+    const float lt = dot(toLight, tangent);
+    const float vt = dot(toView, tangent);
+    const float c = sqrt(saturate(1.0 - lt * lt)) * sqrt(saturate(1.0 - vt * vt)) - lt * vt;
+    return exponent == 0.0 ? (c >= 0.0 ? 1.0 : 0.0) : pow(saturate(c), exponent);
+}

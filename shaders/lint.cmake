@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Refuses HLSL that the SPIR-V compiler is known to get wrong. -DSOURCE=file
+file(READ "${SOURCE}" text)
+string(REGEX REPLACE "//[^\n]*" "" text "${text}")
+function(refuse pattern why)
+    if(text MATCHES "${pattern}")
+        message(FATAL_ERROR "${SOURCE}: ${why}")
+    endif()
+endfunction()
+refuse("[^A-Za-z_]ldexp *[(]" "ldexp makes invalid SPIR-V; multiply by exp2")
+refuse("(Append|Consume)StructuredBuffer|IncrementCounter|DecrementCounter" "append, consume and counter buffers do not compile; use InterlockedAdd")
+refuse("\"pow2\"" "pow2 partitioning does not compile")
+refuse("namespace[^;]*[{][^}]*static +const" "static const in a namespace is lost")
+if(SOURCE MATCHES "\\.tese\\.hlsl$")
+    refuse("SV_PrimitiveID" "SV_PrimitiveID in a domain shader is miscompiled; pass the strand as data")
+endif()
+refuse("StructuredBuffer *< *float3 *>" "float3 elements have stride 16 here and 12 in Direct3D; use float4")

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Light leaving each curve point towards the camera. Kajiya-Kay does not change across a ribbon, so shading once per
+// point, not per pixel and frame, loses nothing.
+#include "shaders/curve.hlsli"
+#include "shaders/kajiya.hlsli"
+#include "shaders/shadows.hlsli"
+
+cbuffer Constants : register(b0) { ShadeConstants gShade; };
+StructuredBuffer<CurvePoint> gCurve : register(t0);
+StructuredBuffer<StrandHeader> gStrands : register(t1);
+RWStructuredBuffer<float4> gColour : register(u0);
+
+static const float kPi = 3.14159265;
+
+float3 tilt(float3 tangent, float3 toView, float amount) {
+    const float3 normal = toView - tangent * dot(toView, tangent);
+    return normalize(tangent + normal * (amount * rsqrt(max(dot(normal, normal), 1e-8))));
+}
+
+[numthreads(64, 1, 1)]
+void main(uint3 id : SV_DispatchThreadID) {
+    const uint index = id.x + id.y * gShade.counts.z;
+    if (id.x >= gShade.counts.z || index >= gShade.counts.x) return;
+    const CurvePoint p = gCurve[index];
+    const StrandHeader strand = gStrands[p.strand];
+    const float3 tangent = unpackUnit(p.tangentXy);
+    const float3 toView = normalize(gShade.eye_ws.xyz - p.position_ws.xyz);
+
+    const float vary = 1.0 + gShade.rootTip.z * (strand.random * 2.0 - 1.0);
+    const float3 albedo = saturate(strand.albedo.rgb * lerp(gShade.rootTip.x, gShade.rootTip.y, p.along) * vary);
+    const float jitter = (hashUnit(p.strand * 2u + 1u) - 0.5) * 0.06;
+    const float3 tangent1 = tilt(tangent, toView, gShade.shift.x + jitter);
+    const float3 tangent2 = tilt(tangent, toView, gShade.shift.y + jitter);
+    const float sparkle = 0.6 + 0.8 * hashUnit(p.strand * 2u);
+    // A fibre dims what passes it the more, the darker it is.
+    const float3 pass = 1.0 - gShade.rootTip.w * (1.0 - 0.75 * sqrt(albedo));
+
+    float3 colour = 0;
+    float openness = 0;
+    for (uint i = 0; i < gShade.counts.y; ++i) {
+        const LightConstants light = gShade.lights[i];
+        const float3 toLight = light.toLight_ws.xyz;
+        const Occlusion o = occlusion(light, gShade.layers, p.position_ws.xyz, 0.0007, 0.004);
+        const float3 direct = pow(pass, o.fibres) * o.visibility;
+        const float3 scattered = pow(pass, 0.5 * o.fibres) * lerp(0.15, 1.0, o.visibility);
+        const float diffuse = kajiyaDiffuse(tangent, toLight);
+        const float3 lobe1 = gShade.primary.rgb * (gShade.normalisation.y *
+                             kajiyaSpecular(tangent1, toLight, toView, gShade.primary.w));
+        const float3 lobe2 = gShade.secondary.rgb * albedo * (sparkle * gShade.normalisation.z *
+                             kajiyaSpecular(tangent2, toLight, toView, gShade.secondary.w));
+        const float3 single = (gShade.shift.z * gShade.normalisation.x * albedo + lobe1 + lobe2) * diffuse;
+        // Light that has bounced between fibres before: an artist's term after Zinke et al. 2008, not derived.
+        const float3 multiple = gShade.shift.w * albedo * albedo * diffuse / kPi;
+        colour += light.irradiance.rgb * (single * direct + multiple * scattered);
+        openness += exp(-0.35 * o.fibres) * lerp(0.25, 1.0, o.visibility);
+    }
+    openness = gShade.counts.y > 0 ? openness / float(gShade.counts.y) : 1.0;
+    // Across a fibre half of the sky and half of the ground is seen; the tangent says how much is turned up.
+    const float up = 0.5 + 0.5 * sqrt(saturate(1.0 - tangent.y * tangent.y)) * (1.0 - 0.5 * p.along);
+    colour += albedo * lerp(gShade.ambientGround.rgb, gShade.ambientSky.rgb, up) * openness;
+    gColour[index] = float4(colour, 1);
+}

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The compiled shaders, part of the program.
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace hairloom::shaders {
+
+struct Shader {
+    std::string_view name;  ///< "NAME.STAGE", as the source file is called
+    std::span<const std::uint32_t> spirv;
+};
+
+/// Ascending by name.
+std::span<const Shader> all();
+
+/// Nothing for a name that does not exist.
+const Shader* find(std::string_view name);
+
+}  // namespace hairloom::shaders

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Small files written for one test.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "core/base/file.h"
+#include "importers/scene.h"
+
+namespace hairloom::test {
+
+class MeshFiles : public testing::Test {
+  protected:
+    void SetUp() override {
+        folder =
+            std::filesystem::path(testing::TempDir()) /
+            (std::string("hairloom-mesh-") + testing::UnitTest::GetInstance()->current_test_info()->name());
+        std::filesystem::remove_all(folder);
+        std::filesystem::create_directories(folder);
+    }
+    void TearDown() override { std::filesystem::remove_all(folder); }
+
+    std::filesystem::path write(const std::string& name, std::string_view content) const {
+        const auto path = folder / name;
+        EXPECT_TRUE(writeFileAtomically(path, content));
+        return path;
+    }
+    Result<ImportedScene> import(const std::string& name, std::string_view content) const {
+        return importScene(write(name, content));
+    }
+    /// The message of the refusal; fails the test when the file is loaded.
+    std::string refusal(const std::string& name, std::string_view content) const {
+        const auto scene = import(name, content);
+        EXPECT_FALSE(scene) << name << " is loaded";
+        return scene ? std::string() : scene.error().message();
+    }
+
+    std::filesystem::path folder;
+};
+
+}  // namespace hairloom::test

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "importers/mesh_format.h"
+
+#include <gmock/gmock.h>
+
+#include "importers/raw_scene_stream.h"
+#include "tests/importers/mesh_files.h"
+
+namespace hairloom::test {
+namespace {
+
+using testing::HasSubstr;
+
+std::optional<MeshFormat> formatOf(const std::string& content) {
+    return meshFormatOf(std::as_bytes(std::span(content)), content.size());
+}
+
+TEST(MeshFormat, IsFoundFromContent) {
+    EXPECT_EQ(formatOf("# made by hand\n\nv 0 0 0\n"), MeshFormat::Obj);
+    EXPECT_EQ(formatOf("mtllib a.mtl\n"), MeshFormat::Obj);
+    EXPECT_EQ(formatOf("ply\r\nformat ascii 1.0\r\n"), MeshFormat::Ply);
+    EXPECT_EQ(formatOf("solid cube\n facet normal 0 0 1\n"), MeshFormat::Stl);
+    EXPECT_EQ(formatOf(std::string("solid binary").append(68, ' ').append({1, 0, 0, 0}).append(50, '\0')),
+              MeshFormat::Stl);
+    EXPECT_EQ(formatOf("Kaydara FBX Binary  \0\x1a"), MeshFormat::Fbx);
+    EXPECT_EQ(formatOf("; FBX 7.4.0 project file\n"), MeshFormat::Fbx);
+    EXPECT_EQ(formatOf("glTF\2\0\0\0"), MeshFormat::Glb);
+    EXPECT_EQ(formatOf(" {\"asset\": {}}"), MeshFormat::Gltf);
+    EXPECT_EQ(formatOf("<COLLADA>\nv 1 2 3\n"), std::nullopt);
+    EXPECT_EQ(formatOf("v for victory\n"), std::nullopt);
+    EXPECT_EQ(formatOf(""), std::nullopt);
+}
+
+using SceneFile = MeshFiles;
+
+TEST_F(SceneFile, OtherFormatsAreRefusedNamingThoseThatAreRead) {
+    EXPECT_THAT(refusal("mesh.obj", "OFF\n3 1 0\n"),
+                HasSubstr("expected a mesh in OBJ, PLY, STL, FBX, glTF or GLB"));
+    EXPECT_THAT(importScene(folder / "none.obj").error().message(), HasSubstr("no such file"));
+    EXPECT_THAT(importScene(folder).error().message(), HasSubstr("is no regular file"));
+}
+
+TEST_F(SceneFile, TheNameOfTheFilePlaysNoPart) {
+    const auto stl = import("cube.glb",
+                            "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
+                            "vertex 0 1 0\nendloop\nendfacet\nendsolid a\n");
+    ASSERT_TRUE(stl) << stl.error().message();
+    EXPECT_EQ(stl->format, "stl");
+    EXPECT_EQ(stl->mesh.triangleCount(), 1u);
+}
+
+RawScene everything() {
+    RawScene scene;
+    scene.soup.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    scene.soup.offsets = {0, 3};
+    scene.soup.corners = {0, 1, 2};
+    scene.soup.uvs = {{0, 0}, {1, 0}, {0, 1}};
+    scene.soup.normals = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+    scene.soup.faceGroups = {0};
+    scene.soup.groupNames = {"head"};
+    Bone bone;
+    bone.name = "neck";
+    bone.rest = Eigen::Affine3f(Eigen::Translation3f(1, 2, 3));
+    scene.bones = {bone};
+    Channel channel;
+    channel.rotation = {{0.0f, 1.0f}, {Quatf::Identity(), Quatf(0, 1, 0, 0)}};
+    scene.clips = {{"nod", 1.0f, {channel}}};
+    scene.skin.bones = {{}, {}, {}};
+    scene.skin.weights = {{1, 0, 0, 0}, {1, 0, 0, 0}, {1, 0, 0, 0}};
+    scene.warnings = {"a warning"};
+    scene.metresPerUnit = 0.01f;
+    return scene;
+}
+
+TEST(RawSceneStream, ReadsBackWhatWasWritten) {
+    const RawScene scene = everything();
+    const auto back = readRawScene("x.fbx", writeRawScene(scene).bytes());
+    ASSERT_TRUE(back) << back.error().message();
+    EXPECT_TRUE(validate(*back));
+    EXPECT_EQ(back->soup.positions, scene.soup.positions);
+    EXPECT_EQ(back->soup.uvs, scene.soup.uvs);
+    EXPECT_EQ(back->soup.groupNames, scene.soup.groupNames);
+    EXPECT_EQ(back->bones[0].rest.matrix(), scene.bones[0].rest.matrix());
+    EXPECT_EQ(back->clips[0].channels[0].rotation.values[1].coeffs(), Quatf(0, 1, 0, 0).coeffs());
+    EXPECT_EQ(back->skin.weights, scene.skin.weights);
+    EXPECT_EQ(back->metresPerUnit, 0.01f);
+    const auto error = readRawScene("x.fbx", writeRawScene(failIn("", Line{7}, "broken", "whole")).bytes());
+    ASSERT_FALSE(error);
+    EXPECT_EQ(error.error().message(), "x.fbx:7: broken; whole");
+}
+
+TEST(RawSceneStream, EveryTruncationAndEveryDamagedByteIsHandled) {
+    const ByteWriter whole = writeRawScene(everything());
+    const std::vector<std::byte> bytes(whole.bytes().begin(), whole.bytes().end());
+    for (std::size_t length = 0; length < bytes.size(); ++length) {
+        EXPECT_FALSE(readRawScene("x.fbx", std::span(bytes).first(length))) << length;
+    }
+    for (std::size_t at = 0; at < bytes.size(); ++at) {
+        std::vector<std::byte> damaged = bytes;
+        damaged[at] ^= std::byte{0xff};
+        const auto scene = readRawScene("x.fbx", damaged);
+        if (scene) std::ignore = validate(*scene);
+    }
+}
+
+TEST(RawScene, ValidationRefusesWhatDoesNotFit) {
+    const auto problem = [](const auto& damage) {
+        RawScene scene = everything();
+        damage(scene);
+        const auto status = validate(scene);
+        EXPECT_FALSE(status);
+        return status ? std::string() : status.error().message();
+    };
+    EXPECT_TRUE(validate(everything()));
+    EXPECT_THAT(problem([](RawScene& s) { s.soup.corners[1] = 3; }), HasSubstr("face 0 names vertex 3"));
+    EXPECT_THAT(problem([](RawScene& s) { s.soup.offsets = {0}; }), HasSubstr("no faces"));
+    EXPECT_THAT(problem([](RawScene& s) { s.soup.offsets = {0, 9, 3}; }), HasSubstr("corner ranges"));
+    EXPECT_THAT(problem([](RawScene& s) { s.soup.positions[2].x() = std::nanf(""); }),
+                HasSubstr("not a finite"));
+    EXPECT_THAT(problem([](RawScene& s) { s.soup.faceGroups = {1}; }), HasSubstr("face 0 is in group 1"));
+    EXPECT_THAT(problem([](RawScene& s) { s.soup.uvs.pop_back(); }), HasSubstr("texture coordinates"));
+    EXPECT_THAT(problem([](RawScene& s) { s.bones[0].parent = 0; }), HasSubstr("hang on themselves"));
+    EXPECT_THAT(problem([](RawScene& s) { s.skin.bones[1][0] = 4; }), HasSubstr("vertex 1 follows bone 4"));
+    EXPECT_THAT(problem([](RawScene& s) { s.clips[0].channels[0].bone = 1; }), HasSubstr("moves bone 1"));
+}
+
+TEST(RawScene, ScalingLengthsLeavesAnglesAlone) {
+    RawScene scene = everything();
+    scaleLengths(scene, 2.0f);
+    EXPECT_EQ(scene.soup.positions[1], Vec3f(2, 0, 0));
+    EXPECT_EQ(scene.bones[0].rest.translation(), Vec3f(2, 4, 6));
+    EXPECT_TRUE(scene.bones[0].rest.linear().isIdentity());
+}
+
+}  // namespace
+}  // namespace hairloom::test
