@@ -12,6 +12,7 @@
 #include "core/base/file.h"
 #include "core/base/log.h"
 #include "core/groom/project_file.h"
+#include "core/groom/settings_json.h"
 #include "importers/strands.h"
 
 namespace hairloom::cli {
@@ -19,36 +20,6 @@ namespace {
 
 constexpr std::array<std::pair<const char*, float>, 5> kUnits{
     {{"m", 1.0f}, {"dm", 0.1f}, {"cm", 0.01f}, {"mm", 0.001f}, {"inch", 0.0254f}}};
-
-Error sphereError(const std::string& path, std::size_t index, const std::string& problem) {
-    return {path, {}, fmt::format("/{}: {}", index, problem),
-            R"(expected {"name": text, "centre": [x, y, z], "radius": above 0, "bone": text})"};
-}
-
-Result<CollisionSphere> readSphere(const nlohmann::json& entry, const std::string& path, std::size_t index) {
-    const auto wrong = [&](const std::string& problem) { return tl::unexpected(sphereError(path, index, problem)); };
-    if (!entry.is_object()) return wrong("is no object");
-    CollisionSphere sphere;
-    for (const auto& [key, value] : entry.items()) {
-        if (key == "name" && value.is_string()) {
-            sphere.name = value.get<std::string>();
-        } else if (key == "bone" && value.is_string()) {
-            sphere.bone = value.get<std::string>();
-        } else if (key == "radius" && value.is_number()) {
-            sphere.radius = value.get<float>();
-        } else if (key == "centre" && value.is_array() && value.size() == 3 && value[0].is_number() &&
-                   value[1].is_number() && value[2].is_number()) {
-            sphere.centre = Vec3f(value[0].get<float>(), value[1].get<float>(), value[2].get<float>());
-        } else {
-            return wrong(fmt::format("'{}' is unknown or of the wrong kind", key));
-        }
-    }
-    if (!entry.contains("centre") || !entry.contains("radius")) return wrong("has no centre or no radius");
-    if (!sphere.centre.allFinite() || !std::isfinite(sphere.radius) || sphere.radius <= 0) {
-        return wrong("is not a sphere");
-    }
-    return sphere;
-}
 
 }  // namespace
 
@@ -64,9 +35,7 @@ float metresPerUnit(const std::string& unit) {
     return 1.0f;
 }
 
-Result<ImportedScene> importSceneWithUnit(const std::string& path, const std::string& unit) {
-    MeshImportOptions options;
-    if (!unit.empty()) options.metresPerUnit = metresPerUnit(unit);
+Result<ImportedScene> importSceneLoud(const std::string& path, const MeshImportOptions& options) {
     auto scene = importScene(path, options);
     if (scene) {
         for (const std::string& warning : scene->warnings) log::warning("{}: {}", path, warning);
@@ -74,17 +43,23 @@ Result<ImportedScene> importSceneWithUnit(const std::string& path, const std::st
     return scene;
 }
 
+Result<ImportedScene> importSceneWithUnit(const std::string& path, const std::string& unit) {
+    MeshImportOptions options;
+    if (!unit.empty()) options.metresPerUnit = metresPerUnit(unit);
+    return importSceneLoud(path, options);
+}
+
 Result<Groom> loadDocument(const std::string& path) {
-    if (isProject(path)) return loadProject(path);
+    if (looksLikeProject(path)) return loadProject(path);
     auto imported = importStrands(path, {});
     if (!imported) return tl::unexpected(imported.error());
-    for (const std::string& warning : imported->warnings) log::warning("{}: {}", path, warning);
+    logFindings(path, imported->warnings);
     return std::move(imported->groom);
 }
 
 Result<Opened> openAny(const std::string& path, const std::string& unit) {
     Opened opened;
-    if (isProject(path)) {
+    if (looksLikeProject(path)) {
         auto groom = loadProject(path);
         if (!groom) return tl::unexpected(groom.error());
         opened.groom = std::move(*groom);
@@ -98,15 +73,14 @@ Result<Opened> openAny(const std::string& path, const std::string& unit) {
         opened.groom = std::move(imported->groom);
         opened.format = imported->format;
         opened.findings = validate(opened.groom);
-        for (const auto& dropped : imported->dropped) {
-            opened.findings.push_back({Severity::Error, "strand cannot be used: " + dropped.reason,
-                                       fmt::format("strand {}", dropped.strand), "remove it, or import to drop it"});
-        }
-        for (const std::string& warning : imported->warnings) {
-            opened.findings.push_back({Severity::Warning, warning, "file", ""});
+        opened.findings.insert(opened.findings.end(), imported->warnings.begin(), imported->warnings.end());
+        for (const DroppedStrand& dropped : imported->dropped) {
+            opened.findings.push_back({Severity::Error, std::string(dropReasonName(dropped.reason)),
+                                       fmt::format("strand {}", dropped.strand),
+                                       "import drops such strands"});
         }
         return opened;
-    } else if (looksLikeStrands(path)) {
+    } else if (looksLikeStrandFile(readBeginning(path, 256))) {
         return tl::unexpected(imported.error());
     }
     auto scene = importSceneWithUnit(path, unit);
@@ -124,18 +98,15 @@ Result<Opened> openAny(const std::string& path, const std::string& unit) {
 }
 
 Result<std::vector<CollisionSphere>> readSpheres(const std::string& path) {
-    const auto text = readTextFile(path, 16u << 20u);
+    const auto text = readTextFile(path, kMaxJsonBytes);
     if (!text) return tl::unexpected(text.error());
-    const auto list = nlohmann::json::parse(*text, nullptr, false);
-    if (list.is_discarded() || !list.is_array()) {
-        return failIn(path, {}, "is no JSON list of spheres", "expected [{\"centre\": [x, y, z], \"radius\": r}, …]");
-    }
+    auto parsed = parseJson(path, *text);
+    if (!parsed) return tl::unexpected(parsed.error());
+    const nlohmann::json document{{"spheres", std::move(*parsed)}};
+    JsonReader reader(document, path);
     std::vector<CollisionSphere> spheres;
-    for (std::size_t i = 0; i < list.size(); ++i) {
-        auto sphere = readSphere(list[i], path, i);
-        if (!sphere) return tl::unexpected(sphere.error());
-        spheres.push_back(std::move(*sphere));
-    }
+    for (JsonReader& entry : reader.objects("spheres")) spheres.push_back(readSphere(entry));
+    if (auto status = reader.status(); !status) return tl::unexpected(status.error());
     return spheres;
 }
 
@@ -169,6 +140,19 @@ Result<std::vector<float>> readVertexMask(const std::string& path, const ScalpMe
     return mask;
 }
 
+void logFindings(const std::string& path, const std::vector<Finding>& findings) {
+    for (const Finding& finding : findings) {
+        log::warning("{}: {}: {}{}{}", path, finding.where, finding.what, finding.fix.empty() ? "" : "; ",
+                     finding.fix);
+    }
+}
+
+Report toReport(const std::vector<Finding>& findings) {
+    Report rows = Report::array();
+    for (const Finding& finding : findings) rows.push_back(toReport(finding));
+    return rows;
+}
+
 Report toReport(const Finding& finding) {
     return Report{{"severity", severityName(finding.severity)},
                   {"what", finding.what},
@@ -176,8 +160,12 @@ Report toReport(const Finding& finding) {
                   {"fix", finding.fix}};
 }
 
-Report toReport(const Vec3f& vector) { return Report::array({vector.x(), vector.y(), vector.z()}); }
+Report toReport(const Vec3f& vector) {
+    return Report::array({vector.x(), vector.y(), vector.z()});
+}
 
-Report finiteOrNull(double value) { return std::isfinite(value) ? Report(value) : Report(nullptr); }
+Report finiteOrNull(double value) {
+    return std::isfinite(value) ? Report(value) : Report(nullptr);
+}
 
 }  // namespace hairloom::cli

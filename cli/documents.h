@@ -18,7 +18,9 @@ void addUnitOption(CLI::App& job, std::string& unit);
 /// Metres of one such unit, 1 for an empty name. The name is one that addUnitOption lets through.
 float metresPerUnit(const std::string& unit);
 
-/// The mesh, skeleton and clips of a file; its warnings go to the log. `unit` may be empty.
+/// The mesh, skeleton and clips of a file; its warnings go to the log.
+Result<ImportedScene> importSceneLoud(const std::string& path, const MeshImportOptions& options);
+/// The same with the unit of --unit, which may be empty.
 Result<ImportedScene> importSceneWithUnit(const std::string& path, const std::string& unit);
 
 /// A groom from a project, or from a hair file of any supported format.
@@ -35,10 +37,15 @@ Result<Opened> openAny(const std::string& path, const std::string& unit);
 /// The list of {"name", "centre": [x, y, z], "radius", "bone"} that `spheres` takes; metres, radius > 0.
 Result<std::vector<CollisionSphere>> readSpheres(const std::string& path);
 
-/// One number in [0, 1] per vertex of the mesh file, separated by white space; given back per vertex of the mesh.
+/// One number in [0, 1] per vertex of the mesh file, separated by white space; given back per vertex of the
+/// mesh.
 Result<std::vector<float>> readVertexMask(const std::string& path, const ScalpMesh& mesh);
 
+/// Says findings on standard error, as warnings about `path`.
+void logFindings(const std::string& path, const std::vector<Finding>& findings);
+
 Report toReport(const Finding& finding);
+Report toReport(const std::vector<Finding>& findings);
 Report toReport(const Vec3f& vector);
 /// JSON has no infinities.
 Report finiteOrNull(double value);

@@ -11,6 +11,8 @@ CLI::App& Jobs::add(const std::string& name, const std::string& does, const std:
     return *job;
 }
 
-Result<Report> Jobs::run() const { return chosen_(); }
+Result<Report> Jobs::run() const {
+    return chosen_();
+}
 
 }  // namespace hairloom::cli

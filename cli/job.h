@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// What every job of the command line shares: how it is declared, what it answers, how it ends. docs/cli.md is the
-// contract.
+// What every job of the command line shares: how it is declared, what it answers, how it ends. docs/cli.md is
+// the contract.
 
 #include <CLI/App.hpp>
 #include <functional>

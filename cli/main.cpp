@@ -23,7 +23,8 @@ void printForPeople(const Report& report) {
     for (const auto& [key, value] : report.items()) {
         if (value.is_array()) {
             fmt::print("{}:{}\n", key, value.empty() ? " none" : "");
-            for (const auto& row : value) fmt::print("  {}\n", row.is_string() ? row.get<std::string>() : row.dump());
+            for (const auto& row : value)
+                fmt::print("  {}\n", row.is_string() ? row.get<std::string>() : row.dump());
         } else {
             fmt::print("{}: {}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
         }

@@ -40,8 +40,10 @@ Result<Vec3f> parseVector(const std::string& text, const std::string& option) {
 Result<std::pair<std::uint32_t, std::uint32_t>> parseSize(const std::string& text) {
     constexpr std::uint32_t kLargest = 16384;
     const auto values = numbers<std::uint32_t>(text, 'x');
-    if (values.size() != 2 || values[0] == 0 || values[1] == 0 || values[0] > kLargest || values[1] > kLargest) {
-        return fail(fmt::format("--size is '{}'", text), fmt::format("expected WxH, each from 1 to {}", kLargest));
+    if (values.size() != 2 || values[0] == 0 || values[1] == 0 || values[0] > kLargest ||
+        values[1] > kLargest) {
+        return fail(fmt::format("--size is '{}'", text),
+                    fmt::format("expected WxH, each from 1 to {}", kLargest));
     }
     return std::pair(values[0], values[1]);
 }

@@ -40,7 +40,8 @@ Result<Placement> place(const ScalpMesh& mesh, const FaceSet& faces, const Creat
         mask = std::move(*read);
         request.mask = mask;
     }
-    return options.placement == "random" ? placeRandom(mesh, faces, request) : placeDarts(mesh, faces, request);
+    return options.placement == "random" ? placeRandom(mesh, faces, request)
+                                         : placeDarts(mesh, faces, request);
 }
 
 Result<Report> create(const CreateOptions& options) {
@@ -57,6 +58,7 @@ Result<Report> create(const CreateOptions& options) {
     if (!groom) return tl::unexpected(groom.error());
     groom->scalpExpression = options.scalp;
     groom->characterFile = options.mesh;
+    if (!options.unit.empty()) groom->characterMetresPerUnit = metresPerUnit(options.unit);
     groom->interpolation.seed = options.seed;
     if (auto saved = saveProject(*groom, options.output); !saved) return tl::unexpected(saved.error());
 
@@ -84,11 +86,14 @@ void addCreateJob(Jobs& jobs) {
         "--mesh head.obj --scalp group:scalp --count 3000 --placement dart --length 0.25 -o hair.hairloom",
         [options] { return create(*options); });
     job.add_option("--mesh", options->mesh, "Head mesh: OBJ, PLY, STL, FBX, glTF or GLB")->required();
-    job.add_option("--scalp", options->scalp,
-                   "Faces that carry hair: all, group:NAME, material:NAME, cap:DEGREES, above:F, faces:FILE, grow:N, "
-                   "shrink:N, invert, connected; a comma means and");
-    auto* count = job.add_option("--count", options->count, "Number of roots")->check(CLI::Range(1, 10'000'000));
-    auto* density = job.add_option("--density", options->density, "Roots per cm²")->check(CLI::PositiveNumber);
+    job.add_option(
+        "--scalp", options->scalp,
+        "Faces that carry hair: all, group:NAME, material:NAME, cap:DEGREES, above:F, faces:FILE, grow:N, "
+        "shrink:N, invert, connected; a comma means and");
+    auto* count =
+        job.add_option("--count", options->count, "Number of roots")->check(CLI::Range(1, 10'000'000));
+    auto* density =
+        job.add_option("--density", options->density, "Roots per cm²")->check(CLI::PositiveNumber);
     count->excludes(density);
     job.add_option("--placement", options->placement, "How roots are placed")
         ->check(CLI::IsMember({"random", "dart"}));

@@ -38,8 +38,9 @@ Result<Report> replay(const GroomOptions& options) {
 
 void addGroomJob(Jobs& jobs) {
     const auto options = std::make_shared<GroomOptions>();
-    CLI::App& job = jobs.add("groom", "Replay a list of grooming operations on a groom",
-                             "hair.hairloom --script bob.json -o bob.hairloom", [options] { return replay(*options); });
+    CLI::App& job =
+        jobs.add("groom", "Replay a list of grooming operations on a groom",
+                 "hair.hairloom --script bob.json -o bob.hairloom", [options] { return replay(*options); });
     job.add_option("groom", options->input, "Groom to work on")->required();
     job.add_option("--script", options->script, "Operations (docs/formats/script.md)")->required();
     job.add_option("-o,--output", options->output, "Project to write")->required();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <map>
 #include <memory>
 
 #include "cli/documents.h"
@@ -21,17 +22,23 @@ struct ImportOptions {
     std::string up = "y";
     std::uint32_t segments = 0;
     std::string order = "auto";
+    std::string particle = "edge";
     std::string output;
 };
+
+const std::map<std::string, RibbonOrder> kOrders{{"auto", RibbonOrder::Detect},
+                                                 {"interleaved", RibbonOrder::Interleaved},
+                                                 {"edges", RibbonOrder::EdgeAfterEdge},
+                                                 {"around", RibbonOrder::Around}};
 
 StrandImportOptions strandOptions(const ImportOptions& options) {
     StrandImportOptions strands;
     if (!options.unit.empty()) strands.metresPerUnit = metresPerUnit(options.unit);
-    strands.zUp = options.up == "z";
-    strands.segments = options.segments;
-    strands.order = options.order == "interleaved" ? RibbonOrder::Interleaved
-                    : options.order == "edges"     ? RibbonOrder::EdgeByEdge
-                                                   : RibbonOrder::Detect;
+    strands.up = options.up == "z" ? UpAxis::Z : UpAxis::Y;
+    strands.ribbonSegments = options.segments;
+    strands.ribbonOrder = kOrders.at(options.order);
+    strands.ribbonParticle =
+        options.particle == "centre" ? RibbonParticle::Centre : RibbonParticle::FirstEdge;
     return strands;
 }
 
@@ -57,25 +64,28 @@ Result<Report> import(const ImportOptions& options) {
     auto imported = importStrands(options.file, strandsAs);
     if (!imported) return tl::unexpected(imported.error());
     Groom& groom = imported->groom;
-    for (const std::string& warning : imported->warnings) log::warning("{}: {}", options.file, warning);
+    logFindings(options.file, imported->warnings);
 
     Report report;
     report["strands"] = groom.strandCount();
     report["points"] = groom.pointCount();
     report["dropped"] = Report::array();
     for (const auto& dropped : imported->dropped) {
-        report["dropped"].push_back(Report{{"strand", dropped.strand}, {"reason", dropped.reason}});
+        report["dropped"].push_back(
+            Report{{"strand", dropped.strand}, {"reason", dropReasonName(dropped.reason)}});
     }
     report["format"] = imported->format;
-    report["warnings"] = imported->warnings;
+    report["warnings"] = toReport(imported->warnings);
     if (mesh && groom.strandCount() > 0) {
         report["root_distance"] = bindingReport(bindToScalp(groom, mesh, std::move(faces)));
         groom.scalpExpression = options.scalp;
         groom.characterFile = options.mesh;
+        if (!options.meshUnit.empty()) groom.characterMetresPerUnit = metresPerUnit(options.meshUnit);
         if (auto triangulation = triangulateRoots(*mesh, groom.scalpSelection, groom.rootBindings())) {
             groom.triangulation = std::move(*triangulation);
         } else {
-            log::warning("{}: roots have no triangulation: {}", options.file, triangulation.error().message());
+            log::warning("{}: roots have no triangulation: {}", options.file,
+                         triangulation.error().message());
         }
     }
     if (auto saved = saveProject(groom, options.output); !saved) return tl::unexpected(saved.error());
@@ -87,20 +97,25 @@ Result<Report> import(const ImportOptions& options) {
 
 void addImportJob(Jobs& jobs) {
     const auto options = std::make_shared<ImportOptions>();
-    CLI::App& job = jobs.add("import", "Bring in strands from another program; the format is found from the content",
-                             "hair.tfx --mesh head.obj -o hair.hairloom", [options] { return import(*options); });
-    job.add_option("file", options->file, "Cinema 4D hair OBJ, OBJ lines, TressFX .tfx or Yuksel .hair")->required();
+    CLI::App& job =
+        jobs.add("import", "Bring in strands from another program; the format is found from the content",
+                 "hair.tfx --mesh head.obj -o hair.hairloom", [options] { return import(*options); });
+    job.add_option("file", options->file, "Cinema 4D hair OBJ, OBJ lines, TressFX .tfx or Yuksel .hair")
+        ->required();
     job.add_option("--mesh", options->mesh, "Head mesh to bind the roots to");
     job.add_option("--scalp", options->scalp, "Faces of the mesh that carry hair, as for create");
     addUnitOption(job, options->unit);
     job.add_option("--mesh-unit", options->meshUnit, "Unit of the head mesh where its file states none")
         ->check(CLI::IsMember({"m", "dm", "cm", "mm", "inch"}));
-    job.add_option("--up", options->up, "Axis that points up in the hair file")->check(CLI::IsMember({"y", "z"}));
+    job.add_option("--up", options->up, "Axis that points up in the hair file")
+        ->check(CLI::IsMember({"y", "z"}));
     job.add_option("--segments", options->segments,
                    "Segments per strand of a Cinema 4D OBJ; 0 finds them from its faces")
         ->check(CLI::Range(0, 65535));
     job.add_option("--order", options->order, "Vertex order of a Cinema 4D OBJ")
-        ->check(CLI::IsMember({"auto", "interleaved", "edges"}));
+        ->check(CLI::IsMember({"auto", "interleaved", "edges", "around"}));
+    job.add_option("--particle", options->particle, "Where a Cinema 4D ribbon's particles are")
+        ->check(CLI::IsMember({"edge", "centre"}));
     job.add_option("-o,--output", options->output, "Project to write")->required();
 }
 

@@ -11,7 +11,8 @@ namespace {
 
 Report attributeNames(const AttributeSet& attributes) {
     Report names = Report::array();
-    for (const auto& [name, data] : attributes.all()) names.push_back(name + ": " + std::string(typeName(data)));
+    for (const auto& [name, data] : attributes.all())
+        names.push_back(name + ": " + std::string(typeName(data)));
     return names;
 }
 
@@ -35,8 +36,9 @@ Result<Report> info(const std::string& path, const std::string& unit) {
     report["guides"] = groom.guideCount();
     report["spheres"] = groom.spheres.size();
     const Box3f bounds = groom.strandCount() > 0 || !groom.scalp ? groom.bounds() : groom.scalp->bounds();
-    report["bounds"] = bounds.isEmpty() ? Report(nullptr)
-                                        : Report{{"min", toReport(bounds.min())}, {"max", toReport(bounds.max())}};
+    report["bounds"] = bounds.isEmpty()
+                           ? Report(nullptr)
+                           : Report{{"min", toReport(bounds.min())}, {"max", toReport(bounds.max())}};
     report["format"] = opened->format;
     report["version"] = opened->format == "hairloom" ? Report(kProjectVersion) : Report(nullptr);
     report["strand_attributes"] = attributeNames(groom.strandAttributes);

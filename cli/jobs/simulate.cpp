@@ -119,14 +119,16 @@ Result<Report> simulate(const SimulateOptions& options) {
 
 void addSimulateJob(Jobs& jobs) {
     const auto options = std::make_shared<SimulateOptions>();
-    CLI::App& job = jobs.add("simulate", "Run the simulation and say how it went",
-                             "hair.hairloom --frames 120 --fps 60 --wind 3,0,1 --motion nod --record hair.frames",
-                             [options] { return simulate(*options); });
+    CLI::App& job =
+        jobs.add("simulate", "Run the simulation and say how it went",
+                 "hair.hairloom --frames 120 --fps 60 --wind 3,0,1 --motion nod --record hair.frames",
+                 [options] { return simulate(*options); });
     job.add_option("groom", options->input, "Project or hair file")->required();
     job.add_option("--frames", options->frames, "Frames to simulate")->check(CLI::Range(1, 1'000'000));
     job.add_option("--fps", options->framesPerSecond, "Frames per second")->check(CLI::Range(10.0, 1000.0));
     job.add_option("--backend", options->backend, "What runs it")->check(CLI::IsMember({"cpu"}));
-    job.add_option("--integrator", options->integrator, "How motion is advanced")->check(CLI::IsMember({"verlet"}));
+    job.add_option("--integrator", options->integrator, "How motion is advanced")
+        ->check(CLI::IsMember({"verlet"}));
     job.add_option("--substeps", options->substeps, "Steps per frame, instead of the groom's own")
         ->check(CLI::Range(1, 64));
     job.add_option("--wind", options->wind, "Velocity of the air X,Y,Z in m/s, instead of the groom's own");

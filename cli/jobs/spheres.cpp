@@ -30,9 +30,9 @@ Result<Report> placeSpheres(const SpheresOptions& options) {
 
 void addSpheresJob(Jobs& jobs) {
     const auto options = std::make_shared<SpheresOptions>();
-    CLI::App& job = jobs.add("spheres", "Place collision spheres",
-                             "hair.hairloom --from spheres.json -o hair.hairloom",
-                             [options] { return placeSpheres(*options); });
+    CLI::App& job =
+        jobs.add("spheres", "Place collision spheres", "hair.hairloom --from spheres.json -o hair.hairloom",
+                 [options] { return placeSpheres(*options); });
     job.add_option("groom", options->input, "Groom to add them to")->required();
     job.add_option("--from", options->from,
                    R"(JSON list of {"name", "centre": [x, y, z], "radius", "bone"}, metres)")

@@ -12,12 +12,10 @@ namespace {
 Result<Report> validateFile(const std::string& path, const std::string& unit) {
     const auto opened = openAny(path, unit);
     if (!opened) return tl::unexpected(opened.error());
-    Report findings = Report::array();
-    for (const Finding& finding : opened->findings) findings.push_back(toReport(finding));
     return Report{{"file", path},
                   {"format", opened->format},
                   {"valid", !hasErrors(opened->findings)},
-                  {"findings", std::move(findings)}};
+                  {"findings", toReport(opened->findings)}};
 }
 
 }  // namespace

@@ -33,7 +33,9 @@ FileHandle openFile(const std::filesystem::path& path, const char* mode) {
 #endif
 }
 
-std::string systemMessage(int code) { return std::generic_category().message(code); }
+std::string systemMessage(int code) {
+    return std::generic_category().message(code);
+}
 
 bool flushToDisk(std::FILE* file) {
     if (std::fflush(file) != 0) return false;
@@ -62,9 +64,11 @@ Result<Container> readWhole(const std::filesystem::path& path, std::uint64_t max
     const FileHandle file = openFile(path, "rb");
     if (!file) return failIn(name, {}, fmt::format("cannot be read: {}", systemMessage(errno)));
     const std::uint64_t size = std::filesystem::file_size(path, code);
-    if (code) return failIn(name, {}, fmt::format("has no size: {}", code.message()), "expected a regular file");
+    if (code)
+        return failIn(name, {}, fmt::format("has no size: {}", code.message()), "expected a regular file");
     if (size > maxBytes) {
-        return failIn(name, {}, fmt::format("is {} bytes long", size), fmt::format("expected at most {}", maxBytes));
+        return failIn(name, {}, fmt::format("is {} bytes long", size),
+                      fmt::format("expected at most {}", maxBytes));
     }
     Container content(static_cast<std::size_t>(size), typename Container::value_type{});
     const std::size_t got = std::fread(content.data(), 1, content.size(), file.get());
@@ -84,18 +88,32 @@ Result<std::string> readTextFile(const std::filesystem::path& path, std::uint64_
     return readWhole<std::string>(path, maxBytes);
 }
 
-Status writeFileAtomically(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+std::vector<std::byte> readBeginning(const std::filesystem::path& path, std::size_t count) {
+    std::vector<std::byte> bytes(count);
+    const FileHandle file = openFile(path, "rb");
+    bytes.resize(file ? std::fread(bytes.data(), 1, count, file.get()) : 0);
+    return bytes;
+}
+
+std::filesystem::path temporaryBeside(const std::filesystem::path& path) {
     static std::atomic<unsigned> serial{0};
     std::filesystem::path temporary = path;
     temporary += fmt::format(".{}-{}.part", processId(), serial++);
+    return temporary;
+}
+
+Status writeFileAtomically(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+    const std::filesystem::path temporary = temporaryBeside(path);
     const auto giveUp = [&](const std::string& why) {
         std::error_code ignored;
         std::filesystem::remove(temporary, ignored);
-        return failIn(path.string(), {}, "cannot be written: " + why, "expected a writable folder with free space");
+        return failIn(path.string(), {}, "cannot be written: " + why,
+                      "expected a writable folder with free space");
     };
     FileHandle file = openFile(temporary, "wb");
     if (!file) return giveUp(systemMessage(errno));
-    if (std::fwrite(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) return giveUp(systemMessage(errno));
+    if (std::fwrite(bytes.data(), 1, bytes.size(), file.get()) != bytes.size())
+        return giveUp(systemMessage(errno));
     if (!flushToDisk(file.get())) return giveUp(systemMessage(errno));
     file.reset();
     std::error_code code;

@@ -18,7 +18,8 @@
 
 namespace hairloom {
 
-static_assert(std::endian::native == std::endian::little, "file formats are read and written without swapping");
+static_assert(std::endian::native == std::endian::little,
+              "file formats are read and written without swapping");
 
 /// The whole file. Errors: missing, unreadable, a folder, longer than `maxBytes`.
 Result<std::vector<std::byte>> readFile(const std::filesystem::path& path,
@@ -26,10 +27,16 @@ Result<std::vector<std::byte>> readFile(const std::filesystem::path& path,
 Result<std::string> readTextFile(const std::filesystem::path& path,
                                  std::uint64_t maxBytes = std::uint64_t{4} << 30u);
 
-/// Writes a temporary file beside `path`, flushes it to the disk and renames it: readers see the old content or
-/// the new one, never a part. On error nothing is left under either name.
+/// The first bytes of a file, at most `count` of them; none where it cannot be read.
+std::vector<std::byte> readBeginning(const std::filesystem::path& path, std::size_t count);
+
+/// Writes a temporary file beside `path`, flushes it to the disk and renames it: readers see the old content
+/// or the new one, never a part. On error nothing is left under either name.
 Status writeFileAtomically(const std::filesystem::path& path, std::span<const std::byte> bytes);
 Status writeFileAtomically(const std::filesystem::path& path, std::string_view text);
+
+/// A name beside `path` that no other writer uses, for content that is renamed to `path` when it is whole.
+std::filesystem::path temporaryBeside(const std::filesystem::path& path);
 
 /// Reads plain values from a block of memory; never past its end.
 class ByteReader {
@@ -94,7 +101,9 @@ class ByteWriter {
         bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
     }
     /// Zeros up to the next multiple of `alignment`.
-    void align(std::size_t alignment) { bytes_.resize((bytes_.size() + alignment - 1) / alignment * alignment); }
+    void align(std::size_t alignment) {
+        bytes_.resize((bytes_.size() + alignment - 1) / alignment * alignment);
+    }
     void reserve(std::size_t bytes) { bytes_.reserve(bytes); }
     std::size_t size() const { return bytes_.size(); }
     std::span<const std::byte> bytes() const { return bytes_; }

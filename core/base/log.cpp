@@ -16,8 +16,8 @@ struct State {
     std::shared_ptr<spdlog::logger> standardError = makeStandardError();
 
     static std::shared_ptr<spdlog::logger> makeStandardError() {
-        auto logger = std::make_shared<spdlog::logger>("hairloom",
-                                                       std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
+        auto logger = std::make_shared<spdlog::logger>(
+            "hairloom", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
         logger->set_pattern("%^%l%$: %v");
         logger->set_level(spdlog::level::debug);
         return logger;
@@ -33,10 +33,14 @@ std::atomic<Level> threshold{Level::Info};
 
 spdlog::level::level_enum toSpdlog(Level level) {
     switch (level) {
-        case Level::Debug: return spdlog::level::debug;
-        case Level::Info: return spdlog::level::info;
-        case Level::Warning: return spdlog::level::warn;
-        case Level::Error: return spdlog::level::err;
+        case Level::Debug:
+            return spdlog::level::debug;
+        case Level::Info:
+            return spdlog::level::info;
+        case Level::Warning:
+            return spdlog::level::warn;
+        case Level::Error:
+            return spdlog::level::err;
     }
     return spdlog::level::info;
 }
@@ -48,7 +52,9 @@ void setSink(Sink sink) {
     state().sink = std::move(sink);
 }
 
-void setThreshold(Level level) { threshold = level; }
+void setThreshold(Level level) {
+    threshold = level;
+}
 
 void write(Level level, std::string_view message) {
     if (level < threshold.load(std::memory_order_relaxed)) return;

@@ -19,7 +19,11 @@ using Box3f = Eigen::AlignedBox3f;
 
 inline constexpr float kPi = 3.14159265358979323846f;
 
-inline constexpr float radians(float degrees) { return degrees * (kPi / 180.0f); }
-inline constexpr float degrees(float radians) { return radians * (180.0f / kPi); }
+inline constexpr float radians(float degrees) {
+    return degrees * (kPi / 180.0f);
+}
+inline constexpr float degrees(float radians) {
+    return radians * (180.0f / kPi);
+}
 
 }  // namespace hairloom

@@ -28,7 +28,8 @@ std::size_t threadCount() {
     return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
 }
 
-void parallelFor(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
+void parallelFor(std::size_t count, std::size_t grain,
+                 const std::function<void(std::size_t, std::size_t)>& body) {
     grain = std::max<std::size_t>(grain, 1);
     const std::size_t pieces = (count + grain - 1) / grain;
     const auto piece = [&](std::size_t index) { body(index * grain, std::min(count, (index + 1) * grain)); };

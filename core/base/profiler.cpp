@@ -24,7 +24,8 @@ struct Registry {
             if (calls == 0) continue;
             Row& row = byName.try_emplace(counter->name_, Row{counter->name_, 0, 0.0}).first->second;
             row.calls += calls;
-            row.milliseconds += static_cast<double>(counter->nanoseconds_.load(std::memory_order_relaxed)) * 1e-6;
+            row.milliseconds +=
+                static_cast<double>(counter->nanoseconds_.load(std::memory_order_relaxed)) * 1e-6;
         }
         std::vector<Row> result;
         result.reserve(byName.size());
@@ -55,6 +56,8 @@ std::vector<Row> report() {
     return rows;
 }
 
-void reset() { Registry::instance().zero(); }
+void reset() {
+    Registry::instance().zero();
+}
 
 }  // namespace hairloom::profiler

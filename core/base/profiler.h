@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // Where time goes. A scope costs two clock reads and two additions to its own counter (below 100 ns; see
-// benchmarks/base). Names are string literals; each HAIRLOOM_PROFILE line is one counter shared by all threads.
+// benchmarks/base). Names are string literals; each HAIRLOOM_PROFILE line is one counter shared by all
+// threads.
 
 #include <atomic>
 #include <chrono>
@@ -35,8 +36,8 @@ class Scope {
     explicit Scope(Counter& counter) : counter_(counter), start_(std::chrono::steady_clock::now()) {}
     ~Scope() {
         const auto spent = std::chrono::steady_clock::now() - start_;
-        counter_.add(static_cast<std::uint64_t>(
-            std::chrono::duration_cast<std::chrono::nanoseconds>(spent).count()));
+        counter_.add(
+            static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(spent).count()));
     }
     Scope(const Scope&) = delete;
     Scope& operator=(const Scope&) = delete;
@@ -61,7 +62,7 @@ void reset();
 #define HAIRLOOM_PROFILE_JOIN2(a, b) a##b
 #define HAIRLOOM_PROFILE_JOIN(a, b) HAIRLOOM_PROFILE_JOIN2(a, b)
 /// Times the rest of the enclosing block under `name`.
-#define HAIRLOOM_PROFILE(name)                                                                      \
-    static ::hairloom::profiler::Counter HAIRLOOM_PROFILE_JOIN(profileCounter, __LINE__)(name);     \
-    const ::hairloom::profiler::Scope HAIRLOOM_PROFILE_JOIN(profileScope, __LINE__)(                \
-        HAIRLOOM_PROFILE_JOIN(profileCounter, __LINE__))
+#define HAIRLOOM_PROFILE(name)                                                                  \
+    static ::hairloom::profiler::Counter HAIRLOOM_PROFILE_JOIN(profileCounter, __LINE__)(name); \
+    const ::hairloom::profiler::Scope HAIRLOOM_PROFILE_JOIN(                                    \
+        profileScope, __LINE__)(HAIRLOOM_PROFILE_JOIN(profileCounter, __LINE__))

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Random numbers that depend on (seed, stream, position) alone, so that any thread can draw those of any element
-// and results do not depend on the number of threads.
+// Random numbers that depend on (seed, stream, position) alone, so that any thread can draw those of any
+// element and results do not depend on the number of threads.
 
 #include <cstdint>
 

@@ -23,9 +23,10 @@ class SurfaceTree {
         Vec3f position;  ///< metres
         float distance;  ///< metres, ≥ 0
     };
+    /// The distance is infinite for a mesh without faces or a point that is not finite.
     Hit closest(const Vec3f& point) const;
-    /// Distance with the sign of the interpolated surface normal: negative inside. Exact near the surface; where the
-    /// mesh is open it speaks of the side of the nearest face.
+    /// Distance with the sign of the angle-weighted pseudo-normal (Bærentzen and Aanæs 2005): negative
+    /// inside, exact for a closed mesh; where the mesh is open it tells the side of the nearest face.
     float signedDistance(const Vec3f& point) const;
     /// First intersection with the ray; `direction` need not be of unit length.
     std::optional<Hit> firstHit(const Vec3f& origin, const Vec3f& direction) const;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Curves through strand points: centripetal-free uniform Catmull-Rom (thesis Eq. 54–56), resampling, frames.
+// Curves through strand points: uniform Catmull-Rom (thesis Eq. 54–56), resampling, frames.
 
 #include <span>
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace hairloom {
 
-/// Position and derivative with respect to x in [0, 1] over the whole curve of points.size() ≥ 2. End segments repeat
-/// the end points. x = 1 is the last point (thesis erratum, Eq. 55).
+/// Position and derivative with respect to x in [0, 1] over the whole curve of points.size() ≥ 2. End
+/// segments repeat the end points. x = 1 is the last point (thesis erratum, Eq. 55).
 Vec3f catmullRom(std::span<const Vec3f> points, float x);
 Vec3f catmullRomDerivative(std::span<const Vec3f> points, float x);
 
@@ -23,8 +23,8 @@ std::vector<Vec3f> resampleEvenly(std::span<const Vec3f> points, std::size_t cou
 /// The shortest rotation from unit vector `from` to unit vector `to`, stable at 180° (Melax 2000).
 Quatf shortestArc(const Vec3f& from, const Vec3f& to);
 
-/// Rotation-minimising frames along a polyline: columns are (normal, binormal, tangent), orthonormal, right-handed.
-/// `firstNormal` is made perpendicular to the first tangent.
+/// Rotation-minimising frames along a polyline: columns are (normal, binormal, tangent), orthonormal,
+/// right-handed. `firstNormal` is made perpendicular to the first tangent.
 std::vector<Mat3f> parallelTransportFrames(std::span<const Vec3f> points, const Vec3f& firstNormal);
 
 }  // namespace hairloom

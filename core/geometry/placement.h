@@ -11,28 +11,29 @@
 namespace hairloom {
 
 struct PlacementRequest {
-    std::size_t count = 0;           ///< roots wanted; used when density is 0
-    double densityPerCm2 = 0;        ///< roots per cm² where the mask is 1; 0 means use count
-    std::span<const float> mask;     ///< density per vertex of the mesh in [0, 1], or empty for 1 everywhere
+    std::size_t count = 0;        ///< roots wanted; used when density is 0
+    double densityPerCm2 = 0;     ///< roots per cm² where the mask is 1; 0 means use count
+    std::span<const float> mask;  ///< density per vertex of the mesh in [0, 1], or empty for 1 everywhere
     std::uint64_t seed = 0;
 };
 
 struct Placement {
     std::vector<SurfacePoint> roots;
-    /// Metres. For darts: no two roots are closer (Euclidean), and every point of the scalp with full density has a
-    /// root within this distance. 0 for random placement.
+    /// Metres; 0 for random placement. For darts: no two roots are closer (Euclidean). Where the mask is 1,
+    /// every point of the scalp has a root within this distance (to 0.1 %) when the radius was given, and
+    /// within twice this distance when the radius was chosen for a count.
     float radius = 0;
 };
 
-/// Uniform random points by area: the number on each face follows its share of the (masked) area, positions are
-/// uniform over the face. Errors: nothing to place, empty selection, mask of the wrong length.
+/// Uniform random points by area: the number on each face follows its share of the (masked) area, positions
+/// are uniform over the face. Errors: nothing to place, empty selection, mask of the wrong length.
 Result<Placement> placeRandom(const ScalpMesh& mesh, const FaceSet& faces, const PlacementRequest& request);
 
-/// Maximal Poisson-disk sampling by hierarchical dart throwing on the surface (Cline et al. 2009). Gives exactly
-/// `count` roots when a count is asked for, and as many as the density asks within 3 % otherwise, by choosing the
-/// radius; a mask scales the local radius by 1/√density.
-/// Errors: as placeRandom; a density above what disks of the radius can reach (the message names the density that
-/// would fit).
+/// Poisson-disk sampling by hierarchical dart throwing on the surface (Cline et al. 2009), exactly `count`
+/// roots or densityPerCm2 × masked area. The radius is the one whose maximal set holds about 1 % more;
+/// throwing ends at the count, when only small gaps are left. A mask scales the local radius by 1/√density;
+/// densities below 1/64 count as 0. Errors: as placeRandom; a density beyond what placement can tell apart
+/// (10,000 per cm², or the precision of the coordinates), with the density that would fit.
 Result<Placement> placeDarts(const ScalpMesh& mesh, const FaceSet& faces, const PlacementRequest& request);
 
 /// Dart throwing with the radius given (metres): maximal, no root pair closer than `radius`.

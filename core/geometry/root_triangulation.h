@@ -10,9 +10,9 @@
 
 namespace hairloom {
 
-/// Triangles of root indices, counter-clockwise seen from outside. Each chart is triangulated by itself, so none
-/// bridges a hole of the selection or joins two pieces, and none leaves the selection.
-/// Roots that share a place keep one as a vertex; the others are listed in `coincident` with the root they fall on.
+/// Triangles of root indices, counter-clockwise seen from outside. Each chart is triangulated by itself, so
+/// none bridges a hole of the selection or joins two pieces, and none leaves the selection. Roots that share
+/// a place keep one as a vertex; the others are listed in `coincident` with the root they fall on.
 struct RootTriangulation {
     std::vector<Triangle> triangles;
     struct Coincident {

@@ -50,8 +50,8 @@ struct ScalpMeshParts {
     std::vector<MeshRepair> repairs;
 };
 
-/// A triangle mesh whose every edge has at most two faces of consistent orientation and whose every vertex has one
-/// fan. Immutable once made, so that documents share it.
+/// A triangle mesh whose every edge has at most two faces of consistent orientation and whose every vertex
+/// has one fan. Immutable once made, so that documents share it.
 class ScalpMesh {
   public:
     struct Traits : OpenMesh::DefaultTraits {
@@ -64,17 +64,20 @@ class ScalpMesh {
     };
     using Connectivity = OpenMesh::TriMesh_ArrayKernelT<Traits>;
 
-    /// Repairs what can be repaired without guessing (welds equal positions, drops degenerate and repeated faces,
-    /// splits non-manifold edges and vertices, turns n-gons into triangles, computes missing normals) and lists it.
-    /// Errors: no face left, a corner that names no vertex, a coordinate that is not finite.
+    /// Repairs what can be repaired without guessing (welds equal positions, drops degenerate and repeated
+    /// faces, splits non-manifold edges and vertices, turns n-gons into triangles, computes missing normals)
+    /// and lists it. Errors: no face left, a corner that names no vertex, a coordinate that is not finite.
     static Result<ScalpMesh> make(const PolygonSoup& soup);
 
-    /// The mesh that had these arrays, in the same order and unrepaired, as project files keep it. Errors: lengths
-    /// that do not fit each other, indices out of range, values that are not finite, connectivity that make() would
-    /// have had to repair.
+    /// The mesh that had these arrays, in the same order and unrepaired, as project files keep it. Errors:
+    /// lengths that do not fit each other, indices out of range, values that are not finite, connectivity
+    /// that make() would have had to repair.
     static Result<ScalpMesh> fromParts(ScalpMeshParts parts);
 
     ScalpMesh() = default;
+
+    /// The same mesh with its vertices elsewhere (as many as there are) and normals to match.
+    ScalpMesh moved(std::vector<Vec3f> positions) const;
 
     std::size_t vertexCount() const { return positions_.size(); }
     std::size_t triangleCount() const { return triangles_.size(); }
@@ -100,8 +103,8 @@ class ScalpMesh {
     const std::vector<MeshRepair>& repairs() const { return repairs_; }
 
     Box3f bounds() const;
-    float triangleArea(std::uint32_t triangle) const;      ///< m²
-    Vec3f triangleNormal(std::uint32_t triangle) const;    ///< unit length, from the corners
+    float triangleArea(std::uint32_t triangle) const;    ///< m²
+    Vec3f triangleNormal(std::uint32_t triangle) const;  ///< unit length, from the corners
     Vec3f pointAt(std::uint32_t triangle, const Vec3f& barycentric) const;
     Vec3f normalAt(std::uint32_t triangle, const Vec3f& barycentric) const;  ///< interpolated, unit length
     Vec2f uvAt(std::uint32_t triangle, const Vec3f& barycentric) const;      ///< (0, 0) without UVs

@@ -8,12 +8,12 @@
 
 namespace hairloom {
 
-/// Evaluates a selection as the command line takes it: `all`, `group:NAME`, `material:NAME`, `cap:DEGREES` (faces
-/// whose normal leans at most that far from +Y), `above:F` (face centroids in the top 1−F of the height of what is
-/// selected so far, F in [0, 1]), `faces:FILE` (one face of the source file per line, from 0), `grow:N`, `shrink:N`
-/// (by edge-neighbours), `invert`, `connected` (the largest connected piece). A comma means and, left to right.
-/// Errors name the term: unknown word, no such group (with the names there are), a number out of range, an empty
-/// result.
+/// Evaluates a selection as the command line takes it: `all`, `group:NAME`, `material:NAME`, `cap:DEGREES`
+/// (faces whose normal leans at most that far from +Y), `above:F` (face centroids in the top 1−F of the
+/// height of what is selected so far, F in [0, 1]), `faces:FILE` (one face of the source file per line, from
+/// 0), `grow:N`, `shrink:N` (by edge-neighbours), `invert`, `connected` (the largest connected piece). A
+/// comma means and, left to right. Errors name the term: unknown word, no such group (with the names there
+/// are), a number out of range, an empty result.
 Result<FaceSet> selectFaces(const ScalpMesh& mesh, std::string_view expression);
 
 FaceSet growSelection(const ScalpMesh& mesh, const FaceSet& faces, int rings);

@@ -120,12 +120,15 @@ Result<ArchiveReader> ArchiveReader::open(std::string file, std::vector<std::byt
     return reader;
 }
 
+bool startsAsArchive(std::span<const std::byte> bytes) {
+    return bytes.size() >= kMagic.size() && std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) == 0;
+}
+
 Status ArchiveReader::readPreamble() {
     ByteReader reader(file_, bytes_);
     const auto preamble = reader.read<Preamble>("a Hairloom file's preamble");
-    const bool named =
-        bytes_.size() >= kMagic.size() && std::memcmp(bytes_.data(), kMagic.data(), kMagic.size()) == 0;
-    if (!named) return failIn(file_, Byte{0}, "is no Hairloom file", "expected it to begin with HAIRLOOM");
+    if (!startsAsArchive(bytes_))
+        return failIn(file_, Byte{0}, "is no Hairloom file", "expected it to begin with HAIRLOOM");
     if (!preamble) return tl::unexpected(preamble.error());
     if (preamble->version > kArchiveVersion || preamble->version == 0) {
         return failIn(file_, Byte{8}, newerVersion("container", preamble->version, kArchiveVersion));

@@ -20,6 +20,9 @@ namespace hairloom {
 inline constexpr std::uint32_t kArchiveVersion = 1;
 inline constexpr std::size_t kArchiveAlignment = 64;
 
+/// Whether these bytes, eight at least, start as the container does.
+bool startsAsArchive(std::span<const std::byte> bytes);
+
 /// Gathers arrays and lays them out. The arrays are not copied before finish() and must live until then.
 class ArchiveWriter {
   public:

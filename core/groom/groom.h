@@ -61,6 +61,7 @@ struct Groom {
     std::string scalpExpression;      ///< how the selection was made, for people; may be empty
     RootTriangulation triangulation;  ///< over the strands' roots; empty until made
     std::string characterFile;        ///< file that the scalp came from (mesh, skeleton, clips); may be empty
+    float characterMetresPerUnit = 0;  ///< metres in one unit of that file; 0 as the file states
 
     std::size_t strandCount() const { return offsets.empty() ? 0 : offsets.size() - 1; }
     std::size_t pointCount() const { return offsets.empty() ? 0 : offsets[offsets.size() - 1]; }
@@ -83,13 +84,15 @@ struct Groom {
 Groom makeGroom(std::vector<std::uint32_t> offsets, std::vector<Vec3f> positions);
 
 /// Straight strands along the interpolated scalp normals (thesis §4.1), bound to the scalp, each with
-/// `points` ≥ 2 points over `length` metres, with ids, root UVs, radius and the Delaunay triangulation of the
-/// roots.
+/// `points` ≥ 2 points over `length` metres, with ids, root UVs, radius tapered as the material says, and the
+/// Delaunay triangulation of the roots (three of them at least). Errors: no scalp, a root beside it, a length
+/// or number of points out of range, roots that cannot be triangulated.
 Result<Groom> growStraight(std::shared_ptr<const ScalpMesh> scalp, FaceSet selection,
                            std::span<const SurfacePoint> roots, float length, std::uint32_t points);
 
 /// Binds each root to the nearest point of the selection (all of the scalp where it is empty), replaces scalp
-/// and selection of the groom, and returns the distance of each root to its binding, metres.
+/// and selection of the groom, empties the triangulation, and returns the distance of each root to its
+/// binding, metres. `scalp` has triangles; strands have points.
 std::vector<float> bindToScalp(Groom& groom, std::shared_ptr<const ScalpMesh> scalp, FaceSet selection);
 
 }  // namespace hairloom

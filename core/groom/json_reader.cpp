@@ -93,7 +93,8 @@ JsonReader::JsonReader(const json& value, std::string path, std::shared_ptr<Cont
     if (!value.is_object()) complain({}, "is " + quoted(value), "expected an object");
 }
 
-bool JsonReader::has(std::string_view key) const {
+bool JsonReader::has(std::string_view key) {
+    asked_.emplace(key);
     return value_->is_object() && value_->contains(key);
 }
 

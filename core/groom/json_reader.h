@@ -30,7 +30,8 @@ class JsonReader {
     /// `file` is named in errors.
     JsonReader(const nlohmann::json& value, const std::string& file);
 
-    bool has(std::string_view key) const;
+    /// Counts as asking for the member.
+    bool has(std::string_view key);
     /// Absent members, other types and values out of range are complaints.
     std::string string(std::string_view key);
     bool boolean(std::string_view key);

@@ -11,6 +11,9 @@ namespace hairloom {
 
 inline constexpr std::uint32_t kProjectVersion = 1;
 
+/// Whether the file starts as a project does; false for one that cannot be read.
+bool looksLikeProject(const std::filesystem::path& path);
+
 /// Replaces `path` atomically; on error the old file stands.
 Status saveProject(const Groom& groom, const std::filesystem::path& path);
 

@@ -53,11 +53,16 @@ std::string_view severityName(Severity severity) {
     return "error";
 }
 
-std::vector<Finding> validate(const Groom& groom) {
+std::vector<Finding> validateSettings(const Groom& groom) {
     std::vector<Finding> findings;
     findLayers(groom, findings);
     findSpheres(groom, findings);
     findSettings(groom, findings);
+    return findings;
+}
+
+std::vector<Finding> validate(const Groom& groom) {
+    std::vector<Finding> findings = validateSettings(groom);
     if (!findStructure(groom, findings)) return findings;
     findGeometry(groom, findings);
     findBinding(groom, findings);

@@ -30,6 +30,9 @@ std::vector<Finding> validate(const Groom& groom);
 /// check it.
 Status checkStructure(const Groom& groom);
 
+/// The part of validate() that concerns layers, spheres and settings; all of them errors.
+std::vector<Finding> validateSettings(const Groom& groom);
+
 bool hasErrors(const std::vector<Finding>& findings);
 
 }  // namespace hairloom

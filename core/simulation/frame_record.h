@@ -20,11 +20,12 @@ struct RecordedFrame {
     HeadPose pose;
 };
 
-/// Writes frames as they come into a temporary file; `finish` puts it under the name asked for. A recorder that is
-/// destroyed unfinished leaves nothing.
+/// Writes frames as they come into a temporary file; `finish` puts it under the name asked for. A recorder
+/// that is destroyed unfinished leaves nothing.
 class FrameRecorder {
   public:
-    static Result<FrameRecorder> open(const std::filesystem::path& path, const Groom& groom, float framesPerSecond);
+    static Result<FrameRecorder> open(const std::filesystem::path& path, const Groom& groom,
+                                      float framesPerSecond);
     FrameRecorder(FrameRecorder&&) noexcept;
     FrameRecorder& operator=(FrameRecorder&&) noexcept;
     ~FrameRecorder();
@@ -38,8 +39,8 @@ class FrameRecorder {
     std::unique_ptr<Impl> impl_;
 };
 
-/// Frame `index` of a record made from this groom. Errors: damage with its place, a record of another groom (other
-/// point or vertex count), an index past the end (naming the number of frames).
+/// Frame `index` of a record made from this groom. Errors: damage with its place, a record of another groom
+/// (other point or vertex count), an index past the end (naming the number of frames).
 Result<RecordedFrame> readFrame(const std::filesystem::path& path, const Groom& groom, std::uint64_t index);
 
 }  // namespace hairloom

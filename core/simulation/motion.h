@@ -15,8 +15,9 @@ namespace hairloom {
 /// Where head and collision spheres are at one time; metres, world space.
 struct HeadPose {
     Eigen::Isometry3f head_ws = Eigen::Isometry3f::Identity();  ///< carries what no scalp vertex carries
-    std::vector<Vec3f> scalpPositions_ws;  ///< per vertex of the groom's scalp; empty: the scalp moves with head_ws
-    std::vector<Vec3f> sphereCentres_ws;   ///< per collision sphere; empty: spheres move with head_ws
+    std::vector<Vec3f>
+        scalpPositions_ws;  ///< per vertex of the groom's scalp; empty: the scalp moves with head_ws
+    std::vector<Vec3f> sphereCentres_ws;  ///< per collision sphere; empty: spheres move with head_ws
 };
 
 class HeadMotion {
@@ -26,10 +27,10 @@ class HeadMotion {
     virtual HeadPose poseAt(float time) const = 0;
 };
 
-/// The rigid motions that need no skeleton: "none"; "spin" (one turn a second about the vertical through the head's
-/// middle, reached smoothly within half a second); "nod" (± 20° about the axis through the ears, 1.25 Hz). The pivot
-/// is the middle of the scalp selection's bounds, or of the strands' roots where there is no scalp.
-/// Error: unknown name, listing those there are.
+/// The rigid motions that need no skeleton: "none"; "spin" (one turn a second about the vertical through the
+/// head's middle, reached smoothly within half a second); "nod" (± 20° about the axis through the ears, 1.25
+/// Hz). The pivot is the middle of the scalp selection's bounds, or of the strands' roots where there is no
+/// scalp. Error: unknown name, listing those there are.
 Result<std::unique_ptr<HeadMotion>> makeRigidMotion(std::string_view name, const Groom& groom);
 
 }  // namespace hairloom

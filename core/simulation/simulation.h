@@ -25,18 +25,18 @@ struct SimulationStats {
     std::uint64_t frames = 0;
     double millisecondsPerFrame = 0;  ///< mean
     double nanosecondsPerParticleSubstep = 0;
-    double maxStretch = 0;            ///< largest |length / rest length − 1| of a segment, over all frames
-    double maxPenetrationMm = 0;      ///< deepest point inside a sphere after a frame, over all frames
-    double energy = 0;                ///< kinetic energy after the last frame, joules for strands of unit mass per point
-    std::uint64_t nanCount = 0;       ///< points that are not finite, over all frames
-    std::uint64_t stateHash = 0;      ///< equal for any number of threads
+    double maxStretch = 0;        ///< largest |length / rest length − 1| of a segment, over all frames
+    double maxPenetrationMm = 0;  ///< deepest point inside a sphere after a frame, over all frames
+    double energy = 0;  ///< kinetic energy after the last frame, joules for strands of unit mass per point
+    std::uint64_t nanCount = 0;   ///< points that are not finite, over all frames
+    std::uint64_t stateHash = 0;  ///< equal for any number of threads
     std::vector<EffectReport> effects;
 };
 
 class Simulation {
   public:
-    /// The groom's strands at rest on `start`. Errors: no strands, a groom that validate() finds errors in, settings
-    /// out of range.
+    /// The groom's strands at rest on `start`. Errors: no strands, a groom that validate() finds errors in,
+    /// settings out of range.
     static Result<Simulation> make(const Groom& groom, const HeadPose& start);
     Simulation(Simulation&&) noexcept;
     Simulation& operator=(Simulation&&) noexcept;

@@ -31,9 +31,9 @@ const std::map<std::string, Rooms>& allowed() {
         };
         const Rooms simulation = with(groom, {"core/animation"});
         const Rooms gpu{"core/base", "core/gpu"};
-        const Rooms all = with(simulation, {"core/interpolation", "core/simulation", "core/shading", "core/gpu",
-                                            "core/gpu_simulation", "core/render", "core/accuracy", "importers",
-                                            "exporters", "shaders"});
+        const Rooms all = with(simulation, {"core/interpolation", "core/simulation", "core/shading",
+                                            "core/gpu", "core/gpu_simulation", "core/render", "core/accuracy",
+                                            "importers", "exporters", "shaders"});
         return std::map<std::string, Rooms>{
             {"runtime", {}},
             {"core/base", {}},
@@ -43,7 +43,8 @@ const std::map<std::string, Rooms>& allowed() {
             {"core/animation", groom},
             {"core/simulation", simulation},
             {"core/shading", base},
-            {"core/accuracy", with(groom, {"core/simulation", "core/shading", "core/gpu_simulation", "core/render"})},
+            {"core/accuracy",
+             with(groom, {"core/simulation", "core/shading", "core/gpu_simulation", "core/render"})},
             {"core/gpu", base},
             {"core/gpu_simulation", with(gpu, {"core/simulation", "core/groom", "runtime", "shaders"})},
             {"core/render", with(gpu, {"core/gpu_simulation", "core/shading", "shaders"})},
@@ -76,8 +77,8 @@ std::vector<Include> includesOf(const fs::path& top) {
     static const std::regex pattern(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");
     static const std::set<std::string> extensions{".h", ".hpp", ".cpp", ".hlsl", ".hlsli"};
     std::vector<Include> found;
-    for (const char* folder : {"core", "runtime", "importers", "exporters", "shaders", "editor", "cli", "samples",
-                               "benchmarks", "tests"}) {
+    for (const char* folder : {"core", "runtime", "importers", "exporters", "shaders", "editor", "cli",
+                               "samples", "benchmarks", "tests"}) {
         if (!fs::exists(top / folder)) continue;
         for (const auto& entry : fs::recursive_directory_iterator(top / folder)) {
             if (!extensions.contains(entry.path().extension().string())) continue;
@@ -98,7 +99,9 @@ const std::vector<Include>& allIncludes() {
     return includes;
 }
 
-std::string told(const Include& include) { return include.file + " includes " + include.target; }
+std::string told(const Include& include) {
+    return include.file + " includes " + include.target;
+}
 
 TEST(IncludeRules, EveryRoomUsesOnlyWhatItMay) {
     ASSERT_GT(allIncludes().size(), 50u);
@@ -153,7 +156,8 @@ TEST(IncludeRules, RuntimeTakesNothingButTheStandardLibraryAndHighway) {
 TEST(IncludeRules, GplLibrariesAreNotInTheMitRooms) {
     std::vector<std::string> broken;
     for (const Include& include : allIncludes()) {
-        if (roomOf(include.file) == "runtime" && include.target.rfind("CGAL/", 0) == 0) broken.push_back(told(include));
+        if (roomOf(include.file) == "runtime" && include.target.rfind("CGAL/", 0) == 0)
+            broken.push_back(told(include));
     }
     EXPECT_THAT(broken, IsEmpty());
 }

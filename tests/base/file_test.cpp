@@ -13,14 +13,16 @@ namespace fs = std::filesystem;
 class FileTest : public testing::Test {
   protected:
     void SetUp() override {
-        folder = fs::path(testing::TempDir()) /
-                 (std::string("hairloom-file-") + testing::UnitTest::GetInstance()->current_test_info()->name());
+        folder =
+            fs::path(testing::TempDir()) /
+            (std::string("hairloom-file-") + testing::UnitTest::GetInstance()->current_test_info()->name());
         fs::remove_all(folder);
         fs::create_directories(folder);
     }
     void TearDown() override { fs::remove_all(folder); }
     std::size_t filesInFolder() const {
-        return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+        return static_cast<std::size_t>(
+            std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
     }
     fs::path folder;
 };

@@ -37,9 +37,7 @@ TEST(Profiler, AddsUpScopesOfOneName) {
     for (int i = 0; i < 3; ++i) {
         HAIRLOOM_PROFILE("profiler test");
     }
-    {
-        HAIRLOOM_PROFILE("profiler test");
-    }
+    { HAIRLOOM_PROFILE("profiler test"); }
     const auto rows = profiler::report();
     ASSERT_EQ(rows.size(), 1u);
     EXPECT_EQ(rows[0].name, "profiler test");

@@ -18,11 +18,13 @@ using testing::StartsWith;
 class Cli : public CommandLineTest {
   protected:
     std::string createArguments(const std::string& more = "") const {
-        return "create --mesh '" + bustFile() + "' --scalp group:scalp --count 300 --placement dart --length 0.2 " +
+        return "create --mesh '" + bustFile() +
+               "' --scalp group:scalp --count 300 --placement dart --length 0.2 " +
                "--points 12 --seed 7 -o hair.hairloom " + more;
     }
     std::size_t filesInFolder() const {
-        return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+        return static_cast<std::size_t>(
+            std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
     }
 };
 
@@ -35,8 +37,8 @@ TEST_F(Cli, WrongUsageEndsWith2AndHelpWith0) {
 }
 
 TEST_F(Cli, EveryJobHasHelpWithAnExample) {
-    for (const char* job : {"create", "info", "import", "export", "validate", "groom", "spheres", "set", "simulate",
-                            "render", "devices", "bench"}) {
+    for (const char* job : {"create", "info", "import", "export", "validate", "groom", "spheres", "set",
+                            "simulate", "render", "devices", "bench"}) {
         const Outcome help = run(std::string(job) + " --help");
         EXPECT_EQ(help.exitCode, 0) << job;
         EXPECT_THAT(help.output, HasSubstr(std::string("hairloom-cli ") + job));
@@ -71,7 +73,8 @@ TEST_F(Cli, ErrorsNameFileAndExpectationAndLeaveNothingBehind) {
     const Outcome missing = run("create --mesh none.obj --count 10 -o hair.hairloom");
     EXPECT_EQ(missing.exitCode, 1);
     EXPECT_THAT(missing.errors, StartsWith("error: none.obj: "));
-    const Outcome group = run("create --mesh '" + bustFile() + "' --scalp group:beard --count 10 -o hair.hairloom");
+    const Outcome group =
+        run("create --mesh '" + bustFile() + "' --scalp group:beard --count 10 -o hair.hairloom");
     EXPECT_EQ(group.exitCode, 1);
     EXPECT_THAT(group.errors, HasSubstr("scalp")) << "the groups there are";
     const Outcome dense =
@@ -135,7 +138,8 @@ TEST_F(Cli, ExportedAssetsComeBackTheSame) {
 
 TEST_F(Cli, SettingsAreCheckedByNameAndRange) {
     runJson(createArguments());
-    const auto set = runJson("set hair.hairloom simulation.windSpeed=4 material.shininess=90 -o hair.hairloom");
+    const auto set =
+        runJson("set hair.hairloom simulation.windSpeed=4 material.shininess=90 -o hair.hairloom");
     EXPECT_EQ(set["changed"], 2);
     const Outcome range = run("set hair.hairloom simulation.friction=7 -o hair.hairloom");
     EXPECT_EQ(range.exitCode, 1);
@@ -162,7 +166,8 @@ TEST_F(Cli, RecordedFramesCanBePictured) {
     runJson("render hair.hairloom --record hair.frames --frame 9 -o moved.png --size 120x120");
     runJson("render hair.hairloom -o rest.png --size 120x120");
     EXPECT_NE(readText(folder / "moved.png"), readText(folder / "rest.png"));
-    const Outcome late = run("render hair.hairloom --record hair.frames --frame 10 -o late.png --size 120x120");
+    const Outcome late =
+        run("render hair.hairloom --record hair.frames --frame 10 -o late.png --size 120x120");
     EXPECT_EQ(late.exitCode, 1);
     EXPECT_THAT(late.errors, HasSubstr("10 frames"));
     EXPECT_FALSE(fs::exists(folder / "late.png"));

@@ -13,18 +13,21 @@ namespace fs = std::filesystem;
 
 void CommandLineTest::SetUp() {
     const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder = fs::path(testing::TempDir()) / (std::string("hairloom-cli-") + info->test_suite_name() + "-" + info->name());
+    folder = fs::path(testing::TempDir()) /
+             (std::string("hairloom-cli-") + info->test_suite_name() + "-" + info->name());
     fs::remove_all(folder);
     fs::create_directories(folder);
 }
 
-void CommandLineTest::TearDown() { fs::remove_all(folder); }
+void CommandLineTest::TearDown() {
+    fs::remove_all(folder);
+}
 
 Outcome CommandLineTest::run(const std::string& arguments) const {
     const fs::path out = folder / "stdout.txt";
     const fs::path err = folder / "stderr.txt";
-    const std::string command = "cd '" + folder.string() + "' && '" + HAIRLOOM_CLI + "' " + arguments + " > '" +
-                                out.string() + "' 2> '" + err.string() + "'";
+    const std::string command = "cd '" + folder.string() + "' && '" + HAIRLOOM_CLI + "' " + arguments +
+                                " > '" + out.string() + "' 2> '" + err.string() + "'";
     const int status = std::system(command.c_str());
     const Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, readText(out), readText(err)};
     fs::remove(out);
@@ -39,7 +42,9 @@ nlohmann::json CommandLineTest::runJson(const std::string& arguments) const {
     return outcome.json();
 }
 
-std::string bustFile() { return std::string(HAIRLOOM_SOURCE_DIR) + "/samples/bust/bust.glb"; }
+std::string bustFile() {
+    return std::string(HAIRLOOM_SOURCE_DIR) + "/samples/bust/bust.glb";
+}
 
 std::string dataFile(const std::string& name) {
     const fs::path path = fs::path(HAIRLOOM_SOURCE_DIR) / ".." / "shared" / "data" / name;

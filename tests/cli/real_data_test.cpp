@@ -10,14 +10,14 @@ namespace {
 
 class RealData : public CommandLineTest {};
 
-#define HAIRLOOM_NEED_DATA(variable, name)                                        \
-    const std::string variable = dataFile(name);                                  \
+#define HAIRLOOM_NEED_DATA(variable, name)       \
+    const std::string variable = dataFile(name); \
     if (variable.empty()) GTEST_SKIP() << "no data beside this checkout: " << (name)
 
 TEST_F(RealData, SintelHeadGrowsHair) {
     HAIRLOOM_NEED_DATA(head, "heads/sintel.obj");
-    const auto report =
-        runJson("create --mesh '" + head + "' --scalp above:0.6,cap:100 --count 800 --length 0.2 -o sintel.hairloom");
+    const auto report = runJson("create --mesh '" + head +
+                                "' --scalp above:0.6,cap:100 --count 800 --length 0.2 -o sintel.hairloom");
     EXPECT_EQ(report["strands"], 800);
     EXPECT_EQ(runJson("simulate sintel.hairloom --frames 30 --motion nod --wind 2,0,0")["nan_count"], 0);
     runJson("render sintel.hairloom -o sintel.png --size 160x160");
@@ -25,22 +25,26 @@ TEST_F(RealData, SintelHeadGrowsHair) {
 
 TEST_F(RealData, MakeHumanInDecimetresHasAScalpOf491SquareCentimetres) {
     HAIRLOOM_NEED_DATA(body, "heads/makehuman_base.obj");
-    const auto report = runJson("create --mesh '" + body +
-                                "' --unit dm --scalp group:body,above:0.94,cap:90 --count 500 --length 0.1 -o mh.hairloom");
+    const auto report =
+        runJson("create --mesh '" + body +
+                "' --unit dm --scalp group:body,above:0.94,cap:90 --count 500 --length 0.1 -o mh.hairloom");
     EXPECT_EQ(report["strands"], 500);
     EXPECT_NEAR(report["scalp_area_cm2"], 491, 5);
-    const Outcome plain = run("create --mesh '" + body + "' --scalp group:body,above:0.94 --count 10 -o big.hairloom");
+    const Outcome plain =
+        run("create --mesh '" + body + "' --scalp group:body,above:0.94 --count 10 -o big.hairloom");
     EXPECT_THAT(plain.errors, testing::HasSubstr("dm")) << "17 m is no human: the unit that fits is named";
 }
 
 TEST_F(RealData, SintelHairComesInMovesAndLeaves) {
     HAIRLOOM_NEED_DATA(hair, "strands/sintel_16pt.tfx");
-    const auto imported = runJson("import '" + hair + "' --mesh '" + dataFile("heads/sintel.obj") + "' -o s.hairloom");
+    const auto imported =
+        runJson("import '" + hair + "' --mesh '" + dataFile("heads/sintel.obj") + "' -o s.hairloom");
     EXPECT_EQ(imported["strands"], 11400);
     EXPECT_EQ(imported["points"], 11400 * 16);
     EXPECT_LT(imported["root_distance"]["median_mm"], 0.6);
     EXPECT_LT(imported["root_distance"]["max_mm"], 5.0);
-    const auto simulated = runJson("simulate s.hairloom --frames 120 --fps 60 --wind 2,0,1 --motion nod -o moved.hairloom");
+    const auto simulated =
+        runJson("simulate s.hairloom --frames 120 --fps 60 --wind 2,0,1 --motion nod -o moved.hairloom");
     EXPECT_EQ(simulated["nan_count"], 0);
     EXPECT_LT(simulated["max_stretch"], 0.02);
     for (const char* format : {"hair", "tfx"}) {

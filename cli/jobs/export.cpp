@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <memory>
+
+#include "cli/documents.h"
+#include "cli/job.h"
+#include "core/base/file.h"
+#include "exporters/strands.h"
+
+namespace hairloom::cli {
+namespace {
+
+struct ExportOptions {
+    std::string input;
+    std::string format;
+    std::string unit;
+    std::string up = "y";
+    std::uint32_t points = 0;
+    std::string output;
+};
+
+Result<Report> exportAsset(const ExportOptions& options) {
+    const auto groom = loadDocument(options.input);
+    if (!groom) return tl::unexpected(groom.error());
+    StrandExportOptions exporting;
+    exporting.metresPerUnit = metresPerUnit(options.unit);
+    exporting.up = options.up == "z" ? UpAxis::Z : UpAxis::Y;
+    exporting.pointsPerStrand = options.points;
+    const auto written = options.format == "tfx" ? writeTfx(*groom, options.output, exporting)
+                                                 : writeHair(*groom, options.output, exporting);
+    if (!written) return tl::unexpected(written.error());
+    const Report report = toJson(*written);
+    if (auto saved =
+            writeFileAtomically(options.output + ".report.json", std::string_view(report.dump(2) + "\n"));
+        !saved) {
+        return tl::unexpected(saved.error());
+    }
+    return report;
+}
+
+}  // namespace
+
+void addExportJob(Jobs& jobs) {
+    const auto options = std::make_shared<ExportOptions>();
+    CLI::App& job =
+        jobs.add("export", "Write an asset for another program, read it back and compare",
+                 "hair.hairloom --format tfx -o hair.tfx", [options] { return exportAsset(*options); });
+    job.add_option("groom", options->input, "Groom to export")->required();
+    job.add_option("--format", options->format, "Yuksel .hair or TressFX .tfx")
+        ->required()
+        ->check(CLI::IsMember({"hair", "tfx"}));
+    addUnitOption(job, options->unit);
+    job.add_option("--up", options->up, "Axis that points up in the file")->check(CLI::IsMember({"y", "z"}));
+    job.add_option("--points", options->points, "Resample every strand to so many points; 0 keeps them")
+        ->check(CLI::Range(0, 1024));
+    job.add_option("-o,--output", options->output, "File to write; the report goes beside it")->required();
+}
+
+}  // namespace hairloom::cli

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "cli/documents.h"
+#include "cli/job.h"
+#include "core/base/file.h"
+#include "core/groom/project_file.h"
+#include "core/groom/settings_json.h"
+
+namespace hairloom::cli {
+namespace {
+
+struct SetOptions {
+    std::string input;
+    std::vector<std::string> assignments;
+    std::string from;
+    std::string output;
+    bool list = false;
+};
+
+/// "simulation.windSpeed=4" into {"simulation": {"windSpeed": 4}}. A value that is no JSON is text.
+Status addAssignment(const std::string& assignment, nlohmann::json& document) {
+    const std::size_t dot = assignment.find('.');
+    const std::size_t equals = assignment.find('=');
+    if (dot == std::string::npos || equals == std::string::npos || dot > equals) {
+        return fail(fmt::format("'{}' sets nothing", assignment), "expected SECTION.FIELD=VALUE");
+    }
+    const std::string text = assignment.substr(equals + 1);
+    nlohmann::json value = nlohmann::json::parse(text, nullptr, false);
+    if (value.is_discarded()) value = text;
+    document[assignment.substr(0, dot)][assignment.substr(dot + 1, equals - dot - 1)] = std::move(value);
+    return {};
+}
+
+std::size_t membersIn(const nlohmann::json& document) {
+    std::size_t count = 0;
+    for (const auto& section : document) count += section.size();
+    return count;
+}
+
+/// Sections that are absent keep their values. Returns the number of fields that were given.
+Result<std::size_t> apply(const nlohmann::json& document, const std::string& source, Groom& groom) {
+    JsonReader reader(document, source);
+    if (reader.has("simulation")) readSettings(reader.object("simulation"), groom.simulation);
+    if (reader.has("material")) readSettings(reader.object("material"), groom.material);
+    if (reader.has("interpolation")) readSettings(reader.object("interpolation"), groom.interpolation);
+    reader.finish();
+    if (auto status = reader.status(); !status) return tl::unexpected(status.error());
+    return membersIn(document);
+}
+
+Result<Report> set(const SetOptions& options) {
+    auto groom = loadDocument(options.input);
+    if (!groom) return tl::unexpected(groom.error());
+    std::size_t changed = 0;
+    if (!options.from.empty()) {
+        const auto text = readTextFile(options.from, kMaxJsonBytes);
+        if (!text) return tl::unexpected(text.error());
+        const auto document = parseJson(options.from, *text);
+        if (!document) return tl::unexpected(document.error());
+        const auto applied = apply(*document, options.from, *groom);
+        if (!applied) return tl::unexpected(applied.error());
+        changed += *applied;
+    }
+    nlohmann::json assignments = nlohmann::json::object();
+    for (const std::string& assignment : options.assignments) {
+        if (auto status = addAssignment(assignment, assignments); !status)
+            return tl::unexpected(status.error());
+    }
+    const auto applied = apply(assignments, "", *groom);
+    if (!applied) return tl::unexpected(applied.error());
+    changed += *applied;
+    if (auto saved = saveProject(*groom, options.output); !saved) return tl::unexpected(saved.error());
+    return Report{{"changed", changed}, {"output", options.output}};
+}
+
+template <class Field>
+Report fieldRow(const std::string& section, const Field& field, Report standard) {
+    return Report{{"field", section + "." + field.name},
+                  {"unit", field.unit},
+                  {"min", field.min},
+                  {"max", field.max},
+                  {"default", std::move(standard)},
+                  {"meaning", field.meaning}};
+}
+
+template <class Settings, class Fields>
+void addRows(const std::string& section, const Fields& fields, Report& rows) {
+    const Report standard = toJson(Settings());
+    for (const auto& field : fields) rows.push_back(fieldRow(section, field, standard.at(field.name)));
+}
+
+Result<Report> list() {
+    Report rows = Report::array();
+    addRows<runtime::SimulationSettings>("simulation", runtime::fields(), rows);
+    addRows<HairMaterial>("material", fieldsOf(HairMaterial()), rows);
+    addRows<InterpolationSettings>("interpolation", fieldsOf(InterpolationSettings()), rows);
+    return Report{{"fields", std::move(rows)}};
+}
+
+}  // namespace
+
+void addSetJob(Jobs& jobs) {
+    const auto options = std::make_shared<SetOptions>();
+    CLI::App& job = jobs.add("set", "Change settings of a groom by name",
+                             "hair.hairloom simulation.windSpeed=4 -o hair.hairloom",
+                             [options] { return options->list ? list() : set(*options); });
+    auto* listing =
+        job.add_flag("--list", options->list, "Show every field with unit, range, default and meaning");
+    auto* input = job.add_option("groom", options->input, "Groom to change")->excludes(listing);
+    job.add_option("fields", options->assignments,
+                   "SECTION.FIELD=VALUE; sections: simulation, material, interpolation");
+    job.add_option("--from", options->from, "JSON file of sections with fields");
+    auto* output = job.add_option("-o,--output", options->output, "Project to write");
+    job.final_callback([listing, input, output] {
+        if (listing->count() == 0 && input->count() * output->count() == 0)
+            throw CLI::RequiredError("groom and -o");
+    });
+}
+
+}  // namespace hairloom::cli

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Hierarchical dart throwing on triangles (Cline, Jeschke, White, Razdan and Wonka 2009). Private to
+// core/geometry.
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "core/base/random.h"
+#include "core/geometry/placement.h"
+
+namespace hairloom {
+
+/// Roots by place, in cells two radii wide, so that a search of one radius reads at most eight. Cells lie in
+/// blocks that exist only where the surface goes.
+class RootGrid {
+  public:
+    struct Entry {
+        Vec3f position;
+        float radius;  ///< local radius, metres
+    };
+    RootGrid(const Vec3f& origin, float cell) : origin_(origin), perCell_(1 / cell) {}
+
+    void add(const Entry& entry);
+    /// Calls visit(entry) for at least all entries within `range` of `center`, until it returns true.
+    template <class Visit>
+    bool search(const Vec3f& center, float range, Visit visit) const;
+
+  private:
+    static constexpr std::uint32_t kNone = ~0u;
+    static constexpr int kBits = 4;  ///< a block is 16 cells wide
+    static constexpr std::size_t kChunk = 5;
+    struct Chunk {
+        std::array<Entry, kChunk> entries;
+        std::uint32_t count = 0;
+        std::uint32_t next = kNone;
+    };
+    using Block = std::array<std::uint32_t, std::size_t{1} << (3 * kBits)>;  ///< first chunk of each cell
+    using Cell = Eigen::Vector3i;
+
+    Cell cellOf(const Vec3f& p) const { return ((p - origin_) * perCell_).array().floor().cast<int>(); }
+    static std::uint64_t keyOf(const Cell& block) {
+        const auto part = [](int value) { return static_cast<std::uint64_t>(value + (1 << 20)) & 0x1fffffu; };
+        return part(block.x()) << 42u | part(block.y()) << 21u | part(block.z());
+    }
+    static std::size_t slotOf(const Cell& cell) {
+        constexpr int kMask = (1 << kBits) - 1;
+        return static_cast<std::size_t>(((cell.z() & kMask) << (2 * kBits)) | ((cell.y() & kMask) << kBits) |
+                                        (cell.x() & kMask));
+    }
+    std::uint32_t blockIndex(const Cell& cell) const;
+
+    Vec3f origin_;
+    float perCell_;
+    std::vector<Chunk> chunks_;
+    std::vector<Block> blocks_;
+    std::unordered_map<std::uint64_t, std::uint32_t> blockOf_;
+    mutable std::uint64_t lastKey_ = ~std::uint64_t{0};
+    mutable std::uint32_t lastBlock_ = kNone;
+};
+
+class DartThrower {
+  public:
+    DartThrower(const ScalpMesh& mesh, const FaceSet& faces, std::span<const float> mask, float radius,
+                std::uint64_t seed);
+
+    /// Throws until the set is maximal (true) or holds `most` roots while gaps are left (false).
+    bool run(std::size_t most);
+
+    /// After run: whether no point with density 1 (or of any density, against its own radius) is farther than
+    /// `factor` local radii from a root.
+    bool gapsWithin(float factor) const;
+
+    std::vector<SurfacePoint> takeRoots() { return std::move(roots_); }
+    std::size_t rootCount() const { return roots_.size(); }
+
+  private:
+    /// Part of a triangle; corners by their second and third barycentric, exact at any depth used.
+    struct Fragment {
+        std::array<Vec2f, 3> corners;
+        std::uint32_t triangle;
+        float area;
+        bool small;  ///< finished at once when its turn comes
+    };
+    /// Fragments whose areas lie between 2^k and 2^(k+1).
+    struct Bucket {
+        std::vector<Fragment> fragments;
+        double area = 0;
+    };
+    struct Places {
+        std::array<Vec3f, 3> corners;
+        float radius, widest;  ///< smallest and largest local radius in the fragment
+        bool bare;             ///< the mask is 0 all over the fragment
+        float squaredSize() const {
+            return std::max({(corners[0] - corners[1]).squaredNorm(), (corners[1] - corners[2]).squaredNorm(),
+                             (corners[2] - corners[0]).squaredNorm()});
+        }
+    };
+
+    static Vec3f barycentric(const Vec2f& part) {
+        return {std::max(0.0f, 1 - part.x() - part.y()), part.x(), part.y()};
+    }
+    float densityAt(std::uint32_t triangle, const Vec3f& weights) const;
+    float localRadius(float density) const;
+    Places placesOf(const Fragment& fragment) const;
+    static bool covers(const RootGrid::Entry& root, const Places& places, float factor);
+    void push(const Fragment& fragment);
+    Fragment take();
+    /// Throws one dart at the fragment. Afterwards near_ holds the roots that can concern it.
+    void throwDart(const Fragment& fragment);
+    void fill(const Fragment& fragment, std::size_t most);
+    void gatherNear(const Vec3f& center, float range);
+    bool coveredByNear(const Places& places) const;
+    void splitAndKeep(const Fragment& fragment);
+    bool gapWithin(const Fragment& fragment, float factor, int depth) const;
+
+    const ScalpMesh& mesh_;
+    std::span<const float> mask_;
+    float radius_;
+    float apart_;  ///< the radius plus what rounding of a measured distance may take away
+    Random random_;
+    RootGrid grid_;
+    std::vector<Bucket> buckets_;
+    std::size_t largest_ = 0, smallestUsed_;  ///< range of buckets_ that may hold fragments
+    std::size_t active_ = 0;                  ///< fragments in all buckets
+    std::vector<Fragment> small_;  ///< parts of the fragment in work, finished before the next is drawn
+    std::vector<SurfacePoint> roots_;
+    std::vector<RootGrid::Entry> near_;
+};
+
+}  // namespace hairloom

@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/geometry/selection.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <string>
+
+#include "core/base/file.h"
+
+namespace hairloom {
+namespace {
+
+constexpr std::size_t kNamesShown = 20;
+
+std::vector<bool> membership(const ScalpMesh& mesh, const FaceSet& faces) {
+    std::vector<bool> member(mesh.triangleCount(), false);
+    for (const std::uint32_t face : faces) member[face] = true;
+    return member;
+}
+
+FaceSet members(const std::vector<bool>& member) {
+    FaceSet faces;
+    for (std::uint32_t t = 0; t < member.size(); ++t)
+        if (member[t]) faces.push_back(t);
+    return faces;
+}
+
+/// Calls visit(neighbour) for the up to three faces across the edges of `face`.
+template <class Visit>
+void forEachNeighbour(const ScalpMesh& mesh, std::uint32_t face, Visit visit) {
+    const ScalpMesh::Connectivity& connectivity = mesh.connectivity();
+    for (const auto halfedge : connectivity.fh_range(OpenMesh::FaceHandle(static_cast<int>(face)))) {
+        const auto across = connectivity.opposite_face_handle(halfedge);
+        if (across.is_valid()) visit(static_cast<std::uint32_t>(across.idx()));
+    }
+}
+
+template <class Keep>
+FaceSet filtered(const FaceSet& faces, Keep keep) {
+    FaceSet kept;
+    for (const std::uint32_t face : faces)
+        if (keep(face)) kept.push_back(face);
+    return kept;
+}
+
+std::optional<double> parseNumber(std::string_view text) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+        return std::nullopt;
+    return value;
+}
+
+Result<double> numberBetween(std::string_view term, std::string_view text, double low, double high) {
+    const std::optional<double> value = parseNumber(text);
+    if (!value || *value < low || *value > high)
+        return fail(fmt::format("selection '{}': '{}' is out of range", term, text),
+                    fmt::format("a number from {} to {}", low, high));
+    return *value;
+}
+
+/// A file may repeat a name; all parts of that name are meant.
+Result<FaceSet> facesNamed(std::string_view term, std::string_view name, const FaceSet& current,
+                           std::span<const std::uint32_t> perTriangle, const std::vector<std::string>& names,
+                           const char* kind) {
+    std::vector<bool> wanted(names.size(), false);
+    for (std::size_t i = 0; i < names.size(); ++i) wanted[i] = names[i] == name;
+    if (std::find(wanted.begin(), wanted.end(), true) != wanted.end())
+        return filtered(current, [&](std::uint32_t face) { return wanted[perTriangle[face]]; });
+    std::vector<std::string> shown(names);
+    std::sort(shown.begin(), shown.end());
+    shown.erase(std::unique(shown.begin(), shown.end()), shown.end());
+    const bool more = shown.size() > kNamesShown;
+    if (more) shown.resize(kNamesShown);
+    return fail(fmt::format("selection '{}': there is no {} '{}'", term, kind, name),
+                fmt::format("one of: {}{}", fmt::join(shown, ", "), more ? ", …" : ""));
+}
+
+FaceSet facesUpright(const ScalpMesh& mesh, const FaceSet& current, double capDegrees) {
+    const double least = std::cos(capDegrees * std::numbers::pi / 180) - 1e-6;
+    return filtered(current, [&](std::uint32_t face) { return mesh.triangleNormal(face).y() >= least; });
+}
+
+FaceSet facesAbove(const ScalpMesh& mesh, const FaceSet& current, double fraction) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const std::uint32_t face : current)
+        for (const std::uint32_t vertex : mesh.triangles()[face]) {
+            low = std::min(low, static_cast<double>(mesh.positions()[vertex].y()));
+            high = std::max(high, static_cast<double>(mesh.positions()[vertex].y()));
+        }
+    const double least = low + fraction * (high - low);
+    return filtered(current, [&](std::uint32_t face) {
+        double sum = 0;
+        for (const std::uint32_t vertex : mesh.triangles()[face]) sum += mesh.positions()[vertex].y();
+        return sum / 3 >= least;
+    });
+}
+
+std::string_view trimmed(std::string_view text) {
+    const auto isSpace = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+    while (!text.empty() && isSpace(text.front())) text.remove_prefix(1);
+    while (!text.empty() && isSpace(text.back())) text.remove_suffix(1);
+    return text;
+}
+
+Result<FaceSet> facesListed(const ScalpMesh& mesh, const FaceSet& current, const std::string& path) {
+    const Result<std::string> text = readTextFile(path);
+    if (!text) return tl::unexpected(text.error());
+    std::vector<std::uint32_t> wanted;
+    std::uint64_t lineNumber = 0;
+    const std::uint32_t faceCount = mesh.sourceFaces().empty() ? 0 : mesh.sourceFaces().back() + 1;
+    for (std::size_t begin = 0; begin < text->size();) {
+        const std::size_t end = std::min(text->find('\n', begin), text->size());
+        const std::string_view line = trimmed(std::string_view(*text).substr(begin, end - begin));
+        begin = end + 1;
+        ++lineNumber;
+        if (line.empty()) continue;
+        std::uint32_t face = 0;
+        const auto [stop, error] = std::from_chars(line.data(), line.data() + line.size(), face);
+        if (error != std::errc() || stop != line.data() + line.size())
+            return failIn(path, Line{lineNumber}, fmt::format("'{}' is no face", line.substr(0, 40)),
+                          "one face number on each line, from 0");
+        if (face >= faceCount)
+            return failIn(path, Line{lineNumber}, fmt::format("the mesh has no face {}", face),
+                          fmt::format("a number below {}", faceCount));
+        wanted.push_back(face);
+    }
+    std::sort(wanted.begin(), wanted.end());
+    return filtered(current, [&](std::uint32_t face) {
+        return std::binary_search(wanted.begin(), wanted.end(), mesh.sourceFaces()[face]);
+    });
+}
+
+Result<FaceSet> applyWithArgument(const ScalpMesh& mesh, const FaceSet& current, std::string_view term,
+                                  std::string_view word, std::string_view argument) {
+    if (word == "group")
+        return facesNamed(term, argument, current, mesh.triangleGroups(), mesh.groupNames(), "group");
+    if (word == "material")
+        return facesNamed(term, argument, current, mesh.triangleMaterials(), mesh.materialNames(),
+                          "material");
+    if (word == "cap")
+        return numberBetween(term, argument, 0, 180).map([&](double angle) {
+            return facesUpright(mesh, current, angle);
+        });
+    if (word == "above")
+        return numberBetween(term, argument, 0, 1).map([&](double fraction) {
+            return facesAbove(mesh, current, fraction);
+        });
+    if (word == "faces") return facesListed(mesh, current, std::string(argument));
+    constexpr double kMostRings = 1e6;
+    const Result<double> rings = numberBetween(term, argument, 0, kMostRings);
+    if (!rings) return tl::unexpected(rings.error());
+    if (*rings != std::floor(*rings))
+        return fail(fmt::format("selection '{}': '{}' is no whole number", term, argument));
+    return word == "grow" ? growSelection(mesh, current, static_cast<int>(*rings))
+                          : shrinkSelection(mesh, current, static_cast<int>(*rings));
+}
+
+Result<FaceSet> applyTerm(const ScalpMesh& mesh, const FaceSet& current, std::string_view term) {
+    if (term == "all") return current;
+    if (term == "invert") return invertSelection(mesh, current);
+    if (term == "connected") {
+        std::vector<FaceSet> pieces = connectedPieces(mesh, current);
+        return pieces.empty() ? FaceSet{} : std::move(pieces.front());
+    }
+    const std::size_t colon = term.find(':');
+    const std::string_view word = term.substr(0, colon);
+    constexpr std::string_view kWords[] = {"group", "material", "cap", "above", "faces", "grow", "shrink"};
+    if (colon == std::string_view::npos ||
+        std::find(std::begin(kWords), std::end(kWords), word) == std::end(kWords))
+        return fail(
+            fmt::format("selection '{}': unknown term", term.substr(0, 80)),
+            "all, group:NAME, material:NAME, cap:DEGREES, above:F, faces:FILE, grow:N, shrink:N, invert or "
+            "connected");
+    return applyWithArgument(mesh, current, term, word, term.substr(colon + 1));
+}
+
+}  // namespace
+
+Result<FaceSet> selectFaces(const ScalpMesh& mesh, std::string_view expression) {
+    FaceSet current(mesh.triangleCount());
+    for (std::uint32_t t = 0; t < current.size(); ++t) current[t] = t;
+    std::string_view emptiedBy;
+    for (std::size_t begin = 0; begin <= expression.size();) {
+        const std::size_t end = std::min(expression.find(',', begin), expression.size());
+        const std::string_view term = trimmed(expression.substr(begin, end - begin));
+        Result<FaceSet> next = applyTerm(mesh, current, term);
+        if (!next) return next;
+        if (next->empty() && !current.empty()) emptiedBy = term;
+        current = std::move(*next);
+        begin = end + 1;
+    }
+    if (current.empty())
+        return fail(fmt::format("selection '{}' holds no face after '{}'", expression, emptiedBy),
+                    "at least one face");
+    return current;
+}
+
+FaceSet growSelection(const ScalpMesh& mesh, const FaceSet& faces, int rings) {
+    std::vector<bool> member = membership(mesh, faces);
+    FaceSet front = faces, next;
+    for (int ring = 0; ring < rings && !front.empty(); ++ring) {
+        next.clear();
+        for (const std::uint32_t face : front)
+            forEachNeighbour(mesh, face, [&](std::uint32_t neighbour) {
+                if (member[neighbour]) return;
+                member[neighbour] = true;
+                next.push_back(neighbour);
+            });
+        std::swap(front, next);
+    }
+    return members(member);
+}
+
+FaceSet shrinkSelection(const ScalpMesh& mesh, const FaceSet& faces, int rings) {
+    return invertSelection(mesh, growSelection(mesh, invertSelection(mesh, faces), rings));
+}
+
+FaceSet invertSelection(const ScalpMesh& mesh, const FaceSet& faces) {
+    std::vector<bool> member = membership(mesh, faces);
+    member.flip();
+    return members(member);
+}
+
+FaceSet connectedFaces(const ScalpMesh& mesh, const FaceSet& within, std::uint32_t seed) {
+    std::vector<bool> open = membership(mesh, within);
+    if (seed >= open.size() || !open[seed]) return {};
+    FaceSet reached{seed};
+    open[seed] = false;
+    for (std::size_t i = 0; i < reached.size(); ++i)
+        forEachNeighbour(mesh, reached[i], [&](std::uint32_t neighbour) {
+            if (!open[neighbour]) return;
+            open[neighbour] = false;
+            reached.push_back(neighbour);
+        });
+    std::sort(reached.begin(), reached.end());
+    return reached;
+}
+
+std::vector<FaceSet> connectedPieces(const ScalpMesh& mesh, const FaceSet& faces) {
+    std::vector<bool> open = membership(mesh, faces);
+    std::vector<std::pair<double, FaceSet>> pieces;
+    for (const std::uint32_t seed : faces) {
+        if (!open[seed]) continue;
+        FaceSet piece{seed};
+        open[seed] = false;
+        for (std::size_t i = 0; i < piece.size(); ++i)
+            forEachNeighbour(mesh, piece[i], [&](std::uint32_t neighbour) {
+                if (!open[neighbour]) return;
+                open[neighbour] = false;
+                piece.push_back(neighbour);
+            });
+        std::sort(piece.begin(), piece.end());
+        pieces.emplace_back(selectionArea(mesh, piece), std::move(piece));
+    }
+    std::stable_sort(pieces.begin(), pieces.end(),
+                     [](const auto& a, const auto& b) { return a.first > b.first; });
+    std::vector<FaceSet> result;
+    result.reserve(pieces.size());
+    for (auto& piece : pieces) result.push_back(std::move(piece.second));
+    return result;
+}
+
+double selectionArea(const ScalpMesh& mesh, const FaceSet& faces) {
+    double area = 0;
+    for (const std::uint32_t face : faces) area += mesh.triangleArea(face);
+    return area;
+}
+
+}  // namespace hairloom

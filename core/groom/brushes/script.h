@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Recorded operations, as `hairloom-cli groom --script` replays them. docs/formats/script.md lists the
+// operations.
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/groom/groom.h"
+
+namespace hairloom {
+
+inline constexpr std::uint32_t kScriptVersion = 1;
+
+struct ScriptStep {
+    std::string operation;
+    std::function<Result<std::size_t>(Groom&)> run;  ///< returns the number of strands touched
+};
+
+struct Script {
+    std::vector<ScriptStep> steps;
+};
+
+/// `text` is the JSON; `file` is named in errors. Errors name the JSON path, what stands there and what is
+/// allowed: syntax, a newer version, an unknown operation or member, a value out of range.
+Result<Script> parseScript(const std::string& file, std::string_view text);
+
+struct ScriptReport {
+    std::size_t strokes = 0;         ///< operations run
+    std::size_t touchedStrands = 0;  ///< strands whose points differ from before the first operation
+    std::vector<std::size_t> touchedByStep;
+};
+
+/// Runs all operations, in order. On error the groom is as it was.
+Result<ScriptReport> runScript(const Script& script, Groom& groom);
+
+/// What a script may say, for help texts and documentation.
+struct OperationField {
+    std::string name;
+    std::string unit;
+    double min;
+    double max;
+    std::string meaning;
+    std::string defaultValue;  ///< as it would stand in JSON
+};
+struct OperationInfo {
+    std::string name;
+    std::string meaning;
+    std::vector<OperationField> fields;
+};
+const std::vector<OperationInfo>& scriptOperations();
+/// The fields of the "region" that every operation takes.
+const std::vector<OperationField>& scriptRegionFields();
+
+}  // namespace hairloom

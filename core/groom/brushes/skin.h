@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The scalp as brushes meet it: how far away, and which way is out.
+
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "core/geometry/closest_point.h"
+
+namespace hairloom {
+
+/// Queries are const and may run on any number of threads at once. The whole mesh counts, not just the
+/// selection.
+class Skin {
+  public:
+    explicit Skin(std::shared_ptr<const ScalpMesh> scalp) : scalp_(std::move(scalp)), tree_(*scalp_) {}
+
+    struct Sample {
+        float distance;  ///< metres, negative inside
+        Vec3f outward;   ///< unit length; distance grows along it
+        SurfacePoint surface;
+    };
+    Sample at(const Vec3f& point) const {
+        const SurfaceTree::Hit hit = tree_.closest(point);
+        const Vec3f normal = scalp_->normalAt(hit.surface.triangle, hit.surface.barycentric);
+        const Vec3f away = point - hit.position;
+        const float lean = away.dot(normal);
+        // Near an edge the interpolated normal may point across `away`; the tree then looks at the faces
+        // around.
+        constexpr float kUnclear = 0.5f;
+        const bool unclear = std::abs(lean) < kUnclear * hit.distance;
+        const float side = (unclear ? tree_.signedDistance(point) : lean) < 0 ? -1.0f : 1.0f;
+        // Within a hundredth of a millimetre the difference is mostly rounding.
+        constexpr float kTouching = 1e-5f;
+        const Vec3f outward = hit.distance > kTouching ? Vec3f(away * (side / hit.distance)) : normal;
+        return {side * hit.distance, outward, hit.surface};
+    }
+    const ScalpMesh& mesh() const { return *scalp_; }
+
+  private:
+    std::shared_ptr<const ScalpMesh> scalp_;
+    SurfaceTree tree_;
+};
+
+}  // namespace hairloom

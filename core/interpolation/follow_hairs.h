@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Follow hairs from guides (thesis §4.2): wisps around one strand, the three strands of a root triangle, and
+// both blended. Binding is done once per edit; evaluation every frame.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/base/result.h"
+#include "core/groom/groom.h"
+
+namespace hairloom {
+
+/// Keeps a parting open. Where two guides diverge, hairs between them follow the nearer one alone, from the
+/// root that they would have had. The share of the farther guide fades between the two limits of either
+/// criterion.
+struct PartingSettings {
+    float beginAngleDegrees = 45;  ///< 0 … 180; between the guides' directions from root to tip
+    float endAngleDegrees = 75;    ///< > begin
+    float beginSpread = 0.7f;  ///< ≥ 0; how much farther apart the tips are than the roots, in strand lengths
+    float endSpread = 1.1f;    ///< > begin
+};
+
+/// Which guides each follow hair takes part of, and how. Hair h of guide g is g · followPerGuide + h; arrays
+/// per hair are in this order. `guides` index the guides of this binding, not the strands of the groom.
+struct FollowBindings {
+    std::uint32_t pointsPerHair = 0;          ///< of every guide and every follow hair
+    std::uint32_t followPerGuide = 0;         ///< hairs of each guide
+    std::vector<std::uint32_t> guideStrands;  ///< strand of the groom of each guide
+    std::vector<Mat3f>
+        rootFrames;  ///< per guide at rest: columns span the scalp's tangent plane; the third is its normal
+    std::vector<float> radii;  ///< per point of a hair: r_0, metres, radius of a wisp at rest
+
+    std::vector<std::array<std::uint32_t, 3>> guides;  ///< the hair's own guide first
+    std::vector<Vec3f> weights;  ///< ≥ 0, sum 1: shares of the guides in the hair's shape, partings kept open
+    std::vector<Vec3f> rootWeights;  ///< ≥ 0, sum 1: barycentrics of the root in the root triangle
+    std::vector<Vec2f> wispOffsets;  ///< in the unit disc, in the own guide's frame
+    std::vector<float> blends;       ///< 0 wisp … 1 root triangle; 0 for guides in no triangle
+    std::vector<Vec3f>
+        rootShifts;  ///< metres, in the own guide's root frame: brings the hair's root onto the scalp
+    std::vector<SurfacePoint> roots;  ///< on the scalp; empty without one
+
+    std::size_t guideCount() const { return guideStrands.size(); }
+    std::size_t hairCount() const { return guides.size(); }
+};
+
+/// Guides are the strands flagged as such, or all. Hairs are random, by the seed, the guide's id and their
+/// number alone. Where the groom has no scalp, hairs are rooted in the planes of their guides' roots. Root
+/// triangles are the groom's where they join guides only; otherwise the guides are triangulated anew. Errors:
+/// no guides, a guide of fewer than two points, settings out of range.
+Result<FollowBindings> bindFollowHairs(const Groom& groom, const InterpolationSettings& settings,
+                                       const PartingSettings& parting = {});
+
+/// Points of the guides as evaluation takes them: guide after guide, `pointsPerHair` each; guides of another
+/// number of points are resampled evenly. Metres.
+std::vector<Vec3f> guidePositions(const Groom& groom, const FollowBindings& bindings);
+
+/// How wisps answer to speed (Choe et al., thesis Eq. 22–23): ξ = 1 + σ|v| with σ = spread · s at arc share s
+/// of the hair, 0 at the root and 1 at the tip.
+struct WispMotion {
+    float spread = 0.15f;  ///< s/m, ≥ 0; growth of the radius at the tip per m/s; 0 turns it off
+};
+
+/// The guides at one moment. Spans are guide after guide, `pointsPerHair` each.
+struct GuideState {
+    std::span<const Vec3f> positions;   ///< metres
+    std::span<const Vec3f> velocities;  ///< m/s, or empty for hair at rest
+    std::span<const Quatf>
+        rotations;  ///< per guide: turn of the scalp at its root since rest, or empty for none
+};
+
+/// Fills `positions` (hair after hair, `pointsPerHair` each, metres). The same bits for any number of
+/// threads.
+void evaluateFollowHairs(const FollowBindings& bindings, const GuideState& state, const WispMotion& motion,
+                         std::span<Vec3f> positions);
+
+/// The follow hairs at rest as a groom of its own, bound where the bindings are.
+Groom bakeFollowHairs(const Groom& groom, const FollowBindings& bindings);
+
+}  // namespace hairloom

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/simulation/clip_motion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace hairloom {
+namespace {
+
+class ClipMotion : public HeadMotion {
+  public:
+    ClipMotion(std::shared_ptr<const Actor> actor, std::uint32_t clip, std::vector<CollisionSphere> spheres)
+        : actor_(std::move(actor)), clip_(clip), spheres_(std::move(spheres)) {}
+
+    HeadPose poseAt(float time) const override {
+        ActorPose posed = actor_->poseAt(clip_, time, Wrap::Loop);
+        HeadPose pose;
+        const auto transforms = actor_->sphereTransforms(spheres_, posed);
+        for (std::size_t s = 0; s < spheres_.size(); ++s) {
+            pose.sphereCentres_ws.push_back(transforms[s] * spheres_[s].centre);
+        }
+        pose.scalpPositions_ws = std::move(posed.positions_ws);
+        return pose;
+    }
+
+  private:
+    std::shared_ptr<const Actor> actor_;
+    std::uint32_t clip_;
+    std::vector<CollisionSphere> spheres_;
+};
+
+bool sameMesh(const ScalpMesh& a, const ScalpMesh& b) {
+    return a.vertexCount() == b.vertexCount() && std::ranges::equal(a.triangles(), b.triangles());
+}
+
+}  // namespace
+
+Result<std::unique_ptr<HeadMotion>> makeClipMotion(std::shared_ptr<const Actor> actor, std::string_view clip,
+                                                   const Groom& groom) {
+    const auto index = actor->findClip(clip);
+    if (!index) return tl::unexpected(index.error());
+    if (!groom.scalp || !sameMesh(actor->mesh(), *groom.scalp)) {
+        return fail(
+            fmt::format("the character's mesh has {} vertices and {} triangles and is not the groom's scalp",
+                        actor->mesh().vertexCount(), actor->mesh().triangleCount()),
+            "expected the file that the groom was created on");
+    }
+    return std::make_unique<ClipMotion>(std::move(actor), *index, groom.spheres);
+}
+
+}  // namespace hairloom

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/simulation/motion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hairloom {
+namespace {
+
+/// Turns the head about a fixed axis through a pivot.
+class TurnMotion : public HeadMotion {
+  public:
+    using AngleAt = float (*)(float time);
+
+    TurnMotion(const Vec3f& pivot_ws, const Vec3f& axis_ws, AngleAt angleAt)
+        : pivot_ws_(pivot_ws), axis_ws_(axis_ws), angleAt_(angleAt) {}
+
+    HeadPose poseAt(float time) const override {
+        HeadPose pose;
+        pose.head_ws = Eigen::Translation3f(pivot_ws_) * Eigen::AngleAxisf(angleAt_(time), axis_ws_) *
+                       Eigen::Translation3f(-pivot_ws_);
+        return pose;
+    }
+
+  private:
+    Vec3f pivot_ws_;
+    Vec3f axis_ws_;
+    AngleAt angleAt_;
+};
+
+class RestMotion : public HeadMotion {
+  public:
+    HeadPose poseAt(float) const override { return {}; }
+};
+
+/// Radians. The angular speed rises over half a second as a smoothstep, so that the start is no blow; the
+/// integral of 3s² − 2s³ over the ramp is half its length.
+float spinAngle(float time) {
+    constexpr float kTurnsPerSecond = 1.0f;
+    constexpr float kRamp = 0.5f;
+    const float s = std::min(time / kRamp, 1.0f);
+    const float rampedTime = kRamp * (s * s * s - 0.5f * s * s * s * s) + std::max(time - kRamp, 0.0f);
+    return 2 * kPi * kTurnsPerSecond * rampedTime;
+}
+
+/// Radians, starting at rest: the amplitude rises over the first half period.
+float nodAngle(float time) {
+    constexpr float kFrequency = 1.25f;
+    const float rise = std::min(time * 2 * kFrequency, 1.0f);
+    const float smoothRise = rise * rise * (3 - 2 * rise);
+    return radians(20.0f) * smoothRise * std::sin(2 * kPi * kFrequency * time);
+}
+
+Vec3f pivotOf(const Groom& groom) {
+    Box3f bounds;
+    if (groom.scalp && !groom.scalpSelection.empty()) {
+        for (const std::uint32_t triangle : groom.scalpSelection) {
+            for (const std::uint32_t vertex : groom.scalp->triangles()[triangle]) {
+                bounds.extend(groom.scalp->positions()[vertex]);
+            }
+        }
+    } else {
+        for (std::size_t s = 0; s < groom.strandCount(); ++s) bounds.extend(groom.strand(s).front());
+    }
+    return bounds.isEmpty() ? Vec3f(Vec3f::Zero()) : Vec3f(bounds.center());
+}
+
+}  // namespace
+
+Result<std::unique_ptr<HeadMotion>> makeRigidMotion(std::string_view name, const Groom& groom) {
+    if (name == "none") return std::make_unique<RestMotion>();
+    if (name == "spin") return std::make_unique<TurnMotion>(pivotOf(groom), Vec3f::UnitY(), spinAngle);
+    if (name == "nod") return std::make_unique<TurnMotion>(pivotOf(groom), Vec3f::UnitX(), nodAngle);
+    return fail(fmt::format("there is no motion '{}'", name), "expected none, spin or nod");
+}
+
+}  // namespace hairloom

@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exporters/prepared_strands.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/parallel.h"
+#include "core/geometry/closest_point.h"
+#include "core/geometry/curve.h"
+
+namespace hairloom {
+namespace {
+
+constexpr float kRootTolerance = 0.005f;  ///< metres; roots farther from the scalp float visibly
+
+Vec3f toFile(const Vec3f& position, const StrandExportOptions& options) {
+    Vec3f p = position;
+    if (options.up == UpAxis::Z) p = Vec3f(p.x(), -p.z(), p.y());
+    return options.metresPerUnit == 1.0f ? p : Vec3f(p / options.metresPerUnit);
+}
+
+/// Values at even steps of the arc length, as resampleEvenly places the points.
+template <class T>
+std::vector<T> resampleValues(std::span<const Vec3f> points, std::span<const T> values, std::size_t count) {
+    std::vector<float> arc(points.size(), 0.0f);
+    for (std::size_t i = 1; i < points.size(); ++i) arc[i] = arc[i - 1] + (points[i] - points[i - 1]).norm();
+    std::vector<T> result(count, values.back());
+    std::size_t segment = 0;
+    for (std::size_t k = 0; k + 1 < count; ++k) {
+        const float at = arc.back() * static_cast<float>(k) / static_cast<float>(count - 1);
+        while (segment + 2 < points.size() && arc[segment + 1] <= at) ++segment;
+        const float length = arc[segment + 1] - arc[segment];
+        const float t = length > 0 ? std::clamp((at - arc[segment]) / length, 0.0f, 1.0f) : 0.0f;
+        result[k] = values[segment] + (values[segment + 1] - values[segment]) * t;
+    }
+    return result;
+}
+
+/// Half the fibre's diameter from the material, for grooms without a radius of their own.
+std::vector<float> materialRadii(const HairMaterial& material, std::size_t points) {
+    std::vector<float> radii(points);
+    for (std::size_t i = 0; i < points; ++i) {
+        const float t = static_cast<float>(i) / static_cast<float>(points - 1);
+        radii[i] = material.rootRadius * (1.0f + t * (material.tipScale - 1.0f));
+    }
+    return radii;
+}
+
+enum class Usability { Good, CoincidentPoints, Unusable };
+
+Usability usability(std::span<const Vec3f> strand) {
+    if (strand.size() < 2) return Usability::Unusable;
+    bool coincident = false;
+    bool extended = false;
+    for (std::size_t i = 0; i < strand.size(); ++i) {
+        if (!strand[i].allFinite()) return Usability::Unusable;
+        if (i == 0) continue;
+        const bool same = (strand[i] - strand[i - 1]).norm() <= kCoincidentPoints;
+        coincident = coincident || same;
+        extended = extended || !same;
+    }
+    if (!extended) return Usability::Unusable;
+    return coincident ? Usability::CoincidentPoints : Usability::Good;
+}
+
+/// Counts places and keeps the first, for one line of the report.
+struct Tally {
+    std::size_t count = 0;
+    std::size_t first = 0;
+    void add(std::size_t strand) {
+        if (count++ == 0) first = strand;
+    }
+    std::string where() const {
+        return count == 1 ? fmt::format("strand {}", first)
+                          : fmt::format("strand {} and {} more", first, count - 1);
+    }
+};
+
+class Preparer {
+  public:
+    Preparer(const Groom& groom, const StrandExportOptions& options, std::uint32_t target)
+        : groom_(groom), options_(options), target_(target) {
+        radii_ = perPoint<float>(attribute::kRadius);
+        transparency_ = perPoint<float>(attribute::kTransparency);
+        colours_ = perPoint<Vec3f>(attribute::kPointColour);
+    }
+
+    PreparedStrands run() {
+        const std::size_t strands = groom_.strandCount();
+        const std::size_t points = target_ ? strands * target_ : groom_.pointCount();
+        result_.positions.reserve(points);
+        result_.thickness.reserve(points);
+        for (std::size_t strand = 0; strand < strands; ++strand) add(strand);
+        sayFindings();
+        return std::move(result_);
+    }
+
+  private:
+    template <class T>
+    std::span<const T> perPoint(std::string_view name) const {
+        const auto values = groom_.pointAttributes.view<T>(name);
+        return values.size() == groom_.pointCount() ? values : std::span<const T>();
+    }
+
+    void add(std::size_t strand) {
+        const auto points = groom_.strand(strand);
+        const Usability judged = usability(points);
+        if (judged == Usability::Unusable) return unusable_.add(strand);
+        if (judged == Usability::CoincidentPoints) coincident_.add(strand);
+        const bool resample = target_ != 0 && points.size() != target_;
+        if (resample) resampled_.add(strand);
+        const std::size_t count = resample ? target_ : points.size();
+        if (resample) {
+            for (const Vec3f& point : resampleEvenly(points, count)) addPosition(point);
+        } else {
+            for (const Vec3f& point : points) addPosition(point);
+        }
+        const std::size_t first = groom_.offsets[strand];
+        addThickness(points, first, count);
+        append(result_.transparency, transparency_, points, first, count);
+        append(result_.colours, colours_, points, first, count);
+        result_.sources.push_back(static_cast<std::uint32_t>(strand));
+        result_.offsets.push_back(static_cast<std::uint32_t>(result_.positions.size()));
+    }
+
+    void addPosition(const Vec3f& position) { result_.positions.push_back(toFile(position, options_)); }
+
+    void addThickness(std::span<const Vec3f> points, std::size_t first, std::size_t count) {
+        const std::size_t before = result_.thickness.size();
+        if (radii_.empty()) {
+            const auto radii = materialRadii(groom_.material, count);
+            result_.thickness.insert(result_.thickness.end(), radii.begin(), radii.end());
+        } else {
+            append(result_.thickness, radii_, points, first, count);
+        }
+        for (std::size_t i = before; i < result_.thickness.size(); ++i) {
+            result_.thickness[i] = 2.0f * result_.thickness[i] / options_.metresPerUnit;
+        }
+    }
+
+    template <class T>
+    void append(std::vector<T>& target, std::span<const T> values, std::span<const Vec3f> points,
+                std::size_t first, std::size_t count) const {
+        if (values.empty()) return;
+        const auto own = values.subspan(first, points.size());
+        if (count == points.size()) {
+            target.insert(target.end(), own.begin(), own.end());
+            return;
+        }
+        const auto resampled = resampleValues(points, own, count);
+        target.insert(target.end(), resampled.begin(), resampled.end());
+    }
+
+    void sayFindings() {
+        auto& findings = result_.findings;
+        findings.push_back({Severity::Info,
+                            fmt::format("positions are in units of {} m, {} up, right-handed",
+                                        options_.metresPerUnit, options_.up == UpAxis::Y ? "Y" : "Z"),
+                            "file", "set the same unit and axis where the file is read"});
+        if (unusable_.count > 0) {
+            findings.push_back(
+                {Severity::Warning,
+                 fmt::format("{} strands of no length, not finite or of fewer than two points were "
+                             "left out",
+                             unusable_.count),
+                 unusable_.where(), "delete or redraw them"});
+        }
+        if (coincident_.count > 0 && target_ == 0) {
+            findings.push_back(
+                {Severity::Warning,
+                 fmt::format("{} strands have segments of no length; some engines reject the whole set",
+                             coincident_.count),
+                 coincident_.where(), "resample the strands"});
+        }
+        if (resampled_.count > 0) {
+            findings.push_back(
+                {Severity::Info,
+                 fmt::format("{} strands were resampled to {} points", resampled_.count, target_),
+                 resampled_.where(), "resample in the groom to see the result before exporting"});
+        }
+        if (radii_.empty()) {
+            findings.push_back({Severity::Info, "the groom has no widths; the material's were used", "radius",
+                                "give the strands a radius"});
+        }
+    }
+
+    const Groom& groom_;
+    const StrandExportOptions& options_;
+    std::uint32_t target_;
+    std::span<const float> radii_;
+    std::span<const float> transparency_;
+    std::span<const Vec3f> colours_;
+    PreparedStrands result_;
+    Tally unusable_;
+    Tally coincident_;
+    Tally resampled_;
+};
+
+void judgeRoots(const Groom& groom, const PreparedStrands& prepared, std::vector<Finding>& findings) {
+    if (!groom.scalp || groom.scalp->triangleCount() == 0) return;
+    const SurfaceTree tree(*groom.scalp, groom.scalpSelection);
+    std::vector<float> distances(prepared.strandCount());
+    parallelFor(distances.size(), 256, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            distances[i] = tree.closest(groom.strand(prepared.sources[i]).front()).distance;
+        }
+    });
+    const auto farthest = std::max_element(distances.begin(), distances.end());
+    const bool floating = *farthest > kRootTolerance;
+    findings.push_back(
+        {floating ? Severity::Warning : Severity::Info,
+         fmt::format("roots lie up to {:.3g} mm from the scalp", *farthest * 1000.0f),
+         fmt::format("strand {}", prepared.sources[static_cast<std::size_t>(farthest - distances.begin())]),
+         floating ? "bind the strands to the scalp" : ""});
+}
+
+double distanceToPolyline(const Vec3f& point, std::span<const Vec3f> polyline) {
+    float best = (point - polyline[0]).squaredNorm();
+    for (std::size_t i = 1; i < polyline.size(); ++i) {
+        const Vec3f along = polyline[i] - polyline[i - 1];
+        const float length = along.squaredNorm();
+        const float t =
+            length > 0 ? std::clamp((point - polyline[i - 1]).dot(along) / length, 0.0f, 1.0f) : 0.0f;
+        best = std::min(best, (polyline[i - 1] + t * along - point).squaredNorm());
+    }
+    return std::sqrt(double{best});
+}
+
+double strandError(std::span<const Vec3f> strand, std::span<const Vec3f> readBack) {
+    double error = 0;
+    for (std::size_t i = 0; i < strand.size(); ++i) {
+        const double distance = strand.size() == readBack.size() ? double{(strand[i] - readBack[i]).norm()}
+                                                                 : distanceToPolyline(strand[i], readBack);
+        error = std::max(error, distance);
+    }
+    return error;
+}
+
+}  // namespace
+
+Result<PreparedStrands> prepareStrands(const Groom& groom, const StrandExportOptions& options,
+                                       std::uint32_t pointsPerStrand) {
+    if (!(options.metresPerUnit > 0) || !std::isfinite(options.metresPerUnit)) {
+        return fail(fmt::format("{} metres per unit", options.metresPerUnit), "expected a positive number");
+    }
+    if (pointsPerStrand == 1)
+        return fail("1 point per strand", "expected 2 or more, or 0 to keep what there is");
+    auto prepared = Preparer(groom, options, pointsPerStrand).run();
+    if (prepared.sources.empty())
+        return fail("the groom has no usable strand", "expected at least one to write");
+    return prepared;
+}
+
+Result<ExportReport> writeAndCompare(const Groom& groom, PreparedStrands prepared,
+                                     const StrandExportOptions& options, const std::filesystem::path& path,
+                                     std::span<const std::byte> bytes) {
+    if (auto status = writeFileAtomically(path, bytes); !status) return tl::unexpected(status.error());
+    StrandImportOptions importOptions;
+    importOptions.metresPerUnit = options.metresPerUnit;
+    importOptions.up = options.up;
+    const auto readBack = importStrands(path, importOptions);
+    if (!readBack) return tl::unexpected(readBack.error());
+    if (readBack->groom.strandCount() != prepared.strandCount()) {
+        return failIn(path.string(), {},
+                      fmt::format("reads back as {} strands", readBack->groom.strandCount()),
+                      fmt::format("{} were written", prepared.strandCount()));
+    }
+    ExportReport report;
+    report.format = readBack->format;
+    report.strands = prepared.strandCount();
+    report.points = prepared.positions.size();
+    report.bytes = bytes.size();
+    for (std::size_t strand = 0; strand < prepared.strandCount(); ++strand) {
+        const double error =
+            strandError(groom.strand(prepared.sources[strand]), readBack->groom.strand(strand));
+        report.maxErrorMm = std::max(report.maxErrorMm, error * 1000.0);
+    }
+    report.findings = std::move(prepared.findings);
+    judgeRoots(groom, prepared, report.findings);
+    report.findings.insert(report.findings.end(), readBack->warnings.begin(), readBack->warnings.end());
+    return report;
+}
+
+}  // namespace hairloom

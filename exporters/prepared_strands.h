@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What strand writers have in common: choosing and resampling strands, converting units, and judging the
+// result.
+
+#include <span>
+
+#include "core/base/file.h"
+#include "exporters/strands.h"
+
+namespace hairloom {
+
+/// The strands that go into a file, in its units and axes.
+struct PreparedStrands {
+    std::vector<std::uint32_t> sources;     ///< strand of the groom
+    std::vector<std::uint32_t> offsets{0};  ///< as in Groom
+    std::vector<Vec3f> positions;           ///< units and axes of the file
+    std::vector<float> thickness;           ///< per point, diameter in units of the file
+    std::vector<float> transparency;        ///< per point, or empty
+    std::vector<Vec3f> colours;             ///< per point, or empty
+    std::vector<Finding> findings;
+
+    std::size_t strandCount() const { return sources.size(); }
+};
+
+/// `pointsPerStrand` 0 keeps every strand's points; strands that have that many already keep theirs too.
+/// Errors: options out of range, nothing to write.
+Result<PreparedStrands> prepareStrands(const Groom& groom, const StrandExportOptions& options,
+                                       std::uint32_t pointsPerStrand);
+
+/// Writes the file, reads it back and measures how far it is from the groom.
+Result<ExportReport> writeAndCompare(const Groom& groom, PreparedStrands prepared,
+                                     const StrandExportOptions& options, const std::filesystem::path& path,
+                                     std::span<const std::byte> bytes);
+
+}  // namespace hairloom

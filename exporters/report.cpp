@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exporters/report.h"
+
+#include <nlohmann/json.hpp>
+
+namespace hairloom {
+
+nlohmann::json toJson(const ExportReport& report) {
+    nlohmann::json findings = nlohmann::json::array();
+    for (const Finding& finding : report.findings) {
+        findings.push_back({{"severity", std::string(severityName(finding.severity))},
+                            {"what", finding.what},
+                            {"where", finding.where},
+                            {"fix", finding.fix}});
+    }
+    return {{"format", report.format},           {"strands", report.strands},
+            {"points", report.points},           {"bytes", report.bytes},
+            {"max_error_mm", report.maxErrorMm}, {"findings", std::move(findings)}};
+}
+
+}  // namespace hairloom

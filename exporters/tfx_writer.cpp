@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// TressFX 4 asset files. AMD's loaders seek to the UVs without asking whether there are any, so there always
+// are.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "exporters/prepared_strands.h"
+
+namespace hairloom {
+namespace {
+
+constexpr std::size_t kHeaderBytes = 160;
+/// A compute dispatch has at most 65,535 groups in each direction, and TressFX's have 64 threads, one per
+/// vertex.
+constexpr std::size_t kMostVertices = std::size_t{65535} * 64;
+
+bool isAllowed(std::size_t points) {
+    return std::find(kTfxPointCounts.begin(), kTfxPointCounts.end(), points) != kTfxPointCounts.end();
+}
+
+/// The allowed count nearest, by ratio, to the median strand's.
+std::uint32_t nearestAllowed(const Groom& groom) {
+    std::vector<std::uint32_t> counts(groom.strandCount());
+    for (std::size_t i = 0; i < counts.size(); ++i) counts[i] = groom.offsets[i + 1] - groom.offsets[i];
+    const auto middle = counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 2);
+    std::nth_element(counts.begin(), middle, counts.end());
+    const double wanted = std::log(std::max(1.0, static_cast<double>(*middle)));
+    return *std::min_element(kTfxPointCounts.rbegin(), kTfxPointCounts.rend(),
+                             [&](std::uint32_t a, std::uint32_t b) {
+                                 return std::abs(std::log(static_cast<double>(a)) - wanted) <
+                                        std::abs(std::log(static_cast<double>(b)) - wanted);
+                             });
+}
+
+Result<std::uint32_t> choosePoints(const Groom& groom, const StrandExportOptions& options) {
+    if (groom.strandCount() == 0) return fail("the groom has no strand", "expected at least one to write");
+    if (options.pointsPerStrand == 0) return nearestAllowed(groom);
+    if (isAllowed(options.pointsPerStrand)) return options.pointsPerStrand;
+    return fail(fmt::format("{} vertices per strand", options.pointsPerStrand),
+                "TressFX can have 4, 8, 16, 32 or 64");
+}
+
+std::vector<Vec2f> rootUvs(const Groom& groom, PreparedStrands& strands) {
+    const auto stored = groom.strandAttributes.view<Vec2f>(attribute::kRootUv);
+    std::vector<Vec2f> uvs(strands.strandCount(), Vec2f::Zero());
+    if (stored.size() == groom.strandCount()) {
+        for (std::size_t i = 0; i < uvs.size(); ++i) uvs[i] = stored[strands.sources[i]];
+        return uvs;
+    }
+    const auto bindings = groom.rootBindings();
+    if (groom.scalp && !groom.scalp->cornerUvs().empty() && bindings.size() == groom.strandCount()) {
+        for (std::size_t i = 0; i < uvs.size(); ++i) {
+            const SurfacePoint& root = bindings[strands.sources[i]];
+            uvs[i] = groom.scalp->uvAt(root.triangle, root.barycentric);
+        }
+        return uvs;
+    }
+    strands.findings.push_back({Severity::Warning, "root UVs are missing; all are (0, 0)", "root UVs",
+                                "bind the strands to a scalp with UVs to colour them by its texture"});
+    return uvs;
+}
+
+struct TfxSections {
+    std::vector<Vec2f> uvs;
+    std::vector<float> thicknessScale;  ///< per strand, or empty
+};
+
+/// In the order of the file: header, positions, strand UVs, strand thickness, vertex colours.
+void writeHeader(ByteWriter& writer, const PreparedStrands& strands, const TfxSections& sections,
+                 std::uint32_t points) {
+    const std::size_t uvOffset = kHeaderBytes + strands.positions.size() * 16;
+    const std::size_t thicknessOffset = uvOffset + sections.uvs.size() * 8;
+    const std::size_t colourOffset = (thicknessOffset + sections.thicknessScale.size() * 4 + 7) / 8 * 8;
+    writer.write(4.0f);
+    writer.write(static_cast<std::uint32_t>(strands.strandCount()));
+    writer.write(points);
+    writer.write(static_cast<std::uint32_t>(kHeaderBytes));
+    writer.write(static_cast<std::uint32_t>(uvOffset));
+    writer.write(std::uint32_t{0});
+    writer.write(static_cast<std::uint32_t>(sections.thicknessScale.empty() ? 0 : thicknessOffset));
+    writer.write(static_cast<std::uint32_t>(strands.colours.empty() ? 0 : colourOffset));
+    for (int reserved = 0; reserved < 32; ++reserved) writer.write(std::uint32_t{0});
+}
+
+void writePositions(ByteWriter& writer, const PreparedStrands& strands, std::uint32_t points) {
+    std::vector<float> values(strands.positions.size() * 4);
+    for (std::size_t i = 0; i < strands.positions.size(); ++i) {
+        for (int axis = 0; axis < 3; ++axis)
+            values[i * 4 + static_cast<std::size_t>(axis)] = strands.positions[i][axis];
+        values[i * 4 + 3] = i % points < 2 ? 0.0f : 1.0f;
+    }
+    writer.writeArray(std::span<const float>(values));
+}
+
+void writeColours(ByteWriter& writer, const PreparedStrands& strands) {
+    if (strands.colours.empty()) return;
+    writer.align(8);
+    std::vector<float> values;
+    values.reserve(strands.colours.size() * 4);
+    for (std::size_t i = 0; i < strands.colours.size(); ++i) {
+        for (int channel = 0; channel < 3; ++channel) values.push_back(strands.colours[i][channel]);
+        values.push_back(strands.transparency.empty() ? 1.0f : 1.0f - strands.transparency[i]);
+    }
+    writer.writeArray(std::span<const float>(values));
+}
+
+void addLimits(PreparedStrands& strands) {
+    if (strands.positions.size() > kMostVertices) {
+        strands.findings.push_back(
+            {Severity::Warning,
+             fmt::format("{} vertices are more than one TressFX dispatch can take ({})",
+                         strands.positions.size(), kMostVertices),
+             "strands", "split the groom, or export fewer guides and let TressFX make follow hairs"});
+    }
+}
+
+}  // namespace
+
+Result<ExportReport> writeTfx(const Groom& groom, const std::filesystem::path& path,
+                              const StrandExportOptions& options) {
+    const auto points = choosePoints(groom, options);
+    if (!points) return tl::unexpected(inFile(points.error(), path.string()));
+    auto strands = prepareStrands(groom, options, *points);
+    if (!strands) return tl::unexpected(inFile(strands.error(), path.string()));
+    if (strands->positions.size() * 32 + strands->strandCount() * 16 >
+        std::numeric_limits<std::uint32_t>::max()) {
+        return failIn(path.string(), {},
+                      fmt::format("{} vertices need more than 4 GiB", strands->positions.size()),
+                      "the offsets of .tfx have 32 bits: export fewer strands or vertices");
+    }
+    addLimits(*strands);
+    TfxSections sections;
+    sections.uvs = rootUvs(groom, *strands);
+    const auto scales = groom.strandAttributes.view<float>("thickness_scale");
+    if (scales.size() == groom.strandCount()) {
+        for (const std::uint32_t source : strands->sources) sections.thicknessScale.push_back(scales[source]);
+    }
+
+    ByteWriter writer;
+    writer.reserve(kHeaderBytes + strands->positions.size() * 32 + strands->strandCount() * 16);
+    writeHeader(writer, *strands, sections, *points);
+    writePositions(writer, *strands, *points);
+    for (const Vec2f& uv : sections.uvs) writer.writeArray(std::span<const float>(uv.data(), 2));
+    writer.writeArray(std::span<const float>(sections.thicknessScale));
+    writeColours(writer, *strands);
+    return writeAndCompare(groom, std::move(*strands), options, path, writer.bytes());
+}
+
+}  // namespace hairloom

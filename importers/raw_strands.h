@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What the readers of strand formats hand to importStrands: the file's own numbers, in its units and axes.
+
+#include <optional>
+
+#include "importers/strands.h"
+
+namespace hairloom {
+
+struct RawStrands {
+    std::string format;
+    std::vector<std::uint32_t> offsets{0};  ///< as in Groom
+    std::vector<std::uint32_t>
+        sourceIndices;                   ///< strand of the file of each strand; empty when they are the same
+    std::vector<Vec3f> positions;        ///< units and axes of the file
+    std::vector<float> thickness;        ///< per point, diameter in units of the file, or empty
+    std::vector<float> transparency;     ///< per point, 0 … 1, or empty
+    std::vector<Vec3f> colours;          ///< per point, linear RGB, or empty
+    std::vector<Vec2f> rootUvs;          ///< per strand, or empty
+    std::vector<float> thicknessScale;   ///< per strand, a factor without unit, or empty
+    float defaultThickness = 0;          ///< diameter in units of the file for all points; 0 where unknown
+    std::optional<Vec3f> defaultColour;  ///< linear RGB for all points
+    bool rootFirst = true;               ///< false where the format does not say which end is the root
+    bool mirrorZ = false;                ///< the file is left-handed by a negated Z
+    std::vector<DroppedStrand> dropped;  ///< what the reader itself had to leave out
+    std::vector<Finding> warnings;
+};
+
+/// A finding of the reader about the file.
+inline Finding fileWarning(std::string what, std::string where, std::string fix) {
+    return {Severity::Warning, std::move(what), std::move(where), std::move(fix)};
+}
+inline Finding fileNote(std::string what, std::string where, std::string fix = {}) {
+    return {Severity::Info, std::move(what), std::move(where), std::move(fix)};
+}
+
+/// Yuksel .hair.
+Result<RawStrands> readHair(const std::string& file, std::span<const std::byte> bytes);
+/// TressFX .tfx, versions 3.x and 4.x.
+Result<RawStrands> readTfx(const std::string& file, std::span<const std::byte> bytes);
+/// Wavefront OBJ: lines where there are any, otherwise faces as Cinema 4D ribbons.
+Result<RawStrands> readObjStrands(const std::string& file, std::string_view text,
+                                  const StrandImportOptions& options);
+
+/// What of an OBJ concerns strands. Indices are checked and count from 0.
+struct ObjStrandText {
+    std::vector<Vec3f> vertices;
+    std::vector<std::uint32_t> lineOffsets{0};  ///< line k has lineIndices[lineOffsets[k] …)
+    std::vector<std::uint32_t> lineIndices;
+    std::vector<std::uint32_t> faceOffsets{0};
+    std::vector<std::uint32_t> faceIndices;
+    std::vector<std::uint64_t> faceLines;  ///< line of the file of each face, from 1
+    std::vector<Finding> warnings;
+};
+Result<ObjStrandText> parseObjStrands(const std::string& file, std::string_view text);
+
+/// Ribbons of 2n vertices into strands of n particles (thesis §4.1; its "2n/n_v" strands are n_v/(2n)).
+Result<RawStrands> strandsFromRibbons(const std::string& file, const ObjStrandText& obj,
+                                      const StrandImportOptions& options);
+
+/// Lines into strands; those of two points that share vertices are chained.
+Result<RawStrands> strandsFromLines(const std::string& file, const ObjStrandText& obj);
+
+}  // namespace hairloom

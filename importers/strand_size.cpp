@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "importers/strand_size.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/geometry/curve.h"
+
+namespace hairloom {
+namespace {
+
+// Metres. From eyebrows and stubble to hair that reaches the floor; from a doll's head to a horse's back.
+constexpr float kShortest = 0.002f;
+constexpr float kLongest = 2.0f;
+constexpr float kSmallestSpread = 0.02f;
+constexpr float kLargestSpread = 2.5f;
+constexpr float kHead = 0.2f;  ///< spread of the roots on a human head
+constexpr float kUsualLength = 0.2f;
+constexpr std::size_t kEnoughRoots = 50;  ///< fewer say nothing about the size of a head
+
+struct Unit {
+    const char* name;
+    float metres;
+};
+constexpr std::array<Unit, 5> kUnits{
+    {{"m", 1.0f}, {"dm", 0.1f}, {"cm", 0.01f}, {"mm", 0.001f}, {"inch", 0.0254f}}};
+
+struct Size {
+    float length;  ///< median of the strands
+    float spread;  ///< largest side of the roots' bounds; 0 where there are too few roots
+};
+
+Size measure(std::span<const std::uint32_t> offsets, std::span<const Vec3f> positions) {
+    const std::size_t strands = offsets.size() - 1;
+    const std::size_t step = std::max<std::size_t>(1, strands / 1000);
+    std::vector<float> lengths;
+    Box3f roots;
+    for (std::size_t strand = 0; strand < strands; ++strand) {
+        roots.extend(positions[offsets[strand]]);
+        if (strand % step != 0) continue;
+        lengths.push_back(
+            polylineLength(positions.subspan(offsets[strand], offsets[strand + 1] - offsets[strand])));
+    }
+    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+    std::nth_element(lengths.begin(), middle, lengths.end());
+    return {*middle, strands < kEnoughRoots ? 0.0f : roots.sizes().maxCoeff()};
+}
+
+bool isPlausible(const Size& size, float scale) {
+    const float length = size.length * scale;
+    const float spread = size.spread * scale;
+    if (length < kShortest || length > kLongest) return false;
+    return size.spread == 0 || (spread >= kSmallestSpread && spread <= kLargestSpread);
+}
+
+/// How far the size is from a usual head of hair; 0 is that size.
+float unlikelihood(const Size& size, float scale) {
+    const float usual = size.spread > 0 ? kHead : kUsualLength;
+    const float found = size.spread > 0 ? size.spread : size.length;
+    return std::abs(std::log(found * scale / usual));
+}
+
+}  // namespace
+
+std::optional<Finding> implausibleSize(std::span<const std::uint32_t> offsets,
+                                       std::span<const Vec3f> positions, float metresPerUnit) {
+    const Size size = measure(offsets, positions);
+    if (isPlausible(size, 1.0f)) return std::nullopt;
+    const Unit* best = nullptr;
+    float bestScale = 0;
+    for (const Unit& unit : kUnits) {
+        const float scale = unit.metres / metresPerUnit;
+        if (!isPlausible(size, scale)) continue;
+        if (best && unlikelihood(size, scale) >= unlikelihood(size, bestScale)) continue;
+        best = &unit;
+        bestScale = scale;
+    }
+    Finding finding{
+        Severity::Warning, fmt::format("strands are {:.4g} m long (median)", size.length), "size", {}};
+    if (size.spread > 0) finding.what += fmt::format(" and their roots spread over {:.4g} m", size.spread);
+    finding.what += ", which is implausible for hair";
+    finding.fix =
+        best ? fmt::format("the unit {} would fit: strands of {:.4g} m", best->name, size.length * bestScale)
+             : "none of the units m, dm, cm, mm and inch fits; scale the file";
+    return finding;
+}
+
+}  // namespace hairloom

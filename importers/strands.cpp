@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "importers/strands.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/base/file.h"
+#include "core/base/parallel.h"
+#include "core/geometry/closest_point.h"
+#include "importers/raw_strands.h"
+#include "importers/strand_size.h"
+
+namespace hairloom {
+namespace {
+
+bool isTfx(std::span<const std::byte> bytes) {
+    float version = 0;
+    if (bytes.size() < sizeof version) return false;
+    std::memcpy(&version, bytes.data(), sizeof version);
+    return version >= 1.0f && version < 8.0f && std::to_integer<int>(bytes[0]) == 0;
+}
+
+bool isHair(std::span<const std::byte> bytes) {
+    return bytes.size() >= 4 && std::memcmp(bytes.data(), "HAIR", 4) == 0;
+}
+
+bool isText(std::span<const std::byte> bytes) {
+    const auto start = bytes.first(std::min<std::size_t>(bytes.size(), 4096));
+    return std::none_of(start.begin(), start.end(), [](std::byte b) { return b == std::byte{0}; });
+}
+
+Result<RawStrands> readRaw(const std::string& file, std::span<const std::byte> bytes,
+                           const StrandImportOptions& options) {
+    if (bytes.empty()) return failIn(file, {}, "is empty", "expected a strand file");
+    if (isHair(bytes)) return readHair(file, bytes);
+    if (isTfx(bytes)) return readTfx(file, bytes);
+    if (isText(bytes)) {
+        const void* characters = bytes.data();
+        return readObjStrands(file, {static_cast<const char*>(characters), bytes.size()}, options);
+    }
+    return failIn(file, Byte{0}, "is in no known strand format",
+                  "expected Yuksel .hair, TressFX .tfx (version 3 or 4) or Wavefront OBJ");
+}
+
+Vec3f toMetresYUp(const Vec3f& position, const StrandImportOptions& options, bool mirrorZ) {
+    Vec3f p = position;
+    if (mirrorZ) p.z() = -p.z();
+    if (options.up == UpAxis::Z) p = Vec3f(p.x(), p.z(), -p.y());
+    return p * options.metresPerUnit;
+}
+
+/// Keeps what can be used of the strands, in metres and Y up, and compacts their attributes alike.
+class Cleaner {
+  public:
+    Cleaner(RawStrands& raw, const StrandImportOptions& options) : raw_(raw), options_(options) {}
+
+    void run() {
+        const std::size_t strands = raw_.offsets.size() - 1;
+        std::uint32_t begin = 0;
+        offsets_.reserve(strands + 1);
+        for (std::size_t strand = 0; strand < strands; ++strand) {
+            const std::uint32_t end = raw_.offsets[strand + 1];
+            keep(strand, begin, end);
+            begin = end;
+        }
+        raw_.positions.resize(written_);
+        for (auto* values : {&raw_.thickness, &raw_.transparency}) {
+            if (!values->empty()) values->resize(written_);
+        }
+        if (!raw_.colours.empty()) raw_.colours.resize(written_);
+        if (!raw_.rootUvs.empty()) raw_.rootUvs.resize(offsets_.size() - 1);
+        if (!raw_.thicknessScale.empty()) raw_.thicknessScale.resize(offsets_.size() - 1);
+        raw_.offsets = std::move(offsets_);
+        sayMended();
+    }
+
+  private:
+    void keep(std::size_t strand, std::uint32_t begin, std::uint32_t end) {
+        const std::uint32_t source =
+            raw_.sourceIndices.empty() ? static_cast<std::uint32_t>(strand) : raw_.sourceIndices[strand];
+        const auto drop = [&](DropReason reason) { raw_.dropped.push_back({source, reason}); };
+        if (end - begin < 2) return drop(DropReason::TooFewPoints);
+        const std::size_t start = written_;
+        for (std::uint32_t point = begin; point < end; ++point) {
+            const Vec3f position = toMetresYUp(raw_.positions[point], options_, raw_.mirrorZ);
+            if (!position.allFinite()) {
+                written_ = start;
+                return drop(DropReason::NotFinite);
+            }
+            if (written_ > start && (position - raw_.positions[written_ - 1]).norm() <= kCoincidentPoints)
+                continue;
+            place(point, position);
+        }
+        const std::size_t kept = written_ - start;
+        if (kept < 2) {
+            written_ = start;
+            return drop(DropReason::ZeroLength);
+        }
+        if (kept < end - begin) noteMended(source, end - begin - kept);
+        if (!raw_.rootUvs.empty()) raw_.rootUvs[offsets_.size() - 1] = raw_.rootUvs[strand];
+        if (!raw_.thicknessScale.empty())
+            raw_.thicknessScale[offsets_.size() - 1] = raw_.thicknessScale[strand];
+        offsets_.push_back(static_cast<std::uint32_t>(written_));
+    }
+
+    /// Moves a point to the next free place, which is never behind its own.
+    void place(std::uint32_t point, const Vec3f& position) {
+        raw_.positions[written_] = position;
+        if (!raw_.thickness.empty()) raw_.thickness[written_] = raw_.thickness[point];
+        if (!raw_.transparency.empty()) raw_.transparency[written_] = raw_.transparency[point];
+        if (!raw_.colours.empty()) raw_.colours[written_] = raw_.colours[point];
+        ++written_;
+    }
+
+    void noteMended(std::uint32_t strand, std::size_t points) {
+        if (mendedStrands_++ == 0) firstMended_ = strand;
+        mendedPoints_ += points;
+    }
+
+    void sayMended() {
+        if (mendedStrands_ == 0) return;
+        raw_.warnings.push_back(fileWarning(
+            fmt::format("{} points coincided with the one before and were removed", mendedPoints_),
+            mendedStrands_ == 1 ? fmt::format("strand {}", firstMended_)
+                                : fmt::format("strand {} and {} more", firstMended_, mendedStrands_ - 1),
+            "resample where every strand must have the same number of points"));
+    }
+
+    RawStrands& raw_;
+    const StrandImportOptions& options_;
+    std::vector<std::uint32_t> offsets_{0};
+    std::size_t written_ = 0;
+    std::size_t mendedStrands_ = 0;
+    std::size_t mendedPoints_ = 0;
+    std::uint32_t firstMended_ = 0;
+};
+
+template <class T>
+void reverseRun(std::vector<T>& values, std::size_t begin, std::size_t end) {
+    if (values.empty()) return;
+    std::reverse(values.begin() + static_cast<std::ptrdiff_t>(begin),
+                 values.begin() + static_cast<std::ptrdiff_t>(end));
+}
+
+/// Turns strands so that the end nearer to the scalp comes first. Strands whose ends are about equally near
+/// (curls, bangs that touch the face) follow the majority of the file.
+void orientToScalp(RawStrands& raw, const ScalpMesh& scalp) {
+    constexpr float kClear = 2.0f;  ///< an end is nearer when the other is this many times as far
+    const SurfaceTree tree(scalp);
+    const std::size_t strands = raw.offsets.size() - 1;
+    std::vector<std::int8_t> votes(strands);
+    parallelFor(strands, 256, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t strand = begin; strand < end; ++strand) {
+            const float first = tree.closest(raw.positions[raw.offsets[strand]]).distance;
+            const float last = tree.closest(raw.positions[raw.offsets[strand + 1] - 1]).distance;
+            if (last * kClear < first) votes[strand] = -1;
+            if (first * kClear < last) votes[strand] = 1;
+        }
+    });
+    std::int64_t sum = 0;
+    for (const std::int8_t vote : votes) sum += vote;
+    std::size_t turned = 0;
+    for (std::size_t strand = 0; strand < strands; ++strand) {
+        const bool turn = votes[strand] < 0 || (votes[strand] == 0 && sum < 0);
+        if (!turn) continue;
+        ++turned;
+        const std::size_t begin = raw.offsets[strand];
+        const std::size_t end = raw.offsets[strand + 1];
+        reverseRun(raw.positions, begin, end);
+        reverseRun(raw.thickness, begin, end);
+        reverseRun(raw.transparency, begin, end);
+        reverseRun(raw.colours, begin, end);
+    }
+    if (turned > 0) {
+        raw.warnings.push_back(
+            fileNote(fmt::format("{} strands were turned: their last point is nearer to the scalp", turned),
+                     "strands"));
+    }
+}
+
+void takeThickness(RawStrands& raw, Groom& groom, float metresPerUnit) {
+    if (!raw.thickness.empty()) {
+        // Thickness is a diameter: renderers of these files draw it as a width.
+        for (float& value : raw.thickness)
+            value = std::isfinite(value) && value > 0 ? 0.5f * value * metresPerUnit : 0;
+        groom.pointAttributes.set(attribute::kRadius, std::move(raw.thickness));
+        return;
+    }
+    constexpr float kThinnest = 5e-6f;
+    constexpr float kThickest = 0.001f;
+    const float radius = 0.5f * raw.defaultThickness * metresPerUnit;
+    if (radius >= kThinnest && radius <= kThickest) {
+        groom.material.rootRadius = radius;
+        groom.material.tipScale = 1;
+    }
+}
+
+Groom makeFrom(RawStrands& raw, float metresPerUnit) {
+    Groom groom = makeGroom(std::move(raw.offsets), std::move(raw.positions));
+    takeThickness(raw, groom, metresPerUnit);
+    if (!raw.transparency.empty())
+        groom.pointAttributes.set(attribute::kTransparency, std::move(raw.transparency));
+    if (!raw.colours.empty()) groom.pointAttributes.set(attribute::kPointColour, std::move(raw.colours));
+    if (!raw.rootUvs.empty()) groom.strandAttributes.set(attribute::kRootUv, std::move(raw.rootUvs));
+    if (!raw.thicknessScale.empty())
+        groom.strandAttributes.set("thickness_scale", std::move(raw.thicknessScale));
+    if (raw.defaultColour) groom.material.rootColour = groom.material.tipColour = *raw.defaultColour;
+    return groom;
+}
+
+/// Attribute values that no consumer could use become the nearest that they can.
+template <class T, class Usable>
+void mendValues(std::vector<T>& values, std::string_view name, std::vector<Finding>& warnings,
+                const T& instead, Usable usable) {
+    std::size_t mended = 0;
+    for (T& value : values) {
+        if (usable(value)) continue;
+        value = instead;
+        ++mended;
+    }
+    if (mended > 0) {
+        warnings.push_back(fileWarning(fmt::format("{} values of {} are not finite", mended, name),
+                                       std::string(name), "they were set to a neutral value"));
+    }
+}
+
+void mendAttributes(RawStrands& raw) {
+    const auto finite = [](const auto& value) { return value.allFinite(); };
+    const auto finiteNumber = [](float value) { return std::isfinite(value); };
+    mendValues(raw.transparency, "transparency", raw.warnings, 0.0f, finiteNumber);
+    mendValues(raw.thicknessScale, "strand thickness", raw.warnings, 1.0f, finiteNumber);
+    mendValues(raw.colours, "colours", raw.warnings, Vec3f(Vec3f::Ones()), finite);
+    mendValues(raw.rootUvs, "root UVs", raw.warnings, Vec2f(Vec2f::Zero()), finite);
+}
+
+}  // namespace
+
+std::string_view dropReasonName(DropReason reason) {
+    constexpr std::array<std::string_view, 5> names{"fewer than two points", "not finite", "zero length",
+                                                    "lines branch", "closed loop"};
+    return names[static_cast<std::size_t>(reason)];
+}
+
+bool looksLikeStrandFile(std::span<const std::byte> bytes) {
+    return isHair(bytes) || isTfx(bytes);
+}
+
+Result<ImportedStrands> importStrandsFromMemory(const std::string& file, std::span<const std::byte> bytes,
+                                                const StrandImportOptions& options) {
+    if (!(options.metresPerUnit > 0) || !std::isfinite(options.metresPerUnit)) {
+        return fail(fmt::format("{} metres per unit", options.metresPerUnit), "expected a positive number");
+    }
+    auto raw = readRaw(file, bytes, options);
+    if (!raw) return tl::unexpected(raw.error());
+    Cleaner(*raw, options).run();
+    std::sort(raw->dropped.begin(), raw->dropped.end(),
+              [](const DroppedStrand& a, const DroppedStrand& b) { return a.strand < b.strand; });
+    if (raw->offsets.size() < 2) {
+        if (raw->dropped.empty()) return failIn(file, {}, "holds no strand", "expected at least one");
+        return failIn(file, {},
+                      fmt::format("none of its {} strands can be used; the first: {}", raw->dropped.size(),
+                                  dropReasonName(raw->dropped.front().reason)),
+                      "expected strands of two or more finite points");
+    }
+    if (!raw->rootFirst && options.scalp && options.scalp->triangleCount() > 0)
+        orientToScalp(*raw, *options.scalp);
+    mendAttributes(*raw);
+    if (auto finding = implausibleSize(raw->offsets, raw->positions, options.metresPerUnit)) {
+        raw->warnings.push_back(std::move(*finding));
+    }
+    ImportedStrands result;
+    result.format = std::move(raw->format);
+    result.dropped = std::move(raw->dropped);
+    result.warnings = std::move(raw->warnings);
+    result.groom = makeFrom(*raw, options.metresPerUnit);
+    return result;
+}
+
+Result<ImportedStrands> importStrands(const std::filesystem::path& path, const StrandImportOptions& options) {
+    const auto bytes = readFile(path);
+    if (!bytes) return tl::unexpected(bytes.error());
+    return importStrandsFromMemory(path.string(), *bytes, options);
+}
+
+}  // namespace hairloom

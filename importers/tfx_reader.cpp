@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// TressFX asset files: version 4 (160-byte header, float4 positions) and version 3 (296-byte header, float3
+// positions), after the headers of AMD's TressFX 4.1 and 3.1.1.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/base/file.h"
+#include "importers/raw_strands.h"
+
+namespace hairloom {
+namespace {
+
+struct HeaderV4 {
+    float version;
+    std::uint32_t strands;
+    std::uint32_t pointsPerStrand;
+    std::uint32_t positionOffset;
+    std::uint32_t strandUvOffset;
+    std::uint32_t pointUvOffset;
+    std::uint32_t thicknessOffset;
+    std::uint32_t colourOffset;
+    std::uint32_t reserved[32];
+};
+static_assert(sizeof(HeaderV4) == 160);
+
+struct HeaderV3 {
+    float version;
+    std::uint32_t strands;
+    std::uint32_t pointsPerStrand;
+    std::uint32_t followPerGuide;
+    std::uint32_t bothEndsImmovable;
+    std::uint32_t reserved1[31];
+    std::uint32_t positionOffset;
+    std::uint32_t thicknessOffset;
+    std::uint32_t strandUvOffset;
+    std::uint32_t colourOffset;
+    std::uint32_t guideOffset;
+    std::uint32_t pointUvOffset;
+    std::uint32_t reserved2[32];
+};
+static_assert(sizeof(HeaderV3) == 296);
+
+/// An array of the file. Offset 0 says that it is absent.
+struct Section {
+    std::string_view name;
+    std::uint64_t offset;
+    std::uint64_t bytes;
+    std::uint64_t headerField;  ///< byte of the header that holds the offset
+};
+
+/// The two versions, told alike.
+struct Layout {
+    std::uint64_t headerBytes;
+    std::uint64_t strands;
+    std::uint64_t pointsPerStrand;
+    Section positions, strandUvs, pointUvs, thickness, colours;
+    std::uint64_t bytesPerPoint;
+};
+
+Layout layoutOf(const HeaderV4& header) {
+    const std::uint64_t strands = header.strands;
+    const std::uint64_t points = strands * header.pointsPerStrand;
+    return {sizeof(HeaderV4),
+            strands,
+            header.pointsPerStrand,
+            {"positions", header.positionOffset, points * 16, 12},
+            {"strand UVs", header.strandUvOffset, strands * 8, 16},
+            {"vertex UVs", header.pointUvOffset, points * 8, 20},
+            {"strand thickness", header.thicknessOffset, strands * 4, 24},
+            {"vertex colours", header.colourOffset, points * 16, 28},
+            16};
+}
+
+Layout layoutOf(const HeaderV3& header) {
+    const std::uint64_t strands = header.strands;
+    const std::uint64_t points = strands * header.pointsPerStrand;
+    return {sizeof(HeaderV3),
+            strands,
+            header.pointsPerStrand,
+            {"positions", header.positionOffset, points * 12, 144},
+            {"strand UVs", header.strandUvOffset, strands * 8, 152},
+            {"vertex UVs", header.pointUvOffset, points * 8, 164},
+            {"strand thickness", header.thicknessOffset, strands * 4, 148},
+            {"vertex colours", header.colourOffset, points * 16, 156},
+            12};
+}
+
+Status checkSection(const Section& section, const Layout& layout, std::uint64_t size,
+                    const std::string& file) {
+    if (section.offset < layout.headerBytes || section.offset % 4 != 0) {
+        return failIn(
+            file, Byte{section.headerField},
+            fmt::format("{} would start at byte {}", section.name, section.offset),
+            fmt::format("expected a multiple of 4 after the header of {} bytes", layout.headerBytes));
+    }
+    if (section.offset > size || section.bytes > size - section.offset) {
+        return failIn(
+            file, Byte{section.headerField},
+            fmt::format("{} need {} bytes from byte {} on", section.name, section.bytes, section.offset),
+            fmt::format("the file has {}", size));
+    }
+    return {};
+}
+
+Status checkOverlaps(std::vector<Section> sections, const std::string& file) {
+    std::sort(sections.begin(), sections.end(),
+              [](const Section& a, const Section& b) { return a.offset < b.offset; });
+    for (std::size_t i = 1; i < sections.size(); ++i) {
+        const Section& before = sections[i - 1];
+        if (before.offset + before.bytes <= sections[i].offset) continue;
+        return failIn(file, Byte{sections[i].headerField},
+                      fmt::format("{} start at byte {}, inside the {}", sections[i].name, sections[i].offset,
+                                  before.name),
+                      fmt::format("expected byte {} or later", before.offset + before.bytes));
+    }
+    return {};
+}
+
+Status checkLayout(const Layout& layout, std::uint64_t size, const std::string& file) {
+    if (layout.strands == 0) return failIn(file, Byte{4}, "holds 0 strands", "expected at least one");
+    if (layout.pointsPerStrand == 0)
+        return failIn(file, Byte{8}, "strands have 0 vertices", "expected at least two");
+    if (layout.strands * layout.pointsPerStrand > size / layout.bytesPerPoint) {
+        return failIn(
+            file, Byte{4},
+            fmt::format("{} strands of {} vertices do not fit", layout.strands, layout.pointsPerStrand),
+            fmt::format("the file has {} bytes", size));
+    }
+    std::vector<Section> present;
+    for (const Section& section :
+         {layout.positions, layout.strandUvs, layout.pointUvs, layout.thickness, layout.colours}) {
+        if (section.offset == 0 && section.name != layout.positions.name) continue;
+        if (auto status = checkSection(section, layout, size, file); !status) return status;
+        present.push_back(section);
+    }
+    return checkOverlaps(std::move(present), file);
+}
+
+/// The section's bytes; its place was checked.
+std::span<const std::byte> sectionBytes(std::span<const std::byte> bytes, const Section& section) {
+    return bytes.subspan(static_cast<std::size_t>(section.offset), static_cast<std::size_t>(section.bytes));
+}
+
+std::vector<float> copyFloats(std::span<const std::byte> bytes, const Section& section) {
+    std::vector<float> values;
+    if (section.offset == 0) return values;
+    const auto source = sectionBytes(bytes, section);
+    values.resize(source.size() / sizeof(float));
+    std::memcpy(values.data(), source.data(), values.size() * sizeof(float));
+    return values;
+}
+
+/// The first components of each element of `stride` bytes.
+template <class Vector>
+std::vector<Vector> copyVectors(std::span<const std::byte> bytes, const Section& section,
+                                std::size_t stride) {
+    std::vector<Vector> values;
+    if (section.offset == 0) return values;
+    const auto source = sectionBytes(bytes, section);
+    values.resize(source.size() / stride);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        std::memcpy(values[i].data(), source.data() + i * stride, sizeof(Vector));
+    }
+    return values;
+}
+
+bool tipsAreFixed(std::span<const std::byte> bytes, const Layout& layout) {
+    const auto positions = sectionBytes(bytes, layout.positions);
+    const std::size_t strandBytes = static_cast<std::size_t>(layout.pointsPerStrand) * 16;
+    for (std::size_t end = strandBytes; end <= positions.size(); end += strandBytes) {
+        float inverseMass = 0;
+        std::memcpy(&inverseMass, positions.data() + end - 4, sizeof inverseMass);
+        if (inverseMass != 0.0f) return false;
+    }
+    return true;
+}
+
+RawStrands readSections(std::span<const std::byte> bytes, const Layout& layout) {
+    RawStrands raw;
+    raw.positions =
+        copyVectors<Vec3f>(bytes, layout.positions, static_cast<std::size_t>(layout.bytesPerPoint));
+    raw.rootUvs = copyVectors<Vec2f>(bytes, layout.strandUvs, 8);
+    raw.thicknessScale = copyFloats(bytes, layout.thickness);
+    raw.colours = copyVectors<Vec3f>(bytes, layout.colours, 16);
+    raw.offsets.resize(static_cast<std::size_t>(layout.strands) + 1);
+    for (std::size_t strand = 0; strand < raw.offsets.size(); ++strand) {
+        raw.offsets[strand] = static_cast<std::uint32_t>(strand * layout.pointsPerStrand);
+    }
+    if (layout.pointUvs.offset != 0) {
+        raw.warnings.push_back(fileNote("texture coordinates per vertex were left out", "vertex UVs"));
+    }
+    return raw;
+}
+
+Finding immovableNote() {
+    return fileNote("both ends of the strands are marked immovable; Hairloom fixes the root alone",
+                    "strand tips", "constrain the tips anew where that was wanted");
+}
+
+Result<RawStrands> readVersion4(const std::string& file, std::span<const std::byte> bytes) {
+    ByteReader reader(file, bytes);
+    const auto header = reader.read<HeaderV4>("the header");
+    if (!header) return tl::unexpected(header.error());
+    const Layout layout = layoutOf(*header);
+    if (auto status = checkLayout(layout, bytes.size(), file); !status) return tl::unexpected(status.error());
+    RawStrands raw = readSections(bytes, layout);
+    raw.format = "TressFX 4";
+    if (layout.pointsPerStrand > 2 && tipsAreFixed(bytes, layout)) raw.warnings.push_back(immovableNote());
+    return raw;
+}
+
+Result<RawStrands> readVersion3(const std::string& file, std::span<const std::byte> bytes) {
+    ByteReader reader(file, bytes);
+    const auto header = reader.read<HeaderV3>("the header");
+    if (!header) return tl::unexpected(header.error());
+    const Layout layout = layoutOf(*header);
+    if (auto status = checkLayout(layout, bytes.size(), file); !status) return tl::unexpected(status.error());
+    RawStrands raw = readSections(bytes, layout);
+    raw.format = "TressFX 3";
+    raw.mirrorZ = true;
+    raw.warnings.push_back(fileNote("version 3 is left-handed; Z was negated", "positions"));
+    if (header->bothEndsImmovable != 0) raw.warnings.push_back(immovableNote());
+    return raw;
+}
+
+}  // namespace
+
+Result<RawStrands> readTfx(const std::string& file, std::span<const std::byte> bytes) {
+    ByteReader reader(file, bytes);
+    const auto version = reader.read<float>("the version");
+    if (!version) return tl::unexpected(version.error());
+    if (*version >= 4.0f && *version < 5.0f) return readVersion4(file, bytes);
+    if (*version >= 3.0f && *version < 4.0f) return readVersion3(file, bytes);
+    return failIn(file, Byte{0}, fmt::format("is TressFX version {}", *version), "expected version 3 or 4");
+}
+
+}  // namespace hairloom

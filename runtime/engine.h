@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The strand engine. Authored settings, the plan and the state are three things with three lifetimes: the
+// settings are given, the plan is made from them each frame, and the state is what an Engine owns.
+//
+// A strand's length is held by a direct solve of its length constraints (all points of equal mass, the root
+// of infinite mass) and, last in a substep, by a pass from root to tip that bounds every segment without
+// adding energy. Does not do: hair against hair, torsion, twist of a straight strand about itself, collision
+// between points.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "runtime/host.h"
+#include "runtime/plan.h"
+#include "runtime/settings.h"
+#include "runtime/state.h"
+#include "runtime/strands.h"
+
+namespace hairloom::runtime {
+
+/// What the state looks like; taken when asked for, at about the cost of one substep.
+struct Measurements {
+    std::uint64_t nanCount = 0;  ///< points that are not finite
+    double maxStretch = 0.0;  ///< largest |length / rest length − 1|; segments without length do not count
+    double maxPenetration =
+        0.0;  ///< metres that a free point and its pearl lie inside a sphere of the last frame
+    double kineticEnergy = 0.0;  ///< joules, over free points of 1 kg each
+    double potentialEnergy =
+        0.0;  ///< joules, likewise, in the gravity of the settings, 0 at the world's origin
+};
+
+/// What the last step took. Times are sums over threads, all 0 without Host::nanoseconds.
+struct StepReport {
+    std::array<double, kStageCount> stageMilliseconds{};  ///< by StageId
+    double milliseconds = 0.0;                            ///< from entering to leaving step()
+    std::uint32_t rejectedRoots = 0;    ///< roots that were not finite; they stayed where they were
+    std::uint32_t rejectedSpheres = 0;  ///< spheres that were not finite or had no radius; they were left out
+};
+
+class Engine {
+  public:
+    struct Made;
+    /// Strands at rest in their rest places. Errors, in words: settings out of range, offsets that do not
+    /// match the points, a strand of fewer than 2 or more than kMaxPoints points, a rest position or rotation
+    /// that is no number.
+    static Made make(const StrandsView& strands, const SimulationSettings& settings, Host host = {});
+
+    /// Places all strands in their rest shape on these roots, without speed. One root per strand.
+    void reset(std::span<const RootFrame> roots_ws);
+    /// Takes other settings from the next step on; empty, or why they are refused. May allocate; step() does
+    /// not, but for more spheres than ever before.
+    std::string setSettings(const SimulationSettings& settings);
+    const SimulationSettings& settings() const { return settings_; }
+
+    /// Advances by input.dt to the end of the frame. A dt that is not above 0 changes nothing.
+    void step(const FrameInput& input);
+
+    std::uint32_t strandCount() const { return static_cast<std::uint32_t>(shape_->offsets.size() - 1); }
+    std::uint32_t pointCount() const { return shape_->offsets.back(); }
+    /// Strand after strand, root to tip, in the order that make() was given; metres, world. Size
+    /// pointCount().
+    void readPositions(std::span<Float3> positions_ws) const;
+    /// In the same order, metres per second over the last substep.
+    void readVelocities(std::span<Float3> velocities_ws) const;
+
+    /// The plan of the last step, or of the strands at rest before the first.
+    const EffectPlan& plan() const { return plan_; }
+    const StepReport& lastStep() const { return report_; }
+    Measurements measure() const;
+    /// Memory that exists because of this effect; 0 while it is off.
+    std::size_t effectBytes(Effect effect) const;
+    /// Memory of strands, roots and bookkeeping.
+    std::size_t baseBytes() const;
+    /// Of all positions and speeds; equal for any number of threads and any instruction set.
+    std::uint64_t stateHash() const { return state_.hash(); }
+    /// Name of the instruction set in use.
+    static const char* instructionSet();
+
+  private:
+    struct Frame;
+    Engine() = default;
+
+    void replan(std::span<const Sphere> spheres, std::span<const Float3> sphereMotion, Float3 rootsMin_ws,
+                Float3 rootsMax_ws);
+    void allocateForPlan();
+    void takeSpheres(const FrameInput& input);
+    void moveSpheres();
+    void takeRootBounds(const FrameInput& input);
+    void runBlock(std::size_t block, const Frame& frame);
+    void enterFrame(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame);
+    void runStages(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame);
+    void sumTimes();
+
+    SimulationSettings settings_;
+    Host host_;
+    std::shared_ptr<const RestShape> shape_;
+    EffectPlan plan_;
+    Wind wind_;
+    State state_;
+    StepReport report_;
+    std::vector<Sphere>
+        usableSpheres_;  // of the frame under way, with those that fell out left in place at radius 0
+    std::vector<Float3> sphereMotion_;
+    std::vector<MovingSphere> movingSpheres_;
+    std::vector<std::array<std::uint64_t, kStageCount>> blockNanoseconds_;  // empty without a clock
+};
+
+struct Engine::Made {
+    std::optional<Engine> engine;
+    std::string error;  ///< empty when there is an engine
+};
+
+}  // namespace hairloom::runtime

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What the engine is given: strands at rest once, poses of their roots and spheres each frame. Views only;
+// the caller owns the arrays and the engine keeps none of them.
+
+#include <cstdint>
+#include <span>
+
+#include "runtime/math.h"
+
+namespace hairloom::runtime {
+
+/// A place and an orientation.
+struct RootFrame {
+    Float3 position;
+    Quat rotation;  ///< need not be exactly of unit length
+};
+
+/// Strands as authored, root to tip. Strand s owns points offsets[s] up to offsets[s + 1], 2 to kMaxPoints of
+/// them.
+struct StrandsView {
+    std::span<const std::uint32_t>
+        offsets;  ///< strand count + 1, ascending, from 0 to restPositions_ss.size()
+    std::span<const Float3> restPositions_ss;  ///< metres, in the scalp's rest space
+    /// Orientation of the scalp at each root in the rest pose; empty stands for the identity. A frame's root
+    /// rotation divided by it is what turns the rest shape.
+    std::span<const Quat> rootRotations_ss;
+};
+
+inline constexpr std::uint32_t kMaxPoints = 512;
+
+/// A collision sphere. A radius that is not above 0, or anything not finite, takes it out of the frame.
+struct Sphere {
+    Float3 center_ws;
+    float radius = 0.0f;  ///< metres
+};
+
+/// Everything that changes from frame to frame.
+struct FrameInput {
+    float dt = 1.0f / 60.0f;              ///< frame time in seconds, above 0
+    double time = 0.0;                    ///< seconds at the end of the frame; drives gusts only
+    std::span<const RootFrame> roots_ws;  ///< one per strand, at the end of the frame
+    /// At the end of the frame; sphere i is the sphere i of the frame before, and its speed follows from
+    /// that.
+    std::span<const Sphere> spheres;
+};
+
+}  // namespace hairloom::runtime

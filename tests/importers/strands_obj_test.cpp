@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// OBJ polylines and Cinema 4D ribbons (thesis §4.1).
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/importers/strands_files.h"
+
+namespace hairloom {
+namespace {
+
+using namespace strand_files;
+using testing::HasSubstr;
+
+/// A square scalp of one metre at height y, facing up.
+ScalpMesh plate(float y) {
+    PolygonSoup soup;
+    soup.positions = {{-0.5f, y, -0.5f}, {-0.5f, y, 0.5f}, {0.5f, y, 0.5f}, {0.5f, y, -0.5f}};
+    soup.corners = {0, 1, 2, 3};
+    soup.offsets = {0, 4};
+    return ScalpMesh::make(soup).value();
+}
+
+class Ribbons : public testing::TestWithParam<std::tuple<RibbonOrder, std::size_t, RibbonFaces>> {};
+
+TEST_P(Ribbons, AreFoundWhateverTheirOrder) {
+    const auto& [order, segments, faces] = GetParam();
+    const std::size_t strands = 5;
+    StrandImportOptions options;
+    if (faces == RibbonFaces::None) options.ribbonSegments = static_cast<std::uint32_t>(segments);
+    const auto imported = read(ribbonObj(strands, segments, order, faces), options);
+    ASSERT_TRUE(imported) << imported.error().message();
+    EXPECT_EQ(imported->format, "Cinema 4D hair OBJ");
+    // Thesis §4.1 prints 2n/n_v strands; there are n_v/(2n).
+    ASSERT_EQ(imported->groom.strandCount(), strands);
+    for (std::size_t s = 0; s < strands; ++s) {
+        const auto strand = imported->groom.strand(s);
+        ASSERT_EQ(strand.size(), segments + 1);
+        for (std::size_t i = 0; i <= segments; ++i) {
+            EXPECT_EQ(strand[i], curlPoint(s, i, segments + 1)) << "strand " << s << " point " << i;
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Orders, Ribbons,
+                         testing::Combine(testing::Values(RibbonOrder::Interleaved,
+                                                          RibbonOrder::EdgeAfterEdge, RibbonOrder::Around),
+                                          testing::Values(1, 2, 3, 8, 31),
+                                          testing::Values(RibbonFaces::Quads, RibbonFaces::Triangles,
+                                                          RibbonFaces::None)));
+
+TEST(StrandsRibbons, OrderAndParticleCanBeChosen) {
+    StrandImportOptions options;
+    options.ribbonOrder = RibbonOrder::EdgeAfterEdge;
+    options.ribbonParticle = RibbonParticle::Centre;
+    const auto imported = read(ribbonObj(2, 4, RibbonOrder::EdgeAfterEdge), options);
+    ASSERT_TRUE(imported) << imported.error().message();
+    EXPECT_TRUE(imported->groom.strand(1)[2].isApprox(curlPoint(1, 2, 5) + Vec3f(0, 0, 0.0005f), 1e-6f));
+    const auto wrong = read(ribbonObj(2, 4, RibbonOrder::Interleaved), options);
+    ASSERT_FALSE(wrong);
+    EXPECT_THAT(wrong.error().message(), HasSubstr("does not lie between neighbouring"));
+}
+
+TEST(StrandsRibbons, RemaindersAreErrors) {
+    StrandImportOptions options;
+    options.ribbonSegments = 4;
+    const auto given = read(ribbonObj(3, 5, RibbonOrder::Interleaved, RibbonFaces::None), options);
+    ASSERT_FALSE(given);
+    EXPECT_THAT(given.error().message(), HasSubstr("36 vertices are not a multiple of 10"));
+
+    const auto loose = read(ribbonObj(3, 5, RibbonOrder::Interleaved) + "v 0 0 0\n");
+    ASSERT_FALSE(loose);
+    EXPECT_THAT(loose.error().message(), HasSubstr("expected 12 as in the first ribbon"));
+
+    const auto none = read(ribbonObj(3, 5, RibbonOrder::Interleaved, RibbonFaces::None));
+    ASSERT_FALSE(none);
+    EXPECT_THAT(none.error().message(), HasSubstr("number of segments"));
+}
+
+TEST(StrandsRibbons, AMeshIsNoHair) {
+    const auto cube = read(
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+        "f 1 2 3 4\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+    ASSERT_FALSE(cube);
+    EXPECT_THAT(cube.error().message(), HasSubstr("hair ribbon"));
+}
+
+TEST(StrandsRibbons, RootIsTheEndNearTheScalp) {
+    const ScalpMesh below = plate(1.49f);
+    StrandImportOptions options;
+    options.scalp = &below;
+    const auto imported = read(ribbonObj(4, 6, RibbonOrder::Interleaved), options);
+    ASSERT_TRUE(imported) << imported.error().message();
+    EXPECT_EQ(imported->groom.strand(3).front(), curlPoint(3, 6, 7));
+    EXPECT_EQ(imported->groom.strand(3).back(), curlPoint(3, 0, 7));
+}
+
+TEST(StrandsLines, KeepTheOrderTheyAreListedIn) {
+    const auto imported = read("v 0 0 0\nv 0 .1 0\nv 0 .2 0\nl 1 2 3\nl 3 2 1\nl -3/1 -2/2 -1/3\n");
+    ASSERT_TRUE(imported) << imported.error().message();
+    EXPECT_EQ(imported->format, "OBJ lines");
+    ASSERT_EQ(imported->groom.strandCount(), 3u);
+    EXPECT_EQ(imported->groom.strand(0).front(), Vec3f(0, 0, 0));
+    EXPECT_EQ(imported->groom.strand(1).front(), Vec3f(0, 0.2f, 0));
+    EXPECT_EQ(imported->groom.strand(2).back(), Vec3f(0, 0.2f, 0));
+}
+
+TEST(StrandsLines, TheScalpDecidesTheRoot) {
+    const ScalpMesh scalp = plate(0);
+    StrandImportOptions options;
+    options.scalp = &scalp;
+    const auto imported = read("v 0 0.001 0\nv 0 .1 0\nv 0 .2 0\nl 1 2 3\nl 3 2 1\n", options);
+    ASSERT_TRUE(imported) << imported.error().message();
+    for (std::size_t s = 0; s < 2; ++s) EXPECT_EQ(imported->groom.strand(s).front(), Vec3f(0, 0.001f, 0));
+}
+
+TEST(StrandsLines, TwoPointLinesAreChainedInAnyOrderAndDirection) {
+    const std::string vertices = "v 0 0 0\nv 0 .1 0\nv 0 .2 0\nv 0 .3 0\nv 1 0 0\nv 1 .1 0\n";
+    for (const char* lines : {"l 1 2\nl 2 3\nl 3 4\nl 5 6\n", "l 3 4\nl 5 6\nl 1 2\nl 2 3\n"}) {
+        const auto imported = read(vertices + lines);
+        ASSERT_TRUE(imported) << imported.error().message();
+        ASSERT_EQ(imported->groom.strandCount(), 2u);
+        ASSERT_EQ(imported->groom.strand(0).size(), 4u);
+        for (std::size_t i = 0; i < 4; ++i) {
+            EXPECT_EQ(imported->groom.strand(0)[i], Vec3f(0, static_cast<float>(i) * 0.1f, 0).eval());
+        }
+    }
+    const auto descending = read(vertices + "l 2 1\nl 3 2\nl 4 3\n");
+    ASSERT_TRUE(descending);
+    EXPECT_EQ(descending->groom.strand(0).front(), Vec3f(0, 0.3f, 0));
+}
+
+TEST(StrandsLines, BranchesAndLoopsAreDropped) {
+    const std::string vertices = "v 0 0 0\nv 0 .1 0\nv 0 .2 0\nv 0 .3 0\nv .1 0 0\nv .1 .1 0\n";
+    const auto branch = read(vertices + "l 1 2\nl 2 3\nl 2 4\nl 5 6\n");
+    ASSERT_TRUE(branch) << branch.error().message();
+    EXPECT_EQ(branch->groom.strandCount(), 1u);
+    ASSERT_FALSE(branch->dropped.empty());
+    EXPECT_EQ(branch->dropped[0].reason, DropReason::Branches);
+    const auto loop = read(vertices + "l 1 2\nl 2 3\nl 3 1\nl 5 6\n");
+    ASSERT_TRUE(loop) << loop.error().message();
+    ASSERT_EQ(loop->dropped.size(), 1u);
+    EXPECT_EQ(loop->dropped[0].reason, DropReason::ClosedLoop);
+}
+
+TEST(StrandsLines, ReadsContinuationLinesCarriageReturnsAndPolylineCurves) {
+    const auto imported = read(
+        "\xEF\xBB\xBF# a comment \\\nwith more\r\nv 0 0 0\r\nv 0 .1 0\r\nv 0 .2 \\\r\n0\r\n"
+        "cstype bspline\r\ndeg 1\r\ncurv 0.0 1.0 -3 -2 \\\r\n -1\r\nend\r\n");
+    ASSERT_TRUE(imported) << imported.error().message();
+    ASSERT_EQ(imported->groom.strandCount(), 1u);
+    EXPECT_EQ(imported->groom.strand(0).size(), 3u);
+}
+
+TEST(StrandsLines, ErrorsNameTheLine) {
+    const auto messageOf = [](std::string_view text) {
+        const auto imported = read(text);
+        return imported ? std::string() : imported.error().message();
+    };
+    EXPECT_THAT(messageOf("v 0 0 0\nv 0 1\nl 1 2\n"), HasSubstr("test:2: a vertex has 2 coordinates"));
+    EXPECT_THAT(messageOf("v 0 0 x\n"), HasSubstr("test:1: 'x' is not a number"));
+    EXPECT_THAT(messageOf("v 0 0 0\nl 1 2\n"), HasSubstr("test:2: a line names vertex 2"));
+    EXPECT_THAT(messageOf("v 0 0 0\nl 1 0\n"), HasSubstr("names vertex 0"));
+    EXPECT_THAT(messageOf("v 0 0 0\nf 1 -2 1\n"), HasSubstr("a face names vertex -2"));
+    EXPECT_THAT(messageOf("hello"), HasSubstr("without a vertex"));
+}
+
+}  // namespace
+}  // namespace hairloom

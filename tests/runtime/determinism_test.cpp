@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <hwy/highway.h>
+
+#include <atomic>
+#include <thread>
+
+#include "tests/runtime/strand_fixture.h"
+
+namespace hairloom::runtime {
+namespace {
+
+/// Pieces taken by threads in whatever order they come.
+Host threaded(unsigned threads, bool backwards = false) {
+    Host host;
+    host.parallelFor = [=](std::size_t count, std::size_t grain, const Host::Body& body) {
+        const std::size_t pieces = (count + grain - 1) / grain;
+        std::atomic<std::size_t> next{0};
+        std::vector<std::thread> pool;
+        for (unsigned t = 0; t < threads; ++t) {
+            pool.emplace_back([&] {
+                for (std::size_t i = next++; i < pieces; i = next++) {
+                    const std::size_t piece = backwards ? pieces - 1 - i : i;
+                    body(piece * grain, std::min(count, (piece + 1) * grain));
+                }
+            });
+        }
+        for (std::thread& thread : pool) thread.join();
+    };
+    return host;
+}
+
+SimulationSettings everything() {
+    SimulationSettings s;
+    s.windSpeed = 6.0f;
+    s.restitution = 0.2f;
+    return s;
+}
+
+const std::vector<Sphere> kSpheres{{{0.1f, 0.02f, 0.0f}, 0.05f}, {{0.3f, 0.0f, 0.01f}, 0.07f}};
+
+void runMoving(Engine& engine, const Strands& strands, int first, int last) {
+    for (int f = first; f < last; ++f) {
+        const float angle = 0.4f * std::sin(static_cast<float>(f) * 0.2f);
+        const auto roots = strands.roots({0.01f * std::sin(static_cast<float>(f)), 0.0f, 0.0f},
+                                         turnAbout({0.0f, 1.0f, 0.0f}, angle));
+        engine.step({1.0f / 60.0f, f / 60.0, roots, kSpheres});
+    }
+}
+
+std::uint64_t hashAfterMotion(const Strands& strands, const SimulationSettings& s, Host host = {}) {
+    Engine engine = makeEngine(strands, s, std::move(host));
+    runMoving(engine, strands, 0, 40);
+    EXPECT_EQ(engine.measure().nanCount, 0u);
+    return engine.stateHash();
+}
+
+TEST(Determinism, SameBitsForAnyNumberOfThreadsAndOrder) {
+    const Strands strands = tuft(500, true);
+    const std::uint64_t serial = hashAfterMotion(strands, everything());
+    EXPECT_EQ(serial, hashAfterMotion(strands, everything(), threaded(1)));
+    EXPECT_EQ(serial, hashAfterMotion(strands, everything(), threaded(7)));
+    EXPECT_EQ(serial, hashAfterMotion(strands, everything(), threaded(3, true)));
+}
+
+TEST(Determinism, SameBitsForEveryInstructionSet) {
+    const Strands strands = tuft(50, true);
+    const std::uint64_t best = hashAfterMotion(strands, everything());
+    int tried = 0;
+    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+        hwy::SetSupportedTargetsForTest(target);
+        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+        EXPECT_EQ(best, hashAfterMotion(strands, everything())) << Engine::instructionSet();
+        ++tried;
+    }
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    EXPECT_GE(tried, 1);
+}
+
+TEST(Determinism, ACopyRunsOnWithTheSameBits) {
+    const Strands strands = tuft(40, true);
+    Engine engine = makeEngine(strands, everything());
+    runMoving(engine, strands, 0, 20);
+    Engine copy = engine;
+    runMoving(engine, strands, 20, 40);
+    runMoving(copy, strands, 20, 40);
+    EXPECT_EQ(engine.stateHash(), copy.stateHash());
+    EXPECT_EQ(engine.stateHash(), hashAfterMotion(strands, everything()));
+}
+
+TEST(Determinism, AnEffectThatIsOffIsAsIfItWereNotThere) {
+    const Strands strands = tuft(70, true);
+    SimulationSettings never;
+    Engine bareEngine = makeEngine(strands, never);
+    run(bareEngine, strands, 30);
+
+    SimulationSettings zeroWind = never;
+    zeroWind.windDirection = {0.0f, 0.0f, 1.0f};
+    zeroWind.windGustiness = 1.0f;
+    zeroWind.windSeed = 77;
+    Engine still = makeEngine(strands, zeroWind);
+    const std::vector<Sphere> far{{{90.0f, 0.0f, 0.0f}, 1.0f}};
+    run(still, strands, 30, 1.0f / 60.0f, far);
+    EXPECT_FALSE(still.plan().on(Effect::collision));
+    EXPECT_EQ(still.stateHash(), bareEngine.stateHash());
+}
+
+/// Lanes are independent: a strand moves alike alone and among others, whatever the block's filling.
+TEST(Determinism, EachStrandMovesAsIfItWereAlone) {
+    for (std::uint32_t count = 1; count <= 20; ++count) {
+        const Strands all = tuft(count, true);
+        Engine together = makeEngine(all, everything());
+        run(together, all, 10, 1.0f / 60.0f, kSpheres);
+        const std::vector<Float3> positions = positionsOf(together);
+        for (std::uint32_t s = 0; s < count; ++s) {
+            Strands one;
+            one.points.assign(all.points.begin() + all.offsets[s], all.points.begin() + all.offsets[s + 1]);
+            one.offsets.push_back(static_cast<std::uint32_t>(one.points.size()));
+            Engine alone = makeEngine(one, everything());
+            run(alone, one, 10, 1.0f / 60.0f, kSpheres);
+            const std::vector<Float3> expected = positionsOf(alone);
+            for (std::size_t p = 0; p < expected.size(); ++p)
+                ASSERT_EQ(positions[all.offsets[s] + p], expected[p]) << s;
+        }
+    }
+}
+
+TEST(Determinism, NoStrandsAreNoTrouble) {
+    const Strands none;
+    Engine engine = makeEngine(none, {});
+    run(engine, none, 3);
+    EXPECT_EQ(engine.pointCount(), 0u);
+}
+
+}  // namespace
+}  // namespace hairloom::runtime

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Small scenes for the engine's tests.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "runtime/engine.h"
+
+namespace hairloom::runtime {
+
+inline Float3 polar(float angle) {
+    return {std::sin(angle), -std::cos(angle), 0.0f};
+}
+inline Quat turnAbout(Float3 axis, float angle) {
+    const Float3 v = axis * std::sin(angle / 2.0f);
+    return {v.x, v.y, v.z, std::cos(angle / 2.0f)};
+}
+
+struct Strands {
+    std::vector<std::uint32_t> offsets{0};
+    std::vector<Float3> points;
+
+    void add(Float3 root, Float3 direction, float segment, std::uint32_t count) {
+        for (std::uint32_t p = 0; p < count; ++p) {
+            points.push_back(root + direction * (segment * static_cast<float>(p)));
+        }
+        offsets.push_back(static_cast<std::uint32_t>(points.size()));
+    }
+    StrandsView view() const { return {offsets, points, {}}; }
+    std::uint32_t count() const { return static_cast<std::uint32_t>(offsets.size() - 1); }
+    std::vector<RootFrame> roots(Float3 shift = {}, Quat turn = {}) const {
+        std::vector<RootFrame> result;
+        for (std::uint32_t s = 0; s < count(); ++s)
+            result.push_back({rotate(turn, points[offsets[s]]) + shift, turn});
+        return result;
+    }
+};
+
+/// Nothing acts but inertia and the length constraint.
+inline SimulationSettings bare() {
+    SimulationSettings s;
+    s.gravity = {};
+    s.airDrag = 0.0f;
+    s.angularStiffness = 0.0f;
+    s.dampingTime = 0.0f;
+    s.clampedPoints = 1;
+    return s;
+}
+
+inline Engine makeEngine(const Strands& strands, const SimulationSettings& settings, Host host = {}) {
+    Engine::Made made = Engine::make(strands.view(), settings, std::move(host));
+    EXPECT_EQ(made.error, "");
+    return std::move(*made.engine);
+}
+
+inline void run(Engine& engine, const Strands& strands, int frames, float dt = 1.0f / 60.0f,
+                std::span<const Sphere> spheres = {}) {
+    const std::vector<RootFrame> roots = strands.roots();
+    for (int f = 0; f < frames; ++f) engine.step({dt, static_cast<double>(dt) * (f + 1), roots, spheres});
+}
+
+inline std::vector<Float3> positionsOf(const Engine& engine) {
+    std::vector<Float3> positions(engine.pointCount());
+    engine.readPositions(positions);
+    return positions;
+}
+
+/// Strands of mixed point counts whose roots stand on a small plate.
+inline Strands tuft(std::uint32_t count, bool mixed = false) {
+    Strands strands;
+    for (std::uint32_t s = 0; s < count; ++s) {
+        const float f = static_cast<float>(s);
+        strands.add({0.004f * f, 0.1f, 0.003f * std::sin(f)}, polar(1.2f * std::sin(f * 1.7f) + 1.4f), 0.011f,
+                    mixed ? 2 + (s * 5) % 17 : 12);
+    }
+    return strands;
+}
+
+}  // namespace hairloom::runtime
