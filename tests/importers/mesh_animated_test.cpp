@@ -88,7 +88,7 @@ TEST_P(MeshCharacter, EveryClipSamplesFinite) {
 
 INSTANTIATE_TEST_SUITE_P(Glb, MeshCharacter,
                          testing::Values(Character{"raylib_robot.glb", 14, "Neck"},
-                                         Character{"raylib_greenman.glb", 4, "head"},
+                                         Character{"raylib_greenman.glb", 4, "body_up"},
                                          Character{"CesiumMan.glb", 1, "Skeleton_neck_joint_2"}));
 
 TEST(MeshAnimated, BindPoseOfACharacterIsItsRestPose) {

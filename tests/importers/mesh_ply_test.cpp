@@ -92,7 +92,7 @@ TEST(PlyMesh, HostileCountsAreRefusedBeforeAllocation) {
         HasSubstr("a list of 4294967295 values"));
     EXPECT_THAT(refusal("ply\nformat ascii 1.0\nelement vertex 1\n" + vertex +
                         "element face 1\nproperty list int int vertex_index\nend_header\n1 2 3\n3 0 -1 0\n"),
-                HasSubstr("x.ply:10: a face names vertex -1"));
+                HasSubstr("x.ply:11: a face names vertex -1"));
 }
 
 TEST(PlyMesh, DamagedHeadersAreToldWithTheirLine) {
