@@ -23,9 +23,9 @@ Result<Report> replay(const GroomOptions& options) {
     if (!groom) return tl::unexpected(groom.error());
     const auto text = readTextFile(options.script);
     if (!text) return tl::unexpected(text.error());
-    const auto script = parseScript(*text, options.script);
+    const auto script = parseScript(options.script, *text);
     if (!script) return tl::unexpected(script.error());
-    const auto outcome = runScript(*groom, *script);
+    const auto outcome = runScript(*script, *groom);
     if (!outcome) return tl::unexpected(outcome.error());
     if (auto saved = saveProject(*groom, options.output); !saved) return tl::unexpected(saved.error());
     return Report{{"strokes", outcome->strokes},

@@ -23,39 +23,6 @@ Json layersToJson(const Groom& groom) {
     return list;
 }
 
-<<<<<<< HEAD
-=======
-Json spheresToJson(const Groom& groom) {
-    Json list = Json::array();
-    for (const CollisionSphere& sphere : groom.spheres) {
-        list.push_back({{"name", sphere.name},
-                        {"centre", valueToJson(sphere.centre)},
-                        {"radius", readableDecimal(sphere.radius)},
-                        {"bone", sphere.bone}});
-    }
-    return list;
-}
-
-Json simulationToJson(const runtime::SimulationSettings& settings) {
-    Json json = Json::object();
-    for (const runtime::FieldInfo& field : runtime::fields()) {
-        const auto value = [&](std::uint32_t component) {
-            return readableDecimal(static_cast<float>(runtime::fieldValue(settings, field, component)));
-        };
-        if (!field.choices.empty()) {
-            json[field.name] = field.choices[static_cast<std::size_t>(runtime::fieldValue(settings, field))];
-        } else if (runtime::componentCount(field) == 3) {
-            json[field.name] = {value(0), value(1), value(2)};
-        } else if (std::holds_alternative<std::uint32_t runtime::SimulationSettings::*>(field.member)) {
-            json[field.name] = static_cast<std::uint32_t>(runtime::fieldValue(settings, field));
-        } else {
-            json[field.name] = value(0);
-        }
-    }
-    return json;
-}
-
->>>>>>> groom
 Json scalpToJson(const ScalpMesh& scalp) {
     Json repairs = Json::array();
     for (const MeshRepair& repair : scalp.repairs())

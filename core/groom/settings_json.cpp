@@ -20,10 +20,6 @@ void readFields(JsonReader reader, S& settings) {
 
 }  // namespace
 
-Json toJson(const Vec3f& v) {
-    return {readableDecimal(v.x()), readableDecimal(v.y()), readableDecimal(v.z())};
-}
-
 Json toJson(const HairMaterial& material) {
     return fieldsToJson(material);
 }
@@ -54,7 +50,7 @@ Json toJson(const std::vector<CollisionSphere>& spheres) {
     Json list = Json::array();
     for (const CollisionSphere& sphere : spheres) {
         list.push_back({{"name", sphere.name},
-                        {"centre", toJson(sphere.centre)},
+                        {"centre", valueToJson(sphere.centre)},
                         {"radius", readableDecimal(sphere.radius)},
                         {"bone", sphere.bone}});
     }

@@ -7,7 +7,6 @@
 
 namespace hairloom {
 
-nlohmann::ordered_json toJson(const Vec3f& vector);
 nlohmann::ordered_json toJson(const HairMaterial& material);
 nlohmann::ordered_json toJson(const InterpolationSettings& settings);
 nlohmann::ordered_json toJson(const runtime::SimulationSettings& settings);
