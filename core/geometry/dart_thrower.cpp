@@ -9,17 +9,23 @@
 namespace hairloom {
 namespace {
 
-constexpr int kBuckets = 256;  // powers of two from 2^-160 m² on
-constexpr int kSmallestPower = -160;
 constexpr float kRounding = 4e-6f;  // of a float distance, relative
 constexpr float kSmallest = 5e-4f;  // of the radius: size of fragments that are let go
-// Fragments below this many radii are finished at once: the roots around them are few and are
-// gathered once for all their parts.
-constexpr float kAtOnce = 1.6f;
+// Parts below this many radii are filled at once: the roots around them are few and are gathered once.
+constexpr float kPart = 1.6f;
+constexpr double kFirstDarts = 1.5;  // random darts for each root of a saturated set
+// Parts are filled in so many rounds over the surface, so that a stop at a count leaves its gaps scattered.
+constexpr std::size_t kRounds = 8;
 constexpr float kLeastDensity = 1.0f / 64;
 
-int bucketOf(float area) {
-    return std::clamp(std::ilogb(area) - kSmallestPower, 0, kBuckets - 1);
+const std::array<Vec2f, 3> kWhole = {Vec2f(0, 0), Vec2f(1, 0), Vec2f(0, 1)};
+
+template <class Visit>
+void forEachQuarter(const std::array<Vec2f, 3>& corners, Visit visit) {
+    const auto& [a, b, c] = corners;
+    const Vec2f ab = (a + b) / 2, bc = (b + c) / 2, ca = (c + a) / 2;
+    for (const auto& quarter : {std::array{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {bc, ca, ab}})
+        visit(quarter);
 }
 
 }  // namespace
@@ -72,11 +78,7 @@ DartThrower::DartThrower(const ScalpMesh& mesh, const FaceSet& faces, std::span<
       apart_(radius * (1 + kRounding)),
       random_(seed),
       grid_(mesh.bounds().min(), 2 * apart_),
-      buckets_(kBuckets),
-      smallestUsed_(kBuckets - 1) {
-    for (const std::uint32_t face : faces)
-        push({{Vec2f(0, 0), Vec2f(1, 0), Vec2f(0, 1)}, face, mesh.triangleArea(face), false});
-}
+      faces_(faces) {}
 
 float DartThrower::densityAt(std::uint32_t triangle, const Vec3f& weights) const {
     return mask_.empty() ? 1.0f : weights.dot(cornerDensities(mesh_, mask_, triangle));
@@ -115,41 +117,6 @@ bool DartThrower::covers(const RootGrid::Entry& root, const Places& places, floa
     return true;
 }
 
-void DartThrower::push(const Fragment& fragment) {
-    if (!(fragment.area > 0)) return;
-    const auto k = static_cast<std::size_t>(bucketOf(fragment.area));
-    largest_ = std::max(largest_, k);
-    smallestUsed_ = std::min(smallestUsed_, k);
-    buckets_[k].fragments.push_back(fragment);
-    buckets_[k].area += fragment.area;
-    ++active_;
-}
-
-/// A fragment drawn with probability in proportion to its area.
-DartThrower::Fragment DartThrower::take() {
-    while (buckets_[largest_].fragments.empty()) --largest_;
-    double total = 0;
-    for (std::size_t k = smallestUsed_; k <= largest_; ++k) total += buckets_[k].area;
-    double left = random_.uniformDouble() * total;
-    std::size_t chosen = largest_;
-    for (std::size_t k = largest_ + 1; k-- > smallestUsed_ && left >= 0;) {
-        if (buckets_[k].fragments.empty()) continue;
-        chosen = k;
-        left -= buckets_[k].area;
-    }
-    Bucket& bucket = buckets_[chosen];
-    const float bound = std::ldexp(1.0f, static_cast<int>(chosen) + kSmallestPower + 1);
-    std::uint32_t index = 0;
-    do index = random_.below(static_cast<std::uint32_t>(bucket.fragments.size()));
-    while (random_.uniform() * bound >= bucket.fragments[index].area);
-    const Fragment fragment = bucket.fragments[index];
-    bucket.fragments[index] = bucket.fragments.back();
-    bucket.fragments.pop_back();
-    --active_;
-    bucket.area = bucket.fragments.empty() ? 0 : bucket.area - fragment.area;
-    return fragment;
-}
-
 void DartThrower::gatherNear(const Vec3f& center, float range) {
     near_.clear();
     grid_.search(center, range, [&](const RootGrid::Entry& entry) {
@@ -162,7 +129,7 @@ bool DartThrower::coveredByNear(const Places& places) const {
     return std::any_of(near_.begin(), near_.end(), [&](const auto& root) { return covers(root, places, 1); });
 }
 
-void DartThrower::throwDart(const Fragment& fragment) {
+void DartThrower::throwDart(const Fragment& fragment, bool gather) {
     float a = random_.uniform(), b = random_.uniform();
     if (a + b > 1) {
         a = 1 - a;
@@ -175,7 +142,7 @@ void DartThrower::throwDart(const Fragment& fragment) {
     const float density = densityAt(fragment.triangle, weights);
     const float radius = localRadius(density);
     if (density < kLeastDensity && !mask_.empty()) return;
-    if (!fragment.small) gatherNear(place, radius);
+    if (gather) gatherNear(place, radius);
     for (const RootGrid::Entry& root : near_) {
         const float apart = std::min(root.radius, radius);
         if ((root.position - place).squaredNorm() < apart * apart) return;
@@ -185,24 +152,15 @@ void DartThrower::throwDart(const Fragment& fragment) {
     grid_.add(near_.back());
 }
 
-/// Splits what no single root covers into four; small parts wait in small_, others in the buckets.
+/// Splits what no single root covers into four, which wait in small_.
 void DartThrower::splitAndKeep(const Fragment& fragment) {
-    const auto& [a, b, c] = fragment.corners;
-    const Vec2f ab = (a + b) / 2, bc = (b + c) / 2, ca = (c + a) / 2;
-    const std::array<std::array<Vec2f, 3>, 4> children = {
-        {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {bc, ca, ab}}};
-    for (const auto& corners : children) {
-        Fragment child{corners, fragment.triangle, fragment.area / 4, false};
+    forEachQuarter(fragment.corners, [&](const std::array<Vec2f, 3>& corners) {
+        const Fragment child{corners, fragment.triangle};
         const Places places = placesOf(child);
-        const float size = places.squaredSize();
         const float smallest = kSmallest * places.radius;
-        if (places.bare || size <= smallest * smallest || coveredByNear(places)) continue;
-        child.small = size < kAtOnce * kAtOnce * apart_ * apart_;
-        if (child.small && fragment.small)
-            small_.push_back(child);
-        else
-            push(child);
-    }
+        const bool negligible = places.bare || places.squaredSize() <= smallest * smallest;
+        if (!negligible && !coveredByNear(places)) small_.push_back(child);
+    });
 }
 
 /// Fills what is left of a small fragment; all roots that matter to it are gathered once.
@@ -217,25 +175,55 @@ void DartThrower::fill(const Fragment& fragment, std::size_t most) {
     while (!small_.empty() && roots_.size() < most) {
         const Fragment part = small_.back();
         small_.pop_back();
-        throwDart(part);
+        throwDart(part, false);
         if (!coveredByNear(placesOf(part))) splitAndKeep(part);
     }
-    for (const Fragment& part : small_) push(part);
+    left_.insert(left_.end(), small_.begin(), small_.end());
     small_.clear();
 }
 
-bool DartThrower::run(std::size_t most) {
-    while (active_ > 0 && roots_.size() < most) {
-        const Fragment fragment = take();
-        if (fragment.small) {
-            fill(fragment, most);
-            continue;
-        }
-        near_.clear();
-        throwDart(fragment);
-        if (!coveredByNear(placesOf(fragment))) splitAndKeep(fragment);
+void DartThrower::throwAnywhere(std::size_t most) {
+    std::vector<double> areas;
+    areas.reserve(faces_.size());
+    double sum = 0;
+    for (const std::uint32_t face : faces_) {
+        areas.push_back(static_cast<double>(mesh_.triangleArea(face)) *
+                        cornerDensities(mesh_, mask_, face).cast<double>().mean());
+        sum += areas.back();
     }
-    return active_ == 0;
+    const FacePicker picker(areas);
+    const auto darts = static_cast<std::size_t>(kFirstDarts * sum / (static_cast<double>(radius_) * radius_));
+    for (std::size_t i = 0; i < darts && roots_.size() < most; ++i) {
+        const Fragment face{kWhole, faces_[picker.pick(random_.uniformDouble())]};
+        throwDart(face, true);
+    }
+}
+
+void DartThrower::listParts(const Fragment& fragment) {
+    const Places places = placesOf(fragment);
+    if (places.bare) return;
+    if (places.squaredSize() <= kPart * kPart * apart_ * apart_) {
+        left_.push_back(fragment);
+        return;
+    }
+    forEachQuarter(fragment.corners, [&](const std::array<Vec2f, 3>& corners) {
+        listParts({corners, fragment.triangle});
+    });
+}
+
+bool DartThrower::run(std::size_t most) {
+    throwAnywhere(most);
+    for (const std::uint32_t face : faces_) listParts({kWhole, face});
+    const std::vector<Fragment> parts = std::move(left_);
+    left_.clear();
+    for (std::size_t round = 0; round < kRounds; ++round)
+        for (std::size_t i = round; i < parts.size(); i += kRounds) {
+            if (roots_.size() < most)
+                fill(parts[i], most);
+            else
+                left_.push_back(parts[i]);
+        }
+    return left_.empty();
 }
 
 bool DartThrower::gapWithin(const Fragment& fragment, float factor, int depth) const {
@@ -251,20 +239,16 @@ bool DartThrower::gapWithin(const Fragment& fragment, float factor, int depth) c
     if (grid_.search(middle, factor * places.radius, reached)) return true;
     constexpr int kDeepest = 12;
     if (depth == kDeepest) return false;
-    const auto& [a, b, c] = fragment.corners;
-    const Vec2f ab = (a + b) / 2, bc = (b + c) / 2, ca = (c + a) / 2;
-    const std::array<std::array<Vec2f, 3>, 4> children = {
-        {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {bc, ca, ab}}};
-    return std::all_of(children.begin(), children.end(), [&](const auto& corners) {
-        return gapWithin({corners, fragment.triangle, fragment.area / 4, false}, factor, depth + 1);
+    bool within = true;
+    forEachQuarter(fragment.corners, [&](const std::array<Vec2f, 3>& corners) {
+        within = within && gapWithin({corners, fragment.triangle}, factor, depth + 1);
     });
+    return within;
 }
 
 bool DartThrower::gapsWithin(float factor) const {
-    for (const Bucket& bucket : buckets_)
-        for (const Fragment& fragment : bucket.fragments)
-            if (!gapWithin(fragment, factor, 0)) return false;
-    return true;
+    return std::all_of(left_.begin(), left_.end(),
+                       [&](const Fragment& fragment) { return gapWithin(fragment, factor, 0); });
 }
 
 }  // namespace hairloom

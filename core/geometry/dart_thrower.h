@@ -83,13 +83,6 @@ class DartThrower {
     struct Fragment {
         std::array<Vec2f, 3> corners;
         std::uint32_t triangle;
-        float area;
-        bool small;  ///< finished at once when its turn comes
-    };
-    /// Fragments whose areas lie between 2^k and 2^(k+1).
-    struct Bucket {
-        std::vector<Fragment> fragments;
-        double area = 0;
     };
     struct Places {
         std::array<Vec3f, 3> corners;
@@ -108,10 +101,12 @@ class DartThrower {
     float localRadius(float density) const;
     Places placesOf(const Fragment& fragment) const;
     static bool covers(const RootGrid::Entry& root, const Places& places, float factor);
-    void push(const Fragment& fragment);
-    Fragment take();
-    /// Throws one dart at the fragment. Afterwards near_ holds the roots that can concern it.
-    void throwDart(const Fragment& fragment);
+    /// Random darts on the whole selection: cheap while most of it is free.
+    void throwAnywhere(std::size_t most);
+    /// Lists the parts of a face that are small enough for fill().
+    void listParts(const Fragment& fragment);
+    /// Throws one dart at the fragment, checked against near_, which it may have to gather.
+    void throwDart(const Fragment& fragment, bool gather);
     void fill(const Fragment& fragment, std::size_t most);
     void gatherNear(const Vec3f& center, float range);
     bool coveredByNear(const Places& places) const;
@@ -124,10 +119,9 @@ class DartThrower {
     float apart_;  ///< the radius plus what rounding of a measured distance may take away
     Random random_;
     RootGrid grid_;
-    std::vector<Bucket> buckets_;
-    std::size_t largest_ = 0, smallestUsed_;  ///< range of buckets_ that may hold fragments
-    std::size_t active_ = 0;                  ///< fragments in all buckets
-    std::vector<Fragment> small_;  ///< parts of the fragment in work, finished before the next is drawn
+    FaceSet faces_;
+    std::vector<Fragment> left_;   ///< parts of the surface not yet known to be covered
+    std::vector<Fragment> small_;  ///< parts of the fragment in work
     std::vector<SurfacePoint> roots_;
     std::vector<RootGrid::Entry> near_;
 };
