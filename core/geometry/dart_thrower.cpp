@@ -18,14 +18,30 @@ constexpr double kFirstDarts = 1.5;  // random darts for each root of a saturate
 constexpr std::size_t kRounds = 8;
 constexpr float kLeastDensity = 1.0f / 64;
 
-const std::array<Vec2f, 3> kWhole = {Vec2f(0, 0), Vec2f(1, 0), Vec2f(0, 1)};
-
-template <class Visit>
-void forEachQuarter(const std::array<Vec2f, 3>& corners, Visit visit) {
+template <class Point>
+std::array<std::array<Point, 3>, 4> quarters(const std::array<Point, 3>& corners) {
     const auto& [a, b, c] = corners;
-    const Vec2f ab = (a + b) / 2, bc = (b + c) / 2, ca = (c + a) / 2;
-    for (const auto& quarter : {std::array{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {bc, ca, ab}})
-        visit(quarter);
+    const Point ab = (a + b) / 2, bc = (b + c) / 2, ca = (c + a) / 2;
+    return {{{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {bc, ca, ab}}};
+}
+
+/// Calls visit with the four similar parts of a fragment.
+template <class Fragment, class Visit>
+void forEachQuarter(const Fragment& fragment, Visit visit) {
+    const auto corners = quarters(fragment.corners);
+    const auto places = quarters(fragment.places);
+    for (std::size_t i = 0; i < 4; ++i) visit(Fragment{corners[i], places[i], fragment.triangle});
+}
+
+float squaredSize(const std::array<Vec3f, 3>& places) {
+    return std::max({(places[0] - places[1]).squaredNorm(), (places[1] - places[2]).squaredNorm(),
+                     (places[2] - places[0]).squaredNorm()});
+}
+
+bool allWithin(const std::array<Vec3f, 3>& places, const Vec3f& center, float reach) {
+    const float squared = reach * reach;
+    return (places[0] - center).squaredNorm() < squared && (places[1] - center).squaredNorm() < squared &&
+           (places[2] - center).squaredNorm() < squared;
 }
 
 }  // namespace
@@ -56,16 +72,25 @@ void RootGrid::add(const Entry& entry) {
 }
 
 template <class Visit>
+bool RootGrid::visitCell(std::uint32_t firstChunk, Visit visit) const {
+    for (std::uint32_t c = firstChunk; c != kNone; c = chunks_[c].next)
+        for (std::uint32_t i = 0; i < chunks_[c].count; ++i)
+            if (visit(chunks_[c].entries[i])) return true;
+    return false;
+}
+
+template <class Visit>
 bool RootGrid::search(const Vec3f& center, float range, Visit visit) const {
     const Cell low = cellOf(center - Vec3f::Constant(range)), high = cellOf(center + Vec3f::Constant(range));
+    const auto sameBlock = [&](int axis) { return low[axis] >> kBits == high[axis] >> kBits; };
+    const bool oneBlock = sameBlock(0) && sameBlock(1) && sameBlock(2);
+    const std::uint32_t common = oneBlock ? blockIndex(low) : kNone;
+    if (oneBlock && common == kNone) return false;
     for (int z = low.z(); z <= high.z(); ++z)
         for (int y = low.y(); y <= high.y(); ++y)
             for (int x = low.x(); x <= high.x(); ++x) {
-                const std::uint32_t block = blockIndex({x, y, z});
-                if (block == kNone) continue;
-                for (std::uint32_t c = blocks_[block][slotOf({x, y, z})]; c != kNone; c = chunks_[c].next)
-                    for (std::uint32_t i = 0; i < chunks_[c].count; ++i)
-                        if (visit(chunks_[c].entries[i])) return true;
+                const std::uint32_t block = oneBlock ? common : blockIndex({x, y, z});
+                if (block != kNone && visitCell(blocks_[block][slotOf({x, y, z})], visit)) return true;
             }
     return false;
 }
@@ -88,33 +113,20 @@ float DartThrower::localRadius(float density) const {
     return mask_.empty() ? apart_ : apart_ / std::sqrt(std::clamp(density, kLeastDensity, 1.0f));
 }
 
-DartThrower::Places DartThrower::placesOf(const Fragment& fragment) const {
-    const Triangle& t = mesh_.triangles()[fragment.triangle];
-    const Vec3f origin = mesh_.positions()[t[0]];
-    const Vec3f alongB = mesh_.positions()[t[1]] - origin, alongC = mesh_.positions()[t[2]] - origin;
-    Places places;
-    for (std::size_t i = 0; i < 3; ++i)
-        places.corners[i] = origin + fragment.corners[i].x() * alongB + fragment.corners[i].y() * alongC;
-    places.radius = places.widest = apart_;
-    places.bare = false;
-    if (!mask_.empty()) {
-        Vec3f densities;
-        for (int i = 0; i < 3; ++i)
-            densities[i] =
-                densityAt(fragment.triangle, barycentric(fragment.corners[static_cast<std::size_t>(i)]));
-        places.radius = localRadius(densities.maxCoeff());
-        places.widest = localRadius(densities.minCoeff());
-        places.bare = densities.maxCoeff() < kLeastDensity;
-    }
-    return places;
+DartThrower::Spacing DartThrower::spacingOf(const Fragment& fragment) const {
+    if (mask_.empty()) return {apart_, apart_, false};
+    Vec3f densities;
+    for (int i = 0; i < 3; ++i)
+        densities[i] =
+            densityAt(fragment.triangle, barycentric(fragment.corners[static_cast<std::size_t>(i)]));
+    return {localRadius(densities.maxCoeff()), localRadius(densities.minCoeff()),
+            densities.maxCoeff() < kLeastDensity};
 }
 
-/// No dart in the fragment can stand: two roots keep the smaller of their local radii apart.
-bool DartThrower::covers(const RootGrid::Entry& root, const Places& places, float factor) {
-    const float reach = factor * std::min(root.radius, places.radius);
-    for (const Vec3f& corner : places.corners)
-        if ((corner - root.position).squaredNorm() >= reach * reach) return false;
-    return true;
+DartThrower::Fragment DartThrower::wholeFace(std::uint32_t face) const {
+    const Triangle& t = mesh_.triangles()[face];
+    const auto place = [&](std::size_t i) { return mesh_.positions()[t[i]]; };
+    return {{Vec2f(0, 0), Vec2f(1, 0), Vec2f(0, 1)}, {place(0), place(1), place(2)}, face};
 }
 
 void DartThrower::gatherNear(const Vec3f& center, float range) {
@@ -125,8 +137,11 @@ void DartThrower::gatherNear(const Vec3f& center, float range) {
     });
 }
 
-bool DartThrower::coveredByNear(const Places& places) const {
-    return std::any_of(near_.begin(), near_.end(), [&](const auto& root) { return covers(root, places, 1); });
+/// No dart in the fragment can stand: two roots keep the smaller of their local radii apart.
+bool DartThrower::coveredByNear(const Fragment& fragment, float radius) const {
+    return std::any_of(near_.begin(), near_.end(), [&](const RootGrid::Entry& root) {
+        return allWithin(fragment.places, root.position, std::min(root.radius, radius));
+    });
 }
 
 void DartThrower::throwDart(const Fragment& fragment, bool gather) {
@@ -154,66 +169,58 @@ void DartThrower::throwDart(const Fragment& fragment, bool gather) {
 
 /// Splits what no single root covers into four, which wait in small_.
 void DartThrower::splitAndKeep(const Fragment& fragment) {
-    forEachQuarter(fragment.corners, [&](const std::array<Vec2f, 3>& corners) {
-        const Fragment child{corners, fragment.triangle};
-        const Places places = placesOf(child);
-        const float smallest = kSmallest * places.radius;
-        const bool negligible = places.bare || places.squaredSize() <= smallest * smallest;
-        if (!negligible && !coveredByNear(places)) small_.push_back(child);
+    forEachQuarter(fragment, [&](const Fragment& child) {
+        const Spacing spacing = spacingOf(child);
+        const float smallest = kSmallest * spacing.radius;
+        const bool negligible = spacing.bare || squaredSize(child.places) <= smallest * smallest;
+        if (!negligible && !coveredByNear(child, spacing.radius)) small_.push_back(child);
     });
 }
 
-/// Fills what is left of a small fragment; all roots that matter to it are gathered once.
+/// Fills what is left of a part; all roots that matter to it are gathered once.
 void DartThrower::fill(const Fragment& fragment, std::size_t most) {
-    const Places places = placesOf(fragment);
-    const Vec3f center = (places.corners[0] + places.corners[1] + places.corners[2]) / 3;
+    const Spacing spacing = spacingOf(fragment);
+    const Vec3f center = (fragment.places[0] + fragment.places[1] + fragment.places[2]) / 3;
     float reach = 0;
-    for (const Vec3f& corner : places.corners) reach = std::max(reach, (corner - center).norm());
-    gatherNear(center, reach + places.widest);
-    if (coveredByNear(places)) return;
-    small_.push_back(fragment);
+    for (const Vec3f& place : fragment.places) reach = std::max(reach, (place - center).norm());
+    gatherNear(center, reach + spacing.widest);
+    if (coveredByNear(fragment, spacing.radius)) return;
+    splitAndKeep(fragment);
     while (!small_.empty() && roots_.size() < most) {
         const Fragment part = small_.back();
         small_.pop_back();
         throwDart(part, false);
-        if (!coveredByNear(placesOf(part))) splitAndKeep(part);
+        if (!coveredByNear(part, spacingOf(part).radius)) splitAndKeep(part);
     }
     left_.insert(left_.end(), small_.begin(), small_.end());
     small_.clear();
 }
 
 void DartThrower::throwAnywhere(std::size_t most) {
-    std::vector<double> areas;
-    areas.reserve(faces_.size());
-    double sum = 0;
-    for (const std::uint32_t face : faces_) {
-        areas.push_back(static_cast<double>(mesh_.triangleArea(face)) *
-                        cornerDensities(mesh_, mask_, face).cast<double>().mean());
-        sum += areas.back();
-    }
-    const FacePicker picker(areas);
-    const auto darts = static_cast<std::size_t>(kFirstDarts * sum / (static_cast<double>(radius_) * radius_));
-    for (std::size_t i = 0; i < darts && roots_.size() < most; ++i) {
-        const Fragment face{kWhole, faces_[picker.pick(random_.uniformDouble())]};
-        throwDart(face, true);
-    }
+    const double perArea =
+        kFirstDarts / (static_cast<double>(radius_) * radius_) / static_cast<double>(kRounds);
+    for (std::size_t round = 0; round < kRounds; ++round)
+        for (const std::uint32_t face : faces_) {
+            const double mean = cornerDensities(mesh_, mask_, face).cast<double>().mean();
+            const double darts = perArea * static_cast<double>(mesh_.triangleArea(face)) * mean;
+            const auto count = static_cast<std::size_t>(darts + random_.uniformDouble());
+            if (count == 0) continue;
+            const Fragment whole = wholeFace(face);
+            for (std::size_t i = 0; i < count && roots_.size() < most; ++i) throwDart(whole, true);
+        }
 }
 
 void DartThrower::listParts(const Fragment& fragment) {
-    const Places places = placesOf(fragment);
-    if (places.bare) return;
-    if (places.squaredSize() <= kPart * kPart * apart_ * apart_) {
+    if (spacingOf(fragment).bare) return;
+    if (squaredSize(fragment.places) <= kPart * kPart * apart_ * apart_)
         left_.push_back(fragment);
-        return;
-    }
-    forEachQuarter(fragment.corners, [&](const std::array<Vec2f, 3>& corners) {
-        listParts({corners, fragment.triangle});
-    });
+    else
+        forEachQuarter(fragment, [&](const Fragment& quarter) { listParts(quarter); });
 }
 
 bool DartThrower::run(std::size_t most) {
     throwAnywhere(most);
-    for (const std::uint32_t face : faces_) listParts({kWhole, face});
+    for (const std::uint32_t face : faces_) listParts(wholeFace(face));
     const std::vector<Fragment> parts = std::move(left_);
     left_.clear();
     for (std::size_t round = 0; round < kRounds; ++round)
@@ -227,22 +234,19 @@ bool DartThrower::run(std::size_t most) {
 }
 
 bool DartThrower::gapWithin(const Fragment& fragment, float factor, int depth) const {
-    const Places places = placesOf(fragment);
-    if (places.bare) return true;
-    const Vec3f middle = (places.corners[0] + places.corners[1] + places.corners[2]) / 3;
+    const Spacing spacing = spacingOf(fragment);
+    if (spacing.bare) return true;
+    const Vec3f middle = (fragment.places[0] + fragment.places[1] + fragment.places[2]) / 3;
+    const float reach = factor * spacing.radius;
     const auto reached = [&](const RootGrid::Entry& root) {
-        const float reach = factor * places.radius;
-        return std::all_of(places.corners.begin(), places.corners.end(), [&](const Vec3f& corner) {
-            return (corner - root.position).squaredNorm() <= reach * reach;
-        });
+        return allWithin(fragment.places, root.position, reach);
     };
-    if (grid_.search(middle, factor * places.radius, reached)) return true;
+    if (grid_.search(middle, reach, reached)) return true;
     constexpr int kDeepest = 12;
     if (depth == kDeepest) return false;
     bool within = true;
-    forEachQuarter(fragment.corners, [&](const std::array<Vec2f, 3>& corners) {
-        within = within && gapWithin({corners, fragment.triangle}, factor, depth + 1);
-    });
+    forEachQuarter(fragment,
+                   [&](const Fragment& part) { within = within && gapWithin(part, factor, depth + 1); });
     return within;
 }
 

@@ -53,6 +53,9 @@ class RootGrid {
                                         (cell.x() & kMask));
     }
     std::uint32_t blockIndex(const Cell& cell) const;
+    /// Calls visit for the entries of a cell until it returns true.
+    template <class Visit>
+    bool visitCell(std::uint32_t firstChunk, Visit visit) const;
 
     Vec3f origin_;
     float perCell_;
@@ -79,19 +82,15 @@ class DartThrower {
     std::size_t rootCount() const { return roots_.size(); }
 
   private:
-    /// Part of a triangle; corners by their second and third barycentric, exact at any depth used.
+    /// Part of a triangle.
     struct Fragment {
-        std::array<Vec2f, 3> corners;
+        std::array<Vec2f, 3> corners;  ///< second and third barycentric, exact at any depth used
+        std::array<Vec3f, 3> places;   ///< metres
         std::uint32_t triangle;
     };
-    struct Places {
-        std::array<Vec3f, 3> corners;
+    struct Spacing {
         float radius, widest;  ///< smallest and largest local radius in the fragment
         bool bare;             ///< the mask is 0 all over the fragment
-        float squaredSize() const {
-            return std::max({(corners[0] - corners[1]).squaredNorm(), (corners[1] - corners[2]).squaredNorm(),
-                             (corners[2] - corners[0]).squaredNorm()});
-        }
     };
 
     static Vec3f barycentric(const Vec2f& part) {
@@ -99,8 +98,8 @@ class DartThrower {
     }
     float densityAt(std::uint32_t triangle, const Vec3f& weights) const;
     float localRadius(float density) const;
-    Places placesOf(const Fragment& fragment) const;
-    static bool covers(const RootGrid::Entry& root, const Places& places, float factor);
+    Spacing spacingOf(const Fragment& fragment) const;
+    Fragment wholeFace(std::uint32_t face) const;
     /// Random darts on the whole selection: cheap while most of it is free.
     void throwAnywhere(std::size_t most);
     /// Lists the parts of a face that are small enough for fill().
@@ -109,7 +108,7 @@ class DartThrower {
     void throwDart(const Fragment& fragment, bool gather);
     void fill(const Fragment& fragment, std::size_t most);
     void gatherNear(const Vec3f& center, float range);
-    bool coveredByNear(const Places& places) const;
+    bool coveredByNear(const Fragment& fragment, float radius) const;
     void splitAndKeep(const Fragment& fragment);
     bool gapWithin(const Fragment& fragment, float factor, int depth) const;
 
