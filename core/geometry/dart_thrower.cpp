@@ -16,6 +16,7 @@ constexpr float kPart = 1.6f;
 constexpr double kFirstDarts = 1.5;  // random darts for each root of a saturated set
 // Parts are filled in so many rounds over the surface, so that a stop at a count leaves its gaps scattered.
 constexpr std::size_t kRounds = 8;
+constexpr std::size_t kMostBits = 64;
 constexpr float kLeastDensity = 1.0f / 64;
 
 template <class Point>
@@ -137,10 +138,24 @@ void DartThrower::gatherNear(const Vec3f& center, float range) {
     });
 }
 
-/// No dart in the fragment can stand: two roots keep the smaller of their local radii apart.
-bool DartThrower::coveredByNear(const Fragment& fragment, float radius) const {
+std::uint64_t DartThrower::rootsReached(const Vec3f& place, std::size_t first) const {
+    std::uint64_t bits = 0;
+    for (std::size_t i = first; i < near_.size(); ++i)
+        bits |= std::uint64_t{(near_[i].position - place).squaredNorm() < apart_ * apart_} << i;
+    return bits;
+}
+
+/// One root reaches all corners, so that no dart in the part can stand: two roots keep the smaller of their
+/// local radii apart. With one radius for all, corners remember the roots that reach them.
+bool DartThrower::coveredByNear(Part& part) const {
+    if (mask_.empty() && near_.size() <= kMostBits) {
+        for (std::size_t i = 0; i < 3; ++i) part.reached[i] |= rootsReached(part.places[i], part.known);
+        part.known = near_.size();
+        return (part.reached[0] & part.reached[1] & part.reached[2]) != 0;
+    }
+    const float radius = spacingOf(part).radius;
     return std::any_of(near_.begin(), near_.end(), [&](const RootGrid::Entry& root) {
-        return allWithin(fragment.places, root.position, std::min(root.radius, radius));
+        return allWithin(part.places, root.position, std::min(root.radius, radius));
     });
 }
 
@@ -167,13 +182,23 @@ void DartThrower::throwDart(const Fragment& fragment, bool gather) {
     grid_.add(near_.back());
 }
 
-/// Splits what no single root covers into four, which wait in small_.
-void DartThrower::splitAndKeep(const Fragment& fragment) {
-    forEachQuarter(fragment, [&](const Fragment& child) {
+/// Splits what no single root covers into four, which wait in small_. coveredByNear has seen the part.
+void DartThrower::splitAndKeep(const Part& part) {
+    std::array<std::array<std::uint64_t, 3>, 4> reached{};
+    if (part.known == near_.size()) {
+        const auto& [a, b, c] = part.places;
+        const auto& [atA, atB, atC] = part.reached;
+        const std::uint64_t ab = rootsReached((a + b) / 2, 0), bc = rootsReached((b + c) / 2, 0),
+                            ca = rootsReached((c + a) / 2, 0);
+        reached = {{{atA, ab, ca}, {ab, atB, bc}, {ca, bc, atC}, {bc, ca, ab}}};
+    }
+    std::size_t quarter = 0;
+    forEachQuarter(static_cast<const Fragment&>(part), [&](const Fragment& fragment) {
+        Part child{fragment, reached[quarter++], part.known};
         const Spacing spacing = spacingOf(child);
         const float smallest = kSmallest * spacing.radius;
         const bool negligible = spacing.bare || squaredSize(child.places) <= smallest * smallest;
-        if (!negligible && !coveredByNear(child, spacing.radius)) small_.push_back(child);
+        if (!negligible && !coveredByNear(child)) small_.push_back(child);
     });
 }
 
@@ -184,13 +209,14 @@ void DartThrower::fill(const Fragment& fragment, std::size_t most) {
     float reach = 0;
     for (const Vec3f& place : fragment.places) reach = std::max(reach, (place - center).norm());
     gatherNear(center, reach + spacing.widest);
-    if (coveredByNear(fragment, spacing.radius)) return;
-    splitAndKeep(fragment);
+    Part whole{fragment, {}, 0};
+    if (coveredByNear(whole)) return;
+    splitAndKeep(whole);
     while (!small_.empty() && roots_.size() < most) {
-        const Fragment part = small_.back();
+        Part part = small_.back();
         small_.pop_back();
         throwDart(part, false);
-        if (!coveredByNear(part, spacingOf(part).radius)) splitAndKeep(part);
+        if (!coveredByNear(part)) splitAndKeep(part);
     }
     left_.insert(left_.end(), small_.begin(), small_.end());
     small_.clear();

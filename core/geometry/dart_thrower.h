@@ -88,6 +88,12 @@ class DartThrower {
         std::array<Vec3f, 3> places;   ///< metres
         std::uint32_t triangle;
     };
+    /// A fragment in work. Per corner, bit i tells that root i of near_ is within reach, for the first
+    /// `known` roots.
+    struct Part : Fragment {
+        std::array<std::uint64_t, 3> reached{};
+        std::size_t known = 0;
+    };
     struct Spacing {
         float radius, widest;  ///< smallest and largest local radius in the fragment
         bool bare;             ///< the mask is 0 all over the fragment
@@ -108,8 +114,9 @@ class DartThrower {
     void throwDart(const Fragment& fragment, bool gather);
     void fill(const Fragment& fragment, std::size_t most);
     void gatherNear(const Vec3f& center, float range);
-    bool coveredByNear(const Fragment& fragment, float radius) const;
-    void splitAndKeep(const Fragment& fragment);
+    bool coveredByNear(Part& part) const;
+    std::uint64_t rootsReached(const Vec3f& place, std::size_t first) const;
+    void splitAndKeep(const Part& part);
     bool gapWithin(const Fragment& fragment, float factor, int depth) const;
 
     const ScalpMesh& mesh_;
@@ -119,8 +126,8 @@ class DartThrower {
     Random random_;
     RootGrid grid_;
     FaceSet faces_;
-    std::vector<Fragment> left_;   ///< parts of the surface not yet known to be covered
-    std::vector<Fragment> small_;  ///< parts of the fragment in work
+    std::vector<Fragment> left_;  ///< parts of the surface not yet known to be covered
+    std::vector<Part> small_;     ///< parts of the fragment in work
     std::vector<SurfacePoint> roots_;
     std::vector<RootGrid::Entry> near_;
 };
