@@ -33,7 +33,7 @@ Result<Placement> placeRandom(const ScalpMesh& mesh, const FaceSet& faces, const
 /// roots or densityPerCm2 × masked area. The radius is the one whose maximal set holds about 1 % more;
 /// throwing ends at the count, when only small gaps are left. A mask scales the local radius by 1/√density;
 /// densities below 1/64 count as 0. Errors: as placeRandom; a density beyond what placement can tell apart
-/// (10,000 per cm², or the precision of the coordinates), with the density that would fit.
+/// (10,000 per cm², 5 million roots, or the precision of the coordinates), with the density that would fit.
 Result<Placement> placeDarts(const ScalpMesh& mesh, const FaceSet& faces, const PlacementRequest& request);
 
 /// Dart throwing with the radius given (metres): maximal, no root pair closer than `radius`.
