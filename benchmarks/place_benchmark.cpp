@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "core/geometry/placement.h"
-#include "core/geometry/root_triangulation.h"
 #include "core/geometry/selection.h"
 #include "tests/geometry/test_meshes.h"
 

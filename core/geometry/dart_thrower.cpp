@@ -9,17 +9,40 @@
 namespace hairloom {
 namespace {
 
-constexpr int kBuckets = 256;  // powers of two from 2^-160 m² on
-constexpr int kSmallestPower = -160;
 constexpr float kRounding = 4e-6f;  // of a float distance, relative
 constexpr float kSmallest = 5e-4f;  // of the radius: size of fragments that are let go
-// Fragments below this many radii are finished at once: the roots around them are few and are
-// gathered once for all their parts.
-constexpr float kAtOnce = 1.6f;
+// Parts below this many radii are filled at once: the roots around them are few and are gathered once.
+constexpr float kPart = 1.6f;
+constexpr double kFirstDarts = 1.5;  // random darts for each root of a saturated set
+// Parts are filled in so many rounds over the surface, so that a stop at a count leaves its gaps scattered.
+constexpr std::size_t kRounds = 8;
+constexpr std::size_t kMostBits = 64;
 constexpr float kLeastDensity = 1.0f / 64;
 
-int bucketOf(float area) {
-    return std::clamp(std::ilogb(area) - kSmallestPower, 0, kBuckets - 1);
+template <class Point>
+std::array<std::array<Point, 3>, 4> quarters(const std::array<Point, 3>& corners) {
+    const auto& [a, b, c] = corners;
+    const Point ab = (a + b) / 2, bc = (b + c) / 2, ca = (c + a) / 2;
+    return {{{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {bc, ca, ab}}};
+}
+
+/// Calls visit with the four similar parts of a fragment.
+template <class Fragment, class Visit>
+void forEachQuarter(const Fragment& fragment, Visit visit) {
+    const auto corners = quarters(fragment.corners);
+    const auto places = quarters(fragment.places);
+    for (std::size_t i = 0; i < 4; ++i) visit(Fragment{corners[i], places[i], fragment.triangle});
+}
+
+float squaredSize(const std::array<Vec3f, 3>& places) {
+    return std::max({(places[0] - places[1]).squaredNorm(), (places[1] - places[2]).squaredNorm(),
+                     (places[2] - places[0]).squaredNorm()});
+}
+
+bool allWithin(const std::array<Vec3f, 3>& places, const Vec3f& center, float reach) {
+    const float squared = reach * reach;
+    return (places[0] - center).squaredNorm() < squared && (places[1] - center).squaredNorm() < squared &&
+           (places[2] - center).squaredNorm() < squared;
 }
 
 }  // namespace
@@ -50,16 +73,25 @@ void RootGrid::add(const Entry& entry) {
 }
 
 template <class Visit>
+bool RootGrid::visitCell(std::uint32_t firstChunk, Visit visit) const {
+    for (std::uint32_t c = firstChunk; c != kNone; c = chunks_[c].next)
+        for (std::uint32_t i = 0; i < chunks_[c].count; ++i)
+            if (visit(chunks_[c].entries[i])) return true;
+    return false;
+}
+
+template <class Visit>
 bool RootGrid::search(const Vec3f& center, float range, Visit visit) const {
     const Cell low = cellOf(center - Vec3f::Constant(range)), high = cellOf(center + Vec3f::Constant(range));
+    const auto sameBlock = [&](int axis) { return low[axis] >> kBits == high[axis] >> kBits; };
+    const bool oneBlock = sameBlock(0) && sameBlock(1) && sameBlock(2);
+    const std::uint32_t common = oneBlock ? blockIndex(low) : kNone;
+    if (oneBlock && common == kNone) return false;
     for (int z = low.z(); z <= high.z(); ++z)
         for (int y = low.y(); y <= high.y(); ++y)
             for (int x = low.x(); x <= high.x(); ++x) {
-                const std::uint32_t block = blockIndex({x, y, z});
-                if (block == kNone) continue;
-                for (std::uint32_t c = blocks_[block][slotOf({x, y, z})]; c != kNone; c = chunks_[c].next)
-                    for (std::uint32_t i = 0; i < chunks_[c].count; ++i)
-                        if (visit(chunks_[c].entries[i])) return true;
+                const std::uint32_t block = oneBlock ? common : blockIndex({x, y, z});
+                if (block != kNone && visitCell(blocks_[block][slotOf({x, y, z})], visit)) return true;
             }
     return false;
 }
@@ -72,11 +104,7 @@ DartThrower::DartThrower(const ScalpMesh& mesh, const FaceSet& faces, std::span<
       apart_(radius * (1 + kRounding)),
       random_(seed),
       grid_(mesh.bounds().min(), 2 * apart_),
-      buckets_(kBuckets),
-      smallestUsed_(kBuckets - 1) {
-    for (const std::uint32_t face : faces)
-        push({{Vec2f(0, 0), Vec2f(1, 0), Vec2f(0, 1)}, face, mesh.triangleArea(face), false});
-}
+      faces_(faces) {}
 
 float DartThrower::densityAt(std::uint32_t triangle, const Vec3f& weights) const {
     return mask_.empty() ? 1.0f : weights.dot(cornerDensities(mesh_, mask_, triangle));
@@ -86,68 +114,20 @@ float DartThrower::localRadius(float density) const {
     return mask_.empty() ? apart_ : apart_ / std::sqrt(std::clamp(density, kLeastDensity, 1.0f));
 }
 
-DartThrower::Places DartThrower::placesOf(const Fragment& fragment) const {
-    const Triangle& t = mesh_.triangles()[fragment.triangle];
-    const Vec3f origin = mesh_.positions()[t[0]];
-    const Vec3f alongB = mesh_.positions()[t[1]] - origin, alongC = mesh_.positions()[t[2]] - origin;
-    Places places;
-    for (std::size_t i = 0; i < 3; ++i)
-        places.corners[i] = origin + fragment.corners[i].x() * alongB + fragment.corners[i].y() * alongC;
-    places.radius = places.widest = apart_;
-    places.bare = false;
-    if (!mask_.empty()) {
-        Vec3f densities;
-        for (int i = 0; i < 3; ++i)
-            densities[i] =
-                densityAt(fragment.triangle, barycentric(fragment.corners[static_cast<std::size_t>(i)]));
-        places.radius = localRadius(densities.maxCoeff());
-        places.widest = localRadius(densities.minCoeff());
-        places.bare = densities.maxCoeff() < kLeastDensity;
-    }
-    return places;
+DartThrower::Spacing DartThrower::spacingOf(const Fragment& fragment) const {
+    if (mask_.empty()) return {apart_, apart_, false};
+    Vec3f densities;
+    for (int i = 0; i < 3; ++i)
+        densities[i] =
+            densityAt(fragment.triangle, barycentric(fragment.corners[static_cast<std::size_t>(i)]));
+    return {localRadius(densities.maxCoeff()), localRadius(densities.minCoeff()),
+            densities.maxCoeff() < kLeastDensity};
 }
 
-/// No dart in the fragment can stand: two roots keep the smaller of their local radii apart.
-bool DartThrower::covers(const RootGrid::Entry& root, const Places& places, float factor) {
-    const float reach = factor * std::min(root.radius, places.radius);
-    for (const Vec3f& corner : places.corners)
-        if ((corner - root.position).squaredNorm() >= reach * reach) return false;
-    return true;
-}
-
-void DartThrower::push(const Fragment& fragment) {
-    if (!(fragment.area > 0)) return;
-    const auto k = static_cast<std::size_t>(bucketOf(fragment.area));
-    largest_ = std::max(largest_, k);
-    smallestUsed_ = std::min(smallestUsed_, k);
-    buckets_[k].fragments.push_back(fragment);
-    buckets_[k].area += fragment.area;
-    ++active_;
-}
-
-/// A fragment drawn with probability in proportion to its area.
-DartThrower::Fragment DartThrower::take() {
-    while (buckets_[largest_].fragments.empty()) --largest_;
-    double total = 0;
-    for (std::size_t k = smallestUsed_; k <= largest_; ++k) total += buckets_[k].area;
-    double left = random_.uniformDouble() * total;
-    std::size_t chosen = largest_;
-    for (std::size_t k = largest_ + 1; k-- > smallestUsed_ && left >= 0;) {
-        if (buckets_[k].fragments.empty()) continue;
-        chosen = k;
-        left -= buckets_[k].area;
-    }
-    Bucket& bucket = buckets_[chosen];
-    const float bound = std::ldexp(1.0f, static_cast<int>(chosen) + kSmallestPower + 1);
-    std::uint32_t index = 0;
-    do index = random_.below(static_cast<std::uint32_t>(bucket.fragments.size()));
-    while (random_.uniform() * bound >= bucket.fragments[index].area);
-    const Fragment fragment = bucket.fragments[index];
-    bucket.fragments[index] = bucket.fragments.back();
-    bucket.fragments.pop_back();
-    --active_;
-    bucket.area = bucket.fragments.empty() ? 0 : bucket.area - fragment.area;
-    return fragment;
+DartThrower::Fragment DartThrower::wholeFace(std::uint32_t face) const {
+    const Triangle& t = mesh_.triangles()[face];
+    const auto place = [&](std::size_t i) { return mesh_.positions()[t[i]]; };
+    return {{Vec2f(0, 0), Vec2f(1, 0), Vec2f(0, 1)}, {place(0), place(1), place(2)}, face};
 }
 
 void DartThrower::gatherNear(const Vec3f& center, float range) {
@@ -158,11 +138,28 @@ void DartThrower::gatherNear(const Vec3f& center, float range) {
     });
 }
 
-bool DartThrower::coveredByNear(const Places& places) const {
-    return std::any_of(near_.begin(), near_.end(), [&](const auto& root) { return covers(root, places, 1); });
+std::uint64_t DartThrower::rootsReached(const Vec3f& place, std::size_t first) const {
+    std::uint64_t bits = 0;
+    for (std::size_t i = first; i < near_.size(); ++i)
+        bits |= std::uint64_t{(near_[i].position - place).squaredNorm() < apart_ * apart_} << i;
+    return bits;
 }
 
-void DartThrower::throwDart(const Fragment& fragment) {
+/// One root reaches all corners, so that no dart in the part can stand: two roots keep the smaller of their
+/// local radii apart. With one radius for all, corners remember the roots that reach them.
+bool DartThrower::coveredByNear(Part& part) const {
+    if (mask_.empty() && near_.size() <= kMostBits) {
+        for (std::size_t i = 0; i < 3; ++i) part.reached[i] |= rootsReached(part.places[i], part.known);
+        part.known = near_.size();
+        return (part.reached[0] & part.reached[1] & part.reached[2]) != 0;
+    }
+    const float radius = spacingOf(part).radius;
+    return std::any_of(near_.begin(), near_.end(), [&](const RootGrid::Entry& root) {
+        return allWithin(part.places, root.position, std::min(root.radius, radius));
+    });
+}
+
+void DartThrower::throwDart(const Fragment& fragment, bool gather) {
     float a = random_.uniform(), b = random_.uniform();
     if (a + b > 1) {
         a = 1 - a;
@@ -175,7 +172,7 @@ void DartThrower::throwDart(const Fragment& fragment) {
     const float density = densityAt(fragment.triangle, weights);
     const float radius = localRadius(density);
     if (density < kLeastDensity && !mask_.empty()) return;
-    if (!fragment.small) gatherNear(place, radius);
+    if (gather) gatherNear(place, radius);
     for (const RootGrid::Entry& root : near_) {
         const float apart = std::min(root.radius, radius);
         if ((root.position - place).squaredNorm() < apart * apart) return;
@@ -185,86 +182,103 @@ void DartThrower::throwDart(const Fragment& fragment) {
     grid_.add(near_.back());
 }
 
-/// Splits what no single root covers into four; small parts wait in small_, others in the buckets.
-void DartThrower::splitAndKeep(const Fragment& fragment) {
-    const auto& [a, b, c] = fragment.corners;
-    const Vec2f ab = (a + b) / 2, bc = (b + c) / 2, ca = (c + a) / 2;
-    const std::array<std::array<Vec2f, 3>, 4> children = {
-        {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {bc, ca, ab}}};
-    for (const auto& corners : children) {
-        Fragment child{corners, fragment.triangle, fragment.area / 4, false};
-        const Places places = placesOf(child);
-        const float size = places.squaredSize();
-        const float smallest = kSmallest * places.radius;
-        if (places.bare || size <= smallest * smallest || coveredByNear(places)) continue;
-        child.small = size < kAtOnce * kAtOnce * apart_ * apart_;
-        if (child.small && fragment.small)
-            small_.push_back(child);
-        else
-            push(child);
+/// Splits what no single root covers into four, which wait in small_. coveredByNear has seen the part.
+void DartThrower::splitAndKeep(const Part& part) {
+    std::array<std::array<std::uint64_t, 3>, 4> reached{};
+    if (part.known == near_.size()) {
+        const auto& [a, b, c] = part.places;
+        const auto& [atA, atB, atC] = part.reached;
+        const std::uint64_t ab = rootsReached((a + b) / 2, 0), bc = rootsReached((b + c) / 2, 0),
+                            ca = rootsReached((c + a) / 2, 0);
+        reached = {{{atA, ab, ca}, {ab, atB, bc}, {ca, bc, atC}, {bc, ca, ab}}};
     }
-}
-
-/// Fills what is left of a small fragment; all roots that matter to it are gathered once.
-void DartThrower::fill(const Fragment& fragment, std::size_t most) {
-    const Places places = placesOf(fragment);
-    const Vec3f center = (places.corners[0] + places.corners[1] + places.corners[2]) / 3;
-    float reach = 0;
-    for (const Vec3f& corner : places.corners) reach = std::max(reach, (corner - center).norm());
-    gatherNear(center, reach + places.widest);
-    if (coveredByNear(places)) return;
-    small_.push_back(fragment);
-    while (!small_.empty() && roots_.size() < most) {
-        const Fragment part = small_.back();
-        small_.pop_back();
-        throwDart(part);
-        if (!coveredByNear(placesOf(part))) splitAndKeep(part);
-    }
-    for (const Fragment& part : small_) push(part);
-    small_.clear();
-}
-
-bool DartThrower::run(std::size_t most) {
-    while (active_ > 0 && roots_.size() < most) {
-        const Fragment fragment = take();
-        if (fragment.small) {
-            fill(fragment, most);
-            continue;
-        }
-        near_.clear();
-        throwDart(fragment);
-        if (!coveredByNear(placesOf(fragment))) splitAndKeep(fragment);
-    }
-    return active_ == 0;
-}
-
-bool DartThrower::gapWithin(const Fragment& fragment, float factor, int depth) const {
-    const Places places = placesOf(fragment);
-    if (places.bare) return true;
-    const Vec3f middle = (places.corners[0] + places.corners[1] + places.corners[2]) / 3;
-    const auto reached = [&](const RootGrid::Entry& root) {
-        const float reach = factor * places.radius;
-        return std::all_of(places.corners.begin(), places.corners.end(), [&](const Vec3f& corner) {
-            return (corner - root.position).squaredNorm() <= reach * reach;
-        });
-    };
-    if (grid_.search(middle, factor * places.radius, reached)) return true;
-    constexpr int kDeepest = 12;
-    if (depth == kDeepest) return false;
-    const auto& [a, b, c] = fragment.corners;
-    const Vec2f ab = (a + b) / 2, bc = (b + c) / 2, ca = (c + a) / 2;
-    const std::array<std::array<Vec2f, 3>, 4> children = {
-        {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {bc, ca, ab}}};
-    return std::all_of(children.begin(), children.end(), [&](const auto& corners) {
-        return gapWithin({corners, fragment.triangle, fragment.area / 4, false}, factor, depth + 1);
+    std::size_t quarter = 0;
+    forEachQuarter(static_cast<const Fragment&>(part), [&](const Fragment& fragment) {
+        Part child{fragment, reached[quarter++], part.known};
+        const Spacing spacing = spacingOf(child);
+        const float smallest = kSmallest * spacing.radius;
+        const bool negligible = spacing.bare || squaredSize(child.places) <= smallest * smallest;
+        if (!negligible && !coveredByNear(child)) small_.push_back(child);
     });
 }
 
+/// Fills what is left of a part; all roots that matter to it are gathered once.
+void DartThrower::fill(const Fragment& fragment, std::size_t most) {
+    const Spacing spacing = spacingOf(fragment);
+    const Vec3f center = (fragment.places[0] + fragment.places[1] + fragment.places[2]) / 3;
+    float reach = 0;
+    for (const Vec3f& place : fragment.places) reach = std::max(reach, (place - center).norm());
+    gatherNear(center, reach + spacing.widest);
+    Part whole{fragment, {}, 0};
+    if (coveredByNear(whole)) return;
+    splitAndKeep(whole);
+    while (!small_.empty() && roots_.size() < most) {
+        Part part = small_.back();
+        small_.pop_back();
+        throwDart(part, false);
+        if (!coveredByNear(part)) splitAndKeep(part);
+    }
+    left_.insert(left_.end(), small_.begin(), small_.end());
+    small_.clear();
+}
+
+void DartThrower::throwAnywhere(std::size_t most) {
+    const double perArea =
+        kFirstDarts / (static_cast<double>(radius_) * radius_) / static_cast<double>(kRounds);
+    for (std::size_t round = 0; round < kRounds; ++round)
+        for (const std::uint32_t face : faces_) {
+            const double mean = cornerDensities(mesh_, mask_, face).cast<double>().mean();
+            const double darts = perArea * static_cast<double>(mesh_.triangleArea(face)) * mean;
+            const auto count = static_cast<std::size_t>(darts + random_.uniformDouble());
+            if (count == 0) continue;
+            const Fragment whole = wholeFace(face);
+            for (std::size_t i = 0; i < count && roots_.size() < most; ++i) throwDart(whole, true);
+        }
+}
+
+void DartThrower::listParts(const Fragment& fragment) {
+    if (spacingOf(fragment).bare) return;
+    if (squaredSize(fragment.places) <= kPart * kPart * apart_ * apart_)
+        left_.push_back(fragment);
+    else
+        forEachQuarter(fragment, [&](const Fragment& quarter) { listParts(quarter); });
+}
+
+bool DartThrower::run(std::size_t most) {
+    throwAnywhere(most);
+    for (const std::uint32_t face : faces_) listParts(wholeFace(face));
+    const std::vector<Fragment> parts = std::move(left_);
+    left_.clear();
+    for (std::size_t round = 0; round < kRounds; ++round)
+        for (std::size_t i = round; i < parts.size(); i += kRounds) {
+            if (roots_.size() < most)
+                fill(parts[i], most);
+            else
+                left_.push_back(parts[i]);
+        }
+    return left_.empty();
+}
+
+bool DartThrower::gapWithin(const Fragment& fragment, float factor, int depth) const {
+    const Spacing spacing = spacingOf(fragment);
+    if (spacing.bare) return true;
+    const Vec3f middle = (fragment.places[0] + fragment.places[1] + fragment.places[2]) / 3;
+    const float reach = factor * spacing.radius;
+    const auto reached = [&](const RootGrid::Entry& root) {
+        return allWithin(fragment.places, root.position, reach);
+    };
+    if (grid_.search(middle, reach, reached)) return true;
+    constexpr int kDeepest = 12;
+    if (depth == kDeepest) return false;
+    bool within = true;
+    forEachQuarter(fragment,
+                   [&](const Fragment& part) { within = within && gapWithin(part, factor, depth + 1); });
+    return within;
+}
+
 bool DartThrower::gapsWithin(float factor) const {
-    for (const Bucket& bucket : buckets_)
-        for (const Fragment& fragment : bucket.fragments)
-            if (!gapWithin(fragment, factor, 0)) return false;
-    return true;
+    return std::all_of(left_.begin(), left_.end(),
+                       [&](const Fragment& fragment) { return gapWithin(fragment, factor, 0); });
 }
 
 }  // namespace hairloom

@@ -53,6 +53,9 @@ class RootGrid {
                                         (cell.x() & kMask));
     }
     std::uint32_t blockIndex(const Cell& cell) const;
+    /// Calls visit for the entries of a cell until it returns true.
+    template <class Visit>
+    bool visitCell(std::uint32_t firstChunk, Visit visit) const;
 
     Vec3f origin_;
     float perCell_;
@@ -79,26 +82,21 @@ class DartThrower {
     std::size_t rootCount() const { return roots_.size(); }
 
   private:
-    /// Part of a triangle; corners by their second and third barycentric, exact at any depth used.
+    /// Part of a triangle.
     struct Fragment {
-        std::array<Vec2f, 3> corners;
+        std::array<Vec2f, 3> corners;  ///< second and third barycentric, exact at any depth used
+        std::array<Vec3f, 3> places;   ///< metres
         std::uint32_t triangle;
-        float area;
-        bool small;  ///< finished at once when its turn comes
     };
-    /// Fragments whose areas lie between 2^k and 2^(k+1).
-    struct Bucket {
-        std::vector<Fragment> fragments;
-        double area = 0;
+    /// A fragment in work. Per corner, bit i tells that root i of near_ is within reach, for the first
+    /// `known` roots.
+    struct Part : Fragment {
+        std::array<std::uint64_t, 3> reached{};
+        std::size_t known = 0;
     };
-    struct Places {
-        std::array<Vec3f, 3> corners;
+    struct Spacing {
         float radius, widest;  ///< smallest and largest local radius in the fragment
         bool bare;             ///< the mask is 0 all over the fragment
-        float squaredSize() const {
-            return std::max({(corners[0] - corners[1]).squaredNorm(), (corners[1] - corners[2]).squaredNorm(),
-                             (corners[2] - corners[0]).squaredNorm()});
-        }
     };
 
     static Vec3f barycentric(const Vec2f& part) {
@@ -106,16 +104,19 @@ class DartThrower {
     }
     float densityAt(std::uint32_t triangle, const Vec3f& weights) const;
     float localRadius(float density) const;
-    Places placesOf(const Fragment& fragment) const;
-    static bool covers(const RootGrid::Entry& root, const Places& places, float factor);
-    void push(const Fragment& fragment);
-    Fragment take();
-    /// Throws one dart at the fragment. Afterwards near_ holds the roots that can concern it.
-    void throwDart(const Fragment& fragment);
+    Spacing spacingOf(const Fragment& fragment) const;
+    Fragment wholeFace(std::uint32_t face) const;
+    /// Random darts on the whole selection: cheap while most of it is free.
+    void throwAnywhere(std::size_t most);
+    /// Lists the parts of a face that are small enough for fill().
+    void listParts(const Fragment& fragment);
+    /// Throws one dart at the fragment, checked against near_, which it may have to gather.
+    void throwDart(const Fragment& fragment, bool gather);
     void fill(const Fragment& fragment, std::size_t most);
     void gatherNear(const Vec3f& center, float range);
-    bool coveredByNear(const Places& places) const;
-    void splitAndKeep(const Fragment& fragment);
+    bool coveredByNear(Part& part) const;
+    std::uint64_t rootsReached(const Vec3f& place, std::size_t first) const;
+    void splitAndKeep(const Part& part);
     bool gapWithin(const Fragment& fragment, float factor, int depth) const;
 
     const ScalpMesh& mesh_;
@@ -124,10 +125,9 @@ class DartThrower {
     float apart_;  ///< the radius plus what rounding of a measured distance may take away
     Random random_;
     RootGrid grid_;
-    std::vector<Bucket> buckets_;
-    std::size_t largest_ = 0, smallestUsed_;  ///< range of buckets_ that may hold fragments
-    std::size_t active_ = 0;                  ///< fragments in all buckets
-    std::vector<Fragment> small_;  ///< parts of the fragment in work, finished before the next is drawn
+    FaceSet faces_;
+    std::vector<Fragment> left_;  ///< parts of the surface not yet known to be covered
+    std::vector<Part> small_;     ///< parts of the fragment in work
     std::vector<SurfacePoint> roots_;
     std::vector<RootGrid::Entry> near_;
 };

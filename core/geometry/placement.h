@@ -30,10 +30,10 @@ struct Placement {
 Result<Placement> placeRandom(const ScalpMesh& mesh, const FaceSet& faces, const PlacementRequest& request);
 
 /// Poisson-disk sampling by hierarchical dart throwing on the surface (Cline et al. 2009), exactly `count`
-/// roots or densityPerCm2 × masked area. The radius is the one whose maximal set holds about 1 % more;
+/// roots or densityPerCm2 × masked area. The radius is one whose maximal set holds a few percent more;
 /// throwing ends at the count, when only small gaps are left. A mask scales the local radius by 1/√density;
 /// densities below 1/64 count as 0. Errors: as placeRandom; a density beyond what placement can tell apart
-/// (10,000 per cm², or the precision of the coordinates), with the density that would fit.
+/// (10,000 per cm², 5 million roots, or the precision of the coordinates), with the density that would fit.
 Result<Placement> placeDarts(const ScalpMesh& mesh, const FaceSet& faces, const PlacementRequest& request);
 
 /// Dart throwing with the radius given (metres): maximal, no root pair closer than `radius`.

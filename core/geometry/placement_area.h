@@ -2,6 +2,7 @@
 #pragma once
 // What both placements share: checks, density and masked area. Private to core/geometry.
 
+#include <cstdint>
 #include <span>
 
 #include "core/geometry/placement.h"

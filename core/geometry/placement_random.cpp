@@ -11,7 +11,7 @@ namespace hairloom {
 namespace {
 
 constexpr double kMostPerCm2 = 10'000;
-constexpr double kMostRoots = 2e7;
+constexpr double kMostRoots = 5e6;
 constexpr double kCm2PerM2 = 1e4;
 
 /// Picks faces in proportion to their weight in constant expected time (the cutpoint method, Chen and Asau
