@@ -99,7 +99,8 @@ Quatf shortestArc(const Vec3f& from, const Vec3f& to) {
     // Turn half round an axis across `from`, then the small rest from −from to `to`.
     const Vec3f across = from.cross(to);
     constexpr float kExactlyOpposite = 1e-12f;
-    const Vec3f axis = across.squaredNorm() > kExactlyOpposite ? across.normalized() : from.unitOrthogonal();
+    Vec3f axis = across.squaredNorm() > kExactlyOpposite ? across.normalized() : from.unitOrthogonal();
+    axis = (axis - axis.dot(from) * from).normalized();  // rounding tilts a short cross product
     const Quatf half(0, axis.x(), axis.y(), axis.z());
     return (shortestArc(-from, to) * half).normalized();
 }

@@ -9,14 +9,23 @@
 namespace hairloom {
 namespace {
 
-constexpr int kBuckets = 256;  // powers of two from 2^-160 m² on
-constexpr int kSmallestPower = -160;
 constexpr float kRounding = 4e-6f;  // of a float distance, relative
 constexpr float kSmallest = 5e-4f;  // of the radius: size of fragments that are let go
+// Parts below this many radii are filled at once: the roots around them are few and are gathered once.
+constexpr float kPart = 1.6f;
+constexpr double kFirstDarts = 1.5;  // random darts for each root of a saturated set
+// Parts are filled in so many rounds over the surface, so that a stop at a count leaves its gaps scattered.
+constexpr std::size_t kRounds = 8;
 constexpr float kLeastDensity = 1.0f / 64;
 
-int bucketOf(float area) {
-    return std::clamp(std::ilogb(area) - kSmallestPower, 0, kBuckets - 1);
+const std::array<Vec2f, 3> kWhole = {Vec2f(0, 0), Vec2f(1, 0), Vec2f(0, 1)};
+
+template <class Visit>
+void forEachQuarter(const std::array<Vec2f, 3>& corners, Visit visit) {
+    const auto& [a, b, c] = corners;
+    const Vec2f ab = (a + b) / 2, bc = (b + c) / 2, ca = (c + a) / 2;
+    for (const auto& quarter : {std::array{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {bc, ca, ab}})
+        visit(quarter);
 }
 
 }  // namespace
@@ -69,10 +78,7 @@ DartThrower::DartThrower(const ScalpMesh& mesh, const FaceSet& faces, std::span<
       apart_(radius * (1 + kRounding)),
       random_(seed),
       grid_(mesh.bounds().min(), 2 * apart_),
-      buckets_(kBuckets) {
-    for (const std::uint32_t face : faces)
-        push({{Vec2f(0, 0), Vec2f(1, 0), Vec2f(0, 1)}, face, mesh.triangleArea(face)});
-}
+      faces_(faces) {}
 
 float DartThrower::densityAt(std::uint32_t triangle, const Vec3f& weights) const {
     return mask_.empty() ? 1.0f : weights.dot(cornerDensities(mesh_, mask_, triangle));
@@ -83,14 +89,23 @@ float DartThrower::localRadius(float density) const {
 }
 
 DartThrower::Places DartThrower::placesOf(const Fragment& fragment) const {
+    const Triangle& t = mesh_.triangles()[fragment.triangle];
+    const Vec3f origin = mesh_.positions()[t[0]];
+    const Vec3f alongB = mesh_.positions()[t[1]] - origin, alongC = mesh_.positions()[t[2]] - origin;
     Places places;
-    float most = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const Vec3f weights = barycentric(fragment.corners[i]);
-        places.corners[i] = mesh_.pointAt(fragment.triangle, weights);
-        most = std::max(most, densityAt(fragment.triangle, weights));
+    for (std::size_t i = 0; i < 3; ++i)
+        places.corners[i] = origin + fragment.corners[i].x() * alongB + fragment.corners[i].y() * alongC;
+    places.radius = places.widest = apart_;
+    places.bare = false;
+    if (!mask_.empty()) {
+        Vec3f densities;
+        for (int i = 0; i < 3; ++i)
+            densities[i] =
+                densityAt(fragment.triangle, barycentric(fragment.corners[static_cast<std::size_t>(i)]));
+        places.radius = localRadius(densities.maxCoeff());
+        places.widest = localRadius(densities.minCoeff());
+        places.bare = densities.maxCoeff() < kLeastDensity;
     }
-    places.radius = localRadius(most);
     return places;
 }
 
@@ -102,40 +117,10 @@ bool DartThrower::covers(const RootGrid::Entry& root, const Places& places, floa
     return true;
 }
 
-void DartThrower::push(const Fragment& fragment) {
-    if (!(fragment.area > 0)) return;
-    Bucket& bucket = buckets_[static_cast<std::size_t>(bucketOf(fragment.area))];
-    bucket.fragments.push_back(fragment);
-    bucket.area += fragment.area;
-}
-
-/// A fragment drawn with probability in proportion to its area.
-DartThrower::Fragment DartThrower::take() {
-    double total = 0;
-    for (const Bucket& bucket : buckets_) total += bucket.area;
-    double left = random_.uniformDouble() * total;
-    std::size_t chosen = buckets_.size();
-    for (std::size_t k = buckets_.size(); k-- > 0 && (chosen == buckets_.size() || left >= 0);) {
-        if (buckets_[k].fragments.empty()) continue;
-        chosen = k;
-        left -= buckets_[k].area;
-    }
-    Bucket& bucket = buckets_[chosen];
-    const float bound = std::ldexp(1.0f, static_cast<int>(chosen) + kSmallestPower + 1);
-    std::uint32_t index = 0;
-    do index = random_.below(static_cast<std::uint32_t>(bucket.fragments.size()));
-    while (random_.uniform() * bound >= bucket.fragments[index].area);
-    const Fragment fragment = bucket.fragments[index];
-    bucket.fragments[index] = bucket.fragments.back();
-    bucket.fragments.pop_back();
-    bucket.area = bucket.fragments.empty() ? 0 : bucket.area - fragment.area;
-    return fragment;
-}
-
-void DartThrower::gatherNear(const Vec3f& place, float range) {
+void DartThrower::gatherNear(const Vec3f& center, float range) {
     near_.clear();
-    grid_.search(place, range, [&](const RootGrid::Entry& entry) {
-        near_.push_back(entry);
+    grid_.search(center, range, [&](const RootGrid::Entry& entry) {
+        if ((entry.position - center).squaredNorm() < range * range) near_.push_back(entry);
         return false;
     });
 }
@@ -144,7 +129,7 @@ bool DartThrower::coveredByNear(const Places& places) const {
     return std::any_of(near_.begin(), near_.end(), [&](const auto& root) { return covers(root, places, 1); });
 }
 
-void DartThrower::throwAt(const Fragment& fragment) {
+void DartThrower::throwDart(const Fragment& fragment, bool gather) {
     float a = random_.uniform(), b = random_.uniform();
     if (a + b > 1) {
         a = 1 - a;
@@ -156,54 +141,94 @@ void DartThrower::throwAt(const Fragment& fragment) {
     const Vec3f place = mesh_.pointAt(fragment.triangle, weights);
     const float density = densityAt(fragment.triangle, weights);
     const float radius = localRadius(density);
-    gatherNear(place, radius);
-    const bool free =
-        density >= kLeastDensity && std::none_of(near_.begin(), near_.end(), [&](const auto& root) {
-            const float apart = std::min(root.radius, radius);
-            return (root.position - place).squaredNorm() < apart * apart;
-        });
-    if (free) {
-        roots_.push_back({fragment.triangle, weights});
-        near_.push_back({place, radius});
-        grid_.add(near_.back());
+    if (density < kLeastDensity && !mask_.empty()) return;
+    if (gather) gatherNear(place, radius);
+    for (const RootGrid::Entry& root : near_) {
+        const float apart = std::min(root.radius, radius);
+        if ((root.position - place).squaredNorm() < apart * apart) return;
     }
-    if (!coveredByNear(placesOf(fragment))) splitAndKeep(fragment);
+    roots_.push_back({fragment.triangle, weights});
+    near_.push_back({place, radius});
+    grid_.add(near_.back());
 }
 
+/// Splits what no single root covers into four, which wait in small_.
 void DartThrower::splitAndKeep(const Fragment& fragment) {
-    const auto& [a, b, c] = fragment.corners;
-    const Vec2f ab = (a + b) / 2, bc = (b + c) / 2, ca = (c + a) / 2;
-    const std::array<std::array<Vec2f, 3>, 4> children = {
-        {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {bc, ca, ab}}};
-    for (const auto& corners : children) {
-        const Fragment child{corners, fragment.triangle, fragment.area / 4};
+    forEachQuarter(fragment.corners, [&](const std::array<Vec2f, 3>& corners) {
+        const Fragment child{corners, fragment.triangle};
         const Places places = placesOf(child);
-        const float size = std::max({(places.corners[0] - places.corners[1]).squaredNorm(),
-                                     (places.corners[1] - places.corners[2]).squaredNorm(),
-                                     (places.corners[2] - places.corners[0]).squaredNorm()});
-        const bool bare = places.radius > apart_ && places.radius >= localRadius(kLeastDensity) &&
-                          densityAt(fragment.triangle, barycentric(corners[0])) < kLeastDensity &&
-                          densityAt(fragment.triangle, barycentric(corners[1])) < kLeastDensity &&
-                          densityAt(fragment.triangle, barycentric(corners[2])) < kLeastDensity;
         const float smallest = kSmallest * places.radius;
-        if (!bare && size > smallest * smallest && !coveredByNear(places)) push(child);
+        const bool negligible = places.bare || places.squaredSize() <= smallest * smallest;
+        if (!negligible && !coveredByNear(places)) small_.push_back(child);
+    });
+}
+
+/// Fills what is left of a small fragment; all roots that matter to it are gathered once.
+void DartThrower::fill(const Fragment& fragment, std::size_t most) {
+    const Places places = placesOf(fragment);
+    const Vec3f center = (places.corners[0] + places.corners[1] + places.corners[2]) / 3;
+    float reach = 0;
+    for (const Vec3f& corner : places.corners) reach = std::max(reach, (corner - center).norm());
+    gatherNear(center, reach + places.widest);
+    if (coveredByNear(places)) return;
+    small_.push_back(fragment);
+    while (!small_.empty() && roots_.size() < most) {
+        const Fragment part = small_.back();
+        small_.pop_back();
+        throwDart(part, false);
+        if (!coveredByNear(placesOf(part))) splitAndKeep(part);
     }
+    left_.insert(left_.end(), small_.begin(), small_.end());
+    small_.clear();
+}
+
+void DartThrower::throwAnywhere(std::size_t most) {
+    std::vector<double> areas;
+    areas.reserve(faces_.size());
+    double sum = 0;
+    for (const std::uint32_t face : faces_) {
+        areas.push_back(static_cast<double>(mesh_.triangleArea(face)) *
+                        cornerDensities(mesh_, mask_, face).cast<double>().mean());
+        sum += areas.back();
+    }
+    const FacePicker picker(areas);
+    const auto darts = static_cast<std::size_t>(kFirstDarts * sum / (static_cast<double>(radius_) * radius_));
+    for (std::size_t i = 0; i < darts && roots_.size() < most; ++i) {
+        const Fragment face{kWhole, faces_[picker.pick(random_.uniformDouble())]};
+        throwDart(face, true);
+    }
+}
+
+void DartThrower::listParts(const Fragment& fragment) {
+    const Places places = placesOf(fragment);
+    if (places.bare) return;
+    if (places.squaredSize() <= kPart * kPart * apart_ * apart_) {
+        left_.push_back(fragment);
+        return;
+    }
+    forEachQuarter(fragment.corners, [&](const std::array<Vec2f, 3>& corners) {
+        listParts({corners, fragment.triangle});
+    });
 }
 
 bool DartThrower::run(std::size_t most) {
-    const auto anyLeft = [&] {
-        return std::any_of(buckets_.begin(), buckets_.end(),
-                           [](const Bucket& b) { return !b.fragments.empty(); });
-    };
-    while (anyLeft()) {
-        if (roots_.size() >= most) return false;
-        throwAt(take());
-    }
-    return true;
+    throwAnywhere(most);
+    for (const std::uint32_t face : faces_) listParts({kWhole, face});
+    const std::vector<Fragment> parts = std::move(left_);
+    left_.clear();
+    for (std::size_t round = 0; round < kRounds; ++round)
+        for (std::size_t i = round; i < parts.size(); i += kRounds) {
+            if (roots_.size() < most)
+                fill(parts[i], most);
+            else
+                left_.push_back(parts[i]);
+        }
+    return left_.empty();
 }
 
 bool DartThrower::gapWithin(const Fragment& fragment, float factor, int depth) const {
     const Places places = placesOf(fragment);
+    if (places.bare) return true;
     const Vec3f middle = (places.corners[0] + places.corners[1] + places.corners[2]) / 3;
     const auto reached = [&](const RootGrid::Entry& root) {
         const float reach = factor * places.radius;
@@ -214,20 +239,16 @@ bool DartThrower::gapWithin(const Fragment& fragment, float factor, int depth) c
     if (grid_.search(middle, factor * places.radius, reached)) return true;
     constexpr int kDeepest = 12;
     if (depth == kDeepest) return false;
-    const auto& [a, b, c] = fragment.corners;
-    const Vec2f ab = (a + b) / 2, bc = (b + c) / 2, ca = (c + a) / 2;
-    const std::array<std::array<Vec2f, 3>, 4> children = {
-        {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {bc, ca, ab}}};
-    return std::all_of(children.begin(), children.end(), [&](const auto& corners) {
-        return gapWithin({corners, fragment.triangle, fragment.area / 4}, factor, depth + 1);
+    bool within = true;
+    forEachQuarter(fragment.corners, [&](const std::array<Vec2f, 3>& corners) {
+        within = within && gapWithin({corners, fragment.triangle}, factor, depth + 1);
     });
+    return within;
 }
 
 bool DartThrower::gapsWithin(float factor) const {
-    for (const Bucket& bucket : buckets_)
-        for (const Fragment& fragment : bucket.fragments)
-            if (!gapWithin(fragment, factor, 0)) return false;
-    return true;
+    return std::all_of(left_.begin(), left_.end(),
+                       [&](const Fragment& fragment) { return gapWithin(fragment, factor, 0); });
 }
 
 }  // namespace hairloom

@@ -3,6 +3,7 @@
 // Hierarchical dart throwing on triangles (Cline, Jeschke, White, Razdan and Wonka 2009). Private to
 // core/geometry.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -82,16 +83,15 @@ class DartThrower {
     struct Fragment {
         std::array<Vec2f, 3> corners;
         std::uint32_t triangle;
-        float area;
-    };
-    /// Fragments whose areas lie between 2^k and 2^(k+1).
-    struct Bucket {
-        std::vector<Fragment> fragments;
-        double area = 0;
     };
     struct Places {
         std::array<Vec3f, 3> corners;
-        float radius;  ///< smallest local radius in the fragment
+        float radius, widest;  ///< smallest and largest local radius in the fragment
+        bool bare;             ///< the mask is 0 all over the fragment
+        float squaredSize() const {
+            return std::max({(corners[0] - corners[1]).squaredNorm(), (corners[1] - corners[2]).squaredNorm(),
+                             (corners[2] - corners[0]).squaredNorm()});
+        }
     };
 
     static Vec3f barycentric(const Vec2f& part) {
@@ -101,11 +101,14 @@ class DartThrower {
     float localRadius(float density) const;
     Places placesOf(const Fragment& fragment) const;
     static bool covers(const RootGrid::Entry& root, const Places& places, float factor);
-    void push(const Fragment& fragment);
-    Fragment take();
-    /// Throws one dart at the fragment; keeps what of the fragment is left uncovered.
-    void throwAt(const Fragment& fragment);
-    void gatherNear(const Vec3f& place, float range);
+    /// Random darts on the whole selection: cheap while most of it is free.
+    void throwAnywhere(std::size_t most);
+    /// Lists the parts of a face that are small enough for fill().
+    void listParts(const Fragment& fragment);
+    /// Throws one dart at the fragment, checked against near_, which it may have to gather.
+    void throwDart(const Fragment& fragment, bool gather);
+    void fill(const Fragment& fragment, std::size_t most);
+    void gatherNear(const Vec3f& center, float range);
     bool coveredByNear(const Places& places) const;
     void splitAndKeep(const Fragment& fragment);
     bool gapWithin(const Fragment& fragment, float factor, int depth) const;
@@ -116,7 +119,9 @@ class DartThrower {
     float apart_;  ///< the radius plus what rounding of a measured distance may take away
     Random random_;
     RootGrid grid_;
-    std::vector<Bucket> buckets_;
+    FaceSet faces_;
+    std::vector<Fragment> left_;   ///< parts of the surface not yet known to be covered
+    std::vector<Fragment> small_;  ///< parts of the fragment in work
     std::vector<SurfacePoint> roots_;
     std::vector<RootGrid::Entry> near_;
 };

@@ -11,36 +11,8 @@ namespace hairloom {
 namespace {
 
 constexpr double kMostPerCm2 = 10'000;
-constexpr double kMostRoots = 2e7;
+constexpr double kMostRoots = 5e6;
 constexpr double kCm2PerM2 = 1e4;
-
-/// Picks faces in proportion to their weight in constant expected time (the cutpoint method, Chen and Asau
-/// 1974).
-class FacePicker {
-  public:
-    explicit FacePicker(const std::vector<double>& weights)
-        : cumulated_(weights.size()), first_(weights.size()) {
-        double sum = 0;
-        for (std::size_t i = 0; i < weights.size(); ++i) cumulated_[i] = sum += weights[i];
-        std::size_t face = 0;
-        for (std::size_t i = 0; i < first_.size(); ++i) {
-            const double bound = sum * static_cast<double>(i) / static_cast<double>(first_.size());
-            while (cumulated_[face] <= bound && face + 1 < cumulated_.size()) ++face;
-            first_[i] = static_cast<std::uint32_t>(face);
-        }
-    }
-    /// `u` in [0, 1)
-    std::size_t pick(double u) const {
-        const double bound = u * cumulated_.back();
-        std::size_t face = first_[static_cast<std::size_t>(u * static_cast<double>(first_.size()))];
-        while (cumulated_[face] <= bound && face + 1 < cumulated_.size()) ++face;
-        return face;
-    }
-
-  private:
-    std::vector<double> cumulated_;
-    std::vector<std::uint32_t> first_;
-};
 
 Vec3f uniformBarycentric(Random& random) {
     float a = random.uniform(), b = random.uniform();

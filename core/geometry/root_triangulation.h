@@ -20,9 +20,14 @@ struct RootTriangulation {
         std::uint32_t sameAs;
     };
     std::vector<Coincident> coincident;
+    /// Roots whose every Delaunay triangle would leave the scalp (on a spit narrower than the roots are
+    /// apart).
+    std::vector<std::uint32_t> alone;
 };
 
-/// Errors: fewer than three roots in every chart, or no parameterisation exists.
+/// The plain Delaunay triangulation of each chart, less the triangles that cross the chart's border: those
+/// kept have empty circles among all roots of the chart, which border constraints would spoil. Errors: empty
+/// selection, a root outside it, no triangle at all.
 Result<RootTriangulation> triangulateRoots(const ScalpMesh& mesh, const FaceSet& faces,
                                            std::span<const SurfacePoint> roots);
 
