@@ -17,16 +17,16 @@ using testing::HasSubstr;
 
 /// A file around any head, sealed with the right checksum.
 std::vector<std::byte> withHead(const std::string& head, std::size_t dataBytes = 0) {
-    ByteWriter writer;
-    writer.writeArray(std::span<const char>("HAIRLOOM", 8));
-    writer.write(std::uint32_t{1});
-    writer.write(std::uint32_t{0});
-    writer.write(std::uint64_t{head.size()});
-    writer.write(hashBytes(std::as_bytes(std::span(head))));
-    writer.writeArray(std::span<const char>(head));
-    writer.align(kArchiveAlignment);
-    writer.writeArray(std::span<const std::uint8_t>(std::vector<std::uint8_t>(dataBytes, 0)));
-    return {writer.bytes().begin(), writer.bytes().end()};
+    std::string file = "HAIRLOOM";
+    const auto put = [&](auto value) { file.append(reinterpret_cast<const char*>(&value), sizeof(value)); };
+    put(std::uint32_t{1});
+    put(std::uint32_t{0});
+    put(std::uint64_t{head.size()});
+    put(hashBytes(std::as_bytes(std::span(head))));
+    file += head;
+    file.resize((file.size() + kArchiveAlignment - 1) / kArchiveAlignment * kArchiveAlignment + dataBytes);
+    const auto bytes = std::as_bytes(std::span(file));
+    return {bytes.begin(), bytes.end()};
 }
 
 std::string openError(std::vector<std::byte> bytes) {

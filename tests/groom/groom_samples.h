@@ -15,7 +15,7 @@
 
 namespace hairloom {
 
-/// Every array of this has `Ts` as its element: a subdivided octahedron on a sphere.
+/// A subdivided octahedron on a sphere, with two groups and every array filled.
 inline std::shared_ptr<const ScalpMesh> sphereScalp(float radius = 0.09f, int levels = 4,
                                                     const Vec3f& centre = Vec3f(0, 1.6f, 0)) {
     std::vector<Vec3f> points{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <cstring>
@@ -185,7 +186,7 @@ TEST(HostileProject, HeadsAreReadStrictly) {
         {[](Json& h) { h["spheres"][1]["radius"] = 0; }, "/spheres/1/radius is 0"},
         {[](Json& h) { h["spheres"][0]["centre"] = "here"; }, "/spheres/0/centre"},
         {[](Json& h) { h["interpolation"]["seed"] = -1; }, "/interpolation/seed is -1"},
-        {[](Json& h) { h["strands"] = 4; }, "the head names 4 strands"},
+        {[](Json& h) { h["strands"] = 4; }, "has 5 values; expected 4"},
         {[](Json& h) { h["points"] = 4294967296u * 9ull; }, "/points is 38654705664"},
         {[](Json& h) { h["groups"] = {"front"}; }, "1 groups"},
         {[](Json& h) { h["scalp"]["groups"] = {"a"}; }, "is of group 1"},
