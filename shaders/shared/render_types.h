@@ -42,8 +42,7 @@ struct ViewConstants {
     float4x4 clipFromWorld;
     float4 eye_ws;    // w = 1: position of a perspective eye; w = 0: direction towards an orthographic one
     float4 pixel;     // x: world size of a pixel at distance 1 (w = 1) or anywhere (w = 0); y: least width in pixels
-    uint4 sampling;   // x: samples a pixel, y: frame number, z: 0 shaded, 1 opacity map
-    float4 tile;      // the light's part of the shadow atlas: x scale, x offset in UV
+    uint4 sampling;   // x: samples a pixel, y: frame number
     float4 layers;    // ends of the opacity layers behind the first hair, in metres
     float4 range;     // x: depth range of the light's frustum in metres
 };
@@ -52,7 +51,7 @@ struct LightConstants {
     float4x4 clipFromWorld;
     float4 toLight_ws;   // unit
     float4 irradiance;   // linear RGB, perpendicular to the light
-    float4 tile;         // x scale, x offset of the atlas, size of a texel in UV (x, y)
+    float4 tile;         // x: left edge of the light's square in the atlas, as a part of its width
     float4 range;        // x: depth range of the frustum in metres, y: 1 when it casts shadows
 };
 
@@ -94,10 +93,9 @@ static_assert(sizeof(CurveConstants) == 16);
 HAIRLOOM_OFFSET(ViewConstants, eye_ws, 64);
 HAIRLOOM_OFFSET(ViewConstants, pixel, 80);
 HAIRLOOM_OFFSET(ViewConstants, sampling, 96);
-HAIRLOOM_OFFSET(ViewConstants, tile, 112);
-HAIRLOOM_OFFSET(ViewConstants, layers, 128);
-HAIRLOOM_OFFSET(ViewConstants, range, 144);
-static_assert(sizeof(ViewConstants) == 160);
+HAIRLOOM_OFFSET(ViewConstants, layers, 112);
+HAIRLOOM_OFFSET(ViewConstants, range, 128);
+static_assert(sizeof(ViewConstants) == 144);
 HAIRLOOM_OFFSET(LightConstants, toLight_ws, 64);
 HAIRLOOM_OFFSET(LightConstants, range, 112);
 static_assert(sizeof(LightConstants) == 128);
