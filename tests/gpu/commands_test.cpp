@@ -70,6 +70,35 @@ TEST_F(ComputeTest, DispatchesSeeEachOther) {
     EXPECT_EQ(copied[128], (1u << 20u) - 1u);
 }
 
+TEST_F(ComputeTest, SamplersFilterAndTypedBuffersTakeFloats) {
+    TextureDesc desc;
+    desc.name = "four texels";
+    desc.width = desc.height = 2;
+    desc.format = Format::Rgba32Float;
+    const std::vector<float> texels = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16};
+    const TexturePtr texture = device->createTexture(desc, std::as_bytes(std::span(texels))).value();
+    BufferDesc typed;
+    typed.name = "typed";
+    typed.size = 48;
+    typed.usage = Usage::UnorderedAccess;
+    typed.typedFormat = Format::Rgba32Float;
+    const BufferPtr out = device->createBuffer(typed).value();
+    const auto sampling =
+        device->createComputePipeline({"sample", shader("sample.comp", ShaderStage::Compute)}).value();
+    const SamplerPtr sampler = device->createSampler({Filter::Linear, AddressMode::Border, true}).value();
+    EXPECT_EQ(submitError([&](CommandList& list) {
+                  list.beginPass({"sample", {}, {}});
+                  list.setPipeline(sampling);
+                  const Binding bindings[] = {Binding::read(0, texture), Binding::sample(0, sampler),
+                                              Binding::write(0, out)};
+                  list.bind(bindings);
+                  list.dispatch(1);
+                  list.endPass();
+              }),
+              "");
+    EXPECT_THAT(read<float>(out), testing::ElementsAre(3, 4, 5, 6, 9, 10, 11, 12, 1, 1, 1, 1));
+}
+
 TEST_F(ComputeTest, IndirectArgumentsCountGroups) {
     const BufferPtr in = buffer(std::vector<std::uint32_t>(256, 1u));
     const BufferPtr out = buffer(std::vector<std::uint32_t>(256, 0u));
