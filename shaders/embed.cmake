@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Writes compiled shaders as arrays of words. -DINPUTS=a.spv;b.spv -DOUTPUT=file.cpp -DTABLE=name
+# Writes compiled shaders as arrays of words. -DINPUTS=a.spv;b.spv -DOUTPUT=file.cpp -DTABLE=name; the function is table_NAME()
 set(arrays "")
 set(rows "")
 set(count 0)
@@ -15,5 +15,5 @@ endforeach()
 file(WRITE "${OUTPUT}"
 "#include \"shaders/shaders.h\"\n\nnamespace hairloom::shaders {\nnamespace {\n${arrays}
 constexpr Shader kTable[] = {\n${rows}};\n}  // namespace\n
-std::span<const Shader> all() { return kTable; }\n
+std::span<const Shader> table_${TABLE}();\nstd::span<const Shader> table_${TABLE}() { return kTable; }\n
 }  // namespace hairloom::shaders\n")

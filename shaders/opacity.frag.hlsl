@@ -9,9 +9,7 @@ Texture2D<float> gFirstHair : register(t2);
 
 struct Input {
     float4 position : SV_Position;
-    float3 colour : COLOR;
     float coverage : COVERAGE;
-    nointerpolation uint seed : SEED;
 };
 
 float4 main(Input i) : SV_Target0 {

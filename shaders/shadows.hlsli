@@ -29,7 +29,7 @@ Occlusion occlusion(LightConstants light, float4 ends, float3 position_ws, float
     uint width, height;
     gOpacity.GetDimensions(width, height);
     const float2 size = float2(float(height), float(height));
-    const int tile = int(light.tile.y * float(width) + 0.5);
+    const int tile = int(light.tile.x * float(width) + 0.5);
     const float2 texel = uv * size - 0.5;
     const int2 base = int2(floor(texel));
     const float2 f = texel - float2(base);

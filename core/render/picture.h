@@ -26,21 +26,21 @@ struct RenderMesh {
 
 /// How strands scatter light. Colours are linear RGB.
 struct HairMaterial {
-    Vec3f albedo = Vec3f(0.30f, 0.17f, 0.085f);  ///< 0…1; where a strand has no colour of its own
+    Vec3f albedo = Vec3f(0.21f, 0.115f, 0.06f);  ///< 0…1; where a strand has no colour of its own
     float radius = 0.00004f;  ///< metres at the root, where points have none; 25–60 µm are human
     float tipScale = 0.3f;    ///< radius at the tip, times that at the root; 0…1
     float diffuse = 0.55f;    ///< c_d, 0…1
-    Vec3f primary = Vec3f::Constant(0.16f);    ///< c_s of the first highlight, which has the light's colour
-    float primaryExponent = 90;                ///< m: higher is narrower, 0…1000
-    float primaryShift = 4.0f;                 ///< degrees towards the root
-    Vec3f secondary = Vec3f::Constant(0.55f);  ///< c_s of the second highlight, times the albedo
+    Vec3f primary = Vec3f::Constant(0.10f);   ///< c_s of the first highlight, which has the light's colour
+    float primaryExponent = 90;               ///< m: higher is narrower, 0…1000
+    float primaryShift = 4.0f;                ///< degrees towards the root
+    Vec3f secondary = Vec3f::Constant(0.8f);  ///< c_s of the second highlight, times the albedo
     float secondaryExponent = 22;
     float secondaryShift = -6.0f;
-    float scattering = 0.75f;      ///< light that other fibres pass on, 0: none
+    float scattering = 0.55f;      ///< light that other fibres pass on, 0: none
     float rootBrightness = 0.72f;  ///< factor on the albedo at the root
     float tipBrightness = 1.10f;   ///< and at the tip
     float variation = 0.18f;       ///< random brightness per strand, ±
-    float opacity = 0.55f;         ///< 0…1: how much one fibre takes from the light behind it
+    float opacity = 0.65f;         ///< 0…1: how much one fibre takes from the light behind it
 };
 
 /// Strands of one material. Strand i has the points offsets[i] … offsets[i + 1] - 1, root first.
@@ -57,10 +57,10 @@ struct RenderScene {
     std::vector<RenderMesh> meshes;
     std::vector<RenderStrands> strands;
     Camera camera;
-    std::vector<Light> lights;                          ///< at most kMaxLights
-    Vec3f ambientSky = Vec3f(0.34f, 0.36f, 0.40f);      ///< radiance from above, linear RGB
-    Vec3f ambientGround = Vec3f(0.16f, 0.145f, 0.13f);  ///< and from below
-    Vec3f background = Vec3f(0.30f, 0.31f, 0.33f);      ///< linear RGB
+    std::vector<Light> lights;                         ///< at most kMaxLights
+    Vec3f ambientSky = Vec3f(0.22f, 0.235f, 0.26f);    ///< radiance from above, linear RGB
+    Vec3f ambientGround = Vec3f(0.11f, 0.10f, 0.09f);  ///< and from below
+    Vec3f background = Vec3f(0.085f, 0.09f, 0.10f);    ///< linear RGB
 };
 
 struct RenderOptions {
@@ -68,10 +68,10 @@ struct RenderOptions {
     std::uint32_t height = 720;
     std::uint32_t samples = 0;       ///< a pixel and frame: 1, 2, 4, 8; 0: the most the device has, up to 8
     std::uint32_t frames = 8;        ///< averaged, each moved by part of a pixel; 1…1024
-    std::uint32_t subdivisions = 3;  ///< curve segments per segment of a strand, 1…64
+    std::uint32_t subdivisions = 2;  ///< curve segments per segment of a strand, 1…64
     std::uint32_t shadowResolution = 1024;  ///< pixels of a light's square shadow map, 64…4096
     bool shadows = true;
-    float exposure = 1;                  ///< factor before the tone curve
+    float exposure = 2;                  ///< factor before the tone curve
     bool transparentBackground = false;  ///< alpha is coverage; else 1 everywhere
 };
 inline constexpr std::uint64_t kMaxPixels = std::uint64_t{64} << 20u;

@@ -72,7 +72,7 @@ shaders::ViewConstants lightConstants(const Frame& frame, std::size_t light) {
     c.clipFromWorld = toShader(view.clipFromWorld);
     c.eye_ws = toShader(frame.scene.lights[light].toLight_ws.normalized(), 0);
     c.pixel = {view.width / static_cast<float>(frame.options.shadowResolution), 1, 0, 0};
-    c.sampling = {1, 0, 1, 0};
+    c.sampling = {1, 0, 0, 0};
     c.layers = kLayers;
     c.range = {view.depthRange, 0, 0, 0};
     return c;
@@ -194,8 +194,7 @@ void setUpLights(Frame& frame) {
         c.clipFromWorld = toShader(frame.lightViews[i].clipFromWorld);
         c.toLight_ws = toShader(light.toLight_ws.normalized(), 0);
         c.irradiance = toShader(light.irradiance, 0);
-        c.tile = {1.0f / static_cast<float>(kMaxLights),
-                  static_cast<float>(i) / static_cast<float>(kMaxLights), 0, 0};
+        c.tile = {static_cast<float>(i) / static_cast<float>(kMaxLights), 0, 0, 0};
         c.range = {frame.lightViews[i].depthRange, castsShadow(frame, i) ? 1.0f : 0.0f, 0, 0};
     }
 }

@@ -91,10 +91,11 @@ Result<Pipelines> createPipelines(gpu::Device& device, std::uint32_t samples) {
     take(p.meshDepth,
          graphics(device, {"mesh depth", "mesh_depth.vert", nullptr, kList, Format::Unknown, true}), status);
     take(p.strandDepth,
-         graphics(device, {"strand depth", "strand.vert", nullptr, kStrip, Format::Unknown, true}), status);
+         graphics(device, {"strand depth", "strand_depth.vert", nullptr, kStrip, Format::Unknown, true}),
+         status);
     take(p.strandOpacity,
-         graphics(device, {"strand opacity", "strand.vert", "opacity.frag", kStrip, Format::Rgba16Unorm,
-                           false, true}),
+         graphics(device, {"strand opacity", "strand_opacity.vert", "opacity.frag", kStrip,
+                           Format::Rgba16Unorm, false, true}),
          status);
     take(p.mesh,
          graphics(device, {"mesh", "mesh.vert", "mesh.frag", kList, kColourFormat, true, false, samples}),

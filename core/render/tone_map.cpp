@@ -34,8 +34,14 @@ Image toneMap(const LinearImage& linear, float exposure) {
     Image image{linear.width, linear.height, std::vector<std::uint8_t>(linear.rgba.size())};
     parallelFor(linear.rgba.size() / 4, 4096, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
+            const float* in = &linear.rgba[4 * i];
+            const float luminance = exposure * (0.2126f * in[0] + 0.7152f * in[1] + 0.0722f * in[2]);
+            const float scale = luminance > 1e-6f ? filmic(luminance) / luminance : 0;
             for (std::size_t c = 0; c < 3; ++c) {
-                image.rgba[4 * i + c] = toByte(encodeSrgb(filmic(linear.rgba[4 * i + c] * exposure)));
+                // Channel by channel the curve bleaches colours, on luminance alone it keeps all of them:
+                // halfway.
+                const float value = exposure * in[c];
+                image.rgba[4 * i + c] = toByte(encodeSrgb(0.5f * (filmic(value) + scale * value)));
             }
             image.rgba[4 * i + 3] = toByte(linear.rgba[4 * i + 3]);
         }

@@ -12,7 +12,8 @@ float encodeSrgb(float linear);
 float filmic(float linear);
 inline constexpr float kFilmicWhite = 6.0f;
 
-/// Exposure (a factor), filmic curve, sRGB.
+/// Exposure (a factor), filmic curve (half on the channels, half on luminance, to keep some saturation),
+/// sRGB.
 Image toneMap(const LinearImage& linear, float exposure);
 
 }  // namespace hairloom::render

@@ -40,33 +40,33 @@ struct CurveConstants {
 // Projection of strands or mesh, for the camera or for a light.
 struct ViewConstants {
     float4x4 clipFromWorld;
-    float4 eye_ws;    // w = 1: position of a perspective eye; w = 0: direction towards an orthographic one
-    float4 pixel;     // x: world size of a pixel at distance 1 (w = 1) or anywhere (w = 0); y: least width in pixels
-    uint4 sampling;   // x: samples a pixel, y: frame number, z: 0 shaded, 1 opacity map
-    float4 tile;      // the light's part of the shadow atlas: x scale, x offset in UV
-    float4 layers;    // ends of the opacity layers behind the first hair, in metres
-    float4 range;     // x: depth range of the light's frustum in metres
+    float4 eye_ws;   // w = 1: position of a perspective eye; w = 0: direction towards an orthographic one
+    float4 pixel;    // x: world size of a pixel at distance 1 (w = 1) or anywhere (w = 0); y: least width in
+                     // pixels
+    uint4 sampling;  // x: samples a pixel, y: frame number
+    float4 layers;   // ends of the opacity layers behind the first hair, in metres
+    float4 range;    // x: depth range of the light's frustum in metres
 };
 
 struct LightConstants {
     float4x4 clipFromWorld;
-    float4 toLight_ws;   // unit
-    float4 irradiance;   // linear RGB, perpendicular to the light
-    float4 tile;         // x scale, x offset of the atlas, size of a texel in UV (x, y)
-    float4 range;        // x: depth range of the frustum in metres, y: 1 when it casts shadows
+    float4 toLight_ws;  // unit
+    float4 irradiance;  // linear RGB, perpendicular to the light
+    float4 tile;        // x: left edge of the light's square in the atlas, as a part of its width
+    float4 range;       // x: depth range of the frustum in metres, y: 1 when it casts shadows
 };
 
 struct ShadeConstants {
     float4 eye_ws;
-    float4 ambientSky;      // linear RGB radiance from above
-    float4 ambientGround;   // and from below
-    float4 primary;         // RGB strength of the first highlight, w: exponent
-    float4 secondary;       // RGB strength of the second, multiplied by the albedo; w: exponent
-    float4 shift;           // x, y: tilt of the two highlights (tangent of the angle), z: diffuse share, w: scattering
-    float4 normalisation;   // x: 1/(pi R_O(0)), y, z: 1/(pi R_O(m)) of the two highlights
-    float4 rootTip;         // x: brightness at the root, y: at the tip, z: random variation, w: fibre opacity
-    float4 layers;          // as in ViewConstants
-    uint4 counts;           // x: curve points, y: lights, z: row length of the dispatch in points
+    float4 ambientSky;     // linear RGB radiance from above
+    float4 ambientGround;  // and from below
+    float4 primary;        // RGB strength of the first highlight, w: exponent
+    float4 secondary;      // RGB strength of the second, multiplied by the albedo; w: exponent
+    float4 shift;  // x, y: tilt of the two highlights (tangent of the angle), z: diffuse share, w: scattering
+    float4 normalisation;  // x: 1/(pi R_O(0)), y, z: 1/(pi R_O(m)) of the two highlights
+    float4 rootTip;        // x: brightness at the root, y: at the tip, z: random variation, w: fibre opacity
+    float4 layers;         // as in ViewConstants
+    uint4 counts;          // x: curve points, y: lights, z: row length of the dispatch in points
     LightConstants lights[HAIRLOOM_MAX_LIGHTS];
 };
 
@@ -94,10 +94,9 @@ static_assert(sizeof(CurveConstants) == 16);
 HAIRLOOM_OFFSET(ViewConstants, eye_ws, 64);
 HAIRLOOM_OFFSET(ViewConstants, pixel, 80);
 HAIRLOOM_OFFSET(ViewConstants, sampling, 96);
-HAIRLOOM_OFFSET(ViewConstants, tile, 112);
-HAIRLOOM_OFFSET(ViewConstants, layers, 128);
-HAIRLOOM_OFFSET(ViewConstants, range, 144);
-static_assert(sizeof(ViewConstants) == 160);
+HAIRLOOM_OFFSET(ViewConstants, layers, 112);
+HAIRLOOM_OFFSET(ViewConstants, range, 128);
+static_assert(sizeof(ViewConstants) == 144);
 HAIRLOOM_OFFSET(LightConstants, toLight_ws, 64);
 HAIRLOOM_OFFSET(LightConstants, range, 112);
 static_assert(sizeof(LightConstants) == 128);

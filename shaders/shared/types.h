@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// HLSL's names for plain types, so that a struct can be written once for shaders and C++. Only float4, float4x4,
-// uint4, float and uint: three-component vectors are laid out differently in the two shader formats.
+// HLSL's names for plain types, so that a struct can be written once for shaders and C++. Only float4,
+// float4x4, uint4, float and uint: three-component vectors are laid out differently in the two shader
+// formats.
 #ifndef HAIRLOOM_SHARED_TYPES_H
 #define HAIRLOOM_SHARED_TYPES_H
 #ifdef __cplusplus

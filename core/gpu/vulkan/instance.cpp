@@ -43,6 +43,11 @@ bool hasLayer(const char* name) {
     return false;
 }
 
+tl::unexpected<Error> noDriver() {
+    return fail("no Vulkan driver on this machine",
+                "a GPU driver, or a software one (Debian: mesa-vulkan-drivers)");
+}
+
 // volk keeps its entry points in globals.
 std::mutex& volkMutex() {
     static std::mutex mutex;
@@ -95,6 +100,7 @@ Result<std::unique_ptr<Instance>> Instance::create(bool validation) {
         info.pNext = &features;
     }
     if (const VkResult r = vkCreateInstance(&info, nullptr, &result->instance_); r != VK_SUCCESS) {
+        if (r == VK_ERROR_INCOMPATIBLE_DRIVER) return noDriver();
         return failed(r, "starting Vulkan");
     }
     volkLoadInstance(result->instance_);
@@ -120,8 +126,7 @@ Result<std::vector<VkPhysicalDevice>> Instance::physicalDevices() const {
     if (r != VK_SUCCESS && r != VK_INCOMPLETE) return failed(r, "looking for Vulkan devices");
     devices.resize(count);
     if (devices.empty()) {
-        return fail("no Vulkan driver on this machine",
-                    "a GPU driver, or a software one (Debian: mesa-vulkan-drivers)");
+        return noDriver();
     }
     return devices;
 }

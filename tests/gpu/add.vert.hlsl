@@ -1,0 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+float4 main(uint vertex : SV_VertexID) : SV_Position {
+    return float4(vertex == 1 ? 3 : -1, vertex == 2 ? 3 : -1, 0.5, 1);
+}

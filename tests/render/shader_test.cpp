@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The shaders' functions and layouts against C++.
+#include "core/shading/kajiya_kay.h"
+#include "shaders/shaders.h"
+#include "shaders/shared/render_types.h"
+#include "tests/render/render_fixture.h"
+
+namespace hairloom::render {
+namespace {
+
+class ShaderTest : public RenderTest {
+  protected:
+    template <class T>
+    gpu::BufferPtr buffer(const std::vector<T>& content) {
+        gpu::BufferDesc desc;
+        desc.name = "test";
+        desc.size = content.size() * sizeof(T);
+        desc.elementBytes = sizeof(T);
+        desc.usage = gpu::Usage::ShaderRead | gpu::Usage::UnorderedAccess;
+        return device->createBuffer(desc, std::as_bytes(std::span(content))).value();
+    }
+    std::vector<shaders::float4> run(const char* name, std::size_t results, std::uint32_t groups,
+                                     std::vector<gpu::Binding> bindings,
+                                     std::span<const std::byte> constants) {
+        const shaders::Shader* shader = shaders::find(name);
+        auto module =
+            device->createShader({name, gpu::ShaderStage::Compute, std::as_bytes(shader->spirv)}).value();
+        auto pipeline = device->createComputePipeline({name, module}).value();
+        std::vector<shaders::float4> result(results);
+        const gpu::BufferPtr out = buffer(result);
+        bindings.push_back(gpu::Binding::write(0, out));
+        auto list = device->createCommandList().value();
+        list->beginPass({name, {}, {}});
+        list->setPipeline(pipeline);
+        list->bind(bindings);
+        if (!constants.empty()) list->setConstants(0, constants);
+        list->dispatch(groups);
+        list->endPass();
+        const auto submission = device->submit(std::move(list));
+        EXPECT_TRUE(submission) << submission.error().message();
+        EXPECT_TRUE(device->readBuffer(out, 0, std::as_writable_bytes(std::span(result))));
+        return result;
+    }
+};
+
+Vec3d randomUnit(Random& random) {
+    Vec3d v;
+    do {
+        v = Vec3d(random.uniformDouble(), random.uniformDouble(), random.uniformDouble()) * 2 - Vec3d::Ones();
+    } while (v.norm() > 1 || v.norm() < 0.1);
+    return v.normalized();
+}
+
+shaders::float4 toFloat4(const Vec3d& v, double w) {
+    return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()),
+            static_cast<float>(w)};
+}
+
+TEST_F(ShaderTest, KajiyaKayAgreesWithTheReference) {
+    constexpr std::uint32_t kCases = 4096;
+    Random random(5);
+    std::vector<shaders::KajiyaCase> cases;
+    std::vector<std::array<double, 2>> expected;
+    for (std::uint32_t i = 0; i < kCases; ++i) {
+        const Vec3d tangent = randomUnit(random), toLight = randomUnit(random), toView = randomUnit(random);
+        const double exponent = i % 7 == 0 ? 0 : std::exp2(10 * random.uniformDouble());
+        const double normalisation = 1 / shading::kajiyaReflectance(exponent);
+        cases.push_back({toFloat4(tangent, 0), toFloat4(toLight, exponent), toFloat4(toView, normalisation)});
+        expected.push_back({shading::kajiyaDiffuse(tangent, toLight),
+                            shading::kajiyaSpecular(tangent, toLight, toView, exponent) * normalisation});
+    }
+    const auto result =
+        run("kajiya_echo.comp", kCases, kCases / 64, {gpu::Binding::read(0, buffer(cases))}, {});
+    for (std::uint32_t i = 0; i < kCases; ++i) {
+        ASSERT_NEAR(result[i].x, expected[i][0], 1e-3) << i;
+        ASSERT_NEAR(result[i].y, expected[i][1], 2e-3 * (1 + expected[i][1])) << i;
+    }
+}
+
+TEST_F(ShaderTest, SharedLayoutsAgree) {
+    shaders::ShadeConstants shade;
+    shade.eye_ws = {1, 2, 3, 4};
+    shade.rootTip = {5, 6, 7, 8};
+    shade.counts = {9, 10, 11, 12};
+    shade.lights[1].irradiance = {13, 14, 15, 16};
+    shade.lights[2].range = {17, 18, 19, 20};
+    for (int i = 0; i < 4; ++i) shade.lights[1].clipFromWorld.m[12 + i] = static_cast<float>(21 + i);
+    std::vector<shaders::StrandHeader> strands(2);
+    strands[1] = {30, 31, 32, 0.5f, {33, 34, 35, 36}};
+    std::vector<shaders::CurvePoint> curve(2);
+    curve[1] = {{1, 1, 1, 1}, 40, 0.25f, 41, 0};
+    const auto r = run("layout_echo.comp", 8, 1,
+                       {gpu::Binding::read(0, buffer(strands)), gpu::Binding::read(1, buffer(curve))},
+                       gpu::bytesOf(shade));
+    const auto expect = [&](std::size_t i, float x, float y, float z, float w) {
+        EXPECT_EQ(r[i].x, x) << i;
+        EXPECT_EQ(r[i].y, y) << i;
+        EXPECT_EQ(r[i].z, z) << i;
+        EXPECT_EQ(r[i].w, w) << i;
+    };
+    expect(0, 1, 2, 3, 4);
+    expect(1, 5, 6, 7, 8);
+    expect(2, std::bit_cast<float>(9u), std::bit_cast<float>(10u), std::bit_cast<float>(11u),
+           std::bit_cast<float>(12u));
+    expect(3, 13, 14, 15, 16);
+    expect(4, 17, 18, 19, 20);
+    expect(5, 21, 22, 23, 24);
+    expect(6, 33, 34, 35, 36);
+    expect(7, 0.5f, std::bit_cast<float>(32u), 0.25f, std::bit_cast<float>(41u));
+}
+
+}  // namespace
+}  // namespace hairloom::render
