@@ -7,7 +7,7 @@ CLI::App& Jobs::add(const std::string& name, const std::string& does, const std:
                     std::function<Result<Report>()> run) {
     CLI::App* job = app_.add_subcommand(name, does);
     job->footer("Example:\n  hairloom-cli " + name + " " + example);
-    job->callback([this, run = std::move(run)] { chosen_ = run; });
+    job->parse_complete_callback([this, run = std::move(run)] { chosen_ = run; });
     return *job;
 }
 

@@ -25,6 +25,7 @@ struct RenderJobOptions {
     std::uint32_t device = 0;
     bool chooseDevice = false;
     float exposure = 1;
+    std::uint32_t passes = 8;
     std::string output;
 };
 
@@ -43,6 +44,7 @@ Result<render::RenderOptions> pictureOptions(const RenderJobOptions& options, co
     picture.samples = kSamples.at(options.antiAliasing);
     picture.shadows = options.shadow == "dom";
     picture.exposure = options.exposure;
+    picture.frames = options.passes;
     return picture;
 }
 
@@ -112,6 +114,9 @@ void addRenderJob(Jobs& jobs) {
         ->check(CLI::IsMember({"auto", "none", "msaa2", "msaa4", "msaa8"}));
     job.add_option("--exposure", options->exposure, "Factor on the light before the tone curve")
         ->check(CLI::Range(1e-3, 1e3));
+    job.add_option("--passes", options->passes,
+                   "Times the picture is drawn, each moved by part of a pixel, and averaged")
+        ->check(CLI::Range(1, 1024));
     auto* record = job.add_option("--record", options->record, "Frames that simulate --record wrote");
     job.add_option("--frame", options->frame, "Frame of the record, from 0")->needs(record);
     auto* device = job.add_option("--device", options->device, "GPU to use, by its index in `devices`");
