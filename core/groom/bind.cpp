@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cassert>
+#include <numeric>
 
 #include "core/base/parallel.h"
 #include "core/geometry/closest_point.h"
@@ -10,6 +11,10 @@ namespace hairloom {
 std::vector<float> bindToScalp(Groom& groom, std::shared_ptr<const ScalpMesh> scalp, FaceSet selection) {
     assert(scalp && scalp->triangleCount() > 0);
     constexpr std::size_t kGrain = 256;
+    if (selection.empty()) {
+        selection.resize(scalp->triangleCount());
+        std::iota(selection.begin(), selection.end(), 0u);
+    }
     const SurfaceTree tree(*scalp, selection);
     std::vector<SurfacePoint> roots(groom.strandCount());
     std::vector<Vec2f> uvs(groom.strandCount());

@@ -90,9 +90,9 @@ Groom makeGroom(std::vector<std::uint32_t> offsets, std::vector<Vec3f> positions
 Result<Groom> growStraight(std::shared_ptr<const ScalpMesh> scalp, FaceSet selection,
                            std::span<const SurfacePoint> roots, float length, std::uint32_t points);
 
-/// Binds each root to the nearest point of the selection (all of the scalp where it is empty), replaces scalp
-/// and selection of the groom, empties the triangulation, and returns the distance of each root to its
-/// binding, metres. `scalp` has triangles; strands have points.
+/// Binds each root to the nearest point of the selection (which becomes all of the scalp where it is empty),
+/// replaces scalp and selection of the groom, empties the triangulation, and returns the distance of each
+/// root to its binding, metres. `scalp` has triangles; strands have points.
 std::vector<float> bindToScalp(Groom& groom, std::shared_ptr<const ScalpMesh> scalp, FaceSet selection);
 
 }  // namespace hairloom

@@ -54,7 +54,7 @@ const std::map<std::string, Rooms>& allowed() {
             {"cli", all},
             {"editor", all},
             {"samples", all},
-            {"benchmarks", all},
+            {"benchmarks", with(all, {"tests"})},  // scenes are shared with the tests
             {"tests", with(all, {"cli", "samples", "tests"})},
         };
     }();

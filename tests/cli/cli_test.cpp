@@ -17,10 +17,10 @@ using testing::StartsWith;
 
 class Cli : public CommandLineTest {
   protected:
-    std::string createArguments(const std::string& more = "") const {
-        return "create --mesh '" + bustFile() +
-               "' --scalp group:scalp --count 300 --placement dart --length 0.2 " +
-               "--points 12 --seed 7 -o hair.hairloom " + more;
+    std::string createArguments(const std::string& more = "", int seed = 7, int points = 12) const {
+        return "create --mesh '" + bustFile() + "' --scalp material:scalp --count 300 --placement dart" +
+               " --length 0.2 --points " + std::to_string(points) + " --seed " + std::to_string(seed) +
+               " -o hair.hairloom " + more;
     }
     std::size_t filesInFolder() const {
         return static_cast<std::size_t>(
@@ -65,7 +65,7 @@ TEST_F(Cli, SameSeedSameBytesForAnyNumberOfThreads) {
     const std::string one = readText(folder / "hair.hairloom");
     runJson(createArguments("--threads 4"));
     EXPECT_EQ(one, readText(folder / "hair.hairloom"));
-    runJson(createArguments("--seed 8"));
+    runJson(createArguments("", 8));
     EXPECT_NE(one, readText(folder / "hair.hairloom"));
 }
 
@@ -78,7 +78,7 @@ TEST_F(Cli, ErrorsNameFileAndExpectationAndLeaveNothingBehind) {
     EXPECT_EQ(group.exitCode, 1);
     EXPECT_THAT(group.errors, HasSubstr("scalp")) << "the groups there are";
     const Outcome dense =
-        run("create --mesh '" + bustFile() + "' --scalp group:scalp --density 1e9 -o hair.hairloom");
+        run("create --mesh '" + bustFile() + "' --scalp material:scalp --density 1e9 -o hair.hairloom");
     EXPECT_EQ(dense.exitCode, 1);
     EXPECT_THAT(dense.errors, HasSubstr("cm²"));
     EXPECT_EQ(filesInFolder(), 0u);
@@ -122,7 +122,7 @@ TEST_F(Cli, ClipOfTheSampleHeadMovesTheHair) {
 }
 
 TEST_F(Cli, ExportedAssetsComeBackTheSame) {
-    runJson(createArguments("--points 16"));
+    runJson(createArguments("", 7, 16));
     for (const char* format : {"hair", "tfx"}) {
         const std::string name = std::string("hair.") + format;
         const auto exported = runJson(std::string("export hair.hairloom --format ") + format + " -o " + name);
