@@ -74,6 +74,7 @@ void hashSettings(Hasher& hasher, const Groom& groom) {
     }
     hasher.text(groom.scalpExpression);
     hasher.text(groom.characterFile);
+    hasher.real(static_cast<double>(groom.characterMetresPerUnit));
 }
 
 void hashStrands(Hasher& hasher, const Groom& groom) {
@@ -83,6 +84,7 @@ void hashStrands(Hasher& hasher, const Groom& groom) {
     hasher.array(std::span<const std::uint32_t>(groom.scalpSelection));
     hasher.array(std::span<const Triangle>(groom.triangulation.triangles));
     hasher.array(std::span<const RootTriangulation::Coincident>(groom.triangulation.coincident));
+    hasher.array(std::span<const std::uint32_t>(groom.triangulation.alone));
 }
 
 void hashScalp(Hasher& hasher, const ScalpMesh* scalp) {

@@ -141,6 +141,7 @@ Status takeArrays(const ArchiveReader& archive, const Counts& counts, Groom& gro
     taker.takeAttributes(section::kPointPrefix, counts.points, groom.pointAttributes);
     groom.scalpSelection = taker.take<std::uint32_t>(section::kSelection);
     groom.triangulation.triangles = taker.takeGroups<Triangle>(section::kRootTriangles);
+    groom.triangulation.alone = taker.take<std::uint32_t>(section::kAlone);
     groom.triangulation.coincident = taker.takeGroups<RootTriangulation::Coincident>(section::kCoincident);
     if (scalp) takeScalp(taker, *scalp);
     if (auto status = taker.finish(); !status) return status;

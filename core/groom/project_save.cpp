@@ -82,6 +82,7 @@ void addArrays(ArchiveWriter& writer, const Groom& groom) {
     add(section::kRootTriangles, flat(std::span<const Triangle>(groom.triangulation.triangles)));
     add(section::kCoincident,
         flat(std::span<const RootTriangulation::Coincident>(groom.triangulation.coincident)));
+    add(section::kAlone, std::span<const std::uint32_t>(groom.triangulation.alone));
     if (groom.scalp) addScalp(writer, *groom.scalp);
 }
 

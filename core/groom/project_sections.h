@@ -13,6 +13,7 @@ inline constexpr std::string_view kPointPrefix = "point/";    ///< followed by t
 inline constexpr std::string_view kSelection = "scalp_selection";
 inline constexpr std::string_view kRootTriangles = "triangulation/triangles";  ///< 3 strands each
 inline constexpr std::string_view kCoincident = "triangulation/coincident";    ///< root, sameAs
+inline constexpr std::string_view kAlone = "triangulation/alone";              ///< roots without a triangle
 inline constexpr std::string_view kScalpPositions = "scalp/positions";
 inline constexpr std::string_view kScalpNormals = "scalp/normals";
 inline constexpr std::string_view kScalpTriangles = "scalp/triangles";  ///< 3 vertices each

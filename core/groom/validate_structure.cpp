@@ -107,6 +107,9 @@ void findTriangulation(const Groom& groom, std::vector<Finding>& findings) {
         if (coincident[i].root >= strands || coincident[i].sameAs >= strands)
             places.other("coincident root", i);
     }
+    for (std::size_t i = 0; i < groom.triangulation.alone.size(); ++i) {
+        if (groom.triangulation.alone[i] >= strands) places.other("root alone", i);
+    }
     places.report(findings, Severity::Error, "the triangulation of the roots names strands that do not exist",
                   "triangulate the roots again");
 }

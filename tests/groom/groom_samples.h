@@ -117,6 +117,7 @@ inline Groom fullGroom() {
     groom.interpolation.seed = 0xfedcba9876543210ull;
     groom.triangulation.triangles = {{0, 1, 2}, {2, 1, 3}};
     groom.triangulation.coincident = {{4, 0}};
+    groom.triangulation.alone = {3};
     groom.scalpExpression = "group:scalp,cap:90";
     groom.characterFile = "heads/bust.glb";
     return groom;

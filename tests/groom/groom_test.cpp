@@ -92,8 +92,10 @@ TEST(GroomHash, SeesEveryPart) {
         [](Groom& g) { g.scalpSelection.pop_back(); },
         [](Groom& g) { g.triangulation.triangles[1][0] = 0; },
         [](Groom& g) { g.triangulation.coincident[0].sameAs = 1; },
+        [](Groom& g) { g.triangulation.alone.clear(); },
         [](Groom& g) { g.scalpExpression += " "; },
         [](Groom& g) { g.characterFile.clear(); },
+        [](Groom& g) { g.characterMetresPerUnit = 0.1f; },
     };
     for (std::size_t i = 0; i < edits.size(); ++i) {
         Groom groom = fullGroom();

@@ -51,6 +51,7 @@ std::vector<Broken> brokenGrooms() {
          "selected triangle"},
         {"RootTriangulation", [](Groom& g) { g.triangulation.triangles[1][2] = 5; }, error, "triangulation",
          "root triangle 1"},
+        {"RootAlone", [](Groom& g) { g.triangulation.alone[0] = 5; }, error, "triangulation", "root alone 0"},
         {"CoincidentRoot", [](Groom& g) { g.triangulation.coincident[0].root = 5; }, error, "triangulation",
          "coincident root 0"},
         {"NotFinite", [](Groom& g) { positions(g)[7].y() = kNaN; }, error, "position is not finite",
