@@ -35,7 +35,7 @@ step "two seconds of head motion in wind" simulate "$out/$style.hairloom" --fram
 step "asset: Yuksel .hair" export "$out/$style.hairloom" --format hair -o "$out/$style.hair"
 step "asset: TressFX .tfx" export "$out/$style.hairloom" --format tfx -o "$out/$style.tfx"
 step "picture at rest" render "$out/$style.hairloom" --size 1024x1024 --camera three-quarter --exposure 1.6 -o "$out/$style.png"
-step "picture in motion" render "$out/$style.hairloom" --record "$out/$style.frames" --frame 45 --size 1024x1024 \
+step "picture in motion" render "$out/$style.hairloom" --record "$out/$style.frames" --frame 12 --size 1024x1024 \
     --camera three-quarter --exposure 1.6 -o "$out/$style-motion.png"
 rm -f "$out/log.txt"
 echo "Results in $out:"
