@@ -13,24 +13,28 @@
 #include "core/base/log.h"
 #include "core/groom/project_file.h"
 #include "core/groom/settings_json.h"
+#include "importers/length_unit.h"
 #include "importers/strands.h"
 
 namespace hairloom::cli {
 namespace {
 
-constexpr std::array<std::pair<const char*, float>, 5> kUnits{
-    {{"m", 1.0f}, {"dm", 0.1f}, {"cm", 0.01f}, {"mm", 0.001f}, {"inch", 0.0254f}}};
+std::vector<std::string> unitNames() {
+    std::vector<std::string> names;
+    for (const LengthUnit& unit : lengthUnits()) names.emplace_back(unit.name);
+    return names;
+}
 
 }  // namespace
 
-void addUnitOption(CLI::App& job, std::string& unit) {
-    job.add_option("--unit", unit, "Unit of lengths where the file states none: m, dm, cm, mm or inch")
-        ->check(CLI::IsMember({"m", "dm", "cm", "mm", "inch"}));
+void addUnitOption(CLI::App& job, std::string& unit, const std::string& name, const std::string& of) {
+    job.add_option(name, unit, "Unit of lengths in " + of + " where it states none: m, dm, cm, mm or inch")
+        ->check(CLI::IsMember(unitNames()));
 }
 
 float metresPerUnit(const std::string& unit) {
-    for (const auto& [name, metres] : kUnits) {
-        if (unit == name) return metres;
+    for (const LengthUnit& known : lengthUnits()) {
+        if (unit == known.name) return static_cast<float>(known.metres);
     }
     return 1.0f;
 }

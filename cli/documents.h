@@ -13,8 +13,9 @@
 
 namespace hairloom::cli {
 
-/// --unit m/dm/cm/mm/inch for files that state none.
-void addUnitOption(CLI::App& job, std::string& unit);
+/// --unit m/dm/cm/mm/inch, or another name, for files that state none.
+void addUnitOption(CLI::App& job, std::string& unit, const std::string& name = "--unit",
+                   const std::string& of = "the file");
 /// Metres of one such unit, 1 for an empty name. The name is one that addUnitOption lets through.
 float metresPerUnit(const std::string& unit);
 

@@ -10,11 +10,6 @@
 namespace hairloom {
 namespace {
 
-struct LengthUnit {
-    const char* name;
-    double metres;
-};
-
 constexpr std::array<LengthUnit, 5> kUnits{
     {{"m", 1.0}, {"dm", 0.1}, {"cm", 0.01}, {"mm", 0.001}, {"inch", 0.0254}}};
 constexpr double kSmallest = 0.12;
@@ -33,6 +28,10 @@ double strangeness(double metres) {
 }
 
 }  // namespace
+
+std::span<const LengthUnit> lengthUnits() {
+    return kUnits;
+}
 
 std::optional<std::string> implausibleSize(double size, double metresPerUnit) {
     const double metres = size * metresPerUnit;

@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "core/geometry/curve.h"
+#include "importers/length_unit.h"
 
 namespace hairloom {
 namespace {
@@ -20,13 +20,6 @@ constexpr float kLargestSpread = 2.5f;
 constexpr float kHead = 0.2f;  ///< spread of the roots on a human head
 constexpr float kUsualLength = 0.2f;
 constexpr std::size_t kEnoughRoots = 50;  ///< fewer say nothing about the size of a head
-
-struct Unit {
-    const char* name;
-    float metres;
-};
-constexpr std::array<Unit, 5> kUnits{
-    {{"m", 1.0f}, {"dm", 0.1f}, {"cm", 0.01f}, {"mm", 0.001f}, {"inch", 0.0254f}}};
 
 struct Size {
     float length;  ///< median of the strands
@@ -69,10 +62,10 @@ std::optional<Finding> implausibleSize(std::span<const std::uint32_t> offsets,
                                        std::span<const Vec3f> positions, float metresPerUnit) {
     const Size size = measure(offsets, positions);
     if (isPlausible(size, 1.0f)) return std::nullopt;
-    const Unit* best = nullptr;
+    const LengthUnit* best = nullptr;
     float bestScale = 0;
-    for (const Unit& unit : kUnits) {
-        const float scale = unit.metres / metresPerUnit;
+    for (const LengthUnit& unit : lengthUnits()) {
+        const float scale = static_cast<float>(unit.metres) / metresPerUnit;
         if (!isPlausible(size, scale)) continue;
         if (best && unlikelihood(size, scale) >= unlikelihood(size, bestScale)) continue;
         best = &unit;

@@ -105,8 +105,7 @@ void addImportJob(Jobs& jobs) {
     job.add_option("--mesh", options->mesh, "Head mesh to bind the roots to");
     job.add_option("--scalp", options->scalp, "Faces of the mesh that carry hair, as for create");
     addUnitOption(job, options->unit);
-    job.add_option("--mesh-unit", options->meshUnit, "Unit of the head mesh where its file states none")
-        ->check(CLI::IsMember({"m", "dm", "cm", "mm", "inch"}));
+    addUnitOption(job, options->meshUnit, "--mesh-unit", "the head mesh");
     job.add_option("--up", options->up, "Axis that points up in the hair file")
         ->check(CLI::IsMember({"y", "z"}));
     job.add_option("--segments", options->segments,
