@@ -168,4 +168,21 @@ render::RenderScene GroomScene::scene() const {
     return scene;
 }
 
+Box3f GroomScene::subject() const {
+    render::RenderScene hair = scene();
+    const Box3f all = render::boundsOf(hair);
+    hair.meshes.clear();
+    Box3f box = render::boundsOf(hair);
+    if (box.isEmpty() || !posed_.scalp) return all;
+    for (const std::uint32_t triangle : posed_.scalpSelection) {
+        for (const std::uint32_t vertex : posed_.scalp->triangles()[triangle]) {
+            box.extend(posed_.scalp->positions()[vertex]);
+        }
+    }
+    // Short hair covers the upper half of a head; a picture of it shows the face too.
+    constexpr float kHeadHeight = 0.27f;
+    box.min().y() = std::min(box.min().y(), box.max().y() - kHeadHeight);
+    return box.intersection(all);
+}
+
 }  // namespace hairloom::cli

@@ -35,6 +35,10 @@ class GroomScene {
     /// moved.
     render::RenderScene scene() const;
 
+    /// What a picture should show: the hair, and below it enough of the head; the whole mesh where there is
+    /// no hair.
+    Box3f subject() const;
+
   private:
     Groom posed_;
     std::vector<std::uint32_t> indices_;  ///< of the head's triangles

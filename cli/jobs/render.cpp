@@ -72,7 +72,7 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
     const auto named = render::parseView(options.camera);
     if (!named) return tl::unexpected(named.error());
     const float aspect = static_cast<float>(pictureAs->width) / static_cast<float>(pictureAs->height);
-    scene.camera = view.camera.value_or(render::frame(*named, render::boundsOf(scene), aspect));
+    scene.camera = view.camera.value_or(render::frame(*named, groomScene->subject(), aspect));
     scene.lights = view.lights.empty() ? render::studioLights(scene.camera) : view.lights;
 
     gpu::DeviceOptions deviceOptions;
