@@ -48,8 +48,9 @@ bool findArrays(const AttributeSet& attributes, std::span<const KnownAttribute> 
     for (const auto& [name, data] : attributes.all()) {
         const std::string where = fmt::format("{} attribute '{}'", domain, name);
         if (sizeOf(data) != count) lengths.named(fmt::format("{} ({} values)", where, sizeOf(data)));
-        const auto entry =
-            std::find_if(known.begin(), known.end(), [&](const auto& k) { return k.name == name; });
+        const auto entry = std::find_if(known.begin(), known.end(), [&attributeName = name](const auto& k) {
+            return k.name == attributeName;
+        });
         if (entry != known.end() && entry->type != typeName(data)) {
             types.named(fmt::format("{} is {}, expected {}", where, typeName(data), entry->type));
         }

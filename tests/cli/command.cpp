@@ -29,7 +29,7 @@ Outcome CommandLineTest::run(const std::string& arguments) const {
     const std::string command = "cd '" + folder.string() + "' && '" + HAIRLOOM_CLI + "' " + arguments +
                                 " > '" + out.string() + "' 2> '" + err.string() + "'";
     const int status = std::system(command.c_str());
-    const Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, readText(out), readText(err)};
+    Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, readText(out), readText(err)};
     fs::remove(out);
     fs::remove(err);
     return outcome;

@@ -70,7 +70,8 @@ TEST_F(DrawingTest, TriangleCoversThePixelsWhoseCentresItContains) {
             // Devices keep corners to 1/256 of a pixel: closer to an edge than that, either answer is right.
             if (std::abs(depth) < 1.0 / 64) continue;
             const bool inside = depth > 0;
-            const std::uint8_t* pixel = &pixels[static_cast<std::size_t>(4 * (y * kSize + x))];
+            const std::uint8_t* pixel =
+                &pixels[4 * (static_cast<std::size_t>(y) * kSize + static_cast<std::size_t>(x))];
             ASSERT_EQ(pixel[0], inside ? 255 : 0) << x << " " << y;
             ASSERT_EQ(pixel[1], inside ? 0 : 255) << x << " " << y;
             covered += inside ? 1 : 0;

@@ -24,7 +24,7 @@ class MeshFiles : public testing::Test {
     void TearDown() override { std::filesystem::remove_all(folder); }
 
     std::filesystem::path write(const std::string& name, std::string_view content) const {
-        const auto path = folder / name;
+        auto path = folder / name;
         EXPECT_TRUE(writeFileAtomically(path, content));
         return path;
     }

@@ -22,9 +22,9 @@ TEST(MeshFormat, IsFoundFromContent) {
     EXPECT_EQ(formatOf("solid cube\n facet normal 0 0 1\n"), MeshFormat::Stl);
     EXPECT_EQ(formatOf(std::string("solid binary").append(68, ' ').append({1, 0, 0, 0}).append(50, '\0')),
               MeshFormat::Stl);
-    EXPECT_EQ(formatOf("Kaydara FBX Binary  \0\x1a"), MeshFormat::Fbx);
+    EXPECT_EQ(formatOf(std::string("Kaydara FBX Binary  ") + std::string({0, 0x1a})), MeshFormat::Fbx);
     EXPECT_EQ(formatOf("; FBX 7.4.0 project file\n"), MeshFormat::Fbx);
-    EXPECT_EQ(formatOf("glTF\2\0\0\0"), MeshFormat::Glb);
+    EXPECT_EQ(formatOf(std::string("glTF") + std::string({2, 0, 0, 0})), MeshFormat::Glb);
     EXPECT_EQ(formatOf(" {\"asset\": {}}"), MeshFormat::Gltf);
     EXPECT_EQ(formatOf("<COLLADA>\nv 1 2 3\n"), std::nullopt);
     EXPECT_EQ(formatOf("v for victory\n"), std::nullopt);

@@ -22,7 +22,7 @@ VkBufferUsageFlags usageFlags(const BufferDesc& desc) {
 
 }  // namespace
 
-Result<std::shared_ptr<BufferImpl>> BufferImpl::create(ContextPtr context, const BufferDesc& desc,
+Result<std::shared_ptr<BufferImpl>> BufferImpl::create(const ContextPtr& context, const BufferDesc& desc,
                                                        MemoryUse use) {
     const std::string what = "creating buffer '" + desc.name + "' of " + std::to_string(desc.size) + " bytes";
     std::shared_ptr<BufferImpl> result(new BufferImpl(context, desc));

@@ -34,7 +34,7 @@ Recording::~Recording() {
     vkDestroyCommandPool(context->device, pool, nullptr);
 }
 
-Result<std::unique_ptr<CommandListImpl>> CommandListImpl::create(ContextPtr context,
+Result<std::unique_ptr<CommandListImpl>> CommandListImpl::create(const ContextPtr& context,
                                                                  std::function<void()> onClose) {
     auto recording = std::make_unique<Recording>(context);
     auto pool = make<VkCommandPoolCreateInfo>(VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO);

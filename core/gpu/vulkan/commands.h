@@ -55,7 +55,8 @@ struct DrawCall {
 class CommandListImpl final : public CommandList {
   public:
     /// `onClose` runs when the list is destroyed.
-    static Result<std::unique_ptr<CommandListImpl>> create(ContextPtr context, std::function<void()> onClose);
+    static Result<std::unique_ptr<CommandListImpl>> create(const ContextPtr& context,
+                                                           std::function<void()> onClose);
     ~CommandListImpl() override;
 
     void beginPass(const PassDesc& desc) override;

@@ -136,7 +136,7 @@ Status checkDesc(const DeviceInfo& info, const GraphicsPipelineDesc& desc) {
 
 }  // namespace
 
-Result<std::shared_ptr<ShaderImpl>> ShaderImpl::create(ContextPtr context, const ShaderDesc& desc) {
+Result<std::shared_ptr<ShaderImpl>> ShaderImpl::create(const ContextPtr& context, const ShaderDesc& desc) {
     if (desc.code.size() % 4 != 0)
         return fail("shader '" + desc.name + "': not SPIR-V", "a multiple of 4 bytes");
     std::vector<std::uint32_t> words(desc.code.size() / 4);

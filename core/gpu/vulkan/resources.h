@@ -47,7 +47,7 @@ struct AccessState {
 class BufferImpl final : public Buffer {
   public:
     /// The description has been checked.
-    static Result<std::shared_ptr<BufferImpl>> create(ContextPtr context, const BufferDesc& desc,
+    static Result<std::shared_ptr<BufferImpl>> create(const ContextPtr& context, const BufferDesc& desc,
                                                       MemoryUse use);
     ~BufferImpl() override;
 
@@ -63,7 +63,7 @@ class BufferImpl final : public Buffer {
 
 class TextureImpl final : public Texture {
   public:
-    static Result<std::shared_ptr<TextureImpl>> create(ContextPtr context, const TextureDesc& desc);
+    static Result<std::shared_ptr<TextureImpl>> create(const ContextPtr& context, const TextureDesc& desc);
     ~TextureImpl() override;
     VkImageAspectFlags aspect() const;
 
@@ -79,7 +79,7 @@ class TextureImpl final : public Texture {
 
 class SamplerImpl final : public Sampler {
   public:
-    static Result<std::shared_ptr<SamplerImpl>> create(ContextPtr context, const SamplerDesc& desc);
+    static Result<std::shared_ptr<SamplerImpl>> create(const ContextPtr& context, const SamplerDesc& desc);
     ~SamplerImpl() override;
     VkSampler handle = VK_NULL_HANDLE;
 
@@ -90,7 +90,7 @@ class SamplerImpl final : public Sampler {
 
 class ShaderImpl final : public Shader {
   public:
-    static Result<std::shared_ptr<ShaderImpl>> create(ContextPtr context, const ShaderDesc& desc);
+    static Result<std::shared_ptr<ShaderImpl>> create(const ContextPtr& context, const ShaderDesc& desc);
     ~ShaderImpl() override;
     VkShaderModule handle = VK_NULL_HANDLE;
     ShaderStage stage = ShaderStage::Vertex;

@@ -40,7 +40,7 @@ VkImageAspectFlags TextureImpl::aspect() const {
     return desc().format == Format::D32Float ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
 }
 
-Result<std::shared_ptr<TextureImpl>> TextureImpl::create(ContextPtr context, const TextureDesc& desc) {
+Result<std::shared_ptr<TextureImpl>> TextureImpl::create(const ContextPtr& context, const TextureDesc& desc) {
     const std::string what = "creating texture '" + desc.name + "' of " + std::to_string(desc.width) + "x" +
                              std::to_string(desc.height);
     std::shared_ptr<TextureImpl> result(new TextureImpl(context, desc));
@@ -92,7 +92,7 @@ TextureImpl::~TextureImpl() {
     context_->allocator.release(memory);
 }
 
-Result<std::shared_ptr<SamplerImpl>> SamplerImpl::create(ContextPtr context, const SamplerDesc& desc) {
+Result<std::shared_ptr<SamplerImpl>> SamplerImpl::create(const ContextPtr& context, const SamplerDesc& desc) {
     std::shared_ptr<SamplerImpl> result(new SamplerImpl(context));
     auto info = make<VkSamplerCreateInfo>(VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO);
     info.magFilter = info.minFilter = desc.filter == Filter::Linear ? VK_FILTER_LINEAR : VK_FILTER_NEAREST;

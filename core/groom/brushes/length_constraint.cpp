@@ -74,7 +74,7 @@ Vec3f placeOutside(const Skin& skin, const Vec3f& from, const Vec3f& direction, 
                    float clearance) {
     Vec3f turned = direction;
     for (int i = 0; i < kSlides; ++i) {
-        const Vec3f end = from + turned * length;
+        Vec3f end = from + turned * length;
         const Skin::Sample sample = skin.at(end);
         if (sample.distance >= clearance - kSlack) return end;
         turned = directionOr(end + sample.outward * (clearance - sample.distance) - from, sample.outward);
