@@ -4,10 +4,8 @@
 #include <fmt/format.h>
 
 #include <CLI/Validators.hpp>
-#include <array>
 #include <charconv>
 #include <cmath>
-#include <utility>
 
 #include "core/base/file.h"
 #include "core/base/log.h"

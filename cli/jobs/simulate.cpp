@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 
@@ -30,9 +31,19 @@ struct SimulateOptions {
     std::string output;
 };
 
+/// As the engine's own table of settings lists them.
+std::vector<std::string> integratorNames() {
+    const auto choices = runtime::findField("integrator")->choices;
+    return {choices.begin(), choices.end()};
+}
+
 /// The settings of the groom with what the command line says instead.
 Status overrideSettings(Groom& groom, const SimulateOptions& options) {
     if (options.substeps > 0) groom.simulation.substeps = options.substeps;
+    const auto names = integratorNames();
+    if (const auto chosen = std::ranges::find(names, options.integrator); chosen != names.end()) {
+        groom.simulation.integrator = static_cast<runtime::Integrator>(chosen - names.begin());
+    }
     if (!options.wind.empty()) {
         const auto wind = parseVector(options.wind, "--wind");
         if (!wind) return tl::unexpected(wind.error());
@@ -128,7 +139,7 @@ void addSimulateJob(Jobs& jobs) {
     job.add_option("--fps", options->framesPerSecond, "Frames per second")->check(CLI::Range(10.0, 1000.0));
     job.add_option("--backend", options->backend, "What runs it")->check(CLI::IsMember({"cpu"}));
     job.add_option("--integrator", options->integrator, "How motion is advanced")
-        ->check(CLI::IsMember({"verlet"}));
+        ->check(CLI::IsMember(integratorNames()));
     job.add_option("--substeps", options->substeps, "Steps per frame, instead of the groom's own")
         ->check(CLI::Range(1, 64));
     job.add_option("--wind", options->wind, "Velocity of the air X,Y,Z in m/s, instead of the groom's own");
