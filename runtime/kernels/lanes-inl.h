@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Vectors of lanes: three- and four-component arithmetic on Highway registers. Included anew for each
 // instruction set.
-#if defined(HAIRLOOM_RUNTIME_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef HAIRLOOM_RUNTIME_LANES_INL_H
-#undef HAIRLOOM_RUNTIME_LANES_INL_H
+#if defined(HAIRLOOM_RUNTIME_KERNELS_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef HAIRLOOM_RUNTIME_KERNELS_LANES_INL_H
+#undef HAIRLOOM_RUNTIME_KERNELS_LANES_INL_H
 #else
-#define HAIRLOOM_RUNTIME_LANES_INL_H
+#define HAIRLOOM_RUNTIME_KERNELS_LANES_INL_H
 #endif
 
 #include <cmath>
@@ -74,6 +74,9 @@ HWY_INLINE V3 operator-(V3 a, V3 b) {
 }
 HWY_INLINE V3 operator*(V3 a, V s) {
     return {a.x * s, a.y * s, a.z * s};
+}
+HWY_INLINE V lerp(V a, V b, V t) {
+    return a + (b - a) * t;
 }
 HWY_INLINE V dot(V3 a, V3 b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;

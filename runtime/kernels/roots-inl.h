@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// Moves the roots; keeps the speed when the length of the substep changes.
+#if defined(HAIRLOOM_RUNTIME_ROOTS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef HAIRLOOM_RUNTIME_ROOTS_INL_H
+#undef HAIRLOOM_RUNTIME_ROOTS_INL_H
+#else
+#define HAIRLOOM_RUNTIME_ROOTS_INL_H
+#endif
+
+#include "hwy/highway.h"
+#include "runtime/kernels.h"
+#include "runtime/kernels/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace hairloom::runtime {
+namespace HWY_NAMESPACE {
+
+/// Turns the roots to where they are at the end of the substep and takes the clamped points along.
+void moveRoots(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
+    const V t = all(static_cast<float>(context.index + 1) / static_cast<float>(context.count));
+    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+        const V4 from = load4(lanes.rotationFrom, lane);
+        V4 to = load4(lanes.rotationTo, lane);
+        const V side = from.x * to.x + from.y * to.y + from.z * to.z + from.w * to.w;
+        const auto otherHalf = side < all(0.0f);
+        to = {hn::IfThenElse(otherHalf, hn::Neg(to.x), to.x), hn::IfThenElse(otherHalf, hn::Neg(to.y), to.y),
+              hn::IfThenElse(otherHalf, hn::Neg(to.z), to.z), hn::IfThenElse(otherHalf, hn::Neg(to.w), to.w)};
+        const V4 mixed{lerp(from.x, to.x, t), lerp(from.y, to.y, t), lerp(from.z, to.z, t),
+                       lerp(from.w, to.w, t)};
+        const V norm =
+            hn::Sqrt(mixed.x * mixed.x + mixed.y * mixed.y + mixed.z * mixed.z + mixed.w * mixed.w);
+        const V inverse = all(1.0f) / norm;
+        const V4 now{mixed.x * inverse, mixed.y * inverse, mixed.z * inverse, mixed.w * inverse};
+        store4(now, lanes.rotation, lane);
+
+        const V3 step = load3(lanes.rootStep, lane);
+        const V zero = hn::Zero(D());
+        store3({zero - step.x, zero - step.y, zero - step.z}, block.previous, lane);
+        if (block.firstFree > 1 && block.points > 1) {
+            const std::size_t i = kBlockLanes + lane;
+            store3(load3(block.position, i) - step, block.previous, i);
+            store3(rotate(now, load3(block.rest, lane)), block.position, i);
+        }
+    }
+}
+
+void rescale(const BlockView& block, float factor) {
+    const V share = all(factor);
+    const std::size_t end = std::size_t{block.points} * kBlockLanes;
+    for (std::size_t i = 0; i < end; i += kWidth) {
+        const V3 position = load3(block.position, i);
+        store3(position - (position - load3(block.previous, i)) * share, block.previous, i);
+    }
+}
+
+// NOLINTNEXTLINE(google-readability-namespace-comments)
+}  // namespace HWY_NAMESPACE
+}  // namespace hairloom::runtime
+HWY_AFTER_NAMESPACE();
+#endif
