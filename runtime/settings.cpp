@@ -5,92 +5,61 @@
 #include <cmath>
 #include <sstream>
 #include <string_view>
+#include <type_traits>
 
 namespace hairloom::runtime {
 namespace {
 
 using S = SimulationSettings;
 
-constexpr const char* kIntegrators[] = {"verlet"};
+constexpr const char* kIntegrators[] = {"verlet",        "velocityVerlet", "leapfrog",
+                                        "explicitEuler", "implicitEuler",  "rk4"};
+constexpr const char* kLengthMethods[] = {"constraint", "springs", "springVelocities"};
+constexpr const char* kAngularMethods[] = {"implicit", "cheap", "exact", "flexion"};
+constexpr const char* kWindKinds[] = {"uniform", "gusting", "turbulent", "vehicle"};
+constexpr const char* kResponses[] = {"radial", "backward", "penalty"};
 constexpr double kLargestCount = 4294967295.0;
 
+constexpr FieldInfo choiceField(const char* name, const char* meaning, FieldInfo::Member member,
+                                std::span<const char* const> choices) {
+    return {name, "", 0, static_cast<double>(choices.size() - 1), meaning, member, choices};
+}
+
+// clang-format off
 constexpr FieldInfo kFields[] = {
-    {"integrator", "", 0, 0, "how motion is advanced", &S::integrator, kIntegrators},
+    choiceField("integrator", "how motion is advanced", &S::integrator, kIntegrators),
     {"substeps", "", 1, 64, "steps per frame: more is stiffer, more exact and slower", &S::substeps, {}},
-    {"dampingTime",
-     "s",
-     0,
-     100,
-     "time in which motion falls to 1/e: lower is calmer, 0 is undamped",
-     &S::dampingTime,
-     {}},
-    {"teleportDistance",
-     "m",
-     0.01,
-     10000,
-     "a root that moves farther in a frame carries its strand along",
-     &S::teleportDistance,
-     {}},
-    {"clampedPoints",
-     "",
-     1,
-     2,
-     "points held by the scalp: 1 is a hinge, 2 keeps the authored direction",
-     &S::clampedPoints,
-     {}},
-    {"lengthIterations",
-     "",
-     0,
-     16,
-     "corrections of segment lengths per substep: 0 lets hair stretch freely",
-     &S::lengthIterations,
-     {}},
-    {"maximalExtension",
-     "",
-     0,
-     0.48,
-     "share of its length by which a segment may ever be longer",
-     &S::maximalExtension,
-     {}},
-    {"angularStiffness",
-     "",
-     0,
-     1,
-     "how strongly hair returns to its shape: 0 is off, 1 is rigid",
-     &S::angularStiffness,
-     {}},
-    {"angularTipShare",
-     "",
-     0,
-     1,
-     "stiffness at the tip as a share of that at the root: lower is looser",
-     &S::angularTipShare,
-     {}},
+    {"dampingTime", "s", 0, 100, "time in which motion falls to 1/e: lower is calmer, 0 is undamped", &S::dampingTime, {}},
+    {"teleportDistance", "m", 0.01, 10000, "a root that moves farther in a frame carries its strand along", &S::teleportDistance, {}},
+    {"sleepSpeed", "m/s", 0, 1, "slower strands fall asleep: 0 keeps all awake", &S::sleepSpeed, {}},
+    {"sleepDelay", "s", 0, 10, "time at rest before a strand falls asleep", &S::sleepDelay, {}},
+    {"clampedPoints", "", 1, 2, "points held by the scalp: 1 is sprung, 2 keeps the authored direction", &S::clampedPoints, {}},
+    choiceField("lengthMethod", "how segments keep their length", &S::lengthMethod, kLengthMethods),
+    {"lengthIterations", "", 0, 16, "corrections of segment lengths per substep: 0 lets hair stretch freely", &S::lengthIterations, {}},
+    {"maximalExtension", "", 0, 0.48, "share of its length by which a segment may ever be longer", &S::maximalExtension, {}},
+    {"springFrequency", "Hz", 1, 10000, "stiffness of coil springs: higher stretches less and needs shorter steps", &S::springFrequency, {}},
+    choiceField("angularMethod", "how strands keep their shape", &S::angularMethod, kAngularMethods),
+    {"angularStiffness", "", 0, 1, "how strongly hair returns to its shape: 0 is off, 0.5 real hair, 1 rigid", &S::angularStiffness, {}},
+    {"angularTipShare", "", 0, 1, "stiffness at the tip as a share of that at the root: lower is looser", &S::angularTipShare, {}},
+    {"bendDampingTime", "s", 0, 1, "waves faster than this fade: 0 rings on", &S::bendDampingTime, {}},
+    {"restGravity", "", 0, 1, "share of gravity that the authored shape already carries: 0 sags from there", &S::restGravity, {}},
     {"gravity", "m/s²", -1000, 1000, "acceleration of everything", &S::gravity, {}},
-    {"airDrag",
-     "1/s",
-     0,
-     1000,
-     "rate at which hair takes on the speed of the air: 0 feels no wind",
-     &S::airDrag,
-     {}},
-    {"windDirection", "", -1, 1, "direction in which the wind blows", &S::windDirection, {}},
+    {"airDrag", "1/s", 0, 1000, "rate at which hair takes on the speed of the air: 0 feels no wind", &S::airDrag, {}},
+    choiceField("windKind", "how the wind varies in space and time", &S::windKind, kWindKinds),
+    {"windDirection", "", -1, 1, "direction in which the wind blows, or the vehicle drives", &S::windDirection, {}},
     {"windSpeed", "m/s", 0, 200, "mean speed of the wind: 0 is still air", &S::windSpeed, {}},
     {"windGustiness", "", 0, 1, "strength of gusts as a share of the speed", &S::windGustiness, {}},
     {"windFrequency", "Hz", 0, 20, "how often gusts change", &S::windFrequency, {}},
-    {"windGustSize",
-     "m",
-     0.01,
-     100,
-     "distance over which gusts differ: lower separates locks",
-     &S::windGustSize,
-     {}},
+    {"windGustSize", "m", 0.01, 100, "distance over which gusts differ: lower separates locks", &S::windGustSize, {}},
     {"windSeed", "", 0, kLargestCount, "another seed gives another sequence of gusts", &S::windSeed, {}},
+    choiceField("collisionResponse", "how points leave a sphere", &S::collisionResponse, kResponses),
     {"pearlRadiusRoot", "m", 0, 0.1, "distance kept from spheres at the root", &S::pearlRadiusRoot, {}},
     {"pearlRadiusTip", "m", 0, 0.1, "distance kept from spheres at the tip", &S::pearlRadiusTip, {}},
     {"friction", "", 0, 1, "grip of the skin: 0 slides freely, 1 sticks", &S::friction, {}},
     {"restitution", "", 0, 1, "share of the approaching speed kept when bouncing off", &S::restitution, {}},
+    {"penaltyFrequency", "Hz", 1, 10000, "stiffness of penalty springs: higher penetrates less and needs shorter steps", &S::penaltyFrequency, {}},
 };
+// clang-format on
 
 float* componentOf(Float3& v, std::uint32_t component) {
     return component == 0 ? &v.x : component == 1 ? &v.y : &v.z;
@@ -98,8 +67,7 @@ float* componentOf(Float3& v, std::uint32_t component) {
 
 bool inRange(const FieldInfo& field, double value) {
     if (!(value >= field.min && value <= field.max)) return false;
-    const bool whole = std::holds_alternative<std::uint32_t S::*>(field.member) ||
-                       std::holds_alternative<Integrator S::*>(field.member);
+    const bool whole = std::holds_alternative<std::uint32_t S::*>(field.member) || !field.choices.empty();
     return !whole || value == std::floor(value);
 }
 
@@ -128,13 +96,16 @@ std::uint32_t componentCount(const FieldInfo& field) {
 
 double fieldValue(const S& settings, const FieldInfo& field, std::uint32_t component) {
     assert(component < componentCount(field));
-    if (const auto* f = std::get_if<float S::*>(&field.member)) return static_cast<double>(settings.*(*f));
-    if (const auto* u = std::get_if<std::uint32_t S::*>(&field.member)) return settings.*(*u);
-    if (const auto* e = std::get_if<Integrator S::*>(&field.member)) {
-        return static_cast<double>(settings.*(*e));
-    }
-    Float3 vector = settings.*std::get<Float3 S::*>(field.member);
-    return static_cast<double>(*componentOf(vector, component));
+    return std::visit(
+        [&](auto member) {
+            auto value = settings.*member;
+            if constexpr (std::is_same_v<decltype(value), Float3>) {
+                return static_cast<double>(*componentOf(value, component));
+            } else {
+                return static_cast<double>(value);
+            }
+        },
+        field.member);
 }
 
 double defaultValue(const FieldInfo& field, std::uint32_t component) {
@@ -144,15 +115,18 @@ double defaultValue(const FieldInfo& field, std::uint32_t component) {
 bool setFieldValue(S& settings, const FieldInfo& field, double value, std::uint32_t component) {
     assert(component < componentCount(field));
     if (!inRange(field, value)) return false;
-    if (const auto* f = std::get_if<float S::*>(&field.member)) {
-        settings.*(*f) = static_cast<float>(value);
-    } else if (const auto* u = std::get_if<std::uint32_t S::*>(&field.member)) {
-        settings.*(*u) = static_cast<std::uint32_t>(value);
-    } else if (const auto* e = std::get_if<Integrator S::*>(&field.member)) {
-        settings.*(*e) = static_cast<Integrator>(static_cast<std::uint32_t>(value));
-    } else {
-        *componentOf(settings.*std::get<Float3 S::*>(field.member), component) = static_cast<float>(value);
-    }
+    std::visit(
+        [&](auto member) {
+            using Value = std::remove_cvref_t<decltype(settings.*member)>;
+            if constexpr (std::is_same_v<Value, Float3>) {
+                *componentOf(settings.*member, component) = static_cast<float>(value);
+            } else if constexpr (std::is_enum_v<Value>) {
+                settings.*member = static_cast<Value>(static_cast<std::uint32_t>(value));
+            } else {
+                settings.*member = static_cast<Value>(value);
+            }
+        },
+        field.member);
     return true;
 }
 

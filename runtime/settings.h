@@ -14,14 +14,47 @@
 
 namespace hairloom::runtime {
 
+/// How motion is advanced; docs/engine.md has each in symbols.
 enum class Integrator : std::uint32_t {
-    verlet,  ///< position Verlet (Rünz 2012, Eq. 10)
+    verlet,          ///< position Verlet (Rünz 2012, Eq. 10); angular springs implicitly
+    velocityVerlet,  ///< Eq. 12
+    leapfrog,        ///< half drift, kick, half drift
+    explicitEuler,   ///< Eq. 7
+    implicitEuler,   ///< Eq. 9, one linearised step, solved directly along each strand
+    rk4,             ///< the classical Runge-Kutta method of order 4
+};
+
+/// How segments keep their length.
+enum class LengthMethod : std::uint32_t {
+    constraint,       ///< Newton steps on all segments of a strand together
+    springs,          ///< coil springs (Eq. 3), then maximal extension by positions (Provot 1995)
+    springVelocities  ///< coil springs, then maximal extension by velocities (Bridson et al. 2003)
+};
+
+/// How strands keep their shape.
+enum class AngularMethod : std::uint32_t {
+    implicit,  ///< angular springs (Eq. 4), solved together along a strand; explicit integrators take `cheap`
+    cheap,     ///< angular springs as forces towards the rest place
+    exact,     ///< angular springs as forces across the segment
+    flexion,   ///< springs between every second point; they have several rest shapes
+};
+
+enum class WindKind : std::uint32_t {
+    uniform,    ///< the same everywhere and always
+    gusting,    ///< a mean flow whose strength comes and goes
+    turbulent,  ///< a mean flow and eddies that drift with it
+    vehicle,    ///< the air stream of a ride along windDirection, against it, and against the actor's motion
+};
+
+enum class CollisionResponse : std::uint32_t {
+    radial,    ///< impulse (Eq. 20), then out along the radius (Eq. 21, p_a)
+    backward,  ///< impulse, then back along the way it came (p_b)
+    penalty,   ///< a spring that pushes out; allows some penetration
 };
 
 /// Ranges stand in fields(); a value outside is refused by Engine::make, not clamped.
 struct SimulationSettings {
     // --- Time ---
-    /// How motion is advanced.
     Integrator integrator = Integrator::verlet;
     /// Steps per frame, 1…64. More: stiffer, more exact, proportionally slower.
     std::uint32_t substeps = 8;
@@ -31,21 +64,38 @@ struct SimulationSettings {
     /// Metres, 0.01…10000. A root or sphere that moves farther within one frame is taken for a cut: it
     /// carries its strand along rigidly instead of whipping it.
     float teleportDistance = 2.0f;
+    /// m/s, 0…1. Strands slower than this for sleepDelay fall asleep until something moves them; 0 never.
+    float sleepSpeed = 0.002f;
+    /// Seconds, 0…10; see sleepSpeed.
+    float sleepDelay = 0.4f;
 
-    // --- Strand ---
-    /// Points at the root that follow the scalp rigidly, 1…2. 1: the root is a hinge; 2: hair leaves the skin
-    /// in its authored direction.
+    // --- Length ---
+    /// Points at the root that follow the scalp rigidly, 1…2. 1: hair leaves the skin over a spring; 2: hair
+    /// leaves the skin in its authored direction.
     std::uint32_t clampedPoints = 2;
+    LengthMethod lengthMethod = LengthMethod::constraint;
     /// Newton steps per substep that restore segment lengths, 0…16; 0 lets segments stretch freely.
     std::uint32_t lengthIterations = 1;
     /// Extension of a segment that is never exceeded, as a share of its length, 0…0.48 (hair breaks at 0.48).
     /// Only while lengthIterations is not 0.
     float maximalExtension = 0.005f;
-    /// 0…1. How strongly hair returns to its authored shape; 0 is off, 1 is rigid. At
-    /// 0.5 a 1 cm segment on a fixed one swings about its rest direction at 100 rad/s.
+    /// Hz, 1…10000. How fast a segment swings along itself on coil springs. Higher: less stretch, shorter
+    /// stable steps.
+    float springFrequency = 200.0f;
+
+    // --- Shape ---
+    AngularMethod angularMethod = AngularMethod::implicit;
+    /// 0…1. How strongly hair returns to its authored shape: the bending stiffness EI/(ρA) is
+    /// kHairBendingStiffness · s/(1 − s). 0 is off, 0.5 real round hair of 80 µm, 1 rigid. The same at any
+    /// number of segments.
     float angularStiffness = 0.3f;
     /// 0…1. angularStiffness at the tip as a share of that at the root. Lower: looser tips.
     float angularTipShare = 0.5f;
+    /// Seconds, 0…1. Kelvin-Voigt time of bending: waves slower than it pass, faster ones fade. 0 rings on.
+    float bendDampingTime = 0.01f;
+    /// 0…1. Share of gravity in which the authored shape hangs already. 1: hair keeps its authored shape as
+    /// far as its stiffness can carry it; 0: it sags from there.
+    float restGravity = 1.0f;
 
     // --- Air and gravity ---
     /// m/s², each component −1000…1000.
@@ -53,7 +103,9 @@ struct SimulationSettings {
     /// 1/s, 0…1000. Rate at which hair broadside to the air takes on its speed; falling hair reaches
     /// g/airDrag. 0: hair does not feel air or wind.
     float airDrag = 2.0f;
-    /// Direction in which the wind blows, each component −1…1; its length does not count.
+    WindKind windKind = WindKind::turbulent;
+    /// Direction in which the wind blows (a vehicle: in which it drives), each component −1…1; its length
+    /// does not count.
     Float3 windDirection{1.0f, 0.0f, 0.0f};
     /// m/s, 0…200. 0: still air.
     float windSpeed = 0.0f;
@@ -67,6 +119,7 @@ struct SimulationSettings {
     std::uint32_t windSeed = 1;
 
     // --- Collision with spheres ---
+    CollisionResponse collisionResponse = CollisionResponse::radial;
     /// Metres, 0…0.1. Distance that points keep from a sphere at the root, growing linearly to
     /// pearlRadiusTip. Larger pearls keep the middle of long segments out of a sphere.
     float pearlRadiusRoot = 0.0f;
@@ -76,15 +129,24 @@ struct SimulationSettings {
     float friction = 0.3f;
     /// 0…1. Share of the approaching speed that is kept when bouncing off.
     float restitution = 0.0f;
+    /// Hz, 1…10000. How fast a point swings on the penalty spring. Higher: less penetration, shorter stable
+    /// steps.
+    float penaltyFrequency = 100.0f;
 
     friend bool operator==(const SimulationSettings&, const SimulationSettings&) = default;
 };
+
+/// EI/(ρA) of round hair of 80 µm, in m⁴/s²: E d²/(16 ρ) with E = 3.89 GPa (Robbins 2002, as Rünz 2012,
+/// Section 2) and ρ = 1300 kg/m³.
+inline constexpr double kHairBendingStiffness = 3.89e9 * 80e-6 * 80e-6 / (16.0 * 1300.0);
 
 /// One authored field. For a Float3 the range holds for each component; for an enumeration it is that of the
 /// index.
 struct FieldInfo {
     using Member = std::variant<float SimulationSettings::*, std::uint32_t SimulationSettings::*,
-                                Float3 SimulationSettings::*, Integrator SimulationSettings::*>;
+                                Float3 SimulationSettings::*, Integrator SimulationSettings::*,
+                                LengthMethod SimulationSettings::*, AngularMethod SimulationSettings::*,
+                                WindKind SimulationSettings::*, CollisionResponse SimulationSettings::*>;
     const char* name;  ///< as in files and on the command line
     const char* unit;  ///< "" for a pure number
     double min;
