@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numbers>
 
 namespace hairloom::runtime {
 namespace {
 
 constexpr std::size_t kBlocksPerJob = 4;
+/// Metres; squares of what lies farther out leave the range of single precision.
+constexpr float kFarthest = 1e6f;
 
 std::string whyRefused(const SimulationSettings& settings) {
     const std::vector<FieldProblem> problems = validate(settings);
@@ -40,10 +43,17 @@ std::string whyRefused(const StrandsView& strands) {
         if (!strands.rootRotations_ss.empty()) rotation = strands.rootRotations_ss[s];
         if (!normalize(rotation)) return "root rotation " + std::to_string(s) + " is not a rotation";
     }
+    if (!strands.masses.empty() && strands.masses.size() != strands.restPositions_ss.size()) {
+        return std::to_string(strands.masses.size()) + " masses for " +
+               std::to_string(strands.restPositions_ss.size()) + " points; expected none or one each";
+    }
+    for (std::size_t p = 0; p < strands.masses.size(); ++p) {
+        if (!(strands.masses[p] > 0.0f) || !std::isfinite(strands.masses[p]))
+            return "mass of point " + std::to_string(p) + " is not a number above 0";
+    }
     for (std::size_t p = 0; p < strands.restPositions_ss.size(); ++p) {
         const Float3 at = strands.restPositions_ss[p];
-        // Squares of what lies farther out leave the range of single precision.
-        if (!isFinite(at) || std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)}) > 1e6f) {
+        if (!isFinite(at) || std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)}) > kFarthest) {
             return "rest position of point " + std::to_string(p) + " is not a number within 1e6 m";
         }
     }
@@ -80,7 +90,7 @@ Engine::Made Engine::make(const StrandsView& strands, const SimulationSettings& 
     const RestShape& shape = *engine.shape_;
     engine.state_.planes.assign(shape.planeFloats * kStatePlanes, 0.0f);
     engine.state_.roots.assign(shape.blocks.size() * kRootRows * kBlockLanes, 0.0f);
-    if (engine.host_.nanoseconds) engine.blockNanoseconds_.resize(shape.blocks.size());
+    engine.blockReports_.resize(shape.blocks.size());
     engine.settings_ = settings;
     engine.wind_ = makeWind(settings);
     engine.reset(shape.restRoots);
@@ -90,6 +100,7 @@ Engine::Made Engine::make(const StrandsView& strands, const SimulationSettings& 
 void Engine::reset(std::span<const RootFrame> roots_ws) {
     assert(roots_ws.size() == strandCount());
     report_ = {};
+    state_.rests.assign(shape_->blocks.size(), {});
     for (std::size_t b = 0; b < shape_->blocks.size(); ++b) {
         float* rows = state_.roots.data() + b * kRootRows * kBlockLanes;
         for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
@@ -100,15 +111,15 @@ void Engine::reset(std::span<const RootFrame> roots_ws) {
                                              root.rotation.x, root.rotation.y, root.rotation.z,
                                              root.rotation.w};
             for (std::size_t r = 0; r < kRootRows; ++r) rows[r * kBlockLanes + lane] = values[r];
+            placeAtRest(*shape_, state_, b, lane);
         }
-        placeAtRest(*shape_, state_, b);
     }
     state_.spheres.clear();
-    state_.bend.clear();
     state_.substep = 0.0f;
+    state_.fastest = 0.0f;
     FrameInput here;
     here.roots_ws = roots_ws;
-    takeRootBounds(here);
+    takeRoots(here);
     replan({}, {}, state_.rootsMin_ws, state_.rootsMax_ws);
 }
 
@@ -116,31 +127,80 @@ std::string Engine::setSettings(const SimulationSettings& settings) {
     if (std::string error = whyRefused(settings); !error.empty()) return error;
     settings_ = settings;
     wind_ = makeWind(settings);
-    state_.bendSubstep = 0.0f;
+    bend_.substep = 0.0f;
+    state_.rests.assign(shape_->blocks.size(), {});
     replan({}, {}, state_.rootsMin_ws, state_.rootsMax_ws);
     return {};
 }
 
 void Engine::replan(std::span<const Sphere> spheres, std::span<const Float3> sphereMotion, Float3 rootsMin_ws,
                     Float3 rootsMax_ws) {
-    plan_ = runtime::plan({settings_, strandCount(), shape_->longestPointCount, shape_->longestStrand,
-                           rootsMin_ws, rootsMax_ws, spheres, sphereMotion});
+    SceneDescription scene{settings_,
+                           strandCount(),
+                           shape_->longestPointCount,
+                           shape_->longestStrand,
+                           shape_->straight,
+                           rootsMin_ws,
+                           rootsMax_ws,
+                           spheres,
+                           sphereMotion};
+    float sphereWay = 0.0f;
+    for (const Float3& motion : sphereMotion) sphereWay = std::max(sphereWay, length(motion));
+    // Hair may gain half as much speed again before the next plan.
+    scene.fastest =
+        1.5f * state_.fastest + (rootMotion_ + sphereWay) / static_cast<float>(settings_.substeps);
+    scene.restTime = 1e30f;
+    for (std::size_t b = 0; b < state_.rests.size(); ++b) {
+        if (state_.rests[b].asleep) scene.asleep += shape_->blocks[b].strands;
+        scene.restTime = std::min(scene.restTime, state_.rests[b].time);
+    }
+    plan_ = runtime::plan(scene);
     allocateForPlan();
 }
 
 void Engine::allocateForPlan() {
-    if (plan_.on(Effect::angular) == !state_.bend.empty()) return;
-    state_.bend = Floats(plan_.on(Effect::angular) ? shape_->planeFloats * kBendPlanes : 0, 0.0f);
-    state_.bendSubstep = 0.0f;
+    const bool angular = plan_.on(Effect::angular);
+    const bool factored = angular && plan_.factored();
+    const bool targets = plan_.on(Effect::torsion);
+    if (angular == bend_.planes.empty() || factored != bend_.factored || targets != bend_.targets) {
+        bend_.factored = factored;
+        bend_.targets = targets;
+        bend_.planes = Floats(angular ? shape_->planeFloats * bend_.planeCount() : 0, 0.0f);
+        bend_.substep = 0.0f;
+    }
+    evaluationPlanes_ = settings_.integrator == Integrator::verlet ? 0
+                        : settings_.integrator == Integrator::rk4  ? kRungeKuttaPlanes
+                                                                   : kEvaluationPlanes;
+    if (evaluation_.size() != shape_->planeFloats * evaluationPlanes_)
+        evaluation_ = Floats(shape_->planeFloats * evaluationPlanes_, 0.0f);
 }
 
-void Engine::takeRootBounds(const FrameInput& input) {
+/// The box of the roots, and how far they go.
+void Engine::takeRoots(const FrameInput& input) {
     Float3 low{1e30f, 1e30f, 1e30f}, high{-1e30f, -1e30f, -1e30f};
-    for (const RootFrame& root : input.roots_ws) {
-        const Float3 p = root.position;
-        if (!isFinite(p)) continue;
-        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    rootMotion_ = 0.0f;
+    for (std::size_t b = 0; b < shape_->blocks.size(); ++b) {
+        const Block& block = shape_->blocks[b];
+        const float* rows = state_.roots.data() + b * kRootRows * kBlockLanes;
+        bool moved = false;
+        for (std::uint32_t lane = 0; lane < block.strands; ++lane) {
+            const auto row = [&](std::size_t r) { return rows[r * kBlockLanes + lane]; };
+            RootFrame root = input.roots_ws[block.strandOfLane[lane]];
+            if (!usable(root)) {
+                ++report_.rejectedRoots;
+                continue;
+            }
+            const Float3 p = root.position;
+            low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+            high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+            const Float3 before{row(0), row(1), row(2)};
+            const Quat turned{row(3), row(4), row(5), row(6)};
+            if (p == before && root.rotation == turned) continue;
+            moved = true;
+            const float way = length(p - before);
+            if (way <= settings_.teleportDistance) rootMotion_ = std::max(rootMotion_, way);
+        }
+        blockReports_[b].rootsMoved = moved;
     }
     state_.rootsMin_ws = low;
     state_.rootsMax_ws = high;
@@ -163,6 +223,36 @@ void Engine::takeSpheres(const FrameInput& input) {
     }
 }
 
+/// Whether a sphere that has changed since the last frame comes within reach of the block's strands.
+bool Engine::sphereNear(std::size_t block) const {
+    const float* rows = state_.roots.data() + block * kRootRows * kBlockLanes;
+    const float hair = shape_->longestStrand * (1.0f + settings_.maximalExtension) +
+                       std::max(settings_.pearlRadiusRoot, settings_.pearlRadiusTip);
+    const std::size_t count = std::max(usableSpheres_.size(), state_.spheres.size());
+    for (std::size_t i = 0; i < count; ++i) {
+        const Sphere before = i < state_.spheres.size() ? state_.spheres[i] : Sphere{};
+        const Sphere now = i < usableSpheres_.size() ? usableSpheres_[i] : Sphere{};
+        if (before.center_ws == now.center_ws && before.radius == now.radius) continue;
+        for (const Sphere& sphere : {before, now}) {
+            if (!(sphere.radius > 0.0f)) continue;
+            const float reach = hair + sphere.radius + length(now.center_ws - before.center_ws);
+            for (std::uint32_t lane = 0; lane < shape_->blocks[block].strands; ++lane) {
+                const Float3 root{rows[lane], rows[kBlockLanes + lane], rows[2 * kBlockLanes + lane]};
+                if (length(root - sphere.center_ws) < reach) return true;
+            }
+        }
+    }
+    return false;
+}
+
+void Engine::wakeBlocks() {
+    const bool windy = settings_.windSpeed > 0.0f && settings_.airDrag > 0.0f;
+    for (std::size_t b = 0; b < state_.rests.size(); ++b) {
+        Rest& rest = state_.rests[b];
+        if (rest.asleep && (windy || blockReports_[b].rootsMoved || sphereNear(b))) rest = {};
+    }
+}
+
 void Engine::moveSpheres() {
     if (!plan_.on(Effect::collision)) {
         movingSpheres_ = {};
@@ -178,37 +268,34 @@ void Engine::moveSpheres() {
     }
 }
 
-void Engine::step(const FrameInput& input) {
-    assert(input.roots_ws.size() == strandCount());
-    if (!(input.dt > 0.0f) || !std::isfinite(input.dt)) return;
-    const std::uint64_t begin = host_.nanoseconds ? host_.nanoseconds() : 0;
-    report_ = {};
+Engine::Frame Engine::makeFrame(const FrameInput& input) {
     const float h = input.dt / static_cast<float>(settings_.substeps);
-
-    const Float3 lowBefore = state_.rootsMin_ws, highBefore = state_.rootsMax_ws;
-    takeRootBounds(input);
-    const Float3 low = state_.rootsMin_ws, high = state_.rootsMax_ws;
-    takeSpheres(input);
-    replan(usableSpheres_, sphereMotion_,
-           {std::min(low.x, lowBefore.x), std::min(low.y, lowBefore.y), std::min(low.z, lowBefore.z)},
-           {std::max(high.x, highBefore.x), std::max(high.y, highBefore.y), std::max(high.z, highBefore.z)});
-
-    moveSpheres();
-
+    const auto oscillation = [&](float hertz) {
+        const float turns = 2.0f * std::numbers::pi_v<float> * hertz * h;
+        return turns * turns;
+    };
     Frame frame{};
     frame.input = &input;
-    frame.context.count = settings_.substeps;
-    frame.context.h = h;
-    frame.context.velocityShare = shareLeft(h, settings_.dampingTime);
-    frame.context.gravityStep = settings_.gravity * (h * h);
-    frame.context.dragShare = 1.0f - std::exp(-settings_.airDrag * h);
-    frame.context.lengthIterations = settings_.lengthIterations;
-    frame.context.maximalExtension = settings_.maximalExtension;
-    frame.context.pearlRoot = settings_.pearlRadiusRoot;
-    frame.context.pearlTip = settings_.pearlRadiusTip;
-    frame.context.friction = settings_.friction;
-    frame.context.restitution = settings_.restitution;
-    frame.context.spheres = movingSpheres_;
+    SubstepContext& context = frame.context;
+    context.count = settings_.substeps;
+    context.h = h;
+    context.velocityShare = shareLeft(h, settings_.dampingTime);
+    context.gravityStep = settings_.gravity * (h * h);
+    const bool decays =
+        settings_.integrator == Integrator::verlet || settings_.integrator == Integrator::implicitEuler;
+    context.dragShare = decays ? 1.0f - std::exp(-settings_.airDrag * h) : settings_.airDrag * h;
+    context.springStep = oscillation(settings_.springFrequency);
+    context.penaltyStep = oscillation(settings_.penaltyFrequency);
+    context.bendRate = bendRate(settings_, h, context.velocityShare);
+    context.lengthIterations = settings_.lengthIterations;
+    context.maximalExtension = settings_.maximalExtension;
+    if (plan_.on(Effect::pearls)) {
+        context.pearlRoot = settings_.pearlRadiusRoot;
+        context.pearlTip = settings_.pearlRadiusTip;
+    }
+    context.friction = settings_.friction;
+    context.restitution = settings_.restitution;
+    context.spheres = movingSpheres_;
     frame.windy = plan_.on(Effect::wind);
     if (frame.windy) {
         const double time = std::isfinite(input.time) ? input.time : 0.0;
@@ -216,8 +303,27 @@ void Engine::step(const FrameInput& input) {
         frame.windTo = windPhases(wind_, time);
     }
     frame.rescale = state_.substep > 0.0f ? h / state_.substep : 1.0f;
-    frame.newBend = plan_.on(Effect::angular) && state_.bendSubstep != h;
+    frame.newBend = plan_.on(Effect::angular) && bend_.substep != h;
+    return frame;
+}
 
+void Engine::step(const FrameInput& input) {
+    assert(input.roots_ws.size() == strandCount());
+    if (!(input.dt > 0.0f) || !std::isfinite(input.dt)) return;
+    const std::uint64_t begin = host_.nanoseconds ? host_.nanoseconds() : 0;
+    report_ = {};
+
+    const Float3 lowBefore = state_.rootsMin_ws, highBefore = state_.rootsMax_ws;
+    takeRoots(input);
+    const Float3 low = state_.rootsMin_ws, high = state_.rootsMax_ws;
+    takeSpheres(input);
+    wakeBlocks();
+    replan(usableSpheres_, sphereMotion_,
+           {std::min(low.x, lowBefore.x), std::min(low.y, lowBefore.y), std::min(low.z, lowBefore.z)},
+           {std::max(high.x, highBefore.x), std::max(high.y, highBefore.y), std::max(high.z, highBefore.z)});
+    moveSpheres();
+
+    const Frame frame = makeFrame(input);
     const std::size_t blocks = shape_->blocks.size();
     const Host::Body body = [&](std::size_t first, std::size_t end) {
         for (std::size_t b = first; b < end; ++b) runBlock(b, frame);
@@ -227,37 +333,94 @@ void Engine::step(const FrameInput& input) {
     } else {
         body(0, blocks);
     }
-    for (RootFrame root : input.roots_ws) report_.rejectedRoots += usable(root) ? 0 : 1;
 
     state_.spheres.assign(usableSpheres_.begin(), usableSpheres_.end());
-    state_.substep = h;
-    if (frame.newBend) state_.bendSubstep = h;
-    if (host_.nanoseconds) {
-        report_.milliseconds = static_cast<double>(host_.nanoseconds() - begin) * 1e-6;
-        sumTimes();
+    state_.substep = frame.context.h;
+    if (frame.newBend) bend_.substep = frame.context.h;
+    sumReports();
+    if (host_.nanoseconds) report_.milliseconds = static_cast<double>(host_.nanoseconds() - begin) * 1e-6;
+}
+
+void Engine::sumReports() {
+    float fastest = 0.0f;
+    for (const BlockReport& block : blockReports_) {
+        for (std::size_t i = 0; i < kStageCount; ++i)
+            report_.stageMilliseconds[i] += static_cast<double>(block.nanoseconds[i]) * 1e-6;
+        report_.restoredStrands += block.restored;
+        fastest = std::max(fastest, block.fastest);
+    }
+    state_.fastest = std::sqrt(fastest);
+    if (report_.restoredStrands > 0 && host_.log) {
+        host_.log(std::to_string(report_.restoredStrands) +
+                  " strands had left the range of sound places and were put back to rest");
     }
 }
 
-void Engine::sumTimes() {
-    for (const auto& times : blockNanoseconds_) {
-        for (std::size_t i = 0; i < kStageCount; ++i) {
-            report_.stageMilliseconds[i] += static_cast<double>(times[i]) * 1e-6;
-        }
-    }
+BlockView Engine::view(std::size_t block) {
+    return viewOf({*shape_, state_, bend_, evaluation_, evaluationPlanes_}, block, settings_.clampedPoints);
 }
 
 void Engine::runBlock(std::size_t block, const Frame& frame) {
-    const BlockView view = viewOf(*shape_, state_, block, settings_.clampedPoints);
-    LaneFrame lanes;
-    enterFrame(block, view, lanes, frame);
-    if (frame.rescale != 1.0f) kernels().rescale(view, frame.rescale);
+    BlockReport& report = blockReports_[block];
+    report.nanoseconds.fill(0);
+    report.restored = 0;
+    report.fastest = 0.0f;
     if (frame.newBend) {
-        fillBend(*shape_, settings_, frame.context.h, block, state_);
+        fillBend(*shape_, settings_, frame.context.h, frame.context.velocityShare, block, bend_);
     }
+    if (state_.rests[block].asleep) {
+        state_.rests[block].time += frame.input->dt;
+        return;
+    }
+    const BlockView blockView = view(block);
+    LaneFrame lanes;
+    enterFrame(block, blockView, lanes, frame);
+    if (frame.rescale != 1.0f) kernels().rescale(blockView, frame.rescale);
     if (frame.windy) {
-        kernels().sampleWind(view, lanes, frame.context.h, wind_, frame.windFrom.data(), frame.windTo.data());
+        kernels().sampleWind(blockView, lanes, frame.context.h, wind_, frame.windFrom.data(),
+                             frame.windTo.data());
     }
-    runStages(block, view, lanes, frame);
+    runStages(block, blockView, lanes, frame);
+    report.fastest = kernels().fastest(blockView);
+    if (!std::isfinite(report.fastest)) restoreStrands(block, blockView);
+    rest(block, blockView, frame);
+}
+
+/// Puts lanes that are no longer sound back to rest.
+void Engine::restoreStrands(std::size_t block, const BlockView& blockView) {
+    BlockReport& report = blockReports_[block];
+    for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+        bool sound = true;
+        for (std::uint32_t p = 0; p < blockView.points; ++p) {
+            const std::size_t i = std::size_t{p} * kBlockLanes + lane;
+            for (const Planes& planes : {blockView.position, blockView.previous}) {
+                for (const float* plane : {planes.x, planes.y, planes.z})
+                    sound = sound && std::abs(plane[i]) < kFarthest;
+            }
+        }
+        if (sound) continue;
+        placeAtRest(*shape_, state_, block, lane);
+        if (lane < shape_->blocks[block].strands) ++report.restored;
+    }
+    report.fastest = 0.0f;
+}
+
+/// Counts how long the block has been at rest, and puts it to sleep.
+void Engine::rest(std::size_t block, const BlockView& blockView, const Frame& frame) {
+    Rest& rest = state_.rests[block];
+    const BlockReport& report = blockReports_[block];
+    const float slow = settings_.sleepSpeed * frame.context.h;
+    if (report.rootsMoved || report.restored > 0 || !(report.fastest < slow * slow)) {
+        rest = {};
+        return;
+    }
+    rest.time += frame.input->dt;
+    rest.asleep = rest.time >= settings_.sleepDelay;
+    if (!rest.asleep) return;
+    const std::size_t floats = std::size_t{blockView.points} * kBlockLanes;
+    std::copy_n(blockView.position.x, floats, blockView.previous.x);
+    std::copy_n(blockView.position.y, floats, blockView.previous.y);
+    std::copy_n(blockView.position.z, floats, blockView.previous.z);
 }
 
 /// Fills the lanes' way through the frame and keeps its end for the next. A cut turns the strand along
@@ -306,15 +469,14 @@ void Engine::enterFrame(std::size_t block, const BlockView& view, LaneFrame& lan
 void Engine::runStages(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame) {
     const Kernels& table = kernels();
     SubstepContext context = frame.context;
-    if (blockNanoseconds_.empty()) {
+    if (!host_.nanoseconds) {
         for (context.index = 0; context.index < context.count; ++context.index) {
             for (const StageId id : plan_.stages())
                 table.stages[static_cast<std::size_t>(id)](view, lanes, context);
         }
         return;
     }
-    auto& times = blockNanoseconds_[block];
-    times.fill(0);
+    auto& times = blockReports_[block].nanoseconds;
     std::uint64_t before = host_.nanoseconds();
     for (context.index = 0; context.index < context.count; ++context.index) {
         for (const StageId id : plan_.stages()) {

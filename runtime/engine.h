@@ -3,10 +3,8 @@
 // The strand engine. Authored settings, the plan and the state are three things with three lifetimes: the
 // settings are given, the plan is made from them each frame, and the state is what an Engine owns.
 //
-// A strand's length is held by a direct solve of its length constraints (all points of equal mass, the root
-// of infinite mass) and, last in a substep, by a pass from root to tip that bounds every segment without
-// adding energy. Does not do: hair against hair, torsion, twist of a straight strand about itself, collision
-// between points.
+// docs/engine.md has the model in symbols. Does not do: hair against hair (alternatives/hair_volume.h does,
+// between frames), twist of a strand about itself, collision between points.
 
 #include <array>
 #include <cstdint>
@@ -30,9 +28,10 @@ struct Measurements {
     double maxStretch = 0.0;  ///< largest |length / rest length − 1|; segments without length do not count
     double maxPenetration =
         0.0;  ///< metres that a free point and its pearl lie inside a sphere of the last frame
-    double kineticEnergy = 0.0;  ///< joules, over free points of 1 kg each
+    double kineticEnergy = 0.0;  ///< joules, over free points; the points of a strand weigh 1 kg on average
     double potentialEnergy =
-        0.0;  ///< joules, likewise, in the gravity of the settings, 0 at the world's origin
+        0.0;                   ///< joules, likewise, in the gravity of the settings, 0 at the world's origin
+    std::uint32_t asleep = 0;  ///< strands
 };
 
 /// What the last step took. Times are sums over threads, all 0 without Host::nanoseconds.
@@ -41,6 +40,9 @@ struct StepReport {
     double milliseconds = 0.0;                            ///< from entering to leaving step()
     std::uint32_t rejectedRoots = 0;    ///< roots that were not finite; they stayed where they were
     std::uint32_t rejectedSpheres = 0;  ///< spheres that were not finite or had no radius; they were left out
+    /// Strands with a point that was no number, or farther from its root than any hair; they were put back to
+    /// rest.
+    std::uint32_t restoredStrands = 0;
 };
 
 class Engine {
@@ -84,6 +86,12 @@ class Engine {
 
   private:
     struct Frame;
+    struct BlockReport {
+        std::array<std::uint64_t, kStageCount> nanoseconds{};
+        float fastest = 0.0f;  ///< square metres, as Kernels::fastest
+        std::uint32_t restored = 0;
+        bool rootsMoved = false;
+    };
     Engine() = default;
 
     void replan(std::span<const Sphere> spheres, std::span<const Float3> sphereMotion, Float3 rootsMin_ws,
@@ -91,11 +99,17 @@ class Engine {
     void allocateForPlan();
     void takeSpheres(const FrameInput& input);
     void moveSpheres();
-    void takeRootBounds(const FrameInput& input);
+    void takeRoots(const FrameInput& input);
+    void wakeBlocks();
+    bool sphereNear(std::size_t block) const;
+    Frame makeFrame(const FrameInput& input);
+    BlockView view(std::size_t block);
     void runBlock(std::size_t block, const Frame& frame);
     void enterFrame(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame);
     void runStages(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame);
-    void sumTimes();
+    void restoreStrands(std::size_t block, const BlockView& view);
+    void rest(std::size_t block, const BlockView& view, const Frame& frame);
+    void sumReports();
 
     SimulationSettings settings_;
     Host host_;
@@ -103,12 +117,16 @@ class Engine {
     EffectPlan plan_;
     Wind wind_;
     State state_;
+    Bend bend_;
+    Floats evaluation_;  // empty for position Verlet
+    std::size_t evaluationPlanes_ = 0;
     StepReport report_;
-    std::vector<Sphere>
-        usableSpheres_;  // of the frame under way, with those that fell out left in place at radius 0
+    std::vector<BlockReport> blockReports_;
+    // Of the frame under way.
+    std::vector<Sphere> usableSpheres_;  // those that fell out stay in place at radius 0
     std::vector<Float3> sphereMotion_;
     std::vector<MovingSphere> movingSpheres_;
-    std::vector<std::array<std::uint64_t, kStageCount>> blockNanoseconds_;  // empty without a clock
+    float rootMotion_ = 0.0f;  // metres, the longest way of a root
 };
 
 struct Engine::Made {

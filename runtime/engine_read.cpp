@@ -21,6 +21,7 @@ struct ConstBlock {
         return position(i) - Float3{moving[3 * size + i], moving[4 * size + i], moving[5 * size + i]};
     }
     float restLength(std::size_t i) const { return rest[3 * size + i]; }
+    double mass(std::size_t i) const { return 1.0 / static_cast<double>(rest[5 * size + i]); }
     Float3 root(std::size_t lane) const {
         return {roots[lane], roots[kBlockLanes + lane], roots[2 * kBlockLanes + lane]};
     }
@@ -75,6 +76,9 @@ Measurements Engine::measure() const {
     Measurements result;
     const double rate = state_.substep > 0.0f ? 1.0 / static_cast<double>(state_.substep) : 0.0;
     const SimulationSettings& s = settings_;
+    for (std::size_t b = 0; b < state_.rests.size(); ++b) {
+        if (state_.rests[b].asleep) result.asleep += shape_->blocks[b].strands;
+    }
     forEachPoint(
         *shape_, state_,
         [&](const ConstBlock& view, std::uint32_t lane, std::uint32_t p, std::size_t i, std::size_t) {
@@ -92,8 +96,8 @@ Measurements Engine::measure() const {
             if (p < s.clampedPoints) return;
             const Float3 at_ws = view.root(lane) + at;
             const double speed = lengthOf(moved) * rate;
-            result.kineticEnergy += 0.5 * speed * speed;
-            result.potentialEnergy -= static_cast<double>(dot(s.gravity, at_ws));
+            result.kineticEnergy += 0.5 * view.mass(i) * speed * speed;
+            result.potentialEnergy -= view.mass(i) * static_cast<double>(dot(s.gravity, at_ws));
             const double along = static_cast<double>(p) / (view.block->points - 1);
             const double pearl = static_cast<double>(s.pearlRadiusRoot) +
                                  along * static_cast<double>(s.pearlRadiusTip - s.pearlRadiusRoot);
@@ -108,9 +112,13 @@ Measurements Engine::measure() const {
 }
 
 std::size_t Engine::effectBytes(Effect effect) const {
+    const std::size_t plane = shape_->planeFloats * sizeof(float);
+    const std::size_t targets = bend_.targets ? 3 * plane : 0;
     switch (effect) {
         case Effect::angular:
-            return state_.bend.size() * sizeof(float);
+            return bend_.planes.size() * sizeof(float) - targets;
+        case Effect::torsion:
+            return targets;
         case Effect::wind:
             return plan_.on(effect) ? sizeof(Wind) : 0;
         case Effect::collision:
@@ -118,15 +126,19 @@ std::size_t Engine::effectBytes(Effect effect) const {
         case Effect::gravity:
         case Effect::drag:
         case Effect::length:
+        case Effect::pearls:
+        case Effect::sweep:
+        case Effect::sleep:
             return 0;
     }
     return 0;
 }
 
 std::size_t Engine::baseBytes() const {
-    return shape_->bytes() + (state_.planes.size() + state_.roots.size()) * sizeof(float) +
+    return shape_->bytes() +
+           (state_.planes.size() + state_.roots.size() + evaluation_.size()) * sizeof(float) +
            (state_.spheres.size() + usableSpheres_.size()) * sizeof(Sphere) +
-           blockNanoseconds_.size() * sizeof(blockNanoseconds_[0]);
+           state_.rests.size() * sizeof(Rest) + blockReports_.size() * sizeof(BlockReport);
 }
 
 }  // namespace hairloom::runtime

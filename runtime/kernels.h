@@ -5,6 +5,10 @@
 // + lane). The block keeps this shape for every instruction set, and kernels use only exactly rounded
 // operations without fused multiply-add, so the results have the same bits on each of them.
 //
+// Forces add a·h² to a point's displacement by taking it from `previous`; integrators that evaluate forces
+// elsewhere put that place into `position` and the displacement that counts as velocity there into `previous`
+// first.
+//
 // Positions are relative to the strand's own root, which keeps single precision where hair needs it;
 // `previous` is the position one substep ago relative to the root of now, so position − previous is the world
 // displacement.
@@ -41,11 +45,19 @@ struct BlockView {
                                  ///< [s · kBlockLanes + lane]; metres
     const float* length;         ///< of each segment, likewise
     const float* inverseLength;  ///< 0 for a segment without length
-    // Of the angular springs, null while they are off; at segments like `rest`.
-    const float*
-        pull;  ///< share of its offset from its rest place that a segment's end goes back in a substep
-    const float* damp;  ///< share of the change of that offset that it goes back
-    Planes offset;      ///< from the segment's end to its rest place, after the last substep
+    const float* inverseMass;    ///< of each point; the masses of a strand have the mean 1
+    // Of angular and flexion springs, null while they are off. The joint at point j stands at
+    // [j · kBlockLanes + lane].
+    const float* stiffness = nullptr;  ///< κ·h² of a joint, square metres
+    ConstPlanes target;                ///< the direction a joint pulls its outer segment to, in the root's
+                                       ///< frame; null for straight hair
+    // Where the system of a strand is solved: LDLᵀ of its matrix, rows of points. Null otherwise.
+    const float* inverseDiagonal = nullptr;
+    const float* lower1 = nullptr;  ///< to the point before
+    const float* lower2 = nullptr;  ///< to the one before that
+    // Of integrators that evaluate forces elsewhere than at the last place, null otherwise; each is a
+    // displacement in one substep but for `start`, a place.
+    Planes start, rate, kick, sum, sumRate;
 };
 
 /// What the strands of a block go through in one frame; lives on the stack of the thread that runs the block.
@@ -73,7 +85,12 @@ struct SubstepContext {
     float h = 0.0f;              ///< seconds
     float velocityShare = 1.0f;  ///< exp(−h/τ)
     Float3 gravityStep;          ///< g·h²
-    float dragShare = 0.0f;      ///< 1 − exp(−airDrag·h)
+    /// Share of the air's speed taken on in a substep: 1 − exp(−airDrag·h), or airDrag·h where an integrator
+    /// evaluates forces.
+    float dragShare = 0.0f;
+    float springStep = 0.0f;   ///< (2π · springFrequency · h)²
+    float penaltyStep = 0.0f;  ///< (2π · penaltyFrequency · h)²
+    float bendRate = 0.0f;     ///< q = bendDampingTime/h + (1 − velocityShare)/4 (docs/engine.md)
     std::uint32_t lengthIterations = 0;
     float maximalExtension = 0.0f;
     float pearlRoot = 0.0f;
@@ -93,6 +110,9 @@ struct Kernels {
     /// and ends at `to`.
     void (*sampleWind)(const BlockView& block, LaneFrame& lanes, float h, const Wind& wind, const float* from,
                        const float* to);
+    /// Greatest squared displacement of a free point in the last substep, square metres; infinite where a
+    /// point is no number or has left the range of sound places.
+    float (*fastest)(const BlockView& block);
     const char* target;  ///< name of the instruction set
 };
 

@@ -2,8 +2,9 @@
 #include "runtime/plan.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
-#include <sstream>
+#include <initializer_list>
 
 namespace hairloom::runtime {
 namespace {
@@ -12,6 +13,8 @@ namespace {
 bool withinReach(const Sphere& sphere, Float3 motion, const SceneDescription& scene) {
     if (!(sphere.radius > 0.0f)) return false;
     const SimulationSettings& s = scene.settings;
+    // Without a bound on its length a strand may reach anywhere.
+    if (s.lengthIterations == 0) return true;
     const float hair =
         scene.longestStrand * (1.0f + s.maximalExtension) + std::max(s.pearlRadiusRoot, s.pearlRadiusTip);
     const float reach = (hair + sphere.radius) * 1.001f;
@@ -27,20 +30,20 @@ bool withinReach(const Sphere& sphere, Float3 motion, const SceneDescription& sc
     return dot(distance, distance) < reach * reach;
 }
 
-Decision decideCollision(const SceneDescription& scene) {
-    if (scene.spheres.empty()) return {false, Reason::noSpheres, 0.0f};
-    // Without the length constraint a strand may reach anywhere.
+struct Reachable {
     std::uint32_t count = 0;
+    float smallest = 1e30f;  ///< radius, metres
+};
+
+Reachable spheresWithinReach(const SceneDescription& scene) {
+    Reachable result;
     for (std::size_t i = 0; i < scene.spheres.size(); ++i) {
         const Float3 motion = scene.sphereMotion.empty() ? Float3{} : scene.sphereMotion[i];
-        const bool usable = scene.spheres[i].radius > 0.0f;
-        if (usable &&
-            (scene.settings.lengthIterations == 0 || withinReach(scene.spheres[i], motion, scene))) {
-            ++count;
-        }
+        if (!withinReach(scene.spheres[i], motion, scene)) continue;
+        ++result.count;
+        result.smallest = std::min(result.smallest, scene.spheres[i].radius);
     }
-    if (count == 0) return {false, Reason::noneInReach, 0.0f};
-    return {true, Reason::inReach, static_cast<float>(count)};
+    return result;
 }
 
 Decision decideWind(const SimulationSettings& s) {
@@ -56,119 +59,222 @@ Decision decideDrag(const SimulationSettings& s, bool wind) {
     return {true, Reason::authored, s.airDrag};
 }
 
-const char* quantity(Effect effect) {
-    switch (effect) {
-        case Effect::gravity:
-            return "m/s²";
-        case Effect::drag:
-            return "per second";
-        case Effect::wind:
-            return "m/s";
-        case Effect::angular:
-            return "stiffness";
-        case Effect::length:
-            return "iterations";
-        case Effect::collision:
-            return "spheres";
-    }
-    return "";
+Decision decideLength(const SimulationSettings& s) {
+    if (s.lengthMethod != LengthMethod::constraint) return {true, Reason::springsOn, s.springFrequency};
+    if (s.lengthIterations == 0) return {false, Reason::zeroIterations, 0.0f};
+    return {true, Reason::authored, static_cast<float>(s.lengthIterations)};
+}
+
+Decision decideTorsion(const SceneDescription& scene, bool angular, bool held) {
+    if (!angular) return {false, Reason::noAngular, 0.0f};
+    if (scene.settings.angularMethod == AngularMethod::flexion) return {false, Reason::noFrames, 0.0f};
+    if (scene.straight && !held) return {false, Reason::straightHair, 0.0f};
+    return {true, Reason::curvedHair, 0.0f};
+}
+
+Decision decidePearls(const SimulationSettings& s, bool collision) {
+    if (!collision) return {false, Reason::noCollision, 0.0f};
+    const float largest = std::max(s.pearlRadiusRoot, s.pearlRadiusTip);
+    if (!(largest > 0.0f)) return {false, Reason::zeroRadius, 0.0f};
+    return {true, Reason::authored, 1000.0f * largest};
+}
+
+Decision decideSweep(const SceneDescription& scene, bool collision, float smallestSphere) {
+    if (!collision) return {false, Reason::noCollision, 0.0f};
+    if (scene.settings.collisionResponse == CollisionResponse::penalty) return {false, Reason::byForce, 0.0f};
+    // A point that moves less than a radius in a substep ends inside of what it hits, but for a graze.
+    if (scene.fastest < smallestSphere) return {false, Reason::slowEnough, 0.0f};
+    return {true, Reason::fast, scene.fastest};
+}
+
+Decision decideSleep(const SceneDescription& scene) {
+    if (!(scene.settings.sleepSpeed > 0.0f)) return {false, Reason::neverAsleep, 0.0f};
+    if (scene.asleep == 0) return {false, Reason::allAwake, 0.0f};
+    if (scene.asleep < scene.strandCount) return {true, Reason::someAsleep, static_cast<float>(scene.asleep)};
+    return {true, Reason::allAsleep, scene.restTime};
 }
 
 }  // namespace
 
-const char* effectName(Effect effect) {
-    constexpr const char* kNames[kEffectCount] = {"gravity", "drag",   "wind",
-                                                  "angular", "length", "collision"};
-    return kNames[static_cast<std::size_t>(effect)];
-}
+/// Decides effect after effect, then lists the stages.
+class Planner {
+  public:
+    explicit Planner(const SceneDescription& scene) : scene_(scene), s_(scene.settings) {}
 
-const char* stageName(StageId stage) {
-    constexpr const char* kNames[kStageCount] = {"roots",   "gravity", "drag",      "wind",     "integrate",
-                                                 "angular", "length",  "collision", "extension"};
-    return kNames[static_cast<std::size_t>(stage)];
-}
-
-std::string EffectPlan::why(Effect effect) const {
-    const Decision& decision = decisions_[static_cast<std::size_t>(effect)];
-    std::ostringstream text;
-    text << effectName(effect) << (decision.on ? ": on, " : ": off, ");
-    switch (decision.reason) {
-        case Reason::authored:
-            if (effect == Effect::angular) {
-                text << quantity(effect) << ' ' << decision.value;
-            } else {
-                text << decision.value << ' ' << quantity(effect);
-            }
-            break;
-        case Reason::nothingToMove:
-            text << "no point of any strand is free";
-            break;
-        case Reason::zeroGravity:
-            text << "zero gravity";
-            break;
-        case Reason::noAirDrag:
-            text << "air drag is zero, so hair does not feel air";
-            break;
-        case Reason::windTakesOver:
-            text << "part of the wind";
-            break;
-        case Reason::zeroSpeed:
-            text << "zero speed";
-            break;
-        case Reason::noDirection:
-            text << "no direction";
-            break;
-        case Reason::zeroStiffness:
-            text << "zero stiffness";
-            break;
-        case Reason::zeroIterations:
-            text << "zero iterations";
-            break;
-        case Reason::noSpheres:
-            text << "no spheres";
-            break;
-        case Reason::noneInReach:
-            text << "no sphere within reach of a strand";
-            break;
-        case Reason::inReach:
-            text << decision.value << (decision.value == 1.0f ? " sphere" : " spheres") << " within reach";
-            break;
+    EffectPlan make() {
+        decide(Effect::sleep, decideSleep(scene_));
+        if (scene_.strandCount == 0 || scene_.longestPointCount <= s_.clampedPoints) {
+            add(StageId::roots);
+            return plan_;
+        }
+        decideEffects();
+        if (plan_.reason(Effect::sleep) != Reason::allAsleep) listStages();
+        return plan_;
     }
-    return text.str();
+
+  private:
+    bool on(Effect effect) const { return plan_.on(effect); }
+    void add(StageId stage) {
+        assert(plan_.stageCount_ < kMostStages);
+        plan_.stages_[plan_.stageCount_++] = stage;
+    }
+    void add(std::initializer_list<StageId> stages) {
+        for (const StageId stage : stages) add(stage);
+    }
+    bool decide(Effect effect, Decision decision) {
+        plan_.decisions_[static_cast<std::size_t>(effect)] = decision;
+        return decision.on;
+    }
+
+    void decideEffects() {
+        const float gravity = length(s_.gravity);
+        decide(Effect::gravity,
+               {gravity > 0.0f, gravity > 0.0f ? Reason::authored : Reason::zeroGravity, gravity});
+        const bool wind = decide(Effect::wind, decideWind(s_));
+        decide(Effect::drag, decideDrag(s_, wind));
+        decide(Effect::length, decideLength(s_));
+        const bool stiff = s_.angularStiffness > 0.0f;
+        decide(Effect::angular,
+               {stiff, stiff ? Reason::authored : Reason::zeroStiffness, s_.angularStiffness});
+        plan_.held_ = stiff && gravity > 0.0f && s_.restGravity > 0.0f;
+        decide(Effect::torsion, decideTorsion(scene_, stiff, plan_.held_));
+        decideCollision();
+        plan_.factored_ = stiff && s_.angularMethod != AngularMethod::flexion &&
+                          (implicitly() || (s_.integrator == Integrator::implicitEuler && !coils()));
+    }
+
+    void decideCollision() {
+        if (scene_.spheres.empty()) {
+            decide(Effect::collision, {false, Reason::noSpheres, 0.0f});
+        } else {
+            const Reachable reachable = spheresWithinReach(scene_);
+            smallestSphere_ = reachable.smallest;
+            decide(Effect::collision,
+                   {reachable.count > 0, reachable.count > 0 ? Reason::inReach : Reason::noneInReach,
+                    static_cast<float>(reachable.count)});
+        }
+        const bool collision = on(Effect::collision);
+        decide(Effect::pearls, decidePearls(s_, collision));
+        decide(Effect::sweep, decideSweep(scene_, collision, smallestSphere_));
+    }
+
+    bool coils() const { return s_.lengthMethod != LengthMethod::constraint; }
+    /// Angular springs solved as a stage after position Verlet.
+    bool implicitly() const {
+        return s_.integrator == Integrator::verlet && s_.angularMethod == AngularMethod::implicit;
+    }
+
+    /// Air first: it is the only force that reads velocities, which the others then change.
+    void listForces() {
+        if (on(Effect::drag)) add(StageId::drag);
+        if (on(Effect::wind)) add(StageId::wind);
+        if (on(Effect::gravity)) add(StageId::gravity);
+        if (coils()) add(StageId::springs);
+        if (on(Effect::angular) && !implicitly()) add(angularForce());
+        if (on(Effect::collision) && s_.collisionResponse == CollisionResponse::penalty)
+            add(StageId::penalty);
+    }
+    StageId angularForce() const {
+        const bool frames = on(Effect::torsion);
+        switch (s_.angularMethod) {
+            case AngularMethod::flexion:
+                return StageId::flexion;
+            case AngularMethod::exact:
+                return frames ? StageId::angularExact : StageId::straightExact;
+            case AngularMethod::implicit:
+            case AngularMethod::cheap:
+                break;
+        }
+        return frames ? StageId::angularCheap : StageId::straightCheap;
+    }
+
+    StageId implicitStep() const {
+        const bool angular = on(Effect::angular) && s_.angularMethod != AngularMethod::flexion;
+        if (coils()) return angular ? StageId::implicitSpringBend : StageId::implicitSpring;
+        return angular ? StageId::implicitBend : StageId::implicitFree;
+    }
+
+    void listStages() {
+        add(StageId::roots);
+        switch (s_.integrator) {
+            case Integrator::verlet:
+                listForces();
+                add(StageId::verlet);
+                if (on(Effect::angular) && implicitly()) {
+                    add(!on(Effect::torsion) ? StageId::angularStraight
+                        : plan_.held_        ? StageId::angularHeld
+                                             : StageId::angular);
+                }
+                break;
+            case Integrator::velocityVerlet:
+                add(StageId::open);
+                listForces();
+                add(StageId::verletDrift);
+                listConstraints();
+                add(StageId::verletAim);
+                listForces();
+                add(StageId::verletKick);
+                listRateProjection();
+                return;
+            case Integrator::leapfrog:
+                add(StageId::openHalfway);
+                listForces();
+                add(StageId::leapfrog);
+                break;
+            case Integrator::explicitEuler:
+                add(StageId::open);
+                listForces();
+                add(StageId::explicitEuler);
+                break;
+            case Integrator::implicitEuler:
+                add(StageId::open);
+                listForces();
+                add(implicitStep());
+                break;
+            case Integrator::rk4:
+                add(StageId::open);
+                for (const StageId slope : {StageId::rungeKutta1, StageId::rungeKutta2, StageId::rungeKutta3,
+                                            StageId::rungeKutta4}) {
+                    listForces();
+                    add(slope);
+                }
+                break;
+        }
+        listConstraints();
+        if (s_.integrator != Integrator::verlet && s_.integrator != Integrator::implicitEuler)
+            listRateProjection();
+    }
+
+    void listConstraints() {
+        const bool held = !coils() && s_.lengthIterations > 0;
+        if (held) add(StageId::length);
+        if (s_.lengthMethod == LengthMethod::springVelocities && s_.lengthIterations > 0)
+            add(StageId::springLimit);
+        if (on(Effect::sweep)) add(StageId::sweep);
+        if (on(Effect::collision) && s_.collisionResponse != CollisionResponse::penalty) {
+            add(s_.collisionResponse == CollisionResponse::radial ? StageId::collision
+                                                                  : StageId::collisionBack);
+        }
+        if (s_.lengthIterations > 0 && s_.lengthMethod != LengthMethod::springVelocities)
+            add(StageId::extension);
+    }
+    void listRateProjection() {
+        if (!coils() && s_.lengthIterations > 0) add(StageId::lengthRate);
+    }
+
+    const SceneDescription& scene_;
+    const SimulationSettings& s_;
+    EffectPlan plan_;
+    float smallestSphere_ = 0.0f;
+};
+
+bool EffectPlan::runs(StageId stage) const {
+    const auto all = stages();
+    return std::find(all.begin(), all.end(), stage) != all.end();
 }
 
 EffectPlan plan(const SceneDescription& scene) {
-    EffectPlan result;
-    const SimulationSettings& s = scene.settings;
-    result.add(StageId::roots);
-    if (scene.strandCount == 0 || scene.longestPointCount <= s.clampedPoints) return result;
-
-    const auto decide = [&](Effect effect, Decision decision) {
-        result.decisions_[static_cast<std::size_t>(effect)] = decision;
-        return decision.on;
-    };
-    const float gravity = length(s.gravity);
-    if (decide(Effect::gravity,
-               {gravity > 0.0f, gravity > 0.0f ? Reason::authored : Reason::zeroGravity, gravity})) {
-        result.add(StageId::gravity);
-    }
-    const bool wind = decide(Effect::wind, decideWind(s));
-    if (decide(Effect::drag, decideDrag(s, wind))) result.add(StageId::drag);
-    if (wind) result.add(StageId::wind);
-    result.add(StageId::integrate);
-    const bool stiff = s.angularStiffness > 0.0f;
-    if (decide(Effect::angular,
-               {stiff, stiff ? Reason::authored : Reason::zeroStiffness, s.angularStiffness})) {
-        result.add(StageId::angular);
-    }
-    const bool held = s.lengthIterations > 0;
-    if (decide(Effect::length, {held, held ? Reason::authored : Reason::zeroIterations,
-                                static_cast<float>(s.lengthIterations)})) {
-        result.add(StageId::length);
-    }
-    if (decide(Effect::collision, decideCollision(scene))) result.add(StageId::collision);
-    if (held) result.add(StageId::extension);
-    return result;
+    return Planner(scene).make();
 }
 
 }  // namespace hairloom::runtime

@@ -62,6 +62,34 @@ std::vector<Block> groupStrands(const StrandsView& strands) {
     return blocks;
 }
 
+/// Segments that turn by less, in radians, count as straight.
+constexpr float kStraight = 1e-4f;
+/// Least mass of a point as a share of the strand's mean.
+constexpr double kLeastMass = 1e-6;
+
+void fillInverseMasses(const StrandsView& strands, std::uint32_t strand, const Block& block,
+                       std::uint32_t lane, float* inverseMasses) {
+    const std::uint32_t first = strands.offsets[strand];
+    const auto half = [&](std::uint32_t p) {
+        return p + 1 < block.points
+                   ? 0.5 * static_cast<double>(length(strands.restPositions_ss[first + p + 1] -
+                                                      strands.restPositions_ss[first + p]))
+                   : 0.0;
+    };
+    const auto massOf = [&](std::uint32_t p) {
+        if (!strands.masses.empty()) return static_cast<double>(strands.masses[first + p]);
+        return half(p) + (p > 0 ? half(p - 1) : 0.0);
+    };
+    double total = 0.0;
+    for (std::uint32_t p = 0; p < block.points; ++p) total += massOf(p);
+    const double mean = total / block.points;
+    for (std::uint32_t p = 0; p < block.points; ++p) {
+        // Between segments without length a point still weighs something.
+        const double relative = mean > 0.0 ? std::max(massOf(p) / mean, kLeastMass) : 1.0;
+        inverseMasses[std::size_t{p} * kBlockLanes + lane] = static_cast<float>(1.0 / relative);
+    }
+}
+
 void fillRestPlanes(const StrandsView& strands, const Block& block, RestShape& shape) {
     const std::size_t size = planeSize(block);
     float* const planes = shape.planes.data() + block.firstPlane * kRestPlanes;
@@ -69,7 +97,9 @@ void fillRestPlanes(const StrandsView& strands, const Block& block, RestShape& s
         const std::uint32_t strand = block.strandOfLane[lane];
         const Float3* points = strands.restPositions_ss.data() + strands.offsets[strand];
         const Quat toRoot = conjugate(shape.restRoots[strand].rotation);
+        fillInverseMasses(strands, strand, block, lane, planes + 5 * size);
         float total = 0.0f;
+        Float3 before{};
         for (std::uint32_t s = 0; s + 1 < block.points; ++s) {
             const Float3 segment = rotate(toRoot, points[s + 1] - points[s]);
             const float l = length(segment);
@@ -80,6 +110,11 @@ void fillRestPlanes(const StrandsView& strands, const Block& block, RestShape& s
             planes[3 * size + i] = l;
             planes[4 * size + i] = l > 1e-9f ? 1.0f / l : 0.0f;
             total += l;
+            const Float3 direction = segment * planes[4 * size + i];
+            const bool bends =
+                s > 0 && length(direction - before) > kStraight && length(before) > 0.5f && l > 1e-9f;
+            shape.straight = shape.straight && !bends;
+            if (l > 1e-9f) before = direction;
         }
         shape.longestStrand = std::max(shape.longestStrand, total);
     }
@@ -132,69 +167,60 @@ std::uint64_t State::hash() const {
     return mix(hash, roots.data(), roots.size() * sizeof(float));
 }
 
-BlockView viewOf(const RestShape& shape, State& state, std::size_t index, std::uint32_t clampedPoints) {
-    const Block& block = shape.blocks[index];
+BlockView viewOf(const Arrays& arrays, std::size_t index, std::uint32_t clampedPoints) {
+    const Block& block = arrays.shape.blocks[index];
     const std::size_t size = planeSize(block);
-    const float* rest = shape.planes.data() + block.firstPlane * kRestPlanes;
-    float* moving = state.planes.data() + block.firstPlane * kStatePlanes;
+    const float* rest = arrays.shape.planes.data() + block.firstPlane * kRestPlanes;
+    const auto three = [&](float* first) { return Planes{first, first + size, first + 2 * size}; };
+    float* moving = arrays.state.planes.data() + block.firstPlane * kStatePlanes;
     BlockView view{};
     view.points = block.points;
     view.firstFree = clampedPoints;
-    view.position = {moving, moving + size, moving + 2 * size};
-    view.previous = {moving + 3 * size, moving + 4 * size, moving + 5 * size};
+    view.position = three(moving);
+    view.previous = three(moving + 3 * size);
     view.rest = {rest, rest + size, rest + 2 * size};
     view.length = rest + 3 * size;
     view.inverseLength = rest + 4 * size;
-    if (!state.bend.empty()) {
-        float* bend = state.bend.data() + block.firstPlane * kBendPlanes;
-        view.pull = bend;
-        view.damp = bend + size;
-        view.offset = {bend + 2 * size, bend + 3 * size, bend + 4 * size};
+    view.inverseMass = rest + 5 * size;
+    if (!arrays.bend.planes.empty()) {
+        const float* plane = arrays.bend.planes.data() + block.firstPlane * arrays.bend.planeCount();
+        view.stiffness = plane;
+        plane += size;
+        if (arrays.bend.factored) {
+            view.inverseDiagonal = plane;
+            view.lower1 = plane + size;
+            view.lower2 = plane + 2 * size;
+            plane += 3 * size;
+        }
+        if (arrays.bend.targets) view.target = {plane, plane + size, plane + 2 * size};
+    }
+    if (!arrays.evaluation.empty()) {
+        float* plane = arrays.evaluation.data() + block.firstPlane * arrays.evaluationPlanes;
+        view.start = three(plane);
+        view.rate = three(plane + 3 * size);
+        if (arrays.evaluationPlanes == kRungeKuttaPlanes) {
+            view.kick = three(plane + 6 * size);
+            view.sum = three(plane + 9 * size);
+            view.sumRate = three(plane + 12 * size);
+        }
     }
     return view;
 }
 
-void placeAtRest(const RestShape& shape, State& state, std::size_t index) {
+void placeAtRest(const RestShape& shape, State& state, std::size_t index, std::uint32_t lane) {
     const Block& block = shape.blocks[index];
-    const BlockView view = viewOf(shape, state, index, 1);
+    const std::size_t size = planeSize(block);
+    const float* rest = shape.planes.data() + block.firstPlane * kRestPlanes;
+    float* moving = state.planes.data() + block.firstPlane * kStatePlanes;
     const float* roots = state.roots.data() + index * kRootRows * kBlockLanes;
-    for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
-        const auto row = [&](std::size_t r) { return roots[r * kBlockLanes + lane]; };
-        const Quat rotation{row(3), row(4), row(5), row(6)};
-        Float3 at{};
-        for (std::uint32_t p = 0; p < block.points; ++p) {
-            const std::size_t i = std::size_t{p} * kBlockLanes + lane;
-            view.position.x[i] = view.previous.x[i] = at.x;
-            view.position.y[i] = view.previous.y[i] = at.y;
-            view.position.z[i] = view.previous.z[i] = at.z;
-            at = at + rotate(rotation, Float3{view.rest.x[i], view.rest.y[i], view.rest.z[i]});
-        }
-    }
-}
-
-void fillBend(const RestShape& shape, const SimulationSettings& settings, float h, std::size_t index,
-              State& state) {
-    constexpr float kFrequency = 100.0f;  // rad/s
-    constexpr float kSegment = 0.01f;     // metres
-    const Block& block = shape.blocks[index];
-    constexpr float kDamping = 2.0f;  // ζ: twice critical
-    float* const pull = state.bend.data() + block.firstPlane * kBendPlanes;
-    float* const damp = pull + planeSize(block);
-    const float* lengths = shape.planes.data() + block.firstPlane * kRestPlanes + 3 * planeSize(block);
-    for (std::uint32_t s = 0; s + 1 < block.points; ++s) {
-        const float along = static_cast<float>(s) / static_cast<float>(block.points - 1);
-        const float stiffness =
-            settings.angularStiffness * (1.0f + (settings.angularTipShare - 1.0f) * along);
-        const float compliance = std::max(1.0f - stiffness, 1e-9f);
-        const float share = kFrequency * h * kSegment;
-        for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
-            const std::size_t i = std::size_t{s} * kBlockLanes + lane;
-            const float ratio = share / std::max(lengths[i], 1e-9f);
-            const float x = std::min(ratio * std::sqrt(stiffness / compliance), 1e9f);
-            const float damping = 2.0f * kDamping * x;
-            pull[i] = x * x / (1.0f + x * x + damping);
-            damp[i] = damping / (1.0f + x * x + damping);
-        }
+    const auto row = [&](std::size_t r) { return roots[r * kBlockLanes + lane]; };
+    const Quat rotation{row(3), row(4), row(5), row(6)};
+    Float3 at{};
+    for (std::uint32_t p = 0; p < block.points; ++p) {
+        const std::size_t i = std::size_t{p} * kBlockLanes + lane;
+        const float values[] = {at.x, at.y, at.z, at.x, at.y, at.z};
+        for (std::size_t plane = 0; plane < kStatePlanes; ++plane) moving[plane * size + i] = values[plane];
+        at = at + rotate(rotation, Float3{rest[i], rest[size + i], rest[2 * size + i]});
     }
 }
 

@@ -41,10 +41,11 @@ struct RestShape {
     std::vector<std::uint32_t> offsets;
     std::vector<Block> blocks;
     std::size_t planeFloats = 0;  ///< sum of the blocks' plane sizes
-    Floats planes;                ///< per block: rest x, y, z, length, inverse length
+    Floats planes;                ///< per block: rest x, y, z, length, inverse length, inverse mass
     std::vector<RootFrame> restRoots;
     std::uint32_t longestPointCount = 0;
     float longestStrand = 0.0f;  ///< metres
+    bool straight = true;        ///< no strand bends at rest
 
     std::size_t bytes() const;
 };
@@ -58,34 +59,63 @@ inline std::size_t planeSize(const Block& block) {
 /// `strands` must be sound (Engine::make checks it).
 std::shared_ptr<const RestShape> makeRestShape(const StrandsView& strands);
 
+/// How long a block has been at rest.
+struct Rest {
+    float time = 0.0f;  ///< seconds
+    bool asleep = false;
+
+    friend bool operator==(const Rest&, const Rest&) = default;
+};
+
 /// What changes from step to step. A copy is a snapshot: running on from it gives the same bits.
 struct State {
     Floats planes;  ///< per block: position x, y, z, previous x, y, z
     Floats roots;   ///< per block: position x, y, z, rotation x, y, z, w of each lane at the last frame's end
-    Floats bend;    ///< per block: pull, damp, offset x, y, z; empty unless angular springs are on
+    std::vector<Rest> rests;          ///< per block
     std::vector<Sphere> spheres;      ///< of the last frame
     Float3 rootsMin_ws, rootsMax_ws;  ///< box of the last frame's roots
     float substep = 0.0f;             ///< seconds of the last substep; 0 before the first
-    float bendSubstep = 0.0f;         ///< substep that `bend` was made for
+    float fastest = 0.0f;             ///< metres, greatest displacement of a point in the last substep
 
     std::uint64_t hash() const;
 };
 
-inline constexpr std::size_t kRestPlanes = 5;
+/// Arrays of angular and flexion springs, derived from rest shape, settings and substep.
+struct Bend {
+    Floats
+        planes;  ///< per block: stiffness, then 3 of the factors, then 3 of the targets where there are any
+    bool factored = false;
+    bool targets = false;
+    float substep = 0.0f;  ///< seconds that `planes` was made for; 0 for not yet
+
+    std::size_t planeCount() const { return 1u + (factored ? 3u : 0u) + (targets ? 3u : 0u); }
+};
+
+inline constexpr std::size_t kRestPlanes = 6;
 inline constexpr std::size_t kStatePlanes = 6;
-inline constexpr std::size_t kBendPlanes = 5;
 inline constexpr std::size_t kRootRows = 7;
+/// Planes of integrators that evaluate forces: start, rate; RK4 also kick, sum and sumRate.
+inline constexpr std::size_t kEvaluationPlanes = 6;
+inline constexpr std::size_t kRungeKuttaPlanes = 15;
 
-BlockView viewOf(const RestShape& shape, State& state, std::size_t block, std::uint32_t clampedPoints);
+/// Everything a block's kernels need; `bend` and `evaluation` may be empty.
+struct Arrays {
+    const RestShape& shape;
+    State& state;
+    const Bend& bend;
+    Floats& evaluation;
+    std::size_t evaluationPlanes;
+};
+BlockView viewOf(const Arrays& arrays, std::size_t block, std::uint32_t clampedPoints);
 
-/// Places block `b` at rest on its rows of state.roots, without speed.
-void placeAtRest(const RestShape& shape, State& state, std::size_t block);
+/// Places lane `lane` of block `b` at rest on its row of state.roots, without speed.
+void placeAtRest(const RestShape& shape, State& state, std::size_t block, std::uint32_t lane);
 
-/// Shares of the way back for substeps of h seconds: the implicit step of a damped spring towards the rest
-/// place, pull = x² / (1 + x² + 2ζx) and damp = 2ζx / (1 + x² + 2ζx), with x = ω·h, ζ = 2, ω² = (100 rad/s)²
-/// · s/(1 − s) · (1 cm / segment length)² and s the stiffness at the segment. No stiffness or substep
-/// overshoots, and for ever smaller substeps it tends to the spring of frequency ω damped by ζ.
-void fillBend(const RestShape& shape, const SimulationSettings& settings, float h, std::size_t block,
-              State& state);
+/// Fills the planes of block `b` for substeps of h seconds. `velocityShare` is that of SubstepContext.
+void fillBend(const RestShape& shape, const SimulationSettings& settings, float h, float velocityShare,
+              std::size_t block, Bend& bend);
+
+/// q of docs/engine.md, "Integrators": what keeps the implicit angular springs stable and fades fast waves.
+float bendRate(const SimulationSettings& settings, float h, float velocityShare);
 
 }  // namespace hairloom::runtime

@@ -24,7 +24,9 @@ struct StrandsView {
     std::span<const Float3> restPositions_ss;  ///< metres, in the scalp's rest space
     /// Orientation of the scalp at each root in the rest pose; empty stands for the identity. A frame's root
     /// rotation divided by it is what turns the rest shape.
-    std::span<const Quat> rootRotations_ss;
+    std::span<const Quat> rootRotations_ss{};
+    /// Mass of each point, above 0, in any unit: only the ratios within a strand count. Empty: even rods.
+    std::span<const float> masses{};
 };
 
 inline constexpr std::uint32_t kMaxPoints = 512;

@@ -32,29 +32,6 @@ runtime::Host applicationHost() {
     return host;
 }
 
-/// The effect that a stage is there for; stages that every strand needs have none.
-std::optional<Effect> effectOf(StageId stage) {
-    switch (stage) {
-        case StageId::gravity:
-            return Effect::gravity;
-        case StageId::drag:
-            return Effect::drag;
-        case StageId::wind:
-            return Effect::wind;
-        case StageId::angular:
-            return Effect::angular;
-        case StageId::length:
-        case StageId::extension:
-            return Effect::length;
-        case StageId::collision:
-            return Effect::collision;
-        case StageId::roots:
-        case StageId::integrate:
-            return std::nullopt;
-    }
-    return std::nullopt;
-}
-
 /// "off, no sphere within reach of a strand" out of "collision: off, …".
 std::string reasonAlone(const std::string& why) {
     const std::size_t colon = why.find(": ");
@@ -121,7 +98,7 @@ void Simulation::Impl::gather(const runtime::StepReport& report) {
     ++stats.frames;
     milliseconds += report.milliseconds;
     for (std::uint32_t stage = 0; stage < runtime::kStageCount; ++stage) {
-        if (const auto effect = effectOf(static_cast<StageId>(stage))) {
+        if (const auto effect = runtime::stageEffect(static_cast<StageId>(stage))) {
             effectMilliseconds[static_cast<std::size_t>(*effect)] += report.stageMilliseconds[stage];
         }
     }

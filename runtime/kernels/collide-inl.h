@@ -70,6 +70,12 @@ void collide(const BlockView& block, LaneFrame& lanes, const SubstepContext& con
     }
 }
 
+void applyPenalty(const BlockView&, LaneFrame&, const SubstepContext&) {}
+void collideBack(const BlockView& b, LaneFrame& l, const SubstepContext& c) {
+    collide(b, l, c);
+}
+void collideSwept(const BlockView&, LaneFrame&, const SubstepContext&) {}
+
 // NOLINTNEXTLINE(google-readability-namespace-comments)
 }  // namespace HWY_NAMESPACE
 }  // namespace hairloom::runtime

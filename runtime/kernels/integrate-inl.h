@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Integration of motion.
+// Integrators (docs/engine.md) and the measure of motion.
 #if defined(HAIRLOOM_RUNTIME_INTEGRATE_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HAIRLOOM_RUNTIME_INTEGRATE_INL_H
 #undef HAIRLOOM_RUNTIME_INTEGRATE_INL_H
 #else
 #define HAIRLOOM_RUNTIME_INTEGRATE_INL_H
 #endif
+
+#include <cmath>
 
 #include "hwy/highway.h"
 #include "runtime/kernels.h"
@@ -17,7 +19,7 @@ namespace HWY_NAMESPACE {
 
 /// Position Verlet (Rünz 2012, Eq. 10), where the displacement relative to the moving root decays with the
 /// damping.
-void integrate(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
+void advanceVerlet(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
     const V share = all(context.velocityShare);
     for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
         const V3 step = load3(lanes.rootStep, lane);
@@ -29,6 +31,153 @@ void integrate(const BlockView& block, LaneFrame& lanes, const SubstepContext& c
             store3(position + moved * share, block.position, i);
         }
     }
+}
+
+/// Calls visit(index, point, step of the root) for every point of the block, clamped ones too.
+template <class Visit>
+HWY_INLINE void forEachPoint(const BlockView& block, const LaneFrame& lanes, Visit&& visit) {
+    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+        const V3 step = load3(lanes.rootStep, lane);
+        for (std::uint32_t p = 0; p < block.points; ++p) {
+            visit(std::size_t{p} * kBlockLanes + lane, p, step);
+        }
+    }
+}
+
+/// The next evaluation of forces is at `place`, with the displacement `rate` for velocity.
+HWY_INLINE void aim(const BlockView& block, std::size_t i, V3 place, V3 rate) {
+    store3(place, block.position, i);
+    store3(place - rate, block.previous, i);
+}
+
+/// What the forces have added since aim().
+HWY_INLINE V3 takeKick(const BlockView& block, std::size_t i, std::uint32_t p, V3 rate) {
+    if (p < block.firstFree) return zero3();
+    return load3(block.position, i) - load3(block.previous, i) - rate;
+}
+
+HWY_INLINE V3 damped(const BlockView& block, const SubstepContext& context, std::uint32_t p, V3 rate,
+                     V3 step) {
+    if (p < block.firstFree) return rate;
+    return step + (rate - step) * all(context.velocityShare);
+}
+
+/// Keeps where the substep starts, relative to the root at its end, and the displacement of the last one;
+/// that of a clamped point is its way in this substep. Forces are evaluated after `kHalves`/2 of the way.
+template <int kHalves>
+void openStep(const BlockView& block, LaneFrame& lanes, const SubstepContext&) {
+    forEachPoint(block, lanes, [&](std::size_t i, std::uint32_t p, V3 step) {
+        const V3 position = load3(block.position, i);
+        const V3 previous = load3(block.previous, i);
+        const V3 rate = position - previous;
+        const V3 start = p < block.firstFree ? previous : position - step;
+        store3(start, block.start, i);
+        store3(rate, block.rate, i);
+        aim(block, i, kHalves == 0 ? start : start + rate * all(0.5f), rate);
+    });
+}
+
+/// Explicit Euler (Eq. 7): the way of the old velocity.
+void advanceEuler(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
+    forEachPoint(block, lanes, [&](std::size_t i, std::uint32_t p, V3 step) {
+        const V3 rate = load3(block.rate, i);
+        const V3 kick = takeKick(block, i, p, rate);
+        aim(block, i, load3(block.start, i) + rate, damped(block, context, p, rate + kick, step));
+    });
+}
+
+/// Drift-kick-drift: the second half drift after the kick halfway. Forces that read velocities see that of
+/// the start: with them the order is one.
+void advanceLeapfrog(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
+    forEachPoint(block, lanes, [&](std::size_t i, std::uint32_t p, V3 step) {
+        const V3 rate = load3(block.rate, i);
+        const V3 after = damped(block, context, p, rate + takeKick(block, i, p, rate), step);
+        aim(block, i, load3(block.start, i) + (rate + after) * all(0.5f), after);
+    });
+}
+
+/// Velocity Verlet (Eq. 12), first half kick and drift.
+void driftVerlet(const BlockView& block, LaneFrame& lanes, const SubstepContext&) {
+    forEachPoint(block, lanes, [&](std::size_t i, std::uint32_t p, V3) {
+        const V3 rate = load3(block.rate, i);
+        const V3 half = rate + takeKick(block, i, p, rate) * all(0.5f);
+        aim(block, i, load3(block.start, i) + half, half);
+    });
+}
+
+/// Velocity Verlet: the constraints have moved points and changed the half-step velocity. Velocity-dependent
+/// forces see the velocity predicted for the end of the step; `start` keeps it.
+void aimVerlet(const BlockView& block, LaneFrame& lanes, const SubstepContext&) {
+    forEachPoint(block, lanes, [&](std::size_t i, std::uint32_t, V3) {
+        const V3 place = load3(block.position, i);
+        const V3 half = place - load3(block.previous, i);
+        const V3 predicted = half + half - load3(block.rate, i);
+        store3(half, block.rate, i);
+        store3(predicted, block.start, i);
+        aim(block, i, place, predicted);
+    });
+}
+
+/// Velocity Verlet, second half kick.
+void kickVerlet(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
+    forEachPoint(block, lanes, [&](std::size_t i, std::uint32_t p, V3 step) {
+        const V3 kick = takeKick(block, i, p, load3(block.start, i));
+        const V3 rate = load3(block.rate, i) + kick * all(0.5f);
+        aim(block, i, load3(block.position, i), damped(block, context, p, rate, step));
+    });
+}
+
+/// Slope k of the classical Runge-Kutta method, 1…4. With A_k what the forces give at slope k, the velocities
+/// are u, u + A₁/2, u + A₂/2 and u + A₃, so the places need only sums of A.
+template <int kSlope>
+void takeSlope(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
+    forEachPoint(block, lanes, [&](std::size_t i, std::uint32_t p, V3 step) {
+        const V half = all(0.5f);
+        const V3 start = load3(block.start, i), rate = load3(block.rate, i);
+        V3 here = rate;
+        if constexpr (kSlope == 2 || kSlope == 3) here = rate + load3(block.kick, i) * half;
+        if constexpr (kSlope == 4) here = rate + load3(block.kick, i);
+        const V3 kick = takeKick(block, i, p, here);
+        if constexpr (kSlope == 4) {
+            const V sixth = all(1.0f / 6.0f);
+            const V3 place = start + rate + load3(block.sum, i) * sixth;
+            const V3 after = rate + (load3(block.sumRate, i) + kick) * sixth;
+            aim(block, i, place, damped(block, context, p, after, step));
+        } else {
+            V3 sum = kick, sumRate = kick;
+            if constexpr (kSlope > 1) {
+                sum = load3(block.sum, i) + kick;
+                sumRate = load3(block.sumRate, i) + kick + kick;
+            }
+            store3(kick, block.kick, i);
+            store3(sum, block.sum, i);
+            store3(sumRate, block.sumRate, i);
+            if constexpr (kSlope == 3) {
+                aim(block, i, start + here, rate + kick);
+            } else {
+                aim(block, i, start + here * half, rate + kick * half);
+            }
+        }
+    });
+}
+
+float fastestOf(const BlockView& block) {
+    const V infinite = all(HUGE_VALF), zero = hn::Zero(D());
+    // Squares of places farther than this from their root leave single precision.
+    const V farthest = all(1e12f);
+    V most = zero;
+    for (std::uint32_t p = block.firstFree; p < block.points; ++p) {
+        for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+            const std::size_t i = std::size_t{p} * kBlockLanes + lane;
+            const V3 position = load3(block.position, i);
+            const V3 moved = position - load3(block.previous, i);
+            const V squared = dot(moved, moved);
+            // Comparisons with what is no number are false.
+            const auto sound = hn::And(dot(position, position) < farthest, squared < farthest);
+            most = hn::Max(most, hn::IfThenElse(sound, squared, infinite));
+        }
+    }
+    return laneMost(most);
 }
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)

@@ -13,20 +13,108 @@
 #include "runtime/kernels/air-inl.h"
 #include "runtime/kernels/bend-inl.h"
 #include "runtime/kernels/collide-inl.h"
+#include "runtime/kernels/implicit-inl.h"
 #include "runtime/kernels/integrate-inl.h"
 #include "runtime/kernels/length-inl.h"
 #include "runtime/kernels/roots-inl.h"
+#include "runtime/kernels/springs-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {
 namespace HWY_NAMESPACE {
 
+Stage stageOf(StageId id) {
+    switch (id) {
+        case StageId::roots:
+            return moveRoots;
+        case StageId::drag:
+            return applyAir<false>;
+        case StageId::wind:
+            return applyAir<true>;
+        case StageId::gravity:
+            return applyGravity;
+        case StageId::springs:
+            return applySprings;
+        case StageId::angularCheap:
+            return applyAngular<Shape::held, false>;
+        case StageId::angularExact:
+            return applyAngular<Shape::held, true>;
+        case StageId::straightCheap:
+            return applyAngular<Shape::straight, false>;
+        case StageId::straightExact:
+            return applyAngular<Shape::straight, true>;
+        case StageId::flexion:
+            return applyFlexion;
+        case StageId::penalty:
+            return applyPenalty;
+        case StageId::verlet:
+            return advanceVerlet;
+        case StageId::open:
+            return openStep<0>;
+        case StageId::openHalfway:
+            return openStep<1>;
+        case StageId::explicitEuler:
+            return advanceEuler;
+        case StageId::leapfrog:
+            return advanceLeapfrog;
+        case StageId::verletDrift:
+            return driftVerlet;
+        case StageId::verletAim:
+            return aimVerlet;
+        case StageId::verletKick:
+            return kickVerlet;
+        case StageId::rungeKutta1:
+            return takeSlope<1>;
+        case StageId::rungeKutta2:
+            return takeSlope<2>;
+        case StageId::rungeKutta3:
+            return takeSlope<3>;
+        case StageId::rungeKutta4:
+            return takeSlope<4>;
+        case StageId::implicitFree:
+            return advanceFree;
+        case StageId::implicitBend:
+            return advanceImplicitBend;
+        case StageId::implicitSpring:
+            return advanceImplicitSpring<false>;
+        case StageId::implicitSpringBend:
+            return advanceImplicitSpring<true>;
+        case StageId::angular:
+            return bendBack<Shape::curved>;
+        case StageId::angularHeld:
+            return bendBack<Shape::held>;
+        case StageId::angularStraight:
+            return bendBack<Shape::straight>;
+        case StageId::length:
+            return holdLength;
+        case StageId::springLimit:
+            return limitBySpeed;
+        case StageId::collision:
+            return collide;
+        case StageId::collisionBack:
+            return collideBack;
+        case StageId::sweep:
+            return collideSwept;
+        case StageId::extension:
+            return limitExtension;
+        case StageId::lengthRate:
+            return holdRates;
+    }
+    return nullptr;
+}
+
+Kernels makeTable() {
+    Kernels table{};
+    for (std::uint32_t id = 0; id < kStageCount; ++id) table.stages[id] = stageOf(static_cast<StageId>(id));
+    table.rescale = rescale;
+    table.sampleWind = sampleWind;
+    table.fastest = fastestOf;
+    table.target = hwy::TargetName(HWY_TARGET);
+    return table;
+}
+
 const Kernels& kernelsOfTarget() {
-    static const Kernels kTable{{moveRoots, applyGravity, applyAir<false>, applyAir<true>, integrate,
-                                 bendBack, holdLength, collide, limitExtension},
-                                rescale,
-                                sampleWind,
-                                hwy::TargetName(HWY_TARGET)};
+    static const Kernels kTable = makeTable();
     return kTable;
 }
 

@@ -135,27 +135,73 @@ TEST(Physics, AngularSpringsRestoreTheRestShape) {
     EXPECT_LT(errorOf(), 1e-4f);
 }
 
-TEST(Physics, AngularSpringReturnsAtItsStatedRateForAnySubstepCount) {
-    // Stiffness 0.5 on a 1 cm segment: ω = 100 rad/s, damped by ζ = 2; the slower root is (2 − √3)·ω.
+/// One segment of length l on an elastic clamp: the tip of mass m on κ/l², κ = B·μ/(l/2).
+double clampFrequency(double stiffness, double l) {
+    const double bending = kHairBendingStiffness * stiffness / (1.0 - stiffness);
+    // Two points of equal masses: m = 1, and 2/l of mass per length.
+    const double kappa = bending * (2.0 / l) / (0.5 * l);
+    return std::sqrt(kappa) / l;
+}
+
+TEST(Physics, AnAngularSpringSwingsAtItsFrequencyForAnySubstepCount) {
+    const double omega = clampFrequency(0.5, 0.05);
+    const double period = 2.0 * std::numbers::pi / omega;
     for (const std::uint32_t substeps : {4u, 8u, 16u}) {
         Strands strands;
-        strands.add({}, {0.0f, -1.0f, 0.0f}, 0.01f, 2);
+        strands.add({}, {0.0f, -1.0f, 0.0f}, 0.05f, 2);
         SimulationSettings s = bare();
         s.angularStiffness = 0.5f;
+        s.bendDampingTime = 0.0f;
         s.substeps = substeps;
-        s.gravity = {3.0f, 0.0f, 0.0f};
+        s.gravity = {1.0f, 0.0f, 0.0f};
         Engine engine = makeEngine(strands, s);
-        const float dt = 1.0f / 250.0f;
-        run(engine, strands, 100, dt);
-        EXPECT_NEAR(positionsOf(engine)[1].x, 3.0f / (100.0f * 100.0f), 1e-5f)
-            << "at rest under a steady pull: g/ω²";
+        // Held by restGravity, it does not move; released, it swings about the rest place.
+        run(engine, strands, 10);
+        EXPECT_NEAR(positionsOf(engine)[1].x, 0.0f, 1e-5f);
         s.gravity = {};
         ASSERT_EQ(engine.setSettings(s), "");
-        run(engine, strands, 5, dt);
-        const float start = positionsOf(engine)[1].x;
-        run(engine, strands, 5, dt);
-        const float expected = std::exp(-0.02f * 100.0f * (2.0f - std::sqrt(3.0f)));
-        EXPECT_NEAR(positionsOf(engine)[1].x / start, expected, 0.02f * expected) << substeps;
+        const float dt = static_cast<float>(period / 40.0);
+        std::vector<double> crossings;
+        float before = positionsOf(engine)[1].x;
+        s.restGravity = 0.0f;
+        s.gravity = {0.5f, 0.0f, 0.0f};
+        ASSERT_EQ(engine.setSettings(s), "");
+        const double sag = 0.5 / (omega * omega);
+        double most = 0.0;
+        for (int f = 0; f < 400; ++f) {
+            run(engine, strands, 1, dt);
+            const float now = positionsOf(engine)[1].x;
+            most = std::max(most, static_cast<double>(now));
+            const auto middle = static_cast<float>(sag);
+            if (before < middle && now >= middle)
+                crossings.push_back((f + static_cast<double>((middle - before) / (now - before))) *
+                                    static_cast<double>(dt));
+            before = now;
+        }
+        ASSERT_GE(crossings.size(), 8u) << substeps;
+        const double measured =
+            (crossings.back() - crossings.front()) / static_cast<double>(crossings.size() - 1);
+        EXPECT_NEAR(measured, period, 0.01 * period) << substeps;
+        EXPECT_NEAR(most, 2.0 * sag, 0.05 * sag) << "twice the sag at rest, without damping";
+    }
+}
+
+TEST(Physics, AngularSpringsSagByTheClosedFormUnderASteadyPull) {
+    for (const Integrator integrator : {Integrator::verlet, Integrator::velocityVerlet, Integrator::leapfrog,
+                                        Integrator::implicitEuler, Integrator::rk4}) {
+        Strands strands;
+        strands.add({}, {0.0f, -1.0f, 0.0f}, 0.05f, 2);
+        SimulationSettings s = bare();
+        s.integrator = integrator;
+        s.angularStiffness = 0.5f;
+        s.restGravity = 0.0f;
+        s.dampingTime = 0.1f;
+        s.gravity = {0.5f, 0.0f, 0.0f};
+        Engine engine = makeEngine(strands, s);
+        run(engine, strands, 300);
+        const double omega = clampFrequency(0.5, 0.05);
+        EXPECT_NEAR(static_cast<double>(positionsOf(engine)[1].x), 0.5 / (omega * omega), 1e-5)
+            << static_cast<int>(integrator);
     }
 }
 

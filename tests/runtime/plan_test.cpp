@@ -11,13 +11,20 @@ namespace {
 using testing::ElementsAre;
 
 SceneDescription sceneOf(const SimulationSettings& settings) {
-    return {settings, 10, 16, 0.3f, {-0.1f, 0.0f, -0.1f}, {0.1f, 0.1f, 0.1f}, {}, {}};
+    SceneDescription scene;
+    scene.settings = settings;
+    scene.strandCount = 10;
+    scene.longestPointCount = 16;
+    scene.longestStrand = 0.3f;
+    scene.rootsMin_ws = {-0.1f, 0.0f, -0.1f};
+    scene.rootsMax_ws = {0.1f, 0.1f, 0.1f};
+    return scene;
 }
 
 TEST(Plan, DefaultSceneSaysWhatRunsAndWhy) {
     const EffectPlan p = plan(sceneOf({}));
-    EXPECT_THAT(p.stages(), ElementsAre(StageId::roots, StageId::gravity, StageId::drag, StageId::integrate,
-                                        StageId::angular, StageId::length, StageId::extension));
+    EXPECT_THAT(p.stages(), ElementsAre(StageId::roots, StageId::drag, StageId::gravity, StageId::verlet,
+                                        StageId::angularHeld, StageId::length, StageId::extension));
     EXPECT_EQ(p.why(Effect::gravity), "gravity: on, 9.81 m/s²");
     EXPECT_EQ(p.why(Effect::wind), "wind: off, zero speed");
     EXPECT_EQ(p.why(Effect::angular), "angular: on, stiffness 0.3");
@@ -28,7 +35,7 @@ TEST(Plan, NothingAuthoredLeavesTheIntegratorAlone) {
     SimulationSettings s = bare();
     s.lengthIterations = 0;
     const EffectPlan p = plan(sceneOf(s));
-    EXPECT_THAT(p.stages(), ElementsAre(StageId::roots, StageId::integrate));
+    EXPECT_THAT(p.stages(), ElementsAre(StageId::roots, StageId::verlet));
     EXPECT_EQ(p.why(Effect::gravity), "gravity: off, zero gravity");
     EXPECT_EQ(p.why(Effect::angular), "angular: off, zero stiffness");
     EXPECT_EQ(p.why(Effect::length), "length: off, zero iterations");
@@ -38,8 +45,8 @@ TEST(Plan, WindTakesStillAirOver) {
     SimulationSettings s;
     s.windSpeed = 3.0f;
     const EffectPlan p = plan(sceneOf(s));
-    EXPECT_THAT(p.stages(), ElementsAre(StageId::roots, StageId::gravity, StageId::wind, StageId::integrate,
-                                        StageId::angular, StageId::length, StageId::extension));
+    EXPECT_THAT(p.stages(), ElementsAre(StageId::roots, StageId::wind, StageId::gravity, StageId::verlet,
+                                        StageId::angularHeld, StageId::length, StageId::extension));
     EXPECT_EQ(p.why(Effect::wind), "wind: on, 3 m/s");
     EXPECT_EQ(p.why(Effect::drag), "drag: off, part of the wind");
     s.airDrag = 0.0f;

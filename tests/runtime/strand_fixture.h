@@ -47,6 +47,7 @@ inline SimulationSettings bare() {
     s.airDrag = 0.0f;
     s.angularStiffness = 0.0f;
     s.dampingTime = 0.0f;
+    s.sleepSpeed = 0.0f;
     s.clampedPoints = 1;
     return s;
 }

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: MIT
+// The arrays of angular springs (docs/engine.md, "Stiffness" and "Integrators").
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "runtime/state.h"
+
+namespace hairloom::runtime {
+namespace {
+
+/// Stiffness beyond which the matrix of a strand no longer fits single precision, as a multiple of the
+/// masses. There a strand of 32 segments sags by less than a ten-thousandth of what it falls in a substep.
+constexpr double kStiffest = 1e7;
+/// Bound of |H/κ|: hair too soft to carry itself sags.
+constexpr double kMostHeld = 1.0;
+/// 2 − √2: how much nearer the ends of two unit segments come when they turn by 90°.
+constexpr double kShortening = 0.585786437626905;
+
+struct Double3 {
+    double x = 0.0, y = 0.0, z = 0.0;
+
+    friend Double3 operator+(Double3 a, Double3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+    friend Double3 operator-(Double3 a, Double3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+    friend Double3 operator*(Double3 a, double s) { return {a.x * s, a.y * s, a.z * s}; }
+};
+double dotOf(Double3 a, Double3 b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+/// One strand of a block, in double precision.
+class StrandBend {
+  public:
+    StrandBend(const RestShape& shape, const SimulationSettings& settings, std::size_t index,
+               std::uint32_t lane)
+        : settings_(settings),
+          block_(shape.blocks[index]),
+          size_(planeSize(block_)),
+          rest_(shape.planes.data() + block_.firstPlane * kRestPlanes),
+          lane_(lane),
+          rootRotation_(shape.restRoots[block_.strandOfLane[lane]].rotation) {}
+
+    /// κ of each joint, in square metres per square second and unit mass; the system has the masses plus
+    /// `share`·K.
+    void fillStiffness(double share, bool factored, bool flexion) {
+        const std::uint32_t first = firstJoint();
+        const std::uint32_t segments = block_.points - 1;
+        for (std::uint32_t j = 0; j < block_.points; ++j) kappa_[j] = 0.0;
+        for (std::uint32_t j = first; j < segments; ++j) {
+            const double along = static_cast<double>(j) / segments;
+            const double s = static_cast<double>(settings_.angularStiffness) *
+                             (1.0 + (static_cast<double>(settings_.angularTipShare) - 1.0) * along);
+            const double stiffness = kHairBendingStiffness * s / std::max(1.0 - s, 1e-9);
+            const double outer = lengthOf(j);
+            const double inner = j > 0 ? lengthOf(j - 1) : 0.0;
+            const bool clamped = j + 1 == settings_.clampedPoints || j == 0;
+            const double carried = 0.5 * (outer + (clamped ? 0.0 : inner));
+            const double own = 0.5 * (outer + inner);
+            if (!(outer > kNoLength) || (j > 0 && !(inner > kNoLength))) continue;
+            kappa_[j] = stiffness * mass(j) / own / carried;
+            if (factored) {
+                const double most = outerShare(j) + innerShare(j);
+                const double lightest = std::min({mass(j), mass(j + 1), j > 0 ? mass(j - 1) : mass(j)});
+                kappa_[j] = std::min(kappa_[j], kStiffest * lightest / (share * most * most));
+            }
+            // A flexion spring of the same energy where a straight joint has turned by 90°.
+            if (flexion) kappa_[j] *= 2.0 / (kShortening * kShortening * own * own);
+        }
+    }
+
+    double kappa(std::uint32_t joint) const { return kappa_[joint]; }
+
+    /// The direction joint j pulls its segment to: the rest direction, less what its own weight bends it by.
+    void writeTargets(bool held, float* x, float* y, float* z) const {
+        const double carried = held ? static_cast<double>(settings_.restGravity) : 0.0;
+        const Float3 down = rotate(conjugate(rootRotation_), settings_.gravity);
+        const Double3 gravity = Double3{down.x, down.y, down.z} * carried;
+        Double3 moment{};
+        double beyond = 0.0;
+        for (std::uint32_t j = block_.points - 1; j-- > 0;) {
+            const Double3 d = direction(j);
+            beyond += mass(j + 1);
+            moment = moment + gravity * (lengthOf(j) * beyond);
+            moment = moment - d * dotOf(moment, d);
+            Double3 bent{};
+            if (kappa_[j] > 0.0) bent = moment * (1.0 / kappa_[j]);
+            const double most = std::sqrt(dotOf(bent, bent));
+            if (most > kMostHeld) bent = bent * (kMostHeld / most);
+            const Double3 target = d - bent;
+            const std::size_t i = at(j);
+            x[i] = static_cast<float>(target.x);
+            y[i] = static_cast<float>(target.y);
+            z[i] = static_cast<float>(target.z);
+        }
+    }
+
+    /// LDLᵀ of M + share·K over the free points.
+    void writeFactors(double share, float* inverseDiagonal, float* lower1, float* lower2) const {
+        const std::uint32_t first = settings_.clampedPoints;
+        double d1 = 1.0, d2 = 1.0;  // diagonals of the last two points
+        double l1Before = 0.0;      // lower1 of the last point
+        for (std::uint32_t p = first; p < block_.points; ++p) {
+            const double next = p > first ? share * coupling1(p) : 0.0;
+            const double second = p > first + 1 ? share * coupling2(p) : 0.0;
+            const double l2 = second / d2;
+            const double l1 = (next - second * l1Before) / d1;
+            const double d = mass(p) + share * diagonal(p) - l1 * l1 * d1 - l2 * l2 * d2;
+            inverseDiagonal[at(p)] = static_cast<float>(1.0 / d);
+            lower1[at(p)] = static_cast<float>(l1);
+            lower2[at(p)] = static_cast<float>(l2);
+            d2 = d1;
+            d1 = d;
+            l1Before = l1;
+        }
+    }
+
+    std::size_t at(std::uint32_t p) const { return std::size_t{p} * kBlockLanes + lane_; }
+
+  private:
+    static constexpr double kNoLength = 1e-9;
+
+    std::uint32_t firstJoint() const { return settings_.clampedPoints - 1; }
+    double lengthOf(std::uint32_t s) const { return static_cast<double>(rest_[3 * size_ + at(s)]); }
+    double mass(std::uint32_t p) const { return 1.0 / static_cast<double>(rest_[5 * size_ + at(p)]); }
+    Double3 direction(std::uint32_t s) const {
+        const double inverse = static_cast<double>(rest_[4 * size_ + at(s)]);
+        const auto part = [&](std::size_t plane) {
+            return static_cast<double>(rest_[plane * size_ + at(s)]);
+        };
+        return Double3{part(0), part(1), part(2)} * inverse;
+    }
+    // Row of joint j: +outerShare at point j + 1, −(outerShare + innerShare) at j, +innerShare at j − 1.
+    double outerShare(std::uint32_t j) const { return static_cast<double>(rest_[4 * size_ + at(j)]); }
+    double innerShare(std::uint32_t j) const {
+        return j > 0 ? static_cast<double>(rest_[4 * size_ + at(j - 1)]) : 0.0;
+    }
+    double diagonal(std::uint32_t p) const {
+        double sum = 0.0;
+        if (p > 0) sum += kappa_[p - 1] * outerShare(p - 1) * outerShare(p - 1);
+        const double middle = outerShare(p) + innerShare(p);
+        if (p + 1 < block_.points) sum += kappa_[p] * middle * middle;
+        if (p + 2 < block_.points) sum += kappa_[p + 1] * innerShare(p + 1) * innerShare(p + 1);
+        return sum;
+    }
+    /// Between p − 1 and p.
+    double coupling1(std::uint32_t p) const {
+        double sum = -kappa_[p - 1] * outerShare(p - 1) * (outerShare(p - 1) + innerShare(p - 1));
+        if (p + 1 < block_.points) sum -= kappa_[p] * innerShare(p) * (outerShare(p) + innerShare(p));
+        return sum;
+    }
+    /// Between p − 2 and p.
+    double coupling2(std::uint32_t p) const { return kappa_[p - 1] * outerShare(p - 1) * innerShare(p - 1); }
+
+    const SimulationSettings& settings_;
+    const Block& block_;
+    std::size_t size_;
+    const float* rest_;
+    std::uint32_t lane_;
+    Quat rootRotation_;
+    std::array<double, kMaxPoints> kappa_;
+};
+
+}  // namespace
+
+float bendRate(const SimulationSettings& settings, float h, float velocityShare) {
+    return settings.bendDampingTime / h + 0.25f * (1.0f - velocityShare);
+}
+
+void fillBend(const RestShape& shape, const SimulationSettings& settings, float h, float velocityShare,
+              std::size_t index, Bend& bend) {
+    const Block& block = shape.blocks[index];
+    if (block.points <= settings.clampedPoints) return;
+    const std::size_t size = planeSize(block);
+    float* const stiffness = bend.planes.data() + block.firstPlane * bend.planeCount();
+    const double step = static_cast<double>(h) * static_cast<double>(h);
+    const bool flexion = settings.angularMethod == AngularMethod::flexion;
+    const bool backward = settings.integrator == Integrator::implicitEuler;
+    const double share =
+        backward ? step : step * (0.25 + static_cast<double>(bendRate(settings, h, velocityShare)));
+    const bool held = settings.restGravity > 0.0f;
+    for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+        StrandBend strand(shape, settings, index, lane);
+        strand.fillStiffness(share, bend.factored, flexion);
+        for (std::uint32_t j = 0; j < block.points; ++j)
+            stiffness[strand.at(j)] = static_cast<float>(step * strand.kappa(j));
+        float* plane = stiffness + size;
+        if (bend.factored) {
+            strand.writeFactors(share, plane, plane + size, plane + 2 * size);
+            plane += 3 * size;
+        }
+        if (bend.targets) strand.writeTargets(held, plane, plane + size, plane + 2 * size);
+    }
+}
+
+}  // namespace hairloom::runtime
