@@ -14,6 +14,8 @@ namespace {
 constexpr double kStiffest = 1e7;
 /// Bound of |H/κ|: hair too soft to carry itself sags.
 constexpr double kMostHeld = 1.0;
+/// What keeps the fastest waves of curved hair from ringing on, whose pulls are not quite those of an energy.
+constexpr float kLeastCurvedRate = 0.25f;
 /// 2 − √2: how much nearer the ends of two unit segments come when they turn by 90°.
 constexpr double kShortening = 0.585786437626905;
 
@@ -26,6 +28,16 @@ struct Double3 {
 };
 double dotOf(Double3 a, Double3 b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+Double3 crossOf(Double3 a, Double3 b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+/// A unit vector across a, or along x where a has no length.
+Double3 anyNormal(Double3 a) {
+    const Double3 axis = std::abs(a.x) > std::abs(a.z) ? Double3{-a.y, a.x, 0.0} : Double3{0.0, -a.z, a.y};
+    const double size = std::sqrt(dotOf(axis, axis));
+    return size > 0.0 ? axis * (1.0 / size) : Double3{1.0, 0.0, 0.0};
 }
 
 /// One strand of a block, in double precision.
@@ -70,27 +82,27 @@ class StrandBend {
 
     double kappa(std::uint32_t joint) const { return kappa_[joint]; }
 
-    /// The direction joint j pulls its segment to: the rest direction, less what its own weight bends it by.
-    void writeTargets(bool held, float* x, float* y, float* z) const {
-        const double carried = held ? static_cast<double>(settings_.restGravity) : 0.0;
-        const Float3 down = rotate(conjugate(rootRotation_), settings_.gravity);
-        const Double3 gravity = Double3{down.x, down.y, down.z} * carried;
-        Double3 moment{};
-        double beyond = 0.0;
-        for (std::uint32_t j = block_.points - 1; j-- > 0;) {
-            const Double3 d = direction(j);
-            beyond += mass(j + 1);
-            moment = moment + gravity * (lengthOf(j) * beyond);
-            moment = moment - d * dotOf(moment, d);
-            Double3 bent{};
-            if (kappa_[j] > 0.0) bent = moment * (1.0 / kappa_[j]);
-            const double most = std::sqrt(dotOf(bent, bent));
-            if (most > kMostHeld) bent = bent * (kMostHeld / most);
-            const Double3 target = d - bent;
-            const std::size_t i = at(j);
-            x[i] = static_cast<float>(target.x);
-            y[i] = static_cast<float>(target.y);
-            z[i] = static_cast<float>(target.z);
+    /// What joint j adds to the direction of its inner segment, in the frame carried to that segment (x along
+    /// it): its rest curve, less what the strand's own weight bends it by. The slot of the tip has the normal
+    /// that the root carries, in the root's frame.
+    void writeTargets(bool held, float* x, float* y, float* z) {
+        const auto write = [&](std::uint32_t p, Double3 v) {
+            const std::size_t i = at(p);
+            x[i] = static_cast<float>(v.x);
+            y[i] = static_cast<float>(v.y);
+            z[i] = static_cast<float>(v.z);
+        };
+        measureWeight(held);
+        Double3 inner = direction(0);
+        Double3 normal = anyNormal(inner);
+        write(block_.points - 1, normal);
+        for (std::uint32_t j = 0; j + 1 < block_.points; ++j) {
+            const Double3 outer = direction(j);
+            const Double3 curve = outer - bent_[j] - inner;
+            write(j, {dotOf(curve, inner), dotOf(curve, normal), dotOf(curve, crossOf(inner, normal))});
+            const double turn = dotOf(outer, normal) / std::max(1.0 + dotOf(inner, outer), 1e-9);
+            normal = normal - (inner + outer) * turn;
+            inner = outer;
         }
     }
 
@@ -118,6 +130,24 @@ class StrandBend {
 
   private:
     static constexpr double kNoLength = 1e-9;
+
+    /// H/κ of docs/engine.md: how far each joint bends under the weight beyond it, in the rest shape.
+    void measureWeight(bool held) {
+        const double carried = held ? static_cast<double>(settings_.restGravity) : 0.0;
+        const Float3 down = rotate(conjugate(rootRotation_), settings_.gravity);
+        const Double3 gravity = Double3{down.x, down.y, down.z} * carried;
+        Double3 moment{};
+        double beyond = 0.0;
+        for (std::uint32_t j = block_.points - 1; j-- > 0;) {
+            const Double3 d = direction(j);
+            beyond += mass(j + 1);
+            moment = moment + gravity * (lengthOf(j) * beyond);
+            moment = moment - d * dotOf(moment, d);
+            bent_[j] = kappa_[j] > 0.0 ? moment * (1.0 / kappa_[j]) : Double3{};
+            const double most = std::sqrt(dotOf(bent_[j], bent_[j]));
+            if (most > kMostHeld) bent_[j] = bent_[j] * (kMostHeld / most);
+        }
+    }
 
     std::uint32_t firstJoint() const { return settings_.clampedPoints - 1; }
     double lengthOf(std::uint32_t s) const { return static_cast<double>(rest_[3 * size_ + at(s)]); }
@@ -158,12 +188,14 @@ class StrandBend {
     std::uint32_t lane_;
     Quat rootRotation_;
     std::array<double, kMaxPoints> kappa_;
+    std::array<Double3, kMaxPoints> bent_;
 };
 
 }  // namespace
 
-float bendRate(const SimulationSettings& settings, float h, float velocityShare) {
-    return settings.bendDampingTime / h + 0.25f * (1.0f - velocityShare);
+float bendRate(const SimulationSettings& settings, float h, float velocityShare, bool curved) {
+    const float least = curved ? kLeastCurvedRate : 0.0f;
+    return std::max(settings.bendDampingTime / h, least) + 0.25f * (1.0f - velocityShare);
 }
 
 void fillBend(const RestShape& shape, const SimulationSettings& settings, float h, float velocityShare,
@@ -176,7 +208,8 @@ void fillBend(const RestShape& shape, const SimulationSettings& settings, float 
     const bool flexion = settings.angularMethod == AngularMethod::flexion;
     const bool backward = settings.integrator == Integrator::implicitEuler;
     const double share =
-        backward ? step : step * (0.25 + static_cast<double>(bendRate(settings, h, velocityShare)));
+        backward ? step
+                 : step * (0.25 + static_cast<double>(bendRate(settings, h, velocityShare, bend.targets)));
     const bool held = settings.restGravity > 0.0f;
     for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
         StrandBend strand(shape, settings, index, lane);

@@ -128,6 +128,7 @@ std::string Engine::setSettings(const SimulationSettings& settings) {
     settings_ = settings;
     wind_ = makeWind(settings);
     bend_.substep = 0.0f;
+    std::fill(state_.tanks.begin(), state_.tanks.end(), kNoCurve);
     state_.rests.assign(shape_->blocks.size(), {});
     replan({}, {}, state_.rootsMin_ws, state_.rootsMax_ws);
     return {};
@@ -167,6 +168,13 @@ void Engine::allocateForPlan() {
         bend_.targets = targets;
         bend_.planes = Floats(angular ? shape_->planeFloats * bend_.planeCount() : 0, 0.0f);
         bend_.substep = 0.0f;
+    }
+    const bool curves = plan_.runs(StageId::angular) ||
+                        (plan_.on(Effect::torsion) && plan_.stages().empty() && !state_.curves.empty());
+    if (curves == state_.curves.empty()) {
+        state_.curves = Floats(curves ? shape_->planeFloats * 3 : 0, 0.0f);
+        state_.tanks = Floats(curves ? shape_->blocks.size() * kBlockLanes : 0, kNoCurve);
+        state_.motions = Floats(curves ? shape_->blocks.size() * kBlockLanes : 0, 0.0f);
     }
     evaluationPlanes_ = settings_.integrator == Integrator::verlet ? 0
                         : settings_.integrator == Integrator::rk4  ? kRungeKuttaPlanes
@@ -286,7 +294,7 @@ Engine::Frame Engine::makeFrame(const FrameInput& input) {
     context.dragShare = decays ? 1.0f - std::exp(-settings_.airDrag * h) : settings_.airDrag * h;
     context.springStep = oscillation(settings_.springFrequency);
     context.penaltyStep = oscillation(settings_.penaltyFrequency);
-    context.bendRate = bendRate(settings_, h, context.velocityShare);
+    context.bendRate = bendRate(settings_, h, context.velocityShare, bend_.targets);
     context.lengthIterations = settings_.lengthIterations;
     context.maximalExtension = settings_.maximalExtension;
     if (plan_.on(Effect::pearls)) {
@@ -381,7 +389,7 @@ void Engine::runBlock(std::size_t block, const Frame& frame) {
                              frame.windTo.data());
     }
     runStages(block, blockView, lanes, frame);
-    report.fastest = kernels().fastest(blockView);
+    report.fastest = kernels().fastest(blockView, frame.context.h);
     if (!std::isfinite(report.fastest)) restoreStrands(block, blockView);
     rest(block, blockView, frame);
 }
@@ -435,6 +443,7 @@ void Engine::enterFrame(std::size_t block, const BlockView& view, LaneFrame& lan
         if (!usable(to)) to = from;
         if (!(length(to.position - from.position) <= settings_.teleportDistance)) {
             const Quat turn = to.rotation * conjugate(from.rotation);
+            if (view.tank) view.tank[lane] = kNoCurve;
             for (std::uint32_t p = 0; p < view.points; ++p) {
                 const std::size_t i = std::size_t{p} * kBlockLanes + lane;
                 for (const Planes& planes : {view.position, view.previous}) {

@@ -118,11 +118,13 @@ std::size_t Engine::effectBytes(Effect effect) const {
         case Effect::angular:
             return bend_.planes.size() * sizeof(float) - targets;
         case Effect::torsion:
-            return targets;
+            return targets +
+                   (state_.curves.size() + state_.tanks.size() + state_.motions.size()) * sizeof(float);
         case Effect::wind:
             return plan_.on(effect) ? sizeof(Wind) : 0;
         case Effect::collision:
             return plan_.on(effect) ? movingSpheres_.size() * sizeof(MovingSphere) : 0;
+        case Effect::damping:
         case Effect::gravity:
         case Effect::drag:
         case Effect::length:

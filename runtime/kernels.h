@@ -49,8 +49,15 @@ struct BlockView {
     // Of angular and flexion springs, null while they are off. The joint at point j stands at
     // [j · kBlockLanes + lane].
     const float* stiffness = nullptr;  ///< κ·h² of a joint, square metres
-    ConstPlanes target;                ///< the direction a joint pulls its outer segment to, in the root's
-                                       ///< frame; null for straight hair
+    /// What a joint adds to its inner segment's direction, in the frame carried there (x along the segment);
+    /// at the tip's slot the normal carried by the root, in the root's frame. Null for straight hair.
+    ConstPlanes target;
+    // Of implicit angular springs of curved hair, null otherwise.
+    Planes curve;  ///< what each joint adds to its inner segment's direction now, world
+    float* tank =
+        nullptr;  ///< of each lane: energy that turning curves have saved; below 0 when `curve` is void
+    float* motion =
+        nullptr;  ///< of each lane: greatest squared speed of a point at the end of the last frame
     // Where the system of a strand is solved: LDLᵀ of its matrix, rows of points. Null otherwise.
     const float* inverseDiagonal = nullptr;
     const float* lower1 = nullptr;  ///< to the point before
@@ -67,6 +74,7 @@ struct alignas(64) LaneFrame {
     float rotationFrom[4][kBlockLanes];  ///< x, y, z, w
     float rotationTo[4][kBlockLanes];
     float rotation[4][kBlockLanes];  ///< of now; kept by the stage `roots`
+    float turn[4][kBlockLanes];      ///< from the rotation of a substep ago to that of now; likewise
     float windRoot[2][3]
                   [kBlockLanes];  ///< the air's way in one substep at start and end of the frame, at the root
     float windTip[2][3][kBlockLanes];
@@ -112,7 +120,8 @@ struct Kernels {
                        const float* to);
     /// Greatest squared displacement of a free point in the last substep, square metres; infinite where a
     /// point is no number or has left the range of sound places.
-    float (*fastest)(const BlockView& block);
+    /// Keeps each lane's in `motion`.
+    float (*fastest)(const BlockView& block, float h);
     const char* target;  ///< name of the instruction set
 };
 

@@ -127,6 +127,8 @@ class Planner {
     }
 
     void decideEffects() {
+        const bool damped = s_.dampingTime > 0.0f;
+        decide(Effect::damping, {damped, damped ? Reason::authored : Reason::zeroTime, s_.dampingTime});
         const float gravity = length(s_.gravity);
         decide(Effect::gravity,
                {gravity > 0.0f, gravity > 0.0f ? Reason::authored : Reason::zeroGravity, gravity});
@@ -136,8 +138,8 @@ class Planner {
         const bool stiff = s_.angularStiffness > 0.0f;
         decide(Effect::angular,
                {stiff, stiff ? Reason::authored : Reason::zeroStiffness, s_.angularStiffness});
-        plan_.held_ = stiff && gravity > 0.0f && s_.restGravity > 0.0f;
-        decide(Effect::torsion, decideTorsion(scene_, stiff, plan_.held_));
+        const bool held = stiff && gravity > 0.0f && s_.restGravity > 0.0f;
+        decide(Effect::torsion, decideTorsion(scene_, stiff, held));
         decideCollision();
         plan_.factored_ = stiff && s_.angularMethod != AngularMethod::flexion &&
                           (implicitly() || (s_.integrator == Integrator::implicitEuler && !coils()));
@@ -196,14 +198,13 @@ class Planner {
 
     void listStages() {
         add(StageId::roots);
+        if (on(Effect::damping)) add(StageId::damping);
         switch (s_.integrator) {
             case Integrator::verlet:
                 listForces();
                 add(StageId::verlet);
                 if (on(Effect::angular) && implicitly()) {
-                    add(!on(Effect::torsion) ? StageId::angularStraight
-                        : plan_.held_        ? StageId::angularHeld
-                                             : StageId::angular);
+                    add(on(Effect::torsion) ? StageId::angular : StageId::angularStraight);
                 }
                 break;
             case Integrator::velocityVerlet:

@@ -15,6 +15,7 @@
 namespace hairloom::runtime {
 
 enum class Effect : std::uint32_t {
+    damping,
     gravity,
     drag,
     wind,
@@ -26,13 +27,14 @@ enum class Effect : std::uint32_t {
     sweep,   ///< collisions between the places of two substeps
     sleep,   ///< strands at rest are left out
 };
-inline constexpr std::uint32_t kEffectCount = 10;
+inline constexpr std::uint32_t kEffectCount = 11;
 const char* effectName(Effect effect);
 
 /// A pass over one block of strands. A substep runs the plan's stages in their order; an integrator that
 /// evaluates forces several times lists them several times.
 enum class StageId : std::uint32_t {
-    roots,  ///< moves clamped points with the scalp
+    roots,    ///< moves clamped points with the scalp
+    damping,  ///< slows motion relative to the root
     // Forces: each adds a·h² to the displacement of the free points.
     drag,           ///< external: still air
     wind,           ///< external: moving air
@@ -45,7 +47,7 @@ enum class StageId : std::uint32_t {
     flexion,        ///< springs between every second point
     penalty,        ///< springs out of spheres
     // Integration.
-    verlet,         ///< Eq. 10, with damping
+    verlet,         ///< Eq. 10
     open,           ///< forces are evaluated at the start of the substep
     openHalfway,    ///< forces are evaluated after half a drift
     explicitEuler,  ///< Eq. 7
@@ -63,7 +65,6 @@ enum class StageId : std::uint32_t {
     implicitSpringBend,  ///< backward Euler with coil and angular springs
     // After it.
     angular,          ///< angular springs, implicitly, with frames (Eq. 4)
-    angularHeld,      ///< the same for a shape that already hangs in gravity
     angularStraight,  ///< the same for straight hair: no frames
     length,           ///< length constraint, Newton steps
     springLimit,      ///< maximal extension by velocities (Bridson et al. 2003)
@@ -97,6 +98,7 @@ struct SceneDescription {
 
 enum class Reason : std::uint32_t {
     authored,
+    zeroTime,
     nothingToMove,
     zeroGravity,
     noAirDrag,
@@ -144,8 +146,6 @@ class EffectPlan {
     bool runs(StageId stage) const;
     /// Angular springs are solved as one system along each strand.
     bool factored() const { return factored_; }
-    /// The authored shape hangs in gravity already.
-    bool held() const { return held_; }
 
   private:
     friend EffectPlan plan(const SceneDescription& scene);
@@ -155,7 +155,6 @@ class EffectPlan {
     std::array<StageId, kMostStages> stages_{};
     std::size_t stageCount_ = 0;
     bool factored_ = false;
-    bool held_ = false;
 };
 
 EffectPlan plan(const SceneDescription& scene);

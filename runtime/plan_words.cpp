@@ -11,6 +11,9 @@ namespace {
 std::string quantity(Effect effect, float value) {
     std::ostringstream text;
     switch (effect) {
+        case Effect::damping:
+            text << "to 1/e in " << value << " s";
+            break;
         case Effect::gravity:
             text << value << " m/s²";
             break;
@@ -43,6 +46,8 @@ std::string words(Effect effect, const Decision& decision) {
     switch (decision.reason) {
         case Reason::authored:
             return quantity(effect, decision.value);
+        case Reason::zeroTime:
+            return "zero time";
         case Reason::nothingToMove:
             return "no point of any strand is free";
         case Reason::zeroGravity:
@@ -111,6 +116,7 @@ struct StageWords {
 /// By StageId; families are the rows of the thesis' Table 3.
 constexpr StageWords kStages[kStageCount] = {
     {"roots", "animation", std::nullopt},
+    {"damping", "integration", Effect::damping},
     {"drag", "external forces", Effect::drag},
     {"wind", "external forces", Effect::wind},
     {"gravity", "external forces", Effect::gravity},
@@ -138,7 +144,6 @@ constexpr StageWords kStages[kStageCount] = {
     {"implicitSpring", "integration", std::nullopt},
     {"implicitSpringBend", "integration", std::nullopt},
     {"angular", "angular forces", Effect::angular},
-    {"angularHeld", "angular forces", Effect::angular},
     {"angularStraight", "angular forces", Effect::angular},
     {"length", "linear forces", Effect::length},
     {"springLimit", "post-processing", Effect::length},
@@ -152,8 +157,9 @@ constexpr StageWords kStages[kStageCount] = {
 }  // namespace
 
 const char* effectName(Effect effect) {
-    constexpr const char* kNames[kEffectCount] = {"gravity", "drag",      "wind",   "length", "angular",
-                                                  "torsion", "collision", "pearls", "sweep",  "sleep"};
+    constexpr const char* kNames[kEffectCount] = {"damping", "gravity", "drag",    "wind",
+                                                  "length",  "angular", "torsion", "collision",
+                                                  "pearls",  "sweep",   "sleep"};
     return kNames[static_cast<std::size_t>(effect)];
 }
 

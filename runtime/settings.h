@@ -92,7 +92,7 @@ struct SimulationSettings {
     /// 0…1. angularStiffness at the tip as a share of that at the root. Lower: looser tips.
     float angularTipShare = 0.5f;
     /// Seconds, 0…1. Kelvin-Voigt time of bending: waves slower than it pass, faster ones fade. 0 rings on.
-    float bendDampingTime = 0.01f;
+    float bendDampingTime = 0.03f;
     /// 0…1. Share of gravity in which the authored shape hangs already. 1: hair keeps its authored shape as
     /// far as its stiffness can carry it; 0: it sags from there.
     float restGravity = 1.0f;

@@ -164,6 +164,7 @@ std::shared_ptr<const RestShape> makeRestShape(const StrandsView& strands) {
 std::uint64_t State::hash() const {
     std::uint64_t hash = 0xcbf29ce484222325ull;
     hash = mix(hash, planes.data(), planes.size() * sizeof(float));
+    hash = mix(hash, curves.data(), curves.size() * sizeof(float));
     return mix(hash, roots.data(), roots.size() * sizeof(float));
 }
 
@@ -194,6 +195,11 @@ BlockView viewOf(const Arrays& arrays, std::size_t index, std::uint32_t clampedP
         }
         if (arrays.bend.targets) view.target = {plane, plane + size, plane + 2 * size};
     }
+    if (!arrays.state.curves.empty()) {
+        view.curve = three(arrays.state.curves.data() + block.firstPlane * 3);
+        view.tank = arrays.state.tanks.data() + index * kBlockLanes;
+        view.motion = arrays.state.motions.data() + index * kBlockLanes;
+    }
     if (!arrays.evaluation.empty()) {
         float* plane = arrays.evaluation.data() + block.firstPlane * arrays.evaluationPlanes;
         view.start = three(plane);
@@ -215,6 +221,7 @@ void placeAtRest(const RestShape& shape, State& state, std::size_t index, std::u
     const float* roots = state.roots.data() + index * kRootRows * kBlockLanes;
     const auto row = [&](std::size_t r) { return roots[r * kBlockLanes + lane]; };
     const Quat rotation{row(3), row(4), row(5), row(6)};
+    if (!state.tanks.empty()) state.tanks[index * kBlockLanes + lane] = kNoCurve;
     Float3 at{};
     for (std::uint32_t p = 0; p < block.points; ++p) {
         const std::size_t i = std::size_t{p} * kBlockLanes + lane;

@@ -71,6 +71,9 @@ struct Rest {
 struct State {
     Floats planes;  ///< per block: position x, y, z, previous x, y, z
     Floats roots;   ///< per block: position x, y, z, rotation x, y, z, w of each lane at the last frame's end
+    Floats curves;  ///< per block: x, y, z of BlockView::curve; empty unless they are needed
+    Floats tanks;   ///< of each lane, BlockView::tank
+    Floats motions;                   ///< of each lane, BlockView::motion; empty where `curves` is
     std::vector<Rest> rests;          ///< per block
     std::vector<Sphere> spheres;      ///< of the last frame
     Float3 rootsMin_ws, rootsMax_ws;  ///< box of the last frame's roots
@@ -91,6 +94,8 @@ struct Bend {
     std::size_t planeCount() const { return 1u + (factored ? 3u : 0u) + (targets ? 3u : 0u); }
 };
 
+/// In a tank: the curves of the strand are void.
+inline constexpr float kNoCurve = -1.0f;
 inline constexpr std::size_t kRestPlanes = 6;
 inline constexpr std::size_t kStatePlanes = 6;
 inline constexpr std::size_t kRootRows = 7;
@@ -116,6 +121,6 @@ void fillBend(const RestShape& shape, const SimulationSettings& settings, float 
               std::size_t block, Bend& bend);
 
 /// q of docs/engine.md, "Integrators": what keeps the implicit angular springs stable and fades fast waves.
-float bendRate(const SimulationSettings& settings, float h, float velocityShare);
+float bendRate(const SimulationSettings& settings, float h, float velocityShare, bool curved);
 
 }  // namespace hairloom::runtime

@@ -7,6 +7,8 @@
 #define HAIRLOOM_RUNTIME_BEND_INL_H
 #endif
 
+#include <cmath>
+
 #include "hwy/highway.h"
 #include "runtime/kernels.h"
 #include "runtime/kernels/lanes-inl.h"
@@ -15,21 +17,20 @@ HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {
 namespace HWY_NAMESPACE {
 
-/// Where angular springs read a strand.
-enum class Bending {
-    forces,    ///< at `position`
-    implicit,  ///< frames at `previous`, pulls q of the way from there to `position` farther on
-};
+/// Seconds in which curves that lag arrive, and the speed in metres per second above which they wait.
+inline constexpr float kLeakTime = 0.5f;
+inline constexpr float kLeakSpeed = 0.005f;
+
 /// How a joint knows its rest direction.
 enum class Shape {
     straight,  ///< its inner segment goes on
     curved,    ///< by the frame carried along the strand
-    held,      ///< likewise, less what its own weight bends it by
 };
 
 /// s = κ·h²·(t − target) of each joint of a block; those past the last segment are zero.
 struct Pulls {
-    alignas(64) float x[kMaxPoints * kBlockLanes], y[kMaxPoints * kBlockLanes], z[kMaxPoints * kBlockLanes];
+    static constexpr std::size_t kSlots = std::size_t{kMaxPoints} * kBlockLanes;
+    alignas(64) float x[kSlots], y[kSlots], z[kSlots];
     Planes planes() { return {x, y, z}; }
 };
 
@@ -43,59 +44,153 @@ HWY_INLINE V3 tangentOf(V3 edge, V inverseLength) {
     return edge * hn::IfThenElse(flat, hn::Zero(D()), all(1.0f) / size);
 }
 
-/// Eq. 4, root to tip: the frame of each segment is that of the one before, turned by the shortest arc that
-/// takes its rest direction to its own.
-template <Bending kBending, Shape kShape, bool kExact>
-void measurePulls(const BlockView& block, const LaneFrame& lanes, const SubstepContext& context,
-                  Pulls& pulls) {
-    constexpr bool kImplicit = kBending == Bending::implicit;
-    constexpr bool kFrames = kShape != Shape::straight;
-    const Planes& place = kImplicit ? block.previous : block.position;
-    const V q = all(context.bendRate);
-    alignas(64) float frame[4][kBlockLanes], inner[3][kBlockLanes], pulled[3][kBlockLanes];
+/// The frame of a segment, carried root to tip: that of the one before, turned by the shortest arc (Melax
+/// 2000) that takes one direction to the other (Eq. 4). Its tangent is the segment's, so one normal is all
+/// there is to carry: the arc from a to b takes a normal u of a to u − (b·u)/(1 + a·b) · (a + b), which stays
+/// bounded at 180°.
+HWY_INLINE V3 carryNormal(V3 normal, V3 from, V3 to) {
+    const V flat = hn::Max(all(1.0f) + dot(from, to), all(1e-6f));
+    return normal - (from + to) * (dot(to, normal) / flat);
+}
+
+/// A vector given in a segment's frame.
+HWY_INLINE V3 fromFrame(V3 tangent, V3 normal, V3 local) {
+    return tangent * local.x + normal * local.y + cross(tangent, normal) * local.z;
+}
+
+/// The directions and the normal that the root carries, before the first segment.
+template <bool kFrames>
+HWY_INLINE void startFrames(const BlockView& block, const LaneFrame& lanes, std::size_t lane, V3& tangent,
+                            V3& normal) {
+    const V4 root = load4(lanes.rotation, lane);
+    tangent = rotate(root, load3(block.rest, lane) * hn::Load(D(), block.inverseLength + lane));
+    if constexpr (kFrames)
+        normal = rotate(root, load3(block.target, std::size_t{block.points - 1} * kBlockLanes + lane));
+}
+
+/// Pulls of angular springs at `position`.
+template <Shape kShape, bool kExact>
+void measurePulls(const BlockView& block, const LaneFrame& lanes, Pulls& pulls) {
+    constexpr bool kFrames = kShape == Shape::curved;
+    alignas(64) float inner[3][kBlockLanes], normals[3][kBlockLanes];
     const std::uint32_t first = block.firstFree - 1;
     for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
-        store4(load4(lanes.rotation, lane), frame, lane);
-        // The root's own direction stands for a segment before the first.
-        V3 before = rotate(load4(lanes.rotation, lane),
-                           load3(block.rest, lane) * hn::Load(D(), block.inverseLength + lane));
-        store3(before, inner, lane);
-        store3(before, pulled, lane);
+        V3 tangent, normal = zero3();
+        startFrames<kFrames>(block, lanes, lane, tangent, normal);
+        store3(tangent, inner, lane);
+        store3(normal, normals, lane);
+        store3(zero3(), pulls.planes(), std::size_t{block.points - 1} * kBlockLanes + lane);
     }
     for (std::uint32_t j = 0; j + 1 < block.points; ++j) {
         for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
             const std::size_t i = std::size_t{j} * kBlockLanes + lane;
-            const V inverseLength = hn::Load(D(), block.inverseLength + i);
-            const V3 from = load3(place, i), to = load3(place, i + kBlockLanes);
-            const V3 tangent = tangentOf<kExact>(to - from, inverseLength);
-            V3 ahead = tangent;
-            if constexpr (kImplicit) {
-                const V3 moved =
-                    (load3(block.position, i + kBlockLanes) - to) - (load3(block.position, i) - from);
-                ahead = tangent + moved * (inverseLength * q);
-            }
+            const V3 edge = load3(block.position, i + kBlockLanes) - load3(block.position, i);
+            const V3 tangent = tangentOf<kExact>(edge, hn::Load(D(), block.inverseLength + i));
+            const V3 before = load3(inner, lane), normal = load3(normals, lane);
             if (j >= first) {
-                V3 off = ahead - load3(pulled, lane);
-                if constexpr (kFrames) {
-                    const V3 target = rotate(load4(frame, lane), load3(block.target, i));
-                    off = off - (target - load3(inner, lane));
-                }
+                V3 off = tangent - before;
+                if constexpr (kFrames) off = off - fromFrame(before, normal, load3(block.target, i));
                 store3(off * hn::Load(D(), block.stiffness + i), pulls.planes(), i);
             }
-            if constexpr (kFrames) {
-                const V4 carried = load4(frame, lane);
-                const V3 rest =
-                    rotate(carried, kShape == Shape::held || j < first ? load3(block.rest, i) * inverseLength
-                                                                       : load3(block.target, i));
-                store4(multiply(shortestArc(rest, tangent), carried), frame, lane);
-            }
+            if constexpr (kFrames) store3(carryNormal(normal, before, tangent), normals, lane);
             store3(tangent, inner, lane);
-            store3(ahead, pulled, lane);
         }
     }
-    const std::size_t last = std::size_t{block.points - 1} * kBlockLanes;
-    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth)
-        store3(zero3(), pulls.planes(), last + lane);
+}
+
+/// Turns the curves that the joints hold towards those of the frames at `previous`. The pulls leave out what
+/// turning a curve does to the frame's own strand, so curves that simply followed would feed energy into
+/// curly hair without end. They follow as far as the strand's tank lasts: it holds what earlier turning took
+/// out of the springs, so that no energy comes from nowhere (passivity by energy tanks, as Duindam and
+/// Stramigioli 2004). While the strand rests, curves that lag creep home.
+void followFrames(const BlockView& block, const LaneFrame& lanes, const SubstepContext& context,
+                  Pulls& wanted) {
+    const V zero = hn::Zero(D()), one = all(1.0f);
+    const std::uint32_t first = block.firstFree - 1, end = block.points - 1;
+    alignas(64) float inner[3][kBlockLanes], normals[3][kBlockLanes], gain[kBlockLanes], size[kBlockLanes];
+    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+        V3 tangent, normal;
+        startFrames<true>(block, lanes, lane, tangent, normal);
+        store3(tangent, inner, lane);
+        store3(normal, normals, lane);
+        hn::Store(zero, D(), gain + lane);
+        hn::Store(zero, D(), size + lane);
+    }
+    for (std::uint32_t j = 0; j < end; ++j) {
+        for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+            const std::size_t i = std::size_t{j} * kBlockLanes + lane;
+            const V3 edge = load3(block.previous, i + kBlockLanes) - load3(block.previous, i);
+            const V3 tangent = edge * hn::Load(D(), block.inverseLength + i);
+            const V3 before = load3(inner, lane), normal = load3(normals, lane);
+            if (j >= first) {
+                const V3 held = rotate(load4(lanes.turn, lane), load3(block.curve, i));
+                const V3 change = fromFrame(before, normal, load3(block.target, i)) - held;
+                const V3 pull = (tangent - before - held) * hn::Load(D(), block.stiffness + i);
+                hn::Store(hn::Load(D(), gain + lane) + dot(pull, change), D(), gain + lane);
+                hn::Store(
+                    hn::Load(D(), size + lane) + dot(change, change) * hn::Load(D(), block.stiffness + i),
+                    D(), size + lane);
+                store3(held, block.curve, i);
+                store3(change, wanted.planes(), i);
+            }
+            store3(carryNormal(normal, before, tangent), normals, lane);
+            store3(tangent, inner, lane);
+        }
+    }
+    const V squared = all(context.h * context.h), slow = all(kLeakSpeed * kLeakSpeed);
+    const V mostLeak = all(std::fmin(context.h / kLeakTime, 1.0f));
+    alignas(64) float share[kBlockLanes];
+    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+        const V tank = hn::Load(D(), block.tank + lane);
+        const auto fresh = tank < zero;
+        const V saved = hn::Max(tank, zero) * squared;
+        const V d = hn::Load(D(), gain + lane), s = hn::Load(D(), size + lane);
+        // Turning by the share α changes the energy by ½ α² s − α d.
+        const V most = (d + hn::Sqrt(d * d + (s + s) * saved)) / hn::Max(s, all(1e-30f));
+        const V leak = mostLeak * hn::Max(one - hn::Load(D(), block.motion + lane) / slow, zero);
+        V part = hn::Max(hn::Min(most, one), leak);
+        part = hn::IfThenElse(fresh, one, part);
+        const V gained = part * (d - all(0.5f) * part * s) / squared;
+        const V kept = hn::Max(hn::Max(tank, zero) + gained, zero) * all(context.velocityShare);
+        hn::Store(hn::IfThenElse(fresh, zero, kept), D(), block.tank + lane);
+        hn::Store(part, D(), share + lane);
+    }
+    for (std::uint32_t j = first; j < end; ++j) {
+        for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+            const std::size_t i = std::size_t{j} * kBlockLanes + lane;
+            const V3 change = load3(wanted.planes(), i);
+            store3(load3(block.curve, i) + change * hn::Load(D(), share + lane), block.curve, i);
+        }
+    }
+}
+
+/// Pulls of angular springs q of the way from `previous` to `position` farther on than `position`'s start.
+template <Shape kShape>
+void measureAhead(const BlockView& block, const LaneFrame& lanes, const SubstepContext& context,
+                  Pulls& pulls) {
+    alignas(64) float inner[3][kBlockLanes];
+    const V q = all(context.bendRate);
+    const std::uint32_t first = block.firstFree - 1, end = block.points - 1;
+    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+        V3 tangent, normal;
+        startFrames<false>(block, lanes, lane, tangent, normal);
+        store3(tangent, inner, lane);
+        store3(zero3(), pulls.planes(), std::size_t{end} * kBlockLanes + lane);
+    }
+    for (std::uint32_t j = 0; j < end; ++j) {
+        for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+            const std::size_t i = std::size_t{j} * kBlockLanes + lane, o = i + kBlockLanes;
+            const V3 from = load3(block.previous, i), to = load3(block.previous, o);
+            const V3 moved = (load3(block.position, o) - to) - (load3(block.position, i) - from);
+            const V3 tangent = ((to - from) + moved * q) * hn::Load(D(), block.inverseLength + i);
+            if (j >= first) {
+                V3 off = tangent - load3(inner, lane);
+                if constexpr (kShape == Shape::curved) off = off - load3(block.curve, i);
+                store3(off * hn::Load(D(), block.stiffness + i), pulls.planes(), i);
+            }
+            store3(tangent, inner, lane);
+        }
+    }
 }
 
 /// The gradient of the energy by segment s, times h²: (s_s − s_{s+1})/l, or the part of it across the segment
@@ -114,9 +209,9 @@ HWY_INLINE V3 segmentPull(const BlockView& block, Pulls& pulls, std::size_t i) {
 
 /// Angular springs as forces.
 template <Shape kShape, bool kExact>
-void applyAngular(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
+void applyAngular(const BlockView& block, LaneFrame& lanes, const SubstepContext&) {
     Pulls pulls;
-    measurePulls<Bending::forces, kShape, kExact>(block, lanes, context, pulls);
+    measurePulls<kShape, kExact>(block, lanes, pulls);
     for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
         const std::size_t before = std::size_t{block.firstFree - 1} * kBlockLanes + lane;
         V3 inner = segmentPull<kExact>(block, pulls, before);
@@ -131,37 +226,39 @@ void applyAngular(const BlockView& block, LaneFrame& lanes, const SubstepContext
 }
 
 /// Solves (M + share·K) δ = −(forces of `pulls`) along each strand with the factors of the block, and calls
-/// take(index, δ), tip to root.
+/// take(index, δ), tip to root. Of the pulls it leaves nothing.
 template <class Take>
 HWY_INLINE void solveBend(const BlockView& block, Pulls& pulls, Take&& take) {
-    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
-        const std::size_t before = std::size_t{block.firstFree - 1} * kBlockLanes + lane;
-        V3 inner = segmentPull<false>(block, pulls, before);
-        V3 right1 = zero3(), right2 = zero3();
-        for (std::uint32_t p = block.firstFree; p < block.points; ++p) {
-            const std::size_t i = std::size_t{p} * kBlockLanes + lane;
+    const Planes work = pulls.planes();
+    alignas(64) float innerPull[3][kBlockLanes];
+    // The slot of joint p − 1 is free once point p has its right side, and keeps it, then δ.
+    for (std::uint32_t p = block.firstFree; p < block.points; ++p) {
+        for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+            const std::size_t i = std::size_t{p} * kBlockLanes + lane, slot = i - kBlockLanes;
+            const V3 inner =
+                p == block.firstFree ? segmentPull<false>(block, pulls, slot) : load3(innerPull, lane);
             const V3 outer = p + 1 < block.points ? segmentPull<false>(block, pulls, i) : zero3();
-            const V3 right = (outer - inner) - right1 * hn::Load(D(), block.lower1 + i) -
-                             right2 * hn::Load(D(), block.lower2 + i);
-            // The pulls of the joints before are no longer needed.
-            store3(right, pulls.planes(), i - kBlockLanes);
-            inner = outer;
-            right2 = right1;
-            right1 = right;
+            V3 right = outer - inner;
+            if (p > block.firstFree)
+                right = right - load3(work, slot - kBlockLanes) * hn::Load(D(), block.lower1 + i);
+            if (p > block.firstFree + 1)
+                right = right - load3(work, slot - 2 * kBlockLanes) * hn::Load(D(), block.lower2 + i);
+            store3(right, work, slot);
+            store3(outer, innerPull, lane);
         }
-        V3 next1 = zero3(), next2 = zero3();
-        V lower1 = hn::Zero(D()), lower2 = hn::Zero(D()), lower2Next = hn::Zero(D());
-        for (std::uint32_t p = block.points; p-- > block.firstFree;) {
-            const std::size_t i = std::size_t{p} * kBlockLanes + lane;
-            const V3 delta =
-                load3(pulls.planes(), i - kBlockLanes) * hn::Load(D(), block.inverseDiagonal + i) -
-                next1 * lower1 - next2 * lower2;
+    }
+    for (std::uint32_t p = block.points; p-- > block.firstFree;) {
+        for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+            const std::size_t i = std::size_t{p} * kBlockLanes + lane, slot = i - kBlockLanes;
+            V3 delta = load3(work, slot) * hn::Load(D(), block.inverseDiagonal + i);
+            if (p + 1 < block.points)
+                delta =
+                    delta - load3(work, slot + kBlockLanes) * hn::Load(D(), block.lower1 + i + kBlockLanes);
+            if (p + 2 < block.points)
+                delta = delta - load3(work, slot + 2 * kBlockLanes) *
+                                    hn::Load(D(), block.lower2 + i + 2 * kBlockLanes);
+            store3(delta, work, slot);
             take(i, delta);
-            next2 = next1;
-            next1 = delta;
-            lower2 = lower2Next;
-            lower2Next = hn::Load(D(), block.lower2 + i);
-            lower1 = hn::Load(D(), block.lower1 + i);
         }
     }
 }
@@ -171,19 +268,17 @@ HWY_INLINE void solveBend(const BlockView& block, Pulls& pulls, Take&& take) {
 template <Shape kShape>
 void bendBack(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
     Pulls pulls;
-    measurePulls<Bending::implicit, kShape, false>(block, lanes, context, pulls);
+    if constexpr (kShape == Shape::curved) followFrames(block, lanes, context, pulls);
+    measureAhead<kShape>(block, lanes, context, pulls);
     solveBend(block, pulls,
               [&](std::size_t i, V3 delta) { store3(load3(block.position, i) + delta, block.position, i); });
 }
 
 /// Closes a step of backward Euler whose displacement is `rate`.
-HWY_INLINE void finishImplicit(const BlockView& block, const LaneFrame& lanes, const SubstepContext& context,
-                               std::size_t i, V3 rate) {
-    const V3 step = load3(lanes.rootStep, i % kBlockLanes);
-    const V3 after = step + (rate - step) * all(context.velocityShare);
-    const V3 place = load3(block.start, i) + after;
-    store3(place, block.position, i);
-    store3(place - after, block.previous, i);
+HWY_INLINE void finishImplicit(const BlockView& block, std::size_t i, V3 rate) {
+    const V3 start = load3(block.start, i);
+    store3(start + rate, block.position, i);
+    store3(start, block.previous, i);
 }
 
 /// Puts clamped points to the end of their way.
@@ -197,16 +292,16 @@ HWY_INLINE void finishClamped(const BlockView& block) {
 }
 
 /// Backward Euler without stiff forces: symplectic Euler.
-void advanceFree(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
+void advanceFree(const BlockView& block, LaneFrame&, const SubstepContext&) {
     finishClamped(block);
     const std::size_t end = std::size_t{block.points} * kBlockLanes;
     for (std::size_t i = std::size_t{block.firstFree} * kBlockLanes; i < end; i += kWidth)
-        finishImplicit(block, lanes, context, i, load3(block.position, i) - load3(block.previous, i));
+        finishImplicit(block, i, load3(block.position, i) - load3(block.previous, i));
 }
 
 /// Backward Euler (Eq. 9) with angular springs: (M + h² K) d = M u + h² f, where u + h² f/M is the
 /// displacement that the forces left, so that d = u + h² f/M + δ with (M + h² K) δ = −h² K of it.
-void advanceImplicitBend(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
+void advanceImplicitBend(const BlockView& block, LaneFrame&, const SubstepContext&) {
     Pulls pulls;
     const std::uint32_t first = block.firstFree - 1;
     for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
@@ -224,7 +319,7 @@ void advanceImplicitBend(const BlockView& block, LaneFrame& lanes, const Substep
     finishClamped(block);
     solveBend(block, pulls, [&](std::size_t i, V3 delta) {
         const V3 rate = load3(block.position, i) - load3(block.previous, i);
-        finishImplicit(block, lanes, context, i, rate + delta);
+        finishImplicit(block, i, rate + delta);
     });
 }
 

@@ -96,7 +96,7 @@ struct SpringSystem {
 
 /// Backward Euler (Eq. 9) with coil springs: (M − h² ∂f/∂x) d = M u + h² f, block-pentadiagonal, by LDLᵀ.
 template <bool kAngular>
-void advanceImplicitSpring(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
+void advanceImplicitSpring(const BlockView& block, LaneFrame&, const SubstepContext& context) {
     const V zero = hn::Zero(D());
     SpringSystem system;
     for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
@@ -152,7 +152,7 @@ void advanceImplicitSpring(const BlockView& block, LaneFrame& lanes, const Subst
             V3 rate = system.inverse[p] * system.right[p];
             if (p + 1 < block.points) rate = rate - transposedTimes(system.lower[p + 1], next1);
             if (p + 2 < block.points) rate = rate - (system.inverse[p] * next2) * system.second[p + 2];
-            finishImplicit(block, lanes, context, std::size_t{p} * kBlockLanes + lane, rate);
+            finishImplicit(block, std::size_t{p} * kBlockLanes + lane, rate);
             next2 = next1;
             next1 = rate;
         }

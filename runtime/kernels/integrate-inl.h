@@ -17,30 +17,39 @@ HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {
 namespace HWY_NAMESPACE {
 
-/// Position Verlet (Rünz 2012, Eq. 10), where the displacement relative to the moving root decays with the
-/// damping.
-void advanceVerlet(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
-    const V share = all(context.velocityShare);
-    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
-        const V3 step = load3(lanes.rootStep, lane);
-        for (std::uint32_t p = block.firstFree; p < block.points; ++p) {
+/// Slows motion relative to the moving root. First in a substep, so that it acts on velocity alone and leaves
+/// what holds the hair at rest untouched.
+void dampMotion(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
+    const V lost = all(1.0f - context.velocityShare);
+    for (std::uint32_t p = block.firstFree; p < block.points; ++p) {
+        for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
             const std::size_t i = std::size_t{p} * kBlockLanes + lane;
-            const V3 position = load3(block.position, i);
-            const V3 moved = position - load3(block.previous, i) - step;
-            store3(position - step, block.previous, i);
-            store3(position + moved * share, block.position, i);
+            const V3 previous = load3(block.previous, i);
+            const V3 moved = load3(block.position, i) - previous - load3(lanes.rootStep, lane);
+            store3(previous + moved * lost, block.previous, i);
         }
     }
 }
 
-/// Calls visit(index, point, step of the root) for every point of the block, clamped ones too.
-template <class Visit>
-HWY_INLINE void forEachPoint(const BlockView& block, const LaneFrame& lanes, Visit&& visit) {
-    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
-        const V3 step = load3(lanes.rootStep, lane);
-        for (std::uint32_t p = 0; p < block.points; ++p) {
-            visit(std::size_t{p} * kBlockLanes + lane, p, step);
+/// Position Verlet (Rünz 2012, Eq. 10).
+void advanceVerlet(const BlockView& block, LaneFrame& lanes, const SubstepContext&) {
+    for (std::uint32_t p = block.firstFree; p < block.points; ++p) {
+        for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+            const std::size_t i = std::size_t{p} * kBlockLanes + lane;
+            const V3 position = load3(block.position, i);
+            const V3 start = position - load3(lanes.rootStep, lane);
+            store3(start + (position - load3(block.previous, i)), block.position, i);
+            store3(start, block.previous, i);
         }
+    }
+}
+
+/// Calls visit(index, point) for every point of the block, clamped ones too.
+template <class Visit>
+HWY_INLINE void forEachPoint(const BlockView& block, Visit&& visit) {
+    for (std::uint32_t p = 0; p < block.points; ++p) {
+        for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth)
+            visit(std::size_t{p} * kBlockLanes + lane, p);
     }
 }
 
@@ -56,21 +65,15 @@ HWY_INLINE V3 takeKick(const BlockView& block, std::size_t i, std::uint32_t p, V
     return load3(block.position, i) - load3(block.previous, i) - rate;
 }
 
-HWY_INLINE V3 damped(const BlockView& block, const SubstepContext& context, std::uint32_t p, V3 rate,
-                     V3 step) {
-    if (p < block.firstFree) return rate;
-    return step + (rate - step) * all(context.velocityShare);
-}
-
 /// Keeps where the substep starts, relative to the root at its end, and the displacement of the last one;
 /// that of a clamped point is its way in this substep. Forces are evaluated after `kHalves`/2 of the way.
 template <int kHalves>
 void openStep(const BlockView& block, LaneFrame& lanes, const SubstepContext&) {
-    forEachPoint(block, lanes, [&](std::size_t i, std::uint32_t p, V3 step) {
+    forEachPoint(block, [&](std::size_t i, std::uint32_t p) {
         const V3 position = load3(block.position, i);
         const V3 previous = load3(block.previous, i);
         const V3 rate = position - previous;
-        const V3 start = p < block.firstFree ? previous : position - step;
+        const V3 start = p < block.firstFree ? previous : position - load3(lanes.rootStep, i % kBlockLanes);
         store3(start, block.start, i);
         store3(rate, block.rate, i);
         aim(block, i, kHalves == 0 ? start : start + rate * all(0.5f), rate);
@@ -78,27 +81,27 @@ void openStep(const BlockView& block, LaneFrame& lanes, const SubstepContext&) {
 }
 
 /// Explicit Euler (Eq. 7): the way of the old velocity.
-void advanceEuler(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
-    forEachPoint(block, lanes, [&](std::size_t i, std::uint32_t p, V3 step) {
+void advanceEuler(const BlockView& block, LaneFrame&, const SubstepContext&) {
+    forEachPoint(block, [&](std::size_t i, std::uint32_t p) {
         const V3 rate = load3(block.rate, i);
         const V3 kick = takeKick(block, i, p, rate);
-        aim(block, i, load3(block.start, i) + rate, damped(block, context, p, rate + kick, step));
+        aim(block, i, load3(block.start, i) + rate, rate + kick);
     });
 }
 
 /// Drift-kick-drift: the second half drift after the kick halfway. Forces that read velocities see that of
 /// the start: with them the order is one.
-void advanceLeapfrog(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
-    forEachPoint(block, lanes, [&](std::size_t i, std::uint32_t p, V3 step) {
+void advanceLeapfrog(const BlockView& block, LaneFrame&, const SubstepContext&) {
+    forEachPoint(block, [&](std::size_t i, std::uint32_t p) {
         const V3 rate = load3(block.rate, i);
-        const V3 after = damped(block, context, p, rate + takeKick(block, i, p, rate), step);
+        const V3 after = rate + takeKick(block, i, p, rate);
         aim(block, i, load3(block.start, i) + (rate + after) * all(0.5f), after);
     });
 }
 
 /// Velocity Verlet (Eq. 12), first half kick and drift.
-void driftVerlet(const BlockView& block, LaneFrame& lanes, const SubstepContext&) {
-    forEachPoint(block, lanes, [&](std::size_t i, std::uint32_t p, V3) {
+void driftVerlet(const BlockView& block, LaneFrame&, const SubstepContext&) {
+    forEachPoint(block, [&](std::size_t i, std::uint32_t p) {
         const V3 rate = load3(block.rate, i);
         const V3 half = rate + takeKick(block, i, p, rate) * all(0.5f);
         aim(block, i, load3(block.start, i) + half, half);
@@ -107,8 +110,8 @@ void driftVerlet(const BlockView& block, LaneFrame& lanes, const SubstepContext&
 
 /// Velocity Verlet: the constraints have moved points and changed the half-step velocity. Velocity-dependent
 /// forces see the velocity predicted for the end of the step; `start` keeps it.
-void aimVerlet(const BlockView& block, LaneFrame& lanes, const SubstepContext&) {
-    forEachPoint(block, lanes, [&](std::size_t i, std::uint32_t, V3) {
+void aimVerlet(const BlockView& block, LaneFrame&, const SubstepContext&) {
+    forEachPoint(block, [&](std::size_t i, std::uint32_t) {
         const V3 place = load3(block.position, i);
         const V3 half = place - load3(block.previous, i);
         const V3 predicted = half + half - load3(block.rate, i);
@@ -119,19 +122,19 @@ void aimVerlet(const BlockView& block, LaneFrame& lanes, const SubstepContext&) 
 }
 
 /// Velocity Verlet, second half kick.
-void kickVerlet(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
-    forEachPoint(block, lanes, [&](std::size_t i, std::uint32_t p, V3 step) {
+void kickVerlet(const BlockView& block, LaneFrame&, const SubstepContext&) {
+    forEachPoint(block, [&](std::size_t i, std::uint32_t p) {
         const V3 kick = takeKick(block, i, p, load3(block.start, i));
         const V3 rate = load3(block.rate, i) + kick * all(0.5f);
-        aim(block, i, load3(block.position, i), damped(block, context, p, rate, step));
+        aim(block, i, load3(block.position, i), rate);
     });
 }
 
 /// Slope k of the classical Runge-Kutta method, 1…4. With A_k what the forces give at slope k, the velocities
 /// are u, u + A₁/2, u + A₂/2 and u + A₃, so the places need only sums of A.
 template <int kSlope>
-void takeSlope(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
-    forEachPoint(block, lanes, [&](std::size_t i, std::uint32_t p, V3 step) {
+void takeSlope(const BlockView& block, LaneFrame&, const SubstepContext&) {
+    forEachPoint(block, [&](std::size_t i, std::uint32_t p) {
         const V half = all(0.5f);
         const V3 start = load3(block.start, i), rate = load3(block.rate, i);
         V3 here = rate;
@@ -142,7 +145,7 @@ void takeSlope(const BlockView& block, LaneFrame& lanes, const SubstepContext& c
             const V sixth = all(1.0f / 6.0f);
             const V3 place = start + rate + load3(block.sum, i) * sixth;
             const V3 after = rate + (load3(block.sumRate, i) + kick) * sixth;
-            aim(block, i, place, damped(block, context, p, after, step));
+            aim(block, i, place, after);
         } else {
             V3 sum = kick, sumRate = kick;
             if constexpr (kSlope > 1) {
@@ -161,21 +164,24 @@ void takeSlope(const BlockView& block, LaneFrame& lanes, const SubstepContext& c
     });
 }
 
-float fastestOf(const BlockView& block) {
+float fastestOf(const BlockView& block, float h) {
     const V infinite = all(HUGE_VALF), zero = hn::Zero(D());
     // Squares of places farther than this from their root leave single precision.
-    const V farthest = all(1e12f);
+    const V farthest = all(1e12f), rate = all(1.0f / (h * h));
     V most = zero;
-    for (std::uint32_t p = block.firstFree; p < block.points; ++p) {
-        for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+        V mostOfLane = zero;
+        for (std::uint32_t p = block.firstFree; p < block.points; ++p) {
             const std::size_t i = std::size_t{p} * kBlockLanes + lane;
             const V3 position = load3(block.position, i);
             const V3 moved = position - load3(block.previous, i);
             const V squared = dot(moved, moved);
             // Comparisons with what is no number are false.
             const auto sound = hn::And(dot(position, position) < farthest, squared < farthest);
-            most = hn::Max(most, hn::IfThenElse(sound, squared, infinite));
+            mostOfLane = hn::Max(mostOfLane, hn::IfThenElse(sound, squared, infinite));
         }
+        if (block.motion) hn::Store(mostOfLane * rate, D(), block.motion + lane);
+        most = hn::Max(most, mostOfLane);
     }
     return laneMost(most);
 }

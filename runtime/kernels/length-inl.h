@@ -27,63 +27,62 @@ enum class Holding {
 /// one step. Collapsed segments keep a diagonal of at least ¼ of their masses': no overshoot.
 template <Holding kHolding>
 void holdStrands(const BlockView& block) {
-    alignas(64) float ux[kMaxPoints * kWidth], uy[kMaxPoints * kWidth], uz[kMaxPoints * kWidth];
-    alignas(64) float upper[kMaxPoints * kWidth], right[kMaxPoints * kWidth];
+    constexpr std::size_t kSlots = std::size_t{kMaxPoints} * kBlockLanes;
+    alignas(64) float ux[kSlots], uy[kSlots], uz[kSlots], upper[kSlots], right[kSlots], inverses[kBlockLanes];
     const Planes u{ux, uy, uz};
     const V half = all(0.5f);
     const V least = all(0.25f);
     const std::uint32_t first = block.firstFree - 1;
     const std::uint32_t end = block.points - 1;
     const auto rateAt = [&](std::size_t i) { return load3(block.position, i) - load3(block.previous, i); };
-    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
-        const std::size_t clamped = std::size_t{first} * kBlockLanes + lane;
-        V3 parent = load3(block.position, clamped);
-        V3 parentRate = zero3();
-        if constexpr (kHolding == Holding::rates) parentRate = rateAt(clamped);
-        V3 before = zero3();
-        V inverse = hn::Zero(D()), rhs = hn::Zero(D()), weight = hn::Zero(D());
-        for (std::uint32_t s = first; s < end; ++s) {
-            const std::size_t i = std::size_t{s} * kBlockLanes + lane;
-            const V3 point = load3(block.position, i + kBlockLanes);
-            const V3 edge = point - parent;
+    for (std::uint32_t s = first; s < end; ++s) {
+        for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+            const std::size_t i = std::size_t{s} * kBlockLanes + lane, o = i + kBlockLanes;
+            const V3 edge = load3(block.position, o) - load3(block.position, i);
             const V3 gradient = edge * hn::Load(D(), block.inverseLength + i);
             V error;
             if constexpr (kHolding == Holding::places) {
                 error = half * (dot(edge, gradient) - hn::Load(D(), block.length + i));
             } else {
-                const V3 rate = rateAt(i + kBlockLanes);
-                error = dot(gradient, rate - parentRate);
-                parentRate = rate;
+                error = dot(gradient, rateAt(o) - rateAt(i));
             }
-            const V outerWeight = hn::Load(D(), block.inverseMass + i + kBlockLanes);
             const V squared = hn::Max(dot(gradient, gradient), least);
-            const V coupling = dot(before, gradient) * weight;
-            const V up = coupling * inverse;
-            inverse = all(1.0f) / (squared * (weight + outerWeight) - coupling * up);
-            rhs = (error + coupling * rhs) * inverse;
-            const std::size_t k = std::size_t{s} * kWidth;
-            hn::Store(up, D(), upper + k);
-            hn::Store(rhs, D(), right + k);
-            store3(gradient, u, k);
-            before = gradient;
-            parent = point;
-            weight = outerWeight;
-        }
-        V3 after = zero3();
-        V lambda = hn::Zero(D()), up = hn::Zero(D());
-        for (std::uint32_t s = end; s-- > first;) {
-            const std::size_t i = std::size_t{s + 1} * kBlockLanes + lane;
-            const std::size_t k = std::size_t{s} * kWidth;
-            lambda = hn::Load(D(), right + k) + up * lambda;
-            const V3 tension = load3(u, k) * lambda;
-            const V3 move = (after - tension) * hn::Load(D(), block.inverseMass + i);
-            if constexpr (kHolding == Holding::places) {
-                store3(load3(block.position, i) + move, block.position, i);
+            V weight = hn::Load(D(), block.inverseMass + o), up = hn::Zero(D()), inverse;
+            if (s == first) {
+                inverse = all(1.0f) / (squared * weight);
+                error = error * inverse;
             } else {
-                store3(load3(block.previous, i) - move, block.previous, i);
+                const V inner = hn::Load(D(), block.inverseMass + i);
+                const V coupling = dot(load3(u, i - kBlockLanes), gradient) * inner;
+                up = coupling * hn::Load(D(), inverses + lane);
+                inverse = all(1.0f) / (squared * (inner + weight) - coupling * up);
+                error = (error + coupling * hn::Load(D(), right + i - kBlockLanes)) * inverse;
             }
-            after = tension;
-            up = hn::Load(D(), upper + k);
+            hn::Store(inverse, D(), inverses + lane);
+            hn::Store(up, D(), upper + i);
+            hn::Store(error, D(), right + i);
+            store3(gradient, u, i);
+        }
+    }
+    // `right` becomes the multiplier λ, and u·λ the tension.
+    for (std::uint32_t s = end; s-- > first;) {
+        for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+            const std::size_t i = std::size_t{s} * kBlockLanes + lane, o = i + kBlockLanes;
+            V lambda = hn::Load(D(), right + i);
+            V3 after = zero3();
+            if (s + 1 < end) {
+                lambda = lambda + hn::Load(D(), upper + o) * hn::Load(D(), right + o);
+                after = load3(u, o);
+            }
+            const V3 tension = load3(u, i) * lambda;
+            const V3 move = (after - tension) * hn::Load(D(), block.inverseMass + o);
+            if constexpr (kHolding == Holding::places) {
+                store3(load3(block.position, o) + move, block.position, o);
+            } else {
+                store3(load3(block.previous, o) - move, block.previous, o);
+            }
+            hn::Store(lambda, D(), right + i);
+            store3(tension, u, i);
         }
     }
 }

@@ -27,6 +27,8 @@ Stage stageOf(StageId id) {
     switch (id) {
         case StageId::roots:
             return moveRoots;
+        case StageId::damping:
+            return dampMotion;
         case StageId::drag:
             return applyAir<false>;
         case StageId::wind:
@@ -36,9 +38,9 @@ Stage stageOf(StageId id) {
         case StageId::springs:
             return applySprings;
         case StageId::angularCheap:
-            return applyAngular<Shape::held, false>;
+            return applyAngular<Shape::curved, false>;
         case StageId::angularExact:
-            return applyAngular<Shape::held, true>;
+            return applyAngular<Shape::curved, true>;
         case StageId::straightCheap:
             return applyAngular<Shape::straight, false>;
         case StageId::straightExact:
@@ -81,8 +83,6 @@ Stage stageOf(StageId id) {
             return advanceImplicitSpring<true>;
         case StageId::angular:
             return bendBack<Shape::curved>;
-        case StageId::angularHeld:
-            return bendBack<Shape::held>;
         case StageId::angularStraight:
             return bendBack<Shape::straight>;
         case StageId::length:

@@ -23,8 +23,9 @@ SceneDescription sceneOf(const SimulationSettings& settings) {
 
 TEST(Plan, DefaultSceneSaysWhatRunsAndWhy) {
     const EffectPlan p = plan(sceneOf({}));
-    EXPECT_THAT(p.stages(), ElementsAre(StageId::roots, StageId::drag, StageId::gravity, StageId::verlet,
-                                        StageId::angularHeld, StageId::length, StageId::extension));
+    EXPECT_THAT(p.stages(),
+                ElementsAre(StageId::roots, StageId::damping, StageId::drag, StageId::gravity,
+                            StageId::verlet, StageId::angular, StageId::length, StageId::extension));
     EXPECT_EQ(p.why(Effect::gravity), "gravity: on, 9.81 m/s²");
     EXPECT_EQ(p.why(Effect::wind), "wind: off, zero speed");
     EXPECT_EQ(p.why(Effect::angular), "angular: on, stiffness 0.3");
@@ -45,8 +46,9 @@ TEST(Plan, WindTakesStillAirOver) {
     SimulationSettings s;
     s.windSpeed = 3.0f;
     const EffectPlan p = plan(sceneOf(s));
-    EXPECT_THAT(p.stages(), ElementsAre(StageId::roots, StageId::wind, StageId::gravity, StageId::verlet,
-                                        StageId::angularHeld, StageId::length, StageId::extension));
+    EXPECT_THAT(p.stages(),
+                ElementsAre(StageId::roots, StageId::damping, StageId::wind, StageId::gravity,
+                            StageId::verlet, StageId::angular, StageId::length, StageId::extension));
     EXPECT_EQ(p.why(Effect::wind), "wind: on, 3 m/s");
     EXPECT_EQ(p.why(Effect::drag), "drag: off, part of the wind");
     s.airDrag = 0.0f;
