@@ -5,55 +5,12 @@
 #include <cassert>
 #include <cmath>
 
+#include "runtime/checks.h"
+
 namespace hairloom::runtime {
 namespace {
 
 constexpr std::size_t kBlocksPerJob = 4;
-
-std::string whyRefused(const SimulationSettings& settings) {
-    const std::vector<FieldProblem> problems = validate(settings);
-    std::string text;
-    for (const FieldProblem& problem : problems) text += (text.empty() ? "" : "\n") + problem.message;
-    return text;
-}
-
-std::string whyRefused(const StrandsView& strands) {
-    if (strands.offsets.empty()) return "no strand offsets; expected strand count + 1 of them";
-    if (strands.offsets.front() != 0 || strands.offsets.back() != strands.restPositions_ss.size()) {
-        return "strand offsets run from " + std::to_string(strands.offsets.front()) + " to " +
-               std::to_string(strands.offsets.back()) + "; expected 0 to the number of points, " +
-               std::to_string(strands.restPositions_ss.size());
-    }
-    const std::size_t count = strands.offsets.size() - 1;
-    if (!strands.rootRotations_ss.empty() && strands.rootRotations_ss.size() != count) {
-        return std::to_string(strands.rootRotations_ss.size()) + " root rotations for " +
-               std::to_string(count) + " strands; expected none or one each";
-    }
-    for (std::size_t s = 0; s < count; ++s) {
-        if (strands.offsets[s + 1] < strands.offsets[s] + 2 ||
-            strands.offsets[s + 1] > strands.offsets[s] + kMaxPoints) {
-            return "strand " + std::to_string(s) + " runs from point " + std::to_string(strands.offsets[s]) +
-                   " to " + std::to_string(strands.offsets[s + 1]) + "; expected 2 to " +
-                   std::to_string(kMaxPoints) + " points";
-        }
-        Quat rotation;
-        if (!strands.rootRotations_ss.empty()) rotation = strands.rootRotations_ss[s];
-        if (!normalize(rotation)) return "root rotation " + std::to_string(s) + " is not a rotation";
-    }
-    for (std::size_t p = 0; p < strands.restPositions_ss.size(); ++p) {
-        const Float3 at = strands.restPositions_ss[p];
-        // Squares of what lies farther out leave the range of single precision.
-        if (!isFinite(at) || std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)}) > 1e6f) {
-            return "rest position of point " + std::to_string(p) + " is not a number within 1e6 m";
-        }
-    }
-    return {};
-}
-
-/// Makes the rotation one of unit length; false where the root is no place.
-bool usable(RootFrame& root) {
-    return isFinite(root.position) && normalize(root.rotation);
-}
 
 float shareLeft(float h, float timeConstant) {
     return timeConstant > 0.0f ? std::exp(-h / timeConstant) : 1.0f;
