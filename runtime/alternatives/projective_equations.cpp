@@ -17,6 +17,7 @@ constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kLargestAcceleration = 1e6f;  // m/s², of a root
 constexpr float kFastest = 1e6f;              // m/s
 constexpr float kLongestFrame = 1000.0f;      // seconds
+constexpr double kLongestTime = 1e12;         // seconds; later ones leave gusts no phase
 constexpr float kRigid = 1e12f;               // 1/s²; a stiffer joint does not move
 constexpr std::size_t kStrandsPerJob = 16;
 
@@ -159,7 +160,7 @@ void ProjectiveEquations::step(const FrameInput& input) {
     assert(input.roots_ws.size() == strandCount());
     if (!(input.dt > 0.0f) || !std::isfinite(input.dt)) return;
     takeSpheres(input);
-    const double time = std::isfinite(input.time) ? input.time : 0.0;
+    const double time = std::abs(input.time) <= kLongestTime ? input.time : 0.0;
     const Frame frame{&input, windPhases(wind_, time - static_cast<double>(input.dt)),
                       windPhases(wind_, time)};
     const auto strands = [&](std::size_t begin, std::size_t end) {

@@ -11,7 +11,7 @@ namespace {
 constexpr float kPi = std::numbers::pi_v<float>;
 
 float wrapped(float angle) {
-    return std::remainder(angle, 2.0f * kPi);
+    return std::abs(angle) <= kPi ? angle : std::remainder(angle, 2.0f * kPi);
 }
 
 /// Turn of `angle` about an axis of unit length.
@@ -36,6 +36,11 @@ Float3 anyAcross(Float3 v) {
 /// (l/2) / (l²/3): angular acceleration per force, for a force at the middle of a stick.
 float leverOf(const Stick& stick) {
     return 1.5f / stick.length;
+}
+
+/// Where θ moves the direction, per cosφ.
+Float3 acrossMeridian(const Stick& stick, float theta) {
+    return stick.side * std::cos(theta) - stick.along * std::sin(theta);
 }
 
 }  // namespace
@@ -86,14 +91,13 @@ void turnStick(const Stick& stick, StickMotion& motion, Quat frame, const StickF
 
     const Float3 turned = rotate(conjugate(frame), rotationVector(frame * conjugate(motion.frame)));
     const float thetaTurn = dot(turned, stick.pole);
-    const float phiTurn = -dot(turned, polarOf(stick, motion).acrossMeridian);
+    const float phiTurn = -dot(turned, acrossMeridian(stick, motion.theta));
     motion.theta = wrapped(motion.theta - thetaTurn);
     motion.phi = wrapped(motion.phi - phiTurn);
     motion.frame = frame;
 
-    const Float3 acrossMeridian = polarOf(stick, motion).acrossMeridian;
     advance(motion.theta, motion.thetaRate, stick.thetaAim,
-            lever * std::cos(motion.phi) * dot(forces.force, acrossMeridian), thetaTurn);
+            lever * std::cos(motion.phi) * dot(forces.force, acrossMeridian(stick, motion.theta)), thetaTurn);
     const Float3 byPhi = polarOf(stick, motion).byPhi;
     advance(motion.phi, motion.phiRate, stick.phiAim, lever * dot(forces.force, byPhi), phiTurn);
 }

@@ -82,6 +82,14 @@ TEST(HairVolume, SameBitsForAnyNumberOfThreadsAndOrder) {
     EXPECT_FALSE(results[0].velocities == cloud(4000, 0.15f, 2.0f).velocities);
 }
 
+TEST(HairVolume, ThreadsThatMeetInOneCellLoseNothing) {
+    Points points = cloud(200000, 0.004f, 2.0f);
+    for (Float3& p : points.positions) p = p + Float3{0.005f, 0.005f, 0.005f};
+    HairVolume volume = makeVolume(frictionOnly(1.0f), hostWithThreads(4));
+    volume.apply(points.positions, points.velocities, 0.01f);
+    EXPECT_EQ(volume.totals().mass, 200000.0);
+}
+
 TEST(HairVolume, TheOrderOfPointsDoesNotCount) {
     const Points forward = cloud(1000, 0.1f, 2.0f);
     Points a = forward, b = forward;

@@ -103,7 +103,7 @@ TEST(Lattice, AffineDeformationsComeThrough) {
 TEST(Lattice, IsTheUniformQuadraticBSpline) {
     // One strand along x of a lattice of 4: cells run from 0.5 to 2.5 over its length of 0.2 m.
     Strands strands;
-    strands.add({}, {1.0f, 0.0f, 0.0f}, 0.05f, 5);
+    strands.add({}, {1.0f, 0.0f, 0.0f}, 0.025f, 9);
     LatticeSettings s;
     s.nodes = 4;
     Lattice lattice = makeLattice(strands, s);
@@ -114,9 +114,9 @@ TEST(Lattice, IsTheUniformQuadraticBSpline) {
     }
     lattice.setControlPoints(points);
     const std::vector<Float3> now = hairOf(lattice);
-    // Weight of control point 1 at cells 0.5, 1, 1.5, 2, 2.5.
-    const float weights[] = {0.5f, 0.75f, 0.5f, 0.125f, 0.0f};
-    for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(now[i].y, weights[i], 1e-6f) << i;
+    // Weight of control point 1 at cells 0.5, 0.75 … 2.5.
+    const float weights[] = {0.5f, 0.6875f, 0.75f, 0.6875f, 0.5f, 0.28125f, 0.125f, 0.03125f, 0.0f};
+    for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(now[i].y, weights[i], 1e-6f) << i;
 }
 
 TEST(Lattice, ComesBackToRest) {
@@ -146,6 +146,77 @@ TEST(Lattice, AUniformPullDisplacesByForceOverStiffness) {
     for (std::size_t i = 0; i < now.size(); ++i) {
         const Float3 expected = strands.points[i] + s.wind * (2.0f / (rate * rate));
         EXPECT_LT(length(now[i] - expected), 1e-5f) << i;
+    }
+}
+
+/// Solves a dense system by elimination; rows of `a` hold the right-hand side last.
+std::vector<double> solved(std::vector<std::vector<double>> a) {
+    const std::size_t n = a.size();
+    for (std::size_t k = 0; k < n; ++k) {
+        for (std::size_t i = 0; i < n; ++i) {
+            if (i == k) continue;
+            const double factor = a[i][k] / a[k][k];
+            for (std::size_t j = k; j <= n; ++j) a[i][j] -= factor * a[k][j];
+        }
+    }
+    std::vector<double> x(n);
+    for (std::size_t i = 0; i < n; ++i) x[i] = a[i][n] / a[i][i];
+    return x;
+}
+
+TEST(Lattice, AStepIsTheImplicitEulerStep) {
+    const Strands strands = cap();
+    LatticeSettings s;
+    s.nodes = 4;
+    s.substeps = 1;
+    s.rootFrequency = s.tipFrequency = 1.0f;
+    s.couplingFrequency = 6.0f;
+    s.dampingTime = 0.25f;
+    s.airDrag = 3.0f;
+    s.wind = {0.0f, 2.0f, 0.0f};
+    Lattice lattice = makeLattice(strands, s);
+    const std::size_t n = 4, count = 64;
+    std::vector<Float3> rest(count), now(count);
+    lattice.readControlPoints(rest);
+    for (std::size_t i = 0; i < count; ++i)
+        now[i] = rest[i] + Float3{0.0f, 0.05f * std::sin(static_cast<float>(i * i)), 0.0f};
+    lattice.setControlPoints(now);
+    std::vector<double> d(count), u(count, 0.0);
+    for (std::size_t i = 0; i < count; ++i) d[i] = static_cast<double>(now[i].y - rest[i].y);
+
+    // (1 + h/τ + h c + h² K) e = h u + h² (c w − K d), as in docs/engine.md, along y.
+    const double h = 0.05, turn = 2.0 * std::numbers::pi, attached = turn * turn, coupled = attached * 36.0;
+    std::vector<std::vector<double>> k(count, std::vector<double>(count, 0.0));
+    const auto couple = [&](std::size_t i, std::size_t j) {
+        k[i][i] += coupled, k[j][j] += coupled;
+        k[i][j] -= coupled, k[j][i] -= coupled;
+    };
+    for (std::size_t i = 0; i < count; ++i) {
+        k[i][i] += attached;
+        if (i % n + 1 < n) couple(i, i + 1);
+        if (i / n % n + 1 < n) couple(i, i + n);
+        if (i / n / n + 1 < n) couple(i, i + n * n);
+    }
+    for (int step = 0; step < 3; ++step) {
+        std::vector<std::vector<double>> system(count, std::vector<double>(count + 1, 0.0));
+        for (std::size_t i = 0; i < count; ++i) {
+            double pull = 3.0 * 2.0;
+            for (std::size_t j = 0; j < count; ++j) {
+                system[i][j] = h * h * k[i][j] + (i == j ? 1.0 + h * (4.0 + 3.0) : 0.0);
+                pull -= k[i][j] * d[j];
+            }
+            system[i][count] = h * u[i] + h * h * pull;
+        }
+        const std::vector<double> change = solved(system);
+        for (std::size_t i = 0; i < count; ++i) {
+            d[i] += change[i];
+            u[i] = change[i] / h;
+        }
+        lattice.step({}, 0.05f);
+        lattice.readControlPoints(now);
+        for (std::size_t i = 0; i < count; ++i) {
+            EXPECT_NEAR(static_cast<double>(now[i].y - rest[i].y), d[i], 2e-6) << step << " " << i;
+        }
     }
 }
 

@@ -45,18 +45,19 @@ Strands oneStick(Float3 direction, float l) {
     return strands;
 }
 
-/// Period of a stick that is let go at `angle` from the vertical in the plane of `sideways`.
-double measuredPeriod(Float3 sideways, float angle, float l) {
-    const Strands strands = oneStick({0.0f, -1.0f, 0.0f}, l);
+/// Period of a stick of 0.25 m that is let go 0.05 rad from its equilibrium towards `sideways`, in a gravity
+/// that is turned from the stick's rest direction, −y, by `tilt` towards z.
+double measuredPeriod(Float3 sideways, float tilt) {
+    const Strands strands = oneStick({0.0f, -1.0f, 0.0f}, 0.25f);
+    const Float3 down{0.0f, -std::cos(tilt), std::sin(tilt)};
     SimulationSettings s = bare();
     s.substeps = 64;
-    // The authored shape hangs straight down; a pull sideways holds it aside before it is let go.
-    s.gravity = sideways * (9.81f * std::sin(angle)) + Float3{0.0f, -9.81f * std::cos(angle), 0.0f};
+    s.gravity = sideways * (9.81f * std::sin(0.05f)) + down * (9.81f * std::cos(0.05f));
     s.dampingTime = 0.05f;
     ProjectiveEquations sticks = makeSticks(strands, s);
     run(sticks, strands, 300);
-    EXPECT_NEAR(dot(placesOf(sticks)[1], sideways), l * std::sin(angle), 1e-4f * l);
-    s.gravity = {0.0f, -9.81f, 0.0f};
+    EXPECT_NEAR(dot(placesOf(sticks)[1], sideways), 0.25f * std::sin(0.05f), 2e-5f);
+    s.gravity = down * 9.81f;
     s.dampingTime = 0.0f;
     EXPECT_EQ(sticks.setSettings(s), "");
     std::vector<double> crossings;
@@ -68,7 +69,7 @@ double measuredPeriod(Float3 sideways, float angle, float l) {
             crossings.push_back((f + static_cast<double>(before / (before - now))) / 180.0);
         before = now;
     }
-    EXPECT_GE(crossings.size(), 4u);
+    if (crossings.size() < 3) return 0.0;
     return (crossings.back() - crossings.front()) / static_cast<double>(crossings.size() - 1);
 }
 
@@ -76,8 +77,14 @@ TEST(Projective, AStickIsThePhysicalPendulumInEitherAngle) {
     // T = 2π √(I / (m g l/2)) = 2π √(2 l / (3 g)), and 1 + φ₀²/16 for the amplitude.
     const double expected =
         2.0 * std::numbers::pi * std::sqrt(2.0 * 0.25 / (3.0 * 9.81)) * (1.0 + 0.05 * 0.05 / 16.0);
-    EXPECT_NEAR(measuredPeriod({1.0f, 0.0f, 0.0f}, 0.05f, 0.25f), expected, 0.003 * expected);
-    EXPECT_NEAR(measuredPeriod({0.0f, 0.0f, 1.0f}, 0.05f, 0.25f), expected, 0.003 * expected);
+    EXPECT_NEAR(measuredPeriod({1.0f, 0.0f, 0.0f}, 0.0f), expected, 0.003 * expected);
+    EXPECT_NEAR(measuredPeriod({0.0f, 0.0f, 1.0f}, 0.0f), expected, 0.003 * expected);
+}
+
+TEST(Projective, OffTheEquatorThetaIsSlowerByTheStatedCosine) {
+    // Eq. 1 with a constant c and the projected lever: θ'' = −(3g/2l) cos²φ θ at the inclination φ.
+    const double expected = 2.0 * std::numbers::pi * std::sqrt(2.0 * 0.25 / (3.0 * 9.81)) / std::cos(0.8);
+    EXPECT_NEAR(measuredPeriod({1.0f, 0.0f, 0.0f}, 0.8f), expected, 0.005 * expected);
 }
 
 TEST(Projective, SideWindHoldsAStickAtItsClosedFormAngle) {
@@ -177,13 +184,15 @@ TEST(Projective, AuthoredShapeComesBackAndTurnsWithTheRoot) {
 }
 
 TEST(Projective, WithoutTorqueAStickKeepsItsDirectionWhileItsRootTurns) {
-    const Strands strands = oneStick({1.0f, 0.0f, 0.0f}, 0.1f);
-    ProjectiveEquations sticks = makeSticks(strands, bare());
-    for (int f = 1; f <= 60; ++f) {
-        const auto roots = strands.roots({}, turnAbout({0.0f, 0.0f, 1.0f}, 0.02f * static_cast<float>(f)));
-        sticks.step({1.0f / 60.0f, 0.0, roots, {}});
+    for (const Float3 axis : {Float3{0, 0, 1}, Float3{0, 1, 0}, Float3{1, 0, 0}, Float3{0, 0.6f, -0.8f}}) {
+        const Strands strands = oneStick({1.0f, 0.0f, 0.0f}, 0.1f);
+        ProjectiveEquations sticks = makeSticks(strands, bare());
+        for (int f = 1; f <= 10; ++f) {
+            const auto roots = strands.roots({}, turnAbout(axis, 0.02f * static_cast<float>(f)));
+            sticks.step({1.0f / 60.0f, 0.0, roots, {}});
+        }
+        EXPECT_LT(length(placesOf(sticks)[1] - Float3{0.1f, 0.0f, 0.0f}), 3e-4f) << axis.x << axis.y;
     }
-    EXPECT_LT(length(placesOf(sticks)[1] - Float3{0.1f, 0.0f, 0.0f}), 2e-4f);
 }
 
 TEST(Projective, RigidHairMovesAsItsRootDoes) {
@@ -250,6 +259,34 @@ TEST(Projective, TipsLeaveSpheresAndSticksKeepTheirLength) {
     EXPECT_LT(worstStretch(strands, placesOf(sticks)), 2e-5);
 }
 
+TEST(Projective, AStickThatRestedOnASphereStartsFromRest) {
+    const Strands strands = oneStick({1.0f, 0.0f, 0.0f}, 0.1f);
+    SimulationSettings s = bare();
+    s.gravity = {0.0f, -9.81f, 0.0f};
+    s.pearlRadiusTip = 0.0f;
+    ProjectiveEquations sticks = makeSticks(strands, s);
+    const std::vector<Sphere> spheres{{{0.1f, -0.05f, 0.0f}, 0.05f}};
+    for (int f = 0; f < 120; ++f) sticks.step({1.0f / 60.0f, 0.0, strands.roots(), spheres});
+    EXPECT_NEAR(length(placesOf(sticks)[1] - spheres[0].center_ws), 0.05f, 1e-5f);
+    const float before = placesOf(sticks)[1].y;
+    sticks.step({1.0f / 60.0f, 0.0, strands.roots(), {}});
+    // ½ · (3/2) g t² and a little for the steps' sizes: a free fall, not two seconds' speed.
+    EXPECT_NEAR(before - placesOf(sticks)[1].y, 0.75f * 9.81f / 3600.0f, 4e-4f);
+}
+
+TEST(Projective, BeyondThePoleAPushGoesTheNearWay) {
+    Stick stick = makeStick({0.1f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f});
+    StickMotion motion;
+    motion.theta = 0.2f;
+    motion.phi = 2.0f;
+    const Float3 tip = polarOf(stick, motion).direction * 0.1f;
+    const Float3 centre = tip + Float3{0.01f, 0.002f, 0.003f};
+    pushOut(stick, motion, centre, 0.03f);
+    EXPECT_NEAR(length(polarOf(stick, motion).direction * 0.1f - centre), 0.03f, 1e-6f);
+    EXPECT_NEAR(motion.phi, 2.0f, 0.5f);
+    EXPECT_NEAR(motion.theta, 0.2f, 0.8f);
+}
+
 TEST(Projective, AtThePoleAStickStaysSoundAndComesBack) {
     // The pole of hair along x stands on z: wind blows the stick over it and beyond.
     const Strands strands = oneStick({1.0f, 0.0f, 0.0f}, 0.03f);
@@ -266,7 +303,7 @@ TEST(Projective, AtThePoleAStickStaysSoundAndComesBack) {
 }
 
 TEST(Projective, SameBitsForAnyNumberOfThreads) {
-    const Strands strands = tuft(200, true);
+    const Strands strands = tuft(80, true);
     SimulationSettings s;
     s.windSpeed = 8.0f;
     std::vector<std::vector<Float3>> results;
@@ -312,8 +349,9 @@ TEST(Projective, WhatIsNoNumberStaysOutside) {
                                       {{0, 0, 0}, huge},
                                       {strands.points[0], 0.1f}};
     const float times[] = {1.0f / 60.0f, 1e-40f, huge, nan, -1.0f, std::numeric_limits<float>::infinity()};
+    const double clocks[] = {std::numeric_limits<double>::quiet_NaN(), 1e308, -1e308};
     for (int f = 0; f < 60; ++f) {
-        sticks.step({times[f % 6], std::numeric_limits<double>::quiet_NaN(), roots, spheres});
+        sticks.step({times[f % 6], clocks[f % 3], roots, spheres});
         ASSERT_LT(worstStretch(strands, placesOf(sticks)), 2e-5) << f;
         std::vector<Float3> velocities(sticks.pointCount());
         sticks.readVelocities(velocities);
