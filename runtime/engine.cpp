@@ -6,64 +6,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "runtime/checks.h"
+
 namespace hairloom::runtime {
 namespace {
 
 constexpr std::size_t kBlocksPerJob = 4;
-/// Metres; squares of what lies farther out leave the range of single precision.
-constexpr float kFarthest = 1e6f;
-
-std::string whyRefused(const SimulationSettings& settings) {
-    const std::vector<FieldProblem> problems = validate(settings);
-    std::string text;
-    for (const FieldProblem& problem : problems) text += (text.empty() ? "" : "\n") + problem.message;
-    return text;
-}
-
-std::string whyRefused(const StrandsView& strands) {
-    if (strands.offsets.empty()) return "no strand offsets; expected strand count + 1 of them";
-    if (strands.offsets.front() != 0 || strands.offsets.back() != strands.restPositions_ss.size()) {
-        return "strand offsets run from " + std::to_string(strands.offsets.front()) + " to " +
-               std::to_string(strands.offsets.back()) + "; expected 0 to the number of points, " +
-               std::to_string(strands.restPositions_ss.size());
-    }
-    const std::size_t count = strands.offsets.size() - 1;
-    if (!strands.rootRotations_ss.empty() && strands.rootRotations_ss.size() != count) {
-        return std::to_string(strands.rootRotations_ss.size()) + " root rotations for " +
-               std::to_string(count) + " strands; expected none or one each";
-    }
-    for (std::size_t s = 0; s < count; ++s) {
-        if (strands.offsets[s + 1] < strands.offsets[s] + 2 ||
-            strands.offsets[s + 1] > strands.offsets[s] + kMaxPoints) {
-            return "strand " + std::to_string(s) + " runs from point " + std::to_string(strands.offsets[s]) +
-                   " to " + std::to_string(strands.offsets[s + 1]) + "; expected 2 to " +
-                   std::to_string(kMaxPoints) + " points";
-        }
-        Quat rotation;
-        if (!strands.rootRotations_ss.empty()) rotation = strands.rootRotations_ss[s];
-        if (!normalize(rotation)) return "root rotation " + std::to_string(s) + " is not a rotation";
-    }
-    if (!strands.masses.empty() && strands.masses.size() != strands.restPositions_ss.size()) {
-        return std::to_string(strands.masses.size()) + " masses for " +
-               std::to_string(strands.restPositions_ss.size()) + " points; expected none or one each";
-    }
-    for (std::size_t p = 0; p < strands.masses.size(); ++p) {
-        if (!(strands.masses[p] > 0.0f) || !std::isfinite(strands.masses[p]))
-            return "mass of point " + std::to_string(p) + " is not a number above 0";
-    }
-    for (std::size_t p = 0; p < strands.restPositions_ss.size(); ++p) {
-        const Float3 at = strands.restPositions_ss[p];
-        if (!isFinite(at) || std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)}) > kFarthest) {
-            return "rest position of point " + std::to_string(p) + " is not a number within 1e6 m";
-        }
-    }
-    return {};
-}
-
-/// Makes the rotation one of unit length; false where the root is no place.
-bool usable(RootFrame& root) {
-    return isFinite(root.position) && normalize(root.rotation);
-}
 
 float shareLeft(float h, float timeConstant) {
     return timeConstant > 0.0f ? std::exp(-h / timeConstant) : 1.0f;
@@ -106,7 +54,7 @@ void Engine::reset(std::span<const RootFrame> roots_ws) {
         for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
             const std::uint32_t strand = shape_->blocks[b].strandOfLane[lane];
             RootFrame root = roots_ws[strand];
-            if (!usable(root)) root = shape_->restRoots[strand];
+            if (!usableWithin(root, kFarthest)) root = shape_->restRoots[strand];
             const float values[kRootRows] = {root.position.x, root.position.y, root.position.z,
                                              root.rotation.x, root.rotation.y, root.rotation.z,
                                              root.rotation.w};
@@ -194,7 +142,7 @@ void Engine::takeRoots(const FrameInput& input) {
         for (std::uint32_t lane = 0; lane < block.strands; ++lane) {
             const auto row = [&](std::size_t r) { return rows[r * kBlockLanes + lane]; };
             RootFrame root = input.roots_ws[block.strandOfLane[lane]];
-            if (!usable(root)) {
+            if (!usableWithin(root, kFarthest)) {
                 ++report_.rejectedRoots;
                 continue;
             }
@@ -440,13 +388,13 @@ void Engine::enterFrame(std::size_t block, const BlockView& view, LaneFrame& lan
         const auto row = [&](std::size_t r) -> float& { return rows[r * kBlockLanes + lane]; };
         RootFrame from{{row(0), row(1), row(2)}, {row(3), row(4), row(5), row(6)}};
         RootFrame to = frame.input->roots_ws[shape_->blocks[block].strandOfLane[lane]];
-        if (!usable(to)) to = from;
+        if (!usableWithin(to, kFarthest)) to = from;
         if (!(length(to.position - from.position) <= settings_.teleportDistance)) {
             const Quat turn = to.rotation * conjugate(from.rotation);
-            if (view.tank) view.tank[lane] = kNoCurve;
             for (std::uint32_t p = 0; p < view.points; ++p) {
                 const std::size_t i = std::size_t{p} * kBlockLanes + lane;
-                for (const Planes& planes : {view.position, view.previous}) {
+                for (const Planes& planes : {view.position, view.previous, view.curve}) {
+                    if (!planes.x) continue;
                     const Float3 turned = rotate(turn, Float3{planes.x[i], planes.y[i], planes.z[i]});
                     planes.x[i] = turned.x;
                     planes.y[i] = turned.y;
