@@ -43,8 +43,20 @@ inline runtime::SimulationSettings bareSettings() {
     return s;
 }
 
-inline reference::Solver solverOf(const reference::Strands& strands, const runtime::SimulationSettings& s) {
-    Result<reference::Solver> made = reference::Solver::make(strands, s);
+/// A curl around the x axis.
+inline reference::Strands helixStrand(std::size_t segments, double length, double radius, double turns) {
+    reference::Strands strands = straightStrand(segments, length);
+    for (Vec3d& x : strands.restPositions_ss) {
+        const double angle = kTau * turns * x.x() / length;
+        x += radius * Vec3d(0.0, 1.0 - std::cos(angle), std::sin(angle));
+    }
+    return strands;
+}
+
+inline reference::Solver solverOf(
+    const reference::Strands& strands, const runtime::SimulationSettings& s,
+    reference::BendingForce bendingForce = reference::BendingForce::framesHeld) {
+    Result<reference::Solver> made = reference::Solver::make(strands, s, bendingForce);
     if (!made) ADD_FAILURE() << made.error().message();
     return std::move(made).value();
 }

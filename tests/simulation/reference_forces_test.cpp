@@ -116,6 +116,40 @@ TEST(ReferenceForces, AreTheGradientOfTheirEnergyWhereFramesDoNotCount) {
     }
 }
 
+TEST(ReferenceForces, WholeGradientOfACurledStrandIsThatOfItsEnergy) {
+    std::mt19937 random(4);
+    for (const std::uint32_t clamped : {1u, 2u}) {
+        for (const auto method : {runtime::AngularMethod::cheap, runtime::AngularMethod::exact}) {
+            runtime::SimulationSettings s = bareSettings();
+            s.clampedPoints = clamped;
+            s.angularStiffness = 0.5f;
+            s.angularMethod = method;
+            const reference::Physics physics(s, reference::BendingForce::gradient);
+            const std::vector<Vec3d> rest = randomChain(random, 8, 0.02);
+            const reference::StrandShape shape = reference::makeShape(edgesOf(rest), {}, s, physics.gravity,
+                                                                      reference::BendingForce::gradient);
+            std::vector<Vec3d> x = randomChain(random, 8, 0.02);
+            if (clamped == 2) x[1] = rest[1];
+            const reference::Surroundings around{0.0, reference::Quaterniond::Identity(), Vec3d::Zero(), {}};
+            std::vector<Vec3d> force(8, Vec3d::Zero());
+            reference::addForces(physics, shape, x, std::vector<Vec3d>(8, Vec3d::Zero()), around, force);
+            for (std::size_t p = clamped; p < 8; ++p) {
+                for (int c = 0; c < 3; ++c) {
+                    const double step = 1e-7, was = x[p][c];
+                    const auto energyAt = [&](double place) {
+                        x[p][c] = place;
+                        const auto e = reference::potentials(physics, shape, x, around.rotation);
+                        x[p][c] = was;
+                        return e.gravity + e.angular;
+                    };
+                    const double slope = (energyAt(was + step) - energyAt(was - step)) / (2.0 * step);
+                    EXPECT_NEAR(force[p][c], -slope, 1e-5 * (1.0 + force[p].norm())) << p;
+                }
+            }
+        }
+    }
+}
+
 TEST(ReferenceForces, RestShapeInAnyPlaceBearsNoForce) {
     std::mt19937 random(11);
     runtime::SimulationSettings s = bareSettings();

@@ -16,6 +16,7 @@ void runFrames(Solver solver, std::span<const Root> start, std::span<const Frame
     for (const Frame& frame : frames) {
         const StepReport report = solver.step(frame, options);
         result.report.steps += report.steps;
+        result.report.halved += report.halved;
         result.report.failed += report.failed;
         result.report.contacts += report.contacts;
         result.report.largestStretch = std::max(result.report.largestStretch, report.largestStretch);
@@ -45,8 +46,9 @@ double largestDistance(const std::vector<std::vector<Vec3d>>& a, const std::vect
 }  // namespace
 
 Result<Convergence> converged(const Strands& strands, const runtime::SimulationSettings& settings,
-                              std::span<const Root> start, std::span<const Frame> frames, const Goal& goal) {
-    const Result<Solver> solver = Solver::make(strands, settings);
+                              std::span<const Root> start, std::span<const Frame> frames, const Goal& goal,
+                              BendingForce bendingForce) {
+    const Result<Solver> solver = Solver::make(strands, settings, bendingForce);
     if (!solver) return tl::unexpected(solver.error());
     Convergence result;
     result.change = std::numeric_limits<double>::infinity();

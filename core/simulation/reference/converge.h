@@ -29,6 +29,6 @@ struct Convergence {
 /// the tolerance. Chaotic motion never gets there; `reached` says so. Errors: as Solver::make.
 Result<Convergence> converged(const Strands& strands, const runtime::SimulationSettings& settings,
                               std::span<const Root> start, std::span<const Frame> frames,
-                              const Goal& goal = {});
+                              const Goal& goal = {}, BendingForce bendingForce = BendingForce::framesHeld);
 
 }  // namespace hairloom::reference

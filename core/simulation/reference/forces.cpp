@@ -57,6 +57,34 @@ void addAngular(const Physics& physics, const StrandShape& shape, const std::vec
     }
 }
 
+/// What framesHeld leaves out: the energies change also because a segment turns the frames after it. Segment
+/// i takes its frame by the shortest arc from a = F_{i−1} d_i to b = t_i, so that with δb the frame turns by
+///   ω_i = b × δb + b (g · ω_{i−1} − k · δb),   g = (a + b)/(1 + a·b),   k = (a × b)/(1 + a·b),
+/// and the energy of joint i+1 by N_i · ω_i, N_i = −κ_{i+1} (F_i c_{i+1}) × r_{i+1}. From the tip to the
+/// root, N_i gathers what ω_i does farther out.
+void addFrameForces(const Physics& physics, const StrandShape& shape, const std::vector<Vec3d>& x,
+                    const Surroundings& around, std::vector<Vec3d>& force) {
+    const std::vector<Quaterniond> frames = carriedFrames(shape, x, around.rotation);
+    const auto scaled = [&](std::size_t j) -> Vec3d {
+        const Vec3d e = x[j + 1] - x[j];
+        return e / (physics.exactDirection ? e.norm() : shape.lengths[j]);
+    };
+    Vec3d fromBeyond = Vec3d::Zero();
+    for (std::size_t i = shape.segments() - 1; i-- > shape.firstFree - 1;) {
+        const Vec3d bend = frames[i] * shape.bend[i + 1];
+        const Vec3d bent = scaled(i + 1) - scaled(i) - bend;
+        const Vec3d onFrame = fromBeyond - shape.stiffness[i + 1] * bend.cross(bent);
+        const Vec3d e = x[i + 1] - x[i];
+        const Vec3d b = e.normalized();
+        const Vec3d a = (i == 0 ? around.rotation : frames[i - 1]) * shape.edges[i].normalized();
+        const double scale = 1.0 / (1.0 + a.dot(b)), twist = onFrame.dot(b);
+        const Vec3d gradient = (onFrame.cross(b) - twist * scale * a.cross(b)) / e.norm();
+        force[i + 1] -= gradient;
+        force[i] += gradient;
+        fromBeyond = twist * scale * (a + b);
+    }
+}
+
 /// Eq. 3 between two points.
 void addSpring(const std::vector<Vec3d>& x, std::size_t p, std::size_t q, double stiffness, double rest,
                std::vector<Vec3d>& force) {
@@ -184,6 +212,7 @@ void addForces(const Physics& physics, const StrandShape& shape, const std::vect
         });
     }
     if (physics.angularSprings) addAngular(physics, shape, x, v, around, force);
+    if (physics.angularSprings && physics.framesTurn) addFrameForces(physics, shape, x, around, force);
     forEachSpring(physics, shape, [&](std::size_t p, std::size_t q, double stiffness, double rest) {
         addSpring(x, p, q, stiffness, rest, force);
     });

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "core/simulation/reference/contact.h"
 #include "core/simulation/reference/forces.h"
@@ -12,6 +13,8 @@
 
 namespace hairloom::reference {
 namespace {
+
+constexpr int kMostHalvings = 6;
 
 Vec3d toDouble(runtime::Float3 v) {
     return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
@@ -109,9 +112,10 @@ Frame frameOf(const runtime::FrameInput& input) {
     return frame;
 }
 
-Result<Solver> Solver::make(const Strands& strands, const runtime::SimulationSettings& settings) {
+Result<Solver> Solver::make(const Strands& strands, const runtime::SimulationSettings& settings,
+                            BendingForce bendingForce) {
     if (Status status = check(strands, settings); !status) return tl::unexpected(status.error());
-    Solver solver(settings);
+    Solver solver(Physics(settings, bendingForce));
     for (std::size_t s = 0; s + 1 < strands.offsets.size(); ++s) {
         const std::uint32_t first = strands.offsets[s], end = strands.offsets[s + 1];
         Root root{strands.restPositions_ss[first], Quaterniond::Identity()};
@@ -125,7 +129,7 @@ Result<Solver> Solver::make(const Strands& strands, const runtime::SimulationSet
         if (!masses.empty()) masses = masses.subspan(first, end - first);
         const Vec3d gravityAtRest = root.rotation.conjugate() * solver.physics_.gravity;
         solver.strands_.push_back(
-            {makeShape(std::move(edges), masses, settings, gravityAtRest), {}, root, {}});
+            {makeShape(std::move(edges), masses, settings, gravityAtRest, bendingForce), {}, root, {}});
         solver.restRoots_.push_back(root);
     }
     solver.reset(solver.restRoots_);
@@ -208,27 +212,38 @@ void Solver::stepStrand(Strand& strand, const Path& path, const StepOptions& opt
     for (std::uint32_t i = 0; i < options.substeps; ++i) {
         const double from = static_cast<double>(i) * share, to = static_cast<double>(i + 1) * share;
         if (options.order < 4 || impulses) {
-            advance(strand, path, from, to, options.order == 1 ? 1.0 : 0.5, report);
+            advance(strand, path, from, to, options.order == 1 ? 1.0 : 0.5, report, kMostHalvings);
             continue;
         }
         // Suzuki 1990: S(a h)² S((1 − 4a) h) S(a h)².
         const double a = 1.0 / (4.0 - std::cbrt(4.0));
         const double parts[] = {0.0, a, 2.0 * a, 1.0 - 2.0 * a, 1.0 - a, 1.0};
         for (std::size_t k = 0; k + 1 < std::size(parts); ++k)
-            advance(strand, path, from + share * parts[k], from + share * parts[k + 1], 0.5, report);
+            advance(strand, path, from + share * parts[k], from + share * parts[k + 1], 0.5, report,
+                    kMostHalvings);
     }
     if (physics_.lengthHeld && shape.firstFree < shape.points())
         report.largestStretch = std::max(report.largestStretch, largestStretch(shape, strand.state.x));
 }
 
 void Solver::advance(Strand& strand, const Path& path, double from, double to, double weight,
-                     StepReport& report) const {
+                     StepReport& report, int halvings) const {
     const double within = from + weight * (to - from), h = (to - from) * path.dt;
     const std::vector<SphereNow> spheres = path.spheres(within);
     const Surroundings around{path.endTime - (1.0 - within) * path.dt, path.rotation(within), path.velocity(),
                               spheres};
-    const bool solved = substep(physics_, strand.shape, h, weight, around, path.clamped(strand.shape, to),
-                                strand.state, strand.work);
+    StrandState next = strand.state;
+    const bool solved =
+        substep(physics_, strand.shape, h, weight, around, path.clamped(strand.shape, to), next, strand.work);
+    if (!solved) strand.work = {};
+    if (!solved && halvings > 0) {
+        ++report.halved;
+        const double middle = 0.5 * (from + to);
+        advance(strand, path, from, middle, weight, report, halvings - 1);
+        advance(strand, path, middle, to, weight, report, halvings - 1);
+        return;
+    }
+    strand.state = std::move(next);
     ++report.steps;
     report.failed += solved ? 0 : 1;
     if (physics_.penalty || spheres.empty()) return;

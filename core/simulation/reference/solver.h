@@ -64,9 +64,10 @@ struct StepOptions {
 /// How well the equations of a frame were solved.
 struct StepReport {
     std::uint64_t steps = 0;
-    std::uint64_t failed = 0;  ///< steps whose iteration did not converge, or whose lengths are off by 1e-12
-    double largestStretch = 0.0;      ///< ||e|/l − 1| at the end of the frame
-    std::uint64_t contacts = 0;       ///< points that touched a sphere, summed over steps
+    std::uint64_t halved = 0;     ///< steps whose iteration did not converge and that were taken in halves
+    std::uint64_t failed = 0;     ///< steps that did not converge, or whose lengths are off by 1e-12, even so
+    double largestStretch = 0.0;  ///< ||e|/l − 1| at the end of the frame
+    std::uint64_t contacts = 0;   ///< points that touched a sphere, summed over steps
     double deepestPenetration = 0.0;  ///< left after a step, m
     double fastestApproach = 0.0;     ///< left after a step, m/s
 };
@@ -82,7 +83,8 @@ class Solver {
     /// Strands at rest in their rest places. Errors: settings out of range, angularStiffness 1 (no finite
     /// stiffness), offsets that do not fit, a strand of fewer than 2 points, a segment without length, a
     /// value that is no number, masses that are not above 0.
-    static Result<Solver> make(const Strands& strands, const runtime::SimulationSettings& settings);
+    static Result<Solver> make(const Strands& strands, const runtime::SimulationSettings& settings,
+                               BendingForce bendingForce = BendingForce::framesHeld);
 
     /// Rest shape on these roots, without speed.
     void reset(std::span<const Root> roots_ws);
@@ -108,10 +110,10 @@ class Solver {
     };
     struct Path;
 
-    explicit Solver(const runtime::SimulationSettings& settings) : physics_(settings) {}
+    explicit Solver(const Physics& physics) : physics_(physics) {}
     void stepStrand(Strand& strand, const Path& path, const StepOptions& options, StepReport& report) const;
-    void advance(Strand& strand, const Path& path, double from, double to, double weight,
-                 StepReport& report) const;
+    void advance(Strand& strand, const Path& path, double from, double to, double weight, StepReport& report,
+                 int halvings) const;
 
     Physics physics_;
     std::vector<Strand> strands_;

@@ -51,24 +51,32 @@ void setStiffness(StrandShape& shape, const std::vector<double>& h, double atRoo
     }
 }
 
-/// c_j, less the bending H_j/κ_j in which the authored shape carries `gravity`.
-void setBend(StrandShape& shape, const Vec3d& gravity) {
-    Vec3d moment = Vec3d::Zero();
+/// c_j, less the bending H_j/κ_j in which the authored shape carries `gravity`. Where the frames turn, the
+/// moment N_j on the frame of a segment (see forces.cpp, there with a = b) takes part in the balance.
+void setBend(StrandShape& shape, const Vec3d& gravity, BendingForce bendingForce) {
+    const std::size_t n = shape.segments();
+    Vec3d moment = Vec3d::Zero(), onFrame = Vec3d::Zero();
     double massBeyond = 0.0;
-    for (std::size_t j = shape.segments(); j-- > 0;) {
+    for (std::size_t j = n; j-- > 0;) {
         const Vec3d direction = shape.edges[j] / shape.lengths[j];
         massBeyond += shape.masses[j + 1];
-        moment = across(direction, moment + gravity * (massBeyond * shape.lengths[j]));
+        Vec3d carried = moment + gravity * (massBeyond * shape.lengths[j]);
+        if (bendingForce == BendingForce::gradient && j + 1 < n) {
+            const Vec3d next = shape.edges[j + 1] / shape.lengths[j + 1];
+            onFrame = next * next.dot(onFrame) - (next - direction).cross(moment);
+            carried -= onFrame.cross(direction);
+        }
+        moment = across(direction, carried);
         shape.bend[j] = j == 0 ? direction : Vec3d(direction - shape.edges[j - 1] / shape.lengths[j - 1]);
         if (!(shape.stiffness[j] > 0.0)) continue;
-        const Vec3d carried = moment / shape.stiffness[j];
-        shape.bend[j] -= carried / std::max(1.0, carried.norm());
+        const Vec3d bending = moment / shape.stiffness[j];
+        shape.bend[j] -= bending / std::max(1.0, bending.norm());
     }
 }
 
 }  // namespace
 
-Physics::Physics(const runtime::SimulationSettings& s)
+Physics::Physics(const runtime::SimulationSettings& s, BendingForce bendingForce)
     : gravity(toDouble(s.gravity)),
       airDrag(static_cast<double>(s.airDrag)),
       dampingRate(s.dampingTime > 0.0f ? 1.0 / static_cast<double>(s.dampingTime) : 0.0),
@@ -76,6 +84,7 @@ Physics::Physics(const runtime::SimulationSettings& s)
       lengthHeld(s.lengthMethod == runtime::LengthMethod::constraint && s.lengthIterations > 0),
       coilSprings(s.lengthMethod != runtime::LengthMethod::constraint),
       angularSprings(s.angularStiffness > 0.0f && s.angularMethod != runtime::AngularMethod::flexion),
+      framesTurn(bendingForce == BendingForce::gradient),
       exactDirection(s.angularMethod == runtime::AngularMethod::exact),
       flexionSprings(s.angularStiffness > 0.0f && s.angularMethod == runtime::AngularMethod::flexion),
       penalty(s.collisionResponse == runtime::CollisionResponse::penalty),
@@ -94,7 +103,8 @@ double bendingStiffness(double authored) {
 }
 
 StrandShape makeShape(std::vector<Vec3d> edges, std::span<const double> authoredMasses,
-                      const runtime::SimulationSettings& settings, const Vec3d& gravityAtRest) {
+                      const runtime::SimulationSettings& settings, const Vec3d& gravityAtRest,
+                      BendingForce bendingForce) {
     StrandShape shape;
     const std::size_t n = edges.size();
     shape.firstFree = std::min<std::size_t>(settings.clampedPoints, n + 1);
@@ -109,7 +119,7 @@ StrandShape makeShape(std::vector<Vec3d> edges, std::span<const double> authored
     setStiffness(shape, h, static_cast<double>(settings.angularStiffness),
                  static_cast<double>(settings.angularTipShare));
     shape.bend.assign(n, Vec3d::Zero());
-    setBend(shape, gravityAtRest * static_cast<double>(settings.restGravity));
+    setBend(shape, gravityAtRest * static_cast<double>(settings.restGravity), bendingForce);
 
     const double squared = squaredFrequency(static_cast<double>(settings.springFrequency));
     shape.flexion.assign(n, 0.0);

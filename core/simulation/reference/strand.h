@@ -17,9 +17,16 @@ namespace hairloom::reference {
 
 using Eigen::Quaterniond;
 
+/// What force angular springs exert, of the same energy.
+enum class BendingForce {
+    framesHeld,  ///< its gradient with the frames F held. Curled strands gain energy from nothing.
+    gradient     ///< its whole gradient, with how each segment turns the frames after it: conserves energy
+};
+
 /// The settings as the model reads them.
 struct Physics {
-    explicit Physics(const runtime::SimulationSettings& settings);
+    explicit Physics(const runtime::SimulationSettings& settings,
+                     BendingForce bendingForce = BendingForce::framesHeld);
 
     Vec3d gravity;           ///< m/s²
     double airDrag;          ///< 1/s
@@ -28,6 +35,7 @@ struct Physics {
     bool lengthHeld;         ///< segments are inextensible
     bool coilSprings;        ///< segments are coil springs
     bool angularSprings;     ///< cheap or exact
+    bool framesTurn;         ///< BendingForce::gradient
     bool exactDirection;     ///< exact
     bool flexionSprings;
     bool penalty;                ///< spheres push by a spring instead of an impulse
@@ -60,7 +68,8 @@ struct StrandShape {
 /// `edges` in the root's frame, each of a length above 0; `authoredMasses` empty or one above 0 per point;
 /// `gravityAtRest` is gravity turned into the root's frame of the rest pose.
 StrandShape makeShape(std::vector<Vec3d> edges, std::span<const double> authoredMasses,
-                      const runtime::SimulationSettings& settings, const Vec3d& gravityAtRest);
+                      const runtime::SimulationSettings& settings, const Vec3d& gravityAtRest,
+                      BendingForce bendingForce = BendingForce::framesHeld);
 
 /// B of an authored stiffness 0 ≤ s < 1, m⁴/s².
 double bendingStiffness(double authored);
