@@ -3,9 +3,7 @@
 // The heavy elastica: an inextensible rod, straight when unloaded, held horizontally at one end and bent by
 // its own weight. Solved as a boundary-value problem, by shooting; shares nothing with the strand engine.
 
-#include <cassert>
 #include <cmath>
-#include <vector>
 
 namespace hairloom::test {
 
