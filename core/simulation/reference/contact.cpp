@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/simulation/reference/contact.h"
+
+#include <algorithm>
+
+#include "core/simulation/reference/lengths.h"
+
+namespace hairloom::reference {
+namespace {
+
+constexpr int kMostSweeps = 1000;
+constexpr double kSmallSpeed = 1e-11;     // m/s
+constexpr double kSmallDistance = 1e-12;  // m
+
+struct Contact {
+    std::size_t point;
+    Vec3d normal;
+    Vec3d sphereVelocity;
+    double bounce;                 ///< speed at which it leaves, m/s
+    double pressed = 0.0;          ///< impulse along the normal so far
+    Vec3d rubbed = Vec3d::Zero();  ///< impulse of friction so far
+};
+
+Vec3d normalAt(const Vec3d& x, const SphereNow& sphere) {
+    const Vec3d offset = x - sphere.center;
+    const double distance = offset.norm();
+    return distance > 0.0 ? Vec3d(offset / distance) : Vec3d(Vec3d::UnitY());
+}
+
+std::vector<Contact> findContacts(const Physics& physics, const StrandShape& shape,
+                                  std::span<const SphereNow> spheres, const StrandState& state) {
+    std::vector<Contact> contacts;
+    for (const SphereNow& sphere : spheres) {
+        for (std::size_t p = shape.firstFree; p < shape.points(); ++p) {
+            if ((state.x[p] - sphere.center).norm() >= reach(physics, shape, p, sphere.radius)) continue;
+            Contact contact{p, normalAt(state.x[p], sphere), sphere.velocity, 0.0};
+            const double speed = contact.normal.dot(state.v[p] - sphere.velocity);
+            contact.bounce = physics.restitution * std::max(0.0, -speed);
+            contacts.push_back(contact);
+        }
+    }
+    return contacts;
+}
+
+/// One step of Gauss-Seidel with impulses summed up, so that each stays within its cone (after Catto 2005).
+void press(const Physics& physics, double mass, Contact& contact, Vec3d& v) {
+    const Vec3d relative = v - contact.sphereVelocity;
+    const double speed = contact.normal.dot(relative);
+    const double pressed = std::max(0.0, contact.pressed + mass * (contact.bounce - speed));
+    v += contact.normal * ((pressed - contact.pressed) / mass);
+    contact.pressed = pressed;
+
+    Vec3d rubbed = contact.rubbed - mass * (relative - contact.normal * speed);
+    const double size = rubbed.norm(), most = physics.friction * pressed;
+    if (size > most) rubbed *= most / size;
+    v += (rubbed - contact.rubbed) / mass;
+    contact.rubbed = rubbed;
+}
+
+void solveVelocities(const Physics& physics, const StrandShape& shape, std::vector<Contact>& contacts,
+                     StrandState& state) {
+    std::vector<Vec3d> before;
+    for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+        before = state.v;
+        for (Contact& contact : contacts)
+            press(physics, shape.masses[contact.point], contact, state.v[contact.point]);
+        if (physics.lengthHeld) projectVelocities(shape, state.x, state.v);
+        double change = 0.0;
+        for (std::size_t p = 0; p < before.size(); ++p)
+            change = std::max(change, (state.v[p] - before[p]).cwiseAbs().maxCoeff());
+        if (change < kSmallSpeed) return;
+    }
+}
+
+/// Deepest penetration, before the points that are inside go to the surface.
+double pushOut(const Physics& physics, const StrandShape& shape, std::span<const SphereNow> spheres,
+               std::vector<Vec3d>& x, bool move) {
+    double deepest = 0.0;
+    for (const SphereNow& sphere : spheres) {
+        for (std::size_t p = shape.firstFree; p < shape.points(); ++p) {
+            const double keep = reach(physics, shape, p, sphere.radius);
+            const double depth = keep - (x[p] - sphere.center).norm();
+            deepest = std::max(deepest, depth);
+            if (move && depth > 0.0) x[p] = sphere.center + normalAt(x[p], sphere) * keep;
+        }
+    }
+    return deepest;
+}
+
+}  // namespace
+
+ContactReport resolveContacts(const Physics& physics, const StrandShape& shape, double h,
+                              std::span<const SphereNow> spheres, StrandState& state) {
+    ContactReport report;
+    std::vector<Contact> contacts = findContacts(physics, shape, spheres, state);
+    report.points = contacts.size();
+    if (contacts.empty()) return report;
+
+    const std::vector<Vec3d> before = state.v;
+    solveVelocities(physics, shape, contacts, state);
+    for (std::size_t p = shape.firstFree; p < shape.points(); ++p)
+        state.x[p] += 0.5 * h * (state.v[p] - before[p]);
+    for (int pass = 0; pass < kMostSweeps; ++pass) {
+        const double deepest = pushOut(physics, shape, spheres, state.x, true);
+        if (physics.lengthHeld) projectLengths(shape, state.x);
+        if (deepest < kSmallDistance) break;
+    }
+    if (physics.lengthHeld) projectVelocities(shape, state.x, state.v);
+    report.penetration = pushOut(physics, shape, spheres, state.x, false);
+    for (const Contact& contact : contacts) {
+        report.approach =
+            std::max(report.approach, -contact.normal.dot(state.v[contact.point] - contact.sphereVelocity));
+    }
+    return report;
+}
+
+}  // namespace hairloom::reference

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/simulation/reference/converge.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace hairloom::reference {
+namespace {
+
+void runFrames(Solver solver, std::span<const Root> start, std::span<const Frame> frames,
+               const StepOptions& options, Convergence& result) {
+    solver.reset(start);
+    result.report = {};
+    result.positions_ws.clear();
+    for (const Frame& frame : frames) {
+        const StepReport report = solver.step(frame, options);
+        result.report.steps += report.steps;
+        result.report.halved += report.halved;
+        result.report.failed += report.failed;
+        result.report.contacts += report.contacts;
+        result.report.largestStretch = std::max(result.report.largestStretch, report.largestStretch);
+        result.report.deepestPenetration =
+            std::max(result.report.deepestPenetration, report.deepestPenetration);
+        result.report.fastestApproach = std::max(result.report.fastestApproach, report.fastestApproach);
+        result.positions_ws.push_back(solver.positions_ws());
+    }
+    result.velocities_ws = solver.velocities_ws();
+    result.substeps = options.substeps;
+}
+
+/// Infinite where a point is no number.
+double largestDistance(const std::vector<std::vector<Vec3d>>& a, const std::vector<std::vector<Vec3d>>& b) {
+    double largest = 0.0;
+    for (std::size_t f = 0; f < a.size(); ++f) {
+        for (std::size_t p = 0; p < a[f].size(); ++p) {
+            const double distance = (a[f][p] - b[f][p]).norm();
+            if (!(distance < std::numeric_limits<double>::max()))
+                return std::numeric_limits<double>::infinity();
+            largest = std::max(largest, distance);
+        }
+    }
+    return largest;
+}
+
+}  // namespace
+
+Result<Convergence> converged(const Strands& strands, const runtime::SimulationSettings& settings,
+                              std::span<const Root> start, std::span<const Frame> frames, const Goal& goal,
+                              BendingForce bendingForce) {
+    const Result<Solver> solver = Solver::make(strands, settings, bendingForce);
+    if (!solver) return tl::unexpected(solver.error());
+    Convergence result;
+    result.change = std::numeric_limits<double>::infinity();
+    runFrames(*solver, start, frames, {goal.firstSubsteps, goal.order}, result);
+    while (!result.reached && result.substeps <= goal.mostSubsteps / 2) {
+        const std::vector<std::vector<Vec3d>> coarse = std::move(result.positions_ws);
+        runFrames(*solver, start, frames, {2 * result.substeps, goal.order}, result);
+        result.change = largestDistance(coarse, result.positions_ws);
+        result.changes.push_back(result.change);
+        result.reached = result.change <= goal.tolerance && result.report.failed == 0;
+    }
+    return result;
+}
+
+}  // namespace hairloom::reference

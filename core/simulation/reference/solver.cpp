@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/simulation/reference/solver.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "core/simulation/reference/contact.h"
+#include "core/simulation/reference/forces.h"
+#include "core/simulation/reference/lengths.h"
+
+namespace hairloom::reference {
+namespace {
+
+constexpr int kMostHalvings = 6;
+
+Vec3d toDouble(runtime::Float3 v) {
+    return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+}
+
+Quaterniond toDouble(runtime::Quat q) {
+    return Quaterniond(static_cast<double>(q.w), static_cast<double>(q.x), static_cast<double>(q.y),
+                       static_cast<double>(q.z))
+        .normalized();
+}
+
+bool usable(const Sphere& sphere) {
+    return sphere.center_ws.allFinite() && std::isfinite(sphere.radius) && sphere.radius > 0.0;
+}
+
+Status check(const Strands& strands, const runtime::SimulationSettings& settings) {
+    for (const runtime::FieldProblem& problem : runtime::validate(settings)) return fail(problem.message);
+    if (!(settings.angularStiffness < 1.0f))
+        return fail("angularStiffness 1 has no finite stiffness", "less than 1");
+    const std::size_t points = strands.restPositions_ss.size();
+    if (strands.offsets.empty() || strands.offsets.front() != 0 || strands.offsets.back() != points)
+        return fail("offsets do not match the points", "strand count + 1 of them, from 0 to the point count");
+    if (!strands.pointMasses.empty() && strands.pointMasses.size() != points)
+        return fail("masses do not match the points", "none or one per point");
+    if (!strands.rootRotations_ss.empty() && strands.rootRotations_ss.size() + 1 != strands.offsets.size())
+        return fail("root rotations do not match the strands", "none or one per strand");
+    for (const double mass : strands.pointMasses)
+        if (!(mass > 0.0) || !std::isfinite(mass)) return fail("a mass is not above 0");
+    for (std::size_t s = 0; s + 1 < strands.offsets.size(); ++s) {
+        const std::uint32_t first = strands.offsets[s], end = strands.offsets[s + 1];
+        if (end < first + 2 || end > points)
+            return fail("strand " + std::to_string(s) + " has too few points", "2 or more");
+        for (std::uint32_t p = first; p + 1 < end; ++p) {
+            const double length = (strands.restPositions_ss[p + 1] - strands.restPositions_ss[p]).norm();
+            if (!std::isfinite(length) || !(length > 0.0))
+                return fail("the segment after point " + std::to_string(p) + " has no length");
+        }
+    }
+    return {};
+}
+
+}  // namespace
+
+/// A strand's root and the spheres on their way through a frame. Shares run from 0 to 1.
+struct Solver::Path {
+    Vec3d from, to;
+    Quaterniond turnFrom, turnTo;  // in the same half
+    double dt, endTime;
+    std::vector<SphereNow> spheresAtEnd;
+
+    Vec3d velocity() const { return (to - from) / dt; }
+    Vec3d position(double share) const { return from + (to - from) * share; }
+    Eigen::Vector4d mixed(double share) const {
+        return (1.0 - share) * turnFrom.coeffs() + share * turnTo.coeffs();
+    }
+    Quaterniond rotation(double share) const { return Quaterniond(mixed(share).normalized()); }
+    /// ω = 2 q̇ q*.
+    Vec3d angularVelocity(double share) const {
+        const Eigen::Vector4d u = mixed(share), q = u.normalized();
+        const Eigen::Vector4d straight = (turnTo.coeffs() - turnFrom.coeffs()) / (dt * u.norm());
+        const Quaterniond rate(Eigen::Vector4d(straight - q * q.dot(straight)));
+        return 2.0 * (rate * Quaterniond(q).conjugate()).vec();
+    }
+    std::vector<SphereNow> spheres(double share) const {
+        std::vector<SphereNow> now = spheresAtEnd;
+        for (SphereNow& sphere : now) sphere.center -= sphere.velocity * ((1.0 - share) * dt);
+        return now;
+    }
+    ClampedEnd clamped(const StrandShape& shape, double share) const {
+        ClampedEnd end;
+        Vec3d offset = Vec3d::Zero();
+        for (std::size_t p = 0; p < shape.firstFree; ++p) {
+            if (p > 0) offset += rotation(share) * shape.edges[p - 1];
+            end.x.push_back(position(share) + offset);
+            end.v.push_back(velocity() + angularVelocity(share).cross(offset));
+        }
+        return end;
+    }
+};
+
+Strands strandsOf(const runtime::StrandsView& view) {
+    Strands strands;
+    strands.offsets.assign(view.offsets.begin(), view.offsets.end());
+    for (const runtime::Float3 p : view.restPositions_ss) strands.restPositions_ss.push_back(toDouble(p));
+    for (const runtime::Quat q : view.rootRotations_ss) strands.rootRotations_ss.push_back(toDouble(q));
+    return strands;
+}
+
+Frame frameOf(const runtime::FrameInput& input) {
+    Frame frame{static_cast<double>(input.dt), input.time, {}, {}};
+    for (const runtime::RootFrame& root : input.roots_ws)
+        frame.roots_ws.push_back({toDouble(root.position), toDouble(root.rotation)});
+    for (const runtime::Sphere& sphere : input.spheres)
+        frame.spheres.push_back({toDouble(sphere.center_ws), static_cast<double>(sphere.radius)});
+    return frame;
+}
+
+Result<Solver> Solver::make(const Strands& strands, const runtime::SimulationSettings& settings,
+                            BendingForce bendingForce) {
+    if (Status status = check(strands, settings); !status) return tl::unexpected(status.error());
+    Solver solver(Physics(settings, bendingForce));
+    for (std::size_t s = 0; s + 1 < strands.offsets.size(); ++s) {
+        const std::uint32_t first = strands.offsets[s], end = strands.offsets[s + 1];
+        Root root{strands.restPositions_ss[first], Quaterniond::Identity()};
+        if (!strands.rootRotations_ss.empty()) root.rotation = strands.rootRotations_ss[s].normalized();
+        std::vector<Vec3d> edges;
+        for (std::uint32_t p = first; p + 1 < end; ++p) {
+            edges.push_back(root.rotation.conjugate() *
+                            (strands.restPositions_ss[p + 1] - strands.restPositions_ss[p]));
+        }
+        std::span<const double> masses(strands.pointMasses);
+        if (!masses.empty()) masses = masses.subspan(first, end - first);
+        const Vec3d gravityAtRest = root.rotation.conjugate() * solver.physics_.gravity;
+        solver.strands_.push_back(
+            {makeShape(std::move(edges), masses, settings, gravityAtRest, bendingForce), {}, root, {}});
+        solver.restRoots_.push_back(root);
+    }
+    solver.reset(solver.restRoots_);
+    return solver;
+}
+
+void Solver::reset(std::span<const Root> roots_ws) {
+    assert(roots_ws.size() == strands_.size());
+    for (std::size_t s = 0; s < strands_.size(); ++s) {
+        Strand& strand = strands_[s];
+        strand.root = {roots_ws[s].position, roots_ws[s].rotation.normalized()};
+        strand.state.x.assign(1, strand.root.position);
+        for (const Vec3d& edge : strand.shape.edges)
+            strand.state.x.push_back(strand.state.x.back() + strand.root.rotation * edge);
+        strand.state.v.assign(strand.state.x.size(), Vec3d::Zero());
+        strand.work = {};
+    }
+    spheres_.clear();
+}
+
+void Solver::setMotion(std::span<const Vec3d> positions_ws, std::span<const Vec3d> velocities_ws) {
+    std::size_t first = 0;
+    for (Strand& strand : strands_) {
+        assert(positions_ws.size() >= first + strand.shape.points());
+        for (std::size_t p = strand.shape.firstFree; p < strand.shape.points(); ++p) {
+            strand.state.x[p] = positions_ws[first + p];
+            strand.state.v[p] = velocities_ws[first + p];
+        }
+        first += strand.shape.points();
+        if (physics_.lengthHeld && strand.shape.firstFree < strand.shape.points())
+            projectVelocities(strand.shape, strand.state.x, strand.state.v);
+    }
+}
+
+StepReport Solver::step(const Frame& frame, const StepOptions& options) {
+    assert(frame.roots_ws.size() == strands_.size() && options.substeps > 0);
+    StepReport report;
+    if (!(frame.dt > 0.0)) return report;
+    std::vector<SphereNow> spheres;
+    for (std::size_t i = 0; i < frame.spheres.size(); ++i) {
+        if (!usable(frame.spheres[i])) continue;
+        SphereNow now{frame.spheres[i].center_ws, Vec3d::Zero(), frame.spheres[i].radius};
+        if (i < spheres_.size() && usable(spheres_[i])) {
+            const Vec3d motion = now.center - spheres_[i].center_ws;
+            if (motion.norm() <= physics_.teleportDistance) now.velocity = motion / frame.dt;
+        }
+        spheres.push_back(now);
+    }
+    spheres_ = frame.spheres;
+
+    for (std::size_t s = 0; s < strands_.size(); ++s) {
+        Strand& strand = strands_[s];
+        const Root to{frame.roots_ws[s].position, frame.roots_ws[s].rotation.normalized()};
+        if ((to.position - strand.root.position).norm() > physics_.teleportDistance) {
+            const Quaterniond turn = to.rotation * strand.root.rotation.conjugate();
+            for (Vec3d& x : strand.state.x) x = to.position + turn * (x - strand.root.position);
+            for (Vec3d& v : strand.state.v) v = turn * v;
+            strand.root = to;
+        }
+        Path path{strand.root.position, to.position, strand.root.rotation, to.rotation, frame.dt,
+                  frame.time,           spheres};
+        if (path.turnFrom.dot(path.turnTo) < 0.0) path.turnTo.coeffs() *= -1.0;
+        stepStrand(strand, path, options, report);
+        strand.root = to;
+    }
+    return report;
+}
+
+void Solver::stepStrand(Strand& strand, const Path& path, const StepOptions& options,
+                        StepReport& report) const {
+    const StrandShape& shape = strand.shape;
+    // A root that changes its speed between frames does so at once: a blow on the strand.
+    const ClampedEnd start = path.clamped(shape, 0.0);
+    std::copy(start.v.begin(), start.v.end(), strand.state.v.begin());
+    if (physics_.lengthHeld && shape.firstFree < shape.points())
+        projectVelocities(shape, strand.state.x, strand.state.v);
+
+    const bool impulses = !physics_.penalty && !path.spheresAtEnd.empty();
+    const double share = 1.0 / static_cast<double>(options.substeps);
+    for (std::uint32_t i = 0; i < options.substeps; ++i) {
+        const double from = static_cast<double>(i) * share, to = static_cast<double>(i + 1) * share;
+        if (options.order < 4 || impulses) {
+            advance(strand, path, from, to, options.order == 1 ? 1.0 : 0.5, report, kMostHalvings);
+            continue;
+        }
+        // Suzuki 1990: S(a h)² S((1 − 4a) h) S(a h)².
+        const double a = 1.0 / (4.0 - std::cbrt(4.0));
+        const double parts[] = {0.0, a, 2.0 * a, 1.0 - 2.0 * a, 1.0 - a, 1.0};
+        for (std::size_t k = 0; k + 1 < std::size(parts); ++k)
+            advance(strand, path, from + share * parts[k], from + share * parts[k + 1], 0.5, report,
+                    kMostHalvings);
+    }
+    if (physics_.lengthHeld && shape.firstFree < shape.points())
+        report.largestStretch = std::max(report.largestStretch, largestStretch(shape, strand.state.x));
+}
+
+void Solver::advance(Strand& strand, const Path& path, double from, double to, double weight,
+                     StepReport& report, int halvings) const {
+    const double within = from + weight * (to - from), h = (to - from) * path.dt;
+    const std::vector<SphereNow> spheres = path.spheres(within);
+    const Surroundings around{path.endTime - (1.0 - within) * path.dt, path.rotation(within), path.velocity(),
+                              spheres};
+    StrandState next = strand.state;
+    const bool solved =
+        substep(physics_, strand.shape, h, weight, around, path.clamped(strand.shape, to), next, strand.work);
+    if (!solved) strand.work = {};
+    if (!solved && halvings > 0) {
+        ++report.halved;
+        const double middle = 0.5 * (from + to);
+        advance(strand, path, from, middle, weight, report, halvings - 1);
+        advance(strand, path, middle, to, weight, report, halvings - 1);
+        return;
+    }
+    strand.state = std::move(next);
+    ++report.steps;
+    report.failed += solved ? 0 : 1;
+    if (physics_.penalty || spheres.empty()) return;
+    const ContactReport contact = resolveContacts(physics_, strand.shape, h, path.spheres(to), strand.state);
+    report.contacts += contact.points;
+    report.deepestPenetration = std::max(report.deepestPenetration, contact.penetration);
+    report.fastestApproach = std::max(report.fastestApproach, contact.approach);
+}
+
+std::vector<Vec3d> Solver::positions_ws() const {
+    std::vector<Vec3d> all;
+    for (const Strand& strand : strands_) all.insert(all.end(), strand.state.x.begin(), strand.state.x.end());
+    return all;
+}
+
+std::vector<Vec3d> Solver::velocities_ws() const {
+    std::vector<Vec3d> all;
+    for (const Strand& strand : strands_) all.insert(all.end(), strand.state.v.begin(), strand.state.v.end());
+    return all;
+}
+
+Energy Solver::energy() const {
+    Energy sum;
+    for (const Strand& strand : strands_) {
+        const Potentials potential = potentials(physics_, strand.shape, strand.state.x, strand.root.rotation);
+        sum.gravity += potential.gravity;
+        sum.springs += potential.springs;
+        sum.angular += potential.angular;
+        for (std::size_t p = strand.shape.firstFree; p < strand.shape.points(); ++p)
+            sum.kinetic += 0.5 * strand.shape.masses[p] * strand.state.v[p].squaredNorm();
+    }
+    return sum;
+}
+
+}  // namespace hairloom::reference

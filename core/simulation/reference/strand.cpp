@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/simulation/reference/strand.h"
+
+#include <algorithm>
+#include <numbers>
+#include <numeric>
+#include <utility>
+
+namespace hairloom::reference {
+namespace {
+
+double squaredFrequency(double hertz) {
+    const double omega = 2.0 * std::numbers::pi * hertz;
+    return omega * omega;
+}
+
+Vec3d toDouble(runtime::Float3 v) {
+    return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+}
+
+/// h_p: half the length of the segments beside each point.
+std::vector<double> shares(const std::vector<double>& lengths) {
+    std::vector<double> h(lengths.size() + 1, 0.0);
+    for (std::size_t j = 0; j < lengths.size(); ++j) {
+        h[j] += 0.5 * lengths[j];
+        h[j + 1] += 0.5 * lengths[j];
+    }
+    return h;
+}
+
+void divideByMean(std::vector<double>& values) {
+    const double mean =
+        std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+    for (double& value : values) value /= mean;
+}
+
+/// κ_j = B μ_j / l̄_j.
+void setStiffness(StrandShape& shape, const std::vector<double>& h, double atRoot, double tipShare) {
+    const std::size_t n = shape.segments();
+    const std::size_t first = shape.firstFree - 1;
+    for (std::size_t j = first; j < n; ++j) {
+        const double along = static_cast<double>(j) / static_cast<double>(n);
+        const double authored = atRoot * (1.0 + (tipShare - 1.0) * along);
+        const double span =
+            j == first ? 0.5 * shape.lengths[j] : 0.5 * (shape.lengths[j - 1] + shape.lengths[j]);
+        shape.stiffness[j] = bendingStiffness(authored) * shape.masses[j] / h[j] / span;
+    }
+}
+
+/// k of addFrameForces() at joint j, in the rest shape.
+Vec3d restArc(const StrandShape& shape, std::size_t j) {
+    if (j == 0 || j >= shape.segments()) return Vec3d::Zero();
+    const Vec3d a = shape.edges[j - 1].normalized(), b = shape.edges[j].normalized();
+    return a.cross(b) / (1.0 + a.dot(b));
+}
+
+/// c_j, less the bending H_j/κ_j in which the authored shape carries `gravity`. Where the frames turn, what
+/// addFrameForces() adds takes part in the balance.
+void setBend(StrandShape& shape, const Vec3d& gravity, BendingForce bendingForce) {
+    const std::size_t n = shape.segments();
+    const bool framesTurn = bendingForce == BendingForce::gradient;
+    Vec3d moment = Vec3d::Zero();
+    double massBeyond = 0.0, twistBeyond = 0.0;
+    for (std::size_t j = n; j-- > 0;) {
+        const Vec3d direction = shape.edges[j] / shape.lengths[j];
+        massBeyond += shape.masses[j + 1];
+        Vec3d carried = moment + gravity * (massBeyond * shape.lengths[j]);
+        if (framesTurn && j + 1 < n) {
+            const Vec3d& bend = shape.bend[j + 1];
+            carried += bend.cross(moment).cross(direction) + twistBeyond * restArc(shape, j + 1);
+            twistBeyond -= moment.dot(direction.cross(bend));
+            carried += twistBeyond * restArc(shape, j);
+        }
+        moment = across(direction, carried);
+        shape.bend[j] = j == 0 ? direction : Vec3d(direction - shape.edges[j - 1] / shape.lengths[j - 1]);
+        if (!(shape.stiffness[j] > 0.0)) continue;
+        const Vec3d bending = moment / shape.stiffness[j];
+        shape.bend[j] -= bending / std::max(1.0, bending.norm());
+    }
+}
+
+}  // namespace
+
+Physics::Physics(const runtime::SimulationSettings& s, BendingForce bendingForce)
+    : gravity(toDouble(s.gravity)),
+      airDrag(static_cast<double>(s.airDrag)),
+      dampingRate(s.dampingTime > 0.0f ? 1.0 / static_cast<double>(s.dampingTime) : 0.0),
+      bendDampingTime(static_cast<double>(s.bendDampingTime)),
+      lengthHeld(s.lengthMethod == runtime::LengthMethod::constraint && s.lengthIterations > 0),
+      coilSprings(s.lengthMethod != runtime::LengthMethod::constraint),
+      angularSprings(s.angularStiffness > 0.0f && s.angularMethod != runtime::AngularMethod::flexion),
+      framesTurn(bendingForce == BendingForce::gradient),
+      exactDirection(s.angularMethod == runtime::AngularMethod::exact),
+      flexionSprings(s.angularStiffness > 0.0f && s.angularMethod == runtime::AngularMethod::flexion),
+      penalty(s.collisionResponse == runtime::CollisionResponse::penalty),
+      penaltyStiffness(squaredFrequency(static_cast<double>(s.penaltyFrequency))),
+      pearlRoot(static_cast<double>(s.pearlRadiusRoot)),
+      pearlTip(static_cast<double>(s.pearlRadiusTip)),
+      friction(static_cast<double>(s.friction)),
+      restitution(static_cast<double>(s.restitution)),
+      clampedPoints(s.clampedPoints),
+      teleportDistance(static_cast<double>(s.teleportDistance)),
+      windy(s.windSpeed > 0.0f && s.airDrag > 0.0f),
+      wind(runtime::makeWind(s)) {}
+
+double bendingStiffness(double authored) {
+    return runtime::kHairBendingStiffness * authored / (1.0 - authored);
+}
+
+StrandShape makeShape(std::vector<Vec3d> edges, std::span<const double> authoredMasses,
+                      const runtime::SimulationSettings& settings, const Vec3d& gravityAtRest,
+                      BendingForce bendingForce) {
+    StrandShape shape;
+    const std::size_t n = edges.size();
+    shape.firstFree = std::min<std::size_t>(settings.clampedPoints, n + 1);
+    shape.edges = std::move(edges);
+    for (const Vec3d& edge : shape.edges) shape.lengths.push_back(edge.norm());
+    const std::vector<double> h = shares(shape.lengths);
+    shape.masses.assign(authoredMasses.begin(), authoredMasses.end());
+    if (shape.masses.empty()) shape.masses = h;
+    divideByMean(shape.masses);
+
+    shape.stiffness.assign(n, 0.0);
+    setStiffness(shape, h, static_cast<double>(settings.angularStiffness),
+                 static_cast<double>(settings.angularTipShare));
+    shape.bend.assign(n, Vec3d::Zero());
+    setBend(shape, gravityAtRest * static_cast<double>(settings.restGravity), bendingForce);
+
+    const double squared = squaredFrequency(static_cast<double>(settings.springFrequency));
+    shape.flexion.assign(n, 0.0);
+    shape.pairLength.assign(n, 0.0);
+    for (std::size_t j = 0; j < n; ++j) {
+        shape.coil.push_back(2.0 * squared / (1.0 / shape.masses[j] + 1.0 / shape.masses[j + 1]));
+        if (j == 0) continue;
+        // The energy of the angular spring where a straight joint has turned by 90°.
+        const double shortening = (2.0 - std::numbers::sqrt2) * h[j];
+        shape.flexion[j] = 2.0 * shape.stiffness[j] / (shortening * shortening);
+        shape.pairLength[j] = (shape.edges[j - 1] + shape.edges[j]).norm();
+    }
+    return shape;
+}
+
+double reach(const Physics& physics, const StrandShape& shape, std::size_t p, double radius) {
+    const double along = static_cast<double>(p) / static_cast<double>(shape.segments());
+    return radius + physics.pearlRoot + (physics.pearlTip - physics.pearlRoot) * along;
+}
+
+}  // namespace hairloom::reference
