@@ -6,19 +6,18 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
-#include <limits>
 #include <utility>
 #include <vector>
 
 #include "runtime/follow_kernels.h"
 #include "runtime/state.h"
-#include "runtime/strands.h"
 
 namespace hairloom::runtime {
 namespace {
 
 constexpr std::size_t kGuidesPerJob = 64;
 constexpr std::size_t kHairsPerJob = 512;
+constexpr std::uint32_t kMostPoints = 1u << 20u;  // kernels count the floats of 16 guides in 32 bits
 constexpr float kWeightSumTolerance = 1e-3f;
 
 std::string number(std::size_t value) {
@@ -53,15 +52,15 @@ std::string whyGuidesRefused(const FollowView& view) {
     if (view.guideOffsets.size() < 2 || view.guideOffsets.front() != 0) {
         return "no guide offsets from 0; expected guide count + 1 of them";
     }
-    if (view.pointsPerHair < 2 || view.pointsPerHair > kMaxPoints) {
-        return number(view.pointsPerHair) + " points per hair; expected 2 to " + number(kMaxPoints);
+    if (view.pointsPerHair < 2 || view.pointsPerHair > kMostPoints) {
+        return number(view.pointsPerHair) + " points per hair; expected 2 to " + number(kMostPoints);
     }
     bool resampled = false;
     for (std::size_t g = 0; g + 1 < view.guideOffsets.size(); ++g) {
         const std::uint32_t first = view.guideOffsets[g], end = view.guideOffsets[g + 1];
-        if (end < first || end - first < 2 || end - first > kMaxPoints) {
+        if (end < first || end - first < 2) {
             return "guide " + number(g) + " runs from point " + number(first) + " to " + number(end) +
-                   "; expected 2 to " + number(kMaxPoints) + " points";
+                   "; expected two points or more";
         }
         resampled = resampled || end - first != view.pointsPerHair;
     }
@@ -195,13 +194,13 @@ struct FollowHairs::Impl {
     std::size_t rowFloats = 0;
     std::vector<std::uint32_t> guideOffsets;
     std::vector<RootPlane> rootPlanes;
-    std::vector<std::uint32_t> firstSample;  // per guide; kNoSamples where its points are taken as they are
-    std::vector<Sample> samples;             // `points` of them for each guide that is resampled
+    std::vector<std::size_t> firstSample;  // per guide; kNoSamples where its points are taken as they are
+    std::vector<Sample> samples;           // `points` of them for each guide that is resampled
     std::vector<float> radii;
     std::vector<HairBinding> hairs;
     Floats positions, wisps, frames;  // of the frame, as GuideRows has them
 
-    static constexpr std::uint32_t kNoSamples = 0xFFFFFFFFu;
+    static constexpr std::size_t kNoSamples = static_cast<std::size_t>(-1);
 
     explicit Impl(const FollowView& view);
     std::size_t guideCount() const { return rootPlanes.size(); }
@@ -220,7 +219,7 @@ FollowHairs::Impl::Impl(const FollowView& view)
     for (std::size_t g = 0; g < guideCount(); ++g) {
         const std::uint32_t count = guideOffsets[g + 1] - guideOffsets[g];
         if (count == points) continue;
-        firstSample[g] = static_cast<std::uint32_t>(samples.size());
+        firstSample[g] = samples.size();
         sampleEvenly(view.guideRestPositions_ss.subspan(guideOffsets[g], count), points, samples);
     }
     hairs.reserve(view.guides.size());
@@ -266,13 +265,7 @@ FollowHairs::~FollowHairs() = default;
 
 FollowHairs::Made FollowHairs::make(const FollowView& view) {
     if (std::string why = whyRefused(view); !why.empty()) return {std::nullopt, std::move(why)};
-    auto impl = std::make_unique<Impl>(view);
-    // Kernels count floats in 32 bits.
-    if (impl->wisps.size() > std::size_t{std::numeric_limits<std::int32_t>::max()}) {
-        return {std::nullopt, number(impl->guideCount()) + " guides of " + number(impl->points) +
-                                  " points are more than follow hairs can take"};
-    }
-    return {FollowHairs(std::move(impl)), {}};
+    return {FollowHairs(std::make_unique<Impl>(view)), {}};
 }
 
 std::uint32_t FollowHairs::hairCount() const {

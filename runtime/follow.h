@@ -35,13 +35,13 @@ static_assert(sizeof(RootPlane) == 3 * sizeof(Float3));
 /// where Eq. 22 gives ξ, Eq. 23 c, and R is the root plane turned with the scalp.
 struct FollowView {
     std::span<const std::uint32_t> guideOffsets;  ///< guide count + 1, ascending from 0; guide g owns points
-                                                  ///< [offsets[g], offsets[g + 1]), 2 to kMaxPoints of them
+                                                  ///< [offsets[g], offsets[g + 1]), two or more of them
     /// Guides at rest, metres: read only for guides whose point count is not `pointsPerHair`, which are
     /// resampled at even shares of their length at rest. May be empty where there is no such guide.
     std::span<const Float3> guideRestPositions_ss;
     std::span<const RootPlane> rootPlanes_ss;  ///< per guide, at rest
 
-    std::uint32_t pointsPerHair = 0;                       ///< 2 … kMaxPoints
+    std::uint32_t pointsPerHair = 0;                       ///< 2 … 2²⁰
     std::span<const float> radii;                          ///< per point of a hair: r, metres, ≥ 0
     std::span<const std::array<std::uint32_t, 3>> guides;  ///< per hair, its own guide first
     std::span<const Float3> weights;                       ///< ≥ 0, sum 1
@@ -55,8 +55,8 @@ struct FollowView {
 struct GuideMotion {
     std::span<const Float3> positions_ws;   ///< metres
     std::span<const Float3> velocities_ws;  ///< m/s; empty for guides at rest
-    /// Per guide: turn of the scalp at its root since rest; need not be of unit length. Empty, or what is no
-    /// rotation, stands for none.
+    /// Per guide: turn of the scalp at its root since rest (a RootFrame's rotation divided by that at rest);
+    /// need not be of unit length. Empty, or what is no rotation, stands for none.
     std::span<const Quat> rootRotations_ws;
     /// σ of Eq. 22 at the tip, s/m, ≥ 0: share by which a wisp's radius grows per m/s. Falls linearly to 0 at
     /// the root.

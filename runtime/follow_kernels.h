@@ -30,7 +30,7 @@ struct alignas(64) HairBinding {
 static_assert(sizeof(HairBinding) == 64);
 
 struct GuideRows {
-    std::uint32_t points;    ///< of every guide and hair
+    std::uint32_t points;    ///< of every guide and hair, at most 2²⁰
     std::size_t rowFloats;   ///< from row to row
     const float* radii;      ///< per point
     float wispSpread;        ///< s/m

@@ -56,14 +56,20 @@ struct CarriedFrame {
     }
 };
 
-/// Guides of one register: where their rows begin, in floats.
+/// The guides of one register: where the first's rows begin, and in floats from there each lane's.
 struct GuideLanes {
+    const float* positions;
+    float* wisps;
+    const float* frames;
     Indices row, wisp, frame;
 
-    HWY_INLINE GuideLanes(const GuideRows& guides, std::size_t first, std::size_t end) {
+    HWY_INLINE GuideLanes(const GuideRows& guides, std::size_t first, std::size_t end)
+        : positions(guides.positions + first * guides.rowFloats),
+          wisps(guides.wisps + first * guides.rowFloats * kWispRows),
+          frames(guides.frames + first * kFrameFloats) {
         HWY_ALIGN std::int32_t guideOfLane[kWidth];
         for (std::size_t lane = 0; lane < kWidth; ++lane) {
-            guideOfLane[lane] = static_cast<std::int32_t>(std::min(first + lane, end - 1));
+            guideOfLane[lane] = static_cast<std::int32_t>(std::min(lane, end - 1 - first));
         }
         const Indices guide = hn::Load(DI(), guideOfLane);
         row = guide * hn::Set(DI(), static_cast<std::int32_t>(guides.rowFloats));
@@ -77,7 +83,7 @@ HWY_INLINE void fillWispPoint(const GuideRows& guides, const GuideLanes& lanes, 
     const float share = static_cast<float>(point) / static_cast<float>(guides.points - 1);
     const float sigma = guides.wispSpread * share;
     const float radius = guides.radii[point];
-    float* centre = guides.wisps + std::size_t{point} * 3;
+    float* centre = lanes.wisps + std::size_t{point} * 3;
     const V3 velocity = gather3(centre, lanes.wisp);
     const V xi = all(1.0f) + all(sigma) * hn::Sqrt(dot(velocity, velocity));  // Eq. 22
     // Eq. 23, where (ξ − 1) v/|v| = σ v is smooth at rest.
@@ -90,15 +96,15 @@ void fillWisps(const GuideRows& guides, std::size_t begin, std::size_t end) {
     const std::uint32_t last = guides.points - 1;
     for (std::size_t first = begin; first < end; first += kWidth) {
         const GuideLanes lanes(guides, first, end);
-        const V3 x = gather3(guides.frames, lanes.frame);
-        CarriedFrame frame{gather3(guides.frames + 8, lanes.frame), x};
-        V3 before = gather3(guides.positions, lanes.row);
+        const V3 x = gather3(lanes.frames, lanes.frame);
+        CarriedFrame frame{gather3(lanes.frames + 8, lanes.frame), x};
+        V3 before = gather3(lanes.positions, lanes.row);
         V3 here = before;
-        fillWispPoint(guides, lanes, 0, here, x, gather3(guides.frames + 4, lanes.frame));
+        fillWispPoint(guides, lanes, 0, here, x, gather3(lanes.frames + 4, lanes.frame));
         for (std::uint32_t point = 0; point <= last; ++point) {
             // A point's tangent joins its neighbours.
             const V3 after =
-                point < last ? gather3(guides.positions + (std::size_t{point} + 1) * 3, lanes.row) : here;
+                point < last ? gather3(lanes.positions + (std::size_t{point} + 1) * 3, lanes.row) : here;
             frame.carry(after - before);
             if (point > 0)
                 fillWispPoint(guides, lanes, point, here, frame.normal, cross(frame.tangent, frame.normal));

@@ -1,33 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <hwy/highway.h>
-
-#include <atomic>
-#include <thread>
-
+#include "tests/runtime/instruction_sets.h"
 #include "tests/runtime/strand_fixture.h"
+#include "tests/runtime/threads.h"
 
 namespace hairloom::runtime {
 namespace {
-
-/// Pieces taken by threads in whatever order they come.
-Host threaded(unsigned threads, bool backwards = false) {
-    Host host;
-    host.parallelFor = [=](std::size_t count, std::size_t grain, const Host::Body& body) {
-        const std::size_t pieces = (count + grain - 1) / grain;
-        std::atomic<std::size_t> next{0};
-        std::vector<std::thread> pool;
-        for (unsigned t = 0; t < threads; ++t) {
-            pool.emplace_back([&] {
-                for (std::size_t i = next++; i < pieces; i = next++) {
-                    const std::size_t piece = backwards ? pieces - 1 - i : i;
-                    body(piece * grain, std::min(count, (piece + 1) * grain));
-                }
-            });
-        }
-        for (std::thread& thread : pool) thread.join();
-    };
-    return host;
-}
 
 SimulationSettings everything() {
     SimulationSettings s;
@@ -57,24 +34,16 @@ std::uint64_t hashAfterMotion(const Strands& strands, const SimulationSettings& 
 TEST(Determinism, SameBitsForAnyNumberOfThreadsAndOrder) {
     const Strands strands = tuft(500, true);
     const std::uint64_t serial = hashAfterMotion(strands, everything());
-    EXPECT_EQ(serial, hashAfterMotion(strands, everything(), threaded(1)));
-    EXPECT_EQ(serial, hashAfterMotion(strands, everything(), threaded(7)));
-    EXPECT_EQ(serial, hashAfterMotion(strands, everything(), threaded(3, true)));
+    EXPECT_EQ(serial, hashAfterMotion(strands, everything(), hostWithThreads(1)));
+    EXPECT_EQ(serial, hashAfterMotion(strands, everything(), hostWithThreads(7)));
+    EXPECT_EQ(serial, hashAfterMotion(strands, everything(), hostWithThreads(3, true)));
 }
 
 TEST(Determinism, SameBitsForEveryInstructionSet) {
     const Strands strands = tuft(50, true);
     const std::uint64_t best = hashAfterMotion(strands, everything());
-    int tried = 0;
-    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-        hwy::SetSupportedTargetsForTest(target);
-        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-        EXPECT_EQ(best, hashAfterMotion(strands, everything())) << Engine::instructionSet();
-        ++tried;
-    }
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    EXPECT_GE(tried, 1);
+    forEveryInstructionSet(
+        [&] { EXPECT_EQ(best, hashAfterMotion(strands, everything())) << Engine::instructionSet(); });
 }
 
 TEST(Determinism, ACopyRunsOnWithTheSameBits) {
