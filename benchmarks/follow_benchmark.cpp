@@ -31,7 +31,7 @@ struct Lawn {
     std::vector<std::array<float, 2>> wispOffsets;
     std::vector<float> blends;
 
-    explicit Lawn(float blend) {
+    Lawn(float blend, std::uint32_t hairsPerGuide) {
         for (std::uint32_t g = 0; g < kGuides; ++g) {
             const Float3 root{0.005f * static_cast<float>(g % kColumns), 0.0f,
                               0.005f * static_cast<float>(g / kColumns)};
@@ -41,7 +41,7 @@ struct Lawn {
                 velocities.push_back({t, 0.0f, 0.3f * t});
             }
             offsets.push_back(static_cast<std::uint32_t>(positions.size()));
-            addHairs(g, blend);
+            addHairs(g, blend, hairsPerGuide);
         }
         for (std::uint32_t i = 0; i < kPoints; ++i) radii.push_back(0.002f + 0.0001f * static_cast<float>(i));
     }
@@ -51,9 +51,9 @@ struct Lawn {
     }
 
   private:
-    void addHairs(std::uint32_t guide, float blend) {
-        for (std::uint32_t h = 0; h < kHairsPerGuide; ++h) {
-            const float share = static_cast<float>(h) / kHairsPerGuide;
+    void addHairs(std::uint32_t guide, float blend, std::uint32_t count) {
+        for (std::uint32_t h = 0; h < count; ++h) {
+            const float share = static_cast<float>(h) / static_cast<float>(count);
             const std::uint32_t beside = guide % kColumns + 1 < kColumns ? guide + 1 : guide - 1;
             const std::uint32_t behind = guide + kColumns < kGuides ? guide + kColumns : guide - kColumns;
             guides.push_back({guide, beside, behind});
@@ -66,7 +66,7 @@ struct Lawn {
 };
 
 void runFrames(benchmark::State& state, const Host& host) {
-    const Lawn lawn(0.01f * static_cast<float>(state.range(0)));
+    const Lawn lawn(0.01f * static_cast<float>(state.range(0)), kHairsPerGuide);
     auto made = FollowHairs::make(lawn.view());
     if (!made.hairs) {
         state.SkipWithError(made.error.c_str());
@@ -91,8 +91,18 @@ void allThreads(benchmark::State& state) {
     runFrames(state, host);
 }
 
+/// What a frame costs before the first hair: frames, wisps and rows of the guides.
+void guidesAlone(benchmark::State& state) {
+    const Lawn lawn(0.5f, 0);
+    auto made = FollowHairs::make(lawn.view());
+    for (auto step : state) {
+        made.hairs->evaluate({lawn.positions, lawn.velocities, lawn.rotations}, {});
+        benchmark::ClobberMemory();
+    }
+}
+
 void make(benchmark::State& state) {
-    const Lawn lawn(0.5f);
+    const Lawn lawn(0.5f, kHairsPerGuide);
     for (auto step : state) {
         auto made = FollowHairs::make(lawn.view());
         benchmark::DoNotOptimize(made);
@@ -101,6 +111,7 @@ void make(benchmark::State& state) {
 
 BENCHMARK(oneThread)->ArgName("blend%")->Arg(0)->Arg(50)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(allThreads)->ArgName("blend%")->Arg(0)->Arg(50)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(guidesAlone)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(make)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace
