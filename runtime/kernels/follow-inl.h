@@ -37,10 +37,9 @@ struct CarriedFrame {
     V3 tangent;
     V3 normal;  ///< across the tangent
 
-    /// Turns the frame the shortest way onto the direction of `chord`: as a reflection in the plane half-way
-    /// (Wang et al. 2008, "Computation of Rotation Minimizing Frames", Eq. 3, for a normal across the
-    /// tangent). A chord without length, or that is no number, leaves the frame as it is; a chord straight
-    /// back turns it about its normal.
+    /// Turns the frame the shortest way onto the direction of `chord`. For a normal across the tangent that
+    /// turn is the reflection in the plane half-way between the directions. A chord without length, or that
+    /// is no number, leaves the frame as it is; a chord straight back turns it about its normal.
     HWY_INLINE void carry(V3 chord) {
         const V squared = dot(chord, chord);
         const auto usable = hn::And(squared > all(1e-24f), squared < all(1e30f));
