@@ -135,7 +135,9 @@ Result<GroomScene> GroomScene::make(const Groom& groom, const std::vector<Vec3f>
     const std::vector<Vec3f> guides_ws = guidePositions(scene.posed_, *bindings);
     const std::vector<Quatf> rotations = rootRotations(groom, scene.posed_, *bindings);
     scene.hairPositions_ws_.resize(bindings->hairCount() * bindings->pointsPerHair);
-    evaluateFollowHairs(*bindings, {guides_ws, {}, rotations}, {}, scene.hairPositions_ws_);
+    const auto status =
+        evaluateFollowHairs(*bindings, {guides_ws, {}, rotations}, {}, scene.hairPositions_ws_);
+    if (!status) return tl::unexpected(status.error());
     for (std::size_t hair = 0; hair <= bindings->hairCount(); ++hair) {
         scene.hairOffsets_.push_back(static_cast<std::uint32_t>(hair * bindings->pointsPerHair));
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // Follow hairs from guides (thesis §4.2): wisps around one strand, the three strands of a root triangle, and
-// both blended. Binding is done once per edit; evaluation every frame.
+// both blended. Binding is done here, once per edit; evaluation is the engine's (runtime/follow.h).
 
 #include <array>
 #include <cstdint>
@@ -10,6 +10,7 @@
 
 #include "core/base/result.h"
 #include "core/groom/groom.h"
+#include "runtime/follow.h"
 
 namespace hairloom {
 
@@ -71,12 +72,17 @@ struct GuideState {
         rotations;  ///< per guide: turn of the scalp at its root since rest, or empty for none
 };
 
-/// Fills `positions` (hair after hair, `pointsPerHair` each, metres). The same bits for any number of
-/// threads.
-void evaluateFollowHairs(const FollowBindings& bindings, const GuideState& state, const WispMotion& motion,
-                         std::span<Vec3f> positions);
+/// What the engine takes to evaluate hairs frame after frame. Guide g is the g-th of `guideStrands` and owns
+/// points [guideOffsets[g], guideOffsets[g + 1]). A view: bindings and offsets must outlive it.
+runtime::FollowView followView(const FollowBindings& bindings, std::span<const std::uint32_t> guideOffsets);
 
-/// The follow hairs at rest as a groom of its own, bound where the bindings are.
-Groom bakeFollowHairs(const Groom& groom, const FollowBindings& bindings);
+/// Fills `positions` (hair after hair, `pointsPerHair` each, metres). The same bits for any number of
+/// threads. For one picture; who plays frames keeps the runtime::FollowHairs of followView(). Errors:
+/// bindings that the engine refuses, such as weights that are no numbers.
+Status evaluateFollowHairs(const FollowBindings& bindings, const GuideState& state, const WispMotion& motion,
+                           std::span<Vec3f> positions);
+
+/// The follow hairs at rest as a groom of its own, bound where the bindings are. Errors: as above.
+Result<Groom> bakeFollowHairs(const Groom& groom, const FollowBindings& bindings);
 
 }  // namespace hairloom

@@ -70,7 +70,7 @@ InterpolationSettings settingsWith(float blend, std::uint32_t followPerGuide = 5
 std::vector<Vec3f> evaluate(const FollowBindings& bindings, const GuideState& state,
                             const WispMotion& motion = {}) {
     std::vector<Vec3f> positions(bindings.hairCount() * bindings.pointsPerHair);
-    evaluateFollowHairs(bindings, state, motion, positions);
+    EXPECT_TRUE(evaluateFollowHairs(bindings, state, motion, positions));
     return positions;
 }
 
@@ -385,10 +385,11 @@ TEST(FollowHairs, BakesIntoABoundGroom) {
     const Groom groom = field(6, bent);
     const auto bindings = bindFollowHairs(groom, settingsWith(0.5f, 7));
     ASSERT_TRUE(bindings);
-    const Groom baked = bakeFollowHairs(groom, *bindings);
-    EXPECT_EQ(baked.strandCount(), 112u);
-    EXPECT_EQ(baked.pointCount(), 672u);
-    EXPECT_EQ(baked.rootBindings().size(), 112u);
+    const auto baked = bakeFollowHairs(groom, *bindings);
+    ASSERT_TRUE(baked);
+    EXPECT_EQ(baked->strandCount(), 112u);
+    EXPECT_EQ(baked->pointCount(), 672u);
+    EXPECT_EQ(baked->rootBindings().size(), 112u);
 }
 
 TEST(FollowBindings, RefusesWhatIsOutOfRange) {

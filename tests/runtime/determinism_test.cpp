@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <hwy/highway.h>
-
+#include "tests/runtime/instruction_sets.h"
 #include "tests/runtime/strand_fixture.h"
 #include "tests/runtime/threads.h"
 
@@ -43,16 +42,8 @@ TEST(Determinism, SameBitsForAnyNumberOfThreadsAndOrder) {
 TEST(Determinism, SameBitsForEveryInstructionSet) {
     const Strands strands = tuft(50, true);
     const std::uint64_t best = hashAfterMotion(strands, everything());
-    int tried = 0;
-    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-        hwy::SetSupportedTargetsForTest(target);
-        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-        EXPECT_EQ(best, hashAfterMotion(strands, everything())) << Engine::instructionSet();
-        ++tried;
-    }
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    EXPECT_GE(tried, 1);
+    forEveryInstructionSet(
+        [&] { EXPECT_EQ(best, hashAfterMotion(strands, everything())) << Engine::instructionSet(); });
 }
 
 TEST(Determinism, ACopyRunsOnWithTheSameBits) {

