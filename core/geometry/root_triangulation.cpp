@@ -88,8 +88,8 @@ class ChartTriangulation {
                 keep(triangle);
     }
 
-    /// A root that every side of its Delaunay triangles leaves through a gap gets the smallest of the
-    /// triangles between it and the roots that it sees.
+    /// Where all Delaunay triangles of a root bridge a gap, it gets the smallest of those between it and the
+    /// roots that it sees.
     void keepBehindGaps() {
         for (const Delaunay::Vertex_handle vertex : delaunay_.finite_vertex_handles()) {
             if (used_[vertex->info()]) continue;

@@ -20,10 +20,9 @@ struct RootTriangulation {
         std::uint32_t sameAs;
     };
     std::vector<Coincident> coincident;
-    /// Roots in no triangle: all of them where they are fewer than three or on a line. Those on a piece of
-    /// the selection that holds fewer than three roots have none without bridging a gap; elsewhere they are
-    /// rare (one root in some 200,000 on the heads measured, alone on a spit far narrower than roots are
-    /// apart).
+    /// Roots in no triangle: all of them where they are fewer than three or on a line, and those on a piece
+    /// of the selection that holds fewer than three, which have none without bridging a gap. Elsewhere they
+    /// are rare: one root in some 200,000 on the heads measured.
     std::vector<std::uint32_t> alone;
 };
 
@@ -31,8 +30,7 @@ struct RootTriangulation {
 /// of the chart, which border constraints would spoil. A root that this leaves without a triangle gets the
 /// Delaunay triangle that reaches least over the border, where it only cuts off a bend of it, at most half as
 /// deep as the side that cuts it is long; failing that, the smallest triangle inside the chart between it and
-/// roots that it sees, whose circle is empty of those that it sees. Errors: empty selection, a root outside
-/// it.
+/// roots near it that it sees, whose circle is empty of these. Errors: empty selection, a root outside it.
 Result<RootTriangulation> triangulateRoots(const ScalpMesh& mesh, const FaceSet& faces,
                                            std::span<const SurfacePoint> roots);
 

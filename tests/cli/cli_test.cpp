@@ -162,7 +162,7 @@ TEST_F(Cli, RenderWritesAPictureAndSaysWhatItCost) {
 
 TEST_F(Cli, HiddenGroupsAreLeftOutOfThePicture) {
     std::ofstream(folder / "two.obj") << "g head\nv 0 0 0\nv 0 0 1\nv 1 0 1\nv 1 0 0\nf 1 2 3 4\n"
-                                         "g helper-a\nv 0 1 0\nv 0 1 1\nv 1 1 1\nf 5 6 7\n"
+                                         "g helper-a\nv 0 .1 0\nv 0 .1 1\nv 1 .1 1\nf 5 6 7\n"
                                          "g helper-b\nv 0 9 0\nv 0 9 1\nv 1 9 1\nf 8 9 10\n";
     std::ofstream(folder / "one.obj") << "g head\nv 0 0 0\nv 0 0 1\nv 1 0 1\nv 1 0 0\nf 1 2 3 4\n";
     for (const std::string name : {"one", "two"}) {
