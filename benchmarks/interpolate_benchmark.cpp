@@ -6,35 +6,14 @@
 
 #include "core/base/parallel.h"
 #include "core/interpolation/follow_hairs.h"
+#include "tests/interpolation/guide_grid.h"
 
 namespace {
 
 using namespace hairloom;
 
-constexpr std::uint32_t kColumns = 50;
-constexpr std::uint32_t kRows = 40;
-constexpr std::uint32_t kPoints = 16;
-
 Groom lawn() {
-    std::vector<std::uint32_t> offsets{0};
-    std::vector<Vec3f> positions;
-    for (std::uint32_t s = 0; s < kColumns * kRows; ++s) {
-        for (std::uint32_t i = 0; i < kPoints; ++i) {
-            const float t = static_cast<float>(i) / (kPoints - 1);
-            positions.emplace_back(0.005f * static_cast<float>(s % kColumns) + 0.05f * t * t, 0.2f * t,
-                                   0.005f * static_cast<float>(s / kColumns));
-        }
-        offsets.push_back(static_cast<std::uint32_t>(positions.size()));
-    }
-    Groom groom = makeGroom(std::move(offsets), std::move(positions));
-    for (std::uint32_t row = 0; row + 1 < kRows; ++row) {
-        for (std::uint32_t column = 0; column + 1 < kColumns; ++column) {
-            const std::uint32_t a = row * kColumns + column;
-            groom.triangulation.triangles.push_back({a, a + kColumns, a + 1});
-            groom.triangulation.triangles.push_back({a + 1, a + kColumns, a + kColumns + 1});
-        }
-    }
-    return groom;
+    return test::guidesOnGrid({50, 40, 16, 0.005f, 0.2f}, [](std::uint32_t) { return 0.05f; });
 }
 
 InterpolationSettings fiftyEach() {

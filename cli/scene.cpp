@@ -5,6 +5,7 @@
 
 #include "core/animation/root_motion.h"
 #include "core/base/file.h"
+#include "core/geometry/selection.h"
 #include "core/groom/json_reader.h"
 #include "core/interpolation/follow_hairs.h"
 #include "core/simulation/simulation.h"
@@ -118,15 +119,21 @@ Result<ViewFile> readViewFile(const std::string& path) {
 }
 
 Result<GroomScene> GroomScene::make(const Groom& groom, const std::vector<Vec3f>* positions_ws,
-                                    const HeadPose* pose, const ViewFile& view) {
+                                    const HeadPose* pose, const ViewFile& view,
+                                    const std::vector<std::string>& hiddenGroups) {
     GroomScene scene;
     scene.posed_ = pose ? posedGroom(groom, *positions_ws, *pose) : groom;
     scene.material_ = materialOf(groom.material, view);
+    if (!groom.scalp && !hiddenGroups.empty()) return fail("there is no head to hide groups of");
     if (groom.scalp) {
-        for (const Triangle& triangle : groom.scalp->triangles()) {
+        const auto hidden = facesOfGroups(*groom.scalp, hiddenGroups);
+        if (!hidden) return tl::unexpected(hidden.error());
+        const auto colours = headColours(groom, view.headAlbedo.value_or(render::RenderMesh().albedo));
+        for (const std::uint32_t face : invertSelection(*groom.scalp, *hidden)) {
+            const Triangle& triangle = groom.scalp->triangles()[face];
             scene.indices_.insert(scene.indices_.end(), triangle.begin(), triangle.end());
+            scene.triangleAlbedo_.push_back(colours[face]);
         }
-        scene.triangleAlbedo_ = headColours(groom, view.headAlbedo.value_or(render::RenderMesh().albedo));
     }
     if (groom.interpolation.followPerGuide == 0 || groom.strandCount() == 0) return scene;
 
@@ -146,7 +153,7 @@ Result<GroomScene> GroomScene::make(const Groom& groom, const std::vector<Vec3f>
 
 render::RenderScene GroomScene::scene() const {
     render::RenderScene scene;
-    if (posed_.scalp) {
+    if (!indices_.empty()) {
         render::RenderMesh mesh;
         mesh.positions_ws = posed_.scalp->positions();
         mesh.normals_ws = posed_.scalp->normals();
@@ -172,9 +179,10 @@ render::RenderScene GroomScene::scene() const {
 
 Box3f GroomScene::subject() const {
     render::RenderScene hair = scene();
-    const Box3f all = render::boundsOf(hair);
     hair.meshes.clear();
     Box3f box = render::boundsOf(hair);
+    Box3f all = box;
+    for (const std::uint32_t vertex : indices_) all.extend(posed_.scalp->positions()[vertex]);
     if (box.isEmpty() || !posed_.scalp) return all;
     for (const std::uint32_t triangle : posed_.scalpSelection) {
         for (const std::uint32_t vertex : posed_.scalp->triangles()[triangle]) {

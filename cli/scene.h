@@ -27,22 +27,23 @@ Result<ViewFile> readViewFile(const std::string& path);
 class GroomScene {
   public:
     /// The groom at rest, or where the frame of a record has it. Follow hairs are made where the groom asks
-    /// for some.
+    /// for some. Groups of the head are hidden as facesOfGroups names them.
     static Result<GroomScene> make(const Groom& groom, const std::vector<Vec3f>* positions_ws,
-                                   const HeadPose* pose, const ViewFile& view);
+                                   const HeadPose* pose, const ViewFile& view,
+                                   const std::vector<std::string>& hiddenGroups);
 
     /// Meshes and strands; camera and lights are the caller's. Valid while this object lives and is not
     /// moved.
     render::RenderScene scene() const;
 
-    /// What a picture should show: the hair, and below it enough of the head; the whole mesh where there is
-    /// no hair.
+    /// What a picture should show: the hair, and below it enough of the head; all of the mesh that is drawn
+    /// where there is no hair.
     Box3f subject() const;
 
   private:
     Groom posed_;
-    std::vector<std::uint32_t> indices_;  ///< of the head's triangles
-    std::vector<Vec3f> triangleAlbedo_;   ///< skin, tinted by hair where the scalp is
+    std::vector<std::uint32_t> indices_;  ///< of the head's triangles that are drawn
+    std::vector<Vec3f> triangleAlbedo_;   ///< of these: skin, tinted by hair where the scalp is
     std::vector<std::uint32_t>
         hairOffsets_;  ///< of follow hairs; empty where the strands themselves are drawn
     std::vector<Vec3f> hairPositions_ws_;

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <string_view>
@@ -150,11 +149,9 @@ class ObjReader {
     /// Counted from 1, or backwards from what has been read so far. Whether a forward index names something
     /// is only known at the end of the file.
     static std::optional<std::uint32_t> parseIndex(std::string_view word, std::size_t soFar) {
-        std::int64_t index = 0;
-        if (word.starts_with('+')) word.remove_prefix(1);
-        const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), index);
-        if (code != std::errc() || end != word.data() + word.size() || index == 0) return std::nullopt;
-        if (index < 0) index += static_cast<std::int64_t>(soFar) + 1;
+        const std::optional<std::int64_t> named = parseWhole(word);
+        if (!named) return std::nullopt;
+        const std::int64_t index = *named < 0 ? *named + static_cast<std::int64_t>(soFar) + 1 : *named;
         if (index <= 0 || index >= kNone) return std::nullopt;
         return static_cast<std::uint32_t>(index - 1);
     }

@@ -6,18 +6,6 @@
 #include <limits>
 
 namespace hairloom {
-namespace {
-
-constexpr std::string_view kBlank(" \t\r\f\v\0", 6);
-
-std::string_view trimmed(std::string_view text) {
-    const std::size_t first = text.find_first_not_of(kBlank);
-    if (first == text.npos) return {};
-    return text.substr(first, text.find_last_not_of(kBlank) + 1 - first);
-}
-
-}  // namespace
-
 ObjLines::ObjLines(std::string_view text) : text_(text) {
     if (text_.starts_with("\xef\xbb\xbf")) text_.remove_prefix(3);
     if (text_.find('\n') == text_.npos) lineEnd_ = '\r';
@@ -49,7 +37,8 @@ bool ObjLines::next() {
         rest_ = line;
         keyword_ = takeWord(rest_);
         // Names may hold a '#', data may not.
-        if (keyword_.size() <= 2 && keyword_ != "g" && keyword_ != "o")
+        constexpr std::size_t kLongestOfData = std::string_view("curv").size();
+        if (keyword_.size() <= kLongestOfData && keyword_ != "g" && keyword_ != "o")
             rest_ = rest_.substr(0, rest_.find('#'));
         rest_ = trimmed(rest_);
         return true;
@@ -57,16 +46,10 @@ bool ObjLines::next() {
     return false;
 }
 
-std::string_view takeWord(std::string_view& text) {
-    const std::size_t first = text.find_first_not_of(kBlank);
-    if (first == text.npos) {
-        text = {};
-        return {};
-    }
-    const std::size_t end = std::min(text.find_first_of(kBlank, first), text.size());
-    const std::string_view word = text.substr(first, end - first);
-    text.remove_prefix(end);
-    return word;
+std::string_view trimmed(std::string_view text) {
+    while (!text.empty() && isBlank(text.front())) text.remove_prefix(1);
+    while (!text.empty() && isBlank(text.back())) text.remove_suffix(1);
+    return text;
 }
 
 std::optional<double> parseNumber(std::string_view word) {
@@ -78,6 +61,14 @@ std::optional<double> parseNumber(std::string_view word) {
         const bool tiny = word.find("e-") != word.npos || word.find("E-") != word.npos;
         return tiny ? 0.0 : std::numeric_limits<double>::infinity();
     }
+    return value;
+}
+
+std::optional<std::int64_t> parseWhole(std::string_view word) {
+    if (word.starts_with('+')) word.remove_prefix(1);
+    std::int64_t value = 0;
+    const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (code != std::errc() || end != word.data() + word.size()) return std::nullopt;
     return value;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// The lines, words and numbers of OBJ files.
+// The lines, words and numbers of OBJ files; PLY's text has the same words and numbers.
 
 #include <cstdint>
 #include <optional>
@@ -10,7 +10,7 @@
 namespace hairloom {
 
 /// Goes through a text line by line: joins lines that end in a backslash, leaves out comments and empty
-/// lines, accepts LF, CR LF, lone CR and a last line without an end.
+/// lines, accepts LF, CR LF, lone CR, a byte order mark and a last line without an end.
 class ObjLines {
   public:
     /// `text` must outlive the lines.
@@ -33,12 +33,32 @@ class ObjLines {
     std::uint64_t taken_ = 0;
 };
 
-/// Removes the first word from `text` and returns it; empty when there is none.
-std::string_view takeWord(std::string_view& text);
+/// Whether a character stands between words; line ends do, where a line is searched.
+constexpr bool isBlank(char c) {
+    return c == ' ' || (c >= '\t' && c <= '\r') || c == '\0';
+}
+
+/// Removes the first word from `text` and returns it; empty when there is none. Inline because reading a file
+/// of strands is little else.
+inline std::string_view takeWord(std::string_view& text) {
+    const char* begin = text.data();
+    const char* const stop = begin + text.size();
+    while (begin != stop && isBlank(*begin)) ++begin;
+    const char* end = begin;
+    while (end != stop && !isBlank(*end)) ++end;
+    text = {end, static_cast<std::size_t>(stop - end)};
+    return {begin, static_cast<std::size_t>(end - begin)};
+}
+
+/// The text without blanks around it.
+std::string_view trimmed(std::string_view text);
 
 /// A decimal number, also with a leading plus, infinite where it is too large. Empty when the word is no
 /// number or goes on after it.
 std::optional<double> parseNumber(std::string_view word);
+
+/// A whole number, also with a leading plus. Empty when the word is none, goes on after it or is too large.
+std::optional<std::int64_t> parseWhole(std::string_view word);
 
 /// At most 60 bytes of printable characters, for messages.
 std::string shortened(std::string_view text);

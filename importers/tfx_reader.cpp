@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
 
 #include "core/base/file.h"
 #include "importers/raw_strands.h"
@@ -13,6 +14,9 @@ namespace hairloom {
 namespace {
 
 struct HeaderV4 {
+    static constexpr std::string_view kFormat = "TressFX 4";
+    static constexpr std::uint64_t kBytesPerPoint = 16;
+    static constexpr bool kLeftHanded = false;
     float version;
     std::uint32_t strands;
     std::uint32_t pointsPerStrand;
@@ -26,6 +30,9 @@ struct HeaderV4 {
 static_assert(sizeof(HeaderV4) == 160);
 
 struct HeaderV3 {
+    static constexpr std::string_view kFormat = "TressFX 3";
+    static constexpr std::uint64_t kBytesPerPoint = 12;
+    static constexpr bool kLeftHanded = true;
     float version;
     std::uint32_t strands;
     std::uint32_t pointsPerStrand;
@@ -59,32 +66,20 @@ struct Layout {
     std::uint64_t bytesPerPoint;
 };
 
-Layout layoutOf(const HeaderV4& header) {
+template <class Header>
+Layout layoutOf(const Header& header) {
     const std::uint64_t strands = header.strands;
     const std::uint64_t points = strands * header.pointsPerStrand;
-    return {sizeof(HeaderV4),
+    return {sizeof(Header),
             strands,
             header.pointsPerStrand,
-            {"positions", header.positionOffset, points * 16, 12},
-            {"strand UVs", header.strandUvOffset, strands * 8, 16},
-            {"vertex UVs", header.pointUvOffset, points * 8, 20},
-            {"strand thickness", header.thicknessOffset, strands * 4, 24},
-            {"vertex colours", header.colourOffset, points * 16, 28},
-            16};
-}
-
-Layout layoutOf(const HeaderV3& header) {
-    const std::uint64_t strands = header.strands;
-    const std::uint64_t points = strands * header.pointsPerStrand;
-    return {sizeof(HeaderV3),
-            strands,
-            header.pointsPerStrand,
-            {"positions", header.positionOffset, points * 12, 144},
-            {"strand UVs", header.strandUvOffset, strands * 8, 152},
-            {"vertex UVs", header.pointUvOffset, points * 8, 164},
-            {"strand thickness", header.thicknessOffset, strands * 4, 148},
-            {"vertex colours", header.colourOffset, points * 16, 156},
-            12};
+            {"positions", header.positionOffset, points * Header::kBytesPerPoint,
+             offsetof(Header, positionOffset)},
+            {"strand UVs", header.strandUvOffset, strands * 8, offsetof(Header, strandUvOffset)},
+            {"vertex UVs", header.pointUvOffset, points * 8, offsetof(Header, pointUvOffset)},
+            {"strand thickness", header.thicknessOffset, strands * 4, offsetof(Header, thicknessOffset)},
+            {"vertex colours", header.colourOffset, points * 16, offsetof(Header, colourOffset)},
+            Header::kBytesPerPoint};
 }
 
 Status checkSection(const Section& section, const Layout& layout, std::uint64_t size,
@@ -166,7 +161,13 @@ std::vector<Vector> copyVectors(std::span<const std::byte> bytes, const Section&
     return values;
 }
 
-bool tipsAreFixed(std::span<const std::byte> bytes, const Layout& layout) {
+bool bothEndsImmovable(const HeaderV3& header, const Layout&, std::span<const std::byte>) {
+    return header.bothEndsImmovable != 0;
+}
+
+/// Version 4 marks immovable points by an inverse mass of 0 beside their position.
+bool bothEndsImmovable(const HeaderV4&, const Layout& layout, std::span<const std::byte> bytes) {
+    if (layout.pointsPerStrand <= 2) return false;
     const auto positions = sectionBytes(bytes, layout.positions);
     const std::size_t strandBytes = static_cast<std::size_t>(layout.pointsPerStrand) * 16;
     for (std::size_t end = strandBytes; end <= positions.size(); end += strandBytes) {
@@ -194,34 +195,22 @@ RawStrands readSections(std::span<const std::byte> bytes, const Layout& layout) 
     return raw;
 }
 
-Finding immovableNote() {
-    return fileNote("both ends of the strands are marked immovable; Hairloom fixes the root alone",
-                    "strand tips", "constrain the tips anew where that was wanted");
-}
-
-Result<RawStrands> readVersion4(const std::string& file, std::span<const std::byte> bytes) {
+template <class Header>
+Result<RawStrands> readVersion(const std::string& file, std::span<const std::byte> bytes) {
     ByteReader reader(file, bytes);
-    const auto header = reader.read<HeaderV4>("the header");
+    const auto header = reader.read<Header>("the header");
     if (!header) return tl::unexpected(header.error());
     const Layout layout = layoutOf(*header);
     if (auto status = checkLayout(layout, bytes.size(), file); !status) return tl::unexpected(status.error());
     RawStrands raw = readSections(bytes, layout);
-    raw.format = "TressFX 4";
-    if (layout.pointsPerStrand > 2 && tipsAreFixed(bytes, layout)) raw.warnings.push_back(immovableNote());
-    return raw;
-}
-
-Result<RawStrands> readVersion3(const std::string& file, std::span<const std::byte> bytes) {
-    ByteReader reader(file, bytes);
-    const auto header = reader.read<HeaderV3>("the header");
-    if (!header) return tl::unexpected(header.error());
-    const Layout layout = layoutOf(*header);
-    if (auto status = checkLayout(layout, bytes.size(), file); !status) return tl::unexpected(status.error());
-    RawStrands raw = readSections(bytes, layout);
-    raw.format = "TressFX 3";
-    raw.mirrorZ = true;
-    raw.warnings.push_back(fileNote("version 3 is left-handed; Z was negated", "positions"));
-    if (header->bothEndsImmovable != 0) raw.warnings.push_back(immovableNote());
+    raw.format = Header::kFormat;
+    raw.mirrorZ = Header::kLeftHanded;
+    if (raw.mirrorZ) raw.warnings.push_back(fileNote("version 3 is left-handed; Z was negated", "positions"));
+    if (bothEndsImmovable(*header, layout, bytes)) {
+        raw.warnings.push_back(
+            fileNote("both ends of the strands are marked immovable; Hairloom fixes the root alone",
+                     "strand tips", "constrain the tips anew where that was wanted"));
+    }
     return raw;
 }
 
@@ -231,8 +220,8 @@ Result<RawStrands> readTfx(const std::string& file, std::span<const std::byte> b
     ByteReader reader(file, bytes);
     const auto version = reader.read<float>("the version");
     if (!version) return tl::unexpected(version.error());
-    if (*version >= 4.0f && *version < 5.0f) return readVersion4(file, bytes);
-    if (*version >= 3.0f && *version < 4.0f) return readVersion3(file, bytes);
+    if (*version >= 4.0f && *version < 5.0f) return readVersion<HeaderV4>(file, bytes);
+    if (*version >= 3.0f && *version < 4.0f) return readVersion<HeaderV3>(file, bytes);
     return failIn(file, Byte{0}, fmt::format("is TressFX version {}", *version), "expected version 3 or 4");
 }
 

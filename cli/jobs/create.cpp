@@ -68,6 +68,7 @@ Result<Report> create(const CreateOptions& options) {
     report["scalp_area_cm2"] = areaCm2;
     report["min_root_distance"] = finiteOrNull(minimumRootDistance(*mesh, placement->roots));
     report["triangles"] = groom->triangulation.triangles.size();
+    report["alone"] = groom->triangulation.alone.size();
     report["repairs"] = Report::array();
     for (const MeshRepair& repair : mesh->repairs()) {
         report["repairs"].push_back(Report{{"what", repair.what}, {"count", repair.count}});

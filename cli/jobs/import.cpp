@@ -83,6 +83,8 @@ Result<Report> import(const ImportOptions& options) {
         if (!options.meshUnit.empty()) groom.characterMetresPerUnit = metresPerUnit(options.meshUnit);
         if (auto triangulation = triangulateRoots(*mesh, groom.scalpSelection, groom.rootBindings())) {
             groom.triangulation = std::move(*triangulation);
+            if (groom.triangulation.triangles.empty())
+                log::warning("{}: no three roots make a triangle", options.file);
         } else {
             log::warning("{}: roots have no triangulation: {}", options.file,
                          triangulation.error().message());

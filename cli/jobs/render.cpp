@@ -21,6 +21,7 @@ struct RenderJobOptions {
     std::string shadow = "dom";
     std::string antiAliasing = "auto";
     std::string record;
+    std::vector<std::string> hiddenGroups;
     std::uint64_t frame = 0;
     std::uint32_t device = 0;
     bool chooseDevice = false;
@@ -51,10 +52,10 @@ Result<render::RenderOptions> pictureOptions(const RenderJobOptions& options, co
 Result<GroomScene> loadScene(const RenderJobOptions& options, const ViewFile& view) {
     const auto groom = loadDocument(options.input);
     if (!groom) return tl::unexpected(groom.error());
-    if (options.record.empty()) return GroomScene::make(*groom, nullptr, nullptr, view);
+    if (options.record.empty()) return GroomScene::make(*groom, nullptr, nullptr, view, options.hiddenGroups);
     const auto frame = readFrame(options.record, *groom, options.frame);
     if (!frame) return tl::unexpected(frame.error());
-    return GroomScene::make(*groom, &frame->positions_ws, &frame->pose, view);
+    return GroomScene::make(*groom, &frame->positions_ws, &frame->pose, view, options.hiddenGroups);
 }
 
 Result<Report> renderToFile(const RenderJobOptions& options) {
@@ -106,6 +107,11 @@ void addRenderJob(Jobs& jobs) {
     job.add_option("--camera", options->camera, "From where")
         ->check(CLI::IsMember({"front", "back", "left", "right", "three-quarter"}));
     job.add_option("--view", options->view, "JSON file with camera, lights, head and hair");
+    job.add_option(
+           "--hide", options->hiddenGroups,
+           "Groups of the head mesh to leave out of the picture, NAME or BEGINNING*, with commas between")
+        ->delimiter(',')
+        ->allow_extra_args(false);
     job.add_option("--shading", options->shading, "Shading model")->check(CLI::IsMember({"kajiya"}));
     job.add_option("--shadow", options->shadow, "Shadows of hair: none, or deep opacity maps")
         ->check(CLI::IsMember({"none", "dom"}));

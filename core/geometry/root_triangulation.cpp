@@ -7,8 +7,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
-#include "core/geometry/flat_chart.h"
+#include "core/geometry/chart_border.h"
 
 namespace hairloom {
 namespace {
@@ -23,24 +25,11 @@ struct FlatRoot {
     auto operator<=>(const FlatRoot&) const = default;
 };
 
-/// Whether a triangle of roots crosses the chart's border. Drawn in by a millionth, so that roots on the
-/// border count as inside.
-bool leavesChart(const SegmentGrid& border, const std::array<Vec2d, 3>& corners,
-                 std::vector<std::uint32_t>& found) {
-    const Vec2d middle = (corners[0] + corners[1] + corners[2]) / 3;
-    std::array<Vec2d, 3> inner;
-    constexpr double kDrawnIn = 1e-6;
-    for (std::size_t i = 0; i < 3; ++i) inner[i] = corners[i] + kDrawnIn * (middle - corners[i]);
-    const auto point = [](const Vec2d& p) { return Kernel::Point_2(p.x(), p.y()); };
-    const Kernel::Triangle_2 triangle(point(inner[0]), point(inner[1]), point(inner[2]));
-    if (triangle.is_degenerate()) return true;
-    border.near(inner[0].cwiseMin(inner[1]).cwiseMin(inner[2]),
-                inner[0].cwiseMax(inner[1]).cwiseMax(inner[2]), found);
-    return std::any_of(found.begin(), found.end(), [&](std::uint32_t s) {
-        const SegmentGrid::Segment& segment = border.segments()[s];
-        return CGAL::do_intersect(triangle, Kernel::Segment_2(point(segment[0]), point(segment[1])));
-    });
-}
+/// A triangle that cuts off a bend of the border may reach over it by this share of the side that cuts it.
+constexpr double kDeepestBend = 0.5;
+
+/// Roots at hand round one that is to be joined.
+constexpr std::size_t kNeighbourhood = 128;
 
 /// Smallest index first, so that the result does not depend on CGAL's order.
 Triangle rotated(Triangle t) {
@@ -48,35 +37,122 @@ Triangle rotated(Triangle t) {
     return t;
 }
 
-void triangulateChart(const ScalpMesh& mesh, const Chart& chart, std::vector<FlatRoot> roots,
-                      RootTriangulation& result) {
-    std::sort(roots.begin(), roots.end());
-    Delaunay delaunay;
-    Delaunay::Face_handle near;
-    const FlatRoot* last = nullptr;
-    for (const FlatRoot& root : roots) {
-        if (last && last->u == root.u && last->v == root.v) {
-            result.coincident.push_back({root.root, last->root});
-            continue;
-        }
-        const auto vertex = delaunay.insert(Kernel::Point_2(root.u, root.v), near);
-        vertex->info() = root.root;
-        near = vertex->face();
-        last = &root;
+/// The triangles of one chart, added to those of the others.
+class ChartTriangulation {
+  public:
+    ChartTriangulation(const ScalpMesh& mesh, const Chart& chart, std::vector<bool>& used,
+                       RootTriangulation& result)
+        : border_(mesh, chart), used_(used), result_(result) {}
+
+    void run(std::vector<FlatRoot> roots) {
+        insert(std::move(roots));
+        keepInner();
+        keepBends();
+        keepBehindGaps();
     }
-    const SegmentGrid border(flatBorder(oppositeSides(mesh, chart.faces), chart.cornerUvs));
-    std::vector<std::uint32_t> found;
-    for (auto face = delaunay.finite_faces_begin(); face != delaunay.finite_faces_end(); ++face) {
-        std::array<Vec2d, 3> corners;
-        Triangle triangle{};
-        for (std::size_t i = 0; i < 3; ++i) {
-            const auto vertex = face->vertex(static_cast<int>(i));
-            corners[i] = {vertex->point().x(), vertex->point().y()};
-            triangle[i] = vertex->info();
+
+  private:
+    void insert(std::vector<FlatRoot> roots) {
+        std::sort(roots.begin(), roots.end());
+        Delaunay::Face_handle near;
+        const FlatRoot* last = nullptr;
+        for (const FlatRoot& root : roots) {
+            if (last && last->u == root.u && last->v == root.v) {
+                result_.coincident.push_back({root.root, last->root});
+                continue;
+            }
+            const auto vertex = delaunay_.insert(Kernel::Point_2(root.u, root.v), near);
+            vertex->info() = root.root;
+            near = vertex->face();
+            last = &root;
         }
-        if (!leavesChart(border, corners, found)) result.triangles.push_back(rotated(triangle));
     }
-}
+
+    /// Triangles inside the chart.
+    void keepInner() {
+        for (const Delaunay::Face_handle face : delaunay_.finite_face_handles()) {
+            const double overhang = border_.overhang(cornersOf(face));
+            if (overhang == 0) {
+                keep(triangleOf(face));
+            } else if (overhang <= kDeepestBend) {
+                overhanging_.emplace_back(overhang, triangleOf(face));
+            }
+        }
+    }
+
+    /// Triangles that cut off a bend, where a root has no other.
+    void keepBends() {
+        std::sort(overhanging_.begin(), overhanging_.end());
+        for (const auto& [overhang, triangle] : overhanging_)
+            if (std::any_of(triangle.begin(), triangle.end(), [&](std::uint32_t r) { return !used_[r]; }))
+                keep(triangle);
+    }
+
+    /// Where all Delaunay triangles of a root bridge a gap, it gets the smallest of those between it and the
+    /// roots that it sees.
+    void keepBehindGaps() {
+        for (const Delaunay::Vertex_handle vertex : delaunay_.finite_vertex_handles()) {
+            if (used_[vertex->info()]) continue;
+            Delaunay seen;
+            for (const Delaunay::Vertex_handle other : neighbourhood(vertex)) {
+                if (other == vertex || border_.sees(placeOf(vertex), placeOf(other)))
+                    seen.insert(other->point())->info() = other->info();
+            }
+            std::optional<std::pair<double, Triangle>> smallest;
+            for (const Delaunay::Face_handle face : seen.finite_face_handles()) {
+                const std::pair candidate(longestSide(cornersOf(face)), triangleOf(face));
+                if (!has(candidate.second, vertex->info()) || (smallest && *smallest <= candidate)) continue;
+                if (border_.overhang(cornersOf(face)) == 0) smallest = candidate;
+            }
+            if (smallest) keep(smallest->second);
+        }
+    }
+
+    std::vector<Delaunay::Vertex_handle> neighbourhood(Delaunay::Vertex_handle vertex) const {
+        std::vector<Delaunay::Vertex_handle> found{vertex};
+        for (std::size_t next = 0; next < found.size() && found.size() < kNeighbourhood; ++next) {
+            const auto around = delaunay_.incident_vertices(found[next]);
+            if (around == nullptr) continue;  // the only root
+            auto other = around;
+            do {
+                const bool known = std::find(found.begin(), found.end(), other) != found.end();
+                if (!known && !delaunay_.is_infinite(other)) found.push_back(other);
+            } while (++other != around);
+        }
+        return found;
+    }
+
+    static double longestSide(const ChartBorder::Corners& c) {
+        return std::max({(c[1] - c[0]).norm(), (c[2] - c[1]).norm(), (c[0] - c[2]).norm()});
+    }
+
+    static bool has(const Triangle& triangle, std::uint32_t root) {
+        return std::find(triangle.begin(), triangle.end(), root) != triangle.end();
+    }
+
+    void keep(const Triangle& triangle) {
+        result_.triangles.push_back(triangle);
+        for (const std::uint32_t root : triangle) used_[root] = true;
+    }
+
+    static Vec2d placeOf(Delaunay::Vertex_handle vertex) {
+        return {vertex->point().x(), vertex->point().y()};
+    }
+
+    static ChartBorder::Corners cornersOf(Delaunay::Face_handle face) {
+        return {placeOf(face->vertex(0)), placeOf(face->vertex(1)), placeOf(face->vertex(2))};
+    }
+
+    static Triangle triangleOf(Delaunay::Face_handle face) {
+        return rotated({face->vertex(0)->info(), face->vertex(1)->info(), face->vertex(2)->info()});
+    }
+
+    ChartBorder border_;
+    Delaunay delaunay_;
+    std::vector<std::pair<double, Triangle>> overhanging_;
+    std::vector<bool>& used_;
+    RootTriangulation& result_;
+};
 
 }  // namespace
 
@@ -106,15 +182,10 @@ Result<RootTriangulation> triangulateRoots(const ScalpMesh& mesh, const FaceSet&
         perChart[chart].push_back({uv.x(), uv.y(), r});
     }
     RootTriangulation result;
-    for (std::size_t c = 0; c < perChart.size(); ++c)
-        triangulateChart(mesh, flat->charts[c], std::move(perChart[c]), result);
-    if (result.triangles.empty())
-        return fail("no three roots of one part of the scalp make a triangle",
-                    "more roots, or roots not on a line");
-    std::sort(result.triangles.begin(), result.triangles.end());
     std::vector<bool> used(roots.size(), false);
-    for (const Triangle& t : result.triangles)
-        for (const std::uint32_t root : t) used[root] = true;
+    for (std::size_t c = 0; c < perChart.size(); ++c)
+        ChartTriangulation(mesh, flat->charts[c], used, result).run(std::move(perChart[c]));
+    std::sort(result.triangles.begin(), result.triangles.end());
     for (const RootTriangulation::Coincident& c : result.coincident) used[c.root] = true;
     for (std::uint32_t r = 0; r < used.size(); ++r)
         if (!used[r]) result.alone.push_back(r);

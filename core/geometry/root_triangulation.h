@@ -11,8 +11,8 @@
 namespace hairloom {
 
 /// Triangles of root indices, counter-clockwise seen from outside. Each chart is triangulated by itself, so
-/// none bridges a hole of the selection or joins two pieces, and none leaves the selection. Roots that share
-/// a place keep one as a vertex; the others are listed in `coincident` with the root they fall on.
+/// none bridges a hole of the selection or joins two pieces. Roots that share a place keep one as a vertex;
+/// the others are listed in `coincident` with the root they fall on.
 struct RootTriangulation {
     std::vector<Triangle> triangles;
     struct Coincident {
@@ -20,14 +20,17 @@ struct RootTriangulation {
         std::uint32_t sameAs;
     };
     std::vector<Coincident> coincident;
-    /// Roots whose every Delaunay triangle would leave the scalp (on a spit narrower than the roots are
-    /// apart).
+    /// Roots in no triangle: all of them where they are fewer than three or on a line, and those on a piece
+    /// of the selection that holds fewer than three, which have none without bridging a gap. Elsewhere they
+    /// are rare: one root in some 200,000 on the heads measured.
     std::vector<std::uint32_t> alone;
 };
 
-/// The plain Delaunay triangulation of each chart, less the triangles that cross the chart's border: those
-/// kept have empty circles among all roots of the chart, which border constraints would spoil. Errors: empty
-/// selection, a root outside it, no triangle at all.
+/// The plain Delaunay triangles of each chart that lie inside the chart: their circles are empty of all roots
+/// of the chart, which border constraints would spoil. A root that this leaves without a triangle gets the
+/// Delaunay triangle that reaches least over the border, where it only cuts off a bend of it, at most half as
+/// deep as the side that cuts it is long; failing that, the smallest triangle inside the chart between it and
+/// roots near it that it sees, whose circle is empty of these. Errors: empty selection, a root outside it.
 Result<RootTriangulation> triangulateRoots(const ScalpMesh& mesh, const FaceSet& faces,
                                            std::span<const SurfacePoint> roots);
 

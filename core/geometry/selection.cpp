@@ -66,6 +66,21 @@ Result<double> numberBetween(std::string_view term, std::string_view text, doubl
     return *value;
 }
 
+/// "one of: …", for errors.
+std::string someOf(std::vector<std::string> names) {
+    std::sort(names.begin(), names.end());
+    names.erase(std::unique(names.begin(), names.end()), names.end());
+    const bool more = names.size() > kNamesShown;
+    if (more) names.resize(kNamesShown);
+    return fmt::format("one of: {}{}", fmt::join(names, ", "), more ? ", …" : "");
+}
+
+bool nameMatches(std::string_view name, std::string_view pattern) {
+    if (!pattern.ends_with('*')) return name == pattern;
+    pattern.remove_suffix(1);
+    return name.starts_with(pattern);
+}
+
 /// A file may repeat a name; all parts of that name are meant.
 Result<FaceSet> facesNamed(std::string_view term, std::string_view name, const FaceSet& current,
                            std::span<const std::uint32_t> perTriangle, const std::vector<std::string>& names,
@@ -74,13 +89,7 @@ Result<FaceSet> facesNamed(std::string_view term, std::string_view name, const F
     for (std::size_t i = 0; i < names.size(); ++i) wanted[i] = names[i] == name;
     if (std::find(wanted.begin(), wanted.end(), true) != wanted.end())
         return filtered(current, [&](std::uint32_t face) { return wanted[perTriangle[face]]; });
-    std::vector<std::string> shown(names);
-    std::sort(shown.begin(), shown.end());
-    shown.erase(std::unique(shown.begin(), shown.end()), shown.end());
-    const bool more = shown.size() > kNamesShown;
-    if (more) shown.resize(kNamesShown);
-    return fail(fmt::format("selection '{}': there is no {} '{}'", term, kind, name),
-                fmt::format("one of: {}{}", fmt::join(shown, ", "), more ? ", …" : ""));
+    return fail(fmt::format("selection '{}': there is no {} '{}'", term, kind, name), someOf(names));
 }
 
 FaceSet facesUpright(const ScalpMesh& mesh, const FaceSet& current, double capDegrees) {
@@ -201,6 +210,22 @@ Result<FaceSet> selectFaces(const ScalpMesh& mesh, std::string_view expression) 
         return fail(fmt::format("selection '{}' holds no face after '{}'", expression, emptiedBy),
                     "at least one face");
     return current;
+}
+
+Result<FaceSet> facesOfGroups(const ScalpMesh& mesh, std::span<const std::string> names) {
+    std::vector<bool> wanted(mesh.groupNames().size(), false);
+    for (const std::string& name : names) {
+        bool known = false;
+        for (std::size_t i = 0; i < wanted.size(); ++i) {
+            if (!nameMatches(mesh.groupNames()[i], name)) continue;
+            known = wanted[i] = true;
+        }
+        if (!known) return fail(fmt::format("the mesh has no group '{}'", name), someOf(mesh.groupNames()));
+    }
+    FaceSet faces;
+    for (std::uint32_t t = 0; t < mesh.triangleCount(); ++t)
+        if (wanted[mesh.triangleGroups()[t]]) faces.push_back(t);
+    return faces;
 }
 
 FaceSet growSelection(const ScalpMesh& mesh, const FaceSet& faces, int rings) {

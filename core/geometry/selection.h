@@ -2,6 +2,8 @@
 #pragma once
 // Choosing the part of a mesh that carries hair.
 
+#include <span>
+#include <string>
 #include <string_view>
 
 #include "core/geometry/scalp_mesh.h"
@@ -15,6 +17,10 @@ namespace hairloom {
 /// comma means and, left to right. Errors name the term: unknown word, no such group (with the names there
 /// are), a number out of range, an empty result.
 Result<FaceSet> selectFaces(const ScalpMesh& mesh, std::string_view expression);
+
+/// Faces of the groups named; a name that ends in * stands for all groups that begin with what precedes it.
+/// Errors: no group of a name (with the names there are).
+Result<FaceSet> facesOfGroups(const ScalpMesh& mesh, std::span<const std::string> names);
 
 FaceSet growSelection(const ScalpMesh& mesh, const FaceSet& faces, int rings);
 FaceSet shrinkSelection(const ScalpMesh& mesh, const FaceSet& faces, int rings);

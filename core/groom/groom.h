@@ -85,8 +85,8 @@ Groom makeGroom(std::vector<std::uint32_t> offsets, std::vector<Vec3f> positions
 
 /// Straight strands along the interpolated scalp normals (thesis §4.1), bound to the scalp, each with
 /// `points` ≥ 2 points over `length` metres, with ids, root UVs, radius tapered as the material says, and the
-/// Delaunay triangulation of the roots (three of them at least). Errors: no scalp, a root beside it, a length
-/// or number of points out of range, roots that cannot be triangulated.
+/// Delaunay triangulation of the roots, which lists those that make no triangle as alone. Errors: no scalp,
+/// an empty selection, a root beside it, a length or number of points out of range.
 Result<Groom> growStraight(std::shared_ptr<const ScalpMesh> scalp, FaceSet selection,
                            std::span<const SurfacePoint> roots, float length, std::uint32_t points);
 

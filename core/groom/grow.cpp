@@ -80,12 +80,9 @@ Result<Groom> growStraight(std::shared_ptr<const ScalpMesh> scalp, FaceSet selec
     std::vector<std::uint32_t> ids(roots.size());
     std::iota(ids.begin(), ids.end(), 0u);
     groom.strandAttributes.set(attribute::kStrandId, std::move(ids));
-    constexpr std::size_t kSmallestTriangulation = 3;
-    if (roots.size() >= kSmallestTriangulation) {
-        auto triangulation = triangulateRoots(*scalp, selection, roots);
-        if (!triangulation) return tl::unexpected(triangulation.error());
-        groom.triangulation = std::move(*triangulation);
-    }
+    auto triangulation = triangulateRoots(*scalp, selection, roots);
+    if (!triangulation) return tl::unexpected(triangulation.error());
+    groom.triangulation = std::move(*triangulation);
     groom.scalp = std::move(scalp);
     groom.scalpSelection = std::move(selection);
     return groom;

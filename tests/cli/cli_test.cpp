@@ -160,6 +160,28 @@ TEST_F(Cli, RenderWritesAPictureAndSaysWhatItCost) {
     EXPECT_GT(picture.size(), 2000u);
 }
 
+TEST_F(Cli, HiddenGroupsAreLeftOutOfThePicture) {
+    std::ofstream(folder / "two.obj") << "g head\nv 0 0 0\nv 0 0 1\nv 1 0 1\nv 1 0 0\nf 1 2 3 4\n"
+                                         "g helper-a\nv 0 .1 0\nv 0 .1 1\nv 1 .1 1\nf 5 6 7\n"
+                                         "g helper-b\nv 0 9 0\nv 0 9 1\nv 1 9 1\nf 8 9 10\n";
+    std::ofstream(folder / "one.obj") << "g head\nv 0 0 0\nv 0 0 1\nv 1 0 1\nv 1 0 0\nf 1 2 3 4\n";
+    for (const std::string name : {"one", "two"}) {
+        runJson("create --mesh " + name + ".obj --scalp group:head --count 20 --length 0.2 -o " + name +
+                ".hairloom");
+    }
+    const auto picture = [&](const std::string& arguments) {
+        runJson("render " + arguments + " -o picture.png --size 96x96 --passes 1");
+        return readText(folder / "picture.png");
+    };
+    EXPECT_NE(picture("two.hairloom"), picture("one.hairloom"));
+    EXPECT_EQ(picture("two.hairloom --hide 'helper-*'"), picture("one.hairloom"));
+    EXPECT_EQ(picture("two.hairloom --hide helper-a,helper-b"), picture("one.hairloom"));
+    const Outcome unknown = run("render two.hairloom --hide helper-c -o none.png");
+    EXPECT_EQ(unknown.exitCode, 1);
+    EXPECT_THAT(unknown.errors, HasSubstr("no group 'helper-c'; one of: head, helper-a, helper-b"));
+    EXPECT_FALSE(fs::exists(folder / "none.png"));
+}
+
 TEST_F(Cli, RecordedFramesCanBePictured) {
     runJson(createArguments());
     runJson("simulate hair.hairloom --frames 10 --fps 30 --motion spin --record hair.frames");

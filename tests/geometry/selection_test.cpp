@@ -59,6 +59,17 @@ TEST(Selection, TermsApplyFromLeftToRight) {
     EXPECT_THAT(refusal(mesh, "above:0.75,group:low"), HasSubstr("no face"));
     EXPECT_EQ(selected(mesh, "group:low").size(), 1280u);  // both parts of that name
     EXPECT_EQ(selected(mesh, "group:low,invert"), selected(mesh, "group:high"));
+    const auto ofGroups = [&](std::vector<std::string> names) { return facesOfGroups(mesh, names); };
+    EXPECT_EQ(*ofGroups({"low"}), selected(mesh, "group:low"));
+    EXPECT_EQ(*ofGroups({"hi*"}), selected(mesh, "group:high"));
+    EXPECT_EQ(*ofGroups({"high", "l*"}), selected(mesh, "all"));
+    EXPECT_EQ(*ofGroups({"*"}), selected(mesh, "all"));
+    EXPECT_TRUE(ofGroups({})->empty());
+    for (const char* unknown : {"lo", "x*", "*w", ""}) {
+        const Result<FaceSet> none = ofGroups({"low", unknown});
+        ASSERT_FALSE(none) << unknown;
+        EXPECT_THAT(none.error().message(), HasSubstr("one of: high, low"));
+    }
     EXPECT_EQ(selected(mesh, "all , connected").size(), 1280u);
 }
 

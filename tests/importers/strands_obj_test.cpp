@@ -152,6 +152,18 @@ TEST(StrandsLines, ReadsContinuationLinesCarriageReturnsAndPolylineCurves) {
     EXPECT_EQ(imported->groom.strand(0).size(), 3u);
 }
 
+TEST(StrandsLines, ReadsLinesAsTheMeshReaderDoes) {
+    for (const std::string_view text :
+         {"v 0 0 0 # root\nv +0 .1 0\nv 0 2e-1 0\nl 1/7 2//3 3/1/1 # all\n",
+          "v 0 0 0\rv 0 .1 0\rv 0 .2 0\rl 1 2 3", "v 0\t0\f0\nv 0 .1 0\nv 0 .2 0\nl 1 +2 \\ \n-1"}) {
+        const auto imported = read(text);
+        ASSERT_TRUE(imported) << imported.error().message();
+        ASSERT_EQ(imported->groom.strandCount(), 1u);
+        ASSERT_EQ(imported->groom.strand(0).size(), 3u);
+        EXPECT_EQ(imported->groom.strand(0)[2], Vec3f(0, 0.2f, 0));
+    }
+}
+
 TEST(StrandsLines, ErrorsNameTheLine) {
     const auto messageOf = [](std::string_view text) {
         const auto imported = read(text);
@@ -162,6 +174,7 @@ TEST(StrandsLines, ErrorsNameTheLine) {
     EXPECT_THAT(messageOf("v 0 0 0\nl 1 2\n"), HasSubstr("test:2: a line names vertex 2"));
     EXPECT_THAT(messageOf("v 0 0 0\nl 1 0\n"), HasSubstr("names vertex 0"));
     EXPECT_THAT(messageOf("v 0 0 0\nf 1 -2 1\n"), HasSubstr("a face names vertex -2"));
+    EXPECT_THAT(messageOf("v 0 0 0\n\nl 1 \\\n1.5\n"), HasSubstr("test:3: '1.5' in a line is not an index"));
     EXPECT_THAT(messageOf("hello"), HasSubstr("without a vertex"));
 }
 

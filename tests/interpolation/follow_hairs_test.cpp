@@ -10,6 +10,7 @@
 #include "core/base/parallel.h"
 #include "core/geometry/curve.h"
 #include "core/interpolation/follow_hairs.h"
+#include "tests/interpolation/guide_grid.h"
 
 namespace hairloom {
 namespace {
@@ -29,26 +30,11 @@ std::shared_ptr<const ScalpMesh> plate() {
 /// of x at the tip, 0.1 m high, with two triangles for each square of roots.
 template <class Lean>
 Groom field(std::uint32_t points, Lean lean, bool withScalp = true) {
-    std::vector<std::uint32_t> offsets{0};
-    std::vector<Vec3f> positions;
-    for (std::uint32_t s = 0; s < kSide * kSide; ++s) {
-        const Vec3f root(kSpacing * static_cast<float>(s % kSide), 0,
-                         kSpacing * static_cast<float>(s / kSide));
-        for (std::uint32_t i = 0; i < points; ++i) {
-            const float t = static_cast<float>(i) / static_cast<float>(points - 1);
-            positions.push_back(root + Vec3f(lean(s) * t * t, 0.1f * t, 0));
-        }
-        offsets.push_back(static_cast<std::uint32_t>(positions.size()));
-    }
-    Groom groom = makeGroom(std::move(offsets), std::move(positions));
-    if (withScalp) bindToScalp(groom, plate(), {});  // which forgets the triangulation
-    for (std::uint32_t z = 0; z + 1 < kSide; ++z) {
-        for (std::uint32_t x = 0; x + 1 < kSide; ++x) {
-            const std::uint32_t a = z * kSide + x;
-            groom.triangulation.triangles.push_back({a, a + kSide, a + 1});
-            groom.triangulation.triangles.push_back({a + 1, a + kSide, a + kSide + 1});
-        }
-    }
+    Groom groom = test::guidesOnGrid({kSide, kSide, points, kSpacing, 0.1f}, lean);
+    if (!withScalp) return groom;
+    const RootTriangulation triangulation = groom.triangulation;
+    bindToScalp(groom, plate(), {});  // which forgets the triangulation
+    groom.triangulation = triangulation;
     return groom;
 }
 

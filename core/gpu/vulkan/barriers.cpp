@@ -32,16 +32,23 @@ BarrierTracker::Transition BarrierTracker::advance(AccessState& state, const Use
     return t;
 }
 
-void BarrierTracker::use(BufferImpl& buffer, const Use& use) {
-    AccessState& state = buffers_.try_emplace(&buffer, buffer.state).first->second;
-    const Transition t = advance(state, use, false);
-    if (!t.needed) return;
-    auto barrier = make<VkBufferMemoryBarrier2>(VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER_2);
+/// What barriers of buffers and of textures have in common.
+template <class Barrier>
+Barrier BarrierTracker::barrierFor(VkStructureType type, const Transition& t) {
+    auto barrier = make<Barrier>(type);
     barrier.srcStageMask = t.sourceStages;
     barrier.srcAccessMask = t.sourceAccess;
     barrier.dstStageMask = t.targetStages;
     barrier.dstAccessMask = t.targetAccess;
     barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+    return barrier;
+}
+
+void BarrierTracker::use(BufferImpl& buffer, const Use& use) {
+    AccessState& state = buffers_.try_emplace(&buffer, buffer.state).first->second;
+    const Transition t = advance(state, use, false);
+    if (!t.needed) return;
+    auto barrier = barrierFor<VkBufferMemoryBarrier2>(VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER_2, t);
     barrier.buffer = buffer.handle;
     barrier.size = VK_WHOLE_SIZE;
     bufferBarriers_.push_back(barrier);
@@ -51,14 +58,9 @@ void BarrierTracker::use(TextureImpl& texture, const Use& use) {
     AccessState& state = textures_.try_emplace(&texture, texture.state).first->second;
     const Transition t = advance(state, use, true);
     if (!t.needed) return;
-    auto barrier = make<VkImageMemoryBarrier2>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2);
-    barrier.srcStageMask = t.sourceStages;
-    barrier.srcAccessMask = t.sourceAccess;
-    barrier.dstStageMask = t.targetStages;
-    barrier.dstAccessMask = t.targetAccess;
+    auto barrier = barrierFor<VkImageMemoryBarrier2>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2, t);
     barrier.oldLayout = use.discard ? VK_IMAGE_LAYOUT_UNDEFINED : t.oldLayout;
     barrier.newLayout = use.layout;
-    barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
     barrier.image = texture.handle;
     barrier.subresourceRange = {texture.aspect(), 0, 1, 0, 1};
     imageBarriers_.push_back(barrier);

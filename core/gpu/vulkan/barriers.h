@@ -36,6 +36,8 @@ class BarrierTracker {
         VkAccessFlags2 targetAccess = 0;
         VkImageLayout oldLayout = VK_IMAGE_LAYOUT_UNDEFINED;
     };
+    template <class Barrier>
+    static Barrier barrierFor(VkStructureType type, const Transition& t);
     static Transition advance(AccessState& state, const Use& use, bool isTexture);
 
     std::map<BufferImpl*, AccessState> buffers_;

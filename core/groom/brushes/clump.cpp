@@ -18,8 +18,8 @@ constexpr Field<S> kFields[] = {
     {"profile", "", 0.1, 10, "how the pull grows from the root: 1 evenly, above 1 nearer to the tip",
      &S::profile},
     {"variation", "", 0, 1, "random share by which the pull of a strand may be weaker", &S::variation},
-    {"clearance", "m", 0, 0.1, "distance kept from the skin", &S::clearance},
-    {"seed", "", 0, kLargestSeed, "another seed chooses other strands", &S::seed},
+    clearanceField<S>(),
+    seedField<S>("another seed chooses other strands"),
 };
 
 /// Position at a share of the points from the root.

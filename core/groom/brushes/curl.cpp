@@ -18,8 +18,8 @@ constexpr Field<S> kFields[] = {
      &S::frequency},
     {"start", "m", 0, 5, "way from the root over which the radius grows to its full size", &S::start},
     {"phaseVariation", "", 0, 1, "1 starts each strand at any angle, 0 all at the same", &S::phaseVariation},
-    {"clearance", "m", 0, 0.1, "distance kept from the skin", &S::clearance},
-    {"seed", "", 0, kLargestSeed, "another seed gives other angles", &S::seed},
+    clearanceField<S>(),
+    seedField<S>("another seed gives other angles"),
 };
 
 constexpr float kSegmentsPerTurn = 4;

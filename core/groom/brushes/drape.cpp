@@ -11,7 +11,7 @@ using S = DrapeSettings;
 constexpr Field<S> kFields[] = {
     {"amount", "", 0, 1, "share of the turn towards straight down at the tip", &S::amount},
     {"rootAmount", "", 0, 1, "share of the turn at the root; between, it changes evenly", &S::rootAmount},
-    {"clearance", "m", 0, 0.1, "distance kept from the skin", &S::clearance},
+    clearanceField<S>(),
 };
 
 /// Turns a unit vector by a share of its angle to straight down.

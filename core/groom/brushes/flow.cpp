@@ -28,8 +28,8 @@ constexpr Field<S> kFields[] = {
     {"rise", "m", 0.001, 1, "way along the hair over which it rises", &S::rise},
     {"bend", "m", 0, 1, "way along the hair over which it turns into the flow: larger is rounder", &S::bend},
     {"variation", "", 0, 1, "random share by which the lift of a strand may be lower", &S::variation},
-    {"clearance", "m", 0, 0.1, "distance kept from the skin", &S::clearance},
-    {"seed", "", 0, kLargestSeed, "another seed varies the strands differently", &S::seed},
+    clearanceField<S>(),
+    seedField<S>("another seed varies the strands differently"),
 };
 
 constexpr float kWhorlReach = 0.04f;    ///< metres from the crown at which the turn is down to 1/e

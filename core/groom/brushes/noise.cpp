@@ -16,8 +16,8 @@ constexpr Field<S> kFields[] = {
     {"frequency", "1/m", 0, 1000, "waves for each metre of hair; segments limit it to one wave for four",
      &S::frequency},
     {"rootShare", "", 0, 1, "amplitude at the root as a share of that at the tip", &S::rootShare},
-    {"clearance", "m", 0, 0.1, "distance kept from the skin", &S::clearance},
-    {"seed", "", 0, kLargestSeed, "another seed gives other waves", &S::seed},
+    clearanceField<S>(),
+    seedField<S>("another seed gives other waves"),
 };
 
 constexpr float kSegmentsPerWave = 4;

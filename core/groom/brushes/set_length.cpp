@@ -20,8 +20,8 @@ constexpr Field<S> kFields[] = {
     {"gradientDistance", "m", 0, kAnywhere, "way along the axis until farScale is reached; 0: no gradient",
      &S::gradientDistance},
     {"farScale", "", 0.01, 100, "length at the gradient's end over that at its beginning", &S::farScale},
-    {"clearance", "m", 0, 0.1, "distance kept from the skin", &S::clearance},
-    {"seed", "", 0, kLargestSeed, "another seed varies the strands differently", &S::seed},
+    clearanceField<S>(),
+    seedField<S>("another seed varies the strands differently"),
 };
 
 float gradientAt(const S& settings, const Vec3f& root) {

@@ -14,7 +14,7 @@ using S = SmoothSettings;
 constexpr Field<S> kFields[] = {
     {"amount", "", 0, 1, "share of the way to the middle of the neighbours in each pass", &S::amount},
     {"passes", "", 1, 100, "more is smoother over longer stretches", &S::passes},
-    {"clearance", "m", 0, 0.1, "distance kept from the skin", &S::clearance},
+    clearanceField<S>(),
 };
 
 }  // namespace

@@ -18,7 +18,7 @@ constexpr Field<Region> kRegionFields[] = {
     {"normal", "", -kAnywhere, kAnywhere, "side of the plane that is reached; zero reaches all strands",
      &Region::normal},
     {"fade", "m", 0, 1, "width of the seam in which strands are reached at random", &Region::fade},
-    {"seed", "", 0, kLargestSeed, "another seed reaches other strands of the seam", &Region::seed},
+    seedField<Region>("another seed reaches other strands of the seam"),
 };
 
 std::uint32_t idOf(const Groom& groom, std::size_t strand) {

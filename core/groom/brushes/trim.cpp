@@ -18,7 +18,7 @@ constexpr Field<S> kFields[] = {
     {"raggedness", "m", 0, 1, "each strand is cut shorter by a random length of up to this; 0 is blunt",
      &S::raggedness},
     {"minLength", "m", 0.001, 1, "length that a cut always leaves", &S::minLength},
-    {"seed", "", 0, kLargestSeed, "another seed gives other ragged ends", &S::seed},
+    seedField<S>("another seed gives other ragged ends"),
 };
 
 /// Arc length at which the strand first crosses the plane; infinite when it does not.
