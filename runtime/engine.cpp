@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numbers>
 
 namespace hairloom::runtime {
 namespace {
@@ -116,6 +117,7 @@ std::string Engine::setSettings(const SimulationSettings& settings) {
     if (std::string error = whyRefused(settings); !error.empty()) return error;
     settings_ = settings;
     wind_ = makeWind(settings);
+    windGiven_ = false;
     state_.bendSubstep = 0.0f;
     replan({}, {}, state_.rootsMin_ws, state_.rootsMax_ws);
     return {};
@@ -123,7 +125,12 @@ std::string Engine::setSettings(const SimulationSettings& settings) {
 
 void Engine::replan(std::span<const Sphere> spheres, std::span<const Float3> sphereMotion, Float3 rootsMin_ws,
                     Float3 rootsMax_ws) {
-    plan_ = runtime::plan({settings_, strandCount(), shape_->longestPointCount, shape_->longestStrand,
+    SimulationSettings planned = settings_;
+    if (windGiven_) {
+        planned.windSpeed = length(wind_.mean);
+        if (planned.windSpeed > 0.0f) planned.windDirection = wind_.mean * (1.0f / planned.windSpeed);
+    }
+    plan_ = runtime::plan({planned, strandCount(), shape_->longestPointCount, shape_->longestStrand,
                            rootsMin_ws, rootsMax_ws, spheres, sphereMotion});
     allocateForPlan();
 }
@@ -163,6 +170,25 @@ void Engine::takeSpheres(const FrameInput& input) {
     }
 }
 
+void Engine::takeWind(const FrameInput& input) {
+    WindInput given;
+    if (input.wind_ws) {
+        if (isFinite(*input.wind_ws)) {
+            given.mean_ws = input.wind_ws;
+        } else {
+            ++report_.rejectedWinds;
+        }
+    }
+    if (isFinite(input.actorVelocity_ws)) {
+        given.actorVelocity_ws = input.actorVelocity_ws;
+    } else {
+        ++report_.rejectedWinds;
+    }
+    windGiven_ =
+        given.mean_ws || (settings_.windKind == WindKind::vehicle && given.actorVelocity_ws != Float3{});
+    wind_ = makeWind(settings_, given);
+}
+
 void Engine::moveSpheres() {
     if (!plan_.on(Effect::collision)) {
         movingSpheres_ = {};
@@ -189,6 +215,7 @@ void Engine::step(const FrameInput& input) {
     takeRootBounds(input);
     const Float3 low = state_.rootsMin_ws, high = state_.rootsMax_ws;
     takeSpheres(input);
+    takeWind(input);
     replan(usableSpheres_, sphereMotion_,
            {std::min(low.x, lowBefore.x), std::min(low.y, lowBefore.y), std::min(low.z, lowBefore.z)},
            {std::max(high.x, highBefore.x), std::max(high.y, highBefore.y), std::max(high.z, highBefore.z)});
@@ -208,6 +235,8 @@ void Engine::step(const FrameInput& input) {
     frame.context.pearlTip = settings_.pearlRadiusTip;
     frame.context.friction = settings_.friction;
     frame.context.restitution = settings_.restitution;
+    const float penalty = 2.0f * std::numbers::pi_v<float> * settings_.penaltyFrequency * h;
+    frame.context.penaltyStep = penalty * penalty;
     frame.context.spheres = movingSpheres_;
     frame.windy = plan_.on(Effect::wind);
     if (frame.windy) {

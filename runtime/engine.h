@@ -41,6 +41,8 @@ struct StepReport {
     double milliseconds = 0.0;                            ///< from entering to leaving step()
     std::uint32_t rejectedRoots = 0;    ///< roots that were not finite; they stayed where they were
     std::uint32_t rejectedSpheres = 0;  ///< spheres that were not finite or had no radius; they were left out
+    std::uint32_t rejectedWinds =
+        0;  ///< wind_ws and actorVelocity_ws that were not finite; they were ignored
 };
 
 class Engine {
@@ -90,6 +92,7 @@ class Engine {
                 Float3 rootsMax_ws);
     void allocateForPlan();
     void takeSpheres(const FrameInput& input);
+    void takeWind(const FrameInput& input);
     void moveSpheres();
     void takeRootBounds(const FrameInput& input);
     void runBlock(std::size_t block, const Frame& frame);
@@ -102,6 +105,7 @@ class Engine {
     std::shared_ptr<const RestShape> shape_;
     EffectPlan plan_;
     Wind wind_;
+    bool windGiven_ = false;  // by the frame, not by the settings alone
     State state_;
     StepReport report_;
     std::vector<Sphere>

@@ -80,6 +80,7 @@ struct SubstepContext {
     float pearlTip = 0.0f;
     float friction = 0.0f;
     float restitution = 0.0f;
+    float penaltyStep = 0.0f;  ///< (ω·h)² of the penalty spring
     std::span<const MovingSphere> spheres;
 };
 

@@ -83,8 +83,9 @@ const char* effectName(Effect effect) {
 }
 
 const char* stageName(StageId stage) {
-    constexpr const char* kNames[kStageCount] = {"roots",   "gravity", "drag",      "wind",     "integrate",
-                                                 "angular", "length",  "collision", "extension"};
+    constexpr const char* kNames[kStageCount] = {"roots",   "gravity",   "drag",     "wind",
+                                                 "penalty", "integrate", "angular",  "length",
+                                                 "sweep",   "collision", "backward", "extension"};
     return kNames[static_cast<std::size_t>(stage)];
 }
 
@@ -155,6 +156,9 @@ EffectPlan plan(const SceneDescription& scene) {
     const bool wind = decide(Effect::wind, decideWind(s));
     if (decide(Effect::drag, decideDrag(s, wind))) result.add(StageId::drag);
     if (wind) result.add(StageId::wind);
+    const bool touches = decide(Effect::collision, decideCollision(scene));
+    const bool pushes = s.collisionResponse == CollisionResponse::penalty;
+    if (touches && pushes) result.add(StageId::penalty);
     result.add(StageId::integrate);
     const bool stiff = s.angularStiffness > 0.0f;
     if (decide(Effect::angular,
@@ -166,7 +170,11 @@ EffectPlan plan(const SceneDescription& scene) {
                                 static_cast<float>(s.lengthIterations)})) {
         result.add(StageId::length);
     }
-    if (decide(Effect::collision, decideCollision(scene))) result.add(StageId::collision);
+    if (touches && !pushes) {
+        result.add(StageId::sweep);
+        result.add(s.collisionResponse == CollisionResponse::backward ? StageId::backward
+                                                                      : StageId::collision);
+    }
     if (held) result.add(StageId::extension);
     return result;
 }

@@ -23,13 +23,16 @@ enum class StageId : std::uint32_t {
     gravity,    ///< external force
     drag,       ///< external force: still air
     wind,       ///< external force: moving air
+    penalty,    ///< force of spheres, collisionResponse penalty
     integrate,  ///< Verlet (Rünz 2012, Eq. 10) with damping
     angular,    ///< angular springs (Eq. 4)
     length,     ///< length constraint, Newton steps
-    collision,  ///< spheres and pearls (Eqs. 13–21)
+    sweep,      ///< spheres that fast points pass through within a substep
+    collision,  ///< spheres and pearls (Eqs. 13–21), collisionResponse radial
+    backward,   ///< likewise, collisionResponse backward
     extension,  ///< maximal extension as post-processing (Provot 1995)
 };
-inline constexpr std::uint32_t kStageCount = 9;
+inline constexpr std::uint32_t kStageCount = 12;
 const char* stageName(StageId stage);
 
 /// What the plan looks at.

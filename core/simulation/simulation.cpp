@@ -46,7 +46,10 @@ std::optional<Effect> effectOf(StageId stage) {
         case StageId::length:
         case StageId::extension:
             return Effect::length;
+        case StageId::penalty:
+        case StageId::sweep:
         case StageId::collision:
+        case StageId::backward:
             return Effect::collision;
         case StageId::roots:
         case StageId::integrate:

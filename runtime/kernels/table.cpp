@@ -22,11 +22,12 @@ namespace hairloom::runtime {
 namespace HWY_NAMESPACE {
 
 const Kernels& kernelsOfTarget() {
-    static const Kernels kTable{{moveRoots, applyGravity, applyAir<false>, applyAir<true>, integrate,
-                                 bendBack, holdLength, collide, limitExtension},
-                                rescale,
-                                sampleWind,
-                                hwy::TargetName(HWY_TARGET)};
+    static const Kernels kTable{
+        {moveRoots, applyGravity, applyAir<false>, applyAir<true>, applyPenalty, integrate, bendBack,
+         holdLength, collideSwept, collide<false>, collide<true>, limitExtension},
+        rescale,
+        sampleWind,
+        hwy::TargetName(HWY_TARGET)};
     return kTable;
 }
 
