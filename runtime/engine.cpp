@@ -56,6 +56,12 @@ bool usable(RootFrame& root) {
     return isFinite(root.position) && normalize(root.rotation);
 }
 
+/// Faster air is a mistake, and its squares would leave the range of single precision.
+bool isWind(Float3 velocity) {
+    constexpr float kMost = 1000.0f;  // m/s
+    return isFinite(velocity) && length(velocity) <= kMost;
+}
+
 float shareLeft(float h, float timeConstant) {
     return timeConstant > 0.0f ? std::exp(-h / timeConstant) : 1.0f;
 }
@@ -173,13 +179,13 @@ void Engine::takeSpheres(const FrameInput& input) {
 void Engine::takeWind(const FrameInput& input) {
     WindInput given;
     if (input.wind_ws) {
-        if (isFinite(*input.wind_ws)) {
+        if (isWind(*input.wind_ws)) {
             given.mean_ws = input.wind_ws;
         } else {
             ++report_.rejectedWinds;
         }
     }
-    if (isFinite(input.actorVelocity_ws)) {
+    if (isWind(input.actorVelocity_ws)) {
         given.actorVelocity_ws = input.actorVelocity_ws;
     } else {
         ++report_.rejectedWinds;

@@ -41,8 +41,7 @@ struct StepReport {
     double milliseconds = 0.0;                            ///< from entering to leaving step()
     std::uint32_t rejectedRoots = 0;    ///< roots that were not finite; they stayed where they were
     std::uint32_t rejectedSpheres = 0;  ///< spheres that were not finite or had no radius; they were left out
-    std::uint32_t rejectedWinds =
-        0;  ///< wind_ws and actorVelocity_ws that were not finite; they were ignored
+    std::uint32_t rejectedWinds = 0;  ///< wind_ws and actorVelocity_ws that were not finite or above 1000 m/s
 };
 
 class Engine {

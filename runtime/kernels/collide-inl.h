@@ -34,17 +34,23 @@ struct Contact {
 HWY_INLINE V3 respond(const BlockView& block, const SubstepContext& context, std::size_t i,
                       const Contact& contact) {
     const V zero = hn::Zero(D());
-    const V3 normal = directionOf(contact.from);
+    const Direction direction = directionOf(contact.from);
+    const V3 normal = direction.unit;
     const V3 position = load3(block.position, i);
     const V3 previous = load3(block.previous, i);
     const V3 relative = position - previous - contact.step;
     const V along = dot(relative, normal);
     const V3 sliding = relative - normal * along;
-    const V impulse = hn::Max(zero - along, zero) * all(1.0f + context.restitution);
-    const V slidingInverse = inverseSqrt(dot(sliding, sliding) + all(1e-30f));
-    const V lost = hn::Min(all(context.friction) * impulse * slidingInverse, all(1.0f));
+    const V approach = hn::Max(zero - along, zero);
+    const V bounce = all(1.0f + context.restitution);
+    const V impulse = approach * bounce;
+    const V rate = all(context.friction) * bounce * inverseSqrt(dot(sliding, sliding) + all(1e-30f));
+    const V lost = hn::Min(rate * approach, all(1.0f));
+    // Friction also takes back what the point has slid while inside, or sticking hair would creep.
+    const V depth = hn::Max(contact.reach - direction.length, zero);
+    const V slid = hn::Min(rate * hn::Min(depth, approach), all(1.0f));
     const V3 after = relative + normal * impulse - sliding * lost;
-    const V3 placed = contact.centre + normal * contact.reach;
+    const V3 placed = contact.centre + normal * contact.reach - sliding * slid;
     const V3 before = placed - (after + contact.step);
     store3(select(contact.touching, placed, position), block.position, i);
     store3(select(contact.touching, before, previous), block.previous, i);
@@ -53,20 +59,23 @@ HWY_INLINE V3 respond(const BlockView& block, const SubstepContext& context, std
 
 /// From the centre to the place p_b where the way of this substep entered the sphere: the s < 0 that solves
 /// |p + s·v − c| = reach, with v relative to the sphere. Where that way does not begin outside, the place is
-/// p_a: a point that hardly moves would else leave along any chord.
+/// p_a, or a point that hardly moves would leave along any chord; likewise where the way enters flatter than
+/// 1 in 20, as the place would follow from rounding.
 HWY_INLINE V3 backAlong(V3 offset, V3 relative, V squared, V reach) {
     const V zero = hn::Zero(D()), one = all(1.0f);
     const V a = dot(relative, relative);
     const V b = dot(relative, offset);
     const V c = squared - reach * reach;
-    const V root = hn::Sqrt(hn::Max(b * b - a * c, zero));
+    const V discriminant = b * b - a * c;
+    const V root = hn::Sqrt(hn::Max(discriminant, zero));
     // Of the two forms of the root the one whose sum does not cancel.
     const auto approaching = b < zero;
     const V above = hn::IfThenElse(approaching, c, zero - (b + root));
     const V below = hn::IfThenElse(approaching, root - b, a);
     const auto moving = a > all(1e-20f);
     const V s = above / hn::IfThenElse(moving, below, one);
-    const auto onTheWay = hn::And(moving, hn::And(s >= all(-1.0f), s <= zero));
+    const auto steep = discriminant > a * reach * reach * all(0.0025f);
+    const auto onTheWay = hn::And(hn::And(moving, steep), hn::And(s >= all(-1.0f), s <= zero));
     return select(onTheWay, offset + relative * s, offset);
 }
 
@@ -348,8 +357,8 @@ HWY_INLINE void push(const BlockView& block, Points points, V3 centre, float rad
         const V3 offset = load3(block.position, i) - centre;
         const V squared = dot(offset, offset);
         if (HWY_LIKELY(hn::AllFalse(D(), squared < reach * reach))) continue;
-        const V depth = hn::Max(reach - hn::Sqrt(squared), hn::Zero(D()));
-        const V3 way = directionOf(offset) * (depth * stiffness);
+        const Direction direction = directionOf(offset);
+        const V3 way = direction.unit * (hn::Max(reach - direction.length, hn::Zero(D())) * stiffness);
         store3(load3(block.previous, i) - way, block.previous, i);
     }
 }

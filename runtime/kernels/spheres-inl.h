@@ -36,15 +36,21 @@ HWY_INLINE V inverseSqrt(V x) {
     return y * (all(1.5f * kSecond) - x * all(0.5f * kSecond) * y * y);
 }
 
-/// Unit vector along an offset from a sphere's centre; at the very centre it points up.
-HWY_INLINE V3 directionOf(V3 offset) {
+struct Direction {
+    V3 unit;
+    V length;
+};
+
+/// Of an offset from a sphere's centre; at the very centre it points up.
+HWY_INLINE Direction directionOf(V3 offset) {
     const V zero = hn::Zero(D()), one = all(1.0f);
     const V squared = dot(offset, offset);
     const auto centred = squared < all(1e-18f);
     const V inverse = inverseSqrt(hn::IfThenElse(centred, one, squared));
-    return {hn::IfThenElse(centred, zero, offset.x * inverse),
-            hn::IfThenElse(centred, one, offset.y * inverse),
-            hn::IfThenElse(centred, zero, offset.z * inverse)};
+    return {
+        {hn::IfThenElse(centred, zero, offset.x * inverse), hn::IfThenElse(centred, one, offset.y * inverse),
+         hn::IfThenElse(centred, zero, offset.z * inverse)},
+        squared * inverse};
 }
 
 /// Pearl radius at each point, growing linearly to the tip.
