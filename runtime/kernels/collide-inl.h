@@ -142,8 +142,7 @@ class Contacts {
 
     /// At most PieceBoxes::kMostPoints points.
     HWY_INLINE void run(std::uint32_t begin, std::uint32_t end) {
-        pieceCount_ = touchCount_ = 0;
-        for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) findPieces(begin, end, lane);
+        findPieces(begin, end);
         if (pieceCount_ == 0) return;
         findPoints(end);
         touchAll();
@@ -152,17 +151,22 @@ class Contacts {
   private:
     /// What is out of reach is left out in three steps: spheres that miss the box of all points, then pieces
     /// of strands whose own boxes all miss it, then points.
-    HWY_INLINE void findPieces(std::uint32_t begin, std::uint32_t end, std::uint32_t lane) {
-        const V3 root = load3(roots_, lane);
-        PieceBoxes boxes;
-        const Box box = boxes.take(block_, lane, begin, end, root);
-        spheres_.forEachMeeting(box, [&](std::size_t k) HWY_ATTR {
-            const V3 centre = spheres_.centre(k) - root;
+    HWY_INLINE void findPieces(std::uint32_t begin, std::uint32_t end) {
+        pieceCount_ = touchCount_ = 0;
+        PieceBoxes boxes[kStrips];
+        WideBox world = WideBox::empty();
+        for (std::uint32_t n = 0; n < kStrips; ++n) {
+            world.add(boxes[n].take(block_, n * kWidth, begin, end), load3(roots_, n * kWidth));
+        }
+        spheres_.forEachMeeting(world.reduced(), [&](std::size_t k) HWY_ATTR {
             const V widest = all(spheres_.widest[k] * spheres_.widest[k] * 1.0001f);
-            for (std::uint32_t piece = 0; piece < boxes.count; ++piece) {
-                const bool misses = hn::AllFalse(D(), boxes.squaredGap(piece, centre) <= widest);
-                pieces_[pieceCount_] = pair(k, begin + piece * PieceBoxes::kPoints, lane);
-                pieceCount_ += misses ? 0u : 1u;
+            for (std::uint32_t n = 0; n < kStrips; ++n) {
+                const V3 centre = spheres_.centre(k) - load3(roots_, n * kWidth);
+                for (std::uint32_t piece = 0; piece < boxes[n].count; ++piece) {
+                    const bool misses = hn::AllFalse(D(), boxes[n].squaredGap(piece, centre) <= widest);
+                    pieces_[pieceCount_] = pair(k, begin + piece * PieceBoxes::kPoints, n * kWidth);
+                    pieceCount_ += misses ? 0u : 1u;
+                }
             }
         });
     }
@@ -226,6 +230,8 @@ class Contacts {
         settle(block_, context_, spheres_, i, root, pearl, {again, centre, step, reach, zero3()});
     }
 
+    static constexpr std::uint32_t kStrips = kBlockLanes / kWidth;
+
     struct Pair {
         std::uint16_t sphere;
         std::uint16_t index;  ///< of the first lane of a vector of points
@@ -235,10 +241,8 @@ class Contacts {
         return {static_cast<std::uint16_t>(sphere), static_cast<std::uint16_t>(point * kBlockLanes + lane)};
     }
     // One more than there can be: the lists are written before it is known whether an entry stays.
-    static constexpr std::size_t kMostPieces =
-        SphereSet::kMost * PieceBoxes::kMost * (kBlockLanes / kWidth) + 1;
-    static constexpr std::size_t kMostTouches =
-        SphereSet::kMost * PieceBoxes::kMostPoints * (kBlockLanes / kWidth) + 1;
+    static constexpr std::size_t kMostPieces = SphereSet::kMost * PieceBoxes::kMost * kStrips + 1;
+    static constexpr std::size_t kMostTouches = SphereSet::kMost * PieceBoxes::kMostPoints * kStrips + 1;
 
     const BlockView& block_;
     const SubstepContext& context_;
@@ -382,8 +386,9 @@ void applyPenalty(const BlockView& block, LaneFrame& lanes, const SubstepContext
             for (std::uint32_t p = block.firstFree; p < block.points; p += PieceBoxes::kMostPoints) {
                 const std::uint32_t end = std::min(p + PieceBoxes::kMostPoints, block.points);
                 PieceBoxes boxes;
-                const Box box = boxes.take(block, lane, p, end, root);
-                spheres.forEachMeeting(box, [&](std::size_t k) HWY_ATTR {
+                WideBox world = WideBox::empty();
+                world.add(boxes.take(block, lane, p, end), root);
+                spheres.forEachMeeting(world.reduced(), [&](std::size_t k) HWY_ATTR {
                     push(block, {p, end, lane}, spheres.centre(k) - root, spheres.radius[k], pearls,
                          stiffness);
                 });

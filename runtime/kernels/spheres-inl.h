@@ -134,6 +134,26 @@ class SphereSet {
     std::size_t count_ = 0;
 };
 
+/// A box per lane.
+struct WideBox {
+    V3 low, high;
+
+    static HWY_INLINE WideBox empty() {
+        return {all3({1e30f, 1e30f, 1e30f}), all3({-1e30f, -1e30f, -1e30f})};
+    }
+
+    HWY_INLINE void add(V3 least, V3 most) {
+        low = {hn::Min(low.x, least.x), hn::Min(low.y, least.y), hn::Min(low.z, least.z)};
+        high = {hn::Max(high.x, most.x), hn::Max(high.y, most.y), hn::Max(high.z, most.z)};
+    }
+    HWY_INLINE void add(const WideBox& other, V3 shift) { add(other.low + shift, other.high + shift); }
+    /// Around those of all lanes.
+    HWY_INLINE Box reduced() const {
+        return {{laneLeast(low.x), laneLeast(low.y), laneLeast(low.z)},
+                {laneMost(high.x), laneMost(high.y), laneMost(high.z)}};
+    }
+};
+
 /// Boxes of pieces of a few points, of each strand of a strip its own; relative to the roots.
 class PieceBoxes {
   public:
@@ -142,30 +162,24 @@ class PieceBoxes {
     static constexpr std::uint32_t kMost = (kMostPoints + kPoints - 1) / kPoints;
     std::uint32_t count = 0;
 
-    /// Fills the boxes of points first … last − 1; the world box of all of them.
-    HWY_INLINE Box take(const BlockView& block, std::uint32_t lane, std::uint32_t first, std::uint32_t last,
-                        V3 root) {
-        const V far = all(1e30f), near = all(-1e30f);
-        V3 low{far, far, far}, high{near, near, near};
+    /// Fills the boxes of points first … last − 1; the boxes of all of them.
+    HWY_INLINE WideBox take(const BlockView& block, std::uint32_t lane, std::uint32_t first,
+                            std::uint32_t last) {
+        WideBox whole = WideBox::empty();
         count = 0;
         for (std::uint32_t begin = first; begin < last; begin += kPoints) {
             const std::uint32_t end = std::min(begin + kPoints, last);
-            V3 least = load3(block.position, std::size_t{begin} * kBlockLanes + lane), most = least;
-            for (std::uint32_t p = begin + 1; p < end; ++p) {
+            WideBox piece = WideBox::empty();
+            for (std::uint32_t p = begin; p < end; ++p) {
                 const V3 at = load3(block.position, std::size_t{p} * kBlockLanes + lane);
-                least = {hn::Min(least.x, at.x), hn::Min(least.y, at.y), hn::Min(least.z, at.z)};
-                most = {hn::Max(most.x, at.x), hn::Max(most.y, at.y), hn::Max(most.z, at.z)};
+                piece.add(at, at);
             }
-            storePiece(least, low_[count]);
-            storePiece(most, high_[count]);
+            storePiece(piece.low, low_[count]);
+            storePiece(piece.high, high_[count]);
             ++count;
-            low = {hn::Min(low.x, least.x), hn::Min(low.y, least.y), hn::Min(low.z, least.z)};
-            high = {hn::Max(high.x, most.x), hn::Max(high.y, most.y), hn::Max(high.z, most.z)};
+            whole.add(piece.low, piece.high);
         }
-        low = low + root;
-        high = high + root;
-        return {{laneLeast(low.x), laneLeast(low.y), laneLeast(low.z)},
-                {laneMost(high.x), laneMost(high.y), laneMost(high.z)}};
+        return whole;
     }
 
     HWY_INLINE V squaredGap(std::uint32_t piece, V3 at) const {
