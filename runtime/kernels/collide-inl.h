@@ -98,7 +98,7 @@ HWY_INLINE V3 nearestOfCircle(V3 at, const Contact& contact, V3 centre, V reach,
 
 /// Points that left one sphere into others of a union: each goes to the circle that its last sphere and the
 /// one in which it is deepest have in common, until it is free. Places on the surfaces of two spheres follow
-/// in one step; in a corner of three the steps halve the rest or better.
+/// in one step; towards a corner of three the rest shrinks from step to step.
 HWY_NOINLINE void settle(const BlockView& block, const SubstepContext& context, const SphereSet& spheres,
                          std::size_t i, V3 root, V pearl, Contact contact) {
     constexpr int kSteps = 16;
