@@ -17,6 +17,12 @@ float shareLeft(float h, float timeConstant) {
     return timeConstant > 0.0f ? std::exp(-h / timeConstant) : 1.0f;
 }
 
+/// Faster air is a mistake, and its squares would leave the range of single precision.
+bool isWind(Float3 velocity) {
+    constexpr float kMost = 1000.0f;  // m/s
+    return isFinite(velocity) && length(velocity) <= kMost;
+}
+
 }  // namespace
 
 /// What all blocks share in one step.
@@ -68,23 +74,29 @@ void Engine::reset(std::span<const RootFrame> roots_ws) {
     FrameInput here;
     here.roots_ws = roots_ws;
     takeRoots(here);
-    replan({}, {}, state_.rootsMin_ws, state_.rootsMax_ws);
+    replan({}, {}, state_.rootsMin_ws, state_.rootsMax_ws, 0.0f);
 }
 
 std::string Engine::setSettings(const SimulationSettings& settings) {
     if (std::string error = whyRefused(settings); !error.empty()) return error;
     settings_ = settings;
     wind_ = makeWind(settings);
+    windGiven_ = false;
     bend_.substep = 0.0f;
     std::fill(state_.tanks.begin(), state_.tanks.end(), kNoCurve);
     state_.rests.assign(shape_->blocks.size(), {});
-    replan({}, {}, state_.rootsMin_ws, state_.rootsMax_ws);
+    replan({}, {}, state_.rootsMin_ws, state_.rootsMax_ws, 0.0f);
     return {};
 }
 
 void Engine::replan(std::span<const Sphere> spheres, std::span<const Float3> sphereMotion, Float3 rootsMin_ws,
-                    Float3 rootsMax_ws) {
-    SceneDescription scene{settings_,
+                    Float3 rootsMax_ws, float frameTime) {
+    SimulationSettings planned = settings_;
+    if (windGiven_) {
+        planned.windSpeed = length(wind_.mean);
+        if (planned.windSpeed > 0.0f) planned.windDirection = wind_.mean * (1.0f / planned.windSpeed);
+    }
+    SceneDescription scene{planned,
                            strandCount(),
                            shape_->longestPointCount,
                            shape_->longestStrand,
@@ -95,9 +107,11 @@ void Engine::replan(std::span<const Sphere> spheres, std::span<const Float3> sph
                            sphereMotion};
     float sphereWay = 0.0f;
     for (const Float3& motion : sphereMotion) sphereWay = std::max(sphereWay, length(motion));
-    // Hair may gain half as much speed again before the next plan.
-    scene.fastest =
-        1.5f * state_.fastest + (rootMotion_ + sphereWay) / static_cast<float>(settings_.substeps);
+    // Within a frame hair may gain what gravity and air give, and a whip of its own.
+    const float h = frameTime / static_cast<float>(settings_.substeps);
+    const float pushed = (length(settings_.gravity) + settings_.airDrag * length(wind_.mean)) * frameTime;
+    scene.fastest = 4.0f * state_.fastest * h + pushed * h +
+                    (rootMotion_ + sphereWay) / static_cast<float>(settings_.substeps);
     scene.restTime = 1e30f;
     for (std::size_t b = 0; b < state_.rests.size(); ++b) {
         if (state_.rests[b].asleep) scene.asleep += shape_->blocks[b].strands;
@@ -201,8 +215,27 @@ bool Engine::sphereNear(std::size_t block) const {
     return false;
 }
 
+void Engine::takeWind(const FrameInput& input) {
+    WindInput given;
+    if (input.wind_ws) {
+        if (isWind(*input.wind_ws)) {
+            given.mean_ws = input.wind_ws;
+        } else {
+            ++report_.rejectedWinds;
+        }
+    }
+    if (isWind(input.actorVelocity_ws)) {
+        given.actorVelocity_ws = input.actorVelocity_ws;
+    } else {
+        ++report_.rejectedWinds;
+    }
+    windGiven_ =
+        given.mean_ws || (settings_.windKind == WindKind::vehicle && given.actorVelocity_ws != Float3{});
+    wind_ = makeWind(settings_, given);
+}
+
 void Engine::wakeBlocks() {
-    const bool windy = settings_.windSpeed > 0.0f && settings_.airDrag > 0.0f;
+    const bool windy = length(wind_.mean) > 0.0f && settings_.airDrag > 0.0f;
     for (std::size_t b = 0; b < state_.rests.size(); ++b) {
         Rest& rest = state_.rests[b];
         if (rest.asleep && (windy || blockReports_[b].rootsMoved || sphereNear(b))) rest = {};
@@ -273,10 +306,12 @@ void Engine::step(const FrameInput& input) {
     takeRoots(input);
     const Float3 low = state_.rootsMin_ws, high = state_.rootsMax_ws;
     takeSpheres(input);
+    takeWind(input);
     wakeBlocks();
     replan(usableSpheres_, sphereMotion_,
            {std::min(low.x, lowBefore.x), std::min(low.y, lowBefore.y), std::min(low.z, lowBefore.z)},
-           {std::max(high.x, highBefore.x), std::max(high.y, highBefore.y), std::max(high.z, highBefore.z)});
+           {std::max(high.x, highBefore.x), std::max(high.y, highBefore.y), std::max(high.z, highBefore.z)},
+           input.dt);
     moveSpheres();
 
     const Frame frame = makeFrame(input);
@@ -305,7 +340,7 @@ void Engine::sumReports() {
         report_.restoredStrands += block.restored;
         fastest = std::max(fastest, block.fastest);
     }
-    state_.fastest = std::sqrt(fastest);
+    state_.fastest = std::sqrt(fastest) / state_.substep;
     if (report_.restoredStrands > 0 && host_.log) {
         host_.log(std::to_string(report_.restoredStrands) +
                   " strands had left the range of sound places and were put back to rest");

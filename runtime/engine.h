@@ -40,6 +40,7 @@ struct StepReport {
     double milliseconds = 0.0;                            ///< from entering to leaving step()
     std::uint32_t rejectedRoots = 0;    ///< roots that were not finite; they stayed where they were
     std::uint32_t rejectedSpheres = 0;  ///< spheres that were not finite or had no radius; they were left out
+    std::uint32_t rejectedWinds = 0;  ///< wind_ws and actorVelocity_ws that were not finite or above 1000 m/s
     /// Strands with a point that was no number, or farther from its root than any hair; they were put back to
     /// rest.
     std::uint32_t restoredStrands = 0;
@@ -95,11 +96,12 @@ class Engine {
     Engine() = default;
 
     void replan(std::span<const Sphere> spheres, std::span<const Float3> sphereMotion, Float3 rootsMin_ws,
-                Float3 rootsMax_ws);
+                Float3 rootsMax_ws, float frameTime);
     void allocateForPlan();
     void takeSpheres(const FrameInput& input);
     void moveSpheres();
     void takeRoots(const FrameInput& input);
+    void takeWind(const FrameInput& input);
     void wakeBlocks();
     bool sphereNear(std::size_t block) const;
     Frame makeFrame(const FrameInput& input);
@@ -127,6 +129,7 @@ class Engine {
     std::vector<Float3> sphereMotion_;
     std::vector<MovingSphere> movingSpheres_;
     float rootMotion_ = 0.0f;  // metres, the longest way of a root
+    bool windGiven_ = false;   // by the frame, not by the settings alone
 };
 
 struct Engine::Made {

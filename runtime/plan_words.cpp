@@ -87,7 +87,7 @@ std::string words(Effect effect, const Decision& decision) {
         case Reason::zeroRadius:
             return "zero radius";
         case Reason::slowEnough:
-            return "nothing moves by a sphere's radius in a substep";
+            return "nothing moves by a quarter of a sphere's radius in a substep";
         case Reason::fast:
             text << "up to " << 1000.0f * decision.value << " mm in a substep";
             return text.str();

@@ -78,7 +78,7 @@ struct State {
     std::vector<Sphere> spheres;      ///< of the last frame
     Float3 rootsMin_ws, rootsMax_ws;  ///< box of the last frame's roots
     float substep = 0.0f;             ///< seconds of the last substep; 0 before the first
-    float fastest = 0.0f;             ///< metres, greatest displacement of a point in the last substep
+    float fastest = 0.0f;             ///< m/s, greatest speed of a point at the end of the last frame
 
     std::uint64_t hash() const;
 };

@@ -4,6 +4,7 @@
 // the caller owns the arrays and the engine keeps none of them.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "runtime/math.h"
@@ -44,7 +45,12 @@ struct FrameInput {
     std::span<const RootFrame> roots_ws;  ///< one per strand, at the end of the frame
     /// At the end of the frame; sphere i is the sphere i of the frame before, and its speed follows from
     /// that.
-    std::span<const Sphere> spheres;
+    std::span<const Sphere> spheres = {};
+    std::optional<Float3> wind_ws = {};  ///< m/s, a script's mean wind of this frame, in place of the
+                                         ///< authored one; ignored unless finite and within 1000 m/s
+    /// m/s, of an actor that the caller does not move in world space; WindKind::vehicle blows against it.
+    /// Ignored unless finite and within 1000 m/s.
+    Float3 actorVelocity_ws{};
 };
 
 }  // namespace hairloom::runtime

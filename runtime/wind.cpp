@@ -30,22 +30,46 @@ class Sequence {
     std::uint64_t state_;
 };
 
+Float3 authoredFlow(const SimulationSettings& settings) {
+    const float size = length(settings.windDirection);
+    if (!(size > 0.0f)) return {};
+    const float speed = settings.windKind == WindKind::vehicle ? -settings.windSpeed : settings.windSpeed;
+    return settings.windDirection * (speed / size);
+}
+
+/// A random direction across another.
+Float3 across(Sequence& random, Float3 direction) {
+    while (true) {
+        const Float3 v = cross(direction, random.direction());
+        const float size = length(v);
+        if (size > 0.1f) return v * (1.0f / size);
+    }
+}
+
 }  // namespace
 
-Wind makeWind(const SimulationSettings& settings) {
+Wind makeWind(const SimulationSettings& settings, const WindInput& input) {
     Wind wind{};
-    const float size = length(settings.windDirection);
-    if (!(size > 0.0f)) return wind;
-    wind.mean = settings.windDirection * (settings.windSpeed / size);
-    // Independent waves add in squares: this amplitude makes the root mean square of the gusts windGustiness.
+    wind.kind = settings.windKind;
+    const Float3 authored = authoredFlow(settings);
+    wind.mean = input.mean_ws.value_or(authored);
+    if (wind.kind == WindKind::vehicle) wind.mean = wind.mean - input.actorVelocity_ws;
+    if (wind.kind == WindKind::uniform) return wind;
+    const bool eddies = wind.kind != WindKind::gusting;
+    wind.strength = eddies ? 0.0f : settings.windGustiness;
+    // Independent waves add in squares: this amplitude makes the root mean square of the eddies
+    // windGustiness.
     const float amplitude =
-        settings.windSpeed * settings.windGustiness * std::sqrt(2.0f / static_cast<float>(kWindModes));
+        length(wind.mean) * settings.windGustiness * std::sqrt(2.0f / static_cast<float>(kWindModes));
     Sequence random(settings.windSeed);
     for (WindMode& mode : wind.modes) {
-        mode.amplitude = random.direction() * amplitude;
-        mode.waveVector = random.direction() * ((0.5f + random.uniform()) / settings.windGustSize);
+        const Float3 direction = random.direction();
+        mode.waveVector = direction * ((0.5f + random.uniform()) / settings.windGustSize);
         mode.turnsPerSecond = (0.5f + random.uniform()) * settings.windFrequency;
         mode.turns = random.uniform();
+        if (!eddies) continue;
+        mode.amplitude = across(random, direction) * amplitude;
+        mode.turnsPerSecond += dot(mode.waveVector, authored);
     }
     return wind;
 }

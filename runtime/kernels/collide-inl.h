@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Collision with spheres.
+// Collision with spheres (Rünz 2012, Section 3.4).
 #if defined(HAIRLOOM_RUNTIME_COLLIDE_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HAIRLOOM_RUNTIME_COLLIDE_INL_H
 #undef HAIRLOOM_RUNTIME_COLLIDE_INL_H
@@ -7,74 +7,395 @@
 #define HAIRLOOM_RUNTIME_COLLIDE_INL_H
 #endif
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "hwy/highway.h"
 #include "runtime/kernels.h"
 #include "runtime/kernels/lanes-inl.h"
+#include "runtime/kernels/spheres-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {
 namespace HWY_NAMESPACE {
 
-/// Impulse with restitution (Rünz 2012, Eq. 20) and Coulomb friction, then the place p_a on the sphere (Eq.
-/// 21, to which the centre is added). A point at the very centre leaves it upwards.
-HWY_INLINE void respond(const BlockView& block, const SubstepContext& context, std::size_t i,
-                        hn::Mask<D> inside, V3 offset, V squared, V3 centre, V reach, V3 centreStep) {
-    const V zero = hn::Zero(D()), one = all(1.0f);
-    const V distance = hn::Sqrt(squared);
-    const auto centred = distance < all(1e-9f);
-    const V inverse = one / hn::IfThenElse(centred, one, distance);
-    const V3 normal{hn::IfThenElse(centred, zero, offset.x * inverse),
-                    hn::IfThenElse(centred, one, offset.y * inverse),
-                    hn::IfThenElse(centred, zero, offset.z * inverse)};
+/// What a vector of points touches; each lane may touch another sphere.
+struct Contact {
+    hn::Mask<D> touching;
+    V3 centre;  ///< relative to the roots
+    V3 step;    ///< the sphere's way in one substep
+    V reach;    ///< radius and pearl
+    V3 from;    ///< from the centre into the direction in which the point is placed; any length
+};
+
+/// Places the points on their spheres (Eq. 21, to which the centre is added) and gives them the impulse with
+/// restitution (Eq. 20) and Coulomb friction, both relative to the sphere. Returns the places, of all lanes.
+HWY_INLINE V3 respond(const BlockView& block, const SubstepContext& context, std::size_t i,
+                      const Contact& contact) {
+    const V zero = hn::Zero(D());
+    const Direction direction = directionOf(contact.from);
+    const V3 normal = direction.unit;
     const V3 position = load3(block.position, i);
     const V3 previous = load3(block.previous, i);
-    const V3 relative = position - previous - centreStep;
-    const V approach = hn::Min(dot(relative, normal), zero);
-    const V3 sliding = relative - normal * dot(relative, normal);
-    const V impulse = (zero - approach) * all(1.0f + context.restitution);
-    const V slidingSpeed = hn::Sqrt(dot(sliding, sliding));
-    const V lost = hn::Min(all(context.friction) * impulse / (slidingSpeed + all(1e-20f)), one);
+    const V3 relative = position - previous - contact.step;
+    const V along = dot(relative, normal);
+    const V3 sliding = relative - normal * along;
+    const V approach = hn::Max(zero - along, zero);
+    const V bounce = all(1.0f + context.restitution);
+    const V impulse = approach * bounce;
+    const V rate = all(context.friction) * bounce * inverseSqrt(dot(sliding, sliding) + all(1e-30f));
+    const V lost = hn::Min(rate * approach, all(1.0f));
+    // Friction also takes back what the point has slid while inside, or sticking hair would creep.
+    const V depth = hn::Max(contact.reach - direction.length, zero);
+    const V slid = hn::Min(rate * hn::Min(depth, approach), all(1.0f));
     const V3 after = relative + normal * impulse - sliding * lost;
-    const V3 placed = centre + normal * reach;
-    const V3 before = placed - (after + centreStep);
-    store3(select(inside, placed, position), block.position, i);
-    store3(select(inside, before, previous), block.previous, i);
+    const V3 placed = contact.centre + normal * contact.reach - sliding * slid;
+    const V3 before = placed - (after + contact.step);
+    store3(select(contact.touching, placed, position), block.position, i);
+    store3(select(contact.touching, before, previous), block.previous, i);
+    return placed;
 }
 
-/// Pushes points out of spheres (Rünz 2012, Eq. 14), pearls growing linearly to the tip. Spheres that do not
-/// meet the block's bounding box are skipped.
+/// From the centre to the place p_b where the way of this substep entered the sphere: the s < 0 that solves
+/// |p + s·v − c| = reach, with v relative to the sphere. Where that way does not begin outside, the place is
+/// p_a, or a point that hardly moves would leave along any chord; likewise where the way enters flatter than
+/// 1 in 20, as the place would follow from rounding.
+HWY_INLINE V3 backAlong(V3 offset, V3 relative, V squared, V reach) {
+    const V zero = hn::Zero(D()), one = all(1.0f);
+    const V a = dot(relative, relative);
+    const V b = dot(relative, offset);
+    const V c = squared - reach * reach;
+    const V discriminant = b * b - a * c;
+    const V root = hn::Sqrt(hn::Max(discriminant, zero));
+    // Of the two forms of the root the one whose sum does not cancel.
+    const auto approaching = b < zero;
+    const V above = hn::IfThenElse(approaching, c, zero - (b + root));
+    const V below = hn::IfThenElse(approaching, root - b, a);
+    const auto moving = a > all(1e-20f);
+    const V s = above / hn::IfThenElse(moving, below, one);
+    const auto steep = discriminant > a * reach * reach * all(0.0025f);
+    const auto onTheWay = hn::And(hn::And(moving, steep), hn::And(s >= all(-1.0f), s <= zero));
+    return select(onTheWay, offset + relative * s, offset);
+}
+
+/// The point of the circle in which the contact's sphere and another one meet that is nearest to `at`, from
+/// the other's centre; `meet` is false where they do not meet in a circle.
+HWY_INLINE V3 nearestOfCircle(V3 at, const Contact& contact, V3 centre, V reach, hn::Mask<D>& meet) {
+    const V zero = hn::Zero(D()), tiny = all(1e-12f);
+    const V3 axis = contact.centre - centre;
+    const V squared = dot(axis, axis);
+    const V share =
+        all(0.5f) * (squared + reach * reach - contact.reach * contact.reach) / hn::Max(squared, tiny);
+    const V circle = reach * reach - share * share * squared;
+    const V3 offset = at - centre;
+    const V3 across = offset - axis * (dot(offset, axis) / hn::Max(squared, tiny));
+    const V acrossSquared = dot(across, across);
+    meet = hn::And(squared > tiny, hn::And(circle > zero, acrossSquared > tiny));
+    return axis * share +
+           across * (hn::Sqrt(hn::Max(circle, zero)) * inverseSqrt(acrossSquared + all(1e-30f)));
+}
+
+/// Points that left one sphere into others of a union: each goes to the circle that its last sphere and the
+/// one in which it is deepest have in common, until it is free. Places on the surfaces of two spheres follow
+/// in one step; towards a corner of three the rest shrinks from step to step.
+HWY_NOINLINE void settle(const BlockView& block, const SubstepContext& context, const SphereSet& spheres,
+                         std::size_t i, V3 root, V pearl, Contact contact) {
+    constexpr int kSteps = 16;
+    for (int k = 0; k < kSteps; ++k) {
+        const V3 at = load3(block.position, i);
+        V3 centre = contact.centre, step = contact.step;
+        V reach = contact.reach, deepest = hn::Zero(D());
+        for (std::size_t j = 0; j < context.spheres.size(); ++j) {
+            const V3 itsCentre = spheres.centre(j) - root;
+            const V itsReach = all(spheres.radius[j]) + pearl;
+            const V3 offset = at - itsCentre;
+            // About twice the reach times the depth, but for the depth that rounding leaves.
+            const V depth = itsReach * (itsReach - all(4e-6f)) - dot(offset, offset);
+            const auto deeper = depth > deepest;
+            deepest = hn::IfThenElse(deeper, depth, deepest);
+            centre = select(deeper, itsCentre, centre);
+            step = select(deeper, all3(context.spheres[j].step), step);
+            reach = hn::IfThenElse(deeper, itsReach, reach);
+        }
+        const auto inside = hn::And(contact.touching, deepest > hn::Zero(D()));
+        if (hn::AllFalse(D(), inside)) return;
+        auto meet = inside;
+        const V3 onCircle = nearestOfCircle(at, contact, centre, reach, meet);
+        contact = {inside, centre, step, reach, select(meet, onCircle, at - centre)};
+        respond(block, context, i, contact);
+    }
+}
+
+/// A few points of each strand of a block against the spheres of one set. Works in passes over lists, which
+/// are filled without branches: whether a point touches is as good as random to a processor.
+template <bool kBackward>
+class Contacts {
+  public:
+    HWY_INLINE Contacts(const BlockView& block, const LaneFrame& lanes, const SubstepContext& context,
+                        const SphereSet& spheres, const float* pearls, float step)
+        : block_(block), context_(context), spheres_(spheres), pearls_(pearls) {
+        for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+            store3(load3(lanes.root, lane) + load3(lanes.rootStep, lane) * all(step), roots_, lane);
+        }
+    }
+
+    /// At most PieceBoxes::kMostPoints points.
+    HWY_INLINE void run(std::uint32_t begin, std::uint32_t end) {
+        findPieces(begin, end);
+        if (pieceCount_ == 0) return;
+        findPoints(end);
+        touchAll();
+    }
+
+  private:
+    /// What is out of reach is left out in three steps: spheres that miss the box of all points, then pieces
+    /// of strands whose own boxes all miss it, then points.
+    HWY_INLINE void findPieces(std::uint32_t begin, std::uint32_t end) {
+        pieceCount_ = touchCount_ = 0;
+        PieceBoxes boxes[kStrips];
+        WideBox world = WideBox::empty();
+        for (std::uint32_t n = 0; n < kStrips; ++n) {
+            world.add(boxes[n].take(block_, n * kWidth, begin, end), load3(roots_, n * kWidth));
+        }
+        spheres_.forEachMeeting(world.reduced(), [&](std::size_t k) HWY_ATTR {
+            const V widest = all(spheres_.widest[k] * spheres_.widest[k] * 1.0001f);
+            for (std::uint32_t n = 0; n < kStrips; ++n) {
+                const V3 centre = spheres_.centre(k) - load3(roots_, n * kWidth);
+                for (std::uint32_t piece = 0; piece < boxes[n].count; ++piece) {
+                    const bool misses = hn::AllFalse(D(), boxes[n].squaredGap(piece, centre) <= widest);
+                    pieces_[pieceCount_] = pair(k, begin + piece * PieceBoxes::kPoints, n * kWidth);
+                    pieceCount_ += misses ? 0u : 1u;
+                }
+            }
+        });
+    }
+
+    HWY_INLINE void findPoints(std::uint32_t end) {
+        for (std::uint32_t n = 0; n < pieceCount_; ++n) {
+            const std::size_t k = pieces_[n].sphere;
+            const std::uint32_t lane = pieces_[n].index % kBlockLanes;
+            const std::uint32_t first = pieces_[n].index / kBlockLanes;
+            const V3 centre = spheres_.centre(k) - load3(roots_, lane);
+            const V radius = all(spheres_.radius[k]);
+            for (std::uint32_t p = first; p < std::min(first + PieceBoxes::kPoints, end); ++p) {
+                const V reach = radius + all(pearls_[p]);
+                const V3 offset = load3(block_.position, std::size_t{p} * kBlockLanes + lane) - centre;
+                const auto inside = dot(offset, offset) < reach * reach;
+                touches_[touchCount_] = pair(k, p, lane);
+                hn::StoreMaskBits(D(), inside, touching_[touchCount_]);
+                touchCount_ += hn::AllFalse(D(), inside) ? 0u : 1u;
+            }
+        }
+    }
+
+    HWY_INLINE void touchAll() const {
+        std::uint16_t others[SphereSet::kMost];
+        std::uint32_t count = 0;
+        std::size_t k = SphereSet::kMost;
+        for (std::uint32_t t = 0; t < touchCount_; ++t) {
+            if (touches_[t].sphere != k) {
+                k = touches_[t].sphere;
+                count = spheres_.overlapping(k, others);
+            }
+            touch(t, others, count);
+        }
+    }
+
+    HWY_INLINE void touch(std::uint32_t t, const std::uint16_t* others, std::uint32_t count) const {
+        const std::size_t k = touches_[t].sphere, i = touches_[t].index;
+        const V3 root = load3(roots_, touches_[t].index % kBlockLanes);
+        const V pearl = all(pearls_[i / kBlockLanes]);
+        const V3 centre = spheres_.centre(k) - root;
+        const V reach = all(spheres_.radius[k]) + pearl;
+        const V3 at = load3(block_.position, i);
+        const V3 step = all3(context_.spheres[k].step);
+        const V3 offset = at - centre;
+        const V squared = dot(offset, offset);
+        V3 from = offset;
+        if constexpr (kBackward) {
+            from = backAlong(offset, at - load3(block_.previous, i) - step, squared, reach);
+        }
+        // A sphere before may have taken the point out of this one.
+        const auto inside = hn::And(hn::LoadMaskBits(D(), touching_[t]), squared < reach * reach);
+        const V3 placed = respond(block_, context_, i, {inside, centre, step, reach, from});
+        auto again = noLane();
+        for (std::uint32_t n = 0; n < count; ++n) {
+            const V3 itsOffset = placed - (spheres_.centre(others[n]) - root);
+            const V itsReach = all(spheres_.radius[others[n]]) + pearl;
+            again = hn::Or(again, dot(itsOffset, itsOffset) < itsReach * itsReach);
+        }
+        again = hn::And(again, inside);
+        if (HWY_LIKELY(hn::AllFalse(D(), again))) return;
+        settle(block_, context_, spheres_, i, root, pearl, {again, centre, step, reach, zero3()});
+    }
+
+    static constexpr std::uint32_t kStrips = kBlockLanes / kWidth;
+
+    struct Pair {
+        std::uint16_t sphere;
+        std::uint16_t index;  ///< of the first lane of a vector of points
+    };
+    static_assert(kMaxPoints * kBlockLanes <= 0x10000);
+    static HWY_INLINE Pair pair(std::size_t sphere, std::uint32_t point, std::uint32_t lane) {
+        return {static_cast<std::uint16_t>(sphere), static_cast<std::uint16_t>(point * kBlockLanes + lane)};
+    }
+    // One more than there can be: the lists are written before it is known whether an entry stays.
+    static constexpr std::size_t kMostPieces = SphereSet::kMost * PieceBoxes::kMost * kStrips + 1;
+    static constexpr std::size_t kMostTouches = SphereSet::kMost * PieceBoxes::kMostPoints * kStrips + 1;
+
+    const BlockView& block_;
+    const SubstepContext& context_;
+    const SphereSet& spheres_;
+    const float* const pearls_;
+    alignas(64) float roots_[3][kBlockLanes];
+    std::uint32_t pieceCount_ = 0;
+    std::uint32_t touchCount_ = 0;
+    Pair pieces_[kMostPieces];
+    Pair touches_[kMostTouches];
+    std::uint8_t touching_[kMostTouches][(kWidth + 7) / 8];
+};
+
+/// Pushes points and their pearls out of spheres (Eq. 14). Where spheres overlap, a point that one of them
+/// pushes into others goes to their common edge. Of more than SphereSet::kMost spheres this holds within each
+/// kMost of them.
+template <bool kBackward>
 void collide(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
     const float step = static_cast<float>(context.index + 1);
-    const Box box = boundsOf(block, lanes, step);
-    const float largestPearl = std::fmax(context.pearlRoot, context.pearlTip);
-    const float pearlSlope = (context.pearlTip - context.pearlRoot) / static_cast<float>(block.points - 1);
-    for (const MovingSphere& sphere : context.spheres) {
-        const Float3 centre_ws = sphere.from_ws + sphere.step * step;
-        if (!box.meets(centre_ws, sphere.radius + largestPearl)) continue;
-        const V3 centreStep = all3(sphere.step);
-        for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
-            const V3 root = load3(lanes.root, lane) + load3(lanes.rootStep, lane) * all(step);
-            const V3 centre = all3(centre_ws) - root;
-            for (std::uint32_t p = block.firstFree; p < block.points; ++p) {
-                const std::size_t i = std::size_t{p} * kBlockLanes + lane;
-                const V reach = all(sphere.radius + context.pearlRoot + pearlSlope * static_cast<float>(p));
-                const V3 offset = load3(block.position, i) - centre;
-                const V squared = dot(offset, offset);
-                const auto inside = squared < reach * reach;
-                if (HWY_LIKELY(hn::AllFalse(D(), inside))) continue;
-                respond(block, context, i, inside, offset, squared, centre, reach, centreStep);
-            }
+    alignas(64) float pearls[kMaxPoints];
+    fillPearls(block, context, pearls);
+    SubstepContext part = context;
+    for (std::size_t first = 0; first < context.spheres.size(); first += SphereSet::kMost) {
+        part.spheres = context.spheres.subspan(
+            first, std::min<std::size_t>(SphereSet::kMost, context.spheres.size() - first));
+        SphereSet spheres;
+        spheres.take(part.spheres, step, std::fmax(context.pearlRoot, context.pearlTip));
+        Contacts<kBackward> contacts(block, lanes, part, spheres, pearls, step);
+        for (std::uint32_t p = block.firstFree; p < block.points; p += PieceBoxes::kMostPoints) {
+            contacts.run(p, std::min(p + PieceBoxes::kMostPoints, block.points));
         }
     }
 }
 
-void applyPenalty(const BlockView&, LaneFrame&, const SubstepContext&) {}
-void collideBack(const BlockView& b, LaneFrame& l, const SubstepContext& c) {
-    collide(b, l, c);
+/// Share of a sphere's radius that a point may move in one substep without `collideSwept` looking at it: it
+/// can then cut no deeper than 0.8 % of the radius into it unseen.
+inline constexpr float kUnsweptShare = 0.25f;
+
+/// Square of the farthest that any free point moved in this substep.
+HWY_INLINE float farthestSquared(const BlockView& block) {
+    V most = hn::Zero(D());
+    const std::size_t end = std::size_t{block.points} * kBlockLanes;
+    for (std::size_t i = std::size_t{block.firstFree} * kBlockLanes; i < end; i += kWidth) {
+        const V3 moved = load3(block.position, i) - load3(block.previous, i);
+        most = hn::Max(most, dot(moved, moved));
+    }
+    return laneMost(most);
 }
-void collideSwept(const BlockView&, LaneFrame&, const SubstepContext&) {}
+
+/// The first sphere that a point enters and passes the middle of on its way relative to it, as a contact.
+HWY_INLINE Contact firstEntered(const SubstepContext& context, V3 at, V3 moved, V3 root, V pearl,
+                                float step) {
+    const V zero = hn::Zero(D()), one = all(1.0f);
+    Contact first{noLane(), zero3(), zero3(), zero, zero3()};
+    V earliest = zero;
+    for (const MovingSphere& sphere : context.spheres) {
+        const V3 centre = all3(sphere.from_ws + sphere.step * step) - root;
+        const V reach = all(sphere.radius) + pearl;
+        const V3 relative = moved - all3(sphere.step);
+        const V3 offset = at - centre;
+        const V a = dot(relative, relative), b = dot(relative, offset);
+        const V discriminant = b * b - a * (dot(offset, offset) - reach * reach);
+        const V fast = all(kUnsweptShare) * reach;
+        const auto passes = hn::And(a > fast * fast, hn::And(b > zero, discriminant > zero));
+        if (HWY_LIKELY(hn::AllFalse(D(), passes))) continue;
+        const V s = zero - (b + hn::Sqrt(hn::Max(discriminant, zero))) / hn::IfThenElse(passes, a, one);
+        const auto sooner = hn::And(passes, hn::And(s >= all(-1.0f), s < earliest));
+        earliest = hn::IfThenElse(sooner, s, earliest);
+        first.touching = hn::Or(first.touching, sooner);
+        first.centre = select(sooner, centre, first.centre);
+        first.step = select(sooner, all3(sphere.step), first.step);
+        first.reach = hn::IfThenElse(sooner, reach, first.reach);
+        first.from = select(sooner, offset + relative * s, first.from);
+    }
+    return first;
+}
+
+/// Catches fast points where they first enter a sphere that they have passed, or passed the middle of, by the
+/// end of the substep. Runs before `collide` and leaves slow blocks at once.
+void collideSwept(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
+    float smallest = 1e30f, fastest = 0.0f;
+    for (const MovingSphere& sphere : context.spheres) {
+        smallest = std::fmin(smallest, sphere.radius);
+        fastest = std::fmax(fastest, length(sphere.step));
+    }
+    smallest += std::fmin(context.pearlRoot, context.pearlTip);
+    const float slow = std::fmax(0.999f * kUnsweptShare * smallest - 1.001f * fastest, 0.0f);
+    if (farthestSquared(block) < slow * slow) return;
+    const float step = static_cast<float>(context.index + 1);
+    alignas(64) float pearls[kMaxPoints];
+    fillPearls(block, context, pearls);
+    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+        const V3 root = load3(lanes.root, lane) + load3(lanes.rootStep, lane) * all(step);
+        for (std::uint32_t p = block.firstFree; p < block.points; ++p) {
+            const std::size_t i = std::size_t{p} * kBlockLanes + lane;
+            const V3 at = load3(block.position, i);
+            const V3 moved = at - load3(block.previous, i);
+            if (hn::AllFalse(D(), dot(moved, moved) >= all(slow * slow))) continue;
+            const Contact first = firstEntered(context, at, moved, root, all(pearls[p]), step);
+            if (!hn::AllFalse(D(), first.touching)) respond(block, context, i, first);
+        }
+    }
+}
+
+/// Points of a strip of lanes.
+struct Points {
+    std::uint32_t begin, end, lane;
+};
+
+/// The force of one sphere.
+HWY_INLINE void push(const BlockView& block, Points points, V3 centre, float radius, const float* pearls,
+                     V stiffness) {
+    for (std::uint32_t p = points.begin; p < points.end; ++p) {
+        const std::size_t i = std::size_t{p} * kBlockLanes + points.lane;
+        const V reach = all(radius) + all(pearls[p]);
+        const V3 offset = load3(block.position, i) - centre;
+        const V squared = dot(offset, offset);
+        if (HWY_LIKELY(hn::AllFalse(D(), squared < reach * reach))) continue;
+        const Direction direction = directionOf(offset);
+        const V3 way = direction.unit * (hn::Max(reach - direction.length, hn::Zero(D())) * stiffness);
+        store3(load3(block.previous, i) - way, block.previous, i);
+    }
+}
+
+/// Penalty force: a spring of frequency penaltyFrequency from the point to its p_a on each sphere that it is
+/// in, as the acceleration ω²·depth along the normal. Stable while ω·h < 2, where one sphere pushes; the
+/// squares of the frequencies of spheres that push the same way add.
+void applyPenalty(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
+    // Positions are still those of the substep's start.
+    const float step = static_cast<float>(context.index);
+    alignas(64) float pearls[kMaxPoints];
+    fillPearls(block, context, pearls);
+    const V stiffness = all(context.penaltyStep);
+    SphereSet spheres;
+    for (std::size_t first = 0; first < context.spheres.size(); first += SphereSet::kMost) {
+        spheres.take(context.spheres.subspan(
+                         first, std::min<std::size_t>(SphereSet::kMost, context.spheres.size() - first)),
+                     step, std::fmax(context.pearlRoot, context.pearlTip));
+        for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+            const V3 root = load3(lanes.root, lane) + load3(lanes.rootStep, lane) * all(step);
+            for (std::uint32_t p = block.firstFree; p < block.points; p += PieceBoxes::kMostPoints) {
+                const std::uint32_t end = std::min(p + PieceBoxes::kMostPoints, block.points);
+                PieceBoxes boxes;
+                WideBox world = WideBox::empty();
+                world.add(boxes.take(block, lane, p, end), root);
+                spheres.forEachMeeting(world.reduced(), [&](std::size_t k) HWY_ATTR {
+                    push(block, {p, end, lane}, spheres.centre(k) - root, spheres.radius[k], pearls,
+                         stiffness);
+                });
+            }
+        }
+    }
+}
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)
 }  // namespace HWY_NAMESPACE

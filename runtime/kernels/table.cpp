@@ -90,9 +90,9 @@ Stage stageOf(StageId id) {
         case StageId::springLimit:
             return limitBySpeed;
         case StageId::collision:
-            return collide;
+            return collide<false>;
         case StageId::collisionBack:
-            return collideBack;
+            return collide<true>;
         case StageId::sweep:
             return collideSwept;
         case StageId::extension:

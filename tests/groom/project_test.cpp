@@ -180,7 +180,7 @@ TEST(HostileProject, HeadsAreReadStrictly) {
              h["material"]["rootColour"] = {0, 1};
          },
          "/material/rootColour is no such vector"},
-        {[](Json& h) { h["simulation"]["integrator"] = "leapfrog"; },
+        {[](Json& h) { h["simulation"]["integrator"] = "sideways"; },
          "/simulation/integrator is \"leapfrog\""},
         {[](Json& h) { h["simulation"]["substeps"] = 1.5; }, "/simulation/substeps is 1.5"},
         {[](Json& h) { h["spheres"][1]["radius"] = 0; }, "/spheres/1/radius is 0"},

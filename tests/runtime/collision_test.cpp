@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <random>
+
 #include "tests/runtime/strand_fixture.h"
 
 namespace hairloom::runtime {
@@ -103,6 +106,356 @@ TEST(Collision, SpheresWithoutSizeOrPlaceAreLeftOut) {
     run(without, strands, 10);
     EXPECT_EQ(with.lastStep().rejectedSpheres, 4u);
     EXPECT_EQ(with.stateHash(), without.stateHash());
+}
+
+/// Free points of strands without a length constraint: each hangs 1 cm beside its root.
+struct FreePoints {
+    Strands strands;
+    SimulationSettings settings = bare();
+
+    FreePoints() {
+        settings.lengthIterations = 0;
+        settings.substeps = 1;
+        settings.pearlRadiusTip = 0.0f;
+        settings.friction = 0.0f;
+        settings.teleportDistance = 100.0f;
+    }
+    void add(Float3 at) { strands.add(at - Float3{0.01f, 0.0f, 0.0f}, {1.0f, 0.0f, 0.0f}, 0.01f, 2); }
+    Engine engine() const { return makeEngine(strands, settings); }
+    static Float3 place(const Engine& engine, std::size_t point = 0) {
+        return positionsOf(engine)[2 * point + 1];
+    }
+    static Float3 velocity(const Engine& engine) {
+        std::vector<Float3> v(engine.pointCount());
+        engine.readVelocities(v);
+        return v[1];
+    }
+    /// Steps until the points move by `way` in each step of dt, then takes gravity away.
+    void accelerate(Engine& engine, Float3 way, float dt) {
+        constexpr int kSteps = 60;
+        settings.gravity = way * (1.0f / (kSteps * dt * dt));
+        EXPECT_EQ(engine.setSettings(settings), "");
+        run(engine, strands, kSteps, dt);
+        settings.gravity = {};
+        EXPECT_EQ(engine.setSettings(settings), "");
+    }
+};
+
+struct Double3 {
+    double x, y, z;
+};
+double gap(Double3 a, Float3 b) {
+    return std::hypot(a.x - static_cast<double>(b.x), a.y - static_cast<double>(b.y),
+                      a.z - static_cast<double>(b.z));
+}
+double penetration(Float3 at, std::span<const Sphere> spheres) {
+    double most = 0.0;
+    for (const Sphere& s : spheres) {
+        most = std::max(most, static_cast<double>(s.radius) - gap({at.x, at.y, at.z}, s.center_ws));
+    }
+    return most;
+}
+
+/// Where a point that moves by `way` to `end` first meets the sphere.
+Float3 entrance(Float3 end, Float3 way, const Sphere& sphere) {
+    const Float3 offset = end - sphere.center_ws;
+    const double a = dot(way, way), b = dot(way, offset);
+    const double c = static_cast<double>(dot(offset, offset)) -
+                     static_cast<double>(sphere.radius) * static_cast<double>(sphere.radius);
+    return end + way * static_cast<float>((-b - std::sqrt(b * b - a * c)) / a);
+}
+
+TEST(Collision, AThrownPointComesBackToTheSquareOfItsRestitution) {
+    FreePoints points;
+    points.add({0.0f, 0.1f, 0.0f});
+    points.settings.restitution = 0.6f;
+    points.settings.gravity = {0.0f, -9.81f, 0.0f};
+    Engine engine = points.engine();
+    const std::vector<Sphere> ground{{{0.0f, -1.0f, 0.0f}, 1.0f}};
+    const float h = 1e-4f;
+    const float fall = std::sqrt(2.0f * 0.1f / 9.81f);
+    run(engine, points.strands, static_cast<int>(fall / h) + 20, h, ground);
+    float apex = 0.0f;
+    for (int f = 0; f < static_cast<int>(1.3f * fall / h); ++f) {
+        run(engine, points.strands, 1, h, ground);
+        apex = std::max(apex, FreePoints::place(engine).y);
+    }
+    EXPECT_NEAR(apex, 0.36f * 0.1f, 0.36f * 0.1f * 0.02f);
+}
+
+TEST(Collision, APointStaysWhereTheSlopeIsBelowTheFrictionAndSlidesAbove) {
+    const auto slid = [](float degrees) {
+        FreePoints points;
+        const float angle = degrees * std::numbers::pi_v<float> / 180.0f;
+        points.add({0.1f * std::sin(angle), 0.1f * std::cos(angle), 0.0f});
+        points.settings.friction = 0.5f;
+        points.settings.gravity = {0.0f, -9.81f, 0.0f};
+        Engine engine = points.engine();
+        const Float3 from = FreePoints::place(engine);
+        run(engine, points.strands, 200, 5e-4f, std::vector<Sphere>{{{0.0f, 0.0f, 0.0f}, 0.1f}});
+        return static_cast<double>(length(FreePoints::place(engine) - from));
+    };
+    const double critical = std::atan(0.5) * 180.0 / std::numbers::pi;  // 26.6°
+    EXPECT_LT(slid(static_cast<float>(critical) - 0.5f), 1e-5);
+    EXPECT_GT(slid(static_cast<float>(critical) + 0.5f), 2e-4);
+    // r φ'' = g sin φ − µ (g cos φ − r φ'²), after 0.1 s.
+    const double start = 35.0 * std::numbers::pi / 180.0, g = 9.81, r = 0.1;
+    double phi = start, speed = 0.0;
+    for (int n = 0; n < 100000; ++n) {
+        speed += 1e-6 * (g * std::sin(phi) - 0.5 * (g * std::cos(phi) - r * speed * speed)) / r;
+        phi += 1e-6 * speed;
+    }
+    const double expected = 2.0 * r * std::sin((phi - start) / 2.0);
+    EXPECT_NEAR(slid(35.0f), expected, 0.02 * expected);
+}
+
+TEST(Collision, APointOfAHundredMetresPerSecondIsCaughtWhereItEnters) {
+    for (const CollisionResponse response : {CollisionResponse::radial, CollisionResponse::backward}) {
+        FreePoints points;
+        points.add({0.0f, 0.0f, 0.0f});
+        points.settings.collisionResponse = response;
+        Engine engine = points.engine();
+        const float dt = 2e-3f;
+        points.accelerate(engine, {0.0f, -0.2f, 0.0f}, dt);
+        const Float3 way = FreePoints::velocity(engine) * dt;
+        EXPECT_NEAR(FreePoints::velocity(engine).y, -100.0f, 0.01f);
+        const Float3 end = FreePoints::place(engine) + way;
+        // The point passes both spheres; the other one stands later on its way.
+        const Sphere first{end - way * 0.5f + Float3{0.02f, 0.0f, 0.01f}, 0.05f};
+        const Sphere second{end + Float3{0.0f, 0.03f, 0.0f}, 0.02f};
+        run(engine, points.strands, 1, dt, std::vector<Sphere>{second, first});
+        const Float3 expected = entrance(end, way, first);
+        EXPECT_LT(length(FreePoints::place(engine) - expected), 1e-5f);
+        const Float3 normal = (expected - first.center_ws) * (1.0f / first.radius);
+        const Float3 before{0.0f, -100.0f, 0.0f};
+        const Float3 after = before - normal * dot(before, normal);
+        EXPECT_LT(length(FreePoints::velocity(engine) - after), 0.02f);
+    }
+}
+
+TEST(Collision, ASphereOfAHundredMetresPerSecondTakesThePointAlong) {
+    FreePoints points;
+    points.add({0.0f, 0.0f, 0.0f});
+    Engine engine = points.engine();
+    const float dt = 2e-3f;
+    run(engine, points.strands, 1, dt, std::vector<Sphere>{{{-0.1f, 0.0f, 0.0f}, 0.05f}});
+    run(engine, points.strands, 1, dt, std::vector<Sphere>{{{0.1f, 0.0f, 0.0f}, 0.05f}});
+    EXPECT_LT(length(FreePoints::place(engine) - Float3{0.15f, 0.0f, 0.0f}), 1e-5f);
+    EXPECT_NEAR(FreePoints::velocity(engine).x, 100.0f, 0.02f);
+}
+
+TEST(Collision, BackwardIsWhereTheWayEnteredTheSphereAndRadialIsNot) {
+    const float dt = 2e-3f;
+    const Float3 way{0.006f, -0.012f, 0.003f};
+    const auto placed = [&](CollisionResponse response, Float3& end, Sphere& sphere) {
+        FreePoints points;
+        points.add({0.0f, 0.0f, 0.0f});
+        points.settings.collisionResponse = response;
+        Engine engine = points.engine();
+        points.accelerate(engine, way, dt);
+        end = FreePoints::place(engine) + way;
+        sphere = {end + Float3{0.02f, -0.085f, 0.01f}, 0.09f};
+        run(engine, points.strands, 1, dt, std::vector<Sphere>{sphere});
+        return FreePoints::place(engine);
+    };
+    Float3 end;
+    Sphere sphere;
+    const Float3 backward = placed(CollisionResponse::backward, end, sphere);
+    EXPECT_LT(length(backward - entrance(end, way, sphere)), 2e-6f);
+    const Float3 radial = placed(CollisionResponse::radial, end, sphere);
+    const Float3 offset = end - sphere.center_ws;
+    EXPECT_LT(length(radial - (sphere.center_ws + offset * (sphere.radius / length(offset)))), 2e-6f);
+    EXPECT_GT(length(radial - backward), 1e-4f);
+}
+
+TEST(Collision, BackwardWithoutAWayOutLeavesAlongTheRadius) {
+    FreePoints points;
+    points.add({0.0f, 0.0f, 0.0f});
+    points.settings.collisionResponse = CollisionResponse::backward;
+    Engine engine = points.engine();
+    run(engine, points.strands, 1, 2e-3f, std::vector<Sphere>{{{-0.04f, -0.03f, 0.0f}, 0.1f}});
+    EXPECT_LT(length(FreePoints::place(engine) - Float3{0.04f, 0.03f, 0.0f}), 1e-6f);
+}
+
+TEST(Collision, PearlsGrowLinearlyToTheTip) {
+    Strands strands;
+    strands.add({0.0f, 0.0f, 0.0f}, {1.0f, 0.0f, 0.0f}, 0.02f, 6);
+    SimulationSettings s = FreePoints().settings;
+    s.pearlRadiusRoot = 0.002f;
+    s.pearlRadiusTip = 0.012f;
+    const std::vector<Sphere> sphere{{{0.05f, -0.02f, 0.0f}, 0.3f}};
+    Engine engine = makeEngine(strands, s);
+    run(engine, strands, 1, 1e-3f, sphere);
+    const std::vector<Float3> points = positionsOf(engine);
+    for (std::size_t p = 1; p < 6; ++p) {
+        EXPECT_NEAR(length(points[p] - sphere[0].center_ws), 0.302f + 0.002f * static_cast<float>(p), 1e-6f)
+            << p;
+    }
+}
+
+TEST(Collision, PointsBetweenOverlappingSpheresEndInTheFree) {
+    std::mt19937 random(7);
+    std::normal_distribution<float> normal;
+    std::uniform_real_distribution<float> uniform;
+    const auto direction = [&] {
+        const Float3 v{normal(random), normal(random), normal(random)};
+        return v * (1.0f / length(v));
+    };
+    for (const std::size_t count : {2u, 5u}) {
+        std::size_t tested = 0;
+        double worst = 0.0, worstLater = 0.0;
+        while (tested < 1500) {
+            std::vector<Sphere> spheres;
+            for (std::size_t k = 0; k < count; ++k) {
+                spheres.push_back({Float3{normal(random), normal(random), normal(random)} * 0.05f,
+                                   0.04f + 0.06f * uniform(random)});
+            }
+            FreePoints points;
+            for (int k = 0; k < 400; ++k) {
+                const Sphere& sphere = spheres[random() % count];
+                const Float3 at = sphere.center_ws + direction() * (sphere.radius - 0.01f * uniform(random));
+                const auto inside = std::count_if(spheres.begin(), spheres.end(), [&](const Sphere& s) {
+                    return length(at - s.center_ws) < s.radius;
+                });
+                bool freeNearby = false;
+                for (int n = 0; n < 100 && !freeNearby && inside > 1; ++n) {
+                    freeNearby =
+                        penetration(at + direction() * (0.01f * std::cbrt(uniform(random))), spheres) == 0.0;
+                }
+                if (freeNearby) points.add(at);
+            }
+            if (points.strands.count() == 0) continue;
+            Engine engine = points.engine();
+            run(engine, points.strands, 1, 2e-3f, spheres);
+            const std::vector<Float3> first = positionsOf(engine);
+            run(engine, points.strands, 3, 2e-3f, spheres);
+            const std::vector<Float3> later = positionsOf(engine);
+            for (std::size_t p = 1; p < first.size(); p += 2) {
+                worst = std::max(worst, penetration(first[p], spheres));
+                worstLater = std::max(worstLater, static_cast<double>(length(later[p] - first[p])));
+            }
+            tested += points.strands.count();
+        }
+        RecordProperty("penetration_um_" + std::to_string(count), static_cast<int>(worst * 1e6));
+        EXPECT_LT(worst, 5e-4) << count;
+        // What has been settled stays where it is.
+        EXPECT_LT(worstLater, 1e-3) << count;
+    }
+}
+
+TEST(Collision, HairBetweenOverlappingSpheresComesToRest) {
+    Strands strands;
+    for (int k = 0; k < 8; ++k) {
+        strands.add({0.02f * static_cast<float>(k) - 0.07f, 0.12f, 0.01f}, {0.0f, 0.0f, 1.0f}, 0.012f, 16);
+    }
+    SimulationSettings s = bare();
+    s.gravity = {0.0f, -9.81f, 0.0f};
+    s.dampingTime = 0.2f;
+    std::vector<Sphere> spheres;
+    for (int k = 0; k < 5; ++k)
+        spheres.push_back(
+            {{0.05f * static_cast<float>(k) - 0.1f, 0.02f * static_cast<float>(k % 2), 0.08f}, 0.07f});
+    Engine engine = makeEngine(strands, s);
+    run(engine, strands, 300, 1.0f / 60.0f, spheres);
+    const std::vector<Float3> before = positionsOf(engine);
+    run(engine, strands, 60, 1.0f / 60.0f, spheres);
+    const std::vector<Float3> after = positionsOf(engine);
+    for (std::size_t p = 0; p < after.size(); ++p) EXPECT_LT(length(after[p] - before[p]), 5e-4f) << p;
+    EXPECT_LT(engine.measure().maxPenetration, 5e-4);
+}
+
+TEST(Collision, ASphereThatShrinksAndVanishesLeavesHairAlone) {
+    FreePoints points;
+    points.add({0.0f, 0.0f, 0.0f});
+    Engine engine = points.engine();
+    // It appears around the point: out, but with no speed of its own.
+    run(engine, points.strands, 1, 2e-3f, std::vector<Sphere>{{{0.0f, -0.05f, 0.0f}, 0.08f}});
+    EXPECT_LT(length(FreePoints::place(engine) - Float3{0.0f, 0.03f, 0.0f}), 1e-6f);
+    EXPECT_LT(length(FreePoints::velocity(engine)), 1e-3f);
+    for (float radius = 0.08f; radius > -0.03f; radius -= 0.01f) {
+        run(engine, points.strands, 1, 2e-3f, std::vector<Sphere>{{{0.0f, -0.05f, 0.0f}, radius}});
+        EXPECT_EQ(engine.lastStep().rejectedSpheres, radius > 0.0f ? 0u : 1u);
+    }
+    EXPECT_LT(length(FreePoints::place(engine) - Float3{0.0f, 0.03f, 0.0f}), 1e-6f);
+}
+
+TEST(Collision, ThePenaltyForceIsASpringOfItsFrequency) {
+    FreePoints points;
+    points.add({0.0f, 0.0f, 0.0f});
+    points.settings.collisionResponse = CollisionResponse::penalty;
+    points.settings.penaltyFrequency = 20.0f;
+    Engine engine = points.engine();
+    const std::vector<Sphere> sphere{{{0.0f, -0.09f, 0.0f}, 0.1f}};
+    // From rest 1 cm deep it is on the surface after a quarter of a period, at the speed ω · 1 cm.
+    const float h = 1e-4f;
+    run(engine, points.strands, 125, h, sphere);
+    EXPECT_NEAR(FreePoints::place(engine).y, 0.01f, 1e-4f);
+    run(engine, points.strands, 25, h, sphere);
+    EXPECT_NEAR(FreePoints::velocity(engine).y, 2.0f * std::numbers::pi_v<float> * 20.0f * 0.01f, 0.005f);
+}
+
+TEST(Collision, ThePenaltyForceOfACentreActsUpwards) {
+    FreePoints points;
+    points.add({0.0f, 0.0f, 0.0f});
+    points.settings.collisionResponse = CollisionResponse::penalty;
+    Engine engine = points.engine();
+    run(engine, points.strands, 1, 1e-4f, std::vector<Sphere>{{FreePoints::place(engine), 0.1f}});
+    const float omega = 2.0f * std::numbers::pi_v<float> * 100.0f;
+    const Float3 moved = FreePoints::place(engine);
+    EXPECT_NEAR(moved.y, omega * omega * 0.1f * 1e-8f, 1e-6f);
+    EXPECT_NEAR(moved.x, 0.0f, 1e-9f);
+}
+
+/// Hair and spheres that move through it, slowly and fast; the strands all in one engine or each in its own.
+std::vector<Float3> swept(const Strands& strands, CollisionResponse response) {
+    SimulationSettings s;
+    s.collisionResponse = response;
+    s.restitution = 0.2f;
+    s.teleportDistance = 10.0f;
+    s.sleepSpeed = 0.0f;  // strands fall asleep by blocks
+    Engine engine = makeEngine(strands, s);
+    const std::vector<RootFrame> roots = strands.roots();
+    for (int f = 0; f < 40; ++f) {
+        const float t = static_cast<float>(f) / 60.0f;
+        std::vector<Sphere> spheres{{{0.1f, 0.02f, 0.0f}, 0.05f},
+                                    {{0.12f, 0.03f, 0.03f * std::sin(9.0f * t)}, 0.06f},
+                                    {{0.05f, 0.05f * std::sin(5.0f * t), 0.02f}, 0.055f},
+                                    {{0.1f + 3.0f * std::sin(40.0f * t), 0.1f, 0.0f}, 0.04f}};
+        engine.step({1.0f / 60.0f, t, roots, spheres});
+    }
+    EXPECT_EQ(engine.measure().nanCount, 0u);
+    return positionsOf(engine);
+}
+
+TEST(Collision, AStrandDoesNotNoticeItsNeighbours) {
+    for (const CollisionResponse response :
+         {CollisionResponse::radial, CollisionResponse::backward, CollisionResponse::penalty}) {
+        const Strands together = tuft(45);
+        const std::vector<Float3> all = swept(together, response);
+        for (std::uint32_t s = 0; s < together.count(); ++s) {
+            Strands alone;
+            alone.points.assign(together.points.begin() + together.offsets[s],
+                                together.points.begin() + together.offsets[s + 1]);
+            alone.offsets.push_back(static_cast<std::uint32_t>(alone.points.size()));
+            const std::vector<Float3> one = swept(alone, response);
+            for (std::size_t p = 0; p < one.size(); ++p)
+                ASSERT_EQ(one[p], all[together.offsets[s] + p]) << s << ' ' << p;
+        }
+    }
+}
+
+TEST(Collision, ManySpheresAreNoTrouble) {
+    FreePoints points;
+    std::vector<Sphere> spheres;
+    for (int k = 0; k < 200; ++k) {
+        const float x = 0.5f * static_cast<float>(k);
+        points.add({x + 0.05f, 0.0f, 0.0f});
+        spheres.push_back({{x, 0.0f, 0.0f}, 0.1f});
+    }
+    Engine engine = points.engine();
+    run(engine, points.strands, 1, 1e-3f, spheres);
+    for (std::size_t k = 0; k < 200; ++k)
+        EXPECT_NEAR(length(FreePoints::place(engine, k) - spheres[k].center_ws), 0.1f, 5e-6f) << k;
 }
 
 }  // namespace

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "runtime/wind.h"
+
+#include <limits>
+
+#include "tests/runtime/strand_fixture.h"
+
+namespace hairloom::runtime {
+namespace {
+
+struct Double3 {
+    double x = 0.0, y = 0.0, z = 0.0;
+};
+
+SimulationSettings blowing(WindKind kind) {
+    SimulationSettings s;
+    s.windKind = kind;
+    s.windDirection = {0.8f, 0.0f, 0.4f};
+    s.windSpeed = 5.0f;
+    s.windGustiness = 0.4f;
+    s.windSeed = 3;
+    return s;
+}
+Float3 flowOf(const SimulationSettings& s) {
+    return s.windDirection * (s.windSpeed / length(s.windDirection));
+}
+
+/// What wind.h says, in double precision.
+Double3 airAt(const Wind& wind, Float3 at, double time) {
+    Double3 sum{wind.mean.x, wind.mean.y, wind.mean.z};
+    if (wind.kind == WindKind::uniform) return sum;
+    const std::array<float, kWindModes> phases = windPhases(wind, time);
+    double waves = 0.0;
+    Double3 eddies;
+    for (std::size_t m = 0; m < kWindModes; ++m) {
+        const WindMode& mode = wind.modes[m];
+        const double wave =
+            std::sin(2.0 * std::numbers::pi * static_cast<double>(dot(mode.waveVector, at) + phases[m]));
+        waves += wave;
+        eddies.x += static_cast<double>(mode.amplitude.x) * wave;
+        eddies.y += static_cast<double>(mode.amplitude.y) * wave;
+        eddies.z += static_cast<double>(mode.amplitude.z) * wave;
+    }
+    if (wind.kind == WindKind::gusting) {
+        const double share = 1.0 + static_cast<double>(wind.strength) *
+                                       std::sin(0.5 * std::numbers::pi * waves / std::sqrt(kWindModes / 2.0));
+        return {sum.x * share, sum.y * share, sum.z * share};
+    }
+    return {sum.x + eddies.x, sum.y + eddies.y, sum.z + eddies.z};
+}
+double lengthOf(Double3 v) {
+    return std::hypot(v.x, v.y, v.z);
+}
+Double3 difference(Double3 a, Double3 b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+struct Statistics {
+    Double3 mean;
+    double deviation = 0.0;  ///< root mean square of the distance from the mean flow
+    double least = 1e9;      ///< along the mean flow
+};
+Statistics statisticsOf(const Wind& wind) {
+    constexpr int kCount = 40000;
+    Statistics result;
+    const Double3 flow{wind.mean.x, wind.mean.y, wind.mean.z};
+    for (int n = 0; n < kCount; ++n) {
+        // Golden-ratio steps in space and time, far beyond the sizes and times of gusts.
+        const auto turn = [&](double step) { return static_cast<float>(40.0 * std::fmod(n * step, 1.0)); };
+        const Double3 v = airAt(wind, {turn(0.8191725134), turn(0.6710436067), turn(0.5497004779)}, 0.77 * n);
+        result.mean = {result.mean.x + v.x / kCount, result.mean.y + v.y / kCount,
+                       result.mean.z + v.z / kCount};
+        const double off = lengthOf(difference(v, flow));
+        result.deviation += off * off / kCount;
+        result.least = std::min(result.least, (v.x * flow.x + v.y * flow.y + v.z * flow.z) / lengthOf(flow));
+    }
+    result.deviation = std::sqrt(result.deviation);
+    return result;
+}
+
+TEST(Wind, MeanAndDeviationAreThoseOfTheSettings) {
+    for (const WindKind kind :
+         {WindKind::uniform, WindKind::gusting, WindKind::turbulent, WindKind::vehicle}) {
+        const SimulationSettings s = blowing(kind);
+        const Statistics found = statisticsOf(makeWind(s));
+        const Float3 flow = flowOf(s) * (kind == WindKind::vehicle ? -1.0f : 1.0f);
+        EXPECT_NEAR(found.mean.x, flow.x, 0.03) << static_cast<int>(kind);
+        EXPECT_NEAR(found.mean.y, flow.y, 0.03) << static_cast<int>(kind);
+        EXPECT_NEAR(found.mean.z, flow.z, 0.03) << static_cast<int>(kind);
+        if (kind == WindKind::uniform) {
+            EXPECT_LT(found.deviation, 1e-6);
+        } else if (kind == WindKind::gusting) {
+            EXPECT_NEAR(found.deviation, 0.7 * 0.4 * 5.0, 0.07);
+            EXPECT_GE(found.least, 0.6 * 5.0 - 1e-5);
+            EXPECT_LT(found.least, 0.7 * 5.0);
+        } else {
+            EXPECT_NEAR(found.deviation, 0.4 * 5.0, 0.04);
+        }
+    }
+}
+
+TEST(Wind, FullGustinessDoesNotTurnAGustRound) {
+    SimulationSettings s = blowing(WindKind::gusting);
+    s.windGustiness = 1.0f;
+    EXPECT_GE(statisticsOf(makeWind(s)).least, -1e-5);
+}
+
+TEST(Wind, IsContinuousInSpaceAndTime) {
+    for (const WindKind kind : {WindKind::gusting, WindKind::turbulent, WindKind::vehicle}) {
+        const Wind wind = makeWind(blowing(kind));
+        for (int n = 0; n < 2000; ++n) {
+            const double time = 0.013 * n;
+            const Float3 at{0.01f * static_cast<float>(n % 97), 0.02f * static_cast<float>(n % 31), 0.3f};
+            const Double3 here = airAt(wind, at, time);
+            // Speeds of 5 m/s, waves of a third of a metre and more.
+            EXPECT_LT(lengthOf(difference(airAt(wind, at, time + 1e-4), here)), 0.05);
+            EXPECT_LT(lengthOf(difference(airAt(wind, at + Float3{1e-4f, -1e-4f, 0.0f}, time), here)), 0.02);
+        }
+    }
+}
+
+TEST(Wind, EddiesHaveNoDivergence) {
+    const Wind wind = makeWind(blowing(WindKind::turbulent));
+    for (const WindMode& mode : wind.modes) {
+        EXPECT_NEAR(dot(mode.amplitude, mode.waveVector), 0.0f, 1e-5f);
+        EXPECT_GT(length(mode.amplitude), 0.1f);
+    }
+}
+
+TEST(Wind, FrozenEddiesDriftWithTheFlow) {
+    for (const WindKind kind : {WindKind::turbulent, WindKind::vehicle}) {
+        SimulationSettings s = blowing(kind);
+        s.windFrequency = 0.0f;
+        const Wind wind = makeWind(s);
+        double still = 0.0;
+        for (int n = 0; n < 100; ++n) {
+            const Float3 at{0.03f * static_cast<float>(n), 0.1f, 0.0f};
+            const Float3 downstream = at + wind.mean * 0.25f;
+            EXPECT_LT(lengthOf(difference(airAt(wind, downstream, 0.25), airAt(wind, at, 0.0))), 1e-3);
+            still = std::max(still, lengthOf(difference(airAt(wind, at, 0.25), airAt(wind, at, 0.0))));
+        }
+        EXPECT_GT(still, 1.0);
+    }
+}
+
+TEST(Wind, TheSeedDecides) {
+    SimulationSettings s = blowing(WindKind::turbulent);
+    const Double3 first = airAt(makeWind(s), {0.1f, 0.2f, 0.3f}, 1.5);
+    EXPECT_EQ(lengthOf(difference(airAt(makeWind(s), {0.1f, 0.2f, 0.3f}, 1.5), first)), 0.0);
+    s.windSeed = 4;
+    EXPECT_GT(lengthOf(difference(airAt(makeWind(s), {0.1f, 0.2f, 0.3f}, 1.5), first)), 1e-3);
+}
+
+TEST(Wind, TheInputReplacesTheFlowAndTheVehicleOpposesItsActor) {
+    const SimulationSettings vehicle = blowing(WindKind::vehicle);
+    const Float3 ride = flowOf(vehicle);
+    EXPECT_LT(
+        length(makeWind(vehicle, {{}, {0.0f, 0.0f, 3.0f}}).mean - (ride * -1.0f - Float3{0.0f, 0.0f, 3.0f})),
+        1e-5f);
+    const SimulationSettings turbulent = blowing(WindKind::turbulent);
+    EXPECT_LT(length(makeWind(turbulent, {{}, {0.0f, 0.0f, 3.0f}}).mean - ride), 1e-5f);
+    const Wind given = makeWind(turbulent, {Float3{0.0f, 1.0f, 0.0f}, {}});
+    EXPECT_EQ(given.mean, (Float3{0.0f, 1.0f, 0.0f}));
+    EXPECT_NEAR(statisticsOf(given).deviation, 0.4, 0.01);
+    // The eddies keep their phases.
+    EXPECT_EQ(windPhases(given, 12.5), windPhases(makeWind(turbulent), 12.5));
+}
+
+/// Free points 1 cm beside their roots, in `direction` from them, so light that they take on the air's speed.
+struct Vane {
+    Strands strands;
+    SimulationSettings settings;
+
+    explicit Vane(SimulationSettings s, Float3 direction = {0.0f, 1.0f, 0.0f}) : settings(s) {
+        const SimulationSettings still = bare();
+        settings.gravity = still.gravity;
+        settings.angularStiffness = 0.0f;
+        settings.dampingTime = 0.0f;
+        settings.clampedPoints = 1;
+        settings.lengthIterations = 0;
+        settings.substeps = 1;
+        settings.airDrag = 20.0f;
+        strands.add({}, direction, 0.01f, 2);
+    }
+    /// The point's speed after one step of 1 ms from rest, as a share of what broadside hair takes on.
+    Float3 taken(const FrameInput& input, std::uint32_t* rejected = nullptr) const {
+        Engine engine = makeEngine(strands, settings);
+        FrameInput frame = input;
+        const std::vector<RootFrame> roots = strands.roots();
+        frame.roots_ws = roots;
+        frame.dt = 1e-3f;
+        engine.step(frame);
+        if (rejected) *rejected = engine.lastStep().rejectedWinds;
+        std::vector<Float3> v(2);
+        engine.readVelocities(v);
+        return v[1] * (1.0f / (1.0f - std::exp(-20.0f * 1e-3f)));
+    }
+};
+
+TEST(Wind, DragGrowsWithTheSineOfTheAngleToTheTangent) {
+    const SimulationSettings s = blowing(WindKind::uniform);
+    const Float3 flow = flowOf(s);
+    const Float3 along = flow * (1.0f / length(flow)), up{0.0f, 1.0f, 0.0f};
+    for (const float degrees : {0.0f, 30.0f, 90.0f}) {
+        const float angle = degrees * std::numbers::pi_v<float> / 180.0f;
+        const Vane vane(s, along * std::cos(angle) + up * std::sin(angle));
+        EXPECT_LT(length(vane.taken({}) - flow * std::sin(angle)), 5e-3f) << degrees;
+    }
+}
+
+TEST(Wind, TheEngineBlowsWhatTheFieldSays) {
+    for (const WindKind kind :
+         {WindKind::uniform, WindKind::gusting, WindKind::turbulent, WindKind::vehicle}) {
+        const SimulationSettings s = blowing(kind);
+        const Vane vane(s);
+        for (const double time : {0.0, 1.3, 1e5}) {
+            FrameInput input;
+            input.time = time;
+            const Float3 taken = vane.taken(input);
+            const Wind wind = makeWind(s);
+            const Double3 air = airAt(wind, {0.0f, 0.01f, 0.0f}, time);
+            // Sine of the angle to the upright tangent; the kernel's own sine is good to 0.1 %.
+            const double share = std::hypot(air.x, air.z) / lengthOf(air);
+            EXPECT_LT(lengthOf(difference({taken.x, taken.y, taken.z},
+                                          {air.x * share, air.y * share, air.z * share})),
+                      0.03)
+                << static_cast<int>(kind) << ' ' << time;
+        }
+    }
+}
+
+TEST(Wind, AScriptBlowsEvenWhereTheSettingsAreStill) {
+    SimulationSettings s = blowing(WindKind::uniform);
+    s.windSpeed = 0.0f;
+    FrameInput input;
+    input.wind_ws = Float3{0.0f, 0.0f, 7.0f};
+    EXPECT_LT(length(Vane(s).taken(input) - *input.wind_ws), 5e-3f);
+    // And its calm is a calm.
+    s.windSpeed = 5.0f;
+    input.wind_ws = Float3{};
+    EXPECT_EQ(length(Vane(s).taken(input)), 0.0f);
+}
+
+TEST(Wind, AnActorRidesAgainstTheAirOfItsVehicleOnly) {
+    FrameInput input;
+    input.actorVelocity_ws = {0.0f, 0.0f, 6.0f};
+    SimulationSettings s = blowing(WindKind::vehicle);
+    s.windSpeed = 0.0f;
+    s.windGustiness = 0.0f;
+    EXPECT_LT(length(Vane(s).taken(input) - Float3{0.0f, 0.0f, -6.0f}), 5e-3f);
+    s.windKind = WindKind::turbulent;
+    EXPECT_EQ(length(Vane(s).taken(input)), 0.0f);
+}
+
+TEST(Wind, WhatIsNoWindIsIgnoredAndCounted) {
+    const Vane vane(blowing(WindKind::vehicle));
+    std::uint32_t rejected = 0;
+    FrameInput input;
+    const Float3 expected = vane.taken(input, &rejected);
+    EXPECT_EQ(rejected, 0u);
+    for (const float bad : {std::nanf(""), std::numeric_limits<float>::infinity(), 1e30f}) {
+        input.wind_ws = Float3{0.0f, bad, 0.0f};
+        input.actorVelocity_ws = {bad, 0.0f, 0.0f};
+        EXPECT_EQ(vane.taken(input, &rejected), expected);
+        EXPECT_EQ(rejected, 2u);
+    }
+}
+
+}  // namespace
+}  // namespace hairloom::runtime
