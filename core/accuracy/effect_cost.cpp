@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/accuracy/effect_cost.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+
+namespace hairloom {
+namespace {
+
+/// What turns an effect off: a field of the settings, all of whose components become 0.
+struct Switch {
+    const char* effect;
+    const char* field;
+};
+constexpr Switch kSwitches[] = {{"gravity", "gravity"},
+                                {"drag", "airDrag"},
+                                {"wind", "windSpeed"},
+                                {"angular", "angularStiffness"},
+                                {"length", "lengthIterations"}};
+/// The one that no number turns off: without spheres nothing collides.
+constexpr std::string_view kCollision = "collision";
+
+struct Without {
+    SceneHair hair;
+    std::string how;
+};
+
+/// The scene without that effect, or nothing where nothing turns it off.
+std::optional<Without> without(const SceneHair& hair, const std::string& effect) {
+    Without result{hair, {}};
+    if (effect == kCollision) {
+        result.hair.groom.spheres.clear();
+        result.how = "no spheres";
+        return result;
+    }
+    const auto found = std::ranges::find_if(kSwitches, [&](const Switch& s) { return effect == s.effect; });
+    const runtime::FieldInfo* field =
+        found == std::end(kSwitches) ? nullptr : runtime::findField(found->field);
+    if (!field) return std::nullopt;
+    for (std::uint32_t c = 0; c < runtime::componentCount(*field); ++c) {
+        if (!runtime::setFieldValue(result.hair.groom.simulation, *field, 0, c)) return std::nullopt;
+    }
+    result.how = fmt::format("simulation.{}=0", field->name);
+    return result;
+}
+
+/// Effects other than `name` that are on in one run and off in the other: they count in the difference.
+std::string sideEffects(const std::string& name, const std::vector<EffectReport>& asIs,
+                        const std::vector<EffectReport>& off) {
+    std::string note;
+    for (std::size_t e = 0; e < asIs.size() && e < off.size(); ++e) {
+        if (asIs[e].name == name) {
+            if (off[e].on) note += "it stays on even so; ";
+        } else if (asIs[e].on != off[e].on) {
+            note += fmt::format("without it {} is {}; ", off[e].name, off[e].on ? "on" : "off");
+        }
+    }
+    if (!note.empty()) note.resize(note.size() - 2);
+    return note;
+}
+
+/// One scene to be run in every round; times[0] is the scene as it is.
+struct Variant {
+    SceneHair hair;
+    std::vector<double> times;
+    SceneResult last;
+};
+
+}  // namespace
+
+Result<EffectCosts> measureEffectCosts(const Groom& groom, const HeadMotion& motion,
+                                       const EffectCostOptions& options) {
+    assert(options.repeats >= 1 && options.time.stepsPerFrame == 1);
+    const std::vector<HeadPose> poses = posesOf(motion, options.time);
+    std::vector<Variant> variants;
+    variants.push_back({sampleStrands(groom, groom.strandCount(), 0), {}, {}});
+    // Which effects there are to turn off is known after a first run, which also warms up.
+    auto first = runScene(variants[0].hair, poses, options.time, {});
+    if (!first) return tl::unexpected(first.error());
+
+    EffectCosts costs;
+    std::vector<std::size_t> variantOf;
+    for (const EffectReport& report : first->effects) {
+        EffectCost cost;
+        cost.name = report.name;
+        cost.on = report.on;
+        cost.why = report.why;
+        cost.bytes = report.bytes;
+        variantOf.push_back(0);
+        if (auto scene = report.on ? without(variants[0].hair, report.name) : std::nullopt) {
+            cost.turnedOffBy = scene->how;
+            variantOf.back() = variants.size();
+            variants.push_back({std::move(scene->hair), {}, {}});
+        } else if (report.on) {
+            cost.note = "no setting turns it off";
+        }
+        costs.effects.push_back(std::move(cost));
+    }
+
+    const std::size_t total = 1 + variants.size() * options.repeats;
+    std::size_t done = 1;
+    std::vector<std::vector<double>> stageTimes(costs.effects.size());
+    for (std::uint32_t round = 0; round < options.repeats; ++round) {
+        for (Variant& variant : variants) {
+            auto result = runScene(variant.hair, poses, options.time, {});
+            if (!result) return tl::unexpected(result.error());
+            variant.times.push_back(result->millisecondsPerFrame);
+            variant.last = std::move(*result);
+            if (options.progress) options.progress(++done, total);
+        }
+        for (std::size_t e = 0; e < costs.effects.size(); ++e) {
+            stageTimes[e].push_back(variants[0].last.effects[e].milliseconds);
+        }
+    }
+
+    costs.milliseconds = quartiles(variants[0].times);
+    for (std::size_t e = 0; e < costs.effects.size(); ++e) {
+        EffectCost& cost = costs.effects[e];
+        cost.stageMilliseconds = quartiles(stageTimes[e]).median;
+        if (variantOf[e] == 0) continue;
+        const Variant& off = variants[variantOf[e]];
+        cost.note = sideEffects(cost.name, variants[0].last.effects, off.last.effects);
+        if (off.last.nanCount > 0) {
+            cost.note += (cost.note.empty() ? "" : "; ") + std::string("without it the hair was not finite");
+            continue;
+        }
+        cost.millisecondsOff = quartiles(off.times);
+        cost.costMilliseconds = costs.milliseconds.median - cost.millisecondsOff->median;
+    }
+    return costs;
+}
+
+}  // namespace hairloom
