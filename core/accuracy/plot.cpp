@@ -337,7 +337,7 @@ void drawSeries(const Plot& plot, const Legend& legend, const Layout& layout, Sv
     }
     std::vector<PixelSegment> lines;
     for (std::size_t s = 0; s < plot.series.size(); ++s) {
-        if (plot.series[s].line == Line::None) continue;
+        if (plot.series[s].line == LineStyle::None) continue;
         const std::vector<PixelSegment> line = lineOf(plot.series[s], layout);
         canvas.polyline(line, seriesStroke(plot.series[s], legend.seriesColour(s)));
         lines.insert(lines.end(), line.begin(), line.end());

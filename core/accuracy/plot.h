@@ -60,15 +60,15 @@ struct PlotPoint {
     bool faint = false;        ///< drawn light, under all others
 };
 
-enum class Marker { None, Circle, Square, Triangle, Diamond, Cross, Plus };
-enum class Line { None, Solid, Dashed };
+enum class Marker { None, Circle, Square, TriangleUp, Diamond, Cross, Plus };
+enum class LineStyle { None, Solid, Dashed };
 
 struct Series {
     std::string name = {};                   ///< in the legend; "" keeps it out. May have no points.
     std::vector<PlotPoint> points = {};      ///< lines join them in this order and break at what is not drawn
     std::optional<std::string> colour = {};  ///< "#rrggbb"; absent: next of the palette
     Marker marker = Marker::Circle;
-    Line line = Line::None;
+    LineStyle line = LineStyle::None;
 };
 
 /// A value that a map's cell may have.

@@ -65,7 +65,7 @@ const char* readableOn(const std::string& colour) {
 }
 
 Stroke seriesStroke(const Series& series, const std::string& colour) {
-    return {colour, 1.8, series.line == Line::Dashed ? "6 4" : ""};
+    return {colour, 1.8, series.line == LineStyle::Dashed ? "6 4" : ""};
 }
 
 Legend::Legend(const Plot& plot) : plot_(plot) {
@@ -179,7 +179,7 @@ void Legend::drawEntry(const Entry& entry, double x, double y, SvgCanvas& canvas
             canvas.arrowUp(middle, axis, entry.colour, {});
             break;
         case Entry::Kind::Series:
-            if (entry.series->line != Line::None) {
+            if (entry.series->line != LineStyle::None) {
                 canvas.line({x, axis, x + kSymbolWidth, axis}, seriesStroke(*entry.series, entry.colour));
             }
             canvas.marker(entry.series->marker, middle, axis, entry.colour, 1, {});

@@ -62,7 +62,7 @@ std::string markerPath(Marker marker, double x, double y) {
     switch (marker) {
         case Marker::Square:
             return pathThrough({{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, 4, x, y).append("Z");
-        case Marker::Triangle:
+        case Marker::TriangleUp:
             return pathThrough({{0, -1.2}, {1.15, 0.9}, {-1.15, 0.9}}, 3, x, y).append("Z");
         case Marker::Diamond:
             return pathThrough({{0, -1.3}, {1.3, 0}, {0, 1.3}, {-1.3, 0}}, 4, x, y).append("Z");
@@ -166,7 +166,7 @@ void SvgCanvas::marker(Marker marker, double x, double y, const std::string& col
 void SvgCanvas::arrowUp(double x, double y, const std::string& colour, std::string_view tooltip) {
     out_ += withTooltip("path",
                         fmt::format("d=\"{}\" fill=\"#ffffff\" stroke=\"{}\" stroke-width=\"1.6\"",
-                                    markerPath(Marker::Triangle, x, y), escapeMarkup(colour)),
+                                    markerPath(Marker::TriangleUp, x, y), escapeMarkup(colour)),
                         tooltip);
 }
 

@@ -49,7 +49,7 @@ Plot logarithmicPlot() {
     plot.x = {.title = "time per frame", .unit = "ms", .scale = Scale::Logarithmic};
     plot.y = {.title = "error", .unit = "mm", .scale = Scale::Logarithmic};
     plot.series.push_back(
-        {.name = "verlet", .points = {{0.1, 20}, {1, 0.5}, {30, 0.0002}}, .line = Line::Solid});
+        {.name = "verlet", .points = {{0.1, 20}, {1, 0.5}, {30, 0.0002}}, .line = LineStyle::Solid});
     return plot;
 }
 
