@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -20,6 +21,7 @@ struct AccuracyOptions {
     std::uint32_t strands = 200;
     std::uint32_t repeats = 5;
     std::uint64_t seed = 1;
+    std::uint32_t truthSubsteps = 64;
     std::vector<std::string> integrators, substeps, iterations, points, threadCounts;
     std::vector<std::string> vary;  ///< FIELD=V1,V2,…
 };
@@ -82,10 +84,14 @@ Report settingReport(const WorkPrecision& result, const WorkPrecisionRun& run) {
     for (std::size_t a = 0; a < run.values.size(); ++a) {
         const GridAxis& axis = result.options.axes[a];
         const runtime::FieldInfo* field = runtime::findField(axis.field);
-        if (field && !field->choices.empty())
-            setting[axis.field] = axisValueText(axis, run.values[a]);
-        else
-            setting[axis.field] = run.values[a];
+        const double value = run.values[a];
+        if (field && !field->choices.empty()) {
+            setting[axis.field] = axisValueText(axis, value);
+        } else if (value == std::floor(value)) {
+            setting[axis.field] = std::llround(value);
+        } else {
+            setting[axis.field] = value;
+        }
     }
     return setting;
 }
@@ -124,7 +130,8 @@ Result<Report> accuracy(const AccuracyOptions& options, const std::string& comma
         if (!progress) progress.emplace("measuring", total);
         progress->done(done);
     };
-    const auto result = measureWorkPrecision(scene->groom, *scene->motion, measuring, EngineConverged());
+    const auto result =
+        measureWorkPrecision(scene->groom, *scene->motion, measuring, EngineConverged(options.truthSubsteps));
     progress.reset();
     if (!result) return tl::unexpected(result.error());
     const auto files = writeWorkPrecision(*result, {options.motion.input, options.motion.motion, commandLine},
@@ -168,6 +175,9 @@ void addAccuracyJob(Jobs& jobs) {
     list("--thread-counts", options->threadCounts, "Numbers of threads to try, instead of --threads alone");
     job.add_option("--vary", options->vary, "Another setting to try, FIELD=VALUE,VALUE,…; may be repeated");
     job.add_option("--repeat", options->repeats, "Timed runs of each setting")->check(CLI::Range(1, 1000));
+    job.add_option("--truth-substeps", options->truthSubsteps,
+                   "Steps of the run that counts as true in each quarter of a frame")
+        ->check(CLI::Range(2, 64));
     job.add_option("--seed", options->seed, "Another seed draws other strands");
 }
 

@@ -61,12 +61,52 @@ std::string sideEffects(const std::string& name, const std::vector<EffectReport>
     return note;
 }
 
-/// One scene to be run in every round; times[0] is the scene as it is.
+/// One scene to be run in every round.
 struct Variant {
     SceneHair hair;
     std::vector<double> times;
     SceneResult last;
 };
+
+/// The scene as it is and, for each effect that can be turned off, the scene without it.
+struct Variants {
+    Variant asIs;
+    std::vector<std::optional<Variant>> without;  ///< for each effect
+};
+
+EffectCosts describe(const std::vector<EffectReport>& reports, Variants& variants) {
+    EffectCosts costs;
+    for (const EffectReport& report : reports) {
+        EffectCost cost;
+        cost.name = report.name;
+        cost.on = report.on;
+        cost.why = report.why;
+        cost.bytes = report.bytes;
+        variants.without.emplace_back();
+        if (auto scene = report.on ? without(variants.asIs.hair, report.name) : std::nullopt) {
+            cost.turnedOffBy = scene->how;
+            variants.without.back() = Variant{std::move(scene->hair), {}, {}};
+        } else if (report.on) {
+            cost.note = "no setting turns it off";
+        }
+        costs.effects.push_back(std::move(cost));
+    }
+    return costs;
+}
+
+void fillIn(const Variants& variants, std::size_t effect, EffectCosts& costs) {
+    if (!variants.without[effect]) return;
+    const Variant& off = *variants.without[effect];
+    EffectCost& cost = costs.effects[effect];
+    cost.note = sideEffects(cost.name, variants.asIs.last.effects, off.last.effects);
+    if (off.last.nanCount > 0) {
+        cost.note += cost.note.empty() ? "" : "; ";
+        cost.note += "without it the hair was not finite";
+        return;
+    }
+    cost.millisecondsOff = quartiles(off.times);
+    cost.costMilliseconds = costs.milliseconds.median - cost.millisecondsOff->median;
+}
 
 }  // namespace
 
@@ -74,60 +114,39 @@ Result<EffectCosts> measureEffectCosts(const Groom& groom, const HeadMotion& mot
                                        const EffectCostOptions& options) {
     assert(options.repeats >= 1 && options.time.stepsPerFrame == 1);
     const std::vector<HeadPose> poses = posesOf(motion, options.time);
-    std::vector<Variant> variants;
-    variants.push_back({sampleStrands(groom, groom.strandCount(), 0), {}, {}});
+    Variants variants;
+    variants.asIs.hair = sampleStrands(groom, groom.strandCount(), 0);
     // Which effects there are to turn off is known after a first run, which also warms up.
-    auto first = runScene(variants[0].hair, poses, options.time, {});
+    const auto first = runScene(variants.asIs.hair, poses, options.time, {});
     if (!first) return tl::unexpected(first.error());
+    EffectCosts costs = describe(first->effects, variants);
 
-    EffectCosts costs;
-    std::vector<std::size_t> variantOf;
-    for (const EffectReport& report : first->effects) {
-        EffectCost cost;
-        cost.name = report.name;
-        cost.on = report.on;
-        cost.why = report.why;
-        cost.bytes = report.bytes;
-        variantOf.push_back(0);
-        if (auto scene = report.on ? without(variants[0].hair, report.name) : std::nullopt) {
-            cost.turnedOffBy = scene->how;
-            variantOf.back() = variants.size();
-            variants.push_back({std::move(scene->hair), {}, {}});
-        } else if (report.on) {
-            cost.note = "no setting turns it off";
-        }
-        costs.effects.push_back(std::move(cost));
-    }
-
-    const std::size_t total = 1 + variants.size() * options.repeats;
+    const auto offCount =
+        std::ranges::count_if(variants.without, [](const auto& v) { return v.has_value(); });
+    const std::size_t total = 1 + (1 + static_cast<std::size_t>(offCount)) * options.repeats;
     std::size_t done = 1;
+    const auto runOnce = [&](Variant& variant) -> Status {
+        auto result = runScene(variant.hair, poses, options.time, {});
+        if (!result) return tl::unexpected(result.error());
+        variant.times.push_back(result->millisecondsPerFrame);
+        variant.last = std::move(*result);
+        if (options.progress) options.progress(++done, total);
+        return {};
+    };
     std::vector<std::vector<double>> stageTimes(costs.effects.size());
     for (std::uint32_t round = 0; round < options.repeats; ++round) {
-        for (Variant& variant : variants) {
-            auto result = runScene(variant.hair, poses, options.time, {});
-            if (!result) return tl::unexpected(result.error());
-            variant.times.push_back(result->millisecondsPerFrame);
-            variant.last = std::move(*result);
-            if (options.progress) options.progress(++done, total);
-        }
-        for (std::size_t e = 0; e < costs.effects.size(); ++e) {
-            stageTimes[e].push_back(variants[0].last.effects[e].milliseconds);
+        if (auto status = runOnce(variants.asIs); !status) return tl::unexpected(status.error());
+        for (std::size_t e = 0; e < stageTimes.size(); ++e) {
+            stageTimes[e].push_back(variants.asIs.last.effects[e].milliseconds);
+            if (!variants.without[e]) continue;
+            if (auto status = runOnce(*variants.without[e]); !status) return tl::unexpected(status.error());
         }
     }
 
-    costs.milliseconds = quartiles(variants[0].times);
-    for (std::size_t e = 0; e < costs.effects.size(); ++e) {
-        EffectCost& cost = costs.effects[e];
-        cost.stageMilliseconds = quartiles(stageTimes[e]).median;
-        if (variantOf[e] == 0) continue;
-        const Variant& off = variants[variantOf[e]];
-        cost.note = sideEffects(cost.name, variants[0].last.effects, off.last.effects);
-        if (off.last.nanCount > 0) {
-            cost.note += (cost.note.empty() ? "" : "; ") + std::string("without it the hair was not finite");
-            continue;
-        }
-        cost.millisecondsOff = quartiles(off.times);
-        cost.costMilliseconds = costs.milliseconds.median - cost.millisecondsOff->median;
+    costs.milliseconds = quartiles(variants.asIs.times);
+    for (std::size_t e = 0; e < stageTimes.size(); ++e) {
+        costs.effects[e].stageMilliseconds = quartiles(stageTimes[e]).median;
+        fillIn(variants, e, costs);
     }
     return costs;
 }
