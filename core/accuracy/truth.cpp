@@ -3,10 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
+
 namespace hairloom {
 namespace {
 
 constexpr std::uint32_t kStepsPerFrame = 4;
+constexpr std::uint32_t kFewestSubsteps = 4;
 constexpr std::uint32_t kLengthIterations = 4;
 
 /// An exact run has neither of these: sleep lets go of the motion, and few Newton steps of the length.
@@ -33,23 +36,39 @@ Result<Trajectory> run(SceneHair hair, std::span<const HeadPose> poses, const Sc
 
 std::string EngineConverged::description() const {
     return fmt::format(
-        "the engine itself (single precision, position Verlet) with {} substeps in each of {} parts of a "
-        "frame, "
-        "{} Newton steps for length and no sleep",
-        substeps_, kStepsPerFrame, kLengthIterations);
+        "the engine itself (single precision, position Verlet) with {} to {} substeps in each of {} parts of "
+        "a "
+        "frame, {} Newton steps for length and no sleep",
+        2 * kFewestSubsteps, mostSubsteps_, kStepsPerFrame, kLengthIterations);
 }
 
 Result<Truth> EngineConverged::compute(const SceneHair& hair, const HeadMotion& motion, const SceneTime& time,
                                        std::span<const float> shares) const {
+    assert(mostSubsteps_ >= 2 * kFewestSubsteps);
     SceneTime fine = time;
     fine.stepsPerFrame = kStepsPerFrame;
     const std::vector<HeadPose> poses = posesOf(motion, fine);
-    auto trajectory = run(hair, poses, fine, shares, substeps_);
-    if (!trajectory) return tl::unexpected(trajectory.error());
-    const auto coarser = run(hair, poses, fine, shares, substeps_ / 2);
-    if (!coarser) return tl::unexpected(coarser.error());
-    const double uncertainty = compare(*coarser, *trajectory).rmsMm;
-    return Truth{std::move(*trajectory), uncertainty};
+    auto before = run(hair, poses, fine, shares, kFewestSubsteps);
+    if (!before) return tl::unexpected(before.error());
+    Truth best;
+    std::uint32_t bestSubsteps = 0;
+    std::string changes;
+    for (std::uint32_t substeps = 2 * kFewestSubsteps; substeps <= mostSubsteps_; substeps *= 2) {
+        auto finer = run(hair, poses, fine, shares, substeps);
+        if (!finer) return tl::unexpected(finer.error());
+        const double change = compare(*before, *finer).rmsMm;
+        changes += fmt::format("{}{:.3g} mm at {}", changes.empty() ? "" : ", ", change, substeps);
+        if (bestSubsteps == 0 || change < best.uncertaintyMm) {
+            best.trajectory = *finer;
+            best.uncertaintyMm = change;
+            bestSubsteps = substeps;
+        }
+        before = std::move(finer);
+    }
+    best.detail = fmt::format("{} substeps were taken; doubling changed {}", bestSubsteps, changes);
+    const bool onlyWorse = bestSubsteps == 2 * kFewestSubsteps && mostSubsteps_ >= 4 * kFewestSubsteps;
+    if (onlyWorse) best.detail += "; the engine does not converge in this scene";
+    return best;
 }
 
 }  // namespace hairloom

@@ -159,11 +159,12 @@ void noteWhatMatters(WorkPrecision& result) {
         return !run.diverged && run.error.rmsMm < kClear * result.truthUncertaintyMm;
     });
     if (unclear > 0) {
-        result.notes.push_back(fmt::format(
-            "The truth itself moves by {:.3g} mm when its resolution in time is halved; the errors of {} of "
-            "{} "
-            "runs are less than three times that, so which of these is more exact cannot be told.",
-            result.truthUncertaintyMm, unclear, result.runs.size()));
+        result.notes.push_back(
+            fmt::format("The truth itself moves by {:.3g} mm when its resolution in time is halved. The "
+                        "errors of {} of {} runs "
+                        "are less than three times that; which of these is more exact cannot be told.",
+                        result.truthUncertaintyMm, unclear, result.runs.size()));
+        if (!result.truthDetail.empty()) result.notes.back() += fmt::format(" ({}.)", result.truthDetail);
     }
     const auto diverged = std::ranges::count_if(result.runs, &WorkPrecisionRun::diverged);
     if (diverged > 0) {
@@ -216,6 +217,7 @@ Result<WorkPrecision> measureWorkPrecision(const Groom& groom, const HeadMotion&
     const auto exact = truth.compute(hair.finest(), motion, options.time, shares);
     if (!exact) return tl::unexpected(exact.error());
     result.truthUncertaintyMm = exact->uncertaintyMm;
+    result.truthDetail = exact->detail;
     counted.add();
 
     const std::vector<HeadPose> poses = posesOf(motion, options.time);

@@ -38,6 +38,7 @@ struct WorkPrecision {
     WorkPrecisionOptions options;  ///< with divergedAboveMm settled
     std::string truthName;
     std::string truthDescription;
+    std::string truthDetail;
     double truthUncertaintyMm = 0;
     std::uint32_t truthPoints = 0;  ///< per strand; 0 as authored
     std::size_t groomStrands = 0;

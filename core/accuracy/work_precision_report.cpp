@@ -100,6 +100,7 @@ void addWhatWasRun(const WorkPrecision& result, const ReportContext& context, Ht
                     result.truthName, result.truthDescription,
                     result.truthPoints ? fmt::format("{}", result.truthPoints) : std::string("the authored"),
                     result.truthUncertaintyMm));
+    if (!result.truthDetail.empty()) facts.emplace_back("Its convergence", result.truthDetail);
     facts.emplace_back(
         "Error", fmt::format("distance of the same material points, {} evenly along each strand, at the "
                              "end of every frame",

@@ -151,7 +151,7 @@ TEST(Truth, APendulumSwingsAsTheEquationSays) {
     const auto motion = makeRigidMotion("none", groom);
     const SceneTime time{.frames = 30};
     const auto truth =
-        EngineConverged(16).compute(sampleStrands(groom, 1, 1), **motion, time, std::vector<float>{0.5f, 1});
+        EngineConverged(32).compute(sampleStrands(groom, 1, 1), **motion, time, std::vector<float>{0.5f, 1});
     ASSERT_TRUE(truth.has_value());
     ASSERT_EQ(truth->trajectory.points_ws.size(), 2u * 30u);
     Trajectory exact = truth->trajectory;
@@ -162,9 +162,13 @@ TEST(Truth, APendulumSwingsAsTheEquationSays) {
         exact.points_ws[2 * frame] = 0.5f * (tip + groom.strand(0)[0]);
         exact.points_ws[2 * frame + 1] = tip;
     }
-    EXPECT_LT(compare(truth->trajectory, exact).maxMm, 1.0);
-    EXPECT_GT(truth->uncertaintyMm, 0);
-    EXPECT_LT(truth->uncertaintyMm, 1.0);
+    // The engine is of first order here, so the change of the last doubling is about the error that is left;
+    // the tip swings 400 mm.
+    const TrajectoryError error = compare(truth->trajectory, exact);
+    EXPECT_LT(error.maxMm, 3.0);
+    EXPECT_GT(truth->uncertaintyMm, 0.2 * error.rmsMm);
+    EXPECT_LT(truth->uncertaintyMm, 2.0);
+    EXPECT_THAT(truth->detail, HasSubstr("mm at 32"));
 }
 
 TEST(Grid, AxesAreReadByTheNamesOfFields) {

@@ -126,7 +126,7 @@ TEST_F(Cli, AccuracyMeasuresAGridAndWritesAReport) {
     runJson(createArguments());
     const auto report = runJson(
         "accuracy hair.hairloom -o out --motion nod --frames 4 --strands 10 --substeps 1,4 --iterations 1"
-        " --points 6,12 --repeat 1 --truth-substeps 4");
+        " --points 6,12 --repeat 1 --truth-substeps 8");
     EXPECT_EQ(report["runs"], 4);
     EXPECT_EQ(report["strands"], 10);
     ASSERT_FALSE(report["front"].empty());
