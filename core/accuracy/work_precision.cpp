@@ -199,6 +199,7 @@ Result<WorkPrecision> measureWorkPrecision(const Groom& groom, const HeadMotion&
 
     WorkPrecision result;
     result.options = options;
+    result.settings = groom.simulation;
     result.truthName = truth.name();
     result.truthDescription = truth.description();
     result.groomStrands = groom.strandCount();

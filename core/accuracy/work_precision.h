@@ -35,7 +35,8 @@ struct WorkPrecisionRun {
 };
 
 struct WorkPrecision {
-    WorkPrecisionOptions options;  ///< with divergedAboveMm settled
+    WorkPrecisionOptions options;          ///< with divergedAboveMm settled
+    runtime::SimulationSettings settings;  ///< of the scene: what no axis varies
     std::string truthName;
     std::string truthDescription;
     std::string truthDetail;

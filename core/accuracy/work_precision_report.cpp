@@ -75,6 +75,24 @@ void addFront(const WorkPrecision& result, HtmlReport& page) {
     page.table(rows);
 }
 
+/// "dampingTime 0.5 s, gravity 0 -9.81 0 m/s²": every setting that no axis varies.
+std::string otherSettings(const WorkPrecision& result) {
+    Cells settings;
+    for (const runtime::FieldInfo& field : runtime::fields()) {
+        if (findAxis(result.options.axes, field.name)) continue;
+        std::string text = field.name;
+        for (std::uint32_t c = 0; c < runtime::componentCount(field); ++c) {
+            const double value = runtime::fieldValue(result.settings, field, c);
+            // A float's digits, not those of the double it is converted to.
+            text += field.choices.empty()
+                        ? fmt::format(" {:.6g}", value)
+                        : fmt::format(" {}", field.choices[static_cast<std::size_t>(value)]);
+        }
+        settings.push_back(fmt::format("{}{}{}", text, *field.unit ? " " : "", field.unit));
+    }
+    return fmt::format("{}", fmt::join(settings, ", "));
+}
+
 void addWhatWasRun(const WorkPrecision& result, const ReportContext& context, HtmlReport& page) {
     const WorkPrecisionOptions& options = result.options;
     const Machine machine = thisMachine();
@@ -92,7 +110,7 @@ void addWhatWasRun(const WorkPrecision& result, const ReportContext& context, Ht
         for (const double value : axis.values) values.push_back(axisValueText(axis, value));
         facts.emplace_back(axis.field, fmt::format("{}", fmt::join(values, ", ")));
     }
-    facts.emplace_back("Other settings", "as the groom has them");
+    facts.emplace_back("Other settings", otherSettings(result));
     facts.emplace_back(
         "Truth",
         fmt::format("{}: {}; {} points per strand; {:.3g} mm root mean square from the same "

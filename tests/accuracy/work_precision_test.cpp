@@ -183,6 +183,7 @@ TEST(Report, AllFilesAreWrittenAndThePageStandsAlone) {
     const std::string page = *readTextFile(folder / "report.html");
     EXPECT_THAT(page, HasSubstr("&lt;g&gt;"));
     EXPECT_THAT(page, HasSubstr("hairloom-cli accuracy"));
+    EXPECT_THAT(page, HasSubstr("windKind turbulent")) << "what was not varied is told, too";
     EXPECT_THAT(page, HasSubstr(*readTextFile(folder / "work_precision.svg")));
     EXPECT_THAT(page, testing::Not(HasSubstr("src=")));
     EXPECT_THAT(page, testing::Not(HasSubstr("href=")));
