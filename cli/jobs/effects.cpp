@@ -16,10 +16,6 @@ struct EffectsOptions {
     std::uint32_t repeats = 5;
 };
 
-Report orNull(const std::optional<double>& value) {
-    return value ? Report(*value) : Report();
-}
-
 /// "ms_on" is the frame with the effect, "ms_off" without it; one of them is null where it was not run.
 Report effectRow(const EffectCosts& costs, const EffectCost& effect) {
     Report row;
@@ -27,11 +23,13 @@ Report effectRow(const EffectCosts& costs, const EffectCost& effect) {
     row["on"] = effect.on;
     row["why"] = effect.why;
     const double asItIs = costs.milliseconds.median;
-    const std::optional<double> without =
-        effect.millisecondsOff ? std::optional(effect.millisecondsOff->median) : std::nullopt;
+    const Report without = effect.millisecondsOff ? Report(effect.millisecondsOff->median) : Report();
     row["ms_on"] = effect.on ? Report(asItIs) : Report();
-    row["ms_off"] = effect.on ? orNull(without) : Report(asItIs);
-    row["ms_cost"] = orNull(effect.costMilliseconds);
+    row["ms_off"] = effect.on ? without : Report(asItIs);
+    const auto& cost = effect.costMilliseconds;
+    row["ms_cost"] = cost ? Report(cost->median) : Report();
+    row["ms_cost_q1"] = cost ? Report(cost->q1) : Report();
+    row["ms_cost_q3"] = cost ? Report(cost->q3) : Report();
     row["ms_stages"] = effect.stageMilliseconds;
     row["bytes"] = effect.bytes;
     row["turned_off_by"] = effect.turnedOffBy;

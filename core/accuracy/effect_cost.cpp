@@ -105,7 +105,15 @@ void fillIn(const Variants& variants, std::size_t effect, EffectCosts& costs) {
         return;
     }
     cost.millisecondsOff = quartiles(off.times);
-    cost.costMilliseconds = costs.milliseconds.median - cost.millisecondsOff->median;
+    std::vector<double> differences;
+    for (std::size_t round = 0; round < off.times.size(); ++round) {
+        differences.push_back(variants.asIs.times[round] - off.times[round]);
+    }
+    cost.costMilliseconds = quartiles(differences);
+    if (cost.costMilliseconds->q1 <= 0 && cost.costMilliseconds->q3 >= 0) {
+        cost.note += cost.note.empty() ? "" : "; ";
+        cost.note += "the cost is lost in the spread of the runs";
+    }
 }
 
 }  // namespace

@@ -25,9 +25,9 @@ struct EffectCost {
     std::string turnedOffBy;  ///< "simulation.windSpeed=0"; empty where it is off, or nothing turns it off
     /// Per frame without it; absent where it was not turned off or the hair was not finite without it.
     std::optional<Quartiles> millisecondsOff;
-    /// Median of the frame with it less that without. It may be negative: without wind there is still air,
-    /// and loose hair meets more spheres.
-    std::optional<double> costMilliseconds;
+    /// The frame with it less that without, run by run of the same round. It may be negative: without wind
+    /// there is still air, and loose hair meets more spheres.
+    std::optional<Quartiles> costMilliseconds;
     double stageMilliseconds = 0;  ///< per frame, of the effect's own stages, summed over threads
     std::uint64_t bytes = 0;       ///< memory of its own
     std::string note;              ///< what else turning it off changed; may be empty
