@@ -56,7 +56,7 @@ Result<GridAxis> parseVariation(const std::string& text) {
 Result<std::vector<GridAxis>> axesOf(const AccuracyOptions& options, const Groom& groom) {
     const runtime::FieldInfo* integrator = runtime::findField("integrator");
     const std::string own = integrator->choices[static_cast<std::size_t>(groom.simulation.integrator)];
-    const auto orElse = [](const std::vector<std::string>& given, std::vector<std::string> otherwise) {
+    const auto orElse = [](const std::vector<std::string>& given, const std::vector<std::string>& otherwise) {
         return given.empty() ? otherwise : given;
     };
     std::vector<std::pair<std::string_view, std::vector<std::string>>> wanted{
