@@ -21,6 +21,23 @@ enum class Holding {
     rates,   ///< the velocity's part that would change lengths is taken out
 };
 
+/// A segment's constraint gradient where the lengths are wanted, and the direction along which its tension
+/// acts. For places that is the gradient at the start of the substep (SHAKE, Ryckaert et al. 1977), which
+/// keeps the order and the energy of the integrator; only segments that turn by more than 60° in a substep
+/// take that of now.
+struct Gradients {
+    V3 wanted, acting;
+};
+template <Holding kHolding>
+HWY_INLINE Gradients gradientsAt(const BlockView& block, const Planes& start, V3 edge, std::size_t i) {
+    const V inverseLength = hn::Load(D(), block.inverseLength + i);
+    const V3 wanted = edge * inverseLength;
+    if constexpr (kHolding == Holding::rates) return {wanted, wanted};
+    const V3 before = (load3(start, i + kBlockLanes) - load3(start, i)) * inverseLength;
+    const auto alike = dot(wanted, before) > all(0.5f) * dot(wanted, wanted);
+    return {wanted, select(alike, before, wanted)};
+}
+
 /// One Newton step on all length constraints ½(|e|²/l − l) = 0 of a strand together, or on their rates
 /// e·ė/l = 0; clamped points have infinite mass. The system is tridiagonal and is solved directly (after
 /// Goldenthal et al. 2007; with rates, RATTLE, Andersen 1983), so momentum travels along the whole strand in
@@ -28,10 +45,11 @@ enum class Holding {
 template <Holding kHolding>
 void holdStrands(const BlockView& block) {
     constexpr std::size_t kSlots = std::size_t{kMaxPoints} * kBlockLanes;
-    alignas(64) float ux[kSlots], uy[kSlots], uz[kSlots], upper[kSlots], right[kSlots], inverses[kBlockLanes];
+    alignas(64) float ux[kSlots], uy[kSlots], uz[kSlots], upper[kSlots], right[kSlots];
+    alignas(64) float inverses[kBlockLanes], lastWanted[3][kBlockLanes];
     const Planes u{ux, uy, uz};
-    const V half = all(0.5f);
-    const V least = all(0.25f);
+    const Planes& start = block.start.x ? block.start : block.previous;
+    const V half = all(0.5f), least = all(0.25f), zero = hn::Zero(D());
     const std::uint32_t first = block.firstFree - 1;
     const std::uint32_t end = block.points - 1;
     const auto rateAt = [&](std::size_t i) { return load3(block.position, i) - load3(block.previous, i); };
@@ -39,29 +57,32 @@ void holdStrands(const BlockView& block) {
         for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
             const std::size_t i = std::size_t{s} * kBlockLanes + lane, o = i + kBlockLanes;
             const V3 edge = load3(block.position, o) - load3(block.position, i);
-            const V3 gradient = edge * hn::Load(D(), block.inverseLength + i);
+            const auto [wanted, acting] = gradientsAt<kHolding>(block, start, edge, i);
             V error;
             if constexpr (kHolding == Holding::places) {
-                error = half * (dot(edge, gradient) - hn::Load(D(), block.length + i));
+                error = half * (dot(edge, wanted) - hn::Load(D(), block.length + i));
             } else {
-                error = dot(gradient, rateAt(o) - rateAt(i));
+                error = dot(wanted, rateAt(o) - rateAt(i));
             }
-            const V squared = hn::Max(dot(gradient, gradient), least);
-            V weight = hn::Load(D(), block.inverseMass + o), up = hn::Zero(D()), inverse;
+            const V own = hn::Max(dot(wanted, acting), least);
+            const V outer = hn::Load(D(), block.inverseMass + o);
+            V up = zero, inverse;
             if (s == first) {
-                inverse = all(1.0f) / (squared * weight);
+                inverse = all(1.0f) / (own * outer);
                 error = error * inverse;
             } else {
                 const V inner = hn::Load(D(), block.inverseMass + i);
-                const V coupling = dot(load3(u, i - kBlockLanes), gradient) * inner;
-                up = coupling * hn::Load(D(), inverses + lane);
-                inverse = all(1.0f) / (squared * (inner + weight) - coupling * up);
-                error = (error + coupling * hn::Load(D(), right + i - kBlockLanes)) * inverse;
+                const V below = dot(wanted, load3(u, i - kBlockLanes)) * inner;
+                const V above = dot(load3(lastWanted, lane), acting) * inner;
+                up = above * hn::Load(D(), inverses + lane);
+                inverse = all(1.0f) / (own * (inner + outer) - below * up);
+                error = (error + below * hn::Load(D(), right + i - kBlockLanes)) * inverse;
             }
             hn::Store(inverse, D(), inverses + lane);
             hn::Store(up, D(), upper + i);
             hn::Store(error, D(), right + i);
-            store3(gradient, u, i);
+            store3(acting, u, i);
+            store3(wanted, lastWanted, lane);
         }
     }
     // `right` becomes the multiplier λ, and u·λ the tension.

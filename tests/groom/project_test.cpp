@@ -181,7 +181,7 @@ TEST(HostileProject, HeadsAreReadStrictly) {
          },
          "/material/rootColour is no such vector"},
         {[](Json& h) { h["simulation"]["integrator"] = "sideways"; },
-         "/simulation/integrator is \"leapfrog\""},
+         "/simulation/integrator is \"sideways\""},
         {[](Json& h) { h["simulation"]["substeps"] = 1.5; }, "/simulation/substeps is 1.5"},
         {[](Json& h) { h["spheres"][1]["radius"] = 0; }, "/spheres/1/radius is 0"},
         {[](Json& h) { h["spheres"][0]["centre"] = "here"; }, "/spheres/0/centre"},

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/accuracy/truth.h"
+
+#include <fmt/format.h>
+
+#include <cassert>
+
+namespace hairloom {
+namespace {
+
+constexpr std::uint32_t kStepsPerFrame = 4;
+constexpr std::uint32_t kFewestSubsteps = 4;
+constexpr std::uint32_t kLengthIterations = 4;
+
+/// An exact run has neither of these: sleep lets go of the motion, and few Newton steps of the length.
+runtime::SimulationSettings converged(runtime::SimulationSettings settings, std::uint32_t substeps) {
+    settings.integrator = runtime::Integrator::verlet;
+    settings.substeps = substeps;
+    settings.sleepSpeed = 0;
+    if (settings.lengthIterations > 0) settings.lengthIterations = kLengthIterations;
+    return settings;
+}
+
+Result<Trajectory> run(SceneHair hair, std::span<const HeadPose> poses, const SceneTime& time,
+                       std::span<const float> shares, std::uint32_t substeps) {
+    hair.groom.simulation = converged(hair.groom.simulation, substeps);
+    auto result = runScene(hair, poses, time, shares);
+    if (!result) return tl::unexpected(result.error());
+    if (!result->trajectory.finite) {
+        return fail("the converged run itself is not finite", "expected a motion and a groom without NaN");
+    }
+    return std::move(result->trajectory);
+}
+
+}  // namespace
+
+std::string EngineConverged::description() const {
+    return fmt::format(
+        "the engine itself (single precision, position Verlet) with {} to {} substeps in each of {} parts of "
+        "a "
+        "frame, {} Newton steps for length and no sleep",
+        2 * kFewestSubsteps, mostSubsteps_, kStepsPerFrame, kLengthIterations);
+}
+
+Result<Truth> EngineConverged::compute(const SceneHair& hair, const HeadMotion& motion, const SceneTime& time,
+                                       std::span<const float> shares) const {
+    assert(mostSubsteps_ >= 2 * kFewestSubsteps);
+    SceneTime fine = time;
+    fine.stepsPerFrame = kStepsPerFrame;
+    const std::vector<HeadPose> poses = posesOf(motion, fine);
+    auto before = run(hair, poses, fine, shares, kFewestSubsteps);
+    if (!before) return tl::unexpected(before.error());
+    Truth best;
+    std::uint32_t bestSubsteps = 0;
+    std::string changes;
+    for (std::uint32_t substeps = 2 * kFewestSubsteps; substeps <= mostSubsteps_; substeps *= 2) {
+        auto finer = run(hair, poses, fine, shares, substeps);
+        if (!finer) return tl::unexpected(finer.error());
+        const double change = compare(*before, *finer).rmsMm;
+        changes += fmt::format("{}{:.3g} mm at {}", changes.empty() ? "" : ", ", change, substeps);
+        if (bestSubsteps == 0 || change < best.uncertaintyMm) {
+            best.trajectory = *finer;
+            best.uncertaintyMm = change;
+            bestSubsteps = substeps;
+        }
+        before = std::move(finer);
+    }
+    best.detail = fmt::format("{} substeps were taken; doubling changed {}", bestSubsteps, changes);
+    const bool onlyWorse = bestSubsteps == 2 * kFewestSubsteps && mostSubsteps_ >= 4 * kFewestSubsteps;
+    if (onlyWorse) best.detail += "; the engine does not converge in this scene";
+    return best;
+}
+
+}  // namespace hairloom
