@@ -9,16 +9,16 @@
 namespace hairloom {
 namespace {
 
-/// What turns an effect off: a field of the settings, all of whose components become 0.
+/// What turns an effect off: fields of the settings, all of whose components become 0. Torsion and sweep have
+/// none: they follow from the hair's shape and its speed.
 struct Switch {
     const char* effect;
     const char* field;
 };
-constexpr Switch kSwitches[] = {{"gravity", "gravity"},
-                                {"drag", "airDrag"},
-                                {"wind", "windSpeed"},
-                                {"angular", "angularStiffness"},
-                                {"length", "lengthIterations"}};
+constexpr Switch kSwitches[] = {
+    {"damping", "dampingTime"},   {"sleep", "sleepSpeed"},         {"pearls", "pearlRadiusRoot"},
+    {"pearls", "pearlRadiusTip"}, {"gravity", "gravity"},          {"drag", "airDrag"},
+    {"wind", "windSpeed"},        {"angular", "angularStiffness"}, {"length", "lengthIterations"}};
 /// The one that no number turns off: without spheres nothing collides.
 constexpr std::string_view kCollision = "collision";
 
@@ -35,14 +35,16 @@ std::optional<Without> without(const SceneHair& hair, const std::string& effect)
         result.how = "no spheres";
         return result;
     }
-    const auto found = std::ranges::find_if(kSwitches, [&](const Switch& s) { return effect == s.effect; });
-    const runtime::FieldInfo* field =
-        found == std::end(kSwitches) ? nullptr : runtime::findField(found->field);
-    if (!field) return std::nullopt;
-    for (std::uint32_t c = 0; c < runtime::componentCount(*field); ++c) {
-        if (!runtime::setFieldValue(result.hair.groom.simulation, *field, 0, c)) return std::nullopt;
+    for (const Switch& entry : kSwitches) {
+        if (effect != entry.effect) continue;
+        const runtime::FieldInfo* field = runtime::findField(entry.field);
+        assert(field);
+        for (std::uint32_t c = 0; c < runtime::componentCount(*field); ++c) {
+            if (!runtime::setFieldValue(result.hair.groom.simulation, *field, 0, c)) return std::nullopt;
+        }
+        result.how += fmt::format("{}simulation.{}=0", result.how.empty() ? "" : ", ", field->name);
     }
-    result.how = fmt::format("simulation.{}=0", field->name);
+    if (result.how.empty()) return std::nullopt;
     return result;
 }
 
