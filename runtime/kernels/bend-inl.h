@@ -29,8 +29,7 @@ enum class Shape {
 
 /// s = κ·h²·(t − target) of each joint of a block; those past the last segment are zero.
 struct Pulls {
-    static constexpr std::size_t kSlots = std::size_t{kMaxPoints} * kBlockLanes;
-    alignas(64) float x[kSlots], y[kSlots], z[kSlots];
+    alignas(64) float x[kScratchPlane], y[kScratchPlane], z[kScratchPlane];
     Planes planes() { return {x, y, z}; }
 };
 
@@ -104,7 +103,7 @@ void measurePulls(const BlockView& block, const LaneFrame& lanes, Pulls& pulls) 
 /// out of the springs, so that no energy comes from nowhere (passivity by energy tanks, as Duindam and
 /// Stramigioli 2004). While the strand rests, curves that lag creep home.
 void followFrames(const BlockView& block, const LaneFrame& lanes, const SubstepContext& context,
-                  Pulls& wanted) {
+                  Pulls& wanted, float* share) {
     const V zero = hn::Zero(D()), one = all(1.0f);
     const std::uint32_t first = block.firstFree - 1, end = block.points - 1;
     alignas(64) float inner[3][kBlockLanes], normals[3][kBlockLanes], gain[kBlockLanes], size[kBlockLanes];
@@ -139,7 +138,6 @@ void followFrames(const BlockView& block, const LaneFrame& lanes, const SubstepC
     }
     const V squared = all(context.h * context.h), slow = all(kLeakSpeed * kLeakSpeed);
     const V mostLeak = all(std::fmin(context.h / kLeakTime, 1.0f));
-    alignas(64) float share[kBlockLanes];
     for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
         const V tank = hn::Load(D(), block.tank + lane);
         const auto fresh = tank < zero;
@@ -155,19 +153,12 @@ void followFrames(const BlockView& block, const LaneFrame& lanes, const SubstepC
         hn::Store(hn::IfThenElse(fresh, zero, kept), D(), block.tank + lane);
         hn::Store(part, D(), share + lane);
     }
-    for (std::uint32_t j = first; j < end; ++j) {
-        for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
-            const std::size_t i = std::size_t{j} * kBlockLanes + lane;
-            const V3 change = load3(wanted.planes(), i);
-            store3(load3(block.curve, i) + change * hn::Load(D(), share + lane), block.curve, i);
-        }
-    }
 }
 
 /// Pulls of angular springs q of the way from `previous` to `position` farther on than `position`'s start.
 template <Shape kShape>
-void measureAhead(const BlockView& block, const LaneFrame& lanes, const SubstepContext& context,
-                  Pulls& pulls) {
+void measureAhead(const BlockView& block, const LaneFrame& lanes, const SubstepContext& context, Pulls& pulls,
+                  const float* share) {
     alignas(64) float inner[3][kBlockLanes];
     const V q = all(context.bendRate);
     const std::uint32_t first = block.firstFree - 1, end = block.points - 1;
@@ -185,7 +176,12 @@ void measureAhead(const BlockView& block, const LaneFrame& lanes, const SubstepC
             const V3 tangent = ((to - from) + moved * q) * hn::Load(D(), block.inverseLength + i);
             if (j >= first) {
                 V3 off = tangent - load3(inner, lane);
-                if constexpr (kShape == Shape::curved) off = off - load3(block.curve, i);
+                if constexpr (kShape == Shape::curved) {
+                    const V3 change = load3(pulls.planes(), i);
+                    const V3 curve = load3(block.curve, i) + change * hn::Load(D(), share + lane);
+                    store3(curve, block.curve, i);
+                    off = off - curve;
+                }
                 store3(off * hn::Load(D(), block.stiffness + i), pulls.planes(), i);
             }
             store3(tangent, inner, lane);
@@ -268,8 +264,9 @@ HWY_INLINE void solveBend(const BlockView& block, Pulls& pulls, Take&& take) {
 template <Shape kShape>
 void bendBack(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
     Pulls pulls;
-    if constexpr (kShape == Shape::curved) followFrames(block, lanes, context, pulls);
-    measureAhead<kShape>(block, lanes, context, pulls);
+    alignas(64) float share[kBlockLanes];
+    if constexpr (kShape == Shape::curved) followFrames(block, lanes, context, pulls, share);
+    measureAhead<kShape>(block, lanes, context, pulls, share);
     solveBend(block, pulls,
               [&](std::size_t i, V3 delta) { store3(load3(block.position, i) + delta, block.position, i); });
 }

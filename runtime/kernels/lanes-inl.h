@@ -23,6 +23,10 @@ using V = hn::Vec<D>;
 inline constexpr std::size_t kWidth = hn::MaxLanes(D());
 static_assert(kBlockLanes % kWidth == 0);
 
+/// Floats of a scratch plane: a slot for each point of a block, and a cache line that keeps planes off each
+/// other's 4 KiB aliases.
+inline constexpr std::size_t kScratchPlane = std::size_t{kMaxPoints} * kBlockLanes + 16;
+
 struct V3 {
     V x, y, z;
 };

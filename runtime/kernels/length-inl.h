@@ -44,8 +44,8 @@ HWY_INLINE Gradients gradientsAt(const BlockView& block, const Planes& start, V3
 /// one step. Collapsed segments keep a diagonal of at least ¼ of their masses': no overshoot.
 template <Holding kHolding>
 void holdStrands(const BlockView& block) {
-    constexpr std::size_t kSlots = std::size_t{kMaxPoints} * kBlockLanes;
-    alignas(64) float ux[kSlots], uy[kSlots], uz[kSlots], upper[kSlots], right[kSlots];
+    alignas(64) float ux[kScratchPlane], uy[kScratchPlane], uz[kScratchPlane], upper[kScratchPlane],
+        right[kScratchPlane];
     alignas(64) float inverses[kBlockLanes], lastWanted[3][kBlockLanes];
     const Planes u{ux, uy, uz};
     const Planes& start = block.start.x ? block.start : block.previous;
