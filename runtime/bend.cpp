@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "runtime/state.h"
 
@@ -12,8 +13,8 @@ namespace {
 /// Stiffness beyond which the matrix of a strand no longer fits single precision, as a multiple of the
 /// masses. There a strand of 32 segments sags by less than a ten-thousandth of what it falls in a substep.
 constexpr double kStiffest = 1e7;
-/// Bound of |H/κ|: hair too soft to carry itself sags.
-constexpr double kMostHeld = 1.0;
+/// Radians by which a strand's own weight may turn it in all: softer hair carries a share of its weight only.
+constexpr double kMostHeld = std::numbers::pi;
 /// What keeps the fastest waves of curved hair from ringing on, whose pulls are not quite those of an energy.
 constexpr float kLeastCurvedRate = 0.25f;
 /// 2 − √2: how much nearer the ends of two unit segments come when they turn by 90°.
@@ -137,16 +138,17 @@ class StrandBend {
         const Float3 down = rotate(conjugate(rootRotation_), settings_.gravity);
         const Double3 gravity = Double3{down.x, down.y, down.z} * carried;
         Double3 moment{};
-        double beyond = 0.0;
+        double beyond = 0.0, turning = 0.0;
         for (std::uint32_t j = block_.points - 1; j-- > 0;) {
             const Double3 d = direction(j);
             beyond += mass(j + 1);
             moment = moment + gravity * (lengthOf(j) * beyond);
             moment = moment - d * dotOf(moment, d);
             bent_[j] = kappa_[j] > 0.0 ? moment * (1.0 / kappa_[j]) : Double3{};
-            const double most = std::sqrt(dotOf(bent_[j], bent_[j]));
-            if (most > kMostHeld) bent_[j] = bent_[j] * (kMostHeld / most);
+            turning += std::sqrt(dotOf(bent_[j], bent_[j]));
         }
+        if (!(turning > kMostHeld)) return;
+        for (std::uint32_t j = 0; j + 1 < block_.points; ++j) bent_[j] = bent_[j] * (kMostHeld / turning);
     }
 
     std::uint32_t firstJoint() const { return settings_.clampedPoints - 1; }

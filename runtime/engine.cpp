@@ -203,9 +203,11 @@ bool Engine::sphereNear(std::size_t block) const {
         const Sphere before = i < state_.spheres.size() ? state_.spheres[i] : Sphere{};
         const Sphere now = i < usableSpheres_.size() ? usableSpheres_[i] : Sphere{};
         if (before.center_ws == now.center_ws && before.radius == now.radius) continue;
+        const bool moved = before.radius > 0.0f && now.radius > 0.0f;
+        const float way = moved ? length(now.center_ws - before.center_ws) : 0.0f;
         for (const Sphere& sphere : {before, now}) {
             if (!(sphere.radius > 0.0f)) continue;
-            const float reach = hair + sphere.radius + length(now.center_ws - before.center_ws);
+            const float reach = hair + sphere.radius + way;
             for (std::uint32_t lane = 0; lane < shape_->blocks[block].strands; ++lane) {
                 const Float3 root{rows[lane], rows[kBlockLanes + lane], rows[2 * kBlockLanes + lane]};
                 if (length(root - sphere.center_ws) < reach) return true;

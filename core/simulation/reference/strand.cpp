@@ -60,7 +60,8 @@ void setBend(StrandShape& shape, const Vec3d& gravity, BendingForce bendingForce
     const std::size_t n = shape.segments();
     const bool framesTurn = bendingForce == BendingForce::gradient;
     Vec3d moment = Vec3d::Zero();
-    double massBeyond = 0.0, twistBeyond = 0.0;
+    double massBeyond = 0.0, twistBeyond = 0.0, turning = 0.0;
+    std::vector<Vec3d> bending(n, Vec3d::Zero());
     for (std::size_t j = n; j-- > 0;) {
         const Vec3d direction = shape.edges[j] / shape.lengths[j];
         massBeyond += shape.masses[j + 1];
@@ -74,9 +75,13 @@ void setBend(StrandShape& shape, const Vec3d& gravity, BendingForce bendingForce
         moment = across(direction, carried);
         shape.bend[j] = j == 0 ? direction : Vec3d(direction - shape.edges[j - 1] / shape.lengths[j - 1]);
         if (!(shape.stiffness[j] > 0.0)) continue;
-        const Vec3d bending = moment / shape.stiffness[j];
-        shape.bend[j] -= bending / std::max(1.0, bending.norm());
+        bending[j] = moment / shape.stiffness[j];
+        shape.bend[j] -= bending[j];
+        turning += bending[j].norm();
     }
+    // Hair that its weight would turn by more than half a turn carries a share of it only.
+    const double carriedShare = std::min(1.0, std::numbers::pi / std::max(turning, 1e-300));
+    for (std::size_t j = 0; j < n; ++j) shape.bend[j] += (1.0 - carriedShare) * bending[j];
 }
 
 }  // namespace
