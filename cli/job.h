@@ -24,12 +24,17 @@ class Jobs {
     CLI::App& add(const std::string& name, const std::string& does, const std::string& example,
                   std::function<Result<Report>()> run);
 
+    /// What the program was called with, for reports; as main() was given it, separated by spaces.
+    void setCommandLine(std::string text) { commandLine_ = std::move(text); }
+    const std::string& commandLine() const { return commandLine_; }
+
     /// Runs the job that was asked for.
     Result<Report> run() const;
 
   private:
     CLI::App& app_;
     std::function<Result<Report>()> chosen_;
+    std::string commandLine_;
 };
 
 void addCreateJob(Jobs& jobs);
@@ -44,5 +49,7 @@ void addSimulateJob(Jobs& jobs);
 void addRenderJob(Jobs& jobs);
 void addDevicesJob(Jobs& jobs);
 void addBenchJob(Jobs& jobs);
+void addAccuracyJob(Jobs& jobs);
+void addEffectsJob(Jobs& jobs);
 
 }  // namespace hairloom::cli

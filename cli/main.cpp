@@ -8,6 +8,7 @@
 #include <CLI/Formatter.hpp>
 #include <cstdio>
 #include <exception>
+#include <string>
 
 #include "cli/job.h"
 #include "core/base/log.h"
@@ -29,6 +30,13 @@ void printForPeople(const Report& report) {
             fmt::print("{}: {}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
         }
     }
+}
+
+/// The program by its bare name: where it lies on this machine says nothing.
+std::string joined(int argc, char** argv) {
+    std::string text = "hairloom-cli";
+    for (int i = 1; i < argc; ++i) text += fmt::format(" {}", argv[i]);
+    return text;
 }
 
 int runChosenJob(const hairloom::cli::Jobs& jobs, bool json) {
@@ -74,6 +82,9 @@ int main(int argc, char** argv) {
     hairloom::cli::addRenderJob(jobs);
     hairloom::cli::addDevicesJob(jobs);
     hairloom::cli::addBenchJob(jobs);
+    hairloom::cli::addAccuracyJob(jobs);
+    hairloom::cli::addEffectsJob(jobs);
+    jobs.setCommandLine(joined(argc, argv));
 
     try {
         app.parse(argc, argv);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "cli/documents.h"
+#include "cli/vectors.h"
 #include "core/simulation/clip_motion.h"
 
 namespace hairloom::cli {
@@ -26,6 +27,38 @@ Result<std::unique_ptr<HeadMotion>> makeMotion(const std::string& name, const st
         makeClipMotion(std::make_shared<const Actor>(std::move(*actor)), name.substr(kClip.size()), groom);
     if (!motion) return tl::unexpected(inFile(motion.error(), file));
     return motion;
+}
+
+Status setWind(Groom& groom, const std::string& wind) {
+    if (wind.empty()) return {};
+    const auto velocity = parseVector(wind, "--wind");
+    if (!velocity) return tl::unexpected(velocity.error());
+    const float speed = velocity->norm();
+    groom.simulation.windSpeed = speed;
+    if (speed > 0) {
+        const Vec3f direction = *velocity / speed;
+        groom.simulation.windDirection = {direction.x(), direction.y(), direction.z()};
+    }
+    return {};
+}
+
+void addMotionOptions(CLI::App& job, MotionOptions& options) {
+    job.add_option("groom", options.input, "Project or hair file")->required();
+    job.add_option("--frames", options.frames, "Frames of each run")->check(CLI::Range(1, 100'000));
+    job.add_option("--fps", options.framesPerSecond, "Frames per second")->check(CLI::Range(10.0, 1000.0));
+    job.add_option("--wind", options.wind, "Velocity of the air X,Y,Z in m/s, instead of the groom's own");
+    job.add_option("--motion", options.motion, "How the head moves: none, spin, nod or clip:NAME");
+    job.add_option("--character", options.character,
+                   "File with the skeleton and clips, instead of the one the scalp came from");
+}
+
+Result<MovingGroom> openMovingGroom(const MotionOptions& options) {
+    auto groom = loadDocument(options.input);
+    if (!groom) return tl::unexpected(groom.error());
+    if (auto status = setWind(*groom, options.wind); !status) return tl::unexpected(status.error());
+    auto motion = makeMotion(options.motion, options.character, *groom);
+    if (!motion) return tl::unexpected(motion.error());
+    return MovingGroom{std::move(*groom), std::move(*motion)};
 }
 
 }  // namespace hairloom::cli

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <CLI/App.hpp>
 #include <memory>
 #include <string>
 
@@ -12,5 +13,25 @@ namespace hairloom::cli {
 /// is empty from the file that the groom's scalp came from.
 Result<std::unique_ptr<HeadMotion>> makeMotion(const std::string& name, const std::string& character,
                                                const Groom& groom);
+
+/// The wind of --wind, "X,Y,Z" in m/s, instead of the groom's own; an empty text changes nothing.
+Status setWind(Groom& groom, const std::string& wind);
+
+/// What jobs have in common that run a scene a few times over.
+struct MotionOptions {
+    std::string input;
+    std::string motion = "none";
+    std::string character;
+    std::string wind;
+    std::uint32_t frames = 60;
+    float framesPerSecond = 60;
+};
+void addMotionOptions(CLI::App& job, MotionOptions& options);
+
+struct MovingGroom {
+    Groom groom;
+    std::unique_ptr<HeadMotion> motion;
+};
+Result<MovingGroom> openMovingGroom(const MotionOptions& options);
 
 }  // namespace hairloom::cli

@@ -9,7 +9,6 @@
 #include "cli/job.h"
 #include "cli/motions.h"
 #include "cli/progress.h"
-#include "cli/vectors.h"
 #include "core/groom/project_file.h"
 #include "core/simulation/frame_record.h"
 #include "core/simulation/simulation.h"
@@ -44,17 +43,7 @@ Status overrideSettings(Groom& groom, const SimulateOptions& options) {
     if (const auto chosen = std::ranges::find(names, options.integrator); chosen != names.end()) {
         groom.simulation.integrator = static_cast<runtime::Integrator>(chosen - names.begin());
     }
-    if (!options.wind.empty()) {
-        const auto wind = parseVector(options.wind, "--wind");
-        if (!wind) return tl::unexpected(wind.error());
-        const float speed = wind->norm();
-        groom.simulation.windSpeed = speed;
-        if (speed > 0) {
-            const Vec3f direction = *wind / speed;
-            groom.simulation.windDirection = {direction.x(), direction.y(), direction.z()};
-        }
-    }
-    return {};
+    return setWind(groom, options.wind);
 }
 
 Report effectsReport(const std::vector<EffectReport>& effects) {

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <map>
 
 #include "tests/cli/command.h"
 
@@ -38,7 +39,7 @@ TEST_F(Cli, WrongUsageEndsWith2AndHelpWith0) {
 
 TEST_F(Cli, EveryJobHasHelpWithAnExample) {
     for (const char* job : {"create", "info", "import", "export", "validate", "groom", "spheres", "set",
-                            "simulate", "render", "devices", "bench"}) {
+                            "simulate", "render", "devices", "bench", "accuracy", "effects"}) {
         const Outcome help = run(std::string(job) + " --help");
         EXPECT_EQ(help.exitCode, 0) << job;
         EXPECT_THAT(help.output, HasSubstr(std::string("hairloom-cli ") + job));
@@ -119,6 +120,50 @@ TEST_F(Cli, ClipOfTheSampleHeadMovesTheHair) {
     const Outcome unknown = run("simulate hair.hairloom --motion clip:dance");
     EXPECT_EQ(unknown.exitCode, 1);
     EXPECT_THAT(unknown.errors, HasSubstr("nod_and_turn")) << "the clips there are";
+}
+
+TEST_F(Cli, AccuracyMeasuresAGridAndWritesAReport) {
+    runJson(createArguments());
+    const auto report = runJson(
+        "accuracy hair.hairloom -o out --motion nod --frames 4 --strands 10 --substeps 1,4 --iterations 1"
+        " --points 6,12 --repeat 1 --truth-substeps 4");
+    EXPECT_EQ(report["runs"], 4);
+    EXPECT_EQ(report["strands"], 10);
+    ASSERT_FALSE(report["front"].empty());
+    for (const auto& point : report["front"]) {
+        EXPECT_GT(point["ms"], 0.0);
+        EXPECT_GT(point["error_mm"], 0.0);
+        EXPECT_LE(point["error_mm"], point["error_mm_max"]);
+        EXPECT_TRUE(point["setting"]["substeps"] == 1 || point["setting"]["substeps"] == 4);
+    }
+    for (const std::string file : report["files"]) EXPECT_TRUE(fs::exists(folder / "out" / file)) << file;
+    EXPECT_THAT(readText(folder / "out" / "report.html"), HasSubstr("--motion nod --frames 4"));
+    EXPECT_THAT(readText(folder / "out" / "data.csv"),
+                StartsWith("integrator,substeps,lengthIterations,points,ms_median,"));
+
+    const Outcome unknown = run("accuracy hair.hairloom -o bad --integrators guess");
+    EXPECT_EQ(unknown.exitCode, 1);
+    EXPECT_THAT(unknown.errors, HasSubstr("verlet")) << "the integrators there are";
+    EXPECT_FALSE(fs::exists(folder / "bad"));
+}
+
+TEST_F(Cli, EffectsSayWhyAndWhatTheyCost) {
+    runJson(createArguments());
+    const auto report = runJson("effects hair.hairloom --frames 4 --repeat 1 --motion nod");
+    std::map<std::string, nlohmann::json> effects;
+    for (const auto& effect : report["effects"]) effects[effect["name"]] = effect;
+    EXPECT_TRUE(effects.at("length")["on"].get<bool>());
+    EXPECT_GT(effects.at("length")["ms_off"], 0.0);
+    EXPECT_EQ(effects.at("length")["turned_off_by"], "simulation.lengthIterations=0");
+    EXPECT_FALSE(effects.at("wind")["on"].get<bool>());
+    EXPECT_EQ(effects.at("wind")["why"], "off, zero speed");
+    EXPECT_TRUE(effects.at("wind")["ms_on"].is_null());
+    EXPECT_EQ(effects.at("collision")["why"], "off, no spheres");
+    const auto windy = runJson("effects hair.hairloom --frames 4 --repeat 1 --wind 3,0,0");
+    for (const auto& effect : windy["effects"]) {
+        if (effect["name"] != "wind") continue;
+        EXPECT_THAT(effect["note"].get<std::string>(), HasSubstr("drag is on"));
+    }
 }
 
 TEST_F(Cli, ExportedAssetsComeBackTheSame) {

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "cli/documents.h"
+#include "cli/job.h"
+#include "cli/motions.h"
+#include "cli/progress.h"
+#include "core/accuracy/work_precision_report.h"
+
+namespace hairloom::cli {
+namespace {
+
+struct AccuracyOptions {
+    MotionOptions motion;
+    std::string output;
+    std::uint32_t strands = 200;
+    std::uint32_t repeats = 5;
+    std::uint64_t seed = 1;
+    std::uint32_t truthSubsteps = 64;
+    std::vector<std::string> integrators, substeps, iterations, points, threadCounts;
+    std::vector<std::string> vary;  ///< FIELD=V1,V2,…
+};
+
+/// The groom's own number of points, and a half and a quarter of it.
+std::vector<std::string> pointsToTry(const Groom& groom) {
+    std::size_t own = 0;
+    for (std::size_t s = 0; s < groom.strandCount(); ++s) own = std::max(own, groom.strand(s).size());
+    std::vector<std::string> counts;
+    for (const std::size_t part : {4u, 2u, 1u}) {
+        constexpr std::size_t kFewest = 4;
+        counts.push_back(fmt::format("{}", std::max(own / part, kFewest)));
+    }
+    return counts;
+}
+
+/// "FIELD=V1,V2" as an axis.
+Result<GridAxis> parseVariation(const std::string& text) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos) {
+        return fail(fmt::format("--vary is '{}'", text), "expected FIELD=VALUE,VALUE,…");
+    }
+    std::vector<std::string> values;
+    for (std::size_t at = equals; at != std::string::npos;) {
+        const std::size_t next = text.find(',', at + 1);
+        values.push_back(text.substr(at + 1, next == std::string::npos ? next : next - at - 1));
+        at = next;
+    }
+    return parseAxis(text.substr(0, equals), values);
+}
+
+Result<std::vector<GridAxis>> axesOf(const AccuracyOptions& options, const Groom& groom) {
+    const runtime::FieldInfo* integrator = runtime::findField("integrator");
+    const std::string own = integrator->choices[static_cast<std::size_t>(groom.simulation.integrator)];
+    const auto orElse = [](const std::vector<std::string>& given, std::vector<std::string> otherwise) {
+        return given.empty() ? otherwise : given;
+    };
+    std::vector<std::pair<std::string_view, std::vector<std::string>>> wanted{
+        {"integrator", orElse(options.integrators, {own})},
+        {"substeps", orElse(options.substeps, {"1", "2", "4", "8", "16", "32"})},
+        {"lengthIterations", orElse(options.iterations, {"1", "2"})},
+        {kPointsAxis, orElse(options.points, pointsToTry(groom))}};
+    if (!options.threadCounts.empty()) wanted.emplace_back(kThreadsAxis, options.threadCounts);
+    std::vector<GridAxis> axes;
+    for (const auto& [field, values] : wanted) {
+        auto axis = parseAxis(field, values);
+        if (!axis) return tl::unexpected(axis.error());
+        axes.push_back(std::move(*axis));
+    }
+    for (const std::string& variation : options.vary) {
+        auto axis = parseVariation(variation);
+        if (!axis) return tl::unexpected(axis.error());
+        axes.push_back(std::move(*axis));
+    }
+    return axes;
+}
+
+Report settingReport(const WorkPrecision& result, const WorkPrecisionRun& run) {
+    Report setting = Report::object();
+    for (std::size_t a = 0; a < run.values.size(); ++a) {
+        const GridAxis& axis = result.options.axes[a];
+        const runtime::FieldInfo* field = runtime::findField(axis.field);
+        const double value = run.values[a];
+        if (field && !field->choices.empty()) {
+            setting[axis.field] = axisValueText(axis, value);
+        } else if (value == std::floor(value)) {
+            setting[axis.field] = std::llround(value);
+        } else {
+            setting[axis.field] = value;
+        }
+    }
+    return setting;
+}
+
+/// The fastest first.
+Report frontReport(const WorkPrecision& result) {
+    std::vector<const WorkPrecisionRun*> front;
+    for (const WorkPrecisionRun& run : result.runs) {
+        if (run.onFront) front.push_back(&run);
+    }
+    std::ranges::sort(front, {}, [](const WorkPrecisionRun* run) { return run->milliseconds.median; });
+    Report rows = Report::array();
+    for (const WorkPrecisionRun* run : front) {
+        rows.push_back(Report{{"setting", settingReport(result, *run)},
+                              {"ms", run->milliseconds.median},
+                              {"error_mm", run->error.rmsMm},
+                              {"error_mm_max", run->error.maxMm}});
+    }
+    return rows;
+}
+
+Result<Report> accuracy(const AccuracyOptions& options, const std::string& commandLine) {
+    const auto scene = openMovingGroom(options.motion);
+    if (!scene) return tl::unexpected(scene.error());
+    auto axes = axesOf(options, scene->groom);
+    if (!axes) return tl::unexpected(axes.error());
+    WorkPrecisionOptions measuring;
+    measuring.axes = std::move(*axes);
+    measuring.time.frames = options.motion.frames;
+    measuring.time.framesPerSecond = options.motion.framesPerSecond;
+    measuring.strands = options.strands;
+    measuring.repeats = options.repeats;
+    measuring.seed = options.seed;
+    std::optional<Progress> progress;
+    measuring.progress = [&](std::size_t done, std::size_t total) {
+        if (!progress) progress.emplace("measuring", total);
+        progress->done(done);
+    };
+    const auto result =
+        measureWorkPrecision(scene->groom, *scene->motion, measuring, EngineConverged(options.truthSubsteps));
+    progress.reset();
+    if (!result) return tl::unexpected(result.error());
+    const auto files = writeWorkPrecision(*result, {options.motion.input, options.motion.motion, commandLine},
+                                          options.output);
+    if (!files) return tl::unexpected(files.error());
+
+    Report report;
+    report["strands"] = result->strands;
+    report["frames"] = measuring.time.frames;
+    report["runs"] = result->runs.size();
+    report["diverged"] = std::ranges::count_if(result->runs, &WorkPrecisionRun::diverged);
+    report["truth"] = result->truthName;
+    report["truth_uncertainty_mm"] = result->truthUncertaintyMm;
+    report["front"] = frontReport(*result);
+    report["notes"] = result->notes;
+    report["output"] = options.output;
+    report["files"] = *files;
+    return report;
+}
+
+}  // namespace
+
+void addAccuracyJob(Jobs& jobs) {
+    const auto options = std::make_shared<AccuracyOptions>();
+    CLI::App& job = jobs.add("accuracy", "Measure what accuracy costs: time and error for a grid of settings",
+                             "hair.hairloom -o accuracy --motion nod --wind 3,0,1 --substeps 1,2,4,8,16",
+                             [options, &jobs] { return accuracy(*options, jobs.commandLine()); });
+    addMotionOptions(job, options->motion);
+    job.add_option("-o,--output", options->output, "Folder for report.html, data.csv and the drawings")
+        ->required();
+    job.add_option("--strands", options->strands, "Strands to run, drawn from the groom's")
+        ->check(CLI::Range(1, 1'000'000));
+    const auto list = [&](const char* name, std::vector<std::string>& values, const char* does) {
+        job.add_option(name, values, does)->delimiter(',');
+    };
+    list("--integrators", options->integrators, "Integrators to try, instead of the groom's own");
+    list("--substeps", options->substeps, "Steps per frame to try");
+    list("--iterations", options->iterations, "Corrections of length per substep to try");
+    list("--points", options->points,
+         "Points per strand to try, instead of the groom's, a half and a quarter");
+    list("--thread-counts", options->threadCounts, "Numbers of threads to try, instead of --threads alone");
+    job.add_option("--vary", options->vary, "Another setting to try, FIELD=VALUE,VALUE,…; may be repeated");
+    job.add_option("--repeat", options->repeats, "Timed runs of each setting")->check(CLI::Range(1, 1000));
+    job.add_option("--truth-substeps", options->truthSubsteps,
+                   "Steps of the run that counts as true in each quarter of a frame")
+        ->check(CLI::Range(2, 64));
+    job.add_option("--seed", options->seed, "Another seed draws other strands");
+}
+
+}  // namespace hairloom::cli

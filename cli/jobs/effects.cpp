@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <memory>
+#include <optional>
+
+#include "cli/documents.h"
+#include "cli/job.h"
+#include "cli/motions.h"
+#include "cli/progress.h"
+#include "core/accuracy/effect_cost.h"
+
+namespace hairloom::cli {
+namespace {
+
+struct EffectsOptions {
+    MotionOptions motion;
+    std::uint32_t repeats = 5;
+};
+
+Report orNull(const std::optional<double>& value) {
+    return value ? Report(*value) : Report();
+}
+
+/// "ms_on" is the frame with the effect, "ms_off" without it; one of them is null where it was not run.
+Report effectRow(const EffectCosts& costs, const EffectCost& effect) {
+    Report row;
+    row["name"] = effect.name;
+    row["on"] = effect.on;
+    row["why"] = effect.why;
+    const double asItIs = costs.milliseconds.median;
+    const std::optional<double> without =
+        effect.millisecondsOff ? std::optional(effect.millisecondsOff->median) : std::nullopt;
+    row["ms_on"] = effect.on ? Report(asItIs) : Report();
+    row["ms_off"] = effect.on ? orNull(without) : Report(asItIs);
+    row["ms_cost"] = orNull(effect.costMilliseconds);
+    row["ms_stages"] = effect.stageMilliseconds;
+    row["bytes"] = effect.bytes;
+    row["turned_off_by"] = effect.turnedOffBy;
+    row["note"] = effect.note;
+    return row;
+}
+
+Result<Report> effects(const EffectsOptions& options) {
+    const auto scene = openMovingGroom(options.motion);
+    if (!scene) return tl::unexpected(scene.error());
+    EffectCostOptions measuring;
+    measuring.time.frames = options.motion.frames;
+    measuring.time.framesPerSecond = options.motion.framesPerSecond;
+    measuring.repeats = options.repeats;
+    std::optional<Progress> progress;
+    measuring.progress = [&](std::size_t done, std::size_t total) {
+        if (!progress) progress.emplace("measuring", total);
+        progress->done(done);
+    };
+    const auto costs = measureEffectCosts(scene->groom, *scene->motion, measuring);
+    progress.reset();
+    if (!costs) return tl::unexpected(costs.error());
+
+    Report report;
+    report["strands"] = scene->groom.strandCount();
+    report["points"] = scene->groom.pointCount();
+    report["frames"] = measuring.time.frames;
+    report["runs"] = measuring.repeats;
+    report["ms_per_frame"] = Report{{"median", costs->milliseconds.median},
+                                    {"q1", costs->milliseconds.q1},
+                                    {"q3", costs->milliseconds.q3}};
+    report["effects"] = Report::array();
+    for (const EffectCost& effect : costs->effects) report["effects"].push_back(effectRow(*costs, effect));
+    return report;
+}
+
+}  // namespace
+
+void addEffectsJob(Jobs& jobs) {
+    const auto options = std::make_shared<EffectsOptions>();
+    CLI::App& job =
+        jobs.add("effects", "Say which effects the scene calls for, why, and what each costs on and off",
+                 "hair.hairloom --motion nod --wind 3,0,1", [options] { return effects(*options); });
+    addMotionOptions(job, options->motion);
+    job.add_option("--repeat", options->repeats, "Timed runs with and without each effect")
+        ->check(CLI::Range(1, 1000));
+}
+
+}  // namespace hairloom::cli

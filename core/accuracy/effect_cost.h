@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What each effect of a scene costs: the scene as it is, and once more without it.
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/accuracy/scene_run.h"
+#include "core/accuracy/statistics.h"
+
+namespace hairloom {
+
+struct EffectCostOptions {
+    SceneTime time;             ///< stepsPerFrame is 1
+    std::uint32_t repeats = 5;  ///< timed runs with and without each effect, ≥ 1
+    std::function<void(std::size_t done, std::size_t total)> progress;
+};
+
+struct EffectCost {
+    std::string name;
+    bool on = false;
+    std::string why;          ///< "off, zero speed"
+    std::string turnedOffBy;  ///< "simulation.windSpeed=0"; empty where it is off, or nothing turns it off
+    /// Per frame without it; absent where it was not turned off or the hair was not finite without it.
+    std::optional<Quartiles> millisecondsOff;
+    /// Median of the frame with it less that without. It may be negative: without wind there is still air,
+    /// and loose hair meets more spheres.
+    std::optional<double> costMilliseconds;
+    double stageMilliseconds = 0;  ///< per frame, of the effect's own stages, summed over threads
+    std::uint64_t bytes = 0;       ///< memory of its own
+    std::string note;              ///< what else turning it off changed; may be empty
+};
+
+struct EffectCosts {
+    Quartiles milliseconds;  ///< per frame, as the scene is
+    std::vector<EffectCost> effects;
+};
+
+/// Which effects this scene calls for, after its last frame, and what they cost. Errors: those of
+/// Simulation::make.
+Result<EffectCosts> measureEffectCosts(const Groom& groom, const HeadMotion& motion,
+                                       const EffectCostOptions& options);
+
+}  // namespace hairloom

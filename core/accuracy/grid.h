@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Grids of settings: axes by the names of fields, so that a new field needs nothing here.
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/result.h"
+#include "runtime/settings.h"
+
+namespace hairloom {
+
+/// What varies: a field of runtime::SimulationSettings by its name (an enumeration by its index), or one of
+/// the two below.
+struct GridAxis {
+    std::string field;
+    std::vector<double> values;
+};
+/// Points per strand, resampled evenly by arc length; 3 … runtime::kMaxPoints.
+inline constexpr std::string_view kPointsAxis = "points";
+/// Threads that the engine may use, 0 for all.
+inline constexpr std::string_view kThreadsAxis = "threads";
+
+/// The value as a person writes it: "verlet", "16", "0.25".
+std::string axisValueText(const GridAxis& axis, double value);
+
+/// Values of an axis as they stand on a command line; one given twice counts once. Errors: no such field, a
+/// text that is neither a number nor one of its choices, a value out of range, no value.
+Result<GridAxis> parseAxis(std::string_view field, const std::vector<std::string>& values);
+
+/// Errors as of parseAxis.
+Status checkAxis(const GridAxis& axis);
+
+/// One value of each axis; the last axis turns fastest.
+std::vector<std::vector<double>> combinations(const std::vector<GridAxis>& axes);
+
+std::optional<std::size_t> findAxis(const std::vector<GridAxis>& axes, std::string_view field);
+
+/// Sets the fields that the axes name; the axes have passed checkAxis.
+void applyValues(const std::vector<GridAxis>& axes, const std::vector<double>& values,
+                 runtime::SimulationSettings& settings);
+
+}  // namespace hairloom

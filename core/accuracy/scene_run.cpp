@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/accuracy/scene_run.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numeric>
+
+#include "core/base/random.h"
+#include "core/geometry/curve.h"
+
+namespace hairloom {
+namespace {
+
+/// `count` of 0 … total − 1, ascending (the first steps of Fisher and Yates's shuffle).
+std::vector<std::uint32_t> drawn(std::size_t total, std::size_t count, std::uint64_t seed) {
+    std::vector<std::uint32_t> all(total);
+    std::iota(all.begin(), all.end(), 0u);
+    if (count >= total) return all;
+    Random random(seed);
+    for (std::size_t i = 0; i < count; ++i) {
+        std::swap(all[i], all[i + random.below(static_cast<std::uint32_t>(total - i))]);
+    }
+    all.resize(count);
+    std::ranges::sort(all);
+    return all;
+}
+
+AttributeSet chosen(const AttributeSet& attributes, const std::vector<std::uint32_t>& elements) {
+    AttributeSet result;
+    for (const auto& [name, data] : attributes.all()) {
+        std::visit(
+            [&, &key = name](const auto& array) {
+                using Array = std::remove_cvref_t<decltype(array)>;
+                std::vector<std::remove_cvref_t<decltype(array[0])>> values;
+                for (const std::uint32_t element : elements) values.push_back(array[element]);
+                result.set(key, AttributeData(Array(std::move(values))));
+            },
+            data);
+    }
+    return result;
+}
+
+/// Shares of the polyline's length at its points; evenly spread where it has no length.
+void appendShares(std::span<const Vec3f> strand, std::vector<float>& shares) {
+    const double whole = static_cast<double>(polylineLength(strand));
+    double length = 0;
+    for (std::size_t i = 0; i < strand.size(); ++i) {
+        if (i > 0) length += static_cast<double>((strand[i] - strand[i - 1]).norm());
+        const double even = static_cast<double>(i) / static_cast<double>(strand.size() - 1);
+        shares.push_back(static_cast<float>(whole > 0 ? std::min(length / whole, 1.0) : even));
+    }
+}
+
+/// Where material points lie between the points of strands: place = (1 − t) p[from] + t p[from + 1].
+class MaterialPoints {
+  public:
+    MaterialPoints(const SceneHair& hair, std::span<const float> shares) {
+        for (std::size_t s = 0; s < hair.groom.strandCount(); ++s) {
+            const std::uint32_t first = hair.groom.offsets[s], last = hair.groom.offsets[s + 1] - 1;
+            std::uint32_t from = first;
+            for (const float share : shares) {
+                while (from + 1 < last && hair.arcShares[from + 1] < share) ++from;
+                const float length = hair.arcShares[from + 1] - hair.arcShares[from];
+                const float t = length > 0 ? (share - hair.arcShares[from]) / length : 0;
+                places_.push_back({from, std::clamp(t, 0.0f, 1.0f)});
+            }
+        }
+    }
+
+    std::size_t count() const { return places_.size(); }
+
+    /// Appends the places; false when one of them is not finite.
+    bool read(std::span<const Vec3f> positions_ws, std::vector<Vec3f>& into_ws) const {
+        bool finite = true;
+        for (const Place& place : places_) {
+            const Vec3f& from = positions_ws[place.from];
+            into_ws.push_back(from + place.t * (positions_ws[place.from + 1] - from));
+            finite = finite && into_ws.back().allFinite();
+        }
+        return finite;
+    }
+
+  private:
+    struct Place {
+        std::uint32_t from;
+        float t;
+    };
+    std::vector<Place> places_;
+};
+
+}  // namespace
+
+SceneHair sampleStrands(const Groom& groom, std::size_t count, std::uint64_t seed) {
+    const std::vector<std::uint32_t> strands = drawn(groom.strandCount(), count, seed);
+    std::vector<std::uint32_t> offsets{0}, points;
+    SceneHair hair;
+    for (const std::uint32_t strand : strands) {
+        for (std::uint32_t p = groom.offsets[strand]; p < groom.offsets[strand + 1]; ++p) points.push_back(p);
+        offsets.push_back(static_cast<std::uint32_t>(points.size()));
+        appendShares(groom.strand(strand), hair.arcShares);
+    }
+    hair.groom = groom;
+    hair.groom.offsets = CowArray<std::uint32_t>(std::move(offsets));
+    hair.groom.pointAttributes = chosen(groom.pointAttributes, points);
+    hair.groom.strandAttributes = chosen(groom.strandAttributes, strands);
+    hair.groom.triangulation = {};
+    return hair;
+}
+
+SceneHair resampledHair(const SceneHair& hair, std::uint32_t points) {
+    assert(points >= 2);
+    SceneHair result;
+    result.groom = hair.groom;
+    std::vector<std::uint32_t> offsets{0};
+    std::vector<Vec3f> positions;
+    for (std::size_t s = 0; s < hair.groom.strandCount(); ++s) {
+        const std::vector<Vec3f> even = resampleEvenly(hair.groom.strand(s), points);
+        positions.insert(positions.end(), even.begin(), even.end());
+        offsets.push_back(static_cast<std::uint32_t>(positions.size()));
+        for (std::uint32_t i = 0; i < points; ++i) {
+            result.arcShares.push_back(static_cast<float>(i) / static_cast<float>(points - 1));
+        }
+    }
+    result.groom.offsets = CowArray<std::uint32_t>(std::move(offsets));
+    result.groom.pointAttributes = AttributeSet();
+    result.groom.pointAttributes.set(attribute::kPosition, std::move(positions));
+    return result;
+}
+
+std::vector<HeadPose> posesOf(const HeadMotion& motion, const SceneTime& time) {
+    std::vector<HeadPose> poses;
+    const float stepsPerSecond = time.framesPerSecond * static_cast<float>(time.stepsPerFrame);
+    for (std::uint32_t step = 0; step <= time.frames * time.stepsPerFrame; ++step) {
+        poses.push_back(motion.poseAt(static_cast<float>(step) / stepsPerSecond));
+    }
+    return poses;
+}
+
+std::vector<float> evenShares(std::uint32_t count) {
+    std::vector<float> shares;
+    for (std::uint32_t i = 1; i <= count; ++i) {
+        shares.push_back(static_cast<float>(i) / static_cast<float>(count));
+    }
+    return shares;
+}
+
+TrajectoryError compare(const Trajectory& run, const Trajectory& truth) {
+    assert(run.points_ws.size() == truth.points_ws.size() && run.finite && truth.finite);
+    double sum = 0, largest = 0;
+    for (std::size_t i = 0; i < run.points_ws.size(); ++i) {
+        const double squared =
+            (run.points_ws[i].cast<double>() - truth.points_ws[i].cast<double>()).squaredNorm();
+        sum += squared;
+        largest = std::max(largest, squared);
+    }
+    const double count = static_cast<double>(std::max<std::size_t>(run.points_ws.size(), 1));
+    return {1e3 * std::sqrt(sum / count), 1e3 * std::sqrt(largest)};
+}
+
+Result<SceneResult> runScene(const SceneHair& hair, std::span<const HeadPose> poses, const SceneTime& time,
+                             std::span<const float> shares) {
+    assert(poses.size() == std::size_t{time.frames} * time.stepsPerFrame + 1);
+    auto simulation = Simulation::make(hair.groom, poses[0]);
+    if (!simulation) return tl::unexpected(simulation.error());
+    const MaterialPoints points(hair, shares);
+    SceneResult result;
+    Trajectory& trajectory = result.trajectory;
+    trajectory.frames = time.frames;
+    trajectory.pointsPerFrame = points.count();
+    trajectory.points_ws.reserve(points.count() * time.frames);
+    const float dt = 1.0f / (time.framesPerSecond * static_cast<float>(time.stepsPerFrame));
+    for (std::uint32_t frame = 0; frame < time.frames && trajectory.finite; ++frame) {
+        for (std::uint32_t step = 1; step <= time.stepsPerFrame; ++step) {
+            simulation->step(dt, poses[std::size_t{frame} * time.stepsPerFrame + step]);
+        }
+        trajectory.finite = points.read(simulation->positions_ws(), trajectory.points_ws);
+    }
+    const SimulationStats stats = simulation->stats();
+    result.millisecondsPerFrame = stats.millisecondsPerFrame * static_cast<double>(time.stepsPerFrame);
+    result.stateHash = stats.stateHash;
+    result.nanCount = stats.nanCount;
+    result.effects = stats.effects;
+    return result;
+}
+
+}  // namespace hairloom

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// A scene that is run over and over with different settings, and what its hair did: the places of the same
+// material points in every frame, whatever the number of points that a strand was simulated with.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/simulation/simulation.h"
+
+namespace hairloom {
+
+/// Hair to run, and where along each strand its points are.
+struct SceneHair {
+    Groom groom;
+    /// Per point, the share 0 … 1 of the authored strand's arc length at which it sits.
+    std::vector<float> arcShares;
+};
+
+/// `count` strands drawn with the seed, in their order; all of them where there are no more. Spheres, scalp
+/// and settings stay; the triangulation, which is of all roots, goes. Points as authored.
+SceneHair sampleStrands(const Groom& groom, std::size_t count, std::uint64_t seed);
+
+/// The same strands with `points` ≥ 2 points each, evenly spaced by arc length. Point attributes other than
+/// the position go.
+SceneHair resampledHair(const SceneHair& hair, std::uint32_t points);
+
+/// How long, how often, and where the head is.
+struct SceneTime {
+    std::uint32_t frames = 60;
+    float framesPerSecond = 60;
+    /// Steps of the engine in each frame, each to the head's pose at its end.
+    std::uint32_t stepsPerFrame = 1;
+};
+
+/// The poses of a run, one more than there are steps: poses[0] is the start. Made once for many runs, because
+/// a clip skins the whole head for each.
+std::vector<HeadPose> posesOf(const HeadMotion& motion, const SceneTime& time);
+
+/// Material points at the end of each frame.
+struct Trajectory {
+    std::uint32_t frames = 0;
+    std::size_t pointsPerFrame = 0;
+    std::vector<Vec3f> points_ws;  ///< frame after frame; metres
+
+    /// False also for a run that was broken off.
+    bool finite = true;
+};
+
+/// How far apart two trajectories of the same material points are.
+struct TrajectoryError {
+    double rmsMm = 0;  ///< root mean square over points and frames
+    double maxMm = 0;
+};
+/// Both are finite and of the same size.
+TrajectoryError compare(const Trajectory& run, const Trajectory& truth);
+
+/// `count` shares of the arc length, evenly spaced, from the first beyond the root to the tip.
+std::vector<float> evenShares(std::uint32_t count);
+
+struct SceneResult {
+    Trajectory trajectory;            ///< empty without shares
+    double millisecondsPerFrame = 0;  ///< mean of the engine's own time; all steps of a frame together
+    std::uint64_t stateHash = 0;
+    std::uint64_t nanCount = 0;
+    std::vector<EffectReport> effects;  ///< after the last frame
+};
+
+/// Runs the hair with its groom's settings, from rest. `shares` are the material points of each strand to
+/// follow; a run that follows some is broken off at the first that is not finite. Errors: those of
+/// Simulation::make.
+Result<SceneResult> runScene(const SceneHair& hair, std::span<const HeadPose> poses, const SceneTime& time,
+                             std::span<const float> shares);
+
+}  // namespace hairloom

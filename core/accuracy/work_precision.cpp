@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/accuracy/work_precision.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <map>
+#include <set>
+
+#include "core/accuracy/thread_limit.h"
+#include "core/geometry/curve.h"
+
+namespace hairloom {
+namespace {
+
+std::uint32_t largestCount(const std::vector<double>& values) {
+    return static_cast<std::uint32_t>(*std::ranges::max_element(values));
+}
+
+double longestStrandMm(const Groom& groom) {
+    float longest = 0;
+    for (std::size_t s = 0; s < groom.strandCount(); ++s) {
+        longest = std::max(longest, polylineLength(groom.strand(s)));
+    }
+    return 1e3 * static_cast<double>(longest);
+}
+
+/// The hair of every combination of the grid, resampled once for each number of points.
+class GridHair {
+  public:
+    GridHair(SceneHair authored, const std::vector<GridAxis>& axes)
+        : axes_(axes), points_(findAxis(axes, kPointsAxis)), threads_(findAxis(axes, kThreadsAxis)) {
+        if (points_) {
+            for (const double points : axes[*points_].values) {
+                byPoints_[points] = resampledHair(authored, static_cast<std::uint32_t>(points));
+            }
+        }
+        authored_ = std::move(authored);
+    }
+
+    SceneHair at(const std::vector<double>& values) const {
+        SceneHair hair = points_ ? byPoints_.at(values[*points_]) : authored_;
+        applyValues(axes_, values, hair.groom.simulation);
+        return hair;
+    }
+    /// The finest strands of the grid with the scene's own settings.
+    SceneHair finest() const { return points_ ? byPoints_.rbegin()->second : authored_; }
+
+    ThreadLimit limitThreads(const std::vector<double>& values) const {
+        return threads_ ? ThreadLimit(static_cast<std::size_t>(values[*threads_])) : ThreadLimit();
+    }
+
+  private:
+    const std::vector<GridAxis>& axes_;
+    std::optional<std::size_t> points_, threads_;
+    SceneHair authored_;
+    std::map<double, SceneHair> byPoints_;
+};
+
+/// Counts runs for whoever watches.
+class Counted {
+  public:
+    Counted(const WorkPrecisionOptions& options, std::size_t total) : options_(options), total_(total) {}
+    void add(std::size_t runs = 1) {
+        done_ += runs;
+        if (options_.progress) options_.progress(done_, total_);
+    }
+
+  private:
+    const WorkPrecisionOptions& options_;
+    std::size_t total_, done_ = 0;
+};
+
+/// Where each run's hair goes; the first run of each setting, which also warms the caches.
+Status followAll(const GridHair& hair, std::span<const HeadPose> poses, const Trajectory& truth,
+                 const std::vector<float>& shares, WorkPrecision& result, Counted& counted) {
+    for (WorkPrecisionRun& run : result.runs) {
+        const ThreadLimit limit = hair.limitThreads(run.values);
+        const auto outcome = runScene(hair.at(run.values), poses, result.options.time, shares);
+        if (!outcome) return tl::unexpected(outcome.error());
+        run.stateHash = outcome->stateHash;
+        run.diverged = !outcome->trajectory.finite || outcome->nanCount > 0;
+        if (!run.diverged) {
+            run.error = compare(outcome->trajectory, truth);
+            run.diverged = !(run.error.rmsMm <= result.options.divergedAboveMm);
+        }
+        if (run.diverged) run.error = {};
+        counted.add(run.diverged ? 1 + result.options.repeats : 1);
+    }
+    return {};
+}
+
+/// In rounds over all settings, so that a machine that warms up or is busy for a while treats them alike.
+Status timeAll(const GridHair& hair, std::span<const HeadPose> poses, WorkPrecision& result,
+               Counted& counted) {
+    std::vector<std::vector<double>> times(result.runs.size());
+    for (std::uint32_t round = 0; round < result.options.repeats; ++round) {
+        for (std::size_t r = 0; r < result.runs.size(); ++r) {
+            if (result.runs[r].diverged) continue;
+            const ThreadLimit limit = hair.limitThreads(result.runs[r].values);
+            const auto outcome = runScene(hair.at(result.runs[r].values), poses, result.options.time, {});
+            if (!outcome) return tl::unexpected(outcome.error());
+            times[r].push_back(outcome->millisecondsPerFrame);
+            counted.add();
+        }
+    }
+    for (std::size_t r = 0; r < result.runs.size(); ++r) {
+        if (!times[r].empty()) result.runs[r].milliseconds = quartiles(times[r]);
+    }
+    return {};
+}
+
+void findFront(WorkPrecision& result) {
+    std::vector<std::pair<double, double>> pairs;
+    for (const WorkPrecisionRun& run : result.runs) {
+        const double never = std::numeric_limits<double>::infinity();
+        pairs.emplace_back(run.diverged ? never : run.milliseconds.median,
+                           run.diverged ? never : run.error.rmsMm);
+    }
+    const std::vector<bool> front = paretoFront(pairs);
+    for (std::size_t r = 0; r < result.runs.size(); ++r) result.runs[r].onFront = front[r];
+}
+
+/// The hashes of all runs with one value of an axis, in the order of the other axes' values.
+std::vector<std::uint64_t> hashesAt(const WorkPrecision& result, std::size_t axis, double value) {
+    std::vector<std::uint64_t> hashes;
+    for (const WorkPrecisionRun& run : result.runs) {
+        if (run.values[axis] == value) hashes.push_back(run.stateHash);
+    }
+    return hashes;
+}
+
+/// A setting that changes no bit of any run is one that the engine does not heed in this scene, and its rows
+/// would pass for measurements of something else.
+void noteValuesWithoutEffect(std::size_t axisIndex, WorkPrecision& result) {
+    const GridAxis& axis = result.options.axes[axisIndex];
+    std::map<std::vector<std::uint64_t>, std::vector<std::string>> valuesByHashes;
+    for (const double value : axis.values) {
+        valuesByHashes[hashesAt(result, axisIndex, value)].push_back(axisValueText(axis, value));
+    }
+    for (const double value : axis.values) {  // in the order of the axis, not of the hashes
+        const auto& same = valuesByHashes.at(hashesAt(result, axisIndex, value));
+        if (same.size() < 2 || same.front() != axisValueText(axis, value)) continue;
+        result.notes.push_back(fmt::format(
+            "{} {} gave the same motion to the bit in every run: the engine does not tell them apart "
+            "in this scene, so their rows do not compare them.",
+            axis.field, fmt::join(same, ", ")));
+    }
+}
+
+void noteWhatMatters(WorkPrecision& result) {
+    for (std::size_t a = 0; a < result.options.axes.size(); ++a) {
+        if (result.options.axes[a].field != kThreadsAxis) noteValuesWithoutEffect(a, result);
+    }
+    // An error that is not well above the truth's own tells the truth's as much as the run's.
+    constexpr double kClear = 3;
+    const auto unclear = std::ranges::count_if(result.runs, [&](const WorkPrecisionRun& run) {
+        return !run.diverged && run.error.rmsMm < kClear * result.truthUncertaintyMm;
+    });
+    if (unclear > 0) {
+        result.notes.push_back(fmt::format(
+            "The truth itself moves by {:.3g} mm when its resolution in time is halved; the errors of {} of "
+            "{} "
+            "runs are less than three times that, so which of these is more exact cannot be told.",
+            result.truthUncertaintyMm, unclear, result.runs.size()));
+    }
+    const auto diverged = std::ranges::count_if(result.runs, &WorkPrecisionRun::diverged);
+    if (diverged > 0) {
+        result.notes.push_back(
+            fmt::format("{} of {} runs diverged (not finite, or a root mean square error above {:.4g} mm).",
+                        diverged, result.runs.size(), result.options.divergedAboveMm));
+    }
+    if (result.strands < result.groomStrands) {
+        result.notes.push_back(
+            fmt::format("A sample of {} of {} strands ran (seed {}); times are of the sample.",
+                        result.strands, result.groomStrands, result.options.seed));
+    }
+}
+
+Status checkAxes(const std::vector<GridAxis>& axes) {
+    std::set<std::string> seen;
+    for (const GridAxis& axis : axes) {
+        if (auto status = checkAxis(axis); !status) return status;
+        if (!seen.insert(axis.field).second)
+            return fail(axis.field + " varies twice", "expected one axis of it");
+    }
+    return {};
+}
+
+}  // namespace
+
+Result<WorkPrecision> measureWorkPrecision(const Groom& groom, const HeadMotion& motion,
+                                           const WorkPrecisionOptions& options, const TruthSource& truth) {
+    assert(options.repeats >= 1 && options.strands >= 1 && options.time.stepsPerFrame == 1);
+    if (auto status = checkAxes(options.axes); !status) return tl::unexpected(status.error());
+    if (groom.strandCount() == 0) return fail("the groom has no strands", "expected strands to simulate");
+
+    WorkPrecision result;
+    result.options = options;
+    result.truthName = truth.name();
+    result.truthDescription = truth.description();
+    result.groomStrands = groom.strandCount();
+    for (auto& values : combinations(options.axes)) result.runs.push_back({.values = std::move(values)});
+    SceneHair sample = sampleStrands(groom, options.strands, options.seed);
+    result.strands = sample.groom.strandCount();
+    if (!(options.divergedAboveMm > 0)) result.options.divergedAboveMm = longestStrandMm(sample.groom) / 2;
+    if (const auto points = findAxis(options.axes, kPointsAxis)) {
+        result.truthPoints = largestCount(options.axes[*points].values);
+    }
+    const GridHair hair(std::move(sample), result.options.axes);
+
+    // The truth counts as one run; it takes as long as several, but how many depends on the grid.
+    Counted counted(options, 1 + result.runs.size() * (1 + options.repeats));
+    const std::vector<float> shares = evenShares(options.pointsCompared);
+    const auto exact = truth.compute(hair.finest(), motion, options.time, shares);
+    if (!exact) return tl::unexpected(exact.error());
+    result.truthUncertaintyMm = exact->uncertaintyMm;
+    counted.add();
+
+    const std::vector<HeadPose> poses = posesOf(motion, options.time);
+    if (auto status = followAll(hair, poses, exact->trajectory, shares, result, counted); !status) {
+        return tl::unexpected(status.error());
+    }
+    if (auto status = timeAll(hair, poses, result, counted); !status) return tl::unexpected(status.error());
+    findFront(result);
+    noteWhatMatters(result);
+    return result;
+}
+
+}  // namespace hairloom

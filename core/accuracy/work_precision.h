@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Work and precision: what each of a grid of settings costs in a scene and how far its hair is from the
+// truth.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/accuracy/grid.h"
+#include "core/accuracy/statistics.h"
+#include "core/accuracy/truth.h"
+
+namespace hairloom {
+
+struct WorkPrecisionOptions {
+    std::vector<GridAxis> axes;         ///< each combination of their values is run
+    SceneTime time;                     ///< stepsPerFrame is 1
+    std::uint32_t strands = 200;        ///< ≥ 1; a sample of a larger groom
+    std::uint32_t repeats = 5;          ///< timed runs of each setting, ≥ 1; the first one is not timed
+    std::uint64_t seed = 1;             ///< of the sample
+    std::uint32_t pointsCompared = 16;  ///< on each strand, evenly spaced by arc length
+    /// A run whose root mean square error is larger has diverged; 0 stands for half the longest strand.
+    double divergedAboveMm = 0;
+    std::function<void(std::size_t done, std::size_t total)> progress;
+};
+
+struct WorkPrecisionRun {
+    std::vector<double> values;   ///< one for each axis
+    bool diverged = false;        ///< then there are no numbers
+    Quartiles milliseconds = {};  ///< of the engine, per frame: of the means of the repeated runs
+    TrajectoryError error = {};
+    bool onFront = false;  ///< no other run is both as fast and as exact (median time, root mean square)
+    std::uint64_t stateHash = 0;
+};
+
+struct WorkPrecision {
+    WorkPrecisionOptions options;  ///< with divergedAboveMm settled
+    std::string truthName;
+    std::string truthDescription;
+    double truthUncertaintyMm = 0;
+    std::uint32_t truthPoints = 0;  ///< per strand; 0 as authored
+    std::size_t groomStrands = 0;
+    std::size_t strands = 0;             ///< that ran
+    std::vector<WorkPrecisionRun> runs;  ///< the last axis turns fastest
+    std::vector<std::string> notes;      ///< what a reader must know; whole sentences
+};
+
+/// Errors: an axis that is neither a field nor named above, values out of its range (all of them checked
+/// before anything runs), a groom that cannot be simulated.
+Result<WorkPrecision> measureWorkPrecision(const Groom& groom, const HeadMotion& motion,
+                                           const WorkPrecisionOptions& options, const TruthSource& truth);
+
+}  // namespace hairloom

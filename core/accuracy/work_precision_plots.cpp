@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/accuracy/work_precision_report.h"
+#include "runtime/settings.h"
+
+namespace hairloom {
+namespace {
+
+constexpr std::string_view kIntegratorAxis = "integrator";
+constexpr Marker kShapes[] = {Marker::Circle, Marker::Square, Marker::TriangleUp, Marker::Diamond};
+constexpr const char* kGrey = "#666666";
+
+bool varies(const std::vector<GridAxis>& axes, std::size_t axis) {
+    return axes[axis].values.size() > 1;
+}
+
+/// Place of the run's value among its axis's; 0 where there is no such axis.
+std::size_t placeOf(const WorkPrecision& result, const WorkPrecisionRun& run,
+                    std::optional<std::size_t> axis) {
+    if (!axis) return 0;
+    const auto& values = result.options.axes[*axis].values;
+    return static_cast<std::size_t>(std::ranges::find(values, run.values[*axis]) - values.begin());
+}
+
+/// Axes whose values stand in labels: those that vary, but for the one that has colours.
+std::vector<std::size_t> labelledAxes(const std::vector<GridAxis>& axes) {
+    std::vector<std::size_t> labelled;
+    for (std::size_t a = 0; a < axes.size(); ++a) {
+        if (varies(axes, a) && axes[a].field != kIntegratorAxis) labelled.push_back(a);
+    }
+    return labelled;
+}
+
+std::string shortLabel(const WorkPrecision& result, const WorkPrecisionRun& run) {
+    std::string label;
+    for (const std::size_t a : labelledAxes(result.options.axes)) {
+        label += fmt::format("{}{}", label.empty() ? "" : "/",
+                             axisValueText(result.options.axes[a], run.values[a]));
+    }
+    return label;
+}
+
+std::string noteUnderPlot(const WorkPrecision& result, const ReportContext& context) {
+    std::string labels;
+    for (const std::size_t a : labelledAxes(result.options.axes)) {
+        labels += fmt::format("{}{}", labels.empty() ? "Labels: " : " / ", result.options.axes[a].field);
+    }
+    return fmt::format(
+        "{}{}{} of {} strands, {} frames at {:g} Hz, motion {}. Bars: quartiles of {} runs. Error "
+        "against {}.",
+        labels, labels.empty() ? "" : ". ", result.strands, result.groomStrands, result.options.time.frames,
+        result.options.time.framesPerSecond, context.motion, result.options.repeats, result.truthName);
+}
+
+std::string tooltipOf(const WorkPrecision& result, const WorkPrecisionRun& run) {
+    return fmt::format("{}: {:.4g} ms, {:.4g} mm rms, {:.4g} mm at most", settingText(result, run),
+                       run.milliseconds.median, run.error.rmsMm, run.error.maxMm);
+}
+
+/// Series that only name the colours and the shapes.
+void addLegend(const WorkPrecision& result, std::optional<std::size_t> integrator,
+               std::optional<std::size_t> points, Plot& plot) {
+    if (integrator) {
+        const GridAxis& axis = result.options.axes[*integrator];
+        for (std::size_t v = 0; v < axis.values.size(); ++v) {
+            plot.series.push_back({.name = axisValueText(axis, axis.values[v]), .colour = paletteColour(v)});
+        }
+    }
+    if (points && varies(result.options.axes, *points)) {
+        const GridAxis& axis = result.options.axes[*points];
+        for (std::size_t v = 0; v < axis.values.size(); ++v) {
+            plot.series.push_back(
+                {.name = fmt::format("{} {}", axisValueText(axis, axis.values[v]), axis.field),
+                 .colour = kGrey,
+                 .marker = kShapes[v % std::size(kShapes)]});
+        }
+    }
+}
+
+struct TimeRange {
+    double low = std::numeric_limits<double>::infinity(), high = 0;
+};
+
+/// How far the truth can be trusted, as a line across.
+void addUncertainty(double uncertaintyMm, double from, double to, Plot& plot) {
+    if (!(uncertaintyMm > 0) || !(from < to)) return;
+    plot.series.push_back({.name = "uncertainty of the truth",
+                           .points = {{from, uncertaintyMm}, {to, uncertaintyMm}},
+                           .colour = "#999999",
+                           .marker = Marker::None,
+                           .line = LineStyle::Dashed});
+}
+
+/// The value of an axis that error plots of another one hold: its largest, the first of choices.
+double heldValue(const GridAxis& axis) {
+    const runtime::FieldInfo* field = runtime::findField(axis.field);
+    if (field && !field->choices.empty()) return axis.values.front();
+    return *std::ranges::max_element(axis.values);
+}
+
+}  // namespace
+
+std::string settingText(const WorkPrecision& result, const WorkPrecisionRun& run) {
+    std::string text;
+    for (std::size_t a = 0; a < run.values.size(); ++a) {
+        const GridAxis& axis = result.options.axes[a];
+        text += fmt::format("{}{} {}", a == 0 ? "" : ", ", axis.field, axisValueText(axis, run.values[a]));
+    }
+    return text;
+}
+
+Plot workPrecisionPlot(const WorkPrecision& result, const ReportContext& context) {
+    Plot plot;
+    plot.title = "Work and precision: time per frame against error";
+    plot.note = noteUnderPlot(result, context);
+    plot.x = {.title = "time per frame", .unit = "ms", .scale = Scale::Logarithmic};
+    plot.y = {.title = "error, root mean square", .unit = "mm", .scale = Scale::Logarithmic};
+    plot.width = 860;
+    plot.height = 560;
+    const auto integrator = findAxis(result.options.axes, kIntegratorAxis);
+    const auto points = findAxis(result.options.axes, kPointsAxis);
+    addLegend(result, integrator, points, plot);
+
+    std::map<std::pair<std::size_t, std::size_t>, Series> series;
+    std::vector<PlotPoint> front;
+    TimeRange times;
+    for (const WorkPrecisionRun& run : result.runs) {
+        if (run.diverged) continue;
+        const auto key = std::pair(placeOf(result, run, integrator), placeOf(result, run, points));
+        series[key].points.push_back({.x = run.milliseconds.median,
+                                      .y = run.error.rmsMm,
+                                      .xLow = run.milliseconds.q1,
+                                      .xHigh = run.milliseconds.q3,
+                                      .label = run.onFront ? shortLabel(result, run) : std::string(),
+                                      .tooltip = tooltipOf(result, run),
+                                      .faint = !run.onFront});
+        if (run.onFront) front.push_back({run.milliseconds.median, run.error.rmsMm});
+        times.low = std::min(times.low, run.milliseconds.q1);
+        times.high = std::max(times.high, run.milliseconds.q3);
+    }
+    std::ranges::sort(front, {}, &PlotPoint::x);
+    plot.series.push_back({.name = "Pareto front",
+                           .points = std::move(front),
+                           .colour = kGrey,
+                           .marker = Marker::None,
+                           .line = LineStyle::Solid});
+    addUncertainty(result.truthUncertaintyMm, times.low, times.high, plot);
+    for (auto& [key, one] : series) {
+        one.colour = paletteColour(key.first);
+        one.marker = kShapes[key.second % std::size(kShapes)];
+        plot.series.push_back(std::move(one));
+    }
+    return plot;
+}
+
+std::optional<Plot> errorPlot(const WorkPrecision& result, std::size_t axisIndex) {
+    const std::vector<GridAxis>& axes = result.options.axes;
+    const GridAxis& axis = axes[axisIndex];
+    const runtime::FieldInfo* field = runtime::findField(axis.field);
+    const bool ofNumbers = axis.field == kPointsAxis || (field && field->choices.empty());
+    if (!ofNumbers || !varies(axes, axisIndex)) return std::nullopt;
+
+    const auto integrator = findAxis(axes, kIntegratorAxis);
+    std::string held;
+    for (std::size_t a = 0; a < axes.size(); ++a) {
+        if (a == axisIndex || a == integrator || axes[a].field == kThreadsAxis) continue;
+        held += fmt::format("{}{} {}", held.empty() ? "Held: " : ", ", axes[a].field,
+                            axisValueText(axes[a], heldValue(axes[a])));
+    }
+    std::vector<double> sorted = axis.values;
+    std::ranges::sort(sorted);
+    Plot plot;
+    plot.title = "Error against " + axis.field;
+    plot.note = held.empty() ? "" : held + ".";
+    plot.infinityName = "diverged";
+    const bool logarithmic = sorted.front() > 0 && sorted.back() >= 4 * sorted.front();
+    plot.x = {.title = axis.field,
+              .unit = field ? field->unit : "",
+              .scale = logarithmic ? Scale::Logarithmic : Scale::Linear,
+              .ticks = ticksAt(sorted)};
+    plot.y = {.title = "error, root mean square", .unit = "mm", .scale = Scale::Logarithmic};
+
+    std::map<std::size_t, Series> series;
+    for (const WorkPrecisionRun& run : result.runs) {
+        bool shown = true;
+        for (std::size_t a = 0; a < axes.size(); ++a) {
+            const bool free = a == axisIndex || a == integrator;
+            const double wanted = axes[a].field == kThreadsAxis ? axes[a].values.front() : heldValue(axes[a]);
+            shown = shown && (free || run.values[a] == wanted);
+        }
+        if (!shown) continue;
+        const double error = run.diverged ? std::numeric_limits<double>::infinity() : run.error.rmsMm;
+        series[placeOf(result, run, integrator)].points.push_back(
+            {.x = run.values[axisIndex], .y = error, .tooltip = tooltipOf(result, run)});
+    }
+    for (auto& [place, one] : series) {
+        if (integrator) one.name = axisValueText(axes[*integrator], axes[*integrator].values[place]);
+        one.colour = paletteColour(place);
+        one.line = LineStyle::Solid;
+        std::ranges::sort(one.points, {}, &PlotPoint::x);
+        plot.series.push_back(std::move(one));
+    }
+    addUncertainty(result.truthUncertaintyMm, sorted.front(), sorted.back(), plot);
+    return plot;
+}
+
+}  // namespace hairloom

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/accuracy/work_precision_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <system_error>
+
+#include "core/accuracy/html_report.h"
+#include "core/accuracy/machine.h"
+#include "core/base/file.h"
+
+namespace hairloom {
+namespace {
+
+using Cells = std::vector<std::string>;
+
+Cells headOf(const WorkPrecision& result) {
+    Cells head;
+    for (const GridAxis& axis : result.options.axes) head.push_back(axis.field);
+    return head;
+}
+
+Cells valuesOf(const WorkPrecision& result, const WorkPrecisionRun& run) {
+    Cells cells;
+    for (std::size_t a = 0; a < run.values.size(); ++a) {
+        cells.push_back(axisValueText(result.options.axes[a], run.values[a]));
+    }
+    return cells;
+}
+
+double allStrandsMs(const WorkPrecision& result, const WorkPrecisionRun& run) {
+    return run.milliseconds.median * static_cast<double>(result.groomStrands) /
+           static_cast<double>(result.strands);
+}
+
+std::string joined(const Cells& cells) {
+    return fmt::format("{}\n", fmt::join(cells, ","));
+}
+
+void append(Cells& cells, const Cells& more) {
+    cells.insert(cells.end(), more.begin(), more.end());
+}
+
+Cells rowForPeople(const WorkPrecision& result, const WorkPrecisionRun& run) {
+    Cells cells = valuesOf(result, run);
+    if (run.diverged) {
+        append(cells, {"", "", "", "", "", "diverged"});
+        return cells;
+    }
+    append(cells, {fmt::format("{:.4f}", run.milliseconds.median), fmt::format("{:.4f}", run.milliseconds.q1),
+                   fmt::format("{:.4f}", run.milliseconds.q3), fmt::format("{:.4f}", run.error.rmsMm),
+                   fmt::format("{:.3f}", run.error.maxMm), run.onFront ? "on the front" : ""});
+    return cells;
+}
+
+Cells headForPeople(const WorkPrecision& result) {
+    Cells head = headOf(result);
+    append(head, {"ms", "first quartile", "third quartile", "error mm rms", "error mm max", ""});
+    return head;
+}
+
+void addFront(const WorkPrecision& result, HtmlReport& page) {
+    std::vector<const WorkPrecisionRun*> front;
+    for (const WorkPrecisionRun& run : result.runs) {
+        if (run.onFront) front.push_back(&run);
+    }
+    std::ranges::sort(front, {}, [](const WorkPrecisionRun* run) { return run->milliseconds.median; });
+    std::vector<Cells> rows{headForPeople(result)};
+    for (const WorkPrecisionRun* run : front) rows.push_back(rowForPeople(result, *run));
+    for (Cells& row : rows) row.pop_back();
+    page.heading("The Pareto front");
+    page.paragraph(
+        "Settings that no other one in this grid beats in both time and error, the fastest first.");
+    page.table(rows);
+}
+
+void addWhatWasRun(const WorkPrecision& result, const ReportContext& context, HtmlReport& page) {
+    const WorkPrecisionOptions& options = result.options;
+    const Machine machine = thisMachine();
+    page.heading("What was run");
+    std::vector<std::pair<std::string, std::string>> facts{
+        {"Groom", context.groom},
+        {"Strands", result.strands == result.groomStrands
+                        ? fmt::format("all {}", result.strands)
+                        : fmt::format("{} of {}, drawn with seed {}", result.strands, result.groomStrands,
+                                      options.seed)},
+        {"Motion", fmt::format("{}, {} frames at {:g} Hz, from rest", context.motion, options.time.frames,
+                               options.time.framesPerSecond)}};
+    for (const GridAxis& axis : options.axes) {
+        Cells values;
+        for (const double value : axis.values) values.push_back(axisValueText(axis, value));
+        facts.emplace_back(axis.field, fmt::format("{}", fmt::join(values, ", ")));
+    }
+    facts.emplace_back("Other settings", "as the groom has them");
+    facts.emplace_back(
+        "Truth",
+        fmt::format("{}: {}; {} points per strand; {:.3g} mm root mean square from the same "
+                    "at half its resolution in time",
+                    result.truthName, result.truthDescription,
+                    result.truthPoints ? fmt::format("{}", result.truthPoints) : std::string("the authored"),
+                    result.truthUncertaintyMm));
+    facts.emplace_back(
+        "Error", fmt::format("distance of the same material points, {} evenly along each strand, at the "
+                             "end of every frame",
+                             options.pointsCompared));
+    facts.emplace_back("Time",
+                       fmt::format("of the engine, mean over the frames of a run; median and quartiles of {} "
+                                   "runs after an untimed one, in rounds over all settings",
+                                   options.repeats));
+    facts.emplace_back("Diverged", fmt::format("not finite, or an error above {:.4g} mm root mean square",
+                                               options.divergedAboveMm));
+    facts.emplace_back(
+        "Machine",
+        fmt::format("{} hardware threads, {} used{}, instruction set {}", machine.cores, machine.threads,
+                    findAxis(options.axes, kThreadsAxis) ? " unless threads vary" : "",
+                    machine.instructionSet));
+    page.facts(facts);
+    if (!context.commandLine.empty()) page.command(context.commandLine);
+}
+
+void addAllRuns(const WorkPrecision& result, HtmlReport& page) {
+    std::vector<Cells> rows{headForPeople(result)};
+    std::vector<bool> strong;
+    for (const WorkPrecisionRun& run : result.runs) {
+        rows.push_back(rowForPeople(result, run));
+        strong.push_back(run.onFront);
+    }
+    page.heading("All runs");
+    page.table(rows, strong);
+}
+
+struct NamedDrawing {
+    std::string file;
+    std::string svg;
+};
+
+std::vector<NamedDrawing> drawingsOf(const WorkPrecision& result, const ReportContext& context) {
+    std::vector<NamedDrawing> drawings{{"work_precision.svg", svg(workPrecisionPlot(result, context))}};
+    for (std::size_t a = 0; a < result.options.axes.size(); ++a) {
+        if (const auto plot = errorPlot(result, a)) {
+            drawings.push_back({fmt::format("error_vs_{}.svg", result.options.axes[a].field), svg(*plot)});
+        }
+    }
+    return drawings;
+}
+
+std::string pageOf(const WorkPrecision& result, const ReportContext& context,
+                   const std::vector<NamedDrawing>& drawings) {
+    HtmlReport page("Work and precision of " + context.groom);
+    page.paragraph(
+        "What a frame of simulation costs with each of a grid of settings, and how far the hair is from "
+        "where it should be.");
+    page.drawing(drawings[0].svg);
+    if (!result.notes.empty()) {
+        page.heading("To be known");
+        page.list(result.notes);
+    }
+    addFront(result, page);
+    if (drawings.size() > 1) page.heading("One setting at a time");
+    for (std::size_t d = 1; d < drawings.size(); ++d) page.drawing(drawings[d].svg);
+    addWhatWasRun(result, context, page);
+    addAllRuns(result, page);
+    return page.html();
+}
+
+}  // namespace
+
+std::string workPrecisionCsv(const WorkPrecision& result) {
+    Cells head = headOf(result);
+    append(head, {"ms_median", "ms_q1", "ms_q3", "ms_all_strands", "error_mm_rms", "error_mm_max", "diverged",
+                  "on_front"});
+    std::string text = joined(head);
+    for (const WorkPrecisionRun& run : result.runs) {
+        Cells cells = valuesOf(result, run);
+        if (run.diverged) {
+            append(cells, {"", "", "", "", "", "", "1", "0"});
+        } else {
+            for (const double number : {run.milliseconds.median, run.milliseconds.q1, run.milliseconds.q3,
+                                        allStrandsMs(result, run), run.error.rmsMm, run.error.maxMm}) {
+                cells.push_back(fmt::format("{:.6g}", number));
+            }
+            append(cells, {"0", run.onFront ? "1" : "0"});
+        }
+        text += joined(cells);
+    }
+    return text;
+}
+
+Result<std::vector<std::string>> writeWorkPrecision(const WorkPrecision& result, const ReportContext& context,
+                                                    const std::filesystem::path& folder) {
+    std::error_code code;
+    std::filesystem::create_directories(folder, code);
+    if (code) return failIn(folder.string(), {}, "the folder cannot be made: " + code.message());
+    const std::vector<NamedDrawing> drawings = drawingsOf(result, context);
+    std::vector<std::pair<std::string, std::string>> files{{"data.csv", workPrecisionCsv(result)}};
+    for (const NamedDrawing& drawing : drawings) files.emplace_back(drawing.file, drawing.svg);
+    files.emplace_back("report.html", pageOf(result, context, drawings));
+    std::vector<std::string> names;
+    for (const auto& [name, text] : files) {
+        if (auto status = writeFileAtomically(folder / name, text); !status)
+            return tl::unexpected(status.error());
+        names.push_back(name);
+    }
+    return names;
+}
+
+}  // namespace hairloom

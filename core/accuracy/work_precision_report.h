@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Work-precision runs as tables, charts and a page.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/accuracy/plot.h"
+#include "core/accuracy/work_precision.h"
+
+namespace hairloom {
+
+/// What a report says of a run besides its numbers.
+struct ReportContext {
+    std::string groom;        ///< file, as the user named it
+    std::string motion;       ///< as named
+    std::string commandLine;  ///< may be empty
+};
+
+/// One line per run after a head line, RFC 4180: each axis by its field's name, then ms_median, ms_q1, ms_q3,
+/// ms_all_strands (the median times the share of strands that ran: an estimate), error_mm_rms, error_mm_max,
+/// diverged, on_front (0 or 1). Numbers of diverged runs are empty.
+std::string workPrecisionCsv(const WorkPrecision& result);
+
+/// Error against time, both logarithmic: a colour for each integrator, a shape for each number of points,
+/// the front joined and labelled, the rest faint.
+Plot workPrecisionPlot(const WorkPrecision& result, const ReportContext& context);
+
+/// Error against one axis of numbers, a line for each integrator, the other axes held at their largest
+/// values. Nothing for an axis of choices, of threads, or of one value.
+std::optional<Plot> errorPlot(const WorkPrecision& result, std::size_t axis);
+
+/// "substeps 8, points 16": the values of a run by name.
+std::string settingText(const WorkPrecision& result, const WorkPrecisionRun& run);
+
+/// Writes data.csv, work_precision.svg, error_vs_FIELD.svg for each axis that has one, and report.html into
+/// the folder, which is made where it is missing. Returns the names of the files in it.
+Result<std::vector<std::string>> writeWorkPrecision(const WorkPrecision& result, const ReportContext& context,
+                                                    const std::filesystem::path& folder);
+
+}  // namespace hairloom

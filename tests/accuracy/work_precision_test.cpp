@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Work-precision runs and effect costs from end to end on a few strands, and what is written of them.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <sstream>
+
+#include "core/accuracy/effect_cost.h"
+#include "core/accuracy/work_precision_report.h"
+#include "core/base/file.h"
+#include "core/base/parallel.h"
+#include "tests/accuracy/hair.h"
+#include "tests/accuracy/xml_check.h"
+
+namespace hairloom::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// Hair that falls from a horizontal start; loose, so that the runs differ.
+Groom fallingHair() {
+    Groom groom = straightHair(6, 12);
+    groom.simulation.angularStiffness = 0;
+    return groom;
+}
+
+WorkPrecisionOptions smallGrid() {
+    WorkPrecisionOptions options;
+    options.axes = {{"integrator", {0}}, {"substeps", {1, 8}}, {"points", {4, 12}}};
+    options.time.frames = 8;
+    options.strands = 4;
+    options.repeats = 2;
+    return options;
+}
+
+Result<WorkPrecision> measureSmall(const WorkPrecisionOptions& options) {
+    const Groom groom = fallingHair();
+    const auto motion = makeRigidMotion("spin", groom);
+    return measureWorkPrecision(groom, **motion, options, EngineConverged(8));
+}
+
+TEST(WorkPrecision, MoreWorkIsMorePrecise) {
+    std::size_t last = 0, total = 0;
+    WorkPrecisionOptions options = smallGrid();
+    options.progress = [&](std::size_t done, std::size_t of) {
+        EXPECT_GT(done, last);
+        last = done;
+        total = of;
+    };
+    const auto result = measureSmall(options);
+    ASSERT_TRUE(result.has_value()) << result.error().message();
+    EXPECT_EQ(last, total);
+    EXPECT_EQ(result->strands, 4u);
+    EXPECT_EQ(result->groomStrands, 6u);
+    EXPECT_EQ(result->truthPoints, 12u);
+    ASSERT_EQ(result->runs.size(), 4u);
+    for (const WorkPrecisionRun& run : result->runs) {
+        EXPECT_FALSE(run.diverged);
+        EXPECT_GT(run.milliseconds.median, 0);
+        EXPECT_LE(run.milliseconds.q1, run.milliseconds.q3);
+        EXPECT_GT(run.error.rmsMm, 0);
+        EXPECT_GE(run.error.maxMm, run.error.rmsMm);
+    }
+    const WorkPrecisionRun &coarse = result->runs[0], &best = result->runs[3];
+    EXPECT_THAT(best.values, ElementsAre(0, 8, 12));
+    EXPECT_LT(best.error.rmsMm, 0.5 * coarse.error.rmsMm);
+    EXPECT_TRUE(best.onFront) << "nothing is as exact as the run closest to the truth";
+    EXPECT_THAT(result->notes, Contains(HasSubstr("4 of 6 strands")));
+}
+
+TEST(WorkPrecision, ErrorsAreTheSameForAnyNumberOfThreads) {
+    WorkPrecisionOptions options = smallGrid();
+    options.axes.push_back({"threads", {1, 2}});
+    options.repeats = 1;
+    const std::size_t before = threadCount();
+    const auto result = measureSmall(options);
+    ASSERT_TRUE(result.has_value());
+    EXPECT_EQ(threadCount(), before);
+    for (std::size_t r = 0; r < result->runs.size(); r += 2) {
+        EXPECT_EQ(result->runs[r].error.rmsMm, result->runs[r + 1].error.rmsMm);
+        EXPECT_EQ(result->runs[r].stateHash, result->runs[r + 1].stateHash);
+    }
+}
+
+TEST(WorkPrecision, WhatIsTooFarOffHasDivergedAndHasNoNumbers) {
+    WorkPrecisionOptions options = smallGrid();
+    options.divergedAboveMm = 1e-9;
+    const auto result = measureSmall(options);
+    ASSERT_TRUE(result.has_value());
+    for (const WorkPrecisionRun& run : result->runs) {
+        EXPECT_TRUE(run.diverged);
+        EXPECT_FALSE(run.onFront);
+        EXPECT_EQ(run.milliseconds.median, 0);
+    }
+    EXPECT_THAT(result->notes, Contains(HasSubstr("4 of 4 runs diverged")));
+    EXPECT_THAT(workPrecisionCsv(*result), HasSubstr("verlet,1,4,,,,,,,1,0\n"));
+    const auto drawing = parseXml(svg(workPrecisionPlot(*result, {})));
+    EXPECT_TRUE(drawing.has_value()) << "a chart of nothing is still a drawing";
+}
+
+TEST(WorkPrecision, SettingsWithoutEffectAreNamed) {
+    WorkPrecisionOptions options = smallGrid();
+    options.axes = {{"windFrequency", {1, 2}}};  // there is no wind
+    options.repeats = 1;
+    const auto result = measureSmall(options);
+    ASSERT_TRUE(result.has_value());
+    EXPECT_THAT(result->notes, Contains(HasSubstr("windFrequency 1, 2 gave the same motion to the bit")));
+}
+
+TEST(WorkPrecision, WrongGridsAreRefused) {
+    WorkPrecisionOptions options = smallGrid();
+    options.axes.push_back({"substeps", {3}});
+    EXPECT_THAT(measureSmall(options).error().message(), HasSubstr("twice"));
+    options = smallGrid();
+    options.axes[1].values = {100};
+    EXPECT_THAT(measureSmall(options).error().message(), HasSubstr("1 to 64"));
+}
+
+/// Numbers made by hand, so that what is written can be told in advance.
+WorkPrecision known() {
+    WorkPrecision result;
+    result.options = smallGrid();
+    result.options.axes = {{"integrator", {0, 5}}, {"substeps", {1, 8}}};
+    result.groomStrands = 40;
+    result.strands = 4;
+    result.truthName = "made";
+    result.runs.push_back({{0, 1}, false, {0.5, 1, 2}, {4, 8}, true, 1});
+    result.runs.push_back({{0, 8}, false, {4, 5, 6}, {0.25, 0.5}, true, 2});
+    result.runs.push_back({{5, 1}, true, {}, {}, false, 3});
+    result.runs.push_back({{5, 8}, false, {7, 8, 9}, {0.5, 1}, false, 4});
+    return result;
+}
+
+TEST(Report, CsvHasARowForEachRun) {
+    EXPECT_EQ(workPrecisionCsv(known()),
+              "integrator,substeps,ms_median,ms_q1,ms_q3,ms_all_strands,error_mm_rms,error_mm_max,diverged,"
+              "on_front\n"
+              "verlet,1,1,0.5,2,10,4,8,0,1\n"
+              "verlet,8,5,4,6,50,0.25,0.5,0,1\n"
+              "rk4,1,,,,,,,1,0\n"
+              "rk4,8,8,7,9,80,0.5,1,0,0\n");
+}
+
+TEST(Report, TheChartShowsFrontAndRest) {
+    const Plot plot = workPrecisionPlot(known(), {.groom = "g", .motion = "nod", .commandLine = ""});
+    std::size_t faint = 0, labelled = 0, points = 0;
+    for (const Series& series : plot.series) {
+        if (series.marker == Marker::None) continue;
+        for (const PlotPoint& point : series.points) {
+            ++points;
+            faint += point.faint;
+            labelled += !point.label.empty();
+        }
+    }
+    EXPECT_EQ(points, 3u) << "the diverged one has no place";
+    EXPECT_EQ(faint, 1u);
+    EXPECT_EQ(labelled, 2u);
+    EXPECT_EQ(plot.x.scale, Scale::Logarithmic);
+    EXPECT_TRUE(parseXml(svg(plot)).has_value());
+}
+
+TEST(Report, ErrorPlotsAreForAxesOfNumbers) {
+    EXPECT_FALSE(errorPlot(known(), 0).has_value()) << "integrators are no numbers";
+    const auto plot = errorPlot(known(), 1);
+    ASSERT_TRUE(plot.has_value());
+    ASSERT_EQ(plot->series.size(), 2u);
+    EXPECT_TRUE(std::isinf(plot->series[1].points[0].y)) << "diverged";
+    EXPECT_DOUBLE_EQ(plot->series[0].points[1].y, 0.25);
+}
+
+TEST(Report, AllFilesAreWrittenAndThePageStandsAlone) {
+    const fs::path folder = fs::path(testing::TempDir()) / "hairloom-accuracy-report" / "below";
+    fs::remove_all(folder.parent_path());
+    const auto names = writeWorkPrecision(known(), {"<g>", "nod", "hairloom-cli accuracy"}, folder);
+    ASSERT_TRUE(names.has_value()) << names.error().message();
+    EXPECT_THAT(*names,
+                ElementsAre("data.csv", "work_precision.svg", "error_vs_substeps.svg", "report.html"));
+    const std::string page = *readTextFile(folder / "report.html");
+    EXPECT_THAT(page, HasSubstr("&lt;g&gt;"));
+    EXPECT_THAT(page, HasSubstr("hairloom-cli accuracy"));
+    EXPECT_THAT(page, HasSubstr(*readTextFile(folder / "work_precision.svg")));
+    EXPECT_THAT(page, testing::Not(HasSubstr("src=")));
+    EXPECT_THAT(page, testing::Not(HasSubstr("href=")));
+    fs::remove_all(folder.parent_path());
+}
+
+TEST(EffectCosts, EveryEffectSaysWhyAndWhatItCosts) {
+    Groom groom = straightHair(6, 8);
+    groom.simulation.windSpeed = 2;
+    const auto motion = makeRigidMotion("none", groom);
+    EffectCostOptions options;
+    options.time.frames = 3;
+    options.repeats = 2;
+    const auto costs = measureEffectCosts(groom, **motion, options);
+    ASSERT_TRUE(costs.has_value()) << costs.error().message();
+    EXPECT_GT(costs->milliseconds.median, 0);
+    std::size_t on = 0;
+    for (const EffectCost& effect : costs->effects) {
+        EXPECT_FALSE(effect.why.empty()) << effect.name;
+        EXPECT_EQ(effect.on, effect.costMilliseconds.has_value()) << effect.name;
+        EXPECT_EQ(effect.on, !effect.turnedOffBy.empty()) << effect.name;
+        on += effect.on;
+        if (effect.name == "wind") {
+            EXPECT_THAT(effect.note, HasSubstr("without it drag is on"));
+        }
+        if (effect.name == "collision") {
+            EXPECT_EQ(effect.why, "off, no spheres");
+        }
+        EXPECT_THAT(effect.note, testing::Not(HasSubstr("stays on"))) << effect.name;
+    }
+    EXPECT_GE(on, 4u);
+}
+
+TEST(EffectCosts, CollisionIsTurnedOffByTakingTheSpheresAway) {
+    Groom groom = straightHair(6, 8);
+    groom.spheres.push_back({"ball", Vec3f(0.1f, 1.45f, 0), 0.1f, ""});
+    const auto motion = makeRigidMotion("none", groom);
+    EffectCostOptions options;
+    options.time.frames = 2;
+    options.repeats = 1;
+    const auto costs = measureEffectCosts(groom, **motion, options);
+    ASSERT_TRUE(costs.has_value()) << costs.error().message();
+    const auto collision = std::ranges::find(costs->effects, "collision", &EffectCost::name);
+    ASSERT_NE(collision, costs->effects.end());
+    EXPECT_TRUE(collision->on);
+    EXPECT_EQ(collision->turnedOffBy, "no spheres");
+    EXPECT_TRUE(collision->millisecondsOff.has_value());
+}
+
+}  // namespace
+}  // namespace hairloom::test
