@@ -39,7 +39,7 @@ TEST_F(Cli, WrongUsageEndsWith2AndHelpWith0) {
 
 TEST_F(Cli, EveryJobHasHelpWithAnExample) {
     for (const char* job : {"create", "info", "import", "export", "validate", "groom", "spheres", "set",
-                            "simulate", "render", "devices", "bench", "accuracy", "effects"}) {
+                            "simulate", "render", "devices", "bench", "accuracy", "effects", "stability"}) {
         const Outcome help = run(std::string(job) + " --help");
         EXPECT_EQ(help.exitCode, 0) << job;
         EXPECT_THAT(help.output, HasSubstr(std::string("hairloom-cli ") + job));
