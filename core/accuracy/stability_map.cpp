@@ -130,6 +130,7 @@ StabilityProbe probeStability(Integrator integrator, MappedForce force, double h
     const StrandSet strands = mappedStrand();
     SimulationSettings settings = mappedSettings(integrator, force, stiffness);
     StabilityProbe probe;
+    probe.adviceFactor = runtime::stableRegion(strands.view(), settings, static_cast<float>(h)).factor;
     probe.omegaStep = h * fastestWave(integrator, force, stiffness);
     // As strong as settings allow, for as many steps as it takes.
     const double strength = std::min(kPush / (h * h), kStrongest);

@@ -21,8 +21,9 @@ const char* forceName(MappedForce force);
 
 struct StabilityProbe {
     bool stable = false;
-    double growth = 0.0;     ///< of the swing, from its beginning to the last quarter; infinite when it broke
-    double omegaStep = 0.0;  ///< ω h of the strand's fastest wave
+    double growth = 0.0;  ///< of the swing, from its beginning to the last quarter; infinite when it broke
+    double adviceFactor = 0.0;  ///< what runtime::stableRegion() says of it: above 1 is unstable
+    double omegaStep = 0.0;     ///< ω h of the strand's fastest wave
 };
 
 /// Pushes a straight strand of 8 segments of 2 cm, all equally stiff, for one step of `h` seconds, and lets

@@ -43,7 +43,7 @@ class Trial {
     void moveRoots(runtime::Float3 shift, runtime::Quat turn = {}) { roots_ = strands_.roots(shift, turn); }
     void setRoots(std::vector<runtime::RootFrame> roots) { roots_ = std::move(roots); }
     void setSpheres(std::vector<runtime::Sphere> spheres) { spheres_ = std::move(spheres); }
-    /// Frame by frame, as `rates` says, the roots swing along x: 3 cm at 2 Hz for a second.
+    /// The roots swing along x for a second: 3 cm at 2 Hz.
     void shakeRoots();
 
     /// From the next frame on, points may not lie in spheres by more than 0.5 mm.

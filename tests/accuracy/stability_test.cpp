@@ -91,8 +91,13 @@ TEST_P(Border, IsWhereTheoryHasIt) {
     for (const double stiffness :
          force == MappedForce::coils ? std::vector{50.0, 800.0} : std::vector{0.05, 0.9}) {
         const double omega = fastestWave(integrator, force, stiffness);
-        EXPECT_TRUE(probeStability(integrator, force, 0.95 * limit / omega, stiffness).stable) << stiffness;
-        EXPECT_FALSE(probeStability(integrator, force, 1.05 * limit / omega, stiffness).stable) << stiffness;
+        const StabilityProbe inside = probeStability(integrator, force, 0.95 * limit / omega, stiffness);
+        const StabilityProbe outside = probeStability(integrator, force, 1.05 * limit / omega, stiffness);
+        EXPECT_TRUE(inside.stable) << stiffness;
+        EXPECT_FALSE(outside.stable) << stiffness;
+        // And so says the advice before a run.
+        EXPECT_NEAR(inside.adviceFactor, 0.95, 1e-3) << stiffness;
+        EXPECT_NEAR(outside.adviceFactor, 1.05, 1e-3) << stiffness;
     }
 }
 
@@ -125,7 +130,9 @@ TEST(StabilityMaps, WhatIsSolvedImplicitlyHasNoLimit) {
     for (const double h : {1e-4, 1e-2}) {
         EXPECT_TRUE(probeStability(Integrator::implicitEuler, MappedForce::coils, h, 2000.0).stable);
         EXPECT_TRUE(probeStability(Integrator::implicitEuler, MappedForce::angular, h, 0.99).stable);
-        EXPECT_TRUE(probeStability(Integrator::verlet, MappedForce::angular, h, 0.99).stable);
+        const StabilityProbe probe = probeStability(Integrator::verlet, MappedForce::angular, h, 0.99);
+        EXPECT_TRUE(probe.stable);
+        EXPECT_EQ(probe.adviceFactor, 0.0);
     }
 }
 
