@@ -51,5 +51,6 @@ void addDevicesJob(Jobs& jobs);
 void addBenchJob(Jobs& jobs);
 void addAccuracyJob(Jobs& jobs);
 void addEffectsJob(Jobs& jobs);
+void addStabilityJob(Jobs& jobs);
 
 }  // namespace hairloom::cli

@@ -9,9 +9,11 @@
 #include "cli/job.h"
 #include "cli/motions.h"
 #include "cli/progress.h"
+#include "core/base/log.h"
 #include "core/groom/project_file.h"
 #include "core/simulation/frame_record.h"
 #include "core/simulation/simulation.h"
+#include "runtime/stable.h"
 
 namespace hairloom::cli {
 namespace {
@@ -44,6 +46,29 @@ Status overrideSettings(Groom& groom, const SimulateOptions& options) {
         groom.simulation.integrator = static_cast<runtime::Integrator>(chosen - names.begin());
     }
     return setWind(groom, options.wind);
+}
+
+/// What runtime/stable.h has to say of these settings; null where all is well. Warns as well.
+Report adviceReport(const Groom& groom, float frameTime) {
+    const auto positions = groom.positions();
+    static_assert(sizeof(Vec3f) == sizeof(runtime::Float3));
+    runtime::StrandsView strands;
+    strands.offsets = groom.offsets.view();
+    strands.restPositions_ss = {reinterpret_cast<const runtime::Float3*>(positions.data()), positions.size()};
+    const runtime::StableAdvice advice = runtime::adviseStability(strands, groom.simulation, frameTime);
+    if (advice.words.empty()) return {};
+    Report offers = Report::array();
+    std::string remedies;
+    for (const runtime::StableOffer& offer : advice.offers) {
+        offers.push_back(offer.words);
+        remedies += (remedies.empty() ? "; what helps: " : ", or ") + offer.words;
+    }
+    log::warning("{}{}", advice.words, remedies);
+    Report report;
+    report["words"] = advice.words;
+    report["factor"] = finiteOrNull(advice.region.factor);
+    report["offers"] = std::move(offers);
+    return report;
 }
 
 Report effectsReport(const std::vector<EffectReport>& effects) {
@@ -83,6 +108,7 @@ Result<Report> simulate(const SimulateOptions& options) {
     HeadPose pose = (*motion)->poseAt(0);
     auto simulation = Simulation::make(*groom, pose);
     if (!simulation) return tl::unexpected(simulation.error());
+    const Report advice = adviceReport(*groom, 1.0f / options.framesPerSecond);
     std::optional<FrameRecorder> recorder;
     if (!options.record.empty()) {
         auto opened = FrameRecorder::open(options.record, *groom, options.framesPerSecond);
@@ -103,6 +129,7 @@ Result<Report> simulate(const SimulateOptions& options) {
     }
 
     Report report = statsReport(*groom, simulation->stats());
+    report["advice"] = advice;
     if (recorder) {
         if (auto finished = recorder->finish(); !finished) return tl::unexpected(finished.error());
         report["record"] = options.record;

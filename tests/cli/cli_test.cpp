@@ -39,11 +39,34 @@ TEST_F(Cli, WrongUsageEndsWith2AndHelpWith0) {
 
 TEST_F(Cli, EveryJobHasHelpWithAnExample) {
     for (const char* job : {"create", "info", "import", "export", "validate", "groom", "spheres", "set",
-                            "simulate", "render", "devices", "bench", "accuracy", "effects"}) {
+                            "simulate", "render", "devices", "bench", "accuracy", "effects", "stability"}) {
         const Outcome help = run(std::string(job) + " --help");
         EXPECT_EQ(help.exitCode, 0) << job;
         EXPECT_THAT(help.output, HasSubstr(std::string("hairloom-cli ") + job));
     }
+}
+
+TEST_F(Cli, SimulateWarnsOfStepsThatAreTooLong) {
+    runJson(createArguments());
+    const auto sound = runJson("simulate hair.hairloom --frames 2");
+    EXPECT_TRUE(sound["advice"].is_null());
+    const auto report = runJson("simulate hair.hairloom --frames 2 --integrator leapfrog --substeps 1");
+    EXPECT_THAT(report["advice"]["words"].get<std::string>(), HasSubstr("leapfrog is unstable"));
+    EXPECT_GT(report["advice"]["factor"].get<double>(), 1.0);
+    EXPECT_THAT(report["advice"]["offers"][0].get<std::string>(), HasSubstr("substeps instead of 1"));
+    EXPECT_THAT(run("simulate hair.hairloom --frames 2 --integrator leapfrog --substeps 1").errors,
+                HasSubstr("warning: leapfrog is unstable"));
+}
+
+TEST_F(Cli, StabilityWritesItsCasesAndMaps) {
+    const auto report =
+        runJson("stability -o out --integrators rk4 --cells 4 --steps 200 --steps-at-rest 8000");
+    EXPECT_EQ(report["cases"].size(), 25u);
+    EXPECT_EQ(report["cases"][8]["integrator"], "rk4");
+    EXPECT_TRUE(report["cases"][8]["mark"].is_number());
+    EXPECT_EQ(report["maps"].size(), 2u);
+    for (const char* file : {"report.html", "cases.csv", "cases.json", "cases.md", "stability-rk4-coils.svg"})
+        EXPECT_TRUE(fs::exists(folder / "out" / file)) << file;
 }
 
 TEST_F(Cli, CreateReportsWhatItMade) {

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include "cli/job.h"
+#include "core/accuracy/stability_report.h"
+#include "core/base/file.h"
+
+namespace hairloom::cli {
+namespace {
+
+struct StabilityJobOptions {
+    std::string output;
+    std::vector<std::string> integrators;
+    std::uint32_t cells = 24;
+    std::uint32_t steps = 2000;
+    std::uint64_t stepsAtRest = StabilityOptions{}.stepsAtRest;
+};
+
+std::vector<std::string> integratorNames() {
+    const auto choices = runtime::findField("integrator")->choices;
+    return {choices.begin(), choices.end()};
+}
+
+std::vector<runtime::Integrator> chosenIntegrators(const std::vector<std::string>& names) {
+    std::vector<runtime::Integrator> chosen;
+    for (const runtime::Integrator integrator : allIntegrators()) {
+        if (names.empty() || std::ranges::find(names, integratorName(integrator)) != names.end())
+            chosen.push_back(integrator);
+    }
+    return chosen;
+}
+
+Report numberOrNull(double value) {
+    return std::isfinite(value) ? Report(value) : Report();
+}
+
+Report caseReport(const StabilityResult& result) {
+    const StabilityMark& m = result.closest();
+    Report row;
+    row["number"] = result.number;
+    row["name"] = result.name;
+    row["integrator"] = result.integrator;
+    row["substeps"] = result.substeps;
+    row["claimed"] = result.claimed;
+    row["pass"] = result.pass;
+    row["measured"] = m.what;
+    row["worst"] = numberOrNull(m.worst);
+    row["mark"] = m.mark;
+    row["unit"] = m.unit;
+    row["failed_at"] = result.failedAt ? Report(*result.failedAt) : Report();
+    row["limit"] = result.limit;
+    return row;
+}
+
+Report mapReport(const StabilityMap& map) {
+    Report row;
+    row["integrator"] = integratorName(map.integrator);
+    row["force"] = forceName(map.force);
+    row["stable"] = std::ranges::count_if(map.probes, &StabilityProbe::stable);
+    row["cells"] = map.probes.size();
+    row["limit"] = numberOrNull(map.limit);
+    row["surprises"] = map.surprises;
+    return row;
+}
+
+Result<Report> stability(const StabilityJobOptions& options, const std::string& commandLine) {
+    const std::vector<runtime::Integrator> integrators = chosenIntegrators(options.integrators);
+    StabilityOptions suite;
+    suite.stepsAtRest = options.stepsAtRest;
+    const std::vector<StabilityResult> results = runHardCases(integrators, suite);
+    std::vector<StabilityMap> maps;
+    for (const MappedForce force : {MappedForce::coils, MappedForce::angular}) {
+        for (const runtime::Integrator integrator : integrators)
+            maps.push_back(mapStability(integrator, force, options.cells, options.steps));
+    }
+    const auto files = writeStability(results, maps, commandLine, options.output);
+    if (!files) return tl::unexpected(files.error());
+
+    Report report;
+    report["failed"] =
+        std::ranges::count_if(results, [](const StabilityResult& r) { return r.claimed && !r.pass; });
+    report["cases"] = Report::array();
+    for (const StabilityResult& result : results) report["cases"].push_back(caseReport(result));
+    report["maps"] = Report::array();
+    for (const StabilityMap& map : maps) report["maps"].push_back(mapReport(map));
+    report["output"] = options.output;
+    report["files"] = *files;
+    report["files"].push_back("cases.json");
+    const std::filesystem::path path = std::filesystem::path(options.output) / "cases.json";
+    if (auto status = writeFileAtomically(path, report["cases"].dump(2) + "\n"); !status)
+        return tl::unexpected(status.error());
+    return report;
+}
+
+}  // namespace
+
+void addStabilityJob(Jobs& jobs) {
+    const auto options = std::make_shared<StabilityJobOptions>();
+    CLI::App& job = jobs.add(
+        "stability", "Run the hard cases of the strand engine and map where each integrator is stable",
+        "-o stability --integrators verlet,rk4",
+        [options, &jobs] { return stability(*options, jobs.commandLine()); });
+    job.add_option("-o,--output", options->output,
+                   "Folder for report.html, cases.json, cases.csv, cases.md and the maps")
+        ->required();
+    job.add_option("--integrators", options->integrators, "Integrators to run, instead of all")
+        ->delimiter(',')
+        ->check(CLI::IsMember(integratorNames()));
+    job.add_option("--cells", options->cells, "Steps and stiffnesses of a map")->check(CLI::Range(2, 200));
+    job.add_option("--steps", options->steps, "Steps of a cell")->check(CLI::Range(40, 100'000));
+    job.add_option("--steps-at-rest", options->stepsAtRest, "Substeps of the case at rest")
+        ->check(CLI::Range(8, 100'000'000));
+}
+
+}  // namespace hairloom::cli

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/accuracy/stability.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+#include "core/accuracy/hard_cases.h"
+#include "core/base/parallel.h"
+
+namespace hairloom {
+namespace {
+
+using namespace hardcases;
+
+// clang-format off
+constexpr HardCase kCases[] = {
+    {1, "zero-length segment", "shape", "a segment without length at the root, in the middle, at the tip; shaken", segmentWithoutLength},
+    {2, "coincident neighbours", "shape", "four points at one place, 0.1 µm apart, all points at one place; shaken", coincidentNeighbours},
+    {3, "folded back", "shape", "a rest shape that turns by 180° once, and at every point; shaken", foldedBack},
+    {4, "point at a sphere's centre", "spheres", "a sphere of 2 cm appears with a point at its centre; 0.5 s to leave it", pointAtCentre},
+    {5, "overlapping spheres", "spheres", "two, then five overlapping spheres appear around one point; 0.5 s to leave them", overlappingSpheres},
+    {6, "10 turns a second", "motion", "the head turns at 10 rev/s for 2,000 substeps, then stops at once", turningHead},
+    {7, "teleport", "motion", "a cut by 10 m and half a turn in motion, and back", teleport},
+    {8, "frame times", "motion", "frames of 1, 33, 250 and 1,000 ms, then alternating, on a swaying head", frameTimes},
+    {9, "stiffness x 10^6", "stiffness", "a million times the default stiffness; shaken", stiffnessTimesMillion},
+    {10, "mass ratio 10^4", "shape", "masses from 1 to 10,000 along a strand, either way; shaken", massRatio},
+    {11, "reversing storm", "stiffness", "100 m/s, reversing each frame, for 2,000 substeps, then still", reversingStorm},
+    {12, "tiny segments", "shape", "31 segments of 0.1 mm; shaken", tinySegments},
+    {13, "long strand", "shape", "1.5 m in 31 segments; shaken", longStrand},
+    {14, "small curls", "shape", "curls of 2 mm radius, 12 points a turn; shaken", smallCurls},
+    {15, "one segment", "shape", "strands of two points, one or both clamped; shaken", oneSegment},
+    {16, "root through a sphere", "spheres", "the roots cross a sphere of 5 cm at 0.5 m/s", rootThroughSphere},
+    {17, "free swing", "energy", "no gravity, air or damping, straight hair, 60 s after a push", freeSwing},
+    {18, "a million substeps at rest", "energy", "once asleep, once kept awake", longRest},
+    {19, "input that is no number", "input", "wind, time, roots and spheres of NaN and infinity; a strand that does break", windThatIsNoNumber},
+    {20, "denormal speeds", "input", "gravity of 1e-36 m/s² and wind of 1e-38 m/s, then gravity as usual", denormalSpeeds},
+    {21, "scale 0.001 and 1,000", "shape", "hair of 0.18 mm and of 180 m; shaken", smallAndLarge},
+    {22, "shrinking sphere", "spheres", "a sphere of 4 cm shrinks to nothing in 2 s", shrinkingSphere},
+    {23, "negative radius", "spheres", "a sphere of -5 cm is left out and changes nothing", negativeRadius},
+    {24, "changes in mid-run", "motion", "integrator, substeps and number of segments change every few frames", changesInMidRun},
+    {25, "6, 8, 9 and 11 at once", "motion", "turning at 10 rev/s in a reversing storm, stiffness x 10^6, frames of 1 to 1,000 ms", everythingAtOnce},
+};
+// clang-format on
+
+/// Share of its mark; what is no number or may not happen at all is beyond every share.
+double share(const StabilityMark& m) {
+    if (m.met()) return m.mark > 0.0 ? m.worst / m.mark : 0.0;
+    return m.mark > 0.0 && std::isfinite(m.worst) ? m.worst / m.mark
+                                                  : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+const StabilityMark& StabilityResult::closest() const {
+    return *std::ranges::max_element(marks, {}, share);
+}
+
+std::span<const HardCase> hardCases() {
+    return kCases;
+}
+
+StabilityResult runHardCase(const HardCase& hardCase, runtime::Integrator integrator,
+                            const StabilityOptions& options) {
+    Trial trial(integrator, options);
+    hardCase.run(trial);
+    StabilityResult result = trial.result();
+    result.number = hardCase.number;
+    result.name = hardCase.name;
+    result.family = hardCase.family;
+    return result;
+}
+
+std::vector<StabilityResult> runHardCases(std::span<const runtime::Integrator> integrators,
+                                          const StabilityOptions& options,
+                                          const std::function<void(std::size_t)>& progress) {
+    std::vector<StabilityResult> results(hardCases().size() * integrators.size());
+    std::atomic<std::size_t> done{0};
+    parallelFor(results.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            results[i] = runHardCase(hardCases()[i / integrators.size()], integrators[i % integrators.size()],
+                                     options);
+            const std::size_t count = ++done;
+            if (progress) progress(count);
+        }
+    });
+    return results;
+}
+
+std::string integratorName(runtime::Integrator integrator) {
+    return runtime::findField("integrator")->choices[static_cast<std::size_t>(integrator)];
+}
+
+std::vector<runtime::Integrator> allIntegrators() {
+    std::vector<runtime::Integrator> all;
+    for (std::size_t i = 0; i < runtime::findField("integrator")->choices.size(); ++i)
+        all.push_back(static_cast<runtime::Integrator>(i));
+    return all;
+}
+
+}  // namespace hairloom

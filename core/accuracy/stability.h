@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The hard cases: scenes that make strand engines fail, each with every integrator and the marks that it has
+// to meet. docs/stability.md has what came out.
+//
+// The settings are the defaults but for the integrator and what a case is about. Where theory
+// (runtime/stable.h) says that an integrator needs shorter substeps, it gets them, up to 64 a frame; where
+// these do not suffice, the case lies outside of what the integrator claims, and the result says at which
+// substep it fails.
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "runtime/settings.h"
+
+namespace hairloom {
+
+/// One thing measured, held to a mark.
+struct StabilityMark {
+    std::string what;
+    std::string unit = {};  ///< "" for a pure number
+    double worst = 0.0;     ///< greatest that was seen
+    double mark = 0.0;      ///< greatest allowed
+
+    /// What is no number does not meet any mark.
+    bool met() const { return worst <= mark; }
+};
+
+struct StabilityResult {
+    int number = 0;
+    std::string name;
+    std::string family;
+    std::string integrator;
+    std::uint32_t substeps = 0;  ///< a frame
+    bool claimed = true;
+    bool pass = false;  ///< every mark is met
+    std::vector<StabilityMark> marks;
+    std::string limit;                      ///< why the case is not claimed; empty where it is
+    std::optional<std::uint64_t> failedAt;  ///< substep in which a strand broke; absent where none did
+
+    /// The mark that is missed farthest, or met by the least.
+    const StabilityMark& closest() const;
+};
+
+struct StabilityOptions {
+    std::uint64_t stepsAtRest = 1'000'000;  ///< substeps of case 18, at least 8
+    double freeSeconds = 60.0;              ///< of case 17, at least 2
+};
+
+class Trial;
+
+struct HardCase {
+    int number;
+    const char* name;
+    const char* family;
+    const char* scene;  ///< what happens, one sentence
+    void (*run)(Trial&);
+};
+
+/// All, by number.
+std::span<const HardCase> hardCases();
+
+StabilityResult runHardCase(const HardCase& hardCase, runtime::Integrator integrator,
+                            const StabilityOptions& options = {});
+
+/// Every case with each of the integrators, side by side on threads; ordered by case, then as `integrators`.
+/// `progress` may be empty; it is called from any thread with the number of results so far.
+std::vector<StabilityResult> runHardCases(std::span<const runtime::Integrator> integrators,
+                                          const StabilityOptions& options = {},
+                                          const std::function<void(std::size_t)>& progress = {});
+
+/// The integrators' names as in settings.
+std::string integratorName(runtime::Integrator integrator);
+/// All, as settings list them.
+std::vector<runtime::Integrator> allIntegrators();
+
+}  // namespace hairloom

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/accuracy/stability_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/accuracy/html_report.h"
+#include "core/base/file.h"
+
+namespace hairloom {
+namespace {
+
+std::string quoted(const std::string& text) {
+    if (text.find_first_of(",\"\n") == std::string::npos) return text;
+    std::string result(1, '"');
+    for (const char c : text) {
+        if (c == '"') result += c;
+        result += c;
+    }
+    result += '"';
+    return result;
+}
+
+std::vector<std::string> integratorsOf(const std::vector<StabilityResult>& results) {
+    std::vector<std::string> names;
+    for (const StabilityResult& r : results) {
+        if (std::ranges::find(names, r.integrator) == names.end()) names.push_back(r.integrator);
+    }
+    return names;
+}
+
+const char* meaningOf(int number) {
+    const auto found = std::ranges::find(hardCases(), number, &HardCase::number);
+    return found == hardCases().end() ? "" : found->scene;
+}
+
+void addCases(const std::vector<StabilityResult>& results, HtmlReport& page) {
+    std::vector<std::vector<std::string>> rows{
+        {"case", "scene", "integrator", "substeps", "result", "deciding mark"}};
+    std::vector<bool> strong;
+    for (const StabilityResult& r : results) {
+        rows.push_back({fmt::format("{} {}", r.number, r.name), meaningOf(r.number), r.integrator,
+                        std::to_string(r.substeps), verdict(r), decidingMark(r)});
+        strong.push_back(r.claimed && !r.pass);
+    }
+    page.heading("Cases");
+    page.table(rows, strong);
+}
+
+void addLimits(const std::vector<StabilityResult>& results, HtmlReport& page) {
+    std::vector<std::vector<std::string>> rows{{"case", "integrator", "fails at substep", "theory"}};
+    for (const StabilityResult& r : results) {
+        if (r.claimed) continue;
+        rows.push_back({fmt::format("{} {}", r.number, r.name), r.integrator,
+                        r.failedAt ? std::to_string(*r.failedAt) : std::string("not at all"), r.limit});
+    }
+    if (rows.size() == 1) return;
+    page.heading("Limits");
+    page.table(rows);
+}
+
+std::string pageOf(const std::vector<StabilityResult>& results, const std::vector<StabilityMap>& maps,
+                   const std::string& commandLine) {
+    HtmlReport page("Stability of the strand engine");
+    if (!commandLine.empty()) page.command(commandLine);
+    const auto failed = std::ranges::count_if(results, [](const auto& r) { return r.claimed && !r.pass; });
+    page.paragraph(
+        fmt::format("{} cases, {} of them fail what their integrator claims.", results.size(), failed));
+    addCases(results, page);
+    addLimits(results, page);
+    if (!maps.empty()) page.heading("Maps");
+    for (const StabilityMap& map : maps) page.drawing(svg(stabilityPlot(map)));
+    return page.html();
+}
+
+}  // namespace
+
+std::string verdict(const StabilityResult& result) {
+    if (result.claimed) return result.pass ? "pass" : "FAIL";
+    if (result.failedAt) return fmt::format("limit, at substep {}", *result.failedAt);
+    return result.pass ? "held" : "limit";
+}
+
+std::string decidingMark(const StabilityResult& result) {
+    const StabilityMark& m = result.closest();
+    return fmt::format("{} {:.3g} of {:.3g}{}{}", m.what, m.worst, m.mark, m.unit.empty() ? "" : " ", m.unit);
+}
+
+std::string stabilityCsv(const std::vector<StabilityResult>& results) {
+    std::string text =
+        "number,case,family,integrator,substeps,claimed,pass,measured,worst,mark,unit,failed_at,limit\r\n";
+    for (const StabilityResult& r : results) {
+        for (const StabilityMark& m : r.marks) {
+            text +=
+                fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\r\n", r.number, quoted(r.name),
+                            quoted(r.family), r.integrator, r.substeps, r.claimed ? 1 : 0, m.met() ? 1 : 0,
+                            quoted(m.what), std::isfinite(m.worst) ? fmt::format("{:.6g}", m.worst) : "",
+                            m.mark, m.unit, r.failedAt ? std::to_string(*r.failedAt) : "", quoted(r.limit));
+        }
+    }
+    return text;
+}
+
+std::string stabilityMarkdown(const std::vector<StabilityResult>& results) {
+    const std::vector<std::string> integrators = integratorsOf(results);
+    std::string text = "| case |", rule = "|---|";
+    for (const std::string& name : integrators) {
+        text += fmt::format(" {} |", name);
+        rule += "---|";
+    }
+    text += fmt::format("\n{}\n", rule);
+    for (std::size_t i = 0; i < results.size(); i += integrators.size()) {
+        text += fmt::format("| {} {} |", results[i].number, results[i].name);
+        for (std::size_t k = 0; k < integrators.size(); ++k) {
+            const StabilityResult& r = results[i + k];
+            text += fmt::format(" {}", verdict(r));
+            if (r.claimed && r.substeps != runtime::SimulationSettings{}.substeps)
+                text += fmt::format(" ({} substeps)", r.substeps);
+            if (r.claimed && !r.pass) text += fmt::format(": {}", decidingMark(r));
+            text += " |";
+        }
+        text += "\n";
+    }
+    return text;
+}
+
+Result<std::vector<std::string>> writeStability(const std::vector<StabilityResult>& results,
+                                                const std::vector<StabilityMap>& maps,
+                                                const std::string& commandLine,
+                                                const std::filesystem::path& folder) {
+    std::error_code code;
+    std::filesystem::create_directories(folder, code);
+    if (code) return failIn(folder.string(), {}, "the folder cannot be made: " + code.message());
+    std::vector<std::pair<std::string, std::string>> files{{"cases.csv", stabilityCsv(results)},
+                                                           {"cases.md", stabilityMarkdown(results)}};
+    for (const StabilityMap& map : maps) {
+        files.emplace_back(
+            fmt::format("stability-{}-{}.svg", integratorName(map.integrator), forceName(map.force)),
+            svg(stabilityPlot(map)));
+    }
+    files.emplace_back("report.html", pageOf(results, maps, commandLine));
+    std::vector<std::string> names;
+    for (const auto& [name, text] : files) {
+        if (auto status = writeFileAtomically(folder / name, text); !status)
+            return tl::unexpected(status.error());
+        names.push_back(name);
+    }
+    return names;
+}
+
+}  // namespace hairloom

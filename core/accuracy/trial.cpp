@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/accuracy/trial.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "runtime/stable.h"
+
+namespace hairloom {
+namespace {
+
+using runtime::Float3;
+
+constexpr double kRestSpeed = 0.005;      // m/s
+constexpr double kNoEnergy = 1e-9;        // joules a point of 1 kg: below is rounding
+constexpr double kMostPenetration = 0.5;  // mm
+constexpr std::uint32_t kMostSubsteps = 64;
+/// What an integrator claims lies this far inside of its stable region.
+constexpr double kMargin = 0.9;
+
+/// Fewest substeps within the integrator's stable region, at least those of the settings; 64 where none are.
+std::uint32_t substepsFor(const StrandSet& strands, runtime::SimulationSettings settings, float frame) {
+    while (settings.substeps < kMostSubsteps &&
+           runtime::stableRegion(strands.view(), settings, frame).factor > kMargin)
+        ++settings.substeps;
+    return settings.substeps;
+}
+
+}  // namespace
+
+void Trial::start(StrandSet strands, runtime::SimulationSettings settings, float longestFrame) {
+    strands_ = std::move(strands);
+    settings.integrator = integrator_;
+    settings.substeps = substepsFor(strands_, settings, longestFrame);
+    const runtime::StableAdvice advice = runtime::adviseStability(strands_.view(), settings, longestFrame);
+    if (limit_.empty()) limit_ = advice.words;
+    runtime::Engine::Made made = runtime::Engine::make(strands_.view(), settings);
+    if (!made.engine) {
+        expect("refused: " + made.error, "", 1.0, 0.0);
+        made = runtime::Engine::make({}, {});
+    }
+    engine_.emplace(std::move(*made.engine));
+    roots_ = strands_.roots();
+    engine_->reset(roots_);
+}
+
+void Trial::change(const runtime::SimulationSettings& settings) {
+    if (const std::string error = engine_->setSettings(settings); !error.empty())
+        expect("refused: " + error, "", 1.0, 0.0);
+}
+
+void Trial::frame(float dt) {
+    if (over()) return;
+    time_ += static_cast<double>(dt);
+    engine_->step({dt, time_, roots_, spheres_});
+    substeps_ += settings().substeps;
+    inspect();
+}
+
+void Trial::frames(int count, float dt) {
+    for (int i = 0; i < count; ++i) frame(dt);
+}
+
+void Trial::shakeRoots() {
+    for (int f = 1; f <= 60; ++f) {
+        const float t = static_cast<float>(f) / 60.0f;
+        moveRoots({0.03f * std::sin(4.0f * std::numbers::pi_v<float> * t), 0.0f, 0.0f});
+        frame();
+    }
+}
+
+void Trial::settle(double most) {
+    sourceEnds();
+    double moving = 0.0;
+    const int frameCount = static_cast<int>(std::lround(1.2 * most / static_cast<double>(kFrame)));
+    for (int f = 1; f <= frameCount && !over(); ++f) {
+        frame();
+        // Not "> kRestSpeed": what is no number does not rest.
+        if (!(greatestSpeed() <= kRestSpeed)) moving = f * static_cast<double>(kFrame);
+    }
+    raise("time to rest", "s", over() ? std::nan("") : moving, most);
+}
+
+void Trial::inspect() {
+    const runtime::Measurements m = engine_->measure();
+    const bool held = settings().lengthMethod == runtime::LengthMethod::constraint;
+    const double stretch = held ? 0.01 : 0.48;
+    const double broken = static_cast<double>(m.nanCount) +
+                          (restoredAllowed_ ? 0.0 : static_cast<double>(engine_->lastStep().restoredStrands));
+    raise("points or strands lost", "", broken, 0.0);
+    raise("stretch", "%", 100.0 * m.maxStretch, 100.0 * stretch);
+    if (watchingSpheres_) raise("penetration", "mm", 1000.0 * m.maxPenetration, kMostPenetration);
+    const bool sound = broken == 0.0 && m.maxStretch <= stretch && std::isfinite(m.kineticEnergy);
+    if (!sound && !failedAt_) failedAt_ = substeps_;
+    const double energy = m.kineticEnergy / std::max<double>(engine_->pointCount(), 1.0);
+    if (!sourceEnded_) {
+        mostEnergy_ = std::max(mostEnergy_, energy);
+    } else {
+        raise("kinetic energy over its peak with a source", "",
+              energy > kNoEnergy ? energy / std::max(mostEnergy_, kNoEnergy) : 0.0, 1.0);
+    }
+}
+
+void Trial::expect(const std::string& what, const std::string& unit, double worst, double mark) {
+    raise(what, unit, worst, mark);
+}
+
+void Trial::raise(const std::string& what, const std::string& unit, double value, double mark) {
+    const auto found = std::ranges::find(marks_, what, &StabilityMark::what);
+    if (found == marks_.end()) {
+        marks_.push_back({what, unit, value, mark});
+    } else if (!(value <= found->worst)) {
+        if (!std::isnan(found->worst)) found->worst = value;
+    }
+}
+
+std::vector<Float3> Trial::positions() const {
+    std::vector<Float3> result(engine_->pointCount());
+    engine_->readPositions(result);
+    return result;
+}
+
+double Trial::greatestSpeed() const {
+    std::vector<Float3> velocities(engine_->pointCount());
+    engine_->readVelocities(velocities);
+    double most = 0.0;
+    for (const Float3& v : velocities) {
+        const double speed = static_cast<double>(length(v));
+        if (!(speed <= most)) most = speed;
+    }
+    return most;
+}
+
+StabilityResult Trial::result() const {
+    StabilityResult result;
+    result.integrator = integratorName(integrator_);
+    result.substeps = engine_ ? settings().substeps : 0;
+    result.claimed = limit_.empty();
+    result.marks = marks_;
+    result.pass = !marks_.empty() && std::ranges::all_of(marks_, &StabilityMark::met) && !over();
+    result.limit = limit_;
+    result.failedAt = failedAt_;
+    return result;
+}
+
+}  // namespace hairloom
