@@ -17,7 +17,7 @@ using namespace hardcases;
 // clang-format off
 constexpr HardCase kCases[] = {
     {1, "zero-length segment", "shape", "a segment without length at the root, in the middle, at the tip; shaken", segmentWithoutLength},
-    {2, "coincident neighbours", "shape", "four points at one place, 0.1 µm apart, all points at one place; shaken", coincidentNeighbours},
+    {2, "coincident neighbours", "shape", "four points at one place, 10 µm apart, all points at one place; shaken", coincidentNeighbours},
     {3, "folded back", "shape", "a rest shape that turns by 180° once, and at every point; shaken", foldedBack},
     {4, "point at a sphere's centre", "spheres", "a sphere of 2 cm appears with a point at its centre; 0.5 s to leave it", pointAtCentre},
     {5, "overlapping spheres", "spheres", "two, then five overlapping spheres appear around one point; 0.5 s to leave them", overlappingSpheres},
