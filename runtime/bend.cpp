@@ -17,6 +17,8 @@ constexpr double kStiffest = 1e7;
 constexpr double kMostHeld = std::numbers::pi;
 /// What keeps the fastest waves of curved hair from ringing on, whose pulls are not quite those of an energy.
 constexpr float kLeastCurvedRate = 0.25f;
+/// The same where lengths are held, which no longer leaves the trapezoidal rule its own.
+constexpr float kLeastRate = 0.02f;
 /// 2 − √2: how much nearer the ends of two unit segments come when they turn by 90°.
 constexpr double kShortening = 0.585786437626905;
 
@@ -195,13 +197,14 @@ class StrandBend {
 
 }  // namespace
 
-float bendRate(const SimulationSettings& settings, float h, float velocityShare, bool curved) {
-    const float least = curved ? kLeastCurvedRate : 0.0f;
-    return std::max(settings.bendDampingTime / h, least) + 0.25f * (1.0f - velocityShare);
+float bendRate(const SimulationSettings& settings, float h, bool curved) {
+    const float damping = settings.dampingTime > 0.0f ? 1.0f / settings.dampingTime : 0.0f;
+    const float lost = 1.0f - std::exp(-h * (damping + settings.airDrag));
+    return std::max(settings.bendDampingTime / h, curved ? kLeastCurvedRate : kLeastRate) + 0.25f * lost;
 }
 
-void fillBend(const RestShape& shape, const SimulationSettings& settings, float h, float velocityShare,
-              std::size_t index, Bend& bend) {
+void fillBend(const RestShape& shape, const SimulationSettings& settings, float h, std::size_t index,
+              Bend& bend) {
     const Block& block = shape.blocks[index];
     if (block.points <= settings.clampedPoints) return;
     const std::size_t size = planeSize(block);
@@ -210,8 +213,7 @@ void fillBend(const RestShape& shape, const SimulationSettings& settings, float 
     const bool flexion = settings.angularMethod == AngularMethod::flexion;
     const bool backward = settings.integrator == Integrator::implicitEuler;
     const double share =
-        backward ? step
-                 : step * (0.25 + static_cast<double>(bendRate(settings, h, velocityShare, bend.targets)));
+        backward ? step : step * (0.25 + static_cast<double>(bendRate(settings, h, bend.targets)));
     const bool held = settings.restGravity > 0.0f;
     for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
         StrandBend strand(shape, settings, index, lane);

@@ -62,15 +62,6 @@ void refuseOutside(std::string& text, const char* name, double value, double low
     text += line.str();
 }
 
-bool usable(RootFrame& root) {
-    return isFinite(root.position) && normalize(root.rotation);
-}
-
-bool usableWithin(RootFrame& root, float limit) {
-    const Float3 at = root.position;
-    return usable(root) && std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)}) <= limit;
-}
-
 RootFrame between(const RootFrame& from, const RootFrame& to, float share) {
     const Quat a = from.rotation, b = to.rotation;
     const float other = a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w < 0.0f ? -share : share;

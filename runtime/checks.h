@@ -20,11 +20,15 @@ std::string whyRefused(const StrandsView& strands);
 void refuseOutside(std::string& text, const char* name, double value, double low, double high);
 
 /// Makes the rotation one of unit length; false where the root is no place.
-bool usable(RootFrame& root);
+inline bool usable(RootFrame& root) {
+    return isFinite(root.position) && normalize(root.rotation);
+}
 
 inline constexpr float kFarthest = 1e6f;  ///< metres; squares of what lies farther leave single precision
-/// usable(), and no coordinate beyond `limit` metres.
-bool usableWithin(RootFrame& root, float limit);
+/// usable(), and not beyond `limit` metres.
+inline bool usableWithin(RootFrame& root, float limit) {
+    return length(root.position) <= limit && normalize(root.rotation);
+}
 
 /// Linear in place, normalised linear in rotation. share 0…1; both rotations of unit length.
 RootFrame between(const RootFrame& from, const RootFrame& to, float share);

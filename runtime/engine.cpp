@@ -110,7 +110,7 @@ void Engine::replan(std::span<const Sphere> spheres, std::span<const Float3> sph
     // Within a frame hair may gain what gravity and air give, and a whip of its own.
     const float h = frameTime / static_cast<float>(settings_.substeps);
     const float pushed = (length(settings_.gravity) + settings_.airDrag * length(wind_.mean)) * frameTime;
-    scene.fastest = 4.0f * state_.fastest * h + pushed * h +
+    scene.fastest = 16.0f * state_.fastest * h + pushed * h +
                     (rootMotion_ + sphereWay) / static_cast<float>(settings_.substeps);
     scene.restTime = 1e30f;
     for (std::size_t b = 0; b < state_.rests.size(); ++b) {
@@ -277,7 +277,7 @@ Engine::Frame Engine::makeFrame(const FrameInput& input) {
     context.dragShare = decays ? 1.0f - std::exp(-settings_.airDrag * h) : settings_.airDrag * h;
     context.springStep = oscillation(settings_.springFrequency);
     context.penaltyStep = oscillation(settings_.penaltyFrequency);
-    context.bendRate = bendRate(settings_, h, context.velocityShare, bend_.targets);
+    context.bendRate = bendRate(settings_, h, bend_.targets);
     context.lengthIterations = settings_.lengthIterations;
     context.maximalExtension = settings_.maximalExtension;
     if (plan_.on(Effect::pearls)) {
@@ -359,7 +359,7 @@ void Engine::runBlock(std::size_t block, const Frame& frame) {
     report.restored = 0;
     report.fastest = 0.0f;
     if (frame.newBend) {
-        fillBend(*shape_, settings_, frame.context.h, frame.context.velocityShare, block, bend_);
+        fillBend(*shape_, settings_, frame.context.h, block, bend_);
     }
     if (state_.rests[block].asleep) {
         state_.rests[block].time += frame.input->dt;

@@ -248,7 +248,10 @@ class Planner {
 
     void listConstraints() {
         const bool held = !coils() && s_.lengthIterations > 0;
-        if (held) add(StageId::length);
+        // The gradients at the start of the substep are those of the Verlet integrators' own step.
+        const bool ownStep =
+            s_.integrator == Integrator::verlet || s_.integrator == Integrator::velocityVerlet;
+        if (held) add(ownStep ? StageId::length : StageId::lengthNow);
         if (s_.lengthMethod == LengthMethod::springVelocities && s_.lengthIterations > 0)
             add(StageId::springLimit);
         if (on(Effect::sweep)) add(StageId::sweep);

@@ -66,7 +66,8 @@ enum class StageId : std::uint32_t {
     // After it.
     angular,          ///< angular springs, implicitly, with frames (Eq. 4)
     angularStraight,  ///< the same for straight hair: no frames
-    length,           ///< length constraint, Newton steps
+    length,           ///< length constraint, Newton steps along the gradients at the start of the substep
+    lengthNow,        ///< the same along the gradients of now
     springLimit,      ///< maximal extension by velocities (Bridson et al. 2003)
     collision,        ///< spheres (Eqs. 13–21), out along the radius
     collisionBack,    ///< spheres, back along the way

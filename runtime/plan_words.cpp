@@ -146,6 +146,7 @@ constexpr StageWords kStages[kStageCount] = {
     {"angular", "angular forces", Effect::angular},
     {"angularStraight", "angular forces", Effect::angular},
     {"length", "linear forces", Effect::length},
+    {"lengthNow", "linear forces", Effect::length},
     {"springLimit", "post-processing", Effect::length},
     {"collision", "collision", Effect::collision},
     {"collisionBack", "collision", Effect::collision},

@@ -269,7 +269,7 @@ FastestWaves fastestWaves(const StrandsView& strands, const SimulationSettings& 
     for (std::size_t b = 0; b < shape->blocks.size(); ++b) {
         const Block& block = shape->blocks[b];
         if (block.points <= settings.clampedPoints) continue;
-        if (!bend.planes.empty()) fillBend(*shape, settings, 1.0f, 1.0f, b, bend);
+        if (!bend.planes.empty()) fillBend(*shape, settings, 1.0f, b, bend);
         const Bend none;
         for (std::uint32_t lane = 0; lane < block.strands; ++lane) {
             const StrandForces forces(*shape, settings, bend, b, lane);

@@ -221,7 +221,15 @@ void placeAtRest(const RestShape& shape, State& state, std::size_t index, std::u
     const float* roots = state.roots.data() + index * kRootRows * kBlockLanes;
     const auto row = [&](std::size_t r) { return roots[r * kBlockLanes + lane]; };
     const Quat rotation{row(3), row(4), row(5), row(6)};
-    if (!state.tanks.empty()) state.tanks[index * kBlockLanes + lane] = kNoCurve;
+    if (!state.tanks.empty()) {
+        state.tanks[index * kBlockLanes + lane] = kNoCurve;
+        state.motions[index * kBlockLanes + lane] = 0.0f;
+        float* const curves = state.curves.data() + block.firstPlane * 3;
+        for (std::size_t plane = 0; plane < 3; ++plane) {
+            for (std::uint32_t p = 0; p < block.points; ++p)
+                curves[plane * size + std::size_t{p} * kBlockLanes + lane] = 0.0f;
+        }
+    }
     Float3 at{};
     for (std::uint32_t p = 0; p < block.points; ++p) {
         const std::size_t i = std::size_t{p} * kBlockLanes + lane;

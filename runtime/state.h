@@ -116,11 +116,11 @@ BlockView viewOf(const Arrays& arrays, std::size_t block, std::uint32_t clampedP
 /// Places lane `lane` of block `b` at rest on its row of state.roots, without speed.
 void placeAtRest(const RestShape& shape, State& state, std::size_t block, std::uint32_t lane);
 
-/// Fills the planes of block `b` for substeps of h seconds. `velocityShare` is that of SubstepContext.
-void fillBend(const RestShape& shape, const SimulationSettings& settings, float h, float velocityShare,
-              std::size_t block, Bend& bend);
+/// Fills the planes of block `b` for substeps of h seconds.
+void fillBend(const RestShape& shape, const SimulationSettings& settings, float h, std::size_t block,
+              Bend& bend);
 
 /// q of docs/engine.md, "Integrators": what keeps the implicit angular springs stable and fades fast waves.
-float bendRate(const SimulationSettings& settings, float h, float velocityShare, bool curved);
+float bendRate(const SimulationSettings& settings, float h, bool curved);
 
 }  // namespace hairloom::runtime

@@ -71,12 +71,13 @@ HWY_INLINE void startFrames(const BlockView& block, const LaneFrame& lanes, std:
 template <Shape kShape, bool kExact>
 void measurePulls(const BlockView& block, const LaneFrame& lanes, Pulls& pulls) {
     constexpr bool kFrames = kShape == Shape::curved;
-    alignas(64) float inner[3][kBlockLanes], normals[3][kBlockLanes];
+    alignas(64) float inner[3][kBlockLanes], units[3][kBlockLanes], normals[3][kBlockLanes];
     const std::uint32_t first = block.firstFree - 1;
     for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
         V3 tangent, normal = zero3();
         startFrames<kFrames>(block, lanes, lane, tangent, normal);
         store3(tangent, inner, lane);
+        store3(tangent, units, lane);
         store3(normal, normals, lane);
         store3(zero3(), pulls.planes(), std::size_t{block.points - 1} * kBlockLanes + lane);
     }
@@ -85,13 +86,18 @@ void measurePulls(const BlockView& block, const LaneFrame& lanes, Pulls& pulls) 
             const std::size_t i = std::size_t{j} * kBlockLanes + lane;
             const V3 edge = load3(block.position, i + kBlockLanes) - load3(block.position, i);
             const V3 tangent = tangentOf<kExact>(edge, hn::Load(D(), block.inverseLength + i));
-            const V3 before = load3(inner, lane), normal = load3(normals, lane);
             if (j >= first) {
-                V3 off = tangent - before;
-                if constexpr (kFrames) off = off - fromFrame(before, normal, load3(block.target, i));
+                V3 off = tangent - load3(inner, lane);
+                if constexpr (kFrames)
+                    off = off - fromFrame(load3(units, lane), load3(normals, lane), load3(block.target, i));
                 store3(off * hn::Load(D(), block.stiffness + i), pulls.planes(), i);
             }
-            if constexpr (kFrames) store3(carryNormal(normal, before, tangent), normals, lane);
+            if constexpr (kFrames) {
+                // Springs may stretch: a frame needs directions of unit length.
+                const V3 unit = tangentOf<true>(edge, hn::Load(D(), block.inverseLength + i));
+                store3(carryNormal(load3(normals, lane), load3(units, lane), unit), normals, lane);
+                store3(unit, units, lane);
+            }
             store3(tangent, inner, lane);
         }
     }

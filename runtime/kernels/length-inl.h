@@ -17,8 +17,9 @@ namespace HWY_NAMESPACE {
 
 /// Where a strand's length is held.
 enum class Holding {
-    places,  ///< segments get their length back; the move counts as velocity
-    rates,   ///< the velocity's part that would change lengths is taken out
+    places,     ///< segments get their length back; the move counts as velocity
+    placesNow,  ///< likewise, with tension along the segments as they are after the integration
+    rates,      ///< the velocity's part that would change lengths is taken out
 };
 
 /// A segment's constraint gradient where the lengths are wanted, and the direction along which its tension
@@ -32,7 +33,7 @@ template <Holding kHolding>
 HWY_INLINE Gradients gradientsAt(const BlockView& block, const Planes& start, V3 edge, std::size_t i) {
     const V inverseLength = hn::Load(D(), block.inverseLength + i);
     const V3 wanted = edge * inverseLength;
-    if constexpr (kHolding == Holding::rates) return {wanted, wanted};
+    if constexpr (kHolding != Holding::places) return {wanted, wanted};
     const V3 before = (load3(start, i + kBlockLanes) - load3(start, i)) * inverseLength;
     const auto alike = dot(wanted, before) > all(0.5f) * dot(wanted, wanted);
     return {wanted, select(alike, before, wanted)};
@@ -59,7 +60,7 @@ void holdStrands(const BlockView& block) {
             const V3 edge = load3(block.position, o) - load3(block.position, i);
             const auto [wanted, acting] = gradientsAt<kHolding>(block, start, edge, i);
             V error;
-            if constexpr (kHolding == Holding::places) {
+            if constexpr (kHolding != Holding::rates) {
                 error = half * (dot(edge, wanted) - hn::Load(D(), block.length + i));
             } else {
                 error = dot(wanted, rateAt(o) - rateAt(i));
@@ -97,7 +98,7 @@ void holdStrands(const BlockView& block) {
             }
             const V3 tension = load3(u, i) * lambda;
             const V3 move = (after - tension) * hn::Load(D(), block.inverseMass + o);
-            if constexpr (kHolding == Holding::places) {
+            if constexpr (kHolding != Holding::rates) {
                 store3(load3(block.position, o) + move, block.position, o);
             } else {
                 store3(load3(block.previous, o) - move, block.previous, o);
@@ -108,9 +109,10 @@ void holdStrands(const BlockView& block) {
     }
 }
 
+template <Holding kHolding>
 void holdLength(const BlockView& block, LaneFrame&, const SubstepContext& context) {
     for (std::uint32_t iteration = 0; iteration < context.lengthIterations; ++iteration)
-        holdStrands<Holding::places>(block);
+        holdStrands<kHolding>(block);
 }
 
 void holdRates(const BlockView& block, LaneFrame&, const SubstepContext&) {

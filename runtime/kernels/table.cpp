@@ -86,7 +86,9 @@ Stage stageOf(StageId id) {
         case StageId::angularStraight:
             return bendBack<Shape::straight>;
         case StageId::length:
-            return holdLength;
+            return holdLength<Holding::places>;
+        case StageId::lengthNow:
+            return holdLength<Holding::placesNow>;
         case StageId::springLimit:
             return limitBySpeed;
         case StageId::collision:
