@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Cost of the strand engine on one thread: nanoseconds per particle and substep, per set of effects and per
-// stage. bench_sim_scalar is this program with the engine compiled for one lane, the yardstick of what
-// vectors bring.
+// stage. `hairloom-cli bench sim` measures more of it on the same scene.
 #include <benchmark/benchmark.h>
 
 #include <chrono>

@@ -6,8 +6,8 @@
 
 namespace hairloom {
 
-/// The engine's vector code held to one instruction set while it lives, for the whole program. Not while
-/// another thread runs the engine.
+/// The engine's vector code held to one instruction set while it lives, for the whole program. One at
+/// a time, and not while another thread runs the engine.
 class InstructionSetLimit {
   public:
     /// `target` is one of available().
@@ -16,7 +16,7 @@ class InstructionSetLimit {
     InstructionSetLimit(const InstructionSetLimit&) = delete;
     InstructionSetLimit& operator=(const InstructionSetLimit&) = delete;
 
-    /// Highway's numbers of those that this machine has and the engine was built for, the best first.
+    /// Highway's numbers of those that this machine has, the best first. Not while one is held.
     static std::vector<std::int64_t> available();
 };
 

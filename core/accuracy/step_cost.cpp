@@ -21,6 +21,13 @@ std::uint64_t nanosecondsNow() {
                                           .count());
 }
 
+/// Of at least one value.
+double medianOf(std::vector<double>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::ranges::nth_element(values, middle);
+    return *middle;
+}
+
 double millisecondsSince(std::uint64_t begin) {
     return static_cast<double>(nanosecondsNow() - begin) * 1e-6;
 }
@@ -41,8 +48,8 @@ StepRun::StepRun(const StepScene& scene) : scene_(scene), head_(scene.strands, s
 }
 
 double StepRun::milliseconds(std::uint32_t frames) {
-    stages_.fill(0.0);
-    double spent = 0.0;
+    std::vector<double> whole;
+    std::array<std::vector<double>, runtime::kStageCount> stages;
     runtime::FrameInput input;
     input.dt = kFrame;
     if (scene_.acting == scenes::Acting::windAndSpheres) input.spheres = head_.spheres;
@@ -53,11 +60,12 @@ double StepRun::milliseconds(std::uint32_t frames) {
         input.roots_ws = roots_;
         const std::uint64_t begin = nanosecondsNow();
         engine_->step(input);
-        spent += millisecondsSince(begin);
-        for (std::size_t i = 0; i < stages_.size(); ++i)
-            stages_[i] += engine_->lastStep().stageMilliseconds[i] / frames;
+        whole.push_back(millisecondsSince(begin));
+        for (std::size_t i = 0; i < stages.size(); ++i)
+            stages[i].push_back(engine_->lastStep().stageMilliseconds[i]);
     }
-    return spent / frames;
+    for (std::size_t i = 0; i < stages.size(); ++i) stages_[i] = medianOf(stages[i]);
+    return medianOf(whole);
 }
 
 std::uint32_t StepRun::framesFor(double seconds) {
@@ -113,7 +121,7 @@ double BareIntegrator::milliseconds(std::uint32_t frames) {
     runtime::SubstepContext context;
     context.count = substeps_;
     context.h = kFrame / static_cast<float>(substeps_);
-    double spent = 0.0;
+    std::vector<double> times;
     for (std::uint32_t f = 0; f < frames; ++f) {
         time_ += static_cast<double>(kFrame);
         head_.placeRoots(time_, roots_);
@@ -128,9 +136,9 @@ double BareIntegrator::milliseconds(std::uint32_t frames) {
                 verlet(view, lanes, context);
             }
         }
-        spent += millisecondsSince(begin);
+        times.push_back(millisecondsSince(begin));
     }
-    return spent / frames;
+    return medianOf(times);
 }
 
 double followMilliseconds(runtime::FollowHairs& hairs, const scenes::Lawn& lawn, bool allThreads,
@@ -139,17 +147,26 @@ double followMilliseconds(runtime::FollowHairs& hairs, const scenes::Lawn& lawn,
     if (allThreads) host.parallelFor = parallelFor;
     std::vector<runtime::Float3> points(lawn.hairPointCount());
     hairs.evaluate(lawn.motion(), points, host);  // touches the memory
-    const std::uint64_t begin = nanosecondsNow();
-    for (std::uint32_t f = 0; f < frames; ++f) hairs.evaluate(lawn.motion(), points, host);
-    return millisecondsSince(begin) / frames;
+    std::vector<double> times;
+    for (std::uint32_t f = 0; f < frames; ++f) {
+        const std::uint64_t begin = nanosecondsNow();
+        hairs.evaluate(lawn.motion(), points, host);
+        times.push_back(millisecondsSince(begin));
+    }
+    return medianOf(times);
 }
 
-double profilerScopeNanoseconds(std::uint32_t scopes) {
-    const std::uint64_t begin = nanosecondsNow();
-    for (std::uint32_t i = 0; i < scopes; ++i) {
-        HAIRLOOM_PROFILE("measuring the profiler");
+double profilerScopeNanoseconds(std::uint32_t batches) {
+    constexpr int kScopes = 1000;
+    std::vector<double> times;
+    for (std::uint32_t b = 0; b < batches; ++b) {
+        const std::uint64_t begin = nanosecondsNow();
+        for (int i = 0; i < kScopes; ++i) {
+            HAIRLOOM_PROFILE("measuring the profiler");
+        }
+        times.push_back(millisecondsSince(begin) * 1e6 / kScopes);
     }
-    return millisecondsSince(begin) * 1e6 / scopes;
+    return medianOf(times);
 }
 
 }  // namespace hairloom

@@ -26,14 +26,14 @@ class StepRun {
   public:
     explicit StepRun(const StepScene& scene);
 
-    /// Milliseconds per frame over the next `frames` ≥ 1 frames of 1/60 s.
+    /// Milliseconds of the median one of the next `frames` ≥ 1 frames of 1/60 s: what else the machine does
+    /// in between falls on few of them.
     double milliseconds(std::uint32_t frames);
     /// As many frames as take about `seconds` on this machine, 2 to 240; runs up to 20 to find out, in which
     /// the hair also comes into motion.
     std::uint32_t framesFor(double seconds);
 
-    /// Milliseconds per frame of each stage in the last milliseconds(), summed over threads; all 0 unless
-    /// byStage.
+    /// The same of each stage in the last milliseconds(), summed over threads; all 0 unless byStage.
     const std::array<double, runtime::kStageCount>& stageMilliseconds() const { return stages_; }
     const runtime::Engine& engine() const { return *engine_; }
     /// Particles times substeps of a frame.
@@ -68,11 +68,11 @@ class BareIntegrator {
     double time_ = 0.0;
 };
 
-/// Milliseconds per frame in which `hairs` follow their guides, over the next `frames`.
+/// Milliseconds in which `hairs` follow their guides, the median of `frames`.
 double followMilliseconds(runtime::FollowHairs& hairs, const scenes::Lawn& lawn, bool allThreads,
                           std::uint32_t frames);
 
-/// Nanoseconds that one profiler scope costs its block, over `scopes` of them.
-double profilerScopeNanoseconds(std::uint32_t scopes);
+/// Nanoseconds that one profiler scope costs its block, the median of `batches` of a thousand.
+double profilerScopeNanoseconds(std::uint32_t batches);
 
 }  // namespace hairloom
