@@ -28,7 +28,7 @@ void writeMachine(const SimulationBench& bench, const std::string& command, Out 
     const std::string processor = bench.machine.processor.empty() ? "unnamed" : bench.machine.processor;
     fmt::format_to(
         out,
-        "# Measured\n\nWritten by `{}`; docs/performance.md says what is measured and how. Medians of "
+        "# Measured\n\nWritten by `{}`.\ndocs/performance.md says what is measured and how. Medians of "
         "{} repetitions, in brackets the least and the greatest.\n\nProcessor: {}; {} hardware "
         "threads, {} in use; instruction set {}.\n",
         command, bench.steps.empty() ? 0 : bench.steps.front().step.values.size(), processor,
