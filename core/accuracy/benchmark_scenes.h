@@ -59,7 +59,7 @@ struct HeadOfHair {
 
   private:
     void addStrand(Float3 direction, std::uint32_t points) {
-        // Strands of any number of points have the shape of one of 16.
+        // Strands of more points have about the shape of those of 16.
         const float bend = 0.25f * 15.0f / static_cast<float>(points - 1);
         Float3 at = direction * kHeadRadius;
         roots.push_back(at);

@@ -49,7 +49,7 @@ TEST(StepCost, StagesAreThoseOfThePlanAndPartOfTheStep) {
 }
 
 TEST(StepCost, StrandsHaveTheirLengthAndShapeWithAnyNumberOfPoints) {
-    for (const std::uint32_t points : {8u, 16u, 31u}) {
+    for (const std::uint32_t points : {16u, 24u, 31u}) {
         const scenes::HeadOfHair head(50, points);
         ASSERT_EQ(head.strandCount(), 50u);
         ASSERT_EQ(head.positions.size(), std::size_t{50} * points);
