@@ -13,7 +13,7 @@ namespace hairloom::runtime {
 
 /// Young's modulus of hair, Pa (Robbins 2002, as Rünz 2012, Section 2).
 inline constexpr double kYoungsModulus = 3.89e9;
-/// Of hair, kg/m³ (Robbins 2002: 1.32 g/cm³ when dry, less when moist).
+/// Of hair, kg/m³, as kHairBendingStiffness takes it; a round number, since it varies with moisture.
 inline constexpr double kHairDensity = 1300.0;
 
 /// Averages of a group of people.
