@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <map>
 #include <memory>
 
 #include "cli/job.h"
-#include "importers/child_process.h"
+#include "cli/measurements.h"
+#include "cli/simulation_bench.h"
+#include "core/base/file.h"
 
 namespace hairloom::cli {
 namespace {
@@ -14,51 +14,37 @@ namespace {
 struct BenchOptions {
     std::string name;
     int repetitions = 5;
+    std::vector<std::uint32_t> strands;
+    bool quick = false;
+    std::string markdown;
 };
 
-/// Real times of the repetitions of each measurement, in the order in which they ran.
-struct Measurement {
-    std::string name;
-    std::string unit;
-    std::vector<double> times;
-};
-
-std::vector<Measurement> measurementsOf(const nlohmann::json& result) {
-    std::vector<Measurement> measurements;
-    std::map<std::string, std::size_t> places;
-    for (const auto& run : result.at("benchmarks")) {
-        if (run.at("run_type") != "iteration" || run.contains("error_occurred")) continue;
-        const auto name = run.at("name").get<std::string>();
-        const auto [place, isNew] = places.try_emplace(name, measurements.size());
-        if (isNew) measurements.push_back({name, run.at("time_unit").get<std::string>(), {}});
-        measurements[place->second].times.push_back(run.at("real_time").get<double>());
+Result<Report> benchSimulation(const BenchOptions& options, const std::string& command) {
+    SimulationBenchOptions wanted;
+    wanted.repetitions = options.repetitions;
+    if (options.quick) {
+        wanted.strands = {300, 2'000};
+        wanted.seconds = 0.02;
     }
-    return measurements;
+    if (!options.strands.empty()) wanted.strands = options.strands;
+    const SimulationBench bench = runSimulationBench(wanted);
+    Report report = reportOf(bench);
+    if (!options.markdown.empty()) {
+        if (auto written = writeFileAtomically(options.markdown, markdownOf(bench, command)); !written)
+            return tl::unexpected(written.error());
+        report["output"] = options.markdown;
+    }
+    return report;
 }
 
-Report rowOf(Measurement measurement) {
-    std::vector<double>& times = measurement.times;
-    std::sort(times.begin(), times.end());
-    const std::size_t middle = times.size() / 2;
-    const double median = times.size() % 2 == 1 ? times[middle] : 0.5 * (times[middle - 1] + times[middle]);
-    return Report{{"name", measurement.name}, {"n", times.size()},   {"median", median},
-                  {"min", times.front()},     {"max", times.back()}, {"unit", measurement.unit}};
-}
-
-Result<Report> bench(const BenchOptions& options) {
-    ChildLimits limits;
-    limits.time = std::chrono::hours(1);
-    limits.residentBytes = std::uint64_t{16} << 30u;
-    const auto output = runChild(
-        "the benchmark", programFolder() / ("bench_" + options.name),
-        {"--benchmark_format=json", fmt::format("--benchmark_repetitions={}", options.repetitions)}, limits);
-    if (!output) return tl::unexpected(output.error());
-    const char* const text = reinterpret_cast<const char*>(output->data());
-    const auto result = nlohmann::json::parse(text, text + output->size(), nullptr, false);
-    if (result.is_discarded())
-        return fail("the benchmark wrote no JSON", "expected Google Benchmark's format");
+Result<Report> bench(const BenchOptions& options, const std::string& command) {
+    if (options.name == "sim") return benchSimulation(options, command);
+    if (options.quick || !options.strands.empty() || !options.markdown.empty())
+        return fail("--strands, --quick and --markdown are of `bench sim`");
+    const auto measured = runBenchmarkProgram(options.name, options.repetitions);
+    if (!measured) return tl::unexpected(measured.error());
     Report rows = Report::array();
-    for (Measurement& measurement : measurementsOf(result)) rows.push_back(rowOf(std::move(measurement)));
+    for (const Measurement& measurement : *measured) rows.push_back(rowOf(measurement));
     return Report{{"name", options.name}, {"rows", std::move(rows)}};
 }
 
@@ -66,13 +52,19 @@ Result<Report> bench(const BenchOptions& options) {
 
 void addBenchJob(Jobs& jobs) {
     const auto options = std::make_shared<BenchOptions>();
-    CLI::App& job = jobs.add("bench", "Measure a part of Hairloom on this machine; medians of repeated runs",
-                             "place --json", [options] { return bench(*options); });
+    CLI::App& job =
+        jobs.add("bench", "Measure a part of Hairloom on this machine; medians of repeated runs",
+                 "sim --quick --json", [options, &jobs] { return bench(*options, jobs.commandLine()); });
     job.add_option("name", options->name, "What to measure")
         ->required()
         ->check(CLI::IsMember({"interpolate", "io", "place", "project", "render", "sim"}));
-    job.add_option("--repetitions", options->repetitions, "Runs of each measurement")
+    job.add_option("--repeat,--repetitions", options->repetitions, "Runs of each measurement")
         ->check(CLI::Range(1, 1000));
+    job.add_option("--strands", options->strands, "sim: numbers of strands, instead of 300,2000,10000,100000")
+        ->delimiter(',')
+        ->check(CLI::Range(1, 1'000'000));
+    job.add_flag("--quick", options->quick, "sim: shorter runs of fewer strands, to see that it works");
+    job.add_option("--markdown", options->markdown, "sim: file to write the tables to");
 }
 
 }  // namespace hairloom::cli

@@ -8,6 +8,7 @@
 #include "core/base/file.h"
 #include "core/groom/project_file.h"
 #include "core/groom/settings_json.h"
+#include "runtime/presets.h"
 
 namespace hairloom::cli {
 namespace {
@@ -15,6 +16,7 @@ namespace {
 struct SetOptions {
     std::string input;
     std::vector<std::string> assignments;
+    std::string preset;
     std::string from;
     std::string output;
     bool list = false;
@@ -51,10 +53,34 @@ Result<std::size_t> apply(const nlohmann::json& document, const std::string& sou
     return membersIn(document);
 }
 
+std::vector<std::string> presetNames() {
+    std::vector<std::string> names;
+    for (const runtime::HairPreset& preset : runtime::presets()) names.emplace_back(preset.name);
+    return names;
+}
+
+Vec3f colourOf(runtime::Float3 colour) {
+    return {colour.x, colour.y, colour.z};
+}
+
+/// Stiffness, thickness and colour of a measured fibre; the fields stand in docs/cli.md. Returns their
+/// number.
+std::size_t applyPreset(const runtime::HairPreset& preset, Groom& groom) {
+    runtime::applyPreset(preset, groom.simulation);
+    groom.material.rootRadius = static_cast<float>(0.5 * preset.diameter);
+    groom.material.rootColour = colourOf(preset.rootColour);
+    groom.material.tipColour = colourOf(preset.tipColour);
+    groom.material.eumelanin = preset.eumelanin;
+    groom.material.pheomelanin = 0.0f;
+    return 7;
+}
+
 Result<Report> set(const SetOptions& options) {
     auto groom = loadDocument(options.input);
     if (!groom) return tl::unexpected(groom.error());
     std::size_t changed = 0;
+    if (const runtime::HairPreset* preset = runtime::findPreset(options.preset))
+        changed += applyPreset(*preset, *groom);
     if (!options.from.empty()) {
         const auto text = readTextFile(options.from, kMaxJsonBytes);
         if (!text) return tl::unexpected(text.error());
@@ -92,12 +118,27 @@ void addRows(const std::string& section, const Fields& fields, Report& rows) {
     for (const auto& field : fields) rows.push_back(fieldRow(section, field, standard.at(field.name)));
 }
 
+Report presetRows() {
+    Report rows = Report::array();
+    for (const runtime::HairPreset& preset : runtime::presets()) {
+        rows.push_back(
+            Report{{"preset", preset.name},
+                   {"fibre", preset.description},
+                   {"diameter", preset.diameter},
+                   {"eccentricity", preset.eccentricity},
+                   {"bending_stiffness", runtime::bendingStiffness(preset.diameter, preset.eccentricity)},
+                   {"curl", preset.curl},
+                   {"colour", preset.colour}});
+    }
+    return rows;
+}
+
 Result<Report> list() {
     Report rows = Report::array();
     addRows<runtime::SimulationSettings>("simulation", runtime::fields(), rows);
     addRows<HairMaterial>("material", fieldsOf(HairMaterial()), rows);
     addRows<InterpolationSettings>("interpolation", fieldsOf(InterpolationSettings()), rows);
-    return Report{{"fields", std::move(rows)}};
+    return Report{{"fields", std::move(rows)}, {"presets", presetRows()}};
 }
 
 }  // namespace
@@ -107,11 +148,15 @@ void addSetJob(Jobs& jobs) {
     CLI::App& job = jobs.add("set", "Change settings of a groom by name",
                              "hair.hairloom simulation.windSpeed=4 -o hair.hairloom",
                              [options] { return options->list ? list() : set(*options); });
-    auto* listing =
-        job.add_flag("--list", options->list, "Show every field with unit, range, default and meaning");
+    auto* listing = job.add_flag("--list", options->list,
+                                 "Show every field with unit, range, default and meaning, and the presets");
     auto* input = job.add_option("groom", options->input, "Groom to change")->excludes(listing);
     job.add_option("fields", options->assignments,
                    "SECTION.FIELD=VALUE; sections: simulation, material, interpolation");
+    job.add_option(
+           "--preset", options->preset,
+           "Measured hair to take stiffness, thickness and colour from; fields and --from come after it")
+        ->check(CLI::IsMember(presetNames()));
     job.add_option("--from", options->from, "JSON file of sections with fields");
     auto* output = job.add_option("-o,--output", options->output, "Project to write");
     job.final_callback([listing, input, output] {

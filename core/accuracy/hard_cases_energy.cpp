@@ -177,6 +177,9 @@ void windThatIsNoNumber(Trial& trial) {
         restored += trial.engine().lastStep().restoredStrands;
     }
     trial.expect("broken strands not reported", "", restored > 0 ? 0.0 : 1.0, 0.0);
+    // Strands on their way to break when the settings change still count among the broken ones.
+    trial.engine().setSettings(sound);
+    for (int f = 0; f < 30; ++f) trial.engine().step({kFrame, trial.time(), trial.strands().roots(), {}});
     trial.change(sound);
     trial.settle();
 

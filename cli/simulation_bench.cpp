@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/simulation_bench.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cli/progress.h"
+#include "core/accuracy/instruction_set_limit.h"
+#include "core/base/parallel.h"
+
+namespace hairloom::cli {
+namespace {
+
+using scenes::Acting;
+
+constexpr std::uint32_t kPoints = 16;
+constexpr std::uint32_t kMoreStrands = 2'000;
+constexpr std::uint32_t kGuides = 300;
+constexpr std::uint32_t kFollowNeighbours = 60;
+constexpr const char* kPerParticle = "ns/particle/substep";
+
+class Bench {
+  public:
+    explicit Bench(const SimulationBenchOptions& options) : options_(options) {}
+
+    SimulationBench run() {
+        bench_.machine = thisMachine();
+        std::vector<std::size_t> threads{1};
+        if (threadCount() > 1) threads.push_back(threadCount());
+        Progress progress("measuring", 2 * options_.strands.size() * threads.size() + 4);
+        std::size_t done = 0;
+        for (const std::uint32_t strands : options_.strands) {
+            for (const Acting acting : {Acting::gravity, Acting::windAndSpheres}) {
+                for (const std::size_t count : threads) {
+                    bench_.steps.push_back(stepCosts({strands, kPoints, acting}, count));
+                    progress.done(++done);
+                }
+            }
+        }
+        measureThesis();
+        progress.done(++done);
+        measureInstructionSets();
+        progress.done(++done);
+        measureOverheads();
+        progress.done(++done);
+        measureFrames();
+        progress.done(++done);
+        return std::move(bench_);
+    }
+
+  private:
+    /// options_.repetitions values of measure().
+    template <class Measure>
+    Measurement repeated(std::string name, std::string unit, const Measure& measure) const {
+        Measurement result{std::move(name), std::move(unit), {}};
+        for (int r = 0; r < options_.repetitions; ++r) result.values.push_back(measure());
+        return result;
+    }
+
+    static std::string told(const StepScene& scene, std::size_t threads) {
+        return fmt::format("{}x{}, {}, {} thread{}", scene.strands, scene.points, nameOf(scene.acting),
+                           threads, threads == 1 ? "" : "s");
+    }
+
+    Measurement wholeStep(const StepScene& scene, std::string name) const {
+        StepRun run(scene);
+        const std::uint32_t frames = run.framesFor(options_.seconds);
+        return repeated(std::move(name), kPerParticle,
+                        [&] { return run.milliseconds(frames) * 1e6 / run.work(); });
+    }
+
+    StepCosts stepCosts(StepScene scene, std::size_t threads) const {
+        StepCosts costs;
+        scene.allThreads = threads > 1;
+        costs.threads = threads;
+        costs.step = wholeStep(scene, "step, " + told(scene, threads));
+        scene.byStage = true;
+        costs.scene = scene;
+        StepRun run(scene);
+        const std::uint32_t frames = run.framesFor(options_.seconds);
+        for (int r = 0; r < options_.repetitions; ++r) {
+            run.milliseconds(frames);
+            addStages(run, costs);
+        }
+        return costs;
+    }
+
+    /// A stage that joined in a later repetition, as a sweep may, has fewer values.
+    static void addStages(const StepRun& run, StepCosts& costs) {
+        for (std::size_t i = 0; i < runtime::kStageCount; ++i) {
+            const auto id = static_cast<runtime::StageId>(i);
+            const double milliseconds = run.stageMilliseconds()[i];
+            if (!(milliseconds > 0.0)) continue;
+            auto place = std::ranges::find(costs.stages, id, &StepCosts::Stage::id);
+            if (place == costs.stages.end()) {
+                const std::string name =
+                    fmt::format("{}, {}, {}", runtime::stageFamily(id), runtime::stageName(id),
+                                told(costs.scene, costs.threads));
+                place = costs.stages.insert(costs.stages.end(), {id, {name, kPerParticle, {}}});
+            }
+            place->cost.values.push_back(milliseconds * 1e6 / run.work());
+        }
+    }
+
+    void measureThesis() {
+        // Table 3, in the order of kFamilies.
+        bench_.thesis = {
+            {100, 30, {0.1973, 1.2046, 0.0542, 0.3124, 0.1094, 0.8614, 0.0108, 0.7276}, {}, {}},
+            {200, 30, {0.3985, 2.4012, 0.1100, 0.6269, 0.2159, 1.6741, 0.0201, 1.4497}, {}, {}},
+            {300, 30, {0.5907, 3.6037, 0.1652, 0.9403, 0.3441, 2.5928, 0.0288, 2.1637}, {}, {}},
+            {300, 60, {0.5935, 3.6015, 0.1686, 0.9417, 0.3561, 2.6141, 0.0337, 4.1803}, {}, {}},
+        };
+        for (ThesisCosts& column : bench_.thesis) measureColumn(column);
+    }
+
+    void measureColumn(ThesisCosts& column) const {
+        const std::string setup = fmt::format("{} guides of {} segments with {} neighbours", column.guides,
+                                              kThesisSegments, column.neighbours);
+        for (std::size_t i = 0; i < kFamilies.size(); ++i)
+            column.measured[i] = {fmt::format("Table 3, {}, {}", kFamilies[i], setup), "ms", {}};
+        column.whole = {fmt::format("Table 3, step and interpolation, {}", setup), "ms", {}};
+        StepRun run({.strands = column.guides,
+                     .points = kThesisSegments + 1,
+                     .substeps = kThesisSubsteps,
+                     .byStage = true});
+        const scenes::Lawn lawn(column.guides, column.neighbours + 1, kThesisSegments + 1, 0.0f);
+        auto made = runtime::FollowHairs::make(lawn.view());
+        const std::uint32_t frames = run.framesFor(options_.seconds);
+        for (int r = 0; r < options_.repetitions; ++r) {
+            const double step = run.milliseconds(frames);
+            std::array<double, kFamilies.size()> sums{};
+            for (std::size_t i = 0; i < runtime::kStageCount; ++i) {
+                const auto family = std::ranges::find(
+                    kFamilies, std::string_view(runtime::stageFamily(static_cast<runtime::StageId>(i))));
+                sums[static_cast<std::size_t>(family - kFamilies.begin())] += run.stageMilliseconds()[i];
+            }
+            sums.back() = followMilliseconds(*made.hairs, lawn, false, frames);
+            for (std::size_t i = 0; i < sums.size(); ++i) column.measured[i].values.push_back(sums[i]);
+            column.whole.values.push_back(step + sums.back());
+        }
+    }
+
+    void measureInstructionSets() {
+        // Few strands: scalar frames that are longer than a time slice would measure other programs as well.
+        const StepScene scene{.strands = kGuides};
+        const std::vector<std::int64_t> targets = InstructionSetLimit::available();
+        std::vector<std::string> seen;
+        std::int64_t scalar = 0;
+        for (const std::int64_t target : targets) {
+            const InstructionSetLimit limit(target);
+            const std::string name = runtime::Engine::instructionSet();
+            // A set that this machine has and the engine was not built for runs as the next one.
+            if (std::ranges::find(seen, name) != seen.end()) continue;
+            seen.push_back(name);
+            bench_.instructionSets.push_back(
+                wholeStep(scene, fmt::format("step, {}, {}", told(scene, 1), name)));
+            if (name == "SCALAR" || name == "EMU128") scalar = target;
+        }
+        if (scalar != 0) {
+            compareWithScalar(scene, targets.front(), scalar);
+        } else {
+            bench_.notes.push_back("this build of the engine has no scalar code to compare with");
+        }
+    }
+
+    /// In turns, so that what else the machine does falls on both.
+    void compareWithScalar(const StepScene& scene, std::int64_t best, std::int64_t scalar) {
+        StepRun run(scene);
+        const std::uint32_t frames = run.framesFor(options_.seconds);
+        const auto timeWith = [&](std::int64_t target) {
+            const InstructionSetLimit limit(target);
+            return run.milliseconds(frames);
+        };
+        const std::string name =
+            fmt::format("scalar code against {}, {}", bench_.machine.instructionSet, told(scene, 1));
+        bench_.others.push_back({repeated(name, "times",
+                                          [&] {
+                                              const double slow = timeWith(scalar);
+                                              return slow / timeWith(best);
+                                          }),
+                                 8.0, false});
+    }
+
+    void measureOverheads() {
+        for (const std::uint32_t strands : {kGuides, kMoreStrands}) {
+            StepRun engine({.strands = strands, .points = kPoints, .acting = Acting::nothing});
+            BareIntegrator bare(strands, kPoints, 8);
+            const std::uint32_t frames = engine.framesFor(0.5 * options_.seconds);
+            bare.milliseconds(frames);
+            // In turns, so that what else the machine does falls on both.
+            bench_.others.push_back(
+                {repeated(fmt::format("all effects off against the integrator alone, {}x{}, 1 thread",
+                                      strands, kPoints),
+                          "%",
+                          [&] {
+                              const double alone = bare.milliseconds(frames);
+                              return 100.0 * (engine.milliseconds(frames) / alone - 1.0);
+                          }),
+                 5.0});
+        }
+        bench_.others.push_back(
+            {repeated("a profiler scope", "ns", [] { return profilerScopeNanoseconds(300); }), 100.0});
+    }
+
+    void measureFrames() {
+        const StepScene scene{.strands = kGuides};
+        StepRun guides(scene);
+        const std::uint32_t frames = guides.framesFor(options_.seconds);
+        const std::string setup =
+            fmt::format("{}x{} from {} guides", kGuides * (kFollowNeighbours + 1), kPoints, kGuides);
+        const scenes::Lawn lawn(kGuides, kFollowNeighbours + 1, kPoints, 0.5f);
+        auto made = runtime::FollowHairs::make(lawn.view());
+        const auto follow = [&](bool all) { return followMilliseconds(*made.hairs, lawn, all, frames); };
+        bench_.others.push_back({repeated(fmt::format("frame of 1/60 s, {}", told(scene, 1)), "ms",
+                                          [&] { return guides.milliseconds(frames); }),
+                                 {}});
+        bench_.others.push_back(
+            {repeated(fmt::format("follow hairs, {}, 1 thread", setup), "ms", [&] { return follow(false); }),
+             {}});
+        if (threadCount() > 1) {
+            bench_.others.push_back(
+                {repeated(fmt::format("follow hairs, {}, {} threads", setup, threadCount()), "ms",
+                          [&] { return follow(true); }),
+                 {}});
+        }
+        bench_.others.push_back({repeated(fmt::format("both, {}, 1 thread", setup), "ms",
+                                          [&] { return guides.milliseconds(frames) + follow(false); }),
+                                 {}});
+    }
+
+    SimulationBenchOptions options_;
+    SimulationBench bench_;
+};
+
+}  // namespace
+
+SimulationBench runSimulationBench(const SimulationBenchOptions& options) {
+    return Bench(options).run();
+}
+
+Report reportOf(const SimulationBench& bench) {
+    Report rows = Report::array();
+    for (const StepCosts& costs : bench.steps) {
+        rows.push_back(rowOf(costs.step));
+        for (const StepCosts::Stage& stage : costs.stages) rows.push_back(rowOf(stage.cost));
+    }
+    for (const ThesisCosts& column : bench.thesis) {
+        for (std::size_t i = 0; i < kFamilies.size(); ++i) {
+            Report row = rowOf(column.measured[i]);
+            row["thesis"] = column.printed[i];
+            row["ratio"] = column.printed[i] / column.measured[i].median();
+            rows.push_back(std::move(row));
+        }
+        rows.push_back(rowOf(column.whole));
+    }
+    for (const Measurement& set : bench.instructionSets) rows.push_back(rowOf(set));
+    for (const Wanted& other : bench.others) {
+        Report row = rowOf(other.cost);
+        if (other.limit) {
+            row[other.atMost ? "at_most" : "at_least"] = *other.limit;
+            row["met"] = other.met();
+        }
+        rows.push_back(std::move(row));
+    }
+    return Report{{"name", "sim"},
+                  {"processor", bench.machine.processor},
+                  {"instruction_set", bench.machine.instructionSet},
+                  {"threads", bench.machine.threads},
+                  {"notes", bench.notes},
+                  {"rows", std::move(rows)}};
+}
+
+}  // namespace hairloom::cli

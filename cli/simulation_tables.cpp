@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The measurements of `bench sim` as Markdown.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "cli/simulation_bench.h"
+
+namespace hairloom::cli {
+namespace {
+
+using Out = std::back_insert_iterator<std::string>;
+
+/// Three digits that count.
+std::string shortened(double value) {
+    const double size = std::abs(value);
+    return fmt::format("{:.{}f}", value, size >= 100.0 ? 0 : size >= 10.0 ? 1 : size >= 1.0 ? 2 : 3);
+}
+
+std::string spread(const Measurement& m) {
+    const auto [least, most] = std::ranges::minmax(m.values);
+    return fmt::format("{} ({}…{})", shortened(m.median()), shortened(least), shortened(most));
+}
+
+void writeMachine(const SimulationBench& bench, const std::string& command, Out out) {
+    const std::string processor = bench.machine.processor.empty() ? "unnamed" : bench.machine.processor;
+    fmt::format_to(
+        out,
+        "# Measured\n\nWritten by `{}`.\ndocs/performance.md says what is measured and how. Medians of "
+        "{} repetitions, in brackets the least and the greatest.\n\nProcessor: {}; {} hardware "
+        "threads, {} in use; instruction set {}.\n",
+        command, bench.steps.empty() ? 0 : bench.steps.front().step.values.size(), processor,
+        bench.machine.cores, bench.machine.threads, bench.machine.instructionSet);
+    for (const std::string& note : bench.notes) fmt::format_to(out, "\nNote: {}.\n", note);
+}
+
+/// What is laid down, and what this run says about it.
+void writeWanted(const SimulationBench& bench, Out out) {
+    fmt::format_to(out, "\n## Against what is wanted\n\n| what | measured | wanted | |\n|---|---|---|---|\n");
+    for (const Wanted& other : bench.others) {
+        if (!other.limit) continue;
+        fmt::format_to(out, "| {} | {} {} | {} {:g} {} | {} |\n", other.cost.name, spread(other.cost),
+                       other.cost.unit, other.atMost ? "at most" : "at least", *other.limit, other.cost.unit,
+                       other.met() ? "met" : "**not met**");
+    }
+    for (const ThesisCosts& column : bench.thesis) {
+        std::string slower;
+        for (std::size_t i = 0; i < kFamilies.size(); ++i) {
+            if (column.measured[i].median() <= column.printed[i]) continue;
+            slower += fmt::format("{}{}", slower.empty() ? "" : ", ", kFamilies[i]);
+        }
+        fmt::format_to(
+            out, "| Table 3, {} guides with {} neighbours | {} | every row faster than the thesis | {} |\n",
+            column.guides, column.neighbours, slower.empty() ? "all faster" : "slower: " + slower,
+            slower.empty() ? "met" : "**not met**");
+    }
+}
+
+void writeSteps(const SimulationBench& bench, Out out) {
+    fmt::format_to(out,
+                   "\n## A step\n\nNanoseconds per particle and substep, strands of 16 points, 8 substeps; "
+                   "milliseconds are of a whole frame.\n\n| strands | scene | threads | ns | ms a frame "
+                   "|\n|---|---|---|---|---|\n");
+    for (const StepCosts& costs : bench.steps) {
+        const double work =
+            static_cast<double>(costs.scene.strands) * costs.scene.points * costs.scene.substeps * 1e-6;
+        fmt::format_to(out, "| {} | {} | {} | {} | {} |\n", costs.scene.strands, nameOf(costs.scene.acting),
+                       costs.threads, spread(costs.step), shortened(costs.step.median() * work));
+    }
+}
+
+/// One table per scene on one thread: stages down, strands across.
+void writeStages(const SimulationBench& bench, Out out) {
+    for (const scenes::Acting acting : {scenes::Acting::gravity, scenes::Acting::windAndSpheres}) {
+        std::vector<const StepCosts*> columns;
+        for (const StepCosts& costs : bench.steps) {
+            if (costs.scene.acting == acting && costs.threads == 1) columns.push_back(&costs);
+        }
+        if (columns.empty()) continue;
+        fmt::format_to(
+            out, "\n## Stages: {}, one thread\n\nNanoseconds per particle and substep.\n\n| family | stage |",
+            nameOf(acting));
+        std::string rule = "|---|---|";
+        for (const StepCosts* costs : columns) {
+            fmt::format_to(out, " {} strands |", costs->scene.strands);
+            rule += "---|";
+        }
+        fmt::format_to(out, "\n{}\n", rule);
+        for (std::size_t i = 0; i < runtime::kStageCount; ++i) {
+            const auto id = static_cast<runtime::StageId>(i);
+            std::string cells;
+            bool any = false;
+            for (const StepCosts* costs : columns) {
+                const auto stage = std::ranges::find(costs->stages, id, &StepCosts::Stage::id);
+                any = any || stage != costs->stages.end();
+                cells += stage == costs->stages.end() ? " – |"
+                                                      : fmt::format(" {} |", shortened(stage->cost.median()));
+            }
+            if (any)
+                fmt::format_to(out, "| {} | {} |{}\n", runtime::stageFamily(id), runtime::stageName(id),
+                               cells);
+        }
+    }
+}
+
+void writeThesis(const SimulationBench& bench, Out out) {
+    fmt::format_to(
+        out,
+        "\n## Table 3 of the thesis\n\nMilliseconds per frame on one thread: Rünz 2012, Section 7.2 "
+        "(Core i7-920), then this machine, then how many times faster. {} segments a guide, {} substeps, "
+        "wind and ten spheres.\n\n| |",
+        kThesisSegments, kThesisSubsteps);
+    std::string rule = "|---|";
+    for (const ThesisCosts& column : bench.thesis) {
+        fmt::format_to(out, " {} guides, {} neighbours |", column.guides, column.neighbours);
+        rule += "---|";
+    }
+    fmt::format_to(out, "\n{}\n", rule);
+    const auto cell = [&](double printed, double measured) {
+        fmt::format_to(out, " {:.3f} → {:.3f} ({}×) |", printed, measured, shortened(printed / measured));
+    };
+    for (std::size_t i = 0; i < kFamilies.size(); ++i) {
+        fmt::format_to(out, "| {} |", kFamilies[i]);
+        for (const ThesisCosts& column : bench.thesis) cell(column.printed[i], column.measured[i].median());
+        fmt::format_to(out, "\n");
+    }
+    fmt::format_to(out, "| **all of these; here the whole step and interpolation** |");
+    for (const ThesisCosts& column : bench.thesis) {
+        double printed = 0.0;
+        for (const double milliseconds : column.printed) printed += milliseconds;
+        cell(printed, column.whole.median());
+    }
+    fmt::format_to(out, "\n");
+}
+
+void writeOthers(const SimulationBench& bench, Out out) {
+    fmt::format_to(out, "\n## Instruction sets\n\n| what | {} |\n|---|---|\n", "ns per particle and substep");
+    for (const Measurement& set : bench.instructionSets)
+        fmt::format_to(out, "| {} | {} |\n", set.name, spread(set));
+    fmt::format_to(out, "\n## A whole frame\n\n| what | ms |\n|---|---|\n");
+    for (const Wanted& other : bench.others) {
+        if (other.cost.unit == "ms")
+            fmt::format_to(out, "| {} | {} |\n", other.cost.name, spread(other.cost));
+    }
+}
+
+}  // namespace
+
+std::string markdownOf(const SimulationBench& bench, const std::string& command) {
+    std::string text;
+    const Out out(text);
+    writeMachine(bench, command, out);
+    writeWanted(bench, out);
+    writeSteps(bench, out);
+    writeStages(bench, out);
+    writeThesis(bench, out);
+    writeOthers(bench, out);
+    return text;
+}
+
+}  // namespace hairloom::cli

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/accuracy/step_cost.h"
+
+#include <algorithm>
+#include <cassert>
+#include <chrono>
+#include <cmath>
+
+#include "core/base/parallel.h"
+#include "core/base/profiler.h"
+
+namespace hairloom {
+namespace {
+
+constexpr float kFrame = 1.0f / 60.0f;
+constexpr std::uint32_t kWarmUp = 20;  // frames
+
+std::uint64_t nanosecondsNow() {
+    return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(
+                                          std::chrono::steady_clock::now().time_since_epoch())
+                                          .count());
+}
+
+/// Of at least one value.
+double medianOf(std::vector<double>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::ranges::nth_element(values, middle);
+    return *middle;
+}
+
+double millisecondsSince(std::uint64_t begin) {
+    return static_cast<double>(nanosecondsNow() - begin) * 1e-6;
+}
+
+}  // namespace
+
+StepRun::StepRun(const StepScene& scene) : scene_(scene), head_(scene.strands, scene.points) {
+    runtime::SimulationSettings settings = scenes::settingsFor(scene.acting);
+    settings.substeps = scene.substeps;
+    runtime::Host host;
+    if (scene.allThreads) host.parallelFor = parallelFor;
+    if (scene.byStage) host.nanoseconds = nanosecondsNow;
+    auto made = runtime::Engine::make(head_.view(), settings, std::move(host));
+    assert(made.engine);
+    engine_ = std::move(made.engine);
+    head_.placeRoots(0.0, roots_);
+    engine_->reset(roots_);
+}
+
+double StepRun::milliseconds(std::uint32_t frames) {
+    std::vector<double> whole;
+    std::array<std::vector<double>, runtime::kStageCount> stages;
+    runtime::FrameInput input;
+    input.dt = kFrame;
+    if (scene_.acting == scenes::Acting::windAndSpheres) input.spheres = head_.spheres;
+    for (std::uint32_t f = 0; f < frames; ++f) {
+        time_ += static_cast<double>(kFrame);
+        head_.placeRoots(time_, roots_);
+        input.time = time_;
+        input.roots_ws = roots_;
+        const std::uint64_t begin = nanosecondsNow();
+        engine_->step(input);
+        whole.push_back(millisecondsSince(begin));
+        for (std::size_t i = 0; i < stages.size(); ++i)
+            stages[i].push_back(engine_->lastStep().stageMilliseconds[i]);
+    }
+    for (std::size_t i = 0; i < stages.size(); ++i) stages_[i] = medianOf(stages[i]);
+    return medianOf(whole);
+}
+
+std::uint32_t StepRun::framesFor(double seconds) {
+    double last = milliseconds(2);
+    std::uint32_t run = 2;
+    for (; run < kWarmUp && last * run < 500.0; ++run) last = milliseconds(1);
+    return static_cast<std::uint32_t>(std::clamp(std::ceil(seconds * 1e3 / last), 2.0, 240.0));
+}
+
+double StepRun::work() const {
+    return static_cast<double>(engine_->pointCount()) * scene_.substeps;
+}
+
+BareIntegrator::BareIntegrator(std::uint32_t strands, std::uint32_t points, std::uint32_t substeps)
+    : substeps_(substeps), head_(strands, points), shape_(runtime::makeRestShape(head_.view())) {
+    state_.planes.assign(shape_->planeFloats * runtime::kStatePlanes, 0.0f);
+    state_.roots.assign(shape_->blocks.size() * runtime::kRootRows * runtime::kBlockLanes, 0.0f);
+    head_.placeRoots(0.0, roots_);
+    for (std::size_t b = 0; b < shape_->blocks.size(); ++b) {
+        runtime::LaneFrame lanes;
+        enterFrame(b, lanes);
+        for (std::uint32_t lane = 0; lane < runtime::kBlockLanes; ++lane)
+            runtime::placeAtRest(*shape_, state_, b, lane);
+    }
+}
+
+/// From where the roots were to where they are.
+void BareIntegrator::enterFrame(std::size_t block, runtime::LaneFrame& lanes) {
+    using runtime::kBlockLanes;
+    float* const rows = state_.roots.data() + block * runtime::kRootRows * kBlockLanes;
+    const float share = 1.0f / static_cast<float>(substeps_);
+    for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+        const runtime::RootFrame& to = roots_[shape_->blocks[block].strandOfLane[lane]];
+        const float now[runtime::kRootRows] = {to.position.x, to.position.y, to.position.z, to.rotation.x,
+                                               to.rotation.y, to.rotation.z, to.rotation.w};
+        for (std::size_t r = 0; r < 3; ++r) {
+            lanes.root[r][lane] = rows[r * kBlockLanes + lane];
+            lanes.rootStep[r][lane] = (now[r] - rows[r * kBlockLanes + lane]) * share;
+        }
+        for (std::size_t r = 0; r < 4; ++r) {
+            lanes.rotationFrom[r][lane] = rows[(3 + r) * kBlockLanes + lane];
+            lanes.rotationTo[r][lane] = now[3 + r];
+        }
+        for (std::size_t r = 0; r < runtime::kRootRows; ++r) rows[r * kBlockLanes + lane] = now[r];
+    }
+}
+
+double BareIntegrator::milliseconds(std::uint32_t frames) {
+    const auto& stages = runtime::kernels().stages;
+    const runtime::Stage moveRoots = stages[static_cast<std::size_t>(runtime::StageId::roots)];
+    const runtime::Stage verlet = stages[static_cast<std::size_t>(runtime::StageId::verlet)];
+    const std::uint32_t clamped = runtime::SimulationSettings{}.clampedPoints;
+    runtime::SubstepContext context;
+    context.count = substeps_;
+    context.h = kFrame / static_cast<float>(substeps_);
+    std::vector<double> times;
+    for (std::uint32_t f = 0; f < frames; ++f) {
+        time_ += static_cast<double>(kFrame);
+        head_.placeRoots(time_, roots_);
+        const std::uint64_t begin = nanosecondsNow();
+        for (std::size_t b = 0; b < shape_->blocks.size(); ++b) {
+            const runtime::BlockView view =
+                runtime::viewOf({*shape_, state_, bend_, evaluation_, 0}, b, clamped);
+            runtime::LaneFrame lanes;
+            enterFrame(b, lanes);
+            for (context.index = 0; context.index < substeps_; ++context.index) {
+                moveRoots(view, lanes, context);
+                verlet(view, lanes, context);
+            }
+        }
+        times.push_back(millisecondsSince(begin));
+    }
+    return medianOf(times);
+}
+
+double followMilliseconds(runtime::FollowHairs& hairs, const scenes::Lawn& lawn, bool allThreads,
+                          std::uint32_t frames) {
+    runtime::Host host;
+    if (allThreads) host.parallelFor = parallelFor;
+    std::vector<runtime::Float3> points(lawn.hairPointCount());
+    hairs.evaluate(lawn.motion(), points, host);  // touches the memory
+    std::vector<double> times;
+    for (std::uint32_t f = 0; f < frames; ++f) {
+        const std::uint64_t begin = nanosecondsNow();
+        hairs.evaluate(lawn.motion(), points, host);
+        times.push_back(millisecondsSince(begin));
+    }
+    return medianOf(times);
+}
+
+double profilerScopeNanoseconds(std::uint32_t batches) {
+    constexpr int kScopes = 1000;
+    std::vector<double> times;
+    for (std::uint32_t b = 0; b < batches; ++b) {
+        const std::uint64_t begin = nanosecondsNow();
+        for (int i = 0; i < kScopes; ++i) {
+            HAIRLOOM_PROFILE("measuring the profiler");
+        }
+        times.push_back(millisecondsSince(begin) * 1e6 / kScopes);
+    }
+    return medianOf(times);
+}
+
+}  // namespace hairloom

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Steps ask for no memory, and a copy of an engine is a saved state of all of it.
+#include "tests/runtime/allocations.h"
+#include "tests/runtime/strand_fixture.h"
+
+namespace hairloom::runtime {
+namespace {
+
+constexpr float kFrame = 1.0f / 60.0f;
+const std::vector<Sphere> kNear{{{0.1f, 0.02f, 0.0f}, 0.05f}, {{0.3f, 0.0f, 0.01f}, 0.07f}};
+const std::vector<Sphere> kFar{{{90.0f, 0.0f, 0.0f}, 1.0f}, {{90.0f, 9.0f, 0.0f}, 1.0f}};
+
+/// Steps with inputs that are made beforehand, so that only the engine can ask for memory.
+class Counted {
+  public:
+    explicit Counted(const Strands& strands) {
+        for (int f = 0; f < 40; ++f) {
+            const float t = static_cast<float>(f);
+            roots_.push_back(strands.roots({0.02f * std::sin(t), 0.0f, 0.0f},
+                                           turnAbout({0.0f, 1.0f, 0.0f}, 0.3f * std::sin(0.4f * t))));
+        }
+    }
+    /// Allocations of as many steps. `still` keeps the roots where they are.
+    std::size_t steps(Engine& engine, int frames, std::span<const Sphere> spheres,
+                      std::optional<Float3> wind = {}, bool still = false) {
+        const std::size_t before = allocationCount();
+        for (int f = 0; f < frames; ++f) {
+            if (!still) ++frame_;
+            time_ += static_cast<double>(kFrame);
+            engine.step({kFrame, time_, roots_[frame_ % roots_.size()], spheres, wind});
+        }
+        return allocationCount() - before;
+    }
+
+  private:
+    std::vector<std::vector<RootFrame>> roots_;
+    std::size_t frame_ = 0;
+    double time_ = 0.0;
+};
+
+SimulationSettings settingsOf(Integrator integrator) {
+    SimulationSettings s;
+    s.integrator = integrator;
+    s.angularStiffness = 0.02f;
+    s.substeps = 12;
+    s.windSpeed = 3.0f;
+    return s;
+}
+
+TEST(StepMemory, NoStepOfAnyIntegratorAsksForAny) {
+    const Strands strands = tuft(100, true);
+    for (std::size_t i = 0; i < findField("integrator")->choices.size(); ++i) {
+        SCOPED_TRACE(findField("integrator")->choices[i]);
+        Engine engine = makeEngine(strands, settingsOf(static_cast<Integrator>(i)));
+        Counted counted(strands);
+        counted.steps(engine, 1, kNear);
+        EXPECT_EQ(counted.steps(engine, 20, kNear), 0u);
+        EXPECT_TRUE(engine.plan().on(Effect::collision));
+        EXPECT_TRUE(engine.plan().on(Effect::wind));
+    }
+}
+
+TEST(StepMemory, TheCounterCounts) {
+    const std::size_t before = allocationCount();
+    const std::vector<int> some(3);
+    EXPECT_EQ(some.size(), 3u);
+    EXPECT_EQ(allocationCount() - before, 1u);
+}
+
+/// Wind given by frames, sweeps of fast heads, sleep.
+TEST(StepMemory, EffectsJoinAndLeaveWithoutAny) {
+    const Strands strands = tuft(100, true);
+    SimulationSettings s = settingsOf(Integrator::verlet);
+    s.windSpeed = 0.0f;
+    s.dampingTime = 0.02f;
+    s.sleepSpeed = 0.05f;
+    s.sleepDelay = 0.1f;
+    Engine engine = makeEngine(strands, s);
+    Counted counted(strands);
+    counted.steps(engine, 1, kNear);
+    EXPECT_EQ(counted.steps(engine, 5, kNear, Float3{4.0f, 0.0f, 0.0f}), 0u);
+    EXPECT_TRUE(engine.plan().on(Effect::wind));
+    EXPECT_EQ(counted.steps(engine, 5, kNear), 0u);
+    EXPECT_FALSE(engine.plan().on(Effect::wind));
+    EXPECT_EQ(counted.steps(engine, 300, kNear, {}, true), 0u);
+    EXPECT_EQ(engine.plan().reason(Effect::sleep), Reason::allAsleep) << engine.plan().why(Effect::sleep);
+    EXPECT_EQ(counted.steps(engine, 5, kNear), 0u);
+    EXPECT_FALSE(engine.plan().on(Effect::sleep));
+}
+
+TEST(StepMemory, CollisionLeavesAndJoins) {
+    const Strands strands = tuft(100, true);
+    Engine engine = makeEngine(strands, settingsOf(Integrator::verlet));
+    Counted counted(strands);
+    counted.steps(engine, 1, kNear);
+    EXPECT_EQ(counted.steps(engine, 5, kFar), 0u);
+    EXPECT_FALSE(engine.plan().on(Effect::collision));
+    EXPECT_EQ(counted.steps(engine, 5, kNear), 0u);
+    EXPECT_TRUE(engine.plan().on(Effect::collision));
+}
+
+/// A copy taken in mid-run goes on as the original does, through sleep, held curves and wind.
+TEST(SavedState, GoesOnWithTheSameBits) {
+    Strands strands = tuft(60, true);
+    // Curls, so that curves are state.
+    for (std::size_t p = 0; p < strands.points.size(); ++p)
+        strands.points[p].z += 0.004f * std::sin(1.3f * static_cast<float>(p));
+    SimulationSettings s;
+    s.dampingTime = 0.02f;
+    s.sleepSpeed = 0.05f;
+    s.sleepDelay = 0.1f;
+    s.windGustiness = 0.8f;
+    Engine engine = makeEngine(strands, s);
+    EXPECT_TRUE(engine.plan().on(Effect::torsion));
+    // Three parts: a windy turn of the head, calm until asleep, and a gust that wakes all.
+    struct Part {
+        int frames;
+        std::optional<Float3> wind;
+        bool still;
+    };
+    const Part parts[] = {
+        {20, Float3{5.0f, 0.0f, 1.0f}, false}, {300, {}, true}, {20, Float3{0.0f, 0.0f, 6.0f}, true}};
+    Counted original(strands);
+    bool slept = false;
+    for (const Part& part : parts) {
+        original.steps(engine, part.frames / 2, kNear, part.wind, part.still);
+        const Engine saved = engine;
+        const Counted here = original;
+        slept = slept || saved.measure().asleep > 0;
+        original.steps(engine, part.frames / 2, kNear, part.wind, part.still);
+        const std::uint64_t end = engine.stateHash();
+        const std::vector<Float3> places = positionsOf(engine);
+        const std::uint32_t asleep = engine.measure().asleep;
+        engine = saved;
+        original = here;
+        original.steps(engine, part.frames / 2, kNear, part.wind, part.still);
+        EXPECT_EQ(engine.stateHash(), end);
+        EXPECT_EQ(positionsOf(engine), places);
+        EXPECT_EQ(engine.measure().asleep, asleep);
+    }
+    EXPECT_TRUE(slept) << "the save should hold strands at rest";
+    EXPECT_EQ(engine.measure().nanCount, 0u);
+}
+
+}  // namespace
+}  // namespace hairloom::runtime
