@@ -44,6 +44,7 @@ struct WorkPrecision {
     std::uint32_t truthPoints = 0;  ///< per strand; 0 as authored
     std::size_t groomStrands = 0;
     std::size_t strands = 0;             ///< that ran
+    std::size_t strandsCompared = 0;     ///< of those, the ones that errors are taken from
     std::vector<WorkPrecisionRun> runs;  ///< the last axis turns fastest
     std::vector<std::string> notes;      ///< what a reader must know; whole sentences
 };

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Runs the strand engine on a groom: roots follow the posed scalp, settings and spheres come from the groom.
+// Runs the strand engine, or an alternative to it, on a groom: roots follow the posed scalp, settings and
+// spheres come from the groom.
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/simulation/motion.h"
+#include "runtime/alternatives/hair_volume.h"
 
 namespace hairloom {
 
@@ -33,11 +36,25 @@ struct SimulationStats {
     std::vector<EffectReport> effects;
 };
 
+/// How strands move (Rünz 2012, Section 3.1); docs/methods.md compares them.
+enum class SimulationMethod {
+    strands,     ///< the strand engine
+    projective,  ///< runtime/alternatives/projective_equations.h
+    lattice,     ///< runtime/alternatives/lattice.h: no collision, lengths are not held
+};
+
+struct SimulationOptions {
+    SimulationMethod method = SimulationMethod::strands;
+    /// Hair against hair between frames; for methods that take velocities.
+    std::optional<runtime::HairVolumeSettings> hairHair = {};
+};
+
 class Simulation {
   public:
     /// The groom's strands at rest on `start`. Errors: no strands, a groom that validate() finds errors in,
-    /// settings out of range.
-    static Result<Simulation> make(const Groom& groom, const HeadPose& start);
+    /// settings out of range, hair against hair for a method that takes no velocities.
+    static Result<Simulation> make(const Groom& groom, const HeadPose& start,
+                                   const SimulationOptions& options = {});
     Simulation(Simulation&&) noexcept;
     Simulation& operator=(Simulation&&) noexcept;
     ~Simulation();

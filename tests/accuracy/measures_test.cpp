@@ -115,9 +115,9 @@ TEST(Hair, MaterialPointsDoNotDependOnTheNumberOfPoints) {
     const SceneTime time{.frames = 2};
     const auto poses = posesOf(**motion, time);
     const SceneHair own = sampleStrands(groom, 3, 1);
-    const auto shares = evenShares(5);
-    const auto fine = runScene(own, poses, time, shares);
-    const auto coarse = runScene(resampledHair(own, 4), poses, time, shares);
+    const Followed followed{{0, 1, 2}, evenShares(5)};
+    const auto fine = runScene(own, poses, time, followed);
+    const auto coarse = runScene(resampledHair(own, 4), poses, time, followed);
     ASSERT_TRUE(fine && coarse);
     EXPECT_EQ(fine->trajectory.points_ws.size(), 2u * 3u * 5u);
     EXPECT_LT(compare(coarse->trajectory, fine->trajectory).maxMm, 1e-2);
@@ -151,7 +151,7 @@ TEST(Truth, APendulumSwingsAsTheEquationSays) {
     const auto motion = makeRigidMotion("none", groom);
     const SceneTime time{.frames = 30};
     const auto truth =
-        EngineConverged(32).compute(sampleStrands(groom, 1, 1), **motion, time, std::vector<float>{0.5f, 1});
+        EngineConverged(32).compute(sampleStrands(groom, 1, 1), **motion, time, {{0}, {0.5f, 1}});
     ASSERT_TRUE(truth.has_value());
     ASSERT_EQ(truth->trajectory.points_ws.size(), 2u * 30u);
     Trajectory exact = truth->trajectory;

@@ -54,9 +54,9 @@ Result<Convergence> converged(const Strands& strands, const runtime::SimulationS
     result.change = std::numeric_limits<double>::infinity();
     runFrames(*solver, start, frames, {goal.firstSubsteps, goal.order}, result);
     while (!result.reached && result.substeps <= goal.mostSubsteps / 2) {
-        const std::vector<std::vector<Vec3d>> coarse = std::move(result.positions_ws);
+        result.coarser_ws = std::move(result.positions_ws);
         runFrames(*solver, start, frames, {2 * result.substeps, goal.order}, result);
-        result.change = largestDistance(coarse, result.positions_ws);
+        result.change = largestDistance(result.coarser_ws, result.positions_ws);
         result.changes.push_back(result.change);
         result.reached = result.change <= goal.tolerance && result.report.failed == 0;
     }
