@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "core/accuracy/truth.h"
 #include "core/base/parallel.h"
@@ -219,23 +220,34 @@ Result<Truth> ReferenceConverged::compute(const SceneHair& hair, const HeadMotio
     });
 
     std::vector<const std::vector<std::vector<Vec3d>>*> last, before;
+    std::vector<StrandTruth> solved;
+    Truth truth;
+    truth.followed.shares = followed.shares;
+    for (std::size_t i = 0; i < strands.size(); ++i) {
+        if (!strands[i].motion) return tl::unexpected(strands[i].motion.error());
+        if (!std::isfinite(strands[i].motion->change)) continue;
+        truth.followed.strands.push_back(followed.strands[i]);
+        solved.push_back(std::move(strands[i]));
+    }
+    if (solved.empty())
+        return fail("the reference is not finite", "expected a motion and a groom without NaN");
     std::size_t curved = 0;
-    for (const StrandTruth& strand : strands) {
-        if (!strand.motion) return tl::unexpected(strand.motion.error());
+    for (const StrandTruth& strand : solved) {
         last.push_back(&strand.motion->positions_ws);
         before.push_back(&strand.motion->coarser_ws);
         curved += strand.curved;
     }
-    Truth truth;
-    truth.trajectory = trajectoryOf(hair, time, followed, last);
-    const Trajectory coarser = trajectoryOf(hair, time, followed, before);
-    if (!truth.trajectory.finite || !coarser.finite)
-        return fail("the reference is not finite", "expected a motion and a groom without NaN");
-    truth.uncertaintyMm = compare(coarser, truth.trajectory).rmsMm;
-    truth.detail = detailOf(strands, options_.toleranceMm);
-    truth.notes = notesOf(hair.groom.simulation, curved, strands.size());
+    truth.trajectory = trajectoryOf(hair, time, truth.followed, last);
+    truth.uncertaintyMm = compare(trajectoryOf(hair, time, truth.followed, before), truth.trajectory).rmsMm;
+    truth.detail = detailOf(solved, options_.toleranceMm);
+    truth.notes = notesOf(hair.groom.simulation, curved, solved.size());
+    if (solved.size() < strands.size()) {
+        truth.notes.push_back(
+            fmt::format("The reference could not solve {} of {} strands; they are left out of the errors.",
+                        strands.size() - solved.size(), strands.size()));
+    }
 
-    const auto engine = EngineConverged(kEngineSubsteps).compute(hair, motion, time, followed);
+    const auto engine = EngineConverged(kEngineSubsteps).compute(hair, motion, time, truth.followed);
     if (!engine) return tl::unexpected(engine.error());
     truth.notes.push_back(
         fmt::format("The engine (position Verlet) with its own steps refined until that changed {:.2g} mm is "

@@ -51,6 +51,7 @@ Result<Truth> EngineConverged::compute(const SceneHair& hair, const HeadMotion& 
     auto before = run(hair, poses, fine, followed, kFewestSubsteps);
     if (!before) return tl::unexpected(before.error());
     Truth best;
+    best.followed = followed;
     std::uint32_t bestSubsteps = 0;
     std::string changes;
     for (std::uint32_t substeps = 2 * kFewestSubsteps; substeps <= mostSubsteps_; substeps *= 2) {

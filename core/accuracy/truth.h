@@ -12,6 +12,7 @@
 namespace hairloom {
 
 struct Truth {
+    Followed followed;  ///< of what was asked for, what there is a truth of
     Trajectory trajectory;
     /// Root mean square distance to the same source at half its resolution in time. Errors of runs below it
     /// say little.
@@ -28,7 +29,7 @@ class TruthSource {
     /// Strands that it is meant to be asked for at once.
     virtual std::size_t mostStrands() const { return std::numeric_limits<std::size_t>::max(); }
     /// The followed points, in the scene of `hair` and its settings. Errors: those of Simulation::make, a
-    /// motion that is not finite.
+    /// motion that is not finite for any strand.
     virtual Result<Truth> compute(const SceneHair& hair, const HeadMotion& motion, const SceneTime& time,
                                   const Followed& followed) const = 0;
 };
@@ -58,9 +59,10 @@ class EngineConverged : public TruthSource {
 /// substeps doubled until its points move by less than `toleranceMm`, and is left as it is at the most
 /// substeps. Strands run in parallel, each for itself: the same bits for any number of threads.
 ///
-/// It leaves out what docs/engine.md says the reference leaves out: sleep, maximal extension on coil springs,
-/// and the tank that bounds how far held curves turn. What the scene has of it stands in the notes, and with
-/// it how far the converged engine is from the reference.
+/// A strand whose motion is not finite at two resolutions in a row is left out. It leaves out what
+/// docs/engine.md says the reference leaves out: sleep, maximal extension on coil springs, and the tank that
+/// bounds how far held curves turn. What the scene has of it stands in the notes, and with it how far the
+/// converged engine is from the reference.
 class ReferenceConverged : public TruthSource {
   public:
     struct Options {

@@ -236,18 +236,18 @@ Result<WorkPrecision> measureWorkPrecision(const Groom& groom, const HeadMotion&
     // The truth counts as one run; it takes as long as several, but how many depends on the grid.
     Counted counted(options, 1 + result.runs.size() * (1 + options.repeats));
     const SceneHair finest = hair.finest();
-    const Followed followed{drawnStrands(finest.groom, truth.mostStrands(), options.seed),
-                            evenShares(options.pointsCompared)};
-    result.strandsCompared = followed.strands.size();
-    const auto exact = truth.compute(finest, motion, options.time, followed);
+    const auto exact = truth.compute(
+        finest, motion, options.time,
+        {drawnStrands(finest.groom, truth.mostStrands(), options.seed), evenShares(options.pointsCompared)});
     if (!exact) return tl::unexpected(exact.error());
+    result.strandsCompared = exact->followed.strands.size();
     result.truthUncertaintyMm = exact->uncertaintyMm;
     result.truthDetail = exact->detail;
     result.notes = exact->notes;
     counted.add();
 
     const std::vector<HeadPose> poses = posesOf(motion, options.time);
-    if (auto status = followAll(hair, poses, exact->trajectory, followed, result, counted); !status) {
+    if (auto status = followAll(hair, poses, exact->trajectory, exact->followed, result, counted); !status) {
         return tl::unexpected(status.error());
     }
     if (auto status = timeAll(hair, poses, result, counted); !status) return tl::unexpected(status.error());

@@ -24,6 +24,11 @@ void runFrames(Solver solver, std::span<const Root> start, std::span<const Frame
             std::max(result.report.deepestPenetration, report.deepestPenetration);
         result.report.fastestApproach = std::max(result.report.fastestApproach, report.fastestApproach);
         result.positions_ws.push_back(solver.positions_ws());
+        const auto& last = result.positions_ws.back();
+        if (std::ranges::all_of(last, [](const Vec3d& x) { return x.allFinite(); })) continue;
+        // Nothing but the same comes of points that are no numbers, and slowly.
+        result.positions_ws.resize(frames.size(), std::vector<Vec3d>(last));
+        break;
     }
     result.velocities_ws = solver.velocities_ws();
     result.substeps = options.substeps;
