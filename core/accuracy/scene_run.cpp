@@ -170,6 +170,7 @@ Result<SceneResult> runScene(const SceneHair& hair, std::span<const HeadPose> po
     result.millisecondsPerFrame = stats.millisecondsPerFrame * static_cast<double>(time.stepsPerFrame);
     result.stateHash = stats.stateHash;
     result.nanCount = stats.nanCount;
+    result.restoredStrands = stats.restoredStrands;
     result.effects = stats.effects;
     return result;
 }

@@ -89,6 +89,7 @@ struct SceneResult {
     double millisecondsPerFrame = 0;  ///< mean of the engine's own time; all steps of a frame together
     std::uint64_t stateHash = 0;
     std::uint64_t nanCount = 0;
+    std::uint64_t restoredStrands = 0;  ///< see SimulationStats
     std::vector<EffectReport> effects;  ///< after the last frame
 };
 

@@ -80,7 +80,7 @@ Status followAll(const GridHair& hair, std::span<const HeadPose> poses, const Tr
         const auto outcome = runScene(hair.at(run.values), poses, result.options.time, followed);
         if (!outcome) return tl::unexpected(outcome.error());
         run.stateHash = outcome->stateHash;
-        run.diverged = !outcome->trajectory.finite || outcome->nanCount > 0;
+        run.diverged = !outcome->trajectory.finite || outcome->nanCount > 0 || outcome->restoredStrands > 0;
         if (!run.diverged) {
             run.error = compare(outcome->trajectory, truth);
             run.diverged = !(run.error.rmsMm <= result.options.divergedAboveMm);
@@ -185,9 +185,9 @@ void noteWhatMatters(WorkPrecision& result) {
     }
     const auto diverged = std::ranges::count_if(result.runs, &WorkPrecisionRun::diverged);
     if (diverged > 0) {
-        result.notes.push_back(
-            fmt::format("{} of {} runs diverged (not finite, or a root mean square error above {:.4g} mm).",
-                        diverged, result.runs.size(), result.options.divergedAboveMm));
+        result.notes.push_back(fmt::format(
+            "{} of {} runs diverged (strands exploded, or a root mean square error above {:.4g} mm).",
+            diverged, result.runs.size(), result.options.divergedAboveMm));
     }
     if (result.strandsCompared < result.strands) {
         result.notes.push_back(fmt::format("Errors are of {} of the {} strands that ran: the truth is slow.",
@@ -227,7 +227,7 @@ Result<WorkPrecision> measureWorkPrecision(const Groom& groom, const HeadMotion&
     for (auto& values : combinations(options.axes)) result.runs.push_back({.values = std::move(values)});
     SceneHair sample = sampleStrands(groom, options.strands, options.seed);
     result.strands = sample.groom.strandCount();
-    if (!(options.divergedAboveMm > 0)) result.options.divergedAboveMm = longestStrandMm(sample.groom) / 2;
+    if (!(options.divergedAboveMm > 0)) result.options.divergedAboveMm = longestStrandMm(sample.groom) / 4;
     if (const auto points = findAxis(options.axes, kPointsAxis)) {
         result.truthPoints = largestCount(options.axes[*points].values);
     }

@@ -20,7 +20,8 @@ struct WorkPrecisionOptions {
     std::uint32_t repeats = 5;          ///< timed runs of each setting, ≥ 1; the first one is not timed
     std::uint64_t seed = 1;             ///< of the sample
     std::uint32_t pointsCompared = 16;  ///< on each strand, evenly spaced by arc length
-    /// A run whose root mean square error is larger has diverged; 0 stands for half the longest strand.
+    /// A run whose root mean square error is larger has diverged; 0 stands for a quarter of the longest
+    /// strand.
     double divergedAboveMm = 0;
     std::function<void(std::size_t done, std::size_t total)> progress;
 };

@@ -47,6 +47,7 @@ void Simulation::Impl::gather() {
     stats.maxPenetrationMm = std::max(stats.maxPenetrationMm, measured.maxPenetration * 1e3);
     stats.energy = measured.kineticEnergy;
     stats.nanCount += measured.nanCount;
+    stats.restoredStrands += method->restoredStrands();
 }
 
 Result<Simulation> Simulation::make(const Groom& groom, const HeadPose& start,

@@ -31,8 +31,9 @@ struct SimulationStats {
     double maxStretch = 0;        ///< largest |length / rest length − 1| of a segment, over all frames
     double maxPenetrationMm = 0;  ///< deepest point inside a sphere after a frame, over all frames
     double energy = 0;  ///< kinetic energy after the last frame, joules for strands of unit mass per point
-    std::uint64_t nanCount = 0;   ///< points that are not finite, over all frames
-    std::uint64_t stateHash = 0;  ///< equal for any number of threads
+    std::uint64_t nanCount = 0;         ///< points that are not finite, over all frames
+    std::uint64_t restoredStrands = 0;  ///< put back to rest because they exploded, over all frames
+    std::uint64_t stateHash = 0;        ///< equal for any number of threads
     std::vector<EffectReport> effects;
 };
 

@@ -27,6 +27,8 @@ class StrandMethod {
     virtual void readPositions(std::span<runtime::Float3> positions_ws) const = 0;
     /// Of the last step.
     virtual double stepMilliseconds() const = 0;
+    /// Strands that the last step put back to rest because they were no numbers.
+    virtual std::uint32_t restoredStrands() const { return 0; }
     virtual runtime::Measurements measure() const = 0;
     virtual std::uint64_t stateHash() const = 0;
     /// With the mean time of each since the start.
