@@ -416,6 +416,30 @@ void Engine::rest(std::size_t block, const BlockView& blockView, const Frame& fr
     std::copy_n(blockView.position.z, floats, blockView.previous.z);
 }
 
+void Engine::addVelocities(std::span<const Float3> changes_ws) {
+    assert(changes_ws.size() == pointCount());
+    const float h = state_.substep;
+    for (std::size_t b = 0; b < shape_->blocks.size(); ++b) {
+        const Block& block = shape_->blocks[b];
+        const Planes previous = view(b).previous;
+        bool changed = false;
+        for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+            // Lanes past the last strand repeat it.
+            const std::uint32_t first = shape_->offsets[block.strandOfLane[lane]];
+            for (std::uint32_t p = settings_.clampedPoints; p < block.points; ++p) {
+                const Float3 change = changes_ws[first + p];
+                if (!isFinite(change) || change == Float3{}) continue;
+                const std::size_t i = std::size_t{p} * kBlockLanes + lane;
+                previous.x[i] -= change.x * h;
+                previous.y[i] -= change.y * h;
+                previous.z[i] -= change.z * h;
+                changed = true;
+            }
+        }
+        if (changed) state_.rests[b] = {};
+    }
+}
+
 /// Fills the lanes' way through the frame and keeps its end for the next. A cut turns the strand along
 /// rigidly.
 void Engine::enterFrame(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame) {

@@ -64,6 +64,11 @@ class Engine {
     /// Advances by input.dt to the end of the frame. A dt that is not above 0 changes nothing.
     void step(const FrameInput& input);
 
+    /// Changes velocities between frames, as hair against hair does (alternatives/hair_volume.h): one change
+    /// in m/s per point, in the order of make(). Those of clamped points and those that are not finite are
+    /// left out. Strands that are changed wake up. Before the first step it does nothing.
+    void addVelocities(std::span<const Float3> changes_ws);
+
     std::uint32_t strandCount() const { return static_cast<std::uint32_t>(shape_->offsets.size() - 1); }
     std::uint32_t pointCount() const { return shape_->offsets.back(); }
     /// Strand after strand, root to tip, in the order that make() was given; metres, world. Size

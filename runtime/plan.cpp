@@ -248,10 +248,10 @@ class Planner {
 
     void listConstraints() {
         const bool held = !coils() && s_.lengthIterations > 0;
-        // The gradients at the start of the substep are those of the Verlet integrators' own step.
-        const bool ownStep =
-            s_.integrator == Integrator::verlet || s_.integrator == Integrator::velocityVerlet;
-        if (held) add(ownStep ? StageId::length : StageId::lengthNow);
+        // Tension along the segments at the start of the substep is more exact, but pumps the leapfrog and
+        // outruns what the backward Euler step has damped.
+        const bool now = s_.integrator == Integrator::leapfrog || s_.integrator == Integrator::implicitEuler;
+        if (held) add(now ? StageId::lengthNow : StageId::length);
         if (s_.lengthMethod == LengthMethod::springVelocities && s_.lengthIterations > 0)
             add(StageId::springLimit);
         if (on(Effect::sweep)) add(StageId::sweep);

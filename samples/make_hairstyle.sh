@@ -1,9 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# make_hairstyle.sh STYLE OUT: makes one of the sample hairstyles from nothing into the folder OUT and says what each
-# step took. STYLE names a file of samples/hairstyles. The programs must be built (./dev build).
+# make_hairstyle.sh [--project-only] STYLE OUT: makes one of the sample hairstyles from nothing into the folder OUT and
+# says what each step took. STYLE names a file of samples/hairstyles. --project-only stops before anything is simulated,
+# exported or drawn. The programs must be built (./dev build).
 set -euo pipefail
 
+project_only=no
+if [ "${1-}" = --project-only ]; then project_only=yes; shift; fi
 style=${1:?a style: short, shoulder or long}
 top=$(cd "$(dirname "$(readlink -f "$0")")/.." && pwd)
 mkdir -p "${2:?a folder for the results}"
@@ -30,13 +33,15 @@ step "grooming" groom "$out/$style.hairloom" --script "samples/hairstyles/$style
 step "collision spheres" spheres "$out/$style.hairloom" --from samples/bust/spheres.json --replace -o "$out/$style.hairloom"
 step "simulation and material settings" set "$out/$style.hairloom" --from "samples/hairstyles/$style.settings.json" \
     -o "$out/$style.hairloom"
-step "two seconds of head motion in wind" simulate "$out/$style.hairloom" --frames 60 --fps 30 \
-    --motion clip:nod_and_turn --wind "$wind" --record "$out/$style.frames"
-step "asset: Yuksel .hair" export "$out/$style.hairloom" --format hair -o "$out/$style.hair"
-step "asset: TressFX .tfx" export "$out/$style.hairloom" --format tfx -o "$out/$style.tfx"
-step "picture at rest" render "$out/$style.hairloom" --size 1024x1024 --camera three-quarter --exposure 1.6 -o "$out/$style.png"
-step "picture in motion" render "$out/$style.hairloom" --record "$out/$style.frames" --frame 12 --size 1024x1024 \
-    --camera three-quarter --exposure 1.6 -o "$out/$style-motion.png"
+if [ "$project_only" = no ]; then
+    step "two seconds of head motion in wind" simulate "$out/$style.hairloom" --frames 60 --fps 30 \
+        --motion clip:nod_and_turn --wind "$wind" --record "$out/$style.frames"
+    step "asset: Yuksel .hair" export "$out/$style.hairloom" --format hair -o "$out/$style.hair"
+    step "asset: TressFX .tfx" export "$out/$style.hairloom" --format tfx -o "$out/$style.tfx"
+    step "picture at rest" render "$out/$style.hairloom" --size 1024x1024 --camera three-quarter --exposure 1.6 -o "$out/$style.png"
+    step "picture in motion" render "$out/$style.hairloom" --record "$out/$style.frames" --frame 12 --size 1024x1024 \
+        --camera three-quarter --exposure 1.6 -o "$out/$style-motion.png"
+fi
 rm -f "$out/log.txt"
 echo "Results in $out:"
 ls -l "$out" | awk -v style="$style" '$9 ~ "^" style { printf "  %-40s %9.1f kB\n", $9, $5 / 1024 }'

@@ -21,7 +21,10 @@ struct AccuracyOptions {
     std::uint32_t strands = 200;
     std::uint32_t repeats = 5;
     std::uint64_t seed = 1;
+    std::string truth = "reference";
+    std::uint32_t truthStrands = 16;
     std::uint32_t truthSubsteps = 64;
+    double truthTolerance = 0.01;  ///< mm
     std::vector<std::string> integrators, substeps, iterations, points, threadCounts;
     std::vector<std::string> vary;  ///< FIELD=V1,V2,…
 };
@@ -79,6 +82,12 @@ Result<std::vector<GridAxis>> axesOf(const AccuracyOptions& options, const Groom
     return axes;
 }
 
+std::unique_ptr<TruthSource> truthOf(const AccuracyOptions& options) {
+    if (options.truth == "engine") return std::make_unique<EngineConverged>(options.truthSubsteps);
+    return std::make_unique<ReferenceConverged>(
+        ReferenceConverged::Options{options.truthStrands, options.truthTolerance, options.truthSubsteps});
+}
+
 Report settingReport(const WorkPrecision& result, const WorkPrecisionRun& run) {
     Report setting = Report::object();
     for (std::size_t a = 0; a < run.values.size(); ++a) {
@@ -130,8 +139,7 @@ Result<Report> accuracy(const AccuracyOptions& options, const std::string& comma
         if (!progress) progress.emplace("measuring", total);
         progress->done(done);
     };
-    const auto result =
-        measureWorkPrecision(scene->groom, *scene->motion, measuring, EngineConverged(options.truthSubsteps));
+    const auto result = measureWorkPrecision(scene->groom, *scene->motion, measuring, *truthOf(options));
     progress.reset();
     if (!result) return tl::unexpected(result.error());
     const auto files = writeWorkPrecision(*result, {options.motion.input, options.motion.motion, commandLine},
@@ -140,6 +148,7 @@ Result<Report> accuracy(const AccuracyOptions& options, const std::string& comma
 
     Report report;
     report["strands"] = result->strands;
+    report["strands_compared"] = result->strandsCompared;
     report["frames"] = measuring.time.frames;
     report["runs"] = result->runs.size();
     report["diverged"] = std::ranges::count_if(result->runs, &WorkPrecisionRun::diverged);
@@ -176,6 +185,15 @@ void addAccuracyJob(Jobs& jobs) {
     list("--thread-counts", options->threadCounts, "Numbers of threads to try, instead of --threads alone");
     job.add_option("--vary", options->vary, "Another setting to try, FIELD=VALUE,VALUE,…; may be repeated");
     job.add_option("--repeat", options->repeats, "Timed runs of each setting")->check(CLI::Range(1, 1000));
+    job.add_option("--truth", options->truth,
+                   "What counts as true: the reference in double precision, or the engine converged")
+        ->check(CLI::IsMember({"reference", "engine"}));
+    job.add_option("--truth-strands", options->truthStrands,
+                   "Strands that errors are taken from when the reference is true; it is slow")
+        ->check(CLI::Range(1, 100'000));
+    job.add_option("--truth-tolerance", options->truthTolerance,
+                   "Millimetres by which a doubling of the reference's steps may still move a point")
+        ->check(CLI::Range(1e-6, 10.0));
     job.add_option("--truth-substeps", options->truthSubsteps,
                    "Most steps, in each quarter of a frame, of the run that counts as true")
         ->check(CLI::IsMember({8, 16, 32, 64}));

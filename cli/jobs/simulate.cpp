@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -28,8 +29,46 @@ struct SimulateOptions {
     std::string wind;
     std::string motion = "none";
     std::string character;
+    std::string method = "strands";
+    bool hairHair = false;
     std::string record;
+    std::string against;
     std::string output;
+};
+
+SimulationOptions methodOf(const SimulateOptions& options) {
+    SimulationOptions result;
+    if (options.method == "projective") result.method = SimulationMethod::projective;
+    if (options.method == "lattice") result.method = SimulationMethod::lattice;
+    if (options.hairHair) result.hairHair.emplace();
+    return result;
+}
+
+/// How far the hair is from a record of the same groom, frame by frame.
+class RecordComparison {
+  public:
+    explicit RecordComparison(const std::string& path) : path_(path) {}
+
+    Status add(const Groom& groom, std::uint64_t frame, std::span<const Vec3f> positions_ws) {
+        const auto recorded = readFrame(path_, groom, frame);
+        if (!recorded) return tl::unexpected(recorded.error());
+        for (std::size_t p = 0; p < positions_ws.size(); ++p) {
+            const double squared = (positions_ws[p] - recorded->positions_ws[p]).cast<double>().squaredNorm();
+            sum_ += squared;
+            largest_ = std::max(largest_, squared);
+        }
+        count_ += positions_ws.size();
+        return {};
+    }
+    void report(Report& report) const {
+        report["error_mm"] = finiteOrNull(1e3 * std::sqrt(sum_ / static_cast<double>(count_)));
+        report["error_mm_max"] = finiteOrNull(1e3 * std::sqrt(largest_));
+    }
+
+  private:
+    std::string path_;
+    double sum_ = 0, largest_ = 0;
+    std::size_t count_ = 0;
 };
 
 /// As the engine's own table of settings lists them.
@@ -106,7 +145,7 @@ Result<Report> simulate(const SimulateOptions& options) {
     const auto motion = makeMotion(options.motion, options.character, *groom);
     if (!motion) return tl::unexpected(motion.error());
     HeadPose pose = (*motion)->poseAt(0);
-    auto simulation = Simulation::make(*groom, pose);
+    auto simulation = Simulation::make(*groom, pose, methodOf(options));
     if (!simulation) return tl::unexpected(simulation.error());
     const Report advice = adviceReport(*groom, 1.0f / options.framesPerSecond);
     std::optional<FrameRecorder> recorder;
@@ -115,6 +154,9 @@ Result<Report> simulate(const SimulateOptions& options) {
         if (!opened) return tl::unexpected(opened.error());
         recorder.emplace(std::move(*opened));
     }
+
+    std::optional<RecordComparison> comparison;
+    if (!options.against.empty()) comparison.emplace(options.against);
 
     Progress progress("simulating", options.frames);
     for (std::uint64_t frame = 1; frame <= options.frames; ++frame) {
@@ -125,11 +167,18 @@ Result<Report> simulate(const SimulateOptions& options) {
                 return tl::unexpected(added.error());
             }
         }
+        if (comparison) {
+            if (auto compared = comparison->add(*groom, frame - 1, simulation->positions_ws()); !compared) {
+                return tl::unexpected(compared.error());
+            }
+        }
         progress.done(frame);
     }
 
     Report report = statsReport(*groom, simulation->stats());
     report["advice"] = advice;
+    report["method"] = options.method;
+    if (comparison) comparison->report(report);
     if (recorder) {
         if (auto finished = recorder->finish(); !finished) return tl::unexpected(finished.error());
         report["record"] = options.record;
@@ -162,7 +211,13 @@ void addSimulateJob(Jobs& jobs) {
     job.add_option("--motion", options->motion, "How the head moves: none, spin, nod or clip:NAME");
     job.add_option("--character", options->character,
                    "File with the skeleton and clips, instead of the one the scalp came from");
+    job.add_option("--method", options->method,
+                   "How strands move: the strand engine, projective equations, or a lattice around the head")
+        ->check(CLI::IsMember({"strands", "projective", "lattice"}));
+    job.add_flag("--hair-hair", options->hairHair, "Hair against hair, through a volume between frames");
     job.add_option("--record", options->record, "File to write every frame to");
+    job.add_option("--against", options->against,
+                   "Record of the same groom and frames to tell the distance from");
     job.add_option("-o,--output", options->output, "Project to write with the hair as it ends");
 }
 

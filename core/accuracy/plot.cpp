@@ -23,7 +23,7 @@ constexpr double kTextHeight = 15;  // of a line of kTextSize, with its spacing
 constexpr double kEdge = 12;        // between the drawing's border and anything
 constexpr double kTickLength = 5;
 constexpr double kTurned = -40;  // degrees, of labels that do not fit side by side
-constexpr double kFaint = 0.28;
+constexpr double kFaint = 0.4;
 constexpr double kMarkerRoom = 5;       // half the box that labels keep off a marker
 constexpr double kSmallestFrame = 140;  // pixels a side, whatever the text takes
 

@@ -109,7 +109,7 @@ std::string svg(const Plot& plot);
 /// Okabe and Ito's palette ("Color Universal Design", 2008), which colour-blind readers can tell apart; in an
 /// order in which the first few are also of different lightness.
 inline constexpr std::array<const char*, 8> kPalette = {"#0072B2", "#D55E00", "#009E73", "#E69F00",
-                                                        "#CC79A7", "#56B4E9", "#000000", "#F0E442"};
+                                                        "#CC79A7", "#000000", "#56B4E9", "#F0E442"};
 /// Of the palette, over and over.
 const char* paletteColour(std::size_t index);
 /// "#rrggbb" of a share 0 … 1 of the colour bar: viridis, dark to light, even in lightness.

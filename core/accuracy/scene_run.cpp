@@ -52,47 +52,37 @@ void appendShares(std::span<const Vec3f> strand, std::vector<float>& shares) {
     }
 }
 
-/// Where material points lie between the points of strands: place = (1 − t) p[from] + t p[from + 1].
-class MaterialPoints {
-  public:
-    MaterialPoints(const SceneHair& hair, std::span<const float> shares) {
-        for (std::size_t s = 0; s < hair.groom.strandCount(); ++s) {
-            const std::uint32_t first = hair.groom.offsets[s], last = hair.groom.offsets[s + 1] - 1;
-            std::uint32_t from = first;
-            for (const float share : shares) {
-                while (from + 1 < last && hair.arcShares[from + 1] < share) ++from;
-                const float length = hair.arcShares[from + 1] - hair.arcShares[from];
-                const float t = length > 0 ? (share - hair.arcShares[from]) / length : 0;
-                places_.push_back({from, std::clamp(t, 0.0f, 1.0f)});
-            }
-        }
-    }
-
-    std::size_t count() const { return places_.size(); }
-
-    /// Appends the places; false when one of them is not finite.
-    bool read(std::span<const Vec3f> positions_ws, std::vector<Vec3f>& into_ws) const {
-        bool finite = true;
-        for (const Place& place : places_) {
-            const Vec3f& from = positions_ws[place.from];
-            into_ws.push_back(from + place.t * (positions_ws[place.from + 1] - from));
-            finite = finite && into_ws.back().allFinite();
-        }
-        return finite;
-    }
-
-  private:
-    struct Place {
-        std::uint32_t from;
-        float t;
-    };
-    std::vector<Place> places_;
-};
-
 }  // namespace
 
+std::vector<std::uint32_t> drawnStrands(const Groom& groom, std::size_t count, std::uint64_t seed) {
+    return drawn(groom.strandCount(), count, seed);
+}
+
+MaterialPoints::MaterialPoints(const SceneHair& hair, const Followed& followed) {
+    for (const std::uint32_t s : followed.strands) {
+        const std::uint32_t first = hair.groom.offsets[s], last = hair.groom.offsets[s + 1] - 1;
+        std::uint32_t from = first;
+        for (const float share : followed.shares) {
+            while (from + 1 < last && hair.arcShares[from + 1] < share) ++from;
+            const float length = hair.arcShares[from + 1] - hair.arcShares[from];
+            const float t = length > 0 ? (share - hair.arcShares[from]) / length : 0;
+            places_.push_back({from, std::clamp(t, 0.0f, 1.0f)});
+        }
+    }
+}
+
+bool MaterialPoints::read(std::span<const Vec3f> positions_ws, std::vector<Vec3f>& into_ws) const {
+    bool finite = true;
+    for (const Place& place : places_) {
+        const Vec3f& from = positions_ws[place.from];
+        into_ws.push_back(from + place.t * (positions_ws[place.from + 1] - from));
+        finite = finite && into_ws.back().allFinite();
+    }
+    return finite;
+}
+
 SceneHair sampleStrands(const Groom& groom, std::size_t count, std::uint64_t seed) {
-    const std::vector<std::uint32_t> strands = drawn(groom.strandCount(), count, seed);
+    const std::vector<std::uint32_t> strands = drawnStrands(groom, count, seed);
     std::vector<std::uint32_t> offsets{0}, points;
     SceneHair hair;
     for (const std::uint32_t strand : strands) {
@@ -159,11 +149,11 @@ TrajectoryError compare(const Trajectory& run, const Trajectory& truth) {
 }
 
 Result<SceneResult> runScene(const SceneHair& hair, std::span<const HeadPose> poses, const SceneTime& time,
-                             std::span<const float> shares) {
+                             const Followed& followed, const SimulationOptions& options) {
     assert(poses.size() == std::size_t{time.frames} * time.stepsPerFrame + 1);
-    auto simulation = Simulation::make(hair.groom, poses[0]);
+    auto simulation = Simulation::make(hair.groom, poses[0], options);
     if (!simulation) return tl::unexpected(simulation.error());
-    const MaterialPoints points(hair, shares);
+    const MaterialPoints points(hair, followed);
     SceneResult result;
     Trajectory& trajectory = result.trajectory;
     trajectory.frames = time.frames;
@@ -180,6 +170,7 @@ Result<SceneResult> runScene(const SceneHair& hair, std::span<const HeadPose> po
     result.millisecondsPerFrame = stats.millisecondsPerFrame * static_cast<double>(time.stepsPerFrame);
     result.stateHash = stats.stateHash;
     result.nanCount = stats.nanCount;
+    result.restoredStrands = stats.restoredStrands;
     result.effects = stats.effects;
     return result;
 }

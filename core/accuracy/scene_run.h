@@ -59,18 +59,43 @@ TrajectoryError compare(const Trajectory& run, const Trajectory& truth);
 /// `count` shares of the arc length, evenly spaced, from the first beyond the root to the tip.
 std::vector<float> evenShares(std::uint32_t count);
 
+/// The points of strands that a run is compared by: on each of `strands`, ascending, those at `shares` of
+/// its arc length, ascending.
+struct Followed {
+    std::vector<std::uint32_t> strands;
+    std::vector<float> shares;
+};
+/// `count` of the strands, drawn with the seed; all of them where there are no more.
+std::vector<std::uint32_t> drawnStrands(const Groom& groom, std::size_t count, std::uint64_t seed);
+
+/// Where followed points lie between the points of their strands.
+class MaterialPoints {
+  public:
+    MaterialPoints(const SceneHair& hair, const Followed& followed);
+    std::size_t count() const { return places_.size(); }
+    /// Appends the places; false when one of them is not finite. `positions_ws` are all points of the hair.
+    bool read(std::span<const Vec3f> positions_ws, std::vector<Vec3f>& into_ws) const;
+
+  private:
+    struct Place {
+        std::uint32_t from;
+        float t;  ///< of the way from point `from` to the next
+    };
+    std::vector<Place> places_;
+};
+
 struct SceneResult {
-    Trajectory trajectory;            ///< empty without shares
+    Trajectory trajectory;            ///< empty without followed points
     double millisecondsPerFrame = 0;  ///< mean of the engine's own time; all steps of a frame together
     std::uint64_t stateHash = 0;
     std::uint64_t nanCount = 0;
+    std::uint64_t restoredStrands = 0;  ///< see SimulationStats
     std::vector<EffectReport> effects;  ///< after the last frame
 };
 
-/// Runs the hair with its groom's settings, from rest. `shares` are the material points of each strand to
-/// follow; a run that follows some is broken off at the first that is not finite. Errors: those of
-/// Simulation::make.
+/// Runs the hair with its groom's settings, from rest. A run that follows points is broken off at the first
+/// that is not finite. Errors: those of Simulation::make.
 Result<SceneResult> runScene(const SceneHair& hair, std::span<const HeadPose> poses, const SceneTime& time,
-                             std::span<const float> shares);
+                             const Followed& followed, const SimulationOptions& options = {});
 
 }  // namespace hairloom

@@ -22,9 +22,9 @@ runtime::SimulationSettings converged(runtime::SimulationSettings settings, std:
 }
 
 Result<Trajectory> run(SceneHair hair, std::span<const HeadPose> poses, const SceneTime& time,
-                       std::span<const float> shares, std::uint32_t substeps) {
+                       const Followed& followed, std::uint32_t substeps) {
     hair.groom.simulation = converged(hair.groom.simulation, substeps);
-    auto result = runScene(hair, poses, time, shares);
+    auto result = runScene(hair, poses, time, followed);
     if (!result) return tl::unexpected(result.error());
     if (!result->trajectory.finite) {
         return fail("the converged run itself is not finite", "expected a motion and a groom without NaN");
@@ -43,18 +43,19 @@ std::string EngineConverged::description() const {
 }
 
 Result<Truth> EngineConverged::compute(const SceneHair& hair, const HeadMotion& motion, const SceneTime& time,
-                                       std::span<const float> shares) const {
+                                       const Followed& followed) const {
     assert(mostSubsteps_ >= 2 * kFewestSubsteps);
     SceneTime fine = time;
     fine.stepsPerFrame = kStepsPerFrame;
     const std::vector<HeadPose> poses = posesOf(motion, fine);
-    auto before = run(hair, poses, fine, shares, kFewestSubsteps);
+    auto before = run(hair, poses, fine, followed, kFewestSubsteps);
     if (!before) return tl::unexpected(before.error());
     Truth best;
+    best.followed = followed;
     std::uint32_t bestSubsteps = 0;
     std::string changes;
     for (std::uint32_t substeps = 2 * kFewestSubsteps; substeps <= mostSubsteps_; substeps *= 2) {
-        auto finer = run(hair, poses, fine, shares, substeps);
+        auto finer = run(hair, poses, fine, followed, substeps);
         if (!finer) return tl::unexpected(finer.error());
         const double change = compare(*before, *finer).rmsMm;
         changes += fmt::format("{}{:.3g} mm at {}", changes.empty() ? "" : ", ", change, substeps);

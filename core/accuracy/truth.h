@@ -2,19 +2,23 @@
 #pragma once
 // What runs are compared with.
 
+#include <limits>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "core/accuracy/scene_run.h"
 
 namespace hairloom {
 
 struct Truth {
+    Followed followed;  ///< of what was asked for, what there is a truth of
     Trajectory trajectory;
     /// Root mean square distance to the same source at half its resolution in time. Errors of runs below it
     /// say little.
     double uncertaintyMm = 0;
-    std::string detail;  ///< how it came out in this scene, for reports; may be empty
+    std::string detail;              ///< how it came out in this scene, for reports; may be empty
+    std::vector<std::string> notes;  ///< what it does not do that this scene asks for; whole sentences
 };
 
 class TruthSource {
@@ -22,10 +26,12 @@ class TruthSource {
     virtual ~TruthSource() = default;
     virtual std::string name() const = 0;         ///< "engine-converged"
     virtual std::string description() const = 0;  ///< how it is computed; one sentence for reports
-    /// The material points `shares` of each strand, in the scene of `hair` and its settings. Errors: those of
-    /// Simulation::make, a motion that is not finite.
+    /// Strands that it is meant to be asked for at once.
+    virtual std::size_t mostStrands() const { return std::numeric_limits<std::size_t>::max(); }
+    /// The followed points, in the scene of `hair` and its settings. Errors: those of Simulation::make, a
+    /// motion that is not finite for any strand.
     virtual Result<Truth> compute(const SceneHair& hair, const HeadMotion& motion, const SceneTime& time,
-                                  std::span<const float> shares) const = 0;
+                                  const Followed& followed) const = 0;
 };
 
 /// The engine itself, converged as far as it goes: position Verlet, with the head where the motion has it at
@@ -42,10 +48,40 @@ class EngineConverged : public TruthSource {
     std::string name() const override { return "engine-converged"; }
     std::string description() const override;
     Result<Truth> compute(const SceneHair& hair, const HeadMotion& motion, const SceneTime& time,
-                          std::span<const float> shares) const override;
+                          const Followed& followed) const override;
 
   private:
     std::uint32_t mostSubsteps_;
+};
+
+/// The reference of core/simulation/reference: the model of docs/engine.md in double precision, with none of
+/// the engine's code. The head is where the motion has it at the quarters of each frame. Each strand has its
+/// substeps doubled until its points move by less than `toleranceMm`, and is left as it is at the most
+/// substeps. Strands run in parallel, each for itself: the same bits for any number of threads.
+///
+/// A strand whose motion is not finite at two resolutions in a row is left out. It leaves out what
+/// docs/engine.md says the reference leaves out: sleep, maximal extension on coil springs, and the tank that
+/// bounds how far held curves turn. What the scene has of it stands in the notes, and with it how far the
+/// converged engine is from the reference.
+class ReferenceConverged : public TruthSource {
+  public:
+    struct Options {
+        std::size_t strands = 16;         ///< see mostStrands()
+        double toleranceMm = 0.01;        ///< above 0
+        std::uint32_t mostSubsteps = 64;  ///< in each quarter of a frame, a power of two from 4
+    };
+    ReferenceConverged() : ReferenceConverged(Options{}) {}
+    explicit ReferenceConverged(const Options& options) : options_(options) {}
+
+    std::string name() const override { return "reference"; }
+    std::string description() const override;
+    std::size_t mostStrands() const override { return options_.strands; }
+    /// Errors: also settings that the reference refuses, as angularStiffness 1.
+    Result<Truth> compute(const SceneHair& hair, const HeadMotion& motion, const SceneTime& time,
+                          const Followed& followed) const override;
+
+  private:
+    Options options_;
 };
 
 }  // namespace hairloom

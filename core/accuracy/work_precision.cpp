@@ -74,13 +74,13 @@ class Counted {
 
 /// Where each run's hair goes; the first run of each setting, which also warms the caches.
 Status followAll(const GridHair& hair, std::span<const HeadPose> poses, const Trajectory& truth,
-                 const std::vector<float>& shares, WorkPrecision& result, Counted& counted) {
+                 const Followed& followed, WorkPrecision& result, Counted& counted) {
     for (WorkPrecisionRun& run : result.runs) {
         const ThreadLimit limit = hair.limitThreads(run.values);
-        const auto outcome = runScene(hair.at(run.values), poses, result.options.time, shares);
+        const auto outcome = runScene(hair.at(run.values), poses, result.options.time, followed);
         if (!outcome) return tl::unexpected(outcome.error());
         run.stateHash = outcome->stateHash;
-        run.diverged = !outcome->trajectory.finite || outcome->nanCount > 0;
+        run.diverged = !outcome->trajectory.finite || outcome->nanCount > 0 || outcome->restoredStrands > 0;
         if (!run.diverged) {
             run.error = compare(outcome->trajectory, truth);
             run.diverged = !(run.error.rmsMm <= result.options.divergedAboveMm);
@@ -149,7 +149,24 @@ void noteValuesWithoutEffect(std::size_t axisIndex, WorkPrecision& result) {
     }
 }
 
+/// Kelvin-Voigt damping of bending is part of position Verlet's implicit solve alone.
+void noteIntegratorsWithoutBendDamping(WorkPrecision& result) {
+    if (!(result.settings.bendDampingTime > 0) || !(result.settings.angularStiffness > 0)) return;
+    const auto axis = findAxis(result.options.axes, "integrator");
+    const double own = static_cast<double>(result.settings.integrator);
+    const std::vector<double> used = axis ? result.options.axes[*axis].values : std::vector<double>{own};
+    const auto isVerlet = [](double index) {
+        return index == static_cast<double>(runtime::Integrator::verlet);
+    };
+    if (std::ranges::all_of(used, isVerlet)) return;
+    result.notes.push_back(fmt::format(
+        "Only the integrator verlet damps bending (bendDampingTime {} s); the others leave it out, "
+        "which no number of substeps makes good.",
+        result.settings.bendDampingTime));
+}
+
 void noteWhatMatters(WorkPrecision& result) {
+    noteIntegratorsWithoutBendDamping(result);
     for (std::size_t a = 0; a < result.options.axes.size(); ++a) {
         if (result.options.axes[a].field != kThreadsAxis) noteValuesWithoutEffect(a, result);
     }
@@ -168,9 +185,13 @@ void noteWhatMatters(WorkPrecision& result) {
     }
     const auto diverged = std::ranges::count_if(result.runs, &WorkPrecisionRun::diverged);
     if (diverged > 0) {
-        result.notes.push_back(
-            fmt::format("{} of {} runs diverged (not finite, or a root mean square error above {:.4g} mm).",
-                        diverged, result.runs.size(), result.options.divergedAboveMm));
+        result.notes.push_back(fmt::format(
+            "{} of {} runs diverged (strands exploded, or a root mean square error above {:.4g} mm).",
+            diverged, result.runs.size(), result.options.divergedAboveMm));
+    }
+    if (result.strandsCompared < result.strands) {
+        result.notes.push_back(fmt::format("Errors are of {} of the {} strands that ran: the truth is slow.",
+                                           result.strandsCompared, result.strands));
     }
     if (result.strands < result.groomStrands) {
         result.notes.push_back(
@@ -206,7 +227,7 @@ Result<WorkPrecision> measureWorkPrecision(const Groom& groom, const HeadMotion&
     for (auto& values : combinations(options.axes)) result.runs.push_back({.values = std::move(values)});
     SceneHair sample = sampleStrands(groom, options.strands, options.seed);
     result.strands = sample.groom.strandCount();
-    if (!(options.divergedAboveMm > 0)) result.options.divergedAboveMm = longestStrandMm(sample.groom) / 2;
+    if (!(options.divergedAboveMm > 0)) result.options.divergedAboveMm = longestStrandMm(sample.groom) / 4;
     if (const auto points = findAxis(options.axes, kPointsAxis)) {
         result.truthPoints = largestCount(options.axes[*points].values);
     }
@@ -214,15 +235,19 @@ Result<WorkPrecision> measureWorkPrecision(const Groom& groom, const HeadMotion&
 
     // The truth counts as one run; it takes as long as several, but how many depends on the grid.
     Counted counted(options, 1 + result.runs.size() * (1 + options.repeats));
-    const std::vector<float> shares = evenShares(options.pointsCompared);
-    const auto exact = truth.compute(hair.finest(), motion, options.time, shares);
+    const SceneHair finest = hair.finest();
+    const auto exact = truth.compute(
+        finest, motion, options.time,
+        {drawnStrands(finest.groom, truth.mostStrands(), options.seed), evenShares(options.pointsCompared)});
     if (!exact) return tl::unexpected(exact.error());
+    result.strandsCompared = exact->followed.strands.size();
     result.truthUncertaintyMm = exact->uncertaintyMm;
     result.truthDetail = exact->detail;
+    result.notes = exact->notes;
     counted.add();
 
     const std::vector<HeadPose> poses = posesOf(motion, options.time);
-    if (auto status = followAll(hair, poses, exact->trajectory, shares, result, counted); !status) {
+    if (auto status = followAll(hair, poses, exact->trajectory, exact->followed, result, counted); !status) {
         return tl::unexpected(status.error());
     }
     if (auto status = timeAll(hair, poses, result, counted); !status) return tl::unexpected(status.error());

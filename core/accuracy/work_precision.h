@@ -20,7 +20,8 @@ struct WorkPrecisionOptions {
     std::uint32_t repeats = 5;          ///< timed runs of each setting, ≥ 1; the first one is not timed
     std::uint64_t seed = 1;             ///< of the sample
     std::uint32_t pointsCompared = 16;  ///< on each strand, evenly spaced by arc length
-    /// A run whose root mean square error is larger has diverged; 0 stands for half the longest strand.
+    /// A run whose root mean square error is larger has diverged; 0 stands for a quarter of the longest
+    /// strand.
     double divergedAboveMm = 0;
     std::function<void(std::size_t done, std::size_t total)> progress;
 };
@@ -44,6 +45,7 @@ struct WorkPrecision {
     std::uint32_t truthPoints = 0;  ///< per strand; 0 as authored
     std::size_t groomStrands = 0;
     std::size_t strands = 0;             ///< that ran
+    std::size_t strandsCompared = 0;     ///< of those, the ones that errors are taken from
     std::vector<WorkPrecisionRun> runs;  ///< the last axis turns fastest
     std::vector<std::string> notes;      ///< what a reader must know; whole sentences
 };

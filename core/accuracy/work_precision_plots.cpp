@@ -62,13 +62,26 @@ std::string tooltipOf(const WorkPrecision& result, const WorkPrecisionRun& run) 
                        run.milliseconds.median, run.error.rmsMm, run.error.maxMm);
 }
 
+/// " (3 of 36 diverged)" of the runs with one value of an axis, empty where none did: they have no place.
+std::string divergedText(const WorkPrecision& result, std::size_t axis, double value) {
+    std::size_t runs = 0, diverged = 0;
+    for (const WorkPrecisionRun& run : result.runs) {
+        if (run.values[axis] != value) continue;
+        ++runs;
+        diverged += run.diverged;
+    }
+    return diverged > 0 ? fmt::format(" ({} of {} diverged)", diverged, runs) : std::string();
+}
+
 /// Series that only name the colours and the shapes.
 void addLegend(const WorkPrecision& result, std::optional<std::size_t> integrator,
                std::optional<std::size_t> points, Plot& plot) {
     if (integrator) {
         const GridAxis& axis = result.options.axes[*integrator];
         for (std::size_t v = 0; v < axis.values.size(); ++v) {
-            plot.series.push_back({.name = axisValueText(axis, axis.values[v]), .colour = paletteColour(v)});
+            plot.series.push_back({.name = axisValueText(axis, axis.values[v]) +
+                                           divergedText(result, *integrator, axis.values[v]),
+                                   .colour = paletteColour(v)});
         }
     }
     if (points && varies(result.options.axes, *points)) {

@@ -119,6 +119,8 @@ void addWhatWasRun(const WorkPrecision& result, const ReportContext& context, Ht
                     result.truthPoints ? fmt::format("{}", result.truthPoints) : std::string("the authored"),
                     result.truthUncertaintyMm));
     if (!result.truthDetail.empty()) facts.emplace_back("Its convergence", result.truthDetail);
+    if (result.strandsCompared < result.strands)
+        facts.emplace_back("Strands compared", fmt::format("{}", result.strandsCompared));
     facts.emplace_back(
         "Error", fmt::format("distance of the same material points, {} evenly along each strand, at the "
                              "end of every frame",

@@ -1,128 +1,64 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/simulation/simulation.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <chrono>
+#include <cassert>
 
-#include "core/animation/root_motion.h"
-#include "core/base/parallel.h"
 #include "core/base/profiler.h"
-#include "core/groom/validate.h"
-#include "runtime/engine.h"
+#include "core/simulation/strand_method.h"
 
 namespace hairloom {
 namespace {
 
-using runtime::Effect;
-using runtime::StageId;
-
-runtime::Float3 toFloat3(const Vec3f& v) {
-    return {v.x(), v.y(), v.z()};
-}
-
-runtime::Host applicationHost() {
-    runtime::Host host;
-    host.parallelFor = parallelFor;
-    host.nanoseconds = [] {
-        const auto now = std::chrono::steady_clock::now().time_since_epoch();
-        return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(now).count());
-    };
-    return host;
-}
-
-/// "off, no sphere within reach of a strand" out of "collision: off, …".
-std::string reasonAlone(const std::string& why) {
-    const std::size_t colon = why.find(": ");
-    return colon == std::string::npos ? why : why.substr(colon + 2);
-}
-
-Status refuseWhatValidationRefuses(const Groom& groom) {
-    for (const Finding& finding : validate(groom)) {
-        if (finding.severity != Severity::Error) continue;
-        return fail(fmt::format("{} ({})", finding.what, finding.where),
-                    finding.fix.empty() ? "expected a groom that validates" : finding.fix);
+Result<std::unique_ptr<StrandMethod>> makeMethod(const SceneInput& scene, const SimulationOptions& options) {
+    if (options.method == SimulationMethod::strands) return makeEngineMethod(scene, options.hairHair);
+    if (options.hairHair) {
+        return fail("hair against hair needs a method that takes velocities, and this one takes none",
+                    "expected the method 'strands'");
     }
-    return {};
+    return options.method == SimulationMethod::projective ? makeProjectiveMethod(scene)
+                                                          : makeLatticeMethod(scene);
 }
 
 }  // namespace
 
 struct Simulation::Impl {
-    Groom groom;
-    std::vector<SurfacePoint> bindings;  ///< empty for hair without a scalp
-    runtime::Engine engine;
+    SceneInput scene;
+    std::unique_ptr<StrandMethod> method;
     double time = 0;
     std::vector<Vec3f> positions_ws;
     SimulationStats stats;
     double milliseconds = 0;  ///< of all steps
-    std::array<double, runtime::kEffectCount> effectMilliseconds{};
 
-    std::vector<runtime::RootFrame> rootsAt(const HeadPose& pose) const;
-    std::vector<runtime::Sphere> spheresAt(const HeadPose& pose) const;
     void readPositions();
-    void gather(const runtime::StepReport& report);
+    void gather();
 };
-
-std::vector<runtime::RootFrame> Simulation::Impl::rootsAt(const HeadPose& pose) const {
-    std::vector<Eigen::Isometry3f> transforms(groom.strandCount(), pose.head_ws);
-    if (!bindings.empty() && !pose.scalpPositions_ws.empty()) {
-        transforms = rootTransforms(*groom.scalp, pose.scalpPositions_ws, bindings);
-    }
-    std::vector<runtime::RootFrame> roots(transforms.size());
-    for (std::size_t s = 0; s < roots.size(); ++s) {
-        const Quatf rotation(transforms[s].linear());
-        roots[s].position = toFloat3(transforms[s] * groom.strand(s).front());
-        roots[s].rotation = {rotation.x(), rotation.y(), rotation.z(), rotation.w()};
-    }
-    return roots;
-}
-
-std::vector<runtime::Sphere> Simulation::Impl::spheresAt(const HeadPose& pose) const {
-    std::vector<runtime::Sphere> spheres(groom.spheres.size());
-    for (std::size_t s = 0; s < spheres.size(); ++s) {
-        const Vec3f centre_ws = pose.sphereCentres_ws.empty() ? Vec3f(pose.head_ws * groom.spheres[s].centre)
-                                                              : pose.sphereCentres_ws[s];
-        spheres[s] = {toFloat3(centre_ws), groom.spheres[s].radius};
-    }
-    return spheres;
-}
 
 void Simulation::Impl::readPositions() {
     static_assert(sizeof(Vec3f) == sizeof(runtime::Float3));
-    engine.readPositions({reinterpret_cast<runtime::Float3*>(positions_ws.data()), positions_ws.size()});
+    method->readPositions({reinterpret_cast<runtime::Float3*>(positions_ws.data()), positions_ws.size()});
 }
 
-void Simulation::Impl::gather(const runtime::StepReport& report) {
+void Simulation::Impl::gather() {
     ++stats.frames;
-    milliseconds += report.milliseconds;
-    for (std::uint32_t stage = 0; stage < runtime::kStageCount; ++stage) {
-        if (const auto effect = runtime::stageEffect(static_cast<StageId>(stage))) {
-            effectMilliseconds[static_cast<std::size_t>(*effect)] += report.stageMilliseconds[stage];
-        }
-    }
-    const runtime::Measurements measured = engine.measure();
+    milliseconds += method->stepMilliseconds();
+    const runtime::Measurements measured = method->measure();
     stats.maxStretch = std::max(stats.maxStretch, measured.maxStretch);
     stats.maxPenetrationMm = std::max(stats.maxPenetrationMm, measured.maxPenetration * 1e3);
     stats.energy = measured.kineticEnergy;
     stats.nanCount += measured.nanCount;
+    stats.restoredStrands += method->restoredStrands();
 }
 
-Result<Simulation> Simulation::make(const Groom& groom, const HeadPose& start) {
-    if (groom.strandCount() == 0) return fail("the groom has no strands", "expected strands to simulate");
-    if (auto status = refuseWhatValidationRefuses(groom); !status) return tl::unexpected(status.error());
-    const auto positions = groom.positions();
-    runtime::StrandsView strands;
-    strands.offsets = groom.offsets.view();
-    strands.restPositions_ss = {reinterpret_cast<const runtime::Float3*>(positions.data()), positions.size()};
-    auto made = runtime::Engine::make(strands, groom.simulation, applicationHost());
-    if (!made.engine) return fail(made.error);
-
-    auto impl = std::unique_ptr<Impl>(
-        new Impl{groom, groom.rootBindings(), std::move(*made.engine), 0, {}, {}, 0, {}});
+Result<Simulation> Simulation::make(const Groom& groom, const HeadPose& start,
+                                    const SimulationOptions& options) {
+    auto scene = SceneInput::make(groom);
+    if (!scene) return tl::unexpected(scene.error());
+    auto method = makeMethod(*scene, options);
+    if (!method) return tl::unexpected(method.error());
+    auto impl = std::unique_ptr<Impl>(new Impl{std::move(*scene), std::move(*method), 0, {}, {}, 0});
     impl->positions_ws.resize(groom.pointCount());
-    impl->engine.reset(impl->rootsAt(start));
+    impl->method->reset(impl->scene, start);
     impl->readPositions();
     return Simulation(std::move(impl));
 }
@@ -135,16 +71,16 @@ Simulation::~Simulation() = default;
 void Simulation::step(float dt, const HeadPose& pose) {
     HAIRLOOM_PROFILE("simulation step");
     impl_->time += static_cast<double>(dt);
-    const auto roots = impl_->rootsAt(pose);
-    const auto spheres = impl_->spheresAt(pose);
+    const auto roots = impl_->scene.rootsAt(pose);
+    const auto spheres = impl_->scene.spheresAt(pose);
     runtime::FrameInput input;
     input.dt = dt;
     input.time = impl_->time;
     input.roots_ws = roots;
     input.spheres = spheres;
-    impl_->engine.step(input);
+    impl_->method->step(impl_->scene, pose, input);
     impl_->readPositions();
-    impl_->gather(impl_->engine.lastStep());
+    impl_->gather();
 }
 
 std::span<const Vec3f> Simulation::positions_ws() const {
@@ -155,17 +91,11 @@ SimulationStats Simulation::stats() const {
     SimulationStats stats = impl_->stats;
     const double frames = static_cast<double>(std::max<std::uint64_t>(stats.frames, 1));
     const double particleSubsteps = static_cast<double>(impl_->positions_ws.size()) *
-                                    static_cast<double>(impl_->groom.simulation.substeps) * frames;
+                                    static_cast<double>(impl_->scene.groom().simulation.substeps) * frames;
     stats.millisecondsPerFrame = impl_->milliseconds / frames;
     stats.nanosecondsPerParticleSubstep = impl_->milliseconds * 1e6 / particleSubsteps;
-    stats.stateHash = impl_->engine.stateHash();
-    for (std::uint32_t index = 0; index < runtime::kEffectCount; ++index) {
-        const auto effect = static_cast<Effect>(index);
-        stats.effects.push_back({runtime::effectName(effect), impl_->engine.plan().on(effect),
-                                 reasonAlone(impl_->engine.plan().why(effect)),
-                                 impl_->effectMilliseconds[index] / frames,
-                                 impl_->engine.effectBytes(effect)});
-    }
+    stats.stateHash = impl_->method->stateHash();
+    stats.effects = impl_->method->effects();
     return stats;
 }
 

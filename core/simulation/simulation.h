@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Runs the strand engine on a groom: roots follow the posed scalp, settings and spheres come from the groom.
+// Runs the strand engine, or an alternative to it, on a groom: roots follow the posed scalp, settings and
+// spheres come from the groom.
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/simulation/motion.h"
+#include "runtime/alternatives/hair_volume.h"
 
 namespace hairloom {
 
@@ -28,16 +31,31 @@ struct SimulationStats {
     double maxStretch = 0;        ///< largest |length / rest length − 1| of a segment, over all frames
     double maxPenetrationMm = 0;  ///< deepest point inside a sphere after a frame, over all frames
     double energy = 0;  ///< kinetic energy after the last frame, joules for strands of unit mass per point
-    std::uint64_t nanCount = 0;   ///< points that are not finite, over all frames
-    std::uint64_t stateHash = 0;  ///< equal for any number of threads
+    std::uint64_t nanCount = 0;         ///< points that are not finite, over all frames
+    std::uint64_t restoredStrands = 0;  ///< put back to rest because they exploded, over all frames
+    std::uint64_t stateHash = 0;        ///< equal for any number of threads
     std::vector<EffectReport> effects;
+};
+
+/// How strands move (Rünz 2012, Section 3.1); docs/methods.md compares them.
+enum class SimulationMethod {
+    strands,     ///< the strand engine
+    projective,  ///< runtime/alternatives/projective_equations.h
+    lattice,     ///< runtime/alternatives/lattice.h: no collision, lengths are not held
+};
+
+struct SimulationOptions {
+    SimulationMethod method = SimulationMethod::strands;
+    /// Hair against hair between frames; for methods that take velocities.
+    std::optional<runtime::HairVolumeSettings> hairHair = {};
 };
 
 class Simulation {
   public:
     /// The groom's strands at rest on `start`. Errors: no strands, a groom that validate() finds errors in,
-    /// settings out of range.
-    static Result<Simulation> make(const Groom& groom, const HeadPose& start);
+    /// settings out of range, hair against hair for a method that takes no velocities.
+    static Result<Simulation> make(const Groom& groom, const HeadPose& start,
+                                   const SimulationOptions& options = {});
     Simulation(Simulation&&) noexcept;
     Simulation& operator=(Simulation&&) noexcept;
     ~Simulation();

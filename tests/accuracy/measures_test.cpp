@@ -115,9 +115,9 @@ TEST(Hair, MaterialPointsDoNotDependOnTheNumberOfPoints) {
     const SceneTime time{.frames = 2};
     const auto poses = posesOf(**motion, time);
     const SceneHair own = sampleStrands(groom, 3, 1);
-    const auto shares = evenShares(5);
-    const auto fine = runScene(own, poses, time, shares);
-    const auto coarse = runScene(resampledHair(own, 4), poses, time, shares);
+    const Followed followed{{0, 1, 2}, evenShares(5)};
+    const auto fine = runScene(own, poses, time, followed);
+    const auto coarse = runScene(resampledHair(own, 4), poses, time, followed);
     ASSERT_TRUE(fine && coarse);
     EXPECT_EQ(fine->trajectory.points_ws.size(), 2u * 3u * 5u);
     EXPECT_LT(compare(coarse->trajectory, fine->trajectory).maxMm, 1e-2);
@@ -142,33 +142,98 @@ double pendulumAngle(double length, double time) {
     return angle;
 }
 
-TEST(Truth, APendulumSwingsAsTheEquationSays) {
+/// A pendulum of one segment, let go level.
+Groom pendulum() {
     Groom groom = straightHair(1, 2);
     groom.simulation.clampedPoints = 1;
     groom.simulation.angularStiffness = 0;
     groom.simulation.airDrag = 0;
     groom.simulation.dampingTime = 0;
-    const auto motion = makeRigidMotion("none", groom);
-    const SceneTime time{.frames = 30};
-    const auto truth =
-        EngineConverged(32).compute(sampleStrands(groom, 1, 1), **motion, time, std::vector<float>{0.5f, 1});
-    ASSERT_TRUE(truth.has_value());
-    ASSERT_EQ(truth->trajectory.points_ws.size(), 2u * 30u);
-    Trajectory exact = truth->trajectory;
-    for (std::uint32_t frame = 0; frame < 30; ++frame) {
+    return groom;
+}
+
+/// The middle and the tip of that pendulum in each frame, in the form of `like`.
+Trajectory pendulumTrajectory(const Groom& groom, const Trajectory& like) {
+    Trajectory exact = like;
+    for (std::uint32_t frame = 0; frame < like.frames; ++frame) {
         const double angle = pendulumAngle(0.2, (frame + 1) / 60.0);
         const Vec3f tip(static_cast<float>(0.2 * std::cos(angle)),
                         static_cast<float>(1.6 - 0.2 * std::sin(angle)), 0);
         exact.points_ws[2 * frame] = 0.5f * (tip + groom.strand(0)[0]);
         exact.points_ws[2 * frame + 1] = tip;
     }
+    return exact;
+}
+
+TEST(Truth, APendulumSwingsAsTheEquationSays) {
+    const Groom groom = pendulum();
+    const auto motion = makeRigidMotion("none", groom);
+    const SceneTime time{.frames = 30};
+    const auto truth =
+        EngineConverged(32).compute(sampleStrands(groom, 1, 1), **motion, time, {{0}, {0.5f, 1}});
+    ASSERT_TRUE(truth.has_value());
+    ASSERT_EQ(truth->trajectory.points_ws.size(), 2u * 30u);
     // The engine is of first order here, so the change of the last doubling is about the error that is left;
     // the tip swings 400 mm.
-    const TrajectoryError error = compare(truth->trajectory, exact);
+    const TrajectoryError error = compare(truth->trajectory, pendulumTrajectory(groom, truth->trajectory));
     EXPECT_LT(error.maxMm, 3.0);
     EXPECT_GT(truth->uncertaintyMm, 0.2 * error.rmsMm);
     EXPECT_LT(truth->uncertaintyMm, 2.0);
     EXPECT_THAT(truth->detail, HasSubstr("mm at 32"));
+}
+
+TEST(Truth, TheReferenceSwingsAsTheEquationSays) {
+    const Groom groom = pendulum();
+    const auto motion = makeRigidMotion("none", groom);
+    const SceneTime time{.frames = 30};
+    const ReferenceConverged source;
+    const auto truth = source.compute(sampleStrands(groom, 1, 1), **motion, time, {{0}, {0.5f, 1}});
+    ASSERT_TRUE(truth.has_value());
+    ASSERT_EQ(truth->trajectory.points_ws.size(), 2u * 30u);
+    const TrajectoryError error = compare(truth->trajectory, pendulumTrajectory(groom, truth->trajectory));
+    EXPECT_LT(error.maxMm, 0.01);
+    EXPECT_LT(truth->uncertaintyMm, 0.01);
+    EXPECT_THAT(truth->detail, HasSubstr("1 of 1 strands converged"));
+    EXPECT_THAT(truth->notes, testing::Not(testing::Contains(HasSubstr("energy tank"))));
+}
+
+TEST(Truth, TheReferenceSaysWhatItLeavesOut) {
+    Groom groom = straightHair(3, 6);  // level, so that its rest shape carries its weight
+    groom.simulation.lengthMethod = runtime::LengthMethod::springs;
+    const auto motion = makeRigidMotion("nod", groom);
+    const SceneTime time{.frames = 3};
+    const ReferenceConverged source({.strands = 2, .toleranceMm = 1e-9, .mostSubsteps = 4});
+    EXPECT_EQ(source.mostStrands(), 2u);
+    const auto truth = source.compute(sampleStrands(groom, 3, 1), **motion, time, {{0, 2}, {0.5f, 1}});
+    ASSERT_TRUE(truth.has_value()) << truth.error().message();
+    EXPECT_EQ(truth->followed.strands.size(), 2u);
+    EXPECT_EQ(truth->trajectory.points_ws.size(), 3u * 2u * 2u);
+    EXPECT_THAT(truth->detail, HasSubstr("0 of 2 strands converged"));
+    EXPECT_THAT(truth->detail, HasSubstr("last doubling moved"));
+    for (const char* const note :
+         {"does not sleep", "coil springs", "2 of 2 strands are curved", "The engine"})
+        EXPECT_THAT(truth->notes, testing::Contains(HasSubstr(note)));
+    groom.simulation.angularStiffness = 1;
+    EXPECT_FALSE(source.compute(sampleStrands(groom, 3, 1), **motion, time, {{0}, {1}}).has_value());
+}
+
+/// Only spheres that a strand can reach count, and they do.
+TEST(Truth, TheReferenceMeetsSpheres) {
+    Groom groom = straightHair(2, 8);
+    groom.spheres.push_back({"ball", Vec3f(0.1f, 1.53f, 0), 0.05f, ""});
+    groom.spheres.push_back({"far", Vec3f(9, 9, 9), 0.05f, ""});
+    const auto motion = makeRigidMotion("none", groom);
+    const SceneTime time{.frames = 15};
+    Groom loose = groom;
+    loose.simulation.angularStiffness = 0;
+    const auto met = ReferenceConverged().compute(sampleStrands(loose, 2, 1), **motion, time, {{0}, {0.5f}});
+    loose.spheres.clear();
+    const auto free = ReferenceConverged().compute(sampleStrands(loose, 2, 1), **motion, time, {{0}, {0.5f}});
+    ASSERT_TRUE(met && free);
+    const Vec3f centre(0.1f, 1.53f, 0);
+    for (const Vec3f& place : met->trajectory.points_ws) EXPECT_GT((place - centre).norm(), 0.048f);
+    EXPECT_LT((free->trajectory.points_ws.back() - centre).norm(), 0.1f);
+    EXPECT_GT(compare(met->trajectory, free->trajectory).maxMm, 10);
 }
 
 TEST(Grid, AxesAreReadByTheNamesOfFields) {

@@ -158,6 +158,7 @@ TEST(Report, TheChartShowsFrontAndRest) {
         }
     }
     EXPECT_EQ(points, 3u) << "the diverged one has no place";
+    EXPECT_EQ(plot.series[1].name, "rk4 (1 of 2 diverged)") << "but is told of";
     EXPECT_EQ(faint, 1u);
     EXPECT_EQ(labelled, 2u);
     EXPECT_EQ(plot.x.scale, Scale::Logarithmic);

@@ -146,13 +146,40 @@ TEST_F(Cli, ClipOfTheSampleHeadMovesTheHair) {
     EXPECT_THAT(unknown.errors, HasSubstr("nod_and_turn")) << "the clips there are";
 }
 
+TEST_F(Cli, OtherMethodsReportAndRecordAlike) {
+    runJson(createArguments());
+    const std::string scene = "simulate hair.hairloom --frames 10 --fps 30 --motion nod ";
+    const auto engine = runJson(scene + "--record strands.frames");
+    EXPECT_EQ(engine["method"], "strands");
+    EXPECT_EQ(runJson(scene + "--against strands.frames")["error_mm"], 0.0) << "the same run again";
+    for (const std::string method : {"projective", "lattice"}) {
+        const auto other =
+            runJson(scene + "--method " + method + " --against strands.frames --record o.frames");
+        EXPECT_EQ(other["method"], method);
+        EXPECT_EQ(other["nan_count"], 0);
+        EXPECT_GT(other["error_mm"], 0.1);
+        EXPECT_GE(other["error_mm_max"], other["error_mm"]);
+        for (const auto& [key, value] : engine.items()) EXPECT_TRUE(other.contains(key)) << key;
+        EXPECT_EQ(fs::file_size(folder / "o.frames"), fs::file_size(folder / "strands.frames"));
+    }
+    EXPECT_EQ(run(scene + "--method guess").exitCode, 2);
+    const Outcome longer = run("simulate hair.hairloom --frames 11 --fps 30 --against strands.frames");
+    EXPECT_EQ(longer.exitCode, 1);
+    EXPECT_THAT(longer.errors, HasSubstr("strands.frames"));
+    const Outcome volume = run(scene + "--method lattice --hair-hair");
+    EXPECT_EQ(volume.exitCode, 1);
+    EXPECT_THAT(volume.errors, HasSubstr("velocities"));
+}
+
 TEST_F(Cli, AccuracyMeasuresAGridAndWritesAReport) {
     runJson(createArguments());
     const auto report = runJson(
         "accuracy hair.hairloom -o out --motion nod --frames 4 --strands 10 --substeps 1,4 --iterations 1"
-        " --points 6,12 --repeat 1 --truth-substeps 8");
+        " --points 6,12 --repeat 1 --truth-substeps 8 --truth-strands 3");
     EXPECT_EQ(report["runs"], 4);
     EXPECT_EQ(report["strands"], 10);
+    EXPECT_EQ(report["truth"], "reference");
+    EXPECT_EQ(report["strands_compared"], 3);
     ASSERT_FALSE(report["front"].empty());
     for (const auto& point : report["front"]) {
         EXPECT_GT(point["ms"], 0.0);
@@ -164,6 +191,12 @@ TEST_F(Cli, AccuracyMeasuresAGridAndWritesAReport) {
     EXPECT_THAT(readText(folder / "out" / "report.html"), HasSubstr("--motion nod --frames 4"));
     EXPECT_THAT(readText(folder / "out" / "data.csv"),
                 StartsWith("integrator,substeps,lengthIterations,points,ms_median,"));
+
+    const auto engine = runJson(
+        "accuracy hair.hairloom -o engine --frames 4 --strands 10 --substeps 4 --iterations 1 --points 6"
+        " --repeat 1 --truth engine --truth-substeps 8");
+    EXPECT_EQ(engine["truth"], "engine-converged");
+    EXPECT_EQ(engine["strands_compared"], 10);
 
     const Outcome unknown = run("accuracy hair.hairloom -o bad --integrators guess");
     EXPECT_EQ(unknown.exitCode, 1);

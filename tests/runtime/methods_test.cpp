@@ -221,6 +221,24 @@ TEST(Recovery, StrandsThatExplodeArePutBackToRestAndReported) {
     EXPECT_THAT(log, testing::HasSubstr("put back to rest"));
 }
 
+TEST(Velocities, CanBeChangedBetweenFrames) {
+    Strands strands;
+    strands.add({}, {1.0f, 0.0f, 0.0f}, 0.05f, 3);
+    SimulationSettings s = bare();
+    s.lengthIterations = 0;
+    Engine engine = makeEngine(strands, s);
+    run(engine, strands, 1);
+    const std::vector<Float3> changes{{1, 1, 1}, {0.0f, 0.3f, 0.0f}, {std::nanf(""), 0.0f, 0.0f}};
+    engine.addVelocities(changes);
+    std::vector<Float3> v(3);
+    engine.readVelocities(v);
+    EXPECT_EQ(v[0], Float3{});
+    EXPECT_NEAR(v[1].y, 0.3f, 1e-4f);
+    EXPECT_EQ(v[2], Float3{});
+    run(engine, strands, 60);
+    EXPECT_NEAR(positionsOf(engine)[1].y, 0.3f, 1e-3f) << "a second at 0.3 m/s";
+}
+
 /// Curls of radius r about a vertical axis.
 Strands curls(float radius) {
     Strands strands;

@@ -24,6 +24,11 @@ void runFrames(Solver solver, std::span<const Root> start, std::span<const Frame
             std::max(result.report.deepestPenetration, report.deepestPenetration);
         result.report.fastestApproach = std::max(result.report.fastestApproach, report.fastestApproach);
         result.positions_ws.push_back(solver.positions_ws());
+        const auto& last = result.positions_ws.back();
+        if (std::ranges::all_of(last, [](const Vec3d& x) { return x.allFinite(); })) continue;
+        // Nothing but the same comes of points that are no numbers, and slowly.
+        result.positions_ws.resize(frames.size(), std::vector<Vec3d>(last));
+        break;
     }
     result.velocities_ws = solver.velocities_ws();
     result.substeps = options.substeps;
@@ -54,9 +59,9 @@ Result<Convergence> converged(const Strands& strands, const runtime::SimulationS
     result.change = std::numeric_limits<double>::infinity();
     runFrames(*solver, start, frames, {goal.firstSubsteps, goal.order}, result);
     while (!result.reached && result.substeps <= goal.mostSubsteps / 2) {
-        const std::vector<std::vector<Vec3d>> coarse = std::move(result.positions_ws);
+        result.coarser_ws = std::move(result.positions_ws);
         runFrames(*solver, start, frames, {2 * result.substeps, goal.order}, result);
-        result.change = largestDistance(coarse, result.positions_ws);
+        result.change = largestDistance(result.coarser_ws, result.positions_ws);
         result.changes.push_back(result.change);
         result.reached = result.change <= goal.tolerance && result.report.failed == 0;
     }

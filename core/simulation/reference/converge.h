@@ -22,7 +22,8 @@ struct Convergence {
     std::vector<double> changes;  ///< of each doubling, in order; their ratios show the order
     StepReport report;            ///< of the last run, over all frames
     std::vector<std::vector<Vec3d>> positions_ws;  ///< of the last run, per frame
-    std::vector<Vec3d> velocities_ws;              ///< of the last run, at its end
+    std::vector<std::vector<Vec3d>> coarser_ws;  ///< of the run before it, likewise; empty after a single run
+    std::vector<Vec3d> velocities_ws;            ///< of the last run, at its end
 };
 
 /// Runs all frames from rest on `start`, again and again with twice the substeps, until the change is within

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "core/accuracy/truth.h"
+#include "core/base/parallel.h"
+#include "core/simulation/reference/converge.h"
+#include "core/simulation/scene_input.h"
+
+namespace hairloom {
+namespace {
+
+constexpr std::uint32_t kStepsPerFrame = 4;
+constexpr std::uint32_t kFirstSubsteps = 2;
+constexpr std::uint32_t kEngineSubsteps = 16;  // of the converged engine that the notes compare with
+/// A joint that turns less at rest is straight.
+constexpr double kStraight = 1e-3;
+
+/// The poses of a run as all strands see them.
+struct SceneFrames {
+    std::vector<std::vector<runtime::RootFrame>> roots;  // by pose
+    std::vector<std::vector<runtime::Sphere>> spheres;   // by pose
+    float dt;
+};
+
+SceneFrames framesOf(const SceneInput& scene, const HeadMotion& motion, const SceneTime& time) {
+    SceneFrames frames;
+    frames.dt = 1.0f / (time.framesPerSecond * static_cast<float>(time.stepsPerFrame));
+    for (const HeadPose& pose : posesOf(motion, time)) {
+        frames.roots.push_back(scene.rootsAt(pose));
+        frames.spheres.push_back(scene.spheresAt(pose));
+    }
+    return frames;
+}
+
+/// A strand alone, with its frames.
+struct StrandScene {
+    reference::Strands strand;
+    reference::Root start;
+    std::vector<reference::Frame> frames;
+    bool meetsSpheres = false;
+};
+
+Vec3d toDouble(runtime::Float3 v) {
+    return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+}
+
+/// Whether a sphere comes within `reach` of the root between any two poses; both move evenly between them.
+bool comesNear(const SceneFrames& frames, std::uint32_t strand, std::size_t sphere, double reach) {
+    for (std::size_t f = 0; f + 1 < frames.roots.size(); ++f) {
+        const auto apart = [&](std::size_t at) -> Vec3d {
+            return toDouble(frames.spheres[at][sphere].center_ws) -
+                   toDouble(frames.roots[at][strand].position);
+        };
+        const Vec3d from = apart(f), to = apart(f + 1);
+        if (std::min(from.norm(), to.norm()) - 0.5 * (to - from).norm() <= reach) return true;
+    }
+    return false;
+}
+
+/// Spheres beyond the strand's reach are left out: without impulses steps are of a higher order.
+StrandScene strandScene(const Groom& groom, const SceneFrames& frames, std::uint32_t strand) {
+    StrandScene scene;
+    double length = 0;
+    for (std::uint32_t p = groom.offsets[strand]; p < groom.offsets[strand + 1]; ++p) {
+        scene.strand.restPositions_ss.push_back(groom.positions()[p].cast<double>());
+        const std::size_t count = scene.strand.restPositions_ss.size();
+        if (count > 1) {
+            length +=
+                (scene.strand.restPositions_ss[count - 1] - scene.strand.restPositions_ss[count - 2]).norm();
+        }
+    }
+    scene.strand.offsets = {0, static_cast<std::uint32_t>(scene.strand.restPositions_ss.size())};
+    const runtime::SimulationSettings& settings = groom.simulation;
+    const double pearl = static_cast<double>(std::max(settings.pearlRadiusRoot, settings.pearlRadiusTip));
+    std::vector<std::size_t> near;
+    for (std::size_t i = 0; i < groom.spheres.size(); ++i) {
+        const double reach = length + pearl + static_cast<double>(groom.spheres[i].radius);
+        if (comesNear(frames, strand, i, reach)) near.push_back(i);
+    }
+    scene.meetsSpheres = !near.empty();
+    double time = 0;
+    for (std::size_t f = 0; f < frames.roots.size(); ++f) {
+        runtime::FrameInput input;
+        input.dt = frames.dt;
+        input.time = time;
+        input.roots_ws = {&frames.roots[f][strand], 1};
+        std::vector<runtime::Sphere> spheres;
+        for (const std::size_t i : near) spheres.push_back(frames.spheres[f][i]);
+        input.spheres = spheres;
+        if (f == 0) {
+            scene.start = reference::frameOf(input).roots_ws.front();
+        } else {
+            scene.frames.push_back(reference::frameOf(input));
+        }
+        time += static_cast<double>(frames.dt);
+    }
+    return scene;
+}
+
+/// One strand's outcome.
+struct StrandTruth {
+    Result<reference::Convergence> motion = fail("not run");
+    bool curved = false;
+};
+
+StrandTruth converge(const Groom& groom, const SceneFrames& frames, std::uint32_t strand,
+                     const reference::Goal& goal) {
+    const StrandScene scene = strandScene(groom, frames, strand);
+    StrandTruth truth;
+    truth.motion =
+        reference::converged(scene.strand, groom.simulation, {&scene.start, 1}, scene.frames, goal);
+    if (const auto solver = reference::Solver::make(scene.strand, groom.simulation)) {
+        const reference::StrandShape& shape = solver->shape(0);
+        for (std::size_t j = std::max<std::size_t>(shape.firstFree, 1); j < shape.bend.size(); ++j)
+            truth.curved = truth.curved || (shape.stiffness[j] > 0 && shape.bend[j].norm() > kStraight);
+    }
+    return truth;
+}
+
+/// The followed points at the ends of whole frames. `runs` are of the followed strands, in their order.
+Trajectory trajectoryOf(const SceneHair& hair, const SceneTime& time, const Followed& followed,
+                        const std::vector<const std::vector<std::vector<Vec3d>>*>& runs) {
+    const MaterialPoints points(hair, followed);
+    Trajectory result;
+    result.frames = time.frames;
+    result.pointsPerFrame = points.count();
+    std::vector<Vec3f> positions(hair.groom.pointCount(), Vec3f::Zero());
+    for (std::uint32_t frame = 1; frame <= time.frames; ++frame) {
+        for (std::size_t i = 0; i < runs.size(); ++i) {
+            const std::vector<Vec3d>& strand = (*runs[i])[std::size_t{frame} * kStepsPerFrame - 1];
+            for (std::size_t p = 0; p < strand.size(); ++p)
+                positions[hair.groom.offsets[followed.strands[i]] + p] = strand[p].cast<float>();
+        }
+        result.finite = points.read(positions, result.points_ws) && result.finite;
+    }
+    return result;
+}
+
+std::string detailOf(const std::vector<StrandTruth>& strands, double toleranceMm) {
+    std::size_t reached = 0;
+    std::uint64_t failed = 0;
+    std::uint32_t fewest = std::numeric_limits<std::uint32_t>::max(), most = 0;
+    double worst = 0;
+    for (const StrandTruth& strand : strands) {
+        const reference::Convergence& motion = *strand.motion;
+        reached += motion.reached;
+        failed += motion.report.failed;
+        fewest = std::min(fewest, motion.substeps);
+        most = std::max(most, motion.substeps);
+        worst = std::max(worst, motion.change);
+    }
+    std::string detail = fmt::format(
+        "{} of {} strands converged to within {} mm, with {} to {} substeps in each quarter of a frame",
+        reached, strands.size(), toleranceMm, fewest, most);
+    if (reached < strands.size())
+        detail +=
+            fmt::format("; the last doubling moved a point of the others by up to {:.3g} mm", 1e3 * worst);
+    if (failed > 0) detail += fmt::format("; {} steps could not be solved", failed);
+    return detail;
+}
+
+/// What the scene asks for and the reference leaves out.
+std::vector<std::string> notesOf(const runtime::SimulationSettings& settings, std::size_t curved,
+                                 std::size_t strands) {
+    std::vector<std::string> notes;
+    if (settings.sleepSpeed > 0) {
+        notes.push_back(
+            fmt::format("The reference does not sleep: where the engine lets hair slower than {} m/s stand "
+                        "still, the way "
+                        "that it would still have gone counts as error.",
+                        settings.sleepSpeed));
+    }
+    const bool springs = settings.lengthMethod != runtime::LengthMethod::constraint;
+    if (springs && settings.lengthIterations > 0) {
+        notes.push_back(
+            fmt::format("The reference lets coil springs stretch as far as they will, the engine by {} of "
+                        "their length at "
+                        "most: errors hold that difference.",
+                        settings.maximalExtension));
+    }
+    if (curved > 0 && settings.angularMethod == runtime::AngularMethod::implicit) {
+        notes.push_back(
+            fmt::format("{} of {} strands are curved or carry their weight at rest. The engine turns their "
+                        "curves only as far "
+                        "as an energy tank pays, the reference turns them freely: position Verlet comes to a "
+                        "motion of its "
+                        "own there, and its errors do not go to zero.",
+                        curved, strands));
+    }
+    return notes;
+}
+
+}  // namespace
+
+std::string ReferenceConverged::description() const {
+    return fmt::format(
+        "the model in double precision (core/simulation/reference), with {} to {} substeps in each of {} "
+        "parts "
+        "of a frame, doubled until no point moves by more than {} mm",
+        2 * kFirstSubsteps, options_.mostSubsteps, kStepsPerFrame, options_.toleranceMm);
+}
+
+Result<Truth> ReferenceConverged::compute(const SceneHair& hair, const HeadMotion& motion,
+                                          const SceneTime& time, const Followed& followed) const {
+    assert(options_.mostSubsteps >= 2 * kFirstSubsteps);
+    const auto scene = SceneInput::make(hair.groom);
+    if (!scene) return tl::unexpected(scene.error());
+    SceneTime fine = time;
+    fine.stepsPerFrame = kStepsPerFrame;
+    const SceneFrames frames = framesOf(*scene, motion, fine);
+    const reference::Goal goal{1e-3 * options_.toleranceMm, kFirstSubsteps, options_.mostSubsteps, 4};
+    std::vector<StrandTruth> strands(followed.strands.size());
+    parallelFor(strands.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            strands[i] = converge(hair.groom, frames, followed.strands[i], goal);
+    });
+
+    std::vector<const std::vector<std::vector<Vec3d>>*> last, before;
+    std::vector<StrandTruth> solved;
+    Truth truth;
+    truth.followed.shares = followed.shares;
+    for (std::size_t i = 0; i < strands.size(); ++i) {
+        if (!strands[i].motion) return tl::unexpected(strands[i].motion.error());
+        if (!std::isfinite(strands[i].motion->change)) continue;
+        truth.followed.strands.push_back(followed.strands[i]);
+        solved.push_back(std::move(strands[i]));
+    }
+    if (solved.empty())
+        return fail("the reference is not finite", "expected a motion and a groom without NaN");
+    std::size_t curved = 0;
+    for (const StrandTruth& strand : solved) {
+        last.push_back(&strand.motion->positions_ws);
+        before.push_back(&strand.motion->coarser_ws);
+        curved += strand.curved;
+    }
+    truth.trajectory = trajectoryOf(hair, time, truth.followed, last);
+    truth.uncertaintyMm = compare(trajectoryOf(hair, time, truth.followed, before), truth.trajectory).rmsMm;
+    truth.detail = detailOf(solved, options_.toleranceMm);
+    truth.notes = notesOf(hair.groom.simulation, curved, solved.size());
+    if (solved.size() < strands.size()) {
+        truth.notes.push_back(
+            fmt::format("The reference could not solve {} of {} strands; they are left out of the errors.",
+                        strands.size() - solved.size(), strands.size()));
+    }
+
+    const auto engine = EngineConverged(kEngineSubsteps).compute(hair, motion, time, truth.followed);
+    if (!engine) return tl::unexpected(engine.error());
+    truth.notes.push_back(
+        fmt::format("The engine (position Verlet) with its own steps refined until that changed {:.2g} mm is "
+                    "{:.3g} mm from "
+                    "the reference (root mean square). What is not explained by the former is what model and "
+                    "precision of "
+                    "the two differ by: substeps do not take errors below it.",
+                    engine->uncertaintyMm, compare(engine->trajectory, truth.trajectory).rmsMm));
+    return truth;
+}
+
+}  // namespace hairloom

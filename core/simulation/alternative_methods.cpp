@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The alternatives of Rünz 2012, Section 3.1, measured from their points alone.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/hash.h"
+#include "core/simulation/strand_method.h"
+#include "runtime/alternatives/projective_equations.h"
+#include "runtime/wind.h"
+
+namespace hairloom {
+namespace {
+
+Vec3d toDouble(const runtime::Float3& v) {
+    return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+}
+
+/// Points after a step, and what measure() tells of them.
+class MeasuredPoints {
+  public:
+    explicit MeasuredPoints(const SceneInput& scene)
+        : groom_(scene.groom()), now_(groom_.pointCount()), before_(groom_.pointCount()) {}
+
+    std::vector<runtime::Float3>& startStep(const runtime::FrameInput& input) {
+        before_.swap(now_);
+        spheres_.assign(input.spheres.begin(), input.spheres.end());
+        dt_ = static_cast<double>(input.dt);
+        return now_;
+    }
+    std::vector<runtime::Float3>& rest() { return now_; }
+
+    /// As Engine::measure; speeds are those over the whole frame.
+    runtime::Measurements measure() const {
+        runtime::Measurements result;
+        for (std::size_t s = 0; s < groom_.strandCount(); ++s) {
+            for (std::uint32_t p = groom_.offsets[s]; p < groom_.offsets[s + 1]; ++p) addPoint(s, p, result);
+        }
+        return result;
+    }
+    std::uint64_t hash() const { return hashOf(std::span<const runtime::Float3>(now_)); }
+
+  private:
+    void addPoint(std::size_t s, std::uint32_t p, runtime::Measurements& result) const {
+        const runtime::SimulationSettings& settings = groom_.simulation;
+        const std::uint32_t first = groom_.offsets[s], along = p - first;
+        const Vec3d at = toDouble(now_[p]);
+        if (!at.allFinite()) {
+            ++result.nanCount;
+            return;
+        }
+        if (along > 0) {
+            const auto rest = groom_.strand(s);
+            const double length = static_cast<double>((rest[along] - rest[along - 1]).norm());
+            if (length > 1e-9) {
+                result.maxStretch =
+                    std::max(result.maxStretch, std::abs((at - toDouble(now_[p - 1])).norm() / length - 1));
+            }
+        }
+        if (along < settings.clampedPoints) return;
+        result.potentialEnergy -= toDouble(settings.gravity).dot(at);
+        if (dt_ > 0) result.kineticEnergy += 0.5 * (at - toDouble(before_[p])).squaredNorm() / (dt_ * dt_);
+        const double share =
+            static_cast<double>(along) / static_cast<double>(groom_.offsets[s + 1] - first - 1);
+        const double pearl = (1 - share) * static_cast<double>(settings.pearlRadiusRoot) +
+                             share * static_cast<double>(settings.pearlRadiusTip);
+        for (const runtime::Sphere& sphere : spheres_) {
+            const double depth =
+                static_cast<double>(sphere.radius) + pearl - (at - toDouble(sphere.center_ws)).norm();
+            if (sphere.radius > 0) result.maxPenetration = std::max(result.maxPenetration, depth);
+        }
+    }
+
+    Groom groom_;
+    std::vector<runtime::Float3> now_, before_;
+    std::vector<runtime::Sphere> spheres_;
+    double dt_ = 0;
+};
+
+/// What the alternatives share: a solver that is timed as a whole.
+class AlternativeMethod : public StrandMethod {
+  public:
+    AlternativeMethod(const SceneInput& scene, EffectReport effect)
+        : points_(scene), effect_(std::move(effect)), host_(applicationHost()) {}
+
+    void reset(const SceneInput& scene, const HeadPose& pose) override {
+        place(scene, pose);
+        readPositions(points_.rest());
+    }
+    void step(const SceneInput& scene, const HeadPose& pose, const runtime::FrameInput& input) override {
+        std::vector<runtime::Float3>& positions_ws = points_.startStep(input);
+        const std::uint64_t begin = host_.nanoseconds();
+        advance(scene, pose, input);
+        readPositions(positions_ws);
+        milliseconds_ = 1e-6 * static_cast<double>(host_.nanoseconds() - begin);
+        ++frames_;
+        effect_.milliseconds += (milliseconds_ - effect_.milliseconds) / static_cast<double>(frames_);
+    }
+    double stepMilliseconds() const override { return milliseconds_; }
+    runtime::Measurements measure() const override { return points_.measure(); }
+    std::uint64_t stateHash() const override { return points_.hash(); }
+    std::vector<EffectReport> effects() const override { return {effect_}; }
+
+  protected:
+    virtual void place(const SceneInput& scene, const HeadPose& pose) = 0;
+    virtual void advance(const SceneInput& scene, const HeadPose& pose, const runtime::FrameInput& input) = 0;
+
+  private:
+    MeasuredPoints points_;
+    EffectReport effect_;
+    runtime::Host host_;
+    std::uint64_t frames_ = 0;
+    double milliseconds_ = 0;
+};
+
+class ProjectiveMethod : public AlternativeMethod {
+  public:
+    ProjectiveMethod(const SceneInput& scene, runtime::ProjectiveEquations solver)
+        : AlternativeMethod(scene, {"projective equations", true,
+                                    fmt::format("on, {} substeps", scene.groom().simulation.substeps), 0, 0}),
+          solver_(std::move(solver)) {}
+    void readPositions(std::span<runtime::Float3> positions_ws) const override {
+        solver_.readPositions(positions_ws);
+    }
+
+  protected:
+    void place(const SceneInput& scene, const HeadPose& pose) override { solver_.reset(scene.rootsAt(pose)); }
+    void advance(const SceneInput&, const HeadPose&, const runtime::FrameInput& input) override {
+        solver_.step(input);
+    }
+
+  private:
+    runtime::ProjectiveEquations solver_;
+};
+
+class LatticeMethod : public AlternativeMethod {
+  public:
+    LatticeMethod(const SceneInput& scene, runtime::Lattice solver)
+        : AlternativeMethod(
+              scene, {"lattice", true, fmt::format("on, {} control points", solver.controlPointCount()), 0,
+                      solver.stepBytes()}),
+          solver_(std::move(solver)) {}
+    void readPositions(std::span<runtime::Float3> positions_ws) const override {
+        solver_.evaluate(positions_ws);
+    }
+
+  protected:
+    void place(const SceneInput& scene, const HeadPose& pose) override { solver_.reset(scene.headAt(pose)); }
+    void advance(const SceneInput& scene, const HeadPose& pose, const runtime::FrameInput& input) override {
+        solver_.step(scene.headAt(pose), input.dt);
+    }
+
+  private:
+    runtime::Lattice solver_;
+};
+
+}  // namespace
+
+runtime::LatticeSettings latticeSettings(const runtime::SimulationSettings& settings) {
+    runtime::LatticeSettings lattice;
+    lattice.gravity = settings.gravity;
+    lattice.airDrag = settings.airDrag;
+    lattice.wind = runtime::makeWind(settings).mean;
+    lattice.dampingTime = settings.dampingTime;
+    lattice.teleportDistance = settings.teleportDistance;
+    lattice.substeps = settings.substeps;
+    return lattice;
+}
+
+Result<std::unique_ptr<StrandMethod>> makeProjectiveMethod(const SceneInput& scene) {
+    auto made =
+        runtime::ProjectiveEquations::make(scene.strands(), scene.groom().simulation, applicationHost());
+    if (!made.engine) return fail(made.error);
+    return std::make_unique<ProjectiveMethod>(scene, std::move(*made.engine));
+}
+
+Result<std::unique_ptr<StrandMethod>> makeLatticeMethod(const SceneInput& scene) {
+    const runtime::SimulationSettings& settings = scene.groom().simulation;
+    for (const runtime::FieldProblem& problem : runtime::validate(settings)) return fail(problem.message);
+    auto made = runtime::Lattice::make(scene.strands(), latticeSettings(settings), applicationHost());
+    if (!made.lattice) return fail(made.error);
+    return std::make_unique<LatticeMethod>(scene, std::move(*made.lattice));
+}
+
+}  // namespace hairloom

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/simulation/scene_input.h"
+
+#include <fmt/format.h>
+
+#include "core/animation/root_motion.h"
+#include "core/groom/validate.h"
+
+namespace hairloom {
+namespace {
+
+runtime::Float3 toFloat3(const Vec3f& v) {
+    return {v.x(), v.y(), v.z()};
+}
+
+runtime::Quat toQuat(const Quatf& q) {
+    return {q.x(), q.y(), q.z(), q.w()};
+}
+
+}  // namespace
+
+Result<SceneInput> SceneInput::make(const Groom& groom) {
+    if (groom.strandCount() == 0) return fail("the groom has no strands", "expected strands to simulate");
+    for (const Finding& finding : validate(groom)) {
+        if (finding.severity != Severity::Error) continue;
+        return fail(fmt::format("{} ({})", finding.what, finding.where),
+                    finding.fix.empty() ? "expected a groom that validates" : finding.fix);
+    }
+    return SceneInput(groom);
+}
+
+runtime::StrandsView SceneInput::strands() const {
+    static_assert(sizeof(Vec3f) == sizeof(runtime::Float3));
+    const auto positions = groom_.positions();
+    runtime::StrandsView strands;
+    strands.offsets = groom_.offsets.view();
+    strands.restPositions_ss = {reinterpret_cast<const runtime::Float3*>(positions.data()), positions.size()};
+    return strands;
+}
+
+std::vector<Eigen::Isometry3f> SceneInput::rootTransforms(const HeadPose& pose) const {
+    if (bindings_.empty() || pose.scalpPositions_ws.empty())
+        return std::vector<Eigen::Isometry3f>(groom_.strandCount(), pose.head_ws);
+    return hairloom::rootTransforms(*groom_.scalp, pose.scalpPositions_ws, bindings_);
+}
+
+std::vector<runtime::RootFrame> SceneInput::rootsAt(const HeadPose& pose) const {
+    const std::vector<Eigen::Isometry3f> transforms = rootTransforms(pose);
+    std::vector<runtime::RootFrame> roots(transforms.size());
+    for (std::size_t s = 0; s < roots.size(); ++s) {
+        roots[s].position = toFloat3(transforms[s] * groom_.strand(s).front());
+        roots[s].rotation = toQuat(Quatf(transforms[s].linear()));
+    }
+    return roots;
+}
+
+std::vector<runtime::Sphere> SceneInput::spheresAt(const HeadPose& pose) const {
+    std::vector<runtime::Sphere> spheres(groom_.spheres.size());
+    for (std::size_t s = 0; s < spheres.size(); ++s) {
+        const Vec3f centre_ws = pose.sphereCentres_ws.empty() ? Vec3f(pose.head_ws * groom_.spheres[s].centre)
+                                                              : pose.sphereCentres_ws[s];
+        spheres[s] = {toFloat3(centre_ws), groom_.spheres[s].radius};
+    }
+    return spheres;
+}
+
+runtime::RootFrame SceneInput::headAt(const HeadPose& pose) const {
+    const std::vector<Eigen::Isometry3f> transforms = rootTransforms(pose);
+    // The chordal mean of rotations (Markley et al. 2007) for rotations that differ little: q and −q are one.
+    const Quatf first(transforms.front().linear());
+    Eigen::Vector4f sum = Eigen::Vector4f::Zero();
+    Vec3f rest = Vec3f::Zero(), now = Vec3f::Zero();
+    for (std::size_t s = 0; s < transforms.size(); ++s) {
+        const Quatf q(transforms[s].linear());
+        sum += q.dot(first) < 0 ? Eigen::Vector4f(-q.coeffs()) : q.coeffs();
+        const Vec3f& root = groom_.strand(s).front();
+        rest += root;
+        now += transforms[s] * root;
+    }
+    const Quatf rotation = Quatf(sum).normalized();
+    const float count = static_cast<float>(transforms.size());
+    return {toFloat3(now / count - rotation * (rest / count)), toQuat(rotation)};
+}
+
+}  // namespace hairloom

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// A groom and its poses in the form that solvers of strands take.
+
+#include <vector>
+
+#include "core/simulation/motion.h"
+#include "runtime/strands.h"
+
+namespace hairloom {
+
+class SceneInput {
+  public:
+    /// Errors: no strands, a groom that validate() finds errors in.
+    static Result<SceneInput> make(const Groom& groom);
+
+    const Groom& groom() const { return groom_; }
+    /// Lives as long as this.
+    runtime::StrandsView strands() const;
+    /// One per strand; metres, world.
+    std::vector<runtime::RootFrame> rootsAt(const HeadPose& pose) const;
+    std::vector<runtime::Sphere> spheresAt(const HeadPose& pose) const;
+    /// The rigid motion that the roots have on the whole: their mean rotation, about their middle.
+    runtime::RootFrame headAt(const HeadPose& pose) const;
+
+  private:
+    explicit SceneInput(const Groom& groom) : groom_(groom), bindings_(groom.rootBindings()) {}
+    std::vector<Eigen::Isometry3f> rootTransforms(const HeadPose& pose) const;
+
+    Groom groom_;
+    std::vector<SurfacePoint> bindings_;  ///< empty for hair without a scalp
+};
+
+}  // namespace hairloom

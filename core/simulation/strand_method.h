@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What Simulation asks of a way to move strands: the engine, or one of the methods in runtime/alternatives.
+
+#include <concepts>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/simulation/scene_input.h"
+#include "core/simulation/simulation.h"
+#include "runtime/alternatives/hair_volume.h"
+#include "runtime/alternatives/lattice.h"
+#include "runtime/engine.h"
+
+namespace hairloom {
+
+/// Threads and clock of this program.
+runtime::Host applicationHost();
+
+class StrandMethod {
+  public:
+    virtual ~StrandMethod() = default;
+    virtual void reset(const SceneInput& scene, const HeadPose& pose) = 0;
+    /// Advances to `pose`; `input` holds its roots and spheres.
+    virtual void step(const SceneInput& scene, const HeadPose& pose, const runtime::FrameInput& input) = 0;
+    virtual void readPositions(std::span<runtime::Float3> positions_ws) const = 0;
+    /// Of the last step.
+    virtual double stepMilliseconds() const = 0;
+    /// Strands that the last step put back to rest because they were no numbers.
+    virtual std::uint32_t restoredStrands() const { return 0; }
+    virtual runtime::Measurements measure() const = 0;
+    virtual std::uint64_t stateHash() const = 0;
+    /// With the mean time of each since the start.
+    virtual std::vector<EffectReport> effects() const = 0;
+};
+
+/// The strand engine.
+Result<std::unique_ptr<StrandMethod>> makeEngineMethod(
+    const SceneInput& scene, const std::optional<runtime::HairVolumeSettings>& hairHair);
+Result<std::unique_ptr<StrandMethod>> makeProjectiveMethod(const SceneInput& scene);
+Result<std::unique_ptr<StrandMethod>> makeLatticeMethod(const SceneInput& scene);
+
+/// Which forces of a groom's settings a lattice can have: gravity, air with the mean wind, damping.
+/// Attachment and coupling have no counterpart there and keep their defaults.
+runtime::LatticeSettings latticeSettings(const runtime::SimulationSettings& settings);
+
+/// A solver that hair around a strand can push: `changes_ws`, metres per second, one per point in the order
+/// of the points; clamped points stay where they are.
+template <class Solver>
+concept TakesVelocities = requires(Solver& solver, const Solver& reads, std::span<runtime::Float3> values,
+                                   std::span<const runtime::Float3> changes_ws) {
+    { reads.pointCount() } -> std::convertible_to<std::size_t>;
+    reads.readPositions(values);
+    reads.readVelocities(values);
+    solver.addVelocities(changes_ws);
+};
+
+/// Hair against hair between the frames of a solver.
+template <TakesVelocities Solver>
+runtime::HairVolume::Report pushHairApart(Solver& solver, runtime::HairVolume& volume, float dt) {
+    std::vector<runtime::Float3> positions(solver.pointCount()), before(positions.size());
+    solver.readPositions(positions);
+    solver.readVelocities(before);
+    std::vector<runtime::Float3> after = before;
+    const auto report = volume.apply(positions, after, dt);
+    for (std::size_t p = 0; p < after.size(); ++p) after[p] = after[p] - before[p];
+    solver.addVelocities(after);
+    return report;
+}
+
+}  // namespace hairloom
