@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# measure_accuracy.sh OUT [PICTURES]: work-precision runs of the sample hairstyles, into OUT/STYLE; their drawings are
-# copied to PICTURES/accuracy-STYLE.svg where that folder is named. docs/accuracy.md tells how to read them.
+# measure_accuracy.sh OUT [PICTURES]: work-precision runs of the sample hairstyles, and of one with hair soft enough for
+# explicit integrators, into OUT/NAME; their drawings are copied to PICTURES/accuracy-NAME.svg where that folder is
+# named. docs/accuracy.md tells how to read them.
 set -euo pipefail
 
 top=$(cd "$(dirname "$(readlink -f "$0")")/.." && pwd)
@@ -10,13 +11,23 @@ out=$(cd "$1" && pwd)
 pictures=${2:+$(cd "$2" && pwd)}
 cli=${HAIRLOOM_CLI:-$top/build/release/bin/hairloom-cli}
 
+measure() {
+    local name=$1
+    "$cli" accuracy "$out/$name.hairloom" -o "$out/$name" --motion clip:nod_and_turn --wind "$wind" \
+        --frames 60 --fps 30 --integrators verlet,velocityVerlet,leapfrog,explicitEuler,implicitEuler,rk4 \
+        --substeps 1,2,4,8,16,32 --iterations 1,2 --points 8,16,24 --repeat 3
+    [ -z "$pictures" ] || cp "$out/$name/work_precision.svg" "$pictures/accuracy-$name.svg"
+}
+
 cd "$top"
 for style in short shoulder long; do
     # shellcheck source=/dev/null
     . "samples/hairstyles/$style.conf"
     samples/make_hairstyle.sh --project-only "$style" "$out"
-    "$cli" accuracy "$out/$style.hairloom" -o "$out/$style" --motion clip:nod_and_turn --wind "$wind" \
-        --frames 60 --fps 30 --integrators verlet,velocityVerlet,leapfrog,explicitEuler,implicitEuler,rk4 \
-        --substeps 1,2,4,8,16,32 --iterations 1,2 --points 8,16,24 --repeat 3
-    [ -z "$pictures" ] || cp "$out/$style/work_precision.svg" "$pictures/accuracy-$style.svg"
+    measure "$style"
+    if [ "$style" = shoulder ]; then
+        "$cli" set "$out/shoulder.hairloom" simulation.angularStiffness=0.1 simulation.bendDampingTime=0 \
+            -o "$out/shoulder-soft.hairloom"
+        measure shoulder-soft
+    fi
 done

@@ -182,6 +182,16 @@ std::vector<std::string> notesOf(const runtime::SimulationSettings& settings, st
                         "most: errors hold that difference.",
                         settings.maximalExtension));
     }
+    const bool gusts = settings.windKind != runtime::WindKind::uniform && settings.windGustiness > 0;
+    if (gusts && settings.windSpeed > 0 && settings.airDrag > 0) {
+        notes.push_back(
+            fmt::format("The engine reads gusts at the root and the tip of a strand at the ends of frames "
+                        "and goes evenly between, "
+                        "the reference reads them at each point: where strands are not much shorter than "
+                        "gusts ({} m) errors "
+                        "hold that difference.",
+                        settings.windGustSize));
+    }
     if (curved > 0 && settings.angularMethod == runtime::AngularMethod::implicit) {
         notes.push_back(
             fmt::format("{} of {} strands are curved or carry their weight at rest. The engine turns their "
