@@ -9,7 +9,6 @@
 namespace hairloom::hardcases {
 namespace {
 
-using runtime::Float3;
 using runtime::SimulationSettings;
 
 constexpr float kTurnsPerSecond = 10.0f;

@@ -62,7 +62,7 @@ TEST(Cantilever, TheTipComesToRestWhereTheElasticaHasIt) {
         double before = 1.0;
         for (const std::uint32_t segments : {8u, 16u, 32u}) {
             const double error = tipError(tipAtRest(cantilever(B), segments), exact);
-            const std::string place = "drop " + std::to_string(static_cast<int>(100 * share + 0.5)) + " %, " +
+            const std::string place = "drop " + std::to_string(std::lround(100 * share)) + " %, " +
                                       std::to_string(segments) + " segments";
             std::printf("tip error at %s: %.3f %% of the length\n", place.c_str(), 100 * error);
             if (segments == 32) {

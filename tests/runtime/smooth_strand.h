@@ -20,8 +20,8 @@ class SmoothStrand {
     };
 
     /// `settings`: clampedPoints 2, angularTipShare 1, restGravity 0, no damping, wind or collision.
-    SmoothStrand(const runtime::SimulationSettings& settings, Eigen::Vector3d direction, double segment,
-                 int points)
+    SmoothStrand(const runtime::SimulationSettings& settings, const Eigen::Vector3d& direction,
+                 double segment, int points)
         : exact_(settings.angularMethod == runtime::AngularMethod::exact),
           length_(segment),
           direction_(direction) {
