@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "runtime/checks.h"
+#include "runtime/engine_frame.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -25,16 +26,6 @@ bool isWind(Float3 velocity) {
 
 }  // namespace
 
-/// What all blocks share in one step.
-struct Engine::Frame {
-    const FrameInput* input;
-    SubstepContext context;
-    std::array<float, kWindModes> windFrom, windTo;
-    bool windy;
-    float rescale;  ///< new substep over old, 1 when equal
-    bool newBend;
-};
-
 Engine::Made Engine::make(const StrandsView& strands, const SimulationSettings& settings, Host host) {
     if (std::string error = whyRefused(settings); !error.empty()) return {std::nullopt, std::move(error)};
     if (std::string error = whyRefused(strands); !error.empty()) return {std::nullopt, std::move(error)};
@@ -45,6 +36,7 @@ Engine::Made Engine::make(const StrandsView& strands, const SimulationSettings& 
     engine.state_.planes.assign(shape.planeFloats * kStatePlanes, 0.0f);
     engine.state_.roots.assign(shape.blocks.size() * kRootRows * kBlockLanes, 0.0f);
     engine.blockReports_.resize(shape.blocks.size());
+    engine.roots_.resize(shape.restRoots.size());
     engine.settings_ = settings;
     engine.wind_ = makeWind(settings);
     engine.reset(shape.restRoots);
@@ -131,8 +123,7 @@ void Engine::allocateForPlan() {
         bend_.planes = Floats(angular ? shape_->planeFloats * bend_.planeCount() : 0, 0.0f);
         bend_.substep = 0.0f;
     }
-    const bool curves = plan_.runs(StageId::angular) ||
-                        (plan_.on(Effect::torsion) && plan_.stages().empty() && !state_.curves.empty());
+    const bool curves = plan_.keepsCurves();
     if (curves == state_.curves.empty()) {
         state_.curves = Floats(curves ? shape_->planeFloats * 3 : 0, 0.0f);
         state_.tanks = Floats(curves ? shape_->blocks.size() * kBlockLanes : 0, kNoCurve);
@@ -145,7 +136,7 @@ void Engine::allocateForPlan() {
         evaluation_ = Floats(shape_->planeFloats * evaluationPlanes_, 0.0f);
 }
 
-/// The box of the roots, and how far they go.
+/// Keeps the roots that the frame ends on, their box and how far they go. What is no root stays where it was.
 void Engine::takeRoots(const FrameInput& input) {
     Float3 low{1e30f, 1e30f, 1e30f}, high{-1e30f, -1e30f, -1e30f};
     rootMotion_ = 0.0f;
@@ -155,19 +146,20 @@ void Engine::takeRoots(const FrameInput& input) {
         bool moved = false;
         for (std::uint32_t lane = 0; lane < block.strands; ++lane) {
             const auto row = [&](std::size_t r) { return rows[r * kBlockLanes + lane]; };
-            RootFrame root = input.roots_ws[block.strandOfLane[lane]];
+            const RootFrame before{{row(0), row(1), row(2)}, {row(3), row(4), row(5), row(6)}};
+            RootFrame& root = roots_[block.strandOfLane[lane]];
+            root = input.roots_ws[block.strandOfLane[lane]];
             if (!usableWithin(root, kFarthest)) {
+                root = before;
                 ++report_.rejectedRoots;
                 continue;
             }
             const Float3 p = root.position;
             low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
             high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-            const Float3 before{row(0), row(1), row(2)};
-            const Quat turned{row(3), row(4), row(5), row(6)};
-            if (p == before && root.rotation == turned) continue;
+            if (p == before.position && root.rotation == before.rotation) continue;
             moved = true;
-            const float way = length(p - before);
+            const float way = length(p - before.position);
             if (way <= settings_.teleportDistance) rootMotion_ = std::max(rootMotion_, way);
         }
         blockReports_[b].rootsMoved = moved;
@@ -196,8 +188,7 @@ void Engine::takeSpheres(const FrameInput& input) {
 /// Whether a sphere that has changed since the last frame comes within reach of the block's strands.
 bool Engine::sphereNear(std::size_t block) const {
     const float* rows = state_.roots.data() + block * kRootRows * kBlockLanes;
-    const float hair = shape_->longestStrand * (1.0f + settings_.maximalExtension) +
-                       std::max(settings_.pearlRadiusRoot, settings_.pearlRadiusTip);
+    const float hair = hairReach(settings_, shape_->longestStrand);
     const std::size_t count = std::max(usableSpheres_.size(), state_.spheres.size());
     for (std::size_t i = 0; i < count; ++i) {
         const Sphere before = i < state_.spheres.size() ? state_.spheres[i] : Sphere{};
@@ -231,9 +222,10 @@ void Engine::takeWind(const FrameInput& input) {
     } else {
         ++report_.rejectedWinds;
     }
+    const bool before = windGiven_;
     windGiven_ =
         given.mean_ws || (settings_.windKind == WindKind::vehicle && given.actorVelocity_ws != Float3{});
-    wind_ = makeWind(settings_, given);
+    if (windGiven_ || before) wind_ = makeWind(settings_, given);
 }
 
 void Engine::wakeBlocks() {
@@ -353,69 +345,6 @@ BlockView Engine::view(std::size_t block) {
     return viewOf({*shape_, state_, bend_, evaluation_, evaluationPlanes_}, block, settings_.clampedPoints);
 }
 
-void Engine::runBlock(std::size_t block, const Frame& frame) {
-    BlockReport& report = blockReports_[block];
-    report.nanoseconds.fill(0);
-    report.restored = 0;
-    report.fastest = 0.0f;
-    if (frame.newBend) {
-        fillBend(*shape_, settings_, frame.context.h, block, bend_);
-    }
-    if (state_.rests[block].asleep) {
-        state_.rests[block].time += frame.input->dt;
-        return;
-    }
-    const BlockView blockView = view(block);
-    LaneFrame lanes;
-    enterFrame(block, blockView, lanes, frame);
-    if (frame.rescale != 1.0f) kernels().rescale(blockView, frame.rescale);
-    if (frame.windy) {
-        kernels().sampleWind(blockView, lanes, frame.context.h, wind_, frame.windFrom.data(),
-                             frame.windTo.data());
-    }
-    runStages(block, blockView, lanes, frame);
-    report.fastest = kernels().fastest(blockView, frame.context.h);
-    if (!std::isfinite(report.fastest)) restoreStrands(block, blockView);
-    rest(block, blockView, frame);
-}
-
-/// Puts lanes that are no longer sound back to rest.
-void Engine::restoreStrands(std::size_t block, const BlockView& blockView) {
-    BlockReport& report = blockReports_[block];
-    for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
-        bool sound = true;
-        for (std::uint32_t p = 0; p < blockView.points; ++p) {
-            const std::size_t i = std::size_t{p} * kBlockLanes + lane;
-            for (const Planes& planes : {blockView.position, blockView.previous}) {
-                for (const float* plane : {planes.x, planes.y, planes.z})
-                    sound = sound && std::abs(plane[i]) < kFarthest;
-            }
-        }
-        if (sound) continue;
-        placeAtRest(*shape_, state_, block, lane);
-        if (lane < shape_->blocks[block].strands) ++report.restored;
-    }
-    report.fastest = 0.0f;
-}
-
-/// Counts how long the block has been at rest, and puts it to sleep.
-void Engine::rest(std::size_t block, const BlockView& blockView, const Frame& frame) {
-    Rest& rest = state_.rests[block];
-    const BlockReport& report = blockReports_[block];
-    const float slow = settings_.sleepSpeed * frame.context.h;
-    if (report.rootsMoved || report.restored > 0 || !(report.fastest < slow * slow)) {
-        rest = {};
-        return;
-    }
-    rest.time += frame.input->dt;
-    rest.asleep = rest.time >= settings_.sleepDelay;
-    if (!rest.asleep) return;
-    const std::size_t floats = std::size_t{blockView.points} * kBlockLanes;
-    std::copy_n(blockView.position.x, floats, blockView.previous.x);
-    std::copy_n(blockView.position.y, floats, blockView.previous.y);
-    std::copy_n(blockView.position.z, floats, blockView.previous.z);
-}
-
 void Engine::addVelocities(std::span<const Float3> changes_ws) {
     assert(changes_ws.size() == pointCount());
     const float h = state_.substep;
@@ -437,72 +366,6 @@ void Engine::addVelocities(std::span<const Float3> changes_ws) {
             }
         }
         if (changed) state_.rests[b] = {};
-    }
-}
-
-/// Fills the lanes' way through the frame and keeps its end for the next. A cut turns the strand along
-/// rigidly.
-void Engine::enterFrame(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame) {
-    float* rows = state_.roots.data() + block * kRootRows * kBlockLanes;
-    const float share = 1.0f / static_cast<float>(frame.context.count);
-    for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
-        const auto row = [&](std::size_t r) -> float& { return rows[r * kBlockLanes + lane]; };
-        RootFrame from{{row(0), row(1), row(2)}, {row(3), row(4), row(5), row(6)}};
-        RootFrame to = frame.input->roots_ws[shape_->blocks[block].strandOfLane[lane]];
-        if (!usableWithin(to, kFarthest)) to = from;
-        if (!(length(to.position - from.position) <= settings_.teleportDistance)) {
-            const Quat turn = to.rotation * conjugate(from.rotation);
-            for (std::uint32_t p = 0; p < view.points; ++p) {
-                const std::size_t i = std::size_t{p} * kBlockLanes + lane;
-                for (const Planes& planes : {view.position, view.previous, view.curve}) {
-                    if (!planes.x) continue;
-                    const Float3 turned = rotate(turn, Float3{planes.x[i], planes.y[i], planes.z[i]});
-                    planes.x[i] = turned.x;
-                    planes.y[i] = turned.y;
-                    planes.z[i] = turned.z;
-                }
-            }
-            from = to;
-        }
-        const Float3 step = (to.position - from.position) * share;
-        const float starts[] = {from.position.x, from.position.y, from.position.z};
-        const float steps[] = {step.x, step.y, step.z};
-        for (std::size_t r = 0; r < 3; ++r) {
-            lanes.root[r][lane] = starts[r];
-            lanes.rootStep[r][lane] = steps[r];
-        }
-        const Quat rotations[] = {from.rotation, to.rotation};
-        float(*targets[])[kBlockLanes] = {lanes.rotationFrom, lanes.rotationTo};
-        for (std::size_t k = 0; k < 2; ++k) {
-            targets[k][0][lane] = rotations[k].x;
-            targets[k][1][lane] = rotations[k].y;
-            targets[k][2][lane] = rotations[k].z;
-            targets[k][3][lane] = rotations[k].w;
-        }
-        row(0) = to.position.x, row(1) = to.position.y, row(2) = to.position.z;
-        row(3) = to.rotation.x, row(4) = to.rotation.y, row(5) = to.rotation.z, row(6) = to.rotation.w;
-    }
-}
-
-void Engine::runStages(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame) {
-    const Kernels& table = kernels();
-    SubstepContext context = frame.context;
-    if (!host_.nanoseconds) {
-        for (context.index = 0; context.index < context.count; ++context.index) {
-            for (const StageId id : plan_.stages())
-                table.stages[static_cast<std::size_t>(id)](view, lanes, context);
-        }
-        return;
-    }
-    auto& times = blockReports_[block].nanoseconds;
-    std::uint64_t before = host_.nanoseconds();
-    for (context.index = 0; context.index < context.count; ++context.index) {
-        for (const StageId id : plan_.stages()) {
-            table.stages[static_cast<std::size_t>(id)](view, lanes, context);
-            const std::uint64_t after = host_.nanoseconds();
-            times[static_cast<std::size_t>(id)] += after - before;
-            before = after;
-        }
     }
 }
 

@@ -130,6 +130,7 @@ class Engine {
     StepReport report_;
     std::vector<BlockReport> blockReports_;
     // Of the frame under way.
+    std::vector<RootFrame> roots_;       // one per strand, sound
     std::vector<Sphere> usableSpheres_;  // those that fell out stay in place at radius 0
     std::vector<Float3> sphereMotion_;
     std::vector<MovingSphere> movingSpheres_;

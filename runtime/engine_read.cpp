@@ -140,7 +140,8 @@ std::size_t Engine::baseBytes() const {
     return shape_->bytes() +
            (state_.planes.size() + state_.roots.size() + evaluation_.size()) * sizeof(float) +
            (state_.spheres.size() + usableSpheres_.size()) * sizeof(Sphere) +
-           state_.rests.size() * sizeof(Rest) + blockReports_.size() * sizeof(BlockReport);
+           state_.rests.size() * sizeof(Rest) + roots_.size() * sizeof(RootFrame) +
+           blockReports_.size() * sizeof(BlockReport);
 }
 
 }  // namespace hairloom::runtime

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 #include <initializer_list>
+#include <limits>
 
 namespace hairloom::runtime {
 namespace {
@@ -12,12 +13,7 @@ namespace {
 /// Whether the sphere, anywhere on its way, can touch a point that hangs on a root inside the box.
 bool withinReach(const Sphere& sphere, Float3 motion, const SceneDescription& scene) {
     if (!(sphere.radius > 0.0f)) return false;
-    const SimulationSettings& s = scene.settings;
-    // Without a bound on its length a strand may reach anywhere.
-    if (s.lengthIterations == 0) return true;
-    const float hair =
-        scene.longestStrand * (1.0f + s.maximalExtension) + std::max(s.pearlRadiusRoot, s.pearlRadiusTip);
-    const float reach = (hair + sphere.radius) * 1.001f;
+    const float reach = (hairReach(scene.settings, scene.longestStrand) + sphere.radius) * 1.001f;
     const Float3 from = sphere.center_ws - motion;
     const Float3 to = sphere.center_ws;
     const Float3 low = scene.rootsMin_ws;
@@ -141,6 +137,7 @@ class Planner {
         const bool held = stiff && gravity > 0.0f && s_.restGravity > 0.0f;
         decide(Effect::torsion, decideTorsion(scene_, stiff, held));
         decideCollision();
+        plan_.keepsCurves_ = on(Effect::torsion) && implicitly();
         plan_.factored_ = stiff && s_.angularMethod != AngularMethod::flexion &&
                           (implicitly() || (s_.integrator == Integrator::implicitEuler && !coils()));
     }
@@ -272,9 +269,10 @@ class Planner {
     float smallestSphere_ = 0.0f;
 };
 
-bool EffectPlan::runs(StageId stage) const {
-    const auto all = stages();
-    return std::find(all.begin(), all.end(), stage) != all.end();
+float hairReach(const SimulationSettings& settings, float strandLength) {
+    if (settings.lengthIterations == 0) return std::numeric_limits<float>::infinity();
+    return strandLength * (1.0f + settings.maximalExtension) +
+           std::max(settings.pearlRadiusRoot, settings.pearlRadiusTip);
 }
 
 EffectPlan plan(const SceneDescription& scene) {

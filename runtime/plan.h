@@ -144,9 +144,10 @@ class EffectPlan {
     std::string why(Effect effect) const;
     /// In the order in which a substep runs them; empty while all strands sleep.
     std::span<const StageId> stages() const { return {stages_.data(), stageCount_}; }
-    bool runs(StageId stage) const;
     /// Angular springs are solved as one system along each strand.
     bool factored() const { return factored_; }
+    /// So are those of curved hair, whose joints keep their curves from substep to substep.
+    bool keepsCurves() const { return keepsCurves_; }
 
   private:
     friend EffectPlan plan(const SceneDescription& scene);
@@ -156,8 +157,13 @@ class EffectPlan {
     std::array<StageId, kMostStages> stages_{};
     std::size_t stageCount_ = 0;
     bool factored_ = false;
+    bool keepsCurves_ = false;
 };
 
 EffectPlan plan(const SceneDescription& scene);
+
+/// Metres from its root that a strand of that length and its pearls can come; infinite while nothing bounds
+/// its extension.
+float hairReach(const SimulationSettings& settings, float strandLength);
 
 }  // namespace hairloom::runtime

@@ -11,11 +11,6 @@
 
 namespace hairloom::runtime {
 
-/// Young's modulus of hair, Pa (Robbins 2002, as Rünz 2012, Section 2).
-inline constexpr double kYoungsModulus = 3.89e9;
-/// Of hair, kg/m³, as kHairBendingStiffness takes it; a round number, since it varies with moisture.
-inline constexpr double kHairDensity = 1300.0;
-
 /// Averages of a group of people.
 struct HairPreset {
     const char* name;         ///< as Table 1 names the group, in lower case

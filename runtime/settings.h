@@ -136,9 +136,12 @@ struct SimulationSettings {
     friend bool operator==(const SimulationSettings&, const SimulationSettings&) = default;
 };
 
-/// EI/(ρA) of round hair of 80 µm, in m⁴/s²: E d²/(16 ρ) with E = 3.89 GPa (Robbins 2002, as Rünz 2012,
-/// Section 2) and ρ = 1300 kg/m³.
-inline constexpr double kHairBendingStiffness = 3.89e9 * 80e-6 * 80e-6 / (16.0 * 1300.0);
+/// Young's modulus of hair, Pa (Robbins 2002, as Rünz 2012, Section 2).
+inline constexpr double kYoungsModulus = 3.89e9;
+/// Of hair, kg/m³; a round number, since it varies with moisture.
+inline constexpr double kHairDensity = 1300.0;
+/// EI/(ρA) of round hair of 80 µm, in m⁴/s²: E d²/(16 ρ).
+inline constexpr double kHairBendingStiffness = kYoungsModulus * 80e-6 * 80e-6 / (16.0 * kHairDensity);
 
 /// One authored field. For a Float3 the range holds for each component; for an enumeration it is that of the
 /// index.

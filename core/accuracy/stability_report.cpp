@@ -130,9 +130,6 @@ Result<std::vector<std::string>> writeStability(const std::vector<StabilityResul
                                                 const std::vector<StabilityMap>& maps,
                                                 const std::string& commandLine,
                                                 const std::filesystem::path& folder) {
-    std::error_code code;
-    std::filesystem::create_directories(folder, code);
-    if (code) return failIn(folder.string(), {}, "the folder cannot be made: " + code.message());
     std::vector<std::pair<std::string, std::string>> files{{"cases.csv", stabilityCsv(results)},
                                                            {"cases.md", stabilityMarkdown(results)}};
     for (const StabilityMap& map : maps) {
@@ -141,13 +138,7 @@ Result<std::vector<std::string>> writeStability(const std::vector<StabilityResul
             svg(stabilityPlot(map)));
     }
     files.emplace_back("report.html", pageOf(results, maps, commandLine));
-    std::vector<std::string> names;
-    for (const auto& [name, text] : files) {
-        if (auto status = writeFileAtomically(folder / name, text); !status)
-            return tl::unexpected(status.error());
-        names.push_back(name);
-    }
-    return names;
+    return writeFiles(folder, files);
 }
 
 }  // namespace hairloom

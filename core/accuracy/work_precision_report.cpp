@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <system_error>
 
 #include "core/accuracy/html_report.h"
 #include "core/accuracy/machine.h"
@@ -210,20 +209,11 @@ std::string workPrecisionCsv(const WorkPrecision& result) {
 
 Result<std::vector<std::string>> writeWorkPrecision(const WorkPrecision& result, const ReportContext& context,
                                                     const std::filesystem::path& folder) {
-    std::error_code code;
-    std::filesystem::create_directories(folder, code);
-    if (code) return failIn(folder.string(), {}, "the folder cannot be made: " + code.message());
     const std::vector<NamedDrawing> drawings = drawingsOf(result, context);
     std::vector<std::pair<std::string, std::string>> files{{"data.csv", workPrecisionCsv(result)}};
     for (const NamedDrawing& drawing : drawings) files.emplace_back(drawing.file, drawing.svg);
     files.emplace_back("report.html", pageOf(result, context, drawings));
-    std::vector<std::string> names;
-    for (const auto& [name, text] : files) {
-        if (auto status = writeFileAtomically(folder / name, text); !status)
-            return tl::unexpected(status.error());
-        names.push_back(name);
-    }
-    return names;
+    return writeFiles(folder, files);
 }
 
 }  // namespace hairloom

@@ -126,6 +126,20 @@ Status writeFileAtomically(const std::filesystem::path& path, std::string_view t
     return writeFileAtomically(path, std::as_bytes(std::span(text.data(), text.size())));
 }
 
+Result<std::vector<std::string>> writeFiles(const std::filesystem::path& folder,
+                                            const std::vector<std::pair<std::string, std::string>>& files) {
+    std::error_code code;
+    std::filesystem::create_directories(folder, code);
+    if (code) return failIn(folder.string(), {}, "the folder cannot be made: " + code.message());
+    std::vector<std::string> names;
+    for (const auto& [name, text] : files) {
+        if (auto status = writeFileAtomically(folder / name, text); !status)
+            return tl::unexpected(status.error());
+        names.push_back(name);
+    }
+    return names;
+}
+
 Status ByteReader::seek(std::uint64_t offset, std::string_view what) {
     if (offset > bytes_.size()) {
         return tl::unexpected(error(fmt::format("{} would start at byte {}", what, offset),

@@ -12,6 +12,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "core/base/result.h"
@@ -34,6 +35,11 @@ std::vector<std::byte> readBeginning(const std::filesystem::path& path, std::siz
 /// or the new one, never a part. On error nothing is left under either name.
 Status writeFileAtomically(const std::filesystem::path& path, std::span<const std::byte> bytes);
 Status writeFileAtomically(const std::filesystem::path& path, std::string_view text);
+
+/// Makes the folder where it is missing and writes texts under names in it, each as writeFileAtomically()
+/// does; the names, in order. Stops at the first error.
+Result<std::vector<std::string>> writeFiles(const std::filesystem::path& folder,
+                                            const std::vector<std::pair<std::string, std::string>>& files);
 
 /// A name beside `path` that no other writer uses, for content that is renamed to `path` when it is whole.
 std::filesystem::path temporaryBeside(const std::filesystem::path& path);

@@ -8,8 +8,6 @@
 #define HAIRLOOM_RUNTIME_KERNELS_LANES_INL_H
 #endif
 
-#include <cmath>
-
 #include "hwy/highway.h"
 #include "runtime/kernels.h"
 
@@ -105,33 +103,6 @@ HWY_INLINE V4 multiply(V4 a, V4 b) {
             a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
 }
 
-/// The shortest rotation from one direction to another (Melax 2000), for vectors of any length. Opposite
-/// vectors turn by 180° about an axis across them; a vector without length turns nothing.
-HWY_INLINE V4 shortestArc(V3 from, V3 to) {
-    const V zero = hn::Zero(D()), one = all(1.0f);
-    const V sizes = hn::Sqrt(dot(from, from) * dot(to, to));
-    const V3 across = cross(from, to);
-    const V sum = sizes + dot(from, to);
-    // The squared length of (across, sum) is 2 · sizes · sum.
-    const V inverse = one / hn::Sqrt((sizes + sizes) * sum);
-    const V4 arc{across.x * inverse, across.y * inverse, across.z * inverse, sum * inverse};
-    const auto opposite = sum <= sizes * all(1e-6f);
-    if (HWY_LIKELY(hn::AllFalse(D(), opposite))) return arc;
-
-    const auto nothing = sizes < all(1e-30f);
-    const auto alongX = hn::Abs(from.x) > hn::Abs(from.z);
-    const V3 axis{hn::IfThenElse(alongX, zero - from.y, zero), hn::IfThenElse(alongX, from.x, zero - from.z),
-                  hn::IfThenElse(alongX, zero, from.y)};
-    const V norm = hn::Sqrt(dot(axis, axis));
-    const auto flat = norm < all(1e-20f);  // only where `from` lies along y, or has no length
-    const V scale = one / hn::IfThenElse(flat, one, norm);
-    const V3 turn = select(flat, {one, zero, zero}, axis * scale);
-    const V3 bits = select(nothing, zero3(), turn);
-    return {hn::IfThenElse(opposite, bits.x, arc.x), hn::IfThenElse(opposite, bits.y, arc.y),
-            hn::IfThenElse(opposite, bits.z, arc.z),
-            hn::IfThenElse(opposite, hn::IfThenElse(nothing, one, zero), arc.w)};
-}
-
 /// sin(2π·turns) to 0.1 %: a parabola, refined once by its own square.
 HWY_INLINE V sineOfTurns(V turns) {
     const V part = turns - hn::Round(turns);
@@ -148,34 +119,7 @@ HWY_INLINE float laneMost(V v) {
 
 struct Box {
     Float3 low, high;
-
-    bool meets(Float3 centre, float radius) const {
-        const Float3 gap{std::fmax(std::fmax(low.x - centre.x, centre.x - high.x), 0.0f),
-                         std::fmax(std::fmax(low.y - centre.y, centre.y - high.y), 0.0f),
-                         std::fmax(std::fmax(low.z - centre.z, centre.z - high.z), 0.0f)};
-        return runtime::dot(gap, gap) <= radius * radius * 1.0001f;
-    }
 };
-
-/// World box of a block's free points after `step` substeps of the frame.
-HWY_INLINE Box boundsOf(const BlockView& block, const LaneFrame& lanes, float step) {
-    V3 low = all3({1e30f, 1e30f, 1e30f}), high = all3({-1e30f, -1e30f, -1e30f});
-    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
-        V3 least = all3({1e30f, 1e30f, 1e30f}), most = all3({-1e30f, -1e30f, -1e30f});
-        for (std::uint32_t p = block.firstFree; p < block.points; ++p) {
-            const V3 at = load3(block.position, std::size_t{p} * kBlockLanes + lane);
-            least = {hn::Min(least.x, at.x), hn::Min(least.y, at.y), hn::Min(least.z, at.z)};
-            most = {hn::Max(most.x, at.x), hn::Max(most.y, at.y), hn::Max(most.z, at.z)};
-        }
-        const V3 root = load3(lanes.root, lane) + load3(lanes.rootStep, lane) * all(step);
-        least = least + root;
-        most = most + root;
-        low = {hn::Min(low.x, least.x), hn::Min(low.y, least.y), hn::Min(low.z, least.z)};
-        high = {hn::Max(high.x, most.x), hn::Max(high.y, most.y), hn::Max(high.z, most.z)};
-    }
-    return {{laneLeast(low.x), laneLeast(low.y), laneLeast(low.z)},
-            {laneMost(high.x), laneMost(high.y), laneMost(high.z)}};
-}
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)
 }  // namespace HWY_NAMESPACE

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
 
 #include "core/accuracy/instruction_set_limit.h"
@@ -42,9 +43,11 @@ TEST(StepCost, StagesAreThoseOfThePlanAndPartOfTheStep) {
         const double step = run.milliseconds(1);
         const auto& stages = run.stageMilliseconds();
         EXPECT_LE(std::accumulate(stages.begin(), stages.end(), 0.0), step);
-        for (std::uint32_t i = 0; i < runtime::kStageCount; ++i)
-            EXPECT_EQ(stages[i] > 0.0, run.engine().plan().runs(static_cast<StageId>(i)))
-                << runtime::stageName(static_cast<StageId>(i));
+        const auto planned = run.engine().plan().stages();
+        for (std::uint32_t i = 0; i < runtime::kStageCount; ++i) {
+            const auto id = static_cast<StageId>(i);
+            EXPECT_EQ(stages[i] > 0.0, std::ranges::count(planned, id) > 0) << runtime::stageName(id);
+        }
     }
 }
 

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+// What one block of strands goes through in a frame, on whatever thread.
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/checks.h"
+#include "runtime/engine_frame.h"
+
+namespace hairloom::runtime {
+
+void Engine::runBlock(std::size_t block, const Frame& frame) {
+    BlockReport& report = blockReports_[block];
+    report.nanoseconds.fill(0);
+    report.restored = 0;
+    report.fastest = 0.0f;
+    if (frame.newBend) {
+        fillBend(*shape_, settings_, frame.context.h, block, bend_);
+    }
+    if (state_.rests[block].asleep) {
+        state_.rests[block].time += frame.input->dt;
+        return;
+    }
+    const BlockView blockView = view(block);
+    LaneFrame lanes;
+    enterFrame(block, blockView, lanes, frame);
+    if (frame.rescale != 1.0f) kernels().rescale(blockView, frame.rescale);
+    if (frame.windy) {
+        kernels().sampleWind(blockView, lanes, frame.context.h, wind_, frame.windFrom.data(),
+                             frame.windTo.data());
+    }
+    runStages(block, blockView, lanes, frame);
+    report.fastest = kernels().fastest(blockView, frame.context.h);
+    if (!std::isfinite(report.fastest)) restoreStrands(block, blockView);
+    rest(block, blockView, frame);
+}
+
+/// Puts lanes that are no longer sound back to rest.
+void Engine::restoreStrands(std::size_t block, const BlockView& blockView) {
+    BlockReport& report = blockReports_[block];
+    for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+        bool sound = true;
+        for (std::uint32_t p = 0; p < blockView.points; ++p) {
+            const std::size_t i = std::size_t{p} * kBlockLanes + lane;
+            const auto at = [&](const Planes& planes) {
+                return Float3{planes.x[i], planes.y[i], planes.z[i]};
+            };
+            const Float3 place = at(blockView.position), moved = place - at(blockView.previous);
+            // As Kernels::fastest has it: comparisons with what is no number are false.
+            sound = sound && dot(place, place) < kFarthest * kFarthest &&
+                    dot(moved, moved) < kFarthest * kFarthest;
+        }
+        if (sound) continue;
+        placeAtRest(*shape_, state_, block, lane);
+        if (lane < shape_->blocks[block].strands) ++report.restored;
+    }
+    report.fastest = 0.0f;
+}
+
+/// Counts how long the block has been at rest, and puts it to sleep.
+void Engine::rest(std::size_t block, const BlockView& blockView, const Frame& frame) {
+    Rest& rest = state_.rests[block];
+    const BlockReport& report = blockReports_[block];
+    const float slow = settings_.sleepSpeed * frame.context.h;
+    if (report.rootsMoved || report.restored > 0 || !(report.fastest < slow * slow)) {
+        rest = {};
+        return;
+    }
+    rest.time += frame.input->dt;
+    rest.asleep = rest.time >= settings_.sleepDelay;
+    if (!rest.asleep) return;
+    const std::size_t floats = std::size_t{blockView.points} * kBlockLanes;
+    std::copy_n(blockView.position.x, floats, blockView.previous.x);
+    std::copy_n(blockView.position.y, floats, blockView.previous.y);
+    std::copy_n(blockView.position.z, floats, blockView.previous.z);
+}
+
+/// Fills the lanes' way through the frame and keeps its end for the next. A cut turns the strand along
+/// rigidly.
+void Engine::enterFrame(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame) {
+    float* rows = state_.roots.data() + block * kRootRows * kBlockLanes;
+    const float share = 1.0f / static_cast<float>(frame.context.count);
+    for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+        const auto row = [&](std::size_t r) -> float& { return rows[r * kBlockLanes + lane]; };
+        RootFrame from{{row(0), row(1), row(2)}, {row(3), row(4), row(5), row(6)}};
+        const RootFrame to = roots_[shape_->blocks[block].strandOfLane[lane]];
+        if (!(length(to.position - from.position) <= settings_.teleportDistance)) {
+            const Quat turn = to.rotation * conjugate(from.rotation);
+            for (std::uint32_t p = 0; p < view.points; ++p) {
+                const std::size_t i = std::size_t{p} * kBlockLanes + lane;
+                for (const Planes& planes : {view.position, view.previous, view.curve}) {
+                    if (!planes.x) continue;
+                    const Float3 turned = rotate(turn, Float3{planes.x[i], planes.y[i], planes.z[i]});
+                    planes.x[i] = turned.x;
+                    planes.y[i] = turned.y;
+                    planes.z[i] = turned.z;
+                }
+            }
+            from = to;
+        }
+        const Float3 step = (to.position - from.position) * share;
+        const float starts[] = {from.position.x, from.position.y, from.position.z};
+        const float steps[] = {step.x, step.y, step.z};
+        for (std::size_t r = 0; r < 3; ++r) {
+            lanes.root[r][lane] = starts[r];
+            lanes.rootStep[r][lane] = steps[r];
+        }
+        const Quat rotations[] = {from.rotation, to.rotation};
+        float(*targets[])[kBlockLanes] = {lanes.rotationFrom, lanes.rotationTo};
+        for (std::size_t k = 0; k < 2; ++k) {
+            targets[k][0][lane] = rotations[k].x;
+            targets[k][1][lane] = rotations[k].y;
+            targets[k][2][lane] = rotations[k].z;
+            targets[k][3][lane] = rotations[k].w;
+        }
+        row(0) = to.position.x, row(1) = to.position.y, row(2) = to.position.z;
+        row(3) = to.rotation.x, row(4) = to.rotation.y, row(5) = to.rotation.z, row(6) = to.rotation.w;
+    }
+}
+
+void Engine::runStages(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame) {
+    const Kernels& table = kernels();
+    SubstepContext context = frame.context;
+    if (!host_.nanoseconds) {
+        for (context.index = 0; context.index < context.count; ++context.index) {
+            for (const StageId id : plan_.stages())
+                table.stages[static_cast<std::size_t>(id)](view, lanes, context);
+        }
+        return;
+    }
+    auto& times = blockReports_[block].nanoseconds;
+    std::uint64_t before = host_.nanoseconds();
+    for (context.index = 0; context.index < context.count; ++context.index) {
+        for (const StageId id : plan_.stages()) {
+            table.stages[static_cast<std::size_t>(id)](view, lanes, context);
+            const std::uint64_t after = host_.nanoseconds();
+            times[static_cast<std::size_t>(id)] += after - before;
+            before = after;
+        }
+    }
+}
+
+}  // namespace hairloom::runtime
