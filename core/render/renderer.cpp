@@ -153,7 +153,8 @@ Status Renderer::setOverlay(Overlay overlay) {
     marks.waits = true;
     marks.bounds_ws.setEmpty();
     for (const OverlayBatch& batch : marks.overlay.batches) {
-        for (const OverlayVertex& vertex : batch.vertices) marks.bounds_ws.extend(vertex.position_ws.head<3>());
+        for (const OverlayVertex& vertex : batch.vertices)
+            marks.bounds_ws.extend(vertex.position_ws.head<3>());
     }
     return {};
 }
