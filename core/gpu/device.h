@@ -117,6 +117,22 @@ class Submission {
 };
 using SubmissionPtr = std::shared_ptr<Submission>;
 
+/// Shows pictures in a window. What is drawn into the back buffer stays there until it is drawn over, so it
+/// can also be read back. Destroy the swap chain before its window.
+class SwapChain {
+  public:
+    virtual ~SwapChain() = default;
+    /// One texture of Format::Bgra8Unorm (values are shown as sRGB) for as long as the size stays: a render
+    /// target, to be drawn into by submitted lists.
+    virtual const TexturePtr& backBuffer() const = 0;
+    /// Makes a new back buffer with undefined content. Errors: as for textures.
+    virtual Status resize(std::uint32_t width, std::uint32_t height) = 0;
+    /// Shows the back buffer, unscaled from the upper left corner, as far as it and the window overlap;
+    /// nothing while the window has no area. Waits while two pictures are still on their way. Errors: the
+    /// device or the window is lost.
+    virtual Status present() = 0;
+};
+
 class Device {
   public:
     virtual ~Device() = default;
@@ -132,6 +148,9 @@ class Device {
     virtual Result<ShaderPtr> createShader(const ShaderDesc& desc) = 0;
     virtual Result<GraphicsPipelinePtr> createGraphicsPipeline(const GraphicsPipelineDesc& desc) = 0;
     virtual Result<ComputePipelinePtr> createComputePipeline(const ComputePipelineDesc& desc) = 0;
+
+    /// Errors besides: DeviceInfo::presents is false, or the device cannot draw to this window.
+    virtual Result<std::unique_ptr<SwapChain>> createSwapChain(const SwapChainDesc& desc) = 0;
 
     /// Fails while another list is open: submit or destroy that one first.
     virtual Result<std::unique_ptr<CommandList>> createCommandList() = 0;

@@ -245,6 +245,19 @@ struct Binding {
     }
 };
 
+/// A window of the window system that the program runs under, as that system names it.
+struct NativeWindow {
+    void* connection = nullptr;  ///< xcb_connection_t*, which must outlive the swap chain
+    std::uint32_t window = 0;    ///< xcb_window_t
+};
+
+struct SwapChainDesc {
+    NativeWindow window;
+    std::uint32_t width = 1;  ///< pixels of the back buffer
+    std::uint32_t height = 1;
+    bool waitForDisplay = true;  ///< present at most once per refresh, without tearing
+};
+
 enum class DeviceType { Discrete, Integrated, Virtual, Cpu, Other };
 std::string_view toString(DeviceType type);
 enum class ShaderFormat { SpirV, Dxbc };
@@ -264,6 +277,7 @@ struct DeviceInfo {
     bool tessellation = false;
     bool depthClamp = false;
     bool wireframe = false;
+    bool presents = false;             ///< swap chains can be made where there is a display
     double timestampPeriodNs = 0;      ///< 0: no timestamps, pass times are 0
     std::uint64_t maxBufferBytes = 0;  ///< of one storage buffer as a shader sees it
     std::uint32_t maxTextureSize = 0;  ///< pixels along one side
