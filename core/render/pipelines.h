@@ -4,6 +4,7 @@
 
 #include <map>
 #include <string_view>
+#include <utility>
 
 #include "core/gpu/device.h"
 
@@ -32,10 +33,11 @@ class Pipelines {
   public:
     explicit Pipelines(gpu::Device& device) : device_(device) {}
 
-    /// Nothing after an error; status() has the first one.
+    /// Nothing after an error, which takeStatus() has.
     gpu::GraphicsPipelinePtr graphics(const GraphicsNeeds& needs);
     gpu::ComputePipelinePtr compute(std::string_view name);
-    const Status& status() const { return status_; }
+    /// The first error since the last call.
+    Status takeStatus() { return std::exchange(status_, Status()); }
 
   private:
     gpu::ShaderPtr shader(std::string_view name, gpu::ShaderStage stage);

@@ -208,7 +208,7 @@ Status Renderer::record(gpu::CommandList& list, const RenderOptions& options, co
         recordPresent(list, p.state, p.accumulated, target);
         recordOverlay(list, p.state, target);
     }
-    return p.state.pipelines.status();
+    return p.state.pipelines.takeStatus();
 }
 
 std::uint32_t Renderer::accumulated() const {
