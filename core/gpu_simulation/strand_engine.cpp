@@ -86,13 +86,14 @@ Status StrandEngine::Impl::makeBuffers() {
 /// The buffers that the plan needs, and no others.
 Status StrandEngine::Impl::allocate() {
     Status status;
-    /// Of `count` floats of this value, or none.
+    /// Of `count` floats, or none: the first `voids` of them kNoCurve, the others 0.
     const auto have = [&](gpu::BufferPtr& buffer, const char* name, std::size_t count, std::size_t bytes,
-                          float value) {
+                          std::size_t voids = 0) {
         if (!status || (buffer == nullptr ? count == 0 : buffer->desc().size == count * 4)) return false;
         buffer = nullptr;
         if (count == 0) return false;
-        const std::vector<float> content(count, value);
+        std::vector<float> content(count);
+        std::fill_n(content.begin(), voids, runtime::kNoCurve);
         gpu::BufferDesc desc;
         desc.name = name;
         desc.size = count * 4;
@@ -112,14 +113,14 @@ Status StrandEngine::Impl::allocate() {
         const std::size_t plane = std::size_t{batch.shape.points} * batch.slots;
         constexpr std::array<std::size_t, 3> kBendFloats{0, 1, 4};
         const std::size_t bendFloats = kBendFloats[key.bend];
-        bool fresh = have(batch.bend, "angular springs", plane * bendFloats, bendFloats * 4, 0.0f);
-        fresh |= have(batch.targets, "rest directions", key.targets ? plane * 4 : 0, 16, 0.0f);
+        bool fresh = have(batch.bend, "angular springs", plane * bendFloats, bendFloats * 4);
+        fresh |= have(batch.targets, "rest directions", key.targets ? plane * 4 : 0, 16);
         if (fresh) bendSubstep = 0.0f;
-        have(batch.curves, "curves", key.curves ? plane * 3 : 0, 4, 0.0f);
-        have(batch.tanks, "tanks", key.curves ? std::size_t{batch.slots} * 2 : 0, 4, runtime::kNoCurve);
-        have(batch.rests, "rests", key.sleep ? batch.blocks.size() * 2 : 0, 4, 0.0f);
+        have(batch.curves, "curves", key.curves ? plane * 3 : 0, 4);
+        have(batch.tanks, "tanks", key.curves ? std::size_t{batch.slots} * 2 : 0, 4, batch.slots);
+        have(batch.rests, "rests", key.sleep ? batch.blocks.size() * 2 : 0, 4);
         const bool scratch = batch.shape.storage == StrandStorage::buffers && !key.stages.empty();
-        have(batch.scratch, "scratch", scratch ? plane * kScratchPlanes[key.evaluation] : 0, 4, 0.0f);
+        have(batch.scratch, "scratch", scratch ? plane * kScratchPlanes[key.evaluation] : 0, 4);
         sleeps = sleeps || key.sleep;
     }
     if (!sleeps) waking = nullptr;

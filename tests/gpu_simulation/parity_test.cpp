@@ -5,8 +5,8 @@
 #include <array>
 #include <functional>
 
+#include "tests/gpu_simulation/cpu_frame.h"
 #include "tests/gpu_simulation/gpu_simulation_fixture.h"
-#include "tests/gpu_simulation/one_substep.h"
 
 namespace hairloom::gpu_simulation {
 namespace {
@@ -134,6 +134,9 @@ const Case kCases[] = {
     {"collisionPenalty", [](SimulationSettings& s) { collide(s, CollisionResponse::penalty); }, true, 2e-6},
 };
 
+/// They share a batch.
+constexpr std::array<std::uint32_t, 4> kPoints{16, 13, 10, 9};
+
 class Parity : public GpuSimulationTest, public testing::WithParamInterface<Case> {};
 
 void compare(StrandEngine& engine, const Scene& scene, double tolerance, std::ptrdiff_t mayDiffer) {
@@ -152,7 +155,7 @@ TEST_P(Parity, OneSubstep) {
     const Case& what = GetParam();
     SimulationSettings settings = bare();
     what.change(settings);
-    constexpr std::array<std::uint32_t, 4> kPoints{16, 13, 10, 9};
+    settings.substeps = 1;
     for (const Hair hair : {Hair::straight, Hair::curled, Hair::nasty}) {
         SCOPED_TRACE(static_cast<int>(hair));
         Scene scene = test::makeScene(settings, hair, 7, kPoints);
@@ -161,6 +164,18 @@ TEST_P(Parity, OneSubstep) {
         const bool nasty = hair == Hair::nasty;
         compare(engine, scene, nasty ? what.nastyTolerance : what.tolerance, nasty ? what.mayDiffer : 0);
     }
+}
+
+/// What one substep leaves the next one goes on from.
+TEST_P(Parity, ThreeSubsteps) {
+    const Case& what = GetParam();
+    SimulationSettings settings = bare();
+    what.change(settings);
+    settings.substeps = 3;
+    Scene scene = test::makeScene(settings, Hair::curled, 11, kPoints);
+    if (!what.spheres) scene.spheres = scene.state.spheres = {};
+    StrandEngine engine = engineOf(scene.view(), scene.settings, options());
+    compare(engine, scene, 20.0 * what.tolerance, what.spheres ? 1 : 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Effects, Parity, testing::ValuesIn(kCases),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// One substep of any plan from any state, by the stages of the engine on the CPU: what the kernels on the
+// A few substeps of any plan from any state, by the stages of the engine on the CPU: what the kernels on the
 // device are held against.
 
 #include <random>
@@ -15,7 +15,7 @@ using runtime::Quat;
 
 inline constexpr float kStep = 1.0f / 480.0f;
 
-/// Strands, a state of theirs, and the frame of one substep that goes on from it.
+/// Strands, a state of theirs, and the frame that goes on from it.
 struct Scene {
     runtime::SimulationSettings settings;
     std::vector<std::uint32_t> offsets{0};
@@ -28,7 +28,7 @@ struct Scene {
     runtime::StrandsView view() const { return {offsets, positions}; }
     runtime::FrameInput input() const {
         runtime::FrameInput input;
-        input.dt = kStep;
+        input.dt = kStep * static_cast<float>(settings.substeps);
         input.time = 0.7;
         input.roots_ws = roots;
         input.spheres = spheres;
@@ -120,7 +120,6 @@ inline Scene makeScene(const runtime::SimulationSettings& settings, Hair hair, s
                        std::span<const std::uint32_t> points) {
     Scene scene;
     scene.settings = settings;
-    scene.settings.substeps = 1;
     Dice dice(seed);
     addStrands(scene, hair, 64, points, dice);
     scene.shape = runtime::makeRestShape(scene.view());
@@ -161,6 +160,7 @@ struct CpuFrame {
 
     explicit CpuFrame(const Scene& scene) {
         const runtime::RestShape& shape = *scene.shape;
+        const float dt = scene.input().dt;
         runtime::takeSpheres(scene.settings, shape.longestStrand, scene.state.spheres, scene.spheres,
                              spheres);
         wind.wind = runtime::makeWind(scene.settings);
@@ -172,9 +172,10 @@ struct CpuFrame {
         outlook.rootsMin_ws = {-1.0f, -1.0f, -1.0f};
         outlook.rootsMax_ws = {1.0f, 1.0f, 1.0f};
         outlook.fastest = std::numeric_limits<float>::infinity();
-        plan = runtime::planFrame(scene.settings, outlook, wind, spheres.usable, spheres.motion, kStep);
-        context = runtime::substepContext(scene.settings, plan, kStep);
-        if (plan.on(runtime::Effect::collision)) runtime::moveSpheres(spheres, 1, moving);
+        plan = runtime::planFrame(scene.settings, outlook, wind, spheres.usable, spheres.motion, dt);
+        context = runtime::substepContext(scene.settings, plan, dt);
+        if (plan.on(runtime::Effect::collision))
+            runtime::moveSpheres(spheres, scene.settings.substeps, moving);
         context.spheres = moving;
     }
 };
@@ -187,7 +188,8 @@ inline void fillLanes(const Scene& scene, std::size_t b, runtime::LaneFrame& lan
         const float turns[] = {to.rotation.x, to.rotation.y, to.rotation.z, to.rotation.w};
         for (std::size_t k = 0; k < 3; ++k) {
             lanes.root[k][lane] = rows[k * runtime::kBlockLanes + lane];
-            lanes.rootStep[k][lane] = ends[k] - lanes.root[k][lane];
+            lanes.rootStep[k][lane] =
+                (ends[k] - lanes.root[k][lane]) * (1.0f / static_cast<float>(scene.settings.substeps));
         }
         for (std::size_t k = 0; k < 4; ++k) {
             lanes.rotationFrom[k][lane] = rows[(3 + k) * runtime::kBlockLanes + lane];
@@ -208,7 +210,7 @@ inline bool isSound(const runtime::BlockView& view, std::uint32_t lane) {
     return true;
 }
 
-/// The state after the substep, by the stages of the CPU.
+/// The state after the frame, by the stages of the CPU.
 inline runtime::State runOnCpu(const Scene& scene) {
     runtime::State state = scene.state;
     const runtime::RestShape& shape = *scene.shape;
@@ -233,16 +235,20 @@ inline runtime::State runOnCpu(const Scene& scene) {
         fillLanes(scene, b, lanes);
         const runtime::Kernels& table = runtime::kernels();
         if (frame.plan.on(runtime::Effect::wind)) {
-            const auto from = runtime::windPhases(frame.wind.wind, 0.7 - static_cast<double>(kStep));
+            const auto from =
+                runtime::windPhases(frame.wind.wind, 0.7 - static_cast<double>(scene.input().dt));
             const auto to = runtime::windPhases(frame.wind.wind, 0.7);
             table.sampleWind(view, lanes, kStep, frame.wind.wind, from.data(), to.data());
         }
-        for (const runtime::StageId stage : frame.plan.stages())
-            table.stages[static_cast<std::size_t>(stage)](view, lanes, frame.context);
+        runtime::SubstepContext context = frame.context;
+        for (context.index = 0; context.index < context.count; ++context.index) {
+            for (const runtime::StageId stage : frame.plan.stages())
+                table.stages[static_cast<std::size_t>(stage)](view, lanes, context);
+        }
         for (std::uint32_t lane = 0; lane < runtime::kBlockLanes; ++lane) {
             for (std::size_t k = 0; k < 3; ++k) {
                 float* const rows = state.roots.data() + b * runtime::kRootRows * runtime::kBlockLanes + lane;
-                rows[k * runtime::kBlockLanes] += lanes.rootStep[k][lane];
+                rows[k * runtime::kBlockLanes] += lanes.rootStep[k][lane] * static_cast<float>(context.count);
             }
             for (std::size_t k = 0; k < 4; ++k)
                 state.roots[(b * runtime::kRootRows + 3 + k) * runtime::kBlockLanes + lane] =
