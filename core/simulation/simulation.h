@@ -74,7 +74,8 @@ class Simulation {
     /// Points in the order of the groom's points; metres, world space.
     std::span<const Vec3f> positions_ws() const;
     SimulationStats stats() const;
-    /// What went wrong outside of the strands, such as a device that was lost; the frames since then are void.
+    /// What went wrong outside of the strands, such as a device that was lost; the frames since then are
+    /// void.
     Status status() const;
 
   private:

@@ -19,32 +19,32 @@ namespace hairloom::shaders {
 #define HAIRLOOM_NO_CURVE (-1.0)
 
 struct SimulationConstants {
-    uint slots;             ///< strands of the batch, with those that fill the last block
-    uint substeps;          ///< per frame
+    uint slots;     ///< strands of the batch, with those that fill the last block
+    uint substeps;  ///< per frame
     uint sphereCount;
     uint lengthIterations;
-    uint wakingCount;       ///< spheres that have changed since the last frame
-    uint windKind;          ///< runtime::WindKind
-    uint wakeAll;           ///< not 0: nothing sleeps, as wind blows or velocities were changed
-    float h;                ///< seconds of a substep
-    float dt;               ///< seconds of the frame
-    float rescale;          ///< this substep over the last frame's
-    float velocityShare;    ///< exp(−h/dampingTime)
-    float dragShare;        ///< share of the air's speed taken on in a substep
-    float springStep;       ///< (ω h)² of coil springs
-    float penaltyStep;      ///< (ω h)² of penalty springs
-    float bendRate;         ///< q of docs/engine.md
-    float maximalExtension; ///< share of a segment's length
-    float pearlRoot;        ///< metres
-    float pearlTip;         ///< metres
+    uint wakingCount;        ///< spheres that have changed since the last frame
+    uint windKind;           ///< runtime::WindKind
+    uint wakeAll;            ///< not 0: nothing sleeps, as wind blows or velocities were changed
+    float h;                 ///< seconds of a substep
+    float dt;                ///< seconds of the frame
+    float rescale;           ///< this substep over the last frame's
+    float velocityShare;     ///< exp(−h/dampingTime)
+    float dragShare;         ///< share of the air's speed taken on in a substep
+    float springStep;        ///< (ω h)² of coil springs
+    float penaltyStep;       ///< (ω h)² of penalty springs
+    float bendRate;          ///< q of docs/engine.md
+    float maximalExtension;  ///< share of a segment's length
+    float pearlRoot;         ///< metres
+    float pearlTip;          ///< metres
     float friction;
     float restitution;
-    float teleportDistance; ///< metres
-    float slowSquared;      ///< square metres in a substep; slower strands rest
-    float sleepDelay;       ///< seconds
-    float slowSweep;        ///< metres in a substep; slower points cannot pass a sphere unseen
-    float4 gravityStep;     ///< g h², w unused
-    float4 wind;            ///< mean velocity, m/s; w: strength of gusts
+    float teleportDistance;  ///< metres
+    float slowSquared;       ///< square metres in a substep; slower strands rest
+    float sleepDelay;        ///< seconds
+    float slowSweep;         ///< metres in a substep; slower points cannot pass a sphere unseen
+    float4 gravityStep;      ///< g h², w unused
+    float4 wind;             ///< mean velocity, m/s; w: strength of gusts
     float4 windAmplitudes[HAIRLOOM_WIND_MODES];  ///< m/s; w: phase at the start of the frame, turns
     float4 windWaves[HAIRLOOM_WIND_MODES];       ///< turns per metre; w: phase at the end of the frame
 };
