@@ -15,6 +15,7 @@ float fibresInLayers(float4 layers, float4 ends, float behind) {
 
 struct Occlusion {
     float fibres;      // crossed on the way to the light
+    float allFibres;   // from the hair's lit side to its other, or to the head
     float visibility;  // 0 behind the head … 1
 };
 
@@ -22,6 +23,7 @@ struct Occlusion {
 Occlusion occlusion(LightConstants light, float4 ends, float3 position_ws, float hairBias, float headBias) {
     Occlusion result;
     result.fibres = 0;
+    result.allFibres = 0;
     result.visibility = 1;
     const float4 clip = mul(light.clipFromWorld, float4(position_ws, 1));
     const float2 uv = float2(0.5 + 0.5 * clip.x, 0.5 - 0.5 * clip.y);
@@ -35,6 +37,7 @@ Occlusion occlusion(LightConstants light, float4 ends, float3 position_ws, float
     const float2 f = texel - float2(base);
     float fibres = 0;
     float visible = 0;
+    float all = 0;
     // A quadratic B-spline over 3 x 3 texels of finished comparisons.
     const float3 wx = float3(0.5 * (1 - f.x) * (1 - f.x), 0.5 + f.x * (1 - f.x), 0.5 * f.x * f.x);
     const float3 wy = float3(0.5 * (1 - f.y) * (1 - f.y), 0.5 + f.y * (1 - f.y), 0.5 * f.y * f.y);
@@ -43,12 +46,16 @@ Occlusion occlusion(LightConstants light, float4 ends, float3 position_ws, float
             const int2 at = clamp(base + int2(x, y), int2(0, 0), int2(int(height) - 1, int(height) - 1));
             const int3 where = int3(at.x + tile, at.y, 0);
             const float w = wx[x] * wy[y];
-            const float behind = (clip.z - gFirstHair.Load(where)) * light.range.x - hairBias;
-            fibres += w * fibresInLayers(gOpacity.Load(where), ends, behind);
-            visible += w * ((clip.z - gHeadDepth.Load(where)) * light.range.x < headBias ? 1.0 : 0.0);
+            const float firstHair = gFirstHair.Load(where);
+            const float head = gHeadDepth.Load(where);
+            const float4 layers = gOpacity.Load(where);
+            fibres += w * fibresInLayers(layers, ends, (clip.z - firstHair) * light.range.x - hairBias);
+            all += w * fibresInLayers(layers, ends, (head - firstHair) * light.range.x);
+            visible += w * ((clip.z - head) * light.range.x < headBias ? 1.0 : 0.0);
         }
     }
     result.fibres = fibres;
+    result.allFibres = max(all, fibres);
     result.visibility = visible;
     return result;
 }

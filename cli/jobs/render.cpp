@@ -18,6 +18,7 @@ struct RenderJobOptions {
     std::string camera = "three-quarter";
     std::string view;
     std::string shading = "kajiya";
+    std::string scatter = "dual";
     std::string shadow = "dom";
     std::string antiAliasing = "auto";
     std::string record;
@@ -32,6 +33,10 @@ struct RenderJobOptions {
 
 const std::map<std::string, std::uint32_t> kSamples{
     {"auto", 0}, {"none", 1}, {"msaa2", 2}, {"msaa4", 4}, {"msaa8", 8}};
+
+const std::map<std::string, render::ShadingModel> kModels{{"kajiya", render::ShadingModel::kajiya},
+                                                          {"marschner", render::ShadingModel::marschner},
+                                                          {"sadeghi", render::ShadingModel::sadeghi}};
 
 Result<render::RenderOptions> pictureOptions(const RenderJobOptions& options, const ViewFile& view) {
     render::RenderOptions picture;
@@ -65,6 +70,8 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
         if (!read) return tl::unexpected(read.error());
         view = std::move(*read);
     }
+    view.fibre.model = kModels.at(options.shading);
+    view.fibre.scattering = options.scatter == "dual" ? render::Scattering::dual : render::Scattering::single;
     const auto pictureAs = pictureOptions(options, view);
     if (!pictureAs) return tl::unexpected(pictureAs.error());
     const auto groomScene = loadScene(options, view);
@@ -112,7 +119,12 @@ void addRenderJob(Jobs& jobs) {
            "Groups of the head mesh to leave out of the picture, NAME or BEGINNING*, with commas between")
         ->delimiter(',')
         ->allow_extra_args(false);
-    job.add_option("--shading", options->shading, "Shading model")->check(CLI::IsMember({"kajiya"}));
+    job.add_option("--shading", options->shading, "Shading model")
+        ->check(CLI::IsMember({"kajiya", "marschner", "sadeghi"}));
+    job.add_option(
+           "--scatter", options->scatter,
+           "Light that other hairs have scattered: single leaves it out, dual adds it; not for kajiya")
+        ->check(CLI::IsMember({"single", "dual"}));
     job.add_option("--shadow", options->shadow, "Shadows of hair: none, or deep opacity maps")
         ->check(CLI::IsMember({"none", "dom"}));
     job.add_option("--aa", options->antiAliasing,

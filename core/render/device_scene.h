@@ -6,6 +6,7 @@
 #include <span>
 
 #include "core/gpu/device.h"
+#include "core/render/fibre_tables.h"
 #include "core/render/scene.h"
 #include "shaders/shared/render_types.h"
 
@@ -35,6 +36,7 @@ struct StrandBatch {
 /// Strands of one material.
 struct StrandGroup {
     HairMaterial material;
+    FibreTables fibre;            ///< of the material, once they were asked for
     std::size_t strandCount = 0;  ///< also those too short to be drawn
     std::size_t pointCount = 0;
     bool hasRadii = false;
@@ -64,6 +66,8 @@ class DeviceScene {
 
     /// Makes room for curves of that fineness; nothing happens when there is.
     Status prepareCurves(gpu::Device& device, std::uint32_t subdivisions);
+    /// Bakes the tables of materials that have changed.
+    Status prepareFibres(gpu::Device& device);
     /// Records the uploads that wait.
     void recordUploads(gpu::CommandList& list);
 

@@ -232,10 +232,12 @@ void recordShadowMaps(gpu::CommandList& list, RendererState& state) {
 
 void recordShading(gpu::CommandList& list, RendererState& state) {
     list.beginPass({"shade", {}, {}});
-    list.setPipeline(state.pipelines.compute("shade.comp"));
     bindShadows(list, state);
     for (const StrandBatch& batch : state.scene.batches) {
-        auto constants = shadeConstants(state, state.scene.groups[batch.group].material);
+        const StrandGroup& group = state.scene.groups[batch.group];
+        list.setPipeline(state.pipelines.compute(group.fibre.shader()));
+        group.fibre.bind(list);
+        auto constants = shadeConstants(state, group.material);
         const std::uint32_t points = batch.curvePoints(state.options.subdivisions);
         const std::uint32_t groups = (points + kGroup - 1) / kGroup;
         const std::uint32_t row = std::min(groups, kRowGroups);

@@ -174,6 +174,7 @@ Status Renderer::Parts::prepare(const RenderOptions& options) {
     if (!fitted) return tl::unexpected(fitted.error());
     if (fitted->shadows) changes.add(Changes::lights());
     changes.picture |= fitted->picture;
+    if (auto status = state.scene.prepareFibres(device); !status) return status;
     return state.scene.prepareCurves(device, options.subdivisions);
 }
 
