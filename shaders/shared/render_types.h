@@ -82,7 +82,7 @@ struct ShadeConstants {
 struct FibreConstants {
     float4 lobes;  // x, y, z: intensities of R, TT and TRT, w: fibres in the way by those that are counted,
                    // for hair grows in clumps
-    float4 r;  // Sadeghi's: colour times intensity, linear RGB
+    float4 r;      // Sadeghi's: colour times intensity, linear RGB
     float4 tt;
     float4 trt;
     float4 ambient;  // share of light from everywhere that leaves, linear RGB
