@@ -37,18 +37,20 @@ void main(uint3 id : SV_DispatchThreadID) {
     float openness = 0;
     for (uint i = 0; i < gShade.counts.y; ++i) {
         const LightConstants light = gShade.lights[i];
-        const Occlusion o = occlusion(light, gShade.layers, p.position_ws.xyz, 0.0007, 0.004);
+        const float3 toLight = directionToLight(light, p.position_ws.xyz);
+        const Occlusion o = occlusion(light, p.position_ws.xyz, 0.0007, 0.004);
         const float before = clumping * o.fibres;
-        const FibreFrame f = fibreFrame(tangent, light.toLight_ws.xyz, toView);
+        const FibreFrame f = fibreFrame(tangent, toLight, toView);
         float3 scattered = exp(-before) * fibreScattering(gFibre, f, hashUnit(p.strand * 2u), tint);
 #ifdef HAIRLOOM_DUAL
         scattered += multipleScattering(gFibre, f, before, clumping * o.allFibres, tint);
 #endif
-        colour += light.irradiance.rgb * o.visibility * scattered;
+        colour += irradianceOf(light, p.position_ws.xyz) * o.visibility * scattered;
         openness += exp(-0.35 * o.fibres) * lerp(0.25, 1.0, o.visibility);
     }
     openness = gShade.counts.y > 0 ? openness / float(gShade.counts.y) : 1.0;
-    const float up = 0.5 + 0.5 * sqrt(saturate(1.0 - tangent.y * tangent.y)) * (1.0 - 0.5 * p.along);
-    colour += gFibre.ambient.rgb * tint * lerp(gShade.ambientGround.rgb, gShade.ambientSky.rgb, up) * openness;
+    if (hasEnvironment(gShade)) {
+        colour += gFibre.ambient.rgb * tint * environmentOnHair(gShade, tangent, 1.0 - 0.5 * p.along) * openness;
+    }
     gColour[index] = float4(colour, 1);
 }

@@ -25,12 +25,13 @@ class SintelHair {
         for (const Triangle& t : head_.mesh.triangles()) indices_.insert(indices_.end(), t.begin(), t.end());
     }
 
-    RenderScene scene(double eumelanin, double intensity, Scattering scattering) const {
+    RenderScene scene(double eumelanin, Scattering scattering) const {
         RenderScene scene;
         RenderMesh mesh;
         mesh.positions_ws = head_.mesh.positions();
         mesh.indices = indices_;
         mesh.albedo = Vec3f::Zero();
+        mesh.matte = true;
         scene.meshes = {mesh};
         RenderStrands hair;
         hair.offsets = strands_.groom.offsets.view();
@@ -47,13 +48,13 @@ class SintelHair {
         m.azimuthal.width = shading::azimuthalWidth(0.3);
         m.azimuthal.causticWidth = 0;
         m.width = {8.3 * shading::kDegree, 4.2 * shading::kDegree, 16.7 * shading::kDegree};
-        m.intensity = {intensity, intensity, intensity};
         scene.strands = {hair};
         scene.camera.eye_ws = Vec3f(0.35f, 1.62f, 0.75f);
         scene.camera.target_ws = Vec3f(0, 1.555f, 0);
         scene.camera.verticalFov = 22;
         scene.lights = {Light{}};
-        scene.ambientSky = scene.ambientGround = scene.background = Vec3f::Zero();
+        scene.environment = Environment();
+        scene.background = Vec3f::Zero();
         return scene;
     }
 
@@ -87,13 +88,12 @@ TEST_F(RenderTest, DualScatteringBrightensHairAsAPathTracerDoes) {
     ASSERT_TRUE(strands && head);
     const SintelHair hair(std::move(*strands), std::move(*head));
     const Vec3d luminance(0.2126, 0.7152, 0.0722);
-    const Vec3d dark = light(*device, hair.scene(0.3, 0, Scattering::single));
     struct Truth {
         double eumelanin, ratio;
     };
     for (const Truth& truth : {Truth{0.3, 2.679}, Truth{1.3, 1.287}, Truth{8, 1.054}}) {
-        const Vec3d single = light(*device, hair.scene(truth.eumelanin, 1, Scattering::single)) - dark;
-        const Vec3d all = light(*device, hair.scene(truth.eumelanin, 1, Scattering::dual)) - dark;
+        const Vec3d single = light(*device, hair.scene(truth.eumelanin, Scattering::single));
+        const Vec3d all = light(*device, hair.scene(truth.eumelanin, Scattering::dual));
         const double ratio = all.dot(luminance) / single.dot(luminance);
         const Vec3d channels = all.cwiseQuotient(single);
         EXPECT_NEAR(ratio, truth.ratio, 0.15 * truth.ratio) << truth.eumelanin;
