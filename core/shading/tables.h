@@ -27,7 +27,7 @@ struct Table {
 struct TableSizes {
     std::uint32_t longitudinal = 256;  ///< both sides of the M table
     std::uint32_t azimuth = 256;       ///< N tables along cos φ
-    std::uint32_t inclination = 64;    ///< and along θ_d
+    std::uint32_t inclination = 32;    ///< and along θ_d
 };
 
 /// M_R, M_TT, M_TRT, each times its factor and cos θ_i / cos²θ_d (Eq. 33 and 50), and 2|θ_d|/π in alpha, by
@@ -56,7 +56,7 @@ struct DualTables {
     /// all.
     Table averages;
 };
-DualTables bakeDual(const DualScattering& model, std::uint32_t azimuth = 64, std::uint32_t inclination = 32);
+DualTables bakeDual(const DualScattering& model, std::uint32_t azimuth = 64, std::uint32_t inclination = 16);
 
 /// LongitudinalLobe::factorOut() of lobes without tilt, in red, by |sin θ| and the place of the width between
 /// the two bounds; the same for all models.

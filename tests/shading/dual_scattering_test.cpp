@@ -164,7 +164,7 @@ TEST(DualScattering, SadeghiFollowsMarschner) {
 TEST(DualScattering, TablesHoldTheModel) {
     const Marschner model = hair(1.3);
     const DualScattering dual(model);
-    const DualTables tables = bakeDual(dual);
+    const DualTables tables = bakeDual(dual, 64, 32);
     const DualScattering::Row row = dual.at(0.5 * kPi / 2 * 20 / 15.5);
     const auto forward = tables.averages.sample(20 / 31.0, 0);
     const auto backward = tables.averages.sample(20 / 31.0, 0.5);
