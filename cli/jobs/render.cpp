@@ -28,7 +28,7 @@ struct RenderJobOptions {
     std::string shadow = "dom";
     std::string antiAliasing = "auto";
     std::string ribbons = "strip";
-    std::string transparency = "stochastic";
+    std::string transparency = "auto";
     float detail = 0;
     std::string record;
     std::vector<std::string> hiddenGroups;
@@ -97,7 +97,11 @@ Result<render::RenderOptions> pictureOptions(const RenderJobOptions& options, co
     picture.frames = aa.once ? 1 : options.passes;
     picture.shadows = kShadows.at(options.shadow);
     picture.ribbons = kRibbons.at(options.ribbons);
-    picture.transparency = kTransparency.at(options.transparency);
+    // One frame is least noisy when blended; the average of several has no bias when left to chance.
+    const std::string transparency = options.transparency != "auto" ? options.transparency
+                                     : picture.frames > 1           ? "stochastic"
+                                                                    : "weighted";
+    picture.transparency = kTransparency.at(transparency);
     picture.detail = options.detail;
     picture.exposure = options.exposure;
     return picture;
@@ -334,10 +338,11 @@ void addRenderJob(Jobs& jobs) {
     job.add_option("--ribbons", options->ribbons,
                    "How hairs become triangles: pulled strips, or tessellated patches")
         ->check(CLI::IsMember(namesOf(kRibbons)));
-    job.add_option(
-           "--transparency", options->transparency,
-           "Hairs thinner than a sample: a random part of the samples, a fixed part, or blended by weights")
-        ->check(CLI::IsMember(namesOf(kTransparency)));
+    job.add_option("--transparency", options->transparency,
+                   "Hairs thinner than a sample: a random part of the samples, a fixed part, or blended by "
+                   "weights; auto: "
+                   "blended where the picture is drawn once")
+        ->check(CLI::IsMember({"auto", "stochastic", "a2c", "weighted"}));
     job.add_option(
            "--detail", options->detail,
            "Leave out hairs that are thinner than this part of a pixel, and widen the others; 0: draw all")
