@@ -13,6 +13,10 @@ namespace hairloom::runtime {
 namespace {
 
 constexpr std::size_t kBlocksPerJob = 4;
+/// Seconds; what the plan assumes before the first frame.
+constexpr float kUsualFrame = 1.0f / 60.0f;
+/// Seconds in which the tension that a strand of split stages bends with follows that of its segments.
+constexpr float kTensionTime = 0.2f;
 
 float shareLeft(float h, float timeConstant) {
     return timeConstant > 0.0f ? std::exp(-h / timeConstant) : 1.0f;
@@ -88,11 +92,15 @@ void Engine::replan(std::span<const Sphere> spheres, std::span<const Float3> sph
         planned.windSpeed = length(wind_.mean);
         if (planned.windSpeed > 0.0f) planned.windDirection = wind_.mean * (1.0f / planned.windSpeed);
     }
+    const float h = frameTime > 0.0f ? frameTime / static_cast<float>(settings_.substeps) : state_.substep;
     SceneDescription scene{planned,
                            strandCount(),
                            shape_->longestPointCount,
                            shape_->longestStrand,
                            shape_->straight,
+                           shape_->sharpestCurl,
+                           shape_->unevenness,
+                           h > 0.0f ? h : kUsualFrame / static_cast<float>(settings_.substeps),
                            rootsMin_ws,
                            rootsMax_ws,
                            spheres,
@@ -100,9 +108,9 @@ void Engine::replan(std::span<const Sphere> spheres, std::span<const Float3> sph
     float sphereWay = 0.0f;
     for (const Float3& motion : sphereMotion) sphereWay = std::max(sphereWay, length(motion));
     // Within a frame hair may gain what gravity and air give, and a whip of its own.
-    const float h = frameTime / static_cast<float>(settings_.substeps);
     const float pushed = (length(settings_.gravity) + settings_.airDrag * length(wind_.mean)) * frameTime;
-    scene.fastest = 16.0f * state_.fastest * h + pushed * h +
+    const float gained = frameTime > 0.0f ? h : 0.0f;
+    scene.fastest = 16.0f * state_.fastest * gained + pushed * gained +
                     (rootMotion_ + sphereWay) / static_cast<float>(settings_.substeps);
     scene.restTime = 1e30f;
     for (std::size_t b = 0; b < state_.rests.size(); ++b) {
@@ -123,12 +131,18 @@ void Engine::allocateForPlan() {
         bend_.planes = Floats(angular ? shape_->planeFloats * bend_.planeCount() : 0, 0.0f);
         bend_.substep = 0.0f;
     }
+    if (plan_.on(Effect::coupling) != bend_.coupled) {
+        bend_.coupled = plan_.on(Effect::coupling);
+        bend_.substep = 0.0f;
+    }
     const bool curves = plan_.keepsCurves();
     if (curves == state_.curves.empty()) {
         state_.curves = Floats(curves ? shape_->planeFloats * 3 : 0, 0.0f);
         state_.tanks = Floats(curves ? shape_->blocks.size() * kBlockLanes : 0, kNoCurve);
         state_.motions = Floats(curves ? shape_->blocks.size() * kBlockLanes : 0, 0.0f);
     }
+    if (plan_.keepsTensions() == state_.tensions.empty())
+        state_.tensions = Floats(plan_.keepsTensions() ? shape_->planeFloats : 0, 0.0f);
     evaluationPlanes_ = settings_.integrator == Integrator::verlet ? 0
                         : settings_.integrator == Integrator::rk4  ? kRungeKuttaPlanes
                                                                    : kEvaluationPlanes;
@@ -269,7 +283,8 @@ Engine::Frame Engine::makeFrame(const FrameInput& input) {
     context.dragShare = decays ? 1.0f - std::exp(-settings_.airDrag * h) : settings_.airDrag * h;
     context.springStep = oscillation(settings_.springFrequency);
     context.penaltyStep = oscillation(settings_.penaltyFrequency);
-    context.bendRate = bendRate(settings_, h, bend_.targets);
+    context.bendRate = bendRate(settings_, h, bend_);
+    context.tensionShare = 1.0f - shareLeft(h, kTensionTime);
     context.lengthIterations = settings_.lengthIterations;
     context.maximalExtension = settings_.maximalExtension;
     if (plan_.on(Effect::pearls)) {

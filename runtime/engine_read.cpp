@@ -116,7 +116,7 @@ std::size_t Engine::effectBytes(Effect effect) const {
     const std::size_t targets = bend_.targets ? 3 * plane : 0;
     switch (effect) {
         case Effect::angular:
-            return bend_.planes.size() * sizeof(float) - targets;
+            return (bend_.planes.size() + state_.tensions.size()) * sizeof(float) - targets;
         case Effect::torsion:
             return targets +
                    (state_.curves.size() + state_.tanks.size() + state_.motions.size()) * sizeof(float);
@@ -128,6 +128,7 @@ std::size_t Engine::effectBytes(Effect effect) const {
         case Effect::gravity:
         case Effect::drag:
         case Effect::length:
+        case Effect::coupling:
         case Effect::pearls:
         case Effect::sweep:
         case Effect::sleep:
