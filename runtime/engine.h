@@ -112,6 +112,7 @@ class Engine {
     Frame makeFrame(const FrameInput& input);
     BlockView view(std::size_t block);
     void runBlock(std::size_t block, const Frame& frame);
+    static void turnAlong(const BlockView& view, std::uint32_t lane, Quat turn);
     void enterFrame(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame);
     void runStages(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame);
     void restoreStrands(std::size_t block, const BlockView& view);
@@ -130,7 +131,7 @@ class Engine {
     StepReport report_;
     std::vector<BlockReport> blockReports_;
     // Of the frame under way.
-    std::vector<RootFrame> roots_;       // one per strand, sound
+    Floats nextRoots_;                   // as State::roots, at the frame's end
     std::vector<Sphere> usableSpheres_;  // those that fell out stay in place at radius 0
     std::vector<Float3> sphereMotion_;
     std::vector<MovingSphere> movingSpheres_;

@@ -141,7 +141,7 @@ std::size_t Engine::baseBytes() const {
     return shape_->bytes() +
            (state_.planes.size() + state_.roots.size() + evaluation_.size()) * sizeof(float) +
            (state_.spheres.size() + usableSpheres_.size()) * sizeof(Sphere) +
-           state_.rests.size() * sizeof(Rest) + roots_.size() * sizeof(RootFrame) +
+           state_.rests.size() * sizeof(Rest) + nextRoots_.size() * sizeof(float) +
            blockReports_.size() * sizeof(BlockReport);
 }
 
