@@ -190,6 +190,7 @@ HWY_INLINE void moveSystem(const BlockView& block, std::size_t lane, CoupledSyst
 /// damping this is SHAKE with the mass M + ¼ h² K: it keeps the energy.
 template <Shape kShape>
 void bendCoupled(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
+    if (block.points <= block.firstFree) return;
     Pulls pulls;
     alignas(64) float share[kBlockLanes];
     if constexpr (kShape == Shape::curved) followFrames(block, lanes, context, pulls, share);
