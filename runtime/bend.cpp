@@ -201,10 +201,10 @@ class StrandBend {
 
 }  // namespace
 
-float bendRate(const SimulationSettings& settings, float h, const Bend& bend) {
+float bendRate(const SimulationSettings& settings, float h, bool curved, bool coupled) {
     const float damping = settings.dampingTime > 0.0f ? 1.0f / settings.dampingTime : 0.0f;
     const float lost = 1.0f - std::exp(-h * (damping + settings.airDrag));
-    const float least = bend.targets ? kLeastCurvedRate : bend.coupled ? 0.0f : kLeastRate;
+    const float least = curved ? kLeastCurvedRate : coupled ? 0.0f : kLeastRate;
     return std::max(settings.bendDampingTime / h, least) + 0.25f * lost;
 }
 
@@ -217,7 +217,9 @@ void fillBend(const RestShape& shape, const SimulationSettings& settings, float 
     const double step = static_cast<double>(h) * static_cast<double>(h);
     const bool flexion = settings.angularMethod == AngularMethod::flexion;
     const bool backward = settings.integrator == Integrator::implicitEuler;
-    const double share = backward ? step : step * (0.25 + static_cast<double>(bendRate(settings, h, bend)));
+    const double share =
+        backward ? step
+                 : step * (0.25 + static_cast<double>(bendRate(settings, h, bend.targets, bend.coupled)));
     const bool held = settings.restGravity > 0.0f;
     const double stiffest = !bend.factored ? 0.0 : bend.coupled ? kStiffestCoupled : kStiffest;
     for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {

@@ -80,6 +80,7 @@ constexpr float kTightestCurl = 4.0f;
 Decision decideCoupling(const SceneDescription& scene, bool possible) {
     const SimulationSettings& s = scene.settings;
     if (!possible) return {false, Reason::lengthsFree, 0.0f};
+    if (!scene.couples) return {false, Reason::notHere, 0.0f};
     if (!(s.bendDampingTime > 0.0f)) return {true, Reason::undamped, 0.0f};
     if (scene.unevenness > kMostUneven) return {true, Reason::uneven, scene.unevenness};
     const double stiffness = bendingStiffnessOf(static_cast<double>(s.angularStiffness));
@@ -100,6 +101,7 @@ Decision decidePearls(const SimulationSettings& s, bool collision) {
 Decision decideSweep(const SceneDescription& scene, bool collision, float smallestSphere) {
     if (!collision) return {false, Reason::noCollision, 0.0f};
     if (scene.settings.collisionResponse == CollisionResponse::penalty) return {false, Reason::byForce, 0.0f};
+    if (!std::isfinite(scene.fastest)) return {true, Reason::speedUnknown, 0.0f};
     // A slower point that passes cuts at most 0.8 % of the radius.
     if (scene.fastest < 0.25f * smallestSphere) return {false, Reason::slowEnough, 0.0f};
     return {true, Reason::fast, scene.fastest};

@@ -85,6 +85,8 @@ std::string words(Effect effect, const Decision& decision) {
             return "hair is curved or carries its weight";
         case Reason::lengthsFree:
             return "not with implicit angular springs and the length constraint";
+        case Reason::notHere:
+            return "only the engine on the CPU has it";
         case Reason::evenHair:
             return "bending is damped, hair is even and has no tight curls";
         case Reason::undamped:
@@ -104,6 +106,8 @@ std::string words(Effect effect, const Decision& decision) {
         case Reason::fast:
             text << "up to " << 1000.0f * decision.value << " mm in a substep";
             return text.str();
+        case Reason::speedUnknown:
+            return "speeds are not known beforehand";
         case Reason::byForce:
             return "penalty forces act on what is inside";
         case Reason::neverAsleep:

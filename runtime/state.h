@@ -126,6 +126,6 @@ void fillBend(const RestShape& shape, const SimulationSettings& settings, float 
               Bend& bend);
 
 /// q of docs/engine.md, "Integrators": what keeps the implicit angular springs stable and fades fast waves.
-float bendRate(const SimulationSettings& settings, float h, const Bend& bend);
+float bendRate(const SimulationSettings& settings, float h, bool curved, bool coupled);
 
 }  // namespace hairloom::runtime

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Frames: transforming and rasterising what is shaded already.
+#include "core/render/passes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+namespace hairloom::render {
+namespace {
+
+using gpu::Binding;
+
+// Software rasterisers corrupt geometry when one draw emits more than 65,536 vertices.
+constexpr std::uint32_t kPatchesPerDrawOnCpu = 32;
+constexpr float kPixelsPerPiece = 2;  // of a tessellated ribbon
+constexpr shaders::float4 kSkin{0.35f, 0.6f, 28, 0};
+constexpr shaders::float4 kMatte{0, 0, 1, 0};
+
+/// Offsets of a frame in pixels: Gaussian (sigma 0.45), which makes the average a Gaussian filter.
+std::array<float, 2> jitter(std::uint32_t number, std::uint32_t frames) {
+    if (frames == 1) return {0, 0};
+    // The R2 sequence (Roberts 2018), then Box and Muller.
+    const double n = number;
+    const double u = std::fmod(0.5 + n * 0.7548776662466927, 1.0);
+    const double v = std::fmod(0.5 + n * 0.5698402909980532, 1.0);
+    const double radius = std::min(0.45 * std::sqrt(-2 * std::log(std::max(u, 1e-3))), 1.5);
+    const double angle = 2 * static_cast<double>(kPi) * v;
+    return {static_cast<float>(radius * std::cos(angle)), static_cast<float>(radius * std::sin(angle))};
+}
+
+/// Metres in front of the eye at which a box begins and ends.
+std::array<float, 2> distances(const Camera& camera, const Box3f& box) {
+    const Mat4f view = viewMatrix(camera);
+    float nearest = 1e30f;
+    float farthest = 0.1f;
+    for (int i = 0; i < 8 && !box.isEmpty(); ++i) {
+        const float distance = -(view * box.corner(static_cast<Box3f::CornerType>(i)).homogeneous()).z();
+        nearest = std::min(nearest, distance);
+        farthest = std::max(farthest, distance);
+    }
+    return {nearest, farthest};
+}
+
+/// Metres that a pixel is wide at distance 1.
+float pixelSpread(const RendererState& state) {
+    return 2 * std::tan(radians(state.camera.verticalFov) / 2) / static_cast<float>(state.options.height);
+}
+
+shaders::ViewConstants viewConstants(const RendererState& state, const Mat4f& clipFromWorld,
+                                     std::uint32_t number) {
+    const auto [nearest, farthest] = distances(state.camera, state.scene.hairBounds());
+    shaders::ViewConstants view;
+    view.clipFromWorld = toShader(clipFromWorld);
+    view.eye_ws = toShader(state.camera.eye_ws, 1);
+    view.pixel = {pixelSpread(state), 1, 0, 0};
+    view.sampling = {state.samples, number, static_cast<std::uint32_t>(state.options.transparency), 0};
+    view.range = {std::max(nearest, 0.0f), farthest - std::max(nearest, 0.0f), 0, 0};
+    return view;
+}
+
+GraphicsNeeds strandPipeline(const RendererState& state) {
+    const bool blend = state.plan.runs(Pass::blend);
+    GraphicsNeeds needs{.vertex = blend ? "strand_blend.vert" : "strand.vert",
+                        .pixel = blend ? "strand_blend.frag" : "strand.frag",
+                        .topology = gpu::Topology::TriangleStrip,
+                        .colour = kColourFormat,
+                        .depthTest = true,
+                        .depthWrite = !blend,
+                        .samples = state.samples};
+    if (blend) {
+        needs.secondColour = kColourFormat;
+        needs.blend = Blend::weighedAndRest;
+    }
+    if (state.options.ribbons == Ribbons::tessellated) {
+        needs.vertex = "strand_patch.vert";
+        needs.hull = "strand_patch.tesc";
+        needs.domain = blend ? "strand_patch_blend.tese" : "strand_patch.tese";
+        needs.topology = gpu::Topology::PatchList;
+    }
+    return needs;
+}
+
+void drawPatches(gpu::CommandList& list, const RendererState& state) {
+    shaders::PatchConstants constants;
+    constants.view = {static_cast<float>(state.options.width), static_cast<float>(state.options.height),
+                      kPixelsPerPiece, 0};
+    for (const StrandBatch& batch : state.scene.batches) {
+        bind(list, {Binding::read(0, batch.curve), Binding::read(1, batch.colour),
+                    Binding::read(2, batch.headers), Binding::read(3, batch.patches)});
+        const std::uint32_t count = batch.patchesBefore[batch.strandCount(state.detail)];
+        const std::uint32_t step = state.onCpu ? kPatchesPerDrawOnCpu : count;
+        for (std::uint32_t first = 0; first < count; first += step) {
+            constants.numbers = {first, state.detail.subdivisions, 0, 0};
+            list.setConstants(2, gpu::bytesOf(constants));
+            list.draw(std::min(step, count - first) * HAIRLOOM_PATCH_POINTS);
+        }
+    }
+}
+
+void drawHair(gpu::CommandList& list, RendererState& state, const Mat4f& clipFromWorld,
+              std::uint32_t number) {
+    list.setPipeline(state.pipelines.graphics(strandPipeline(state)));
+    list.setConstants(0, gpu::bytesOf(viewConstants(state, clipFromWorld, number)));
+    if (state.options.ribbons == Ribbons::tessellated) {
+        drawPatches(list, state);
+    } else {
+        drawStrips(list, state);
+    }
+}
+
+void drawHeads(gpu::CommandList& list, RendererState& state, const Mat4f& clipFromWorld) {
+    list.setPipeline(state.pipelines.graphics({.vertex = "mesh.vert",
+                                               .pixel = "mesh.frag",
+                                               .colour = kColourFormat,
+                                               .depthTest = true,
+                                               .depthWrite = true,
+                                               .samples = state.samples}));
+    bindShadows(list, state);
+    list.setConstants(0, gpu::bytesOf(state.shade));
+    for (const bool matte : {false, true}) {
+        shaders::MeshConstants mesh;
+        mesh.clipFromWorld = toShader(clipFromWorld);
+        mesh.skin = matte ? kMatte : kSkin;
+        list.setConstants(1, gpu::bytesOf(mesh));
+        drawMeshes(list, state, matte);
+    }
+}
+
+/// Hair over the head in any order, onto what is drawn.
+void recordBlend(gpu::CommandList& list, RendererState& state, const Mat4f& clipFromWorld,
+                 std::uint32_t number) {
+    const Targets& t = state.targets;
+    gpu::PassDesc pass;
+    pass.name = passName(Pass::blend);
+    pass.colour = {
+        {t[TargetId::blendSum], gpu::LoadOp::Clear, {0, 0, 0, 0}, t[TargetId::blendSumResolved]},
+        {t[TargetId::blendRest], gpu::LoadOp::Clear, {1, 1, 1, 1}, t[TargetId::blendRestResolved]}};
+    pass.depth = {t[TargetId::depth], gpu::LoadOp::Load, 1};
+    list.beginPass(pass);
+    drawHair(list, state, clipFromWorld, number);
+    list.endPass();
+    const bool many = state.samples > 1;
+    list.beginPass({passName(Pass::composite), {{t.frame(), gpu::LoadOp::Load, {}, {}}}, {}});
+    list.setPipeline(state.pipelines.graphics({.vertex = "fullscreen.vert",
+                                               .pixel = "composite.frag",
+                                               .colour = kColourFormat,
+                                               .blend = Blend::over}));
+    bind(list, {Binding::read(0, t[many ? TargetId::blendSumResolved : TargetId::blendSum]),
+                Binding::read(1, t[many ? TargetId::blendRestResolved : TargetId::blendRest])});
+    list.draw(3);
+    list.endPass();
+}
+
+}  // namespace
+
+void bind(gpu::CommandList& list, std::initializer_list<Binding> bindings) {
+    list.bind(std::span<const Binding>(bindings.begin(), bindings.size()));
+}
+
+void bindShadows(gpu::CommandList& list, const RendererState& state) {
+    bind(list, {Binding::read(8, state.orNothing(TargetId::headDepth)),
+                Binding::read(9, state.orNothing(TargetId::firstHair)),
+                Binding::read(10, state.orNothing(TargetId::opacity))});
+}
+
+void drawStrips(gpu::CommandList& list, const RendererState& state) {
+    const std::uint32_t subdivisions = state.detail.subdivisions;
+    for (const StrandBatch& batch : state.scene.batches) {
+        bind(list, {Binding::read(0, batch.curve), Binding::read(1, batch.colour)});
+        list.setIndexBuffer(batch.indices.at(subdivisions));
+        list.drawIndexed(batch.indexCount(batch.strandCount(state.detail), subdivisions));
+    }
+}
+
+void drawMeshes(gpu::CommandList& list, const RendererState& state, std::optional<bool> matte) {
+    for (const MeshOnDevice& mesh : state.scene.meshes) {
+        if (mesh.indices.empty() || (matte && *matte != mesh.matte)) continue;
+        bind(list, {Binding::read(0, mesh.positions), Binding::read(1, mesh.normals),
+                    Binding::read(2, mesh.indexBuffer), Binding::read(3, mesh.albedo)});
+        list.draw(static_cast<std::uint32_t>(mesh.indices.size()));
+    }
+}
+
+shaders::float4x4 toShader(const Mat4f& m) {
+    shaders::float4x4 result;
+    std::memcpy(result.m, m.data(), sizeof(result.m));
+    return result;
+}
+
+shaders::float4 toShader(const Vec3f& v, float w) {
+    return {v.x(), v.y(), v.z(), w};
+}
+
+Box3f RendererState::bounds() const {
+    Box3f box = scene.meshBounds();
+    box.extend(scene.hairBounds());
+    return box;
+}
+
+HairDetail detailOf(const RendererState& state) {
+    HairDetail detail;
+    detail.subdivisions = state.options.subdivisions;
+    const Box3f hair = state.scene.hairBounds();
+    if (state.options.detail <= 0 || hair.isEmpty()) return detail;
+    constexpr float kPixelsPerSegment = 2;
+    constexpr float kLeastShare = 1.0f / 64;
+    const HairMeasure measure = state.scene.measure();
+    const float distance = std::max(distances(state.camera, hair)[0], 1e-3f);
+    const float pixel = pixelSpread(state) * distance;
+    detail.share = std::clamp(measure.diameter / pixel / state.options.detail, kLeastShare, 2.0f);
+    const float pieces = std::ceil(measure.segment / pixel / kPixelsPerSegment);
+    detail.subdivisions =
+        static_cast<std::uint32_t>(std::clamp(pieces, 1.0f, static_cast<float>(state.options.subdivisions)));
+    return detail;
+}
+
+Mat4f cameraMatrix(const RendererState& state, const Box3f& bounds_ws, float jitterX, float jitterY) {
+    const auto width = static_cast<float>(state.options.width);
+    const auto height = static_cast<float>(state.options.height);
+    const auto [nearest, farthest] = distances(state.camera, bounds_ws);
+    const float farPlane = farthest * 1.01f;
+    const float nearPlane = std::clamp(nearest * 0.99f, farPlane * 1e-4f, farPlane * 0.9f);
+    Mat4f projection = projectionMatrix(state.camera.verticalFov, width / height, nearPlane, farPlane);
+    projection.row(0) += projection.row(3) * (2 * jitterX / width);
+    projection.row(1) += projection.row(3) * (2 * jitterY / height);
+    return projection * viewMatrix(state.camera);
+}
+
+void recordFrame(gpu::CommandList& list, RendererState& state, std::uint32_t number) {
+    const auto [jitterX, jitterY] = jitter(number, state.options.frames);
+    const Mat4f clipFromWorld = cameraMatrix(state, state.bounds(), jitterX, jitterY);
+    const Vec3f& back = state.background;
+    const Targets& t = state.targets;
+
+    gpu::PassDesc pass;
+    pass.name = passName(Pass::draw);
+    pass.colour = {
+        {t[TargetId::colour], gpu::LoadOp::Clear, {back.x(), back.y(), back.z(), 1}, t[TargetId::resolved]}};
+    if (state.options.transparentBackground) pass.colour[0].clear = {0, 0, 0, 0};
+    pass.depth = {t[TargetId::depth], gpu::LoadOp::Clear, 1};
+    list.beginPass(pass);
+    if (state.scene.triangles() > 0) drawHeads(list, state, clipFromWorld);
+    const bool blend = state.plan.runs(Pass::blend);
+    if (!state.scene.batches.empty() && !blend) drawHair(list, state, clipFromWorld, number);
+    list.endPass();
+    if (blend) recordBlend(list, state, clipFromWorld, number);
+
+    list.beginPass(
+        {passName(Pass::accumulate),
+         {{t[TargetId::sum], number == 0 ? gpu::LoadOp::Clear : gpu::LoadOp::Load, {0, 0, 0, 0}, {}}},
+         {}});
+    list.setPipeline(state.pipelines.graphics({.vertex = "fullscreen.vert",
+                                               .pixel = "accumulate.frag",
+                                               .colour = gpu::Format::Rgba32Float,
+                                               .blend = Blend::add}));
+    bind(list, {Binding::read(0, t.frame())});
+    list.draw(3);
+    list.endPass();
+}
+
+}  // namespace hairloom::render

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The passes of a frame, in their order. Each records into an open command list and reads what RendererState
+// has.
+
+#include <array>
+#include <initializer_list>
+#include <optional>
+
+#include "core/render/device_scene.h"
+#include "core/render/options.h"
+#include "core/render/overlay.h"
+#include "core/render/pipelines.h"
+#include "core/render/targets.h"
+
+namespace hairloom::render {
+
+/// Marks on the device: one buffer for all batches.
+struct OverlayOnDevice {
+    Overlay overlay;
+    Box3f bounds_ws;
+    gpu::BufferPtr vertices;
+    bool waits = false;  ///< for its upload
+
+    bool empty() const { return overlay.batches.empty(); }
+    bool needsDepth() const;
+};
+
+/// All that the passes of a frame read.
+struct RendererState {
+    explicit RendererState(gpu::Device& device)
+        : pipelines(device), onCpu(device.info().type == gpu::DeviceType::Cpu) {}
+
+    Pipelines pipelines;
+    DeviceScene scene;
+    Camera camera;
+    std::vector<Light> lights;
+    Environment environment;
+    Vec3f background = Vec3f::Zero();
+    OverlayOnDevice overlay;
+    RenderOptions options;
+    std::uint32_t samples = 1;
+    HairDetail detail;
+    /// Ends of the deep opacity layers behind the first hair, as parts of the depth that hair takes up.
+    std::array<float, 3> deepLayers{0.04f, 0.14f, 1.0f};
+    RenderPlan plan;
+    bool onCpu;  ///< the device is a software rasteriser
+    Targets targets;
+    gpu::TexturePtr nothing;       ///< one pixel, bound where a texture is not there
+    gpu::SamplerPtr linearFilter;  ///< once a filter was asked for
+    std::vector<LightView> lightViews;
+    shaders::ShadeConstants shade;  ///< all but the material
+
+    Box3f bounds() const;  ///< of all meshes and strands
+    const gpu::TexturePtr& orNothing(TargetId id) const { return targets[id] ? targets[id] : nothing; }
+};
+
+/// Views from the lights, and the constants that follow from camera and lights.
+void setUpLights(RendererState& state);
+shaders::ShadeConstants shadeConstants(const RendererState& state, const HairMaterial& material);
+
+void recordCurves(gpu::CommandList& list, RendererState& state);
+void recordShadowMaps(gpu::CommandList& list, RendererState& state);
+void recordShading(gpu::CommandList& list, RendererState& state);
+/// One frame, moved by a part of a pixel, added to the sum.
+void recordFrame(gpu::CommandList& list, RendererState& state, std::uint32_t number);
+/// The average of `frames` frames, with exposure and tone curve.
+void recordPresent(gpu::CommandList& list, RendererState& state, std::uint32_t frames,
+                   const gpu::TexturePtr& target);
+/// Makes room for the marks and uploads them when they have changed.
+Status prepareOverlay(gpu::Device& device, gpu::CommandList& list, OverlayOnDevice& overlay);
+void recordOverlay(gpu::CommandList& list, RendererState& state, const gpu::TexturePtr& target);
+
+/// All triangles, or only those of matte meshes or the others, with whatever pipeline is set.
+void drawMeshes(gpu::CommandList& list, const RendererState& state, std::optional<bool> matte = {});
+/// All strands that are drawn, as strips of the curves' points.
+void drawStrips(gpu::CommandList& list, const RendererState& state);
+void bind(gpu::CommandList& list, std::initializer_list<gpu::Binding> bindings);
+void bindShadows(gpu::CommandList& list, const RendererState& state);
+
+/// What the camera's distance and the options ask for.
+HairDetail detailOf(const RendererState& state);
+
+/// Clip space of the camera with planes around `bounds_ws`, moved by parts of a pixel.
+Mat4f cameraMatrix(const RendererState& state, const Box3f& bounds_ws, float jitterX = 0, float jitterY = 0);
+shaders::float4x4 toShader(const Mat4f& m);
+shaders::float4 toShader(const Vec3f& v, float w);
+
+}  // namespace hairloom::render

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/render/renderer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/base/profiler.h"
+#include "core/render/passes.h"
+
+namespace hairloom::render {
+namespace {
+
+/// What the next frame has to do again.
+struct Changes {
+    bool curves = true;
+    bool shadows = true;
+    bool shading = true;
+    bool picture = true;
+
+    static Changes geometry() { return {}; }
+    static Changes lights() { return {false, true, true, true}; }
+    static Changes looks() { return {false, false, true, true}; }
+    static Changes nothing() { return {false, false, false, false}; }
+    void add(const Changes& other) {
+        curves |= other.curves;
+        shadows |= other.shadows;
+        shading |= other.shading;
+        picture |= other.picture;
+    }
+};
+
+/// Which work another set of options calls for. Size and samples show in the targets.
+Changes compare(const RenderOptions& before, const RenderOptions& now) {
+    Changes changes = Changes::nothing();
+    if (now.shadowResolution != before.shadowResolution || now.shadows != before.shadows) {
+        changes.add(Changes::lights());
+    }
+    changes.picture |= now.frames != before.frames ||
+                       now.transparentBackground != before.transparentBackground ||
+                       now.ribbons != before.ribbons || now.transparency != before.transparency;
+    return changes;
+}
+
+}  // namespace
+
+struct Renderer::Parts {
+    gpu::Device& device;
+    RendererState state;
+    Changes changes;
+    std::uint32_t accumulated = 0;
+
+    // What the plan was made for.
+    bool planned = false;
+    SceneFacts plannedFor;
+    RenderOptions plannedOptions;
+    std::uint32_t plannedSamples = 0;
+
+    explicit Parts(gpu::Device& used) : device(used), state(used) {}
+
+    SceneFacts facts(bool presents) const;
+    Status prepareTargets(bool presents);
+    Status prepareHelpers();
+    Status prepare(const RenderOptions& options, bool presents);
+    void recordChanges(gpu::CommandList& list);
+};
+
+Renderer::Renderer(gpu::Device& device) : parts_(std::make_unique<Parts>(device)) {}
+Renderer::~Renderer() = default;
+Renderer::Renderer(Renderer&& other) noexcept = default;
+Renderer& Renderer::operator=(Renderer&& other) noexcept = default;
+
+Status Renderer::setScene(const RenderScene& scene) {
+    RendererState& state = parts_->state;
+    parts_->changes = Changes::geometry();
+    state.scene = {};
+    if (auto status = check(scene); !status) return status;
+    auto uploaded = DeviceScene::upload(parts_->device, scene);
+    if (!uploaded) return tl::unexpected(uploaded.error());
+    state.scene = std::move(*uploaded);
+    state.camera = scene.camera;
+    state.lights = scene.lights;
+    state.environment = scene.environment;
+    state.background = scene.background;
+    return {};
+}
+
+Status Renderer::setMeshPositions(std::size_t mesh, std::span<const Vec3f> positions_ws,
+                                  std::span<const Vec3f> normals_ws) {
+    if (auto status = parts_->state.scene.replaceMesh(mesh, positions_ws, normals_ws); !status) return status;
+    parts_->changes.add(Changes::lights());
+    return {};
+}
+
+Status Renderer::setStrandPositions(std::size_t group, std::span<const Vec3f> positions_ws) {
+    if (auto status = parts_->state.scene.replaceStrands(group, positions_ws); !status) return status;
+    parts_->changes.add(Changes::geometry());
+    return {};
+}
+
+Status Renderer::setStrandPositions(std::size_t group, gpu::BufferPtr positions_ws,
+                                    std::uint32_t floatsPerPoint, const Box3f& bounds_ws) {
+    auto status =
+        parts_->state.scene.replaceStrands(group, std::move(positions_ws), floatsPerPoint, bounds_ws);
+    if (!status) return status;
+    parts_->changes.add(Changes::geometry());
+    return {};
+}
+
+Status Renderer::setMaterial(std::size_t group, const HairMaterial& material) {
+    auto& groups = parts_->state.scene.groups;
+    if (group >= groups.size()) return fail(fmt::format("group {} of {} of strands", group, groups.size()));
+    const HairMaterial& before = groups[group].material;
+    const bool sameShape = before.radius == material.radius && before.tipScale == material.tipScale &&
+                           before.radiusVariation == material.radiusVariation;
+    groups[group].material = material;
+    parts_->changes.add(sameShape ? Changes::looks() : Changes::geometry());
+    return {};
+}
+
+Status Renderer::setCamera(const Camera& camera) {
+    if (auto status = check(camera); !status) return status;
+    parts_->state.camera = camera;
+    parts_->changes.add(Changes::looks());
+    return {};
+}
+
+Status Renderer::setLights(std::span<const Light> lights) {
+    if (auto status = check(lights); !status) return status;
+    parts_->state.lights.assign(lights.begin(), lights.end());
+    parts_->changes.add(Changes::lights());
+    return {};
+}
+
+void Renderer::setEnvironment(const Environment& environment) {
+    parts_->state.environment = environment;
+    parts_->changes.add(Changes::looks());
+}
+
+void Renderer::setBackground(const Vec3f& linear) {
+    parts_->state.background = linear;
+    parts_->changes.picture = true;
+}
+
+Status Renderer::setOverlay(Overlay overlay) {
+    if (auto status = check(overlay); !status) return status;
+    OverlayOnDevice& marks = parts_->state.overlay;
+    marks.overlay = std::move(overlay);
+    marks.waits = true;
+    marks.bounds_ws.setEmpty();
+    for (const OverlayBatch& batch : marks.overlay.batches) {
+        for (const OverlayVertex& vertex : batch.vertices)
+            marks.bounds_ws.extend(vertex.position_ws.head<3>());
+    }
+    return {};
+}
+
+void Renderer::restart() {
+    parts_->changes.picture = true;
+}
+
+SceneFacts Renderer::Parts::facts(bool presents) const {
+    SceneFacts facts;
+    facts.meshes = state.scene.triangles() > 0;
+    facts.hair = !state.scene.batches.empty();
+    facts.lights = static_cast<std::uint32_t>(state.lights.size());
+    facts.shadowLights =
+        static_cast<std::uint32_t>(std::ranges::count(state.lights, true, &Light::castsShadow));
+    facts.overlay = state.overlay.needsDepth();
+    facts.overlayOnTop = std::ranges::any_of(state.overlay.overlay.batches, &OverlayBatch::onTop);
+    facts.presents = presents;
+    return facts;
+}
+
+Status Renderer::Parts::prepareTargets(bool presents) {
+    const SceneFacts now = facts(presents);
+    if (!planned || now != plannedFor || state.options != plannedOptions || state.samples != plannedSamples) {
+        state.plan = planRender(now, state.options, state.samples);
+        planned = true;
+        plannedFor = now;
+        plannedOptions = state.options;
+        plannedSamples = state.samples;
+    }
+    const auto isNew = state.targets.fit(device, state.plan);
+    if (!isNew) return tl::unexpected(isNew.error());
+    for (const TargetId id : {TargetId::headDepth, TargetId::firstHair, TargetId::opacity}) {
+        if ((*isNew)[static_cast<std::size_t>(id)]) changes.add(Changes::lights());
+    }
+    for (const TargetId id : {TargetId::colour, TargetId::sum}) {
+        changes.picture |= (*isNew)[static_cast<std::size_t>(id)];
+    }
+    return {};
+}
+
+/// What is needed once and not by every scene.
+Status Renderer::Parts::prepareHelpers() {
+    if (state.nothing == nullptr) {
+        gpu::TextureDesc desc;
+        desc.name = "nothing";
+        const std::array<std::byte, 4> black{};
+        auto made = device.createTexture(desc, black);
+        if (!made) return tl::unexpected(made.error());
+        state.nothing = std::move(*made);
+    }
+    if (state.plan.runs(Pass::filter) && state.linearFilter == nullptr) {
+        auto made = device.createSampler({});
+        if (!made) return tl::unexpected(made.error());
+        state.linearFilter = std::move(*made);
+    }
+    return {};
+}
+
+Status Renderer::Parts::prepare(const RenderOptions& options, bool presents) {
+    if (auto status = check(options, device.info()); !status) return status;
+    const auto samples = chooseSamples(options, device.info());
+    if (!samples) return tl::unexpected(samples.error());
+    changes.add(compare(state.options, options));
+    state.options = options;
+    state.samples = *samples;
+    const HairDetail detail = detailOf(state);
+    if (detail != state.detail) changes.add(Changes::geometry());
+    state.detail = detail;
+    if (auto status = prepareTargets(presents); !status) return status;
+    if (auto status = prepareHelpers(); !status) return status;
+    if (options.ribbons == Ribbons::tessellated) {
+        if (auto status = state.scene.preparePatches(device); !status) return status;
+    }
+    if (auto status = state.scene.prepareFibres(device); !status) return status;
+    return state.scene.prepareCurves(device, detail.subdivisions);
+}
+
+void Renderer::Parts::recordChanges(gpu::CommandList& list) {
+    state.scene.recordUploads(list);
+    if (changes.shading) setUpLights(state);
+    if (changes.curves && state.plan.runs(Pass::curves)) recordCurves(list, state);
+    if (changes.shadows) recordShadowMaps(list, state);
+    if (changes.shading && state.plan.runs(Pass::shade)) recordShading(list, state);
+    if (changes.picture) accumulated = 0;
+    changes = Changes::nothing();
+}
+
+Status Renderer::record(gpu::CommandList& list, const RenderOptions& options, const gpu::TexturePtr& target) {
+    HAIRLOOM_PROFILE("record frame");
+    Parts& p = *parts_;
+    if (target != nullptr && (target->desc().width != options.width ||
+                              target->desc().height != options.height || target->desc().samples != 1)) {
+        return fail(fmt::format("a target of {}x{} pixels and {} samples", target->desc().width,
+                                target->desc().height, target->desc().samples),
+                    fmt::format("{}x{} and 1, as the options say", options.width, options.height));
+    }
+    if (auto status = p.prepare(options, target != nullptr); !status) return status;
+    if (auto status = prepareOverlay(p.device, list, p.state.overlay); !status) return status;
+    p.recordChanges(list);
+    if (p.accumulated < options.frames) {
+        recordFrame(list, p.state, p.accumulated);
+        ++p.accumulated;
+    }
+    if (target != nullptr) {
+        recordPresent(list, p.state, p.accumulated, target);
+        recordOverlay(list, p.state, target);
+    }
+    return p.state.pipelines.takeStatus();
+}
+
+std::uint32_t Renderer::accumulated() const {
+    return parts_->changes.picture ? 0 : parts_->accumulated;
+}
+
+const gpu::TexturePtr& Renderer::linearSum() const {
+    return parts_->state.targets[TargetId::sum];
+}
+
+Box3f Renderer::bounds() const {
+    return parts_->state.bounds();
+}
+
+std::uint64_t Renderer::triangles() const {
+    return parts_->state.scene.triangles();
+}
+
+std::uint64_t Renderer::strands() const {
+    std::uint64_t count = 0;
+    for (const StrandBatch& batch : parts_->state.scene.batches)
+        count += batch.strandCount(parts_->state.detail);
+    return count;
+}
+
+std::uint64_t Renderer::curvePoints() const {
+    const HairDetail& detail = parts_->state.detail;
+    std::uint64_t count = 0;
+    for (const StrandBatch& batch : parts_->state.scene.batches) {
+        count += batch.curvePoints(batch.strandCount(detail), detail.subdivisions);
+    }
+    return count;
+}
+
+const RenderPlan& Renderer::plan() const {
+    return parts_->state.plan;
+}
+
+}  // namespace hairloom::render

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/render/targets.h"
+
+namespace hairloom::render {
+namespace {
+
+bool fits(const gpu::TexturePtr& texture, const PlannedTarget& planned) {
+    if (texture == nullptr) return planned.width == 0;
+    const gpu::TextureDesc& desc = texture->desc();
+    return desc.width == planned.width && desc.height == planned.height && desc.format == planned.format &&
+           desc.samples == planned.samples;
+}
+
+gpu::TextureDesc describe(TargetId id, const PlannedTarget& planned) {
+    gpu::TextureDesc desc;
+    desc.name = targetName(id);
+    desc.width = planned.width;
+    desc.height = planned.height;
+    desc.format = planned.format;
+    desc.samples = planned.samples;
+    desc.usage =
+        planned.format == gpu::Format::D32Float ? gpu::Usage::DepthStencil : gpu::Usage::RenderTarget;
+    if (planned.samples == 1) desc.usage = desc.usage | gpu::Usage::ShaderRead;
+    return desc;
+}
+
+}  // namespace
+
+Result<std::array<bool, kTargetCount>> Targets::fit(gpu::Device& device, const RenderPlan& plan) {
+    std::array<bool, kTargetCount> isNew{};
+    for (std::size_t i = 0; i < kTargetCount; ++i) {
+        if (fits(textures_[i], plan.targets[i])) continue;
+        textures_[i] = nullptr;
+        if (plan.targets[i].width == 0) continue;
+        auto made = device.createTexture(describe(static_cast<TargetId>(i), plan.targets[i]));
+        if (!made) return tl::unexpected(made.error());
+        textures_[i] = std::move(*made);
+        isNew[i] = true;
+    }
+    return isNew;
+}
+
+}  // namespace hairloom::render
