@@ -25,12 +25,9 @@ inline bool usable(RootFrame& root) {
 }
 
 inline constexpr float kFarthest = 1e6f;  ///< metres; squares of what lies farther leave single precision
-/// usable(), and not beyond `limit` metres. A rotation that is of unit length up to rounding stays as it is.
+/// usable(), and not beyond `limit` metres.
 inline bool usableWithin(RootFrame& root, float limit) {
-    const Quat q = root.rotation;
-    const float squared = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
-    const bool isUnit = squared > 1.0f - 1e-6f && squared < 1.0f + 1e-6f;
-    return dot(root.position, root.position) <= limit * limit && (isUnit || normalize(root.rotation));
+    return dot(root.position, root.position) <= limit * limit && normalize(root.rotation);
 }
 
 /// Linear in place, normalised linear in rotation. share 0…1; both rotations of unit length.
