@@ -53,14 +53,15 @@ class Shader {
   public:
     virtual ~Shader() = default;
 };
-class GraphicsPipeline {
+class Pipeline {
   public:
-    virtual ~GraphicsPipeline() = default;
+    virtual ~Pipeline() = default;
+    virtual const std::string& name() const = 0;
+    /// What its shaders use, each once.
+    virtual std::span<const ShaderRegister> registers() const = 0;
 };
-class ComputePipeline {
-  public:
-    virtual ~ComputePipeline() = default;
-};
+class GraphicsPipeline : public Pipeline {};
+class ComputePipeline : public Pipeline {};
 
 /// Records work. Wrong use (unbound register, copy out of range, draw outside a pass) does not return an
 /// error at once: the first one is kept and Device::submit() returns it, naming the pass and the resource.
@@ -170,8 +171,9 @@ class Device {
 struct DeviceOptions {
     std::optional<std::uint32_t> index;  ///< place in listDevices(); else the best one is taken
     std::string name;                    ///< part of the name, any case; empty: any
-    bool validation =
-        false;  ///< with the driver-independent checks of the API; an error where they are not installed
+    /// With the checks of core/gpu/validation.h and those of the graphics API; an error where the latter are
+    /// not installed.
+    bool validation = false;
     double timeoutSeconds = 300;  ///< after which waiting for the device is an error
 };
 

@@ -4,6 +4,7 @@
 // to a backend. Sizes are bytes and pixels; a field left alone has the value that is right most often.
 
 #include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -244,6 +245,15 @@ struct Binding {
         return {Kind::UnorderedAccess, slot, {}, std::move(texture), {}, 0, 0};
     }
 };
+
+/// A register that a pipeline's shaders use.
+struct ShaderRegister {
+    Binding::Kind kind = Binding::Kind::ConstantBuffer;
+    std::uint32_t slot = 0;
+    friend auto operator<=>(const ShaderRegister&, const ShaderRegister&) = default;
+};
+/// As HLSL writes it: "b0", "t3" …
+std::string toString(const ShaderRegister& shaderRegister);
 
 /// A window of the window system that the program runs under, as that system names it.
 struct NativeWindow {
