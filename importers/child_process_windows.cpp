@@ -60,14 +60,16 @@ std::wstring quoted(const std::wstring& argument) {
 
 Handle openNull(DWORD access) {
     SECURITY_ATTRIBUTES inherited{sizeof(SECURITY_ATTRIBUTES), nullptr, TRUE};
-    return Handle(CreateFileW(L"NUL", access, FILE_SHARE_READ | FILE_SHARE_WRITE, &inherited, OPEN_EXISTING, 0, nullptr));
+    return Handle(CreateFileW(L"NUL", access, FILE_SHARE_READ | FILE_SHARE_WRITE, &inherited, OPEN_EXISTING,
+                              0, nullptr));
 }
 
 /// A job that ends its processes when it is closed, and denies them memory over the limit.
 Handle createJob(const ChildLimits& limits) {
     Handle job(CreateJobObjectW(nullptr, nullptr));
     JOBOBJECT_EXTENDED_LIMIT_INFORMATION info{};
-    info.BasicLimitInformation.LimitFlags = JOB_OBJECT_LIMIT_KILL_ON_JOB_CLOSE | JOB_OBJECT_LIMIT_PROCESS_MEMORY |
+    info.BasicLimitInformation.LimitFlags = JOB_OBJECT_LIMIT_KILL_ON_JOB_CLOSE |
+                                            JOB_OBJECT_LIMIT_PROCESS_MEMORY |
                                             JOB_OBJECT_LIMIT_DIE_ON_UNHANDLED_EXCEPTION;
     info.ProcessMemoryLimit = static_cast<SIZE_T>(limits.residentBytes);
     if (job.get() != nullptr)
@@ -108,7 +110,9 @@ class InheritedHandles {
     ~InheritedHandles() {
         if (usable_) DeleteProcThreadAttributeList(list());
     }
-    LPPROC_THREAD_ATTRIBUTE_LIST list() { return reinterpret_cast<LPPROC_THREAD_ATTRIBUTE_LIST>(memory_.data()); }
+    LPPROC_THREAD_ATTRIBUTE_LIST list() {
+        return reinterpret_cast<LPPROC_THREAD_ATTRIBUTE_LIST>(memory_.data());
+    }
 
   private:
     std::vector<HANDLE> handles_;
@@ -145,8 +149,8 @@ Result<Child> spawn(const std::string& name, const std::filesystem::path& progra
     PROCESS_INFORMATION started{};
     // Suspended until it is in its job, so that nothing it starts escapes.
     constexpr DWORD kFlags = CREATE_SUSPENDED | CREATE_NO_WINDOW | EXTENDED_STARTUPINFO_PRESENT;
-    if (CreateProcessW(program.wstring().c_str(), words.data(), nullptr, nullptr, TRUE, kFlags, nullptr, nullptr,
-                       &startup.StartupInfo, &started) == 0) {
+    if (CreateProcessW(program.wstring().c_str(), words.data(), nullptr, nullptr, TRUE, kFlags, nullptr,
+                       nullptr, &startup.StartupInfo, &started) == 0) {
         return notStarted(name, program, systemMessage(GetLastError()));
     }
     child.process = Handle(started.hProcess);
@@ -179,7 +183,8 @@ bool readSome(HANDLE pipe, std::vector<std::byte>& output) {
 }  // namespace
 
 Result<std::vector<std::byte>> runChild(const std::string& name, const std::filesystem::path& program,
-                                        const std::vector<std::string>& arguments, const ChildLimits& limits) {
+                                        const std::vector<std::string>& arguments,
+                                        const ChildLimits& limits) {
     auto child = spawn(name, program, arguments, limits);
     if (!child) return tl::unexpected(child.error());
     const HANDLE process = child->process.get();

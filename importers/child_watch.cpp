@@ -7,7 +7,8 @@
 
 namespace hairloom {
 
-ChildWatch::ChildWatch(std::string name, const ChildLimits& limits, std::function<std::uint64_t()> residentBytes)
+ChildWatch::ChildWatch(std::string name, const ChildLimits& limits,
+                       std::function<std::uint64_t()> residentBytes)
     : name_(std::move(name)),
       limits_(limits),
       residentBytes_(std::move(residentBytes)),

@@ -8,8 +8,8 @@
 
 namespace hairloom {
 
-/// How long to wait for output or the end before looking at the limits again. Memory is looked at this often; a
-/// child can take about 100 MiB in between.
+/// How long to wait for output or the end before looking at the limits again. Memory is looked at this often;
+/// a child can take about 100 MiB in between.
 inline constexpr std::chrono::milliseconds kWatchInterval{20};
 
 /// Watches one child until it ends or goes over a limit.
@@ -37,6 +37,7 @@ Status crashed(const std::string& name, const std::string& how);
 /// For an exit status other than 0.
 Status gaveUp(const std::string& name, int status);
 /// "cannot be started: `why`".
-tl::unexpected<Error> notStarted(const std::string& name, const std::filesystem::path& program, const std::string& why);
+tl::unexpected<Error> notStarted(const std::string& name, const std::filesystem::path& program,
+                                 const std::string& why);
 
 }  // namespace hairloom

@@ -33,8 +33,8 @@ Outcome CommandLineTest::run(const std::string& arguments) const {
     // cmd.exe takes away the outermost quotation marks, and knows no single ones.
     std::string words = arguments;
     std::ranges::replace(words, '\'', '"');
-    const std::string command = "\"cd /d \"" + folder.string() + "\" && \"" HAIRLOOM_CLI "\" " + words + " > \"" +
-                                out.string() + "\" 2> \"" + err.string() + "\"\"";
+    const std::string command = "\"cd /d \"" + folder.string() + "\" && \"" HAIRLOOM_CLI "\" " + words +
+                                " > \"" + out.string() + "\" 2> \"" + err.string() + "\"\"";
     const int exitCode = std::system(command.c_str());
 #else
     const std::string command = "cd '" + folder.string() + "' && '" + HAIRLOOM_CLI + "' " + arguments +

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A child process that behaves as the environment variable HAIRLOOM_TEST_CHILD or else its first argument says.
+// A child process that behaves as the environment variable HAIRLOOM_TEST_CHILD or else its first argument
+// says.
 #include <chrono>
 #include <csignal>
 #include <cstdio>

@@ -20,7 +20,8 @@ constexpr const char* kCrash = "crashed on this file (signal 11";
 #endif
 
 /// child_program.cpp says how the child can behave.
-Result<std::vector<std::byte>> runProgram(const std::vector<std::string>& words, const ChildLimits& limits = {}) {
+Result<std::vector<std::byte>> runProgram(const std::vector<std::string>& words,
+                                          const ChildLimits& limits = {}) {
     return runChild("the reader", HAIRLOOM_TEST_CHILD_PROGRAM, words, limits);
 }
 
@@ -67,8 +68,8 @@ TEST(ChildProcess, LimitsStopTheChild) {
     limits.residentBytes = std::uint64_t{64} << 20u;
 #ifdef _WIN32
     // The job may deny the memory before the watch sees it.
-    EXPECT_THAT(failure("memory", limits),
-                testing::AnyOf(HasSubstr("more than 64 MiB of memory"), HasSubstr("status"), HasSubstr("crashed")));
+    EXPECT_THAT(failure("memory", limits), testing::AnyOf(HasSubstr("more than 64 MiB of memory"),
+                                                          HasSubstr("status"), HasSubstr("crashed")));
 #else
     EXPECT_THAT(failure("memory", limits), HasSubstr("more than 64 MiB of memory"));
 #endif
