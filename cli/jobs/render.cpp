@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "cli/documents.h"
 #include "cli/job.h"
@@ -25,6 +26,7 @@ struct RenderJobOptions {
     std::uint64_t frame = 0;
     std::uint32_t device = 0;
     bool chooseDevice = false;
+    std::string backend = "any";
     float exposure = 1;
     std::uint32_t passes = 8;
     std::string output;
@@ -32,6 +34,9 @@ struct RenderJobOptions {
 
 const std::map<std::string, std::uint32_t> kSamples{
     {"auto", 0}, {"none", 1}, {"msaa2", 2}, {"msaa4", 4}, {"msaa8", 8}};
+
+const std::map<std::string, std::optional<gpu::Backend>> kBackends{
+    {"any", {}}, {"vulkan", gpu::Backend::Vulkan}, {"d3d11", gpu::Backend::Direct3D11}};
 
 Result<render::RenderOptions> pictureOptions(const RenderJobOptions& options, const ViewFile& view) {
     render::RenderOptions picture;
@@ -78,6 +83,7 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
 
     gpu::DeviceOptions deviceOptions;
     if (options.chooseDevice) deviceOptions.index = options.device;
+    deviceOptions.backend = kBackends.at(options.backend);
     const auto device = gpu::createDevice(deviceOptions);
     if (!device) return tl::unexpected(device.error());
     const auto picture = render::renderPicture(**device, scene, *pictureAs);
@@ -126,6 +132,8 @@ void addRenderJob(Jobs& jobs) {
     auto* record = job.add_option("--record", options->record, "Frames that simulate --record wrote");
     job.add_option("--frame", options->frame, "Frame of the record, from 0")->needs(record);
     auto* device = job.add_option("--device", options->device, "GPU to use, by its index in `devices`");
+    job.add_option("--backend", options->backend, "Graphics API; Direct3D 11 is on Windows only")
+        ->check(CLI::IsMember({"any", "vulkan", "d3d11"}));
     job.add_option("-o,--output", options->output, "PNG to write")->required();
     job.final_callback([options, device] { options->chooseDevice = device->count() > 0; });
 }
