@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <map>
 #include <memory>
-#include <optional>
 
+#include "cli/backend.h"
 #include "cli/documents.h"
 #include "cli/job.h"
 #include "cli/scene.h"
@@ -34,9 +34,6 @@ struct RenderJobOptions {
 
 const std::map<std::string, std::uint32_t> kSamples{
     {"auto", 0}, {"none", 1}, {"msaa2", 2}, {"msaa4", 4}, {"msaa8", 8}};
-
-const std::map<std::string, std::optional<gpu::Backend>> kBackends{
-    {"any", {}}, {"vulkan", gpu::Backend::Vulkan}, {"d3d11", gpu::Backend::Direct3D11}};
 
 Result<render::RenderOptions> pictureOptions(const RenderJobOptions& options, const ViewFile& view) {
     render::RenderOptions picture;
@@ -83,7 +80,7 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
 
     gpu::DeviceOptions deviceOptions;
     if (options.chooseDevice) deviceOptions.index = options.device;
-    deviceOptions.backend = kBackends.at(options.backend);
+    if (options.backend != "any") deviceOptions.backend = kGpuBackends.at(options.backend);
     const auto device = gpu::createDevice(deviceOptions);
     if (!device) return tl::unexpected(device.error());
     const auto picture = render::renderPicture(**device, scene, *pictureAs);
