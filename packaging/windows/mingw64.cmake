@@ -30,6 +30,7 @@ set(ENV{PKG_CONFIG_LIBDIR} "${HAIRLOOM_WINDOWS_SYSROOT}/lib/pkgconfig")
 
 set(CGAL_DIR "${CMAKE_CURRENT_LIST_DIR}/cmake")
 set(assimp_DIR "${CMAKE_CURRENT_LIST_DIR}/cmake")
+set(tinyexr_DIR "${CMAKE_CURRENT_LIST_DIR}/cmake")
 list(APPEND CMAKE_MODULE_PATH "${CMAKE_CURRENT_LIST_DIR}/cmake")
 # Programs that the build makes and runs, and tests, run under Wine.
 set(CMAKE_CROSSCOMPILING_EMULATOR "${CMAKE_CURRENT_LIST_DIR}/wine.sh")

@@ -88,6 +88,16 @@ build_png() {
     cmake_install png "$work/libpng1.6" -DPNG_SHARED=OFF -DPNG_TESTS=OFF
 }
 
+build_tinyexr() {
+    source_of tinyexr
+    x86_64-w64-mingw32-g++-posix -O2 -DTINYEXR_USE_MINIZ=0 -DTINYEXR_IMPLEMENTATION -include zlib.h -x c++ \
+        -c "$work/tinyexr/tinyexr.h" -o "$work/tinyexr.o" > "$work/tinyexr.log" 2>&1 ||
+        { tail -30 "$work/tinyexr.log" >&2; say "error: tinyexr cannot be built"; exit 1; }
+    rm -f "$root/lib/libtinyexr.a"
+    x86_64-w64-mingw32-ar rcs "$root/lib/libtinyexr.a" "$work/tinyexr.o"
+    cp "$work/tinyexr/tinyexr.h" "$root/include/"
+}
+
 build_googletest() { cmake_install googletest /usr/src/googletest -DBUILD_GMOCK=ON; }
 
 build_minizip() {
@@ -139,6 +149,6 @@ if [ -n "$archives" ] && [ -n "$meshes" ] && [ ! -f "$root/done/assimp" ]; then
     tar --zstd -xf "$meshes" -C "$root" --strip-components=1
     touch "$root/done/assimp" "$root/done/openmesh"
 fi
-for library in headers fmtlib spdlog highway tbb png googletest assimp openmesh; do
+for library in headers fmtlib spdlog highway tbb png tinyexr googletest assimp openmesh; do
     once "$library"
 done
