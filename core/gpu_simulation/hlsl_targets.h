@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// The compilers behind compileHlsl(). `text` is what is compiled, `path` its name in messages; the function is main.
+// The compilers behind compileHlsl(). `text` is what is compiled, `path` its name in messages; the function
+// is main.
 
 #include "core/gpu_simulation/hlsl_compiler.h"
 #include "shaders/shaders.h"

@@ -19,7 +19,8 @@ namespace {
 /// Includes are written from the top of the repository.
 class Includer final : public ID3DInclude {
   public:
-    HRESULT STDMETHODCALLTYPE Open(D3D_INCLUDE_TYPE, LPCSTR name, LPCVOID, LPCVOID* data, UINT* size) override {
+    HRESULT STDMETHODCALLTYPE Open(D3D_INCLUDE_TYPE, LPCSTR name, LPCVOID, LPCVOID* data,
+                                   UINT* size) override {
         const shaders::Source* source = findSource(name);
         if (source == nullptr) return E_FAIL;
         *data = source->text.data();
