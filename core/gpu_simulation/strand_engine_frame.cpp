@@ -37,9 +37,13 @@ std::vector<bool> StrandEngine::Impl::takeRoots(const runtime::FrameInput& input
     std::vector<bool> moved(roots.size(), false);
     Float3 low{1e30f, 1e30f, 1e30f}, high{-1e30f, -1e30f, -1e30f};
     rootMotion = 0.0f;
+    rejectedRoots = 0;
     for (std::size_t s = 0; s < roots.size(); ++s) {
         RootFrame root = input.roots_ws[s];
-        if (!runtime::usableWithin(root, runtime::kFarthest)) continue;
+        if (!runtime::usableWithin(root, runtime::kFarthest)) {
+            ++rejectedRoots;
+            continue;
+        }
         const Float3 p = root.position;
         low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
         high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
@@ -81,7 +85,8 @@ void StrandEngine::Impl::uploadSpheres(gpu::CommandList& list, const runtime::Su
                                      const std::vector<T>& content) {
         const std::size_t count = std::max<std::size_t>(content.size(), 1);
         if (buffer == nullptr || buffer->desc().size < count * sizeof(T)) {
-            auto made = makeBuffer<T>(device, name, gpu::Usage::ShaderRead, 2 * count, {});
+            const std::vector<T> nothing(2 * count);
+            auto made = makeBuffer<T>(device, name, gpu::Usage::ShaderRead, nothing.size(), nothing);
             // An engine without the buffer names it when it binds it.
             buffer = made ? std::move(*made) : nullptr;
         }
@@ -259,6 +264,7 @@ Status StrandEngine::Impl::record(gpu::CommandList& list, const runtime::FrameIn
     list.beginPass(pass);
     for (const StrandBatch& batch : batches) dispatch(list, batch, constants(context, input, batch));
     list.endPass();
+    if (volume) volume->record(list, batches, run.settings.clampedPoints, input.dt, context.h);
     spheresBefore = frameSpheres.usable;
     substep = context.h;
     wakeAll = false;
