@@ -241,12 +241,14 @@ Result<FrameReport> StrandEngine::report() {
 }
 
 Result<double> StrandEngine::wait() {
-    double milliseconds = 0.0;
-    if (impl_->underWay.empty()) return milliseconds;
-    const auto times = impl_->underWay.back()->passTimes();
-    if (!times) return tl::unexpected(times.error());
-    for (const gpu::PassTime& time : *times) milliseconds += time.milliseconds;
-    return milliseconds;
+    while (!impl_->underWay.empty()) {
+        const auto times = impl_->underWay.front()->passTimes();
+        if (!times) return tl::unexpected(times.error());
+        impl_->underWay.pop_front();
+        impl_->milliseconds = 0.0;
+        for (const gpu::PassTime& time : *times) impl_->milliseconds += time.milliseconds;
+    }
+    return impl_->milliseconds;
 }
 
 Result<runtime::Measurements> StrandEngine::measure() {

@@ -43,11 +43,18 @@ class Permutation : public GpuSimulationTest {
         input.roots_ws = roots;
         input.spheres = spheres;
         EXPECT_TRUE(engine.step(input));
+        // What is under way keeps its buffers.
+        EXPECT_TRUE(engine.wait());
         std::vector<std::string> names;
         for (const gpu::RecordedWork& work : watched().record()) {
             if (work.kind != gpu::RecordedWork::Kind::Dispatch) continue;
-            names.insert(names.end(), work.reads.begin(), work.reads.end());
-            names.insert(names.end(), work.writes.begin(), work.writes.end());
+            for (const auto* list : {&work.reads, &work.writes}) {
+                // "buffer 'places'"
+                for (const std::string& resource : *list) {
+                    const std::size_t quote = resource.find('\'') + 1;
+                    names.push_back(resource.substr(quote, resource.rfind('\'') - quote));
+                }
+            }
         }
         return names;
     }
@@ -135,8 +142,8 @@ TEST_F(Permutation, KernelsOfTheProgramAreThoseOfDefaultPlans) {
             if (source.text.substr(at).starts_with("#define ")) defines += source.text.substr(at, end - at);
             at = end;
         }
-        // Those of follow hairs have no permutations.
-        if (!defines.empty()) built.push_back(defines);
+        // Other kernels have no permutations.
+        if (defines.find("HAIR_STAGES") != std::string::npos) built.push_back(defines);
     }
     EXPECT_THAT(built, testing::UnorderedElementsAreArray(asked));
 }
