@@ -236,6 +236,7 @@ void StrandEngine::Impl::dispatch(gpu::CommandList& list, const StrandBatch& bat
 
 Status StrandEngine::Impl::record(gpu::CommandList& list, const runtime::FrameInput& input) {
     if (!(input.dt > 0.0f) || !std::isfinite(input.dt)) return {};
+    known.reset();
     const Float3 lowBefore = rootsMin_ws, highBefore = rootsMax_ws;
     const std::vector<bool> moved = takeRoots(input);
     runtime::takeSpheres(wanted, shape->longestStrand, spheresBefore, input.spheres, frameSpheres);

@@ -45,7 +45,8 @@ struct StrandEngine::Impl {
     bool wakeAll = false;
 
     std::deque<gpu::SubmissionPtr> underWay;
-    double milliseconds = 0.0;  ///< of the last step that was waited for
+    std::optional<runtime::State> known;  ///< what was read since the last frame
+    double milliseconds = 0.0;            ///< of the last step that was waited for
 
     Impl(gpu::Device& d, std::shared_ptr<KernelLibrary> k, EngineOptions o)
         : device(d), kernels(std::move(k)), options(o) {}

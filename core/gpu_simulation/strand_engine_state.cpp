@@ -101,6 +101,7 @@ void StrandEngine::Impl::takeBatch(const StrandBatch& batch, std::span<const std
 }
 
 Result<runtime::State> StrandEngine::readState() {
+    if (impl_->known) return *impl_->known;
     const Impl& impl = *impl_;
     const runtime::RestShape& shape = *impl.shape;
     runtime::State state;
@@ -125,6 +126,7 @@ Result<runtime::State> StrandEngine::readState() {
     state.rootsMin_ws = impl.rootsMin_ws;
     state.rootsMax_ws = impl.rootsMax_ws;
     state.substep = impl.substep;
+    impl_->known = state;
     return state;
 }
 
@@ -161,6 +163,7 @@ Status StrandEngine::Impl::writeBatch(gpu::CommandList& list, const StrandBatch&
 }
 
 Status StrandEngine::Impl::writeState(const runtime::State& state) {
+    known.reset();
     auto list = device.createCommandList();
     if (!list) return tl::unexpected(list.error());
     for (const StrandBatch& batch : batches) {
