@@ -16,7 +16,10 @@ namespace hairloom::cli {
 struct ViewFile {
     std::optional<render::Camera> camera;
     std::optional<std::pair<std::uint32_t, std::uint32_t>> size;
+    bool hasLights = false;  ///< then there is no light besides what follows
     std::vector<render::Light> lights;
+    render::Environment environment;
+    std::optional<Vec3f> background;  ///< linear RGB
     std::optional<Vec3f> headAlbedo;
     std::optional<float> rootRadius;  ///< metres
     std::optional<float> tipScale;
@@ -48,6 +51,7 @@ class GroomScene {
         hairOffsets_;  ///< of follow hairs; empty where the strands themselves are drawn
     std::vector<Vec3f> hairPositions_ws_;
     render::HairMaterial material_;
+    bool matte_ = false;  ///< the head, where a view says what it is
 };
 
 }  // namespace hairloom::cli

@@ -2,25 +2,30 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <optional>
 
 #include "cli/gpu_bench.h"
 #include "cli/job.h"
 #include "cli/measurements.h"
+#include "cli/render_bench.h"
 #include "cli/simulation_bench.h"
+#include "cli/vectors.h"
 #include "core/base/file.h"
 
 namespace hairloom::cli {
 namespace {
 
 struct BenchOptions {
+    RenderBenchOptions render;
+    std::uint32_t device = 0;
+    std::string size;
+    bool repetitionsGiven = false;
     std::string name;
     int repetitions = 5;
     std::vector<std::uint32_t> strands;
     bool quick = false;
     std::string markdown;
     std::string output;
-    std::optional<std::uint32_t> device;
+    bool deviceGiven = false;
 };
 
 Result<Report> benchSimulation(const BenchOptions& options, const std::string& command) {
@@ -43,7 +48,7 @@ Result<Report> benchSimulation(const BenchOptions& options, const std::string& c
 
 Result<Report> benchGpuSimulation(const BenchOptions& options, const std::string& command) {
     GpuBenchOptions wanted;
-    wanted.device = options.device;
+    if (options.deviceGiven) wanted.device = options.device;
     if (options.quick) {
         wanted.strands = {100, 300};
         wanted.details = {100};
@@ -65,12 +70,34 @@ Result<Report> benchGpuSimulation(const BenchOptions& options, const std::string
     return report;
 }
 
+Result<Report> benchRendering(const BenchOptions& options, const std::string& command) {
+    RenderBenchOptions wanted = options.render;
+    if (options.repetitionsGiven) wanted.repetitions = options.repetitions;
+    if (!options.size.empty()) {
+        const auto size = parseSize(options.size);
+        if (!size) return tl::unexpected(size.error());
+        wanted.size = *size;
+    }
+    const auto bench = runRenderBench(wanted);
+    if (!bench) return tl::unexpected(bench.error());
+    Report report = reportOf(*bench);
+    if (options.markdown.empty()) return report;
+    if (auto written = writeFileAtomically(options.markdown, markdownOf(*bench, command)); !written) {
+        return tl::unexpected(written.error());
+    }
+    report["output"] = options.markdown;
+    return report;
+}
+
 Result<Report> bench(const BenchOptions& options, const std::string& command) {
     if (options.name == "sim") return benchSimulation(options, command);
     if (options.name == "gpu-sim") return benchGpuSimulation(options, command);
+    if (options.name == "render") return benchRendering(options, command);
     if (options.quick || !options.strands.empty() || !options.markdown.empty())
         return fail(
-            "--strands and --quick are of `bench sim` and `bench gpu-sim`, --markdown of `bench sim`");
+            "--strands and --quick are of `bench sim` and `bench gpu-sim`, --markdown of `bench sim` and "
+            "`bench "
+            "render`");
     const auto measured = runBenchmarkProgram(options.name, options.repetitions);
     if (!measured) return tl::unexpected(measured.error());
     Report rows = Report::array();
@@ -88,18 +115,30 @@ void addBenchJob(Jobs& jobs) {
     job.add_option("name", options->name, "What to measure")
         ->required()
         ->check(CLI::IsMember({"gpu-sim", "interpolate", "io", "place", "project", "render", "sim"}));
-    job.add_option("--repeat,--repetitions", options->repetitions, "Runs of each measurement")
-        ->check(CLI::Range(1, 1000));
+    auto* const repetitions =
+        job.add_option("--repeat,--repetitions", options->repetitions, "Runs of each measurement")
+            ->check(CLI::Range(1, 1000));
     job.add_option("--strands", options->strands,
                    "sim, gpu-sim: numbers of strands, instead of the usual ones, ascending")
         ->delimiter(',')
         ->check(CLI::Range(1, 1'000'000));
     job.add_flag("--quick", options->quick,
                  "sim, gpu-sim: shorter runs of fewer strands, to see that it works");
-    job.add_option("--markdown", options->markdown, "sim: file to write the tables to");
+    job.add_option("--markdown", options->markdown, "sim, render: file to write the tables to");
+    job.add_option("--hairs", options->render.hairs,
+                   "render: numbers of hairs, instead of 3100,9300,18300,100000")
+        ->delimiter(',')
+        ->check(CLI::Range(1, 1'000'000));
+    job.add_option("--size", options->size, "render: pixels WxH of all pictures");
     job.add_option("-o,--output", options->output,
                    "gpu-sim: folder to write the table, its Markdown and the chart to");
-    job.add_option("--device", options->device, "gpu-sim: GPU to use, by its index in `devices`");
+    auto* const device =
+        job.add_option("--device", options->device, "gpu-sim, render: GPU to use, by its index in `devices`");
+    job.final_callback([options, repetitions, device] {
+        options->repetitionsGiven = repetitions->count() > 0;
+        options->deviceGiven = device->count() > 0;
+        if (options->deviceGiven) options->render.device = options->device;
+    });
 }
 
 }  // namespace hairloom::cli
