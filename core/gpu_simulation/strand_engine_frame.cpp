@@ -80,7 +80,7 @@ std::vector<shaders::SphereConstants> StrandEngine::Impl::sphereConstants() cons
 }
 
 /// Where kernels read them from buffers.
-void StrandEngine::Impl::uploadSpheres(gpu::CommandList& list, const runtime::SubstepContext&) {
+void StrandEngine::Impl::uploadSpheres(gpu::CommandList& list) {
     const auto upload = [&]<class T>(gpu::BufferPtr& buffer, const char* name,
                                      const std::vector<T>& content) {
         const std::size_t count = std::max<std::size_t>(content.size(), 1);
@@ -255,7 +255,7 @@ Status StrandEngine::Impl::record(gpu::CommandList& list, const runtime::FrameIn
     // Roots that rest are there already.
     if (substep == 0.0f || std::ranges::find(moved, true) != moved.end()) uploadRoots(list);
     uploadChanges(list);
-    uploadSpheres(list, context);
+    uploadSpheres(list);
     if (run.plan.on(Effect::angular) && bendSubstep != context.h) {
         uploadBend(list, context.h);
         bendSubstep = context.h;

@@ -63,7 +63,7 @@ struct StrandEngine::Impl {
     Status record(gpu::CommandList& list, const runtime::FrameInput& input);
     std::vector<bool> takeRoots(const runtime::FrameInput& input);
     void uploadRoots(gpu::CommandList& list);
-    void uploadSpheres(gpu::CommandList& list, const runtime::SubstepContext& context);
+    void uploadSpheres(gpu::CommandList& list);
     void uploadBend(gpu::CommandList& list, float h);
     void uploadChanges(gpu::CommandList& list);
     shaders::SimulationConstants constants(const runtime::SubstepContext& context,
