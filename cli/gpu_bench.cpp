@@ -41,6 +41,8 @@ class Rows {
         return row;
     }
 
+    std::vector<NamedLayout> layouts() const { return measuredLayouts(backend_.device().info().type); }
+
     double onCpu(std::uint32_t strands, bool allThreads) const {
         StepScene scene;
         scene.strands = strands;
@@ -57,7 +59,7 @@ class Rows {
 Status measureFigure(Rows& rows, const GpuBenchOptions& options, GpuBench& bench) {
     std::vector<double> counts, gpu, one, all;
     for (const std::uint32_t strands : options.strands) {
-        auto row = rows.measure(strands, LeftOut::nothing, measuredLayouts().front());
+        auto row = rows.measure(strands, LeftOut::nothing, rows.layouts().front());
         if (!row) return tl::unexpected(row.error());
         if (options.cpu) {
             row->cpuOne = rows.onCpu(strands, false);
@@ -75,7 +77,7 @@ Status measureFigure(Rows& rows, const GpuBenchOptions& options, GpuBench& bench
 }
 
 Status measureDetails(Rows& rows, const GpuBenchOptions& options, GpuBench& bench) {
-    const auto layouts = measuredLayouts();
+    const auto layouts = rows.layouts();
     for (const std::uint32_t strands : options.details) {
         for (const LeftOut leftOut : kLeftOut) {
             auto row = rows.measure(strands, leftOut, layouts.front());

@@ -51,12 +51,15 @@ const char* leftOutName(LeftOut effect) {
     return kNames[static_cast<std::size_t>(effect)];
 }
 
-std::vector<NamedLayout> measuredLayouts() {
-    return {{"threads, unrolled", {StrandStorage::threads, true}},
-            {"threads, loops", {StrandStorage::threads, false}},
-            {"groups, unrolled", {StrandStorage::groups, true}},
-            {"groups, loops", {StrandStorage::groups, false}},
-            {"buffers", {StrandStorage::buffers, false}}};
+std::vector<NamedLayout> measuredLayouts(gpu::DeviceType type) {
+    std::vector<NamedLayout> layouts{{"threads, unrolled", {StrandStorage::threads, true}},
+                                     {"threads, loops", {StrandStorage::threads, false}},
+                                     {"groups, unrolled", {StrandStorage::groups, true}},
+                                     {"groups, loops", {StrandStorage::groups, false}},
+                                     {"buffers", {StrandStorage::buffers, false}}};
+    if (type == gpu::DeviceType::Cpu)
+        std::erase_if(layouts, [](const NamedLayout& layout) { return layout.options.unroll; });
+    return layouts;
 }
 
 GpuStepRun::GpuStepRun(const GpuStepScene& scene, scenes::HeadOfHair head,

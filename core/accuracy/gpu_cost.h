@@ -23,8 +23,9 @@ struct NamedLayout {
     const char* name;
     gpu_simulation::LayoutOptions options;
 };
-/// The first is the one that wins on a GPU.
-std::vector<NamedLayout> measuredLayouts();
+/// Those worth measuring on such a device, its own first: a driver that compiles for a CPU takes minutes for
+/// unrolled loops.
+std::vector<NamedLayout> measuredLayouts(gpu::DeviceType type);
 
 struct GpuStepScene {
     std::uint32_t strands = 0;
