@@ -96,7 +96,7 @@ Status measureDetails(Rows& rows, const GpuBenchOptions& options, GpuBench& benc
 }  // namespace
 
 Result<GpuBench> runGpuBench(const GpuBenchOptions& options) {
-    auto backend = GpuBackend::make(options.device);
+    auto backend = GpuBackend::make(gpu::Backend::Vulkan, options.device);
     if (!backend) return tl::unexpected(backend.error());
     const gpu::DeviceInfo& info = (*backend)->device().info();
     GpuBench bench;
