@@ -75,7 +75,7 @@ Result<Report> stability(const StabilityJobOptions& options, const std::string& 
     StabilityOptions suite;
     std::unique_ptr<GpuBackend> gpu;
     if (options.backend == "vulkan") {
-        auto made = GpuBackend::make(options.device);
+        auto made = GpuBackend::make(gpu::Backend::Vulkan, options.device);
         if (!made) return tl::unexpected(made.error());
         gpu = std::move(*made);
         suite.engines = gpuTrialEngines(gpu->device(), gpu->kernels());
