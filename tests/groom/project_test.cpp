@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cstring>
+#include <deque>
 
 #include "core/base/file.h"
 #include "core/groom/archive.h"
@@ -62,6 +63,28 @@ TEST(Project, SavesFlawedValuesButNoFileThatCouldNotBeLoaded) {
     ASSERT_FALSE(refused);
     EXPECT_THAT(refused.error().message(), HasSubstr("shininess is 0; expected 1 to 1000"));
     EXPECT_EQ(readFile(folder / "a.hairloom").value(), before) << "the old file stands";
+}
+
+TEST(Project, ReadsVersion1WithoutDensityAndPlacement) {
+    const TemporaryFolder folder;
+    const auto path = folder / "a.hairloom";
+    ASSERT_TRUE(saveProject(fullGroom(), path));
+    const auto now = ArchiveReader::open("a", readFile(path).value(), section::kKind, kProjectVersion);
+    ASSERT_TRUE(now);
+    nlohmann::ordered_json head = now->head();
+    for (const char* member : {"kind", "version", "arrays", "placement"}) head.erase(member);
+    ArchiveWriter writer{std::string(section::kKind), 1};
+    std::deque<AttributeData> arrays;  // the writer looks at them until it finishes
+    for (const std::string& name : now->names()) {
+        if (name != section::kScalpDensity) writer.add(name, arrays.emplace_back(now->readAny(name).value()));
+    }
+    ASSERT_TRUE(writeFileAtomically(path, writer.finish(head).value()));
+    const auto loaded = loadProject(path);
+    ASSERT_TRUE(loaded) << loaded.error().message();
+    Groom expected = fullGroom();
+    expected.placement = {};
+    expected.scalpDensity.clear();
+    EXPECT_TRUE(sameContent(*loaded, expected));
 }
 
 TEST(Project, TruncatedAnywhereIsRefused) {
@@ -125,7 +148,7 @@ struct Forger {
     Json head;
     std::map<std::string, AttributeData> arrays;
     std::string kind = "project";
-    std::uint32_t version = 1;
+    std::uint32_t version = kProjectVersion;
 
     explicit Forger(const TemporaryFolder& folder) : path(folder / "forged.hairloom") {
         EXPECT_TRUE(saveProject(fullGroom(), path));
@@ -155,7 +178,7 @@ TEST(HostileProject, VersionsAndKindsAreNamed) {
     const TemporaryFolder folder;
     Forger newer(folder);
     newer.version = 7;
-    EXPECT_THAT(newer.error(), HasSubstr("project is version 7; this program reads versions up to 1"));
+    EXPECT_THAT(newer.error(), HasSubstr("project is version 7; this program reads versions up to 2"));
     Forger other(folder);
     other.kind = "cache";
     EXPECT_THAT(other.error(), HasSubstr("/kind is 'cache'; expected 'project'"));
@@ -186,6 +209,8 @@ TEST(HostileProject, HeadsAreReadStrictly) {
         {[](Json& h) { h["spheres"][1]["radius"] = 0; }, "/spheres/1/radius is 0"},
         {[](Json& h) { h["spheres"][0]["centre"] = "here"; }, "/spheres/0/centre"},
         {[](Json& h) { h["interpolation"]["seed"] = -1; }, "/interpolation/seed is -1"},
+        {[](Json& h) { h.erase("placement"); }, "/placement is missing"},
+        {[](Json& h) { h["placement"]["points"] = 1; }, "/placement/points is 1"},
         {[](Json& h) { h["strands"] = 4; }, "has 5 values; expected 4"},
         {[](Json& h) { h["points"] = 4294967296u * 9ull; }, "/points is 38654705664"},
         {[](Json& h) { h["groups"] = {"front"}; }, "1 groups"},
@@ -228,6 +253,9 @@ TEST(HostileProject, ArraysAreReadStrictly) {
         {[](Arrays& a) { std::get<CowArray<Vec3f>>(a.at("scalp/positions")).edit()[0].x() = NAN; },
          "not finite"},
         {[](Arrays& a) { a.erase("point/position"); }, "no positions"},
+        {[](Arrays& a) { a.erase("scalp/density"); }, "array 'scalp/density' is missing"},
+        {[](Arrays& a) { std::get<CowArray<float>>(a.at("scalp/density")).edit().pop_back(); },
+         "the density map has 17 values for 18 vertices"},
     };
     const TemporaryFolder folder;
     for (const auto& [bend, expected] : cases) {
