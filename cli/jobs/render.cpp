@@ -4,10 +4,10 @@
 
 #include "cli/documents.h"
 #include "cli/job.h"
-#include "cli/scene.h"
 #include "cli/vectors.h"
 #include "core/render/png.h"
 #include "core/simulation/frame_record.h"
+#include "workspace/groom_scene.h"
 
 namespace hairloom::cli {
 namespace {

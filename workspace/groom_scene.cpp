@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/scene.h"
+#include "workspace/groom_scene.h"
 
 #include <algorithm>
 
@@ -10,7 +10,7 @@
 #include "core/interpolation/follow_hairs.h"
 #include "core/simulation/simulation.h"
 
-namespace hairloom::cli {
+namespace hairloom {
 namespace {
 
 constexpr double kAnyPlace = 1e6;  // metres
@@ -122,6 +122,7 @@ Result<GroomScene> GroomScene::make(const Groom& groom, const std::vector<Vec3f>
                                     const HeadPose* pose, const ViewFile& view,
                                     const std::vector<std::string>& hiddenGroups) {
     GroomScene scene;
+    scene.rest_ = groom;
     scene.posed_ = pose ? posedGroom(groom, *positions_ws, *pose) : groom;
     scene.material_ = materialOf(groom.material, view);
     if (!groom.scalp && !hiddenGroups.empty()) return fail("there is no head to hide groups of");
@@ -137,18 +138,26 @@ Result<GroomScene> GroomScene::make(const Groom& groom, const std::vector<Vec3f>
     }
     if (groom.interpolation.followPerGuide == 0 || groom.strandCount() == 0) return scene;
 
-    const auto bindings = bindFollowHairs(groom, groom.interpolation);
+    auto bindings = bindFollowHairs(groom, groom.interpolation);
     if (!bindings) return tl::unexpected(bindings.error());
-    const std::vector<Vec3f> guides_ws = guidePositions(scene.posed_, *bindings);
-    const std::vector<Quatf> rotations = rootRotations(groom, scene.posed_, *bindings);
-    scene.hairPositions_ws_.resize(bindings->hairCount() * bindings->pointsPerHair);
-    const auto status =
-        evaluateFollowHairs(*bindings, {guides_ws, {}, rotations}, {}, scene.hairPositions_ws_);
-    if (!status) return tl::unexpected(status.error());
     for (std::size_t hair = 0; hair <= bindings->hairCount(); ++hair) {
         scene.hairOffsets_.push_back(static_cast<std::uint32_t>(hair * bindings->pointsPerHair));
     }
+    scene.bindings_ = std::move(*bindings);
+    if (auto status = scene.makeFollowHairs(); !status) return tl::unexpected(status.error());
     return scene;
+}
+
+Status GroomScene::pose(std::span<const Vec3f> positions_ws, const HeadPose& pose) {
+    posed_ = posedGroom(rest_, positions_ws, pose);
+    return bindings_ ? makeFollowHairs() : Status();
+}
+
+Status GroomScene::makeFollowHairs() {
+    const std::vector<Vec3f> guides_ws = guidePositions(posed_, *bindings_);
+    const std::vector<Quatf> rotations = rootRotations(rest_, posed_, *bindings_);
+    hairPositions_ws_.resize(bindings_->hairCount() * bindings_->pointsPerHair);
+    return evaluateFollowHairs(*bindings_, {guides_ws, {}, rotations}, {}, hairPositions_ws_);
 }
 
 render::RenderScene GroomScene::scene() const {
@@ -195,4 +204,4 @@ Box3f GroomScene::subject() const {
     return box.intersection(all);
 }
 
-}  // namespace hairloom::cli
+}  // namespace hairloom

@@ -7,10 +7,11 @@
 #include <vector>
 
 #include "core/groom/groom.h"
+#include "core/interpolation/follow_hairs.h"
 #include "core/render/picture.h"
 #include "core/simulation/motion.h"
 
-namespace hairloom::cli {
+namespace hairloom {
 
 /// What a view file (--view) says; docs/cli.md lists its members.
 struct ViewFile {
@@ -32,6 +33,10 @@ class GroomScene {
                                    const HeadPose* pose, const ViewFile& view,
                                    const std::vector<std::string>& hiddenGroups);
 
+    /// Moves it to where a frame of a simulation of the same groom has it; points in the groom's order. Error:
+    /// follow hairs that cannot be made.
+    Status pose(std::span<const Vec3f> positions_ws, const HeadPose& pose);
+
     /// Meshes and strands; camera and lights are the caller's. Valid while this object lives and is not
     /// moved.
     render::RenderScene scene() const;
@@ -41,7 +46,11 @@ class GroomScene {
     Box3f subject() const;
 
   private:
+    Status makeFollowHairs();
+
+    Groom rest_;
     Groom posed_;
+    std::optional<FollowBindings> bindings_;  ///< where the groom asks for follow hairs
     std::vector<std::uint32_t> indices_;  ///< of the head's triangles that are drawn
     std::vector<Vec3f> triangleAlbedo_;   ///< of these: skin, tinted by hair where the scalp is
     std::vector<std::uint32_t>
@@ -50,4 +59,4 @@ class GroomScene {
     render::HairMaterial material_;
 };
 
-}  // namespace hairloom::cli
+}  // namespace hairloom
