@@ -16,5 +16,5 @@ void main() {
     gResults[4] = gShade.lights[2].range;
     gResults[5] = mul(gShade.lights[1].clipFromWorld, float4(0, 0, 0, 1));
     gResults[6] = gStrands[1].albedo;
-    gResults[7] = float4(gStrands[1].random, asfloat(gStrands[1].firstCurvePoint), gCurve[1].along, asfloat(gCurve[1].strand));
+    gResults[7] = float4(gStrands[1].random, asfloat(gStrands[1].segmentsBefore), gCurve[1].along, asfloat(gCurve[1].strand));
 }

@@ -2,8 +2,8 @@
 #include "shaders/shared/render_types.h"
 
 cbuffer Constants : register(b1) { MeshConstants gMesh; };
-StructuredBuffer<float4> gPositions : register(t0);
-StructuredBuffer<float4> gNormals : register(t1);
+StructuredBuffer<float> gPositions : register(t0);  // three a vertex
+StructuredBuffer<float> gNormals : register(t1);
 StructuredBuffer<uint> gIndices : register(t2);
 StructuredBuffer<float4> gAlbedo : register(t3);  // per triangle
 
@@ -15,10 +15,10 @@ struct Output {
 };
 
 Output main(uint corner : SV_VertexID) {
-    const uint vertex = gIndices[corner];
+    const uint at = 3u * gIndices[corner];
     Output o;
-    o.position_ws = gPositions[vertex].xyz;
-    o.normal_ws = gNormals[vertex].xyz;
+    o.position_ws = float3(gPositions[at], gPositions[at + 1u], gPositions[at + 2u]);
+    o.normal_ws = float3(gNormals[at], gNormals[at + 1u], gNormals[at + 2u]);
     o.albedo = gAlbedo[corner / 3u].rgb;
     o.position = mul(gMesh.clipFromWorld, float4(o.position_ws, 1));
     return o;

@@ -27,7 +27,8 @@ void main(uint3 id : SV_DispatchThreadID) {
     const float3 toView = normalize(gShade.eye_ws.xyz - p.position_ws.xyz);
 
     const float vary = 1.0 + gShade.rootTip.z * (strand.random * 2.0 - 1.0);
-    const float3 albedo = saturate(strand.albedo.rgb * lerp(gShade.rootTip.x, gShade.rootTip.y, p.along) * vary);
+    const float3 own = strand.albedo.w > 0 ? strand.albedo.rgb : gShade.albedo.rgb;
+    const float3 albedo = saturate(own * lerp(gShade.rootTip.x, gShade.rootTip.y, p.along) * vary);
     const float jitter = (hashUnit(p.strand * 2u + 1u) - 0.5) * 0.06;
     const float3 tangent1 = tilt(tangent, toView, gShade.shift.x + jitter);
     const float3 tangent2 = tilt(tangent, toView, gShade.shift.y + jitter);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/gpu/device.h"
 
+#include "core/gpu/validation.h"
 #include "core/gpu/vulkan/backend.h"
 
 namespace hairloom::gpu {
@@ -46,12 +47,19 @@ std::string_view toString(DeviceType type) {
     return "other";
 }
 
+std::string toString(const ShaderRegister& shaderRegister) {
+    constexpr std::string_view kClasses = "btsu";  // in the order of Binding::Kind
+    return kClasses[static_cast<std::size_t>(shaderRegister.kind)] + std::to_string(shaderRegister.slot);
+}
+
 Result<std::vector<DeviceInfo>> listDevices() {
     return vulkan::listDevices();
 }
 
 Result<std::unique_ptr<Device>> createDevice(const DeviceOptions& options) {
-    return vulkan::createDevice(options);
+    auto device = vulkan::createDevice(options);
+    if (!device || !options.validation) return device;
+    return std::make_unique<ValidationDevice>(std::move(*device));
 }
 
 }  // namespace hairloom::gpu

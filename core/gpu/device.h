@@ -53,14 +53,15 @@ class Shader {
   public:
     virtual ~Shader() = default;
 };
-class GraphicsPipeline {
+class Pipeline {
   public:
-    virtual ~GraphicsPipeline() = default;
+    virtual ~Pipeline() = default;
+    virtual const std::string& name() const = 0;
+    /// What its shaders use, each once.
+    virtual std::span<const ShaderRegister> registers() const = 0;
 };
-class ComputePipeline {
-  public:
-    virtual ~ComputePipeline() = default;
-};
+class GraphicsPipeline : public Pipeline {};
+class ComputePipeline : public Pipeline {};
 
 /// Records work. Wrong use (unbound register, copy out of range, draw outside a pass) does not return an
 /// error at once: the first one is kept and Device::submit() returns it, naming the pass and the resource.
@@ -117,6 +118,22 @@ class Submission {
 };
 using SubmissionPtr = std::shared_ptr<Submission>;
 
+/// Shows pictures in a window. What is drawn into the back buffer stays there until it is drawn over, so it
+/// can also be read back. Destroy the swap chain before its window.
+class SwapChain {
+  public:
+    virtual ~SwapChain() = default;
+    /// One texture of Format::Bgra8Unorm (values are shown as sRGB) for as long as the size stays: a render
+    /// target, to be drawn into by submitted lists.
+    virtual const TexturePtr& backBuffer() const = 0;
+    /// Makes a new back buffer with undefined content. Errors: as for textures.
+    virtual Status resize(std::uint32_t width, std::uint32_t height) = 0;
+    /// Shows the back buffer, unscaled from the upper left corner, as far as it and the window overlap;
+    /// nothing while the window has no area. Waits while two pictures are still on their way. Errors: the
+    /// device or the window is lost.
+    virtual Status present() = 0;
+};
+
 class Device {
   public:
     virtual ~Device() = default;
@@ -132,6 +149,9 @@ class Device {
     virtual Result<ShaderPtr> createShader(const ShaderDesc& desc) = 0;
     virtual Result<GraphicsPipelinePtr> createGraphicsPipeline(const GraphicsPipelineDesc& desc) = 0;
     virtual Result<ComputePipelinePtr> createComputePipeline(const ComputePipelineDesc& desc) = 0;
+
+    /// Errors besides: DeviceInfo::presents is false, or the device cannot draw to this window.
+    virtual Result<std::unique_ptr<SwapChain>> createSwapChain(const SwapChainDesc& desc) = 0;
 
     /// Fails while another list is open: submit or destroy that one first.
     virtual Result<std::unique_ptr<CommandList>> createCommandList() = 0;
@@ -151,8 +171,9 @@ class Device {
 struct DeviceOptions {
     std::optional<std::uint32_t> index;  ///< place in listDevices(); else the best one is taken
     std::string name;                    ///< part of the name, any case; empty: any
-    bool validation =
-        false;  ///< with the driver-independent checks of the API; an error where they are not installed
+    /// With the checks of core/gpu/validation.h and those of the graphics API; an error where the latter are
+    /// not installed.
+    bool validation = false;
     double timeoutSeconds = 300;  ///< after which waiting for the device is an error
 };
 

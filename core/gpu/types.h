@@ -4,6 +4,7 @@
 // to a backend. Sizes are bytes and pixels; a field left alone has the value that is right most often.
 
 #include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -245,6 +246,28 @@ struct Binding {
     }
 };
 
+/// A register that a pipeline's shaders use.
+struct ShaderRegister {
+    Binding::Kind kind = Binding::Kind::ConstantBuffer;
+    std::uint32_t slot = 0;
+    friend auto operator<=>(const ShaderRegister&, const ShaderRegister&) = default;
+};
+/// As HLSL writes it: "b0", "t3" …
+std::string toString(const ShaderRegister& shaderRegister);
+
+/// A window of the window system that the program runs under, as that system names it.
+struct NativeWindow {
+    void* connection = nullptr;  ///< xcb_connection_t*, which must outlive the swap chain
+    std::uint32_t window = 0;    ///< xcb_window_t
+};
+
+struct SwapChainDesc {
+    NativeWindow window;
+    std::uint32_t width = 1;  ///< pixels of the back buffer
+    std::uint32_t height = 1;
+    bool waitForDisplay = true;  ///< present at most once per refresh, without tearing
+};
+
 enum class DeviceType { Discrete, Integrated, Virtual, Cpu, Other };
 std::string_view toString(DeviceType type);
 enum class ShaderFormat { SpirV, Dxbc };
@@ -264,6 +287,7 @@ struct DeviceInfo {
     bool tessellation = false;
     bool depthClamp = false;
     bool wireframe = false;
+    bool presents = false;             ///< swap chains can be made where there is a display
     double timestampPeriodNs = 0;      ///< 0: no timestamps, pass times are 0
     std::uint64_t maxBufferBytes = 0;  ///< of one storage buffer as a shader sees it
     std::uint32_t maxTextureSize = 0;  ///< pixels along one side

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/render/light.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -17,6 +19,19 @@ std::vector<Light> studioLights(const Camera& camera) {
     return {light({-0.55f, 0.75f, 0.65f}, {1.0f, 0.95f, 0.88f}, 1.5f),
             light({0.85f, 0.15f, 0.60f}, {0.80f, 0.90f, 1.0f}, 0.42f),
             light({0.40f, 0.70f, -0.85f}, {1.0f, 0.97f, 0.92f}, 1.3f)};
+}
+
+Status check(std::span<const Light> lights) {
+    if (lights.size() > kMaxLights) {
+        return fail(fmt::format("{} lights", lights.size()), fmt::format("at most {}", kMaxLights));
+    }
+    for (const Light& light : lights) {
+        if (!light.toLight_ws.allFinite() || !(light.toLight_ws.norm() > 0) ||
+            !light.irradiance.allFinite()) {
+            return fail("a light without a direction or with a colour that is not finite");
+        }
+    }
+    return {};
 }
 
 LightView fitLight(const Vec3f& toLight_ws, const Box3f& bounds_ws) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "core/render/camera.h"
@@ -16,6 +17,9 @@ struct Light {
 
 /// At most this many lights in a scene.
 inline constexpr std::size_t kMaxLights = 3;
+
+/// Errors: too many, no direction, a number that is not finite.
+Status check(std::span<const Light> lights);
 
 /// Key from the upper left, weaker fill from the right, rim from behind: as seen by the camera.
 std::vector<Light> studioLights(const Camera& camera);

@@ -1,80 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// A picture of heads and strands without a window. The scene is plain data seen through spans; nothing is
-// kept.
+// A picture of heads and strands without a window.
 
-#include <span>
+#include <string>
 #include <vector>
 
-#include "core/base/math.h"
-#include "core/base/result.h"
 #include "core/gpu/device.h"
-#include "core/render/camera.h"
 #include "core/render/image.h"
-#include "core/render/light.h"
+#include "core/render/options.h"
+#include "core/render/scene.h"
 
 namespace hairloom::render {
-
-/// A triangle mesh, shaded as skin.
-struct RenderMesh {
-    std::span<const Vec3f> positions_ws;
-    std::span<const Vec3f> normals_ws;         ///< one a vertex; empty: averaged from the faces
-    std::span<const std::uint32_t> indices;    ///< three a triangle
-    std::span<const Vec3f> triangleAlbedo;     ///< linear RGB, one a triangle; empty: `albedo`
-    Vec3f albedo = Vec3f(0.5f, 0.35f, 0.27f);  ///< linear RGB
-};
-
-/// How strands scatter light. Colours are linear RGB.
-struct HairMaterial {
-    Vec3f albedo = Vec3f(0.21f, 0.115f, 0.06f);  ///< 0…1; where a strand has no colour of its own
-    float radius = 0.00004f;  ///< metres at the root, where points have none; 25–60 µm are human
-    float tipScale = 0.3f;    ///< radius at the tip, times that at the root; 0…1
-    float diffuse = 0.55f;    ///< c_d, 0…1
-    Vec3f primary = Vec3f::Constant(0.10f);   ///< c_s of the first highlight, which has the light's colour
-    float primaryExponent = 90;               ///< m: higher is narrower, 0…1000
-    float primaryShift = 4.0f;                ///< degrees towards the root
-    Vec3f secondary = Vec3f::Constant(0.8f);  ///< c_s of the second highlight, times the albedo
-    float secondaryExponent = 22;
-    float secondaryShift = -6.0f;
-    float scattering = 0.55f;      ///< light that other fibres pass on, 0: none
-    float rootBrightness = 0.72f;  ///< factor on the albedo at the root
-    float tipBrightness = 1.10f;   ///< and at the tip
-    float variation = 0.18f;       ///< random brightness per strand, ±
-    float opacity = 0.65f;         ///< 0…1: how much one fibre takes from the light behind it
-};
-
-/// Strands of one material. Strand i has the points offsets[i] … offsets[i + 1] - 1, root first.
-struct RenderStrands {
-    std::span<const std::uint32_t>
-        offsets;  ///< strands + 1, ascending; strands of fewer than 2 points are left out
-    std::span<const Vec3f> positions_ws;
-    std::span<const float> radii;    ///< metres, one a point; empty: from the material
-    std::span<const Vec3f> colours;  ///< albedo, one a strand; empty: from the material
-    HairMaterial material;
-};
-
-struct RenderScene {
-    std::vector<RenderMesh> meshes;
-    std::vector<RenderStrands> strands;
-    Camera camera;
-    std::vector<Light> lights;                         ///< at most kMaxLights
-    Vec3f ambientSky = Vec3f(0.22f, 0.235f, 0.26f);    ///< radiance from above, linear RGB
-    Vec3f ambientGround = Vec3f(0.11f, 0.10f, 0.09f);  ///< and from below
-    Vec3f background = Vec3f(0.085f, 0.09f, 0.10f);    ///< linear RGB
-};
-
-struct RenderOptions {
-    std::uint32_t width = 1280;  ///< pixels; width × height at most kMaxPixels
-    std::uint32_t height = 720;
-    std::uint32_t samples = 0;       ///< a pixel and frame: 1, 2, 4, 8; 0: the most the device has, up to 8
-    std::uint32_t frames = 8;        ///< averaged, each moved by part of a pixel; 1…1024
-    std::uint32_t subdivisions = 2;  ///< curve segments per segment of a strand, 1…64
-    std::uint32_t shadowResolution = 1024;  ///< pixels of a light's square shadow map, 64…4096
-    bool shadows = true;
-    float exposure = 2;                  ///< factor before the tone curve
-    bool transparentBackground = false;  ///< alpha is coverage; else 1 everywhere
-};
-inline constexpr std::uint64_t kMaxPixels = std::uint64_t{64} << 20u;
 
 struct Picture {
     Image image;
@@ -90,8 +26,5 @@ struct Picture {
 /// out of range, indices or offsets outside the arrays, numbers that are not finite (the strand or vertex is
 /// named), and whatever the device reports.
 Result<Picture> renderPicture(gpu::Device& device, const RenderScene& scene, const RenderOptions& options);
-
-/// Of all meshes and strands.
-Box3f boundsOf(const RenderScene& scene);
 
 }  // namespace hairloom::render

@@ -14,11 +14,15 @@ namespace hairloom::shaders {
 
 // One strand as it was given: a run of points, and where its finer curve goes.
 struct StrandHeader {
-    uint firstPoint;
+    uint firstPoint;  // in the batch's own arrays
     uint pointCount;
-    uint firstCurvePoint;
-    float random;   // 0…1, the strand's own
-    float4 albedo;  // linear RGB
+    uint segmentsBefore;  // of the batch's strands before it, as given
+    float random;         // 0…1, the strand's own
+    float4 albedo;        // linear RGB, w: 1 where it is the strand's own, 0 where the material's counts
+    uint source;          // its place among the strands of its group
+    uint unused0;
+    uint unused1;
+    uint unused2;
 };
 
 // One point of the finer curve.
@@ -32,9 +36,12 @@ struct CurvePoint {
 
 struct CurveConstants {
     uint strandCount;
-    uint subdivisions;  // curve segments per given segment
-    uint unused0;
-    uint unused1;
+    uint subdivisions;    // curve segments per given segment
+    uint floatsPerPoint;  // of the positions
+    uint strandMajor;  // 0: points of a strand one after the other; else point p of strand s of the group at
+                       // element p * strandMajor + s
+    float4
+        radius;  // x: metres at the root, y: of the tip by that of the root, z: 1 when points have their own
 };
 
 // Projection of strands or mesh, for the camera or for a light.
@@ -66,6 +73,7 @@ struct ShadeConstants {
     float4 normalisation;  // x: 1/(pi R_O(0)), y, z: 1/(pi R_O(m)) of the two highlights
     float4 rootTip;        // x: brightness at the root, y: at the tip, z: random variation, w: fibre opacity
     float4 layers;         // as in ViewConstants
+    float4 albedo;         // linear RGB of strands without a colour of their own
     uint4 counts;          // x: curve points, y: lights, z: row length of the dispatch in points
     LightConstants lights[HAIRLOOM_MAX_LIGHTS];
 };
@@ -73,6 +81,24 @@ struct ShadeConstants {
 struct MeshConstants {
     float4x4 clipFromWorld;
     float4 skin;  // x: wrap, y: specular strength, z: specular exponent
+};
+
+struct ToneConstants {
+    float4 exposure;  // x: factor on the light, y: on the sum of frames, z: 1 when the shader encodes sRGB
+                      // itself
+};
+
+// Marks over the picture: OverlayShape says what `shape` means.
+struct OverlayConstants {
+    float4x4 clipFromWorld;
+    float4
+        viewport;  // x, y: size in pixels, z: 1 when colours stay sRGB, w: half the size of a mark in pixels
+    uint4 shape;   // x: 0 points, 1 lines, 2 triangles; y: first vertex
+};
+
+struct OverlayVertex {
+    float4 position_ws;
+    float4 colour;
 };
 
 // One case for the shader's Kajiya-Kay, as tests feed it.
@@ -85,12 +111,13 @@ struct KajiyaCase {
 #ifdef __cplusplus
 HAIRLOOM_OFFSET(StrandHeader, random, 12);
 HAIRLOOM_OFFSET(StrandHeader, albedo, 16);
-static_assert(sizeof(StrandHeader) == 32);
+HAIRLOOM_OFFSET(StrandHeader, source, 32);
+static_assert(sizeof(StrandHeader) == 48);
 HAIRLOOM_OFFSET(CurvePoint, tangentXy, 16);
 HAIRLOOM_OFFSET(CurvePoint, along, 20);
 HAIRLOOM_OFFSET(CurvePoint, strand, 24);
 static_assert(sizeof(CurvePoint) == 32);
-static_assert(sizeof(CurveConstants) == 16);
+static_assert(sizeof(CurveConstants) == 32);
 HAIRLOOM_OFFSET(ViewConstants, eye_ws, 64);
 HAIRLOOM_OFFSET(ViewConstants, pixel, 80);
 HAIRLOOM_OFFSET(ViewConstants, sampling, 96);
@@ -102,10 +129,14 @@ HAIRLOOM_OFFSET(LightConstants, range, 112);
 static_assert(sizeof(LightConstants) == 128);
 HAIRLOOM_OFFSET(ShadeConstants, shift, 80);
 HAIRLOOM_OFFSET(ShadeConstants, layers, 128);
-HAIRLOOM_OFFSET(ShadeConstants, counts, 144);
-HAIRLOOM_OFFSET(ShadeConstants, lights, 160);
-static_assert(sizeof(ShadeConstants) == 160 + 128 * HAIRLOOM_MAX_LIGHTS);
+HAIRLOOM_OFFSET(ShadeConstants, albedo, 144);
+HAIRLOOM_OFFSET(ShadeConstants, counts, 160);
+HAIRLOOM_OFFSET(ShadeConstants, lights, 176);
+static_assert(sizeof(ShadeConstants) == 176 + 128 * HAIRLOOM_MAX_LIGHTS);
 static_assert(sizeof(MeshConstants) == 80);
+static_assert(sizeof(ToneConstants) == 16);
+static_assert(sizeof(OverlayConstants) == 96);
+static_assert(sizeof(OverlayVertex) == 32);
 static_assert(sizeof(KajiyaCase) == 48);
 }  // namespace hairloom::shaders
 #endif

@@ -58,10 +58,10 @@ TEST(Reflection, RefusesWhatIsNotSpirV) {
 }
 
 TEST(Reflection, NamesRegisters) {
-    EXPECT_EQ(registerName(3), "b3");
-    EXPECT_EQ(registerName(16), "t0");
-    EXPECT_EQ(registerName(49), "s1");
-    EXPECT_EQ(registerName(66), "u2");
+    EXPECT_EQ(toString(toRegister(3)), "b3");
+    EXPECT_EQ(toString(toRegister(16)), "t0");
+    EXPECT_EQ(toString(toRegister(49)), "s1");
+    EXPECT_EQ(toString(toRegister(66)), "u2");
 }
 
 }  // namespace

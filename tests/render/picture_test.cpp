@@ -86,7 +86,7 @@ TEST_F(RenderTest, SamePictureTwice) {
     std::vector<std::string> names;
     for (const auto& pass : first->passes) names.push_back(pass.name);
     EXPECT_THAT(names, testing::ElementsAre("curves", "head depth", "first hair", "opacity layers", "shade",
-                                            "draw", "accumulate"));
+                                            "draw", "accumulate", "tone map"));
 }
 
 TEST_F(RenderTest, HairShadowsHairAndHead) {

@@ -86,7 +86,7 @@ TEST_F(ShaderTest, SharedLayoutsAgree) {
     shade.lights[2].range = {17, 18, 19, 20};
     for (int i = 0; i < 4; ++i) shade.lights[1].clipFromWorld.m[12 + i] = static_cast<float>(21 + i);
     std::vector<shaders::StrandHeader> strands(2);
-    strands[1] = {30, 31, 32, 0.5f, {33, 34, 35, 36}};
+    strands[1] = {30, 31, 32, 0.5f, {33, 34, 35, 36}, 37, 0, 0, 0};
     std::vector<shaders::CurvePoint> curve(2);
     curve[1] = {{1, 1, 1, 1}, 40, 0.25f, 41, 0};
     const auto r = run("layout_echo.comp", 8, 1,

@@ -15,20 +15,6 @@ bool isWrite(std::uint32_t binding) {
     return binding >= kWriteShift;
 }
 
-std::uint32_t bindingNumber(const Binding& binding) {
-    switch (binding.kind) {
-        case Binding::Kind::ConstantBuffer:
-            return kConstantShift + binding.slot;
-        case Binding::Kind::ShaderResource:
-            return kReadShift + binding.slot;
-        case Binding::Kind::Sampler:
-            return kSamplerShift + binding.slot;
-        case Binding::Kind::UnorderedAccess:
-            break;
-    }
-    return kWriteShift + binding.slot;
-}
-
 Usage neededUsage(Binding::Kind kind) {
     switch (kind) {
         case Binding::Kind::ConstantBuffer:
@@ -48,7 +34,7 @@ Usage neededUsage(Binding::Kind kind) {
 void CommandListImpl::bind(std::span<const Binding> bindings) {
     if (pass_ == PassKind::None) return wrong("bind outside a pass");
     for (const Binding& binding : bindings) {
-        bound_[bindingNumber(binding)] = binding;
+        bound_[toBinding({binding.kind, binding.slot})] = binding;
         if (binding.buffer) static_cast<void>(keep(binding.buffer));
         if (binding.texture) static_cast<void>(keep(binding.texture));
         if (binding.sampler) keep(binding.sampler);
@@ -143,7 +129,7 @@ bool CommandListImpl::useBinding(const Binding& binding, const ReflectedBinding&
 VkDescriptorSet CommandListImpl::makeSet(const PipelineCore& pipeline, VkPipelineStageFlags2 stages) {
     for (const ReflectedBinding& wanted : pipeline.bindings) {
         const std::string where =
-            "register " + registerName(wanted.binding) + " of pipeline '" + pipeline.name + "'";
+            "register " + toString(toRegister(wanted.binding)) + " of pipeline '" + pipeline.name + "'";
         const auto found = bound_.find(wanted.binding);
         if (found == bound_.end()) return wrong(where + " is not bound"), VK_NULL_HANDLE;
         if (!useBinding(found->second, wanted, stages, where)) return VK_NULL_HANDLE;

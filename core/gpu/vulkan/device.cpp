@@ -7,7 +7,9 @@
 #include <cctype>
 #include <utility>
 
+#include "core/gpu/checks.h"
 #include "core/gpu/vulkan/backend.h"
+#include "core/gpu/vulkan/swap_chain.h"
 
 namespace hairloom::gpu::vulkan {
 namespace {
@@ -86,44 +88,15 @@ Status openDevice(Context& context) {
     info.pNext = &f2;
     info.queueCreateInfoCount = 1;
     info.pQueueCreateInfos = &queue;
+    const char* swapChain = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
+    if (context.info.presents) {
+        info.enabledExtensionCount = 1;
+        info.ppEnabledExtensionNames = &swapChain;
+    }
     const VkResult r = vkCreateDevice(context.physical, &info, nullptr, &context.device);
     if (r != VK_SUCCESS) return failed(r, "opening GPU '" + context.info.name + "'");
     vkGetDeviceQueue(context.device, context.queueFamily, 0, &context.queue);
     context.allocator.init(context.physical, context.device);
-    return {};
-}
-
-Status checkDesc(const DeviceInfo& info, const BufferDesc& desc, std::size_t content) {
-    const auto wrong = [&](const std::string& what) { return fail("buffer '" + desc.name + "': " + what); };
-    if (desc.size == 0) return wrong("a size of 0 bytes");
-    if (desc.size > info.maxBufferBytes) {
-        return wrong(fmt::format("{} bytes, the device allows {}", desc.size, info.maxBufferBytes));
-    }
-    if (content != 0 && content != desc.size) return wrong("the content does not have the buffer's size");
-    if (content != 0 && desc.memory == MemoryKind::ReadBack)
-        return wrong("a read-back buffer has no first content");
-    return {};
-}
-
-Status checkDesc(const DeviceInfo& info, const TextureDesc& desc, std::size_t content) {
-    const auto wrong = [&](const std::string& what) { return fail("texture '" + desc.name + "': " + what); };
-    const std::uint32_t texel = bytesPerTexel(desc.format);
-    if (texel == 0) return wrong("no format");
-    if (desc.width == 0 || desc.height == 0 || desc.width > info.maxTextureSize ||
-        desc.height > info.maxTextureSize) {
-        return wrong(
-            fmt::format("{}x{} pixels, 1 to {} are possible", desc.width, desc.height, info.maxTextureSize));
-    }
-    if (std::ranges::find(info.sampleCounts, desc.samples) == info.sampleCounts.end()) {
-        return wrong(fmt::format("the device has no {} samples a pixel", desc.samples));
-    }
-    if (has(desc.usage, Usage::DepthStencil) != (desc.format == Format::D32Float) &&
-        (has(desc.usage, Usage::DepthStencil) || has(desc.usage, Usage::RenderTarget))) {
-        return wrong("depth formats are for depth targets, colour formats for colour targets");
-    }
-    if (content != 0 && (desc.samples != 1 || content != std::uint64_t{desc.width} * desc.height * texel)) {
-        return wrong("the content does not have the texture's size");
-    }
     return {};
 }
 
@@ -155,7 +128,8 @@ Result<std::unique_ptr<gpu::Device>> DeviceImpl::create(const DeviceOptions& opt
     if (!physical) return tl::unexpected(physical.error());
     std::vector<DeviceInfo> infos;
     for (VkPhysicalDevice device : *physical) {
-        infos.push_back(describe(device, static_cast<std::uint32_t>(infos.size())));
+        infos.push_back(
+            describe(device, static_cast<std::uint32_t>(infos.size()), context->instance->presents()));
     }
     const auto chosen = choose(infos, options);
     if (!chosen) return tl::unexpected(chosen.error());
@@ -249,6 +223,11 @@ Result<GraphicsPipelinePtr> DeviceImpl::createGraphicsPipeline(const GraphicsPip
 
 Result<ComputePipelinePtr> DeviceImpl::createComputePipeline(const ComputePipelineDesc& desc) {
     return createPipeline(context_, desc);
+}
+
+Result<std::unique_ptr<SwapChain>> DeviceImpl::createSwapChain(const SwapChainDesc& desc) {
+    if (auto status = context_->checkAlive(); !status) return tl::unexpected(status.error());
+    return SwapChainImpl::create(context_, desc);
 }
 
 Result<std::unique_ptr<CommandList>> DeviceImpl::createCommandList() {

@@ -39,6 +39,7 @@ class DeviceImpl final : public gpu::Device {
     Result<ShaderPtr> createShader(const ShaderDesc& desc) override;
     Result<GraphicsPipelinePtr> createGraphicsPipeline(const GraphicsPipelineDesc& desc) override;
     Result<ComputePipelinePtr> createComputePipeline(const ComputePipelineDesc& desc) override;
+    Result<std::unique_ptr<SwapChain>> createSwapChain(const SwapChainDesc& desc) override;
     Result<std::unique_ptr<CommandList>> createCommandList() override;
     Result<SubmissionPtr> submit(std::unique_ptr<CommandList> list) override;
     Status readMapped(const BufferPtr& buffer, std::uint64_t offset, std::span<std::byte> target) override;

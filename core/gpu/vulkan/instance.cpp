@@ -43,6 +43,34 @@ bool hasLayer(const char* name) {
     return false;
 }
 
+/// The extensions that make surfaces of windows; empty where the loader lacks one.
+std::vector<const char*> surfaceExtensions() {
+#ifdef VK_USE_PLATFORM_XCB_KHR
+    const std::vector<const char*> wanted = {VK_KHR_SURFACE_EXTENSION_NAME,
+                                             VK_KHR_XCB_SURFACE_EXTENSION_NAME};
+    std::uint32_t count = 0;
+    vkEnumerateInstanceExtensionProperties(nullptr, &count, nullptr);
+    std::vector<VkExtensionProperties> offered(count);
+    if (count > 0) vkEnumerateInstanceExtensionProperties(nullptr, &count, offered.data());
+    const auto isOffered = [&](const char* name) {
+        return std::ranges::any_of(offered,
+                                   [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
+    };
+    if (std::ranges::all_of(wanted, isOffered)) return wanted;
+#endif
+    return {};
+}
+
+bool hasSwapChainExtension(VkPhysicalDevice physical) {
+    std::uint32_t count = 0;
+    vkEnumerateDeviceExtensionProperties(physical, nullptr, &count, nullptr);
+    std::vector<VkExtensionProperties> offered(count);
+    if (count > 0) vkEnumerateDeviceExtensionProperties(physical, nullptr, &count, offered.data());
+    return std::ranges::any_of(offered, [](const auto& extension) {
+        return std::strcmp(extension.extensionName, VK_KHR_SWAPCHAIN_EXTENSION_NAME) == 0;
+    });
+}
+
 tl::unexpected<Error> noDriver() {
     return fail("no Vulkan driver on this machine",
                 "a GPU driver, or a software one (Debian: mesa-vulkan-drivers)");
@@ -84,7 +112,8 @@ Result<std::unique_ptr<Instance>> Instance::create(bool validation) {
     std::unique_ptr<Instance> result(new Instance);
     auto info = make<VkInstanceCreateInfo>(VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO);
     info.pApplicationInfo = &application;
-    const char* extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
+    std::vector<const char*> extensions = surfaceExtensions();
+    result->presents_ = !extensions.empty();
     auto messenger = messengerInfo(&result->log_);
     const VkValidationFeatureEnableEXT enabled[] = {
         VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
@@ -94,11 +123,12 @@ Result<std::unique_ptr<Instance>> Instance::create(bool validation) {
     if (validation) {
         info.enabledLayerCount = 1;
         info.ppEnabledLayerNames = &kValidationLayer;
-        info.enabledExtensionCount = 1;
-        info.ppEnabledExtensionNames = &extension;
+        extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
         features.pNext = &messenger;
         info.pNext = &features;
     }
+    info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
+    info.ppEnabledExtensionNames = extensions.data();
     if (const VkResult r = vkCreateInstance(&info, nullptr, &result->instance_); r != VK_SUCCESS) {
         if (r == VK_ERROR_INCOMPATIBLE_DRIVER) return noDriver();
         return failed(r, "starting Vulkan");
@@ -143,7 +173,7 @@ int findQueueFamily(VkPhysicalDevice physical) {
     return -1;
 }
 
-DeviceInfo describe(VkPhysicalDevice physical, std::uint32_t index) {
+DeviceInfo describe(VkPhysicalDevice physical, std::uint32_t index, bool surfaces) {
     auto driver = make<VkPhysicalDeviceDriverProperties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES);
     auto p2 = make<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2);
     VkPhysicalDeviceProperties first;
@@ -199,6 +229,7 @@ DeviceInfo describe(VkPhysicalDevice physical, std::uint32_t index) {
     info.tessellation = f2.features.tessellationShader == VK_TRUE && limits.maxTessellationPatchSize >= 32;
     info.depthClamp = f2.features.depthClamp == VK_TRUE;
     info.wireframe = f2.features.fillModeNonSolid == VK_TRUE;
+    info.presents = surfaces && hasSwapChainExtension(physical);
     info.timestampPeriodNs =
         limits.timestampComputeAndGraphics == VK_TRUE ? static_cast<double>(limits.timestampPeriod) : 0.0;
     info.maxBufferBytes = limits.maxStorageBufferRange;
@@ -219,7 +250,7 @@ Result<std::vector<DeviceInfo>> listDevices() {
     if (!physical) return tl::unexpected(physical.error());
     std::vector<DeviceInfo> infos;
     for (VkPhysicalDevice device : *physical) {
-        infos.push_back(describe(device, static_cast<std::uint32_t>(infos.size())));
+        infos.push_back(describe(device, static_cast<std::uint32_t>(infos.size()), (*instance)->presents()));
     }
     return infos;
 }

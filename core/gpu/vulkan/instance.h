@@ -30,6 +30,8 @@ class Instance {
     Instance& operator=(const Instance&) = delete;
 
     VkInstance handle() const { return instance_; }
+    /// Surfaces of windows can be made.
+    bool presents() const { return presents_; }
     std::vector<std::string> messages() const { return log_.all(); }
     Result<std::vector<VkPhysicalDevice>> physicalDevices() const;
 
@@ -37,10 +39,12 @@ class Instance {
     Instance() = default;
     VkInstance instance_ = VK_NULL_HANDLE;
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+    bool presents_ = false;
     MessageLog log_;
 };
 
-DeviceInfo describe(VkPhysicalDevice physical, std::uint32_t index);
+/// `surfaces`: the instance can make surfaces of windows.
+DeviceInfo describe(VkPhysicalDevice physical, std::uint32_t index, bool surfaces);
 /// Family with graphics, compute and copies; -1 where there is none.
 int findQueueFamily(VkPhysicalDevice physical);
 

@@ -176,13 +176,16 @@ Status PipelineCore::createLayout(std::span<const ShaderImpl* const> shaders) {
             } else {
                 return fail("pipeline '" + name +
                             "': its shaders see different kinds of resource at register " +
-                            registerName(b.binding));
+                            toString(toRegister(b.binding)));
             }
         }
     }
     std::ranges::sort(bindings, {}, &ReflectedBinding::binding);
     std::vector<VkDescriptorSetLayoutBinding> entries;
-    for (const ReflectedBinding& b : bindings) entries.push_back({b.binding, b.type, 1, b.stages, nullptr});
+    for (const ReflectedBinding& b : bindings) {
+        entries.push_back({b.binding, b.type, 1, b.stages, nullptr});
+        registers.push_back(toRegister(b.binding));
+    }
     auto set = make<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
     set.bindingCount = static_cast<std::uint32_t>(entries.size());
     set.pBindings = entries.data();

@@ -81,11 +81,25 @@ Result<VkDescriptorType> descriptorType(const Module& module, const Module::Vari
 
 }  // namespace
 
-std::string registerName(std::uint32_t binding) {
-    if (binding >= kWriteShift) return fmt::format("u{}", binding - kWriteShift);
-    if (binding >= kSamplerShift) return fmt::format("s{}", binding - kSamplerShift);
-    if (binding >= kReadShift) return fmt::format("t{}", binding - kReadShift);
-    return fmt::format("b{}", binding);
+ShaderRegister toRegister(std::uint32_t binding) {
+    if (binding >= kWriteShift) return {Binding::Kind::UnorderedAccess, binding - kWriteShift};
+    if (binding >= kSamplerShift) return {Binding::Kind::Sampler, binding - kSamplerShift};
+    if (binding >= kReadShift) return {Binding::Kind::ShaderResource, binding - kReadShift};
+    return {Binding::Kind::ConstantBuffer, binding - kConstantShift};
+}
+
+std::uint32_t toBinding(const ShaderRegister& shaderRegister) {
+    switch (shaderRegister.kind) {
+        case Binding::Kind::ConstantBuffer:
+            return kConstantShift + shaderRegister.slot;
+        case Binding::Kind::ShaderResource:
+            return kReadShift + shaderRegister.slot;
+        case Binding::Kind::Sampler:
+            return kSamplerShift + shaderRegister.slot;
+        case Binding::Kind::UnorderedAccess:
+            break;
+    }
+    return kWriteShift + shaderRegister.slot;
 }
 
 Result<std::vector<ReflectedBinding>> reflect(std::span<const std::uint32_t> words,

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "core/gpu/types.h"
 #include "core/gpu/vulkan/api.h"
 
 namespace hairloom::gpu::vulkan {
@@ -22,8 +23,8 @@ struct ReflectedBinding {
     VkShaderStageFlags stages = 0;
 };
 
-/// "b0", "t3" … for messages.
-std::string registerName(std::uint32_t binding);
+ShaderRegister toRegister(std::uint32_t binding);
+std::uint32_t toBinding(const ShaderRegister& shaderRegister);
 
 /// Errors: not SPIR-V, or a kind of resource that the interface does not have. Does not judge validity
 /// otherwise.

@@ -117,11 +117,14 @@ struct PipelineCore {
     VkPipelineLayout layout = VK_NULL_HANDLE;
     VkPipeline handle = VK_NULL_HANDLE;
     std::vector<ReflectedBinding> bindings;  ///< ascending
+    std::vector<ShaderRegister> registers;   ///< the same as the interface names them
 };
 
 class GraphicsPipelineImpl final : public GraphicsPipeline {
   public:
     explicit GraphicsPipelineImpl(ContextPtr context) : core(std::move(context)) {}
+    const std::string& name() const override { return core.name; }
+    std::span<const ShaderRegister> registers() const override { return core.registers; }
     PipelineCore core;
     GraphicsPipelineDesc desc;
 };
@@ -129,6 +132,8 @@ class GraphicsPipelineImpl final : public GraphicsPipeline {
 class ComputePipelineImpl final : public ComputePipeline {
   public:
     explicit ComputePipelineImpl(ContextPtr context) : core(std::move(context)) {}
+    const std::string& name() const override { return core.name; }
+    std::span<const ShaderRegister> registers() const override { return core.registers; }
     PipelineCore core;
 };
 

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/render/options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/render/light.h"
+
+namespace hairloom::render {
+
+Status check(const RenderOptions& o, const gpu::DeviceInfo& device) {
+    const std::uint64_t pixels = std::uint64_t{o.width} * o.height;
+    const std::uint32_t limit = device.maxTextureSize;
+    if (pixels == 0 || o.width > limit || o.height > limit || pixels > kMaxPixels) {
+        return fail(fmt::format("a picture of {}x{} pixels", o.width, o.height),
+                    fmt::format("1 to {} along a side and at most {} in all", limit, kMaxPixels));
+    }
+    if (o.frames < 1 || o.frames > 1024) return fail(fmt::format("{} frames", o.frames), "1 to 1024");
+    if (o.subdivisions < 1 || o.subdivisions > 64) {
+        return fail(fmt::format("{} subdivisions", o.subdivisions), "1 to 64");
+    }
+    if (o.shadowResolution < 64 || o.shadowResolution > 4096 || o.shadowResolution * kMaxLights > limit) {
+        return fail(fmt::format("a shadow map of {} pixels", o.shadowResolution), "64 to 4096");
+    }
+    if (!(o.exposure > 0) || !(o.exposure < 1e6f)) return fail("an exposure that is not positive");
+    return {};
+}
+
+Result<std::uint32_t> chooseSamples(const RenderOptions& options, const gpu::DeviceInfo& device) {
+    if (options.samples == 0) return std::min(device.maxSamples(), 8u);
+    if (std::ranges::find(device.sampleCounts, options.samples) == device.sampleCounts.end() ||
+        options.samples > 8) {
+        std::string counts;
+        for (const std::uint32_t n : device.sampleCounts)
+            counts += (counts.empty() ? "" : ", ") + std::to_string(n);
+        return fail(fmt::format("{} samples a pixel on {}", options.samples, device.name),
+                    "one of " + counts);
+    }
+    return options.samples;
+}
+
+}  // namespace hairloom::render

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From light to a picture: exposure, tone curve, and marks over it.
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "core/render/passes.h"
+
+namespace hairloom::render {
+namespace {
+
+using gpu::Binding;
+
+constexpr std::uint64_t kLeastOverlayVertices = 256;
+
+/// The device turns linear values into sRGB itself when it writes into this format.
+bool encodesItself(gpu::Format format) {
+    return format == gpu::Format::Rgba8UnormSrgb;
+}
+
+std::uint32_t verticesPerShape(OverlayShape shape) {
+    return 1 + static_cast<std::uint32_t>(shape);
+}
+
+/// Corners that the shader makes of a batch: six for the square around a point or a line.
+std::uint32_t corners(const OverlayBatch& batch) {
+    const auto count = static_cast<std::uint32_t>(batch.vertices.size());
+    return batch.shape == OverlayShape::triangles ? count : count / verticesPerShape(batch.shape) * 6;
+}
+
+/// Marks may lie in front of and behind all that is drawn.
+Mat4f overlayMatrix(const RendererState& state) {
+    Box3f box = state.bounds();
+    box.extend(state.overlay.bounds_ws);
+    return cameraMatrix(state, box);
+}
+
+void drawOverlay(gpu::CommandList& list, RendererState& state, gpu::Format format, bool onTop) {
+    GraphicsNeeds needs{
+        .vertex = "overlay.vert", .pixel = "overlay.frag", .colour = format, .blend = Blend::over};
+    needs.depthTest = !onTop;
+    list.setPipeline(state.pipelines.graphics(needs));
+    list.bind(std::vector<Binding>{Binding::read(0, state.overlay.vertices)});
+    shaders::OverlayConstants constants;
+    constants.clipFromWorld = toShader(overlayMatrix(state));
+    constants.viewport = {static_cast<float>(state.options.width), static_cast<float>(state.options.height),
+                          encodesItself(format) ? 0.0f : 1.0f, 0};
+    std::uint32_t first = 0;
+    for (const OverlayBatch& batch : state.overlay.overlay.batches) {
+        if (batch.onTop == onTop && !batch.vertices.empty()) {
+            constants.shape = {static_cast<std::uint32_t>(batch.shape), first, 0, 0};
+            constants.viewport.w = 0.5f * batch.size;
+            list.setConstants(0, gpu::bytesOf(constants));
+            list.draw(corners(batch));
+        }
+        first += static_cast<std::uint32_t>(batch.vertices.size());
+    }
+}
+
+}  // namespace
+
+Status check(const Overlay& overlay) {
+    for (const OverlayBatch& batch : overlay.batches) {
+        if (batch.vertices.size() % verticesPerShape(batch.shape) != 0) {
+            return fail(fmt::format("{} vertices of marks", batch.vertices.size()),
+                        fmt::format("{} each", verticesPerShape(batch.shape)));
+        }
+        if (!(batch.size >= 0 && batch.size <= 1000)) {
+            return fail(fmt::format("marks of {} pixels", batch.size), "0 to 1000");
+        }
+        for (const OverlayVertex& vertex : batch.vertices) {
+            if (!vertex.position_ws.head<3>().allFinite() || !vertex.colour.allFinite()) {
+                return fail("a mark with a number that is not finite");
+            }
+        }
+    }
+    return {};
+}
+
+bool OverlayOnDevice::needsDepth() const {
+    return std::ranges::any_of(overlay.batches, [](const OverlayBatch& b) { return !b.onTop; });
+}
+
+void recordPresent(gpu::CommandList& list, RendererState& state, std::uint32_t frames,
+                   const gpu::TexturePtr& target) {
+    list.beginPass({"tone map", {{target, gpu::LoadOp::Discard, {}, {}}}, {}});
+    list.setPipeline(state.pipelines.graphics(
+        {.vertex = "fullscreen.vert", .pixel = "tone_map.frag", .colour = target->desc().format}));
+    shaders::ToneConstants constants;
+    constants.exposure = {state.options.exposure, 1 / static_cast<float>(frames),
+                          encodesItself(target->desc().format) ? 0.0f : 1.0f, 0};
+    list.setConstants(0, gpu::bytesOf(constants));
+    list.bind(std::vector<Binding>{Binding::read(0, state.targets.sum)});
+    list.draw(3);
+    list.endPass();
+}
+
+Status prepareOverlay(gpu::Device& device, gpu::CommandList& list, OverlayOnDevice& overlay) {
+    if (!overlay.waits) return {};
+    std::uint64_t count = 0;
+    for (const OverlayBatch& batch : overlay.overlay.batches) count += batch.vertices.size();
+    const std::uint64_t room =
+        overlay.vertices == nullptr ? 0 : overlay.vertices->desc().size / sizeof(OverlayVertex);
+    if (count > room) {
+        gpu::BufferDesc desc;
+        desc.name = "overlay";
+        desc.elementBytes = sizeof(OverlayVertex);
+        desc.size = std::max({count, kLeastOverlayVertices, 2 * room}) * sizeof(OverlayVertex);
+        auto buffer = device.createBuffer(desc);
+        if (!buffer) return tl::unexpected(buffer.error());
+        overlay.vertices = std::move(*buffer);
+    }
+    std::uint64_t offset = 0;
+    for (const OverlayBatch& batch : overlay.overlay.batches) {
+        if (batch.vertices.empty()) continue;
+        const auto bytes = std::as_bytes(std::span(batch.vertices));
+        list.updateBuffer(overlay.vertices, offset, bytes);
+        offset += bytes.size();
+    }
+    overlay.waits = false;
+    return {};
+}
+
+void recordOverlay(gpu::CommandList& list, RendererState& state, const gpu::TexturePtr& target) {
+    const gpu::Format format = target->desc().format;
+    const auto& batches = state.overlay.overlay.batches;
+    if (state.overlay.needsDepth()) {
+        list.beginPass({"overlay depth", {}, {state.targets.overlayDepth, gpu::LoadOp::Clear, 1}});
+        list.setPipeline(state.pipelines.graphics(kMeshDepth));
+        shaders::MeshConstants constants;
+        constants.clipFromWorld = toShader(overlayMatrix(state));
+        list.setConstants(1, gpu::bytesOf(constants));
+        drawMeshes(list, state);
+        list.endPass();
+        list.beginPass({"overlay",
+                        {{target, gpu::LoadOp::Load, {}, {}}},
+                        {state.targets.overlayDepth, gpu::LoadOp::Load, 1}});
+        drawOverlay(list, state, format, false);
+        list.endPass();
+    }
+    if (std::ranges::any_of(batches, &OverlayBatch::onTop)) {
+        list.beginPass({"overlay on top", {{target, gpu::LoadOp::Load, {}, {}}}, {}});
+        drawOverlay(list, state, format, true);
+        list.endPass();
+    }
+}
+
+}  // namespace hairloom::render

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Pictures frame after frame: what has not changed since the last frame is not done again.
+//
+// A scene goes to the device once; then positions, materials, camera, lights and marks are replaced one by
+// one, and options come with each frame. record() writes commands and does not wait for the device; the times
+// of its passes are Submission::passTimes() of the list that it recorded into. In steady state (same scene,
+// options and target format) it creates nothing on the device. Used from one thread at a time, as the device
+// is.
+
+#include <memory>
+#include <span>
+
+#include "core/render/options.h"
+#include "core/render/overlay.h"
+#include "core/render/scene.h"
+
+namespace hairloom::gpu {
+class CommandList;
+class Device;
+}  // namespace hairloom::gpu
+
+namespace hairloom::render {
+
+class Renderer {
+  public:
+    /// `device` outlives the renderer.
+    explicit Renderer(gpu::Device& device);
+    ~Renderer();
+    Renderer(Renderer&& other) noexcept;
+    Renderer& operator=(Renderer&& other) noexcept;
+
+    /// Takes all of the scene to the device; nothing of its spans is kept. Errors: as check(RenderScene), and
+    /// what the device reports; the scene is then empty.
+    Status setScene(const RenderScene& scene);
+
+    // What follows replaces parts of the scene. Each takes effect with the next record() and keeps what was
+    // there when it fails: arrays of another length, numbers that are not finite, no such mesh or group.
+
+    /// One position a vertex of RenderScene::meshes[mesh]. Without normals they are averaged from the faces.
+    Status setMeshPositions(std::size_t mesh, std::span<const Vec3f> positions_ws,
+                            std::span<const Vec3f> normals_ws = {});
+    /// One position a point of RenderScene::strands[group], strand after strand as its offsets say.
+    Status setStrandPositions(std::size_t group, std::span<const Vec3f> positions_ws);
+    /// The same from a buffer that the device itself writes: point p of strand s is at element p * strands +
+    /// s, of 3 or 4 floats (a fourth is ignored). Call it again whenever the content has changed. `bounds_ws`
+    /// holds all points: light and depth are fitted to it.
+    Status setStrandPositions(std::size_t group, gpu::BufferPtr positions_ws, std::uint32_t floatsPerPoint,
+                              const Box3f& bounds_ws);
+    Status setMaterial(std::size_t group, const HairMaterial& material);
+    Status setCamera(const Camera& camera);
+    Status setLights(std::span<const Light> lights);
+    void setAmbient(const Vec3f& sky, const Vec3f& ground);
+    void setBackground(const Vec3f& linear);
+    /// Does not restart the average: marks are drawn over the finished picture.
+    Status setOverlay(Overlay overlay);
+
+    /// Records what this frame needs: uploads and preparation where something changed, one more frame of the
+    /// average unless it has `options.frames` already, and, where there is a target, the picture with its
+    /// marks. The average starts anew when anything but the overlay or the exposure has changed. The target
+    /// has one sample a pixel, the options' size and any colour format; floats get the values that 8 bits
+    /// would be rounded from. Errors: as check(RenderOptions), a target of another size, what the device
+    /// reports. Some errors only show when the list is submitted.
+    Status record(gpu::CommandList& list, const RenderOptions& options, const gpu::TexturePtr& target);
+
+    /// Forgets the average, as after a change.
+    void restart();
+    /// Frames in the average, 0 before the first.
+    std::uint32_t accumulated() const;
+    /// Sum of accumulated() frames: linear RGB before exposure, and coverage; Rgba32Float.
+    const gpu::TexturePtr& linearSum() const;
+
+    Box3f bounds() const;  ///< of all meshes and strands
+    std::uint64_t triangles() const;
+    std::uint64_t strands() const;      ///< that are drawn
+    std::uint64_t curvePoints() const;  ///< of the last frame
+
+  private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace hairloom::render

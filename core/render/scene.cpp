@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/render/scene.h"
+
+#include <fmt/format.h>
+
+namespace hairloom::render {
+namespace {
+
+Status checkMesh(const RenderMesh& mesh) {
+    const std::size_t vertices = mesh.positions_ws.size();
+    if (mesh.indices.size() % 3 != 0) return fail("a mesh whose indices are not three a triangle");
+    if (!mesh.normals_ws.empty() && mesh.normals_ws.size() != vertices) {
+        return fail(fmt::format("a mesh of {} vertices with {} normals", vertices, mesh.normals_ws.size()));
+    }
+    if (!mesh.triangleAlbedo.empty() && mesh.triangleAlbedo.size() != mesh.indices.size() / 3) {
+        return fail(fmt::format("a mesh of {} triangles with {} colours", mesh.indices.size() / 3,
+                                mesh.triangleAlbedo.size()));
+    }
+    for (std::size_t i = 0; i < vertices; ++i) {
+        if (!mesh.positions_ws[i].allFinite()) return fail(fmt::format("mesh vertex {} is not finite", i));
+    }
+    for (const std::uint32_t index : mesh.indices) {
+        if (index >= vertices) return fail(fmt::format("mesh index {} of {} vertices", index, vertices));
+    }
+    return {};
+}
+
+Status checkStrands(const RenderStrands& strands) {
+    if (strands.offsets.empty()) return {};
+    const std::size_t points = strands.positions_ws.size();
+    if (!strands.radii.empty() && strands.radii.size() != points) {
+        return fail(fmt::format("{} strand points with {} radii", points, strands.radii.size()));
+    }
+    const std::size_t count = strands.offsets.size() - 1;
+    if (!strands.colours.empty() && strands.colours.size() != count) {
+        return fail(fmt::format("{} strands with {} colours", count, strands.colours.size()));
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        if (strands.offsets[i] > strands.offsets[i + 1] || strands.offsets[i + 1] > points) {
+            return fail(fmt::format("strand {} has the points {} to {}, of {}", i, strands.offsets[i],
+                                    strands.offsets[i + 1], points));
+        }
+        for (std::uint32_t p = strands.offsets[i]; p < strands.offsets[i + 1]; ++p) {
+            const bool radiusOk = strands.radii.empty() || (strands.radii[p] >= 0 && strands.radii[p] < 1);
+            if (strands.positions_ws[p].allFinite() && radiusOk) continue;
+            return fail(fmt::format("point {} of strand {} is not finite, or its radius is not 0 to 1 m",
+                                    p - strands.offsets[i], i));
+        }
+    }
+    return {};
+}
+
+}  // namespace
+
+Status check(const RenderScene& scene) {
+    if (auto status = check(scene.camera); !status) return status;
+    if (auto status = check(scene.lights); !status) return status;
+    for (const RenderMesh& mesh : scene.meshes) {
+        if (auto status = checkMesh(mesh); !status) return status;
+    }
+    for (const RenderStrands& strands : scene.strands) {
+        if (auto status = checkStrands(strands); !status) return status;
+    }
+    return {};
+}
+
+Box3f boundsOf(const RenderScene& scene) {
+    Box3f box;
+    for (const RenderMesh& mesh : scene.meshes) {
+        for (const Vec3f& p : mesh.positions_ws) box.extend(p);
+    }
+    for (const RenderStrands& strands : scene.strands) {
+        for (const Vec3f& p : strands.positions_ws) box.extend(p);
+    }
+    return box;
+}
+
+}  // namespace hairloom::render
