@@ -53,6 +53,11 @@ class EngineMethod : public StrandMethod {
         volumeMilliseconds_ += spent;
     }
 
+    Status setSettings(const runtime::SimulationSettings& settings) override {
+        if (const std::string problem = engine_.setSettings(settings); !problem.empty()) return fail(problem);
+        return {};
+    }
+
     void readPositions(std::span<runtime::Float3> positions_ws) const override {
         engine_.readPositions(positions_ws);
     }

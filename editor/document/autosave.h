@@ -3,6 +3,7 @@
 // A copy of what is unsaved, written every few minutes beside nothing of the user's, and offered again when
 // the program did not end as it should.
 
+#include <QDateTime>
 #include <QLockFile>
 #include <QTimer>
 #include <memory>

@@ -143,7 +143,7 @@ Status RenderWork::resize(std::uint32_t width, std::uint32_t height) {
         desc.width = width;
         desc.height = height;
         desc.format = gpu::Format::Bgra8Unorm;
-        desc.usage = gpu::Usage::RenderTarget | gpu::Usage::CopySource;
+        desc.usage = gpu::Usage::RenderTarget;
         auto made = device_->createTexture(desc);
         if (!made) return tl::unexpected(made.error());
         target_ = std::move(*made);

@@ -138,8 +138,7 @@ void Viewport::useCanvas() {
 }
 
 void Viewport::useWindow() {
-    const auto* x11 = qApp->nativeInterface<QNativeInterface::QX11Application>();
-    if (window_ || !x11) return;
+    if (window_ || !qApp->nativeInterface<QNativeInterface::QX11Application>()) return;
     window_ = new QWindow;
     window_->setSurfaceType(QSurface::VulkanSurface);
     window_->installEventFilter(this);
@@ -149,8 +148,18 @@ void Viewport::useWindow() {
     shown_->setFocusPolicy(Qt::StrongFocus);
     layout()->addWidget(shown_);
     shown_->show();
-    renderer_.setWindow(gpu::NativeWindow{x11->connection(), static_cast<std::uint32_t>(window_->winId())});
+    window_->create();
     redraw();
+}
+
+void Viewport::surfaceChanged(bool exists) {
+    const auto* x11 = qApp->nativeInterface<QNativeInterface::QX11Application>();
+    if (exists && x11) {
+        renderer_.setWindow(gpu::NativeWindow{x11->connection(), static_cast<std::uint32_t>(window_->winId())});
+        redraw();
+    } else {
+        renderer_.setWindow(std::nullopt);
+    }
 }
 
 QObject* Viewport::input() const {
@@ -381,10 +390,8 @@ bool Viewport::eventFilter(QObject* object, QEvent* event) {
             redraw();
             break;
         case QEvent::PlatformSurface:
-            if (static_cast<QPlatformSurfaceEvent*>(event)->surfaceEventType() ==
-                QPlatformSurfaceEvent::SurfaceAboutToBeDestroyed) {
-                renderer_.setWindow(std::nullopt);
-            }
+            surfaceChanged(static_cast<QPlatformSurfaceEvent*>(event)->surfaceEventType() ==
+                           QPlatformSurfaceEvent::SurfaceCreated);
             break;
         default: break;
     }

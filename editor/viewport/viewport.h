@@ -79,6 +79,8 @@ class Viewport : public QWidget {
     enum class Move { None, Turn, Pan, Zoom };
 
     void useWindow();
+    /// The window system has made or is about to take away what the device draws to.
+    void surfaceChanged(bool exists);
     void useCanvas();
     void post();
     void dragView(const QPointF& to_px);
