@@ -51,6 +51,7 @@ void addDevicesJob(Jobs& jobs);
 void addBenchJob(Jobs& jobs);
 void addAccuracyJob(Jobs& jobs);
 void addEffectsJob(Jobs& jobs);
+void addBudgetJob(Jobs& jobs);
 void addStabilityJob(Jobs& jobs);
 
 }  // namespace hairloom::cli

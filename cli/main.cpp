@@ -84,6 +84,7 @@ int main(int argc, char** argv) {
     hairloom::cli::addBenchJob(jobs);
     hairloom::cli::addAccuracyJob(jobs);
     hairloom::cli::addEffectsJob(jobs);
+    hairloom::cli::addBudgetJob(jobs);
     hairloom::cli::addStabilityJob(jobs);
     jobs.setCommandLine(joined(argc, argv));
 

@@ -5,6 +5,7 @@
 #include "cli/job.h"
 #include "cli/stopwatch.h"
 #include "core/base/file.h"
+#include "core/editing/replay.h"
 #include "core/groom/brushes/script.h"
 #include "core/groom/project_file.h"
 
@@ -23,7 +24,7 @@ Result<Report> replay(const GroomOptions& options) {
     if (!groom) return tl::unexpected(groom.error());
     const auto text = readTextFile(options.script);
     if (!text) return tl::unexpected(text.error());
-    const auto script = parseScript(options.script, *text);
+    const auto script = parseScript(options.script, *text, editing::scriptExtensions());
     if (!script) return tl::unexpected(script.error());
     const auto outcome = runScript(*script, *groom);
     if (!outcome) return tl::unexpected(outcome.error());

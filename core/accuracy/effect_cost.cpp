@@ -6,47 +6,10 @@
 #include <algorithm>
 #include <cassert>
 
+#include "core/accuracy/effect_switch.h"
+
 namespace hairloom {
 namespace {
-
-/// What turns an effect off: fields of the settings, all of whose components become 0. Torsion and sweep have
-/// none: they follow from the hair's shape and its speed.
-struct Switch {
-    const char* effect;
-    const char* field;
-};
-constexpr Switch kSwitches[] = {
-    {"damping", "dampingTime"},   {"sleep", "sleepSpeed"},         {"pearls", "pearlRadiusRoot"},
-    {"pearls", "pearlRadiusTip"}, {"gravity", "gravity"},          {"drag", "airDrag"},
-    {"wind", "windSpeed"},        {"angular", "angularStiffness"}, {"length", "lengthIterations"}};
-/// The one that no number turns off: without spheres nothing collides.
-constexpr std::string_view kCollision = "collision";
-
-struct Without {
-    SceneHair hair;
-    std::string how;
-};
-
-/// The scene without that effect, or nothing where nothing turns it off.
-std::optional<Without> without(const SceneHair& hair, const std::string& effect) {
-    Without result{hair, {}};
-    if (effect == kCollision) {
-        result.hair.groom.spheres.clear();
-        result.how = "no spheres";
-        return result;
-    }
-    for (const Switch& entry : kSwitches) {
-        if (effect != entry.effect) continue;
-        const runtime::FieldInfo* field = runtime::findField(entry.field);
-        assert(field);
-        for (std::uint32_t c = 0; c < runtime::componentCount(*field); ++c) {
-            if (!runtime::setFieldValue(result.hair.groom.simulation, *field, 0, c)) return std::nullopt;
-        }
-        result.how += fmt::format("{}simulation.{}=0", result.how.empty() ? "" : ", ", field->name);
-    }
-    if (result.how.empty()) return std::nullopt;
-    return result;
-}
 
 /// Effects other than `name` that are on in one run and off in the other: they count in the difference.
 std::string sideEffects(const std::string& name, const std::vector<EffectReport>& asIs,
@@ -85,7 +48,7 @@ EffectCosts describe(const std::vector<EffectReport>& reports, Variants& variant
         cost.why = report.why;
         cost.bytes = report.bytes;
         variants.without.emplace_back();
-        if (auto scene = report.on ? without(variants.asIs.hair, report.name) : std::nullopt) {
+        if (auto scene = report.on ? withoutEffect(variants.asIs.hair, report.name) : std::nullopt) {
             cost.turnedOffBy = scene->how;
             variants.without.back() = Variant{std::move(scene->hair), {}, {}};
         } else if (report.on) {

@@ -30,6 +30,7 @@ std::vector<float> bindToScalp(Groom& groom, std::shared_ptr<const ScalpMesh> sc
     groom.setRootBindings(roots);
     groom.strandAttributes.set(attribute::kRootUv, std::move(uvs));
     groom.triangulation = {};
+    if (groom.scalp != scalp) groom.scalpDensity.clear();
     groom.scalp = std::move(scalp);
     groom.scalpSelection = std::move(selection);
     return distances;

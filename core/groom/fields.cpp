@@ -10,6 +10,7 @@ namespace {
 
 using M = HairMaterial;
 using I = InterpolationSettings;
+using P = PlacementSettings;
 
 constexpr Field<M> kMaterialFields[] = {
     {"rootRadius", "m", 5e-6, 0.005, "half the fibre's diameter at the root; a hair has 25e-6 to 60e-6",
@@ -40,6 +41,16 @@ constexpr Field<I> kInterpolationFields[] = {
     {"seed", "", 0, kLargestSeed, "another seed gives other follow hairs", &I::seed},
 };
 
+constexpr Field<P> kPlacementFields[] = {
+    {"darts", "", 0, 1, "true places roots at even distances, false at random", &P::darts},
+    {"count", "", 1, 5e6, "number of roots; used while densityPerCm2 is 0", &P::count},
+    {"densityPerCm2", "1/cm²", 0, 10000, "roots per area where the density map is 1; 0 uses the count",
+     &P::densityPerCm2},
+    {"length", "m", 0.001, 5, "length of the strands that grow", &P::length},
+    {"points", "", 2, 1024, "points of a strand: more bend more finely and cost more", &P::points},
+    {"seed", "", 0, kLargestSeed, "another seed places other roots", &P::seed},
+};
+
 }  // namespace
 
 std::span<const Field<HairMaterial>> fieldsOf(const HairMaterial&) {
@@ -47,6 +58,9 @@ std::span<const Field<HairMaterial>> fieldsOf(const HairMaterial&) {
 }
 std::span<const Field<InterpolationSettings>> fieldsOf(const InterpolationSettings&) {
     return kInterpolationFields;
+}
+std::span<const Field<PlacementSettings>> fieldsOf(const PlacementSettings&) {
+    return kPlacementFields;
 }
 
 std::string rangeText(double min, double max, std::string_view unit) {

@@ -34,6 +34,7 @@ inline constexpr double kLargestSeed = 18446744073709551615.0;
 
 std::span<const Field<HairMaterial>> fieldsOf(const HairMaterial&);
 std::span<const Field<InterpolationSettings>> fieldsOf(const InterpolationSettings&);
+std::span<const Field<PlacementSettings>> fieldsOf(const PlacementSettings&);
 
 /// False for member types that are larger than S: no field has one, and compilers warn of reading beyond S
 /// there.

@@ -42,6 +42,16 @@ struct InterpolationSettings {
     std::uint64_t seed = 1;
 };
 
+/// How roots are placed on the scalp selection and what grows from them.
+struct PlacementSettings {
+    bool darts = true;           ///< true: at even distances (Poisson disk); false: at random
+    std::uint32_t count = 3000;  ///< roots, 1 … 5,000,000; used while densityPerCm2 is 0
+    float densityPerCm2 = 0;     ///< roots per cm², 0 … 10,000, where the density map is 1
+    float length = 0.15f;        ///< metres, 0.001 … 5
+    std::uint32_t points = 16;   ///< of a strand, 2 … 1024
+    std::uint64_t seed = 1;
+};
+
 struct Groom {
     /// Strand s owns points [offsets[s], offsets[s + 1]), root first. Size: strands + 1, first 0, ascending.
     CowArray<std::uint32_t> offsets{std::vector<std::uint32_t>{0}};
@@ -54,10 +64,12 @@ struct Groom {
     HairMaterial material;
     runtime::SimulationSettings simulation;
     InterpolationSettings interpolation;
+    PlacementSettings placement;
 
     /// The mesh that strands are rooted on; null for hair that came without one. Shared and immutable.
     std::shared_ptr<const ScalpMesh> scalp;
     FaceSet scalpSelection;           ///< triangles of `scalp` that may carry hair
+    std::vector<float> scalpDensity;  ///< per vertex of `scalp`, 0 … 1, of roots; empty: 1 everywhere
     std::string scalpExpression;      ///< how the selection was made, for people; may be empty
     RootTriangulation triangulation;  ///< over the strands' roots; empty until made
     std::string characterFile;        ///< file that the scalp came from (mesh, skeleton, clips); may be empty
@@ -91,8 +103,9 @@ Result<Groom> growStraight(std::shared_ptr<const ScalpMesh> scalp, FaceSet selec
                            std::span<const SurfacePoint> roots, float length, std::uint32_t points);
 
 /// Binds each root to the nearest point of the selection (which becomes all of the scalp where it is empty),
-/// replaces scalp and selection of the groom, empties the triangulation, and returns the distance of each
-/// root to its binding, metres. `scalp` has triangles; strands have points.
+/// replaces scalp and selection of the groom, empties the triangulation (and the density map of another
+/// scalp), and returns the distance of each root to its binding, metres. `scalp` has triangles; strands have
+/// points.
 std::vector<float> bindToScalp(Groom& groom, std::shared_ptr<const ScalpMesh> scalp, FaceSet selection);
 
 }  // namespace hairloom

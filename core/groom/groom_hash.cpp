@@ -67,6 +67,7 @@ void hashSettings(Hasher& hasher, const Groom& groom) {
     }
     hashFields(hasher, groom.material);
     hashFields(hasher, groom.interpolation);
+    hashFields(hasher, groom.placement);
     for (const runtime::FieldInfo& field : runtime::fields()) {
         for (std::uint32_t c = 0; c < runtime::componentCount(field); ++c) {
             hasher.real(runtime::fieldValue(groom.simulation, field, c));
@@ -82,6 +83,7 @@ void hashStrands(Hasher& hasher, const Groom& groom) {
     hashAttributes(hasher, groom.strandAttributes);
     hashAttributes(hasher, groom.pointAttributes);
     hasher.array(std::span<const std::uint32_t>(groom.scalpSelection));
+    hasher.array(std::span<const float>(groom.scalpDensity));
     hasher.array(std::span<const Triangle>(groom.triangulation.triangles));
     hasher.array(std::span<const RootTriangulation::Coincident>(groom.triangulation.coincident));
     hasher.array(std::span<const std::uint32_t>(groom.triangulation.alone));

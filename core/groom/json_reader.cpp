@@ -192,6 +192,22 @@ std::vector<std::string> JsonReader::strings(std::string_view key) {
     return {};
 }
 
+std::vector<double> JsonReader::numbers(std::string_view key, double min, double max, std::size_t most,
+                                        std::string_view unit) {
+    const json* value = member(key);
+    if (!value) return {};
+    std::vector<double> result;
+    bool good = value->is_array() && value->size() <= most;
+    for (std::size_t i = 0; good && i < value->size(); ++i) {
+        good = (*value)[i].is_number() && withinRange((*value)[i].get<double>(), min, max);
+        if (good) result.push_back((*value)[i].get<double>());
+    }
+    if (good) return result;
+    complain(key, "is no such list",
+             fmt::format("expected an array of up to {} numbers from {}", most, rangeText(min, max, unit)));
+    return {};
+}
+
 std::size_t JsonReader::choice(std::string_view key, std::span<const std::string_view> choices) {
     const std::string name = string(key);
     if (!ok()) return 0;

@@ -39,6 +39,9 @@ class JsonReader {
     std::uint64_t count(std::string_view key, std::uint64_t min, std::uint64_t max);
     Vec3f vector(std::string_view key, double min, double max, std::string_view unit = {});
     std::vector<std::string> strings(std::string_view key);
+    /// An array of at most `most` numbers.
+    std::vector<double> numbers(std::string_view key, double min, double max, std::size_t most,
+                                std::string_view unit = {});
     /// An index into `choices`.
     std::size_t choice(std::string_view key, std::span<const std::string_view> choices);
     JsonReader object(std::string_view key);

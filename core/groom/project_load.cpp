@@ -24,23 +24,27 @@ void readLayers(JsonReader& head, Groom& groom) {
     if (groom.layers.empty()) head.complain("layers", "is empty", "expected at least one layer");
 }
 
+constexpr std::uint64_t kFirstWithPlacement = 2;  ///< version that has density and placement
+
 struct Counts {
+    std::uint64_t version;
     std::uint64_t strands;
     std::uint64_t points;
 };
 
 Counts readHead(JsonReader& head, Groom& groom, ScalpMeshParts& scalp) {
     head.string("kind");
-    head.count("version", 1, kProjectVersion);
+    const std::uint64_t version = head.count("version", 1, kProjectVersion);
     head.object("arrays");
     constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
-    const Counts counts{head.count("strands", 0, kMost), head.count("points", 0, kMost)};
+    const Counts counts{version, head.count("strands", 0, kMost), head.count("points", 0, kMost)};
     readLayers(head, groom);
     groom.groupNames = head.strings("groups");
     for (JsonReader& entry : head.objects("spheres")) groom.spheres.push_back(readSphere(entry));
     readSettings(head.object("material"), groom.material);
     readSettings(head.object("simulation"), groom.simulation);
     readSettings(head.object("interpolation"), groom.interpolation);
+    if (version >= kFirstWithPlacement) readSettings(head.object("placement"), groom.placement);
     groom.characterFile = head.string("character_file");
     groom.characterMetresPerUnit = static_cast<float>(head.number("character_metres_per_unit", 0, 1e6));
     groom.scalpExpression = head.string("scalp_expression");
@@ -144,6 +148,8 @@ Status takeArrays(const ArchiveReader& archive, const Counts& counts, Groom& gro
     groom.triangulation.alone = taker.take<std::uint32_t>(section::kAlone);
     groom.triangulation.coincident = taker.takeGroups<RootTriangulation::Coincident>(section::kCoincident);
     if (scalp) takeScalp(taker, *scalp);
+    if (scalp && counts.version >= kFirstWithPlacement)
+        groom.scalpDensity = taker.take<float>(section::kScalpDensity);
     if (auto status = taker.finish(); !status) return status;
     if (groom.strandCount() == counts.strands && groom.pointCount() == counts.points &&
         !groom.offsets.empty())

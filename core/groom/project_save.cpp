@@ -42,6 +42,7 @@ Json headOf(const Groom& groom) {
     head["material"] = toJson(groom.material);
     head["simulation"] = toJson(groom.simulation);
     head["interpolation"] = toJson(groom.interpolation);
+    head["placement"] = toJson(groom.placement);
     head["character_file"] = groom.characterFile;
     head["character_metres_per_unit"] = readableDecimal(groom.characterMetresPerUnit);
     head["scalp_expression"] = groom.scalpExpression;
@@ -83,7 +84,10 @@ void addArrays(ArchiveWriter& writer, const Groom& groom) {
     add(section::kCoincident,
         flat(std::span<const RootTriangulation::Coincident>(groom.triangulation.coincident)));
     add(section::kAlone, std::span<const std::uint32_t>(groom.triangulation.alone));
-    if (groom.scalp) addScalp(writer, *groom.scalp);
+    if (groom.scalp) {
+        addScalp(writer, *groom.scalp);
+        add(section::kScalpDensity, std::span<const float>(groom.scalpDensity));
+    }
 }
 
 /// What the JSON head cannot hold or loading would refuse. Flaws of values (hair that is not finite) are no

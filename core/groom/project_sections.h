@@ -21,6 +21,7 @@ inline constexpr std::string_view kScalpCornerUvs = "scalp/corner_uvs";
 inline constexpr std::string_view kScalpSourceFaces = "scalp/source_faces";
 inline constexpr std::string_view kScalpSourceVertices = "scalp/source_vertices";
 inline constexpr std::string_view kScalpGroups = "scalp/triangle_groups";
+inline constexpr std::string_view kScalpDensity = "scalp/density";  ///< per vertex, or none
 inline constexpr std::string_view kScalpMaterials = "scalp/triangle_materials";
 
 }  // namespace hairloom::section

@@ -26,6 +26,9 @@ Json toJson(const HairMaterial& material) {
 Json toJson(const InterpolationSettings& settings) {
     return fieldsToJson(settings);
 }
+Json toJson(const PlacementSettings& settings) {
+    return fieldsToJson(settings);
+}
 
 Json toJson(const runtime::SimulationSettings& settings) {
     Json json = Json::object();
@@ -61,6 +64,9 @@ void readSettings(JsonReader reader, HairMaterial& material) {
     readFields(std::move(reader), material);
 }
 void readSettings(JsonReader reader, InterpolationSettings& settings) {
+    readFields(std::move(reader), settings);
+}
+void readSettings(JsonReader reader, PlacementSettings& settings) {
     readFields(std::move(reader), settings);
 }
 

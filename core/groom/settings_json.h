@@ -9,6 +9,7 @@ namespace hairloom {
 
 nlohmann::ordered_json toJson(const HairMaterial& material);
 nlohmann::ordered_json toJson(const InterpolationSettings& settings);
+nlohmann::ordered_json toJson(const PlacementSettings& settings);
 nlohmann::ordered_json toJson(const runtime::SimulationSettings& settings);
 nlohmann::ordered_json toJson(const std::vector<CollisionSphere>& spheres);
 
@@ -16,6 +17,7 @@ nlohmann::ordered_json toJson(const std::vector<CollisionSphere>& spheres);
 /// reader.
 void readSettings(JsonReader reader, HairMaterial& material);
 void readSettings(JsonReader reader, InterpolationSettings& settings);
+void readSettings(JsonReader reader, PlacementSettings& settings);
 void readSettings(JsonReader reader, runtime::SimulationSettings& settings);
 
 /// An object of "name", "centre", "radius" (> 0) and "bone".

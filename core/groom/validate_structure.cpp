@@ -15,15 +15,17 @@ constexpr std::array<KnownAttribute, 4> kPointTypes = {{{attribute::kPosition, "
                                                         {attribute::kRadius, "float"},
                                                         {attribute::kPointColour, "float3"},
                                                         {attribute::kTransparency, "float"}}};
-constexpr std::array<KnownAttribute, 9> kStrandTypes = {{{attribute::kRootTriangle, "uint32"},
-                                                         {attribute::kRootBarycentric, "float3"},
-                                                         {attribute::kRootUv, "float2"},
-                                                         {attribute::kGroup, "uint32"},
-                                                         {attribute::kGuide, "uint8"},
-                                                         {attribute::kFrozen, "uint8"},
-                                                         {attribute::kLayer, "uint32"},
-                                                         {attribute::kStrandColour, "float3"},
-                                                         {attribute::kStrandId, "uint32"}}};
+constexpr std::array<KnownAttribute, 11> kStrandTypes = {{{attribute::kRootTriangle, "uint32"},
+                                                          {attribute::kRootBarycentric, "float3"},
+                                                          {attribute::kRootUv, "float2"},
+                                                          {attribute::kGroup, "uint32"},
+                                                          {attribute::kGuide, "uint8"},
+                                                          {attribute::kFrozen, "uint8"},
+                                                          {attribute::kSelected, "uint8"},
+                                                          {attribute::kHidden, "uint8"},
+                                                          {attribute::kLayer, "uint32"},
+                                                          {attribute::kStrandColour, "float3"},
+                                                          {attribute::kStrandId, "uint32"}}};
 
 bool findOffsets(const Groom& groom, std::vector<Finding>& findings) {
     const auto offsets = groom.offsets.view();
@@ -95,6 +97,15 @@ void findSelection(const Groom& groom, std::vector<Finding>& findings) {
                   "select the scalp again");
 }
 
+void findDensity(const Groom& groom, std::vector<Finding>& findings) {
+    const std::size_t vertices = groom.scalp ? groom.scalp->vertexCount() : 0;
+    if (groom.scalpDensity.empty() || groom.scalpDensity.size() == vertices) return;
+    findings.push_back(
+        {Severity::Error,
+         fmt::format("the density map has {} values for {} vertices", groom.scalpDensity.size(), vertices),
+         "density", "paint the density again"});
+}
+
 void findTriangulation(const Groom& groom, std::vector<Finding>& findings) {
     Places places;
     const std::size_t strands = groom.strandCount();
@@ -137,6 +148,7 @@ bool findStructure(const Groom& groom, std::vector<Finding>& findings) {
                     findings);
     }
     findSelection(groom, findings);
+    findDensity(groom, findings);
     findTriangulation(groom, findings);
     return findings.size() == before;
 }

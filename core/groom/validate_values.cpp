@@ -70,7 +70,8 @@ void findSize(const Groom& groom, std::vector<Finding>& findings) {
 }
 
 void findFlags(const Groom& groom, std::vector<Finding>& findings) {
-    for (const std::string_view name : {attribute::kGuide, attribute::kFrozen}) {
+    for (const std::string_view name :
+         {attribute::kGuide, attribute::kFrozen, attribute::kSelected, attribute::kHidden}) {
         const auto flags = groom.strandAttributes.view<std::uint8_t>(name);
         Places places;
         for (std::size_t s = 0; s < flags.size(); ++s) {
@@ -90,6 +91,15 @@ void findIds(const Groom& groom, std::vector<Finding>& findings) {
         if (sorted[i] == sorted[i - 1]) places.other("id", sorted[i]);
     }
     places.report(findings, Severity::Error, "two strands have the same id", "number the strands again");
+}
+
+void findDensities(const Groom& groom, std::vector<Finding>& findings) {
+    Places places;
+    for (std::size_t v = 0; v < groom.scalpDensity.size(); ++v) {
+        if (!(groom.scalpDensity[v] >= 0 && groom.scalpDensity[v] <= 1)) places.other("vertex", v);
+    }
+    places.report(findings, Severity::Error, "the density of roots is not from 0 to 1",
+                  "paint the density again");
 }
 
 void findTriangleBindings(const Groom& groom, std::span<const SurfacePoint> roots,
@@ -134,6 +144,7 @@ void findGeometry(const Groom& groom, std::vector<Finding>& findings) {
     findRadii(groom, findings);
     findFlags(groom, findings);
     findIds(groom, findings);
+    findDensities(groom, findings);
 }
 
 void findBinding(const Groom& groom, std::vector<Finding>& findings) {

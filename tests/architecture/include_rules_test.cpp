@@ -31,15 +31,16 @@ const std::map<std::string, Rooms>& allowed() {
         };
         const Rooms simulation = with(groom, {"core/animation"});
         const Rooms gpu{"core/base", "core/gpu"};
-        const Rooms all = with(simulation, {"core/interpolation", "core/simulation", "core/shading",
-                                            "core/gpu", "core/gpu_simulation", "core/render", "core/accuracy",
-                                            "importers", "exporters", "shaders"});
+        const Rooms all = with(simulation, {"core/editing", "core/interpolation", "core/simulation",
+                                            "core/shading", "core/gpu", "core/gpu_simulation", "core/render",
+                                            "core/accuracy", "importers", "exporters", "shaders"});
         return std::map<std::string, Rooms>{
             {"runtime", {}},
             {"core/base", {}},
             {"core/geometry", base},
             {"core/groom", with(geometry, {"runtime"})},
             {"core/interpolation", groom},
+            {"core/editing", groom},
             {"core/animation", groom},
             {"core/simulation", simulation},
             {"core/shading", base},

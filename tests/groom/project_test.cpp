@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cstring>
+#include <deque>
 
 #include "core/base/file.h"
 #include "core/groom/archive.h"
@@ -62,6 +63,28 @@ TEST(Project, SavesFlawedValuesButNoFileThatCouldNotBeLoaded) {
     ASSERT_FALSE(refused);
     EXPECT_THAT(refused.error().message(), HasSubstr("shininess is 0; expected 1 to 1000"));
     EXPECT_EQ(readFile(folder / "a.hairloom").value(), before) << "the old file stands";
+}
+
+TEST(Project, ReadsVersion1WithoutDensityAndPlacement) {
+    const TemporaryFolder folder;
+    const auto path = folder / "a.hairloom";
+    ASSERT_TRUE(saveProject(fullGroom(), path));
+    const auto now = ArchiveReader::open("a", readFile(path).value(), section::kKind, kProjectVersion);
+    ASSERT_TRUE(now);
+    nlohmann::ordered_json head = now->head();
+    for (const char* member : {"kind", "version", "arrays", "placement"}) head.erase(member);
+    ArchiveWriter writer{std::string(section::kKind), 1};
+    std::deque<AttributeData> arrays;  // the writer looks at them until it finishes
+    for (const std::string& name : now->names()) {
+        if (name != section::kScalpDensity) writer.add(name, arrays.emplace_back(now->readAny(name).value()));
+    }
+    ASSERT_TRUE(writeFileAtomically(path, writer.finish(head).value()));
+    const auto loaded = loadProject(path);
+    ASSERT_TRUE(loaded) << loaded.error().message();
+    Groom expected = fullGroom();
+    expected.placement = {};
+    expected.scalpDensity.clear();
+    EXPECT_TRUE(sameContent(*loaded, expected));
 }
 
 TEST(Project, TruncatedAnywhereIsRefused) {

@@ -29,17 +29,17 @@ float clearanceAt(float arcLength, float clearance) {
 /// over a way of length w the distance changes by w at most.
 class Watch {
   public:
-    explicit Watch(const Skin& skin) : skin_(skin) {}
+    explicit Watch(const SkinQuery& skin) : skin_(skin) {}
     bool tooNear(const Vec3f& point, float way, float clearance) {
         known_ -= way;
         if (known_ > clearance) return false;
-        known_ = skin_.at(point).distance;
+        known_ = skin_.distanceAt(point).distance;
         return known_ < clearance - kSlack;
     }
     void forget() { known_ = 0; }
 
   private:
-    const Skin& skin_;
+    const SkinQuery& skin_;
     float known_ = 0;
 };
 
@@ -70,30 +70,31 @@ void restoreLengthsByDirection(std::span<Vec3f> points, std::span<const float> l
     }
 }
 
-Vec3f placeOutside(const Skin& skin, const Vec3f& from, const Vec3f& direction, float length,
+Vec3f placeOutside(const SkinQuery& skin, const Vec3f& from, const Vec3f& direction, float length,
                    float clearance) {
     Vec3f turned = direction;
     for (int i = 0; i < kSlides; ++i) {
         Vec3f end = from + turned * length;
-        const Skin::Sample sample = skin.at(end);
+        const SkinDistance sample = skin.distanceAt(end);
         if (sample.distance >= clearance - kSlack) return end;
         turned = directionOr(end + sample.outward * (clearance - sample.distance) - from, sample.outward);
     }
     // Sliding stalls where the offset surface lies beyond the segment's reach; the normal leads out most
     // directly.
-    const Vec3f outward = skin.at(from).outward;
+    const Vec3f outward = skin.distanceAt(from).outward;
     float inside = 0;
     float outside = 1;
     for (int i = 0; i < kHalvings; ++i) {
         const float t = 0.5f * (inside + outside);
         const Vec3f end = from + directionOr(turned * (1 - t) + outward * t, outward) * length;
-        (skin.at(end).distance < clearance - kSlack ? inside : outside) = t;
+        (skin.distanceAt(end).distance < clearance - kSlack ? inside : outside) = t;
     }
     return from + directionOr(turned * (1 - outside) + outward * outside, outward) * length;
 }
 
-bool keepOutside(std::span<Vec3f> points, std::span<const float> lengths, const Skin& skin, float clearance) {
-    assert(points.size() >= 2 && lengths.size() + 1 == points.size());
+bool keepOutside(std::span<Vec3f> points, std::span<const float> lengths, const SkinQuery& skin,
+                 float clearance, std::size_t first) {
+    assert(points.size() >= 2 && lengths.size() + 1 == points.size() && first >= 1);
     Watch watch(skin);
     Vec3f direction = firstDirection(points);
     float arc = 0;
@@ -101,6 +102,7 @@ bool keepOutside(std::span<Vec3f> points, std::span<const float> lengths, const 
     for (std::size_t i = 1; i < points.size(); ++i) {
         const float length = lengths[i - 1];
         arc += length;
+        if (i < first) continue;
         if (moved) {
             direction = directionOr(points[i] - points[i - 1], direction);
             points[i] = points[i - 1] + direction * length;

@@ -22,13 +22,14 @@ void restoreLengths(std::span<Vec3f> points, std::span<const float> lengths, boo
 void restoreLengthsByDirection(std::span<Vec3f> points, std::span<const float> lengths);
 
 /// Points nearer to the skin than `clearance` (metres) are moved out as restoreLengths() would; near the root
-/// the clearance grows with half the arc length. The strand is unchanged where none is too near. True when it
-/// moved.
-bool keepOutside(std::span<Vec3f> points, std::span<const float> lengths, const Skin& skin, float clearance);
+/// the clearance grows with half the arc length. The strand is unchanged where none is too near, and before
+/// the point `first` (≥ 1) in any case. True when it moved.
+bool keepOutside(std::span<Vec3f> points, std::span<const float> lengths, const SkinQuery& skin,
+                 float clearance, std::size_t first = 1);
 
 /// The end of a segment of `length` from `from` that points as nearly along the unit vector `direction` as
 /// lets it keep `clearance` from the skin.
-Vec3f placeOutside(const Skin& skin, const Vec3f& from, const Vec3f& direction, float length,
+Vec3f placeOutside(const SkinQuery& skin, const Vec3f& from, const Vec3f& direction, float length,
                    float clearance);
 
 }  // namespace hairloom

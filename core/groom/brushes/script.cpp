@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "core/groom/brushes/clump.h"
 #include "core/groom/brushes/collide.h"
@@ -70,25 +71,45 @@ constexpr Operation kOperations[] = {
     operation<CollideSettings, collide>("collide", "pushes strands out of the head"),
 };
 
-std::vector<std::string_view> operationNames() {
+std::vector<std::string_view> operationNames(std::span<const ScriptExtension> extensions) {
     std::vector<std::string_view> names;
     for (const Operation& entry : kOperations) names.push_back(entry.name);
+    for (const ScriptExtension& entry : extensions) names.push_back(entry.name);
     return names;
 }
 
+/// Strand of each id; of each index where there are no ids.
+std::map<std::uint32_t, std::size_t> strandsById(const Groom& groom) {
+    const auto ids = groom.strandAttributes.view<std::uint32_t>(attribute::kStrandId);
+    std::map<std::uint32_t, std::size_t> strands;
+    for (std::size_t s = 0; s < groom.strandCount(); ++s) {
+        strands.emplace(s < ids.size() ? ids[s] : static_cast<std::uint32_t>(s), s);
+    }
+    return strands;
+}
+
 std::size_t changedStrands(const Groom& before, const Groom& after) {
+    const auto old = strandsById(before);
+    std::size_t kept = 0;
     std::size_t changed = 0;
-    for (std::size_t s = 0; s < after.strandCount(); ++s) {
-        const auto a = before.strand(s);
+    for (const auto& [id, s] : strandsById(after)) {
+        const auto found = old.find(id);
+        if (found == old.end()) {
+            ++changed;
+            continue;
+        }
+        ++kept;
+        const auto a = before.strand(found->second);
         const auto b = after.strand(s);
         changed += !std::equal(a.begin(), a.end(), b.begin(), b.end());
     }
-    return changed;
+    return changed + (old.size() - kept);
 }
 
 }  // namespace
 
-Result<Script> parseScript(const std::string& file, std::string_view text) {
+Result<Script> parseScript(const std::string& file, std::string_view text,
+                           std::span<const ScriptExtension> extensions) {
     const auto json = parseJson(file, text);
     if (!json) return tl::unexpected(json.error());
     JsonReader reader(*json, file);
@@ -99,10 +120,11 @@ Result<Script> parseScript(const std::string& file, std::string_view text) {
                                   kScriptVersion));
     }
     Script script;
-    const auto names = operationNames();
+    const auto names = operationNames(extensions);
     for (JsonReader& step : reader.objects("operations")) {
         const std::size_t chosen = step.choice("op", names);
-        Run run = kOperations[chosen].read(step);
+        Run run = chosen < std::size(kOperations) ? kOperations[chosen].read(step)
+                                                  : extensions[chosen - std::size(kOperations)].read(step);
         step.finish();
         script.steps.push_back({std::string(names[chosen]), std::move(run)});
     }

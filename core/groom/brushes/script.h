@@ -4,6 +4,7 @@
 // operations.
 
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,13 +24,23 @@ struct Script {
     std::vector<ScriptStep> steps;
 };
 
+class JsonReader;
+
+/// An operation of another room: reads its members (complaints are the reader's) and gives what runs it.
+struct ScriptExtension {
+    std::string_view name;
+    std::function<std::function<Result<std::size_t>(Groom&)>(JsonReader&)> read;
+};
+
 /// `text` is the JSON; `file` is named in errors. Errors name the JSON path, what stands there and what is
 /// allowed: syntax, a newer version, an unknown operation or member, a value out of range.
-Result<Script> parseScript(const std::string& file, std::string_view text);
+Result<Script> parseScript(const std::string& file, std::string_view text,
+                           std::span<const ScriptExtension> extensions = {});
 
 struct ScriptReport {
-    std::size_t strokes = 0;         ///< operations run
-    std::size_t touchedStrands = 0;  ///< strands whose points differ from before the first operation
+    std::size_t strokes = 0;  ///< operations run
+    /// Strands whose points differ from before the first operation, and those that came or went; by id.
+    std::size_t touchedStrands = 0;
     std::vector<std::size_t> touchedByStep;
 };
 

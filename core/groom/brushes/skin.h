@@ -10,15 +10,24 @@
 
 namespace hairloom {
 
-/// Queries are const and may run on any number of threads at once. The whole mesh counts, not just the
-/// selection.
-class Skin {
+struct SkinDistance {
+    float distance;  ///< metres, negative inside
+    Vec3f outward;   ///< unit length; distance grows along it
+};
+
+/// What keeps hair outside asks the skin. Queries may run on any number of threads at once.
+class SkinQuery {
+  public:
+    virtual ~SkinQuery() = default;
+    virtual SkinDistance distanceAt(const Vec3f& point) const = 0;
+};
+
+/// The skin itself, exactly. The whole mesh counts, not just the selection.
+class Skin final : public SkinQuery {
   public:
     explicit Skin(std::shared_ptr<const ScalpMesh> scalp) : scalp_(std::move(scalp)), tree_(*scalp_) {}
 
-    struct Sample {
-        float distance;  ///< metres, negative inside
-        Vec3f outward;   ///< unit length; distance grows along it
+    struct Sample : SkinDistance {
         SurfacePoint surface;
     };
     Sample at(const Vec3f& point) const {
@@ -34,9 +43,11 @@ class Skin {
         // Within a hundredth of a millimetre the difference is mostly rounding.
         constexpr float kTouching = 1e-5f;
         const Vec3f outward = hit.distance > kTouching ? Vec3f(away * (side / hit.distance)) : normal;
-        return {side * hit.distance, outward, hit.surface};
+        return {{side * hit.distance, outward}, hit.surface};
     }
+    SkinDistance distanceAt(const Vec3f& point) const override { return at(point); }
     const ScalpMesh& mesh() const { return *scalp_; }
+    const SurfaceTree& tree() const { return tree_; }
 
   private:
     std::shared_ptr<const ScalpMesh> scalp_;

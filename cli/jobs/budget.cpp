@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+
+#include "cli/documents.h"
+#include "cli/job.h"
+#include "cli/motions.h"
+#include "cli/progress.h"
+#include "core/accuracy/budget.h"
+#include "core/groom/project_file.h"
+#include "core/groom/settings_json.h"
+
+namespace hairloom::cli {
+namespace {
+
+struct BudgetJobOptions {
+    MotionOptions motion;
+    double milliseconds = 1;
+    std::string output;
+    std::uint32_t strands = 100;
+    std::uint32_t repeats = 5;
+    std::string truth = "reference";
+    std::uint32_t truthStrands = 16;
+    std::uint64_t seed = 1;
+};
+
+/// A bar for each thing that is done.
+class Bars {
+  public:
+    void show(const std::string& what, std::size_t done, std::size_t total) {
+        if (!bar_ || what != what_ || total != total_) bar_.emplace(what, total);
+        what_ = what;
+        total_ = total;
+        bar_->done(done);
+    }
+
+  private:
+    std::optional<Progress> bar_;
+    std::string what_;
+    std::size_t total_ = 0;
+};
+
+std::unique_ptr<TruthSource> truthOf(const BudgetJobOptions& options) {
+    if (options.truth == "engine") return std::make_unique<EngineConverged>();
+    ReferenceConverged::Options reference;
+    reference.strands = options.truthStrands;
+    return std::make_unique<ReferenceConverged>(reference);
+}
+
+Report toReport(const Quartiles& times) {
+    return Report{{"median", times.median}, {"q1", times.q1}, {"q3", times.q3}};
+}
+
+Result<Report> budget(const BudgetJobOptions& options) {
+    const auto scene = openMovingGroom(options.motion);
+    if (!scene) return tl::unexpected(scene.error());
+    BudgetOptions solving;
+    solving.milliseconds = options.milliseconds;
+    solving.time.frames = options.motion.frames;
+    solving.time.framesPerSecond = options.motion.framesPerSecond;
+    solving.strands = options.strands;
+    solving.repeats = options.repeats;
+    solving.seed = options.seed;
+    std::optional<Bars> bars(std::in_place);
+    solving.progress = [&](const std::string& what, std::size_t done, std::size_t total) {
+        bars->show(what, done, total);
+    };
+    const auto solved = solveBudget(scene->groom, *scene->motion, solving, *truthOf(options));
+    bars.reset();
+    if (!solved) return tl::unexpected(solved.error());
+    if (!solved->fits) {
+        return failIn(
+            options.motion.input, {},
+            fmt::format("the fastest settings found take {:.3g} ms a frame on this machine",
+                        solved->milliseconds.median),
+            fmt::format("a budget of at least that; {:.3g} ms were asked for, {:.3g} ms is what the "
+                        "scene takes as it is",
+                        options.milliseconds, solved->authoredMilliseconds.median));
+    }
+    Report report;
+    report["settings"] = toJson(solved->groom.simulation);
+    report["points"] = solved->groom.pointCount();
+    report["ms"] = solved->milliseconds.median;
+    report["ms_spread"] = toReport(solved->milliseconds);
+    report["ms_as_authored"] = solved->authoredMilliseconds.median;
+    report["error_mm"] = solved->errorMm;
+    report["error_mm_max"] = solved->errorMaxMm;
+    report["given_up"] = Report::array();
+    for (const GivenUp& thing : solved->givenUp)
+        report["given_up"].push_back(Report{{"what", thing.what}, {"from", thing.from}, {"to", thing.to}});
+    report["notes"] = solved->notes;
+    if (options.output.empty()) return report;
+    if (auto saved = saveProject(solved->groom, options.output); !saved) return tl::unexpected(saved.error());
+    report["output"] = options.output;
+    return report;
+}
+
+}  // namespace
+
+void addBudgetJob(Jobs& jobs) {
+    const auto options = std::make_shared<BudgetJobOptions>();
+    CLI::App& job =
+        jobs.add("budget", "Find the most exact settings that cost at most so many milliseconds a frame here",
+                 "hair.hairloom --ms 0.5 --motion nod --wind 3,0,1 -o fast.hairloom",
+                 [options] { return budget(*options); });
+    addMotionOptions(job, options->motion);
+    job.add_option("--ms", options->milliseconds, "Milliseconds a frame for the engine and all strands")
+        ->required()
+        ->check(CLI::Range(1e-6, 1e6));
+    job.add_option("-o,--output", options->output, "Project to save with what was found");
+    job.add_option("--strands", options->strands,
+                   "Strands that errors are taken from, drawn from the groom's")
+        ->check(CLI::Range(1, 1'000'000));
+    job.add_option("--repeat", options->repeats, "Timed runs of each candidate")->check(CLI::Range(1, 1000));
+    job.add_option("--truth", options->truth,
+                   "What counts as true: the reference in double precision, or the engine converged")
+        ->check(CLI::IsMember({"reference", "engine"}));
+    job.add_option("--truth-strands", options->truthStrands,
+                   "Strands that errors are taken from when the reference is true; it is slow")
+        ->check(CLI::Range(1, 100'000));
+    job.add_option("--seed", options->seed, "Another seed draws other strands");
+}
+
+}  // namespace hairloom::cli

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/accuracy/budget.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <set>
+
+#include "core/accuracy/effect_switch.h"
+#include "core/accuracy/work_precision.h"
+
+namespace hairloom {
+namespace {
+
+constexpr std::array<std::string_view, 5> kMayGo = {"pearls", "drag", "wind", "collision", "angular"};
+
+std::uint32_t mostPoints(const Groom& groom) {
+    std::size_t most = 0;
+    for (std::size_t s = 0; s < groom.strandCount(); ++s) most = std::max(most, groom.strand(s).size());
+    return static_cast<std::uint32_t>(most);
+}
+
+std::vector<GridAxis> axesOf(const Groom& groom) {
+    const runtime::SimulationSettings& own = groom.simulation;
+    std::set<double> substeps{1, 2, 4, 8, 16, 32, static_cast<double>(own.substeps)};
+    std::vector<GridAxis> axes{{"substeps", {substeps.begin(), substeps.end()}}};
+    if (own.lengthMethod == runtime::LengthMethod::constraint && own.lengthIterations > 0) {
+        std::set<double> iterations{1, 2, static_cast<double>(own.lengthIterations)};
+        axes.push_back({"lengthIterations", {iterations.begin(), iterations.end()}});
+    }
+    constexpr std::uint32_t kFewest = 4;
+    const std::uint32_t points = mostPoints(groom);
+    std::set<double> counts{static_cast<double>(points)};
+    for (const std::uint32_t part : {2u, 4u})
+        counts.insert(std::max(points / part, std::min(points, kFewest)));
+    axes.push_back({std::string(kPointsAxis), {counts.begin(), counts.end()}});
+    return axes;
+}
+
+/// One way to run the scene: with all strands, for its time, and a sample of them, for its error.
+struct Candidate {
+    SceneHair all, sample;
+    Quartiles milliseconds;
+    TrajectoryError error;
+    bool sound = true;  ///< the sample stayed finite
+    std::vector<GivenUp> effectsOff;
+};
+
+class Solver {
+  public:
+    Solver(const Groom& groom, const HeadMotion& motion, const BudgetOptions& options,
+           const TruthSource& truth)
+        : motion_(motion),
+          options_(options),
+          source_(truth),
+          poses_(posesOf(motion, options.time)),
+          all_(sampleStrands(groom, groom.strandCount(), 0)),
+          sample_(sampleStrands(groom, options.strands, options.seed)),
+          axes_(axesOf(groom)) {}
+
+    Result<Budget> solve() {
+        const auto authored = timed(all_);
+        if (!authored) return tl::unexpected(authored.error());
+        auto front = exactFirst();
+        if (!front) return tl::unexpected(front.error());
+        auto chosen = mostExactThatFits(*front);
+        if (!chosen) return tl::unexpected(chosen.error());
+        if (!fits(chosen->milliseconds)) {
+            if (auto status = giveUpEffects(*chosen); !status) return tl::unexpected(status.error());
+        }
+        Budget budget;
+        budget.fits = fits(chosen->milliseconds);
+        budget.milliseconds = chosen->milliseconds;
+        budget.errorMm = chosen->error.rmsMm;
+        budget.errorMaxMm = chosen->error.maxMm;
+        budget.authoredMilliseconds = *authored;
+        budget.givenUp = settingsGivenUp(chosen->all.groom);
+        std::ranges::move(chosen->effectsOff, std::back_inserter(budget.givenUp));
+        budget.groom = std::move(chosen->all.groom);
+        budget.notes = std::move(notes_);
+        return budget;
+    }
+
+  private:
+    bool fits(const Quartiles& time) const { return time.median <= options_.milliseconds; }
+    void say(const std::string& what, std::size_t done = 0, std::size_t total = 1) const {
+        if (options_.progress) options_.progress(what, done, total);
+    }
+
+    Result<Quartiles> timed(const SceneHair& hair) const {
+        std::vector<double> times;
+        for (std::uint32_t round = 0; round <= options_.repeats; ++round) {
+            say("time of all strands", round, options_.repeats + 1);
+            const auto outcome = runScene(hair, poses_, options_.time, {});
+            if (!outcome) return tl::unexpected(outcome.error());
+            if (round > 0) times.push_back(outcome->millisecondsPerFrame);  // the first one warms up
+        }
+        return quartiles(std::move(times));
+    }
+
+    /// The runs that no other is both as fast and as exact as.
+    Result<std::vector<WorkPrecisionRun>> exactFirst() {
+        WorkPrecisionOptions measuring;
+        measuring.axes = axes_;
+        measuring.time = options_.time;
+        measuring.strands = options_.strands;
+        measuring.repeats = options_.repeats;
+        measuring.seed = options_.seed;
+        measuring.progress = [this](std::size_t done, std::size_t total) {
+            say("time and error of a sample", done, total);
+        };
+        auto result = measureWorkPrecision(all_.groom, motion_, measuring, source_);
+        if (!result) return tl::unexpected(result.error());
+        notes_ = std::move(result->notes);
+        std::vector<WorkPrecisionRun> front;
+        std::ranges::copy_if(result->runs, std::back_inserter(front), &WorkPrecisionRun::onFront);
+        std::ranges::sort(front, {}, [](const WorkPrecisionRun& run) { return run.error.rmsMm; });
+        if (front.empty())
+            return fail("no settings keep the hair of this scene finite", "a scene that can be simulated");
+        return front;
+    }
+
+    SceneHair at(const SceneHair& hair, const std::vector<double>& values) const {
+        const double points = values[*findAxis(axes_, kPointsAxis)];
+        const bool asAuthored = points == mostPoints(all_.groom);
+        SceneHair result = asAuthored ? hair : resampledHair(hair, static_cast<std::uint32_t>(points));
+        applyValues(axes_, values, result.groom.simulation);
+        return result;
+    }
+
+    /// Along the front times fall, so that what fits begins at one place.
+    Result<Candidate> mostExactThatFits(const std::vector<WorkPrecisionRun>& front) const {
+        std::size_t tooSlow = 0, enough = front.size() - 1;
+        std::optional<Candidate> found;
+        while (!found || tooSlow < enough) {
+            const std::size_t middle = found ? (tooSlow + enough) / 2 : enough;
+            Candidate candidate{at(all_, front[middle].values),
+                                at(sample_, front[middle].values),
+                                {},
+                                front[middle].error,
+                                true,
+                                {}};
+            const auto time = timed(candidate.all);
+            if (!time) return tl::unexpected(time.error());
+            candidate.milliseconds = *time;
+            const bool first = !found;
+            if (first && !fits(*time)) return candidate;  // not even the fastest
+            if (fits(*time)) {
+                enough = middle;
+                found = std::move(candidate);
+            } else {
+                tooSlow = middle + 1;
+            }
+        }
+        return std::move(*found);
+    }
+
+    Status measure(Candidate& candidate) const {
+        const auto time = timed(candidate.all);
+        if (!time) return tl::unexpected(time.error());
+        candidate.milliseconds = *time;
+        const auto outcome = runScene(candidate.sample, poses_, options_.time, truth_->followed);
+        if (!outcome) return tl::unexpected(outcome.error());
+        candidate.sound = outcome->trajectory.finite && outcome->nanCount == 0;
+        if (candidate.sound) candidate.error = compare(outcome->trajectory, truth_->trajectory);
+        return {};
+    }
+
+    Result<std::vector<Candidate>> withOneEffectLess(const Candidate& from) const {
+        const auto outcome = runScene(from.sample, poses_, options_.time, {});
+        if (!outcome) return tl::unexpected(outcome.error());
+        std::vector<Candidate> candidates;
+        for (const EffectReport& effect : outcome->effects) {
+            if (!effect.on || std::ranges::find(kMayGo, effect.name) == kMayGo.end()) continue;
+            auto all = withoutEffect(from.all, effect.name);
+            auto sample = withoutEffect(from.sample, effect.name);
+            if (!all || !sample) continue;
+            Candidate candidate{std::move(all->hair), std::move(sample->hair), {}, {}, true, from.effectsOff};
+            candidate.effectsOff.push_back({effect.name, "on", "off"});
+            if (auto status = measure(candidate); !status) return tl::unexpected(status.error());
+            const bool faster = candidate.milliseconds.median < from.milliseconds.median;
+            if (candidate.sound && faster) candidates.push_back(std::move(candidate));
+        }
+        return candidates;
+    }
+
+    Status giveUpEffects(Candidate& chosen) {
+        const std::uint32_t finest = mostPoints(all_.groom);
+        auto truth = source_.compute(resampledHair(sample_, finest), motion_, options_.time,
+                                     {drawnStrands(sample_.groom, source_.mostStrands(), options_.seed),
+                                      evenShares(WorkPrecisionOptions{}.pointsCompared)});
+        if (!truth) return tl::unexpected(truth.error());
+        truth_ = std::move(*truth);
+        while (!fits(chosen.milliseconds)) {
+            auto candidates = withOneEffectLess(chosen);
+            if (!candidates) return tl::unexpected(candidates.error());
+            if (candidates->empty()) return {};
+            chosen = std::move(*best(*candidates, chosen));
+        }
+        return {};
+    }
+
+    /// The most exact one that fits; else the one that loses least for the time that it saves.
+    std::vector<Candidate>::iterator best(std::vector<Candidate>& candidates, const Candidate& from) const {
+        return std::ranges::min_element(candidates, {}, [&](const Candidate& c) {
+            const double saved = from.milliseconds.median - c.milliseconds.median;
+            const double lost = std::max(0.0, c.error.rmsMm - from.error.rmsMm);
+            return fits(c.milliseconds) ? std::pair(0, c.error.rmsMm) : std::pair(1, lost / saved);
+        });
+    }
+
+    std::vector<GivenUp> settingsGivenUp(const Groom& chosen) const {
+        std::vector<GivenUp> list;
+        const auto compareNumbers = [&](const char* what, std::uint32_t from, std::uint32_t to) {
+            if (to < from) list.push_back({what, std::to_string(from), std::to_string(to)});
+        };
+        const runtime::SimulationSettings &from = all_.groom.simulation, &to = chosen.simulation;
+        compareNumbers("substeps", from.substeps, to.substeps);
+        compareNumbers("lengthIterations", from.lengthIterations, to.lengthIterations);
+        compareNumbers("points", mostPoints(all_.groom), mostPoints(chosen));
+        return list;
+    }
+
+    const HeadMotion& motion_;
+    const BudgetOptions& options_;
+    const TruthSource& source_;
+    std::vector<HeadPose> poses_;
+    SceneHair all_, sample_;
+    std::vector<GridAxis> axes_;
+    std::optional<Truth> truth_;
+    std::vector<std::string> notes_;
+};
+
+}  // namespace
+
+Result<Budget> solveBudget(const Groom& groom, const HeadMotion& motion, const BudgetOptions& options,
+                           const TruthSource& truth) {
+    assert(options.milliseconds > 0 && options.repeats >= 1 && options.strands >= 1);
+    if (groom.strandCount() == 0) return fail("the groom has no strands", "expected strands to simulate");
+    return Solver(groom, motion, options, truth).solve();
+}
+
+}  // namespace hairloom

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What a brush is: a description, and what it does to one strand under one dab. docs/editing.md shows how to
+// add one.
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "core/base/random.h"
+#include "core/editing/brush_volume.h"
+#include "core/editing/delta_command.h"
+#include "core/editing/model.h"
+#include "core/editing/strand_bounds.h"
+#include "core/editing/stroke.h"
+#include "core/groom/brushes/skin.h"
+
+namespace hairloom::editing {
+
+/// A number of one brush, for panels, scripts and documentation.
+struct BrushParameter {
+    std::string_view name;
+    std::string_view unit;  ///< "" for a pure number
+    float min;
+    float max;
+    float defaultValue;
+    bool isFlag;  ///< 0 or 1, shown as a check box
+    std::string_view meaning;
+};
+
+struct BrushInfo {
+    std::string_view name;     ///< in records: "comb"
+    std::string_view label;    ///< for people: "Comb"
+    std::string_view meaning;  ///< one sentence
+    std::string_view inverse;  ///< what inverting makes of it, or empty where it makes nothing
+    std::span<const BrushParameter> parameters;
+    /// Segments get the lengths back that they had before each dab.
+    bool keepsLengths = true;
+    bool needsHead = false;
+};
+
+/// One dab as brushes see it.
+struct DabContext {
+    Dab dab;
+    BrushVolume volume;
+    Vec3f motion_ss = Vec3f::Zero();  ///< from the previous dab to this one; zero for the first
+    Vec3f travel_ss = Vec3f::Zero();  ///< from the first dab to this one
+    Dab previous;                     ///< this one for the first
+    bool isFirst = true;
+    std::uint64_t index = 0;  ///< of the dab in the stroke
+    bool isMirror = false;    ///< the mirror image of a dab; previous and motions are mirrored too
+    float sign = 1;           ///< −1 when inverted
+};
+
+/// One strand under one dab. Points from the root on.
+struct StrandUnderBrush {
+    std::span<Vec3f> points;         ///< to be moved; points[0] stays
+    std::span<const Vec3f> atStart;  ///< as they were when the stroke began
+    std::span<const float> weights;  ///< per point: falloff × profile × strength × pressure
+    std::span<const float> lengths;  ///< of the segments before this dab, metres
+    std::size_t first;               ///< first point with a weight, ≥ 1
+    float strongest;                 ///< greatest weight
+    std::uint32_t index;
+    std::uint32_t id;     ///< its id attribute, else its index
+    Vec3f rootNormal_ss;  ///< out of the skin at its root; +Y for unbound hair
+
+    const SkinQuery* skin;  ///< null without a head, or where collisions are off
+
+    Random random(std::uint64_t seed) const { return Random(seed, id); }
+};
+
+/// What a stroke works on, and what it has changed so far.
+struct StrokeTarget {
+    Model& model;
+    StrandBounds& bounds;
+    const SkinQuery* skin;       ///< null without a head
+    const SurfaceTree* surface;  ///< null without a head
+    const BrushSettings& settings;
+    /// Per strand that was there at the beginning, 1 where brushes may work: not frozen, hidden or on a layer
+    /// that is locked or invisible, and selected where any is.
+    std::vector<std::uint8_t> editable;
+
+    Deltas changes;
+    std::vector<std::uint32_t> touched;  ///< by the last dab, ascending
+
+    Groom& groom() const { return model.groom; }
+    float parameter(const BrushInfo& info, std::string_view name) const;
+};
+
+/// The instance lives for one stroke and may remember.
+class Brush {
+  public:
+    Brush() = default;
+    Brush(const Brush&) = delete;
+    Brush& operator=(const Brush&) = delete;
+    virtual ~Brush() = default;
+
+    virtual const BrushInfo& info() const = 0;
+    /// Before the first dab.
+    virtual void begin(StrokeTarget&) {}
+    /// Does the work of one dab and says what changed, with the target's `touched`.
+    virtual Change dab(StrokeTarget& target, const DabContext& dab) = 0;
+    /// Does what waits for the end of the stroke.
+    virtual Change finish(StrokeTarget&) { return {}; }
+};
+
+/// The strands that a dab reaches, with the weight of each of their points.
+struct Reached {
+    std::vector<std::uint32_t> strands;  ///< ascending
+    std::vector<std::uint32_t> begins;   ///< strand k has the weights from begins[k] on
+    std::vector<float> weights;
+};
+
+/// A brush that moves points of strands: the loop over them, lengths, the skin and what undo needs are here.
+class StrandBrush : public Brush {
+  public:
+    Change dab(StrokeTarget& target, const DabContext& dab) final;
+
+  protected:
+    /// Before the strands of a dab; not parallel.
+    virtual void beginDab(const StrokeTarget&, const DabContext&) {}
+    /// Moves points. Strands run in parallel, so nothing else may be written. False: left as it was.
+    virtual bool edit(const DabContext& dab, StrandUnderBrush& strand) const = 0;
+
+    /// Whether the strands of the first dab, with their weights there, serve the whole stroke.
+    virtual bool holdsOn() const { return false; }
+    /// Whether a strand within this box might be reached.
+    virtual bool mayReach(const DabContext& dab, const StrandBounds::Box& box) const {
+        return dab.volume.mayTouch(box.low, box.high);
+    }
+    /// Fills in the weights (as many as points, that of the root 0) and returns the greatest; 0 leaves the
+    /// strand alone. Unless overridden, a point weighs by the distance of the nearest of itself and the
+    /// middles of its segments, so that thin brushes find long segments.
+    virtual float weigh(const DabContext& dab, const BrushSettings& settings, std::span<const Vec3f> points,
+                        std::span<float> weights) const;
+
+  private:
+    Reached reach(const StrokeTarget& target, const DabContext& dab) const;
+    void editReached(StrokeTarget& target, const DabContext& dab, const Reached& reached);
+
+    Reached held_[2];  ///< of the first dab, and of its mirror image
+};
+
+}  // namespace hairloom::editing

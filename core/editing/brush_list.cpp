@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/editing/brush_list.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+
+namespace hairloom::editing {
+namespace {
+
+using S = BrushSettings;
+
+constexpr Field<S> kFields[] = {
+    {"radius", "m", 0.0001, 1, "reach of the brush", &S::radius},
+    {"strength", "", 0, 1, "share of the full effect that one dab has", &S::strength},
+    {"depth", "m", 0, 10, "how far a dab made in a view reaches before and behind its place", &S::depth},
+    {"clearance", "m", 0, 0.01, "distance kept from the skin", &S::clearance},
+    {"collide", "", 0, 1, "whether hair is kept out of the head", &S::collide},
+    {"invert", "", 0, 1, "the brush's opposite", &S::invert},
+    {"symmetric", "", 0, 1, "each dab again at its mirror image", &S::symmetric},
+    {"mirrorPoint", "m", -kAnywhere, kAnywhere, "a point of the mirror plane", &S::mirrorPoint},
+    {"mirrorNormal", "", -kAnywhere, kAnywhere, "direction across the mirror plane", &S::mirrorNormal},
+    seedField<S>("another seed draws other random numbers"),
+};
+
+using Make = std::unique_ptr<Brush> (*)();
+constexpr Make kMakers[] = {makeComb,   makeBrushAlong, makeGrab,       makeSmooth,      makePuff,
+                            makePinch,  makeLength,     makeCut,        makeCutLine,     makeAdd,
+                            makeDelete, makeFreeze,     makeScalpPaint, makeDensityPaint};
+constexpr std::size_t kCount = std::size(kMakers);
+
+struct Entry {
+    std::string_view name;
+    std::unique_ptr<Brush> sample;
+};
+
+const std::array<Entry, kCount>& entries() {
+    static const std::array<Entry, kCount> list = [] {
+        std::array<Entry, kCount> made;
+        for (std::size_t i = 0; i < kCount; ++i) {
+            made[i].sample = kMakers[i]();
+            made[i].name = made[i].sample->info().name;
+        }
+        return made;
+    }();
+    return list;
+}
+
+std::size_t indexOf(std::string_view name) {
+    const auto names = brushNames();
+    return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+Status checkParameters(const BrushInfo& info, const BrushSettings& settings) {
+    for (const auto& [name, value] : settings.parameters) {
+        const auto known = std::find_if(info.parameters.begin(), info.parameters.end(),
+                                        [&key = name](const BrushParameter& p) { return p.name == key; });
+        if (known == info.parameters.end())
+            return fail(fmt::format("{} has no parameter '{}'", info.name, name));
+        if (!(value >= known->min && value <= known->max))
+            return fail(
+                fmt::format("{} {}", name,
+                            outOfRangeText(static_cast<double>(value), static_cast<double>(known->min),
+                                           static_cast<double>(known->max), known->unit)));
+    }
+    return {};
+}
+
+Status checkCurve(std::string_view name, const BrushCurve& curve) {
+    const auto& values = curve.values();
+    const bool good = values.size() <= BrushCurve::kMostValues &&
+                      std::all_of(values.begin(), values.end(), [](float v) { return v >= 0 && v <= 1; });
+    if (good) return {};
+    return fail(fmt::format("the {} has {} values or one out of range", name, values.size()),
+                fmt::format("up to {} values from 0 to 1", BrushCurve::kMostValues));
+}
+
+}  // namespace
+
+std::span<const Field<BrushSettings>> fieldsOf(const BrushSettings&) {
+    return kFields;
+}
+
+std::span<const std::string_view> brushNames() {
+    static const std::array<std::string_view, kCount> names = [] {
+        std::array<std::string_view, kCount> list;
+        for (std::size_t i = 0; i < kCount; ++i) list[i] = entries()[i].name;
+        return list;
+    }();
+    return names;
+}
+
+const BrushInfo& brushInfo(std::string_view name) {
+    return entries()[indexOf(name)].sample->info();
+}
+
+std::unique_ptr<Brush> makeBrush(std::string_view name) {
+    const std::size_t index = indexOf(name);
+    return index < kCount ? kMakers[index]() : nullptr;
+}
+
+Status checkStroke(const Stroke& stroke) {
+    if (indexOf(stroke.tool) >= kCount)
+        return fail(fmt::format("there is no brush '{}'", stroke.tool),
+                    fmt::format("one of {}", fmt::join(brushNames(), ", ")));
+    if (auto status = checkFields(stroke.tool, stroke.settings); !status) return status;
+    if (stroke.settings.mirrorNormal.isZero(0))
+        return fail(stroke.tool + ": mirrorNormal is zero", "a direction");
+    if (auto status = checkCurve("falloff", stroke.settings.falloff); !status) return status;
+    if (auto status = checkCurve("profile", stroke.settings.profile); !status) return status;
+    return checkParameters(brushInfo(stroke.tool), stroke.settings);
+}
+
+}  // namespace hairloom::editing

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/editing/brush_list.h"
+#include "core/editing/strand_maker.h"
+#include "core/editing/surface_disc.h"
+
+namespace hairloom::editing {
+namespace {
+
+constexpr BrushParameter kParameters[] = {
+    {"density", "1/cm²", 0.01f, 1000, 5, false, "roots per area that are not exceeded"},
+    {"reach", "m", 0, 0.2f, 0.03f, false, "how far away hair may be whose shape new hair takes; 0: straight"},
+};
+constexpr BrushInfo kInfo{"add", "Add", "grows hair between the hair that is there", "", kParameters,
+                          true,  true};
+
+/// Throws darts at the disc under the dab: a root grows where no other is nearer than the density's distance.
+/// Where part of the head is selected for hair, only there.
+class Add final : public Brush {
+  public:
+    const BrushInfo& info() const override { return kInfo; }
+
+    void begin(StrokeTarget& target) override {
+        // Distance of a full Poisson-disk set of this density: each root fills r² / 0.7 of area.
+        constexpr float kFilled = 0.7f;
+        constexpr float kPerM2 = 1e4f;
+        distance_ = std::sqrt(kFilled / (target.parameter(kInfo, "density") * kPerM2));
+        reach_ = target.parameter(kInfo, "reach");
+        grid_.emplace(gridOfRoots(target.groom(), std::max(distance_, 0.25f * target.settings.radius)));
+        isSelected_.assign(target.groom().scalp->triangleCount(),
+                           target.groom().scalpSelection.empty() ? 1 : 0);
+        for (const std::uint32_t face : target.groom().scalpSelection) isSelected_[face] = 1;
+    }
+
+    Change dab(StrokeTarget& target, const DabContext& dab) override {
+        target.touched.clear();
+        const std::vector<SurfacePoint> roots = throwDarts(target, dab);
+        if (roots.empty()) return {};
+        Groom& groom = target.groom();
+        const KeepOut skin{target.settings.collide ? target.skin : nullptr, target.settings.clearance};
+        TakenStrands strands = makeStrands(groom, *grid_, roots, reach_, skin);
+        target.touched = strands.indices;
+        target.changes.strands.insert(groom, strands);
+        target.bounds.append(groom);
+        for (std::size_t k = 0; k < roots.size(); ++k)
+            grid_->add(target.touched[k], groom.scalp->pointAt(roots[k].triangle, roots[k].barycentric));
+        return {Part::Strands | Part::Triangulation, target.touched};
+    }
+
+  private:
+    std::vector<SurfacePoint> throwDarts(const StrokeTarget& target, const DabContext& dab) const {
+        const ScalpMesh& mesh = *target.groom().scalp;
+        FaceSet faces = faceDisc(mesh, *target.surface, dab.volume.centre, dab.volume.radius);
+        std::erase_if(faces, [&](std::uint32_t face) { return isSelected_[face] == 0; });
+        std::vector<float> areas;
+        float area = 0;
+        for (const std::uint32_t face : faces) areas.push_back(area += mesh.triangleArea(face));
+        if (!(area > 0)) return {};
+        constexpr float kTriesPerPlace = 4;
+        constexpr float kMostTries = 20000;
+        const float weight = dab.dab.strength * dab.dab.pressure;
+        const auto tries = static_cast<int>(
+            std::min(kMostTries, std::ceil(weight * kTriesPerPlace * area / (distance_ * distance_))));
+        Random random(target.settings.seed, 2 * dab.index + (dab.isMirror ? 1 : 0));
+        RootGrid fresh(distance_);
+        std::vector<SurfacePoint> roots;
+        for (int i = 0; i < tries; ++i) {
+            const auto chosen = std::upper_bound(areas.begin(), areas.end(), random.uniform() * area);
+            const auto k = std::min(static_cast<std::size_t>(chosen - areas.begin()), faces.size() - 1);
+            const float u = std::sqrt(random.uniform());
+            const float v = random.uniform();
+            const SurfacePoint root{faces[k], Vec3f(1 - u, u * (1 - v), u * v)};
+            const Vec3f place = mesh.pointAt(root.triangle, root.barycentric);
+            if ((place - dab.volume.centre).norm() > dab.volume.radius) continue;
+            if (grid_->anyWithin(place, distance_) || fresh.anyWithin(place, distance_)) continue;
+            fresh.add(0, place);
+            roots.push_back(root);
+        }
+        return roots;
+    }
+
+    float distance_ = 0;
+    float reach_ = 0;
+    std::optional<RootGrid> grid_;
+    std::vector<std::uint8_t> isSelected_;
+};
+
+}  // namespace
+
+std::unique_ptr<Brush> makeAdd() {
+    return std::make_unique<Add>();
+}
+
+}  // namespace hairloom::editing

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/editing/brush_list.h"
+#include "core/geometry/curve.h"
+
+namespace hairloom::editing {
+namespace {
+
+constexpr BrushInfo kInfo{"brush",
+                          "Brush",
+                          "turns hair into the direction of the stroke",
+                          "turns hair against the direction of the stroke",
+                          {}};
+
+class BrushAlong final : public StrandBrush {
+  public:
+    const BrushInfo& info() const override { return kInfo; }
+
+  protected:
+    bool edit(const DabContext& dab, StrandUnderBrush& strand) const override {
+        constexpr float kNoMotion = 1e-7f;  // metres
+        if (dab.motion_ss.norm() < kNoMotion) return false;
+        const Vec3f wanted = dab.motion_ss.normalized() * dab.sign;
+        Vec3f before = strand.points[strand.first - 1];
+        for (std::size_t i = strand.first; i < strand.points.size(); ++i) {
+            const Vec3f segment = strand.points[i] - before;
+            before = strand.points[i];
+            const float length = segment.norm();
+            Vec3f direction = length > 0 ? Vec3f(segment / length) : wanted;
+            if (strand.weights[i] > 0) {
+                const Quatf turn = shortestArc(direction, wanted);
+                direction = Quatf::Identity().slerp(strand.weights[i], turn) * direction;
+            }
+            strand.points[i] = strand.points[i - 1] + direction * length;
+        }
+        return true;
+    }
+};
+
+}  // namespace
+
+std::unique_ptr<Brush> makeBrushAlong() {
+    return std::make_unique<BrushAlong>();
+}
+
+}  // namespace hairloom::editing

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/editing/brush_list.h"
+
+namespace hairloom::editing {
+namespace {
+
+constexpr BrushInfo kInfo{"comb", "Comb", "drags hair along with the brush", "", {}};
+
+class Comb final : public StrandBrush {
+  public:
+    const BrushInfo& info() const override { return kInfo; }
+
+  protected:
+    bool edit(const DabContext& dab, StrandUnderBrush& strand) const override {
+        if (dab.motion_ss.isZero(0)) return false;
+        for (std::size_t i = strand.first; i < strand.points.size(); ++i)
+            strand.points[i] += strand.weights[i] * dab.motion_ss;
+        return true;
+    }
+};
+
+}  // namespace
+
+std::unique_ptr<Brush> makeComb() {
+    return std::make_unique<Comb>();
+}
+
+}  // namespace hairloom::editing

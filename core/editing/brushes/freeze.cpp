@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
+#include "core/editing/brush_list.h"
+#include "core/editing/strand_finder.h"
+
+namespace hairloom::editing {
+namespace {
+
+constexpr BrushParameter kParameters[] = {
+    {"roots", "", 0, 1, 0, true, "takes strands by their roots alone"},
+};
+constexpr BrushInfo kInfo{"freeze", "Freeze", "keeps brushes from touching hair", "thaws hair", kParameters};
+
+/// Works on hair that is frozen already, or it could not be thawed.
+class Freeze final : public Brush {
+  public:
+    const BrushInfo& info() const override { return kInfo; }
+
+    Change dab(StrokeTarget& target, const DabContext& dab) override {
+        const bool byRoots = target.parameter(kInfo, "roots") != 0;
+        target.touched = strandsWithin(target.groom(), target.bounds, dab.volume, byRoots);
+        std::erase_if(target.touched, [&](std::uint32_t s) { return isHidden(target.groom(), s); });
+        target.changes.frozen.set(target.groom(), target.touched, dab.sign > 0);
+        if (target.touched.empty()) return {};
+        return {Part::StrandFlags, target.touched};
+    }
+};
+
+}  // namespace
+
+std::unique_ptr<Brush> makeFreeze() {
+    return std::make_unique<Freeze>();
+}
+
+}  // namespace hairloom::editing

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/editing/brush_list.h"
+
+namespace hairloom::editing {
+namespace {
+
+constexpr BrushInfo kInfo{
+    "grab", "Grab", "takes hold of hair and carries it along until it is let go", "", {}};
+
+class Grab final : public StrandBrush {
+  public:
+    const BrushInfo& info() const override { return kInfo; }
+
+  protected:
+    bool holdsOn() const override { return true; }
+    /// From where the strand was at the start, so that hair that is carried to and fro comes back.
+    bool edit(const DabContext& dab, StrandUnderBrush& strand) const override {
+        if (dab.isFirst) return false;
+        for (std::size_t i = strand.first; i < strand.points.size(); ++i)
+            strand.points[i] = strand.atStart[i] + strand.weights[i] * dab.travel_ss;
+        return true;
+    }
+};
+
+}  // namespace
+
+std::unique_ptr<Brush> makeGrab() {
+    return std::make_unique<Grab>();
+}
+
+}  // namespace hairloom::editing

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
+#include "core/editing/brush_list.h"
+#include "core/geometry/curve.h"
+#include "core/groom/brushes/reshape.h"
+
+namespace hairloom::editing {
+namespace {
+
+constexpr BrushParameter kParameters[] = {
+    {"rate", "", 0, 1, 0.1f, false, "share of its length that a dab of full strength adds or takes"},
+    {"rescale", "", 0, 1, 1, true, "scales the shape; without, hair goes on straight or is cut"},
+    {"shortest", "m", 0.001f, 1, 0.005f, false, "length below which no hair is shortened"},
+    {"longest", "m", 0.001f, 5, 2, false, "length above which no hair grows"},
+};
+constexpr BrushInfo kInfo{"length", "Length", "makes hair longer", "makes hair shorter", kParameters, false};
+
+class Length final : public StrandBrush {
+  public:
+    const BrushInfo& info() const override { return kInfo; }
+
+  protected:
+    void beginDab(const StrokeTarget& target, const DabContext&) override {
+        rate_ = target.parameter(kInfo, "rate");
+        rescale_ = target.parameter(kInfo, "rescale") != 0;
+        shortest_ = target.parameter(kInfo, "shortest");
+        longest_ = std::max(shortest_, target.parameter(kInfo, "longest"));
+    }
+    bool edit(const DabContext& dab, StrandUnderBrush& strand) const override {
+        const float now = polylineLength(strand.points);
+        const float wanted = now * (1 + dab.sign * rate_ * strand.strongest);
+        const float bounded = dab.sign > 0 ? std::max(now, std::min(wanted, longest_))
+                                           : std::min(now, std::max(wanted, shortest_));
+        if (bounded == now) return false;
+        strand.first = 1;
+        if (rescale_) {
+            scaleToLength(strand.points, bounded);
+        } else {
+            cutOrExtend(strand.points, bounded);
+        }
+        return true;
+    }
+
+  private:
+    float rate_ = 0, shortest_ = 0, longest_ = 0;
+    bool rescale_ = true;
+};
+
+}  // namespace
+
+std::unique_ptr<Brush> makeLength() {
+    return std::make_unique<Length>();
+}
+
+}  // namespace hairloom::editing

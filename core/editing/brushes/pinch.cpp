@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/editing/brush_list.h"
+
+namespace hairloom::editing {
+namespace {
+
+constexpr BrushInfo kInfo{"pinch",
+                          "Pinch",
+                          "draws hair together under the brush",
+                          "spreads hair away from the middle of the brush",
+                          {}};
+
+class Pinch final : public StrandBrush {
+  public:
+    const BrushInfo& info() const override { return kInfo; }
+
+  protected:
+    bool edit(const DabContext& dab, StrandUnderBrush& strand) const override {
+        for (std::size_t i = strand.first; i < strand.points.size(); ++i) {
+            if (!(strand.weights[i] > 0)) continue;
+            strand.points[i] -= strand.weights[i] * dab.sign * dab.volume.fromAxis(strand.points[i]);
+        }
+        return true;
+    }
+};
+
+}  // namespace
+
+std::unique_ptr<Brush> makePinch() {
+    return std::make_unique<Pinch>();
+}
+
+}  // namespace hairloom::editing

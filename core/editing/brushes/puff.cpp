@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/editing/brush_list.h"
+
+namespace hairloom::editing {
+namespace {
+
+constexpr BrushParameter kParameters[] = {
+    {"height", "m", 0, 0.1f, 0.01f, false, "how far a dab of full strength lifts"},
+};
+constexpr BrushInfo kInfo{"puff", "Puff", "lifts hair away from the skin", "presses hair onto the skin",
+                          kParameters};
+
+class Puff final : public StrandBrush {
+  public:
+    const BrushInfo& info() const override { return kInfo; }
+
+  protected:
+    void beginDab(const StrokeTarget& target, const DabContext&) override {
+        height_ = target.parameter(kInfo, "height");
+    }
+    bool edit(const DabContext& dab, StrandUnderBrush& strand) const override {
+        const Vec3f lift = strand.rootNormal_ss * (height_ * dab.sign);
+        for (std::size_t i = strand.first; i < strand.points.size(); ++i)
+            strand.points[i] += strand.weights[i] * lift;
+        return true;
+    }
+
+  private:
+    float height_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Brush> makePuff() {
+    return std::make_unique<Puff>();
+}
+
+}  // namespace hairloom::editing

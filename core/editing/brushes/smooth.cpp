@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/editing/brush_list.h"
+#include "core/groom/brushes/length_constraint.h"
+
+namespace hairloom::editing {
+namespace {
+
+constexpr BrushParameter kParameters[] = {
+    {"passes", "", 1, 20, 2, false, "more is smoother over longer stretches with each dab"},
+};
+constexpr BrushInfo kInfo{"smooth", "Smooth", "takes bends out of hair", "", kParameters};
+
+class Smooth final : public StrandBrush {
+  public:
+    const BrushInfo& info() const override { return kInfo; }
+
+  protected:
+    void beginDab(const StrokeTarget& target, const DabContext&) override {
+        passes_ = static_cast<int>(target.parameter(kInfo, "passes"));
+    }
+    bool edit(const DabContext&, StrandUnderBrush& strand) const override {
+        const std::span<Vec3f> points = strand.points;
+        for (int pass = 0; pass < passes_; ++pass) {
+            Vec3f before = points[strand.first - 1];
+            for (std::size_t i = strand.first; i + 1 < points.size(); ++i) {
+                const Vec3f middle = 0.5f * (before + points[i + 1]);
+                before = points[i];
+                points[i] += strand.weights[i] * (middle - points[i]);
+            }
+        }
+        restoreLengthsByDirection(points.subspan(strand.first - 1), strand.lengths.subspan(strand.first - 1));
+        return true;
+    }
+
+  private:
+    int passes_ = 1;
+};
+
+}  // namespace
+
+std::unique_ptr<Brush> makeSmooth() {
+    return std::make_unique<Smooth>();
+}
+
+}  // namespace hairloom::editing

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/editing/command.h"
+
+#include <utility>
+
+namespace hairloom::editing {
+
+CommandGroup::CommandGroup(std::string name, std::vector<std::unique_ptr<Command>> commands, bool done)
+    : name_(std::move(name)), commands_(std::move(commands)), done_(done) {}
+
+Change CommandGroup::exchange(Model& model) {
+    Change all;
+    std::size_t withStrands = 0;
+    const auto run = [&](Command& command) {
+        const Change change = command.exchange(model);
+        all.parts = all.parts | change.parts;
+        if (contains(change.parts, Part::Points | Part::StrandFlags) && withStrands++ == 0)
+            all.strands = change.strands;
+    };
+    if (done_) {
+        for (auto command = commands_.rbegin(); command != commands_.rend(); ++command) run(**command);
+    } else {
+        for (const auto& command : commands_) run(*command);
+    }
+    done_ = !done_;
+    // Lists of several commands would have to be merged; observers then look at all strands.
+    if (withStrands > 1) all.strands = {};
+    return all;
+}
+
+std::size_t CommandGroup::bytes() const {
+    std::size_t sum = sizeof(*this) + name_.size();
+    for (const auto& command : commands_) sum += command->bytes();
+    return sum;
+}
+
+}  // namespace hairloom::editing

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/editing/document.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "core/groom/brushes/script.h"
+#include "core/groom/project_file.h"
+
+namespace hairloom::editing {
+
+struct Document::Observers {
+    std::uint64_t last = 0;
+    std::map<std::uint64_t, Observer> list;
+};
+
+Document::Document(Groom groom) : observers_(std::make_shared<Observers>()) {
+    model_.groom = std::move(groom);
+}
+
+Document::~Document() = default;
+
+Result<std::unique_ptr<Document>> Document::open(const std::filesystem::path& path) {
+    auto groom = loadProject(path);
+    if (!groom) return tl::unexpected(groom.error());
+    return std::make_unique<Document>(std::move(*groom));
+}
+
+Status Document::save(const std::filesystem::path& path) {
+    if (auto saved = saveProject(model_.groom, path); !saved) return saved;
+    savedState_ = history_.state();
+    return {};
+}
+
+Subscription Document::observe(Observer observer) {
+    const std::uint64_t key = ++observers_->last;
+    observers_->list.emplace(key, std::move(observer));
+    const std::weak_ptr<Observers> observers = observers_;
+    return Subscription(std::shared_ptr<void>(nullptr, [observers, key](void*) {
+        if (const auto there = observers.lock()) there->list.erase(key);
+    }));
+}
+
+void Document::changed(const Change& change) {
+    const bool anyStrand = contains(change.parts, Part::Points) && change.strands.empty();
+    if (contains(change.parts, Part::Strands) || anyStrand) {
+        boundsFit_ = false;
+    } else if (boundsFit_ && contains(change.parts, Part::Points)) {
+        bounds_.update(model_.groom, change.strands);
+    }
+    tell(change);
+}
+
+void Document::tell(const Change& change) {
+    for (const auto& [key, observer] : observers_->list) observer(change);
+}
+
+void Document::perform(std::unique_ptr<Command> command, std::string record) {
+    assert(!stroke_);
+    if (!command) return;
+    const Change change = command->exchange(model_);
+    history_.add(std::move(command), std::move(record));
+    changed({change.parts | Part::History, change.strands});
+}
+
+bool Document::undo() {
+    if (!canUndo()) return false;
+    const Change change = history_.undo(model_);
+    changed({change.parts | Part::History, change.strands});
+    return true;
+}
+
+bool Document::redo() {
+    if (!canRedo()) return false;
+    const Change change = history_.redo(model_);
+    changed({change.parts | Part::History, change.strands});
+    return true;
+}
+
+Status Document::beginStroke(Stroke header) {
+    assert(!stroke_);
+    const SkinQuery* field = skinField();
+    bounds();
+    auto session = StrokeSession::begin(model_, bounds_, skin(), field, std::move(header));
+    if (!session) return tl::unexpected(session.error());
+    stroke_ = std::move(*session);
+    strokeTouched_.assign(model_.groom.strandCount(), 0);
+    return {};
+}
+
+Status Document::dab(const Dab& dab) {
+    assert(stroke_);
+    const auto change = stroke_->dab(dab);
+    if (!change) return tl::unexpected(change.error());
+    strokeTouched_.resize(std::max(strokeTouched_.size(), model_.groom.strandCount()), 0);
+    for (const std::uint32_t s : change->strands) strokeTouched_[s] = 1;
+    if (change->parts == Part::None) return {};
+    tell(*change);  // the session keeps the bounds
+    return {};
+}
+
+Stroke Document::endStroke() {
+    assert(stroke_);
+    Change change;
+    auto command = stroke_->finish(change);
+    Stroke drawn = stroke_->stroke();
+    stroke_.reset();
+    if (!command) return drawn;
+    history_.add(std::move(command), toJson(drawn).dump());
+    changed({change.parts | Part::History, change.strands});
+    return drawn;
+}
+
+void Document::cancelStroke() {
+    assert(stroke_);
+    const Change change = stroke_->cancel();
+    boundsFit_ = false;
+    if (change.parts != Part::None) changed(change);
+    stroke_.reset();
+}
+
+Result<std::size_t> Document::replay(const Stroke& stroke) {
+    if (auto begun = beginStroke(stroke); !begun) return tl::unexpected(begun.error());
+    for (const Dab& place : stroke.dabs) {
+        if (auto done = dab(place); !done) {
+            cancelStroke();
+            return tl::unexpected(done.error());
+        }
+    }
+    endStroke();
+    return static_cast<std::size_t>(std::count(strokeTouched_.begin(), strokeTouched_.end(), 1));
+}
+
+Result<std::string> Document::script() const {
+    if (history_.forgotten() > 0)
+        return fail(fmt::format("the first {} steps are forgotten", history_.forgotten()),
+                    "a larger limit of the history");
+    auto operations = nlohmann::ordered_json::array();
+    for (std::size_t i = 0; i < history_.doneCount(); ++i) {
+        if (history_.record(i).empty())
+            return fail(fmt::format("'{}' has no record that a script could replay", history_.name(i)));
+        operations.push_back(nlohmann::ordered_json::parse(history_.record(i)));
+    }
+    const nlohmann::ordered_json script{{"hairloom_script", kScriptVersion},
+                                        {"operations", std::move(operations)}};
+    return script.dump(1) + '\n';
+}
+
+const Skin* Document::skin() const {
+    if (headData_.head != model_.groom.scalp) headData_ = {model_.groom.scalp, nullptr, nullptr};
+    if (headData_.head && !headData_.skin) headData_.skin = std::make_shared<const Skin>(headData_.head);
+    return headData_.skin.get();
+}
+
+const SkinField* Document::skinField() const {
+    if (skin() && !headData_.field) headData_.field = std::make_shared<const SkinField>(headData_.skin);
+    return headData_.field.get();
+}
+
+const StrandBounds& Document::bounds() const {
+    if (!boundsFit_) bounds_.rebuild(model_.groom);
+    boundsFit_ = true;
+    return bounds_;
+}
+
+Groom Document::takeGroom() && {
+    stroke_.reset();
+    history_.clear();
+    return std::move(model_.groom);
+}
+
+}  // namespace hairloom::editing

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What is edited, and which parts of it changed.
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/groom/groom.h"
+
+namespace hairloom::editing {
+
+/// Parts of a document that observers care about; values are added up.
+enum class Part : std::uint32_t {
+    None = 0,
+    Points = 1u << 0u,          ///< positions of strands that were there
+    Strands = 1u << 1u,         ///< strands came or went: what is held per strand or point is void
+    StrandFlags = 1u << 2u,     ///< selected, hidden, frozen
+    Head = 1u << 3u,            ///< the mesh
+    ScalpFaces = 1u << 4u,      ///< the selection that carries hair
+    Density = 1u << 5u,         ///< of roots, per vertex of the mesh
+    Placement = 1u << 6u,       ///< settings of it
+    Spheres = 1u << 7u,         ///< collision spheres
+    Physics = 1u << 8u,         ///< settings of the simulation
+    Material = 1u << 9u,        ///< of the hair
+    Interpolation = 1u << 10u,  ///< settings of follow hairs
+    Layers = 1u << 11u,         ///< layers and group names
+    Triangulation = 1u << 12u,  ///< of the roots
+    History = 1u << 13u,        ///< what can be undone
+    Everything = 0xffffffffu,
+};
+constexpr Part operator|(Part a, Part b) {
+    return static_cast<Part>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
+}
+constexpr bool contains(Part parts, Part part) {
+    return (static_cast<std::uint32_t>(parts) & static_cast<std::uint32_t>(part)) != 0;
+}
+
+struct Change {
+    Part parts = Part::None;
+    /// Ascending; the strands whose points or flags changed. Empty with Points or StrandFlags: any. Valid
+    /// during the call.
+    std::span<const std::uint32_t> strands;
+};
+
+/// The state that commands exchange parts of. What a project saves is in the groom.
+struct Model {
+    Groom groom;
+    std::vector<std::string> clipNames;  ///< animations of the character file; not saved, they are its own
+};
+
+}  // namespace hairloom::editing

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/editing/penetration.h"
+
+#include <algorithm>
+
+#include "core/base/parallel.h"
+
+namespace hairloom::editing {
+namespace {
+
+constexpr std::size_t kGrain = 256;
+constexpr float kInside = 1e-6f;
+
+float depthAt(const Vec3f& point, std::span<const CollisionSphere> spheres, const SkinQuery* skin) {
+    float depth = skin ? std::max(0.0f, -skin->distanceAt(point).distance) : 0.0f;
+    for (const CollisionSphere& sphere : spheres)
+        depth = std::max(depth, sphere.radius - (point - sphere.centre).norm());
+    return depth;
+}
+
+}  // namespace
+
+Penetration penetrationOf(std::span<const std::uint32_t> offsets, std::span<const Vec3f> positions,
+                          std::span<const CollisionSphere> spheres, const SkinQuery* skin) {
+    Penetration result;
+    result.perPoint.assign(positions.size(), 0.0f);
+    const std::size_t strands = offsets.empty() ? 0 : offsets.size() - 1;
+    parallelFor(strands, kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t s = begin; s < end; ++s) {
+            for (std::uint32_t p = offsets[s] + 1; p < offsets[s + 1]; ++p)
+                result.perPoint[p] = depthAt(positions[p], spheres, skin);
+        }
+    });
+    for (const float depth : result.perPoint) {
+        result.worst = std::max(result.worst, depth);
+        result.points += depth > kInside ? 1 : 0;
+    }
+    return result;
+}
+
+}  // namespace hairloom::editing

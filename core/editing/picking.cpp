@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/editing/picking.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include "core/base/parallel.h"
+
+namespace hairloom::editing {
+namespace {
+
+constexpr std::size_t kGrain = 256;
+constexpr float kBehindHead = 0.002f;  ///< metres by which hair may lie behind the skin and still be seen
+
+/// All that the cursor's circle covers lies in this cone (or cylinder, for parallel views).
+struct PickCone {
+    Ray ray;
+    float radiusAtOrigin;
+    float radiusPerMetre;
+
+    PickCone(const View& view, const Vec2f& px, float radius_px) : ray(view.rayAt(px)) {
+        // The way along the ray is at least the depth, so the cone holds all of the circle.
+        radiusAtOrigin = view.metresPerPixel(0) * radius_px;
+        radiusPerMetre = (view.metresPerPixel(1) - view.metresPerPixel(0)) * radius_px;
+    }
+    bool mayTouch(const StrandBounds::Box& box) const {
+        const Vec3f half = 0.5f * (box.high - box.low);
+        const Vec3f toMiddle = box.low + half - ray.origin_ss;
+        const float reach = half.norm();
+        const float along = toMiddle.dot(ray.direction_ss);
+        if (along < -reach) return false;
+        const float radius = radiusAtOrigin + radiusPerMetre * (along + reach) + reach;
+        return toMiddle.squaredNorm() - along * along <= radius * radius;
+    }
+};
+
+/// Nearest place of a screen segment to a pixel.
+float nearestAlong(const Vec2f& px, const Vec2f& from, const Vec2f& to) {
+    const Vec2f along = to - from;
+    const float length = along.squaredNorm();
+    return length > 0 ? std::clamp((px - from).dot(along) / length, 0.0f, 1.0f) : 0.0f;
+}
+
+/// Screen positions interpolate in 1/depth; this gives the place on the segment in space.
+float throughPerspective(float t, float depthFrom, float depthTo, bool isParallel) {
+    if (isParallel) return t;
+    return t * depthFrom / (depthTo + t * (depthFrom - depthTo));
+}
+
+class StrandProbe {
+  public:
+    StrandProbe(const View& view, const Vec2f& px, const PickOptions& options, float headDepth)
+        : view_(view),
+          px_(px),
+          options_(options),
+          headDepth_(headDepth),
+          isParallel_(view.metresPerPixel(1) == view.metresPerPixel(2)) {}
+
+    /// The best place of a strand, if any is near enough.
+    std::optional<StrandPick> look(std::uint32_t strand, std::span<const Vec3f> points) const {
+        std::optional<StrandPick> best;
+        const auto offer = [&](std::optional<StrandPick> pick) {
+            if (pick && (!best || better(*pick, *best))) best = pick;
+        };
+        if (options_.part == StrandPart::Root) {
+            offer(place(strand, points, 0, 0));
+        } else if (options_.part == StrandPart::Tip) {
+            offer(place(strand, points, points.size() - 2, 1));
+        } else {
+            for (std::size_t i = 0; i + 1 < points.size(); ++i) offer(segment(strand, points, i));
+        }
+        return best;
+    }
+    static bool better(const StrandPick& a, const StrandPick& b) {
+        const auto rank = [](const StrandPick& p) {
+            return std::tuple(std::floor(p.distance_px), p.depth, p.strand);
+        };
+        return rank(a) < rank(b);
+    }
+
+  private:
+    std::optional<StrandPick> segment(std::uint32_t strand, std::span<const Vec3f> points,
+                                      std::size_t i) const {
+        const auto from = view_.project(points[i]);
+        const auto to = view_.project(points[i + 1]);
+        if (!from || !to) return std::nullopt;
+        const float t = nearestAlong(px_, from->px, to->px);
+        return place(strand, points, i, throughPerspective(t, from->depth, to->depth, isParallel_));
+    }
+    std::optional<StrandPick> place(std::uint32_t strand, std::span<const Vec3f> points, std::size_t i,
+                                    float along) const {
+        const Vec3f position = points[i] + along * (points[i + 1] - points[i]);
+        const auto seen = view_.project(position);
+        if (!seen) return std::nullopt;
+        const float distance = (seen->px - px_).norm();
+        if (!(distance <= options_.radius_px) || seen->depth > headDepth_) return std::nullopt;
+        return StrandPick{strand, static_cast<std::uint32_t>(i), along, position, distance, seen->depth};
+    }
+
+    const View& view_;
+    Vec2f px_;
+    PickOptions options_;
+    float headDepth_;
+    bool isParallel_;
+};
+
+}  // namespace
+
+std::vector<std::uint8_t> shownStrands(const Groom& groom) {
+    const auto hidden = groom.strandAttributes.view<std::uint8_t>(attribute::kHidden);
+    const auto layers = groom.strandAttributes.view<std::uint32_t>(attribute::kLayer);
+    std::vector<std::uint8_t> shown(groom.strandCount(), 1);
+    for (std::size_t s = 0; s < shown.size(); ++s) {
+        const std::size_t layer = s < layers.size() ? layers[s] : 0;
+        const bool isHidden = s < hidden.size() && hidden[s] != 0;
+        if (isHidden || (layer < groom.layers.size() && !groom.layers[layer].visible)) shown[s] = 0;
+    }
+    return shown;
+}
+
+std::optional<SurfaceTree::Hit> pickHead(const SurfaceTree* surface, const View& view, const Vec2f& px) {
+    if (!surface) return std::nullopt;
+    const Ray ray = view.rayAt(px);
+    return surface->firstHit(ray.origin_ss, ray.direction_ss);
+}
+
+std::optional<StrandPick> pickStrand(const Groom& groom, const StrandBounds& bounds,
+                                     const SurfaceTree* surface, const View& view, const Vec2f& px,
+                                     const PickOptions& options) {
+    float headDepth = std::numeric_limits<float>::infinity();
+    if (!options.throughHead) {
+        if (const auto head = pickHead(surface, view, px)) {
+            const auto seen = view.project(head->position);
+            if (seen) headDepth = seen->depth + kBehindHead;
+        }
+    }
+    const PickCone cone(view, px, options.radius_px);
+    const StrandProbe probe(view, px, options, headDepth);
+    const std::vector<std::uint8_t> shown = shownStrands(groom);
+    std::vector<std::uint32_t> candidates =
+        bounds.find([&](const StrandBounds::Box& box) { return cone.mayTouch(box); });
+    std::erase_if(candidates, [&](std::uint32_t s) { return !shown[s] || groom.strand(s).size() < 2; });
+    std::vector<std::optional<StrandPick>> picks(candidates.size());
+    parallelFor(candidates.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k)
+            picks[k] = probe.look(candidates[k], groom.strand(candidates[k]));
+    });
+    std::optional<StrandPick> best;
+    for (const auto& pick : picks) {
+        if (pick && (!best || StrandProbe::better(*pick, *best))) best = pick;
+    }
+    return best;
+}
+
+}  // namespace hairloom::editing

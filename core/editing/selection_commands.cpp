@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/editing/selection_commands.h"
+
+#include <algorithm>
+#include <iterator>
+#include <numeric>
+
+#include "core/editing/delta_command.h"
+
+namespace hairloom::editing {
+namespace {
+
+using Indices = std::vector<std::uint32_t>;
+
+/// Carries deltas out on a copy of the groom (which shares what is not touched) and takes them back, so that
+/// the command is ready to be done.
+template <class Change>
+std::unique_ptr<Command> prepared(const Model& model, std::string name, Change change) {
+    Model trial{model.groom, {}};
+    Deltas deltas;
+    change(trial.groom, deltas);
+    auto command = commandOf(std::move(name), std::move(deltas));
+    if (command) command->exchange(trial);
+    return command;
+}
+
+Indices chosen(const Indices& now, std::span<const std::uint32_t> given, Choice choice) {
+    Indices result;
+    const auto out = std::back_inserter(result);
+    switch (choice) {
+        case Choice::Replace:
+            result.assign(given.begin(), given.end());
+            break;
+        case Choice::Add:
+            std::set_union(now.begin(), now.end(), given.begin(), given.end(), out);
+            break;
+        case Choice::Remove:
+            std::set_difference(now.begin(), now.end(), given.begin(), given.end(), out);
+            break;
+        case Choice::Toggle:
+            std::set_symmetric_difference(now.begin(), now.end(), given.begin(), given.end(), out);
+            break;
+    }
+    return result;
+}
+
+Indices without(const Indices& all, const Indices& some) {
+    Indices rest;
+    std::set_difference(all.begin(), all.end(), some.begin(), some.end(), std::back_inserter(rest));
+    return rest;
+}
+
+}  // namespace
+
+std::unique_ptr<Command> selectStrands(const Model& model, std::span<const std::uint32_t> strands,
+                                       Choice choice) {
+    const Indices now = strandsWithFlag(model.groom, attribute::kSelected);
+    const Indices wanted = chosen(now, strands, choice);
+    return prepared(model, "Select", [&](Groom& groom, Deltas& deltas) {
+        deltas.selected.set(groom, without(now, wanted), false);
+        deltas.selected.set(groom, without(wanted, now), true);
+    });
+}
+
+std::vector<std::uint32_t> strandsOfGroup(const Groom& groom, std::uint32_t group) {
+    const auto groups = groom.strandAttributes.view<std::uint32_t>(attribute::kGroup);
+    Indices strands;
+    for (std::size_t s = 0; s < groups.size(); ++s) {
+        if (groups[s] == group) strands.push_back(static_cast<std::uint32_t>(s));
+    }
+    return strands;
+}
+
+std::vector<std::uint32_t> strandsWithFlag(const Groom& groom, std::string_view attribute) {
+    const auto flags = groom.strandAttributes.view<std::uint8_t>(attribute);
+    Indices strands;
+    for (std::size_t s = 0; s < flags.size(); ++s) {
+        if (flags[s] != 0) strands.push_back(static_cast<std::uint32_t>(s));
+    }
+    return strands;
+}
+
+std::vector<std::uint32_t> allStrands(const Groom& groom) {
+    Indices strands(groom.strandCount());
+    std::iota(strands.begin(), strands.end(), 0u);
+    return strands;
+}
+
+std::unique_ptr<Command> hideStrands(const Model& model, std::span<const std::uint32_t> strands) {
+    return prepared(model, "Hide",
+                    [&](Groom& groom, Deltas& deltas) { deltas.hidden.set(groom, strands, true); });
+}
+
+std::unique_ptr<Command> showStrands(const Model& model) {
+    const Indices hidden = strandsWithFlag(model.groom, attribute::kHidden);
+    return prepared(model, "Show all",
+                    [&](Groom& groom, Deltas& deltas) { deltas.hidden.set(groom, hidden, false); });
+}
+
+std::unique_ptr<Command> freezeStrands(const Model& model, std::span<const std::uint32_t> strands,
+                                       bool frozen) {
+    return prepared(model, frozen ? "Freeze" : "Thaw",
+                    [&](Groom& groom, Deltas& deltas) { deltas.frozen.set(groom, strands, frozen); });
+}
+
+std::unique_ptr<Command> deleteStrands(const Model& model, std::span<const std::uint32_t> strands) {
+    return prepared(model, "Delete",
+                    [&](Groom& groom, Deltas& deltas) { deltas.strands.remove(groom, strands); });
+}
+
+std::unique_ptr<Command> selectScalp(const Model& model, FaceSet faces, Choice choice,
+                                     std::string expression) {
+    return prepared(model, "Select scalp", [&](Groom& groom, Deltas& deltas) {
+        deltas.faces.set(groom, chosen(groom.scalpSelection, faces, choice), std::move(expression));
+    });
+}
+
+std::unique_ptr<Command> setDensity(const Model& model, std::span<const float> density) {
+    return prepared(model, "Density", [&](Groom& groom, Deltas& deltas) {
+        Indices vertices;
+        std::vector<float> values;
+        for (std::uint32_t v = 0; v < density.size(); ++v) {
+            const float now = groom.scalpDensity.empty() ? 1.0f : groom.scalpDensity[v];
+            if (density[v] == now) continue;
+            vertices.push_back(v);
+            values.push_back(density[v]);
+        }
+        deltas.density.set(groom, vertices, values);
+    });
+}
+
+}  // namespace hairloom::editing

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/editing/settings_commands.h"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+#include "core/groom/groom_hash.h"
+#include "core/groom/settings_json.h"
+
+namespace hairloom::editing {
+namespace {
+
+/// Exchanges one value; `Access` finds it in the model.
+template <class T>
+class ValueCommand final : public Command {
+  public:
+    using Access = T& (*)(Model&);
+    ValueCommand(std::string name, Part part, Access access, T value, std::size_t heapBytes = 0)
+        : name_(std::move(name)), part_(part), access_(access), value_(std::move(value)), heap_(heapBytes) {}
+    std::string name() const override { return name_; }
+    Change exchange(Model& model) override {
+        std::swap(access_(model), value_);
+        return {part_, {}};
+    }
+    std::size_t bytes() const override { return sizeof(*this) + name_.capacity() + heap_; }
+
+  private:
+    std::string name_;
+    Part part_;
+    Access access_;
+    T value_;
+    std::size_t heap_;  ///< bytes that the value holds elsewhere, about
+};
+
+template <class T>
+std::unique_ptr<Command> valueCommand(std::string name, Part part, T& (*access)(Model&), T value,
+                                      std::size_t heapBytes = 0) {
+    return std::make_unique<ValueCommand<T>>(std::move(name), part, access, std::move(value), heapBytes);
+}
+
+std::size_t arrayBytes(const Groom& groom) {
+    std::size_t sum = groom.offsets.size() * sizeof(std::uint32_t);
+    for (const AttributeSet* attributes : {&groom.strandAttributes, &groom.pointAttributes}) {
+        for (const auto& [name, data] : attributes->all()) {
+            std::visit([&]<class T>(const CowArray<T>& array) { sum += array.size() * sizeof(T); }, data);
+        }
+    }
+    return sum + groom.triangulation.triangles.size() * sizeof(Triangle) +
+           groom.scalpSelection.size() * sizeof(std::uint32_t) + groom.scalpDensity.size() * sizeof(float);
+}
+
+}  // namespace
+
+std::unique_ptr<Command> setMaterial(const Model& model, const HairMaterial& material) {
+    if (toJson(model.groom.material) == toJson(material)) return nullptr;
+    return valueCommand<HairMaterial>(
+        "Look", Part::Material, [](Model& m) -> HairMaterial& { return m.groom.material; }, material);
+}
+
+std::unique_ptr<Command> setPhysics(const Model& model, const runtime::SimulationSettings& settings) {
+    if (toJson(model.groom.simulation) == toJson(settings)) return nullptr;
+    return valueCommand<runtime::SimulationSettings>(
+        "Physics", Part::Physics, [](Model& m) -> runtime::SimulationSettings& { return m.groom.simulation; },
+        settings);
+}
+
+std::unique_ptr<Command> setInterpolation(const Model& model, const InterpolationSettings& settings) {
+    if (toJson(model.groom.interpolation) == toJson(settings)) return nullptr;
+    return valueCommand<InterpolationSettings>(
+        "Follow hairs", Part::Interpolation,
+        [](Model& m) -> InterpolationSettings& { return m.groom.interpolation; }, settings);
+}
+
+std::unique_ptr<Command> setPlacementSettings(const Model& model, const PlacementSettings& settings) {
+    if (toJson(model.groom.placement) == toJson(settings)) return nullptr;
+    return valueCommand<PlacementSettings>(
+        "Placement settings", Part::Placement,
+        [](Model& m) -> PlacementSettings& { return m.groom.placement; }, settings);
+}
+
+std::unique_ptr<Command> setSpheres(const Model& model, std::vector<CollisionSphere> spheres,
+                                    std::string name) {
+    if (toJson(model.groom.spheres) == toJson(spheres)) return nullptr;
+    const std::size_t bytes = std::max(spheres.size(), model.groom.spheres.size()) * sizeof(CollisionSphere);
+    return valueCommand<std::vector<CollisionSphere>>(
+        std::move(name), Part::Spheres,
+        [](Model& m) -> std::vector<CollisionSphere>& { return m.groom.spheres; }, std::move(spheres), bytes);
+}
+
+std::unique_ptr<Command> setLayers(const Model& model, std::vector<Layer> layers) {
+    assert(layers.size() >= model.groom.layers.size());
+    const std::size_t bytes = layers.size() * sizeof(Layer);
+    return valueCommand<std::vector<Layer>>(
+        "Layers", Part::Layers, [](Model& m) -> std::vector<Layer>& { return m.groom.layers; },
+        std::move(layers), bytes);
+}
+
+std::unique_ptr<Command> replaceGroom(const Model& model, Groom groom, std::string name) {
+    if (sameContent(model.groom, groom)) return nullptr;
+    const std::size_t bytes = std::max(arrayBytes(groom), arrayBytes(model.groom));
+    return valueCommand<Groom>(
+        std::move(name), Part::Everything, [](Model& m) -> Groom& { return m.groom; }, std::move(groom),
+        bytes);
+}
+
+Result<RootTriangulation> triangulationOf(const Groom& groom) {
+    if (!groom.scalp) return fail("the groom has no head", "open or import one first");
+    const auto roots = groom.rootBindings();
+    if (roots.empty()) return fail("the strands are not bound to the head");
+    return triangulateRoots(*groom.scalp, groom.scalpSelection, roots);
+}
+
+}  // namespace hairloom::editing

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Commands that give a part of the document another value. They do nothing by themselves: Document::perform()
+// carries them out. Each is null where the value is the one that is there, so that a slider that is put back
+// leaves no step.
+
+#include <memory>
+
+#include "core/editing/command.h"
+#include "core/groom/groom.h"
+
+namespace hairloom::editing {
+
+std::unique_ptr<Command> setMaterial(const Model& model, const HairMaterial& material);
+std::unique_ptr<Command> setPhysics(const Model& model, const runtime::SimulationSettings& settings);
+std::unique_ptr<Command> setInterpolation(const Model& model, const InterpolationSettings& settings);
+std::unique_ptr<Command> setPlacementSettings(const Model& model, const PlacementSettings& settings);
+/// `name` for the history: "Move sphere".
+std::unique_ptr<Command> setSpheres(const Model& model, std::vector<CollisionSphere> spheres,
+                                    std::string name);
+/// As many layers as there are or more, for strands name them by index.
+std::unique_ptr<Command> setLayers(const Model& model, std::vector<Layer> layers);
+
+/// Another groom altogether: a head with what is on it, imported hair, the outcome of a script.
+std::unique_ptr<Command> replaceGroom(const Model& model, Groom groom, std::string name);
+
+/// Roots' triangles, as triangulateRoots() makes them of the groom's roots; not a step of its own, since they
+/// follow from the roots: see Document::setTriangulation().
+Result<RootTriangulation> triangulationOf(const Groom& groom);
+
+}  // namespace hairloom::editing

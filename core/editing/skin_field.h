@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The distance to the skin, looked up instead of searched, so that a brush may ask for it a million times a
+// second.
+
+#include <atomic>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/groom/brushes/skin.h"
+
+namespace hairloom::editing {
+
+/// Signed distances at the corners of cells near the skin, interpolated within them. A block of cells is
+/// measured when it is first asked for, so that a large mesh costs no more than the part that hair comes
+/// near; the answers do not depend on who asks first. Farther than kReach outside, the distance is a lower
+/// bound that is above kReach, and the direction says nothing; deep inside it is the skin's own answer.
+class SkinField final : public SkinQuery {
+  public:
+    static constexpr float kReach = 0.01f;  ///< metres
+    static constexpr float kCell = 0.002f;  ///< metres
+
+    /// `cell` in metres; it grows where the mesh is so large that the table of blocks would exceed 32 MB.
+    explicit SkinField(std::shared_ptr<const Skin> skin, float cell = kCell);
+    ~SkinField() override;
+    SkinField(const SkinField&) = delete;
+    SkinField& operator=(const SkinField&) = delete;
+
+    SkinDistance distanceAt(const Vec3f& point) const override;
+    /// Measures what lies near these faces ahead of time, in parallel.
+    void prepare(std::span<const std::uint32_t> faces) const;
+    float cell() const { return cell_; }
+
+  private:
+    struct Block {
+        std::atomic<float> centre;          ///< signed distance there; not finite until measured
+        std::atomic<const float*> corners;  ///< owned; null until measured
+    };
+    Vec3f centreOf(std::size_t block) const;
+    /// Measured if it was not.
+    float centreDistance(std::size_t block) const;
+    const float* corners(std::size_t block) const;
+
+    std::shared_ptr<const Skin> skin_;
+    Box3f meshBounds_;
+    Vec3f low_ = Vec3f::Zero();
+    float cell_;
+    Eigen::Array3i size_ = Eigen::Array3i::Zero();  ///< blocks along each axis
+    mutable std::vector<Block> blocks_;
+};
+
+}  // namespace hairloom::editing

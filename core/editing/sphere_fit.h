@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Collision spheres for a head, a neck and shoulders, found rather than placed.
+
+#include <cstdint>
+#include <vector>
+
+#include "core/groom/groom.h"
+
+namespace hairloom::editing {
+
+struct SphereFitOptions {
+    std::uint32_t count = 12;    ///< spheres, 1 … 64
+    FaceSet region;              ///< ascending; the skin that is to be covered. Empty: all of the mesh
+    float largestRadius = 0.2f;  ///< metres
+    std::uint64_t seed = 1;
+};
+
+struct SphereFit {
+    std::vector<CollisionSphere> spheres;  ///< without bones
+    float worstGap = 0;    ///< metres; deepest that skin of the region lies outside all spheres
+    float meanGap = 0;     ///< metres; of the skin outside, by vertex
+    float worstBulge = 0;  ///< metres; deepest that skin lies in a sphere, which holds hair off it
+    Vec3f worstGapAt_ss = Vec3f::Zero();
+};
+
+/// Spheres whose union lies as close to the skin as so many can: chosen among the largest that fit inside,
+/// then moved and resized by least squares. Errors: an empty mesh, options out of range.
+Result<SphereFit> fitSpheres(const ScalpMesh& mesh, const SphereFitOptions& options);
+
+/// How well spheres cover the vertices of a region (all where it is empty).
+SphereFit measureSpheres(const ScalpMesh& mesh, const FaceSet& region, std::vector<CollisionSphere> spheres);
+
+/// Faces whose middle is within `distance` metres of hair: where spheres matter.
+FaceSet facesNearHair(const Groom& groom, float distance);
+
+}  // namespace hairloom::editing

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/editing/strand_bounds.h"
+
+#include "core/base/parallel.h"
+
+namespace hairloom::editing {
+namespace {
+
+constexpr std::size_t kGrain = 4096;
+
+}  // namespace
+
+StrandBounds::Box StrandBounds::boxOf(std::span<const Vec3f> points) {
+    // An empty box is beyond any test's reach.
+    constexpr float kNowhere = 1e30f;
+    Box box{Vec3f::Constant(kNowhere), Vec3f::Constant(-kNowhere)};
+    for (const Vec3f& point : points) {
+        box.low = box.low.cwiseMin(point);
+        box.high = box.high.cwiseMax(point);
+    }
+    return box;
+}
+
+void StrandBounds::rebuild(const Groom& groom) {
+    boxes_.resize(groom.strandCount());
+    parallelFor(boxes_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t s = begin; s < end; ++s) boxes_[s] = boxOf(groom.strand(s));
+    });
+}
+
+void StrandBounds::append(const Groom& groom) {
+    for (std::size_t s = boxes_.size(); s < groom.strandCount(); ++s)
+        boxes_.push_back(boxOf(groom.strand(s)));
+}
+
+void StrandBounds::update(const Groom& groom, std::span<const std::uint32_t> strands) {
+    parallelFor(strands.size(), kGrain / 8, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) boxes_[strands[k]] = boxOf(groom.strand(strands[k]));
+    });
+}
+
+std::vector<std::uint32_t> StrandBounds::gather(
+    const std::function<void(std::size_t, std::size_t, std::vector<std::uint32_t>&)>& piece) const {
+    std::vector<std::vector<std::uint32_t>> found((boxes_.size() + kGrain - 1) / kGrain);
+    parallelFor(boxes_.size(), kGrain,
+                [&](std::size_t begin, std::size_t end) { piece(begin, end, found[begin / kGrain]); });
+    std::vector<std::uint32_t> all;
+    for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
+    return all;
+}
+
+}  // namespace hairloom::editing

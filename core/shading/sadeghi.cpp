@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/shading/sadeghi.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace hairloom::shading {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kWidthOfDeviation = 2.5066282746310002;  // √(2π)
+constexpr double kGlintShare = 0.2;
+
+/// The colour whose largest channel is 1, and that channel.
+SadeghiLobe lobeOf(const Vec3d& energy, double area, double shift, double deviation) {
+    SadeghiLobe lobe;
+    const double most = energy.maxCoeff();
+    if (most > 0) lobe.colour = energy / most;
+    lobe.shift = shift;
+    lobe.width = kWidthOfDeviation * deviation;
+    // θ_h is half of θ_o: the longitudinal area over θ_o is twice the width.
+    lobe.intensity = most / (2 * lobe.width * area);
+    return lobe;
+}
+
+}  // namespace
+
+double unitHeightGauss(double x, double width) {
+    const double z = x / width;
+    return std::exp(-kPi * z * z);
+}
+
+double sadeghiLongitudinal(const SadeghiParameters& parameters, Lobe lobe, double thetaIn, double thetaOut) {
+    const SadeghiLobe& l = parameters.lobe(lobe);
+    return unitHeightGauss(0.5 * (thetaIn + thetaOut) - l.shift, l.width);
+}
+
+double sadeghiAzimuthal(const SadeghiParameters& parameters, Lobe lobe, double phi, double glint) {
+    const double turned = std::abs(wrapAngle(phi));
+    if (lobe == Lobe::TT) return unitHeightGauss(kPi - turned, parameters.ttAzimuthalWidth);
+    const double round = std::cos(0.5 * turned);
+    if (lobe == Lobe::R) return round;
+    const double place = parameters.glintNear + glint * (parameters.glintFar - parameters.glintNear);
+    return round + parameters.glintIntensity * unitHeightGauss(place - turned, parameters.glintWidth);
+}
+
+Vec3d evaluate(const SadeghiParameters& parameters, double thetaIn, double thetaOut, double phi,
+               double glint) {
+    const double cosine = std::max(std::cos(0.5 * (thetaOut - thetaIn)), 1e-6);
+    Vec3d sum = Vec3d::Zero();
+    for (const Lobe lobe : kLobes) {
+        const SadeghiLobe& l = parameters.lobe(lobe);
+        sum += l.intensity * sadeghiLongitudinal(parameters, lobe, thetaIn, thetaOut) *
+               sadeghiAzimuthal(parameters, lobe, phi, glint) * l.colour;
+    }
+    return sum / (cosine * cosine);
+}
+
+SadeghiParameters sadeghiLike(const Marschner& model) {
+    const MarschnerParameters& m = model.parameters();
+    const AzimuthalProfile across = model.azimuthal(0);
+    const AzimuthalProfile::Grid grid = across.grid();
+    double all = 0;
+    double variance = 0;
+    for (std::size_t i = 0; i < grid.tt[0].size(); ++i) {
+        const double fromBack =
+            kPi * (1 - static_cast<double>(i) / static_cast<double>(grid.tt[0].size() - 1));
+        const double n = static_cast<double>(grid.tt[0][i] + grid.tt[1][i] + grid.tt[2][i]);
+        all += n;
+        variance += n * fromBack * fromBack;
+    }
+    SadeghiParameters s;
+    s.ttAzimuthalWidth = kWidthOfDeviation * (all > 0 ? std::sqrt(variance / all) : 0.5);
+    const double roundArea = 4;  // ∫ cos(φ/2) dφ
+    s.glintIntensity = kGlintShare / (1 - kGlintShare) * roundArea / (2 * s.glintWidth);
+    const auto energy = [&](Lobe lobe) { return Vec3d(m.intensity[index(lobe)] * across.energy(lobe)); };
+    s.r = lobeOf(energy(Lobe::R), roundArea, m.tilt[0], m.width[0]);
+    s.tt = lobeOf(energy(Lobe::TT), s.ttAzimuthalWidth, m.tilt[1], m.width[1]);
+    s.trt = lobeOf(energy(Lobe::TRT), roundArea / (1 - kGlintShare), m.tilt[2], m.width[2]);
+    return s;
+}
+
+}  // namespace hairloom::shading

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The artist-friendly model of Sadeghi et al. 2010 as Rünz 2012, section 5.3 has it: lobes that can be moved,
+// widened and coloured one by one, without Fresnel terms. Not energy conserving, by intention: a wider lobe
+// stays as bright. Angles as in marschner.h; colours linear RGB.
+
+#include "core/shading/marschner.h"
+
+namespace hairloom::shading {
+
+struct SadeghiLobe {
+    Vec3d colour = Vec3d::Ones();  ///< C_p, 0…1
+    double intensity = 0;          ///< I_p, >= 0
+    double shift = 0;              ///< α_p in θ_h
+    /// β_p in θ_h, > 0. The Gaussians are exp(−π ν²/β²), of height 1 and area β; their deviation is β/√(2π).
+    /// The thesis hands β² to Eq. 52 and squares it again there.
+    double width = 0.3;
+};
+
+struct SadeghiParameters {
+    SadeghiLobe r, tt, trt;
+    double ttAzimuthalWidth = 1;       ///< φ_TT, as the longitudinal widths
+    double glintIntensity = 0.5;       ///< I_g, relative to TRT, >= 0
+    double glintWidth = 10 * kDegree;  ///< azimuthal
+    /// Glints lie at ± an angle in this range, another one for each strand (thesis, section 5.3).
+    double glintNear = 30 * kDegree, glintFar = 45 * kDegree;
+
+    const SadeghiLobe& lobe(Lobe lobe) const { return lobe == Lobe::R ? r : lobe == Lobe::TT ? tt : trt; }
+};
+
+/// exp(−π ν²/width²).
+double unitHeightGauss(double x, double width);
+
+/// M'_p of Eq. 52, with θ_h for the printed θ_d.
+double sadeghiLongitudinal(const SadeghiParameters& parameters, Lobe lobe, double thetaIn, double thetaOut);
+/// N'_p of Eq. 53; `glint` 0…1 is the strand's place between glintNear and glintFar.
+double sadeghiAzimuthal(const SadeghiParameters& parameters, Lobe lobe, double phi, double glint);
+
+/// S' of Eq. 51, used as S.
+Vec3d evaluate(const SadeghiParameters& parameters, double thetaIn, double thetaOut, double phi,
+               double glint);
+
+/// The controls at which the lobes have place, width, colour and energy of Marschner's for light across the
+/// fibre: where an artist starts from. A fifth of TRT's energy goes into the glints.
+SadeghiParameters sadeghiLike(const Marschner& model);
+
+}  // namespace hairloom::shading

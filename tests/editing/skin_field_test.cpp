@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/editing/skin_field.h"
+
+#include <gtest/gtest.h>
+
+#include "core/base/parallel.h"
+#include "tests/geometry/test_meshes.h"
+#include "tests/groom/groom_samples.h"
+
+namespace hairloom::editing {
+namespace {
+
+Vec3f randomPoint(Random& random, float extent) {
+    return {random.uniform(-extent, extent), random.uniform(-extent, extent),
+            random.uniform(-extent, extent)};
+}
+
+TEST(SkinField, IsNearTheExactDistanceWhereItIsAskedFor) {
+    const auto skin = std::make_shared<const Skin>(sphereScalp(0.09f, 4, Vec3f::Zero()));
+    const SkinField field(skin);
+    Random random(1);
+    int near = 0;
+    for (int i = 0; i < 4000; ++i) {
+        const Vec3f point = randomPoint(random, 0.12f);
+        const Skin::Sample exact = skin->at(point);
+        const SkinDistance quick = field.distanceAt(point);
+        if (std::abs(exact.distance) < SkinField::kReach) {
+            ++near;
+            EXPECT_NEAR(quick.distance, exact.distance, 5e-5f);
+            EXPECT_GT(quick.outward.dot(exact.outward), 0.98f);
+            EXPECT_NEAR(quick.outward.norm(), 1, 1e-5f);
+        } else if (exact.distance > 0) {
+            EXPECT_GE(quick.distance, SkinField::kReach - 1e-4f);
+            EXPECT_LE(quick.distance, exact.distance + 1e-4f);
+        } else {
+            EXPECT_LT(quick.distance, -SkinField::kReach + 1e-4f);
+        }
+    }
+    EXPECT_GT(near, 300);
+}
+
+TEST(SkinField, MissesSharpEdgesByLessThanAThirdOfACell) {
+    PolygonSoup box;
+    for (const float x : {-0.05f, 0.05f})
+        for (const float y : {-0.05f, 0.05f})
+            for (const float z : {-0.05f, 0.05f}) box.positions.emplace_back(x, y, z);
+    for (const auto& quad : {std::array<std::uint32_t, 4>{0, 1, 3, 2},
+                             {4, 6, 7, 5},
+                             {0, 4, 5, 1},
+                             {2, 3, 7, 6},
+                             {0, 2, 6, 4},
+                             {1, 5, 7, 3}}) {
+        box.corners.insert(box.corners.end(), quad.begin(), quad.end());
+        box.offsets.push_back(static_cast<std::uint32_t>(box.corners.size()));
+    }
+    const auto mesh = std::make_shared<const ScalpMesh>(test::meshOf(box));
+    const auto skin = std::make_shared<const Skin>(mesh);
+    ASSERT_LT(skin->at(Vec3f::Zero()).distance, 0);
+    const SkinField field(skin);
+    Random random(2);
+    float worst = 0;
+    for (int i = 0; i < 6000; ++i) {
+        const Vec3f point = randomPoint(random, 0.058f);
+        const float exact = skin->at(point).distance;
+        if (std::abs(exact) < 0.5f * SkinField::kReach)
+            worst = std::max(worst, std::abs(field.distanceAt(point).distance - exact));
+    }
+    EXPECT_LT(worst, SkinField::kCell / 3);
+    EXPECT_GT(worst, 1e-6f);
+}
+
+TEST(SkinField, AnswersAlikeForAnyNumberOfThreadsAndOrder) {
+    const auto skin = std::make_shared<const Skin>(sphereScalp(0.09f, 3, Vec3f::Zero()));
+    constexpr std::size_t kPoints = 2000;
+    std::vector<float> first(kPoints), second(kPoints);
+    const auto ask = [&](const SkinField& field, std::vector<float>& answers, bool backwards) {
+        parallelFor(kPoints, 16, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const std::size_t k = backwards ? kPoints - 1 - i : i;
+                Random random(3, k);
+                answers[k] = field.distanceAt(randomPoint(random, 0.11f)).distance;
+            }
+        });
+    };
+    setThreadCount(1);
+    ask(SkinField(skin), first, false);
+    setThreadCount(4);
+    const SkinField field(skin);
+    std::vector<std::uint32_t> faces(100);
+    std::iota(faces.begin(), faces.end(), 0u);
+    field.prepare(faces);
+    ask(field, second, true);
+    setThreadCount(0);
+    EXPECT_EQ(first, second);
+}
+
+TEST(SkinField, GrowsItsCellsOnLargeMeshes) {
+    const auto skin = std::make_shared<const Skin>(sphereScalp(4.0f, 2, Vec3f::Zero()));
+    const SkinField field(skin);
+    EXPECT_GT(field.cell(), 2 * SkinField::kCell);
+    EXPECT_NEAR(field.distanceAt(Vec3f(0, 4.001f, 0)).distance, skin->at(Vec3f(0, 4.001f, 0)).distance,
+                2e-3f);
+}
+
+}  // namespace
+}  // namespace hairloom::editing

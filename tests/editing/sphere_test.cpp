@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gmock/gmock.h>
+
+#include "core/editing/penetration.h"
+#include "core/editing/sphere_commands.h"
+#include "core/editing/sphere_fit.h"
+#include "tests/editing/editing_samples.h"
+#include "tests/geometry/test_meshes.h"
+
+namespace hairloom::editing {
+namespace {
+
+TEST(SphereFit, FindsTheSphereThatAHeadIs) {
+    const auto head = sphereScalp(kHeadRadius, 4, kHeadCentre);
+    SphereFitOptions options;
+    options.count = 1;
+    const auto fit = fitSpheres(*head, options);
+    ASSERT_TRUE(fit) << fit.error().message();
+    ASSERT_EQ(fit->spheres.size(), 1u);
+    EXPECT_LT((fit->spheres[0].centre - kHeadCentre).norm(), 3e-4f);
+    EXPECT_NEAR(fit->spheres[0].radius, kHeadRadius, 3e-4f);
+    EXPECT_LT(fit->worstGap, 5e-4f);
+    EXPECT_LT(fit->worstBulge, 5e-4f);
+}
+
+/// A head on a neck on shoulders, as three spheres that meet.
+ScalpMesh threeBalls() {
+    PolygonSoup soup = test::icosphereSoup(4, 0.1f);
+    test::append(soup, test::icosphereSoup(4, 0.05f), Vec3f(0, -0.16f, 0));
+    test::append(soup, test::icosphereSoup(4, 0.08f), Vec3f(0.05f, -0.30f, 0));
+    return test::meshOf(soup);
+}
+
+TEST(SphereFit, FindsSeveralSpheres) {
+    const ScalpMesh mesh = threeBalls();
+    SphereFitOptions options;
+    options.count = 3;
+    const auto fit = fitSpheres(mesh, options);
+    ASSERT_TRUE(fit);
+    EXPECT_LT(fit->worstGap, 1e-3f);
+    std::vector<float> radii;
+    for (const CollisionSphere& sphere : fit->spheres) radii.push_back(sphere.radius);
+    std::sort(radii.begin(), radii.end());
+    EXPECT_NEAR(radii[0], 0.05f, 1e-3f);
+    EXPECT_NEAR(radii[1], 0.08f, 1e-3f);
+    EXPECT_NEAR(radii[2], 0.1f, 1e-3f);
+}
+
+TEST(SphereFit, MoreSpheresLeaveSmallerGaps) {
+    // An ellipsoid, which no number of spheres covers exactly.
+    PolygonSoup soup = test::icosphereSoup(4, 0.09f);
+    for (Vec3f& p : soup.positions) p.z() *= 1.5f;
+    const ScalpMesh mesh = test::meshOf(soup);
+    float before = 1;
+    for (const std::uint32_t count : {1u, 4u, 16u}) {
+        SphereFitOptions options;
+        options.count = count;
+        const auto fit = fitSpheres(mesh, options);
+        ASSERT_TRUE(fit);
+        EXPECT_LT(fit->worstGap, 0.8f * before) << count;
+        before = fit->worstGap;
+        const SphereFit again = measureSpheres(mesh, {}, fit->spheres);
+        EXPECT_EQ(again.worstGap, fit->worstGap);
+    }
+    EXPECT_LT(before, 0.006f);
+}
+
+TEST(SphereFit, MeasuresTheGapThatItSays) {
+    const auto head = sphereScalp(kHeadRadius, 3, kHeadCentre);
+    const SphereFit fit =
+        measureSpheres(*head, {}, {{"a", kHeadCentre + Vec3f(0, 0.01f, 0), kHeadRadius, ""}});
+    EXPECT_NEAR(fit.worstGap, 0.01f, 1e-6f);
+    EXPECT_NEAR(fit.worstBulge, 0.01f, 1e-6f);
+    EXPECT_NEAR(fit.worstGapAt_ss.y(), kHeadCentre.y() - kHeadRadius, 1e-6f);
+}
+
+TEST(SphereFit, RefusesWhatItCannotDo) {
+    const auto head = sphereScalp();
+    SphereFitOptions options;
+    options.count = 0;
+    EXPECT_FALSE(fitSpheres(*head, options));
+    options.count = 65;
+    EXPECT_FALSE(fitSpheres(*head, options));
+    EXPECT_FALSE(fitSpheres(ScalpMesh(), {}));
+}
+
+TEST(FacesNearHair, AreThoseWithinTheDistance) {
+    const Groom groom = hairOnHead(200);
+    const FaceSet faces = facesNearHair(groom, 0.02f);
+    EXPECT_GT(faces.size(), groom.scalp->triangleCount() / 3);
+    EXPECT_LT(faces.size(), groom.scalp->triangleCount());
+    for (const std::uint32_t face : faces) {
+        const Vec3f middle = groom.scalp->pointAt(face, Vec3f::Constant(1.0f / 3));
+        EXPECT_GT(middle.y(), kHeadCentre.y() - 0.021f);
+    }
+}
+
+TEST(Penetration, IsTheDeeperOfSkinAndSpheres) {
+    const auto head = sphereScalp(kHeadRadius, 4, kHeadCentre);
+    const Skin skin(head);
+    const std::vector<Vec3f> points{kHeadCentre, kHeadCentre + Vec3f(0, 0.08f, 0),
+                                    kHeadCentre + Vec3f(0, 0.2f, 0)};
+    const std::vector<std::uint32_t> offsets{0, 3};
+    const Penetration inHead = penetrationOf(offsets, points, {}, &skin);
+    EXPECT_EQ(inHead.perPoint[0], 0);  // a root
+    EXPECT_NEAR(inHead.perPoint[1], 0.01f, 3e-4f);
+    EXPECT_EQ(inHead.perPoint[2], 0);
+    EXPECT_EQ(inHead.points, 1u);
+    const std::vector<CollisionSphere> spheres{{"far", kHeadCentre + Vec3f(0, 0.2f, 0.01f), 0.03f, ""}};
+    const Penetration both = penetrationOf(offsets, points, spheres, &skin);
+    EXPECT_NEAR(both.perPoint[2], 0.02f, 1e-6f);
+    EXPECT_EQ(both.worst, both.perPoint[2]);
+    EXPECT_EQ(both.points, 2u);
+    EXPECT_EQ(penetrationOf(offsets, points, {}, nullptr).points, 0u);
+}
+
+TEST(SphereCommands, PlaceMoveResizeAttachMirrorRenameRemove) {
+    Document document(hairOnHead(20));
+    const auto spheres = [&]() -> const std::vector<CollisionSphere>& { return document.groom().spheres; };
+    const SurfaceTree tree(*document.groom().scalp);
+    const SurfacePoint side = tree.closest(kHeadCentre + Vec3f(0.2f, 0, 0)).surface;
+    document.perform(placeSphere(document.model(), side, 0.02f));
+    ASSERT_EQ(spheres().size(), 1u);
+    EXPECT_NEAR(spheres()[0].centre.x(), kHeadRadius - 0.02f, 1e-3f);
+    document.perform(moveSphere(document.model(), 0, Vec3f(0.05f, 1.5f, 0)));
+    document.perform(resizeSphere(document.model(), 0, 100));
+    EXPECT_EQ(spheres()[0].radius, kLargestSphere);
+    document.perform(resizeSphere(document.model(), 0, 0.03f));
+    document.perform(attachSphere(document.model(), 0, "clavicle_L"));
+    document.perform(renameSphere(document.model(), 0, "Shoulder.L"));
+    document.perform(mirrorSphere(document.model(), 0));
+    ASSERT_EQ(spheres().size(), 2u);
+    EXPECT_EQ(spheres()[1].centre, Vec3f(-0.05f, 1.5f, 0));
+    EXPECT_EQ(spheres()[1].bone, "clavicle_R");
+    EXPECT_EQ(spheres()[1].name, "Shoulder.R");
+    document.perform(removeSphere(document.model(), 0));
+    EXPECT_EQ(spheres().size(), 1u);
+    EXPECT_EQ(document.history().size(), 8u);
+    EXPECT_EQ(moveSphere(document.model(), 0, spheres()[0].centre), nullptr);
+    EXPECT_EQ(moveSphere(document.model(), 0, Vec3f::Constant(std::numeric_limits<float>::infinity())),
+              nullptr);
+    EXPECT_FALSE(hasErrors(validate(document.groom())));
+}
+
+TEST(SphereCommands, KnowOtherSides) {
+    EXPECT_EQ(otherSide("arm_L"), "arm_R");
+    EXPECT_EQ(otherSide("LeftArm"), "RightArm");
+    EXPECT_EQ(otherSide("shoulder.r"), "shoulder.l");
+    EXPECT_EQ(otherSide("Head"), "Head");
+}
+
+}  // namespace
+}  // namespace hairloom::editing
