@@ -76,6 +76,28 @@ std::vector<Vec3f> headColours(const Groom& groom, const Vec3f& skin) {
     return albedo;
 }
 
+/// Radii with none for strands that are hidden or on a layer that is; empty where all strands are shown.
+std::vector<float> radiiOfShown(const Groom& groom, const HairMaterial& material) {
+    const auto hidden = groom.strandAttributes.view<std::uint8_t>(attribute::kHidden);
+    const auto layers = groom.strandAttributes.view<std::uint32_t>(attribute::kLayer);
+    const auto isHidden = [&](std::size_t strand) {
+        if (strand < hidden.size() && hidden[strand] != 0) return true;
+        const std::uint32_t layer = strand < layers.size() ? layers[strand] : 0;
+        return layer < groom.layers.size() && !groom.layers[layer].visible;
+    };
+    const auto authored = groom.pointAttributes.view<float>(attribute::kRadius);
+    std::vector<float> radii;
+    for (std::size_t s = 0; s < groom.strandCount(); ++s) {
+        if (!isHidden(s)) continue;
+        if (radii.empty()) {
+            radii.assign(authored.begin(), authored.end());
+            radii.resize(groom.pointCount(), material.rootRadius);
+        }
+        std::fill(radii.begin() + groom.offsets[s], radii.begin() + groom.offsets[s + 1], 0.0f);
+    }
+    return radii;
+}
+
 std::vector<Quatf> rootRotations(const Groom& rest, const Groom& posed, const FollowBindings& bindings) {
     const std::vector<SurfacePoint> all = rest.rootBindings();
     if (!rest.scalp || all.empty()) return {};
@@ -125,6 +147,7 @@ Result<GroomScene> GroomScene::make(const Groom& groom, const std::vector<Vec3f>
     scene.rest_ = groom;
     scene.posed_ = pose ? posedGroom(groom, *positions_ws, *pose) : groom;
     scene.material_ = materialOf(groom.material, view);
+    scene.radii_ = radiiOfShown(groom, groom.material);
     if (!groom.scalp && !hiddenGroups.empty()) return fail("there is no head to hide groups of");
     if (groom.scalp) {
         const auto hidden = facesOfGroups(*groom.scalp, hiddenGroups);
@@ -176,7 +199,7 @@ render::RenderScene GroomScene::scene() const {
     if (hairOffsets_.empty()) {
         strands.offsets = posed_.offsets.view();
         strands.positions_ws = posed_.positions();
-        strands.radii = posed_.pointAttributes.view<float>(attribute::kRadius);
+        strands.radii = radii_.empty() ? posed_.pointAttributes.view<float>(attribute::kRadius) : radii_;
         strands.colours = posed_.strandAttributes.view<Vec3f>(attribute::kStrandColour);
     } else {
         strands.offsets = hairOffsets_;

@@ -56,6 +56,7 @@ class GroomScene {
     std::vector<std::uint32_t>
         hairOffsets_;  ///< of follow hairs; empty where the strands themselves are drawn
     std::vector<Vec3f> hairPositions_ws_;
+    std::vector<float> radii_;  ///< of the strands' points where some are hidden, which have no thickness
     render::HairMaterial material_;
 };
 

@@ -2,15 +2,65 @@
 #include "editor/document/document.h"
 
 #include <QFileInfo>
+#include <array>
+#include <utility>
 
-#include "core/groom/project_file.h"
 #include "editor/document/groom_command.h"
 
 namespace hairloom::editor {
+namespace {
 
-Document::Document(QObject* parent) : QObject(parent) {
-    connect(&undo_, &QUndoStack::cleanChanged, this, &Document::titleChanged);
-    connect(&undo_, &QUndoStack::indexChanged, this, &Document::historyChanged);
+using editing::Part;
+
+constexpr std::array<std::pair<Part, Change>, 13> kParts{{
+    {Part::Points, Change::Strands},
+    {Part::Strands, Change::Strands},
+    {Part::StrandFlags, Change::Strands},
+    {Part::Layers, Change::Strands},
+    {Part::Triangulation, Change::Strands},
+    {Part::Head, Change::Scalp},
+    {Part::ScalpFaces, Change::Scalp},
+    {Part::Density, Change::Scalp},
+    {Part::Spheres, Change::Spheres},
+    {Part::Material, Change::Look},
+    {Part::Physics, Change::Simulation},
+    {Part::Interpolation, Change::FollowHairs},
+    {Part::Placement, Change::Placement},
+}};
+
+Changes changesOf(Part parts) {
+    Changes changes;
+    for (const auto& [part, change] : kParts) {
+        if (editing::contains(parts, part)) changes |= change;
+    }
+    return changes;
+}
+
+Part partsOf(Changes changes) {
+    Part parts = Part::None;
+    for (const auto& [part, change] : kParts) {
+        if (changes & change) parts = parts | part;
+    }
+    return parts;
+}
+
+}  // namespace
+
+Document::Document(QObject* parent) : QObject(parent), editing_(std::make_unique<editing::Document>()) {
+    watch();
+}
+
+Document::~Document() = default;
+
+void Document::watch() {
+    subscription_ = editing_->observe([this](const editing::Change& change) { tell(change.parts); });
+}
+
+void Document::tell(Part parts) {
+    if (silent_) return;
+    if (const Changes changes = changesOf(parts)) Q_EMIT changed(changes);
+    Q_EMIT historyChanged();
+    Q_EMIT titleChanged();
 }
 
 QString Document::title() const {
@@ -19,13 +69,21 @@ QString Document::title() const {
 }
 
 void Document::open(Groom groom, const QString& path, const QString& name) {
-    undo_.clear();
+    auto opened = std::make_unique<editing::Document>(std::move(groom));
+    // What a head costs to prepare is kept while the head stays.
+    if (opened->groom().scalp && opened->groom().scalp == editing_->headData().head) {
+        opened->setHeadData(editing_->headData());
+    }
+    subscription_ = {};
+    editing_ = std::move(opened);
+    watch();
     restored_ = false;
+    lastMerge_ = 0;
     path_ = path;
     name_ = name;
-    groom_ = std::move(groom);
     Q_EMIT replaced();
     Q_EMIT changed(kEverything);
+    Q_EMIT historyChanged();
     Q_EMIT titleChanged();
 }
 
@@ -35,30 +93,49 @@ void Document::restore(Groom groom, const QString& path, const QString& name) {
     Q_EMIT titleChanged();
 }
 
+void Document::perform(std::unique_ptr<editing::Command> command) {
+    if (editing_->stroke()) editing_->cancelStroke();
+    lastMerge_ = 0;
+    editing_->perform(std::move(command));
+}
+
 void Document::change(const QString& text, Changes changes, Groom after, quint64 mergeKey) {
-    undo_.push(new GroomCommand(*this, text, changes, std::move(after), mergeKey));
+    if (editing_->stroke()) editing_->cancelStroke();
+    if (mergeKey != 0 && mergeKey == lastMerge_ && doneSteps() == stepCount()) {
+        // The step takes the place of the one before it.
+        silent_ = true;
+        editing_->undo();
+        silent_ = false;
+    }
+    editing_->perform(std::make_unique<GroomCommand>(text.toStdString(), partsOf(changes), std::move(after)));
+    lastMerge_ = mergeKey;
 }
 
 Status Document::save(const QString& path) {
-    if (auto status = saveProject(groom_, path.toStdString()); !status) return status;
+    if (auto status = editing_->save(path.toStdString()); !status) return status;
     path_ = path;
     restored_ = false;
-    undo_.setClean();
     Q_EMIT titleChanged();
     return {};
 }
 
-std::size_t Document::historyBytes() const {
-    std::size_t bytes = 0;
-    for (int i = 0; i < undo_.count(); ++i) {
-        if (const auto* command = dynamic_cast<const GroomCommand*>(undo_.command(i))) bytes += command->bytes();
-    }
-    return bytes;
+QString Document::stepName(int step) const {
+    return QString::fromStdString(editing_->history().name(static_cast<std::size_t>(step)));
 }
 
-void Document::set(const Groom& groom, Changes changes) {
-    groom_ = groom;
-    Q_EMIT changed(changes);
+void Document::undo() {
+    lastMerge_ = 0;
+    editing_->undo();
+}
+
+void Document::redo() {
+    lastMerge_ = 0;
+    editing_->redo();
+}
+
+void Document::goToStep(int done) {
+    while (doneSteps() > done && editing_->canUndo()) undo();
+    while (doneSteps() < done && editing_->canRedo()) redo();
 }
 
 }  // namespace hairloom::editor

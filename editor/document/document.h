@@ -1,43 +1,50 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// The groom being edited. Everything that changes it is a command on the undo stack; everyone else listens.
+// The groom being edited, for widgets: the document of core/editing with Qt's signals. Everything that changes
+// it is a command; everyone else listens.
 
 #include <QObject>
 #include <QString>
-#include <QUndoStack>
+#include <memory>
 
+#include "core/editing/document.h"
 #include "core/groom/groom.h"
 
 namespace hairloom::editor {
 
 /// Parts of a groom that a change touches.
 enum class Change : unsigned {
-    Strands = 1,
-    Scalp = 2,  ///< the mesh or what of it is selected
+    Strands = 1,  ///< strands or points came, went or moved
+    Scalp = 2,    ///< the mesh, what of it is selected, or how dense hair grows on it
     Spheres = 4,
     Look = 8,
     Simulation = 16,
     FollowHairs = 32,
+    Placement = 64,
 };
 Q_DECLARE_FLAGS(Changes, Change)
 Q_DECLARE_OPERATORS_FOR_FLAGS(Changes)
-inline constexpr Changes kEverything{0x3f};
+inline constexpr Changes kEverything{0x7f};
 
 class Document : public QObject {
     Q_OBJECT
 
   public:
     explicit Document(QObject* parent = nullptr);
+    ~Document() override;
 
-    const Groom& groom() const { return groom_; }
+    const Groom& groom() const { return editing_->groom(); }
+    /// For tools: strokes and commands. Valid until another groom is opened.
+    editing::Document& editing() { return *editing_; }
+    const editing::Document& editing() const { return *editing_; }
     /// Neither a head nor hair.
-    bool isEmpty() const { return !groom_.scalp && groom_.strandCount() == 0; }
+    bool isEmpty() const { return !groom().scalp && groom().strandCount() == 0; }
 
     /// The project file; empty before the first save.
     const QString& path() const { return path_; }
     /// File name, or what the document was made from.
     QString title() const;
-    bool isModified() const { return restored_ || !undo_.isClean(); }
+    bool isModified() const { return restored_ || editing_->isModified(); }
 
     /// Takes another groom and forgets the history. `path` is its project file, if it has one; `name` is what
     /// title() says otherwise.
@@ -45,41 +52,46 @@ class Document : public QObject {
     /// As open(), for a groom that is not what the file at `path` holds.
     void restore(Groom groom, const QString& path, const QString& name);
 
+    /// Carries a command out; null does nothing.
+    void perform(std::unique_ptr<editing::Command> command);
     /// Makes `after` the groom, undoably. Changes that follow each other with the same `mergeKey` other than
-    /// 0 become one: a slider being dragged.
+    /// 0 become one step: a slider being dragged.
     void change(const QString& text, Changes changes, Groom after, quint64 mergeKey = 0);
 
     /// Writes the project and takes `path` as its file.
     Status save(const QString& path);
 
     // The history: steps done and, after them, steps undone.
-    int stepCount() const { return undo_.count(); }
-    int doneSteps() const { return undo_.index(); }
-    QString stepName(int step) const { return undo_.text(step); }
-    void undo() { undo_.undo(); }
-    void redo() { undo_.redo(); }
+    int stepCount() const { return static_cast<int>(editing_->history().size()); }
+    int doneSteps() const { return static_cast<int>(editing_->history().doneCount()); }
+    QString stepName(int step) const;
+    void undo();
+    void redo();
     /// Undoes or redoes until so many steps are done.
-    void goToStep(int done) { undo_.setIndex(done); }
-    /// Memory that the history holds beyond the groom itself, bytes.
-    std::size_t historyBytes() const;
+    void goToStep(int done);
+    /// Memory that the history holds beyond the groom itself, and how much it may hold; bytes.
+    std::size_t historyBytes() const { return editing_->history().bytes(); }
+    std::size_t historyLimit() const { return editing_->history().limit(); }
 
   Q_SIGNALS:
-    void historyChanged();
     void changed(hairloom::editor::Changes changes);
+    void historyChanged();
     /// Another groom has been opened; changed() follows.
     void replaced();
     /// Path, name or modification.
     void titleChanged();
 
   private:
-    friend class GroomCommand;
-    void set(const Groom& groom, Changes changes);
+    void watch();
+    void tell(editing::Part parts);
 
-    Groom groom_;
-    QUndoStack undo_;
+    std::unique_ptr<editing::Document> editing_;
+    editing::Subscription subscription_;
     QString path_;
     QString name_;
     bool restored_ = false;
+    quint64 lastMerge_ = 0;  ///< key of the newest step, while another change may join it
+    bool silent_ = false;    ///< between taking a step back and doing its successor
 };
 
 }  // namespace hairloom::editor

@@ -4,12 +4,10 @@
 namespace hairloom::editor {
 namespace {
 
-constexpr int kMergeable = 1;
-
-std::size_t bytesNotShared(const AttributeSet& before, const AttributeSet& after) {
+std::size_t bytesNotShared(const AttributeSet& held, const AttributeSet& shown) {
     std::size_t bytes = 0;
-    for (const auto& [name, data] : before.all()) {
-        if (versionOf(data) == after.version(name)) continue;
+    for (const auto& [name, data] : held.all()) {
+        if (versionOf(data) == shown.version(name)) continue;
         bytes += std::visit([](const auto& array) { return array.view().size_bytes(); }, data);
     }
     return bytes;
@@ -17,41 +15,14 @@ std::size_t bytesNotShared(const AttributeSet& before, const AttributeSet& after
 
 }  // namespace
 
-GroomCommand::GroomCommand(Document& document, const QString& text, Changes changes, Groom after,
-                           quint64 mergeKey)
-    : QUndoCommand(text),
-      document_(document),
-      changes_(changes),
-      before_(document.groom()),
-      after_(std::move(after)),
-      mergeKey_(mergeKey) {}
-
-void GroomCommand::undo() {
-    document_.set(before_, changes_);
-}
-
-void GroomCommand::redo() {
-    document_.set(after_, changes_);
-}
-
-int GroomCommand::id() const {
-    return mergeKey_ == 0 ? -1 : kMergeable;
-}
-
-bool GroomCommand::mergeWith(const QUndoCommand* next) {
-    const auto* other = static_cast<const GroomCommand*>(next);
-    if (other->mergeKey_ != mergeKey_) return false;
-    after_ = other->after_;
-    changes_ |= other->changes_;
-    return true;
-}
-
-std::size_t GroomCommand::bytes() const {
-    return bytesNotShared(before_.pointAttributes, after_.pointAttributes) +
-           bytesNotShared(before_.strandAttributes, after_.strandAttributes) +
-           (before_.offsets.sharesWith(after_.offsets) ? 0 : before_.offsets.view().size_bytes()) +
-           (before_.scalpSelection.size() + after_.scalpSelection.size()) * sizeof(std::uint32_t) +
-           before_.triangulation.triangles.size() * sizeof(Triangle) + sizeof(*this);
+editing::Change GroomCommand::exchange(editing::Model& model) {
+    std::swap(model.groom, other_);
+    bytes_ = sizeof(*this) + bytesNotShared(other_.pointAttributes, model.groom.pointAttributes) +
+             bytesNotShared(other_.strandAttributes, model.groom.strandAttributes) +
+             (other_.offsets.sharesWith(model.groom.offsets) ? 0 : other_.offsets.view().size_bytes()) +
+             other_.scalpSelection.size() * sizeof(std::uint32_t) + other_.scalpDensity.size() * sizeof(float) +
+             other_.triangulation.triangles.size() * sizeof(Triangle);
+    return {parts_, {}};
 }
 
 }  // namespace hairloom::editor

@@ -1,32 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// One change of the groom. Holds the groom before and after; arrays that the change did not touch are shared
-// with the document, so it costs what it touched.
+// A change of several parts of the groom at once, as panels and imports make them. Holds the other groom;
+// arrays that the change did not touch are shared with the document, so it costs what it touched.
 
-#include <QUndoCommand>
-
-#include "editor/document/document.h"
+#include "core/editing/command.h"
 
 namespace hairloom::editor {
 
-class GroomCommand : public QUndoCommand {
+class GroomCommand : public editing::Command {
   public:
-    GroomCommand(Document& document, const QString& text, Changes changes, Groom after, quint64 mergeKey);
+    GroomCommand(std::string name, editing::Part parts, Groom other)
+        : name_(std::move(name)), parts_(parts), other_(std::move(other)) {}
 
-    void undo() override;
-    void redo() override;
-    int id() const override;
-    bool mergeWith(const QUndoCommand* next) override;
-
-    /// Of arrays that before and after do not share.
-    std::size_t bytes() const;
+    std::string name() const override { return name_; }
+    editing::Change exchange(editing::Model& model) override;
+    std::size_t bytes() const override { return bytes_; }
 
   private:
-    Document& document_;
-    Changes changes_;
-    Groom before_;
-    Groom after_;
-    quint64 mergeKey_;
+    std::string name_;
+    editing::Part parts_;
+    Groom other_;
+    std::size_t bytes_ = sizeof(*this);
 };
 
 }  // namespace hairloom::editor

@@ -113,6 +113,10 @@ std::vector<Field> followHairFields() {
     return fromTable(&Groom::interpolation, Change::FollowHairs);
 }
 
+std::vector<Field> placementFields() {
+    return fromTable(&Groom::placement, Change::Placement);
+}
+
 std::vector<Field> pick(const std::vector<Field>& all, const QStringList& names) {
     std::vector<Field> picked;
     for (const QString& name : names) {

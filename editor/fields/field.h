@@ -39,6 +39,7 @@ struct Field {
 std::vector<Field> simulationFields();
 std::vector<Field> materialFields();
 std::vector<Field> followHairFields();
+std::vector<Field> placementFields();
 
 /// The fields of these names, in that order. Each name is one of `all`.
 std::vector<Field> pick(const std::vector<Field>& all, const QStringList& names);

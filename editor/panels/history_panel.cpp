@@ -40,7 +40,9 @@ class HistoryPanel : public QWidget {
             list_->addItem(item);
         }
         list_->setCurrentRow(document_.doneSteps());
-        memory_->setText(tr("%1 MB of history").arg(static_cast<double>(document_.historyBytes()) / 1e6, 0, 'f', 1));
+        memory_->setText(tr("%1 of at most %2 MB")
+                             .arg(static_cast<double>(document_.historyBytes()) / 1e6, 0, 'f', 1)
+                             .arg(static_cast<double>(document_.historyLimit()) / 1e6, 0, 'f', 0));
     }
 
     Document& document_;

@@ -8,6 +8,11 @@ namespace hairloom::editor {
 
 class Session;
 
+QWidget* makeToolPanel(Session& session);
+QWidget* makeScalpPanel(Session& session);
+QWidget* makeSpheresPanel(Session& session);
+QWidget* makeMotionPanel(Session& session);
+QWidget* makeEffectsPanel(Session& session);
 QWidget* makeLookPanel(Session& session);
 QWidget* makePhysicsPanel(Session& session);
 QWidget* makeViewPanel(Session& session);

@@ -73,9 +73,23 @@ void Player::play() {
         Q_EMIT failed(tr("There are no strands to move yet"));
         return;
     }
+    capture();
     playing_ = true;
     order([](Orders& orders) { orders.playing = true; });
     Q_EMIT stateChanged();
+}
+
+void Player::capture() {
+    if (captured_) return;
+    captured_ = true;
+    auto groom = std::make_shared<const Groom>(document_.groom());
+    auto made = motionOf(motion_, actor_, *groom);
+    std::shared_ptr<HeadMotion> motion;
+    if (made) motion = std::move(*made);
+    order([&](Orders& orders) {
+        orders.groom = std::move(groom);
+        orders.motion = std::move(motion);
+    });
 }
 
 void Player::pause() {
@@ -87,6 +101,7 @@ void Player::pause() {
 void Player::step() {
     if (playing_) pause();
     if (document_.groom().strandCount() == 0) return;
+    capture();
     order([](Orders& orders) { ++orders.steps; });
 }
 
@@ -94,16 +109,13 @@ void Player::reset() {
     playing_ = false;
     frame_.reset();
     ++epoch_;
-    auto groom = std::make_shared<const Groom>(document_.groom());
-    auto made = motionOf(motion_, actor_, *groom);
-    std::shared_ptr<HeadMotion> motion;
-    if (made) motion = std::move(*made);
+    captured_ = false;
     order([&](Orders& orders) {
         orders.playing = false;
         orders.steps = 0;
         orders.restart = true;
-        orders.groom = groom;
-        orders.motion = motion;
+        orders.groom.reset();
+        orders.motion.reset();
         orders.offset.setIdentity();
         orders.settings.reset();
         orders.spheres.reset();
@@ -145,24 +157,24 @@ void Player::setHeadOffset(const Eigen::Isometry3f& offset) {
 void Player::documentChanged(Changes changes) {
     const Groom& groom = document_.groom();
     if (changes & (Changes(Change::Strands) | Change::Scalp)) {
-        const bool play = playing_;
+        if (!captured_) return;
+        const bool play = playing_ && groom.strandCount() > 0;
         reset();
-        if (play && groom.strandCount() > 0) this->play();
+        if (play) this->play();
         return;
+    }
+    if (!captured_) return;
+    std::shared_ptr<HeadMotion> motion;
+    if (changes & Change::Spheres) {
+        // Clips carry spheres along by their bones.
+        if (auto made = motionOf(motion_, actor_, groom)) motion = std::move(*made);
     }
     order([&](Orders& orders) {
         if (changes & Change::Simulation) orders.settings = groom.simulation;
-        if (changes & Change::Spheres) orders.spheres = groom.spheres;
+        if (!(changes & Change::Spheres)) return;
+        orders.spheres = groom.spheres;
+        if (motion) orders.motion = motion;
     });
-    if (changes & Change::Spheres) {
-        auto shared = std::make_shared<const Groom>(groom);
-        if (auto made = motionOf(motion_, actor_, groom)) {
-            order([&](Orders& orders) {
-                orders.motion = std::move(*made);
-                if (!isUnderWay()) orders.groom = shared;
-            });
-        }
-    }
 }
 
 void Player::run() {
@@ -179,12 +191,22 @@ void Player::run() {
         bool restart = false;
         {
             std::unique_lock lock(mutex_);
-            wake_.wait(lock, [this] { return orders_->stop || orders_->playing || orders_->steps > 0; });
+            wake_.wait(lock, [&] {
+                const bool letGo = orders_->restart && simulation;
+                return orders_->stop || orders_->playing || orders_->steps > 0 || letGo;
+            });
             if (orders_->steps == 0 && orders_->playing) {
                 wake_.wait_until(lock, due, [this] { return orders_->stop; });
             }
             if (orders_->stop) return;
-            if (!orders_->playing && orders_->steps == 0) continue;
+            if (!orders_->playing && orders_->steps == 0) {
+                if (orders_->restart) {
+                    simulation.reset();
+                    groom.reset();
+                    motion.reset();
+                }
+                continue;
+            }
             if (orders_->steps > 0) --orders_->steps;
             restart = std::exchange(orders_->restart, false);
             offset = orders_->offset;

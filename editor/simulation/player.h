@@ -65,6 +65,8 @@ class Player : public QObject {
   private:
     struct Orders;
     void run();
+    /// Gives the thread the groom as it is now. Not before it is needed: strokes pay for copies that are held.
+    void capture();
     void deliver(std::shared_ptr<const PlayedFrame> frame, quint64 epoch);
     void documentChanged(Changes changes);
     void order(const std::function<void(Orders&)>& change);
@@ -73,6 +75,7 @@ class Player : public QObject {
     std::shared_ptr<const Actor> actor_;
     QString motion_ = "none";
     bool playing_ = false;
+    bool captured_ = false;  ///< the thread has the groom as it is now
     std::shared_ptr<const PlayedFrame> frame_;
     quint64 epoch_ = 0;  ///< frames of earlier ones are dropped
 

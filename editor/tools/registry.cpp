@@ -3,8 +3,16 @@
 
 namespace hairloom::editor {
 
-std::span<const ToolMaker> toolMakers() {
-    return {};
+std::vector<ToolMaker> toolMakers() {
+    std::vector<ToolMaker> makers = headBrushes();
+    makers.push_back(scalpBoxTool());
+    makers.push_back(scalpLassoTool());
+    makers.push_back(strandSelectTool());
+    for (ToolMaker& brush : hairBrushes()) makers.push_back(std::move(brush));
+    makers.push_back(sphereTool());
+    makers.push_back(windTool());
+    makers.push_back(headTool());
+    return makers;
 }
 
 }  // namespace hairloom::editor

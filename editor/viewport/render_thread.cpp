@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editor/viewport/render_thread.h"
 
+#include <utility>
+
 #include "editor/viewport/render_work.h"
 
 namespace hairloom::editor {
@@ -49,12 +51,18 @@ void RenderThread::run() {
             ended_ = true;
         }
         windowTaken_.notify_all();
-        Q_EMIT deviceReady({}, false, QString::fromStdString(device.error().message()));
+        QMetaObject::invokeMethod(this, [this, problem = QString::fromStdString(device.error().message())] {
+            Q_EMIT deviceReady({}, false, problem);
+        });
         return;
     }
     RenderWork work(std::move(*device));
     const gpu::DeviceInfo& info = work.info();
-    Q_EMIT deviceReady(QString::fromStdString(info.name), info.presents && info.type != gpu::DeviceType::Cpu, {});
+    const bool wantsWindow = info.presents && info.type != gpu::DeviceType::Cpu;
+    // By way of the event loop: listeners may connect after the constructor.
+    QMetaObject::invokeMethod(this, [this, name = QString::fromStdString(info.name), wantsWindow] {
+        Q_EMIT deviceReady(name, wantsWindow, {});
+    });
     while (true) {
         std::optional<PictureRequest> request;
         {

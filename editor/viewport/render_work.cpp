@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kMovingBudget = 50;  // ms
 constexpr float kSmallestScale = 0.4f;
-constexpr std::uint32_t kFramesWhenStill = 12;
+constexpr std::uint32_t kFramesWhenStill = 8;
 
 std::vector<render::Light> lightsOf(const PictureRequest& request) {
     std::vector<render::Light> lights = render::studioLights(request.camera);

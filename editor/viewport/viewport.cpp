@@ -21,7 +21,8 @@ constexpr float kZoomPerPixel = 0.006f;
 constexpr float kTurntableDegrees = 0.6f;  // per tick
 constexpr int kTurntableMs = 25;
 
-/// "window", "readback" or nothing: what the environment variable HAIRLOOM_VIEWPORT asks for.
+/// What the environment variable HAIRLOOM_VIEWPORT asks for: "window", "readback", "none" (no pictures at all),
+/// or nothing.
 QByteArray wishedSurface() {
     return qgetenv("HAIRLOOM_VIEWPORT");
 }
@@ -95,7 +96,8 @@ Viewport::Viewport(Document& document, const Preferences& preferences, QWidget* 
     connect(&renderer_, &RenderThread::deviceReady, this,
             [this](const QString& name, bool wantsWindow, const QString& problem) {
                 const QByteArray wish = wishedSurface();
-                if (problem.isEmpty() && wish != "readback" && (wantsWindow || wish == "window")) useWindow();
+                const bool byItself = (wantsWindow && wish.isEmpty()) || wish == "window";
+                if (problem.isEmpty() && byItself) useWindow();
                 Q_EMIT deviceReady(name, problem);
             });
     connect(&renderer_, &RenderThread::pictureReady, this,
@@ -248,9 +250,11 @@ void Viewport::redraw(bool moving) {
 }
 
 void Viewport::documentChanged(Changes changes) {
-    // The copy shares its arrays with the document.
-    groom_ = std::make_shared<const Groom>(document_.groom());
-    if (changes & Change::Strands && pose_ && pose_->positions_ws.size() != groom_->pointCount()) pose_.reset();
+    // Copied when it is drawn next: a stroke parts from the copy once per picture, not once per dab.
+    groom_.reset();
+    if (changes & Change::Strands && pose_ && pose_->positions_ws.size() != document_.groom().pointCount()) {
+        pose_.reset();
+    }
     if (!framed_ && !document_.isEmpty()) {
         framed_ = true;
         frameAll();
@@ -259,7 +263,9 @@ void Viewport::documentChanged(Changes changes) {
 }
 
 void Viewport::post() {
-    if (!groom_ || document_.isEmpty()) return;
+    if (document_.isEmpty() || wishedSurface() == "none") return;
+    // The copy shares its arrays with the document.
+    if (!groom_) groom_ = std::make_shared<const Groom>(document_.groom());
     Marks marks;
     for (const auto& draw : marks_) draw(marks);
     if (tool_) tool_->draw(marks);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The camera, the pictures, the live simulation.
 #include <QCheckBox>
+#include <QScreen>
 
 #include "tests/editor/window_fixture.h"
 
@@ -52,9 +53,25 @@ TEST(OrbitCameraTest, MovingKeepsThePointUnderThePointer) {
 
 class ViewportTest : public WindowTest {};
 
-TEST_F(ViewportTest, ThePictureShowsHairAndHead) {
+class PictureTest : public WindowTest {
+  protected:
+    PictureTest() : WindowTest(true) {}
+    void SetUp() override {
+        WindowTest::SetUp();
+        window->resize(900, 560);
+    }
+    /// A sample without the hairs between its guides, which take a software device long.
+    void openGuides() {
+        openSampleHair("short");
+        Groom guides = groom();
+        guides.interpolation.followPerGuide = 0;
+        document().open(std::move(guides), {}, "guides");
+    }
+};
+
+TEST_F(PictureTest, ShowsHairAndHead) {
     if (viewport().presents()) GTEST_SKIP() << "pictures are not read back";
-    openSampleHair("short");
+    openGuides();
     ASSERT_TRUE(viewport().waitForPicture(60'000));
     const QImage both = viewport().picture();
     ASSERT_FALSE(both.isNull()) << window->statusLine().message().toStdString();
@@ -92,9 +109,9 @@ TEST_F(ViewportTest, BothOrbitStylesTurnMoveAndZoom) {
     }
 }
 
-TEST_F(ViewportTest, OverlaysAreDrawn) {
+TEST_F(PictureTest, OverlaysAreDrawn) {
     if (viewport().presents()) GTEST_SKIP() << "pictures are not read back";
-    openSampleHair("short");
+    openGuides();
     for (const char* name : {"scalp", "roots", "guides", "triangulation", "spheres", "wireframe"}) {
         ASSERT_TRUE(viewport().waitForPicture(60'000));
         const QImage without = viewport().picture();
@@ -103,6 +120,29 @@ TEST_F(ViewportTest, OverlaysAreDrawn) {
         EXPECT_NE(viewport().picture(), without) << name;
         find<QCheckBox>(name)->click();
     }
+}
+
+/// The picture shows the X server's view of the window where the device presents by itself.
+TEST_F(PictureTest, AWindowOfTheDeviceShowsTheHead) {
+    if (qgetenv("HAIRLOOM_VIEWPORT") != "window") GTEST_SKIP() << "pictures are read back";
+    openBust();
+    ASSERT_TRUE(QTest::qWaitFor([this] { return viewport().presents(); }, 20'000));
+    ASSERT_TRUE(viewport().waitForPicture(60'000));
+    QTest::qWait(300);
+    const QImage screen = QGuiApplication::primaryScreen()->grabWindow(0).toImage();
+    const QPoint corner = viewport().mapToGlobal(QPoint(0, 0));
+    int skin = 0;
+    for (int y = 0; y < viewport().height(); y += 4) {
+        for (int x = 0; x < viewport().width(); x += 4) {
+            const QColor colour = screen.pixelColor(corner + QPoint(x, y));
+            skin += colour.red() > colour.blue() + 20 ? 1 : 0;
+        }
+    }
+    EXPECT_GT(skin, 300);
+    // Events reach the window that the device draws to.
+    const Vec3f eye = viewport().camera().camera().eye_ws;
+    drag({QPoint(200, 200), QPoint(260, 200)});
+    EXPECT_GT((viewport().camera().camera().eye_ws - eye).norm(), 0.01f);
 }
 
 TEST_F(ViewportTest, PlayingMovesTheHairAndResettingPutsItBack) {

@@ -20,8 +20,11 @@ namespace hairloom::editor {
 
 class WindowTest : public testing::Test {
   protected:
+    /// `pictures` are drawn: slow on a software device, and needed by few tests.
+    explicit WindowTest(bool pictures = false) : pictures_(pictures) {}
     void SetUp() override {
         QSettings().clear();
+        if (!pictures_) qputenv("HAIRLOOM_VIEWPORT", "none");
         ASSERT_TRUE(folder.isValid());
         open();
     }
@@ -29,6 +32,7 @@ class WindowTest : public testing::Test {
         window->setUnsavedAnswer(MainWindow::Unsaved::Discard);
         window->close();
         window.reset();
+        if (!pictures_) wished_.isEmpty() ? qunsetenv("HAIRLOOM_VIEWPORT") : qputenv("HAIRLOOM_VIEWPORT", wished_);
     }
     void open() {
         window = std::make_unique<MainWindow>();
@@ -107,6 +111,9 @@ class WindowTest : public testing::Test {
     std::unique_ptr<MainWindow> window;
 
   private:
+    bool pictures_;
+    QByteArray wished_ = qgetenv("HAIRLOOM_VIEWPORT");
+
     template <class Act>
     void send(Act act) {
         QObject* const target = viewport().input();
