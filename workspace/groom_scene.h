@@ -33,8 +33,8 @@ class GroomScene {
                                    const HeadPose* pose, const ViewFile& view,
                                    const std::vector<std::string>& hiddenGroups);
 
-    /// Moves it to where a frame of a simulation of the same groom has it; points in the groom's order. Error:
-    /// follow hairs that cannot be made.
+    /// Moves it to where a frame of a simulation of the same groom has it; points in the groom's order.
+    /// Error: follow hairs that cannot be made.
     Status pose(std::span<const Vec3f> positions_ws, const HeadPose& pose);
 
     /// Meshes and strands; camera and lights are the caller's. Valid while this object lives and is not
@@ -51,8 +51,8 @@ class GroomScene {
     Groom rest_;
     Groom posed_;
     std::optional<FollowBindings> bindings_;  ///< where the groom asks for follow hairs
-    std::vector<std::uint32_t> indices_;  ///< of the head's triangles that are drawn
-    std::vector<Vec3f> triangleAlbedo_;   ///< of these: skin, tinted by hair where the scalp is
+    std::vector<std::uint32_t> indices_;      ///< of the head's triangles that are drawn
+    std::vector<Vec3f> triangleAlbedo_;       ///< of these: skin, tinted by hair where the scalp is
     std::vector<std::uint32_t>
         hairOffsets_;  ///< of follow hairs; empty where the strands themselves are drawn
     std::vector<Vec3f> hairPositions_ws_;

@@ -16,16 +16,17 @@ namespace hairloom::editor {
 
 const std::vector<ExportTarget>& exportTargets() {
     static const std::vector<ExportTarget> targets{
-        {QObject::tr("TressFX"), QObject::tr(".tfx version 4, metres, Y up; strands resampled to 4, 8, 16, 32 or 64"),
-         "tfx", 1.0f, false, 0},
-        {QObject::tr("TressFX for Unreal"), QObject::tr(".tfx in centimetres, Z up, 16 points a strand"), "tfx", 0.01f,
-         true, 16},
-        {QObject::tr("Yuksel .hair"), QObject::tr(".hair in metres, Y up; strands keep their points"), "hair", 1.0f,
+        {QObject::tr("TressFX"),
+         QObject::tr(".tfx version 4, metres, Y up; strands resampled to 4, 8, 16, 32 or 64"), "tfx", 1.0f,
          false, 0},
-        {QObject::tr("Jolt Physics"), QObject::tr(".hair in metres, Y up; 32 points a strand, as Jolt advises"),
-         "hair", 1.0f, false, 32},
-        {QObject::tr("Unity hair"), QObject::tr(".hair in metres, Y up; at most 128 points and 64k strands"), "hair",
+        {QObject::tr("TressFX for Unreal"), QObject::tr(".tfx in centimetres, Z up, 16 points a strand"),
+         "tfx", 0.01f, true, 16},
+        {QObject::tr("Yuksel .hair"), QObject::tr(".hair in metres, Y up; strands keep their points"), "hair",
          1.0f, false, 0},
+        {QObject::tr("Jolt Physics"),
+         QObject::tr(".hair in metres, Y up; 32 points a strand, as Jolt advises"), "hair", 1.0f, false, 32},
+        {QObject::tr("Unity hair"), QObject::tr(".hair in metres, Y up; at most 128 points and 64k strands"),
+         "hair", 1.0f, false, 0},
     };
     return targets;
 }
@@ -92,7 +93,8 @@ void ExportDialog::takeTarget(int index) {
     const ExportTarget& target = exportTargets()[static_cast<std::size_t>(index)];
     note_->setText(target.note);
     for (int i = 0; i < unit_->count(); ++i) {
-        if (static_cast<float>(unit_->itemData(i).toDouble()) == target.metresPerUnit) unit_->setCurrentIndex(i);
+        if (static_cast<float>(unit_->itemData(i).toDouble()) == target.metresPerUnit)
+            unit_->setCurrentIndex(i);
     }
     up_->setCurrentIndex(target.zUp ? 1 : 0);
     points_->setValue(target.points);
@@ -115,7 +117,8 @@ void ExportDialog::exportTo(const QString& path) {
     const bool started = session_.tasks.run<ExportReport>(
         tr("Exporting %1").arg(QFileInfo(path).fileName()),
         [groom = session_.document.groom(), path, options, tfx = target.suffix == "tfx"](TaskControl&) {
-            return tfx ? writeTfx(groom, path.toStdString(), options) : writeHair(groom, path.toStdString(), options);
+            return tfx ? writeTfx(groom, path.toStdString(), options)
+                       : writeHair(groom, path.toStdString(), options);
         },
         [self = QPointer(this), &session = session_, path](ExportReport report) {
             session.messages.say(tr("%1 written and read back").arg(QFileInfo(path).fileName()));
@@ -128,17 +131,19 @@ void ExportDialog::exportTo(const QString& path) {
 }
 
 void ExportDialog::showReport() {
-    summary_->setText(tr("%1: %L2 strands, %L3 points, %4 MB. Farthest point of the file from the hair: %5 mm.")
-                          .arg(QString::fromStdString(report_.format))
-                          .arg(report_.strands)
-                          .arg(report_.points)
-                          .arg(static_cast<double>(report_.bytes) / 1e6, 0, 'f', 1)
-                          .arg(report_.maxErrorMm, 0, 'g', 3));
+    summary_->setText(
+        tr("%1: %L2 strands, %L3 points, %4 MB. Farthest point of the file from the hair: %5 mm.")
+            .arg(QString::fromStdString(report_.format))
+            .arg(report_.strands)
+            .arg(report_.points)
+            .arg(static_cast<double>(report_.bytes) / 1e6, 0, 'f', 1)
+            .arg(report_.maxErrorMm, 0, 'g', 3));
     findings_->clear();
     if (report_.findings.empty()) findings_->addTopLevelItem(new QTreeWidgetItem({tr("Nothing to mend")}));
     for (const Finding& finding : report_.findings) {
-        auto* item = new QTreeWidgetItem({QString::fromStdString(finding.what), QString::fromStdString(finding.where),
-                                          QString::fromStdString(finding.fix)});
+        auto* item =
+            new QTreeWidgetItem({QString::fromStdString(finding.what), QString::fromStdString(finding.where),
+                                 QString::fromStdString(finding.fix)});
         for (int c = 0; c < 3; ++c) item->setToolTip(c, item->text(c));
         findings_->addTopLevelItem(item);
     }

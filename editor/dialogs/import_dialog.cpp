@@ -34,7 +34,8 @@ ImportDialog::ImportDialog(Session& session, const QString& path, QWidget* paren
     side->addLayout(form);
     for (const LengthUnit& unit : lengthUnits()) unit_->addItem(unit.name, unit.metres);
     unit_->setObjectName("unit");
-    unit_->setToolTip(tr("One unit of the file. Strands that are far too large or small for the head need another."));
+    unit_->setToolTip(
+        tr("One unit of the file. Strands that are far too large or small for the head need another."));
     up_->setObjectName("up");
     up_->addItems({tr("Y up"), tr("Z up")});
     up_->setToolTip(tr("Axis of the file that points up. Hair that lies on its side needs the other."));
@@ -90,8 +91,10 @@ void ImportDialog::read() {
                                .arg(imported->groom.strandCount())
                                .arg(imported->groom.pointCount());
             const Vec3f size = imported->groom.bounds().sizes();
-            text += QObject::tr("<p>%1 × %2 × %3 m</p>").arg(size.x(), 0, 'g', 3).arg(size.y(), 0, 'g', 3).arg(
-                size.z(), 0, 'g', 3);
+            text += QObject::tr("<p>%1 × %2 × %3 m</p>")
+                        .arg(size.x(), 0, 'g', 3)
+                        .arg(size.y(), 0, 'g', 3)
+                        .arg(size.z(), 0, 'g', 3);
             if (!imported->dropped.empty()) {
                 text += QObject::tr("<p>%L1 strands cannot be used.</p>").arg(imported->dropped.size());
             }

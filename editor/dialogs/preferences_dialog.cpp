@@ -80,11 +80,12 @@ PreferencesDialog::PreferencesDialog(Preferences& preferences, QWidget* parent) 
                                      [&preferences](DisplayUnit value) { preferences.setUnit(value); });
     unit->setObjectName("unit");
     form->addRow(tr("Lengths in"), unit);
-    auto* orbit = choice<OrbitStyle>(
-        {tr("Maya: Alt and a mouse button"), tr("Blender: middle mouse button")}, preferences.orbitStyle(),
-        tr("Maya: Alt + left turns, Alt + middle moves, Alt + right zooms.\nBlender: middle turns, Shift + middle "
-           "moves, Ctrl + middle zooms.\nThe wheel zooms in both."),
-        [&preferences](OrbitStyle value) { preferences.setOrbitStyle(value); });
+    auto* orbit = choice<OrbitStyle>({tr("Maya: Alt and a mouse button"), tr("Blender: middle mouse button")},
+                                     preferences.orbitStyle(),
+                                     tr("Maya: Alt + left turns, Alt + middle moves, Alt + right "
+                                        "zooms.\nBlender: middle turns, Shift + middle "
+                                        "moves, Ctrl + middle zooms.\nThe wheel zooms in both."),
+                                     [&preferences](OrbitStyle value) { preferences.setOrbitStyle(value); });
     orbit->setObjectName("orbitStyle");
     form->addRow(tr("Turning the view"), orbit);
 
@@ -102,7 +103,8 @@ PreferencesDialog::PreferencesDialog(Preferences& preferences, QWidget* parent) 
     autosave->setSuffix(tr(" min"));
     autosave->setSpecialValueText(tr("never"));
     autosave->setValue(preferences.autosaveMinutes());
-    autosave->setToolTip(tr("Minutes between copies of unsaved work, from which it comes back after a crash"));
+    autosave->setToolTip(
+        tr("Minutes between copies of unsaved work, from which it comes back after a crash"));
     connect(autosave, &QSpinBox::valueChanged, &preferences, &Preferences::setAutosaveMinutes);
     form->addRow(tr("Keep a copy every"), autosave);
 

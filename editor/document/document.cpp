@@ -5,6 +5,7 @@
 #include <array>
 #include <utility>
 
+#include "core/editing/document.h"
 #include "editor/document/groom_command.h"
 
 namespace hairloom::editor {
@@ -52,8 +53,28 @@ Document::Document(QObject* parent) : QObject(parent), editing_(std::make_unique
 
 Document::~Document() = default;
 
+const Groom& Document::groom() const {
+    return editing_->groom();
+}
+bool Document::isModified() const {
+    return restored_ || editing_->isModified();
+}
+int Document::stepCount() const {
+    return static_cast<int>(editing_->history().size());
+}
+int Document::doneSteps() const {
+    return static_cast<int>(editing_->history().doneCount());
+}
+std::size_t Document::historyBytes() const {
+    return editing_->history().bytes();
+}
+std::size_t Document::historyLimit() const {
+    return editing_->history().limit();
+}
+
 void Document::watch() {
-    subscription_ = editing_->observe([this](const editing::Change& change) { tell(change.parts); });
+    subscription_ = std::make_unique<editing::Subscription>(
+        editing_->observe([this](const editing::Change& change) { tell(change.parts); }));
 }
 
 void Document::tell(Part parts) {
@@ -74,7 +95,7 @@ void Document::open(Groom groom, const QString& path, const QString& name) {
     if (opened->groom().scalp && opened->groom().scalp == editing_->headData().head) {
         opened->setHeadData(editing_->headData());
     }
-    subscription_ = {};
+    subscription_.reset();
     editing_ = std::move(opened);
     watch();
     restored_ = false;

@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// The groom being edited, for widgets: the document of core/editing with Qt's signals. Everything that changes
-// it is a command; everyone else listens.
+// The groom being edited, for widgets: the document of core/editing with Qt's signals. Everything that
+// changes it is a command; everyone else listens.
 
 #include <QObject>
 #include <QString>
 #include <memory>
 
-#include "core/editing/document.h"
 #include "core/groom/groom.h"
+
+namespace hairloom::editing {
+class Command;
+class Document;
+class Subscription;
+enum class Part : std::uint32_t;
+}  // namespace hairloom::editing
 
 namespace hairloom::editor {
 
@@ -33,7 +39,7 @@ class Document : public QObject {
     explicit Document(QObject* parent = nullptr);
     ~Document() override;
 
-    const Groom& groom() const { return editing_->groom(); }
+    const Groom& groom() const;
     /// For tools: strokes and commands. Valid until another groom is opened.
     editing::Document& editing() { return *editing_; }
     const editing::Document& editing() const { return *editing_; }
@@ -44,7 +50,7 @@ class Document : public QObject {
     const QString& path() const { return path_; }
     /// File name, or what the document was made from.
     QString title() const;
-    bool isModified() const { return restored_ || editing_->isModified(); }
+    bool isModified() const;
 
     /// Takes another groom and forgets the history. `path` is its project file, if it has one; `name` is what
     /// title() says otherwise.
@@ -62,16 +68,16 @@ class Document : public QObject {
     Status save(const QString& path);
 
     // The history: steps done and, after them, steps undone.
-    int stepCount() const { return static_cast<int>(editing_->history().size()); }
-    int doneSteps() const { return static_cast<int>(editing_->history().doneCount()); }
+    int stepCount() const;
+    int doneSteps() const;
     QString stepName(int step) const;
     void undo();
     void redo();
     /// Undoes or redoes until so many steps are done.
     void goToStep(int done);
     /// Memory that the history holds beyond the groom itself, and how much it may hold; bytes.
-    std::size_t historyBytes() const { return editing_->history().bytes(); }
-    std::size_t historyLimit() const { return editing_->history().limit(); }
+    std::size_t historyBytes() const;
+    std::size_t historyLimit() const;
 
   Q_SIGNALS:
     void changed(hairloom::editor::Changes changes);
@@ -86,7 +92,7 @@ class Document : public QObject {
     void tell(editing::Part parts);
 
     std::unique_ptr<editing::Document> editing_;
-    editing::Subscription subscription_;
+    std::unique_ptr<editing::Subscription> subscription_;
     QString path_;
     QString name_;
     bool restored_ = false;

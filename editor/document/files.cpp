@@ -21,7 +21,8 @@ struct OpenedFile {
 };
 
 std::shared_ptr<const Actor> actorOf(const Groom& groom) {
-    if (groom.characterFile.empty() || !QFileInfo::exists(QString::fromStdString(groom.characterFile))) return {};
+    if (groom.characterFile.empty() || !QFileInfo::exists(QString::fromStdString(groom.characterFile)))
+        return {};
     auto actor = loadActor({}, groom);
     return actor ? std::move(*actor) : nullptr;
 }
@@ -54,7 +55,8 @@ Result<OpenedFile> openStrands(const std::string& path, const StrandImportOption
     OpenedFile opened;
     opened.groom = std::move(imported->groom);
     if (!imported->dropped.empty()) {
-        opened.note = QObject::tr("%n strands could not be used", nullptr, static_cast<int>(imported->dropped.size()));
+        opened.note =
+            QObject::tr("%n strands could not be used", nullptr, static_cast<int>(imported->dropped.size()));
     } else if (!imported->warnings.empty()) {
         opened.note = QString::fromStdString(imported->warnings.front().what);
     }
@@ -82,9 +84,10 @@ FileKind kindOf(const QString& path) {
 }
 
 QString openFilter() {
-    return QObject::tr("Everything that opens (*.hairloom *.obj *.ply *.stl *.fbx *.gltf *.glb *.hair *.tfx);;"
-                       "Hairloom projects (*.hairloom);;"
-                       "Heads (*.obj *.ply *.stl *.fbx *.gltf *.glb);;Hair (*.hair *.tfx *.obj);;All files (*)");
+    return QObject::tr(
+        "Everything that opens (*.hairloom *.obj *.ply *.stl *.fbx *.gltf *.glb *.hair *.tfx);;"
+        "Hairloom projects (*.hairloom);;"
+        "Heads (*.obj *.ply *.stl *.fbx *.gltf *.glb);;Hair (*.hair *.tfx *.obj);;All files (*)");
 }
 
 std::filesystem::path samplesFolder() {
@@ -105,7 +108,8 @@ void openFile(Session& session, const QString& path, std::function<void()> done)
             return std::pair(std::move(*opened), kind);
         },
         [&session, path, name, done = std::move(done)](std::pair<OpenedFile, FileKind> opened) {
-            show(session, std::move(opened.first), opened.second == FileKind::Project ? path : QString(), name);
+            show(session, std::move(opened.first), opened.second == FileKind::Project ? path : QString(),
+                 name);
             session.preferences.addRecentFile(path);
             if (done) done();
         });

@@ -16,8 +16,8 @@ enum class FileKind {
     Head,     ///< a mesh, with its skeleton and clips
     Strands,  ///< hair of another program
 };
-/// From the beginning of the file, and the name where that does not tell. OBJ may be either: it is a head where
-/// it has faces that are no ribbons of hair.
+/// From the beginning of the file, and the name where that does not tell. OBJ may be either: it is a head
+/// where it has faces that are no ribbons of hair.
 FileKind kindOf(const QString& path);
 
 /// For file dialogs: all that opens.

@@ -20,7 +20,8 @@ editing::Change GroomCommand::exchange(editing::Model& model) {
     bytes_ = sizeof(*this) + bytesNotShared(other_.pointAttributes, model.groom.pointAttributes) +
              bytesNotShared(other_.strandAttributes, model.groom.strandAttributes) +
              (other_.offsets.sharesWith(model.groom.offsets) ? 0 : other_.offsets.view().size_bytes()) +
-             other_.scalpSelection.size() * sizeof(std::uint32_t) + other_.scalpDensity.size() * sizeof(float) +
+             other_.scalpSelection.size() * sizeof(std::uint32_t) +
+             other_.scalpDensity.size() * sizeof(float) +
              other_.triangulation.triangles.size() * sizeof(Triangle);
     return {parts_, {}};
 }

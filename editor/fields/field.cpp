@@ -145,10 +145,18 @@ Shown shownAs(const QString& unit, double min, double max, DisplayUnit lengths) 
             shown = {1e3, QStringLiteral("mm"), 2};
         } else {
             switch (lengths) {
-                case DisplayUnit::Metre: shown = {1, QStringLiteral("m"), 4}; break;
-                case DisplayUnit::Centimetre: shown = {100, QStringLiteral("cm"), 2}; break;
-                case DisplayUnit::Millimetre: shown = {1000, QStringLiteral("mm"), 1}; break;
-                case DisplayUnit::Inch: shown = {1 / 0.0254, QStringLiteral("in"), 3}; break;
+                case DisplayUnit::Metre:
+                    shown = {1, QStringLiteral("m"), 4};
+                    break;
+                case DisplayUnit::Centimetre:
+                    shown = {100, QStringLiteral("cm"), 2};
+                    break;
+                case DisplayUnit::Millimetre:
+                    shown = {1000, QStringLiteral("mm"), 1};
+                    break;
+                case DisplayUnit::Inch:
+                    shown = {1 / 0.0254, QStringLiteral("in"), 3};
+                    break;
             }
         }
         return shown;
@@ -177,9 +185,10 @@ QString tooltipOf(const Field& field, DisplayUnit lengths) {
     if (field.kind == FieldKind::Truth || field.kind == FieldKind::Colour) return text;
     const Shown shown = shownAs(field.unit, field.min, field.max, lengths);
     const auto number = [&](double value) { return QString::number(value * shown.factor, 'g', 6); };
-    text += QObject::tr("<p>%1 to %2 %3; standard %4</p>")
-                .arg(number(field.min), number(field.max),
-                     shown.unit.isEmpty() ? QString() : shown.unit.toHtmlEscaped(), number(field.standard[0]));
+    text +=
+        QObject::tr("<p>%1 to %2 %3; standard %4</p>")
+            .arg(number(field.min), number(field.max),
+                 shown.unit.isEmpty() ? QString() : shown.unit.toHtmlEscaped(), number(field.standard[0]));
     return text;
 }
 

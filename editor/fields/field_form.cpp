@@ -47,12 +47,22 @@ FieldForm::FieldForm(Document& document, const Preferences& preferences, std::ve
 void FieldForm::addRow(const Field& field) {
     QWidget* control = nullptr;
     switch (field.kind) {
-        case FieldKind::Truth: control = makeTruth(field); break;
-        case FieldKind::Choice: control = makeChoice(field); break;
-        case FieldKind::Vector: control = makeVector(field); break;
-        case FieldKind::Colour: control = makeColour(field); break;
+        case FieldKind::Truth:
+            control = makeTruth(field);
+            break;
+        case FieldKind::Choice:
+            control = makeChoice(field);
+            break;
+        case FieldKind::Vector:
+            control = makeVector(field);
+            break;
+        case FieldKind::Colour:
+            control = makeColour(field);
+            break;
         case FieldKind::Number:
-        case FieldKind::Whole: control = makeNumber(field); break;
+        case FieldKind::Whole:
+            control = makeNumber(field);
+            break;
     }
     control->setObjectName(field.name);
     auto* label = new QLabel(field.label);
@@ -151,7 +161,8 @@ QWidget* FieldForm::makeColour(const Field& field) {
     button->setProperty("swatch", true);
     const auto colour = [this, &field] {
         const Groom& groom = document_.groom();
-        return fromLinear({static_cast<float>(field.value(groom, 0)), static_cast<float>(field.value(groom, 1)),
+        return fromLinear({static_cast<float>(field.value(groom, 0)),
+                           static_cast<float>(field.value(groom, 1)),
                            static_cast<float>(field.value(groom, 2))});
     };
     connect(button, &QPushButton::clicked, this, [this, &field, colour] {
@@ -164,10 +175,9 @@ QWidget* FieldForm::makeColour(const Field& field) {
     refreshers_.push_back([button, colour] {
         const QColor shown = colour();
         button->setText(shown.name());
-        button->setStyleSheet(
-            QStringLiteral("QPushButton { background: %1; color: %2; }")
-                .arg(shown.name(), shown.lightnessF() > 0.45f ? QStringLiteral("#101010")
-                                                               : QStringLiteral("#f4f4f4")));
+        button->setStyleSheet(QStringLiteral("QPushButton { background: %1; color: %2; }")
+                                  .arg(shown.name(), shown.lightnessF() > 0.45f ? QStringLiteral("#101010")
+                                                                                : QStringLiteral("#f4f4f4")));
     });
     return button;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Things that are not in the picture made visible: roots, guides, spheres, strain … Each is a file of its own;
-// registry.cpp lists them.
+// Things that are not in the picture made visible: roots, guides, spheres, strain … Each is a file of its
+// own; registry.cpp lists them.
 
 #include <QString>
 #include <span>

@@ -16,7 +16,8 @@ std::span<const OverlayMode> overlayModes() {
         {"spheres", QT_TR_NOOP("Spheres"), QT_TR_NOOP("The spheres that strands collide with"), drawSpheres},
         {"wireframe", QT_TR_NOOP("Wireframe"), QT_TR_NOOP("Edges of the head"), drawWireframe},
         {"strain", QT_TR_NOOP("Strain"),
-         QT_TR_NOOP("Segments by how far they are stretched: green as authored, red by 1 % and more"), drawStrain},
+         QT_TR_NOOP("Segments by how far they are stretched: green as authored, red by 1 % and more"),
+         drawStrain},
         {"penetration", QT_TR_NOOP("Penetration"),
          QT_TR_NOOP("Points inside a sphere: red by 2 mm and deeper"), drawPenetration},
     };

@@ -9,9 +9,10 @@ void drawScalp(const Session& session, Marks& marks) {
     if (!groom.scalp) return;
     const QColor colour(80, 160, 255, 90);
     for (const std::uint32_t face : groom.scalpSelection) {
-        marks.triangle({shownOnScalp(session, {face, Vec3f::UnitX()}), shownOnScalp(session, {face, Vec3f::UnitY()}),
-                        shownOnScalp(session, {face, Vec3f::UnitZ()})},
-                       colour);
+        marks.triangle(
+            {shownOnScalp(session, {face, Vec3f::UnitX()}), shownOnScalp(session, {face, Vec3f::UnitY()}),
+             shownOnScalp(session, {face, Vec3f::UnitZ()})},
+            colour);
     }
 }
 

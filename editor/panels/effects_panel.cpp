@@ -27,7 +27,8 @@ class EffectsPanel : public QWidget {
         table_->header()->resizeSection(0, 92);
         table_->header()->resizeSection(1, 56);
         table_->header()->resizeSection(2, 48);
-        table_->setToolTip(tr("Milliseconds a frame, summed over threads; megabytes of its own; and why it runs or does not"));
+        table_->setToolTip(tr(
+            "Milliseconds a frame, summed over threads; megabytes of its own; and why it runs or does not"));
         note_->setProperty("role", "dim");
         note_->setWordWrap(true);
         layout->addWidget(table_, 1);
@@ -43,7 +44,8 @@ class EffectsPanel : public QWidget {
                              : tr("Play the simulation (Space) to see what runs."));
         const std::size_t rows = frame ? frame->stats.effects.size() : 0;
         while (table_->topLevelItemCount() > static_cast<int>(rows)) delete table_->takeTopLevelItem(0);
-        while (table_->topLevelItemCount() < static_cast<int>(rows)) table_->addTopLevelItem(new QTreeWidgetItem);
+        while (table_->topLevelItemCount() < static_cast<int>(rows))
+            table_->addTopLevelItem(new QTreeWidgetItem);
         for (std::size_t i = 0; i < rows; ++i) {
             const EffectReport& effect = frame->stats.effects[i];
             QTreeWidgetItem* const item = table_->topLevelItem(static_cast<int>(i));
@@ -55,7 +57,8 @@ class EffectsPanel : public QWidget {
             item->setToolTip(3, item->text(3));
             item->setTextAlignment(1, Qt::AlignRight | Qt::AlignVCenter);
             item->setTextAlignment(2, Qt::AlignRight | Qt::AlignVCenter);
-            const QColor colour = palette().color(effect.on ? QPalette::Active : QPalette::Disabled, QPalette::Text);
+            const QColor colour =
+                palette().color(effect.on ? QPalette::Active : QPalette::Disabled, QPalette::Text);
             for (int c = 0; c < 4; ++c) item->setForeground(c, colour);
         }
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How the hair looks: colour, thickness, scattering, and the hairs between the guides. The controls follow the
-// table of material fields, so that those of a new shading model appear by themselves.
+// How the hair looks: colour, thickness, scattering, and the hairs between the guides. The controls follow
+// the table of material fields, so that those of a new shading model appear by themselves.
 #include <QComboBox>
 #include <algorithm>
 

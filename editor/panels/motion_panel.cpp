@@ -24,7 +24,8 @@ class MotionPanel : public QWidget {
         motion_->setToolTip(tr("How the head moves: at rest, a nod, a spin, or a clip of the character"));
         layout->addWidget(motion_);
         auto* row = new QHBoxLayout;
-        const auto add = [&](const char* name, const char* iconName, const QString& text, const QString& tip) {
+        const auto add = [&](const char* name, const char* iconName, const QString& text,
+                             const QString& tip) {
             auto* made = new QPushButton(icon(iconName), text);
             made->setObjectName(name);
             made->setToolTip(tip);
@@ -75,14 +76,16 @@ class MotionPanel : public QWidget {
             return;
         }
         const auto row = [](const QString& what, const QString& value) {
-            return QStringLiteral("<tr><td style='padding-right:16px'>%1</td><td align='right'>%2</td></tr>").arg(what, value);
+            return QStringLiteral("<tr><td style='padding-right:16px'>%1</td><td align='right'>%2</td></tr>")
+                .arg(what, value);
         };
         const SimulationStats& stats = frame->stats;
         state_->setText("<table width='100%'>" + row(tr("Time"), tr("%1 s").arg(frame->time, 0, 'f', 2)) +
                         row(tr("Frame"), tr("%1 ms").arg(frame->milliseconds, 0, 'f', 2)) +
                         row(tr("Largest stretch"), tr("%1 %").arg(stats.maxStretch * 100, 0, 'f', 2)) +
                         row(tr("Deepest in a sphere"), tr("%1 mm").arg(stats.maxPenetrationMm, 0, 'f', 2)) +
-                        row(tr("Put back to rest"), tr("%1 strands").arg(stats.restoredStrands)) + "</table>");
+                        row(tr("Put back to rest"), tr("%1 strands").arg(stats.restoredStrands)) +
+                        "</table>");
     }
 
     Session& session_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// A dockable panel. Each is a file of its own with one function that makes it; panels/registry.cpp lists them.
+// A dockable panel. Each is a file of its own with one function that makes it; panels/registry.cpp lists
+// them.
 
 #include <QString>
 #include <QWidget>

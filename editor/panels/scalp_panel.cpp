@@ -7,6 +7,7 @@
 #include <QPushButton>
 #include <QVBoxLayout>
 
+#include "core/editing/document.h"
 #include "core/editing/place.h"
 #include "core/editing/selection_commands.h"
 #include "core/editing/surface_disc.h"
@@ -36,9 +37,11 @@ class ScalpPanel : public QWidget {
         });
         expression_->setObjectName("scalpExpression");
         expression_->setPlaceholderText(tr("cap:70, above:0.5 …"));
-        expression_->setToolTip(tr("Chooses faces in words, then Enter: all, group:NAME, material:NAME, cap:DEGREES "
-                                   "(leaning at most so far from up), above:SHARE of the height, grow:N, shrink:N, invert, connected. A "
-                                   "comma means and."));
+        expression_->setToolTip(
+            tr("Chooses faces in words, then Enter: all, group:NAME, material:NAME, cap:DEGREES "
+               "(leaning at most so far from up), above:SHARE of the height, grow:N, shrink:N, invert, "
+               "connected. A "
+               "comma means and."));
         connect(expression_, &QLineEdit::returnPressed, this, [this] { select(expression_->text()); });
         layout->addWidget(groups_);
         layout->addWidget(expression_);
@@ -54,7 +57,8 @@ class ScalpPanel : public QWidget {
     QGridLayout* makeButtons() {
         auto* grid = new QGridLayout;
         grid->setSpacing(6);
-        const auto add = [&](const char* name, const QString& text, const QString& tip, std::function<FaceSet()> faces) {
+        const auto add = [&](const char* name, const QString& text, const QString& tip,
+                             std::function<FaceSet()> faces) {
             auto* button = new QPushButton(text);
             button->setObjectName(name);
             button->setToolTip(tip);
@@ -70,7 +74,8 @@ class ScalpPanel : public QWidget {
         add("scalpInvert", tr("Invert"), tr("Takes all other faces instead"),
             [this] { return invertSelection(mesh(), groom().scalpSelection); });
         add("scalpSymmetric", tr("Mirror"), tr("Adds the faces on the other side of the head"), [this] {
-            return editing::symmetricFaces(mesh(), *session_.document.editing().surface(), groom().scalpSelection);
+            return editing::symmetricFaces(mesh(), *session_.document.editing().surface(),
+                                           groom().scalpSelection);
         });
         add("scalpConnected", tr("Largest"), tr("Keeps the largest connected piece only"), [this] {
             const auto pieces = connectedPieces(mesh(), groom().scalpSelection);
@@ -106,9 +111,10 @@ class ScalpPanel : public QWidget {
             return;
         }
         const FaceSet& faces = groom().scalpSelection;
-        area_->setText(faces.empty()
-                           ? tr("No faces yet: paint them (P), or choose a group.")
-                           : tr("%L1 faces, %2 cm²").arg(faces.size()).arg(selectionArea(mesh(), faces) * 1e4, 0, 'f', 0));
+        area_->setText(faces.empty() ? tr("No faces yet: paint them (P), or choose a group.")
+                                     : tr("%L1 faces, %2 cm²")
+                                           .arg(faces.size())
+                                           .arg(selectionArea(mesh(), faces) * 1e4, 0, 'f', 0));
         if (shownHead_ == groom().scalp) return;
         shownHead_ = groom().scalp;
         groups_->clear();

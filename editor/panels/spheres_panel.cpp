@@ -8,6 +8,7 @@
 #include <QTreeWidget>
 #include <QVBoxLayout>
 
+#include "core/editing/document.h"
 #include "core/editing/settings_commands.h"
 #include "core/editing/sphere_commands.h"
 #include "core/editing/sphere_fit.h"
@@ -31,7 +32,11 @@ QPushButton* button(const char* name, const QString& text, const QString& tip) {
 class SpheresPanel : public QWidget {
   public:
     explicit SpheresPanel(Session& session)
-        : session_(session), list_(new QTreeWidget), bone_(new QComboBox), count_(new QSpinBox), fit_(new QLabel) {
+        : session_(session),
+          list_(new QTreeWidget),
+          bone_(new QComboBox),
+          count_(new QSpinBox),
+          fit_(new QLabel) {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(8);
@@ -45,16 +50,21 @@ class SpheresPanel : public QWidget {
         layout->addWidget(list_, 1);
 
         auto* row = new QHBoxLayout;
-        auto* mirror = button("sphereMirror", tr("Mirror"), tr("Adds the sphere again on the other side of the head"));
+        auto* mirror =
+            button("sphereMirror", tr("Mirror"), tr("Adds the sphere again on the other side of the head"));
         auto* remove = button("sphereRemove", tr("Remove"), tr("Takes the sphere away"));
         row->addWidget(mirror);
         row->addWidget(remove);
         layout->addLayout(row);
         connect(mirror, &QPushButton::clicked, this, [this] {
-            onSelected([](const editing::Model& model, std::size_t index) { return editing::mirrorSphere(model, index); });
+            onSelected([](const editing::Model& model, std::size_t index) {
+                return editing::mirrorSphere(model, index);
+            });
         });
         connect(remove, &QPushButton::clicked, this, [this] {
-            onSelected([](const editing::Model& model, std::size_t index) { return editing::removeSphere(model, index); });
+            onSelected([](const editing::Model& model, std::size_t index) {
+                return editing::removeSphere(model, index);
+            });
         });
         makeNumbers(*layout);
 
@@ -65,8 +75,9 @@ class SpheresPanel : public QWidget {
         count_->setValue(12);
         count_->setSuffix(tr(" spheres"));
         count_->setToolTip(tr("Number of spheres; more lie closer to the skin and cost more"));
-        auto* fit = button("sphereFit", tr("Fit"), tr("Replaces all spheres by ones that cover head, neck and shoulders "
-                                                      "where hair comes near"));
+        auto* fit = button("sphereFit", tr("Fit"),
+                           tr("Replaces all spheres by ones that cover head, neck and shoulders "
+                              "where hair comes near"));
         fitRow->addWidget(count_, 1);
         fitRow->addWidget(fit);
         layout->addLayout(fitRow);
@@ -99,7 +110,9 @@ class SpheresPanel : public QWidget {
         bone_->setToolTip(tr("Bone that carries the sphere; without one it moves with the head as a whole"));
         connect(bone_, &QComboBox::activated, this, [this](int index) {
             const std::string bone = index == 0 ? std::string() : bone_->itemText(index).toStdString();
-            onSelected([bone](const editing::Model& model, std::size_t at) { return editing::attachSphere(model, at, bone); });
+            onSelected([bone](const editing::Model& model, std::size_t at) {
+                return editing::attachSphere(model, at, bone);
+            });
         });
         numbers_->addWidget(tr("Bone"), bone_);
         layout.addWidget(numbers_);
@@ -142,7 +155,8 @@ class SpheresPanel : public QWidget {
         bone_->clear();
         bone_->addItem(tr("none"));
         if (const auto& actor = session_.player.actor()) {
-            for (const Bone& bone : actor->skeleton().bones()) bone_->addItem(QString::fromStdString(bone.name));
+            for (const Bone& bone : actor->skeleton().bones())
+                bone_->addItem(QString::fromStdString(bone.name));
         }
         if (selected()) {
             const QString bone = QString::fromStdString(spheres()[*selected()].bone);

@@ -24,7 +24,11 @@ runtime::StableAdvice adviceFor(const Groom& groom) {
 }  // namespace
 
 StabilityGauge::StabilityGauge(Session& session, QWidget* parent)
-    : QWidget(parent), session_(session), bar_(new QProgressBar), words_(new QLabel), offers_(new QVBoxLayout) {
+    : QWidget(parent),
+      session_(session),
+      bar_(new QProgressBar),
+      words_(new QLabel),
+      offers_(new QVBoxLayout) {
     auto* layout = new QVBoxLayout(this);
     layout->setContentsMargins(0, 0, 0, 0);
     layout->setSpacing(6);
@@ -64,8 +68,8 @@ void StabilityGauge::update() {
     const QColor colour = factor > 1 ? colours.bad : factor > 0.8 ? colours.caution : colours.good;
     bar_->setStyleSheet(QStringLiteral("QProgressBar::chunk { background: %1; }").arg(colour.name()));
     words_->setText(!advice_.words.empty() ? QString::fromStdString(advice_.words)
-                    : factor > 0           ? tr("Stable: at %1 % of the longest step").arg(100 * factor, 0, 'f', 0)
-                                           : tr("Stable at any step: nothing stiff is left explicit"));
+                    : factor > 0 ? tr("Stable: at %1 % of the longest step").arg(100 * factor, 0, 'f', 0)
+                                 : tr("Stable at any step: nothing stiff is left explicit"));
     for (const runtime::StableOffer& offer : advice_.offers) {
         auto* button = new QPushButton(QString::fromStdString(offer.words));
         button->setToolTip(tr("Changes the settings to these, undoably"));

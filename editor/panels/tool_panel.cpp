@@ -18,10 +18,11 @@ QWidget* makeToolPanel(Session& session) {
         text->setWordWrap(true);
         return options ? column({heading(title), text, options}) : column({heading(title), text});
     };
-    pages->addWidget(page(QObject::tr("Move the view"),
-                          QObject::tr("Drag turns the view, the middle button moves it, the wheel zooms. Choose a tool at "
-                                      "the left to change something."),
-                          nullptr));
+    pages->addWidget(
+        page(QObject::tr("Move the view"),
+             QObject::tr("Drag turns the view, the middle button moves it, the wheel zooms. Choose a tool at "
+                         "the left to change something."),
+             nullptr));
     QHash<Tool*, QWidget*> pageOf;
     for (const auto& tool : session.tools.all()) {
         QWidget* const made = page(tool->info().name, tool->info().tip, tool->makeOptions());

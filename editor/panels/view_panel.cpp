@@ -61,15 +61,17 @@ QWidget* makeLight(Session& session) {
     turn->setShown(1, QStringLiteral("°"), 0);
     turn->setValue(0);
     turn->setToolTip(QObject::tr("Degrees by which the three lights are turned about the head"));
-    QObject::connect(turn, &NumberBox::edited, session.viewport,
-                     [&session](double degrees) { session.viewport->setLightTurn(static_cast<float>(degrees)); });
+    QObject::connect(turn, &NumberBox::edited, session.viewport, [&session](double degrees) {
+        session.viewport->setLightTurn(static_cast<float>(degrees));
+    });
     layout->addRow(QObject::tr("Turn light"), turn);
     auto* exposure = new NumberBox(0.2, 6, false);
     exposure->setObjectName("exposure");
     exposure->setValue(1.6);
     exposure->setToolTip(QObject::tr("Factor on the brightness of the picture; 1.6 shows skin as it is"));
-    QObject::connect(exposure, &NumberBox::edited, session.viewport,
-                     [&session](double factor) { session.viewport->setExposure(static_cast<float>(factor)); });
+    QObject::connect(exposure, &NumberBox::edited, session.viewport, [&session](double factor) {
+        session.viewport->setExposure(static_cast<float>(factor));
+    });
     layout->addRow(QObject::tr("Exposure"), exposure);
     return widget;
 }

@@ -64,8 +64,9 @@ void Actions::apply(const ActionInfo& info, const QKeySequence& shortcut) {
     const QString keys = shortcut.toString(QKeySequence::NativeText);
     QString name = info.text;
     name.remove(QChar(0x2026)).remove('&');
-    action.setToolTip(QStringLiteral("<p><b>%1</b>%2</p><p>%3</p>")
-                          .arg(name, keys.isEmpty() ? QString() : QStringLiteral("  (%1)").arg(keys), info.tip));
+    action.setToolTip(
+        QStringLiteral("<p><b>%1</b>%2</p><p>%3</p>")
+            .arg(name, keys.isEmpty() ? QString() : QStringLiteral("  (%1)").arg(keys), info.tip));
     action.setStatusTip(info.tip);
 }
 

@@ -13,10 +13,10 @@
 namespace hairloom::editor {
 
 struct ActionInfo {
-    QString id;     ///< "file.open"; shortcuts are kept under it
-    QString text;   ///< "Open…"
-    QString icon;   ///< of icons.h, or empty
-    QString tip;    ///< what it does, one sentence
+    QString id;    ///< "file.open"; shortcuts are kept under it
+    QString text;  ///< "Open…"
+    QString icon;  ///< of icons.h, or empty
+    QString tip;   ///< what it does, one sentence
     QKeySequence shortcut;
     bool checkable = false;
 };

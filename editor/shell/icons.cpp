@@ -24,8 +24,8 @@ class TintedEngine : public QIconEngine {
     }
     QPixmap scaledPixmap(const QSize& size, QIcon::Mode mode, QIcon::State state, qreal) override {
         const QColor colour = colourOf(mode, state);
-        const QString key = QStringLiteral("%1|%2x%3|%4").arg(file_).arg(size.width()).arg(size.height()).arg(
-            colour.rgba());
+        const QString key =
+            QStringLiteral("%1|%2x%3|%4").arg(file_).arg(size.width()).arg(size.height()).arg(colour.rgba());
         QPixmap pixmap;
         if (QPixmapCache::find(key, &pixmap)) return pixmap;
         QImageReader reader(file_);

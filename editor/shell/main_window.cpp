@@ -61,11 +61,12 @@ MainWindow::MainWindow()
     connect(&session_.document, &Document::titleChanged, this, &MainWindow::showTitle);
     connect(&session_.document, &Document::changed, this, &MainWindow::showPage);
     connect(&session_.preferences, &Preferences::recentFilesChanged, this, &MainWindow::fillRecentMenu);
-    connect(&session_.preferences, &Preferences::changed, this, [this, theme = session_.preferences.theme()]() mutable {
-        if (theme == session_.preferences.theme()) return;
-        theme = session_.preferences.theme();
-        applyTheme(*qApp, theme);
-    });
+    connect(&session_.preferences, &Preferences::changed, this,
+            [this, theme = session_.preferences.theme()]() mutable {
+                if (theme == session_.preferences.theme()) return;
+                theme = session_.preferences.theme();
+                applyTheme(*qApp, theme);
+            });
     connect(autosave_.get(), &Autosave::failed, &session_.messages, &Messages::warn);
     connect(session_.viewport, &Viewport::keyPressed, this, &MainWindow::runShortcut);
     connect(session_.viewport, &Viewport::hintChanged, this, [this] {
@@ -126,13 +127,15 @@ void MainWindow::makeBars() {
     main->setObjectName("bar:main");
     main->setIconSize({20, 20});
     main->setMovable(false);
-    for (const char* id : {"file.open", "file.save", "file.import", "file.export"}) main->addAction(&actions_->get(id));
+    for (const char* id : {"file.open", "file.save", "file.import", "file.export"})
+        main->addAction(&actions_->get(id));
     main->addSeparator();
     for (const char* id : {"edit.undo", "edit.redo"}) main->addAction(&actions_->get(id));
     main->addSeparator();
     for (const char* id : {"play.toggle", "play.step", "play.reset"}) main->addAction(&actions_->get(id));
     main->addSeparator();
-    for (const char* id : {"view.frame", "view.turntable", "view.orthographic"}) main->addAction(&actions_->get(id));
+    for (const char* id : {"view.frame", "view.turntable", "view.orthographic"})
+        main->addAction(&actions_->get(id));
 
     auto* tools = new QToolBar(tr("Tools"));
     tools->setObjectName("bar:tools");
@@ -196,8 +199,8 @@ void MainWindow::chooseAndOpen() {
 }
 
 void MainWindow::chooseAndImport() {
-    const QString path =
-        QFileDialog::getOpenFileName(this, tr("Import hair"), {}, tr("Hair (*.hair *.tfx *.obj);;All files (*)"));
+    const QString path = QFileDialog::getOpenFileName(this, tr("Import hair"), {},
+                                                      tr("Hair (*.hair *.tfx *.obj);;All files (*)"));
     if (path.isEmpty()) return;
     ImportDialog dialog(session_, path, this);
     if (dialog.exec() == QDialog::Accepted) importStrandsInto(session_, path, dialog.options());
@@ -221,7 +224,8 @@ bool MainWindow::saveAs() {
     const QString name = session_.document.path().isEmpty()
                              ? QFileInfo(session_.document.title()).completeBaseName() + ".hairloom"
                              : session_.document.path();
-    const QString path = QFileDialog::getSaveFileName(this, tr("Save"), name, tr("Hairloom projects (*.hairloom)"));
+    const QString path =
+        QFileDialog::getSaveFileName(this, tr("Save"), name, tr("Hairloom projects (*.hairloom)"));
     return !path.isEmpty() && saveTo(path);
 }
 

@@ -18,7 +18,8 @@ void MainWindow::addFileActions() {
     const auto add = [&](const ActionInfo& info, std::function<void()> run) {
         menu->addAction(&actions_->add(info, std::move(run)));
     };
-    add({"file.new", tr("&New"), "new", tr("Closes the document and shows the start page"), QKeySequence::New},
+    add({"file.new", tr("&New"), "new", tr("Closes the document and shows the start page"),
+         QKeySequence::New},
         [this] { newDocument(); });
     add({"file.open", tr("&Open…"), "open", tr("Opens a project, a head or hair"), QKeySequence::Open},
         [this] { chooseAndOpen(); });
@@ -40,7 +41,8 @@ void MainWindow::addFileActions() {
             dialog.exec();
         });
     menu->addSeparator();
-    add({"file.quit", tr("&Quit"), "", tr("Leaves the program"), QKeySequence("Ctrl+Q")}, [this] { close(); });
+    add({"file.quit", tr("&Quit"), "", tr("Leaves the program"), QKeySequence("Ctrl+Q")},
+        [this] { close(); });
 }
 
 void MainWindow::addEditActions() {
@@ -51,8 +53,9 @@ void MainWindow::addEditActions() {
         menu->addAction(&action);
         return action;
     };
-    QAction& undo = add({"edit.undo", tr("&Undo"), "undo", tr("Takes the last step back"), QKeySequence("Ctrl+Z")},
-                        [this] { session_.document.undo(); });
+    QAction& undo =
+        add({"edit.undo", tr("&Undo"), "undo", tr("Takes the last step back"), QKeySequence("Ctrl+Z")},
+            [this] { session_.document.undo(); });
     QAction& redo = add({"edit.redo", tr("&Redo"), "redo", tr("Does the step again that was taken back"),
                          QKeySequence("Ctrl+Shift+Z")},
                         [this] { session_.document.redo(); });
@@ -60,8 +63,10 @@ void MainWindow::addEditActions() {
         const Document& document = session_.document;
         undo.setEnabled(document.doneSteps() > 0);
         redo.setEnabled(document.doneSteps() < document.stepCount());
-        undo.setText(undo.isEnabled() ? tr("&Undo %1").arg(document.stepName(document.doneSteps() - 1)) : tr("&Undo"));
-        redo.setText(redo.isEnabled() ? tr("&Redo %1").arg(document.stepName(document.doneSteps())) : tr("&Redo"));
+        undo.setText(undo.isEnabled() ? tr("&Undo %1").arg(document.stepName(document.doneSteps() - 1))
+                                      : tr("&Undo"));
+        redo.setText(redo.isEnabled() ? tr("&Redo %1").arg(document.stepName(document.doneSteps()))
+                                      : tr("&Redo"));
     };
     connect(&session_.document, &Document::historyChanged, this, enable);
     connect(&session_.document, &Document::replaced, this, enable);
@@ -73,7 +78,10 @@ void MainWindow::addEditActions() {
             PreferencesDialog dialog(session_.preferences, this);
             dialog.exec();
         });
-    add({"edit.shortcuts", tr("&Keyboard shortcuts…"), "keyboard", tr("Shows and changes the keys of all commands"),
+    add({"edit.shortcuts",
+         tr("&Keyboard shortcuts…"),
+         "keyboard",
+         tr("Shows and changes the keys of all commands"),
          {}},
         [this] {
             ShortcutDialog dialog(*actions_, this);
@@ -106,19 +114,24 @@ void MainWindow::addViewActions() {
             [this, at = view.view] { session_.viewport->look(at); });
     }
     menu->addSeparator();
-    QAction& ortho = add({"view.orthographic", tr("&Orthographic"), "ortho", tr("Takes perspective out of the view"),
-                          QKeySequence("5"), true},
+    QAction& ortho = add({"view.orthographic", tr("&Orthographic"), "ortho",
+                          tr("Takes perspective out of the view"), QKeySequence("5"), true},
                          [] {});
     connect(&ortho, &QAction::toggled, session_.viewport, &Viewport::setOrthographic);
-    QAction& turntable = add({"view.turntable", tr("&Turntable"), "turntable", tr("Turns the view about the head"),
-                              QKeySequence("Shift+T"), true},
+    QAction& turntable = add({"view.turntable", tr("&Turntable"), "turntable",
+                              tr("Turns the view about the head"), QKeySequence("Shift+T"), true},
                              [] {});
     connect(&turntable, &QAction::toggled, session_.viewport, &Viewport::setTurntable);
     menu->addSeparator();
     panelMenu_ = menu->addMenu(tr("&Panels"));
-    add({"view.resetLayout", tr("Reset la&yout"), "", tr("Puts all panels back to where they were first"), {}},
+    add({"view.resetLayout",
+         tr("Reset la&yout"),
+         "",
+         tr("Puts all panels back to where they were first"),
+         {}},
         [this] { resetLayout(); });
-    add({"view.theme", tr("Light or &dark"), "theme", tr("Changes between the two themes"), QKeySequence("Ctrl+T")},
+    add({"view.theme", tr("Light or &dark"), "theme", tr("Changes between the two themes"),
+         QKeySequence("Ctrl+T")},
         [this] {
             Preferences& preferences = session_.preferences;
             preferences.setTheme(preferences.theme() == Theme::Dark ? Theme::Light : Theme::Dark);

@@ -61,9 +61,10 @@ StartPage::StartPage(Session& session, QWidget* parent)
     page->addSpacing(8);
     page->addLayout(recoveries_);
 
-    auto* open = card(tr("Open a head, hair or project…"), "open",
-                      tr("Meshes: OBJ, PLY, STL, FBX, glTF. Hair: .hair, .tfx, OBJ lines, Cinema 4D. Or drop a file "
-                         "anywhere in this window."));
+    auto* open =
+        card(tr("Open a head, hair or project…"), "open",
+             tr("Meshes: OBJ, PLY, STL, FBX, glTF. Hair: .hair, .tfx, OBJ lines, Cinema 4D. Or drop a file "
+                "anywhere in this window."));
     open->setObjectName("open");
     connect(open, &QPushButton::clicked, this, &StartPage::openRequested);
     page->addWidget(open);
@@ -85,7 +86,8 @@ StartPage::StartPage(Session& session, QWidget* parent)
         addSample({}, tr("Bare head"), tr("A bust with a skeleton and clips, no hair"));
         for (const std::string& name : sampleNames(folder)) {
             const QString sample = QString::fromStdString(name);
-            addSample(sample, labelOf(sample), tr("Makes the hairstyle “%1” on the bust in a few seconds").arg(sample));
+            addSample(sample, labelOf(sample),
+                      tr("Makes the hairstyle “%1” on the bust in a few seconds").arg(sample));
         }
     }
     page->addWidget(heading(tr("Recent files")));

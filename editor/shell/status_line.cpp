@@ -64,12 +64,14 @@ StatusLine::StatusLine(Session& session, QWidget* parent)
     connect(session_.viewport, &Viewport::drawn, this, [this](const PictureReport& report) {
         const auto& frame = session_.player.frame();
         const QString picture = tr("%1 ms").arg(report.milliseconds, 0, 'f', 1);
-        frameTime_->setText(frame ? tr("%1 + %2 ms").arg(picture).arg(frame->milliseconds, 0, 'f', 1) : picture);
+        frameTime_->setText(frame ? tr("%1 + %2 ms").arg(picture).arg(frame->milliseconds, 0, 'f', 1)
+                                  : picture);
     });
-    connect(session_.viewport, &Viewport::deviceReady, this, [this](const QString& name, const QString& problem) {
-        device_->setText(problem.isEmpty() ? name.section(" (", 0, 0) : tr("no graphics device"));
-        if (!problem.isEmpty()) say(problem, true);
-    });
+    connect(session_.viewport, &Viewport::deviceReady, this,
+            [this](const QString& name, const QString& problem) {
+                device_->setText(problem.isEmpty() ? name.section(" (", 0, 0) : tr("no graphics device"));
+                if (!problem.isEmpty()) say(problem, true);
+            });
     device_->setText(tr("looking for a device"));
     showCounts();
 }
@@ -79,8 +81,8 @@ void StatusLine::say(const QString& text, bool isWarning) {
     message_->setText(text);
     message_->setToolTip(text);
     const ThemeColours colours = themeColours(session_.preferences.theme());
-    message_->setStyleSheet(
-        isWarning ? QStringLiteral("QLabel { color: %1; }").arg(colours.bad.name()) : QString());
+    message_->setStyleSheet(isWarning ? QStringLiteral("QLabel { color: %1; }").arg(colours.bad.name())
+                                      : QString());
     fade_.start(isWarning ? 20'000 : 8000);
 }
 

@@ -74,8 +74,12 @@ void applyTheme(QApplication& application, Theme theme) {
 ThemeColours themeColours(Theme theme) {
     const Tones& t = tones(theme);
     const bool dark = theme == Theme::Dark;
-    return {QColor(dark ? "#2a2d32" : "#b9bec6"), QColor(t.text), QColor(t.dim), QColor(t.accent),
-            QColor(dark ? "#5fbf77" : "#1c7a37"), QColor(dark ? "#e0b04a" : "#8f6200"),
+    return {QColor(dark ? "#2a2d32" : "#b9bec6"),
+            QColor(t.text),
+            QColor(t.dim),
+            QColor(t.accent),
+            QColor(dark ? "#5fbf77" : "#1c7a37"),
+            QColor(dark ? "#e0b04a" : "#8f6200"),
             QColor(dark ? "#ef6b62" : "#b3261e")};
 }
 

@@ -250,7 +250,8 @@ void Player::run() {
         auto frame = std::make_shared<PlayedFrame>();
         frame->pose = std::move(pose);
         frame->time = time;
-        frame->milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+        frame->milliseconds =
+            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
         frame->stats = simulation->stats();
         deliver(std::move(frame), epoch);
     }

@@ -65,7 +65,8 @@ class Player : public QObject {
   private:
     struct Orders;
     void run();
-    /// Gives the thread the groom as it is now. Not before it is needed: strokes pay for copies that are held.
+    /// Gives the thread the groom as it is now. Not before it is needed: strokes pay for copies that are
+    /// held.
     void capture();
     void deliver(std::shared_ptr<const PlayedFrame> frame, quint64 epoch);
     void documentChanged(Changes changes);

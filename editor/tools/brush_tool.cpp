@@ -147,11 +147,20 @@ bool BrushTool::key(int key, Qt::KeyboardModifiers modifiers) {
             resizeFrom_px_ = pointer_px_;
             resizeFrom_ = shift ? settings_.strength : settings_.radius;
             return true;
-        case Qt::Key_BracketLeft: shift ? addStrength(-0.05f) : scaleRadius(1 / kStep); return true;
-        case Qt::Key_BracketRight: shift ? addStrength(0.05f) : scaleRadius(kStep); return true;
-        case Qt::Key_BraceLeft: addStrength(-0.05f); return true;
-        case Qt::Key_BraceRight: addStrength(0.05f); return true;
-        default: return false;
+        case Qt::Key_BracketLeft:
+            shift ? addStrength(-0.05f) : scaleRadius(1 / kStep);
+            return true;
+        case Qt::Key_BracketRight:
+            shift ? addStrength(0.05f) : scaleRadius(kStep);
+            return true;
+        case Qt::Key_BraceLeft:
+            addStrength(-0.05f);
+            return true;
+        case Qt::Key_BraceRight:
+            addStrength(0.05f);
+            return true;
+        default:
+            return false;
     }
 }
 
@@ -179,37 +188,43 @@ void BrushTool::draw(Marks& marks) const {
     const Vec3f normal = paints ? place_->normal_ss : Vec3f(-session_.viewport->camera().forward_ws());
     const QColor outer(255, 255, 255, 230);
     const QColor inner(255, 255, 255, 110);
-    marks.circle(place_->position_ss, normal, settings_.radius, QColor(0, 0, 0, 120), 3.5f, Marks::Depth::OnTop);
+    marks.circle(place_->position_ss, normal, settings_.radius, QColor(0, 0, 0, 120), 3.5f,
+                 Marks::Depth::OnTop);
     marks.circle(place_->position_ss, normal, settings_.radius, outer, 1.5f, Marks::Depth::OnTop);
     if (settings_.strength > 0) {
         marks.circle(place_->position_ss, normal, settings_.radius * settings_.strength, inner, 1,
                      Marks::Depth::OnTop);
     }
     if (settings_.symmetric) {
-        const editing::Dab mirror = editing::mirrored(editing::dabAt(settings_, place_->position_ss), settings_);
+        const editing::Dab mirror =
+            editing::mirrored(editing::dabAt(settings_, place_->position_ss), settings_);
         marks.circle(mirror.position_ss, normal, settings_.radius, inner, 1.5f, Marks::Depth::OnTop);
     }
 }
 
 OptionForm* BrushTool::makeBasicOptions() {
     auto* form = new OptionForm(session_.preferences);
-    const auto number = [&](const char* name, const QString& label, const QString& tip, const char* unit, float min,
-                            float max, float editing::BrushSettings::*member) {
-        form->addNumber(name, label, tip, unit, static_cast<double>(min), static_cast<double>(max), false,
-                        [this, member] { return static_cast<double>(settings_.*member); },
-                        [this, member](double value) {
-                            settings_.*member = static_cast<float>(value);
-                            Q_EMIT updated();
-                        });
+    const auto number = [&](const char* name, const QString& label, const QString& tip, const char* unit,
+                            float min, float max, float editing::BrushSettings::*member) {
+        form->addNumber(
+            name, label, tip, unit, static_cast<double>(min), static_cast<double>(max), false,
+            [this, member] { return static_cast<double>(settings_.*member); },
+            [this, member](double value) {
+                settings_.*member = static_cast<float>(value);
+                Q_EMIT updated();
+            });
     };
-    number("brushRadius", tr("Radius"), tr("Reach of the brush. Keys: F and move, or [ and ]"), "m", kSmallest,
-           kLargest, &editing::BrushSettings::radius);
-    number("brushStrength", tr("Strength"), tr("Share of the full effect that one dab has. Keys: Shift+F, or { and }"),
-           "", 0, 1, &editing::BrushSettings::strength);
+    number("brushRadius", tr("Radius"), tr("Reach of the brush. Keys: F and move, or [ and ]"), "m",
+           kSmallest, kLargest, &editing::BrushSettings::radius);
+    number("brushStrength", tr("Strength"),
+           tr("Share of the full effect that one dab has. Keys: Shift+F, or { and }"), "", 0, 1,
+           &editing::BrushSettings::strength);
     QStringList falloffs;
-    for (const std::string_view name : editing::BrushCurve::falloffNames()) falloffs.append(labelOf(text(name)));
+    for (const std::string_view name : editing::BrushCurve::falloffNames())
+        falloffs.append(labelOf(text(name)));
     form->addChoice(
-        "brushFalloff", tr("Falloff"), tr("How the effect fades from the middle of the brush to its rim"), falloffs,
+        "brushFalloff", tr("Falloff"), tr("How the effect fades from the middle of the brush to its rim"),
+        falloffs,
         [this] {
             const auto names = editing::BrushCurve::falloffNames();
             return static_cast<int>(std::ranges::find(names, falloff_) - names.begin());
@@ -231,23 +246,28 @@ OptionForm* BrushTool::makeBasicOptions() {
                                     : index == 1 ? editing::BrushCurve({0.0f, 1.0f})
                                                  : editing::BrushCurve({1.0f, 0.0f});
             });
-        number("brushDepth", tr("Depth"), tr("How far before and behind its place the brush reaches"), "m", 0, 0.3f,
-               &editing::BrushSettings::depth);
+        number("brushDepth", tr("Depth"), tr("How far before and behind its place the brush reaches"), "m", 0,
+               0.3f, &editing::BrushSettings::depth);
         number("brushClearance", tr("Clearance"), tr("Distance that hair keeps from the skin"), "m", 0, 0.01f,
                &editing::BrushSettings::clearance);
-        form->addTruth("brushCollide", tr("Keep out of the head"), tr("Hair that a dab would push into the head stays out"),
-                       [this] { return settings_.collide; }, [this](bool on) { settings_.collide = on; });
+        form->addTruth(
+            "brushCollide", tr("Keep out of the head"),
+            tr("Hair that a dab would push into the head stays out"), [this] { return settings_.collide; },
+            [this](bool on) { settings_.collide = on; });
     }
-    form->addTruth("brushSymmetric", tr("Symmetric"), tr("Each dab again on the other side of the head"),
-                   [this] { return settings_.symmetric; },
-                   [this](bool on) {
-                       settings_.symmetric = on;
-                       Q_EMIT updated();
-                   });
+    form->addTruth(
+        "brushSymmetric", tr("Symmetric"), tr("Each dab again on the other side of the head"),
+        [this] { return settings_.symmetric; },
+        [this](bool on) {
+            settings_.symmetric = on;
+            Q_EMIT updated();
+        });
     const editing::BrushInfo& brush = editing::brushInfo(brush_);
     if (!brush.inverse.empty()) {
-        form->addTruth("brushInvert", tr("Invert"), tr("The opposite: %1. Ctrl does it for one stroke").arg(text(brush.inverse)),
-                       [this] { return settings_.invert; }, [this](bool on) { settings_.invert = on; });
+        form->addTruth(
+            "brushInvert", tr("Invert"),
+            tr("The opposite: %1. Ctrl does it for one stroke").arg(text(brush.inverse)),
+            [this] { return settings_.invert; }, [this](bool on) { settings_.invert = on; });
     }
     return form;
 }
@@ -258,14 +278,16 @@ QWidget* BrushTool::makeOptions() {
         const std::string name(parameter.name);
         const QString label = labelOf(text(parameter.name));
         if (parameter.isFlag) {
-            form->addTruth("brush:" + text(name), label, text(parameter.meaning),
-                           [this, name] { return settings_.parameters[name] != 0; },
-                           [this, name](bool on) { settings_.parameters[name] = on ? 1.0f : 0.0f; });
+            form->addTruth(
+                "brush:" + text(name), label, text(parameter.meaning),
+                [this, name] { return settings_.parameters[name] != 0; },
+                [this, name](bool on) { settings_.parameters[name] = on ? 1.0f : 0.0f; });
         } else {
-            form->addNumber("brush:" + text(name), label, text(parameter.meaning), text(parameter.unit),
-                            static_cast<double>(parameter.min), static_cast<double>(parameter.max), false,
-                            [this, name] { return static_cast<double>(settings_.parameters[name]); },
-                            [this, name](double value) { settings_.parameters[name] = static_cast<float>(value); });
+            form->addNumber(
+                "brush:" + text(name), label, text(parameter.meaning), text(parameter.unit),
+                static_cast<double>(parameter.min), static_cast<double>(parameter.max), false,
+                [this, name] { return static_cast<double>(settings_.parameters[name]); },
+                [this, name](double value) { settings_.parameters[name] = static_cast<float>(value); });
         }
     }
     connect(this, &BrushTool::settingsChanged, form, &OptionForm::refresh);

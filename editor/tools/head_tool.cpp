@@ -32,10 +32,9 @@ class HeadTool : public Tool {
         const auto x = static_cast<float>(by.x()), y = static_cast<float>(by.y());
         const Vec3f pivot = camera.target_ws();
         if (pointer.modifiers & Qt::ShiftModifier) {
-            const Eigen::Isometry3f turn = Eigen::Translation3f(pivot) *
-                                           Eigen::AngleAxisf(kTurnPerPixel * x, Vec3f::UnitY()) *
-                                           Eigen::AngleAxisf(kTurnPerPixel * y, camera.right_ws()) *
-                                           Eigen::Translation3f(-pivot);
+            const Eigen::Isometry3f turn =
+                Eigen::Translation3f(pivot) * Eigen::AngleAxisf(kTurnPerPixel * x, Vec3f::UnitY()) *
+                Eigen::AngleAxisf(kTurnPerPixel * y, camera.right_ws()) * Eigen::Translation3f(-pivot);
             offset_ = turn * start_;
         } else {
             const float metres = camera.metresPerPixel(pivot, session_.viewport->viewSize_px());
@@ -55,8 +54,8 @@ class HeadTool : public Tool {
 
   private:
     Session& session_;
-    ToolInfo info_{"head", tr("Drag the head"), "drag-head", tr("Drag to move the head and watch the hair follow"),
-                   QKeySequence("H")};
+    ToolInfo info_{"head", tr("Drag the head"), "drag-head",
+                   tr("Drag to move the head and watch the hair follow"), QKeySequence("H")};
     Eigen::Isometry3f offset_ = Eigen::Isometry3f::Identity();
     Eigen::Isometry3f start_ = Eigen::Isometry3f::Identity();
     QPointF from_px_;

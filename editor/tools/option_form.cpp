@@ -36,8 +36,8 @@ void OptionForm::addNumber(const QString& name, const QString& label, const QStr
     layout_->addRow(label, box);
 }
 
-void OptionForm::addTruth(const QString& name, const QString& label, const QString& tip, std::function<bool()> get,
-                          std::function<void(bool)> set) {
+void OptionForm::addTruth(const QString& name, const QString& label, const QString& tip,
+                          std::function<bool()> get, std::function<void(bool)> set) {
     auto* box = new QCheckBox(label);
     box->setObjectName(name);
     box->setToolTip(tip);
@@ -47,8 +47,9 @@ void OptionForm::addTruth(const QString& name, const QString& label, const QStri
     layout_->addRow(QString(), box);
 }
 
-void OptionForm::addChoice(const QString& name, const QString& label, const QString& tip, const QStringList& choices,
-                           std::function<int()> get, std::function<void(int)> set) {
+void OptionForm::addChoice(const QString& name, const QString& label, const QString& tip,
+                           const QStringList& choices, std::function<int()> get,
+                           std::function<void(int)> set) {
     auto* box = new QComboBox;
     box->setObjectName(name);
     box->setToolTip(tip);

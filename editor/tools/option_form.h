@@ -17,8 +17,9 @@ class OptionForm : public QWidget {
     explicit OptionForm(const Preferences& preferences, QWidget* parent = nullptr);
 
     /// `unit` as in fields ("m", ""); the tooltip tells range and unit. `get` is asked again at refresh().
-    void addNumber(const QString& name, const QString& label, const QString& tip, const QString& unit, double min,
-                   double max, bool whole, std::function<double()> get, std::function<void(double)> set);
+    void addNumber(const QString& name, const QString& label, const QString& tip, const QString& unit,
+                   double min, double max, bool whole, std::function<double()> get,
+                   std::function<void(double)> set);
     void addTruth(const QString& name, const QString& label, const QString& tip, std::function<bool()> get,
                   std::function<void(bool)> set);
     void addChoice(const QString& name, const QString& label, const QString& tip, const QStringList& choices,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Collision spheres by hand: a click on the head places one, a drag of its middle moves it, of its rim resizes
-// it.
+// Collision spheres by hand: a click on the head places one, a drag of its middle moves it, of its rim
+// resizes it.
 #include "core/editing/document.h"
 #include "core/editing/sphere_commands.h"
 #include "editor/overlays/overlay_mode.h"
@@ -79,15 +79,16 @@ class SphereTool : public Tool {
     void draw(Marks& marks) const override {
         drawSpheres(session_, marks);
         if (!held_) return;
-        marks.circle(moved_.centre, -session_.viewport->camera().forward_ws(), moved_.radius, QColor(255, 200, 80), 2.5f,
-                     Marks::Depth::OnTop);
+        marks.circle(moved_.centre, -session_.viewport->camera().forward_ws(), moved_.radius,
+                     QColor(255, 200, 80), 2.5f, Marks::Depth::OnTop);
     }
 
     QWidget* makeOptions() override {
         auto* form = new OptionForm(session_.preferences);
-        form->addNumber("sphereRadius", tr("Radius"), tr("Radius of spheres that a click places"), "m", 0.005, 0.2,
-                        false, [this] { return static_cast<double>(radius_); },
-                        [this](double value) { radius_ = static_cast<float>(value); });
+        form->addNumber(
+            "sphereRadius", tr("Radius"), tr("Radius of spheres that a click places"), "m", 0.005, 0.2, false,
+            [this] { return static_cast<double>(radius_); },
+            [this](double value) { radius_ = static_cast<float>(value); });
         return form;
     }
 

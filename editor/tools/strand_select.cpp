@@ -13,22 +13,26 @@ namespace {
 class StrandSelectTool : public OutlineTool {
   public:
     explicit StrandSelectTool(Session& session)
-        : OutlineTool(session, Shape::Lasso,
-                      {"select", tr("Select strands"), "select",
-                       tr("Click a strand or draw around some; brushes then touch only these"), QKeySequence("E")}) {}
+        : OutlineTool(
+              session, Shape::Lasso,
+              {"select", tr("Select strands"), "select",
+               tr("Click a strand or draw around some; brushes then touch only these"), QKeySequence("E")}) {}
 
     QString hint() const override { return tr("%1. Shift adds, Ctrl takes away").arg(info().tip); }
 
     QWidget* makeOptions() override {
         auto* form = new OptionForm(session().preferences);
-        form->addChoice("selectShape", tr("Shape"), tr("Outline that a drag draws"), {tr("Box"), tr("Lasso")},
-                        [this] { return static_cast<int>(shape()); },
-                        [this](int index) { setShape(static_cast<Shape>(index)); });
-        form->addChoice("selectPart", tr("Part"), tr("Part of a strand that must be inside"),
-                        {tr("Any"), tr("Root"), tr("Tip")}, [this] { return static_cast<int>(options_.part); },
-                        [this](int index) { options_.part = static_cast<editing::StrandPart>(index); });
-        form->addTruth("selectThrough", tr("Through the head"), tr("Strands behind the head count too"),
-                       [this] { return options_.throughHead; }, [this](bool on) { options_.throughHead = on; });
+        form->addChoice(
+            "selectShape", tr("Shape"), tr("Outline that a drag draws"), {tr("Box"), tr("Lasso")},
+            [this] { return static_cast<int>(shape()); },
+            [this](int index) { setShape(static_cast<Shape>(index)); });
+        form->addChoice(
+            "selectPart", tr("Part"), tr("Part of a strand that must be inside"),
+            {tr("Any"), tr("Root"), tr("Tip")}, [this] { return static_cast<int>(options_.part); },
+            [this](int index) { options_.part = static_cast<editing::StrandPart>(index); });
+        form->addTruth(
+            "selectThrough", tr("Through the head"), tr("Strands behind the head count too"),
+            [this] { return options_.throughHead; }, [this](bool on) { options_.throughHead = on; });
         return form;
     }
 
@@ -40,14 +44,16 @@ class StrandSelectTool : public OutlineTool {
         for (std::size_t s = 0; s < selected.size() && s < groom.strandCount(); ++s) {
             if (selected[s] == 0) continue;
             const auto strand = groom.strand(s);
-            for (std::size_t p = 1; p < strand.size(); ++p) marks.line(strand[p - 1], strand[p], colour, 1.5f);
+            for (std::size_t p = 1; p < strand.size(); ++p)
+                marks.line(strand[p - 1], strand[p], colour, 1.5f);
         }
     }
 
   protected:
     void choose(const editing::ScreenRegion& region, editing::Choice choice) override {
         editing::Document& document = session().document.editing();
-        take(editing::strandsIn(region, document.groom(), document.surface(), viewOf(session()), options_), choice);
+        take(editing::strandsIn(region, document.groom(), document.surface(), viewOf(session()), options_),
+             choice);
     }
 
     void click(const QPointF& at_px, editing::Choice choice) override {
@@ -73,7 +79,8 @@ class StrandSelectTool : public OutlineTool {
 }  // namespace
 
 ToolMaker strandSelectTool() {
-    return [](Session& session) -> std::unique_ptr<Tool> { return std::make_unique<StrandSelectTool>(session); };
+    return
+        [](Session& session) -> std::unique_ptr<Tool> { return std::make_unique<StrandSelectTool>(session); };
 }
 
 }  // namespace hairloom::editor

@@ -2,8 +2,6 @@
 // The wind as an arrow in the view: drag to turn it, away from the head for more of it.
 #include <cmath>
 
-#include "core/editing/document.h"
-#include "core/editing/settings_commands.h"
 #include "editor/session.h"
 #include "editor/tools/registry.h"
 
@@ -19,7 +17,9 @@ class WindTool : public Tool {
     const ToolInfo& info() const override { return info_; }
 
     QString hint() const override {
-        return tr("%1. Now %2 m/s").arg(info_.tip).arg(session_.document.groom().simulation.windSpeed, 0, 'f', 1);
+        return tr("%1. Now %2 m/s")
+            .arg(info_.tip)
+            .arg(session_.document.groom().simulation.windSpeed, 0, 'f', 1);
     }
 
     void press(const Pointer& pointer) override {
@@ -68,8 +68,9 @@ class WindTool : public Tool {
         const QColor colour(120, 200, 255);
         marks.point(from, colour, 8, Marks::Depth::OnTop);
         if (settings.windSpeed <= 0 || direction.norm() < 1e-6f) return;
-        const float metres = session_.viewport->camera().metresPerPixel(from, session_.viewport->viewSize_px()) *
-                             kPixelsPerSpeed * std::min(settings.windSpeed, kFastest);
+        const float metres =
+            session_.viewport->camera().metresPerPixel(from, session_.viewport->viewSize_px()) *
+            kPixelsPerSpeed * std::min(settings.windSpeed, kFastest);
         const Vec3f along = direction.normalized();
         const Vec3f to = from + metres * along;
         const Vec3f side = along.cross(session_.viewport->camera().forward_ws()).normalized();
@@ -85,7 +86,8 @@ class WindTool : public Tool {
     quint64 mergeKey() const { return (quint64{0x77696e64} << 32u) + strokes_; }
 
     Session& session_;
-    ToolInfo info_{"wind", tr("Wind"), "wind", tr("Drag from the middle of the view to where the wind blows; farther is stronger"),
+    ToolInfo info_{"wind", tr("Wind"), "wind",
+                   tr("Drag from the middle of the view to where the wind blows; farther is stronger"),
                    QKeySequence("W")};
     std::optional<runtime::SimulationSettings> before_;
     quint64 strokes_ = 0;

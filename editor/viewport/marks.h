@@ -28,8 +28,8 @@ class Marks {
     void circle(const Vec3f& centre_ws, const Vec3f& normal_ws, float radius, const QColor& colour,
                 float width_px = 1.5f, Depth depth = Depth::Hidden);
     /// Lines on the screen, as lassos and boxes are.
-    void path(std::span<const QPointF> points_px, bool closed, const QColor& colour, const OrbitCamera& camera,
-              const QSizeF& view_px);
+    void path(std::span<const QPointF> points_px, bool closed, const QColor& colour,
+              const OrbitCamera& camera, const QSizeF& view_px);
 
     const render::Overlay& overlay() const { return overlay_; }
 

@@ -7,7 +7,7 @@
 namespace hairloom::editor {
 namespace {
 
-constexpr float kFov = 28.0f;            // degrees
+constexpr float kFov = 28.0f;  // degrees
 constexpr float kOrthographicFov = 1.0f;
 constexpr float kTurnPerPixel = 0.008f;  // radians
 constexpr float kSteepest = 1.55f;
@@ -24,8 +24,10 @@ void OrbitCamera::turn(const QPointF& by_px) {
 }
 
 void OrbitCamera::move(const QPointF& by_px, const QSizeF& view_px) {
-    const float metres = 2 * distance_ * halfTangent(kFov) / static_cast<float>(std::max(view_px.height(), 1.0));
-    target_ws_ -= metres * (static_cast<float>(by_px.x()) * right_ws() - static_cast<float>(by_px.y()) * up_ws());
+    const float metres =
+        2 * distance_ * halfTangent(kFov) / static_cast<float>(std::max(view_px.height(), 1.0));
+    target_ws_ -=
+        metres * (static_cast<float>(by_px.x()) * right_ws() - static_cast<float>(by_px.y()) * up_ws());
 }
 
 void OrbitCamera::zoom(float factor) {
@@ -40,10 +42,18 @@ void OrbitCamera::look(render::View view) {
     constexpr float kQuarter = kPi / 2;
     pitch_ = 0;
     switch (view) {
-        case render::View::Front: yaw_ = 0; break;
-        case render::View::Back: yaw_ = kPi; break;
-        case render::View::Left: yaw_ = kQuarter; break;
-        case render::View::Right: yaw_ = -kQuarter; break;
+        case render::View::Front:
+            yaw_ = 0;
+            break;
+        case render::View::Back:
+            yaw_ = kPi;
+            break;
+        case render::View::Left:
+            yaw_ = kQuarter;
+            break;
+        case render::View::Right:
+            yaw_ = -kQuarter;
+            break;
         case render::View::ThreeQuarter:
             yaw_ = 0.6f;
             pitch_ = 0.1f;

@@ -32,7 +32,8 @@ class OrbitCamera {
     void setOrthographic(bool on) { orthographic_ = on; }
     bool isOrthographic() const { return orthographic_; }
 
-    /// The renderer knows perspective only: an orthographic view is one from very far with a very narrow angle.
+    /// The renderer knows perspective only: an orthographic view is one from very far with a very narrow
+    /// angle.
     render::Camera camera() const;
     Ray rayThrough(const QPointF& at_px, const QSizeF& view_px) const;
     /// Nothing for points behind the eye.

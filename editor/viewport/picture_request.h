@@ -34,11 +34,11 @@ struct PictureRequest {
 };
 
 struct PictureReport {
-    double milliseconds = 0;       ///< of this frame, everything included
-    std::uint64_t hairs = 0;       ///< drawn
-    std::uint32_t frames = 0;      ///< in the average
+    double milliseconds = 0;   ///< of this frame, everything included
+    std::uint64_t hairs = 0;   ///< drawn
+    std::uint32_t frames = 0;  ///< in the average
     bool moving = false;
-    bool presented = false;        ///< shown by the device; else the picture comes along
+    bool presented = false;  ///< shown by the device; else the picture comes along
 };
 
 }  // namespace hairloom::editor

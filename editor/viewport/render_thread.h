@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Makes the pictures of the viewport on a thread of its own, which owns the device: into a window's swap chain
-// where there is one, else read back. Of several requests that come while it is busy, the last one counts;
-// while none comes, it adds frames to the average.
+// Makes the pictures of the viewport on a thread of its own, which owns the device: into a window's swap
+// chain where there is one, else read back. Of several requests that come while it is busy, the last one
+// counts; while none comes, it adds frames to the average.
 
 #include <QImage>
 #include <QObject>
@@ -27,8 +27,8 @@ class RenderThread : public QObject {
     /// Nothing is being drawn or waits to be, the average is complete.
     bool isIdle() const;
 
-    /// Pictures go to this window from now on; to no window where it is empty. Waits until that is so: a window
-    /// may be destroyed after it has been taken away.
+    /// Pictures go to this window from now on; to no window where it is empty. Waits until that is so: a
+    /// window may be destroyed after it has been taken away.
     void setWindow(std::optional<gpu::NativeWindow> window);
 
   Q_SIGNALS:

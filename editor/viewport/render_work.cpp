@@ -76,9 +76,9 @@ Status RenderWork::takeScene(const PictureRequest& request, bool draft) {
     const bool sameShown = last_ && request.showHair == hairShown_ && request.showHead == headShown_;
     if (!scene_ || !sameShown || draft != draft_) return replaceScene(request, draft);
     if (request.groom != last_->groom) {
-        const bool onlyMoved =
-            draft_ ? differsInPositionsOnly(withoutFollowHairs(*request.groom), withoutFollowHairs(*last_->groom))
-                   : differsInPositionsOnly(*request.groom, *last_->groom);
+        const bool onlyMoved = draft_ ? differsInPositionsOnly(withoutFollowHairs(*request.groom),
+                                                               withoutFollowHairs(*last_->groom))
+                                      : differsInPositionsOnly(*request.groom, *last_->groom);
         if (!onlyMoved) return replaceScene(request, draft);
     } else if (request.pose == last_->pose) {
         return {};
@@ -87,8 +87,8 @@ Status RenderWork::takeScene(const PictureRequest& request, bool draft) {
 }
 
 Status RenderWork::replaceScene(const PictureRequest& request, bool draft) {
-    auto made =
-        GroomScene::make(draft ? withoutFollowHairs(*request.groom) : *request.groom, nullptr, nullptr, {}, {});
+    auto made = GroomScene::make(draft ? withoutFollowHairs(*request.groom) : *request.groom, nullptr,
+                                 nullptr, {}, {});
     if (!made) return tl::unexpected(made.error());
     scene_ = std::move(*made);
     draft_ = draft;
@@ -165,7 +165,8 @@ Result<std::pair<QImage, PictureReport>> RenderWork::draw() {
     }
     auto list = device_->createCommandList();
     if (!list) return tl::unexpected(list.error());
-    const auto recorded = renderer_.record(**list, options(), swapChain_ ? swapChain_->backBuffer() : target_);
+    const auto recorded =
+        renderer_.record(**list, options(), swapChain_ ? swapChain_->backBuffer() : target_);
     if (!recorded) return tl::unexpected(recorded.error());
     const auto submitted = device_->submit(std::move(*list));
     if (!submitted) return tl::unexpected(submitted.error());

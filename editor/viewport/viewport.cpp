@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editor/viewport/viewport.h"
 
+#include <qguiapplication_platform.h>
 #include <QApplication>
 #include <QKeyEvent>
 #include <QMouseEvent>
@@ -8,7 +9,6 @@
 #include <QPlatformSurfaceEvent>
 #include <QVBoxLayout>
 #include <cmath>
-#include <qguiapplication_platform.h>
 
 #include "editor/fields/colour.h"
 #include "editor/shell/theme.h"
@@ -21,8 +21,8 @@ constexpr float kZoomPerPixel = 0.006f;
 constexpr float kTurntableDegrees = 0.6f;  // per tick
 constexpr int kTurntableMs = 25;
 
-/// What the environment variable HAIRLOOM_VIEWPORT asks for: "window", "readback", "none" (no pictures at all),
-/// or nothing.
+/// What the environment variable HAIRLOOM_VIEWPORT asks for: "window", "readback", "none" (no pictures at
+/// all), or nothing.
 QByteArray wishedSurface() {
     return qgetenv("HAIRLOOM_VIEWPORT");
 }
@@ -157,7 +157,8 @@ void Viewport::useWindow() {
 void Viewport::surfaceChanged(bool exists) {
     const auto* x11 = qApp->nativeInterface<QNativeInterface::QX11Application>();
     if (exists && x11) {
-        renderer_.setWindow(gpu::NativeWindow{x11->connection(), static_cast<std::uint32_t>(window_->winId())});
+        renderer_.setWindow(
+            gpu::NativeWindow{x11->connection(), static_cast<std::uint32_t>(window_->winId())});
         redraw();
     } else {
         renderer_.setWindow(std::nullopt);
@@ -349,10 +350,17 @@ void Viewport::dragView(const QPointF& to_px) {
     const QPointF by = to_px - last_px_;
     last_px_ = to_px;
     switch (move_) {
-        case Move::Turn: camera_.turn(by); break;
-        case Move::Pan: camera_.move(by, viewSize_px()); break;
-        case Move::Zoom: camera_.zoom(std::exp(kZoomPerPixel * static_cast<float>(by.x() - by.y()))); break;
-        case Move::None: return;
+        case Move::Turn:
+            camera_.turn(by);
+            break;
+        case Move::Pan:
+            camera_.move(by, viewSize_px());
+            break;
+        case Move::Zoom:
+            camera_.zoom(std::exp(kZoomPerPixel * static_cast<float>(by.x() - by.y())));
+            break;
+        case Move::None:
+            return;
     }
     redraw(true);
 }
@@ -378,17 +386,23 @@ bool Viewport::keyPress(const QKeyEvent& event) {
 
 bool Viewport::eventFilter(QObject* object, QEvent* event) {
     switch (event->type()) {
-        case QEvent::MouseButtonPress: return mousePress(*static_cast<QMouseEvent*>(event));
-        case QEvent::MouseMove: return mouseMove(*static_cast<QMouseEvent*>(event));
-        case QEvent::MouseButtonRelease: return mouseRelease(*static_cast<QMouseEvent*>(event));
+        case QEvent::MouseButtonPress:
+            return mousePress(*static_cast<QMouseEvent*>(event));
+        case QEvent::MouseMove:
+            return mouseMove(*static_cast<QMouseEvent*>(event));
+        case QEvent::MouseButtonRelease:
+            return mouseRelease(*static_cast<QMouseEvent*>(event));
         case QEvent::Wheel:
-            camera_.zoom(std::exp(0.0012f * static_cast<float>(static_cast<QWheelEvent*>(event)->angleDelta().y())));
+            camera_.zoom(
+                std::exp(0.0012f * static_cast<float>(static_cast<QWheelEvent*>(event)->angleDelta().y())));
             redraw(true);
             return true;
         case QEvent::TabletPress:
         case QEvent::TabletMove:
-        case QEvent::TabletRelease: return tablet(*static_cast<QTabletEvent*>(event));
-        case QEvent::KeyPress: return keyPress(*static_cast<QKeyEvent*>(event));
+        case QEvent::TabletRelease:
+            return tablet(*static_cast<QTabletEvent*>(event));
+        case QEvent::KeyPress:
+            return keyPress(*static_cast<QKeyEvent*>(event));
         case QEvent::Leave:
             if (tool_ && !toolPressed_) tool_->leave();
             break;
@@ -399,7 +413,8 @@ bool Viewport::eventFilter(QObject* object, QEvent* event) {
             surfaceChanged(static_cast<QPlatformSurfaceEvent*>(event)->surfaceEventType() ==
                            QPlatformSurfaceEvent::SurfaceCreated);
             break;
-        default: break;
+        default:
+            break;
     }
     return QWidget::eventFilter(object, event);
 }

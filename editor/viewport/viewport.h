@@ -105,7 +105,7 @@ class Viewport : public QWidget {
     std::shared_ptr<const HairPose> pose_;
     std::vector<std::function<void(Marks&)>> marks_;
     QImage picture_;
-    QTimer settle_;     ///< from fast pictures to fine ones
+    QTimer settle_;  ///< from fast pictures to fine ones
     QTimer turntable_;
     QTimer postSoon_;
     bool moving_ = false;

@@ -79,8 +79,8 @@ std::vector<Include> includesOf(const fs::path& top) {
     static const std::regex pattern(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");
     static const std::set<std::string> extensions{".h", ".hpp", ".cpp", ".hlsl", ".hlsli"};
     std::vector<Include> found;
-    for (const char* folder : {"core", "runtime", "importers", "exporters", "shaders", "workspace",
-                               "editor", "cli", "samples", "benchmarks", "tests"}) {
+    for (const char* folder : {"core", "runtime", "importers", "exporters", "shaders", "workspace", "editor",
+                               "cli", "samples", "benchmarks", "tests"}) {
         if (!fs::exists(top / folder)) continue;
         for (const auto& entry : fs::recursive_directory_iterator(top / folder)) {
             if (!extensions.contains(entry.path().extension().string())) continue;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tests drive the real window, so there has to be an application before any of them. Settings and recovery
-// files go to a folder of this run.
+// The tests drive the real window, so there has to be an application before any of them. Settings and
+// recovery files go to a folder of this run.
 #include <gtest/gtest.h>
 
 #include <QApplication>

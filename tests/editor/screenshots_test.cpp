@@ -41,7 +41,9 @@ class ScreenshotsTest : public WindowTest, public testing::WithParamInterface<Th
         for (auto* label : widget.findChildren<QLabel*>()) {
             if (!label->isVisibleTo(&widget) || label->wordWrap() || label->text().isEmpty()) continue;
             if (label->objectName() == "message") continue;  // elides: the tooltip has it all
-            EXPECT_GE(label->width(), label->fontMetrics().horizontalAdvance(label->text().remove(QRegularExpression("<[^>]*>"))) / 2)
+            EXPECT_GE(label->width(), label->fontMetrics().horizontalAdvance(
+                                          label->text().remove(QRegularExpression("<[^>]*>"))) /
+                                          2)
                 << name.toStdString() << ": " << label->text().toStdString();
         }
         for (auto* button : widget.findChildren<QAbstractButton*>()) {

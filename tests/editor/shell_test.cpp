@@ -59,10 +59,10 @@ TEST_F(ShellTest, AFileThatCannotBeReadIsToldInTheStatusLineAndChangesNothing) {
     file.close();
     openFile(session(), file.fileName());
     finishWork();
-    EXPECT_TRUE(window->statusLine().message().contains("broken.hair")) << window->statusLine().message().toStdString();
+    EXPECT_TRUE(window->statusLine().message().contains("broken.hair"))
+        << window->statusLine().message().toStdString();
     EXPECT_EQ(hash(), before);
 }
-
 
 TEST_F(ShellTest, UnsavedChangesAreGuarded) {
     openSampleHair("short");
@@ -184,7 +184,8 @@ TEST_F(ShellTest, EveryActionHasATipAndNoTwoShareKeys) {
         const QString shortcut = info.shortcut.toString();
         if (shortcut.isEmpty()) continue;
         EXPECT_FALSE(keys.contains(shortcut))
-            << info.id.toStdString() << " and " << keys[shortcut].toStdString() << " share " << shortcut.toStdString();
+            << info.id.toStdString() << " and " << keys[shortcut].toStdString() << " share "
+            << shortcut.toStdString();
         keys[shortcut] = info.id;
     }
 }
@@ -192,11 +193,13 @@ TEST_F(ShellTest, EveryActionHasATipAndNoTwoShareKeys) {
 TEST_F(ShellTest, EveryControlOfThePanelsHasATip) {
     for (const PanelInfo& info : panels()) {
         for (QWidget* control : window->panel(info.id)->widget()->findChildren<QWidget*>()) {
-            const bool isControl = qobject_cast<QAbstractButton*>(control) || qobject_cast<QComboBox*>(control) ||
-                                   qobject_cast<QAbstractSpinBox*>(control) || qobject_cast<QSlider*>(control);
+            const bool isControl =
+                qobject_cast<QAbstractButton*>(control) || qobject_cast<QComboBox*>(control) ||
+                qobject_cast<QAbstractSpinBox*>(control) || qobject_cast<QSlider*>(control);
             if (!isControl) continue;
             bool hasTip = false;
-            for (QWidget* at = control; at && !hasTip; at = at->parentWidget()) hasTip = !at->toolTip().isEmpty();
+            for (QWidget* at = control; at && !hasTip; at = at->parentWidget())
+                hasTip = !at->toolTip().isEmpty();
             EXPECT_TRUE(hasTip) << info.id.toStdString() << ": " << control->objectName().toStdString() << " "
                                 << control->metaObject()->className();
         }

@@ -104,7 +104,8 @@ TEST_F(ToolsTest, ControlInvertsAndShiftSmooths) {
         double sum = 0;
         for (std::size_t s = 0; s < groom().strandCount(); ++s) {
             const auto strand = groom().strand(s);
-            for (std::size_t p = 1; p < strand.size(); ++p) sum += static_cast<double>((strand[p] - strand[p - 1]).norm());
+            for (std::size_t p = 1; p < strand.size(); ++p)
+                sum += static_cast<double>((strand[p] - strand[p - 1]).norm());
         }
         return sum;
     };
@@ -256,21 +257,29 @@ TEST_F(ToolsTest, TheHeadIsDraggedAndTheHairFollows) {
 
 TEST_F(ToolsTest, RandomActionsNeverBreakTheDocument) {
     Random random(7, 1);
-    const std::vector<QString> ids{"comb", "brush", "grab", "smooth", "puff", "pinch", "length", "cut", "cut_line",
-                                   "add", "delete", "freeze", "scalp_paint", "density_paint", "select", "scalp_lasso",
-                                   "sphere", "wind"};
+    const std::vector<QString> ids{"comb",        "brush",  "grab",        "smooth",        "puff",
+                                   "pinch",       "length", "cut",         "cut_line",      "add",
+                                   "delete",      "freeze", "scalp_paint", "density_paint", "select",
+                                   "scalp_lasso", "sphere", "wind"};
     const auto below = [&random](int count) {
         return static_cast<int>(random.below(static_cast<std::uint32_t>(count)));
     };
     const auto somewhere = [&] { return crown + QPoint(below(200) - 100, below(160) - 40); };
     for (int action = 0; action < 500; ++action) {
         switch (below(8)) {
-            case 0: trigger("edit.undo"); break;
-            case 1: trigger("edit.redo"); break;
-            case 2: key(std::array{Qt::Key_BracketLeft, Qt::Key_BracketRight, Qt::Key_Escape, Qt::Key_F}[
-                        static_cast<std::size_t>(below(4))]);
+            case 0:
+                trigger("edit.undo");
                 break;
-            case 3: activate(ids[static_cast<std::size_t>(below(static_cast<int>(ids.size())))]); break;
+            case 1:
+                trigger("edit.redo");
+                break;
+            case 2:
+                key(std::array{Qt::Key_BracketLeft, Qt::Key_BracketRight, Qt::Key_Escape,
+                               Qt::Key_F}[static_cast<std::size_t>(below(4))]);
+                break;
+            case 3:
+                activate(ids[static_cast<std::size_t>(below(static_cast<int>(ids.size())))]);
+                break;
             default: {
                 const auto modifiers = std::array<Qt::KeyboardModifiers, 4>{
                     Qt::NoModifier, Qt::NoModifier, Qt::ControlModifier,

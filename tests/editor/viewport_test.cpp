@@ -152,7 +152,12 @@ TEST_F(ViewportTest, PlayingMovesTheHairAndResettingPutsItBack) {
     windy.simulation.windSpeed = 8;
     document().change("Wind", Change::Simulation, windy);
     trigger("play.toggle");
-    ASSERT_TRUE(QTest::qWaitFor([this] { const auto& f = session().player.frame(); return f && f->time > 0.2; }, 20'000));
+    ASSERT_TRUE(QTest::qWaitFor(
+        [this] {
+            const auto& f = session().player.frame();
+            return f && f->time > 0.2;
+        },
+        20'000));
     const auto pose = viewport().pose();
     ASSERT_TRUE(pose);
     float farthest = 0;
@@ -171,7 +176,12 @@ TEST_F(ViewportTest, SettingsTakeEffectWhileItPlays) {
     openSampleHair("short");
     trigger("play.toggle");
     const auto played = [this](double seconds) {
-        return QTest::qWaitFor([&] { const auto& f = session().player.frame(); return f && f->time > seconds; }, 20'000);
+        return QTest::qWaitFor(
+            [&] {
+                const auto& f = session().player.frame();
+                return f && f->time > seconds;
+            },
+            20'000);
     };
     ASSERT_TRUE(played(0.05));
     const auto windIsOn = [this] {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From an empty window to an exported, moving hairstyle, as a person goes: the walk that docs/manual.md shows.
+// From an empty window to an exported, moving hairstyle, as a person goes: the walk that docs/manual.md
+// shows.
 #include <QPushButton>
 
 #include "editor/dialogs/export_dialog.h"
@@ -70,7 +71,12 @@ TEST_F(WalkTest, FromAnEmptyWindowToAnExportedMovingHairstyle) {
     drag({centre, centre + QPoint(70, 0), centre + QPoint(110, 0)});
     EXPECT_GT(groom().simulation.windSpeed, 4);
     trigger("play.toggle");
-    ASSERT_TRUE(QTest::qWaitFor([this] { const auto& f = session().player.frame(); return f && f->time > 0.3; }, 30'000));
+    ASSERT_TRUE(QTest::qWaitFor(
+        [this] {
+            const auto& f = session().player.frame();
+            return f && f->time > 0.3;
+        },
+        30'000));
     const SimulationStats stats = session().player.frame()->stats;
     EXPECT_EQ(stats.nanCount, 0u);
     EXPECT_EQ(stats.restoredStrands, 0u);

@@ -32,7 +32,8 @@ class WindowTest : public testing::Test {
         window->setUnsavedAnswer(MainWindow::Unsaved::Discard);
         window->close();
         window.reset();
-        if (!pictures_) wished_.isEmpty() ? qunsetenv("HAIRLOOM_VIEWPORT") : qputenv("HAIRLOOM_VIEWPORT", wished_);
+        if (!pictures_)
+            wished_.isEmpty() ? qunsetenv("HAIRLOOM_VIEWPORT") : qputenv("HAIRLOOM_VIEWPORT", wished_);
     }
     void open() {
         window = std::make_unique<MainWindow>();
@@ -67,7 +68,8 @@ class WindowTest : public testing::Test {
     QString inFolder(const char* name) const { return folder.filePath(name); }
 
     // The pointer over the viewport, in its pixels.
-    void press(const QPoint& at, Qt::KeyboardModifiers modifiers = {}, Qt::MouseButton button = Qt::LeftButton) {
+    void press(const QPoint& at, Qt::KeyboardModifiers modifiers = {},
+               Qt::MouseButton button = Qt::LeftButton) {
         send([&](auto* target) { QTest::mousePress(target, button, modifiers, at); });
     }
     void moveTo(const QPoint& at) {

@@ -54,7 +54,8 @@ TEST(GroomSceneTest, PosingMovesHeadAndHairAndBackAgain) {
     for (std::size_t p = 0; p < rest.size(); p += 97) {
         EXPECT_LT((posed[p] - rest[p] - Vec3f(0, 0, 1)).norm(), 1e-4f) << p;
     }
-    EXPECT_LT((scene->scene().meshes.front().positions_ws[0] - groom->scalp->positions()[0] - Vec3f(0, 0, 1)).norm(),
+    EXPECT_LT((scene->scene().meshes.front().positions_ws[0] - groom->scalp->positions()[0] - Vec3f(0, 0, 1))
+                  .norm(),
               1e-5f);
     ASSERT_TRUE(scene->pose(groom->positions(), {}));
     EXPECT_EQ(points(), rest);
