@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numbers>
 
 #include "runtime/checks.h"
 #include "runtime/engine_frame.h"
@@ -13,16 +12,6 @@ namespace hairloom::runtime {
 namespace {
 
 constexpr std::size_t kBlocksPerJob = 4;
-
-float shareLeft(float h, float timeConstant) {
-    return timeConstant > 0.0f ? std::exp(-h / timeConstant) : 1.0f;
-}
-
-/// Faster air is a mistake, and its squares would leave the range of single precision.
-bool isWind(Float3 velocity) {
-    constexpr float kMost = 1000.0f;  // m/s
-    return isFinite(velocity) && length(velocity) <= kMost;
-}
 
 }  // namespace
 
@@ -38,7 +27,7 @@ Engine::Made Engine::make(const StrandsView& strands, const SimulationSettings& 
     engine.blockReports_.resize(shape.blocks.size());
     engine.roots_.resize(shape.restRoots.size());
     engine.settings_ = settings;
-    engine.wind_ = makeWind(settings);
+    engine.wind_.wind = makeWind(settings);
     engine.reset(shape.restRoots);
     return {std::move(engine), {}};
 }
@@ -72,8 +61,7 @@ void Engine::reset(std::span<const RootFrame> roots_ws) {
 std::string Engine::setSettings(const SimulationSettings& settings) {
     if (std::string error = whyRefused(settings); !error.empty()) return error;
     settings_ = settings;
-    wind_ = makeWind(settings);
-    windGiven_ = false;
+    wind_ = {makeWind(settings), false};
     bend_.substep = 0.0f;
     std::fill(state_.tanks.begin(), state_.tanks.end(), kNoCurve);
     state_.rests.assign(shape_->blocks.size(), {});
@@ -83,33 +71,16 @@ std::string Engine::setSettings(const SimulationSettings& settings) {
 
 void Engine::replan(std::span<const Sphere> spheres, std::span<const Float3> sphereMotion, Float3 rootsMin_ws,
                     Float3 rootsMax_ws, float frameTime) {
-    SimulationSettings planned = settings_;
-    if (windGiven_) {
-        planned.windSpeed = length(wind_.mean);
-        if (planned.windSpeed > 0.0f) planned.windDirection = wind_.mean * (1.0f / planned.windSpeed);
-    }
-    SceneDescription scene{planned,
-                           strandCount(),
-                           shape_->longestPointCount,
-                           shape_->longestStrand,
-                           shape_->straight,
-                           rootsMin_ws,
-                           rootsMax_ws,
-                           spheres,
-                           sphereMotion};
-    float sphereWay = 0.0f;
-    for (const Float3& motion : sphereMotion) sphereWay = std::max(sphereWay, length(motion));
-    // Within a frame hair may gain what gravity and air give, and a whip of its own.
-    const float h = frameTime / static_cast<float>(settings_.substeps);
-    const float pushed = (length(settings_.gravity) + settings_.airDrag * length(wind_.mean)) * frameTime;
-    scene.fastest = 16.0f * state_.fastest * h + pushed * h +
-                    (rootMotion_ + sphereWay) / static_cast<float>(settings_.substeps);
-    scene.restTime = 1e30f;
+    FrameOutlook outlook{strandCount(),         shape_->longestPointCount,
+                         shape_->longestStrand, shape_->straight,
+                         rootsMin_ws,           rootsMax_ws,
+                         rootMotion_,           state_.fastest};
+    outlook.restTime = 1e30f;
     for (std::size_t b = 0; b < state_.rests.size(); ++b) {
-        if (state_.rests[b].asleep) scene.asleep += shape_->blocks[b].strands;
-        scene.restTime = std::min(scene.restTime, state_.rests[b].time);
+        if (state_.rests[b].asleep) outlook.asleep += shape_->blocks[b].strands;
+        outlook.restTime = std::min(outlook.restTime, state_.rests[b].time);
     }
-    plan_ = runtime::plan(scene);
+    plan_ = planFrame(settings_, outlook, wind_, spheres, sphereMotion, frameTime);
     allocateForPlan();
 }
 
@@ -168,122 +139,37 @@ void Engine::takeRoots(const FrameInput& input) {
     state_.rootsMax_ws = high;
 }
 
-void Engine::takeSpheres(const FrameInput& input) {
-    usableSpheres_.assign(input.spheres.begin(), input.spheres.end());
-    sphereMotion_.assign(usableSpheres_.size(), Float3{});
-    for (std::size_t i = 0; i < usableSpheres_.size(); ++i) {
-        Sphere& sphere = usableSpheres_[i];
-        if (!isFinite(sphere.center_ws) || !std::isfinite(sphere.radius) || !(sphere.radius > 0.0f)) {
-            sphere = {};
-            ++report_.rejectedSpheres;
-            continue;
-        }
-        if (i < state_.spheres.size() && state_.spheres[i].radius > 0.0f) {
-            const Float3 motion = sphere.center_ws - state_.spheres[i].center_ws;
-            if (length(motion) <= settings_.teleportDistance) sphereMotion_[i] = motion;
-        }
-    }
-}
-
 /// Whether a sphere that has changed since the last frame comes within reach of the block's strands.
 bool Engine::sphereNear(std::size_t block) const {
     const float* rows = state_.roots.data() + block * kRootRows * kBlockLanes;
-    const float hair = hairReach(settings_, shape_->longestStrand);
-    const std::size_t count = std::max(usableSpheres_.size(), state_.spheres.size());
-    for (std::size_t i = 0; i < count; ++i) {
-        const Sphere before = i < state_.spheres.size() ? state_.spheres[i] : Sphere{};
-        const Sphere now = i < usableSpheres_.size() ? usableSpheres_[i] : Sphere{};
-        if (before.center_ws == now.center_ws && before.radius == now.radius) continue;
-        const bool moved = before.radius > 0.0f && now.radius > 0.0f;
-        const float way = moved ? length(now.center_ws - before.center_ws) : 0.0f;
-        for (const Sphere& sphere : {before, now}) {
-            if (!(sphere.radius > 0.0f)) continue;
-            const float reach = hair + sphere.radius + way;
-            for (std::uint32_t lane = 0; lane < shape_->blocks[block].strands; ++lane) {
-                const Float3 root{rows[lane], rows[kBlockLanes + lane], rows[2 * kBlockLanes + lane]};
-                if (length(root - sphere.center_ws) < reach) return true;
-            }
+    for (const Sphere& waking : spheres_.waking) {
+        for (std::uint32_t lane = 0; lane < shape_->blocks[block].strands; ++lane) {
+            const Float3 root{rows[lane], rows[kBlockLanes + lane], rows[2 * kBlockLanes + lane]};
+            if (length(root - waking.center_ws) < waking.radius) return true;
         }
     }
     return false;
 }
 
-void Engine::takeWind(const FrameInput& input) {
-    WindInput given;
-    if (input.wind_ws) {
-        if (isWind(*input.wind_ws)) {
-            given.mean_ws = input.wind_ws;
-        } else {
-            ++report_.rejectedWinds;
-        }
-    }
-    if (isWind(input.actorVelocity_ws)) {
-        given.actorVelocity_ws = input.actorVelocity_ws;
-    } else {
-        ++report_.rejectedWinds;
-    }
-    const bool before = windGiven_;
-    windGiven_ =
-        given.mean_ws || (settings_.windKind == WindKind::vehicle && given.actorVelocity_ws != Float3{});
-    if (windGiven_ || before) wind_ = makeWind(settings_, given);
-}
-
 void Engine::wakeBlocks() {
-    const bool windy = length(wind_.mean) > 0.0f && settings_.airDrag > 0.0f;
+    const bool windy = length(wind_.wind.mean) > 0.0f && settings_.airDrag > 0.0f;
     for (std::size_t b = 0; b < state_.rests.size(); ++b) {
         Rest& rest = state_.rests[b];
         if (rest.asleep && (windy || blockReports_[b].rootsMoved || sphereNear(b))) rest = {};
     }
 }
 
-void Engine::moveSpheres() {
-    if (!plan_.on(Effect::collision)) {
-        movingSpheres_ = {};
-        return;
-    }
-    movingSpheres_.clear();
-    const float share = 1.0f / static_cast<float>(settings_.substeps);
-    for (std::size_t i = 0; i < usableSpheres_.size(); ++i) {
-        const Sphere& sphere = usableSpheres_[i];
-        if (!(sphere.radius > 0.0f)) continue;
-        movingSpheres_.push_back(
-            {sphere.center_ws - sphereMotion_[i], sphereMotion_[i] * share, sphere.radius});
-    }
-}
-
 Engine::Frame Engine::makeFrame(const FrameInput& input) {
-    const float h = input.dt / static_cast<float>(settings_.substeps);
-    const auto oscillation = [&](float hertz) {
-        const float turns = 2.0f * std::numbers::pi_v<float> * hertz * h;
-        return turns * turns;
-    };
     Frame frame{};
     frame.input = &input;
-    SubstepContext& context = frame.context;
-    context.count = settings_.substeps;
-    context.h = h;
-    context.velocityShare = shareLeft(h, settings_.dampingTime);
-    context.gravityStep = settings_.gravity * (h * h);
-    const bool decays =
-        settings_.integrator == Integrator::verlet || settings_.integrator == Integrator::implicitEuler;
-    context.dragShare = decays ? 1.0f - std::exp(-settings_.airDrag * h) : settings_.airDrag * h;
-    context.springStep = oscillation(settings_.springFrequency);
-    context.penaltyStep = oscillation(settings_.penaltyFrequency);
-    context.bendRate = bendRate(settings_, h, bend_.targets);
-    context.lengthIterations = settings_.lengthIterations;
-    context.maximalExtension = settings_.maximalExtension;
-    if (plan_.on(Effect::pearls)) {
-        context.pearlRoot = settings_.pearlRadiusRoot;
-        context.pearlTip = settings_.pearlRadiusTip;
-    }
-    context.friction = settings_.friction;
-    context.restitution = settings_.restitution;
-    context.spheres = movingSpheres_;
+    frame.context = substepContext(settings_, plan_, input.dt);
+    const float h = frame.context.h;
+    frame.context.spheres = movingSpheres_;
     frame.windy = plan_.on(Effect::wind);
     if (frame.windy) {
         const double time = std::isfinite(input.time) ? input.time : 0.0;
-        frame.windFrom = windPhases(wind_, time - static_cast<double>(input.dt));
-        frame.windTo = windPhases(wind_, time);
+        frame.windFrom = windPhases(wind_.wind, time - static_cast<double>(input.dt));
+        frame.windTo = windPhases(wind_.wind, time);
     }
     frame.rescale = state_.substep > 0.0f ? h / state_.substep : 1.0f;
     frame.newBend = plan_.on(Effect::angular) && bend_.substep != h;
@@ -299,14 +185,19 @@ void Engine::step(const FrameInput& input) {
     const Float3 lowBefore = state_.rootsMin_ws, highBefore = state_.rootsMax_ws;
     takeRoots(input);
     const Float3 low = state_.rootsMin_ws, high = state_.rootsMax_ws;
-    takeSpheres(input);
-    takeWind(input);
+    takeSpheres(settings_, shape_->longestStrand, state_.spheres, input.spheres, spheres_);
+    report_.rejectedSpheres = spheres_.rejected;
+    report_.rejectedWinds = takeWind(settings_, input, wind_);
     wakeBlocks();
-    replan(usableSpheres_, sphereMotion_,
+    replan(spheres_.usable, spheres_.motion,
            {std::min(low.x, lowBefore.x), std::min(low.y, lowBefore.y), std::min(low.z, lowBefore.z)},
            {std::max(high.x, highBefore.x), std::max(high.y, highBefore.y), std::max(high.z, highBefore.z)},
            input.dt);
-    moveSpheres();
+    if (plan_.on(Effect::collision)) {
+        moveSpheres(spheres_, settings_.substeps, movingSpheres_);
+    } else {
+        movingSpheres_ = {};
+    }
 
     const Frame frame = makeFrame(input);
     const std::size_t blocks = shape_->blocks.size();
@@ -319,7 +210,7 @@ void Engine::step(const FrameInput& input) {
         body(0, blocks);
     }
 
-    state_.spheres.assign(usableSpheres_.begin(), usableSpheres_.end());
+    state_.spheres.assign(spheres_.usable.begin(), spheres_.usable.end());
     state_.substep = frame.context.h;
     if (frame.newBend) bend_.substep = frame.context.h;
     sumReports();

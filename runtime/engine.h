@@ -14,25 +14,15 @@
 #include <string>
 #include <vector>
 
+#include "runtime/frame_setup.h"
 #include "runtime/host.h"
 #include "runtime/plan.h"
 #include "runtime/settings.h"
 #include "runtime/state.h"
+#include "runtime/state_read.h"
 #include "runtime/strands.h"
 
 namespace hairloom::runtime {
-
-/// What the state looks like; taken when asked for, at about the cost of one substep.
-struct Measurements {
-    std::uint64_t nanCount = 0;  ///< points that are not finite
-    double maxStretch = 0.0;  ///< largest |length / rest length − 1|; segments without length do not count
-    double maxPenetration =
-        0.0;  ///< metres that a free point and its pearl lie inside a sphere of the last frame
-    double kineticEnergy = 0.0;  ///< joules, over free points; the points of a strand weigh 1 kg on average
-    double potentialEnergy =
-        0.0;                   ///< joules, likewise, in the gravity of the settings, 0 at the world's origin
-    std::uint32_t asleep = 0;  ///< strands
-};
 
 /// What the last step took. Times are sums over threads, all 0 without Host::nanoseconds.
 struct StepReport {
@@ -103,10 +93,7 @@ class Engine {
     void replan(std::span<const Sphere> spheres, std::span<const Float3> sphereMotion, Float3 rootsMin_ws,
                 Float3 rootsMax_ws, float frameTime);
     void allocateForPlan();
-    void takeSpheres(const FrameInput& input);
-    void moveSpheres();
     void takeRoots(const FrameInput& input);
-    void takeWind(const FrameInput& input);
     void wakeBlocks();
     bool sphereNear(std::size_t block) const;
     Frame makeFrame(const FrameInput& input);
@@ -122,7 +109,7 @@ class Engine {
     Host host_;
     std::shared_ptr<const RestShape> shape_;
     EffectPlan plan_;
-    Wind wind_;
+    FrameWind wind_;
     State state_;
     Bend bend_;
     Floats evaluation_;  // empty for position Verlet
@@ -130,12 +117,10 @@ class Engine {
     StepReport report_;
     std::vector<BlockReport> blockReports_;
     // Of the frame under way.
-    std::vector<RootFrame> roots_;       // one per strand, sound
-    std::vector<Sphere> usableSpheres_;  // those that fell out stay in place at radius 0
-    std::vector<Float3> sphereMotion_;
+    std::vector<RootFrame> roots_;  // one per strand, sound
+    FrameSpheres spheres_;
     std::vector<MovingSphere> movingSpheres_;
     float rootMotion_ = 0.0f;  // metres, the longest way of a root
-    bool windGiven_ = false;   // by the frame, not by the settings alone
 };
 
 struct Engine::Made {

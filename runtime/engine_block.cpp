@@ -25,7 +25,7 @@ void Engine::runBlock(std::size_t block, const Frame& frame) {
     enterFrame(block, blockView, lanes, frame);
     if (frame.rescale != 1.0f) kernels().rescale(blockView, frame.rescale);
     if (frame.windy) {
-        kernels().sampleWind(blockView, lanes, frame.context.h, wind_, frame.windFrom.data(),
+        kernels().sampleWind(blockView, lanes, frame.context.h, wind_.wind, frame.windFrom.data(),
                              frame.windTo.data());
     }
     runStages(block, blockView, lanes, frame);

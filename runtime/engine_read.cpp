@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "runtime/engine.h"
+#include "runtime/state_read.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -56,31 +57,31 @@ double lengthOf(Float3 v) {
 
 }  // namespace
 
-void Engine::readPositions(std::span<Float3> positions_ws) const {
-    assert(positions_ws.size() == pointCount());
-    forEachPoint(*shape_, state_,
+void readPositions(const RestShape& shape, const State& state, std::span<Float3> positions_ws) {
+    assert(positions_ws.size() == shape.offsets.back());
+    forEachPoint(shape, state,
                  [&](const ConstBlock& view, std::uint32_t lane, std::uint32_t, std::size_t i,
                      std::size_t at) { positions_ws[at] = view.root(lane) + view.position(i); });
 }
 
-void Engine::readVelocities(std::span<Float3> velocities_ws) const {
-    assert(velocities_ws.size() == pointCount());
-    const float rate = state_.substep > 0.0f ? 1.0f / state_.substep : 0.0f;
-    forEachPoint(*shape_, state_,
+void readVelocities(const RestShape& shape, const State& state, std::span<Float3> velocities_ws) {
+    assert(velocities_ws.size() == shape.offsets.back());
+    const float rate = state.substep > 0.0f ? 1.0f / state.substep : 0.0f;
+    forEachPoint(shape, state,
                  [&](const ConstBlock& view, std::uint32_t, std::uint32_t, std::size_t i, std::size_t at) {
                      velocities_ws[at] = view.displacement(i) * rate;
                  });
 }
 
-Measurements Engine::measure() const {
+Measurements measureState(const RestShape& shape, const State& state, const SimulationSettings& settings) {
     Measurements result;
-    const double rate = state_.substep > 0.0f ? 1.0 / static_cast<double>(state_.substep) : 0.0;
-    const SimulationSettings& s = settings_;
-    for (std::size_t b = 0; b < state_.rests.size(); ++b) {
-        if (state_.rests[b].asleep) result.asleep += shape_->blocks[b].strands;
+    const double rate = state.substep > 0.0f ? 1.0 / static_cast<double>(state.substep) : 0.0;
+    const SimulationSettings& s = settings;
+    for (std::size_t b = 0; b < state.rests.size(); ++b) {
+        if (state.rests[b].asleep) result.asleep += shape.blocks[b].strands;
     }
     forEachPoint(
-        *shape_, state_,
+        shape, state,
         [&](const ConstBlock& view, std::uint32_t lane, std::uint32_t p, std::size_t i, std::size_t) {
             const Float3 at = view.position(i);
             const Float3 moved = view.displacement(i);
@@ -101,7 +102,7 @@ Measurements Engine::measure() const {
             const double along = static_cast<double>(p) / (view.block->points - 1);
             const double pearl = static_cast<double>(s.pearlRadiusRoot) +
                                  along * static_cast<double>(s.pearlRadiusTip - s.pearlRadiusRoot);
-            for (const Sphere& sphere : state_.spheres) {
+            for (const Sphere& sphere : state.spheres) {
                 if (!(sphere.radius > 0.0f)) continue;
                 const double depth =
                     static_cast<double>(sphere.radius) + pearl - lengthOf(at_ws - sphere.center_ws);
@@ -109,6 +110,18 @@ Measurements Engine::measure() const {
             }
         });
     return result;
+}
+
+void Engine::readPositions(std::span<Float3> positions_ws) const {
+    runtime::readPositions(*shape_, state_, positions_ws);
+}
+
+void Engine::readVelocities(std::span<Float3> velocities_ws) const {
+    runtime::readVelocities(*shape_, state_, velocities_ws);
+}
+
+Measurements Engine::measure() const {
+    return measureState(*shape_, state_, settings_);
 }
 
 std::size_t Engine::effectBytes(Effect effect) const {
@@ -139,7 +152,7 @@ std::size_t Engine::effectBytes(Effect effect) const {
 std::size_t Engine::baseBytes() const {
     return shape_->bytes() +
            (state_.planes.size() + state_.roots.size() + evaluation_.size()) * sizeof(float) +
-           (state_.spheres.size() + usableSpheres_.size()) * sizeof(Sphere) +
+           (state_.spheres.size() + spheres_.usable.size()) * sizeof(Sphere) +
            state_.rests.size() * sizeof(Rest) + roots_.size() * sizeof(RootFrame) +
            blockReports_.size() * sizeof(BlockReport);
 }

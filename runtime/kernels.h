@@ -108,6 +108,12 @@ struct SubstepContext {
     std::span<const MovingSphere> spheres;
 };
 
+/// Share of a sphere's radius that a point may move in one substep without the swept test looking at it: it
+/// can then cut no deeper than 0.8 % of the radius into it unseen.
+inline constexpr float kUnsweptShare = 0.25f;
+/// Metres in a substep below which no point passes a sphere of the context unseen.
+float slowestSwept(const SubstepContext& context);
+
 using Stage = void (*)(const BlockView& block, LaneFrame& lanes, const SubstepContext& context);
 
 struct Kernels {

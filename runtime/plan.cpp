@@ -78,6 +78,7 @@ Decision decidePearls(const SimulationSettings& s, bool collision) {
 Decision decideSweep(const SceneDescription& scene, bool collision, float smallestSphere) {
     if (!collision) return {false, Reason::noCollision, 0.0f};
     if (scene.settings.collisionResponse == CollisionResponse::penalty) return {false, Reason::byForce, 0.0f};
+    if (!std::isfinite(scene.fastest)) return {true, Reason::speedUnknown, 0.0f};
     // A slower point that passes cuts at most 0.8 % of the radius.
     if (scene.fastest < 0.25f * smallestSphere) return {false, Reason::slowEnough, 0.0f};
     return {true, Reason::fast, scene.fastest};

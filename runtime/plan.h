@@ -92,9 +92,10 @@ struct SceneDescription {
     Float3 rootsMin_ws, rootsMax_ws;       ///< box of all roots over the frame
     std::span<const Sphere> spheres;       ///< at the end of the frame
     std::span<const Float3> sphereMotion;  ///< each sphere's way during the frame; empty when they rest
-    float fastest = 0.0f;                  ///< metres in a substep that a point can move relative to a sphere
-    std::uint32_t asleep = 0;              ///< strands at rest
-    float restTime = 0.0f;                 ///< seconds for which all strands have been at rest
+    float fastest = 0.0f;      ///< metres in a substep that a point can move relative to a sphere;
+                               ///< infinite where nobody knows
+    std::uint32_t asleep = 0;  ///< strands at rest
+    float restTime = 0.0f;     ///< seconds for which all strands have been at rest
 };
 
 enum class Reason : std::uint32_t {
@@ -120,6 +121,7 @@ enum class Reason : std::uint32_t {
     zeroRadius,
     slowEnough,
     fast,
+    speedUnknown,
     byForce,
     neverAsleep,
     allAwake,

@@ -91,6 +91,8 @@ std::string words(Effect effect, const Decision& decision) {
         case Reason::fast:
             text << "up to " << 1000.0f * decision.value << " mm in a substep";
             return text.str();
+        case Reason::speedUnknown:
+            return "speeds are not known beforehand";
         case Reason::byForce:
             return "penalty forces act on what is inside";
         case Reason::neverAsleep:

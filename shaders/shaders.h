@@ -16,6 +16,13 @@ struct Shader {
 /// Ascending by name.
 std::span<const Shader> all();
 
+/// A file of the strand kernels, of which programs compile what they need when they run.
+struct Source {
+    std::string_view path;  ///< from the top of the repository
+    std::string_view text;
+};
+std::span<const Source> sources();
+
 /// Nothing for a name that does not exist.
 const Shader* find(std::string_view name);
 

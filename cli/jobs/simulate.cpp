@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "cli/backend.h"
 #include "cli/documents.h"
 #include "cli/job.h"
 #include "cli/motions.h"
@@ -24,6 +25,7 @@ struct SimulateOptions {
     std::uint64_t frames = 60;
     float framesPerSecond = 60;
     std::string backend = "cpu";
+    std::optional<std::uint32_t> device;
     std::string integrator;
     std::uint32_t substeps = 0;
     std::string wind;
@@ -145,7 +147,15 @@ Result<Report> simulate(const SimulateOptions& options) {
     const auto motion = makeMotion(options.motion, options.character, *groom);
     if (!motion) return tl::unexpected(motion.error());
     HeadPose pose = (*motion)->poseAt(0);
-    auto simulation = Simulation::make(*groom, pose, methodOf(options));
+    SimulationOptions methodOptions = methodOf(options);
+    std::unique_ptr<GpuBackend> gpu;
+    if (options.backend == "vulkan") {
+        auto made = GpuBackend::make(options.device);
+        if (!made) return tl::unexpected(made.error());
+        gpu = std::move(*made);
+        methodOptions.backend = gpu->engine();
+    }
+    auto simulation = Simulation::make(*groom, pose, methodOptions);
     if (!simulation) return tl::unexpected(simulation.error());
     const Report advice = adviceReport(*groom, 1.0f / options.framesPerSecond);
     std::optional<FrameRecorder> recorder;
@@ -162,6 +172,7 @@ Result<Report> simulate(const SimulateOptions& options) {
     for (std::uint64_t frame = 1; frame <= options.frames; ++frame) {
         pose = (*motion)->poseAt(static_cast<float>(frame) / options.framesPerSecond);
         simulation->step(1.0f / options.framesPerSecond, pose);
+        if (const auto status = simulation->status(); !status) return tl::unexpected(status.error());
         if (recorder) {
             if (auto added = recorder->add(simulation->positions_ws(), pose); !added) {
                 return tl::unexpected(added.error());
@@ -178,6 +189,7 @@ Result<Report> simulate(const SimulateOptions& options) {
     Report report = statsReport(*groom, simulation->stats());
     report["advice"] = advice;
     report["method"] = options.method;
+    report["device"] = gpu ? Report(gpu->deviceName()) : Report();
     if (comparison) comparison->report(report);
     if (recorder) {
         if (auto finished = recorder->finish(); !finished) return tl::unexpected(finished.error());
@@ -202,7 +214,8 @@ void addSimulateJob(Jobs& jobs) {
     job.add_option("groom", options->input, "Project or hair file")->required();
     job.add_option("--frames", options->frames, "Frames to simulate")->check(CLI::Range(1, 1'000'000));
     job.add_option("--fps", options->framesPerSecond, "Frames per second")->check(CLI::Range(10.0, 1000.0));
-    job.add_option("--backend", options->backend, "What runs it")->check(CLI::IsMember({"cpu"}));
+    job.add_option("--backend", options->backend, "What runs it")->check(CLI::IsMember({"cpu", "vulkan"}));
+    job.add_option("--device", options->device, "GPU to use, by its index in `devices`");
     job.add_option("--integrator", options->integrator, "How motion is advanced")
         ->check(CLI::IsMember(integratorNames()));
     job.add_option("--substeps", options->substeps, "Steps per frame, instead of the groom's own")

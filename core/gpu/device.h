@@ -11,7 +11,8 @@
 // dispatch writes the next one sees: barriers and layouts are the backend's business. Inside one graphics
 // pass, draws must not read what the pass writes.
 //
-// Threads: a Device and everything made by it are used from one thread at a time.
+// Threads: a Device and everything made by it are used from one thread at a time, but for createShader() and
+// createComputePipeline(), which may run on another.
 
 #include <functional>
 #include <optional>

@@ -12,12 +12,6 @@ namespace {
 using runtime::Effect;
 using runtime::StageId;
 
-/// "off, no sphere within reach of a strand" out of "collision: off, …".
-std::string reasonAlone(const std::string& why) {
-    const std::size_t colon = why.find(": ");
-    return colon == std::string::npos ? why : why.substr(colon + 2);
-}
-
 /// False where the solver takes no velocities.
 template <class Solver>
 bool push(Solver& solver, runtime::HairVolume& volume, float dt) {
@@ -92,6 +86,11 @@ class EngineMethod : public StrandMethod {
 };
 
 }  // namespace
+
+std::string reasonAlone(const std::string& why) {
+    const std::size_t colon = why.find(": ");
+    return colon == std::string::npos ? why : why.substr(colon + 2);
+}
 
 runtime::Host applicationHost() {
     runtime::Host host;

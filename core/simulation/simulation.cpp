@@ -11,6 +11,11 @@ namespace hairloom {
 namespace {
 
 Result<std::unique_ptr<StrandMethod>> makeMethod(const SceneInput& scene, const SimulationOptions& options) {
+    if (options.backend) {
+        if (options.method == SimulationMethod::strands && !options.hairHair) return options.backend(scene);
+        return fail("only the strand engine alone runs on the device",
+                    "expected the method 'strands' without hair against hair");
+    }
     if (options.method == SimulationMethod::strands) return makeEngineMethod(scene, options.hairHair);
     if (options.hairHair) {
         return fail("hair against hair needs a method that takes velocities, and this one takes none",
@@ -95,6 +100,10 @@ void Simulation::setSpheres(std::vector<CollisionSphere> spheres) {
 
 std::span<const Vec3f> Simulation::positions_ws() const {
     return impl_->positions_ws;
+}
+
+Status Simulation::status() const {
+    return impl_->method->status();
 }
 
 SimulationStats Simulation::stats() const {

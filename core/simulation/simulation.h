@@ -4,6 +4,7 @@
 // spheres come from the groom.
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -44,10 +45,17 @@ enum class SimulationMethod {
     lattice,     ///< runtime/alternatives/lattice.h: no collision, lengths are not held
 };
 
+class SceneInput;
+class StrandMethod;
+/// Makes what moves the strands of a scene (core/simulation/strand_method.h).
+using MethodMaker = std::function<Result<std::unique_ptr<StrandMethod>>(const SceneInput& scene)>;
+
 struct SimulationOptions {
     SimulationMethod method = SimulationMethod::strands;
     /// Hair against hair between frames; for methods that take velocities.
     std::optional<runtime::HairVolumeSettings> hairHair = {};
+    /// What runs the strand engine, in place of the CPU; empty: the CPU.
+    MethodMaker backend = {};
 };
 
 class Simulation {
@@ -71,6 +79,9 @@ class Simulation {
     /// Points in the order of the groom's points; metres, world space.
     std::span<const Vec3f> positions_ws() const;
     SimulationStats stats() const;
+    /// What went wrong outside of the strands, such as a device that was lost; the frames since then are
+    /// void.
+    Status status() const;
 
   private:
     struct Impl;

@@ -18,6 +18,9 @@ namespace hairloom {
 /// Threads and clock of this program.
 runtime::Host applicationHost();
 
+/// "off, no sphere within reach of a strand" out of "collision: off, …".
+std::string reasonAlone(const std::string& why);
+
 class StrandMethod {
   public:
     virtual ~StrandMethod() = default;
@@ -31,6 +34,8 @@ class StrandMethod {
     virtual void readPositions(std::span<runtime::Float3> positions_ws) const = 0;
     /// Of the last step.
     virtual double stepMilliseconds() const = 0;
+    /// The first thing that went wrong outside of the strands: a device that was lost, say.
+    virtual Status status() const { return {}; }
     /// Strands that the last step put back to rest because they were no numbers.
     virtual std::uint32_t restoredStrands() const { return 0; }
     virtual runtime::Measurements measure() const = 0;

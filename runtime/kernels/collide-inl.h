@@ -277,10 +277,6 @@ void collide(const BlockView& block, LaneFrame& lanes, const SubstepContext& con
     }
 }
 
-/// Share of a sphere's radius that a point may move in one substep without `collideSwept` looking at it: it
-/// can then cut no deeper than 0.8 % of the radius into it unseen.
-inline constexpr float kUnsweptShare = 0.25f;
-
 /// Square of the farthest that any free point moved in this substep.
 HWY_INLINE float farthestSquared(const BlockView& block) {
     V most = hn::Zero(D());
@@ -323,13 +319,7 @@ HWY_INLINE Contact firstEntered(const SubstepContext& context, V3 at, V3 moved, 
 /// Catches fast points where they first enter a sphere that they have passed, or passed the middle of, by the
 /// end of the substep. Runs before `collide` and leaves slow blocks at once.
 void collideSwept(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
-    float smallest = 1e30f, fastest = 0.0f;
-    for (const MovingSphere& sphere : context.spheres) {
-        smallest = std::fmin(smallest, sphere.radius);
-        fastest = std::fmax(fastest, length(sphere.step));
-    }
-    smallest += std::fmin(context.pearlRoot, context.pearlTip);
-    const float slow = std::fmax(0.999f * kUnsweptShare * smallest - 1.001f * fastest, 0.0f);
+    const float slow = slowestSwept(context);
     if (farthestSquared(block) < slow * slow) return;
     const float step = static_cast<float>(context.index + 1);
     alignas(64) float pearls[kMaxPoints];

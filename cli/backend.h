@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// A GPU for jobs that simulate.
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "core/gpu_simulation/engine_method.h"
+
+namespace hairloom::cli {
+
+/// A device and the kernels on it; outlives what simulates on it.
+class GpuBackend {
+  public:
+    /// By the index in `devices`, or the best. Errors: there is none.
+    static Result<std::unique_ptr<GpuBackend>> make(std::optional<std::uint32_t> index);
+
+    gpu::Device& device() { return *device_; }
+    const std::shared_ptr<gpu_simulation::KernelLibrary>& kernels() const { return kernels_; }
+    MethodMaker engine() { return gpu_simulation::engineOn(*device_, kernels_); }
+    const std::string& deviceName() const { return device_->info().name; }
+
+  private:
+    explicit GpuBackend(std::unique_ptr<gpu::Device> device);
+
+    std::unique_ptr<gpu::Device> device_;
+    std::shared_ptr<gpu_simulation::KernelLibrary> kernels_;
+};
+
+}  // namespace hairloom::cli

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/gpu_simulation/engine_method.h"
+
+#include "core/gpu_simulation/strand_engine.h"
+#include "core/simulation/strand_method.h"
+
+namespace hairloom::gpu_simulation {
+namespace {
+
+class GpuEngineMethod final : public StrandMethod {
+  public:
+    explicit GpuEngineMethod(StrandEngine engine) : engine_(std::move(engine)), host_(applicationHost()) {}
+
+    void reset(const SceneInput& scene, const HeadPose& pose) override {
+        keep(engine_.reset(scene.rootsAt(pose)));
+    }
+
+    void step(const SceneInput&, const HeadPose&, const runtime::FrameInput& input) override {
+        const std::uint64_t begin = host_.nanoseconds();
+        keep(engine_.step(input));
+        const auto report = engine_.report();
+        if (report) {
+            restored_ = report->restoredStrands;
+        } else {
+            keep(tl::unexpected(report.error()));
+        }
+        milliseconds_ = 1e-6 * static_cast<double>(host_.nanoseconds() - begin);
+    }
+
+    void readPositions(std::span<runtime::Float3> positions_ws) const override {
+        keep(engine_.readPositions(positions_ws));
+    }
+    double stepMilliseconds() const override { return milliseconds_; }
+    std::uint32_t restoredStrands() const override { return restored_; }
+    Status status() const override { return status_; }
+
+    runtime::Measurements measure() const override {
+        const auto measured = engine_.measure();
+        if (measured) return *measured;
+        keep(tl::unexpected(measured.error()));
+        return {};
+    }
+    std::uint64_t stateHash() const override {
+        const auto hash = engine_.stateHash();
+        if (hash) return *hash;
+        keep(tl::unexpected(hash.error()));
+        return 0;
+    }
+    std::vector<EffectReport> effects() const override {
+        std::vector<EffectReport> effects;
+        for (std::uint32_t index = 0; index < runtime::kEffectCount; ++index) {
+            const auto effect = static_cast<runtime::Effect>(index);
+            effects.push_back({runtime::effectName(effect), engine_.plan().on(effect),
+                               reasonAlone(engine_.plan().why(effect)), 0.0, engine_.effectBytes(effect)});
+        }
+        return effects;
+    }
+
+  private:
+    /// The first error stays.
+    void keep(Status status) const {
+        if (status_ && !status) status_ = std::move(status);
+    }
+
+    // Reading back is work of the device, not a change of what is seen here.
+    mutable StrandEngine engine_;
+    mutable Status status_;
+    runtime::Host host_;
+    double milliseconds_ = 0.0;
+    std::uint32_t restored_ = 0;
+};
+
+}  // namespace
+
+MethodMaker engineOn(gpu::Device& device, std::shared_ptr<KernelLibrary> kernels) {
+    return [&device, kernels](const SceneInput& scene) -> Result<std::unique_ptr<StrandMethod>> {
+        EngineOptions options;
+        // A driver that compiles for a CPU takes seconds for unrolled loops and gains nothing by them.
+        options.layout.unroll = device.info().type != gpu::DeviceType::Cpu;
+        auto engine = StrandEngine::make(device, kernels, scene.strands(), scene.groom().simulation, options);
+        if (!engine) return tl::unexpected(engine.error());
+        return std::make_unique<GpuEngineMethod>(std::move(*engine));
+    };
+}
+
+}  // namespace hairloom::gpu_simulation

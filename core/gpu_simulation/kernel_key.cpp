@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/gpu_simulation/kernel_key.h"
+
+#include <fmt/format.h>
+
+#include <cctype>
+
+#include "shaders/simulation/simulation_types.h"
+
+namespace hairloom::gpu_simulation {
+namespace {
+
+using runtime::Effect;
+using runtime::Integrator;
+using runtime::StageId;
+
+/// "stageAngularCheap(); "
+std::string callOf(StageId stage) {
+    std::string name = runtime::stageName(stage);
+    name.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(name.front())));
+    return "stage" + name + "(); ";
+}
+
+std::uint32_t evaluationOf(Integrator integrator) {
+    if (integrator == Integrator::verlet) return 0;
+    return integrator == Integrator::rk4 ? 2 : 1;
+}
+
+}  // namespace
+
+std::string KernelKey::defines() const {
+    const auto flag = [](bool on) { return on ? 1 : 0; };
+    return fmt::format(
+        "#define HAIR_POINTS {}\n#define HAIR_EXACT {}\n#define HAIR_UNROLL {}\n#define HAIR_STORAGE {}\n"
+        "#define HAIR_CLAMPED {}\n#define HAIR_EVALUATION {}\n#define HAIR_BEND {}\n#define HAIR_TARGETS {}\n"
+        "#define HAIR_CURVES {}\n#define HAIR_SPHERES {}\n#define HAIR_WIND {}\n#define HAIR_SLEEP {}\n"
+        "#define HAIR_VELOCITIES {}\n#define HAIR_STAGES {}\n",
+        shape.points, flag(shape.exact), flag(shape.unrolled), static_cast<std::uint32_t>(shape.storage),
+        clampedPoints, evaluation, bend, flag(targets), flag(curves), static_cast<std::uint32_t>(spheres),
+        flag(wind), flag(sleep), flag(velocities), stages);
+}
+
+KernelKey keyFor(const runtime::EffectPlan& plan, const runtime::SimulationSettings& settings,
+                 const BatchShape& shape, std::size_t spheres, bool velocities) {
+    KernelKey key;
+    key.shape = shape;
+    key.clampedPoints = settings.clampedPoints;
+    key.sleep = settings.sleepSpeed > 0.0f;
+    key.velocities = velocities;
+    // Strands without a free point follow their roots and nothing else.
+    if (shape.points <= settings.clampedPoints) {
+        key.stages = callOf(StageId::roots);
+        return key;
+    }
+    key.evaluation = evaluationOf(settings.integrator);
+    if (plan.on(Effect::angular)) key.bend = plan.factored() ? 2 : 1;
+    key.targets = plan.on(Effect::torsion);
+    key.curves = plan.keepsCurves();
+    if (plan.on(Effect::collision)) {
+        key.spheres = spheres > HAIRLOOM_CONSTANT_SPHERES ? SphereSource::buffer : SphereSource::constants;
+    }
+    key.wind = plan.on(Effect::wind);
+    for (const StageId stage : plan.stages()) key.stages += callOf(stage);
+    return key;
+}
+
+std::string whyNoKernel(const runtime::SimulationSettings& settings) {
+    if (settings.integrator != Integrator::implicitEuler) return {};
+    return "the integrator implicitEuler runs on the CPU only";
+}
+
+}  // namespace hairloom::gpu_simulation

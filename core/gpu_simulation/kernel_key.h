@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Which permutation of the strand kernel runs a plan.
+
+#include <cstdint>
+#include <string>
+
+#include "runtime/plan.h"
+
+namespace hairloom::gpu_simulation {
+
+/// Where a strand is between the substeps of a frame (shaders/simulation/storage.hlsli).
+enum class StrandStorage : std::uint32_t { threads, groups, buffers };
+
+/// How the strands of a batch are laid out and looped over.
+struct BatchShape {
+    std::uint32_t points = 0;  ///< that a strand may have
+    bool exact = false;        ///< all have as many
+    bool unrolled = false;     ///< loops along the strand
+    StrandStorage storage = StrandStorage::threads;
+
+    friend bool operator==(const BatchShape&, const BatchShape&) = default;
+};
+
+/// Spheres that a kernel looks at.
+enum class SphereSource : std::uint32_t { none, constants, buffer };
+
+struct KernelKey {
+    BatchShape shape;
+    std::uint32_t clampedPoints = 2;
+    std::uint32_t evaluation = 0;  ///< arrays of the integrator: none, start and rate, those of RK4
+    std::uint32_t bend = 0;        ///< none, stiffness, factors
+    bool targets = false;
+    bool curves = false;
+    SphereSource spheres = SphereSource::none;
+    bool wind = false;
+    bool sleep = false;
+    bool velocities = false;  ///< are written as well as places
+    std::string stages;       ///< of a substep, as calls
+
+    /// Lines of #define; equal keys have equal ones.
+    std::string defines() const;
+
+    friend bool operator==(const KernelKey&, const KernelKey&) = default;
+};
+
+/// The kernel of a plan made from these settings. `spheres` in the frame.
+KernelKey keyFor(const runtime::EffectPlan& plan, const runtime::SimulationSettings& settings,
+                 const BatchShape& shape, std::size_t spheres, bool velocities);
+
+/// Empty, or in words why these settings have no kernels: the linear systems of backward Euler.
+std::string whyNoKernel(const runtime::SimulationSettings& settings);
+
+}  // namespace hairloom::gpu_simulation

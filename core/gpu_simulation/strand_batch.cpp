@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/gpu_simulation/strand_batch.h"
+
+#include <array>
+#include <bit>
+#include <map>
+
+#include "shaders/simulation/simulation_types.h"
+
+namespace hairloom::gpu_simulation {
+namespace {
+
+using runtime::kBlockLanes;
+
+static_assert(kBlockLanes == HAIRLOOM_GROUP_STRANDS);
+
+/// Longer strands stay in buffers: the memory of all threads together would be too much.
+constexpr std::uint32_t kMostInThreads = 64;
+constexpr std::uint32_t kMostUnrolled = 32;
+/// Of position and previous of a group, within the 32 KiB that every device has.
+constexpr std::uint32_t kMostInGroups = 32 * 1024 / (6 * sizeof(float) * kBlockLanes);
+/// More different point counts than this share batches.
+constexpr std::size_t kMostExact = 3;
+constexpr std::uint32_t kLeastShared = 4;
+
+BatchShape shapeFor(std::uint32_t points, bool exact, const LayoutOptions& options) {
+    BatchShape shape;
+    shape.points = points;
+    shape.exact = exact;
+    shape.storage = options.storage;
+    if (shape.storage == StrandStorage::groups && points > kMostInGroups)
+        shape.storage = StrandStorage::threads;
+    if (points > kMostInThreads) shape.storage = StrandStorage::buffers;
+    shape.unrolled = options.unroll && exact && points <= kMostUnrolled;
+    return shape;
+}
+
+}  // namespace
+
+std::vector<StrandBatch> makeBatches(const runtime::RestShape& shape, const LayoutOptions& options) {
+    std::map<std::uint32_t, std::vector<std::uint32_t>> blocksOf;
+    for (std::uint32_t b = 0; b < shape.blocks.size(); ++b) blocksOf[shape.blocks[b].points].push_back(b);
+    const bool exact = blocksOf.size() <= kMostExact;
+    if (!exact) {
+        std::map<std::uint32_t, std::vector<std::uint32_t>> shared;
+        for (const auto& [points, blocks] : blocksOf) {
+            auto& all = shared[std::max(std::bit_ceil(points), kLeastShared)];
+            all.insert(all.end(), blocks.begin(), blocks.end());
+        }
+        blocksOf = std::move(shared);
+    }
+    std::vector<StrandBatch> batches;
+    for (auto& [points, blocks] : blocksOf) {
+        StrandBatch batch;
+        batch.shape = shapeFor(points, exact, options);
+        batch.slots = static_cast<std::uint32_t>(blocks.size()) * kBlockLanes;
+        batch.blocks = std::move(blocks);
+        batches.push_back(std::move(batch));
+    }
+    return batches;
+}
+
+void forEachRow(const runtime::RestShape& shape, const StrandBatch& batch,
+                const std::function<void(std::size_t block, std::uint32_t point, std::size_t inBlock,
+                                         std::size_t inBatch)>& visit) {
+    for (std::size_t n = 0; n < batch.blocks.size(); ++n) {
+        const std::size_t block = batch.blocks[n];
+        for (std::uint32_t p = 0; p < shape.blocks[block].points; ++p) {
+            visit(block, p, std::size_t{p} * kBlockLanes, std::size_t{p} * batch.slots + n * kBlockLanes);
+        }
+    }
+}
+
+std::vector<float> planesOfBatch(const runtime::RestShape& shape, const StrandBatch& batch,
+                                 const runtime::Floats& planes, std::size_t count) {
+    const std::size_t plane = std::size_t{batch.shape.points} * batch.slots;
+    std::vector<float> values(plane * count, 0.0f);
+    forEachRow(shape, batch, [&](std::size_t block, std::uint32_t, std::size_t inBlock, std::size_t inBatch) {
+        const float* const first = planes.data() + shape.blocks[block].firstPlane * count;
+        for (std::size_t k = 0; k < count; ++k) {
+            const float* const row = first + k * planeSize(shape.blocks[block]) + inBlock;
+            std::copy_n(row, kBlockLanes, values.data() + k * plane + inBatch);
+        }
+    });
+    return values;
+}
+
+void planesOfBlocks(const runtime::RestShape& shape, const StrandBatch& batch, std::span<const float> values,
+                    runtime::Floats& planes, std::size_t count) {
+    const std::size_t plane = std::size_t{batch.shape.points} * batch.slots;
+    forEachRow(shape, batch, [&](std::size_t block, std::uint32_t, std::size_t inBlock, std::size_t inBatch) {
+        float* const first = planes.data() + shape.blocks[block].firstPlane * count;
+        for (std::size_t k = 0; k < count; ++k) {
+            float* const row = first + k * planeSize(shape.blocks[block]) + inBlock;
+            std::copy_n(values.data() + k * plane + inBatch, kBlockLanes, row);
+        }
+    });
+}
+
+std::vector<shaders::float4> quadsOfBatch(const runtime::RestShape& shape, const StrandBatch& batch,
+                                          const runtime::Floats& planes, std::size_t count,
+                                          std::span<const std::size_t> which) {
+    std::vector<shaders::float4> values(std::size_t{batch.shape.points} * batch.slots);
+    forEachRow(shape, batch, [&](std::size_t block, std::uint32_t, std::size_t inBlock, std::size_t inBatch) {
+        const std::size_t size = planeSize(shape.blocks[block]);
+        const float* const first = planes.data() + shape.blocks[block].firstPlane * count + inBlock;
+        for (std::size_t lane = 0; lane < kBlockLanes; ++lane) {
+            std::array<float, 4> parts{};
+            for (std::size_t k = 0; k < which.size(); ++k) parts[k] = first[which[k] * size + lane];
+            values[inBatch + lane] = {parts[0], parts[1], parts[2], parts[3]};
+        }
+    });
+    return values;
+}
+
+Status makeRestBuffers(gpu::Device& device, const runtime::RestShape& shape, StrandBatch& batch) {
+    // Rest planes: x, y, z, length, inverse length, inverse mass.
+    constexpr std::array<std::size_t, 4> kVectors{0, 1, 2, 3};
+    constexpr std::array<std::size_t, 2> kLengthAndMass{3, 5};
+    const auto rest = quadsOfBatch(shape, batch, shape.planes, runtime::kRestPlanes, kVectors);
+    const auto quads = quadsOfBatch(shape, batch, shape.planes, runtime::kRestPlanes, kLengthAndMass);
+    std::vector<std::array<float, 2>> segments;
+    segments.reserve(quads.size());
+    for (const shaders::float4& quad : quads) segments.push_back({quad.x, quad.y});
+    std::vector<std::array<std::uint32_t, 2>> counts;
+    std::vector<std::uint32_t> first;
+    for (const std::uint32_t b : batch.blocks) {
+        const runtime::Block& block = shape.blocks[b];
+        counts.push_back({block.points, block.strands});
+        for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+            first.push_back(lane < block.strands ? shape.offsets[block.strandOfLane[lane]] : ~0u);
+        }
+    }
+    Status status;
+    const auto make = [&]<class T>(gpu::BufferPtr& buffer, const char* name, const std::vector<T>& content) {
+        if (!status) return;
+        auto made = makeBuffer<T>(device, name, gpu::Usage::ShaderRead, content.size(), content);
+        if (made) {
+            buffer = std::move(*made);
+        } else {
+            status = tl::unexpected(made.error());
+        }
+    };
+    make(batch.rest, "rest shape", rest);
+    make(batch.segments, "segments", segments);
+    make(batch.blockCounts, "blocks of strands", counts);
+    make(batch.firstPoints, "first points", first);
+    return status;
+}
+
+}  // namespace hairloom::gpu_simulation

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Strands as the kernels want them: batches of alike point counts, strand-major. A slot is a strand's place
+// in its batch; 32 of them are a block of runtime::RestShape and a work group. Slots past the strands of a
+// block repeat its last.
+
+#include <functional>
+#include <vector>
+
+#include "core/gpu/device.h"
+#include "core/gpu_simulation/kernel_key.h"
+#include "runtime/state.h"
+#include "shaders/shared/types.h"
+
+namespace hairloom::gpu_simulation {
+
+struct LayoutOptions {
+    StrandStorage storage = StrandStorage::threads;
+    bool unroll = true;  ///< where all strands of a batch have as many points, up to 32
+};
+
+struct StrandBatch {
+    BatchShape shape;
+    std::vector<std::uint32_t> blocks;  ///< of the rest shape
+    std::uint32_t slots = 0;
+    // Made with the batch; names as in shaders/simulation/storage.hlsli.
+    gpu::BufferPtr rest, segments, blockCounts, firstPoints, rootsTo, state, roots;
+    // Null while what needs them is off.
+    gpu::BufferPtr bend, targets, curves, tanks, rests, scratch;
+    KernelKey key;
+    gpu::ComputePipelinePtr kernel;
+};
+
+/// Without buffers. Few point counts have a batch each; many share batches of 4, 8, … points.
+std::vector<StrandBatch> makeBatches(const runtime::RestShape& shape, const LayoutOptions& options);
+
+/// Calls visit(block, point, index of lane 0 in a plane of that block, index of its slot in a plane of the
+/// batch) for each row of kBlockLanes strands.
+void forEachRow(const runtime::RestShape& shape, const StrandBatch& batch,
+                const std::function<void(std::size_t block, std::uint32_t point, std::size_t inBlock,
+                                         std::size_t inBatch)>& visit);
+
+/// Planes of blocks as those of a batch, plane after plane. `planes` holds `count` of them per block.
+std::vector<float> planesOfBatch(const runtime::RestShape& shape, const StrandBatch& batch,
+                                 const runtime::Floats& planes, std::size_t count);
+/// The reverse.
+void planesOfBlocks(const runtime::RestShape& shape, const StrandBatch& batch, std::span<const float> values,
+                    runtime::Floats& planes, std::size_t count);
+/// Up to four of the planes of each block, as the components of a float4 for each point.
+std::vector<shaders::float4> quadsOfBatch(const runtime::RestShape& shape, const StrandBatch& batch,
+                                          const runtime::Floats& planes, std::size_t count,
+                                          std::span<const std::size_t> which);
+
+/// Makes the buffers that hold the rest shape.
+Status makeRestBuffers(gpu::Device& device, const runtime::RestShape& shape, StrandBatch& batch);
+
+/// A structured buffer of T. `content` may be empty, then it has `count` elements of no known value.
+template <class T>
+Result<gpu::BufferPtr> makeBuffer(gpu::Device& device, const char* name, gpu::Usage usage, std::size_t count,
+                                  std::span<const T> content) {
+    gpu::BufferDesc desc;
+    desc.name = name;
+    desc.size = count * sizeof(T);
+    desc.usage = usage;
+    desc.elementBytes = sizeof(T);
+    return device.createBuffer(desc, std::as_bytes(content));
+}
+
+}  // namespace hairloom::gpu_simulation

@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/gpu_simulation/strand_engine.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "core/gpu_simulation/strand_engine_impl.h"
+#include "runtime/checks.h"
+
+namespace hairloom::gpu_simulation {
+namespace {
+
+using gpu::Usage;
+using runtime::Effect;
+using runtime::Float3;
+
+constexpr std::size_t kReportWords = 4;
+constexpr std::size_t kMostUnderWay = 2;
+/// Floats a point that a kernel of StrandStorage::buffers works in: see storage.hlsli.
+constexpr std::array<std::size_t, 3> kScratchPlanes{5, 11, 20};
+constexpr Usage kReadWrite = Usage::ShaderRead | Usage::UnorderedAccess;
+
+}  // namespace
+
+Result<StrandEngine> StrandEngine::make(gpu::Device& device, std::shared_ptr<KernelLibrary> kernels,
+                                        const runtime::StrandsView& strands,
+                                        const runtime::SimulationSettings& settings,
+                                        const EngineOptions& options) {
+    if (const std::string why = runtime::whyRefused(settings); !why.empty()) return fail(why);
+    if (const std::string why = runtime::whyRefused(strands); !why.empty()) return fail(why);
+    if (const std::string why = whyNoKernel(settings); !why.empty()) return fail(why);
+    if (strands.offsets.size() < 2) return fail("there are no strands", "expected strands to simulate");
+    auto impl = std::make_unique<Impl>(device, std::move(kernels), options);
+    impl->shape = runtime::makeRestShape(strands);
+    impl->wanted = settings;
+    impl->run.settings = settings;
+    impl->batches = makeBatches(*impl->shape, options.layout);
+    impl->roots.resize(impl->shape->restRoots.size());
+    if (auto made = impl->makeBuffers(); !made) return tl::unexpected(made.error());
+    StrandEngine engine(std::move(impl));
+    if (auto placed = engine.reset(engine.impl_->shape->restRoots); !placed)
+        return tl::unexpected(placed.error());
+    return engine;
+}
+
+StrandEngine::StrandEngine(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+StrandEngine::StrandEngine(StrandEngine&&) noexcept = default;
+StrandEngine& StrandEngine::operator=(StrandEngine&&) noexcept = default;
+StrandEngine::~StrandEngine() = default;
+
+/// Those that exist whatever the plan.
+Status StrandEngine::Impl::makeBuffers() {
+    const auto make = [&](gpu::BufferPtr& buffer, const char* name, std::size_t count, std::size_t bytes) {
+        gpu::BufferDesc desc;
+        desc.name = name;
+        desc.size = count * bytes;
+        desc.usage = kReadWrite;
+        desc.elementBytes = static_cast<std::uint32_t>(bytes);
+        auto made = device.createBuffer(desc);
+        if (!made) return Status(tl::unexpected(made.error()));
+        buffer = std::move(*made);
+        return Status();
+    };
+    const std::size_t points = shape->offsets.back();
+    if (auto made = make(reportBuffer, "report", kReportWords, 4); !made) return made;
+    if (auto made = make(places, "places", points, sizeof(shaders::float4)); !made) return made;
+    if (options.velocities) {
+        if (auto made = make(velocities, "velocities", points, sizeof(shaders::float4)); !made) return made;
+    }
+    for (StrandBatch& batch : batches) {
+        if (auto made = makeRestBuffers(device, *shape, batch); !made) return made;
+        const std::size_t plane = std::size_t{batch.shape.points} * batch.slots;
+        if (auto made = make(batch.state, "state", plane * runtime::kStatePlanes, 4); !made) return made;
+        if (auto made = make(batch.roots, "roots", std::size_t{batch.slots} * runtime::kRootRows, 4); !made)
+            return made;
+        if (auto made = make(batch.rootsTo, "roots of the frame", std::size_t{batch.slots} * 2,
+                             sizeof(shaders::float4));
+            !made) {
+            return made;
+        }
+    }
+    return {};
+}
+
+/// The buffers that the plan needs, and no others.
+Status StrandEngine::Impl::allocate() {
+    Status status;
+    /// Of `count` floats, or none: the first `voids` of them kNoCurve, the others 0.
+    const auto have = [&](gpu::BufferPtr& buffer, const char* name, std::size_t count, std::size_t bytes,
+                          std::size_t voids = 0) {
+        if (!status || (buffer == nullptr ? count == 0 : buffer->desc().size == count * 4)) return false;
+        buffer = nullptr;
+        if (count == 0) return false;
+        std::vector<float> content(count);
+        std::fill_n(content.begin(), voids, runtime::kNoCurve);
+        gpu::BufferDesc desc;
+        desc.name = name;
+        desc.size = count * 4;
+        desc.usage = kReadWrite;
+        desc.elementBytes = static_cast<std::uint32_t>(bytes);
+        auto made = device.createBuffer(desc, std::as_bytes(std::span(content)));
+        if (!made) {
+            status = tl::unexpected(made.error());
+            return false;
+        }
+        buffer = std::move(*made);
+        return true;
+    };
+    bool sleeps = false;
+    for (StrandBatch& batch : batches) {
+        const KernelKey& key = batch.key;
+        const std::size_t plane = std::size_t{batch.shape.points} * batch.slots;
+        constexpr std::array<std::size_t, 3> kBendFloats{0, 1, 4};
+        const std::size_t bendFloats = kBendFloats[key.bend];
+        bool fresh = have(batch.bend, "angular springs", plane * bendFloats, bendFloats * 4);
+        fresh |= have(batch.targets, "rest directions", key.targets ? plane * 4 : 0, 16);
+        if (fresh) bendSubstep = 0.0f;
+        have(batch.curves, "curves", key.curves ? plane * 3 : 0, 4);
+        have(batch.tanks, "tanks", key.curves ? std::size_t{batch.slots} * 2 : 0, 4, batch.slots);
+        have(batch.rests, "rests", key.sleep ? batch.blocks.size() * 2 : 0, 4);
+        const bool scratch = batch.shape.storage == StrandStorage::buffers && !key.stages.empty();
+        have(batch.scratch, "scratch", scratch ? plane * kScratchPlanes[key.evaluation] : 0, 4);
+        sleeps = sleeps || key.sleep;
+    }
+    if (!sleeps) waking = nullptr;
+    const bool many = std::ranges::any_of(
+        batches, [](const StrandBatch& batch) { return batch.key.spheres == SphereSource::buffer; });
+    if (!many) spheres = nullptr;
+    return status;
+}
+
+StrandEngine::Impl::Run StrandEngine::Impl::runFor(const runtime::SimulationSettings& settings,
+                                                   const runtime::FrameInput& input, Float3 low,
+                                                   Float3 high) const {
+    Run next{settings, {runtime::makeWind(settings), run.wind.given}, {}};
+    runtime::takeWind(settings, input, next.wind);
+    runtime::FrameOutlook outlook;
+    outlook.strandCount = static_cast<std::uint32_t>(shape->restRoots.size());
+    outlook.longestPointCount = shape->longestPointCount;
+    outlook.longestStrand = shape->longestStrand;
+    outlook.straight = shape->straight;
+    outlook.rootsMin_ws = low;
+    outlook.rootsMax_ws = high;
+    outlook.rootMotion = rootMotion;
+    outlook.fastest = std::numeric_limits<float>::infinity();
+    next.plan =
+        runtime::planFrame(settings, outlook, next.wind, frameSpheres.usable, frameSpheres.motion, input.dt);
+    return next;
+}
+
+/// Gives each batch the kernel of the run; false, and no change, while one is being made.
+Result<bool> StrandEngine::Impl::kernelsFor(const Run& next, bool wait) {
+    std::vector<std::pair<KernelKey, gpu::ComputePipelinePtr>> found;
+    bool ready = true;
+    for (const StrandBatch& batch : batches) {
+        KernelKey key =
+            keyFor(next.plan, next.settings, batch.shape, frameSpheres.usable.size(), options.velocities);
+        if (batch.kernel != nullptr && key == batch.key) {
+            found.emplace_back(std::move(key), batch.kernel);
+            continue;
+        }
+        auto kernel = wait ? kernels->get(key) : kernels->poll(key);
+        if (!kernel) return tl::unexpected(kernel.error());
+        ready = ready && *kernel != nullptr;
+        found.emplace_back(std::move(key), std::move(*kernel));
+    }
+    if (!ready) return false;
+    for (std::size_t n = 0; n < batches.size(); ++n)
+        std::tie(batches[n].key, batches[n].kernel) = std::move(found[n]);
+    return true;
+}
+
+Status StrandEngine::Impl::adopt(const Run& next) {
+    if (run.settings != next.settings) {
+        bendSubstep = 0.0f;
+        curvesVoid = wakeAll = true;
+    }
+    run = next;
+    adopted = true;
+    return allocate();
+}
+
+/// Decides by which plan the frame runs.
+Status StrandEngine::Impl::choose(const runtime::FrameInput& input, Float3 low, Float3 high) {
+    const Run next = runFor(wanted, input, low, high);
+    const bool wait = options.waitForKernels || !adopted;
+    auto ready = kernelsFor(next, wait);
+    if (!ready) return tl::unexpected(ready.error());
+    switching = !*ready;
+    if (*ready) return adopt(next);
+    // The last plan goes on, in this frame's wind.
+    runtime::takeWind(run.settings, input, run.wind);
+    return {};
+}
+
+Status StrandEngine::setSettings(const runtime::SimulationSettings& settings) {
+    if (const std::string why = runtime::whyRefused(settings); !why.empty()) return fail(why);
+    if (const std::string why = whyNoKernel(settings); !why.empty()) return fail(why);
+    impl_->wanted = settings;
+    return {};
+}
+
+Status StrandEngine::step(const runtime::FrameInput& input) {
+    auto list = impl_->device.createCommandList();
+    if (!list) return tl::unexpected(list.error());
+    if (auto recorded = impl_->record(**list, input); !recorded) return recorded;
+    auto submission = impl_->device.submit(std::move(*list));
+    if (!submission) return tl::unexpected(submission.error());
+    impl_->underWay.push_back(std::move(*submission));
+    if (impl_->underWay.size() <= kMostUnderWay) return {};
+    const gpu::SubmissionPtr oldest = std::move(impl_->underWay.front());
+    impl_->underWay.pop_front();
+    return oldest->wait();
+}
+
+Status StrandEngine::record(gpu::CommandList& list, const runtime::FrameInput& input) {
+    return impl_->record(list, input);
+}
+
+const runtime::SimulationSettings& StrandEngine::settings() const {
+    return impl_->adopted ? impl_->run.settings : impl_->wanted;
+}
+std::uint32_t StrandEngine::strandCount() const {
+    return static_cast<std::uint32_t>(impl_->shape->restRoots.size());
+}
+std::uint32_t StrandEngine::pointCount() const {
+    return impl_->shape->offsets.back();
+}
+gpu::BufferPtr StrandEngine::positions_ws() const {
+    return impl_->places;
+}
+gpu::BufferPtr StrandEngine::velocities_ws() const {
+    return impl_->velocities;
+}
+const runtime::EffectPlan& StrandEngine::plan() const {
+    return impl_->run.plan;
+}
+bool StrandEngine::isSwitching() const {
+    return impl_->switching;
+}
+
+std::size_t StrandEngine::effectBytes(Effect effect) const {
+    std::size_t bytes = 0;
+    const auto add = [&](const gpu::BufferPtr& buffer) {
+        if (buffer != nullptr) bytes += static_cast<std::size_t>(buffer->desc().size);
+    };
+    for (const StrandBatch& batch : impl_->batches) {
+        if (effect == Effect::angular) add(batch.bend);
+        if (effect == Effect::torsion) {
+            add(batch.targets);
+            add(batch.curves);
+            add(batch.tanks);
+        }
+        if (effect == Effect::sleep) add(batch.rests);
+        if (effect == Effect::collision && batch.key.spheres == SphereSource::constants && bytes == 0)
+            bytes = sizeof(shaders::SphereConstants) * HAIRLOOM_CONSTANT_SPHERES;
+    }
+    if (effect == Effect::sleep) add(impl_->waking);
+    if (effect == Effect::collision) add(impl_->spheres);
+    if (effect == Effect::wind && impl_->run.plan.on(effect)) bytes = sizeof(runtime::Wind);
+    return bytes;
+}
+
+std::size_t StrandEngine::frameBytes() const {
+    std::size_t bytes = 0;
+    for (const StrandBatch& batch : impl_->batches) {
+        for (const auto& changing : {batch.state, batch.roots, batch.curves, batch.tanks}) {
+            if (changing != nullptr) bytes += 2 * static_cast<std::size_t>(changing->desc().size);
+        }
+        bytes += static_cast<std::size_t>(batch.rootsTo->desc().size);
+    }
+    return bytes + static_cast<std::size_t>(impl_->places->desc().size);
+}
+
+}  // namespace hairloom::gpu_simulation

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The strand engine (docs/engine.md) on a GPU: what runtime::Engine does, in one dispatch per frame and batch
+// of strands. docs/gpu-simulation.md says how. Particles stay on the device; what is read back is read when
+// asked.
+//
+// Differs from runtime::Engine: the results agree within rounding, not in bits; the swept test runs wherever
+// points collide and leaves slow ones out itself, so that the plan needs nothing from the device; sleeping
+// strands are known to the device only. Does not do: backward Euler.
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/gpu_simulation/kernel_library.h"
+#include "core/gpu_simulation/strand_batch.h"
+#include "runtime/frame_setup.h"
+#include "runtime/state_read.h"
+
+namespace hairloom::gpu_simulation {
+
+struct EngineOptions {
+    LayoutOptions layout;
+    bool velocities = false;  ///< written each frame beside the places
+    /// While a plan's kernel is being made, the frame waits for it. Else the last plan goes on until it is
+    /// ready, with the settings that it was made from.
+    bool waitForKernels = true;
+};
+
+/// What the last frame took and met.
+struct FrameReport {
+    double milliseconds = 0.0;  ///< on the device, of the dispatches; 0 without timestamps
+    std::uint32_t restoredStrands = 0;
+    std::uint32_t asleep = 0;  ///< strands
+    float fastest = 0.0f;      ///< m/s
+};
+
+class StrandEngine {
+  public:
+    /// Strands at rest. `device` outlives the engine. Errors: those of runtime::Engine::make, settings
+    /// without kernels, what the device says.
+    static Result<StrandEngine> make(gpu::Device& device, std::shared_ptr<KernelLibrary> kernels,
+                                     const runtime::StrandsView& strands,
+                                     const runtime::SimulationSettings& settings,
+                                     const EngineOptions& options);
+    StrandEngine(StrandEngine&&) noexcept;
+    StrandEngine& operator=(StrandEngine&&) noexcept;
+    ~StrandEngine();
+
+    /// Places all strands in their rest shape on these roots, without speed.
+    Status reset(std::span<const runtime::RootFrame> roots_ws);
+    /// Takes other settings from the next frame on, or from when their kernel is ready.
+    Status setSettings(const runtime::SimulationSettings& settings);
+    /// Those of the last frame.
+    const runtime::SimulationSettings& settings() const;
+
+    /// Advances to the end of the frame. A dt that is not above 0 changes nothing. Returns before the device
+    /// has done it; waits where more than two frames are under way.
+    Status step(const runtime::FrameInput& input);
+    /// Records the frame into the caller's list, outside a pass; the list has to be submitted before anything
+    /// else is asked of the engine.
+    Status record(gpu::CommandList& list, const runtime::FrameInput& input);
+
+    std::uint32_t strandCount() const;
+    std::uint32_t pointCount() const;
+    /// After the last recorded frame: float4 per point, strand after strand in the order of make(), metres,
+    /// world, w = 1.
+    gpu::BufferPtr positions_ws() const;
+    /// Likewise, m/s; null unless asked for.
+    gpu::BufferPtr velocities_ws() const;
+
+    /// The plan that the last frame ran by.
+    const runtime::EffectPlan& plan() const;
+    /// A plan waits for its kernel.
+    bool isSwitching() const;
+    /// Bytes of buffers that exist because of this effect.
+    std::size_t effectBytes(runtime::Effect effect) const;
+    /// Bytes of particles, roots and curves that a substep reads or writes, of all strands, where they are
+    /// not kept in threads: each frame's is shared by its substeps.
+    std::size_t frameBytes() const;
+
+    // These wait for the device.
+    Result<FrameReport> report();
+    /// All of it, in the form of the engine on the CPU.
+    Result<runtime::State> readState();
+    Status writeState(const runtime::State& state);
+    Result<runtime::Measurements> measure();
+    Status readPositions(std::span<runtime::Float3> positions_ws);
+    Status readVelocities(std::span<runtime::Float3> velocities_ws);
+    Result<std::uint64_t> stateHash();
+
+  private:
+    struct Impl;
+    explicit StrandEngine(std::unique_ptr<Impl> impl);
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace hairloom::gpu_simulation

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One frame: what it brings, what is sent to the device, what runs there.
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+
+#include "core/base/parallel.h"
+#include "core/gpu_simulation/strand_engine_impl.h"
+#include "runtime/checks.h"
+
+namespace hairloom::gpu_simulation {
+namespace {
+
+using gpu::Binding;
+using runtime::Effect;
+using runtime::Float3;
+using runtime::RootFrame;
+
+constexpr std::size_t kBlocksPerJob = 8;
+
+template <class T>
+std::span<const std::byte> bytesOfVector(const std::vector<T>& values) {
+    return std::as_bytes(std::span(values));
+}
+
+shaders::float4 quad(Float3 v, float w) {
+    return {v.x, v.y, v.z, w};
+}
+
+}  // namespace
+
+/// Takes the roots that the frame ends on, their box and how far they go; which have moved. What is no root
+/// stays where it was.
+std::vector<bool> StrandEngine::Impl::takeRoots(const runtime::FrameInput& input) {
+    assert(input.roots_ws.size() == roots.size());
+    std::vector<bool> moved(roots.size(), false);
+    Float3 low{1e30f, 1e30f, 1e30f}, high{-1e30f, -1e30f, -1e30f};
+    rootMotion = 0.0f;
+    for (std::size_t s = 0; s < roots.size(); ++s) {
+        RootFrame root = input.roots_ws[s];
+        if (!runtime::usableWithin(root, runtime::kFarthest)) continue;
+        const Float3 p = root.position;
+        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+        if (p == roots[s].position && root.rotation == roots[s].rotation) continue;
+        const float way = length(p - roots[s].position);
+        if (way <= wanted.teleportDistance) rootMotion = std::max(rootMotion, way);
+        roots[s] = root;
+        moved[s] = true;
+    }
+    rootsMin_ws = low;
+    rootsMax_ws = high;
+    return moved;
+}
+
+void StrandEngine::Impl::uploadRoots(gpu::CommandList& list) {
+    for (const StrandBatch& batch : batches) {
+        std::vector<shaders::float4> rows(std::size_t{batch.slots} * 2);
+        for (std::size_t slot = 0; slot < batch.slots; ++slot) {
+            const runtime::Block& block = shape->blocks[batch.blocks[slot / runtime::kBlockLanes]];
+            const RootFrame& root = roots[block.strandOfLane[slot % runtime::kBlockLanes]];
+            rows[2 * slot] = quad(root.position, 0.0f);
+            rows[2 * slot + 1] = {root.rotation.x, root.rotation.y, root.rotation.z, root.rotation.w};
+        }
+        list.updateBuffer(batch.rootsTo, 0, bytesOfVector(rows));
+    }
+}
+
+std::vector<shaders::SphereConstants> StrandEngine::Impl::sphereConstants() const {
+    std::vector<shaders::SphereConstants> constants;
+    constants.reserve(movingSpheres.size());
+    for (const runtime::MovingSphere& sphere : movingSpheres)
+        constants.push_back({quad(sphere.from_ws, sphere.radius), quad(sphere.step, 0.0f)});
+    return constants;
+}
+
+/// Where kernels read them from buffers.
+void StrandEngine::Impl::uploadSpheres(gpu::CommandList& list, const runtime::SubstepContext&) {
+    const auto upload = [&]<class T>(gpu::BufferPtr& buffer, const char* name,
+                                     const std::vector<T>& content) {
+        const std::size_t count = std::max<std::size_t>(content.size(), 1);
+        if (buffer == nullptr || buffer->desc().size < count * sizeof(T)) {
+            auto made = makeBuffer<T>(device, name, gpu::Usage::ShaderRead, 2 * count, {});
+            // An engine without the buffer names it when it binds it.
+            buffer = made ? std::move(*made) : nullptr;
+        }
+        if (buffer != nullptr && !content.empty()) list.updateBuffer(buffer, 0, bytesOfVector(content));
+    };
+    bool sleeps = false, many = false;
+    for (const StrandBatch& batch : batches) {
+        sleeps = sleeps || batch.key.sleep;
+        many = many || batch.key.spheres == SphereSource::buffer;
+    }
+    if (many) upload(spheres, "spheres", sphereConstants());
+    if (!sleeps) return;
+    std::vector<shaders::float4> reaches;
+    for (const runtime::Sphere& sphere : frameSpheres.waking)
+        reaches.push_back(quad(sphere.center_ws, sphere.radius));
+    upload(waking, "waking spheres", reaches);
+}
+
+/// The arrays of angular springs for substeps of h seconds.
+void StrandEngine::Impl::uploadBend(gpu::CommandList& list, float h) {
+    runtime::Bend bend;
+    bend.factored = run.plan.factored();
+    bend.targets = run.plan.on(Effect::torsion);
+    bend.planes = runtime::Floats(shape->planeFloats * bend.planeCount(), 0.0f);
+    parallelFor(shape->blocks.size(), kBlocksPerJob, [&](std::size_t first, std::size_t end) {
+        for (std::size_t b = first; b < end; ++b) runtime::fillBend(*shape, run.settings, h, b, bend);
+    });
+    const std::size_t planes = bend.planeCount();
+    for (const StrandBatch& batch : batches) {
+        if (batch.key.bend == 1) {
+            std::vector<float> all = planesOfBatch(*shape, batch, bend.planes, planes);
+            all.resize(std::size_t{batch.shape.points} * batch.slots);
+            list.updateBuffer(batch.bend, 0, bytesOfVector(all));
+        } else if (batch.key.bend == 2) {
+            // Planes are stiffness, inverse diagonal, lower1, lower2; the kernel has the stiffness last.
+            constexpr std::array<std::size_t, 4> kFactors{1, 2, 3, 0};
+            list.updateBuffer(batch.bend, 0,
+                              bytesOfVector(quadsOfBatch(*shape, batch, bend.planes, planes, kFactors)));
+        }
+        if (!batch.key.targets) continue;
+        const std::array<std::size_t, 3> targets{planes - 3, planes - 2, planes - 1};
+        list.updateBuffer(batch.targets, 0,
+                          bytesOfVector(quadsOfBatch(*shape, batch, bend.planes, planes, targets)));
+    }
+}
+
+/// What other settings do to the state: kept curves are void, and nothing sleeps.
+void StrandEngine::Impl::uploadChanges(gpu::CommandList& list) {
+    if (!curvesVoid) return;
+    for (const StrandBatch& batch : batches) {
+        if (batch.tanks != nullptr) {
+            const std::vector<float> none(batch.slots, runtime::kNoCurve);
+            list.updateBuffer(batch.tanks, 0, bytesOfVector(none));
+        }
+        if (batch.rests != nullptr) {
+            const std::vector<float> awake(batch.blocks.size() * 2, 0.0f);
+            list.updateBuffer(batch.rests, 0, bytesOfVector(awake));
+        }
+    }
+    curvesVoid = false;
+}
+
+shaders::SimulationConstants StrandEngine::Impl::constants(const runtime::SubstepContext& context,
+                                                           const runtime::FrameInput& input,
+                                                           const StrandBatch& batch) const {
+    const runtime::SimulationSettings& s = run.settings;
+    shaders::SimulationConstants c;
+    c.slots = batch.slots;
+    c.substeps = context.count;
+    c.sphereCount = static_cast<std::uint32_t>(movingSpheres.size());
+    if (batch.key.spheres == SphereSource::constants)
+        c.sphereCount = std::min<std::uint32_t>(c.sphereCount, HAIRLOOM_CONSTANT_SPHERES);
+    c.lengthIterations = context.lengthIterations;
+    c.wakingCount = static_cast<std::uint32_t>(frameSpheres.waking.size());
+    const bool windy = length(run.wind.wind.mean) > 0.0f && s.airDrag > 0.0f;
+    c.wakeAll = windy || wakeAll ? 1 : 0;
+    c.h = context.h;
+    c.dt = input.dt;
+    c.rescale = substep > 0.0f ? context.h / substep : 1.0f;
+    c.velocityShare = context.velocityShare;
+    c.dragShare = context.dragShare;
+    c.springStep = context.springStep;
+    c.penaltyStep = context.penaltyStep;
+    c.bendRate = context.bendRate;
+    c.maximalExtension = context.maximalExtension;
+    c.pearlRoot = context.pearlRoot;
+    c.pearlTip = context.pearlTip;
+    c.friction = context.friction;
+    c.restitution = context.restitution;
+    c.teleportDistance = s.teleportDistance;
+    const float slow = s.sleepSpeed * context.h;
+    c.slowSquared = slow * slow;
+    c.sleepDelay = s.sleepDelay;
+    c.slowSweep = runtime::slowestSwept(context);
+    c.gravityStep = quad(context.gravityStep, 0.0f);
+    const runtime::Wind& wind = run.wind.wind;
+    c.windKind = static_cast<std::uint32_t>(wind.kind);
+    c.wind = quad(wind.mean, wind.strength);
+    const double time = std::isfinite(input.time) ? input.time : 0.0;
+    const auto from = runtime::windPhases(wind, time - static_cast<double>(input.dt));
+    const auto to = runtime::windPhases(wind, time);
+    static_assert(runtime::kWindModes == HAIRLOOM_WIND_MODES);
+    for (std::size_t m = 0; m < runtime::kWindModes; ++m) {
+        c.windAmplitudes[m] = quad(wind.modes[m].amplitude, from[m]);
+        c.windWaves[m] = quad(wind.modes[m].waveVector, to[m]);
+    }
+    return c;
+}
+
+void StrandEngine::Impl::dispatch(gpu::CommandList& list, const StrandBatch& batch,
+                                  const shaders::SimulationConstants& constants) const {
+    list.setPipeline(batch.kernel);
+    std::vector<Binding> bindings;
+    const auto read = [&](std::uint32_t slot, const gpu::BufferPtr& buffer) {
+        if (buffer != nullptr) bindings.push_back(Binding::read(slot, buffer));
+    };
+    const auto write = [&](std::uint32_t slot, const gpu::BufferPtr& buffer) {
+        if (buffer != nullptr) bindings.push_back(Binding::write(slot, buffer));
+    };
+    read(0, batch.rest);
+    read(1, batch.segments);
+    read(2, batch.bend);
+    read(3, batch.targets);
+    read(4, batch.blockCounts);
+    read(5, batch.firstPoints);
+    read(6, batch.rootsTo);
+    read(7, spheres);
+    read(8, waking);
+    write(0, batch.state);
+    write(1, batch.roots);
+    write(2, batch.rests);
+    write(3, reportBuffer);
+    write(4, places);
+    write(5, batch.curves);
+    write(6, batch.tanks);
+    write(7, batch.scratch);
+    write(8, velocities);
+    list.bind(bindings);
+    list.setConstants(0, gpu::bytesOf(constants));
+    if (batch.key.spheres == SphereSource::constants) {
+        std::vector<shaders::SphereConstants> all = sphereConstants();
+        all.resize(HAIRLOOM_CONSTANT_SPHERES);
+        list.setConstants(1, bytesOfVector(all));
+    }
+    list.dispatch(static_cast<std::uint32_t>(batch.blocks.size()));
+}
+
+Status StrandEngine::Impl::record(gpu::CommandList& list, const runtime::FrameInput& input) {
+    if (!(input.dt > 0.0f) || !std::isfinite(input.dt)) return {};
+    const Float3 lowBefore = rootsMin_ws, highBefore = rootsMax_ws;
+    const std::vector<bool> moved = takeRoots(input);
+    runtime::takeSpheres(wanted, shape->longestStrand, spheresBefore, input.spheres, frameSpheres);
+    const Float3 low{std::min(rootsMin_ws.x, lowBefore.x), std::min(rootsMin_ws.y, lowBefore.y),
+                     std::min(rootsMin_ws.z, lowBefore.z)};
+    const Float3 high{std::max(rootsMax_ws.x, highBefore.x), std::max(rootsMax_ws.y, highBefore.y),
+                      std::max(rootsMax_ws.z, highBefore.z)};
+    if (auto chosen = choose(input, low, high); !chosen) return chosen;
+    movingSpheres.clear();
+    if (run.plan.on(Effect::collision)) moveSpheres(frameSpheres, run.settings.substeps, movingSpheres);
+    runtime::SubstepContext context = runtime::substepContext(run.settings, run.plan, input.dt);
+    context.spheres = movingSpheres;
+
+    constexpr std::array<std::uint32_t, 4> kNothing{};
+    list.updateBuffer(reportBuffer, 0, std::as_bytes(std::span(kNothing)));
+    // Roots that rest are there already.
+    if (substep == 0.0f || std::ranges::find(moved, true) != moved.end()) uploadRoots(list);
+    uploadChanges(list);
+    uploadSpheres(list, context);
+    if (run.plan.on(Effect::angular) && bendSubstep != context.h) {
+        uploadBend(list, context.h);
+        bendSubstep = context.h;
+    }
+    gpu::PassDesc pass;
+    pass.name = "strands";
+    list.beginPass(pass);
+    for (const StrandBatch& batch : batches) dispatch(list, batch, constants(context, input, batch));
+    list.endPass();
+    spheresBefore = frameSpheres.usable;
+    substep = context.h;
+    wakeAll = false;
+    return {};
+}
+
+}  // namespace hairloom::gpu_simulation

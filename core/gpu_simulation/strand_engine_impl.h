@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What the engine's own sources share; not for callers.
+
+#include <deque>
+
+#include "core/gpu_simulation/strand_engine.h"
+#include "shaders/simulation/simulation_types.h"
+
+namespace hairloom::gpu_simulation {
+
+struct StrandEngine::Impl {
+    /// What a frame is to run by.
+    struct Run {
+        runtime::SimulationSettings settings;
+        runtime::FrameWind wind;
+        runtime::EffectPlan plan;
+    };
+
+    gpu::Device& device;
+    std::shared_ptr<KernelLibrary> kernels;
+    EngineOptions options;
+    std::shared_ptr<const runtime::RestShape> shape;
+    std::vector<StrandBatch> batches;
+    gpu::BufferPtr reportBuffer, places, velocities;
+    gpu::BufferPtr waking, spheres;  // null while sleep, or many spheres, are off
+
+    runtime::SimulationSettings wanted;
+    Run run;               ///< of the last frame
+    bool adopted = false;  ///< `run` has kernels and buffers
+    bool switching = false;
+
+    // Of the scene.
+    std::vector<runtime::RootFrame> roots;  // one per strand, sound, at the end of the last frame
+    runtime::Float3 rootsMin_ws, rootsMax_ws;
+    float rootMotion = 0.0f;
+    runtime::FrameSpheres frameSpheres;
+    std::vector<runtime::Sphere> spheresBefore;
+    std::vector<runtime::MovingSphere> movingSpheres;
+    float substep = 0.0f;      ///< seconds of the last one; 0 before the first
+    float bendSubstep = 0.0f;  ///< that the springs' buffers are for; 0: none
+    bool curvesVoid = false;   ///< the kept curves fit other settings
+    bool wakeAll = false;
+
+    std::deque<gpu::SubmissionPtr> underWay;
+
+    Impl(gpu::Device& d, std::shared_ptr<KernelLibrary> k, EngineOptions o)
+        : device(d), kernels(std::move(k)), options(o) {}
+
+    // strand_engine.cpp
+    Status makeBuffers();
+    Status allocate();
+    Status adopt(const Run& next);
+    Status choose(const runtime::FrameInput& input, runtime::Float3 low, runtime::Float3 high);
+    Run runFor(const runtime::SimulationSettings& settings, const runtime::FrameInput& input,
+               runtime::Float3 low, runtime::Float3 high) const;
+    Result<bool> kernelsFor(const Run& next, bool wait);
+    // strand_engine_frame.cpp
+    Status record(gpu::CommandList& list, const runtime::FrameInput& input);
+    std::vector<bool> takeRoots(const runtime::FrameInput& input);
+    void uploadRoots(gpu::CommandList& list);
+    void uploadSpheres(gpu::CommandList& list, const runtime::SubstepContext& context);
+    void uploadBend(gpu::CommandList& list, float h);
+    void uploadChanges(gpu::CommandList& list);
+    shaders::SimulationConstants constants(const runtime::SubstepContext& context,
+                                           const runtime::FrameInput& input, const StrandBatch& batch) const;
+    void dispatch(gpu::CommandList& list, const StrandBatch& batch,
+                  const shaders::SimulationConstants& constants) const;
+    std::vector<shaders::SphereConstants> sphereConstants() const;
+    // strand_engine_state.cpp
+    template <class T>
+    Status read(const gpu::BufferPtr& buffer, std::vector<T>& values) const {
+        values.resize(buffer->desc().size / sizeof(T));
+        return device.readBuffer(buffer, 0, std::as_writable_bytes(std::span(values)));
+    }
+    Status readBatch(const StrandBatch& batch, runtime::State& state) const;
+    Status writeBatch(gpu::CommandList& list, const StrandBatch& batch, const runtime::State& state) const;
+    Status writeState(const runtime::State& state);
+};
+
+}  // namespace hairloom::gpu_simulation

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// External forces: gravity, drag of still air, wind.
+
+void stageGravity() {
+    EACH for (uint p = FIRST_FREE; p < POINTS; ++p) setPrevious(p, previous(p) - gFrame.gravityStep.xyz);
+}
+
+/// Hair takes on the air's velocity at the rate airDrag · sin of its angle to the tangent (Rünz 2012, Section
+/// 3.3). `atRoot` and `atTip` are the air's way in one substep.
+void takeAir(float3 atRoot, float3 atTip) {
+    float3 parent = position(FIRST_FREE - 1);
+    EACH for (uint p = FIRST_FREE; p < POINTS; ++p) {
+        const float3 here = position(p);
+        const float3 before = previous(p);
+        const float along = float(p) * (1.0 / float(POINTS - 1));
+        const float3 flow = before - here + atRoot + (atTip - atRoot) * along;
+        const float3 tangent = here - parent;
+        const float both = dot(flow, flow) * dot(tangent, tangent);
+        const float parallel = dot(flow, tangent);
+        const float sineSquared = max(both - parallel * parallel, 0.0) / (both + 1e-30);
+        setPrevious(p, before - flow * (gFrame.dragShare * sqrt(min(sineSquared, 1.0))));
+        parent = here;
+    }
+}
+
+void stageDrag() { takeAir(float3(0, 0, 0), float3(0, 0, 0)); }
+
+#if HAIR_WIND
+#define WIND_UNIFORM 0
+#define WIND_GUSTING 1
+static float3 gWindRoot[2], gWindTip[2];
+
+/// sin(2π · turns) to 0.1 %: a parabola, refined once by its own square.
+float sineOfTurns(float turns) {
+    const float part = turns - round(turns);
+    const float parabola = 16.0 * part * (0.5 - abs(part));
+    return 0.775 * parabola + 0.225 * parabola * abs(parabola);
+}
+
+/// Velocity of the air at one place at the start (0) or end (1) of the frame.
+float3 windAt(float3 place_ws, uint end) {
+    const float3 mean = gFrame.wind.xyz;
+    if (gFrame.windKind == WIND_UNIFORM) return mean;
+    float waves = 0.0;
+    float3 eddies = float3(0, 0, 0);
+    [loop] for (uint m = 0; m < HAIRLOOM_WIND_MODES; ++m) {
+        const float4 amplitude = gFrame.windAmplitudes[m];
+        const float4 waveVector = gFrame.windWaves[m];
+        const float wave = sineOfTurns(dot(place_ws, waveVector.xyz) + (end == 0 ? amplitude.w : waveVector.w));
+        waves += wave;
+        eddies += amplitude.xyz * wave;
+    }
+    if (gFrame.windKind != WIND_GUSTING) return mean + eddies;
+    // The sum of waves has the variance of their number / 2; a sine of it, a quarter turn for its deviation,
+    // keeps it smooth and within ±1.
+    const float strength = sineOfTurns(waves * (0.25 * sqrt(2.0 / float(HAIRLOOM_WIND_MODES))));
+    return mean * (1.0 + strength * gFrame.wind.w);
+}
+
+void sampleWind() {
+    const float3 tip = gRoot + position(POINTS - 1);
+    [unroll] for (uint end = 0; end < 2; ++end) {
+        gWindRoot[end] = windAt(gRoot, end) * gFrame.h;
+        gWindTip[end] = windAt(tip, end) * gFrame.h;
+    }
+}
+
+void stageWind() {
+    const float t = float(gSubstep + 1) / float(gFrame.substeps);
+    takeAir(gWindRoot[0] + (gWindRoot[1] - gWindRoot[0]) * t, gWindTip[0] + (gWindTip[1] - gWindTip[0]) * t);
+}
+#endif

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+// Integrators (docs/engine.md).
+
+/// Slows motion relative to the moving root. First in a substep, so that it acts on velocity alone.
+void stageDamping() {
+    const float lost = 1.0 - gFrame.velocityShare;
+    EACH for (uint p = FIRST_FREE; p < POINTS; ++p)
+        setPrevious(p, previous(p) + (position(p) - previous(p) - gRootStep) * lost);
+}
+
+/// Position Verlet (Rünz 2012, Eq. 10).
+void stageVerlet() {
+    EACH for (uint p = FIRST_FREE; p < POINTS; ++p) {
+        const float3 here = position(p);
+        const float3 from = here - gRootStep;
+        setPosition(p, from + (here - previous(p)));
+        setPrevious(p, from);
+    }
+}
+
+#if HAIR_EVALUATION >= 1
+/// The next evaluation of forces is at `place`, with the displacement `moving` for velocity.
+void aim(uint p, float3 place, float3 moving) {
+    setPosition(p, place);
+    setPrevious(p, place - moving);
+}
+
+/// What the forces have added since aim().
+float3 takeKick(uint p, float3 moving) {
+    return p < FIRST_FREE ? float3(0, 0, 0) : position(p) - previous(p) - moving;
+}
+
+/// Keeps where the substep starts, relative to the root at its end, and the displacement of the last one;
+/// that of a clamped point is its way in this substep. Forces are evaluated after the share `way` of it.
+void open(float way) {
+    EACH for (uint p = 0; p < POINTS; ++p) {
+        const float3 here = position(p);
+        const float3 before = previous(p);
+        const float3 moving = here - before;
+        const float3 from = p < FIRST_FREE ? before : here - gRootStep;
+        setStart(p, from);
+        setRate(p, moving);
+        aim(p, from + moving * way, moving);
+    }
+}
+void stageOpen() { open(0.0); }
+void stageOpenHalfway() { open(0.5); }
+
+/// Explicit Euler (Eq. 7): the way of the old velocity.
+void stageExplicitEuler() {
+    EACH for (uint p = 0; p < POINTS; ++p) {
+        const float3 moving = rate(p);
+        aim(p, start(p) + moving, moving + takeKick(p, moving));
+    }
+}
+
+/// Drift-kick-drift: the second half drift after the kick halfway.
+void stageLeapfrog() {
+    EACH for (uint p = 0; p < POINTS; ++p) {
+        const float3 moving = rate(p);
+        const float3 after = moving + takeKick(p, moving);
+        aim(p, start(p) + (moving + after) * 0.5, after);
+    }
+}
+
+/// Velocity Verlet (Eq. 12), first half kick and drift.
+void stageVerletDrift() {
+    EACH for (uint p = 0; p < POINTS; ++p) {
+        const float3 moving = rate(p);
+        const float3 half_ = moving + takeKick(p, moving) * 0.5;
+        aim(p, start(p) + half_, half_);
+    }
+}
+
+/// Velocity Verlet: forces see where the constraints have put the points and the velocity predicted for the
+/// end of the step; `start` keeps it.
+void stageVerletAim() {
+    EACH for (uint p = 0; p < POINTS; ++p) {
+        const float3 place = position(p);
+        const float3 half_ = place - previous(p);
+        const float3 predicted = half_ + half_ - rate(p);
+        setRate(p, half_);
+        setStart(p, predicted);
+        aim(p, place, predicted);
+    }
+}
+
+/// Velocity Verlet, second half kick.
+void stageVerletKick() {
+    EACH for (uint p = 0; p < POINTS; ++p)
+        aim(p, position(p), rate(p) + takeKick(p, start(p)) * 0.5);
+}
+#endif
+
+#if HAIR_EVALUATION >= 2
+/// The classical Runge-Kutta method. With A_k what the forces give at slope k, the velocities are u, u + A₁/2,
+/// u + A₂/2 and u + A₃, so the places need only sums of A.
+void stageRungeKutta1() {
+    EACH for (uint p = 0; p < POINTS; ++p) {
+        const float3 moving = rate(p);
+        const float3 added = takeKick(p, moving);
+        setKick(p, added);
+        setSum(p, added);
+        setSumRate(p, added);
+        aim(p, start(p) + moving * 0.5, moving + added * 0.5);
+    }
+}
+void stageRungeKutta2() {
+    EACH for (uint p = 0; p < POINTS; ++p) {
+        const float3 moving = rate(p), here = moving + kick(p) * 0.5;
+        const float3 added = takeKick(p, here);
+        setKick(p, added);
+        setSum(p, sum(p) + added);
+        setSumRate(p, sumRate(p) + added + added);
+        aim(p, start(p) + here * 0.5, moving + added * 0.5);
+    }
+}
+void stageRungeKutta3() {
+    EACH for (uint p = 0; p < POINTS; ++p) {
+        const float3 moving = rate(p), here = moving + kick(p) * 0.5;
+        const float3 added = takeKick(p, here);
+        setKick(p, added);
+        setSum(p, sum(p) + added);
+        setSumRate(p, sumRate(p) + added + added);
+        aim(p, start(p) + here, moving + added);
+    }
+}
+void stageRungeKutta4() {
+    EACH for (uint p = 0; p < POINTS; ++p) {
+        const float3 moving = rate(p);
+        const float3 added = takeKick(p, moving + kick(p));
+        aim(p, start(p) + moving + sum(p) * (1.0 / 6.0), moving + (sumRate(p) + added) * (1.0 / 6.0));
+    }
+}
+#endif

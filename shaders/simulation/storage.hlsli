@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+// Where a strand's numbers are. Buffers are strand-major: index = (plane · HAIR_POINTS + point) · slots + slot,
+// so that neighbouring threads read neighbouring floats. Between the substeps of a frame a strand lives
+//   HAIR_STORAGE 0: in arrays of its thread (registers where HAIR_UNROLL makes all indices constant),
+//   HAIR_STORAGE 1: position and previous in the memory of the work group, the rest as 0,
+//   HAIR_STORAGE 2: in the buffers, for strands too long for either.
+//
+// Positions are relative to the strand's root; `previous` is the position one substep ago relative to the root
+// of now, so position − previous is the displacement in the world. Forces add a·h² to it by taking it from
+// `previous`.
+
+cbuffer Frame : register(b0) { SimulationConstants gFrame; };
+
+StructuredBuffer<float4> gRest : register(t0);       // rest vector of the segment after the point, its length
+StructuredBuffer<float2> gSegments : register(t1);   // that length, the point's inverse mass
+StructuredBuffer<uint2> gBlocks : register(t4);      // points of each strand of a work group, strands
+StructuredBuffer<uint> gFirstPoints : register(t5);  // place in the caller's order
+StructuredBuffer<float4> gRootsTo : register(t6);    // position, rotation at the end of the frame
+
+RWStructuredBuffer<float> gState : register(u0);     // position x y z, previous x y z
+RWStructuredBuffer<float> gRoots : register(u1);     // position, rotation at the end of the last frame
+RWStructuredBuffer<uint> gReport : register(u3);     // see the indices below
+RWStructuredBuffer<float4> gPlaces : register(u4);   // world, in the caller's order, w 1
+
+#define REPORT_FASTEST 0   // bits of the greatest squared displacement of a substep
+#define REPORT_RESTORED 1  // strands put back to rest
+#define REPORT_ASLEEP 2    // strands
+
+#if HAIR_BEND == 1
+StructuredBuffer<float> gStiffness : register(t2);
+#elif HAIR_BEND == 2
+StructuredBuffer<float4> gFactors : register(t2);    // inverse diagonal, lower1, lower2, stiffness
+#endif
+#if HAIR_TARGETS
+StructuredBuffer<float4> gTargets : register(t3);
+#endif
+#if HAIR_CURVES
+RWStructuredBuffer<float> gCurves : register(u5);    // x y z
+RWStructuredBuffer<float> gTanks : register(u6);     // tank, greatest squared speed
+#endif
+#if HAIR_SLEEP
+RWStructuredBuffer<float> gRests : register(u2);     // per work group: seconds at rest, 1 when asleep
+#endif
+#if HAIR_VELOCITIES
+RWStructuredBuffer<float4> gVelocities : register(u8);  // m/s, in the caller's order
+#endif
+
+static uint gSlot;
+#if HAIR_EXACT
+#define POINTS HAIR_POINTS
+#else
+static uint gPointCount;
+#define POINTS gPointCount
+#endif
+#if HAIR_UNROLL
+#define EACH [unroll]
+#else
+#define EACH [loop]
+#endif
+#define FIRST_FREE HAIR_CLAMPED
+
+/// What the strand goes through in the frame.
+static float3 gRoot;        // at the start of the frame, world
+static float3 gRootStep;    // its way in one substep
+static float4 gRotationFrom;
+static float4 gRotationTo;
+static float4 gRotation;    // of now
+static float4 gTurn;        // from the rotation a substep ago to that of now
+static uint gSubstep;
+
+uint slotOf(uint plane, uint p) {
+    return (plane * HAIR_POINTS + p) * gFrame.slots + gSlot;
+}
+
+#define BUFFER_ARRAY(type, get, put, buffer, plane) \
+    float3 get(uint p) { return float3(buffer[slotOf(plane, p)], buffer[slotOf(plane + 1, p)], buffer[slotOf(plane + 2, p)]); } \
+    void put(uint p, float3 v) { buffer[slotOf(plane, p)] = v.x; buffer[slotOf(plane + 1, p)] = v.y; buffer[slotOf(plane + 2, p)] = v.z; }
+#define LOCAL_ARRAY(type, get, put, name) \
+    static type name[HAIR_POINTS]; \
+    type get(uint p) { return name[p]; } \
+    void put(uint p, type v) { name[p] = v; }
+
+BUFFER_ARRAY(float3, savedPosition, savePosition, gState, 0)
+BUFFER_ARRAY(float3, savedPrevious, savePrevious, gState, 3)
+#if HAIR_CURVES
+BUFFER_ARRAY(float3, savedCurve, saveCurve, gCurves, 0)
+#endif
+
+#if HAIR_STORAGE == 2
+#define position savedPosition
+#define setPosition savePosition
+#define previous savedPrevious
+#define setPrevious savePrevious
+#define curve savedCurve
+#define setCurve saveCurve
+RWStructuredBuffer<float> gScratch : register(u7);
+#define SCRATCH_ARRAY(get, put, name, plane) BUFFER_ARRAY(float3, get, put, gScratch, plane)
+float upper(uint p) { return gScratch[slotOf(3, p)]; }
+void setUpper(uint p, float v) { gScratch[slotOf(3, p)] = v; }
+float right(uint p) { return gScratch[slotOf(4, p)]; }
+void setRight(uint p, float v) { gScratch[slotOf(4, p)] = v; }
+#else
+#if HAIR_STORAGE == 1
+groupshared float gShared[6 * HAIR_POINTS * HAIRLOOM_GROUP_STRANDS];
+static uint gLane;
+uint sharedSlot(uint plane, uint p) { return (plane * HAIR_POINTS + p) * HAIRLOOM_GROUP_STRANDS + gLane; }
+float3 position(uint p) { return float3(gShared[sharedSlot(0, p)], gShared[sharedSlot(1, p)], gShared[sharedSlot(2, p)]); }
+void setPosition(uint p, float3 v) { gShared[sharedSlot(0, p)] = v.x; gShared[sharedSlot(1, p)] = v.y; gShared[sharedSlot(2, p)] = v.z; }
+float3 previous(uint p) { return float3(gShared[sharedSlot(3, p)], gShared[sharedSlot(4, p)], gShared[sharedSlot(5, p)]); }
+void setPrevious(uint p, float3 v) { gShared[sharedSlot(3, p)] = v.x; gShared[sharedSlot(4, p)] = v.y; gShared[sharedSlot(5, p)] = v.z; }
+#else
+LOCAL_ARRAY(float3, position, setPosition, gPositions)
+LOCAL_ARRAY(float3, previous, setPrevious, gPreviouses)
+#endif
+#if HAIR_CURVES
+LOCAL_ARRAY(float3, curve, setCurve, gCurve)
+#endif
+#define SCRATCH_ARRAY(get, put, name, plane) LOCAL_ARRAY(float3, get, put, name)
+LOCAL_ARRAY(float, upper, setUpper, gUpper)
+LOCAL_ARRAY(float, right, setRight, gRight)
+#endif
+
+/// Pulls of angular springs, and tension of segments: never both at once.
+SCRATCH_ARRAY(work, setWork, gWork, 0)
+// Of integrators that evaluate forces elsewhere than at the last place; displacements in one substep but for
+// `start`, a place.
+#if HAIR_EVALUATION >= 1
+SCRATCH_ARRAY(start, setStart, gStarts, 5)
+SCRATCH_ARRAY(rate, setRate, gRates, 8)
+#endif
+#if HAIR_EVALUATION >= 2
+SCRATCH_ARRAY(kick, setKick, gKicks, 11)
+SCRATCH_ARRAY(sum, setSum, gSums, 14)
+SCRATCH_ARRAY(sumRate, setSumRate, gSumRates, 17)
+#endif
+
+float3 restVector(uint p) { return gRest[slotOf(0, p)].xyz; }
+float segmentLength(uint p) { return gSegments[slotOf(0, p)].x; }
+float inverseMass(uint p) { return gSegments[slotOf(0, p)].y; }
+/// 0 for a segment without length.
+float inverseOf(float size) { return size > 1e-9 ? 1.0 / size : 0.0; }
+float inverseLength(uint p) { return inverseOf(segmentLength(p)); }
+#if HAIR_BEND == 1
+float stiffness(uint p) { return gStiffness[slotOf(0, p)]; }
+#elif HAIR_BEND == 2
+float stiffness(uint p) { return gFactors[slotOf(0, p)].w; }
+#endif
+#if HAIR_TARGETS
+float3 target(uint p) { return gTargets[slotOf(0, p)].xyz; }
+#endif

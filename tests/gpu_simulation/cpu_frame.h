@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// A few substeps of any plan from any state, by the stages of the engine on the CPU: what the kernels on the
+// device are held against.
+
+#include <random>
+#include <vector>
+
+#include "core/gpu_simulation/strand_engine.h"
+
+namespace hairloom::gpu_simulation::test {
+
+using runtime::Float3;
+using runtime::Quat;
+
+inline constexpr float kStep = 1.0f / 480.0f;
+
+/// Strands, a state of theirs, and the frame that goes on from it.
+struct Scene {
+    runtime::SimulationSettings settings;
+    std::vector<std::uint32_t> offsets{0};
+    std::vector<Float3> positions;
+    std::vector<runtime::RootFrame> roots;  ///< at the end of the frame
+    std::vector<runtime::Sphere> spheres;   ///< likewise
+    runtime::State state;                   ///< before it
+    std::shared_ptr<const runtime::RestShape> shape;
+
+    runtime::StrandsView view() const { return {offsets, positions}; }
+    runtime::FrameInput input() const {
+        runtime::FrameInput input;
+        input.dt = kStep * static_cast<float>(settings.substeps);
+        input.time = 0.7;
+        input.roots_ws = roots;
+        input.spheres = spheres;
+        return input;
+    }
+};
+
+/// What strands are like.
+enum class Hair { straight, curled, nasty };
+
+/// Reproducible numbers.
+class Dice {
+  public:
+    explicit Dice(std::uint32_t seed) : engine_(seed) {}
+    float between(float low, float high) {
+        return low + (high - low) * static_cast<float>(engine_() & 0xffffffu) / static_cast<float>(0x1000000);
+    }
+    Float3 inside(float radius) {
+        return {between(-radius, radius), between(-radius, radius), between(-radius, radius)};
+    }
+    Quat turn(float most) {
+        Quat q{between(-most, most), between(-most, most), between(-most, most), 1.0f};
+        runtime::normalize(q);
+        return q;
+    }
+
+  private:
+    std::minstd_rand engine_;
+};
+
+/// Strands of about 0.2 m around the origin. Nasty ones have segments without length, of 1 µm and of 1 m.
+inline void addStrands(Scene& scene, Hair hair, std::uint32_t count, std::span<const std::uint32_t> points,
+                       Dice& dice) {
+    for (std::uint32_t s = 0; s < count; ++s) {
+        Float3 at = dice.inside(0.1f);
+        Float3 direction = dice.inside(1.0f) + Float3{0.0f, -1.5f, 0.0f};
+        const std::uint32_t pointCount = points[s % points.size()];
+        for (std::uint32_t p = 0; p < pointCount; ++p) {
+            scene.positions.push_back(at);
+            if (hair != Hair::straight) direction = direction + dice.inside(0.8f);
+            float segment = 0.2f / static_cast<float>(pointCount);
+            if (hair == Hair::nasty && p > 0 && p % 5 == 3) {
+                constexpr float kOdd[] = {0.0f, 1e-6f, 1.0f};
+                segment = kOdd[(s + p) % 3];
+            }
+            at = at + direction * (segment / length(direction));
+        }
+        scene.offsets.push_back(static_cast<std::uint32_t>(scene.positions.size()));
+    }
+}
+
+/// Moves every point of the state off its rest place and gives it a speed. Nasty states have points in one
+/// place, folds by 180° and a point that flies at 500 m/s.
+inline void disturb(Scene& scene, Hair hair, Dice& dice) {
+    runtime::State& state = scene.state;
+    for (const runtime::Block& block : scene.shape->blocks) {
+        const std::size_t size = planeSize(block);
+        float* const planes = state.planes.data() + block.firstPlane * runtime::kStatePlanes;
+        for (std::uint32_t p = scene.settings.clampedPoints; p < block.points; ++p) {
+            for (std::uint32_t lane = 0; lane < runtime::kBlockLanes; ++lane) {
+                const std::size_t i = std::size_t{p} * runtime::kBlockLanes + lane;
+                const std::size_t source = lane < block.strands ? lane : block.strands - 1;
+                const std::size_t from = std::size_t{p} * runtime::kBlockLanes + source;
+                Float3 shift = dice.inside(hair == Hair::nasty ? 0.01f : 0.002f);
+                Float3 moved = dice.inside(3.0f * kStep);
+                const bool odd = hair == Hair::nasty && p > 2;
+                for (std::size_t k = 0; k < 3; ++k) {
+                    float& place = planes[k * size + i];
+                    if (lane >= block.strands) {
+                        place = planes[k * size + from];
+                        planes[(3 + k) * size + i] = planes[(3 + k) * size + from];
+                        continue;
+                    }
+                    const float add = k == 0 ? shift.x : k == 1 ? shift.y : shift.z;
+                    const float way = k == 0 ? moved.x : k == 1 ? moved.y : moved.z;
+                    place += add;
+                    const std::size_t before = i - runtime::kBlockLanes;
+                    if (odd && (p + lane) % 7 == 0) place = planes[k * size + before];
+                    if (odd && (p + lane) % 7 == 3) place = planes[k * size + before - runtime::kBlockLanes];
+                    planes[(3 + k) * size + i] = place - (odd && (p + lane) % 11 == 0 ? 500.0f * kStep : way);
+                }
+            }
+        }
+    }
+}
+
+/// A scene of 64 strands whose roots move and turn, about three spheres of which one moves.
+inline Scene makeScene(const runtime::SimulationSettings& settings, Hair hair, std::uint32_t seed,
+                       std::span<const std::uint32_t> points) {
+    Scene scene;
+    scene.settings = settings;
+    Dice dice(seed);
+    addStrands(scene, hair, 64, points, dice);
+    scene.shape = runtime::makeRestShape(scene.view());
+    const runtime::RestShape& shape = *scene.shape;
+    runtime::State& state = scene.state;
+    state.planes.assign(shape.planeFloats * runtime::kStatePlanes, 0.0f);
+    state.roots.assign(shape.blocks.size() * runtime::kRootRows * runtime::kBlockLanes, 0.0f);
+    state.rests.resize(shape.blocks.size());
+    state.substep = kStep;
+    scene.roots.resize(shape.restRoots.size());
+    for (std::size_t b = 0; b < shape.blocks.size(); ++b) {
+        for (std::uint32_t lane = 0; lane < runtime::kBlockLanes; ++lane) {
+            const std::uint32_t strand = shape.blocks[b].strandOfLane[lane];
+            const Float3 place = shape.restRoots[strand].position;
+            if (lane < shape.blocks[b].strands)
+                scene.roots[strand] = {place + dice.inside(0.002f), dice.turn(0.02f)};
+            const float rows[] = {place.x, place.y, place.z, 0.0f, 0.0f, 0.0f, 1.0f};
+            for (std::size_t r = 0; r < runtime::kRootRows; ++r)
+                state.roots[(b * runtime::kRootRows + r) * runtime::kBlockLanes + lane] = rows[r];
+            runtime::placeAtRest(shape, state, b, lane);
+        }
+    }
+    disturb(scene, hair, dice);
+    scene.spheres = {
+        {{0.0f, -0.05f, 0.0f}, 0.06f}, {{0.05f, -0.1f, 0.02f}, 0.05f}, {{-0.1f, 0.0f, 0.0f}, 0.03f}};
+    state.spheres = scene.spheres;
+    state.spheres[2].center_ws.x -= 0.01f;
+    return scene;
+}
+
+/// The plan of the device's engine for this scene.
+struct CpuFrame {
+    runtime::FrameSpheres spheres;
+    runtime::FrameWind wind;
+    runtime::EffectPlan plan;
+    runtime::SubstepContext context;
+    std::vector<runtime::MovingSphere> moving;
+
+    explicit CpuFrame(const Scene& scene) {
+        const runtime::RestShape& shape = *scene.shape;
+        const float dt = scene.input().dt;
+        runtime::takeSpheres(scene.settings, shape.longestStrand, scene.state.spheres, scene.spheres,
+                             spheres);
+        wind.wind = runtime::makeWind(scene.settings);
+        runtime::FrameOutlook outlook;
+        outlook.strandCount = 64;
+        outlook.longestPointCount = shape.longestPointCount;
+        outlook.longestStrand = shape.longestStrand;
+        outlook.straight = shape.straight;
+        outlook.rootsMin_ws = {-1.0f, -1.0f, -1.0f};
+        outlook.rootsMax_ws = {1.0f, 1.0f, 1.0f};
+        outlook.fastest = std::numeric_limits<float>::infinity();
+        plan = runtime::planFrame(scene.settings, outlook, wind, spheres.usable, spheres.motion, dt);
+        context = runtime::substepContext(scene.settings, plan, dt);
+        if (plan.on(runtime::Effect::collision))
+            runtime::moveSpheres(spheres, scene.settings.substeps, moving);
+        context.spheres = moving;
+    }
+};
+
+inline void fillLanes(const Scene& scene, std::size_t b, runtime::LaneFrame& lanes) {
+    const float* rows = scene.state.roots.data() + b * runtime::kRootRows * runtime::kBlockLanes;
+    for (std::uint32_t lane = 0; lane < runtime::kBlockLanes; ++lane) {
+        const runtime::RootFrame& to = scene.roots[scene.shape->blocks[b].strandOfLane[lane]];
+        const float ends[] = {to.position.x, to.position.y, to.position.z};
+        const float turns[] = {to.rotation.x, to.rotation.y, to.rotation.z, to.rotation.w};
+        for (std::size_t k = 0; k < 3; ++k) {
+            lanes.root[k][lane] = rows[k * runtime::kBlockLanes + lane];
+            lanes.rootStep[k][lane] =
+                (ends[k] - lanes.root[k][lane]) * (1.0f / static_cast<float>(scene.settings.substeps));
+        }
+        for (std::size_t k = 0; k < 4; ++k) {
+            lanes.rotationFrom[k][lane] = rows[(3 + k) * runtime::kBlockLanes + lane];
+            lanes.rotationTo[k][lane] = turns[k];
+        }
+    }
+}
+
+/// What the engine does not put back to rest.
+inline bool isSound(const runtime::BlockView& view, std::uint32_t lane) {
+    for (std::uint32_t p = 0; p < view.points; ++p) {
+        const std::size_t i = std::size_t{p} * runtime::kBlockLanes + lane;
+        const Float3 place{view.position.x[i], view.position.y[i], view.position.z[i]};
+        const Float3 before{view.previous.x[i], view.previous.y[i], view.previous.z[i]};
+        const Float3 moved = place - before;
+        if (!(dot(place, place) < 1e12f) || !(dot(moved, moved) < 1e12f)) return false;
+    }
+    return true;
+}
+
+/// The state after the frame, by the stages of the CPU.
+inline runtime::State runOnCpu(const Scene& scene) {
+    runtime::State state = scene.state;
+    const runtime::RestShape& shape = *scene.shape;
+    const CpuFrame frame(scene);
+    runtime::Bend bend;
+    bend.factored = frame.plan.factored();
+    bend.targets = frame.plan.on(runtime::Effect::torsion);
+    if (frame.plan.on(runtime::Effect::angular))
+        bend.planes.assign(shape.planeFloats * bend.planeCount(), 0.0f);
+    if (frame.plan.keepsCurves()) {
+        state.curves.assign(shape.planeFloats * 3, 0.0f);
+        state.tanks.assign(shape.blocks.size() * runtime::kBlockLanes, runtime::kNoCurve);
+        state.motions.assign(shape.blocks.size() * runtime::kBlockLanes, 0.0f);
+    }
+    runtime::Floats evaluation(shape.planeFloats * runtime::kRungeKuttaPlanes, 0.0f);
+    if (scene.settings.integrator == runtime::Integrator::verlet) evaluation.clear();
+    for (std::size_t b = 0; b < shape.blocks.size(); ++b) {
+        if (!bend.planes.empty()) runtime::fillBend(shape, scene.settings, kStep, b, bend);
+        const runtime::BlockView view = runtime::viewOf(
+            {shape, state, bend, evaluation, runtime::kRungeKuttaPlanes}, b, scene.settings.clampedPoints);
+        runtime::LaneFrame lanes;
+        fillLanes(scene, b, lanes);
+        const runtime::Kernels& table = runtime::kernels();
+        if (frame.plan.on(runtime::Effect::wind)) {
+            const auto from =
+                runtime::windPhases(frame.wind.wind, 0.7 - static_cast<double>(scene.input().dt));
+            const auto to = runtime::windPhases(frame.wind.wind, 0.7);
+            table.sampleWind(view, lanes, kStep, frame.wind.wind, from.data(), to.data());
+        }
+        runtime::SubstepContext context = frame.context;
+        for (context.index = 0; context.index < context.count; ++context.index) {
+            for (const runtime::StageId stage : frame.plan.stages())
+                table.stages[static_cast<std::size_t>(stage)](view, lanes, context);
+        }
+        for (std::uint32_t lane = 0; lane < runtime::kBlockLanes; ++lane) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                float* const rows = state.roots.data() + b * runtime::kRootRows * runtime::kBlockLanes + lane;
+                rows[k * runtime::kBlockLanes] += lanes.rootStep[k][lane] * static_cast<float>(context.count);
+            }
+            for (std::size_t k = 0; k < 4; ++k)
+                state.roots[(b * runtime::kRootRows + 3 + k) * runtime::kBlockLanes + lane] =
+                    lanes.rotationTo[k][lane];
+            if (!isSound(view, lane)) runtime::placeAtRest(shape, state, b, lane);
+        }
+    }
+    return state;
+}
+
+/// How far two states are from each other.
+struct Distance {
+    /// Of each strand the greatest of a place or a displacement, metres; where they are greater than a metre,
+    /// the share of it.
+    std::vector<double> strands;
+    std::size_t lost = 0;  ///< points that are a number in one state only
+};
+inline Distance distanceOf(const Scene& scene, const runtime::State& a, const runtime::State& b) {
+    Distance distance;
+    distance.strands.resize(scene.offsets.size() - 1);
+    for (const runtime::Block& block : scene.shape->blocks) {
+        const std::size_t size = planeSize(block);
+        const auto at = [&](const runtime::State& state, std::size_t plane, std::size_t i) {
+            const float* p =
+                state.planes.data() + block.firstPlane * runtime::kStatePlanes + plane * size + i;
+            return Float3{p[0], p[size], p[2 * size]};
+        };
+        for (std::uint32_t lane = 0; lane < block.strands; ++lane) {
+            double greatest = 0.0;
+            float most = 1.0f;
+            for (std::uint32_t p = 0; p < block.points; ++p) {
+                const std::size_t i = std::size_t{p} * runtime::kBlockLanes + lane;
+                const Float3 place = at(a, 0, i), other = at(b, 0, i);
+                const Float3 moved = place - at(a, 3, i), otherMoved = other - at(b, 3, i);
+                if (isFinite(place) != isFinite(other)) ++distance.lost;
+                greatest = std::max({greatest, static_cast<double>(length(place - other)),
+                                     static_cast<double>(length(moved - otherMoved))});
+                most = std::max({most, length(other), length(otherMoved)});
+            }
+            distance.strands[block.strandOfLane[lane]] = greatest / static_cast<double>(most);
+        }
+    }
+    return distance;
+}
+
+}  // namespace hairloom::gpu_simulation::test

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "core/gpu/device.h"
+#include "core/gpu_simulation/strand_engine.h"
+
+namespace hairloom::gpu_simulation {
+
+/// One device with validation and one library for all cases of the program; any message fails the case in
+/// which it came.
+class GpuSimulationTest : public testing::Test {
+  protected:
+    static void SetUpTestSuite() {
+        if (device() != nullptr) return;
+        gpu::DeviceOptions options;
+        options.validation = true;
+        auto made = gpu::createDevice(options);
+        ASSERT_TRUE(made) << made.error().message();
+        device() = std::move(*made);
+        library() = std::make_shared<KernelLibrary>(*device(), std::filesystem::path());
+    }
+    void SetUp() override {
+        ASSERT_NE(device(), nullptr);
+        messages_ = device()->validationMessages().size();
+    }
+    void TearDown() override {
+        if (device() == nullptr) return;
+        const auto messages = device()->validationMessages();
+        for (std::size_t i = messages_; i < messages.size(); ++i) ADD_FAILURE() << messages[i];
+    }
+
+    static std::unique_ptr<gpu::Device>& device() {
+        static std::unique_ptr<gpu::Device> device;
+        return device;
+    }
+    static std::shared_ptr<KernelLibrary>& library() {
+        static std::shared_ptr<KernelLibrary> library;
+        return library;
+    }
+
+    /// Lavapipe takes long to compile unrolled loops.
+    static EngineOptions options(StrandStorage storage = StrandStorage::threads) {
+        EngineOptions options;
+        options.layout = {storage, false};
+        return options;
+    }
+    static StrandEngine engineOf(const runtime::StrandsView& strands,
+                                 const runtime::SimulationSettings& settings, const EngineOptions& options) {
+        auto made = StrandEngine::make(*device(), library(), strands, settings, options);
+        if (!made) throw std::runtime_error(made.error().message());
+        return std::move(*made);
+    }
+
+  private:
+    std::size_t messages_ = 0;
+};
+
+}  // namespace hairloom::gpu_simulation

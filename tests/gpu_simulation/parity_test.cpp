@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Each effect and integrator, one substep from random and nasty states: the device against the stages of the
+// CPU.
+#include <algorithm>
+#include <array>
+#include <functional>
+
+#include "tests/gpu_simulation/cpu_frame.h"
+#include "tests/gpu_simulation/gpu_simulation_fixture.h"
+
+namespace hairloom::gpu_simulation {
+namespace {
+
+using runtime::AngularMethod;
+using runtime::CollisionResponse;
+using runtime::Integrator;
+using runtime::LengthMethod;
+using runtime::SimulationSettings;
+using runtime::WindKind;
+using test::Hair;
+using test::Scene;
+
+/// Nothing acts on the hair.
+SimulationSettings bare() {
+    SimulationSettings s;
+    s.dampingTime = 0.0f;
+    s.gravity = {};
+    s.airDrag = 0.0f;
+    s.lengthIterations = 0;
+    s.angularStiffness = 0.0f;
+    s.sleepSpeed = 0.0f;
+    return s;
+}
+
+struct Case {
+    const char* name;
+    std::function<void(SimulationSettings&)> change;
+    bool spheres = false;
+    /// Metres, and of what moves by more than a metre its share. Most stages add and multiply numbers of the
+    /// size of a strand, so that they round to 1e-8 of it; stiff systems and places on spheres amplify that.
+    double tolerance = 2e-7;
+    double nastyTolerance = 2e-5;
+    /// Strands of a nasty state in which rounding may decide a branch: whether a way enters a sphere steeply,
+    /// a place on a sphere lies in it, or a segment has turned by more than 60°.
+    std::ptrdiff_t mayDiffer = 3;
+};
+
+void hold(SimulationSettings& s) {
+    s.gravity = {0.0f, -9.81f, 0.0f};
+    s.lengthIterations = 1;
+}
+void bend(SimulationSettings& s, AngularMethod method) {
+    s.angularStiffness = 0.3f;
+    s.angularMethod = method;
+}
+void blow(SimulationSettings& s, WindKind kind) {
+    s.airDrag = 5.0f;
+    s.windSpeed = 8.0f;
+    s.windKind = kind;
+}
+/// An integrator with all that is explicit.
+void integrate(SimulationSettings& s, Integrator integrator) {
+    hold(s);
+    s.integrator = integrator;
+    s.airDrag = 3.0f;
+    s.dampingTime = 0.3f;
+}
+void collide(SimulationSettings& s, CollisionResponse response) {
+    s.collisionResponse = response;
+    s.restitution = 0.4f;
+    s.pearlRadiusRoot = 0.001f;
+    s.pearlRadiusTip = 0.004f;
+    s.maximalExtension = 0.05f;
+    s.lengthIterations = 1;
+}
+
+const Case kCases[] = {
+    {"nothing", [](SimulationSettings&) {}},
+    {"damping", [](SimulationSettings& s) { s.dampingTime = 0.05f; }},
+    {"gravity",
+     [](SimulationSettings& s) {
+         s.gravity = {1.0f, -9.81f, 0.5f};
+     }},
+    {"drag", [](SimulationSettings& s) { s.airDrag = 20.0f; }},
+    {"windUniform", [](SimulationSettings& s) { blow(s, WindKind::uniform); }},
+    {"windGusting", [](SimulationSettings& s) { blow(s, WindKind::gusting); }},
+    {"windTurbulent", [](SimulationSettings& s) { blow(s, WindKind::turbulent); }},
+    {"windVehicle", [](SimulationSettings& s) { blow(s, WindKind::vehicle); }},
+    {"oneClampedPoint", [](SimulationSettings& s) { s.clampedPoints = 1; }},
+    {"length", [](SimulationSettings& s) { hold(s); }},
+    {"lengthFourTimes",
+     [](SimulationSettings& s) {
+         hold(s);
+         s.lengthIterations = 4;
+         s.clampedPoints = 1;
+     }},
+    {"springs",
+     [](SimulationSettings& s) {
+         s.lengthMethod = LengthMethod::springs;
+         s.lengthIterations = 1;
+     }},
+    {"springVelocities",
+     [](SimulationSettings& s) {
+         s.lengthMethod = LengthMethod::springVelocities;
+         s.lengthIterations = 2;
+     }},
+    {"angularImplicit", [](SimulationSettings& s) { bend(s, AngularMethod::implicit); }},
+    {"angularImplicitHeld",
+     [](SimulationSettings& s) {
+         hold(s);
+         bend(s, AngularMethod::implicit);
+     }},
+    {"angularImplicitOneClamped",
+     [](SimulationSettings& s) {
+         bend(s, AngularMethod::implicit);
+         s.clampedPoints = 1;
+         s.angularStiffness = 0.9f;
+     }},
+    {"angularCheap", [](SimulationSettings& s) { bend(s, AngularMethod::cheap); }},
+    {"angularExact", [](SimulationSettings& s) { bend(s, AngularMethod::exact); }},
+    {"flexion", [](SimulationSettings& s) { bend(s, AngularMethod::flexion); }},
+    {"velocityVerlet", [](SimulationSettings& s) { integrate(s, Integrator::velocityVerlet); }},
+    {"leapfrog", [](SimulationSettings& s) { integrate(s, Integrator::leapfrog); }},
+    {"explicitEuler", [](SimulationSettings& s) { integrate(s, Integrator::explicitEuler); }},
+    {"rk4", [](SimulationSettings& s) { integrate(s, Integrator::rk4); }},
+    {"rk4Angular",
+     [](SimulationSettings& s) {
+         integrate(s, Integrator::rk4);
+         bend(s, AngularMethod::cheap);
+     }},
+    {"collisionRadial", [](SimulationSettings& s) { collide(s, CollisionResponse::radial); }, true},
+    {"collisionBackward", [](SimulationSettings& s) { collide(s, CollisionResponse::backward); }, true, 2e-7,
+     2e-5, 8},
+    {"collisionPenalty", [](SimulationSettings& s) { collide(s, CollisionResponse::penalty); }, true, 2e-6},
+};
+
+/// They share a batch.
+constexpr std::array<std::uint32_t, 4> kPoints{16, 13, 10, 9};
+
+class Parity : public GpuSimulationTest, public testing::WithParamInterface<Case> {};
+
+void compare(StrandEngine& engine, const Scene& scene, double tolerance, std::ptrdiff_t mayDiffer) {
+    ASSERT_TRUE(engine.writeState(scene.state));
+    const auto stepped = engine.step(scene.input());
+    ASSERT_TRUE(stepped) << stepped.error().message();
+    const auto state = engine.readState();
+    ASSERT_TRUE(state) << state.error().message();
+    const test::Distance distance = distanceOf(scene, *state, runOnCpu(scene));
+    EXPECT_EQ(distance.lost, 0u);
+    const auto off = std::ranges::count_if(distance.strands, [&](double d) { return !(d <= tolerance); });
+    EXPECT_LE(off, mayDiffer) << "greatest distance: " << *std::ranges::max_element(distance.strands);
+}
+
+TEST_P(Parity, OneSubstep) {
+    const Case& what = GetParam();
+    SimulationSettings settings = bare();
+    what.change(settings);
+    settings.substeps = 1;
+    for (const Hair hair : {Hair::straight, Hair::curled, Hair::nasty}) {
+        SCOPED_TRACE(static_cast<int>(hair));
+        Scene scene = test::makeScene(settings, hair, 7, kPoints);
+        if (!what.spheres) scene.spheres = scene.state.spheres = {};
+        StrandEngine engine = engineOf(scene.view(), scene.settings, options());
+        const bool nasty = hair == Hair::nasty;
+        compare(engine, scene, nasty ? what.nastyTolerance : what.tolerance, nasty ? what.mayDiffer : 0);
+    }
+}
+
+/// What one substep leaves the next one goes on from.
+TEST_P(Parity, ThreeSubsteps) {
+    const Case& what = GetParam();
+    SimulationSettings settings = bare();
+    what.change(settings);
+    settings.substeps = 3;
+    Scene scene = test::makeScene(settings, Hair::curled, 11, kPoints);
+    if (!what.spheres) scene.spheres = scene.state.spheres = {};
+    StrandEngine engine = engineOf(scene.view(), scene.settings, options());
+    compare(engine, scene, 20.0 * what.tolerance, what.spheres ? 1 : 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Effects, Parity, testing::ValuesIn(kCases),
+                         [](const auto& instance) { return std::string(instance.param.name); });
+
+}  // namespace
+}  // namespace hairloom::gpu_simulation
