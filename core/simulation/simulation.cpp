@@ -88,16 +88,6 @@ void Simulation::step(float dt, const HeadPose& pose) {
     impl_->gather();
 }
 
-Status Simulation::setSettings(const runtime::SimulationSettings& settings) {
-    if (auto status = impl_->method->setSettings(settings); !status) return status;
-    impl_->scene.setSettings(settings);
-    return {};
-}
-
-void Simulation::setSpheres(std::vector<CollisionSphere> spheres) {
-    impl_->scene.setSpheres(std::move(spheres));
-}
-
 std::span<const Vec3f> Simulation::positions_ws() const {
     return impl_->positions_ws;
 }

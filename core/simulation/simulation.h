@@ -71,11 +71,6 @@ class Simulation {
     /// Advances by `dt` seconds (0 < dt ≤ 0.1) to `pose`.
     void step(float dt, const HeadPose& pose);
 
-    /// Other settings or spheres from the next step on, without a jump. Errors: settings out of range, or a
-    /// method that takes none while it runs.
-    Status setSettings(const runtime::SimulationSettings& settings);
-    void setSpheres(std::vector<CollisionSphere> spheres);
-
     /// Points in the order of the groom's points; metres, world space.
     std::span<const Vec3f> positions_ws() const;
     SimulationStats stats() const;

@@ -27,10 +27,6 @@ class StrandMethod {
     virtual void reset(const SceneInput& scene, const HeadPose& pose) = 0;
     /// Advances to `pose`; `input` holds its roots and spheres.
     virtual void step(const SceneInput& scene, const HeadPose& pose, const runtime::FrameInput& input) = 0;
-    /// Other settings from the next step on, without a jump. Errors: out of range, or a method that cannot.
-    virtual Status setSettings(const runtime::SimulationSettings&) {
-        return fail("this way of moving strands takes no other settings while it runs");
-    }
     virtual void readPositions(std::span<runtime::Float3> positions_ws) const = 0;
     /// Of the last step.
     virtual double stepMilliseconds() const = 0;

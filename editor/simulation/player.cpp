@@ -6,6 +6,8 @@
 #include <optional>
 
 #include "core/simulation/clip_motion.h"
+#include "core/simulation/engine_control.h"
+#include "editor/simulation/live_method.h"
 
 namespace hairloom::editor {
 namespace {
@@ -178,6 +180,7 @@ void Player::documentChanged(Changes changes) {
 }
 
 void Player::run() {
+    const auto knobs = std::make_shared<LiveKnobs>();
     std::optional<Simulation> simulation;
     std::shared_ptr<const Groom> groom;
     std::shared_ptr<HeadMotion> motion;
@@ -228,7 +231,9 @@ void Player::run() {
             simulation.reset();
             time = 0;
             if (!groom || !motion) continue;
-            auto made = Simulation::make(*groom, motion->poseAt(0));
+            SimulationOptions options;
+            options.backend = liveMethod(knobs);
+            auto made = Simulation::make(*groom, motion->poseAt(0), options);
             if (!made) {
                 order([](Orders& orders) { orders.playing = false; });
                 refuse(made.error());
@@ -237,9 +242,9 @@ void Player::run() {
             simulation.emplace(std::move(*made));
         }
         if (settings) {
-            if (auto taken = simulation->setSettings(*settings); !taken) refuse(taken.error());
+            if (auto taken = setEngineSettings(*knobs->engine, *settings); !taken) refuse(taken.error());
         }
-        if (spheres) simulation->setSpheres(std::move(*spheres));
+        if (spheres) knobs->spheres = std::move(*spheres);
         time += static_cast<double>(kFrameTime);
         auto pose = std::make_shared<HairPose>();
         pose->head = motion->poseAt(static_cast<float>(time));
