@@ -57,7 +57,7 @@ void addBenchJob(Jobs& jobs) {
                  "sim --quick --json", [options, &jobs] { return bench(*options, jobs.commandLine()); });
     job.add_option("name", options->name, "What to measure")
         ->required()
-        ->check(CLI::IsMember({"interpolate", "io", "place", "project", "render", "sim"}));
+        ->check(CLI::IsMember({"brush", "interpolate", "io", "place", "project", "render", "sim"}));
     job.add_option("--repeat,--repetitions", options->repetitions, "Runs of each measurement")
         ->check(CLI::Range(1, 1000));
     job.add_option("--strands", options->strands, "sim: numbers of strands, instead of 300,2000,10000,100000")

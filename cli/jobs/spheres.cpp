@@ -3,6 +3,7 @@
 
 #include "cli/documents.h"
 #include "cli/job.h"
+#include "core/editing/sphere_fit.h"
 #include "core/groom/project_file.h"
 
 namespace hairloom::cli {
@@ -11,19 +12,42 @@ namespace {
 struct SpheresOptions {
     std::string input;
     std::string from;
+    std::uint32_t fit = 0;
+    double near = 0.08;
+    std::uint64_t seed = 1;
     bool replace = false;
     std::string output;
 };
 
+Result<std::vector<CollisionSphere>> fitted(const Groom& groom, const SpheresOptions& options,
+                                            Report& report) {
+    if (!groom.scalp) return failIn(options.input, {}, "there is no head to fit spheres to");
+    editing::SphereFitOptions wanted;
+    wanted.count = options.fit;
+    wanted.seed = options.seed;
+    if (options.near > 0) wanted.region = editing::facesNearHair(groom, static_cast<float>(options.near));
+    auto fit = editing::fitSpheres(*groom.scalp, wanted);
+    if (!fit) return tl::unexpected(inFile(fit.error(), options.input));
+    constexpr double kMm = 1000;
+    report["worst_gap_mm"] = kMm * static_cast<double>(fit->worstGap);
+    report["mean_gap_mm"] = kMm * static_cast<double>(fit->meanGap);
+    report["worst_bulge_mm"] = kMm * static_cast<double>(fit->worstBulge);
+    return std::move(fit->spheres);
+}
+
 Result<Report> placeSpheres(const SpheresOptions& options) {
     auto groom = loadDocument(options.input);
     if (!groom) return tl::unexpected(groom.error());
-    const auto spheres = readSpheres(options.from);
+    Report report;
+    const auto spheres = options.fit > 0 ? fitted(*groom, options, report) : readSpheres(options.from);
     if (!spheres) return tl::unexpected(spheres.error());
     if (options.replace) groom->spheres.clear();
     groom->spheres.insert(groom->spheres.end(), spheres->begin(), spheres->end());
     if (auto saved = saveProject(*groom, options.output); !saved) return tl::unexpected(saved.error());
-    return Report{{"added", spheres->size()}, {"spheres", groom->spheres.size()}, {"output", options.output}};
+    report["added"] = spheres->size();
+    report["spheres"] = groom->spheres.size();
+    report["output"] = options.output;
+    return report;
 }
 
 }  // namespace
@@ -34,9 +58,15 @@ void addSpheresJob(Jobs& jobs) {
         jobs.add("spheres", "Place collision spheres", "hair.hairloom --from spheres.json -o hair.hairloom",
                  [options] { return placeSpheres(*options); });
     job.add_option("groom", options->input, "Groom to add them to")->required();
-    job.add_option("--from", options->from,
-                   R"(JSON list of {"name", "centre": [x, y, z], "radius", "bone"}, metres)")
-        ->required();
+    CLI::App& source = *job.add_option_group("source");
+    source.add_option("--from", options->from,
+                      R"(JSON list of {"name", "centre": [x, y, z], "radius", "bone"}, metres)");
+    source.add_option("--fit", options->fit, "Find so many spheres that cover the skin near the hair")
+        ->check(CLI::Range(1, 64));
+    source.require_option(1);
+    job.add_option("--near", options->near, "fit: how far from hair skin matters, metres; 0: all of it")
+        ->check(CLI::Range(0.0, 10.0));
+    job.add_option("--seed", options->seed, "fit: of the places where the skin is looked at");
     job.add_flag("--replace", options->replace, "Remove the spheres that are there");
     job.add_option("-o,--output", options->output, "Project to write")->required();
 }

@@ -3,6 +3,7 @@
 // What a brush is: a description, and what it does to one strand under one dab. docs/editing.md shows how to
 // add one.
 
+#include <algorithm>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -37,6 +38,8 @@ struct BrushInfo {
     /// Segments get the lengths back that they had before each dab.
     bool keepsLengths = true;
     bool needsHead = false;
+    /// Dabs take hair where the brush comes from, to carry it to where it is.
+    bool drags = false;
 };
 
 /// One dab as brushes see it.
@@ -67,6 +70,15 @@ struct StrandUnderBrush {
     const SkinQuery* skin;  ///< null without a head, or where collisions are off
 
     Random random(std::uint64_t seed) const { return Random(seed, id); }
+    /// Moves points by `offset` times their weight; what hangs on them towards the tip is carried along, so
+    /// that hair bends on the brush's root side only.
+    void carry(std::span<const Vec3f> from, const Vec3f& offset) {
+        float weight = 0;
+        for (std::size_t i = first; i < points.size(); ++i) {
+            weight = std::max(weight, weights[i]);
+            points[i] = from[i] + weight * offset;
+        }
+    }
 };
 
 /// What a stroke works on, and what it has changed so far.

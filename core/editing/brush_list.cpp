@@ -60,10 +60,9 @@ Status checkParameters(const BrushInfo& info, const BrushSettings& settings) {
         if (known == info.parameters.end())
             return fail(fmt::format("{} has no parameter '{}'", info.name, name));
         if (!(value >= known->min && value <= known->max))
-            return fail(
-                fmt::format("{} {}", name,
-                            outOfRangeText(static_cast<double>(value), static_cast<double>(known->min),
-                                           static_cast<double>(known->max), known->unit)));
+            return fail(fmt::format("{} {}", name,
+                                    outOfRangeText(readableDecimal(value), readableDecimal(known->min),
+                                                   readableDecimal(known->max), known->unit)));
     }
     return {};
 }

@@ -89,7 +89,13 @@ std::unique_ptr<Command> setSpheres(const Model& model, std::vector<CollisionSph
 }
 
 std::unique_ptr<Command> setLayers(const Model& model, std::vector<Layer> layers) {
-    assert(layers.size() >= model.groom.layers.size());
+    const std::vector<Layer>& now = model.groom.layers;
+    assert(layers.size() >= now.size());
+    const bool isSame =
+        std::equal(now.begin(), now.end(), layers.begin(), layers.end(), [](const Layer& a, const Layer& b) {
+            return a.name == b.name && a.visible == b.visible && a.locked == b.locked;
+        });
+    if (isSame) return nullptr;
     const std::size_t bytes = layers.size() * sizeof(Layer);
     return valueCommand<std::vector<Layer>>(
         "Layers", Part::Layers, [](Model& m) -> std::vector<Layer>& { return m.groom.layers; },
@@ -104,11 +110,16 @@ std::unique_ptr<Command> replaceGroom(const Model& model, Groom groom, std::stri
         bytes);
 }
 
-Result<RootTriangulation> triangulationOf(const Groom& groom) {
-    if (!groom.scalp) return fail("the groom has no head", "open or import one first");
+std::unique_ptr<Command> triangulate(const Model& model) {
+    const Groom& groom = model.groom;
     const auto roots = groom.rootBindings();
-    if (roots.empty()) return fail("the strands are not bound to the head");
-    return triangulateRoots(*groom.scalp, groom.scalpSelection, roots);
+    if (!groom.scalp || roots.empty() || !groom.triangulation.triangles.empty()) return nullptr;
+    auto made = triangulateRoots(*groom.scalp, groom.scalpSelection, roots);
+    if (!made || made->triangles.empty()) return nullptr;
+    const std::size_t bytes = made->triangles.size() * sizeof(Triangle);
+    return valueCommand<RootTriangulation>(
+        "Triangulate roots", Part::Triangulation,
+        [](Model& m) -> RootTriangulation& { return m.groom.triangulation; }, std::move(*made), bytes);
 }
 
 }  // namespace hairloom::editing

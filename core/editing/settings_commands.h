@@ -24,8 +24,8 @@ std::unique_ptr<Command> setLayers(const Model& model, std::vector<Layer> layers
 /// Another groom altogether: a head with what is on it, imported hair, the outcome of a script.
 std::unique_ptr<Command> replaceGroom(const Model& model, Groom groom, std::string name);
 
-/// Roots' triangles, as triangulateRoots() makes them of the groom's roots; not a step of its own, since they
-/// follow from the roots: see Document::setTriangulation().
-Result<RootTriangulation> triangulationOf(const Groom& groom);
+/// Roots that came or went have no triangles until somebody wants them, because making them takes longer than
+/// a stroke may. Null where the groom has them, or no bound roots.
+std::unique_ptr<Command> triangulate(const Model& model);
 
 }  // namespace hairloom::editing

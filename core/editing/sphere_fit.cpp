@@ -77,6 +77,11 @@ std::vector<Ball> chooseGreedily(const std::vector<Ball>& candidates, const Samp
     const auto covers = [&](const Ball& ball, std::size_t i) {
         return std::abs(ball.distance(samples.points[i])) <= tolerance;
     };
+    const auto mark = [&](const Ball& ball) {
+        for (std::size_t i = 0; i < covered.size(); ++i) {
+            if (covers(ball, i)) covered[i] = 1;
+        }
+    };
     constexpr double kFinest = 1e-4;
     while (chosen.size() < count) {
         std::vector<std::size_t> gains(candidates.size(), 0);
@@ -91,12 +96,12 @@ std::vector<Ball> chooseGreedily(const std::vector<Ball>& candidates, const Samp
             tolerance /= 2;
             std::fill(covered.begin(), covered.end(), std::uint8_t{0});
             for (const Ball& ball : chosen) {
-                for (std::size_t i = 0; i < covered.size(); ++i) covered[i] |= covers(ball, i) ? 1u : 0u;
+                mark(ball);
             }
             continue;
         }
         chosen.push_back(candidates[static_cast<std::size_t>(best - gains.begin())]);
-        for (std::size_t i = 0; i < covered.size(); ++i) covered[i] |= covers(chosen.back(), i) ? 1u : 0u;
+        mark(chosen.back());
     }
     return chosen;
 }

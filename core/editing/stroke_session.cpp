@@ -109,7 +109,7 @@ Change StrokeSession::run(const Dab& dab, bool isMirror) {
         context.travel_ss = context.dab.position_ss - place(stroke_.dabs.front()).position_ss;
     context.sign = stroke_.settings.invert ? -1.0f : 1.0f;
     const bool isView = !dab.direction_ss.isZero(0);
-    context.volume = {context.dab.position_ss,
+    context.volume = {brush_->info().drags ? context.previous.position_ss : context.dab.position_ss,
                       isView ? Vec3f(context.dab.direction_ss.normalized()) : Vec3f(Vec3f::UnitZ()),
                       isView ? stroke_.settings.depth : 0.0f, dab.radius};
     return brush_->dab(target_, context);

@@ -99,6 +99,7 @@ std::vector<Action> actions() {
                  settings.seed = r.next();
                  return setPlacementSettings(m, settings);
              }},
+            {"Triangulate", [](const Model& m, Random&) { return triangulate(m); }},
             {"SetLayers",
              [](const Model& m, Random& r) {
                  std::vector<Layer> layers = m.groom.layers;

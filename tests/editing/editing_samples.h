@@ -37,6 +37,7 @@ inline Stroke strokeOverTop(std::string_view tool, float height = 0.05f) {
 inline Stroke strokeFor(std::string_view tool) {
     const bool onSkin = tool == "delete" || tool == "add" || tool == "scalp_paint" || tool == "density_paint";
     Stroke stroke = strokeOverTop(tool, onSkin ? 0.0f : 0.05f);
+    stroke.settings.invert = tool == "scalp_paint";  // all that it reaches is selected already
     if (tool == "cut_line") {
         stroke.settings.depth = 0.3f;
         for (Dab& dab : stroke.dabs) dab.direction_ss = -Vec3f::UnitZ();

@@ -40,7 +40,7 @@ TEST(History, ForgetsWhatWasUndoneWhenSomethingElseIsDone) {
 TEST(History, HoldsOnlyWhatAStrokeTouched) {
     Document small(hairOnHead(300));
     ASSERT_TRUE(small.replay(strokeFor("puff")));
-    // Twice as much hair, half of it out of the stroke's reach.
+
     Groom groom = hairOnHead(300);
     Document large(groom);
     Stroke tiny = strokeFor("puff");

@@ -174,17 +174,27 @@ TEST(Place, GivesShareOfTheCountAndFollowsTheDensityMap) {
     for (std::size_t v = 0; v < groom.scalpDensity.size(); ++v) {
         if (groom.scalp->positions()[v].x() < 0) groom.scalpDensity[v] = 0.25f;
     }
+    PlaceRequest half;
+    double leftArea = 0;
+    double area = 0;
+    for (const std::uint32_t face : groom.scalpSelection) {
+        double masked = 0;
+        for (const std::uint32_t v : groom.scalp->triangles()[face])
+            masked += static_cast<double>(groom.scalpDensity[v] * groom.scalp->triangleArea(face)) / 3;
+        area += masked;
+        if (groom.scalp->pointAt(face, Vec3f::Constant(1.0f / 3)).x() >= 0) continue;
+        leftArea += masked;
+        half.region.push_back(face);
+    }
     const auto roots = placeRoots(groom, {});
     ASSERT_TRUE(roots);
     const auto left = std::count_if(roots->begin(), roots->end(), [&](const SurfacePoint& root) {
-        return groom.scalp->pointAt(root.triangle, root.barycentric).x() < 0;
+        return std::binary_search(half.region.begin(), half.region.end(), root.triangle);
     });
-    EXPECT_NEAR(static_cast<double>(left), 800, 90);
-    PlaceRequest half;
-    for (const std::uint32_t face : groom.scalpSelection) {
-        if (groom.scalp->pointAt(face, Vec3f::Constant(1.0f / 3)).x() < 0) half.region.push_back(face);
-    }
-    EXPECT_NEAR(static_cast<double>(placeRoots(groom, half)->size()), 800, 90);
+    const double expected = 4000 * leftArea / area;
+    EXPECT_LT(expected, 1000);
+    EXPECT_NEAR(static_cast<double>(left), expected, 90);  // about three standard deviations
+    EXPECT_NEAR(static_cast<double>(placeRoots(groom, half)->size()), expected, 1);
 }
 
 TEST(Place, SaysWhatIsMissing) {

@@ -26,7 +26,7 @@ TEST(SkinField, IsNearTheExactDistanceWhereItIsAskedFor) {
         const SkinDistance quick = field.distanceAt(point);
         if (std::abs(exact.distance) < SkinField::kReach) {
             ++near;
-            EXPECT_NEAR(quick.distance, exact.distance, 5e-5f);
+            EXPECT_NEAR(quick.distance, exact.distance, 1e-4f);
             EXPECT_GT(quick.outward.dot(exact.outward), 0.98f);
             EXPECT_NEAR(quick.outward.norm(), 1, 1e-5f);
         } else if (exact.distance > 0) {

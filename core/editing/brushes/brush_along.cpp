@@ -9,7 +9,10 @@ constexpr BrushInfo kInfo{"brush",
                           "Brush",
                           "turns hair into the direction of the stroke",
                           "turns hair against the direction of the stroke",
-                          {}};
+                          {},
+                          true,
+                          false,
+                          true};
 
 class BrushAlong final : public StrandBrush {
   public:

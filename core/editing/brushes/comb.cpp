@@ -4,7 +4,7 @@
 namespace hairloom::editing {
 namespace {
 
-constexpr BrushInfo kInfo{"comb", "Comb", "drags hair along with the brush", "", {}};
+constexpr BrushInfo kInfo{"comb", "Comb", "drags hair along with the brush", "", {}, true, false, true};
 
 class Comb final : public StrandBrush {
   public:
@@ -13,8 +13,7 @@ class Comb final : public StrandBrush {
   protected:
     bool edit(const DabContext& dab, StrandUnderBrush& strand) const override {
         if (dab.motion_ss.isZero(0)) return false;
-        for (std::size_t i = strand.first; i < strand.points.size(); ++i)
-            strand.points[i] += strand.weights[i] * dab.motion_ss;
+        strand.carry(strand.points, dab.motion_ss);
         return true;
     }
 };

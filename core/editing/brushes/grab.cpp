@@ -16,8 +16,7 @@ class Grab final : public StrandBrush {
     /// From where the strand was at the start, so that hair that is carried to and fro comes back.
     bool edit(const DabContext& dab, StrandUnderBrush& strand) const override {
         if (dab.isFirst) return false;
-        for (std::size_t i = strand.first; i < strand.points.size(); ++i)
-            strand.points[i] = strand.atStart[i] + strand.weights[i] * dab.travel_ss;
+        strand.carry(strand.atStart, dab.travel_ss);
         return true;
     }
 };

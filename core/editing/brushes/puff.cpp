@@ -19,9 +19,7 @@ class Puff final : public StrandBrush {
         height_ = target.parameter(kInfo, "height");
     }
     bool edit(const DabContext& dab, StrandUnderBrush& strand) const override {
-        const Vec3f lift = strand.rootNormal_ss * (height_ * dab.sign);
-        for (std::size_t i = strand.first; i < strand.points.size(); ++i)
-            strand.points[i] += strand.weights[i] * lift;
+        strand.carry(strand.points, strand.rootNormal_ss * (height_ * dab.sign));
         return true;
     }
 
