@@ -15,6 +15,12 @@ float3 pointOf(StrandHeader strand, uint k) {
     return float3(gPositions[at], gPositions[at + 1u], gPositions[at + 2u]);
 }
 
+// Strands beyond the share that is drawn have no width; those near it fade (render::HairDetail).
+float levelWidth(uint strand) {
+    const float rank = (float(strand) + 0.5) * gCurve.detail.z;
+    return gCurve.detail.w * saturate((gCurve.detail.y - rank) / (gCurve.detail.y - gCurve.detail.x));
+}
+
 float radiusOf(StrandHeader strand, uint k, float along) {
     if (gCurve.radius.z > 0) return gRadii[strand.firstPoint + k];
     return gCurve.radius.x * (1.0 + (gCurve.radius.y - 1.0) * along * along);
@@ -26,6 +32,7 @@ void main(uint3 id : SV_DispatchThreadID) {
     const StrandHeader strand = gStrands[id.x];
     const uint segments = strand.pointCount - 1;
     const uint last = segments * gCurve.subdivisions;
+    const float width = levelWidth(id.x) * (1.0 + gCurve.radius.w * (2.0 * hashUnit(strand.source * 2u + 7u) - 1.0));
     const uint first = strand.segmentsBefore * gCurve.subdivisions + id.x;
     float3 tangent = float3(0, 1, 0);
     // The control points around segment k. Beyond the ends the curve goes on as a mirror image.
@@ -48,7 +55,7 @@ void main(uint3 id : SV_DispatchThreadID) {
             if (speed > 1e-12) tangent = derivative / speed;
             const uint i = k * gCurve.subdivisions + s;
             CurvePoint result;
-            result.position_ws = float4(position, lerp(r1, r2, t));
+            result.position_ws = float4(position, lerp(r1, r2, t) * width);
             result.tangentXy = packUnit(tangent);
             result.along = float(i) / float(last);
             result.strand = id.x;

@@ -22,8 +22,8 @@ float4 main(Input i) : SV_Target0 {
     float openness = 0;
     for (uint k = 0; k < gShade.counts.y; ++k) {
         const LightConstants light = gShade.lights[k];
-        const float3 toLight = light.toLight_ws.xyz;
-        const Occlusion o = occlusion(light, gShade.layers, i.position_ws + normal * 0.002, 0.0, 0.002);
+        const float3 toLight = directionToLight(light, i.position_ws);
+        const Occlusion o = occlusion(light, i.position_ws + normal * 0.002, 0.0, 0.002);
         const float nl = dot(normal, toLight);
         // Red light travels farther under the skin. The denominator keeps the energy of a Lambertian.
         const float3 wrap = gMesh.skin.x * float3(1, 0.5, 0.35);
@@ -34,10 +34,10 @@ float4 main(Input i) : SV_Target0 {
         const float specular = gMesh.skin.y * fresnel * (m + 8.0) / (8.0 * kPi) *
                                pow(saturate(dot(normal, middle)), m) * saturate(nl);
         const float lit = lerp(0.0, o.visibility, saturate(nl * 8.0 + 0.6));
-        colour += light.irradiance.rgb * (i.albedo / kPi * diffuse + specular) * (lit * exp(-0.5 * o.fibres));
+        colour += irradianceOf(light, i.position_ws) * (i.albedo / kPi * diffuse + specular) * (lit * exp(-0.5 * o.fibres));
         openness += exp(-0.3 * o.fibres);
     }
     openness = gShade.counts.y > 0 ? openness / float(gShade.counts.y) : 1.0;
-    const float3 ambient = lerp(gShade.ambientGround.rgb, gShade.ambientSky.rgb, 0.5 + 0.5 * normal.y);
-    return float4(colour + i.albedo * ambient * openness, 1);
+    if (hasEnvironment(gShade)) colour += i.albedo * environmentOnSkin(gShade, normal) * openness;
+    return float4(colour, 1);
 }

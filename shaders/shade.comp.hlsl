@@ -40,8 +40,8 @@ void main(uint3 id : SV_DispatchThreadID) {
     float openness = 0;
     for (uint i = 0; i < gShade.counts.y; ++i) {
         const LightConstants light = gShade.lights[i];
-        const float3 toLight = light.toLight_ws.xyz;
-        const Occlusion o = occlusion(light, gShade.layers, p.position_ws.xyz, 0.0007, 0.004);
+        const float3 toLight = directionToLight(light, p.position_ws.xyz);
+        const Occlusion o = occlusion(light, p.position_ws.xyz, 0.0007, 0.004);
         const float3 direct = pow(pass, o.fibres) * o.visibility;
         const float3 scattered = pow(pass, 0.5 * o.fibres) * lerp(0.15, 1.0, o.visibility);
         const float diffuse = kajiyaDiffuse(tangent, toLight);
@@ -52,12 +52,12 @@ void main(uint3 id : SV_DispatchThreadID) {
         const float3 single = (gShade.shift.z * gShade.normalisation.x * albedo + lobe1 + lobe2) * diffuse;
         // Light that has bounced between fibres before: an artist's term after Zinke et al. 2008, not derived.
         const float3 multiple = gShade.shift.w * albedo * albedo * diffuse / kPi;
-        colour += light.irradiance.rgb * (single * direct + multiple * scattered);
+        colour += irradianceOf(light, p.position_ws.xyz) * (single * direct + multiple * scattered);
         openness += exp(-0.35 * o.fibres) * lerp(0.25, 1.0, o.visibility);
     }
     openness = gShade.counts.y > 0 ? openness / float(gShade.counts.y) : 1.0;
-    // Across a fibre half of the sky and half of the ground is seen; the tangent says how much is turned up.
-    const float up = 0.5 + 0.5 * sqrt(saturate(1.0 - tangent.y * tangent.y)) * (1.0 - 0.5 * p.along);
-    colour += albedo * lerp(gShade.ambientGround.rgb, gShade.ambientSky.rgb, up) * openness;
+    if (hasEnvironment(gShade)) {
+        colour += albedo * environmentOnHair(gShade, tangent, 1.0 - 0.5 * p.along) * openness;
+    }
     gColour[index] = float4(colour, 1);
 }

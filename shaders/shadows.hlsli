@@ -1,54 +1,71 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What stands between a point and a light: the head (a depth map) and fibres (a deep opacity map).
+// What stands between a point and a light: the head (a depth map) and fibres (one of three kinds of maps).
+#ifndef HAIRLOOM_SHADOWS_HLSLI
+#define HAIRLOOM_SHADOWS_HLSLI
+#include "shaders/lights.hlsli"
 #include "shaders/opacity.hlsli"
-#include "shaders/shared/render_types.h"
 
 Texture2D<float> gHeadDepth : register(t8);
 Texture2D<float> gFirstHair : register(t9);
 Texture2D<float4> gOpacity : register(t10);
 
-float fibresInLayers(float4 layers, float4 ends, float behind) {
-    const float4 begins = float4(0, ends.xyz);
-    const float4 part = saturate((behind - begins) / (ends - begins));
-    return dot(layers, part) / OPACITY_UNIT;
-}
-
 struct Occlusion {
     float fibres;      // crossed on the way to the light
-    float visibility;  // 0 behind the head … 1
+    float visibility;  // 0 behind the head ... 1
 };
 
-// bias: metres towards the light, so that a surface does not shadow itself.
-Occlusion occlusion(LightConstants light, float4 ends, float3 position_ws, float hairBias, float headBias) {
+// Fibres in front of a depth, as one texel of a map tells; `bias` metres of them are left out.
+float fibresAt(LightConstants light, int3 texel, float depth, float bias) {
+    const uint mode = uint(light.range.y);
+    if (mode == HAIRLOOM_SHADOWS_ABSORPTION) {
+        // Dachsbacher and Stamminger 2003 for hair: evenly spread, up to as many as there are from side to side.
+        const float behind = depth - metresBehindNear(light.range, gFirstHair.Load(texel)) - bias;
+        return light.layers.y * (1.0 - exp(-max(behind, 0.0) * light.layers.x / max(light.layers.y, 1e-6)));
+    }
+    const float4 layers = gOpacity.Load(texel);
+    if (mode == HAIRLOOM_SHADOWS_OPACITY_MAPS) {
+        const float4 begins = float4(0, light.layers.xyz);
+        const float4 part = saturate((depth - bias - light.range.w - begins) / (light.layers - begins));
+        return dot(layers, part) / OPACITY_UNIT;
+    }
+    const float behind = depth - bias - (1.0 - layers.a) * light.range.x;
+    const float3 begins = float3(0, light.layers.xy);
+    const float3 part = saturate((behind - begins) / (light.layers.xyz - begins));
+    return dot(layers.rgb, part) / OPACITY_UNIT;
+}
+
+// Biases: metres towards the light, so that a surface does not shadow itself.
+Occlusion occlusion(LightConstants light, float3 position_ws, float hairBias, float headBias) {
     Occlusion result;
     result.fibres = 0;
     result.visibility = 1;
     const float4 clip = mul(light.clipFromWorld, float4(position_ws, 1));
-    const float2 uv = float2(0.5 + 0.5 * clip.x, 0.5 - 0.5 * clip.y);
-    if (light.range.y == 0 || any(uv < 0.0) || any(uv > 1.0) || clip.z > 1.0) return result;
-    uint width, height;
-    gOpacity.GetDimensions(width, height);
-    const float2 size = float2(float(height), float(height));
-    const int tile = int(light.tile.x * float(width) + 0.5);
-    const float2 texel = uv * size - 0.5;
+    const bool hair = light.range.y > 0;
+    const bool head = light.tile.z > 0;
+    if (!(hair || head) || clip.w <= 0) return result;
+    const float2 uv = float2(0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w);
+    if (any(uv < 0.0) || any(uv > 1.0)) return result;
+    const int size = int(light.tile.y);
+    const float2 texel = uv * light.tile.y - 0.5;
     const int2 base = int2(floor(texel));
     const float2 f = texel - float2(base);
-    float fibres = 0;
-    float visible = 0;
+    const float depth = metresBehindNear(light.range, clip.z / clip.w);
     // A quadratic B-spline over 3 x 3 texels of finished comparisons.
     const float3 wx = float3(0.5 * (1 - f.x) * (1 - f.x), 0.5 + f.x * (1 - f.x), 0.5 * f.x * f.x);
     const float3 wy = float3(0.5 * (1 - f.y) * (1 - f.y), 0.5 + f.y * (1 - f.y), 0.5 * f.y * f.y);
+    float fibres = 0;
+    float visible = 0;
     for (int y = 0; y < 3; ++y) {
         for (int x = 0; x < 3; ++x) {
-            const int2 at = clamp(base + int2(x, y), int2(0, 0), int2(int(height) - 1, int(height) - 1));
-            const int3 where = int3(at.x + tile, at.y, 0);
+            const int2 at = clamp(base + int2(x, y), int2(0, 0), int2(size - 1, size - 1));
+            const int3 where = int3(at.x + int(light.tile.x), at.y, 0);
             const float w = wx[x] * wy[y];
-            const float behind = (clip.z - gFirstHair.Load(where)) * light.range.x - hairBias;
-            fibres += w * fibresInLayers(gOpacity.Load(where), ends, behind);
-            visible += w * ((clip.z - gHeadDepth.Load(where)) * light.range.x < headBias ? 1.0 : 0.0);
+            if (hair) fibres += w * fibresAt(light, where, depth, hairBias);
+            if (head) visible += w * (depth - metresBehindNear(light.range, gHeadDepth.Load(where)) < headBias ? 1.0 : 0.0);
         }
     }
     result.fibres = fibres;
-    result.visibility = visible;
+    result.visibility = head ? visible : 1.0;
     return result;
 }
+#endif

@@ -8,8 +8,10 @@ StructuredBuffer<float4> gColour : register(t1);
 struct Output {
     float4 position : SV_Position;
     float3 colour : COLOR;
-    float coverage : COVERAGE;
+    float2 coverage : COVERAGE;  // x: of the ribbon by the hair, y: metres in front of the eye
+#ifndef HAIRLOOM_BLEND
     nointerpolation uint seed : SEED;
+#endif
 };
 
 Output main(uint vertex : SV_VertexID) {
@@ -18,7 +20,9 @@ Output main(uint vertex : SV_VertexID) {
     Output o;
     o.position = corner.position;
     o.colour = gColour[vertex >> 1u].rgb;
-    o.coverage = corner.coverage;
+    o.coverage = float2(corner.coverage, corner.position.w);
+#ifndef HAIRLOOM_BLEND
     o.seed = p.strand;
+#endif
     return o;
 }

@@ -2,12 +2,15 @@
 #include "workspace/groom_scene.h"
 
 #include <algorithm>
+#include <array>
+#include <filesystem>
 
 #include "core/animation/root_motion.h"
 #include "core/base/file.h"
 #include "core/geometry/selection.h"
 #include "core/groom/json_reader.h"
 #include "core/interpolation/follow_hairs.h"
+#include "core/render/png.h"
 #include "core/simulation/simulation.h"
 
 namespace hairloom {
@@ -25,14 +28,50 @@ render::Camera readCamera(JsonReader reader) {
     return camera;
 }
 
-render::Light readLight(JsonReader& reader) {
-    static constexpr std::string_view kKinds[] = {"directional"};
+constexpr double kAnyRadiance = 1e6;
+
+Result<render::Environment> readEnvironment(JsonReader& reader, const std::filesystem::path& folder) {
+    if (reader.has("radiance")) {
+        const Vec3f radiance = reader.vector("radiance", 0, kAnyRadiance);
+        return render::Environment::gradient(radiance, radiance);
+    }
+    if (reader.has("image")) {
+        const std::filesystem::path image = folder / reader.string("image");
+        const double scale = reader.has("scale") ? reader.number("scale", 0, kAnyRadiance) : 1;
+        if (!reader.ok()) return render::Environment();
+        const auto pixels = render::readPng(image);
+        if (!pixels) return tl::unexpected(pixels.error());
+        return render::Environment::fromImage(*pixels, static_cast<float>(scale));
+    }
+    const Vec3f sky = reader.vector("sky", 0, kAnyRadiance);
+    return render::Environment::gradient(sky, reader.vector("ground", 0, kAnyRadiance));
+}
+
+Status readLight(JsonReader& reader, const std::filesystem::path& folder, ViewFile& view) {
+    static constexpr std::array<std::string_view, 3> kKinds{"directional", "point", "environment"};
     render::Light light;
-    reader.choice("type", kKinds);
-    light.toLight_ws = reader.vector("to_light", -kAnyPlace, kAnyPlace);
-    light.irradiance = reader.vector("irradiance", 0, 1e6);
+    const std::size_t kind = reader.choice("type", kKinds);
+    if (kind == 2) {
+        const auto environment = readEnvironment(reader, folder);
+        if (!environment) return tl::unexpected(environment.error());
+        for (std::size_t i = 0; i < environment->coefficients.size(); ++i) {
+            view.environment.coefficients[i] += environment->coefficients[i];
+        }
+        reader.finish();
+        return {};
+    }
+    if (kind == 1) {
+        light.kind = render::LightKind::point;
+        light.position_ws = reader.vector("position", -kAnyPlace, kAnyPlace, "m");
+        light.intensity = reader.vector("intensity", 0, kAnyRadiance);
+    } else {
+        light.toLight_ws = reader.vector("to_light", -kAnyPlace, kAnyPlace);
+        light.irradiance = reader.vector("irradiance", 0, kAnyRadiance);
+    }
+    if (reader.has("shadow")) light.castsShadow = reader.boolean("shadow");
     reader.finish();
-    return light;
+    view.lights.push_back(light);
+    return {};
 }
 
 /// The scattering parameters of the other shading models may stand in a view; Kajiya-Kay has no use for them.
@@ -66,10 +105,11 @@ render::HairMaterial materialOf(const HairMaterial& authored, const ViewFile& vi
 }
 
 /// Skin, and where hair grows half its colour: roots too fine to be drawn one by one shade the skin between
-/// them.
-std::vector<Vec3f> headColours(const Groom& groom, const Vec3f& skin) {
+/// them. A view's albedo is that of the whole head.
+std::vector<Vec3f> headColours(const Groom& groom, const std::optional<Vec3f>& asked) {
+    const Vec3f skin = asked.value_or(render::RenderMesh().albedo);
     std::vector<Vec3f> albedo(groom.scalp->triangleCount(), skin);
-    if (groom.strandCount() == 0) return albedo;
+    if (groom.strandCount() == 0 || asked) return albedo;
     for (const std::uint32_t triangle : groom.scalpSelection) {
         albedo[triangle] = 0.5f * skin + 0.5f * groom.material.rootColour;
     }
@@ -131,8 +171,13 @@ Result<ViewFile> readViewFile(const std::string& path) {
         }
     }
     if (reader.has("lights")) {
-        for (JsonReader& light : reader.objects("lights")) view.lights.push_back(readLight(light));
+        view.hasLights = true;
+        const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+        for (JsonReader& light : reader.objects("lights")) {
+            if (auto status = readLight(light, folder, view); !status) return tl::unexpected(status.error());
+        }
     }
+    if (reader.has("background")) view.background = reader.vector("background", 0, kAnyRadiance);
     if (reader.has("head_albedo")) view.headAlbedo = reader.vector("head_albedo", 0, 1);
     if (reader.has("hair")) readHair(reader.object("hair"), view);
     reader.finish();
@@ -148,11 +193,12 @@ Result<GroomScene> GroomScene::make(const Groom& groom, const std::vector<Vec3f>
     scene.posed_ = pose ? posedGroom(groom, *positions_ws, *pose) : groom;
     scene.material_ = materialOf(groom.material, view);
     scene.radii_ = radiiOfShown(groom, groom.material);
+    scene.matte_ = view.headAlbedo.has_value();
     if (!groom.scalp && !hiddenGroups.empty()) return fail("there is no head to hide groups of");
     if (groom.scalp) {
         const auto hidden = facesOfGroups(*groom.scalp, hiddenGroups);
         if (!hidden) return tl::unexpected(hidden.error());
-        const auto colours = headColours(groom, view.headAlbedo.value_or(render::RenderMesh().albedo));
+        const auto colours = headColours(groom, view.headAlbedo);
         for (const std::uint32_t face : invertSelection(*groom.scalp, *hidden)) {
             const Triangle& triangle = groom.scalp->triangles()[face];
             scene.indices_.insert(scene.indices_.end(), triangle.begin(), triangle.end());
@@ -191,6 +237,7 @@ render::RenderScene GroomScene::scene() const {
         mesh.normals_ws = posed_.scalp->normals();
         mesh.indices = indices_;
         mesh.triangleAlbedo = triangleAlbedo_;
+        mesh.matte = matte_;
         scene.meshes.push_back(mesh);
     }
     if (posed_.strandCount() == 0) return scene;

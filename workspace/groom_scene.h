@@ -17,7 +17,10 @@ namespace hairloom {
 struct ViewFile {
     std::optional<render::Camera> camera;
     std::optional<std::pair<std::uint32_t, std::uint32_t>> size;
+    bool hasLights = false;  ///< then there is no light besides what follows
     std::vector<render::Light> lights;
+    render::Environment environment;
+    std::optional<Vec3f> background;  ///< linear RGB
     std::optional<Vec3f> headAlbedo;
     std::optional<float> rootRadius;  ///< metres
     std::optional<float> tipScale;
@@ -58,6 +61,7 @@ class GroomScene {
     std::vector<Vec3f> hairPositions_ws_;
     std::vector<float> radii_;  ///< of the strands' points where some are hidden, which have no thickness
     render::HairMaterial material_;
+    bool matte_ = false;  ///< the head, where a view says what it is
 };
 
 }  // namespace hairloom

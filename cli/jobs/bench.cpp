@@ -5,13 +5,19 @@
 
 #include "cli/job.h"
 #include "cli/measurements.h"
+#include "cli/render_bench.h"
 #include "cli/simulation_bench.h"
+#include "cli/vectors.h"
 #include "core/base/file.h"
 
 namespace hairloom::cli {
 namespace {
 
 struct BenchOptions {
+    RenderBenchOptions render;
+    std::uint32_t device = 0;
+    std::string size;
+    bool repetitionsGiven = false;
     std::string name;
     int repetitions = 5;
     std::vector<std::uint32_t> strands;
@@ -37,10 +43,30 @@ Result<Report> benchSimulation(const BenchOptions& options, const std::string& c
     return report;
 }
 
+Result<Report> benchRendering(const BenchOptions& options, const std::string& command) {
+    RenderBenchOptions wanted = options.render;
+    if (options.repetitionsGiven) wanted.repetitions = options.repetitions;
+    if (!options.size.empty()) {
+        const auto size = parseSize(options.size);
+        if (!size) return tl::unexpected(size.error());
+        wanted.size = *size;
+    }
+    const auto bench = runRenderBench(wanted);
+    if (!bench) return tl::unexpected(bench.error());
+    Report report = reportOf(*bench);
+    if (options.markdown.empty()) return report;
+    if (auto written = writeFileAtomically(options.markdown, markdownOf(*bench, command)); !written) {
+        return tl::unexpected(written.error());
+    }
+    report["output"] = options.markdown;
+    return report;
+}
+
 Result<Report> bench(const BenchOptions& options, const std::string& command) {
     if (options.name == "sim") return benchSimulation(options, command);
+    if (options.name == "render") return benchRendering(options, command);
     if (options.quick || !options.strands.empty() || !options.markdown.empty())
-        return fail("--strands, --quick and --markdown are of `bench sim`");
+        return fail("--strands, --quick and --markdown are of `bench sim`, --markdown of `bench render` too");
     const auto measured = runBenchmarkProgram(options.name, options.repetitions);
     if (!measured) return tl::unexpected(measured.error());
     Report rows = Report::array();
@@ -58,13 +84,25 @@ void addBenchJob(Jobs& jobs) {
     job.add_option("name", options->name, "What to measure")
         ->required()
         ->check(CLI::IsMember({"brush", "interpolate", "io", "place", "project", "render", "sim"}));
-    job.add_option("--repeat,--repetitions", options->repetitions, "Runs of each measurement")
-        ->check(CLI::Range(1, 1000));
+    auto* const repetitions =
+        job.add_option("--repeat,--repetitions", options->repetitions, "Runs of each measurement")
+            ->check(CLI::Range(1, 1000));
     job.add_option("--strands", options->strands, "sim: numbers of strands, instead of 300,2000,10000,100000")
         ->delimiter(',')
         ->check(CLI::Range(1, 1'000'000));
     job.add_flag("--quick", options->quick, "sim: shorter runs of fewer strands, to see that it works");
-    job.add_option("--markdown", options->markdown, "sim: file to write the tables to");
+    job.add_option("--markdown", options->markdown, "sim, render: file to write the tables to");
+    job.add_option("--hairs", options->render.hairs,
+                   "render: numbers of hairs, instead of 3100,9300,18300,100000")
+        ->delimiter(',')
+        ->check(CLI::Range(1, 1'000'000));
+    job.add_option("--size", options->size, "render: pixels WxH of all pictures");
+    auto* const device =
+        job.add_option("--device", options->device, "render: GPU to use, by its index in `devices`");
+    job.final_callback([options, repetitions, device] {
+        options->repetitionsGiven = repetitions->count() > 0;
+        if (device->count() > 0) options->render.device = options->device;
+    });
 }
 
 }  // namespace hairloom::cli

@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "cli/documents.h"
 #include "cli/job.h"
+#include "cli/progress.h"
 #include "cli/vectors.h"
+#include "core/render/exr.h"
 #include "core/render/png.h"
 #include "core/simulation/frame_record.h"
 #include "workspace/groom_scene.h"
@@ -20,18 +26,56 @@ struct RenderJobOptions {
     std::string shading = "kajiya";
     std::string shadow = "dom";
     std::string antiAliasing = "auto";
+    std::string ribbons = "strip";
+    std::string transparency = "auto";
+    float detail = 0;
     std::string record;
     std::vector<std::string> hiddenGroups;
     std::uint64_t frame = 0;
+    std::vector<std::uint64_t> frames;  ///< first, last, step
+    std::uint32_t turntable = 0;
     std::uint32_t device = 0;
     bool chooseDevice = false;
     float exposure = 1;
     std::uint32_t passes = 8;
+    std::string exr;
+    std::string animation;
+    std::string strip;
+    std::uint32_t milliseconds = 40;
     std::string output;
+
+    bool sequence() const { return !frames.empty() || turntable > 0; }
 };
 
-const std::map<std::string, std::uint32_t> kSamples{
-    {"auto", 0}, {"none", 1}, {"msaa2", 2}, {"msaa4", 4}, {"msaa8", 8}};
+struct AntiAliasing {
+    std::uint32_t samples;
+    render::PostFilter filter = render::PostFilter::none;
+    bool once = false;  ///< a post filter stands instead of averaging
+};
+const std::map<std::string, AntiAliasing> kAntiAliasing{{"auto", {0}},
+                                                        {"none", {1}},
+                                                        {"fxaa", {1, render::PostFilter::fxaa, true}},
+                                                        {"fxaa-hq", {1, render::PostFilter::fxaaHigh, true}},
+                                                        {"msaa2", {2}},
+                                                        {"msaa4", {4}},
+                                                        {"msaa8", {8}}};
+const std::map<std::string, render::Shadows> kShadows{{"none", render::Shadows::none},
+                                                      {"dom", render::Shadows::deepOpacity},
+                                                      {"absorption", render::Shadows::absorption},
+                                                      {"opacity", render::Shadows::opacityMaps}};
+const std::map<std::string, render::Ribbons> kRibbons{{"strip", render::Ribbons::strip},
+                                                      {"tess", render::Ribbons::tessellated}};
+const std::map<std::string, render::Transparency> kTransparency{
+    {"stochastic", render::Transparency::stochastic},
+    {"a2c", render::Transparency::alphaToCoverage},
+    {"weighted", render::Transparency::weighted}};
+
+template <class T>
+std::vector<std::string> namesOf(const std::map<std::string, T>& choices) {
+    std::vector<std::string> names;
+    for (const auto& [name, value] : choices) names.push_back(name);
+    return names;
+}
 
 Result<render::RenderOptions> pictureOptions(const RenderJobOptions& options, const ViewFile& view) {
     render::RenderOptions picture;
@@ -42,20 +86,169 @@ Result<render::RenderOptions> pictureOptions(const RenderJobOptions& options, co
         size = *parsed;
     }
     std::tie(picture.width, picture.height) = size;
-    picture.samples = kSamples.at(options.antiAliasing);
-    picture.shadows = options.shadow == "dom";
+    const AntiAliasing& aa = kAntiAliasing.at(options.antiAliasing);
+    picture.samples = aa.samples;
+    picture.filter = aa.filter;
+    picture.frames = aa.once ? 1 : options.passes;
+    picture.shadows = kShadows.at(options.shadow);
+    picture.ribbons = kRibbons.at(options.ribbons);
+    // One frame is least noisy when blended; the average of several has no bias when left to chance.
+    const std::string transparency = options.transparency != "auto" ? options.transparency
+                                     : picture.frames > 1           ? "stochastic"
+                                                                    : "weighted";
+    picture.transparency = kTransparency.at(transparency);
+    picture.detail = options.detail;
     picture.exposure = options.exposure;
-    picture.frames = options.passes;
     return picture;
 }
 
-Result<GroomScene> loadScene(const RenderJobOptions& options, const ViewFile& view) {
-    const auto groom = loadDocument(options.input);
-    if (!groom) return tl::unexpected(groom.error());
-    if (options.record.empty()) return GroomScene::make(*groom, nullptr, nullptr, view, options.hiddenGroups);
-    const auto frame = readFrame(options.record, *groom, options.frame);
+Result<GroomScene> loadScene(const RenderJobOptions& options, const Groom& groom, std::uint64_t number,
+                             const ViewFile& view) {
+    if (options.record.empty()) return GroomScene::make(groom, nullptr, nullptr, view, options.hiddenGroups);
+    const auto frame = readFrame(options.record, groom, number);
     if (!frame) return tl::unexpected(frame.error());
-    return GroomScene::make(*groom, &frame->positions_ws, &frame->pose, view, options.hiddenGroups);
+    return GroomScene::make(groom, &frame->positions_ws, &frame->pose, view, options.hiddenGroups);
+}
+
+/// One picture of a sequence.
+struct Shot {
+    std::uint64_t frame = 0;
+    float turn = 0;  ///< degrees around the upright axis through the camera's target
+};
+
+Result<std::vector<Shot>> shotsOf(const RenderJobOptions& options) {
+    constexpr std::uint64_t kMostShots = 10'000;
+    if (options.turntable > 0) {
+        std::vector<Shot> shots;
+        for (std::uint32_t i = 0; i < options.turntable; ++i) {
+            shots.push_back(
+                {options.frame, 360 * static_cast<float>(i) / static_cast<float>(options.turntable)});
+        }
+        return shots;
+    }
+    if (options.frames.empty()) return std::vector<Shot>{{options.frame, 0}};
+    if (options.frames.size() > 3 || options.frames.size() < 2) {
+        return fail("--frames takes first, last and step", "FIRST,LAST[,STEP]");
+    }
+    const std::uint64_t step = options.frames.size() == 3 ? options.frames[2] : 1;
+    if (step == 0 || options.frames[1] < options.frames[0] ||
+        (options.frames[1] - options.frames[0]) / step >= kMostShots) {
+        return fail("--frames that go backwards, stand still or are more than 10000");
+    }
+    std::vector<Shot> shots;
+    for (std::uint64_t f = options.frames[0]; f <= options.frames[1]; f += step) shots.push_back({f, 0});
+    return shots;
+}
+
+/// "hair.png" and 7 give "hair_0007.png".
+std::filesystem::path numbered(const std::filesystem::path& path, std::size_t number) {
+    return path.parent_path() /
+           (path.stem().string() + fmt::format("_{:04}", number) + path.extension().string());
+}
+
+void turn(render::Camera& camera, float degrees) {
+    const Eigen::AngleAxisf rotation(radians(degrees), Vec3f::UnitY());
+    camera.eye_ws = camera.target_ws + rotation * (camera.eye_ws - camera.target_ws);
+    camera.up_ws = rotation * camera.up_ws;
+}
+
+/// Side by side, all of the first's size.
+render::Image sideBySide(const std::vector<render::Image>& images) {
+    render::Image strip{0, images[0].height, {}};
+    for (const render::Image& image : images) strip.width += image.width;
+    for (std::uint32_t y = 0; y < strip.height; ++y) {
+        for (const render::Image& image : images) {
+            const auto row = image.rgba.begin() + std::ptrdiff_t{4} * y * image.width;
+            strip.rgba.insert(strip.rgba.end(), row, row + std::ptrdiff_t{4} * image.width);
+        }
+    }
+    return strip;
+}
+
+Report planReport(const render::RenderPlan& plan) {
+    Report passes = Report::array();
+    for (std::size_t i = 0; i < render::kPassCount; ++i) {
+        const auto pass = static_cast<render::Pass>(i);
+        passes.push_back(
+            Report{{"name", render::passName(pass)}, {"on", plan.runs(pass)}, {"why", plan.passes[i].why}});
+    }
+    Report targets = Report::array();
+    for (std::size_t i = 0; i < render::kTargetCount; ++i) {
+        const render::PlannedTarget& target = plan.targets[i];
+        if (target.width == 0) continue;
+        targets.push_back(Report{{"name", render::targetName(static_cast<render::TargetId>(i))},
+                                 {"width", target.width},
+                                 {"height", target.height},
+                                 {"samples", target.samples},
+                                 {"bytes", target.bytes()},
+                                 {"why", target.why}});
+    }
+    return Report{{"passes", std::move(passes)}, {"targets", std::move(targets)}, {"bytes", plan.bytes()}};
+}
+
+Report reportOf(const render::Picture& picture, const RenderJobOptions& options) {
+    Report passes = Report::array();
+    for (const gpu::PassTime& pass : picture.passes) {
+        passes.push_back(Report{{"name", pass.name}, {"ms", pass.milliseconds}});
+    }
+    return Report{{"device", picture.device},       {"hairs", picture.strands},
+                  {"triangles", picture.triangles}, {"curve_points", picture.curvePoints},
+                  {"passes", std::move(passes)},    {"plan", planReport(picture.plan)},
+                  {"output", options.output}};
+}
+
+/// Pictures after one another, with the camera and lights of the first.
+class Photographer {
+  public:
+    Photographer(const RenderJobOptions& options, gpu::Device& device, const Groom& groom,
+                 const ViewFile& view, const render::RenderOptions& how)
+        : options_(options), device_(device), groom_(groom), view_(view), how_(how) {}
+
+    Result<render::Picture> take(const Shot& shot) {
+        if (!scene_ || shot.frame != frame_) {
+            auto loaded = loadScene(options_, groom_, shot.frame, view_);
+            if (!loaded) return tl::unexpected(loaded.error());
+            scene_ = std::move(*loaded);
+            frame_ = shot.frame;
+        }
+        render::RenderScene scene = scene_->scene();
+        if (!camera_) {
+            const auto named = render::parseView(options_.camera);
+            if (!named) return tl::unexpected(named.error());
+            const float aspect = static_cast<float>(how_.width) / static_cast<float>(how_.height);
+            camera_ = view_.camera.value_or(render::frame(*named, scene_->subject(), aspect));
+            lights_ = view_.hasLights ? view_.lights : render::studioLights(*camera_);
+        }
+        scene.camera = *camera_;
+        turn(scene.camera, shot.turn);
+        scene.lights = lights_;
+        if (view_.hasLights) {
+            scene.environment = view_.environment;
+            scene.background = Vec3f::Zero();
+        }
+        scene.background = view_.background.value_or(scene.background);
+        return render::renderPicture(device_, scene, how_);
+    }
+
+  private:
+    const RenderJobOptions& options_;
+    gpu::Device& device_;
+    const Groom& groom_;
+    const ViewFile& view_;
+    const render::RenderOptions& how_;
+    std::optional<GroomScene> scene_;
+    std::uint64_t frame_ = 0;
+    std::optional<render::Camera> camera_;
+    std::vector<render::Light> lights_;
+};
+
+Status writePictures(const RenderJobOptions& options, const render::Picture& picture, std::size_t number) {
+    const bool many = options.sequence();
+    const auto name = [&](const std::string& path) {
+        return many ? numbered(path, number) : std::filesystem::path(path);
+    };
+    if (auto written = render::writePng(name(options.output), picture.image); !written) return written;
+    return options.exr.empty() ? Status{} : render::writeExr(name(options.exr), picture.linear);
 }
 
 Result<Report> renderToFile(const RenderJobOptions& options) {
@@ -65,34 +258,43 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
         if (!read) return tl::unexpected(read.error());
         view = std::move(*read);
     }
-    const auto pictureAs = pictureOptions(options, view);
-    if (!pictureAs) return tl::unexpected(pictureAs.error());
-    const auto groomScene = loadScene(options, view);
-    if (!groomScene) return tl::unexpected(groomScene.error());
-    render::RenderScene scene = groomScene->scene();
-    const auto named = render::parseView(options.camera);
-    if (!named) return tl::unexpected(named.error());
-    const float aspect = static_cast<float>(pictureAs->width) / static_cast<float>(pictureAs->height);
-    scene.camera = view.camera.value_or(render::frame(*named, groomScene->subject(), aspect));
-    scene.lights = view.lights.empty() ? render::studioLights(scene.camera) : view.lights;
-
+    const auto how = pictureOptions(options, view);
+    if (!how) return tl::unexpected(how.error());
+    const auto shots = shotsOf(options);
+    if (!shots) return tl::unexpected(shots.error());
+    const auto groom = loadDocument(options.input);
+    if (!groom) return tl::unexpected(groom.error());
     gpu::DeviceOptions deviceOptions;
     if (options.chooseDevice) deviceOptions.index = options.device;
     const auto device = gpu::createDevice(deviceOptions);
     if (!device) return tl::unexpected(device.error());
-    const auto picture = render::renderPicture(**device, scene, *pictureAs);
-    if (!picture) return tl::unexpected(picture.error());
-    if (auto written = render::writePng(options.output, picture->image); !written) {
-        return tl::unexpected(written.error());
-    }
 
-    Report passes = Report::array();
-    for (const gpu::PassTime& pass : picture->passes) {
-        passes.push_back(Report{{"name", pass.name}, {"ms", pass.milliseconds}});
+    Photographer photographer(options, **device, *groom, view, *how);
+    std::vector<render::Image> images;
+    Report report;
+    std::optional<Progress> progress;
+    if (shots->size() > 1) progress.emplace("drawing", shots->size());
+    for (std::size_t i = 0; i < shots->size(); ++i) {
+        const auto picture = photographer.take((*shots)[i]);
+        if (!picture) return tl::unexpected(picture.error());
+        if (auto written = writePictures(options, *picture, i); !written)
+            return tl::unexpected(written.error());
+        if (i == 0) report = reportOf(*picture, options);
+        if (!options.animation.empty() || !options.strip.empty()) images.push_back(picture->image);
+        if (progress) progress->done(i + 1);
     }
-    return Report{{"device", picture->device},       {"hairs", picture->strands},
-                  {"triangles", picture->triangles}, {"curve_points", picture->curvePoints},
-                  {"passes", std::move(passes)},     {"output", options.output}};
+    progress.reset();
+    if (options.sequence()) report["pictures"] = shots->size();
+    if (!options.animation.empty()) {
+        auto written = render::writeAnimatedPng(options.animation, images, options.milliseconds);
+        if (!written) return tl::unexpected(written.error());
+    }
+    if (!options.strip.empty()) {
+        if (auto written = render::writePng(options.strip, sideBySide(images)); !written) {
+            return tl::unexpected(written.error());
+        }
+    }
+    return report;
 }
 
 }  // namespace
@@ -113,20 +315,49 @@ void addRenderJob(Jobs& jobs) {
         ->delimiter(',')
         ->allow_extra_args(false);
     job.add_option("--shading", options->shading, "Shading model")->check(CLI::IsMember({"kajiya"}));
-    job.add_option("--shadow", options->shadow, "Shadows of hair: none, or deep opacity maps")
-        ->check(CLI::IsMember({"none", "dom"}));
-    job.add_option("--aa", options->antiAliasing,
-                   "Samples a pixel and frame; auto: the most the device has, up to 8")
-        ->check(CLI::IsMember({"auto", "none", "msaa2", "msaa4", "msaa8"}));
+    job.add_option(
+           "--shadow", options->shadow,
+           "Shadows of hair: deep opacity maps, absorption by depth, opacity maps at fixed depths, none")
+        ->check(CLI::IsMember(namesOf(kShadows)));
+    job.add_option(
+           "--aa", options->antiAliasing,
+           "Samples a pixel and frame (auto: the most the device has, up to 8), or FXAA, which draws once")
+        ->check(CLI::IsMember(namesOf(kAntiAliasing)));
+    job.add_option("--ribbons", options->ribbons,
+                   "How hairs become triangles: pulled strips, or tessellated patches")
+        ->check(CLI::IsMember(namesOf(kRibbons)));
+    job.add_option("--transparency", options->transparency,
+                   "Hairs thinner than a sample: a random part of the samples, a fixed part, or blended by "
+                   "weights; auto: "
+                   "blended where the picture is drawn once")
+        ->check(CLI::IsMember({"auto", "stochastic", "a2c", "weighted"}));
+    job.add_option(
+           "--detail", options->detail,
+           "Leave out hairs that are thinner than this part of a pixel, and widen the others; 0: draw all")
+        ->check(CLI::Range(0.0, 100.0));
     job.add_option("--exposure", options->exposure, "Factor on the light before the tone curve")
         ->check(CLI::Range(1e-3, 1e3));
     job.add_option("--passes", options->passes,
                    "Times the picture is drawn, each moved by part of a pixel, and averaged")
         ->check(CLI::Range(1, 1024));
     auto* record = job.add_option("--record", options->record, "Frames that simulate --record wrote");
-    job.add_option("--frame", options->frame, "Frame of the record, from 0")->needs(record);
+    auto* frame = job.add_option("--frame", options->frame, "Frame of the record, from 0")->needs(record);
+    auto* frames =
+        job.add_option("--frames", options->frames, "Frames of the record, FIRST,LAST[,STEP]: a picture each")
+            ->delimiter(',')
+            ->needs(record)
+            ->excludes(frame);
+    job.add_option("--turntable", options->turntable, "Pictures of one turn of the camera around the hair")
+        ->check(CLI::Range(1, 10'000))
+        ->excludes(frames);
+    job.add_option("--animation", options->animation, "Animated PNG to write all pictures to");
+    job.add_option("--strip", options->strip, "PNG to write all pictures side by side to");
+    job.add_option("--milliseconds", options->milliseconds, "Of a picture in the animation")
+        ->check(CLI::Range(1, 65'535));
+    job.add_option("--exr", options->exr, "OpenEXR to write linear light to, before exposure and tone curve");
     auto* device = job.add_option("--device", options->device, "GPU to use, by its index in `devices`");
-    job.add_option("-o,--output", options->output, "PNG to write")->required();
+    job.add_option("-o,--output", options->output, "PNG to write; of several pictures each gets its number")
+        ->required();
     job.final_callback([options, device] { options->chooseDevice = device->count() > 0; });
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/base/parallel.h"
 #include "core/base/random.h"
@@ -106,6 +107,7 @@ Result<MeshOnDevice> uploadMesh(gpu::Device& device, const RenderMesh& mesh) {
     MeshOnDevice result;
     result.indices.assign(mesh.indices.begin(), mesh.indices.end());
     result.vertexCount = mesh.positions_ws.size();
+    result.matte = mesh.matte;
     for (const Vec3f& p : mesh.positions_ws) result.bounds_ws.extend(p);
     std::vector<Vec3f> computed;
     if (mesh.normals_ws.empty()) computed = averagedNormals(mesh.positions_ws, mesh.indices);
@@ -123,6 +125,19 @@ Result<MeshOnDevice> uploadMesh(gpu::Device& device, const RenderMesh& mesh) {
     return result;
 }
 
+/// Strands first…last - 1 of a group that have segments, in an order of chance.
+std::vector<std::size_t> drawingOrder(const RenderStrands& strands, std::size_t first, std::size_t last) {
+    std::vector<std::size_t> order;
+    for (std::size_t i = first; i < last; ++i) {
+        if (strands.offsets[i + 1] - strands.offsets[i] >= 2) order.push_back(i);
+    }
+    Random random(2, first);
+    for (std::size_t i = order.size(); i > 1; --i) {
+        std::swap(order[i - 1], order[random.below(static_cast<std::uint32_t>(i))]);
+    }
+    return order;
+}
+
 /// Strands first…last - 1 of a group.
 Status uploadBatch(gpu::Device& device, const RenderStrands& strands, std::size_t group, std::size_t first,
                    std::size_t last, std::vector<StrandBatch>& batches) {
@@ -130,23 +145,20 @@ Status uploadBatch(gpu::Device& device, const RenderStrands& strands, std::size_
     batch.group = group;
     batch.firstPoint = strands.offsets[first];
     batch.pointCount = strands.offsets[last] - strands.offsets[first];
+    batch.segmentsBefore = {0};
     std::vector<shaders::StrandHeader> headers;
-    for (std::size_t i = first; i < last; ++i) {
-        const std::uint32_t points = strands.offsets[i + 1] - strands.offsets[i];
-        if (points < 2) continue;
+    for (const std::size_t i : drawingOrder(strands, first, last)) {
         shaders::StrandHeader header;
         header.firstPoint = strands.offsets[i] - strands.offsets[first];
-        header.pointCount = points;
-        header.segmentsBefore = batch.segments;
+        header.pointCount = strands.offsets[i + 1] - strands.offsets[i];
+        header.segmentsBefore = batch.segmentsBefore.back();
         header.random = Random(1, i).uniform();
         header.albedo = strands.colours.empty() ? shaders::float4{} : toFloat4(strands.colours[i], 1);
         header.source = static_cast<std::uint32_t>(i);
         headers.push_back(header);
-        batch.pointCounts.push_back(points);
-        batch.segments += points - 1;
+        batch.segmentsBefore.push_back(header.segmentsBefore + header.pointCount - 1);
     }
     if (headers.empty()) return {};
-    batch.strandCount = static_cast<std::uint32_t>(headers.size());
     const std::vector<float> none(1, 0.0f);
     const auto radii = strands.radii.empty() ? std::span<const float>(none)
                                              : strands.radii.subspan(batch.firstPoint, batch.pointCount);
@@ -181,17 +193,85 @@ Status uploadStrands(gpu::Device& device, const RenderStrands& strands, std::siz
 
 std::vector<std::uint32_t> ribbonIndices(const StrandBatch& batch, std::uint32_t subdivisions) {
     std::vector<std::uint32_t> indices;
-    indices.reserve(batch.indexCount(subdivisions));
+    indices.reserve(batch.indexCount(batch.strandCount(), subdivisions));
     std::uint32_t next = 0;
-    for (const std::uint32_t points : batch.pointCounts) {
-        const std::uint32_t vertices = 2 * ((points - 1) * subdivisions + 1);
-        for (std::uint32_t i = 0; i < vertices; ++i) indices.push_back(next++);
+    for (std::uint32_t strand = 0; strand < batch.strandCount(); ++strand) {
+        const std::uint32_t segments = batch.segmentsBefore[strand + 1] - batch.segmentsBefore[strand];
+        for (std::uint32_t i = 0; i < 2 * (segments * subdivisions + 1); ++i) indices.push_back(next++);
         indices.push_back(kRestart);
     }
     return indices;
 }
 
+/// Strands of more than 32 points become several patches that overlap, so that each knows its neighbours'
+/// tangents.
+std::vector<shaders::StrandPatch> strandPatches(StrandBatch& batch) {
+    constexpr std::uint32_t kControlPoints = HAIRLOOM_PATCH_POINTS;
+    std::vector<shaders::StrandPatch> patches;
+    batch.patchesBefore = {0};
+    for (std::uint32_t strand = 0; strand < batch.strandCount(); ++strand) {
+        const std::uint32_t segments = batch.segmentsBefore[strand + 1] - batch.segmentsBefore[strand];
+        for (std::uint32_t done = 0; done < segments;) {
+            shaders::StrandPatch patch;
+            const std::uint32_t before = done > 0 ? 1 : 0;
+            patch.strand = strand;
+            patch.firstPoint = done - before;
+            patch.pointCount = std::min(segments + 1 - patch.firstPoint, kControlPoints);
+            const bool ends = patch.firstPoint + patch.pointCount == segments + 1;
+            patch.segments = patch.pointCount - 1 - before - (ends ? 0 : 1);
+            done += patch.segments;
+            patches.push_back(patch);
+        }
+        batch.patchesBefore.push_back(static_cast<std::uint32_t>(patches.size()));
+    }
+    return patches;
+}
+
+std::uint64_t cellOf(const Vec3f& p, float size) {
+    const auto place = [&](float x) {
+        return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(x / size)) + (1 << 20)) &
+               0x1fffffu;
+    };
+    return place(p.x()) | place(p.y()) << 21u | place(p.z()) << 42u;
+}
+
+std::size_t countDistinct(std::vector<std::uint64_t> cells) {
+    std::ranges::sort(cells);
+    return static_cast<std::size_t>(std::unique(cells.begin(), cells.end()) - cells.begin());
+}
+
+/// About kSampleSize points, spread over all strands.
+std::vector<std::uint32_t> samplePoints(std::size_t points) {
+    constexpr std::size_t kSampleSize = 1u << 16u;
+    const std::size_t step =
+        std::max<std::size_t>(1, points / kSampleSize) | 1u;  // odd: no stride of strands
+    std::vector<std::uint32_t> sample;
+    for (std::size_t i = 0; i < points; i += step) sample.push_back(static_cast<std::uint32_t>(i));
+    return sample;
+}
+
+void takeSample(StrandGroup& group, std::span<const Vec3f> positions_ws) {
+    group.sample_ws.resize(group.sampled.size());
+    std::ranges::transform(group.sampled, group.sample_ws.begin(),
+                           [&](std::uint32_t i) { return positions_ws[i]; });
+}
+
 }  // namespace
+
+float HairDetail::widening() const {
+    const float full = 0.9f * share;
+    const float none = 1.1f * share;
+    if (full >= 1) return 1;
+    if (none <= 1) return 1 / share;
+    // The mean over all strands of the factors of levelWidth() in shaders/curve.comp.hlsl.
+    const float fading = (none - full) * (none - full) - (none - 1) * (none - 1);
+    return 1 / (full + fading / (2 * (none - full)));
+}
+
+std::uint32_t StrandBatch::strandCount(const HairDetail& detail) const {
+    const float wanted = std::ceil(std::min(1.1f * detail.share, 1.0f) * static_cast<float>(strandCount()));
+    return std::clamp(static_cast<std::uint32_t>(wanted), 1u, strandCount());
+}
 
 Result<DeviceScene> DeviceScene::upload(gpu::Device& device, const RenderScene& scene) {
     DeviceScene result;
@@ -212,11 +292,67 @@ Result<DeviceScene> DeviceScene::upload(gpu::Device& device, const RenderScene& 
         group.pointCount = strands.positions_ws.size();
         group.hasRadii = !strands.radii.empty();
         for (const Vec3f& p : strands.positions_ws) group.bounds_ws.extend(p);
+        group.sampled = samplePoints(group.pointCount);
+        takeSample(group, strands.positions_ws);
         result.groups.push_back(std::move(group));
         if (auto status = uploadStrands(device, strands, i, result.batches); !status) {
             return tl::unexpected(status.error());
         }
     }
+    result.measureSpace(scene);
+    return result;
+}
+
+void DeviceScene::measureSpace(const RenderScene& scene) {
+    constexpr float kCell = 0.01f;  // metres, about a wisp
+    std::vector<std::uint64_t> cells;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+        const RenderStrands& strands = scene.strands[g];
+        StrandGroup& group = groups[g];
+        for (std::size_t i = 0; i + 1 < strands.offsets.size(); ++i) {
+            for (std::uint32_t p = strands.offsets[i] + 1; p < strands.offsets[i + 1]; ++p) {
+                const Vec3f& a = strands.positions_ws[p - 1];
+                const Vec3f& b = strands.positions_ws[p];
+                const double step = static_cast<double>((b - a).norm());
+                group.length += step;
+                ++group.segments;
+                if (group.hasRadii) {
+                    group.ownRadius +=
+                        step * static_cast<double>(0.5f * (strands.radii[p - 1] + strands.radii[p]));
+                }
+                cells.push_back(cellOf(0.5f * (a + b), kCell));
+            }
+        }
+        if (group.length > 0) group.ownRadius /= group.length;
+    }
+    const double cell = static_cast<double>(kCell);
+    for (const unsigned axis : {0u, 21u, 42u}) {
+        auto flat = cells;
+        for (std::uint64_t& c : flat) c &= ~(std::uint64_t{0x1fffff} << axis);
+        hairShadow_ += static_cast<double>(countDistinct(std::move(flat))) * cell * cell / 3;
+    }
+    hairVolume_ = static_cast<double>(countDistinct(std::move(cells))) * cell * cell * cell;
+}
+
+HairMeasure DeviceScene::measure() const {
+    double length = 0, surface = 0;
+    std::size_t segments = 0;
+    for (const StrandGroup& group : groups) {
+        // The profile of shaders/curve.comp.hlsl has this mean.
+        const double authored =
+            static_cast<double>(group.material.radius * (2 + group.material.tipScale) / 3);
+        length += group.length;
+        surface += group.length * 2 * (group.hasRadii ? group.ownRadius : authored);
+        segments += group.segments;
+    }
+    HairMeasure result;
+    if (!(length > 0) || !(hairVolume_ > 0)) return result;
+    result.segment = static_cast<float>(length / static_cast<double>(segments));
+    result.diameter = static_cast<float>(surface / length);
+    // Of cylinders in all directions a ray sees π/4 of length times diameter.
+    const double crossed = surface * static_cast<double>(kPi) / 4;
+    result.fibresPerMetre = static_cast<float>(crossed / hairVolume_);
+    result.fibresThrough = static_cast<float>(crossed / hairShadow_);
     return result;
 }
 
@@ -254,6 +390,7 @@ Status DeviceScene::replaceStrands(std::size_t group, std::span<const Vec3f> pos
     g.bounds_ws = *bounds;
     g.devicePositions = nullptr;
     g.positions_ws.assign(positions_ws.begin(), positions_ws.end());
+    takeSample(g, positions_ws);
     return {};
 }
 
@@ -264,7 +401,9 @@ Status DeviceScene::replaceStrands(std::size_t group, gpu::BufferPtr positions_w
     std::uint32_t longest = 0;
     for (const StrandBatch& batch : batches) {
         if (batch.group != group) continue;
-        longest = std::max(longest, *std::ranges::max_element(batch.pointCounts));
+        for (std::uint32_t i = 0; i < batch.strandCount(); ++i) {
+            longest = std::max(longest, batch.segmentsBefore[i + 1] - batch.segmentsBefore[i] + 1);
+        }
     }
     const std::uint64_t needed = std::uint64_t{longest} * g.strandCount * floatsPerPoint * sizeof(float);
     if (positions_ws == nullptr || (floatsPerPoint != 3 && floatsPerPoint != 4) ||
@@ -275,6 +414,7 @@ Status DeviceScene::replaceStrands(std::size_t group, gpu::BufferPtr positions_w
     if (bounds_ws.isEmpty()) return fail("positions on the device without their bounds");
     g.bounds_ws = bounds_ws;
     g.positions_ws.clear();
+    g.sample_ws.clear();
     g.devicePositions = std::move(positions_ws);
     g.floatsPerPoint = floatsPerPoint;
     return {};
@@ -283,7 +423,7 @@ Status DeviceScene::replaceStrands(std::size_t group, gpu::BufferPtr positions_w
 Status DeviceScene::prepareCurves(gpu::Device& device, std::uint32_t subdivisions) {
     Gather gather;
     for (StrandBatch& batch : batches) {
-        const std::uint32_t count = batch.curvePoints(subdivisions);
+        const std::uint32_t count = batch.curvePoints(batch.strandCount(), subdivisions);
         if (subdivisions > batch.curveSubdivisions) {
             gather(batch.curve, written(device, "curve points", count, sizeof(shaders::CurvePoint)));
             gather(batch.colour, written(device, "curve colours", count, sizeof(shaders::float4)));
@@ -297,6 +437,17 @@ Status DeviceScene::prepareCurves(gpu::Device& device, std::uint32_t subdivision
         desc.size = content.size() * sizeof(std::uint32_t);
         desc.usage = gpu::Usage::Index;
         gather(indices, device.createBuffer(desc, bytes(content)));
+    }
+    return gather.status();
+}
+
+Status DeviceScene::preparePatches(gpu::Device& device) {
+    Gather gather;
+    for (StrandBatch& batch : batches) {
+        if (batch.patches != nullptr) continue;
+        const auto patches = strandPatches(batch);
+        gather(batch.patches,
+               structured(device, "strand patches", sizeof(shaders::StrandPatch), bytes(patches)));
     }
     return gather.status();
 }
@@ -333,15 +484,20 @@ Box3f DeviceScene::hairBounds() const {
     return box;
 }
 
+std::vector<Vec3f> DeviceScene::sample() const {
+    std::vector<Vec3f> points;
+    for (const StrandGroup& group : groups) {
+        points.insert(points.end(), group.sample_ws.begin(), group.sample_ws.end());
+        if (!group.sample_ws.empty() || group.bounds_ws.isEmpty()) continue;
+        for (int i = 0; i < 8; ++i)
+            points.push_back(group.bounds_ws.corner(static_cast<Box3f::CornerType>(i)));
+    }
+    return points;
+}
+
 std::uint64_t DeviceScene::triangles() const {
     std::uint64_t count = 0;
     for (const MeshOnDevice& mesh : meshes) count += mesh.indices.size() / 3;
-    return count;
-}
-
-std::uint64_t DeviceScene::strands() const {
-    std::uint64_t count = 0;
-    for (const StrandBatch& batch : batches) count += batch.strandCount;
     return count;
 }
 

@@ -11,24 +11,39 @@
 
 namespace hairloom::render {
 
+/// How much of the hair is drawn, and how fine.
+struct HairDetail {
+    std::uint32_t subdivisions = 1;  ///< curve segments per segment of a strand
+    /// Strands stand in an order of chance; those in the first `share` of it are drawn. Between 0.9 and 1.1
+    /// of it they grow thinner, so that none comes or goes at once. From 1 / 0.9 on all are drawn.
+    float share = 2;
+
+    bool operator==(const HairDetail&) const = default;
+    /// What the strands that are drawn must be widened by to cover what all would.
+    float widening() const;
+};
+
 /// A part of a group of strands that fits the device's buffers.
 struct StrandBatch {
-    std::size_t group = 0;  ///< of RenderScene::strands
-    std::uint32_t strandCount = 0;
-    std::uint32_t segments = 0;  ///< of all strands, as given
+    std::size_t group = 0;       ///< of RenderScene::strands
     std::size_t firstPoint = 0;  ///< in the group's arrays
     std::size_t pointCount = 0;
-    std::vector<std::uint32_t> pointCounts;  ///< of each strand
+    std::vector<std::uint32_t>
+        segmentsBefore;  ///< each strand, as given, in the order of drawing; then of all
     gpu::BufferPtr headers, positions, radii;
     gpu::BufferPtr curve, colour;                     ///< hold what `curveSubdivisions` calls for
     std::map<std::uint32_t, gpu::BufferPtr> indices;  ///< of the ribbons, by subdivisions
+    gpu::BufferPtr patches;                           ///< of tessellated ribbons, once these were asked for
+    std::vector<std::uint32_t> patchesBefore;         ///< each strand; then of all
     std::uint32_t curveSubdivisions = 0;
 
-    std::uint32_t curvePoints(std::uint32_t subdivisions) const {
-        return segments * subdivisions + strandCount;
+    std::uint32_t strandCount() const { return static_cast<std::uint32_t>(segmentsBefore.size() - 1); }
+    std::uint32_t strandCount(const HairDetail& detail) const;  ///< that are drawn
+    std::uint32_t curvePoints(std::uint32_t strands, std::uint32_t subdivisions) const {
+        return segmentsBefore[strands] * subdivisions + strands;
     }
-    std::uint32_t indexCount(std::uint32_t subdivisions) const {
-        return 2 * curvePoints(subdivisions) + strandCount;
+    std::uint32_t indexCount(std::uint32_t strands, std::uint32_t subdivisions) const {
+        return 2 * curvePoints(strands, subdivisions) + strands;
     }
 };
 
@@ -42,6 +57,19 @@ struct StrandGroup {
     gpu::BufferPtr devicePositions;    ///< in place of the batches' own: particle * strandCount + strand
     std::uint32_t floatsPerPoint = 3;  ///< of devicePositions: 3 or 4
     Box3f bounds_ws;
+    double length = 0;  ///< metres of all strands together, where they stood when they were set
+    std::size_t segments = 0;
+    double ownRadius = 0;                ///< metres, mean along the strands, where points have their own
+    std::vector<Vec3f> sample_ws;        ///< points that lights are fitted to
+    std::vector<std::uint32_t> sampled;  ///< their places among the group's points
+};
+
+/// How hair fills space, measured where the strands stood when they were set.
+struct HairMeasure {
+    float diameter = 0;        ///< metres, mean
+    float segment = 0;         ///< metres, mean length of one
+    float fibresPerMetre = 0;  ///< that a ray crosses inside hair, mean
+    float fibresThrough = 0;   ///< that a ray crosses from side to side, mean
 };
 
 struct MeshOnDevice {
@@ -50,6 +78,7 @@ struct MeshOnDevice {
     std::vector<Vec3f> positions_ws, normals_ws;  ///< waiting for their upload
     gpu::BufferPtr positions, normals, indexBuffer, albedo;
     Box3f bounds_ws;
+    bool matte = false;
 };
 
 class DeviceScene {
@@ -64,17 +93,28 @@ class DeviceScene {
 
     /// Makes room for curves of that fineness; nothing happens when there is.
     Status prepareCurves(gpu::Device& device, std::uint32_t subdivisions);
+    /// Makes the patches of tessellated ribbons; nothing happens when they are there.
+    Status preparePatches(gpu::Device& device);
     /// Records the uploads that wait.
     void recordUploads(gpu::CommandList& list);
 
     Box3f meshBounds() const;
     Box3f hairBounds() const;
     std::uint64_t triangles() const;
-    std::uint64_t strands() const;
+    std::vector<Vec3f> sample()
+        const;  ///< of the points of all hair; corners of its bounds where only those are known
 
     std::vector<MeshOnDevice> meshes;
     std::vector<StrandGroup> groups;
     std::vector<StrandBatch> batches;
+    /// With the radii of now.
+    HairMeasure measure() const;
+
+  private:
+    void measureSpace(const RenderScene& scene);
+
+    double hairVolume_ = 0;  ///< m³ that hair is in, where it stood when it was set
+    double hairShadow_ = 0;  ///< m² that it shades, mean of the axes
 };
 
 }  // namespace hairloom::render

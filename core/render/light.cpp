@@ -5,8 +5,32 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace hairloom::render {
+namespace {
+
+constexpr float kMargin = 0.04f;       // of the size, around the hair
+constexpr float kLeastHalf = 1e-4f;    // metres
+constexpr float kWidestSlope = 3.73f;  // of a point light's view: tan 75 degrees
+
+struct Extent {
+    float least = std::numeric_limits<float>::max();
+    float most = std::numeric_limits<float>::lowest();
+
+    void add(float value) {
+        least = std::min(least, value);
+        most = std::max(most, value);
+    }
+    float size() const { return most - least; }
+    void widen(float share) {
+        const float by = std::max(share * size(), kLeastHalf);
+        least -= by;
+        most += by;
+    }
+};
+
+}  // namespace
 
 std::vector<Light> studioLights(const Camera& camera) {
     const Mat3f worldFromView = viewMatrix(camera).block<3, 3>(0, 0).transpose();
@@ -34,30 +58,77 @@ Status check(std::span<const Light> lights) {
     return {};
 }
 
-LightView fitLight(const Vec3f& toLight_ws, const Box3f& bounds_ws) {
-    const Vec3f back = toLight_ws.normalized();
+LightView fitLight(const Light& light, std::span<const Vec3f> hair_ws, const Box3f& all_ws) {
+    LightView view;
+    const bool point = light.kind == LightKind::point;
+    Box3f hair;
+    for (const Vec3f& p : hair_ws) hair.extend(p);
+    if (hair.isEmpty()) hair = Box3f(all_ws.center());
+    // Towards the light; right and up span the shadow map.
+    const Vec3f eye = point ? light.position_ws : hair.center();
+    const Vec3f out = point ? Vec3f(light.position_ws - hair.center()) : light.toLight_ws;
+    const Vec3f back = out.norm() > 1e-6f ? out.normalized() : Vec3f::UnitY();
     const Vec3f helper = std::abs(back.y()) < 0.9f ? Vec3f::UnitY() : Vec3f::UnitX();
     const Vec3f right = helper.cross(back).normalized();
     const Vec3f up = back.cross(right);
-    const Vec3f centre = bounds_ws.center();
-    float half = 0;
-    float depth = 0;
-    for (int i = 0; i < 8; ++i) {
-        const Vec3f corner = bounds_ws.corner(static_cast<Box3f::CornerType>(i)) - centre;
-        half = std::max({half, std::abs(corner.dot(right)), std::abs(corner.dot(up))});
-        depth = std::max(depth, std::abs(corner.dot(back)));
+
+    Extent across[2];
+    Extent along;
+    Extent hairAlong;
+    const auto inView = [&](const Vec3f& p) {
+        const Vec3f d = p - eye;
+        return Vec3f(d.dot(right), d.dot(up), -d.dot(back));
+    };
+    for (const Vec3f& p : hair_ws) {
+        const Vec3f v = inView(p);
+        const float scale =
+            point ? std::max({v.z(), v.head<2>().cwiseAbs().maxCoeff() / kWidestSlope, 1e-4f}) : 1;
+        across[0].add(v.x() / scale);
+        across[1].add(v.y() / scale);
+        hairAlong.add(v.z());
     }
-    half = std::max(half, 1e-4f);
-    depth = std::max(depth, 1e-4f);
-    LightView view;
-    view.width = 2 * half;
-    view.depthRange = 2 * depth;
-    Mat4f& m = view.clipFromWorld;
-    m.block<1, 3>(0, 0) = right.transpose() / half;
-    m.block<1, 3>(1, 0) = up.transpose() / half;
-    m.block<1, 3>(2, 0) = -back.transpose() / (2 * depth);
-    m.block<3, 1>(0, 3) = -(m.block<3, 3>(0, 0) * centre);
-    m(2, 3) += 0.5f;
+    if (hair_ws.empty()) {
+        for (Extent& extent : across) extent = {-kLeastHalf, kLeastHalf};
+        hairAlong.add(0);
+    }
+    along = hairAlong;
+    for (int i = 0; i < 8 && !all_ws.isEmpty(); ++i) {
+        along.add(inView(all_ws.corner(static_cast<Box3f::CornerType>(i))).z());
+    }
+    for (Extent& extent : across) extent.widen(kMargin);
+    along.widen(0.01f);
+    if (point) along.least = std::max(along.least, std::max(1e-3f, 1e-4f * along.most));
+    along.most = std::max(along.most, along.least + kLeastHalf);
+
+    view.eye_ws = point ? Vec4f(eye.x(), eye.y(), eye.z(), 1) : Vec4f(back.x(), back.y(), back.z(), 0);
+    view.spread = std::max(across[0].size(), across[1].size());
+    view.nearPlane = point ? along.least : 0;
+    view.depthRange = along.size();
+    view.hairStart = std::max(hairAlong.least - along.least, 0.0f);
+    view.hairRange = std::max(hairAlong.size(), 1e-3f);
+
+    Mat4f viewFromWorld = Mat4f::Identity();
+    viewFromWorld.block<1, 3>(0, 0) = right.transpose();
+    viewFromWorld.block<1, 3>(1, 0) = up.transpose();
+    viewFromWorld.block<1, 3>(2, 0) = -back.transpose();
+    viewFromWorld.block<3, 1>(0, 3) = -(viewFromWorld.block<3, 3>(0, 0) * eye);
+    // x and y to -1…1, z (forward) to 0…1.
+    Mat4f clip = Mat4f::Zero();
+    for (int axis = 0; axis < 2; ++axis) {
+        const Extent& e = across[axis];
+        clip(axis, axis) = 2 / e.size();
+        clip(axis, point ? 2 : 3) = -(e.least + e.most) / e.size();
+    }
+    if (point) {
+        clip(2, 2) = along.most / along.size();
+        clip(2, 3) = -along.least * along.most / along.size();
+        clip(3, 2) = 1;
+    } else {
+        clip(2, 2) = 1 / along.size();
+        clip(2, 3) = -along.least / along.size();
+        clip(3, 3) = 1;
+    }
+    view.clipFromWorld = clip * viewFromWorld;
     return view;
 }
 

@@ -8,10 +8,14 @@
 
 namespace hairloom::render {
 
-/// A directional light.
+enum class LightKind { directional, point };
+
 struct Light {
-    Vec3f toLight_ws = Vec3f(0.5f, 0.8f, 0.6f);       ///< need not be unit
-    Vec3f irradiance = Vec3f::Constant(3.14159265f);  ///< linear RGB, perpendicular to the light
+    LightKind kind = LightKind::directional;
+    Vec3f toLight_ws = Vec3f(0.5f, 0.8f, 0.6f);       ///< directional: need not be unit
+    Vec3f irradiance = Vec3f::Constant(3.14159265f);  ///< directional: linear RGB, perpendicular to the light
+    Vec3f position_ws = Vec3f(0, 2, 2);               ///< point, metres
+    Vec3f intensity = Vec3f::Constant(3.14159265f);   ///< point: linear RGB irradiance at a distance of 1 m
     bool castsShadow = true;
 };
 
@@ -24,12 +28,20 @@ Status check(std::span<const Light> lights);
 /// Key from the upper left, weaker fill from the right, rim from behind: as seen by the camera.
 std::vector<Light> studioLights(const Camera& camera);
 
-/// An orthographic view along the light that sees all of a box.
+/// The view from a light that its shadow map is drawn in: orthographic for a directional light, else
+/// perspective.
 struct LightView {
     Mat4f clipFromWorld = Mat4f::Identity();
-    float width = 1;       ///< metres across
-    float depthRange = 1;  ///< metres between depth 0 and 1
+    Vec4f eye_ws = Vec4f(0, 1, 0, 0);  ///< w = 0: direction towards the light; w = 1: its place
+    float spread = 1;                  ///< metres across the longer side, at distance 1 of a point light
+    float nearPlane = 0;               ///< metres from a point light; 0 for a directional one
+    float depthRange = 1;              ///< metres between depth 0 and 1
+    float hairStart = 0;               ///< metres behind the near plane where hair begins
+    float hairRange = 1;               ///< metres along the light that hair takes up
 };
-LightView fitLight(const Vec3f& toLight_ws, const Box3f& bounds_ws);
+
+/// Fitted to `hair_ws` across the light, and along it to what throws shadows on hair or gets its shadow as
+/// well. A point light amidst the hair sees only what lies within 75 degrees of the middle.
+LightView fitLight(const Light& light, std::span<const Vec3f> hair_ws, const Box3f& all_ws);
 
 }  // namespace hairloom::render

@@ -23,6 +23,10 @@ Status check(const RenderOptions& o, const gpu::DeviceInfo& device) {
     if (o.shadowResolution < 64 || o.shadowResolution > 4096 || o.shadowResolution * kMaxLights > limit) {
         return fail(fmt::format("a shadow map of {} pixels", o.shadowResolution), "64 to 4096");
     }
+    if (!(o.detail >= 0 && o.detail <= 100)) return fail("a detail outside 0 to 100 pixels");
+    if (o.ribbons == Ribbons::tessellated && !device.tessellation) {
+        return fail("tessellated ribbons on " + device.name, "a device with tessellation");
+    }
     if (!(o.exposure > 0) || !(o.exposure < 1e6f)) return fail("an exposure that is not positive");
     return {};
 }

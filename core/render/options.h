@@ -8,6 +8,33 @@
 
 namespace hairloom::render {
 
+/// How hair stands between a point and a light. The head is a depth map in all of them.
+enum class Shadows {
+    none,
+    deepOpacity,  ///< Yuksel and Keyser 2008: three layers that follow the first hair, and its depth
+    absorption,   ///< depth behind the first hair alone, hair taken to be spread evenly
+    opacityMaps,  ///< Kim and Neumann 2001: four layers at fixed depths
+};
+
+/// How ribbons come about. Both draw the same curve.
+enum class Ribbons {
+    strip,        ///< a vertex shader pulls the points of the curve
+    tessellated,  ///< hull and domain shaders, finer near the eye; needs DeviceInfo::tessellation
+};
+
+/// How hair that covers part of a sample shows what lies behind it.
+enum class Transparency {
+    stochastic,  ///< a random part of the samples (Enderton et al. 2010); averaging frames removes its noise
+    alphaToCoverage,  ///< a fixed part of the samples, the same for all hairs of a pixel
+    weighted,         ///< blended in any order with weights of depth (McGuire and Bavoil 2013)
+};
+
+enum class PostFilter {
+    none,
+    fxaa,      ///< after Lottes 2011: edges of the finished picture, short search
+    fxaaHigh,  ///< the same with a long search
+};
+
 /// Size and quality of a picture; any of it may change from frame to frame.
 struct RenderOptions {
     std::uint32_t width = 1280;  ///< pixels; width × height at most kMaxPixels
@@ -16,13 +43,21 @@ struct RenderOptions {
     std::uint32_t frames = 8;        ///< averaged, each moved by part of a pixel; 1…1024
     std::uint32_t subdivisions = 2;  ///< curve segments per segment of a strand, 1…64
     std::uint32_t shadowResolution = 1024;  ///< pixels of a light's square shadow map, 64…4096
-    bool shadows = true;
+    Shadows shadows = Shadows::deepOpacity;
+    Ribbons ribbons = Ribbons::strip;
+    Transparency transparency = Transparency::stochastic;
+    PostFilter filter = PostFilter::none;
+    /// Hairs are left out and curves made coarser where a hair of mean width is thinner than this part of a
+    /// pixel; those that stay are the wider. 0: all are drawn.
+    float detail = 0;
     float exposure = 2;                  ///< factor before the tone curve
     bool transparentBackground = false;  ///< alpha is coverage; else 1 everywhere
+
+    bool operator==(const RenderOptions&) const = default;
 };
 inline constexpr std::uint64_t kMaxPixels = std::uint64_t{64} << 20u;
 
-/// Errors: a size or number out of its range, for this device.
+/// Errors: a size or number out of its range, or something that this device lacks.
 Status check(const RenderOptions& options, const gpu::DeviceInfo& device);
 
 /// `samples` of the options, with 0 resolved. Errors: the device has no such number of samples.

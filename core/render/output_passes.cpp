@@ -39,7 +39,7 @@ void drawOverlay(gpu::CommandList& list, RendererState& state, gpu::Format forma
         .vertex = "overlay.vert", .pixel = "overlay.frag", .colour = format, .blend = Blend::over};
     needs.depthTest = !onTop;
     list.setPipeline(state.pipelines.graphics(needs));
-    list.bind(std::vector<Binding>{Binding::read(0, state.overlay.vertices)});
+    bind(list, {Binding::read(0, state.overlay.vertices)});
     shaders::OverlayConstants constants;
     constants.clipFromWorld = toShader(overlayMatrix(state));
     constants.viewport = {static_cast<float>(state.options.width), static_cast<float>(state.options.height),
@@ -54,6 +54,22 @@ void drawOverlay(gpu::CommandList& list, RendererState& state, gpu::Format forma
         }
         first += static_cast<std::uint32_t>(batch.vertices.size());
     }
+}
+
+void recordFilter(gpu::CommandList& list, RendererState& state, const gpu::TexturePtr& target) {
+    const auto width = static_cast<float>(state.options.width);
+    const auto height = static_cast<float>(state.options.height);
+    list.beginPass({passName(Pass::filter), {{target, gpu::LoadOp::Discard, {}, {}}}, {}});
+    list.setPipeline(state.pipelines.graphics(
+        {.vertex = "fullscreen.vert", .pixel = "fxaa.frag", .colour = target->desc().format}));
+    shaders::FilterConstants constants;
+    constants.size = {width, height, 1 / width, 1 / height};
+    constants.output = {encodesItself(target->desc().format) ? 0.0f : 1.0f,
+                        state.options.filter == PostFilter::fxaaHigh ? 1.0f : 0.0f, 0, 0};
+    list.setConstants(0, gpu::bytesOf(constants));
+    bind(list, {Binding::read(0, state.targets[TargetId::shown]), Binding::sample(0, state.linearFilter)});
+    list.draw(3);
+    list.endPass();
 }
 
 }  // namespace
@@ -82,16 +98,19 @@ bool OverlayOnDevice::needsDepth() const {
 
 void recordPresent(gpu::CommandList& list, RendererState& state, std::uint32_t frames,
                    const gpu::TexturePtr& target) {
-    list.beginPass({"tone map", {{target, gpu::LoadOp::Discard, {}, {}}}, {}});
+    const bool filter = state.plan.runs(Pass::filter);
+    const gpu::TexturePtr& shown = filter ? state.targets[TargetId::shown] : target;
+    list.beginPass({passName(Pass::toneMap), {{shown, gpu::LoadOp::Discard, {}, {}}}, {}});
     list.setPipeline(state.pipelines.graphics(
-        {.vertex = "fullscreen.vert", .pixel = "tone_map.frag", .colour = target->desc().format}));
+        {.vertex = "fullscreen.vert", .pixel = "tone_map.frag", .colour = shown->desc().format}));
     shaders::ToneConstants constants;
     constants.exposure = {state.options.exposure, 1 / static_cast<float>(frames),
-                          encodesItself(target->desc().format) ? 0.0f : 1.0f, 0};
+                          encodesItself(shown->desc().format) ? 0.0f : 1.0f, 0};
     list.setConstants(0, gpu::bytesOf(constants));
-    list.bind(std::vector<Binding>{Binding::read(0, state.targets.sum)});
+    bind(list, {Binding::read(0, state.targets[TargetId::sum])});
     list.draw(3);
     list.endPass();
+    if (filter) recordFilter(list, state, target);
 }
 
 Status prepareOverlay(gpu::Device& device, gpu::CommandList& list, OverlayOnDevice& overlay) {
@@ -122,23 +141,24 @@ Status prepareOverlay(gpu::Device& device, gpu::CommandList& list, OverlayOnDevi
 
 void recordOverlay(gpu::CommandList& list, RendererState& state, const gpu::TexturePtr& target) {
     const gpu::Format format = target->desc().format;
-    const auto& batches = state.overlay.overlay.batches;
-    if (state.overlay.needsDepth()) {
-        list.beginPass({"overlay depth", {}, {state.targets.overlayDepth, gpu::LoadOp::Clear, 1}});
+    if (state.plan.runs(Pass::overlay)) {
+        list.beginPass({passName(Pass::overlayDepth),
+                        {},
+                        {state.targets[TargetId::overlayDepth], gpu::LoadOp::Clear, 1}});
         list.setPipeline(state.pipelines.graphics(kMeshDepth));
         shaders::MeshConstants constants;
         constants.clipFromWorld = toShader(overlayMatrix(state));
         list.setConstants(1, gpu::bytesOf(constants));
         drawMeshes(list, state);
         list.endPass();
-        list.beginPass({"overlay",
+        list.beginPass({passName(Pass::overlay),
                         {{target, gpu::LoadOp::Load, {}, {}}},
-                        {state.targets.overlayDepth, gpu::LoadOp::Load, 1}});
+                        {state.targets[TargetId::overlayDepth], gpu::LoadOp::Load, 1}});
         drawOverlay(list, state, format, false);
         list.endPass();
     }
-    if (std::ranges::any_of(batches, &OverlayBatch::onTop)) {
-        list.beginPass({"overlay on top", {{target, gpu::LoadOp::Load, {}, {}}}, {}});
+    if (state.plan.runs(Pass::overlayOnTop)) {
+        list.beginPass({passName(Pass::overlayOnTop), {{target, gpu::LoadOp::Load, {}, {}}}, {}});
         drawOverlay(list, state, format, true);
         list.endPass();
     }

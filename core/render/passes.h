@@ -3,6 +3,10 @@
 // The passes of a frame, in their order. Each records into an open command list and reads what RendererState
 // has.
 
+#include <array>
+#include <initializer_list>
+#include <optional>
+
 #include "core/render/device_scene.h"
 #include "core/render/options.h"
 #include "core/render/overlay.h"
@@ -24,19 +28,31 @@ struct OverlayOnDevice {
 
 /// All that the passes of a frame read.
 struct RendererState {
+    explicit RendererState(gpu::Device& device)
+        : pipelines(device), onCpu(device.info().type == gpu::DeviceType::Cpu) {}
+
     Pipelines pipelines;
     DeviceScene scene;
     Camera camera;
     std::vector<Light> lights;
-    Vec3f ambientSky, ambientGround, background;
+    Environment environment;
+    Vec3f background = Vec3f::Zero();
     OverlayOnDevice overlay;
     RenderOptions options;
     std::uint32_t samples = 1;
+    HairDetail detail;
+    /// Ends of the deep opacity layers behind the first hair, as parts of the depth that hair takes up.
+    std::array<float, 3> deepLayers{0.04f, 0.14f, 1.0f};
+    RenderPlan plan;
+    bool onCpu;  ///< the device is a software rasteriser
     Targets targets;
+    gpu::TexturePtr nothing;       ///< one pixel, bound where a texture is not there
+    gpu::SamplerPtr linearFilter;  ///< once a filter was asked for
     std::vector<LightView> lightViews;
     shaders::ShadeConstants shade;  ///< all but the material
 
     Box3f bounds() const;  ///< of all meshes and strands
+    const gpu::TexturePtr& orNothing(TargetId id) const { return targets[id] ? targets[id] : nothing; }
 };
 
 /// Views from the lights, and the constants that follow from camera and lights.
@@ -55,8 +71,15 @@ void recordPresent(gpu::CommandList& list, RendererState& state, std::uint32_t f
 Status prepareOverlay(gpu::Device& device, gpu::CommandList& list, OverlayOnDevice& overlay);
 void recordOverlay(gpu::CommandList& list, RendererState& state, const gpu::TexturePtr& target);
 
-/// All triangles, with whatever pipeline is set.
-void drawMeshes(gpu::CommandList& list, const RendererState& state);
+/// All triangles, or only those of matte meshes or the others, with whatever pipeline is set.
+void drawMeshes(gpu::CommandList& list, const RendererState& state, std::optional<bool> matte = {});
+/// All strands that are drawn, as strips of the curves' points.
+void drawStrips(gpu::CommandList& list, const RendererState& state);
+void bind(gpu::CommandList& list, std::initializer_list<gpu::Binding> bindings);
+void bindShadows(gpu::CommandList& list, const RendererState& state);
+
+/// What the camera's distance and the options ask for.
+HairDetail detailOf(const RendererState& state);
 
 /// Clip space of the camera with planes around `bounds_ws`, moved by parts of a pixel.
 Mat4f cameraMatrix(const RendererState& state, const Box3f& bounds_ws, float jitterX = 0, float jitterY = 0);

@@ -89,6 +89,7 @@ Result<Picture> renderPicture(gpu::Device& device, const RenderScene& scene, con
     const auto shown = std::as_writable_bytes(std::span(picture.image.rgba));
     if (auto status = device.readTexture(*target, shown); !status) return failed(status.error());
     picture.passes = sums.take();
+    picture.plan = renderer.plan();
     picture.device = device.info().name;
     picture.triangles = renderer.triangles();
     picture.strands = renderer.strands();

@@ -8,6 +8,7 @@
 #include "core/gpu/device.h"
 #include "core/render/image.h"
 #include "core/render/options.h"
+#include "core/render/plan.h"
 #include "core/render/scene.h"
 
 namespace hairloom::render {
@@ -16,6 +17,7 @@ struct Picture {
     Image image;
     LinearImage linear;
     std::vector<gpu::PassTime> passes;  ///< those of one name added up over frames, in order of first use
+    RenderPlan plan;
     std::string device;
     std::uint64_t triangles = 0;    ///< of the meshes
     std::uint64_t strands = 0;      ///< drawn

@@ -4,17 +4,32 @@
 #include <string>
 
 #include "shaders/shaders.h"
+#include "shaders/shared/render_types.h"
 
 namespace hairloom::render {
 namespace {
 
 gpu::BlendDesc blendOf(Blend blend) {
-    if (blend == Blend::add) return gpu::BlendDesc::additive();
-    gpu::BlendDesc desc;
+    gpu::BlendDesc desc = gpu::BlendDesc::additive();
+    if (blend == Blend::add || blend == Blend::weighedAndRest) return desc;
+    if (blend == Blend::addAndNearest) {
+        desc.opAlpha = gpu::BlendOp::Max;
+        return desc;
+    }
+    desc = {};
     if (blend == Blend::replace) return desc;
     desc.enabled = true;
     desc.source = gpu::BlendFactor::SourceAlpha;
     desc.target = gpu::BlendFactor::OneMinusSourceAlpha;
+    desc.targetAlpha = gpu::BlendFactor::OneMinusSourceAlpha;
+    return desc;
+}
+
+gpu::BlendDesc restBlend() {
+    gpu::BlendDesc desc;
+    desc.enabled = true;
+    desc.source = desc.sourceAlpha = gpu::BlendFactor::Zero;
+    desc.target = gpu::BlendFactor::OneMinusSourceColour;
     desc.targetAlpha = gpu::BlendFactor::OneMinusSourceAlpha;
     return desc;
 }
@@ -58,11 +73,18 @@ gpu::GraphicsPipelinePtr Pipelines::graphics(const GraphicsNeeds& needs) {
     desc.name = std::string(needs.vertex) + (needs.pixel.empty() ? "" : " and ") + std::string(needs.pixel);
     desc.vertex = shader(needs.vertex, gpu::ShaderStage::Vertex);
     desc.pixel = shader(needs.pixel, gpu::ShaderStage::Pixel);
+    desc.hull = shader(needs.hull, gpu::ShaderStage::Hull);
+    desc.domain = shader(needs.domain, gpu::ShaderStage::Domain);
     desc.topology = needs.topology;
+    if (needs.topology == gpu::Topology::PatchList) desc.patchControlPoints = HAIRLOOM_PATCH_POINTS;
     desc.samples = needs.samples;
     if (needs.colour != gpu::Format::Unknown) {
         desc.colourFormats = {needs.colour};
         desc.blend = {blendOf(needs.blend)};
+        if (needs.secondColour != gpu::Format::Unknown) {
+            desc.colourFormats.push_back(needs.secondColour);
+            desc.blend.push_back(restBlend());
+        }
     }
     if (needs.depthTest || needs.depthWrite) {
         desc.depthFormat = gpu::Format::D32Float;

@@ -10,14 +10,23 @@
 
 namespace hairloom::render {
 
-enum class Blend { replace, add, over };
+enum class Blend {
+    replace,
+    add,
+    over,
+    addAndNearest,   ///< adds colour, keeps the largest alpha
+    weighedAndRest,  ///< first target: adds; second: times what the source leaves
+};
 
 /// What tells one graphics pipeline of this room from another. Names are those of shaders.
 struct GraphicsNeeds {
     std::string_view vertex;
     std::string_view pixel{};  ///< empty: depth only
+    std::string_view hull{};   ///< with domain, or empty
+    std::string_view domain{};
     gpu::Topology topology = gpu::Topology::TriangleList;
     gpu::Format colour = gpu::Format::Unknown;
+    gpu::Format secondColour = gpu::Format::Unknown;
     bool depthTest = false;
     bool depthWrite = false;
     Blend blend = Blend::replace;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 
 #include "core/base/result.h"
 #include "core/render/image.h"
@@ -10,5 +11,13 @@ namespace hairloom::render {
 
 /// Writes the whole file or leaves what was there. The same image gives the same bytes.
 Status writePng(const std::filesystem::path& path, const Image& image);
+
+/// A PNG that plays its frames for ever, `milliseconds` each (1…65535); viewers that know nothing of that
+/// show the first. Errors: no frames, or frames of different sizes.
+Status writeAnimatedPng(const std::filesystem::path& path, std::span<const Image> frames,
+                        std::uint32_t milliseconds);
+
+/// Any PNG, as linear light. Errors: not there, damaged, more than 16384 pixels along a side.
+Result<LinearImage> readPng(const std::filesystem::path& path);
 
 }  // namespace hairloom::render

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/base/profiler.h"
 #include "core/render/passes.h"
 
@@ -31,12 +33,12 @@ struct Changes {
 /// Which work another set of options calls for. Size and samples show in the targets.
 Changes compare(const RenderOptions& before, const RenderOptions& now) {
     Changes changes = Changes::nothing();
-    if (now.subdivisions != before.subdivisions) changes.add(Changes::geometry());
     if (now.shadowResolution != before.shadowResolution || now.shadows != before.shadows) {
         changes.add(Changes::lights());
     }
-    changes.picture |=
-        now.frames != before.frames || now.transparentBackground != before.transparentBackground;
+    changes.picture |= now.frames != before.frames ||
+                       now.transparentBackground != before.transparentBackground ||
+                       now.ribbons != before.ribbons || now.transparency != before.transparency;
     return changes;
 }
 
@@ -48,23 +50,18 @@ struct Renderer::Parts {
     Changes changes;
     std::uint32_t accumulated = 0;
 
-    explicit Parts(gpu::Device& used)
-        : device(used),
-          state{.pipelines = Pipelines(used),
-                .scene = {},
-                .camera = {},
-                .lights = {},
-                .ambientSky = Vec3f::Zero(),
-                .ambientGround = Vec3f::Zero(),
-                .background = Vec3f::Zero(),
-                .overlay = {},
-                .options = {},
-                .samples = 1,
-                .targets = {},
-                .lightViews = {},
-                .shade = {}} {}
+    // What the plan was made for.
+    bool planned = false;
+    SceneFacts plannedFor;
+    RenderOptions plannedOptions;
+    std::uint32_t plannedSamples = 0;
 
-    Status prepare(const RenderOptions& options);
+    explicit Parts(gpu::Device& used) : device(used), state(used) {}
+
+    SceneFacts facts(bool presents) const;
+    Status prepareTargets(bool presents);
+    Status prepareHelpers();
+    Status prepare(const RenderOptions& options, bool presents);
     void recordChanges(gpu::CommandList& list);
 };
 
@@ -83,8 +80,7 @@ Status Renderer::setScene(const RenderScene& scene) {
     state.scene = std::move(*uploaded);
     state.camera = scene.camera;
     state.lights = scene.lights;
-    state.ambientSky = scene.ambientSky;
-    state.ambientGround = scene.ambientGround;
+    state.environment = scene.environment;
     state.background = scene.background;
     return {};
 }
@@ -115,7 +111,8 @@ Status Renderer::setMaterial(std::size_t group, const HairMaterial& material) {
     auto& groups = parts_->state.scene.groups;
     if (group >= groups.size()) return fail(fmt::format("group {} of {} of strands", group, groups.size()));
     const HairMaterial& before = groups[group].material;
-    const bool sameShape = before.radius == material.radius && before.tipScale == material.tipScale;
+    const bool sameShape = before.radius == material.radius && before.tipScale == material.tipScale &&
+                           before.radiusVariation == material.radiusVariation;
     groups[group].material = material;
     parts_->changes.add(sameShape ? Changes::looks() : Changes::geometry());
     return {};
@@ -135,9 +132,8 @@ Status Renderer::setLights(std::span<const Light> lights) {
     return {};
 }
 
-void Renderer::setAmbient(const Vec3f& sky, const Vec3f& ground) {
-    parts_->state.ambientSky = sky;
-    parts_->state.ambientGround = ground;
+void Renderer::setEnvironment(const Environment& environment) {
+    parts_->state.environment = environment;
     parts_->changes.add(Changes::looks());
 }
 
@@ -163,27 +159,81 @@ void Renderer::restart() {
     parts_->changes.picture = true;
 }
 
-Status Renderer::Parts::prepare(const RenderOptions& options) {
+SceneFacts Renderer::Parts::facts(bool presents) const {
+    SceneFacts facts;
+    facts.meshes = state.scene.triangles() > 0;
+    facts.hair = !state.scene.batches.empty();
+    facts.lights = static_cast<std::uint32_t>(state.lights.size());
+    facts.shadowLights =
+        static_cast<std::uint32_t>(std::ranges::count(state.lights, true, &Light::castsShadow));
+    facts.overlay = state.overlay.needsDepth();
+    facts.overlayOnTop = std::ranges::any_of(state.overlay.overlay.batches, &OverlayBatch::onTop);
+    facts.presents = presents;
+    return facts;
+}
+
+Status Renderer::Parts::prepareTargets(bool presents) {
+    const SceneFacts now = facts(presents);
+    if (!planned || now != plannedFor || state.options != plannedOptions || state.samples != plannedSamples) {
+        state.plan = planRender(now, state.options, state.samples);
+        planned = true;
+        plannedFor = now;
+        plannedOptions = state.options;
+        plannedSamples = state.samples;
+    }
+    const auto isNew = state.targets.fit(device, state.plan);
+    if (!isNew) return tl::unexpected(isNew.error());
+    for (const TargetId id : {TargetId::headDepth, TargetId::firstHair, TargetId::opacity}) {
+        if ((*isNew)[static_cast<std::size_t>(id)]) changes.add(Changes::lights());
+    }
+    for (const TargetId id : {TargetId::colour, TargetId::sum}) {
+        changes.picture |= (*isNew)[static_cast<std::size_t>(id)];
+    }
+    return {};
+}
+
+/// What is needed once and not by every scene.
+Status Renderer::Parts::prepareHelpers() {
+    if (state.nothing == nullptr) {
+        gpu::TextureDesc desc;
+        desc.name = "nothing";
+        const std::array<std::byte, 4> black{};
+        auto made = device.createTexture(desc, black);
+        if (!made) return tl::unexpected(made.error());
+        state.nothing = std::move(*made);
+    }
+    if (state.plan.runs(Pass::filter) && state.linearFilter == nullptr) {
+        auto made = device.createSampler({});
+        if (!made) return tl::unexpected(made.error());
+        state.linearFilter = std::move(*made);
+    }
+    return {};
+}
+
+Status Renderer::Parts::prepare(const RenderOptions& options, bool presents) {
     if (auto status = check(options, device.info()); !status) return status;
     const auto samples = chooseSamples(options, device.info());
     if (!samples) return tl::unexpected(samples.error());
     changes.add(compare(state.options, options));
     state.options = options;
     state.samples = *samples;
-    const auto fitted = fitTargets(device, options, *samples, state.overlay.needsDepth(), state.targets);
-    if (!fitted) return tl::unexpected(fitted.error());
-    if (fitted->shadows) changes.add(Changes::lights());
-    changes.picture |= fitted->picture;
-    return state.scene.prepareCurves(device, options.subdivisions);
+    const HairDetail detail = detailOf(state);
+    if (detail != state.detail) changes.add(Changes::geometry());
+    state.detail = detail;
+    if (auto status = prepareTargets(presents); !status) return status;
+    if (auto status = prepareHelpers(); !status) return status;
+    if (options.ribbons == Ribbons::tessellated) {
+        if (auto status = state.scene.preparePatches(device); !status) return status;
+    }
+    return state.scene.prepareCurves(device, detail.subdivisions);
 }
 
 void Renderer::Parts::recordChanges(gpu::CommandList& list) {
-    const bool hair = !state.scene.batches.empty();
     state.scene.recordUploads(list);
     if (changes.shading) setUpLights(state);
-    if (changes.curves && hair) recordCurves(list, state);
+    if (changes.curves && state.plan.runs(Pass::curves)) recordCurves(list, state);
     if (changes.shadows) recordShadowMaps(list, state);
-    if (changes.shading && hair) recordShading(list, state);
+    if (changes.shading && state.plan.runs(Pass::shade)) recordShading(list, state);
     if (changes.picture) accumulated = 0;
     changes = Changes::nothing();
 }
@@ -197,7 +247,7 @@ Status Renderer::record(gpu::CommandList& list, const RenderOptions& options, co
                                 target->desc().height, target->desc().samples),
                     fmt::format("{}x{} and 1, as the options say", options.width, options.height));
     }
-    if (auto status = p.prepare(options); !status) return status;
+    if (auto status = p.prepare(options, target != nullptr); !status) return status;
     if (auto status = prepareOverlay(p.device, list, p.state.overlay); !status) return status;
     p.recordChanges(list);
     if (p.accumulated < options.frames) {
@@ -216,7 +266,7 @@ std::uint32_t Renderer::accumulated() const {
 }
 
 const gpu::TexturePtr& Renderer::linearSum() const {
-    return parts_->state.targets.sum;
+    return parts_->state.targets[TargetId::sum];
 }
 
 Box3f Renderer::bounds() const {
@@ -228,15 +278,23 @@ std::uint64_t Renderer::triangles() const {
 }
 
 std::uint64_t Renderer::strands() const {
-    return parts_->state.scene.strands();
+    std::uint64_t count = 0;
+    for (const StrandBatch& batch : parts_->state.scene.batches)
+        count += batch.strandCount(parts_->state.detail);
+    return count;
 }
 
 std::uint64_t Renderer::curvePoints() const {
+    const HairDetail& detail = parts_->state.detail;
     std::uint64_t count = 0;
     for (const StrandBatch& batch : parts_->state.scene.batches) {
-        count += batch.curvePoints(parts_->state.options.subdivisions);
+        count += batch.curvePoints(batch.strandCount(detail), detail.subdivisions);
     }
     return count;
+}
+
+const RenderPlan& Renderer::plan() const {
+    return parts_->state.plan;
 }
 
 }  // namespace hairloom::render

@@ -13,6 +13,7 @@
 
 #include "core/render/options.h"
 #include "core/render/overlay.h"
+#include "core/render/plan.h"
 #include "core/render/scene.h"
 
 namespace hairloom::gpu {
@@ -50,7 +51,7 @@ class Renderer {
     Status setMaterial(std::size_t group, const HairMaterial& material);
     Status setCamera(const Camera& camera);
     Status setLights(std::span<const Light> lights);
-    void setAmbient(const Vec3f& sky, const Vec3f& ground);
+    void setEnvironment(const Environment& environment);
     void setBackground(const Vec3f& linear);
     /// Does not restart the average: marks are drawn over the finished picture.
     Status setOverlay(Overlay overlay);
@@ -72,8 +73,10 @@ class Renderer {
 
     Box3f bounds() const;  ///< of all meshes and strands
     std::uint64_t triangles() const;
-    std::uint64_t strands() const;      ///< that are drawn
-    std::uint64_t curvePoints() const;  ///< of the last frame
+    std::uint64_t strands() const;      ///< drawn in the last frame
+    std::uint64_t curvePoints() const;  ///< of these
+    /// Of the last frame.
+    const RenderPlan& plan() const;
 
   private:
     struct Parts;

@@ -8,6 +8,7 @@
 #include "core/base/math.h"
 #include "core/base/result.h"
 #include "core/render/camera.h"
+#include "core/render/environment.h"
 #include "core/render/light.h"
 
 namespace hairloom::render {
@@ -19,14 +20,16 @@ struct RenderMesh {
     std::span<const std::uint32_t> indices;    ///< three a triangle
     std::span<const Vec3f> triangleAlbedo;     ///< linear RGB, one a triangle; empty: `albedo`
     Vec3f albedo = Vec3f(0.5f, 0.35f, 0.27f);  ///< linear RGB
+    bool matte = false;                        ///< a plain Lambertian: no light under the skin, no highlight
 };
 
 /// How strands scatter light. Colours are linear RGB.
 struct HairMaterial {
     Vec3f albedo = Vec3f(0.21f, 0.115f, 0.06f);  ///< 0…1; where a strand has no colour of its own
-    float radius = 0.00004f;  ///< metres at the root, where points have none; 25–60 µm are human
-    float tipScale = 0.3f;    ///< radius at the tip, times that at the root; 0…1
-    float diffuse = 0.55f;    ///< c_d, 0…1
+    float radius = 0.00004f;    ///< metres at the root, where points have none; 25–60 µm are human
+    float tipScale = 0.3f;      ///< radius at the tip, times that at the root; 0…1
+    float radiusVariation = 0;  ///< random spread of the radius from strand to strand, ±, 0…1
+    float diffuse = 0.55f;      ///< c_d, 0…1
     Vec3f primary = Vec3f::Constant(0.10f);   ///< c_s of the first highlight, which has the light's colour
     float primaryExponent = 90;               ///< m: higher is narrower, 0…1000
     float primaryShift = 4.0f;                ///< degrees towards the root
@@ -54,10 +57,10 @@ struct RenderScene {
     std::vector<RenderMesh> meshes;
     std::vector<RenderStrands> strands;
     Camera camera;
-    std::vector<Light> lights;                         ///< at most kMaxLights
-    Vec3f ambientSky = Vec3f(0.22f, 0.235f, 0.26f);    ///< radiance from above, linear RGB
-    Vec3f ambientGround = Vec3f(0.11f, 0.10f, 0.09f);  ///< and from below
-    Vec3f background = Vec3f(0.085f, 0.09f, 0.10f);    ///< linear RGB
+    std::vector<Light> lights;  ///< at most kMaxLights
+    /// Light from around; by default that of a room under a clear sky.
+    Environment environment = Environment::gradient(Vec3f(0.22f, 0.235f, 0.26f), Vec3f(0.11f, 0.10f, 0.09f));
+    Vec3f background = Vec3f(0.085f, 0.09f, 0.10f);  ///< linear RGB
 };
 
 /// Of all meshes and strands.

@@ -3,29 +3,25 @@
 // Textures that the passes draw into.
 
 #include "core/gpu/device.h"
-#include "core/render/options.h"
+#include "core/render/plan.h"
 
 namespace hairloom::render {
 
-inline constexpr gpu::Format kColourFormat = gpu::Format::Rgba16Float;
+class Targets {
+  public:
+    /// Makes what the plan has and is missing or has another size, lets go what the plan has not. Returns
+    /// which textures are new.
+    Result<std::array<bool, kTargetCount>> fit(gpu::Device& device, const RenderPlan& plan);
 
-struct Targets {
-    gpu::TexturePtr headDepth, firstHair, opacity;  ///< shadow atlas: one square a light, side by side
-    gpu::TexturePtr colour, resolved, depth;
-    gpu::TexturePtr sum;           ///< of the frames that are averaged
-    gpu::TexturePtr overlayDepth;  ///< of the meshes alone, one sample a pixel
-
+    const gpu::TexturePtr& operator[](TargetId id) const { return textures_[static_cast<std::size_t>(id)]; }
     /// What the frame has drawn, one sample a pixel.
-    const gpu::TexturePtr& frame() const { return resolved != nullptr ? resolved : colour; }
-};
+    const gpu::TexturePtr& frame() const {
+        return (*this)[TargetId::resolved] != nullptr ? (*this)[TargetId::resolved]
+                                                      : (*this)[TargetId::colour];
+    }
 
-/// Makes what is missing or has another size, lets go what is not needed. `changed` is set when a texture
-/// that keeps its content from frame to frame was made anew: the shadow atlas or the sum.
-struct TargetChanges {
-    bool shadows = false;
-    bool picture = false;
+  private:
+    std::array<gpu::TexturePtr, kTargetCount> textures_;
 };
-Result<TargetChanges> fitTargets(gpu::Device& device, const RenderOptions& options, std::uint32_t samples,
-                                 bool overlayNeedsDepth, Targets& targets);
 
 }  // namespace hairloom::render

@@ -26,6 +26,11 @@ float encodeSrgb(float linear) {
     return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f;
 }
 
+float decodeSrgb(float encoded) {
+    const float x = std::clamp(encoded, 0.0f, 1.0f);
+    return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f);
+}
+
 float filmic(float linear) {
     return hable(std::max(linear, 0.0f)) / hable(kFilmicWhite);
 }

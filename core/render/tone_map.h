@@ -7,6 +7,8 @@ namespace hairloom::render {
 
 /// Encodes one linear value 0…1 (clamped) as sRGB 0…1 (IEC 61966-2-1).
 float encodeSrgb(float linear);
+/// And back.
+float decodeSrgb(float encoded);
 
 /// The filmic curve of Hable 2010 scaled so that `kFilmicWhite` becomes 1; 0 stays 0, increasing.
 float filmic(float linear);

@@ -130,6 +130,7 @@ render::RenderOptions RenderWork::options() const {
     options.frames = last_->moving ? 1 : kFramesWhenStill;
     options.subdivisions = last_->moving ? 1 : 2;
     options.shadowResolution = last_->moving ? 512 : 1024;
+    options.detail = last_->moving ? 0.5f : 0.0f;
     return options;
 }
 

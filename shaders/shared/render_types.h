@@ -12,6 +12,17 @@ namespace hairloom::shaders {
 
 #define HAIRLOOM_MAX_LIGHTS 3
 
+// render::Shadows
+#define HAIRLOOM_SHADOWS_NONE 0
+#define HAIRLOOM_SHADOWS_DEEP_OPACITY 1
+#define HAIRLOOM_SHADOWS_ABSORPTION 2
+#define HAIRLOOM_SHADOWS_OPACITY_MAPS 3
+
+// render::Transparency
+#define HAIRLOOM_TRANSPARENCY_STOCHASTIC 0
+#define HAIRLOOM_TRANSPARENCY_ALPHA_TO_COVERAGE 1
+#define HAIRLOOM_TRANSPARENCY_WEIGHTED 2
+
 // One strand as it was given: a run of points, and where its finer curve goes.
 struct StrandHeader {
     uint firstPoint;  // in the batch's own arrays
@@ -34,14 +45,30 @@ struct CurvePoint {
     uint unused;
 };
 
+// A run of a strand's given points that one tessellated ribbon has as control points.
+#define HAIRLOOM_PATCH_POINTS 32
+struct StrandPatch {
+    uint strand;      // in its batch
+    uint firstPoint;  // of the strand; the one before the ribbon's first where that is not the root
+    uint pointCount;
+    uint segments;  // that the ribbon covers
+};
+
 struct CurveConstants {
     uint strandCount;
     uint subdivisions;    // curve segments per given segment
     uint floatsPerPoint;  // of the positions
     uint strandMajor;  // 0: points of a strand one after the other; else point p of strand s of the group at
                        // element p * strandMajor + s
-    float4
-        radius;  // x: metres at the root, y: of the tip by that of the root, z: 1 when points have their own
+    float4 radius;  // x: metres at the root, y: of the tip by that of the root, z: 1 when points have their
+                    // own, w: random spread from strand to strand, a part of it
+    float4 detail;  // x: share of the strands that have their full width, y: share from which they have none,
+                    // z: one by the number of strands, w: widening
+};
+
+struct PatchConstants {
+    uint4 numbers;  // x: first patch, y: curve segments per given segment
+    float4 view;    // x, y: size in pixels, z: pixels that a piece of a ribbon may be long
 };
 
 // Projection of strands or mesh, for the camera or for a light.
@@ -50,29 +77,33 @@ struct ViewConstants {
     float4 eye_ws;   // w = 1: position of a perspective eye; w = 0: direction towards an orthographic one
     float4 pixel;    // x: world size of a pixel at distance 1 (w = 1) or anywhere (w = 0); y: least width in
                      // pixels
-    uint4 sampling;  // x: samples a pixel, y: frame number
-    float4 layers;   // ends of the opacity layers behind the first hair, in metres
-    float4 range;    // x: depth range of the light's frustum in metres
+    uint4 sampling;  // x: samples a pixel, y: frame number, z: HAIRLOOM_TRANSPARENCY_*, w: HAIRLOOM_SHADOWS_*
+    float4 layers;   // of a light: see LightConstants
+    float4
+        range;  // of a light: see LightConstants; of the camera: x: where hair begins, y: its depth, metres
 };
 
 struct LightConstants {
     float4x4 clipFromWorld;
-    float4 toLight_ws;  // unit
-    float4 irradiance;  // linear RGB, perpendicular to the light
-    float4 tile;        // x: left edge of the light's square in the atlas, as a part of its width
-    float4 range;       // x: depth range of the frustum in metres, y: 1 when it casts shadows
+    float4 toLight_ws;  // w = 0: unit direction; w = 1: place of a point light
+    float4 irradiance;  // linear RGB, perpendicular to the light; of a point light at 1 m
+    float4 tile;    // x: left edge of the light's square in the atlas, y: its size, in pixels; z: 1 where the
+                    // head casts shadows
+    float4 range;   // x: depth range of the frustum in metres, y: HAIRLOOM_SHADOWS_*, z: near plane of a
+                    // perspective view, 0 for an orthographic one; w: where hair begins, metres behind it
+    float4 layers;  // ends of the opacity layers in metres behind the first hair, or behind where hair
+                    // begins; absorption: x: fibres a metre, y: most fibres
 };
 
 struct ShadeConstants {
     float4 eye_ws;
-    float4 ambientSky;     // linear RGB radiance from above
-    float4 ambientGround;  // and from below
-    float4 primary;        // RGB strength of the first highlight, w: exponent
-    float4 secondary;      // RGB strength of the second, multiplied by the albedo; w: exponent
+    float4 environment[9];  // radiance from around as real spherical harmonics, linear RGB; w of the first: 1
+                            // when there is any
+    float4 primary;         // RGB strength of the first highlight, w: exponent
+    float4 secondary;       // RGB strength of the second, multiplied by the albedo; w: exponent
     float4 shift;  // x, y: tilt of the two highlights (tangent of the angle), z: diffuse share, w: scattering
     float4 normalisation;  // x: 1/(pi R_O(0)), y, z: 1/(pi R_O(m)) of the two highlights
     float4 rootTip;        // x: brightness at the root, y: at the tip, z: random variation, w: fibre opacity
-    float4 layers;         // as in ViewConstants
     float4 albedo;         // linear RGB of strands without a colour of their own
     uint4 counts;          // x: curve points, y: lights, z: row length of the dispatch in points
     LightConstants lights[HAIRLOOM_MAX_LIGHTS];
@@ -88,6 +119,11 @@ struct ToneConstants {
                       // itself
 };
 
+struct FilterConstants {
+    float4 size;    // x, y: of the picture in pixels, z, w: one by them
+    float4 output;  // x: 1 when colours stay sRGB, y: 1 for the long search
+};
+
 // Marks over the picture: OverlayShape says what `shape` means.
 struct OverlayConstants {
     float4x4 clipFromWorld;
@@ -99,6 +135,12 @@ struct OverlayConstants {
 struct OverlayVertex {
     float4 position_ws;
     float4 colour;
+};
+
+// One place for what lights do, as tests feed it.
+struct LightCase {
+    float4 position_ws;  // w: metres of hair towards the light that are left out
+    float4 direction;    // unit
 };
 
 // One case for the shader's Kajiya-Kay, as tests feed it.
@@ -117,7 +159,9 @@ HAIRLOOM_OFFSET(CurvePoint, tangentXy, 16);
 HAIRLOOM_OFFSET(CurvePoint, along, 20);
 HAIRLOOM_OFFSET(CurvePoint, strand, 24);
 static_assert(sizeof(CurvePoint) == 32);
-static_assert(sizeof(CurveConstants) == 32);
+static_assert(sizeof(StrandPatch) == 16);
+static_assert(sizeof(PatchConstants) == 32);
+static_assert(sizeof(CurveConstants) == 48);
 HAIRLOOM_OFFSET(ViewConstants, eye_ws, 64);
 HAIRLOOM_OFFSET(ViewConstants, pixel, 80);
 HAIRLOOM_OFFSET(ViewConstants, sampling, 96);
@@ -126,17 +170,19 @@ HAIRLOOM_OFFSET(ViewConstants, range, 128);
 static_assert(sizeof(ViewConstants) == 144);
 HAIRLOOM_OFFSET(LightConstants, toLight_ws, 64);
 HAIRLOOM_OFFSET(LightConstants, range, 112);
-static_assert(sizeof(LightConstants) == 128);
-HAIRLOOM_OFFSET(ShadeConstants, shift, 80);
-HAIRLOOM_OFFSET(ShadeConstants, layers, 128);
-HAIRLOOM_OFFSET(ShadeConstants, albedo, 144);
-HAIRLOOM_OFFSET(ShadeConstants, counts, 160);
-HAIRLOOM_OFFSET(ShadeConstants, lights, 176);
-static_assert(sizeof(ShadeConstants) == 176 + 128 * HAIRLOOM_MAX_LIGHTS);
+HAIRLOOM_OFFSET(LightConstants, layers, 128);
+static_assert(sizeof(LightConstants) == 144);
+HAIRLOOM_OFFSET(ShadeConstants, shift, 192);
+HAIRLOOM_OFFSET(ShadeConstants, albedo, 240);
+HAIRLOOM_OFFSET(ShadeConstants, counts, 256);
+HAIRLOOM_OFFSET(ShadeConstants, lights, 272);
+static_assert(sizeof(ShadeConstants) == 272 + 144 * HAIRLOOM_MAX_LIGHTS);
 static_assert(sizeof(MeshConstants) == 80);
 static_assert(sizeof(ToneConstants) == 16);
+static_assert(sizeof(FilterConstants) == 32);
 static_assert(sizeof(OverlayConstants) == 96);
 static_assert(sizeof(OverlayVertex) == 32);
+static_assert(sizeof(LightCase) == 32);
 static_assert(sizeof(KajiyaCase) == 48);
 }  // namespace hairloom::shaders
 #endif

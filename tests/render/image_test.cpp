@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 #include <png.h>
+#include <tinyexr.h>
+#include <zlib.h>
 
 #include <filesystem>
 
+#include "core/base/file.h"
 #include "core/base/random.h"
+#include "core/render/exr.h"
 #include "core/render/png.h"
 #include "core/render/tone_map.h"
 
@@ -33,6 +37,79 @@ TEST(Png, WhatCannotBeWrittenIsAnError) {
     EXPECT_FALSE(writePng(std::filesystem::path(testing::TempDir()) / "empty.png", {}));
     EXPECT_FALSE(
         writePng(std::filesystem::path(testing::TempDir()) / "no" / "folder.png", {1, 1, {1, 2, 3, 4}}));
+}
+
+TEST(Png, AnimationsHoldTheirFrames) {
+    Random random(6);
+    std::vector<Image> frames(3, Image{20, 11, std::vector<std::uint8_t>(20 * 11 * 4)});
+    for (Image& frame : frames) {
+        for (auto& value : frame.rgba) value = static_cast<std::uint8_t>(random.below(256));
+    }
+    const auto path = std::filesystem::path(testing::TempDir()) / "hairloom-apng-test.png";
+    ASSERT_TRUE(writeAnimatedPng(path, frames, 40));
+    // What knows nothing of animations sees the first frame.
+    const auto first = readPng(path);
+    ASSERT_TRUE(first) << first.error().message();
+    ASSERT_EQ(first->width, 20u);
+    for (std::size_t i = 0; i < first->rgba.size(); ++i) {
+        const float value = static_cast<float>(frames[0].rgba[i]) / 255;
+        ASSERT_NEAR(first->rgba[i], i % 4 == 3 ? value : decodeSrgb(value), 1e-6f);
+    }
+    // Chunks follow each other to the end, with their numbers in sequence and right checksums.
+    const auto file = readFile(path).value();
+    std::string types;
+    std::uint32_t sequence = 0;
+    const auto number = [&](std::size_t at) {
+        std::uint32_t value = 0;
+        for (std::size_t i = 0; i < 4; ++i)
+            value = value << 8u | std::to_integer<std::uint32_t>(file[at + i]);
+        return value;
+    };
+    std::size_t at = 8;
+    while (at + 12 <= file.size()) {
+        const std::uint32_t size = number(at);
+        const std::string type(reinterpret_cast<const char*>(&file[at + 4]), 4);
+        types += type + " ";
+        if (type == "fcTL" || type == "fdAT") {
+            EXPECT_EQ(number(at + 8), sequence++);
+        }
+        EXPECT_EQ(number(at + 8 + size), crc32(0, reinterpret_cast<const Bytef*>(&file[at + 4]), size + 4));
+        at += 12 + size;
+    }
+    EXPECT_EQ(at, file.size());
+    EXPECT_EQ(types, "IHDR acTL fcTL IDAT fcTL fdAT fcTL fdAT IEND ");
+    frames[1].width = 10;
+    EXPECT_FALSE(writeAnimatedPng(path, frames, 40));
+    EXPECT_FALSE(writeAnimatedPng(path, {}, 40));
+    std::filesystem::remove(path);
+}
+
+TEST(Png, DamagedOnesAreErrors) {
+    const auto path = std::filesystem::path(testing::TempDir()) / "hairloom-bad.png";
+    ASSERT_TRUE(writeFileAtomically(path, std::string_view("no picture")));
+    EXPECT_FALSE(readPng(path));
+    EXPECT_FALSE(readPng(path.string() + ".not-there"));
+    std::filesystem::remove(path);
+}
+
+// Read back by the encoder's own library, which the program does not use for reading.
+TEST(Exr, ComesBackAsItWent) {
+    LinearImage image{19, 33, std::vector<float>(19 * 33 * 4)};
+    Random random(3);
+    for (float& value : image.rgba) value = random.uniform(-2, 300);
+    const auto path = std::filesystem::path(testing::TempDir()) / "hairloom-exr-test.exr";
+    ASSERT_TRUE(writeExr(path, image));
+    float* pixels = nullptr;
+    int width = 0, height = 0;
+    const char* error = nullptr;
+    ASSERT_EQ(LoadEXR(&pixels, &width, &height, path.c_str(), &error), 0) << error;
+    ASSERT_EQ(width, 19);
+    ASSERT_EQ(height, 33);
+    const std::vector<float> read(pixels, pixels + image.rgba.size());
+    std::free(pixels);
+    EXPECT_EQ(read, image.rgba);
+    EXPECT_FALSE(writeExr(path, {}));
+    std::filesystem::remove(path);
 }
 
 TEST(ToneMap, KeepsBlackAndOrder) {

@@ -23,7 +23,7 @@ class OverlayTest : public RenderTest {
             mesh.positions_ws = corners;
             mesh.indices = indices;
             scene.meshes = {mesh};
-            scene.ambientSky = scene.ambientGround = Vec3f::Zero();
+            scene.environment = {};
         }
         RenderOptions options;
         options.width = options.height = kSize;

@@ -94,7 +94,7 @@ TEST_F(RenderTest, HairShadowsHairAndHead) {
     RenderScene scene = head.scene();
     RenderOptions options = smallOptions(2);
     const auto shadowed = renderPicture(*device, scene, options);
-    options.shadows = false;
+    options.shadows = Shadows::none;
     const auto lit = renderPicture(*device, scene, options);
     ASSERT_TRUE(shadowed) << shadowed.error().message();
     ASSERT_TRUE(lit);
@@ -127,12 +127,12 @@ TEST_F(RenderTest, OpacityLayersCountFibres) {
         scene.camera.target_ws = {0, 0, 0};
         scene.camera.up_ws = Vec3f::UnitZ();
         scene.camera.verticalFov = 20;
-        scene.ambientSky = scene.ambientGround = Vec3f::Zero();
+        scene.environment = {};
         Light light;
         light.toLight_ws = Vec3f::UnitY();
         scene.lights = {light};
         RenderOptions options = smallOptions(1);
-        options.shadows = layers >= 0;
+        options.shadows = layers >= 0 ? Shadows::deepOpacity : Shadows::none;
         // Depth of the shadow frustum must reach the plate.
         strands.add({Vec3f(0.095f, 0.0005f, 0.095f), Vec3f(0.096f, 0.0005f, 0.095f)}, 0.00001f);
         scene.strands = {strands.view()};

@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/render_bench.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <memory>
+
+#include "cli/progress.h"
+#include "cli/stopwatch.h"
+#include "core/base/random.h"
+#include "core/render/renderer.h"
+
+namespace hairloom::cli {
+namespace {
+
+constexpr int kWarmUp = 3;
+
+/// An ellipsoid of the size of a head, and hair combed down from its crown.
+struct HeadOfHair {
+    std::vector<Vec3f> head;
+    std::vector<std::uint32_t> indices;
+    std::vector<std::uint32_t> offsets{0};
+    std::vector<Vec3f> hair;
+    std::vector<Vec3f> moved;  ///< the same, blown aside
+
+    explicit HeadOfHair(std::uint32_t hairs) {
+        makeHead();
+        Random random(7);
+        for (std::uint32_t i = 0; i < hairs; ++i) {
+            const float around = random.uniform(0, 2 * kPi);
+            const float down = std::acos(1 - random.uniform() * 0.75f);
+            const float lift = random.uniform(1.01f, 1.12f);
+            const float wave = random.uniform(0, 2 * kPi);
+            for (std::uint32_t k = 0; k <= kBenchSegments; ++k) {
+                const float along = static_cast<float>(k) / kBenchSegments;
+                const float grown = 1 + (lift - 1) * std::min(1.0f, 4 * along);
+                const float side = around + 0.03f * std::sin(9 * along + wave);
+                const Vec3f p = place(grown, down + 1.3f * along, side);
+                hair.push_back(p);
+                moved.push_back(p + Vec3f(0.03f, 0.01f, 0.015f) * (along * along));
+            }
+            offsets.push_back(static_cast<std::uint32_t>(hair.size()));
+        }
+    }
+
+    render::RenderScene scene() const {
+        render::RenderScene scene;
+        render::RenderMesh mesh;
+        mesh.positions_ws = head;
+        mesh.indices = indices;
+        scene.meshes = {mesh};
+        render::RenderStrands strands;
+        strands.offsets = offsets;
+        strands.positions_ws = hair;
+        scene.strands = {strands};
+        return scene;
+    }
+
+  private:
+    static Vec3f place(float size, float down, float around) {
+        return {size * 0.075f * std::sin(down) * std::cos(around), size * 0.11f * std::cos(down),
+                size * 0.095f * std::sin(down) * std::sin(around)};
+    }
+    void makeHead() {
+        constexpr std::uint32_t kRings = 48, kSectors = 96;
+        for (std::uint32_t r = 0; r <= kRings; ++r) {
+            for (std::uint32_t s = 0; s < kSectors; ++s) {
+                head.push_back(place(1, kPi * static_cast<float>(r) / kRings,
+                                     2 * kPi * static_cast<float>(s) / kSectors));
+            }
+        }
+        for (std::uint32_t r = 0; r < kRings; ++r) {
+            for (std::uint32_t s = 0; s < kSectors; ++s) {
+                const std::uint32_t a = r * kSectors + s;
+                const std::uint32_t b = r * kSectors + (s + 1) % kSectors;
+                for (const std::uint32_t i : {a, b, a + kSectors, b, b + kSectors, a + kSectors}) {
+                    indices.push_back(i);
+                }
+            }
+        }
+    }
+};
+
+Measurement& passOf(RenderCase& which, const std::string& name) {
+    const auto found = std::ranges::find(which.passes, name, &Measurement::name);
+    if (found != which.passes.end()) return *found;
+    which.passes.push_back({name, "ms", {}});
+    return which.passes.back();
+}
+
+class RenderMeasuring {
+  public:
+    RenderMeasuring(gpu::Device& device, int repetitions) : device_(device), repetitions_(repetitions) {}
+
+    Status run(RenderCase& which) {
+        if (hair_ == nullptr || hairs_ != which.hairs) {
+            hair_ = std::make_unique<HeadOfHair>(which.hairs);
+            hairs_ = which.hairs;
+        }
+        render::RenderScene scene = hair_->scene();
+        const float aspect =
+            static_cast<float>(which.options.width) / static_cast<float>(which.options.height);
+        scene.camera = render::frame(render::View::ThreeQuarter, render::boundsOf(scene), aspect);
+        scene.lights = render::studioLights(scene.camera);
+        // The thesis has one light, and so has the target.
+        scene.lights.resize(1);
+        gpu::TextureDesc desc;
+        desc.name = "bench";
+        desc.width = which.options.width;
+        desc.height = which.options.height;
+        desc.usage = gpu::Usage::RenderTarget;
+        const auto target = device_.createTexture(desc);
+        if (!target) return tl::unexpected(target.error());
+        render::Renderer renderer(device_);
+        if (auto status = renderer.setScene(scene); !status) return status;
+        which.frame = {"frame", "ms", {}};
+        which.wall = {"wall", "ms", {}};
+        for (int i = -kWarmUp; i < repetitions_; ++i) {
+            if (auto status = frame(which, renderer, *target, i); !status) return status;
+        }
+        which.targetBytes = renderer.plan().bytes();
+        return {};
+    }
+
+  private:
+    Status frame(RenderCase& which, render::Renderer& renderer, const gpu::TexturePtr& target, int number) {
+        const Stopwatch watch;
+        auto status = renderer.setStrandPositions(0, number % 2 == 0 ? hair_->hair : hair_->moved);
+        if (!status) return status;
+        auto list = device_.createCommandList();
+        if (!list) return tl::unexpected(list.error());
+        if (status = renderer.record(**list, which.options, target); !status) return status;
+        const auto submission = device_.submit(std::move(*list));
+        if (!submission) return tl::unexpected(submission.error());
+        const auto times = (*submission)->passTimes();
+        if (!times) return tl::unexpected(times.error());
+        if (number < 0) return {};
+        double sum = 0;
+        for (const gpu::PassTime& time : *times) {
+            passOf(which, time.name).values.push_back(time.milliseconds);
+            sum += time.milliseconds;
+        }
+        which.wall.values.push_back(1e3 * watch.seconds());
+        which.frame.values.push_back(device_.info().timestampPeriodNs > 0 ? sum : which.wall.values.back());
+        return {};
+    }
+
+    gpu::Device& device_;
+    int repetitions_;
+    std::unique_ptr<HeadOfHair> hair_;
+    std::uint32_t hairs_ = 0;
+};
+
+class CaseList {
+  public:
+    CaseList(const RenderBenchOptions& wanted, const gpu::DeviceInfo& device, RenderBench& bench)
+        : device_(device), bench_(bench), gpu_(device.type != gpu::DeviceType::Cpu) {
+        counts_ = wanted.hairs;
+        if (counts_.empty()) {
+            counts_ = gpu_ ? std::vector<std::uint32_t>{3'100, 9'300, 18'300, 100'000}
+                           : std::vector<std::uint32_t>{3'100};
+        }
+        size_ = wanted.size.value_or(gpu_ ? std::pair(1920u, 1080u) : std::pair(320u, 180u));
+        // What Section 6.4 of the thesis measured anti-aliasing at.
+        thesisSize_ = wanted.size.value_or(gpu_ ? std::pair(1706u, 979u) : std::pair(320u, 180u));
+        middle_ = wanted.hairs.empty() ? (gpu_ ? 18'300u : 3'100u) : counts_.front();
+    }
+
+    void add() {
+        for (const std::uint32_t hairs : counts_) {
+            const bool limited = gpu_ && hairs == 100'000 && size_ == std::pair(1920u, 1080u);
+            add(
+                fmt::format("{} hairs", hairs), hairs, size_, [](render::RenderOptions&) {},
+                limited ? std::optional(12.0) : std::nullopt);
+        }
+        const bool limited = gpu_ && middle_ == 18'300 && thesisSize_ == std::pair(1706u, 979u);
+        add(
+            "the thesis' setting", middle_, thesisSize_, [](render::RenderOptions&) {},
+            limited ? std::optional(3.0) : std::nullopt);
+        addAntiAliasing();
+        vary("shadows: none", [](auto& o) { o.shadows = render::Shadows::none; });
+        vary("shadows: absorption", [](auto& o) { o.shadows = render::Shadows::absorption; });
+        vary("shadows: opacity maps", [](auto& o) { o.shadows = render::Shadows::opacityMaps; });
+        vary("shadows: deep opacity maps", [](auto&) {});
+        vary("ribbons: strip", [](auto&) {});
+        if (device_.tessellation) {
+            vary("ribbons: tessellated", [](auto& o) { o.ribbons = render::Ribbons::tessellated; });
+        } else {
+            bench_.notes.emplace_back("tessellated ribbons: the device has no tessellation");
+        }
+        vary("transparency: stochastic", [](auto&) {});
+        vary("transparency: alpha to coverage",
+             [](auto& o) { o.transparency = render::Transparency::alphaToCoverage; });
+        vary("transparency: weighted", [](auto& o) { o.transparency = render::Transparency::weighted; });
+        vary("detail: half a pixel", [](auto& o) { o.detail = 0.5f; });
+    }
+
+  private:
+    template <class Change>
+    void add(const std::string& name, std::uint32_t hairs, std::pair<std::uint32_t, std::uint32_t> size,
+             Change change, std::optional<double> limit = {}) {
+        RenderCase which;
+        which.name = name;
+        which.hairs = hairs;
+        which.limit = limit;
+        std::tie(which.options.width, which.options.height) = size;
+        which.options.frames = 1;
+        which.options.samples =
+            std::ranges::find(device_.sampleCounts, 4u) != device_.sampleCounts.end() ? 4 : 1;
+        change(which.options);
+        bench_.cases.push_back(std::move(which));
+    }
+    template <class Change>
+    void vary(const std::string& name, Change change) {
+        add(name, middle_, thesisSize_, change);
+    }
+    void addAntiAliasing() {
+        const auto once = [](render::PostFilter filter) {
+            return [filter](render::RenderOptions& o) {
+                o.samples = 1;
+                o.filter = filter;
+            };
+        };
+        vary("anti-aliasing: none", once(render::PostFilter::none));
+        vary("anti-aliasing: FXAA", once(render::PostFilter::fxaa));
+        vary("anti-aliasing: FXAA, long search", once(render::PostFilter::fxaaHigh));
+        for (const std::uint32_t samples : {2u, 4u, 8u}) {
+            if (std::ranges::find(device_.sampleCounts, samples) == device_.sampleCounts.end()) {
+                bench_.notes.push_back(fmt::format("MSAA {}: the device has no such targets", samples));
+                continue;
+            }
+            vary(fmt::format("anti-aliasing: MSAA {}", samples), [samples](auto& o) { o.samples = samples; });
+        }
+    }
+
+    const gpu::DeviceInfo& device_;
+    RenderBench& bench_;
+    bool gpu_;
+    std::vector<std::uint32_t> counts_;
+    std::pair<std::uint32_t, std::uint32_t> size_, thesisSize_;
+    std::uint32_t middle_ = 0;
+};
+
+std::string inWords(const Measurement& m) {
+    const auto [least, most] = std::ranges::minmax(m.values);
+    return fmt::format("{:.3g} ({:.3g}…{:.3g})", m.median(), least, most);
+}
+
+}  // namespace
+
+Result<RenderBench> runRenderBench(const RenderBenchOptions& options) {
+    gpu::DeviceOptions wanted;
+    wanted.index = options.device;
+    const auto device = gpu::createDevice(wanted);
+    if (!device) return tl::unexpected(device.error());
+    RenderBench bench;
+    bench.device = (*device)->info();
+    if (bench.device.timestampPeriodNs <= 0) {
+        bench.notes.emplace_back("the device has no clock: frames are wall times, passes are 0");
+    }
+    CaseList(options, bench.device, bench).add();
+    RenderMeasuring measuring(**device, options.repetitions);
+    Progress progress("drawing", bench.cases.size());
+    for (std::size_t i = 0; i < bench.cases.size(); ++i) {
+        if (auto status = measuring.run(bench.cases[i]); !status) return tl::unexpected(status.error());
+        progress.done(i + 1);
+    }
+    return bench;
+}
+
+Report reportOf(const RenderBench& bench) {
+    Report rows = Report::array();
+    for (const RenderCase& which : bench.cases) {
+        const auto row = [&](const Measurement& measurement, const std::string& what) {
+            Report report = rowOf(measurement);
+            report["name"] = which.name + (what.empty() ? "" : ", " + what);
+            return report;
+        };
+        Report whole = row(which.frame, "");
+        whole["hairs"] = which.hairs;
+        whole["size"] = fmt::format("{}x{}", which.options.width, which.options.height);
+        whole["target_bytes"] = which.targetBytes;
+        if (which.limit) {
+            whole["at_most"] = *which.limit;
+            whole["met"] = which.met();
+        }
+        rows.push_back(std::move(whole));
+        rows.push_back(row(which.wall, "wall"));
+        for (const Measurement& pass : which.passes) rows.push_back(row(pass, pass.name));
+    }
+    return Report{
+        {"name", "render"},           {"device", bench.device.name}, {"driver", bench.device.driver},
+        {"segments", kBenchSegments}, {"notes", bench.notes},        {"rows", std::move(rows)}};
+}
+
+std::string markdownOf(const RenderBench& bench, const std::string& command) {
+    std::string text;
+    const auto out = std::back_inserter(text);
+    fmt::format_to(
+        out,
+        "# Drawing, measured\n\nWritten by `{}`.\ndocs/rendering.md says what is measured. Milliseconds of a "
+        "frame on the device in which all hair has moved: medians of {} frames, in brackets the least and "
+        "the greatest. Each hair has {} segments.\n\nDevice: {}, driver {}.\n",
+        command, bench.cases.empty() ? 0 : bench.cases.front().frame.values.size(), kBenchSegments,
+        bench.device.name, bench.device.driver);
+    for (const std::string& note : bench.notes) fmt::format_to(out, "\nNote: {}.\n", note);
+    fmt::format_to(out,
+                   "\n| case | hairs | pixels | samples | frame | wall | targets, MiB | wanted |\n"
+                   "|---|---|---|---|---|---|---|---|\n");
+    for (const RenderCase& c : bench.cases) {
+        const std::string wanted =
+            c.limit ? fmt::format("at most {:g} ms: {}", *c.limit, c.met() ? "met" : "**not met**") : "";
+        fmt::format_to(out, "| {} | {} | {}x{} | {} | {} | {} | {:.1f} | {} |\n", c.name, c.hairs,
+                       c.options.width, c.options.height, c.options.samples, inWords(c.frame),
+                       inWords(c.wall), static_cast<double>(c.targetBytes) / (1u << 20u), wanted);
+    }
+    fmt::format_to(out, "\n## Passes\n\n| case | pass | ms |\n|---|---|---|\n");
+    for (const RenderCase& c : bench.cases) {
+        for (const Measurement& pass : c.passes) {
+            fmt::format_to(out, "| {} | {} | {} |\n", c.name, pass.name, inWords(pass));
+        }
+    }
+    return text;
+}
+
+}  // namespace hairloom::cli

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Which passes and targets a picture calls for, and why. Derived from the scene and the options; what is off
+// is not recorded and has no memory.
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "core/gpu/types.h"
+#include "core/render/options.h"
+
+namespace hairloom::render {
+
+inline constexpr gpu::Format kColourFormat = gpu::Format::Rgba16Float;
+
+/// In the order of a frame.
+enum class Pass {
+    curves,
+    headDepth,
+    firstHair,
+    opacity,
+    shade,
+    draw,
+    blend,      ///< hair over head, in any order
+    composite,  ///< of the blended hair
+    accumulate,
+    toneMap,
+    filter,
+    overlayDepth,
+    overlay,
+    overlayOnTop,
+};
+inline constexpr std::size_t kPassCount = static_cast<std::size_t>(Pass::overlayOnTop) + 1;
+/// As pass times name it.
+const char* passName(Pass pass);
+
+enum class TargetId {
+    headDepth,  ///< shadow atlas: a square for each light that casts shadows, side by side
+    firstHair,
+    opacity,
+    colour,
+    resolved,
+    depth,
+    blendSum,
+    blendRest,
+    blendSumResolved,
+    blendRestResolved,
+    sum,
+    shown,
+    overlayDepth,
+};
+inline constexpr std::size_t kTargetCount = static_cast<std::size_t>(TargetId::overlayDepth) + 1;
+const char* targetName(TargetId target);
+
+/// What the plan looks at.
+struct SceneFacts {
+    bool meshes = false;
+    bool hair = false;
+    std::uint32_t lights = 0;
+    std::uint32_t shadowLights = 0;  ///< of them
+    bool overlay = false;            ///< marks that meshes hide
+    bool overlayOnTop = false;
+    bool presents = true;  ///< there is a target to show the picture in
+
+    bool operator==(const SceneFacts&) const = default;
+};
+
+struct PlannedPass {
+    bool on = false;
+    std::string why;
+};
+
+struct PlannedTarget {
+    std::uint32_t width = 0;  ///< pixels; 0: not there
+    std::uint32_t height = 0;
+    gpu::Format format = gpu::Format::Unknown;
+    std::uint32_t samples = 1;
+    std::string why;
+
+    std::uint64_t bytes() const {
+        return std::uint64_t{width} * height * samples * gpu::bytesPerTexel(format);
+    }
+};
+
+struct RenderPlan {
+    std::array<PlannedPass, kPassCount> passes;
+    std::array<PlannedTarget, kTargetCount> targets;
+
+    bool runs(Pass pass) const { return passes[static_cast<std::size_t>(pass)].on; }
+    const PlannedTarget& target(TargetId id) const { return targets[static_cast<std::size_t>(id)]; }
+    bool has(TargetId id) const { return target(id).width > 0; }
+    std::uint64_t bytes() const;  ///< of all targets
+};
+
+/// `samples` as chooseSamples() gives them.
+RenderPlan planRender(const SceneFacts& facts, const RenderOptions& options, std::uint32_t samples);
+
+}  // namespace hairloom::render

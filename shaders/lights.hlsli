@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Directional lights, point lights, and light from all around.
+#ifndef HAIRLOOM_LIGHTS_HLSLI
+#define HAIRLOOM_LIGHTS_HLSLI
+#include "shaders/shared/render_types.h"
+
+float3 directionToLight(LightConstants light, float3 position_ws) {
+    return light.toLight_ws.w > 0 ? normalize(light.toLight_ws.xyz - position_ws) : light.toLight_ws.xyz;
+}
+
+// Irradiance perpendicular to the light.
+float3 irradianceOf(LightConstants light, float3 position_ws) {
+    const float3 d = light.toLight_ws.xyz - position_ws;
+    return light.toLight_ws.w > 0 ? light.irradiance.rgb / max(dot(d, d), 1e-6) : light.irradiance.rgb;
+}
+
+bool hasEnvironment(ShadeConstants shade) { return shade.environment[0].w > 0; }
+
+// Mean radiance around a normal, weighted by the cosine (Ramamoorthi and Hanrahan 2001): the bands are scaled by 1, 2/3
+// and 1/4.
+float3 environmentOnSkin(ShadeConstants shade, float3 n) {
+    const float3 flat = 0.28209479 * shade.environment[0].rgb;
+    const float3 band1 = 0.48860251 * (n.y * shade.environment[1].rgb + n.z * shade.environment[2].rgb +
+                                       n.x * shade.environment[3].rgb);
+    const float3 band2 =
+        1.0925484 * (n.x * n.y * shade.environment[4].rgb + n.y * n.z * shade.environment[5].rgb +
+                     n.z * n.x * shade.environment[7].rgb) +
+        0.31539157 * (3.0 * n.z * n.z - 1.0) * shade.environment[6].rgb +
+        0.54627422 * (n.x * n.x - n.y * n.y) * shade.environment[8].rgb;
+    return max(flat + band1 * (2.0 / 3.0) + band2 * 0.25, 0.0);
+}
+
+// Mean radiance around a fibre, weighted by the sine of the angle to its tangent: by Funk and Hecke the bands are scaled
+// by 1, 0 and -1/8. Fibres near the surface of hair see more of its brighter side: `openToIt` 0...1 adds that share of
+// band 1 in the direction across the fibre in which it is largest.
+float3 environmentOnHair(ShadeConstants shade, float3 t, float openToIt) {
+    const float3 flat = 0.28209479 * shade.environment[0].rgb;
+    const float3 luminance = float3(0.2126, 0.7152, 0.0722);
+    const float3 brighter = float3(dot(shade.environment[3].rgb, luminance), dot(shade.environment[1].rgb, luminance),
+                                   dot(shade.environment[2].rgb, luminance));
+    const float3 across = brighter - t * dot(brighter, t);
+    const float3 n = across * rsqrt(max(dot(across, across), 1e-12));
+    const float3 band1 = 0.48860251 * (n.y * shade.environment[1].rgb + n.z * shade.environment[2].rgb +
+                                       n.x * shade.environment[3].rgb);
+    const float3 band2 =
+        1.0925484 * (t.x * t.y * shade.environment[4].rgb + t.y * t.z * shade.environment[5].rgb +
+                     t.z * t.x * shade.environment[7].rgb) +
+        0.31539157 * (3.0 * t.z * t.z - 1.0) * shade.environment[6].rgb +
+        0.54627422 * (t.x * t.x - t.y * t.y) * shade.environment[8].rgb;
+    return max(flat + openToIt * band1 - 0.125 * band2, 0.0);
+}
+#endif

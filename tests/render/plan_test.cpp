@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/render/plan.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace hairloom::render {
+namespace {
+
+SceneFacts wholeScene() {
+    SceneFacts facts;
+    facts.meshes = facts.hair = true;
+    facts.lights = 3;
+    facts.shadowLights = 2;
+    return facts;
+}
+
+RenderOptions options(Shadows shadows = Shadows::deepOpacity) {
+    RenderOptions result;
+    result.width = 100;
+    result.height = 50;
+    result.shadowResolution = 64;
+    result.shadows = shadows;
+    return result;
+}
+
+bool anyShadow(const RenderPlan& plan) {
+    return plan.runs(Pass::headDepth) || plan.runs(Pass::firstHair) || plan.runs(Pass::opacity) ||
+           plan.has(TargetId::headDepth) || plan.has(TargetId::firstHair) || plan.has(TargetId::opacity);
+}
+
+TEST(RenderPlan, ShadowsNeedALightThatCastsThemAndSomethingThatThrowsThem) {
+    EXPECT_TRUE(anyShadow(planRender(wholeScene(), options(), 4)));
+    EXPECT_FALSE(anyShadow(planRender(wholeScene(), options(Shadows::none), 4)));
+    SceneFacts facts = wholeScene();
+    facts.shadowLights = 0;
+    EXPECT_FALSE(anyShadow(planRender(facts, options(), 4)));
+    facts = wholeScene();
+    facts.hair = false;
+    const RenderPlan bald = planRender(facts, options(), 4);
+    EXPECT_TRUE(bald.runs(Pass::headDepth));
+    EXPECT_FALSE(bald.runs(Pass::firstHair));
+    EXPECT_FALSE(bald.runs(Pass::opacity));
+    EXPECT_FALSE(bald.runs(Pass::curves));
+    EXPECT_FALSE(bald.runs(Pass::shade));
+}
+
+TEST(RenderPlan, EachKindOfShadowHasItsPasses) {
+    const RenderPlan absorption = planRender(wholeScene(), options(Shadows::absorption), 1);
+    EXPECT_TRUE(absorption.runs(Pass::firstHair));
+    EXPECT_FALSE(absorption.runs(Pass::opacity));
+    const RenderPlan maps = planRender(wholeScene(), options(Shadows::opacityMaps), 1);
+    EXPECT_FALSE(maps.runs(Pass::firstHair));
+    EXPECT_TRUE(maps.runs(Pass::opacity));
+    const RenderPlan deep = planRender(wholeScene(), options(), 1);
+    EXPECT_EQ(deep.target(TargetId::opacity).bytes(), maps.target(TargetId::opacity).bytes());
+    EXPECT_EQ(deep.target(TargetId::opacity).bytes(), 2u * 64u * 64u * 8u);
+}
+
+TEST(RenderPlan, BytesAreThoseOfItsTargets) {
+    SceneFacts facts = wholeScene();
+    facts.shadowLights = 0;
+    // Colour and depth with four samples, the resolved colour, the sum.
+    EXPECT_EQ(planRender(facts, options(), 4).bytes(), 100u * 50u * (4u * (8u + 4u) + 8u + 16u));
+    EXPECT_EQ(planRender(facts, options(), 1).bytes(), 100u * 50u * (8u + 4u + 16u));
+    RenderOptions filtered = options();
+    filtered.filter = PostFilter::fxaa;
+    EXPECT_EQ(planRender(facts, filtered, 1).bytes(), 100u * 50u * (8u + 4u + 16u + 4u));
+    facts.presents = false;
+    EXPECT_FALSE(planRender(facts, filtered, 1).runs(Pass::filter));
+    EXPECT_FALSE(planRender(facts, filtered, 1).has(TargetId::shown));
+}
+
+TEST(RenderPlan, MarksAndBlendingCostOnlyWhereTheyAre) {
+    SceneFacts facts = wholeScene();
+    EXPECT_FALSE(planRender(facts, options(), 4).has(TargetId::overlayDepth));
+    facts.overlayOnTop = true;
+    EXPECT_FALSE(planRender(facts, options(), 4).has(TargetId::overlayDepth));
+    facts.overlay = true;
+    EXPECT_TRUE(planRender(facts, options(), 4).has(TargetId::overlayDepth));
+    RenderOptions blended = options();
+    EXPECT_FALSE(planRender(facts, blended, 4).has(TargetId::blendSum));
+    blended.transparency = Transparency::weighted;
+    EXPECT_TRUE(planRender(facts, blended, 4).runs(Pass::blend));
+    EXPECT_TRUE(planRender(facts, blended, 4).has(TargetId::blendSumResolved));
+    EXPECT_FALSE(planRender(facts, blended, 1).has(TargetId::blendSumResolved));
+    facts.hair = false;
+    EXPECT_FALSE(planRender(facts, blended, 4).has(TargetId::blendSum));
+}
+
+TEST(RenderPlan, SaysWhy) {
+    for (const Shadows shadows :
+         {Shadows::none, Shadows::deepOpacity, Shadows::absorption, Shadows::opacityMaps}) {
+        for (int bits = 0; bits < 8; ++bits) {
+            SceneFacts facts;
+            facts.meshes = (bits & 1) != 0;
+            facts.hair = (bits & 2) != 0;
+            facts.shadowLights = facts.lights = (bits & 4) != 0 ? 1 : 0;
+            const RenderPlan plan = planRender(facts, options(shadows), 4);
+            for (const PlannedPass& pass : plan.passes) EXPECT_FALSE(pass.why.empty());
+            for (const PlannedTarget& target : plan.targets) EXPECT_EQ(target.why.empty(), target.width == 0);
+        }
+    }
+    std::set<std::string> names;
+    for (std::size_t i = 0; i < kPassCount; ++i) names.insert(passName(static_cast<Pass>(i)));
+    EXPECT_EQ(names.size(), kPassCount);
+    names.clear();
+    for (std::size_t i = 0; i < kTargetCount; ++i) names.insert(targetName(static_cast<TargetId>(i)));
+    EXPECT_EQ(names.size(), kTargetCount);
+}
+
+}  // namespace
+}  // namespace hairloom::render

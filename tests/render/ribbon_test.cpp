@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The two kinds of ribbons, hairs thinner than a pixel, and hair far away.
+#include <numeric>
+
+#include "tests/render/render_fixture.h"
+
+namespace hairloom::render {
+namespace {
+
+RenderOptions options(std::uint32_t size, std::uint32_t frames) {
+    RenderOptions result;
+    result.width = result.height = size;
+    result.frames = frames;
+    result.shadowResolution = 64;
+    result.transparentBackground = true;
+    return result;
+}
+
+class RibbonTest : public RenderTest {
+  protected:
+    LinearImage draw(const RenderScene& scene, const RenderOptions& how) {
+        const auto picture = renderPicture(*device, scene, how);
+        EXPECT_TRUE(picture) << (picture ? "" : picture.error().message());
+        if (!picture) return {};
+        strands = picture->strands;
+        return picture->linear;
+    }
+    static double coverage(const LinearImage& image) {
+        double sum = 0;
+        for (std::size_t i = 3; i < image.rgba.size(); i += 4) sum += static_cast<double>(image.rgba[i]);
+        return sum;
+    }
+    std::uint64_t strands = 0;
+};
+
+/// Curls of one to 70 segments, the last of more points than a patch has.
+TestStrands curls() {
+    TestStrands result;
+    for (const int segments : {1, 2, 7, 31, 32, 70}) {
+        const auto row = static_cast<float>(result.offsets.size()) - 3.5f;
+        for (int k = 0; k <= segments; ++k) {
+            const float t = static_cast<float>(k) / static_cast<float>(segments);
+            result.positions.emplace_back(0.3f * t - 0.15f, 0.05f * row + 0.012f * std::sin(25 * t),
+                                          0.012f * std::cos(25 * t));
+            result.radii.push_back(0.003f * (1 - 0.5f * t));
+        }
+        result.offsets.push_back(static_cast<std::uint32_t>(result.positions.size()));
+    }
+    return result;
+}
+
+// Where both are fine enough they are the same curve to a hundredth of a pixel; what differs are
+// samples on the very edge.
+TEST_F(RibbonTest, TessellatedOnesGiveTheSamePicture) {
+    if (!device->info().tessellation) GTEST_SKIP() << "no tessellation on this device";
+    const TestStrands strands_ = curls();
+    RenderScene scene;
+    scene.strands = {strands_.view()};
+    scene.camera.eye_ws = {0, 0, 0.8f};
+    scene.camera.target_ws = {0, 0, 0};
+    scene.lights = studioLights(scene.camera);
+    RenderOptions how = options(96, 4);
+    how.subdivisions = 12;
+    const LinearImage strip = draw(scene, how);
+    how.ribbons = Ribbons::tessellated;
+    const LinearImage patches = draw(scene, how);
+    ASSERT_EQ(strip.rgba.size(), patches.rgba.size());
+    ASSERT_GT(coverage(strip), 300);
+    EXPECT_NEAR(coverage(patches), coverage(strip), 0.005 * coverage(strip));
+    double sum = 0;
+    std::size_t far = 0;
+    for (std::size_t i = 0; i < strip.rgba.size(); ++i) {
+        const float difference = std::abs(strip.rgba[i] - patches.rgba[i]);
+        sum += static_cast<double>(difference);
+        far += difference > 0.13f ? 1 : 0;  // more than two of 16 samples
+    }
+    EXPECT_LT(sum / static_cast<double>(strip.rgba.size()), 0.002);
+    EXPECT_LT(far, strip.rgba.size() / 200);
+}
+
+TEST_F(RibbonTest, EachKindOfTransparencyKeepsTheWidth) {
+    RenderScene scene;
+    scene.camera.eye_ws = {0, 0, 1};
+    scene.camera.target_ws = {0, 0, 0};
+    const float pixel = 2 * std::tan(radians(scene.camera.verticalFov) / 2) / 64;
+    for (const Transparency kind :
+         {Transparency::stochastic, Transparency::alphaToCoverage, Transparency::weighted}) {
+        for (const float width : {0.15f, 0.6f, 3.0f}) {
+            TestStrands strands_;
+            strands_.add({Vec3f(-1, 0.013f, 0), Vec3f(1, 0.0131f, 0)}, 0.5f * width * pixel);
+            scene.strands = {strands_.view()};
+            RenderOptions how = options(64, 32);
+            how.transparency = kind;
+            const double covered = coverage(draw(scene, how)) / 64;
+            EXPECT_NEAR(covered, static_cast<double>(width), 0.05 * static_cast<double>(width))
+                << static_cast<int>(kind);
+        }
+    }
+}
+
+// Whatever is drawn last, a hair in front weighs more than one behind it.
+TEST_F(RibbonTest, BlendingDoesNotDependOnTheOrder) {
+    const auto middle = [&](bool swapped) {
+        TestStrands strands_;
+        const float near = swapped ? -0.1f : 0.1f;
+        strands_.add({Vec3f(-1, 0, near), Vec3f(1, 0, near)}, 0.003f);
+        strands_.add({Vec3f(-1, 0, -near), Vec3f(1, 0, -near)}, 0.003f);
+        RenderStrands both = strands_.view();
+        const std::vector<Vec3f> colours = {{1, 0, 0}, {0, 1, 0}};
+        both.colours = colours;
+        RenderScene scene;
+        scene.strands = {both};
+        scene.camera.eye_ws = {0, 0, 1};
+        scene.camera.target_ws = {0, 0, 0};
+        RenderOptions how = options(32, 1);
+        how.transparency = Transparency::weighted;
+        const LinearImage image = draw(scene, how);
+        return Vec3f(image.rgba[4 * (16 * 32 + 16)], image.rgba[4 * (16 * 32 + 16) + 1], 0);
+    };
+    const Vec3f redInFront = middle(false);
+    const Vec3f greenInFront = middle(true);
+    EXPECT_GT(redInFront.x(), 20 * redInFront.y());
+    EXPECT_GT(greenInFront.y(), 20 * greenInFront.x());
+}
+
+TEST_F(RibbonTest, FewerHairsFarAwayCoverAsMuch) {
+    TestHead head(2000);
+    std::fill(head.strands.radii.begin(), head.strands.radii.end(), 0.00004f);
+    RenderScene scene = head.scene();
+    const Vec3f towards = (scene.camera.eye_ws - scene.camera.target_ws).normalized();
+    RenderOptions how = options(64, 8);
+    std::uint64_t before = 3000;
+    for (const float distance : {1.0f, 2.0f, 4.0f}) {
+        scene.camera.eye_ws = scene.camera.target_ws + distance * towards;
+        scene.meshes.clear();
+        how.detail = 0;
+        const double all = coverage(draw(scene, how));
+        EXPECT_EQ(strands, 2000u);
+        how.detail = 0.08f;
+        const double some = coverage(draw(scene, how));
+        EXPECT_LT(strands, before);
+        before = strands;
+        EXPECT_NEAR(some, all, 0.05 * all) << distance << " m, " << strands << " hairs";
+    }
+    EXPECT_LT(before, 300u);
+}
+
+// A step of 0.2 % in distance changes no more where hairs come and go than where all are drawn.
+TEST_F(RibbonTest, HairsDoNotPop) {
+    TestHead head(400);
+    RenderScene scene = head.scene();
+    scene.meshes.clear();
+    const Vec3f towards = (scene.camera.eye_ws - scene.camera.target_ws).normalized();
+    const auto largestStep = [&](float detail) {
+        RenderOptions how = options(48, 32);
+        how.detail = detail;
+        how.shadows = Shadows::none;
+        LinearImage last;
+        double largest = 0;
+        for (int i = 0; i < 4; ++i) {
+            scene.camera.eye_ws = scene.camera.target_ws + (1.5f + 0.003f * static_cast<float>(i)) * towards;
+            const LinearImage now = draw(scene, how);
+            for (std::size_t p = 3; p < last.rgba.size(); p += 4) {
+                largest = std::max(largest, std::abs(static_cast<double>(now.rgba[p] - last.rgba[p])));
+            }
+            last = now;
+        }
+        return largest;
+    };
+    const double whole = largestStep(0);
+    EXPECT_LT(largestStep(0.3f), whole + 0.1);
+}
+
+TEST_F(RibbonTest, RadiiSpreadFromStrandToStrand) {
+    TestHead head(300);
+    RenderScene scene = head.scene();
+    scene.strands[0].radii = {};
+    scene.strands[0].material.radius = 0.0003f;
+    const LinearImage same = draw(scene, options(48, 8));
+    scene.strands[0].material.radiusVariation = 0.9f;
+    const LinearImage spread = draw(scene, options(48, 8));
+    EXPECT_NE(same.rgba, spread.rgba);
+    EXPECT_NEAR(coverage(spread), coverage(same), 0.05 * coverage(same));
+}
+
+}  // namespace
+}  // namespace hairloom::render
