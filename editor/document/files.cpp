@@ -78,7 +78,7 @@ void show(Session& session, OpenedFile opened, const QString& path, const QStrin
 FileKind kindOf(const QString& path) {
     const std::string file = path.toStdString();
     if (looksLikeProject(file)) return FileKind::Project;
-    if (looksLikeStrandFile(file)) return FileKind::Strands;
+    if (looksLikeStrandFile(readBeginning(file, 256))) return FileKind::Strands;
     if (!path.endsWith(".obj", Qt::CaseInsensitive)) return FileKind::Head;
     return importStrands(file) ? FileKind::Strands : FileKind::Head;
 }
