@@ -21,7 +21,11 @@ MarschnerParameters parameters(bool rough, double axisRatio) {
 }
 
 void bake(benchmark::State& state, const MarschnerParameters& p) {
-    for (auto _ : state) benchmark::DoNotOptimize(bakeMarschner(Marschner(p)));
+    for (auto _ : state) {
+        const Marschner model(p);
+        benchmark::DoNotOptimize(bakeMarschner(model));
+        benchmark::DoNotOptimize(bakeDual(DualScattering(model)));
+    }
 }
 
 void marschnerRough(benchmark::State& state) {
@@ -41,7 +45,10 @@ BENCHMARK(marschnerElliptic)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void sadeghi(benchmark::State& state) {
     const SadeghiParameters p = sadeghiLike(Marschner(parameters(true, 1)));
-    for (auto _ : state) benchmark::DoNotOptimize(bakeSadeghi(p));
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(bakeSadeghi(p));
+        benchmark::DoNotOptimize(bakeDual(DualScattering(p)));
+    }
 }
 BENCHMARK(sadeghi)->Unit(benchmark::kMillisecond)->UseRealTime();
 

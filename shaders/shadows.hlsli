@@ -11,6 +11,7 @@ Texture2D<float4> gOpacity : register(t10);
 
 struct Occlusion {
     float fibres;      // crossed on the way to the light
+    float allFibres;   // from the hair's lit side to its other, or to the head
     float visibility;  // 0 behind the head ... 1
 };
 
@@ -38,6 +39,7 @@ float fibresAt(LightConstants light, int3 texel, float depth, float bias) {
 Occlusion occlusion(LightConstants light, float3 position_ws, float hairBias, float headBias) {
     Occlusion result;
     result.fibres = 0;
+    result.allFibres = 0;
     result.visibility = 1;
     const float4 clip = mul(light.clipFromWorld, float4(position_ws, 1));
     const bool hair = light.range.y > 0;
@@ -55,16 +57,22 @@ Occlusion occlusion(LightConstants light, float3 position_ws, float hairBias, fl
     const float3 wy = float3(0.5 * (1 - f.y) * (1 - f.y), 0.5 + f.y * (1 - f.y), 0.5 * f.y * f.y);
     float fibres = 0;
     float visible = 0;
+    float all = 0;
     for (int y = 0; y < 3; ++y) {
         for (int x = 0; x < 3; ++x) {
             const int2 at = clamp(base + int2(x, y), int2(0, 0), int2(size - 1, size - 1));
             const int3 where = int3(at.x + int(light.tile.x), at.y, 0);
             const float w = wx[x] * wy[y];
-            if (hair) fibres += w * fibresAt(light, where, depth, hairBias);
-            if (head) visible += w * (depth - metresBehindNear(light.range, gHeadDepth.Load(where)) < headBias ? 1.0 : 0.0);
+            const float headDepth = metresBehindNear(light.range, head ? gHeadDepth.Load(where) : 1.0);
+            if (hair) {
+                fibres += w * fibresAt(light, where, depth, hairBias);
+                all += w * fibresAt(light, where, headDepth, 0);
+            }
+            if (head) visible += w * (depth - headDepth < headBias ? 1.0 : 0.0);
         }
     }
     result.fibres = fibres;
+    result.allFibres = max(all, fibres);
     result.visibility = head ? visible : 1.0;
     return result;
 }

@@ -74,10 +74,38 @@ Status readLight(JsonReader& reader, const std::filesystem::path& folder, ViewFi
     return {};
 }
 
-/// The scattering parameters of the other shading models may stand in a view; Kajiya-Kay has no use for them.
+std::array<double, 3> readAngles(JsonReader& reader, const char* name, double least, double most) {
+    const Vec3f degrees = reader.vector(name, least, most, "degrees");
+    std::array<double, 3> angles{};
+    for (int i = 0; i < 3; ++i) {
+        angles[static_cast<std::size_t>(i)] = static_cast<double>(degrees[i]) * shading::kDegree;
+    }
+    return angles;
+}
+
 void readHair(JsonReader reader, ViewFile& view) {
-    view.rootRadius = static_cast<float>(reader.number("radius_m", 1e-6, 0.01, "m"));
+    if (reader.has("radius_m")) {
+        view.rootRadius = static_cast<float>(reader.number("radius_m", 1e-6, 0.01, "m"));
+    }
     if (reader.has("tip_scale")) view.tipScale = static_cast<float>(reader.number("tip_scale", 0, 1));
+    FibreView& fibre = view.fibre;
+    if (reader.has("ior")) fibre.ior = reader.number("ior", 1, 2.5);
+    if (reader.has("sigma_a_per_radius")) {
+        fibre.absorption = reader.vector("sigma_a_per_radius", 0, 1000).cast<double>();
+    }
+    if (reader.has("eumelanin") || reader.has("pheomelanin")) {
+        fibre.melanin = shading::Melanin{0, 0};
+        if (reader.has("eumelanin")) fibre.melanin->eumelanin = reader.number("eumelanin", 0, 8);
+        if (reader.has("pheomelanin")) fibre.melanin->pheomelanin = reader.number("pheomelanin", 0, 8);
+    }
+    if (reader.has("colour")) fibre.colour = reader.vector("colour", 0, 1).cast<double>();
+    if (reader.has("beta_deg")) fibre.width = readAngles(reader, "beta_deg", 0.5, 60);
+    if (reader.has("alpha_deg")) fibre.tilt = readAngles(reader, "alpha_deg", -30, 30);
+    if (reader.has("azimuthal_roughness")) {
+        fibre.azimuthalRoughness = reader.number("azimuthal_roughness", 0, 1);
+    }
+    if (reader.has("axis_ratio")) fibre.axisRatio = reader.number("axis_ratio", 0.5, 2);
+    reader.finish();
 }
 
 float luminance(const Vec3f& colour) {
@@ -101,6 +129,17 @@ render::HairMaterial materialOf(const HairMaterial& authored, const ViewFile& vi
     material.secondaryExponent = 0.4f * authored.shininess;
     material.primaryShift = 2 * authored.scaleTiltDegrees;
     material.secondaryShift = -3 * authored.scaleTiltDegrees;
+    material.fibre = fibreMaterial(authored, view.fibre);
+    if (view.fibre.model == render::ShadingModel::kajiya) return material;
+    if (view.fibre.saysColour()) {
+        material.rootBrightness = material.tipBrightness = 1;
+        material.variation = 0;
+    } else {
+        // Melanin is that of the middle of the strand.
+        const float middle = 0.5f * (material.rootBrightness + 1);
+        material.rootBrightness /= middle;
+        material.tipBrightness /= middle;
+    }
     return material;
 }
 
@@ -151,6 +190,30 @@ std::vector<Quatf> rootRotations(const Groom& rest, const Groom& posed, const Fo
 }
 
 }  // namespace
+
+render::FibreMaterial fibreMaterial(const HairMaterial& authored, const FibreView& view) {
+    const double roughness = view.azimuthalRoughness.value_or(authored.azimuthalRoughness);
+    shading::MarschnerParameters m;
+    m.azimuthal.ior = view.ior.value_or(authored.indexOfRefraction);
+    m.azimuthal.absorption = view.absorption ? *view.absorption
+                             : view.colour   ? shading::absorptionOfColour(*view.colour, roughness)
+                                             : shading::absorption(view.melanin.value_or(
+                                                   shading::Melanin{authored.eumelanin, authored.pheomelanin}));
+    m.azimuthal.width = shading::azimuthalWidth(roughness);
+    if (m.azimuthal.width >= shading::kLeastAzimuthalWidth) m.azimuthal.causticWidth = 0;
+    m.azimuthal.axisRatio = view.axisRatio.value_or(1.0);
+    shading::setScales(m, static_cast<double>(authored.scaleTiltDegrees) * shading::kDegree,
+                       shading::longitudinalWidth(static_cast<double>(authored.longitudinalRoughness)));
+    if (view.width) m.width = *view.width;
+    if (view.tilt) m.tilt = *view.tilt;
+
+    render::FibreMaterial fibre;
+    fibre.model = view.model;
+    fibre.scattering = view.scattering;
+    if (view.model == render::ShadingModel::marschner) fibre.marschner = m;
+    if (view.model == render::ShadingModel::sadeghi) fibre.sadeghi = sadeghiLike(shading::Marschner(m));
+    return fibre;
+}
 
 Result<ViewFile> readViewFile(const std::string& path) {
     const auto text = readTextFile(path, kMaxJsonBytes);

@@ -2,6 +2,7 @@
 #pragma once
 // A groom as the renderer takes it.
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,9 +10,26 @@
 #include "core/groom/groom.h"
 #include "core/interpolation/follow_hairs.h"
 #include "core/render/picture.h"
+#include "core/shading/melanin.h"
 #include "core/simulation/motion.h"
 
 namespace hairloom {
+
+/// How a view sees light in fibres; what it does not say comes from the groom.
+struct FibreView {
+    render::ShadingModel model = render::ShadingModel::kajiya;  ///< the caller's, not the file's
+    render::Scattering scattering = render::Scattering::dual;   ///< also
+    std::optional<double> ior;
+    std::optional<Vec3d> absorption;  ///< RGB per fibre radius
+    std::optional<shading::Melanin> melanin;
+    std::optional<Vec3d> colour;                       ///< linear RGB of much hair
+    std::optional<std::array<double, 3>> width, tilt;  ///< of R, TT, TRT in radians of θ_h
+    std::optional<double> azimuthalRoughness;
+    std::optional<double> axisRatio;
+
+    bool saysColour() const { return absorption || melanin || colour; }
+};
+render::FibreMaterial fibreMaterial(const HairMaterial& authored, const FibreView& view);
 
 /// What a view file (--view) says; docs/cli.md lists its members.
 struct ViewFile {
@@ -24,6 +42,7 @@ struct ViewFile {
     std::optional<Vec3f> headAlbedo;
     std::optional<float> rootRadius;  ///< metres
     std::optional<float> tipScale;
+    FibreView fibre;
 };
 Result<ViewFile> readViewFile(const std::string& path);
 

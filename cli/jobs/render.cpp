@@ -24,6 +24,7 @@ struct RenderJobOptions {
     std::string camera = "three-quarter";
     std::string view;
     std::string shading = "kajiya";
+    std::string scatter = "dual";
     std::string shadow = "dom";
     std::string antiAliasing = "auto";
     std::string ribbons = "strip";
@@ -76,6 +77,10 @@ std::vector<std::string> namesOf(const std::map<std::string, T>& choices) {
     for (const auto& [name, value] : choices) names.push_back(name);
     return names;
 }
+
+const std::map<std::string, render::ShadingModel> kModels{{"kajiya", render::ShadingModel::kajiya},
+                                                          {"marschner", render::ShadingModel::marschner},
+                                                          {"sadeghi", render::ShadingModel::sadeghi}};
 
 Result<render::RenderOptions> pictureOptions(const RenderJobOptions& options, const ViewFile& view) {
     render::RenderOptions picture;
@@ -258,6 +263,8 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
         if (!read) return tl::unexpected(read.error());
         view = std::move(*read);
     }
+    view.fibre.model = kModels.at(options.shading);
+    view.fibre.scattering = options.scatter == "dual" ? render::Scattering::dual : render::Scattering::single;
     const auto how = pictureOptions(options, view);
     if (!how) return tl::unexpected(how.error());
     const auto shots = shotsOf(options);
@@ -314,7 +321,12 @@ void addRenderJob(Jobs& jobs) {
            "Groups of the head mesh to leave out of the picture, NAME or BEGINNING*, with commas between")
         ->delimiter(',')
         ->allow_extra_args(false);
-    job.add_option("--shading", options->shading, "Shading model")->check(CLI::IsMember({"kajiya"}));
+    job.add_option("--shading", options->shading, "Shading model")
+        ->check(CLI::IsMember({"kajiya", "marschner", "sadeghi"}));
+    job.add_option(
+           "--scatter", options->scatter,
+           "Light that other hairs have scattered: single leaves it out, dual adds it; not for kajiya")
+        ->check(CLI::IsMember({"single", "dual"}));
     job.add_option(
            "--shadow", options->shadow,
            "Shadows of hair: deep opacity maps, absorption by depth, opacity maps at fixed depths, none")

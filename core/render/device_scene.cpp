@@ -441,6 +441,16 @@ Status DeviceScene::prepareCurves(gpu::Device& device, std::uint32_t subdivision
     return gather.status();
 }
 
+Status DeviceScene::prepareFibres(gpu::Device& device) {
+    for (StrandGroup& group : groups) {
+        if (group.fibre.isFor(group.material.fibre)) continue;
+        auto made = FibreTables::make(device, group.material.fibre);
+        if (!made) return tl::unexpected(made.error());
+        group.fibre = std::move(*made);
+    }
+    return {};
+}
+
 Status DeviceScene::preparePatches(gpu::Device& device) {
     Gather gather;
     for (StrandBatch& batch : batches) {

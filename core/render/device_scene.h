@@ -6,6 +6,7 @@
 #include <span>
 
 #include "core/gpu/device.h"
+#include "core/render/fibre_tables.h"
 #include "core/render/scene.h"
 #include "shaders/shared/render_types.h"
 
@@ -50,6 +51,7 @@ struct StrandBatch {
 /// Strands of one material.
 struct StrandGroup {
     HairMaterial material;
+    FibreTables fibre;            ///< of the material, once they were asked for
     std::size_t strandCount = 0;  ///< also those too short to be drawn
     std::size_t pointCount = 0;
     bool hasRadii = false;
@@ -93,6 +95,8 @@ class DeviceScene {
 
     /// Makes room for curves of that fineness; nothing happens when there is.
     Status prepareCurves(gpu::Device& device, std::uint32_t subdivisions);
+    /// Bakes the tables of materials that have changed.
+    Status prepareFibres(gpu::Device& device);
     /// Makes the patches of tessellated ribbons; nothing happens when they are there.
     Status preparePatches(gpu::Device& device);
     /// Records the uploads that wait.

@@ -205,10 +205,12 @@ void recordShadowMaps(gpu::CommandList& list, RendererState& state) {
 
 void recordShading(gpu::CommandList& list, RendererState& state) {
     list.beginPass({passName(Pass::shade), {}, {}});
-    list.setPipeline(state.pipelines.compute("shade.comp"));
     bindShadows(list, state);
     for (const StrandBatch& batch : state.scene.batches) {
-        auto constants = shadeConstants(state, state.scene.groups[batch.group].material);
+        const StrandGroup& group = state.scene.groups[batch.group];
+        list.setPipeline(state.pipelines.compute(group.fibre.shader()));
+        group.fibre.bind(list);
+        auto constants = shadeConstants(state, group.material);
         const std::uint32_t points =
             batch.curvePoints(batch.strandCount(state.detail), state.detail.subdivisions);
         const std::uint32_t groups = (points + kGroup - 1) / kGroup;

@@ -225,6 +225,7 @@ Status Renderer::Parts::prepare(const RenderOptions& options, bool presents) {
     if (options.ribbons == Ribbons::tessellated) {
         if (auto status = state.scene.preparePatches(device); !status) return status;
     }
+    if (auto status = state.scene.prepareFibres(device); !status) return status;
     return state.scene.prepareCurves(device, detail.subdivisions);
 }
 

@@ -9,6 +9,7 @@
 #include "core/base/result.h"
 #include "core/render/camera.h"
 #include "core/render/environment.h"
+#include "core/render/fibre_material.h"
 #include "core/render/light.h"
 
 namespace hairloom::render {
@@ -41,6 +42,7 @@ struct HairMaterial {
     float tipBrightness = 1.10f;   ///< and at the tip
     float variation = 0.18f;       ///< random brightness per strand, ±
     float opacity = 0.65f;         ///< 0…1: how much one fibre takes from the light behind it
+    FibreMaterial fibre;           ///< which model, and what the others than Kajiya-Kay take
 };
 
 /// Strands of one material. Strand i has the points offsets[i] … offsets[i + 1] - 1, root first.

@@ -42,6 +42,8 @@ struct AzimuthalParameters {
     double causticFade = 0.3;  ///< Δη', above η' = 2, where caustics end: the Gaussian fades out over it
     double glint = 1;          ///< k_G, factor on the Gaussian; 1 keeps the energy
     RootMethod roots = RootMethod::Exact;
+
+    bool operator==(const AzimuthalParameters&) const = default;
 };
 inline constexpr double kLeastAzimuthalWidth = 0.035;  ///< 2 degrees
 /// Where nothing else blurs a caustic, w_c is at least this: it would be infinite.

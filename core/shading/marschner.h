@@ -20,6 +20,8 @@ struct MarschnerParameters {
     std::array<double, 3> tilt{-2 * kDegree, 1 * kDegree, 3 * kDegree};
     std::array<double, 3> width{8.3 * kDegree, 4.15 * kDegree, 16.6 * kDegree};
     std::array<double, 3> intensity{1, 1, 1};  ///< factors on the lobes, >= 0; 1 is physical
+
+    bool operator==(const MarschnerParameters&) const = default;
 };
 
 /// Tilts and widths of all lobes from those of R, β, β/2 and 2β (Marschner et al. 2003, Table 1). Scales that

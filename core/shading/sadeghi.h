@@ -15,6 +15,8 @@ struct SadeghiLobe {
     /// β_p in θ_h, > 0. The Gaussians are exp(−π ν²/β²), of height 1 and area β; their deviation is β/√(2π).
     /// The thesis hands β² to Eq. 52 and squares it again there.
     double width = 0.3;
+
+    bool operator==(const SadeghiLobe&) const = default;
 };
 
 struct SadeghiParameters {
@@ -25,6 +27,7 @@ struct SadeghiParameters {
     /// Glints lie at ± an angle in this range, another one for each strand (thesis, section 5.3).
     double glintNear = 30 * kDegree, glintFar = 45 * kDegree;
 
+    bool operator==(const SadeghiParameters&) const = default;
     const SadeghiLobe& lobe(Lobe lobe) const { return lobe == Lobe::R ? r : lobe == Lobe::TT ? tt : trt; }
 };
 

@@ -168,6 +168,45 @@ SadeghiTables bakeSadeghi(const SadeghiParameters& model, const TableSizes& size
     return tables;
 }
 
+DualTables bakeDual(const DualScattering& model, std::uint32_t azimuth, std::uint32_t inclination) {
+    DualTables tables{makeTable(azimuth, inclination), makeTable(inclination, 3)};
+    const std::vector<GridPlace> places = gridPlaces(azimuth);
+    forRows(tables.spread, [&](std::uint32_t y) {
+        const DualScattering::Row row =
+            model.at(std::min(coordinate(y, inclination) * kPi / 2, kLargestTheta));
+        for (std::uint32_t x = 0; x < azimuth; ++x) {
+            float* texel = tables.spread.texel(x, y);
+            for (std::size_t c = 0; c < 3; ++c) texel[c] = at(row.spread[c], places[x]);
+            texel[3] = 1;
+        }
+        const AverageScattering& a = row.average;
+        const auto set = [&](std::uint32_t line, double r, double g, double b, double w) {
+            float* texel = tables.averages.texel(y, line);
+            texel[0] = static_cast<float>(r);
+            texel[1] = static_cast<float>(g);
+            texel[2] = static_cast<float>(b);
+            texel[3] = static_cast<float>(w);
+        };
+        set(0, a.forward.x(), a.forward.y(), a.forward.z(), a.forwardVariance);
+        set(1, a.backward.x(), a.backward.y(), a.backward.z(), a.backwardVariance);
+        set(2, a.forwardTilt, a.backwardTilt, a.tilt(), a.variance());
+    });
+    return tables;
+}
+
+Table bakeSpreadFactors() {
+    Table table = makeTable(128, 48);
+    forRows(table, [&](std::uint32_t y) {
+        const double width = kLeastSpread + coordinate(y, table.height) * (kLargestSpread - kLeastSpread);
+        const LongitudinalLobe lobe(0, width);
+        for (std::uint32_t x = 0; x < table.width; ++x) {
+            const double theta = std::min(std::asin(coordinate(x, table.width)), kLargestTheta);
+            table.texel(x, y)[0] = static_cast<float>(lobe.factorOut(theta));
+        }
+    });
+    return table;
+}
+
 Vec3d lookUp(const MarschnerTables& tables, double sinThetaIn, double sinThetaOut, double cosPhi) {
     const auto m = tables.longitudinal.sample(0.5 * sinThetaIn + 0.5, 0.5 * sinThetaOut + 0.5);
     const double u = 0.5 * cosPhi + 0.5;

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/shading/sadeghi.h"
+#include "core/shading/dual_scattering.h"
 
 namespace hairloom::shading {
 
@@ -27,7 +27,7 @@ struct Table {
 struct TableSizes {
     std::uint32_t longitudinal = 256;  ///< both sides of the M table
     std::uint32_t azimuth = 256;       ///< N tables along cos φ
-    std::uint32_t inclination = 64;    ///< and along θ_d
+    std::uint32_t inclination = 32;    ///< and along θ_d
 };
 
 /// M_R, M_TT, M_TRT, each times its factor and cos θ_i / cos²θ_d (Eq. 33 and 50), and 2|θ_d|/π in alpha, by
@@ -48,6 +48,20 @@ struct SadeghiTables {
     Table azimuthal;  ///< N'_R, N'_TT, N'_TRT, 1 by (cos φ + 1)/2 and the strand's glint; `inclination` rows
 };
 SadeghiTables bakeSadeghi(const SadeghiParameters& model, const TableSizes& sizes = {});
+
+/// Tables of dual scattering.
+struct DualTables {
+    Table spread;  ///< RGB: DualScattering::Spread by (cos φ + 1)/2 and 2|θ_d|/π
+    /// By 2|θ_d|/π; its rows: ā_f and β̄_f²; ā_b and β̄_b²; tilt of ā_f, of ā_b, of all, and the variance of
+    /// all.
+    Table averages;
+};
+DualTables bakeDual(const DualScattering& model, std::uint32_t azimuth = 64, std::uint32_t inclination = 16);
+
+/// LongitudinalLobe::factorOut() of lobes without tilt, in red, by |sin θ| and the place of the width between
+/// the two bounds; the same for all models.
+Table bakeSpreadFactors();
+inline constexpr double kLeastSpread = 1 * kDegree, kLargestSpread = 60 * kDegree;
 
 /// S cos θ_i as the shader computes it from the tables.
 Vec3d lookUp(const MarschnerTables& tables, double sinThetaIn, double sinThetaOut, double cosPhi);

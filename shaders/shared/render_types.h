@@ -109,6 +109,17 @@ struct ShadeConstants {
     LightConstants lights[HAIRLOOM_MAX_LIGHTS];
 };
 
+// What the models of light in fibres take beside their tables.
+struct FibreConstants {
+    float4 lobes;  // x, y, z: intensities of R, TT and TRT, w: fibres in the way by those that are counted,
+                   // for hair grows in clumps
+    float4 r;      // Sadeghi's: colour times intensity, linear RGB
+    float4 tt;
+    float4 trt;
+    float4 ambient;  // share of light from everywhere that leaves, linear RGB
+    float4 spread;   // x, y: least and largest width of the table of wide lobes, radians
+};
+
 struct MeshConstants {
     float4x4 clipFromWorld;
     float4 skin;  // x: wrap, y: specular strength, z: specular exponent
@@ -150,6 +161,13 @@ struct KajiyaCase {
     float4 toView;   // w: 1/(pi R_O(exponent))
 };
 
+// One case for the shaders' models of light in fibres.
+struct FibreCase {
+    float4 tangent;  // w: the strand's random number
+    float4 toLight;  // w: fibres before the point
+    float4 toView;   // w: all fibres
+};
+
 #ifdef __cplusplus
 HAIRLOOM_OFFSET(StrandHeader, random, 12);
 HAIRLOOM_OFFSET(StrandHeader, albedo, 16);
@@ -184,6 +202,8 @@ static_assert(sizeof(OverlayConstants) == 96);
 static_assert(sizeof(OverlayVertex) == 32);
 static_assert(sizeof(LightCase) == 32);
 static_assert(sizeof(KajiyaCase) == 48);
+static_assert(sizeof(FibreConstants) == 96);
+static_assert(sizeof(FibreCase) == 48);
 }  // namespace hairloom::shaders
 #endif
 #endif

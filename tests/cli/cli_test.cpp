@@ -305,6 +305,27 @@ TEST_F(Cli, RenderWritesAPictureAndSaysWhatItCost) {
     EXPECT_GT(picture.size(), 2000u);
 }
 
+TEST_F(Cli, HairIsShadedByTheModelThatIsAskedFor) {
+    runJson(createArguments());
+    std::ofstream(folder / "blond.json") << R"({"hair": {"radius_m": 0.0005, "eumelanin": 0.1}})";
+    std::ofstream(folder / "black.json")
+        << R"({"hair": {"radius_m": 0.0005, "sigma_a_per_radius": [3, 5, 9]}})";
+    std::ofstream(folder / "wrong.json") << R"({"hair": {"eumelanine": 0.1}})";
+    std::set<std::string> pictures;
+    for (const std::string how :
+         {"--shading kajiya", "--shading marschner", "--shading marschner --scatter single",
+          "--shading sadeghi", "--shading sadeghi --scatter single",
+          "--shading marschner --view black.json"}) {
+        const std::string view = how.find("--view") == std::string::npos ? " --view blond.json" : "";
+        runJson("render hair.hairloom -o hair.png --size 96x96 --passes 1 " + how + view);
+        pictures.insert(readText(folder / "hair.png"));
+    }
+    EXPECT_EQ(pictures.size(), 6u);
+    const Outcome wrong = run("render hair.hairloom -o none.png --shading marschner --view wrong.json");
+    EXPECT_EQ(wrong.exitCode, 1);
+    EXPECT_THAT(wrong.errors, HasSubstr("eumelanine"));
+}
+
 TEST_F(Cli, HiddenGroupsAreLeftOutOfThePicture) {
     std::ofstream(folder / "two.obj") << "g head\nv 0 0 0\nv 0 0 1\nv 1 0 1\nv 1 0 0\nf 1 2 3 4\n"
                                          "g helper-a\nv 0 .1 0\nv 0 .1 1\nv 1 .1 1\nf 5 6 7\n"

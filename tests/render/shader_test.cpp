@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The shaders' functions and layouts against C++.
+#include "core/render/fibre_tables.h"
 #include "core/shading/kajiya_kay.h"
+#include "core/shading/melanin.h"
+#include "core/shading/tables.h"
 #include "shaders/shaders.h"
 #include "shaders/shared/render_types.h"
 #include "tests/render/render_fixture.h"
@@ -20,8 +23,8 @@ class ShaderTest : public RenderTest {
         return device->createBuffer(desc, std::as_bytes(std::span(content))).value();
     }
     std::vector<shaders::float4> run(const char* name, std::size_t results, std::uint32_t groups,
-                                     std::vector<gpu::Binding> bindings,
-                                     std::span<const std::byte> constants) {
+                                     std::vector<gpu::Binding> bindings, std::span<const std::byte> constants,
+                                     const FibreTables* fibre = nullptr) {
         const shaders::Shader* shader = shaders::find(name);
         auto module =
             device->createShader({name, gpu::ShaderStage::Compute, std::as_bytes(shader->spirv)}).value();
@@ -34,6 +37,7 @@ class ShaderTest : public RenderTest {
         list->setPipeline(pipeline);
         list->bind(bindings);
         if (!constants.empty()) list->setConstants(0, constants);
+        if (fibre != nullptr) fibre->bind(*list);
         list->dispatch(groups);
         list->endPass();
         const auto submission = device->submit(std::move(list));
@@ -74,6 +78,84 @@ TEST_F(ShaderTest, KajiyaKayAgreesWithTheReference) {
     for (std::uint32_t i = 0; i < kCases; ++i) {
         ASSERT_NEAR(result[i].x, expected[i][0], 1e-3) << i;
         ASSERT_NEAR(result[i].y, expected[i][1], 2e-3 * (1 + expected[i][1])) << i;
+    }
+}
+
+struct FibreCases {
+    std::vector<shaders::FibreCase> cases;
+    std::vector<shading::FibreAngles> angles;
+
+    explicit FibreCases(std::uint32_t count) {
+        Random random(12);
+        while (cases.size() < count) {
+            const Vec3d tangent = randomUnit(random), toLight = randomUnit(random),
+                        toView = randomUnit(random);
+            const auto here = shading::fibreAngles(tangent, toLight, toView);
+            if (std::max(std::abs(here.thetaIn), std::abs(here.thetaOut)) > 1.3) continue;
+            const double before = 4 * random.uniformDouble();
+            angles.push_back(here);
+            cases.push_back({toFloat4(tangent, random.uniformDouble()), toFloat4(toLight, before),
+                             toFloat4(toView, before + 4 * random.uniformDouble())});
+        }
+    }
+};
+
+FibreMaterial blondFibre(ShadingModel model) {
+    shading::MarschnerParameters m;
+    m.azimuthal.absorption = shading::absorption({0.3, 0});
+    m.azimuthal.width = shading::azimuthalWidth(0.3);
+    m.azimuthal.causticWidth = 0;
+    FibreMaterial material;
+    material.model = model;
+    if (model == ShadingModel::marschner) {
+        material.marschner = m;
+    } else {
+        material.sadeghi = shading::sadeghiLike(shading::Marschner(m));
+    }
+    return material;
+}
+
+/// Root mean square of the differences, over that of what is expected.
+class RelativeError {
+  public:
+    void add(const shaders::float4& is, const Vec3d& expected) {
+        wrong_ += (Vec3f(is.x, is.y, is.z).cast<double>() - expected).squaredNorm();
+        all_ += expected.squaredNorm();
+    }
+    double value() const { return std::sqrt(wrong_ / all_); }
+
+  private:
+    double wrong_ = 0, all_ = 0;
+};
+
+TEST_F(ShaderTest, FibreModelsAgreeWithTheReference) {
+    constexpr std::uint32_t kCases = 2048;
+    const FibreCases given(kCases);
+    for (const ShadingModel model : {ShadingModel::marschner, ShadingModel::sadeghi}) {
+        const bool isMarschner = model == ShadingModel::marschner;
+        const FibreMaterial material = blondFibre(model);
+        const auto tables = FibreTables::make(*device, material);
+        ASSERT_TRUE(tables) << tables.error().message();
+        const auto result = run(isMarschner ? "marschner_echo.comp" : "sadeghi_echo.comp", 2 * kCases,
+                                kCases / 64, {gpu::Binding::read(0, buffer(given.cases))}, {}, &*tables);
+        const shading::Marschner marschner(material.marschner);
+        const shading::DualScattering dual =
+            isMarschner ? shading::DualScattering(marschner) : shading::DualScattering(material.sadeghi);
+        RelativeError single, multiple;
+        for (std::uint32_t i = 0; i < kCases; ++i) {
+            const auto& [in, out, phi] = given.angles[i];
+            const shaders::FibreCase& c = given.cases[i];
+            const Vec3d expected = isMarschner ? marschner(in, out, phi)
+                                               : shading::evaluate(material.sadeghi, in, out, phi,
+                                                                   static_cast<double>(c.tangent.w));
+            single.add(result[2 * i], std::cos(in) * expected);
+            multiple.add(result[2 * i + 1],
+                         shading::multipleScattering(dual.at(0.5 * std::abs(out - in)), in, out, phi,
+                                                     static_cast<double>(c.toLight.w),
+                                                     static_cast<double>(c.toView.w)));
+        }
+        EXPECT_LT(single.value(), 0.01) << isMarschner;
+        EXPECT_LT(multiple.value(), 0.02) << isMarschner;
     }
 }
 

@@ -165,7 +165,7 @@ TEST(Azimuthal, TheCubicComesNearTheExactAngles) {
                 const double phi = (i + 0.5) * kPi / 720;
                 difference += std::abs(exact(lobe, phi).x() - cubic(lobe, phi).x()) * 2 * kPi / 720;
             }
-            EXPECT_LT(difference, 0.15 * exact.energy(lobe).x()) << degrees << " " << order(lobe);
+            EXPECT_LT(difference, 0.06 * exact.energy(lobe).x()) << degrees << " " << order(lobe);
         }
     }
 }

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "core/shading/sadeghi.h"
+
+namespace hairloom::render {
+
+enum class ShadingModel { kajiya, marschner, sadeghi };
+
+/// What becomes of light that a fibre has scattered towards others.
+enum class Scattering {
+    single,  ///< nothing: it is lost
+    dual,    ///< it reaches them (Zinke et al. 2008)
+};
+
+/// How the models of light in fibres see the hair; Kajiya-Kay has no use for it.
+struct FibreMaterial {
+    ShadingModel model = ShadingModel::kajiya;
+    Scattering scattering = Scattering::dual;
+    shading::MarschnerParameters marschner;  ///< where it is the model
+    shading::SadeghiParameters sadeghi;      ///< where it is
+    /// Fibres that stand in the light's way by those that lie there: hair grows in clumps. Traced Sintel
+    /// strands have 0.81. 0…1.
+    float clumping = 0.81f;
+
+    bool operator==(const FibreMaterial&) const = default;
+};
+
+}  // namespace hairloom::render

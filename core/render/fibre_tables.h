@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The look-up tables of one material on the device.
+
+#include "core/gpu/device.h"
+#include "core/render/fibre_material.h"
+#include "shaders/shared/render_types.h"
+
+namespace hairloom::render {
+
+/// Only what the model needs is made: none for Kajiya-Kay, those of dual scattering where it is on.
+class FibreTables {
+  public:
+    /// Bakes on all cores and leaves the upload to the device: nothing waits.
+    static Result<FibreTables> make(gpu::Device& device, const FibreMaterial& material);
+
+    bool isFor(const FibreMaterial& material) const { return material_ == material; }
+    /// The compute shader that shades with this material.
+    const char* shader() const;
+    /// Tables and constants, registers b1, s0 and from t11 on; nothing for Kajiya-Kay.
+    void bind(gpu::CommandList& list) const;
+
+    const shaders::FibreConstants& constants() const { return constants_; }
+    std::uint64_t bytes() const;  ///< of all tables on the device
+
+  private:
+    FibreMaterial material_;
+    shaders::FibreConstants constants_;
+    std::vector<gpu::TexturePtr> textures_;  ///< in the order of their registers
+    gpu::SamplerPtr sampler_;
+};
+
+}  // namespace hairloom::render

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Light that other fibres have scattered before; core/shading/dual_scattering.h says how and is the reference.
+#include "shaders/fibre_tables.hlsli"
+
+Texture2D<float4> gSpread : register(t14);         // N averaged over light from half of the directions
+Texture2D<float4> gAverages : register(t15);       // shares of light sent on and back, tilts and variances
+Texture2D<float4> gSpreadFactors : register(t16);  // what normalises a wide lobe
+
+float spreadLongitudinal(FibreConstants fibre, FibreFrame f, float tilt, float variance) {
+    const float width = clamp(sqrt(variance), fibre.spread.x, fibre.spread.y);
+    const float v = (width - fibre.spread.x) / (fibre.spread.y - fibre.spread.x);
+    const float factors =
+        lookUp(gSpreadFactors, float2(abs(f.sinIn), v)).r * lookUp(gSpreadFactors, float2(abs(f.sinOut), v)).r;
+    const float x = (0.5 * (asin(clamp(f.sinIn, -1.0, 1.0)) + asin(clamp(f.sinOut, -1.0, 1.0))) - tilt) / width;
+    return factors * exp(-0.5 * x * x) / (width * 2.5066283);
+}
+
+float scatteringsOf(float x) { return x < 1e-2 ? 1.0 + 0.5 * x : x / (1.0 - exp(-x)); }
+
+// Times the irradiance: as S cos theta_i. `before` fibres up to the light, `all` from side to side.
+float3 multipleScattering(FibreConstants fibre, FibreFrame f, float before, float all, float3 tint) {
+    const float cosIn = sqrt(saturate(1.0 - f.sinIn * f.sinIn));
+    const float cosOut = sqrt(saturate(1.0 - f.sinOut * f.sinOut));
+    const float cosDSquared = max(0.5 * (1.0 + cosIn * cosOut + f.sinIn * f.sinOut), 1e-4);
+    const float thetaD = acos(sqrt(min(cosDSquared, 1.0))) * (2.0 / 3.14159265);
+    const float4 forward = lookUp(gAverages, float2(thetaD, 0.0));
+    const float4 backward = lookUp(gAverages, float2(thetaD, 0.5));
+    const float4 rest = lookUp(gAverages, float2(thetaD, 1.0));
+    // A tint may be above 1; no fibre gives more light than it gets.
+    const float3 share = min(tint, 0.99 / max(forward.rgb + backward.rgb, 1e-4));
+    const float3 lost = 1.0 - forward.rgb * share;
+    const float3 turned = backward.rgb * share;
+
+    const float3 rate = sqrt(max(lost * lost - turned * turned, 1e-6));
+    const float3 returned = turned / (lost + rate);
+    const float3 falling = exp(-rate * before);
+    const float3 back = falling * exp(-2.0 * rate * max(all - before, 0.0));
+    const float3 turns = 1.0 - returned * returned * exp(-2.0 * rate * max(all, before));
+    const float3 down = max((falling - returned * returned * back) / turns - exp(-before), 0.0);
+    const float3 up = returned * (falling - back) / turns;
+
+    const float passed = scatteringsOf(before * dot(forward.rgb * share, 1.0 / 3.0));
+    const float downM = spreadLongitudinal(fibre, f, rest.z + passed * rest.x, rest.w + passed * forward.w);
+    const float upM = spreadLongitudinal(fibre, f, rest.z + (passed + 1.0) * rest.x + rest.y,
+                                         rest.w + (passed + 1.0) * forward.w + backward.w);
+    const float3 downN = lookUp(gSpread, float2(0.5 + 0.5 * f.cosPhi, thetaD)).rgb;
+    const float3 upN = lookUp(gSpread, float2(0.5 - 0.5 * f.cosPhi, thetaD)).rgb;
+    return share * (downM * down * downN + upM * up * upN) * (cosIn / cosDSquared);
+}

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Look-up tables of the fibre models (core/shading/tables.h).
+#ifndef HAIRLOOM_FIBRE_TABLES_HLSLI
+#define HAIRLOOM_FIBRE_TABLES_HLSLI
+#include "shaders/shared/render_types.h"
+
+SamplerState gLinear : register(s0);
+Texture2D<float4> gLongitudinal : register(t11);
+
+// Texels stand for both ends of 0 to 1.
+float4 lookUp(Texture2D<float4> table, float2 at) {
+    uint width, height;
+    table.GetDimensions(width, height);
+    const float2 size = float2(float(width), float(height));
+    return table.SampleLevel(gLinear, (saturate(at) * (size - 1.0) + 0.5) / size, 0);
+}
+
+// M of R, TT and TRT with cos theta_i / cos^2 theta_d, and 2 |theta_d| / pi.
+float4 longitudinal(float sinIn, float sinOut) { return lookUp(gLongitudinal, 0.5 * float2(sinIn, sinOut) + 0.5); }
+
+struct FibreFrame {
+    float sinIn, sinOut, cosPhi;
+};
+
+// Rünz 2012, Eq. 57.
+FibreFrame fibreFrame(float3 tangent, float3 toLight, float3 toView) {
+    FibreFrame f;
+    f.sinIn = dot(toLight, tangent);
+    f.sinOut = dot(toView, tangent);
+    const float3 acrossIn = toLight - f.sinIn * tangent;
+    const float3 acrossOut = toView - f.sinOut * tangent;
+    f.cosPhi = dot(acrossIn, acrossOut) * rsqrt(max(dot(acrossIn, acrossIn) * dot(acrossOut, acrossOut), 1e-12));
+    return f;
+}
+#endif

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Marschner et al. 2003 from tables (Rünz 2012, section 6.6.2); core/shading/marschner.h is its reference.
+#include "shaders/fibre_tables.hlsli"
+
+Texture2D<float4> gTransmitted : register(t12);  // N_TT, N_R in alpha
+Texture2D<float4> gReflected : register(t13);    // N_TRT
+
+// S cos theta_i. `tint` is taken once by light that crosses the fibre, twice by TRT.
+float3 fibreScattering(FibreConstants fibre, FibreFrame f, float strandRandom, float3 tint) {
+    const float4 m = longitudinal(f.sinIn, f.sinOut);
+    const float2 at = float2(0.5 * f.cosPhi + 0.5, m.w);
+    float3 sum = 0;
+    if (fibre.lobes.x + fibre.lobes.y > 0) {
+        const float4 n = lookUp(gTransmitted, at);
+        sum = m.x * n.a + m.y * n.rgb * tint;
+    }
+    if (fibre.lobes.z > 0) sum += m.z * lookUp(gReflected, at).rgb * (tint * tint);
+    return sum;
+}

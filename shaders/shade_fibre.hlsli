@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Light leaving each curve point towards the camera, by a model of light in fibres: HAIRLOOM_SADEGHI or Marschner's, with
+// HAIRLOOM_DUAL also what other fibres have scattered before. shade.comp.hlsl does the same for Kajiya-Kay.
+#include "shaders/curve.hlsli"
+#include "shaders/shadows.hlsli"
+#ifdef HAIRLOOM_SADEGHI
+#include "shaders/sadeghi.hlsli"
+#else
+#include "shaders/marschner.hlsli"
+#endif
+#ifdef HAIRLOOM_DUAL
+#include "shaders/dual.hlsli"
+#endif
+
+cbuffer Constants : register(b0) { ShadeConstants gShade; };
+cbuffer Fibre : register(b1) { FibreConstants gFibre; };
+StructuredBuffer<CurvePoint> gCurve : register(t0);
+StructuredBuffer<StrandHeader> gStrands : register(t1);
+RWStructuredBuffer<float4> gColour : register(u0);
+
+[numthreads(64, 1, 1)]
+void main(uint3 id : SV_DispatchThreadID) {
+    const uint index = id.x + id.y * gShade.counts.z;
+    if (id.x >= gShade.counts.z || index >= gShade.counts.x) return;
+    const CurvePoint p = gCurve[index];
+    const StrandHeader strand = gStrands[p.strand];
+    const float3 tangent = unpackUnit(p.tangentXy);
+    const float3 toView = normalize(gShade.eye_ws.xyz - p.position_ws.xyz);
+
+    // A strand's own colour is known against the material's, whose absorption the tables hold.
+    const float vary = 1.0 + gShade.rootTip.z * (strand.random * 2.0 - 1.0);
+    const float3 own = strand.albedo.w > 0 ? strand.albedo.rgb / max(gShade.albedo.rgb, 1e-3) : 1.0;
+    const float3 tint = own * (lerp(gShade.rootTip.x, gShade.rootTip.y, p.along) * vary);
+    const float clumping = gFibre.lobes.w;
+
+    float3 colour = 0;
+    float openness = 0;
+    for (uint i = 0; i < gShade.counts.y; ++i) {
+        const LightConstants light = gShade.lights[i];
+        const float3 toLight = directionToLight(light, p.position_ws.xyz);
+        const Occlusion o = occlusion(light, p.position_ws.xyz, 0.0007, 0.004);
+        const float before = clumping * o.fibres;
+        const FibreFrame f = fibreFrame(tangent, toLight, toView);
+        float3 scattered = exp(-before) * fibreScattering(gFibre, f, hashUnit(p.strand * 2u), tint);
+#ifdef HAIRLOOM_DUAL
+        scattered += multipleScattering(gFibre, f, before, clumping * o.allFibres, tint);
+#endif
+        colour += irradianceOf(light, p.position_ws.xyz) * o.visibility * scattered;
+        openness += exp(-0.35 * o.fibres) * lerp(0.25, 1.0, o.visibility);
+    }
+    openness = gShade.counts.y > 0 ? openness / float(gShade.counts.y) : 1.0;
+    if (hasEnvironment(gShade)) {
+        colour += gFibre.ambient.rgb * tint * environmentOnHair(gShade, tangent, 1.0 - 0.5 * p.along) * openness;
+    }
+    gColour[index] = float4(colour, 1);
+}
