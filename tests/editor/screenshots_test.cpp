@@ -105,7 +105,7 @@ TEST_P(ScreenshotsTest, Dialogs) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Both, ScreenshotsTest, testing::Values(Theme::Dark, Theme::Light),
-                         [](const auto& info) { return info.param == Theme::Dark ? "dark" : "light"; });
+                         [](const auto& theme) { return theme.param == Theme::Dark ? "dark" : "light"; });
 
 }  // namespace
 }  // namespace hairloom::editor

@@ -6,6 +6,7 @@
 #include <QMimeData>
 #include <QProgressBar>
 #include <QPushButton>
+#include <QStandardPaths>
 
 #include "core/groom/project_file.h"
 #include "editor/dialogs/export_dialog.h"

@@ -75,7 +75,7 @@ TEST_P(BrushToolTest, EscapeLeavesNothing) {
 INSTANTIATE_TEST_SUITE_P(All, BrushToolTest,
                          testing::Values("comb", "brush", "grab", "smooth", "puff", "pinch", "length", "cut",
                                          "cut_line", "delete", "freeze"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& brush) { return std::string(brush.param); });
 
 TEST_F(ToolsTest, KeysChangeSizeAndStrength) {
     auto& tool = dynamic_cast<BrushTool&>(activate("comb"));
@@ -183,7 +183,8 @@ TEST_F(ToolsTest, StrandsAreSelectedAndBrushesKeepToThem) {
     comb.settings().radius = 0.05f;
     drag({crown + QPoint(-40, 0), crown + QPoint(0, 8), crown + QPoint(60, 20)});
     for (std::size_t s = 0; s < groom().strandCount(); ++s) {
-        if (selected[s] == 0) ASSERT_EQ(before.strand(s).back(), groom().strand(s).back()) << s;
+        if (selected[s] != 0) continue;
+        ASSERT_EQ(before.strand(s).back(), groom().strand(s).back()) << s;
     }
     EXPECT_EQ(document().doneSteps(), 2);
 }
