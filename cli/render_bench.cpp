@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 #include <memory>
+#include <tuple>
 
 #include "cli/progress.h"
 #include "cli/stopwatch.h"
@@ -101,6 +102,7 @@ class RenderMeasuring {
             hairs_ = which.hairs;
         }
         render::RenderScene scene = hair_->scene();
+        scene.strands[0].material.fibre = which.shading;
         const float aspect =
             static_cast<float>(which.options.width) / static_cast<float>(which.options.height);
         scene.camera = render::frame(render::View::ThreeQuarter, render::boundsOf(scene), aspect);
@@ -180,6 +182,7 @@ class CaseList {
         add(
             "the thesis' setting", middle_, thesisSize_, [](render::RenderOptions&) {},
             limited ? std::optional(3.0) : std::nullopt);
+        addShading();
         addAntiAliasing();
         vary("shadows: none", [](auto& o) { o.shadows = render::Shadows::none; });
         vary("shadows: absorption", [](auto& o) { o.shadows = render::Shadows::absorption; });
@@ -206,12 +209,34 @@ class CaseList {
         which.name = name;
         which.hairs = hairs;
         which.limit = limit;
+        which.shading = marschner(render::Scattering::single);
         std::tie(which.options.width, which.options.height) = size;
         which.options.frames = 1;
         which.options.samples =
             std::ranges::find(device_.sampleCounts, 4u) != device_.sampleCounts.end() ? 4 : 1;
         change(which.options);
         bench_.cases.push_back(std::move(which));
+    }
+    static render::FibreMaterial marschner(render::Scattering scattering) {
+        render::FibreMaterial material;
+        material.model = render::ShadingModel::marschner;
+        material.scattering = scattering;
+        return material;
+    }
+    void shade(const std::string& name, const render::FibreMaterial& material) {
+        vary(name, [](render::RenderOptions&) {});
+        bench_.cases.back().shading = material;
+    }
+    void addShading() {
+        render::FibreMaterial sadeghi;
+        sadeghi.model = render::ShadingModel::sadeghi;
+        sadeghi.scattering = render::Scattering::single;
+        shade("shading: Kajiya-Kay", {});
+        shade("shading: Marschner", marschner(render::Scattering::single));
+        shade("shading: Marschner, dual scattering", marschner(render::Scattering::dual));
+        shade("shading: Sadeghi", sadeghi);
+        sadeghi.scattering = render::Scattering::dual;
+        shade("shading: Sadeghi, dual scattering", sadeghi);
     }
     template <class Change>
     void vary(const std::string& name, Change change) {

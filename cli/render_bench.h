@@ -10,6 +10,7 @@
 
 #include "cli/measurements.h"
 #include "core/gpu/device.h"
+#include "core/render/fibre_material.h"
 #include "core/render/options.h"
 
 namespace hairloom::cli {
@@ -27,6 +28,7 @@ struct RenderBenchOptions {
 struct RenderCase {
     std::string name;
     std::uint32_t hairs = 0;
+    render::FibreMaterial shading;  ///< that of Marschner, single scattering, unless the name says otherwise
     render::RenderOptions options;
     Measurement frame;  ///< all passes on the device, ms; wall time where it has no clock
     Measurement wall;   ///< from recording to the end on the device, ms, with the upload of positions

@@ -196,7 +196,7 @@ Vec3d multipleScattering(const DualScattering::Row& row, double thetaIn, double 
         }
         return n;
     };
-    // Each scattering adds its variance and its tilt (Zinke et al. 2008, Eq. 8 and 16). Light from behind has
+    // Each scattering adds its variance and its tilt (Zinke et al. 2008). Light from behind has
     // turned once more and, near the surface, passed two fibres more on its way.
     const double passed = scatteringsOf(before * a.forward.mean());
     const double downM = spreadLongitudinal(a.tilt() + passed * a.forwardTilt,

@@ -13,17 +13,17 @@ struct Melanin {
     double pheomelanin = 0.0;  ///< 0…8
 };
 
-/// RGB per fibre radius: d'Eon et al. 2011, section 6.1 (measured for a fibre's radius as the unit).
+/// RGB per fibre radius: d'Eon et al. 2011 (measured for a fibre's radius as the unit).
 Vec3d absorption(const Melanin& melanin);
 
 /// RGB per fibre radius that gives a volume of such hair the colour, linear 0…1, under all scattering: the
-/// fit of Chiang et al. 2016, Eq. 9. `azimuthalRoughness` 0…1. 0 of a channel is taken as 0.001.
+/// fit of Chiang et al. 2016. `azimuthalRoughness` 0…1. 0 of a channel is taken as 0.001.
 Vec3d absorptionOfColour(const Vec3d& colour, double azimuthalRoughness);
 
-/// β of the R lobe in θ_h, radians, of a roughness 0…1 (Chiang et al. 2016, Eq. 7, whose variance is one of
+/// β of the R lobe in θ_h, radians, of a roughness 0…1 (Chiang et al. 2016, whose variance is one of
 /// θ_o).
 double longitudinalWidth(double roughness);
-/// The standard deviation in radians of the azimuthal spread (Chiang et al. 2016, Eq. 8: the scale of a
+/// The standard deviation in radians of the azimuthal spread (Chiang et al. 2016: the scale of a
 /// logistic).
 double azimuthalWidth(double roughness);
 

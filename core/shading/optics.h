@@ -9,7 +9,7 @@
 namespace hairloom::shading {
 
 /// A skew ray behaves in the plane across the fibre as a flat one that meets these indices (Marschner et al.
-/// 2003, appendix B). Rünz 2012, footnote 5 prints the reciprocal.
+/// 2003). Rünz 2012, footnote 5 prints the reciprocal.
 struct BravaisIndices {
     double perpendicular;  ///< eta', bends the ray: sin(gamma_i) = eta' sin(gamma_t)
     double parallel;       ///< eta'', for light polarised in the plane of incidence

@@ -31,6 +31,7 @@ class TintedEngine : public QIconEngine {
         QImageReader reader(file_);
         reader.setScaledSize(size);
         QImage image = reader.read().convertToFormat(QImage::Format_ARGB32_Premultiplied);
+        if (image.isNull()) return {};
         QPainter painter(&image);
         painter.setCompositionMode(QPainter::CompositionMode_SourceIn);
         painter.fillRect(image.rect(), colour);

@@ -7,6 +7,11 @@
 #include <QStyleFactory>
 #include <map>
 
+/// Icons and style sheet lie in a static library, whose resources nobody else asks for.
+static void takeResources() {
+    Q_INIT_RESOURCE(resources);
+}
+
 namespace hairloom::editor {
 namespace {
 
@@ -65,6 +70,7 @@ QString styleSheetOf(const Tones& t) {
 }  // namespace
 
 void applyTheme(QApplication& application, Theme theme) {
+    takeResources();
     QPixmapCache::clear();
     QApplication::setStyle(QStyleFactory::create("Fusion"));
     QApplication::setPalette(paletteOf(tones(theme)));

@@ -9,6 +9,7 @@
 #include <QTemporaryDir>
 #include <QTest>
 #include <QWindow>
+#include <map>
 #include <memory>
 
 #include "core/groom/groom_hash.h"
@@ -55,10 +56,18 @@ class WindowTest : public testing::Test {
         session().tasks.finish();
         QCoreApplication::processEvents();
     }
+    /// Made once for all tests; AnEmptyWindow… opens one as a person does.
     void openSampleHair(const QString& name) {
-        openSample(session(), name);
-        finishWork();
-        ASSERT_GT(groom().strandCount(), 0u) << window->statusLine().message().toStdString();
+        static std::map<QString, std::pair<Groom, std::shared_ptr<const Actor>>> made;
+        if (!made.contains(name)) {
+            openSample(session(), name);
+            finishWork();
+            ASSERT_GT(groom().strandCount(), 0u) << window->statusLine().message().toStdString();
+            made[name] = {groom(), session().player.actor()};
+            return;
+        }
+        document().open(made[name].first, {}, name);
+        session().player.setActor(made[name].second);
     }
     void openBust() {
         openSample(session(), {});

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pictures from the command line: what views may say, sequences, and the plan.
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <set>
+
+#include "tests/cli/command.h"
+
+namespace hairloom::test {
+namespace {
+
+using testing::HasSubstr;
+
+class RenderJob : public CommandLineTest {
+  protected:
+    void SetUp() override {
+        CommandLineTest::SetUp();
+        runJson("create --mesh '" + bustFile() +
+                "' --scalp material:scalp --count 60 --length 0.2 --points 6 -o hair.hairloom");
+    }
+    std::string view(const std::string& name, const std::string& content) const {
+        std::ofstream(folder / name) << content;
+        return " --view " + name;
+    }
+    nlohmann::json picture(const std::string& more) const {
+        return runJson("render hair.hairloom -o hair.png --size 48x48 --passes 1 " + more);
+    }
+    /// Target names of a report's plan.
+    static std::set<std::string> targets(const nlohmann::json& report) {
+        std::set<std::string> names;
+        for (const auto& target : report["plan"]["targets"]) names.insert(target["name"]);
+        return names;
+    }
+};
+
+TEST_F(RenderJob, PlansHoldOnlyWhatIsUsed) {
+    EXPECT_TRUE(targets(picture("")).contains("opacity layers"));
+    EXPECT_FALSE(targets(picture("--shadow absorption")).contains("opacity layers"));
+    EXPECT_FALSE(targets(picture("--shadow none")).contains("head depth"));
+    const auto dark = picture(view("dark.json", R"({"lights": []})"));
+    EXPECT_FALSE(targets(dark).contains("head depth"));
+    for (const auto& pass : dark["plan"]["passes"]) EXPECT_FALSE(pass["why"].get<std::string>().empty());
+    const auto unshadowed = picture(view(
+        "plain.json",
+        R"({"lights": [{"type": "directional", "to_light": [0, 1, 1], "irradiance": [3, 3, 3], "shadow": false}]})"));
+    EXPECT_FALSE(targets(unshadowed).contains("head depth"));
+}
+
+TEST_F(RenderJob, EachWayOfDrawingGivesItsOwnPicture) {
+    std::set<std::string> pictures;
+    const std::vector<std::string> ways = {
+        "",
+        "--shadow none",
+        "--shadow absorption",
+        "--shadow opacity",
+        "--aa fxaa",
+        "--aa none",
+        "--transparency a2c",
+        "--detail 5",
+        view("point.json",
+             R"({"lights": [{"type": "point", "position": [0, 2.2, 1], "intensity": [3, 3, 3]}]})"),
+        view("around.json", R"({"lights": [{"type": "environment", "radiance": [0.3, 0.3, 0.3]}]})"),
+        view("sky.json", R"({"lights": [{"type": "environment", "sky": [0, 0, 1], "ground": [1, 0, 0]}]})")};
+    for (const std::string& way : ways) {
+        picture(way);
+        pictures.insert(readText(folder / "hair.png"));
+    }
+    EXPECT_EQ(pictures.size(), ways.size());
+    // A picture serves as light from around.
+    picture(view("image.json", R"({"lights": [{"type": "environment", "image": "hair.png", "scale": 2}]})"));
+}
+
+TEST_F(RenderJob, BrokenViewsAreErrorsThatNameThem) {
+    const auto refuses = [&](const std::string& content, const std::string& part) {
+        const Outcome outcome = run("render hair.hairloom -o none.png" + view("bad.json", content));
+        EXPECT_EQ(outcome.exitCode, 1);
+        EXPECT_THAT(outcome.errors, testing::AllOf(HasSubstr("bad.json"), HasSubstr(part)));
+        EXPECT_FALSE(std::filesystem::exists(folder / "none.png"));
+    };
+    refuses(R"({"lights": [{"type": "candle"}]})", "candle");
+    refuses(R"({"lights": [{"type": "point", "position": [0, 1, 0]}]})", "intensity");
+    refuses(R"({"lights": [{"type": "environment", "sky": [1, 1, 1]}]})", "ground");
+    const Outcome missing =
+        run("render hair.hairloom -o none.png" +
+            view("lost.json", R"({"lights": [{"type": "environment", "image": "no.png"}]})"));
+    EXPECT_EQ(missing.exitCode, 1);
+    EXPECT_THAT(missing.errors, HasSubstr("no.png"));
+}
+
+TEST_F(RenderJob, SequencesAreNumberedAndJoined) {
+    const auto report = picture("--turntable 3 --animation turn.png --strip strip.png --exr hair.exr");
+    EXPECT_EQ(report["pictures"], 3);
+    std::set<std::string> pictures;
+    for (const char* number : {"0000", "0001", "0002"}) {
+        pictures.insert(readText(folder / (std::string("hair_") + number + ".png")));
+        EXPECT_EQ(readText(folder / (std::string("hair_") + number + ".exr")).substr(0, 4),
+                  "\x76\x2f\x31\x01");
+    }
+    EXPECT_EQ(pictures.size(), 3u);
+    EXPECT_THAT(readText(folder / "turn.png"), HasSubstr("acTL"));
+    EXPECT_TRUE(std::filesystem::exists(folder / "strip.png"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "hair.png"));
+
+    runJson("simulate hair.hairloom --frames 4 --wind 3,0,0 --record wind.frames");
+    const auto wind = picture("--record wind.frames --frames 0,3,3");
+    EXPECT_EQ(wind["pictures"], 2);
+    EXPECT_NE(readText(folder / "hair_0000.png"), readText(folder / "hair_0001.png"));
+    EXPECT_EQ(run("render hair.hairloom -o x.png --record wind.frames --frames 3,0").exitCode, 1);
+}
+
+TEST_F(RenderJob, BenchMeasuresEachPass) {
+    const auto report = runJson("bench render --hairs 40 --size 32x32 --repeat 2 --markdown table.md");
+    std::set<std::string> names;
+    for (const auto& row : report["rows"]) {
+        names.insert(row["name"]);
+        EXPECT_EQ(row["n"], 2);
+        EXPECT_LE(row["min"], row["median"]);
+    }
+    for (const char* name : {"40 hairs", "40 hairs, wall", "40 hairs, opacity layers",
+                             "anti-aliasing: FXAA, filter", "transparency: weighted, blend"}) {
+        EXPECT_TRUE(names.contains(name)) << name;
+    }
+    EXPECT_THAT(readText(folder / "table.md"), HasSubstr("| shadows: none |"));
+}
+
+}  // namespace
+}  // namespace hairloom::test
