@@ -210,11 +210,12 @@ TEST_F(ShellTest, EveryControlOfThePanelsHasATip) {
 TEST_F(ShellTest, ExportIsReadBackAndReported) {
     openSampleHair("short");
     ExportDialog dialog(session());
-    dialog.exportTo(inFolder("hair.tfx"));
+    dialog.findChild<QComboBox*>("target")->setCurrentText("Yuksel .hair");
+    dialog.exportTo(inFolder("hair.hair"));
     finishWork();
     EXPECT_EQ(dialog.report().strands, groom().strandCount());
-    EXPECT_LT(dialog.report().maxErrorMm, 1.0);
-    const auto back = importStrands(inFolder("hair.tfx").toStdString());
+    EXPECT_LT(dialog.report().maxErrorMm, 0.001);
+    const auto back = importStrands(inFolder("hair.hair").toStdString());
     ASSERT_TRUE(back) << back.error().message();
     EXPECT_EQ(back->groom.strandCount(), groom().strandCount());
 }
