@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "runtime/presets.h"
 #include "runtime/state.h"
 
 namespace hairloom::runtime {
@@ -13,11 +14,14 @@ namespace {
 /// Stiffness beyond which the matrix of a strand no longer fits single precision, as a multiple of the
 /// masses. There a strand of 32 segments sags by less than a ten-thousandth of what it falls in a substep.
 constexpr double kStiffest = 1e7;
+/// The same where the matrix is factored in single precision.
+constexpr double kStiffestCoupled = 1e5;
 /// Radians by which a strand's own weight may turn it in all: softer hair carries a share of its weight only.
 constexpr double kMostHeld = std::numbers::pi;
 /// What keeps the fastest waves of curved hair from ringing on, whose pulls are not quite those of an energy.
 constexpr float kLeastCurvedRate = 0.25f;
-/// The same where lengths are held, which no longer leaves the trapezoidal rule its own.
+/// The same where lengths are held by a step of their own, which does not leave the trapezoidal rule its
+/// energy.
 constexpr float kLeastRate = 0.02f;
 /// 2 − √2: how much nearer the ends of two unit segments come when they turn by 90°.
 constexpr double kShortening = 0.585786437626905;
@@ -56,8 +60,8 @@ class StrandBend {
           rootRotation_(shape.restRoots[block_.strandOfLane[lane]].rotation) {}
 
     /// κ of each joint, in square metres per square second and unit mass; the system has the masses plus
-    /// `share`·K.
-    void fillStiffness(double share, bool factored, bool flexion) {
+    /// `share`·K, which is bounded at `stiffest` times the masses where that is not 0.
+    void fillStiffness(double share, double stiffest, bool flexion) {
         const std::uint32_t first = firstJoint();
         const std::uint32_t segments = block_.points - 1;
         for (std::uint32_t j = 0; j < block_.points; ++j) kappa_[j] = 0.0;
@@ -65,7 +69,7 @@ class StrandBend {
             const double along = static_cast<double>(j) / segments;
             const double s = static_cast<double>(settings_.angularStiffness) *
                              (1.0 + (static_cast<double>(settings_.angularTipShare) - 1.0) * along);
-            const double stiffness = kHairBendingStiffness * s / std::max(1.0 - s, 1e-9);
+            const double stiffness = bendingStiffnessOf(s);
             const double outer = lengthOf(j);
             const double inner = j > 0 ? lengthOf(j - 1) : 0.0;
             const bool clamped = j + 1 == settings_.clampedPoints || j == 0;
@@ -73,10 +77,10 @@ class StrandBend {
             const double own = 0.5 * (outer + inner);
             if (!(outer > kNoLength) || (j > 0 && !(inner > kNoLength))) continue;
             kappa_[j] = stiffness * mass(j) / own / carried;
-            if (factored) {
+            if (stiffest > 0.0) {
                 const double most = outerShare(j) + innerShare(j);
                 const double lightest = std::min({mass(j), mass(j + 1), j > 0 ? mass(j - 1) : mass(j)});
-                kappa_[j] = std::min(kappa_[j], kStiffest * lightest / (share * most * most));
+                kappa_[j] = std::min(kappa_[j], stiffest * lightest / (share * most * most));
             }
             // A flexion spring of the same energy where a straight joint has turned by 90°.
             if (flexion) kappa_[j] *= 2.0 / (kShortening * kShortening * own * own);
@@ -197,10 +201,11 @@ class StrandBend {
 
 }  // namespace
 
-float bendRate(const SimulationSettings& settings, float h, bool curved) {
+float bendRate(const SimulationSettings& settings, float h, bool curved, bool coupled) {
     const float damping = settings.dampingTime > 0.0f ? 1.0f / settings.dampingTime : 0.0f;
     const float lost = 1.0f - std::exp(-h * (damping + settings.airDrag));
-    return std::max(settings.bendDampingTime / h, curved ? kLeastCurvedRate : kLeastRate) + 0.25f * lost;
+    const float least = curved ? kLeastCurvedRate : coupled ? 0.0f : kLeastRate;
+    return std::max(settings.bendDampingTime / h, least) + 0.25f * lost;
 }
 
 void fillBend(const RestShape& shape, const SimulationSettings& settings, float h, std::size_t index,
@@ -213,11 +218,13 @@ void fillBend(const RestShape& shape, const SimulationSettings& settings, float 
     const bool flexion = settings.angularMethod == AngularMethod::flexion;
     const bool backward = settings.integrator == Integrator::implicitEuler;
     const double share =
-        backward ? step : step * (0.25 + static_cast<double>(bendRate(settings, h, bend.targets)));
+        backward ? step
+                 : step * (0.25 + static_cast<double>(bendRate(settings, h, bend.targets, bend.coupled)));
     const bool held = settings.restGravity > 0.0f;
+    const double stiffest = !bend.factored ? 0.0 : bend.coupled ? kStiffestCoupled : kStiffest;
     for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
         StrandBend strand(shape, settings, index, lane);
-        strand.fillStiffness(share, bend.factored, flexion);
+        strand.fillStiffness(share, stiffest, flexion);
         for (std::uint32_t j = 0; j < block.points; ++j)
             stiffness[strand.at(j)] = static_cast<float>(step * strand.kappa(j));
         float* plane = stiffness + size;

@@ -27,7 +27,7 @@ inline bool usable(RootFrame& root) {
 inline constexpr float kFarthest = 1e6f;  ///< metres; squares of what lies farther leave single precision
 /// usable(), and not beyond `limit` metres.
 inline bool usableWithin(RootFrame& root, float limit) {
-    return length(root.position) <= limit && normalize(root.rotation);
+    return dot(root.position, root.position) <= limit * limit && normalize(root.rotation);
 }
 
 /// Linear in place, normalised linear in rotation. share 0…1; both rotations of unit length.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 
 #include "runtime/checks.h"
 #include "runtime/engine_frame.h"
@@ -12,6 +13,47 @@ namespace hairloom::runtime {
 namespace {
 
 constexpr std::size_t kBlocksPerJob = 4;
+/// Seconds; what the plan assumes before the first frame.
+constexpr float kUsualFrame = 1.0f / 60.0f;
+
+/// Box and longest way of many roots, lane by lane, so that compilers find vectors in it.
+class RootBounds {
+  public:
+    explicit RootBounds(float cut) : cut_(cut * cut) {
+        std::fill_n(low_[0], 3 * kBlockLanes, 1e30f);
+        std::fill_n(high_[0], 3 * kBlockLanes, -1e30f);
+    }
+
+    /// The rows of a block at the last frame's end and at this one's; every lane has a strand's.
+    void add(const float* from, const float* to) {
+        float ways[kBlockLanes] = {};
+        for (std::size_t r = 0; r < 3; ++r) {
+            for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+                const float at = to[r * kBlockLanes + lane], way = at - from[r * kBlockLanes + lane];
+                low_[r][lane] = at < low_[r][lane] ? at : low_[r][lane];
+                high_[r][lane] = at > high_[r][lane] ? at : high_[r][lane];
+                ways[lane] += way * way;
+            }
+        }
+        for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+            const float way = ways[lane] <= cut_ ? ways[lane] : 0.0f;
+            longest_[lane] = way > longest_[lane] ? way : longest_[lane];
+        }
+    }
+
+    Float3 low() const { return {least(low_[0]), least(low_[1]), least(low_[2])}; }
+    Float3 high() const { return {most(high_[0]), most(high_[1]), most(high_[2])}; }
+    /// Of those that are no cuts, metres.
+    float longestWay() const { return std::sqrt(most(longest_)); }
+
+  private:
+    static float least(const float* row) { return *std::min_element(row, row + kBlockLanes); }
+    static float most(const float* row) { return *std::max_element(row, row + kBlockLanes); }
+
+    float cut_;
+    float low_[3][kBlockLanes], high_[3][kBlockLanes];
+    float longest_[kBlockLanes] = {};
+};
 
 }  // namespace
 
@@ -25,7 +67,7 @@ Engine::Made Engine::make(const StrandsView& strands, const SimulationSettings& 
     engine.state_.planes.assign(shape.planeFloats * kStatePlanes, 0.0f);
     engine.state_.roots.assign(shape.blocks.size() * kRootRows * kBlockLanes, 0.0f);
     engine.blockReports_.resize(shape.blocks.size());
-    engine.roots_.resize(shape.restRoots.size());
+    engine.nextRoots_.assign(engine.state_.roots.size(), 0.0f);
     engine.settings_ = settings;
     engine.wind_.wind = makeWind(settings);
     engine.reset(shape.restRoots);
@@ -71,10 +113,14 @@ std::string Engine::setSettings(const SimulationSettings& settings) {
 
 void Engine::replan(std::span<const Sphere> spheres, std::span<const Float3> sphereMotion, Float3 rootsMin_ws,
                     Float3 rootsMax_ws, float frameTime) {
+    const float h = frameTime > 0.0f ? frameTime / static_cast<float>(settings_.substeps) : state_.substep;
     FrameOutlook outlook{strandCount(),         shape_->longestPointCount,
                          shape_->longestStrand, shape_->straight,
                          rootsMin_ws,           rootsMax_ws,
                          rootMotion_,           state_.fastest};
+    outlook.sharpestCurl = shape_->sharpestCurl;
+    outlook.unevenness = shape_->unevenness;
+    outlook.substep = h > 0.0f ? h : kUsualFrame / static_cast<float>(settings_.substeps);
     outlook.restTime = 1e30f;
     for (std::size_t b = 0; b < state_.rests.size(); ++b) {
         if (state_.rests[b].asleep) outlook.asleep += shape_->blocks[b].strands;
@@ -94,12 +140,18 @@ void Engine::allocateForPlan() {
         bend_.planes = Floats(angular ? shape_->planeFloats * bend_.planeCount() : 0, 0.0f);
         bend_.substep = 0.0f;
     }
+    if (plan_.on(Effect::coupling) != bend_.coupled) {
+        bend_.coupled = plan_.on(Effect::coupling);
+        bend_.substep = 0.0f;
+    }
     const bool curves = plan_.keepsCurves();
     if (curves == state_.curves.empty()) {
         state_.curves = Floats(curves ? shape_->planeFloats * 3 : 0, 0.0f);
         state_.tanks = Floats(curves ? shape_->blocks.size() * kBlockLanes : 0, kNoCurve);
         state_.motions = Floats(curves ? shape_->blocks.size() * kBlockLanes : 0, 0.0f);
     }
+    if (plan_.keepsTensions() == state_.tensions.empty())
+        state_.tensions = Floats(plan_.keepsTensions() ? shape_->planeFloats : 0, 0.0f);
     evaluationPlanes_ = settings_.integrator == Integrator::verlet ? 0
                         : settings_.integrator == Integrator::rk4  ? kRungeKuttaPlanes
                                                                    : kEvaluationPlanes;
@@ -109,34 +161,29 @@ void Engine::allocateForPlan() {
 
 /// Keeps the roots that the frame ends on, their box and how far they go. What is no root stays where it was.
 void Engine::takeRoots(const FrameInput& input) {
-    Float3 low{1e30f, 1e30f, 1e30f}, high{-1e30f, -1e30f, -1e30f};
-    rootMotion_ = 0.0f;
+    RootBounds bounds(settings_.teleportDistance);
     for (std::size_t b = 0; b < shape_->blocks.size(); ++b) {
         const Block& block = shape_->blocks[b];
         const float* rows = state_.roots.data() + b * kRootRows * kBlockLanes;
-        bool moved = false;
-        for (std::uint32_t lane = 0; lane < block.strands; ++lane) {
-            const auto row = [&](std::size_t r) { return rows[r * kBlockLanes + lane]; };
-            const RootFrame before{{row(0), row(1), row(2)}, {row(3), row(4), row(5), row(6)}};
-            RootFrame& root = roots_[block.strandOfLane[lane]];
-            root = input.roots_ws[block.strandOfLane[lane]];
+        float* const next = nextRoots_.data() + b * kRootRows * kBlockLanes;
+        for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+            RootFrame root = input.roots_ws[block.strandOfLane[lane]];
             if (!usableWithin(root, kFarthest)) {
-                root = before;
-                ++report_.rejectedRoots;
-                continue;
+                const auto row = [&](std::size_t r) { return rows[r * kBlockLanes + lane]; };
+                root = {{row(0), row(1), row(2)}, {row(3), row(4), row(5), row(6)}};
+                if (lane < block.strands) ++report_.rejectedRoots;
             }
-            const Float3 p = root.position;
-            low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-            high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-            if (p == before.position && root.rotation == before.rotation) continue;
-            moved = true;
-            const float way = length(p - before.position);
-            if (way <= settings_.teleportDistance) rootMotion_ = std::max(rootMotion_, way);
+            const float values[kRootRows] = {root.position.x, root.position.y, root.position.z,
+                                             root.rotation.x, root.rotation.y, root.rotation.z,
+                                             root.rotation.w};
+            for (std::size_t r = 0; r < kRootRows; ++r) next[r * kBlockLanes + lane] = values[r];
         }
-        blockReports_[b].rootsMoved = moved;
+        blockReports_[b].rootsMoved = std::memcmp(rows, next, kRootRows * kBlockLanes * sizeof(float)) != 0;
+        bounds.add(rows, next);
     }
-    state_.rootsMin_ws = low;
-    state_.rootsMax_ws = high;
+    rootMotion_ = bounds.longestWay();
+    state_.rootsMin_ws = bounds.low();
+    state_.rootsMax_ws = bounds.high();
 }
 
 /// Whether a sphere that has changed since the last frame comes within reach of the block's strands.
@@ -220,7 +267,7 @@ void Engine::step(const FrameInput& input) {
 void Engine::sumReports() {
     float fastest = 0.0f;
     for (const BlockReport& block : blockReports_) {
-        for (std::size_t i = 0; i < kStageCount; ++i)
+        for (std::size_t i = 0; host_.nanoseconds && i < kStageCount; ++i)
             report_.stageMilliseconds[i] += static_cast<double>(block.nanoseconds[i]) * 1e-6;
         report_.restoredStrands += block.restored;
         fastest = std::max(fastest, block.fastest);

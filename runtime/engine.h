@@ -99,6 +99,7 @@ class Engine {
     Frame makeFrame(const FrameInput& input);
     BlockView view(std::size_t block);
     void runBlock(std::size_t block, const Frame& frame);
+    static void turnAlong(const BlockView& view, std::uint32_t lane, Quat turn);
     void enterFrame(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame);
     void runStages(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame);
     void restoreStrands(std::size_t block, const BlockView& view);
@@ -117,7 +118,7 @@ class Engine {
     StepReport report_;
     std::vector<BlockReport> blockReports_;
     // Of the frame under way.
-    std::vector<RootFrame> roots_;  // one per strand, sound
+    Floats nextRoots_;  // as State::roots, at the frame's end
     FrameSpheres spheres_;
     std::vector<MovingSphere> movingSpheres_;
     float rootMotion_ = 0.0f;  // metres, the longest way of a root

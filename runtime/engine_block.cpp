@@ -10,7 +10,7 @@ namespace hairloom::runtime {
 
 void Engine::runBlock(std::size_t block, const Frame& frame) {
     BlockReport& report = blockReports_[block];
-    report.nanoseconds.fill(0);
+    if (host_.nanoseconds) report.nanoseconds.fill(0);
     report.restored = 0;
     report.fastest = 0.0f;
     if (frame.newBend) {
@@ -74,47 +74,53 @@ void Engine::rest(std::size_t block, const BlockView& blockView, const Frame& fr
     std::copy_n(blockView.position.z, floats, blockView.previous.z);
 }
 
-/// Fills the lanes' way through the frame and keeps its end for the next. A cut turns the strand along
-/// rigidly.
-void Engine::enterFrame(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame) {
-    float* rows = state_.roots.data() + block * kRootRows * kBlockLanes;
-    const float share = 1.0f / static_cast<float>(frame.context.count);
-    for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
-        const auto row = [&](std::size_t r) -> float& { return rows[r * kBlockLanes + lane]; };
-        RootFrame from{{row(0), row(1), row(2)}, {row(3), row(4), row(5), row(6)}};
-        const RootFrame to = roots_[shape_->blocks[block].strandOfLane[lane]];
-        if (!(length(to.position - from.position) <= settings_.teleportDistance)) {
-            const Quat turn = to.rotation * conjugate(from.rotation);
-            for (std::uint32_t p = 0; p < view.points; ++p) {
-                const std::size_t i = std::size_t{p} * kBlockLanes + lane;
-                for (const Planes& planes : {view.position, view.previous, view.curve}) {
-                    if (!planes.x) continue;
-                    const Float3 turned = rotate(turn, Float3{planes.x[i], planes.y[i], planes.z[i]});
-                    planes.x[i] = turned.x;
-                    planes.y[i] = turned.y;
-                    planes.z[i] = turned.z;
-                }
-            }
-            from = to;
+/// A cut turns the strand along rigidly: places, velocities and curves.
+void Engine::turnAlong(const BlockView& view, std::uint32_t lane, Quat turn) {
+    for (std::uint32_t p = 0; p < view.points; ++p) {
+        const std::size_t i = std::size_t{p} * kBlockLanes + lane;
+        for (const Planes& planes : {view.position, view.previous, view.curve}) {
+            if (!planes.x) continue;
+            const Float3 turned = rotate(turn, Float3{planes.x[i], planes.y[i], planes.z[i]});
+            planes.x[i] = turned.x;
+            planes.y[i] = turned.y;
+            planes.z[i] = turned.z;
         }
-        const Float3 step = (to.position - from.position) * share;
-        const float starts[] = {from.position.x, from.position.y, from.position.z};
-        const float steps[] = {step.x, step.y, step.z};
-        for (std::size_t r = 0; r < 3; ++r) {
-            lanes.root[r][lane] = starts[r];
-            lanes.rootStep[r][lane] = steps[r];
-        }
-        const Quat rotations[] = {from.rotation, to.rotation};
-        float(*targets[])[kBlockLanes] = {lanes.rotationFrom, lanes.rotationTo};
-        for (std::size_t k = 0; k < 2; ++k) {
-            targets[k][0][lane] = rotations[k].x;
-            targets[k][1][lane] = rotations[k].y;
-            targets[k][2][lane] = rotations[k].z;
-            targets[k][3][lane] = rotations[k].w;
-        }
-        row(0) = to.position.x, row(1) = to.position.y, row(2) = to.position.z;
-        row(3) = to.rotation.x, row(4) = to.rotation.y, row(5) = to.rotation.z, row(6) = to.rotation.w;
     }
+}
+
+/// Fills the lanes' way through the frame and keeps its end for the next.
+void Engine::enterFrame(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame) {
+    float* const rows = state_.roots.data() + block * kRootRows * kBlockLanes;
+    const float* const next = nextRoots_.data() + block * kRootRows * kBlockLanes;
+    const auto at = [](const float* from, std::size_t r, std::uint32_t lane) {
+        return from[r * kBlockLanes + lane];
+    };
+    const float cut = settings_.teleportDistance * settings_.teleportDistance;
+    float ways[kBlockLanes] = {};
+    for (std::size_t r = 0; r < 3; ++r) {
+        for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+            const float way = at(next, r, lane) - at(rows, r, lane);
+            ways[lane] += way * way;
+        }
+    }
+    for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+        if (ways[lane] <= cut) continue;
+        const auto rotation = [&](const float* from) {
+            return Quat{at(from, 3, lane), at(from, 4, lane), at(from, 5, lane), at(from, 6, lane)};
+        };
+        turnAlong(view, lane, rotation(next) * conjugate(rotation(rows)));
+        for (std::size_t r = 0; r < kRootRows; ++r) rows[r * kBlockLanes + lane] = at(next, r, lane);
+    }
+    const float share = 1.0f / static_cast<float>(frame.context.count);
+    for (std::size_t r = 0; r < 3; ++r) {
+        for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+            lanes.root[r][lane] = at(rows, r, lane);
+            lanes.rootStep[r][lane] = (at(next, r, lane) - at(rows, r, lane)) * share;
+        }
+    }
+    std::copy_n(rows + 3 * kBlockLanes, 4 * kBlockLanes, lanes.rotationFrom[0]);
+    std::copy_n(next + 3 * kBlockLanes, 4 * kBlockLanes, lanes.rotationTo[0]);
+    std::copy_n(next, kRootRows * kBlockLanes, rows);
 }
 
 void Engine::runStages(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame) {

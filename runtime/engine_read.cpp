@@ -129,7 +129,7 @@ std::size_t Engine::effectBytes(Effect effect) const {
     const std::size_t targets = bend_.targets ? 3 * plane : 0;
     switch (effect) {
         case Effect::angular:
-            return bend_.planes.size() * sizeof(float) - targets;
+            return (bend_.planes.size() + state_.tensions.size()) * sizeof(float) - targets;
         case Effect::torsion:
             return targets +
                    (state_.curves.size() + state_.tanks.size() + state_.motions.size()) * sizeof(float);
@@ -141,6 +141,7 @@ std::size_t Engine::effectBytes(Effect effect) const {
         case Effect::gravity:
         case Effect::drag:
         case Effect::length:
+        case Effect::coupling:
         case Effect::pearls:
         case Effect::sweep:
         case Effect::sleep:
@@ -153,7 +154,7 @@ std::size_t Engine::baseBytes() const {
     return shape_->bytes() +
            (state_.planes.size() + state_.roots.size() + evaluation_.size()) * sizeof(float) +
            (state_.spheres.size() + spheres_.usable.size()) * sizeof(Sphere) +
-           state_.rests.size() * sizeof(Rest) + roots_.size() * sizeof(RootFrame) +
+           state_.rests.size() * sizeof(Rest) + nextRoots_.size() * sizeof(float) +
            blockReports_.size() * sizeof(BlockReport);
 }
 

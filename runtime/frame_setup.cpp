@@ -10,6 +10,9 @@
 namespace hairloom::runtime {
 namespace {
 
+/// Seconds in which the tension that bending knows of follows that of the segments.
+constexpr float kTensionTime = 0.2f;
+
 float shareLeft(float h, float timeConstant) {
     return timeConstant > 0.0f ? std::exp(-h / timeConstant) : 1.0f;
 }
@@ -93,10 +96,20 @@ std::uint32_t takeWind(const SimulationSettings& settings, const FrameInput& inp
 
 EffectPlan planFrame(const SimulationSettings& settings, const FrameOutlook& outlook, const FrameWind& wind,
                      std::span<const Sphere> spheres, std::span<const Float3> sphereMotion, float frameTime) {
-    SceneDescription scene{
-        settings,         outlook.strandCount, outlook.longestPointCount, outlook.longestStrand,
-        outlook.straight, outlook.rootsMin_ws, outlook.rootsMax_ws,       spheres,
-        sphereMotion};
+    SceneDescription scene;
+    scene.settings = settings;
+    scene.strandCount = outlook.strandCount;
+    scene.longestPointCount = outlook.longestPointCount;
+    scene.longestStrand = outlook.longestStrand;
+    scene.straight = outlook.straight;
+    scene.couples = outlook.couples;
+    scene.sharpestCurl = outlook.sharpestCurl;
+    scene.unevenness = outlook.unevenness;
+    scene.substep = outlook.substep;
+    scene.rootsMin_ws = outlook.rootsMin_ws;
+    scene.rootsMax_ws = outlook.rootsMax_ws;
+    scene.spheres = spheres;
+    scene.sphereMotion = sphereMotion;
     SimulationSettings& planned = scene.settings;
     if (wind.given) {
         planned.windSpeed = length(wind.wind.mean);
@@ -130,7 +143,8 @@ SubstepContext substepContext(const SimulationSettings& settings, const EffectPl
     context.dragShare = decays ? 1.0f - std::exp(-settings.airDrag * h) : settings.airDrag * h;
     context.springStep = oscillation(settings.springFrequency);
     context.penaltyStep = oscillation(settings.penaltyFrequency);
-    context.bendRate = bendRate(settings, h, plan.on(Effect::torsion));
+    context.bendRate = bendRate(settings, h, plan.on(Effect::torsion), plan.on(Effect::coupling));
+    context.tensionShare = 1.0f - shareLeft(h, kTensionTime);
     context.lengthIterations = settings.lengthIterations;
     context.maximalExtension = settings.maximalExtension;
     if (plan.on(Effect::pearls)) {

@@ -58,6 +58,9 @@ struct BlockView {
         nullptr;  ///< of each lane: energy that turning curves have saved; below 0 when `curve` is void
     float* motion =
         nullptr;  ///< of each lane: greatest squared speed of a point at the end of the last frame
+    /// Of implicit angular springs beside the length constraint, null otherwise: the tension of each segment
+    /// in the last substep, times h²; in metres, for masses of mean 1.
+    float* tension = nullptr;
     // Where the system of a strand is solved: LDLᵀ of its matrix, rows of points. Null otherwise.
     const float* inverseDiagonal = nullptr;
     const float* lower1 = nullptr;  ///< to the point before
@@ -96,9 +99,10 @@ struct SubstepContext {
     /// Share of the air's speed taken on in a substep: 1 − exp(−airDrag·h), or airDrag·h where an integrator
     /// evaluates forces.
     float dragShare = 0.0f;
-    float springStep = 0.0f;   ///< (2π · springFrequency · h)²
-    float penaltyStep = 0.0f;  ///< (2π · penaltyFrequency · h)²
-    float bendRate = 0.0f;     ///< q = bendDampingTime/h + (1 − velocityShare)/4 (docs/engine.md)
+    float springStep = 0.0f;    ///< (2π · springFrequency · h)²
+    float penaltyStep = 0.0f;   ///< (2π · penaltyFrequency · h)²
+    float bendRate = 0.0f;      ///< q = bendDampingTime/h + (1 − velocityShare)/4 (docs/engine.md)
+    float tensionShare = 0.0f;  ///< of a substep's change of tension that BlockView::tension takes on
     std::uint32_t lengthIterations = 0;
     float maximalExtension = 0.0f;
     float pearlRoot = 0.0f;

@@ -6,6 +6,9 @@
 #include <cmath>
 #include <initializer_list>
 #include <limits>
+#include <numbers>
+
+#include "runtime/presets.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -66,6 +69,26 @@ Decision decideTorsion(const SceneDescription& scene, bool angular, bool held) {
     if (scene.settings.angularMethod == AngularMethod::flexion) return {false, Reason::noFrames, 0.0f};
     if (scene.straight && !held) return {false, Reason::straightHair, 0.0f};
     return {true, Reason::curvedHair, 0.0f};
+}
+
+/// Masses or lengths that differ more along a strand are solved with its bending.
+constexpr float kMostUneven = 100.0f;
+/// ω²h² of bending times the square of the curve, above which a step of bending and one of lengths undo each
+/// other.
+constexpr float kTightestCurl = 4.0f;
+
+Decision decideCoupling(const SceneDescription& scene, bool possible) {
+    const SimulationSettings& s = scene.settings;
+    if (!possible) return {false, Reason::lengthsFree, 0.0f};
+    if (!scene.couples) return {false, Reason::notHere, 0.0f};
+    if (!(s.bendDampingTime > 0.0f)) return {true, Reason::undamped, 0.0f};
+    if (scene.unevenness > kMostUneven) return {true, Reason::uneven, scene.unevenness};
+    const double stiffness = bendingStiffnessOf(static_cast<double>(s.angularStiffness));
+    const double h = static_cast<double>(scene.substep);
+    const double curl = stiffness * h * h * static_cast<double>(scene.sharpestCurl);
+    if (curl > static_cast<double>(kTightestCurl))
+        return {true, Reason::tightCurls, static_cast<float>(std::sqrt(curl) / (2.0 * std::numbers::pi))};
+    return {false, Reason::evenHair, 0.0f};
 }
 
 Decision decidePearls(const SimulationSettings& s, bool collision) {
@@ -137,8 +160,11 @@ class Planner {
                {stiff, stiff ? Reason::authored : Reason::zeroStiffness, s_.angularStiffness});
         const bool held = stiff && gravity > 0.0f && s_.restGravity > 0.0f;
         decide(Effect::torsion, decideTorsion(scene_, stiff, held));
+        const bool coupled = stiff && implicitly() && !coils() && s_.lengthIterations > 0;
+        decide(Effect::coupling, decideCoupling(scene_, coupled));
         decideCollision();
         plan_.keepsCurves_ = on(Effect::torsion) && implicitly();
+        plan_.keepsTensions_ = coupled;
         plan_.factored_ = stiff && s_.angularMethod != AngularMethod::flexion &&
                           (implicitly() || (s_.integrator == Integrator::implicitEuler && !coils()));
     }
@@ -201,7 +227,9 @@ class Planner {
             case Integrator::verlet:
                 listForces();
                 add(StageId::verlet);
-                if (on(Effect::angular) && implicitly()) {
+                if (on(Effect::coupling)) {
+                    add(on(Effect::torsion) ? StageId::coupled : StageId::coupledStraight);
+                } else if (on(Effect::angular) && implicitly()) {
                     add(on(Effect::torsion) ? StageId::angular : StageId::angularStraight);
                 }
                 break;
@@ -245,7 +273,7 @@ class Planner {
     }
 
     void listConstraints() {
-        const bool held = !coils() && s_.lengthIterations > 0;
+        const bool held = !coils() && s_.lengthIterations > 0 && !on(Effect::coupling);
         // Tension along the segments at the start of the substep is more exact, but pumps the leapfrog and
         // outruns what the backward Euler step has damped.
         const bool now = s_.integrator == Integrator::leapfrog || s_.integrator == Integrator::implicitEuler;

@@ -33,6 +33,7 @@ std::string quantity(Effect effect, float value) {
             text << "up to " << value << " mm";
             break;
         case Effect::torsion:
+        case Effect::coupling:
         case Effect::collision:
         case Effect::sweep:
         case Effect::sleep:
@@ -82,6 +83,20 @@ std::string words(Effect effect, const Decision& decision) {
             return "hair is straight";
         case Reason::curvedHair:
             return "hair is curved or carries its weight";
+        case Reason::lengthsFree:
+            return "not with implicit angular springs and the length constraint";
+        case Reason::notHere:
+            return "only the engine on the CPU has it";
+        case Reason::evenHair:
+            return "bending is damped, hair is even and has no tight curls";
+        case Reason::undamped:
+            return "bending is undamped";
+        case Reason::uneven:
+            text << "masses or segments differ " << decision.value << " times along a strand";
+            return text.str();
+        case Reason::tightCurls:
+            text << "curls spring back " << decision.value << " times in a substep";
+            return text.str();
         case Reason::noCollision:
             return "no collision";
         case Reason::zeroRadius:
@@ -147,6 +162,8 @@ constexpr StageWords kStages[kStageCount] = {
     {"implicitSpringBend", "integration", std::nullopt},
     {"angular", "angular forces", Effect::angular},
     {"angularStraight", "angular forces", Effect::angular},
+    {"coupled", "angular forces", Effect::coupling},
+    {"coupledStraight", "angular forces", Effect::coupling},
     {"length", "linear forces", Effect::length},
     {"lengthNow", "linear forces", Effect::length},
     {"springLimit", "post-processing", Effect::length},
@@ -160,9 +177,9 @@ constexpr StageWords kStages[kStageCount] = {
 }  // namespace
 
 const char* effectName(Effect effect) {
-    constexpr const char* kNames[kEffectCount] = {"damping", "gravity", "drag",    "wind",
-                                                  "length",  "angular", "torsion", "collision",
-                                                  "pearls",  "sweep",   "sleep"};
+    constexpr const char* kNames[kEffectCount] = {"damping",   "gravity", "drag",    "wind",
+                                                  "length",    "angular", "torsion", "coupling",
+                                                  "collision", "pearls",  "sweep",   "sleep"};
     return kNames[static_cast<std::size_t>(effect)];
 }
 

@@ -53,6 +53,10 @@ double bendingStiffness(double diameter, double eccentricity) {
     return kYoungsModulus * diameter * diameter * (1.0 - eccentricity * eccentricity) / (16.0 * kHairDensity);
 }
 
+double bendingStiffnessOf(double angularStiffness) {
+    return kHairBendingStiffness * angularStiffness / std::max(1.0 - angularStiffness, 1e-9);
+}
+
 float angularStiffnessOf(double bendingStiffness) {
     return static_cast<float>(bendingStiffness / (bendingStiffness + kHairBendingStiffness));
 }

@@ -37,6 +37,9 @@ double bendingStiffness(double diameter, double eccentricity);
 /// The angularStiffness s that stands for B ≥ 0, in m⁴/s²: B = kHairBendingStiffness · s/(1 − s).
 float angularStiffnessOf(double bendingStiffness);
 
+/// And the other way: the B that s, 0…1, stands for. Rigid hair counts as s = 1 − 10⁻⁹.
+double bendingStiffnessOf(double angularStiffness);
+
 /// Sets angularStiffness, and angularTipShare to 1: fibres are as thick at the tip. All else stays.
 void applyPreset(const HairPreset& preset, SimulationSettings& settings);
 

@@ -90,6 +90,34 @@ void fillInverseMasses(const StrandsView& strands, std::uint32_t strand, const B
     }
 }
 
+/// Takes in how tightly a strand curls and how uneven it is, from its rest planes.
+void measureHardness(const Block& block, std::uint32_t lane, const float* planes, RestShape& shape) {
+    const std::size_t size = planeSize(block);
+    const auto at = [&](std::size_t plane, std::uint32_t p) {
+        return static_cast<double>(planes[plane * size + std::size_t{p} * kBlockLanes + lane]);
+    };
+    double heaviest = 0.0, lightest = 1e30, longest = 0.0, shortest = 1e30;
+    for (std::uint32_t p = 0; p < block.points; ++p) {
+        heaviest = std::max(heaviest, at(5, p));
+        lightest = std::min(lightest, at(5, p));
+        if (p + 1 == block.points || !(at(4, p) > 0.0)) continue;
+        longest = std::max(longest, at(3, p));
+        shortest = std::min(shortest, at(3, p));
+        if (p == 0 || !(at(4, p - 1) > 0.0)) continue;
+        double curve = 0.0;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double part = at(axis, p) * at(4, p) - at(axis, p - 1) * at(4, p - 1);
+            curve += part * part;
+        }
+        const double own = 0.5 * (at(3, p) + at(3, p - 1)), turns = at(4, p) + at(4, p - 1);
+        const double light = std::max({at(5, p - 1), at(5, p), at(5, p + 1)}) / at(5, p);
+        const double curl = curve * turns * turns * light / (own * own);
+        shape.sharpestCurl = std::max(shape.sharpestCurl, static_cast<float>(std::min(curl, 1e30)));
+    }
+    const double uneven = std::max(heaviest / lightest, longest > 0.0 ? longest / shortest : 1.0);
+    shape.unevenness = std::max(shape.unevenness, static_cast<float>(uneven));
+}
+
 void fillRestPlanes(const StrandsView& strands, const Block& block, RestShape& shape) {
     const std::size_t size = planeSize(block);
     float* const planes = shape.planes.data() + block.firstPlane * kRestPlanes;
@@ -116,6 +144,7 @@ void fillRestPlanes(const StrandsView& strands, const Block& block, RestShape& s
             shape.straight = shape.straight && !bends;
             if (l > 1e-9f) before = direction;
         }
+        measureHardness(block, lane, planes, shape);
         shape.longestStrand = std::max(shape.longestStrand, total);
     }
     shape.longestPointCount = std::max(shape.longestPointCount, block.points);
@@ -165,6 +194,7 @@ std::uint64_t State::hash() const {
     std::uint64_t hash = 0xcbf29ce484222325ull;
     hash = mix(hash, planes.data(), planes.size() * sizeof(float));
     hash = mix(hash, curves.data(), curves.size() * sizeof(float));
+    hash = mix(hash, tensions.data(), tensions.size() * sizeof(float));
     return mix(hash, roots.data(), roots.size() * sizeof(float));
 }
 
@@ -200,6 +230,7 @@ BlockView viewOf(const Arrays& arrays, std::size_t index, std::uint32_t clampedP
         view.tank = arrays.state.tanks.data() + index * kBlockLanes;
         view.motion = arrays.state.motions.data() + index * kBlockLanes;
     }
+    if (!arrays.state.tensions.empty()) view.tension = arrays.state.tensions.data() + block.firstPlane;
     if (!arrays.evaluation.empty()) {
         float* plane = arrays.evaluation.data() + block.firstPlane * arrays.evaluationPlanes;
         view.start = three(plane);
@@ -229,6 +260,10 @@ void placeAtRest(const RestShape& shape, State& state, std::size_t index, std::u
             for (std::uint32_t p = 0; p < block.points; ++p)
                 curves[plane * size + std::size_t{p} * kBlockLanes + lane] = 0.0f;
         }
+    }
+    if (!state.tensions.empty()) {
+        float* const tensions = state.tensions.data() + block.firstPlane;
+        for (std::uint32_t p = 0; p < block.points; ++p) tensions[std::size_t{p} * kBlockLanes + lane] = 0.0f;
     }
     Float3 at{};
     for (std::uint32_t p = 0; p < block.points; ++p) {

@@ -46,6 +46,9 @@ struct RestShape {
     std::uint32_t longestPointCount = 0;
     float longestStrand = 0.0f;  ///< metres
     bool straight = true;        ///< no strand bends at rest
+    /// Greatest (κ/B) (1/l_{j−1} + 1/l_j)² |c_j|² over a mass beside the joint (docs/engine.md), in 1/m⁴.
+    float sharpestCurl = 0.0f;
+    float unevenness = 1.0f;  ///< greatest ratio of two masses or lengths of a strand
 
     std::size_t bytes() const;
 };
@@ -74,6 +77,7 @@ struct State {
     Floats curves;  ///< per block: x, y, z of BlockView::curve; empty unless they are needed
     Floats tanks;   ///< of each lane, BlockView::tank
     Floats motions;                   ///< of each lane, BlockView::motion; empty where `curves` is
+    Floats tensions;                  ///< per block: BlockView::tension; empty unless it is needed
     std::vector<Rest> rests;          ///< per block
     std::vector<Sphere> spheres;      ///< of the last frame
     Float3 rootsMin_ws, rootsMax_ws;  ///< box of the last frame's roots
@@ -89,6 +93,7 @@ struct Bend {
         planes;  ///< per block: stiffness, then 3 of the factors, then 3 of the targets where there are any
     bool factored = false;
     bool targets = false;
+    bool coupled = false;  ///< the rate is that of coupled strands
     float substep = 0.0f;  ///< seconds that `planes` was made for; 0 for not yet
 
     std::size_t planeCount() const { return 1u + (factored ? 3u : 0u) + (targets ? 3u : 0u); }
@@ -121,6 +126,6 @@ void fillBend(const RestShape& shape, const SimulationSettings& settings, float 
               Bend& bend);
 
 /// q of docs/engine.md, "Integrators": what keeps the implicit angular springs stable and fades fast waves.
-float bendRate(const SimulationSettings& settings, float h, bool curved);
+float bendRate(const SimulationSettings& settings, float h, bool curved, bool coupled);
 
 }  // namespace hairloom::runtime

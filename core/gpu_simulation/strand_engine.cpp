@@ -140,6 +140,7 @@ StrandEngine::Impl::Run StrandEngine::Impl::runFor(const runtime::SimulationSett
     outlook.longestPointCount = shape->longestPointCount;
     outlook.longestStrand = shape->longestStrand;
     outlook.straight = shape->straight;
+    outlook.couples = false;
     outlook.rootsMin_ws = low;
     outlook.rootsMax_ws = high;
     outlook.rootMotion = rootMotion;

@@ -18,8 +18,12 @@ namespace hairloom::runtime {
 namespace HWY_NAMESPACE {
 
 /// Seconds in which curves that lag arrive, and the speed in metres per second above which they wait.
-inline constexpr float kLeakTime = 0.5f;
-inline constexpr float kLeakSpeed = 0.005f;
+inline constexpr float kLeakTime = 2.0f;
+inline constexpr float kLeakSpeed = 0.0015f;
+
+/// Cosine of the turn, 162°, behind which a frame's normal follows from rounding: joints there keep their
+/// curves.
+inline constexpr float kFold = -0.95f;
 
 /// How a joint knows its rest direction.
 enum class Shape {
@@ -113,6 +117,7 @@ void followFrames(const BlockView& block, const LaneFrame& lanes, const SubstepC
     const V zero = hn::Zero(D()), one = all(1.0f);
     const std::uint32_t first = block.firstFree - 1, end = block.points - 1;
     alignas(64) float inner[3][kBlockLanes], normals[3][kBlockLanes], gain[kBlockLanes], size[kBlockLanes];
+    alignas(64) float known[kBlockLanes];
     for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
         V3 tangent, normal;
         startFrames<true>(block, lanes, lane, tangent, normal);
@@ -120,6 +125,7 @@ void followFrames(const BlockView& block, const LaneFrame& lanes, const SubstepC
         store3(normal, normals, lane);
         hn::Store(zero, D(), gain + lane);
         hn::Store(zero, D(), size + lane);
+        hn::Store(one, D(), known + lane);
     }
     for (std::uint32_t j = 0; j < end; ++j) {
         for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
@@ -129,7 +135,8 @@ void followFrames(const BlockView& block, const LaneFrame& lanes, const SubstepC
             const V3 before = load3(inner, lane), normal = load3(normals, lane);
             if (j >= first) {
                 const V3 held = rotate(load4(lanes.turn, lane), load3(block.curve, i));
-                const V3 change = fromFrame(before, normal, load3(block.target, i)) - held;
+                const V3 change =
+                    (fromFrame(before, normal, load3(block.target, i)) - held) * hn::Load(D(), known + lane);
                 const V3 pull = (tangent - before - held) * hn::Load(D(), block.stiffness + i);
                 hn::Store(hn::Load(D(), gain + lane) + dot(pull, change), D(), gain + lane);
                 hn::Store(
@@ -140,6 +147,8 @@ void followFrames(const BlockView& block, const LaneFrame& lanes, const SubstepC
             }
             store3(carryNormal(normal, before, tangent), normals, lane);
             store3(tangent, inner, lane);
+            const auto folded = dot(before, tangent) < all(kFold);
+            hn::Store(hn::IfThenElse(folded, zero, hn::Load(D(), known + lane)), D(), known + lane);
         }
     }
     const V squared = all(context.h * context.h), slow = all(kLeakSpeed * kLeakSpeed);
@@ -227,9 +236,18 @@ void applyAngular(const BlockView& block, LaneFrame& lanes, const SubstepContext
     }
 }
 
+/// And the tension of the last substep, along the segment at the start of this one.
+template <bool kTense>
+HWY_INLINE V3 segmentForce(const BlockView& block, Pulls& pulls, std::size_t i) {
+    const V3 pull = segmentPull<false>(block, pulls, i);
+    if constexpr (!kTense) return pull;
+    const V3 edge = load3(block.previous, i + kBlockLanes) - load3(block.previous, i);
+    return pull + edge * (hn::Load(D(), block.inverseLength + i) * hn::Load(D(), block.tension + i));
+}
+
 /// Solves (M + share·K) δ = −(forces of `pulls`) along each strand with the factors of the block, and calls
 /// take(index, δ), tip to root. Of the pulls it leaves nothing.
-template <class Take>
+template <bool kTense, class Take>
 HWY_INLINE void solveBend(const BlockView& block, Pulls& pulls, Take&& take) {
     const Planes work = pulls.planes();
     alignas(64) float innerPull[3][kBlockLanes];
@@ -238,8 +256,8 @@ HWY_INLINE void solveBend(const BlockView& block, Pulls& pulls, Take&& take) {
         for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
             const std::size_t i = std::size_t{p} * kBlockLanes + lane, slot = i - kBlockLanes;
             const V3 inner =
-                p == block.firstFree ? segmentPull<false>(block, pulls, slot) : load3(innerPull, lane);
-            const V3 outer = p + 1 < block.points ? segmentPull<false>(block, pulls, i) : zero3();
+                p == block.firstFree ? segmentForce<kTense>(block, pulls, slot) : load3(innerPull, lane);
+            const V3 outer = p + 1 < block.points ? segmentForce<kTense>(block, pulls, i) : zero3();
             V3 right = outer - inner;
             if (p > block.firstFree)
                 right = right - load3(work, slot - kBlockLanes) * hn::Load(D(), block.lower1 + i);
@@ -273,8 +291,14 @@ void bendBack(const BlockView& block, LaneFrame& lanes, const SubstepContext& co
     alignas(64) float share[kBlockLanes];
     if constexpr (kShape == Shape::curved) followFrames(block, lanes, context, pulls, share);
     measureAhead<kShape>(block, lanes, context, pulls, share);
-    solveBend(block, pulls,
-              [&](std::size_t i, V3 delta) { store3(load3(block.position, i) + delta, block.position, i); });
+    const auto take = [&](std::size_t i, V3 delta) {
+        store3(load3(block.position, i) + delta, block.position, i);
+    };
+    if (block.tension) {
+        solveBend<true>(block, pulls, take);
+    } else {
+        solveBend<false>(block, pulls, take);
+    }
 }
 
 /// Closes a step of backward Euler whose displacement is `rate`.
@@ -320,7 +344,7 @@ void advanceImplicitBend(const BlockView& block, LaneFrame&, const SubstepContex
         store3(zero3(), pulls.planes(), std::size_t{block.points - 1} * kBlockLanes + lane);
     }
     finishClamped(block);
-    solveBend(block, pulls, [&](std::size_t i, V3 delta) {
+    solveBend<false>(block, pulls, [&](std::size_t i, V3 delta) {
         const V3 rate = load3(block.position, i) - load3(block.previous, i);
         finishImplicit(block, i, rate + delta);
     });

@@ -79,6 +79,22 @@ HWY_INLINE V3 backAlong(V3 offset, V3 relative, V squared, V reach) {
     return select(onTheWay, offset + relative * s, offset);
 }
 
+/// Distance from a sphere's centre, as a share of the reach, below which points leave it sideways.
+inline constexpr float kDeep = 0.6f;
+
+/// The part of a point's offset from a sphere's centre across the segment before it; any direction across,
+/// where there is none. Along their strand its own length would hold them back.
+HWY_INLINE V3 acrossStrand(V3 offset, V3 edge) {
+    const V zero = hn::Zero(D()), tiny = all(1e-18f);
+    const V squared = dot(edge, edge);
+    const V3 across = offset - edge * (dot(offset, edge) / hn::Max(squared, tiny));
+    const V3 level{edge.z, zero, zero - edge.x};
+    const auto upright = dot(level, level) <= squared * all(1e-6f);
+    const V3 other = select(upright, {edge.y, zero, zero}, level);
+    const auto centred = dot(across, across) <= squared * all(1e-8f);
+    return select(squared > tiny, select(centred, other, across), offset);
+}
+
 /// The point of the circle in which the contact's sphere and another one meet that is nearest to `at`, from
 /// the other's centre; `meet` is false where they do not meet in a circle.
 HWY_INLINE V3 nearestOfCircle(V3 at, const Contact& contact, V3 centre, V reach, hn::Mask<D>& meet) {
@@ -134,7 +150,11 @@ class Contacts {
   public:
     HWY_INLINE Contacts(const BlockView& block, const LaneFrame& lanes, const SubstepContext& context,
                         const SphereSet& spheres, const float* pearls, float step)
-        : block_(block), context_(context), spheres_(spheres), pearls_(pearls) {
+        : block_(block),
+          context_(context),
+          spheres_(spheres),
+          pearls_(pearls),
+          deepest_(context.lengthIterations > 0 ? kDeep * kDeep : 0.0f) {
         for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
             store3(load3(lanes.root, lane) + load3(lanes.rootStep, lane) * all(step), roots_, lane);
         }
@@ -216,6 +236,10 @@ class Contacts {
         if constexpr (kBackward) {
             from = backAlong(offset, at - load3(block_.previous, i) - step, squared, reach);
         }
+        const auto deep = squared < reach * reach * all(deepest_);
+        if (HWY_UNLIKELY(!hn::AllFalse(D(), deep))) {
+            from = select(deep, acrossStrand(offset, at - load3(block_.position, i - kBlockLanes)), from);
+        }
         // A sphere before may have taken the point out of this one.
         const auto inside = hn::And(hn::LoadMaskBits(D(), touching_[t]), squared < reach * reach);
         const V3 placed = respond(block_, context_, i, {inside, centre, step, reach, from});
@@ -248,6 +272,7 @@ class Contacts {
     const SubstepContext& context_;
     const SphereSet& spheres_;
     const float* const pearls_;
+    const float deepest_;  ///< square of kDeep; 0 where no length holds a point back
     alignas(64) float roots_[3][kBlockLanes];
     std::uint32_t pieceCount_ = 0;
     std::uint32_t touchCount_ = 0;

@@ -39,15 +39,24 @@ HWY_INLINE V3 transposedTimes(const M3& m, V3 v) {
 HWY_INLINE M3 multiply(const M3& m, const S3& s) {
     return {s * m.x, s * m.y, s * m.z};
 }
+/// Of a positive definite matrix, by LDLᵀ: cofactors would lose what is soft beside what is stiff. What
+/// rounding makes of the softest stays positive.
 HWY_INLINE S3 inverseOf(const S3& s) {
-    const V a = s.yy * s.zz - s.yz * s.yz, b = s.xz * s.yz - s.xy * s.zz, c = s.xy * s.yz - s.xz * s.yy;
-    const V inverse = all(1.0f) / (s.xx * a + s.xy * b + s.xz * c);
-    return {a * inverse,
-            b * inverse,
-            c * inverse,
-            (s.xx * s.zz - s.xz * s.xz) * inverse,
-            (s.xy * s.xz - s.xx * s.yz) * inverse,
-            (s.xx * s.yy - s.xy * s.xy) * inverse};
+    const V zero = hn::Zero(D()), one = all(1.0f), tiny = all(1e-7f);
+    const V first = one / s.xx;
+    const V xy = s.xy * first, xz = s.xz * first;
+    const V second = one / hn::Max(s.yy - xy * s.xy, s.yy * tiny);
+    const V rest = s.yz - xy * s.xz;
+    const V yz = rest * second;
+    const V third = one / hn::Max(s.zz - xz * s.xz - yz * rest, s.zz * tiny);
+    // The last rows of the inverse of L.
+    const V a = zero - xy, b = xy * yz - xz, c = zero - yz;
+    return {first + a * a * second + b * b * third,
+            a * second + b * c * third,
+            b * third,
+            second + c * c * third,
+            c * third,
+            third};
 }
 
 /// Scalar entries of h²·K of the angular springs at point p (docs/engine.md).
@@ -86,19 +95,83 @@ HWY_INLINE S3 coilJacobian(const BlockView& block, const SubstepContext& context
             across + along * d.y * d.y, along * d.y * d.z, across + along * d.z * d.z};
 }
 
-/// Factors and right sides of one strand of lanes, root to tip.
-struct SpringSystem {
+/// The block-pentadiagonal system of a vector of strands by LDLᵀ, root to tip; couplings two points apart are
+/// scalar.
+struct StrandSystem {
     S3 inverse[kMaxPoints];
     M3 lower[kMaxPoints];
     V second[kMaxPoints];
     V3 right[kMaxPoints];
 };
 
-/// Backward Euler (Eq. 9) with coil springs: (M − h² ∂f/∂x) d = M u + h² f, block-pentadiagonal, by LDLᵀ.
+/// Of point p: its own block and those to the point before and to the one before that.
+struct SystemRow {
+    S3 diagonal;
+    M3 coupling;
+    V second;
+};
+
+/// The coupling of two points by a scalar and by a segment.
+HWY_INLINE M3 couplingOf(V scalar, const S3& segment) {
+    const V zero = hn::Zero(D());
+    return {{scalar - segment.xx, zero - segment.xy, zero - segment.xz},
+            {zero - segment.xy, scalar - segment.yy, zero - segment.yz},
+            {zero - segment.xz, zero - segment.yz, scalar - segment.zz}};
+}
+
+/// Eliminates the points before p, whose first is `first`, from its row.
+HWY_INLINE void factorPoint(StrandSystem& system, std::uint32_t first, std::uint32_t p, SystemRow row) {
+    M3& coupling = row.coupling;
+    S3& diagonal = row.diagonal;
+    V second = hn::Zero(D());
+    if (p > first + 1) {
+        second = row.second;
+        const M3& before = system.lower[p - 1];
+        coupling.x = coupling.x - V3{before.x.x, before.y.x, before.z.x} * second;
+        coupling.y = coupling.y - V3{before.x.y, before.y.y, before.z.y} * second;
+        coupling.z = coupling.z - V3{before.x.z, before.y.z, before.z.z} * second;
+        const S3& far = system.inverse[p - 2];
+        const V squared = second * second;
+        diagonal = {diagonal.xx - far.xx * squared, diagonal.xy - far.xy * squared,
+                    diagonal.xz - far.xz * squared, diagonal.yy - far.yy * squared,
+                    diagonal.yz - far.yz * squared, diagonal.zz - far.zz * squared};
+    }
+    M3 lower{zero3(), zero3(), zero3()};
+    if (p > first) {
+        lower = multiply(coupling, system.inverse[p - 1]);
+        diagonal = {diagonal.xx - dot(lower.x, coupling.x), diagonal.xy - dot(lower.x, coupling.y),
+                    diagonal.xz - dot(lower.x, coupling.z), diagonal.yy - dot(lower.y, coupling.y),
+                    diagonal.yz - dot(lower.y, coupling.z), diagonal.zz - dot(lower.z, coupling.z)};
+    }
+    system.inverse[p] = inverseOf(diagonal);
+    system.lower[p] = lower;
+    system.second[p] = second;
+}
+
+/// Solves for `right`, which it uses up, and calls take(p, solution) from tip to root.
+template <class Take>
+HWY_INLINE void solveSystem(StrandSystem& system, std::uint32_t first, std::uint32_t points, Take&& take) {
+    for (std::uint32_t p = first + 1; p < points; ++p) {
+        V3 right = system.right[p];
+        if (p > first + 1) right = right - (system.inverse[p - 2] * system.right[p - 2]) * system.second[p];
+        system.right[p] = right - system.lower[p] * system.right[p - 1];
+    }
+    V3 next1 = zero3(), next2 = zero3();
+    for (std::uint32_t p = points; p-- > first;) {
+        V3 solution = system.inverse[p] * system.right[p];
+        if (p + 1 < points) solution = solution - transposedTimes(system.lower[p + 1], next1);
+        if (p + 2 < points) solution = solution - (system.inverse[p] * next2) * system.second[p + 2];
+        take(p, solution);
+        next2 = next1;
+        next1 = solution;
+    }
+}
+
+/// Backward Euler (Eq. 9) with coil springs: (M − h² ∂f/∂x) d = M u + h² f.
 template <bool kAngular>
 void advanceImplicitSpring(const BlockView& block, LaneFrame&, const SubstepContext& context) {
     const V zero = hn::Zero(D());
-    SpringSystem system;
+    StrandSystem system;
     for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
         const std::uint32_t first = block.firstFree;
         S3 inner = coilJacobian(block, context, std::size_t{first - 1} * kBlockLanes + lane);
@@ -110,52 +183,21 @@ void advanceImplicitSpring(const BlockView& block, LaneFrame&, const SubstepCont
             if constexpr (kAngular) bend = bendRow(block, p, i);
             const V mass = all(1.0f) / hn::Load(D(), block.inverseMass + i);
             const V own = mass + bend.diagonal;
-            S3 diagonal{inner.xx + outer.xx + own, inner.xy + outer.xy, inner.xz + outer.xz,
-                        inner.yy + outer.yy + own, inner.yz + outer.yz, inner.zz + outer.zz + own};
-            M3 coupling{{bend.coupling1 - inner.xx, zero - inner.xy, zero - inner.xz},
-                        {zero - inner.xy, bend.coupling1 - inner.yy, zero - inner.yz},
-                        {zero - inner.xz, zero - inner.yz, bend.coupling1 - inner.zz}};
+            const SystemRow row{{inner.xx + outer.xx + own, inner.xy + outer.xy, inner.xz + outer.xz,
+                                 inner.yy + outer.yy + own, inner.yz + outer.yz, inner.zz + outer.zz + own},
+                                couplingOf(bend.coupling1, inner),
+                                bend.coupling2};
             V3 right = (load3(block.position, i) - load3(block.previous, i)) * mass;
-            if (p == first) right = right - coupling * load3(block.rate, i - kBlockLanes);
+            if (p == first) right = right - row.coupling * load3(block.rate, i - kBlockLanes);
             if (kAngular && p < first + 2 && p >= 2)
                 right = right - load3(block.rate, i - 2 * kBlockLanes) * bend.coupling2;
-            V second = zero;
-            if (p > first + 1) {
-                second = bend.coupling2;
-                const M3& before = system.lower[p - 1];
-                coupling.x = coupling.x - V3{before.x.x, before.y.x, before.z.x} * second;
-                coupling.y = coupling.y - V3{before.x.y, before.y.y, before.z.y} * second;
-                coupling.z = coupling.z - V3{before.x.z, before.y.z, before.z.z} * second;
-                const S3& far = system.inverse[p - 2];
-                const V squared = second * second;
-                diagonal = {diagonal.xx - far.xx * squared, diagonal.xy - far.xy * squared,
-                            diagonal.xz - far.xz * squared, diagonal.yy - far.yy * squared,
-                            diagonal.yz - far.yz * squared, diagonal.zz - far.zz * squared};
-                right = right - (far * system.right[p - 2]) * second;
-            }
-            M3 lower{zero3(), zero3(), zero3()};
-            if (p > first) {
-                lower = multiply(coupling, system.inverse[p - 1]);
-                diagonal = {diagonal.xx - dot(lower.x, coupling.x), diagonal.xy - dot(lower.x, coupling.y),
-                            diagonal.xz - dot(lower.x, coupling.z), diagonal.yy - dot(lower.y, coupling.y),
-                            diagonal.yz - dot(lower.y, coupling.z), diagonal.zz - dot(lower.z, coupling.z)};
-                right = right - lower * system.right[p - 1];
-            }
-            system.inverse[p] = inverseOf(diagonal);
-            system.lower[p] = lower;
-            system.second[p] = second;
+            factorPoint(system, first, p, row);
             system.right[p] = right;
             inner = outer;
         }
-        V3 next1 = zero3(), next2 = zero3();
-        for (std::uint32_t p = block.points; p-- > first;) {
-            V3 rate = system.inverse[p] * system.right[p];
-            if (p + 1 < block.points) rate = rate - transposedTimes(system.lower[p + 1], next1);
-            if (p + 2 < block.points) rate = rate - (system.inverse[p] * next2) * system.second[p + 2];
+        solveSystem(system, first, block.points, [&](std::uint32_t p, V3 rate) {
             finishImplicit(block, std::size_t{p} * kBlockLanes + lane, rate);
-            next2 = next1;
-            next1 = rate;
-        }
+        });
     }
     finishClamped(block);
 }

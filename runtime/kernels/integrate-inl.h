@@ -165,25 +165,30 @@ void takeSlope(const BlockView& block, LaneFrame&, const SubstepContext&) {
 }
 
 float fastestOf(const BlockView& block, float h) {
-    const V infinite = all(HUGE_VALF), zero = hn::Zero(D());
+    constexpr std::size_t kStrips = kBlockLanes / kWidth;
+    const V infinite = all(HUGE_VALF);
     // Squares of places farther than this from their root leave single precision.
     const V farthest = all(1e12f), rate = all(1.0f / (h * h));
-    V most = zero;
-    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
-        V mostOfLane = zero;
-        for (std::uint32_t p = block.firstFree; p < block.points; ++p) {
-            const std::size_t i = std::size_t{p} * kBlockLanes + lane;
+    // A maximum waits for the one before it: those of the strips run side by side.
+    V most[kStrips];
+    for (std::size_t n = 0; n < kStrips; ++n) most[n] = hn::Zero(D());
+    for (std::uint32_t p = block.firstFree; p < block.points; ++p) {
+        for (std::size_t n = 0; n < kStrips; ++n) {
+            const std::size_t i = std::size_t{p} * kBlockLanes + n * kWidth;
             const V3 position = load3(block.position, i);
             const V3 moved = position - load3(block.previous, i);
             const V squared = dot(moved, moved);
             // Comparisons with what is no number are false.
             const auto sound = hn::And(dot(position, position) < farthest, squared < farthest);
-            mostOfLane = hn::Max(mostOfLane, hn::IfThenElse(sound, squared, infinite));
+            most[n] = hn::Max(most[n], hn::IfThenElse(sound, squared, infinite));
         }
-        if (block.motion) hn::Store(mostOfLane * rate, D(), block.motion + lane);
-        most = hn::Max(most, mostOfLane);
     }
-    return laneMost(most);
+    V ofAll = most[0];
+    for (std::size_t n = 0; n < kStrips; ++n) {
+        if (block.motion) hn::Store(most[n] * rate, D(), block.motion + n * kWidth);
+        ofAll = hn::Max(ofAll, most[n]);
+    }
+    return laneMost(ofAll);
 }
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)

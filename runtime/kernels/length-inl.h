@@ -39,12 +39,22 @@ HWY_INLINE Gradients gradientsAt(const BlockView& block, const Planes& start, V3
     return {wanted, select(alike, before, wanted)};
 }
 
+/// Keeps tension for the bending of the next substep. Slowly: what bending makes of it comes back a substep
+/// late. And no more than Verlet holds across a segment, by half of its limit.
+HWY_INLINE void keepTension(const BlockView& block, const SubstepContext& context, std::size_t i, V added) {
+    const V weight =
+        hn::Load(D(), block.inverseMass + i) + hn::Load(D(), block.inverseMass + i + kBlockLanes);
+    const V most = all(0.5f) * hn::Load(D(), block.length + i) / weight;
+    const V kept = hn::Load(D(), block.tension + i) + added * all(context.tensionShare);
+    hn::Store(hn::Min(hn::Max(kept, hn::Zero(D()) - most), most), D(), block.tension + i);
+}
+
 /// One Newton step on all length constraints ½(|e|²/l − l) = 0 of a strand together, or on their rates
 /// e·ė/l = 0; clamped points have infinite mass. The system is tridiagonal and is solved directly (after
 /// Goldenthal et al. 2007; with rates, RATTLE, Andersen 1983), so momentum travels along the whole strand in
 /// one step. Collapsed segments keep a diagonal of at least ¼ of their masses': no overshoot.
-template <Holding kHolding>
-void holdStrands(const BlockView& block) {
+template <Holding kHolding, bool kKept = false>
+void holdStrands(const BlockView& block, const SubstepContext& context) {
     alignas(64) float ux[kScratchPlane], uy[kScratchPlane], uz[kScratchPlane], upper[kScratchPlane],
         right[kScratchPlane];
     alignas(64) float inverses[kBlockLanes], lastWanted[3][kBlockLanes];
@@ -104,6 +114,7 @@ void holdStrands(const BlockView& block) {
                 store3(load3(block.previous, o) - move, block.previous, o);
             }
             hn::Store(lambda, D(), right + i);
+            if constexpr (kKept) keepTension(block, context, i, lambda);
             store3(tension, u, i);
         }
     }
@@ -111,12 +122,17 @@ void holdStrands(const BlockView& block) {
 
 template <Holding kHolding>
 void holdLength(const BlockView& block, LaneFrame&, const SubstepContext& context) {
-    for (std::uint32_t iteration = 0; iteration < context.lengthIterations; ++iteration)
-        holdStrands<kHolding>(block);
+    for (std::uint32_t iteration = 0; iteration < context.lengthIterations; ++iteration) {
+        if (kHolding == Holding::places && block.tension) {
+            holdStrands<kHolding, true>(block, context);
+        } else {
+            holdStrands<kHolding>(block, context);
+        }
+    }
 }
 
-void holdRates(const BlockView& block, LaneFrame&, const SubstepContext&) {
-    holdStrands<Holding::rates>(block);
+void holdRates(const BlockView& block, LaneFrame&, const SubstepContext& context) {
+    holdStrands<Holding::rates>(block, context);
 }
 
 /// Root to tip, brings segments back to between (1 − ε) and (1 + ε) of their length (Provot 1995, both ways).

@@ -53,6 +53,9 @@ void rescale(const BlockView& block, float factor) {
         const V3 position = load3(block.position, i);
         store3(position - (position - load3(block.previous, i)) * share, block.previous, i);
     }
+    if (!block.tension) return;
+    for (std::size_t i = 0; i < end; i += kWidth)
+        hn::Store(hn::Load(D(), block.tension + i) * share * share, D(), block.tension + i);
 }
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)

@@ -13,6 +13,7 @@
 #include "runtime/kernels/air-inl.h"
 #include "runtime/kernels/bend-inl.h"
 #include "runtime/kernels/collide-inl.h"
+#include "runtime/kernels/coupled-inl.h"
 #include "runtime/kernels/implicit-inl.h"
 #include "runtime/kernels/integrate-inl.h"
 #include "runtime/kernels/length-inl.h"
@@ -85,6 +86,10 @@ Stage stageOf(StageId id) {
             return bendBack<Shape::curved>;
         case StageId::angularStraight:
             return bendBack<Shape::straight>;
+        case StageId::coupled:
+            return bendCoupled<Shape::curved>;
+        case StageId::coupledStraight:
+            return bendCoupled<Shape::straight>;
         case StageId::length:
             return holdLength<Holding::places>;
         case StageId::lengthNow:

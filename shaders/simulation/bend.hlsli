@@ -3,8 +3,10 @@
 #if HAIR_BEND
 
 // Seconds in which curves that lag arrive, and the speed in m/s above which they wait.
-#define LEAK_TIME 0.5
-#define LEAK_SPEED 0.005
+#define LEAK_TIME 2.0
+#define LEAK_SPEED 0.0015
+// Cosine of the turn, 162°, behind which a frame's normal follows from rounding: joints there keep their curves.
+#define FOLD -0.95
 
 float3 unitOf(float3 edge) {
     const float squared = dot(edge, edge);
@@ -96,11 +98,12 @@ static float gTank, gMotion;
 float followFrames() {
     float gain = 0.0, size = 0.0;
     float3 before = rootTangent(), normal = rootNormal();
+    float known = 1.0;
     EACH for (uint j = 0; j + 1 < POINTS; ++j) {
         const float3 tangent = (previous(j + 1) - previous(j)) * inverseLength(j);
         if (j + 1 >= FIRST_FREE) {
             const float3 held = rotate(gTurn, curve(j));
-            const float3 change = fromFrame(before, normal, target(j)) - held;
+            const float3 change = (fromFrame(before, normal, target(j)) - held) * known;
             const float stiff = stiffness(j);
             gain += dot((tangent - before - held) * stiff, change);
             size += dot(change, change) * stiff;
@@ -108,6 +111,7 @@ float followFrames() {
             setWork(j, change);
         }
         normal = carryNormal(normal, before, tangent);
+        if (dot(before, tangent) < FOLD) known = 0.0;
         before = tangent;
     }
     const bool fresh = gTank < 0.0;

@@ -169,6 +169,7 @@ struct CpuFrame {
         outlook.longestPointCount = shape.longestPointCount;
         outlook.longestStrand = shape.longestStrand;
         outlook.straight = shape.straight;
+        outlook.couples = false;
         outlook.rootsMin_ws = {-1.0f, -1.0f, -1.0f};
         outlook.rootsMax_ws = {1.0f, 1.0f, 1.0f};
         outlook.fastest = std::numeric_limits<float>::infinity();

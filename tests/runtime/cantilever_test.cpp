@@ -24,8 +24,6 @@ SimulationSettings cantilever(double B) {
     s.angularTipShare = 1.0f;
     s.restGravity = 0.0f;
     s.sleepSpeed = 0.0f;
-    // What is at rest hangs stiffer by bendDampingTime times a substep (docs/engine.md, "Integrators").
-    s.bendDampingTime = 0.01f;
     s.gravity = {0.0f, -static_cast<float>(kGravity), 0.0f};
     return s;
 }

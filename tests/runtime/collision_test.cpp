@@ -43,6 +43,25 @@ TEST(Collision, APointAtTheCentreLeavesUpwardsByTheRadiusAndItsPearl) {
     EXPECT_NEAR(moved.z, 0.0f, 1e-6f);
 }
 
+/// Along the strand its length would hold the points back; the one at the centre, the ones beside it and the
+/// strand as a whole go sideways.
+TEST(Collision, AStrandStraightThroughACentreLeavesSideways) {
+    Strands strands;
+    strands.add({0.0f, 0.3f, 0.0f}, {0.0f, -1.0f, 0.0f}, 0.012f, 16);
+    SimulationSettings s;
+    const std::vector<Sphere> spheres{{strands.points[8], 0.02f}};
+    for (const CollisionResponse response : {CollisionResponse::radial, CollisionResponse::backward}) {
+        s.collisionResponse = response;
+        Engine engine = makeEngine(strands, s);
+        run(engine, strands, 30, 1.0f / 60.0f, spheres);
+        for (int f = 0; f < 60; ++f) {
+            run(engine, strands, 1, 1.0f / 60.0f, spheres);
+            ASSERT_LT(engine.measure().maxPenetration, 5e-4) << f;
+        }
+        EXPECT_LT(engine.measure().maxStretch, 0.0051);
+    }
+}
+
 /// One free point that flies at (2, −3, 0) m/s into the very top of a sphere; its velocity after the impact.
 Float3 velocityAfterImpact(float friction, float restitution, Float3 sphereVelocity = {}) {
     Strands strands;

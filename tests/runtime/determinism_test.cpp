@@ -13,6 +13,13 @@ SimulationSettings everything() {
     return s;
 }
 
+/// As everything(), with bending and lengths as one system.
+SimulationSettings coupled() {
+    SimulationSettings s = everything();
+    s.bendDampingTime = 0.0f;
+    return s;
+}
+
 const std::vector<Sphere> kSpheres{{{0.1f, 0.02f, 0.0f}, 0.05f}, {{0.3f, 0.0f, 0.01f}, 0.07f}};
 
 void runMoving(Engine& engine, const Strands& strands, int first, int last) {
@@ -41,20 +48,25 @@ TEST(Determinism, SameBitsForAnyNumberOfThreadsAndOrder) {
 
 TEST(Determinism, SameBitsForEveryInstructionSet) {
     const Strands strands = tuft(50, true);
-    const std::uint64_t best = hashAfterMotion(strands, everything());
-    forEveryInstructionSet(
-        [&] { EXPECT_EQ(best, hashAfterMotion(strands, everything())) << Engine::instructionSet(); });
+    for (const SimulationSettings& s : {everything(), coupled()}) {
+        const std::uint64_t best = hashAfterMotion(strands, s);
+        forEveryInstructionSet(
+            [&] { EXPECT_EQ(best, hashAfterMotion(strands, s)) << Engine::instructionSet(); });
+    }
 }
 
 TEST(Determinism, ACopyRunsOnWithTheSameBits) {
     const Strands strands = tuft(40, true);
-    Engine engine = makeEngine(strands, everything());
-    runMoving(engine, strands, 0, 20);
-    Engine copy = engine;
-    runMoving(engine, strands, 20, 40);
-    runMoving(copy, strands, 20, 40);
-    EXPECT_EQ(engine.stateHash(), copy.stateHash());
-    EXPECT_EQ(engine.stateHash(), hashAfterMotion(strands, everything()));
+    for (const SimulationSettings& s : {everything(), coupled()}) {
+        Engine engine = makeEngine(strands, s);
+        runMoving(engine, strands, 0, 20);
+        EXPECT_EQ(engine.plan().on(Effect::coupling), s == coupled());
+        Engine copy = engine;
+        runMoving(engine, strands, 20, 40);
+        runMoving(copy, strands, 20, 40);
+        EXPECT_EQ(engine.stateHash(), copy.stateHash());
+        EXPECT_EQ(engine.stateHash(), hashAfterMotion(strands, s));
+    }
 }
 
 TEST(Determinism, AnEffectThatIsOffIsAsIfItWereNotThere) {

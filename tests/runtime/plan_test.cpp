@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "runtime/presets.h"
 #include "tests/runtime/strand_fixture.h"
 
 namespace hairloom::runtime {
@@ -53,6 +54,36 @@ TEST(Plan, WindTakesStillAirOver) {
     EXPECT_EQ(p.why(Effect::drag), "drag: off, part of the wind");
     s.airDrag = 0.0f;
     EXPECT_EQ(plan(sceneOf(s)).why(Effect::wind), "wind: off, air drag is zero, so hair does not feel air");
+}
+
+TEST(Plan, BendingAndLengthsAreOneSystemWhereApartTheyWouldUndoEachOther) {
+    const auto planOf = [](auto&& change) {
+        SceneDescription scene = sceneOf({});
+        change(scene);
+        return plan(scene);
+    };
+    const EffectPlan usual = plan(sceneOf({}));
+    EXPECT_EQ(usual.why(Effect::coupling),
+              "coupling: off, bending is damped, hair is even and has no tight curls");
+    const EffectPlan undamped = planOf([](SceneDescription& s) { s.settings.bendDampingTime = 0.0f; });
+    EXPECT_EQ(undamped.why(Effect::coupling), "coupling: on, bending is undamped");
+    EXPECT_THAT(undamped.stages(),
+                ElementsAre(StageId::roots, StageId::damping, StageId::drag, StageId::gravity,
+                            StageId::verlet, StageId::coupled, StageId::extension));
+    EXPECT_EQ(planOf([](SceneDescription& s) { s.unevenness = 1000.0f; }).why(Effect::coupling),
+              "coupling: on, masses or segments differ 1000 times along a strand");
+    const auto curled = [](SceneDescription& s) {
+        s.substep = 0.002f;
+        // ω²h² |c|² = 16, that is, two thirds of a turn.
+        s.sharpestCurl = static_cast<float>(
+            16.0 / (bendingStiffnessOf(static_cast<double>(s.settings.angularStiffness)) * 0.002 * 0.002));
+    };
+    EXPECT_EQ(planOf(curled).why(Effect::coupling),
+              "coupling: on, curls spring back 0.63662 times in a substep");
+    EXPECT_FALSE(planOf([&](SceneDescription& s) {
+                     curled(s);
+                     s.settings.integrator = Integrator::rk4;
+                 }).on(Effect::coupling));
 }
 
 TEST(Plan, SpheresCountOnlyWithinReach) {

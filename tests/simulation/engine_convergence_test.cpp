@@ -159,7 +159,9 @@ TEST(EngineConverges, TheDefaultMethodWithBendDamping) {
     for (const auto& strands : {straight(), wavy()}) {
         const auto errors = errorsOf(swing(strands, 60), uncarried(), Integrator::verlet, 64);
         for (std::size_t i = 1; i < errors.size(); ++i) EXPECT_LT(errors[i], errors[i - 1]) << i;
-        EXPECT_LT(errors.back(), 0.25 * errors[1]);
+        EXPECT_LT(errors[2], 1.6)
+            << "8 substeps, the default; 3.5 without the tension in the step of bending";
+        EXPECT_LT(errors.back(), 0.35 * errors[1]);
     }
 }
 
