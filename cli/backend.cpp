@@ -8,8 +8,10 @@ GpuBackend::GpuBackend(std::unique_ptr<gpu::Device> device)
       kernels_(
           std::make_shared<gpu_simulation::KernelLibrary>(*device_, gpu_simulation::userKernelFolder())) {}
 
-Result<std::unique_ptr<GpuBackend>> GpuBackend::make(std::optional<std::uint32_t> index) {
+Result<std::unique_ptr<GpuBackend>> GpuBackend::make(gpu::Backend backend,
+                                                     std::optional<std::uint32_t> index) {
     gpu::DeviceOptions options;
+    options.backend = backend;
     options.index = index;
     auto device = gpu::createDevice(options);
     if (!device) return tl::unexpected(device.error());

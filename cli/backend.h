@@ -2,6 +2,7 @@
 #pragma once
 // A GPU for jobs that simulate.
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,11 +11,15 @@
 
 namespace hairloom::cli {
 
+/// The graphics APIs as --backend names them.
+inline const std::map<std::string, gpu::Backend> kGpuBackends{{"vulkan", gpu::Backend::Vulkan},
+                                                              {"d3d11", gpu::Backend::Direct3D11}};
+
 /// A device and the kernels on it; outlives what simulates on it.
 class GpuBackend {
   public:
     /// By the index in `devices`, or the best. Errors: there is none.
-    static Result<std::unique_ptr<GpuBackend>> make(std::optional<std::uint32_t> index);
+    static Result<std::unique_ptr<GpuBackend>> make(gpu::Backend backend, std::optional<std::uint32_t> index);
 
     gpu::Device& device() { return *device_; }
     const std::shared_ptr<gpu_simulation::KernelLibrary>& kernels() const { return kernels_; }

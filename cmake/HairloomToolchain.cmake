@@ -19,13 +19,15 @@ set_property(CACHE HAIRLOOM_SANITIZE PROPERTY STRINGS "" "address+undefined" "th
 add_library(hairloom_warnings INTERFACE)
 if(MSVC)
     target_compile_options(hairloom_warnings INTERFACE /W4 /WX /permissive- /utf-8 /bigobj)
-    target_compile_definitions(hairloom_warnings INTERFACE NOMINMAX _USE_MATH_DEFINES)
 else()
     target_compile_options(hairloom_warnings INTERFACE
         -Wall -Wextra -Werror -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor
         -Woverloaded-virtual -Wold-style-cast)
     # Contracting a*b+c differently in two places would break the promise of equal bits for any thread count.
     add_compile_options(-ffp-contract=off)
+endif()
+if(WIN32)
+    add_compile_definitions(NOMINMAX WIN32_LEAN_AND_MEAN _USE_MATH_DEFINES)
 endif()
 
 # GCC 12 takes variables for uninitialised that only its own instrumentation touches.

@@ -16,17 +16,12 @@
 #include <system_error>
 #include <utility>
 
-#include "importers/child_process.h"
+#include "importers/child_watch.h"
 
 extern char** environ;
 
 namespace hairloom {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-// Memory is looked at this often; a child can take about 100 MiB in between.
-constexpr std::chrono::milliseconds kWatchInterval{20};
 
 std::string systemMessage(int code) {
     return std::generic_category().message(code);
@@ -116,65 +111,18 @@ Result<Spawned> spawn(const std::string& name, const std::filesystem::path& prog
     const int code =
         posix_spawn(&process, words.front().c_str(), &actions, nullptr, pointers.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
-    if (code != 0) {
-        return fail(fmt::format("{} cannot be started: {}", name, systemMessage(code)),
-                    fmt::format("expected the program {}", program.string()));
-    }
+    if (code != 0) return notStarted(name, program, systemMessage(code));
     return Spawned{process, std::move(readEnd)};
 }
 
 Status explainEnd(const std::string& name, int status) {
     if (WIFSIGNALED(status)) {
         const int number = WTERMSIG(status);
-        return fail(fmt::format("{} crashed on this file (signal {}, {})", name, number, strsignal(number)),
-                    "the file is damaged; nothing was changed");
+        return crashed(name, fmt::format("signal {}, {}", number, strsignal(number)));
     }
-    if (WEXITSTATUS(status) != 0) {
-        return fail(fmt::format("{} gave up on this file (status {})", name, WEXITSTATUS(status)),
-                    "the file is damaged; nothing was changed");
-    }
+    if (WEXITSTATUS(status) != 0) return gaveUp(name, WEXITSTATUS(status));
     return {};
 }
-
-/// Watches one child until it ends or goes over a limit.
-class Watch {
-  public:
-    Watch(std::string name, const ChildLimits& limits, pid_t process)
-        : name_(std::move(name)),
-          limits_(limits),
-          process_(process),
-          start_(Clock::now()),
-          nextLook_(start_) {}
-
-    Status check(std::size_t outputBytes) {
-        const auto now = Clock::now();
-        if (now - start_ >= limits_.time) {
-            return over(fmt::format("did not finish within {} s",
-                                    static_cast<double>(limits_.time.count()) / 1000.0));
-        }
-        if (outputBytes > limits_.outputBytes) {
-            return over(fmt::format("found more than {} MiB of data", limits_.outputBytes >> 20u));
-        }
-        if (now < nextLook_) return {};
-        nextLook_ = now + kWatchInterval;
-        if (residentBytes(process_) > limits_.residentBytes) {
-            return over(fmt::format("needed more than {} MiB of memory", limits_.residentBytes >> 20u));
-        }
-        return {};
-    }
-
-  private:
-    Status over(const std::string& what) const {
-        return fail(fmt::format("{} {} for this file and was stopped", name_, what),
-                    "the file is damaged or too large");
-    }
-
-    std::string name_;
-    ChildLimits limits_;
-    pid_t process_;
-    Clock::time_point start_;
-    Clock::time_point nextLook_;
-};
 
 /// Appends what can be read; false at the end of the pipe.
 bool readSome(int descriptor, std::vector<std::byte>& output) {
@@ -193,7 +141,7 @@ Result<std::vector<std::byte>> runChild(const std::string& name, const std::file
     auto spawned = spawn(name, program, arguments);
     if (!spawned) return tl::unexpected(spawned.error());
     Child child(spawned->process);
-    Watch watch(name, limits, spawned->process);
+    ChildWatch watch(name, limits, [id = spawned->process] { return residentBytes(id); });
     std::vector<std::byte> output;
     pollfd waiting{spawned->output.number(), POLLIN, 0};
     for (bool open = true; open;) {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Refuses HLSL that the SPIR-V compiler is known to get wrong. -DSOURCE=file
+# Refuses HLSL that one of the two compilers is known to get wrong. -DSOURCE=file
 file(READ "${SOURCE}" text)
 string(REGEX REPLACE "//[^\n]*" "" text "${text}")
 function(refuse pattern why)
@@ -14,4 +14,5 @@ refuse("namespace[^;]*[{][^}]*static +const" "static const in a namespace is los
 if(SOURCE MATCHES "\\.tese\\.hlsl$")
     refuse("SV_PrimitiveID" "SV_PrimitiveID in a domain shader is miscompiled; pass the strand as data")
 endif()
+refuse("[^A-Za-z_](pass|technique|sample|linear|point|line|triangle|texture) *(=[^=]|;|,)" "a name that is a word of HLSL; Microsoft's compiler refuses it")
 refuse("StructuredBuffer *< *float3 *>" "float3 elements have stride 16 here and 12 in Direct3D; use float4")

@@ -34,7 +34,7 @@ void main(uint3 id : SV_DispatchThreadID) {
     const float3 tangent2 = tilt(tangent, toView, gShade.shift.y + jitter);
     const float sparkle = 0.6 + 0.8 * hashUnit(p.strand * 2u);
     // A fibre dims what passes it the more, the darker it is.
-    const float3 pass = 1.0 - gShade.rootTip.w * (1.0 - 0.75 * sqrt(albedo));
+    const float3 passed = saturate(1.0 - gShade.rootTip.w * (1.0 - 0.75 * sqrt(albedo)));
 
     float3 colour = 0;
     float openness = 0;
@@ -42,8 +42,8 @@ void main(uint3 id : SV_DispatchThreadID) {
         const LightConstants light = gShade.lights[i];
         const float3 toLight = directionToLight(light, p.position_ws.xyz);
         const Occlusion o = occlusion(light, p.position_ws.xyz, 0.0007, 0.004);
-        const float3 direct = pow(pass, o.fibres) * o.visibility;
-        const float3 scattered = pow(pass, 0.5 * o.fibres) * lerp(0.15, 1.0, o.visibility);
+        const float3 direct = pow(passed, o.fibres) * o.visibility;
+        const float3 scattered = pow(passed, 0.5 * o.fibres) * lerp(0.15, 1.0, o.visibility);
         const float diffuse = kajiyaDiffuse(tangent, toLight);
         const float3 lobe1 = gShade.primary.rgb * (gShade.normalisation.y *
                              kajiyaSpecular(tangent1, toLight, toView, gShade.primary.w));

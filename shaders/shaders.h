@@ -2,6 +2,7 @@
 #pragma once
 // The compiled shaders, part of the program.
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -11,6 +12,7 @@ namespace hairloom::shaders {
 struct Shader {
     std::string_view name;  ///< "NAME.STAGE", as the source file is called
     std::span<const std::uint32_t> spirv;
+    std::span<const std::byte> dxbc{};  ///< empty where the program has no Direct3D
 };
 
 /// Ascending by name.

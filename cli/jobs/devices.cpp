@@ -12,7 +12,7 @@ Result<Report> devices() {
     for (const gpu::DeviceInfo& info : *found) {
         rows.push_back(Report{{"index", info.index},
                               {"name", info.name},
-                              {"backend", info.backend},
+                              {"backend", gpu::toString(info.backend)},
                               {"type", gpu::toString(info.type)},
                               {"api", info.apiVersion},
                               {"driver", info.driver},

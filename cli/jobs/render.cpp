@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "cli/backend.h"
 #include "cli/documents.h"
 #include "cli/job.h"
 #include "cli/progress.h"
@@ -37,6 +38,7 @@ struct RenderJobOptions {
     std::uint32_t turntable = 0;
     std::uint32_t device = 0;
     bool chooseDevice = false;
+    std::string backend = "any";
     float exposure = 1;
     std::uint32_t passes = 8;
     std::string exr;
@@ -273,6 +275,7 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
     if (!groom) return tl::unexpected(groom.error());
     gpu::DeviceOptions deviceOptions;
     if (options.chooseDevice) deviceOptions.index = options.device;
+    if (options.backend != "any") deviceOptions.backend = kGpuBackends.at(options.backend);
     const auto device = gpu::createDevice(deviceOptions);
     if (!device) return tl::unexpected(device.error());
 
@@ -368,6 +371,8 @@ void addRenderJob(Jobs& jobs) {
         ->check(CLI::Range(1, 65'535));
     job.add_option("--exr", options->exr, "OpenEXR to write linear light to, before exposure and tone curve");
     auto* device = job.add_option("--device", options->device, "GPU to use, by its index in `devices`");
+    job.add_option("--backend", options->backend, "Graphics API; Direct3D 11 is on Windows only")
+        ->check(CLI::IsMember({"any", "vulkan", "d3d11"}));
     job.add_option("-o,--output", options->output, "PNG to write; of several pictures each gets its number")
         ->required();
     job.final_callback([options, device] { options->chooseDevice = device->count() > 0; });

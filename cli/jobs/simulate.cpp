@@ -149,8 +149,8 @@ Result<Report> simulate(const SimulateOptions& options) {
     HeadPose pose = (*motion)->poseAt(0);
     SimulationOptions methodOptions = methodOf(options);
     std::unique_ptr<GpuBackend> gpu;
-    if (options.backend == "vulkan") {
-        auto made = GpuBackend::make(options.device);
+    if (options.backend != "cpu") {
+        auto made = GpuBackend::make(kGpuBackends.at(options.backend), options.device);
         if (!made) return tl::unexpected(made.error());
         gpu = std::move(*made);
         methodOptions.backend = gpu->engine();
@@ -214,7 +214,8 @@ void addSimulateJob(Jobs& jobs) {
     job.add_option("groom", options->input, "Project or hair file")->required();
     job.add_option("--frames", options->frames, "Frames to simulate")->check(CLI::Range(1, 1'000'000));
     job.add_option("--fps", options->framesPerSecond, "Frames per second")->check(CLI::Range(10.0, 1000.0));
-    job.add_option("--backend", options->backend, "What runs it")->check(CLI::IsMember({"cpu", "vulkan"}));
+    job.add_option("--backend", options->backend, "What runs it")
+        ->check(CLI::IsMember({"cpu", "vulkan", "d3d11"}));
     job.add_option("--device", options->device, "GPU to use, by its index in `devices`");
     job.add_option("--integrator", options->integrator, "How motion is advanced")
         ->check(CLI::IsMember(integratorNames()));

@@ -172,13 +172,14 @@ class Device {
 struct DeviceOptions {
     std::optional<std::uint32_t> index;  ///< place in listDevices(); else the best one is taken
     std::string name;                    ///< part of the name, any case; empty: any
-    /// With the checks of core/gpu/validation.h and those of the graphics API; an error where the latter are
-    /// not installed.
+    std::optional<Backend> backend;      ///< else any; on Windows Direct3D 11 comes first
+    /// With the checks of core/gpu/validation.h and those of the graphics API; with Vulkan an error where the
+    /// latter are not installed, with Direct3D 11 as far as DeviceInfo::validates says.
     bool validation = false;
     double timeoutSeconds = 300;  ///< after which waiting for the device is an error
 };
 
-/// All devices of this machine, usable or not. Errors: no loader or no driver.
+/// All devices of this machine, usable or not, backend after backend. Errors: no loader or no driver.
 Result<std::vector<DeviceInfo>> listDevices();
 
 /// Takes the usable device that fits the options; a GPU before a software rasteriser, then list order.

@@ -89,7 +89,9 @@ struct SamplerDesc {
 struct ShaderDesc {
     std::string name;
     ShaderStage stage = ShaderStage::Vertex;
-    std::span<const std::byte> code;  ///< in the form DeviceInfo::shaderFormat names; copied
+    // The same shader in the forms that the backends take; each needs its own. Copied.
+    std::span<const std::byte> spirv{};
+    std::span<const std::byte> dxbc{};
 };
 
 class Buffer;
@@ -257,8 +259,9 @@ std::string toString(const ShaderRegister& shaderRegister);
 
 /// A window of the window system that the program runs under, as that system names it.
 struct NativeWindow {
-    void* connection = nullptr;  ///< xcb_connection_t*, which must outlive the swap chain
-    std::uint32_t window = 0;    ///< xcb_window_t
+    void* connection =
+        nullptr;  ///< X11: xcb_connection_t*, which must outlive the swap chain; Windows: nothing
+    std::uintptr_t window = 0;  ///< X11: xcb_window_t; Windows: HWND
 };
 
 struct SwapChainDesc {
@@ -270,18 +273,20 @@ struct SwapChainDesc {
 
 enum class DeviceType { Discrete, Integrated, Virtual, Cpu, Other };
 std::string_view toString(DeviceType type);
-enum class ShaderFormat { SpirV, Dxbc };
+/// The graphics APIs; Direct3D 11 on Windows only.
+enum class Backend { Vulkan, Direct3D11 };
+std::string_view toString(Backend backend);
 
 struct DeviceInfo {
     std::uint32_t index = 0;  ///< place in listDevices()
     std::string name;
-    std::string backend;     ///< "Vulkan"
+    Backend backend = Backend::Vulkan;
     std::string apiVersion;  ///< "1.3.230"
     std::string driver;
     DeviceType type = DeviceType::Other;
     bool usable = false;      ///< has everything createDevice() asks for
     std::string whyUnusable;  ///< what is missing otherwise
-    ShaderFormat shaderFormat = ShaderFormat::SpirV;
+    bool validates = false;   ///< the API's own checks are installed
     std::vector<std::uint32_t>
         sampleCounts;  ///< that colour and depth targets both support, ascending from 1
     bool tessellation = false;

@@ -25,6 +25,7 @@ namespace {
 
 constexpr const char* kSource = "shaders/simulation/strands.hlsli";
 constexpr std::uint32_t kSpirvMagic = 0x07230203;
+constexpr std::uint32_t kDxbcMagic = 0x43425844;  // "DXBC"
 
 using Words = std::vector<std::uint32_t>;
 
@@ -52,6 +53,13 @@ const shaders::Shader* findBuiltIn(const std::string& defines) {
     return nullptr;
 }
 
+Words wordsIn(const shaders::Shader& shader, gpu::Backend backend) {
+    if (backend == gpu::Backend::Vulkan) return {shader.spirv.begin(), shader.spirv.end()};
+    Words words(shader.dxbc.size() / sizeof(std::uint32_t));
+    if (!words.empty()) std::memcpy(words.data(), shader.dxbc.data(), shader.dxbc.size());
+    return words;
+}
+
 std::optional<Words> readWords(const std::filesystem::path& path) {
     constexpr std::uint64_t kMost = 16u << 20u;
     const auto bytes = readFile(path, kMost);
@@ -60,8 +68,8 @@ std::optional<Words> readWords(const std::filesystem::path& path) {
     std::memcpy(words.data(), bytes->data(), bytes->size());
     // The last word is the hash of those before.
     const auto content = std::as_bytes(std::span(words)).first(bytes->size() - 4);
-    if (words.front() != kSpirvMagic || words.back() != static_cast<std::uint32_t>(hashBytes(content)))
-        return {};
+    const bool known = words.front() == kSpirvMagic || words.front() == kDxbcMagic;
+    if (!known || words.back() != static_cast<std::uint32_t>(hashBytes(content))) return {};
     words.pop_back();
     return words;
 }
@@ -98,7 +106,7 @@ std::filesystem::path userKernelFolder() {
 struct KernelLibrary::Impl {
     gpu::Device& device;
     std::filesystem::path folder;
-    std::uint64_t version = hlslVersion();
+    std::uint64_t version = hlslVersion(device.info().backend);
 
     mutable std::mutex mutex;
     std::condition_variable changed;
@@ -123,17 +131,17 @@ struct KernelLibrary::Impl {
 Result<Words> KernelLibrary::Impl::wordsOf(const std::string& defines) {
     if (const shaders::Shader* builtIn = findBuiltIn(defines)) {
         count(&Sources::builtIn);
-        return Words(builtIn->spirv.begin(), builtIn->spirv.end());
+        return wordsIn(*builtIn, device.info().backend);
     }
     const std::filesystem::path path =
-        folder / fmt::format("{:016x}.spv", hashBytes(std::as_bytes(std::span(defines)), version));
+        folder / fmt::format("{:016x}.kernel", hashBytes(std::as_bytes(std::span(defines)), version));
     if (!folder.empty()) {
         if (auto words = readWords(path)) {
             count(&Sources::disk);
             return *words;
         }
     }
-    auto words = compileHlsl(kSource, defines);
+    auto words = compileHlsl(kSource, defines, device.info().backend);
     if (!words) return words;
     count(&Sources::compiled);
     if (!folder.empty()) {
@@ -144,12 +152,12 @@ Result<Words> KernelLibrary::Impl::wordsOf(const std::string& defines) {
 }
 
 Result<gpu::ComputePipelinePtr> KernelLibrary::Impl::make(const std::string& defines) {
-    if (device.info().shaderFormat != gpu::ShaderFormat::SpirV)
-        return fail("strand kernels exist as SPIR-V only");
     const auto words = wordsOf(defines);
     if (!words) return tl::unexpected(words.error());
-    const auto shader =
-        device.createShader({"strands", gpu::ShaderStage::Compute, std::as_bytes(std::span(*words))});
+    gpu::ShaderDesc desc{"strands", gpu::ShaderStage::Compute};
+    const bool direct3d = device.info().backend == gpu::Backend::Direct3D11;
+    (direct3d ? desc.dxbc : desc.spirv) = std::as_bytes(std::span(*words));
+    const auto shader = device.createShader(desc);
     if (!shader) return tl::unexpected(shader.error());
     return device.createComputePipeline({"strands", *shader});
 }

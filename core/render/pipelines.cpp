@@ -45,7 +45,7 @@ gpu::ShaderPtr Pipelines::shader(std::string_view name, gpu::ShaderStage stage) 
         status_ = fail("no shader '" + std::string(name) + "' in this program");
         return nullptr;
     }
-    auto made = device_.createShader({std::string(name), stage, std::as_bytes(code->spirv)});
+    auto made = device_.createShader({std::string(name), stage, std::as_bytes(code->spirv), code->dxbc});
     if (!made) {
         status_ = tl::unexpected(made.error());
         return nullptr;

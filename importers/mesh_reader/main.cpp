@@ -3,11 +3,19 @@
 // Assimp crashes, hangs or eats memory on some damaged files; as a process of its own it takes nothing with
 // it.
 
-#include <fmt/format.h>
+#ifdef _WIN32
+#include <fcntl.h>
+#include <io.h>
+#include <windows.h>
+#else
 #include <sys/resource.h>
 #include <unistd.h>
+#endif
+
+#include <fmt/format.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <string_view>
@@ -19,16 +27,25 @@
 namespace hairloom {
 namespace {
 
-/// Sanitizers reserve terabytes of address space; there the parent's watch over resident memory is the only
-/// limit.
+/// A crash ends the process without a report or a dialogue.
+void prepareForTheWorst() {
+#ifdef _WIN32
+    SetErrorMode(SEM_FAILCRITICALERRORS | SEM_NOGPFAULTERRORBOX);
+    _setmode(_fileno(stdout), _O_BINARY);
+#else
+    const rlimit noCoreFile{0, 0};
+    setrlimit(RLIMIT_CORE, &noCoreFile);
+#endif
+}
+
+/// On Windows the parent's job object has the limit. Sanitizers reserve terabytes of address space; there the
+/// parent's watch over resident memory is the only limit.
 void limitMemory() {
-#if !defined(HAIRLOOM_ADDRESS_SANITIZER) && !defined(__SANITIZE_THREAD__)
+#if !defined(_WIN32) && !defined(HAIRLOOM_ADDRESS_SANITIZER) && !defined(__SANITIZE_THREAD__)
     constexpr rlim_t kAddressSpace = rlim_t{3} << 29u;
     const rlimit limit{kAddressSpace, kAddressSpace};
     setrlimit(RLIMIT_AS, &limit);
 #endif
-    const rlimit noCoreFile{0, 0};
-    setrlimit(RLIMIT_CORE, &noCoreFile);
 }
 
 Result<RawScene> readGuarded(const char* file, MeshFormat format) {
@@ -42,12 +59,7 @@ Result<RawScene> readGuarded(const char* file, MeshFormat format) {
 }
 
 bool writeOut(std::span<const std::byte> bytes) {
-    while (!bytes.empty()) {
-        const ssize_t written = write(STDOUT_FILENO, bytes.data(), bytes.size());
-        if (written <= 0) return false;
-        bytes = bytes.subspan(static_cast<std::size_t>(written));
-    }
-    return true;
+    return std::fwrite(bytes.data(), 1, bytes.size(), stdout) == bytes.size() && std::fflush(stdout) == 0;
 }
 
 int run(int count, char** arguments) {
@@ -56,6 +68,7 @@ int run(int count, char** arguments) {
         std::fputs("usage: hairloom-mesh-reader stl|fbx|gltf|glb FILE > SCENE\n", stderr);
         return 2;
     }
+    prepareForTheWorst();
     limitMemory();
     const ByteWriter answer = writeRawScene(readGuarded(arguments[2], *format));
     return writeOut(answer.bytes()) ? 0 : 1;
@@ -67,5 +80,5 @@ int run(int count, char** arguments) {
 int main(int count, char** arguments) {
     // Freeing what is about to vanish would only cost time, and could crash on a scene that assimp has
     // broken.
-    _exit(hairloom::run(count, arguments));
+    std::_Exit(hairloom::run(count, arguments));
 }

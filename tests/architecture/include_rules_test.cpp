@@ -131,12 +131,17 @@ TEST(IncludeRules, QtStaysInTheEditor) {
 TEST(IncludeRules, GraphicsApisStayInTheirBackends) {
     static const std::regex vulkan("^(vulkan/.*|volk\\.h|vk_.*)$");
     static const std::regex direct3d("^(d3d.*|dxgi.*|wrl/.*)$");
+    // From text to bytes, without a device, as glslang does it for Vulkan.
+    static const std::set<std::string> compilers{
+        "core/gpu_simulation/hlsl_to_dxbc.cpp includes d3dcompiler.h",
+        "shaders/hlslc.cpp includes d3dcompiler.h"};
     std::vector<std::string> broken;
     for (const Include& include : allIncludes()) {
         if (std::regex_match(include.target, vulkan) && include.file.rfind("core/gpu/vulkan/", 0) != 0) {
             broken.push_back(told(include));
         }
-        if (std::regex_match(include.target, direct3d) && include.file.rfind("core/gpu/d3d11/", 0) != 0) {
+        if (std::regex_match(include.target, direct3d) && include.file.rfind("core/gpu/d3d11/", 0) != 0 &&
+            !compilers.contains(told(include))) {
             broken.push_back(told(include));
         }
     }

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/cli/command.h"
 
+#ifndef _WIN32
 #include <sys/wait.h>
+#endif
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -26,10 +29,20 @@ void CommandLineTest::TearDown() {
 Outcome CommandLineTest::run(const std::string& arguments) const {
     const fs::path out = folder / "stdout.txt";
     const fs::path err = folder / "stderr.txt";
+#ifdef _WIN32
+    // cmd.exe takes away the outermost quotation marks, and knows no single ones.
+    std::string words = arguments;
+    std::ranges::replace(words, '\'', '"');
+    const std::string command = "\"cd /d \"" + folder.string() + "\" && \"" HAIRLOOM_CLI "\" " + words +
+                                " > \"" + out.string() + "\" 2> \"" + err.string() + "\"\"";
+    const int exitCode = std::system(command.c_str());
+#else
     const std::string command = "cd '" + folder.string() + "' && '" + HAIRLOOM_CLI + "' " + arguments +
                                 " > '" + out.string() + "' 2> '" + err.string() + "'";
     const int status = std::system(command.c_str());
-    Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, readText(out), readText(err)};
+    const int exitCode = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+#endif
+    Outcome outcome{exitCode, readText(out), readText(err)};
     fs::remove(out);
     fs::remove(err);
     return outcome;

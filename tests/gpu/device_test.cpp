@@ -102,7 +102,7 @@ TEST_F(GpuTest, DescriptionsOutsideTheLimitsAreErrors) {
     t.samples = 1;
     t.format = Format::Unknown;
     EXPECT_FALSE(device->createTexture(t));
-    EXPECT_FALSE(device->createShader({"garbage", ShaderStage::Vertex, bytesOf(word)}));
+    EXPECT_FALSE(device->createShader({"garbage", ShaderStage::Vertex, bytesOf(word), bytesOf(word)}));
     EXPECT_FALSE(device->createGraphicsPipeline({}));
     EXPECT_FALSE(device->createComputePipeline({}));
 }

@@ -30,7 +30,8 @@ class GpuTest : public testing::Test {
     ShaderPtr shader(std::string_view name, ShaderStage stage) {
         for (const shaders::Shader& s : shaders::table_test_gpu()) {
             if (s.name == name)
-                return device->createShader({std::string(name), stage, std::as_bytes(s.spirv)}).value();
+                return device->createShader({std::string(name), stage, std::as_bytes(s.spirv), s.dxbc})
+                    .value();
         }
         ADD_FAILURE() << "no shader " << name;
         return nullptr;

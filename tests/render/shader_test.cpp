@@ -27,7 +27,9 @@ class ShaderTest : public RenderTest {
                                      const FibreTables* fibre = nullptr) {
         const shaders::Shader* shader = shaders::find(name);
         auto module =
-            device->createShader({name, gpu::ShaderStage::Compute, std::as_bytes(shader->spirv)}).value();
+            device
+                ->createShader({name, gpu::ShaderStage::Compute, std::as_bytes(shader->spirv), shader->dxbc})
+                .value();
         auto pipeline = device->createComputePipeline({name, module}).value();
         std::vector<shaders::float4> result(results);
         const gpu::BufferPtr out = buffer(result);

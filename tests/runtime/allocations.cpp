@@ -5,6 +5,10 @@
 #include <cstdlib>
 #include <new>
 
+#ifdef _WIN32
+#include <malloc.h>
+#endif
+
 namespace {
 
 std::atomic<std::size_t> count{0};
@@ -18,8 +22,20 @@ void* counted(std::size_t size) {
 void* counted(std::size_t size, std::align_val_t alignment) {
     ++count;
     const std::size_t unit = static_cast<std::size_t>(alignment);
+#ifdef _WIN32
+    if (void* memory = _aligned_malloc(size, unit)) return memory;
+#else
     if (void* memory = std::aligned_alloc(unit, (size + unit) / unit * unit)) return memory;
+#endif
     throw std::bad_alloc();
+}
+
+void freeAligned(void* memory) {
+#ifdef _WIN32
+    _aligned_free(memory);
+#else
+    std::free(memory);
+#endif
 }
 
 }  // namespace
@@ -37,10 +53,10 @@ void operator delete(void* memory, std::size_t) noexcept {
     std::free(memory);
 }
 void operator delete(void* memory, std::align_val_t) noexcept {
-    std::free(memory);
+    freeAligned(memory);
 }
 void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-    std::free(memory);
+    freeAligned(memory);
 }
 
 namespace hairloom::runtime {

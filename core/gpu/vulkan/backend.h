@@ -7,6 +7,8 @@
 namespace hairloom::gpu::vulkan {
 
 Result<std::vector<DeviceInfo>> listDevices();
-Result<std::unique_ptr<Device>> createDevice(const DeviceOptions& options);
+/// `index`: place in the backend's own list; `info`: what stands there.
+Result<std::unique_ptr<Device>> openDevice(std::uint32_t index, const DeviceInfo& info,
+                                           const DeviceOptions& options);
 
 }  // namespace hairloom::gpu::vulkan

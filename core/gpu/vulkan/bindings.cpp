@@ -15,41 +15,15 @@ bool isWrite(std::uint32_t binding) {
     return binding >= kWriteShift;
 }
 
-Usage neededUsage(Binding::Kind kind) {
-    switch (kind) {
-        case Binding::Kind::ConstantBuffer:
-            return Usage::Constant;
-        case Binding::Kind::ShaderResource:
-            return Usage::ShaderRead;
-        case Binding::Kind::Sampler:
-            return Usage::None;
-        case Binding::Kind::UnorderedAccess:
-            break;
-    }
-    return Usage::UnorderedAccess;
-}
-
 }  // namespace
 
-void CommandListImpl::bind(std::span<const Binding> bindings) {
-    if (pass_ == PassKind::None) return wrong("bind outside a pass");
-    for (const Binding& binding : bindings) {
-        bound_[toBinding({binding.kind, binding.slot})] = binding;
-        if (binding.buffer) static_cast<void>(keep(binding.buffer));
-        if (binding.texture) static_cast<void>(keep(binding.texture));
-        if (binding.sampler) keep(binding.sampler);
-    }
-    set_ = VK_NULL_HANDLE;
-}
-
-void CommandListImpl::setConstants(std::uint32_t slot, std::span<const std::byte> bytes) {
-    if (bytes.empty() || bytes.size() > 65536) return wrong("constants of 1 to 65536 bytes are possible");
+Result<Binding> CommandListImpl::stageConstants(std::uint32_t slot, std::span<const std::byte> bytes) {
     const auto staged = stage(bytes);
-    if (!staged) return wrong(staged.error());
+    if (!staged) return tl::unexpected(staged.error());
     Binding binding = Binding::constants(slot, staged->buffer);
     binding.offset = staged->offset;
     binding.size = (bytes.size() + 15) / 16 * 16;
-    bind({&binding, 1});
+    return binding;
 }
 
 Result<VkDescriptorSet> CommandListImpl::allocateSet(VkDescriptorSetLayout layout) {
@@ -84,55 +58,27 @@ Result<VkDescriptorSet> CommandListImpl::allocateSet(VkDescriptorSetLayout layou
     return set;
 }
 
-bool CommandListImpl::useBinding(const Binding& binding, const ReflectedBinding& wanted,
-                                 VkPipelineStageFlags2 stages, const std::string& where) {
-    const bool sampler = wanted.type == VK_DESCRIPTOR_TYPE_SAMPLER;
-    if (sampler) {
-        if (binding.sampler == nullptr) wrong(where + " needs a sampler");
-        return binding.sampler != nullptr;
-    }
-    const Usage usage = neededUsage(binding.kind);
+void CommandListImpl::useBinding(const Binding& binding, const ReflectedBinding& wanted,
+                                 VkPipelineStageFlags2 stages) {
+    if (wanted.type == VK_DESCRIPTOR_TYPE_SAMPLER) return;
     Use use;
     use.stages = stages;
     use.write = isWrite(wanted.binding);
     if (isTexture(wanted.type)) {
-        if (binding.texture == nullptr) return wrong(where + " needs a texture"), false;
-        if (!has(binding.texture->desc().usage, usage)) {
-            return wrong(where + ": texture '" + binding.texture->desc().name + "' lacks this usage"), false;
-        }
         use.access = use.write ? VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT
                                : VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
         use.layout = use.write ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-        barriers_.use(static_cast<TextureImpl&>(*binding.texture), use);
-        return true;
-    }
-    if (binding.buffer == nullptr) return wrong(where + " needs a buffer"), false;
-    const BufferDesc& desc = binding.buffer->desc();
-    const bool typed = wanted.type == VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER ||
-                       wanted.type == VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
-    if (!has(desc.usage, usage)) return wrong(where + ": buffer '" + desc.name + "' lacks this usage"), false;
-    if (typed != (desc.typedFormat != Format::Unknown)) {
-        return wrong(where + ": buffer '" + desc.name + "' is typed and the register is not, or the reverse"),
-               false;
-    }
-    if (binding.offset % 256 != 0 || binding.offset >= desc.size ||
-        binding.size > desc.size - binding.offset) {
-        return wrong(where + ": range outside buffer '" + desc.name + "'"), false;
+        return barriers_.use(static_cast<TextureImpl&>(*binding.texture), use);
     }
     use.access = wanted.type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER ? VK_ACCESS_2_UNIFORM_READ_BIT
                  : use.write ? VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT
                              : VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
     barriers_.use(static_cast<BufferImpl&>(*binding.buffer), use);
-    return true;
 }
 
 VkDescriptorSet CommandListImpl::makeSet(const PipelineCore& pipeline, VkPipelineStageFlags2 stages) {
     for (const ReflectedBinding& wanted : pipeline.bindings) {
-        const std::string where =
-            "register " + toString(toRegister(wanted.binding)) + " of pipeline '" + pipeline.name + "'";
-        const auto found = bound_.find(wanted.binding);
-        if (found == bound_.end()) return wrong(where + " is not bound"), VK_NULL_HANDLE;
-        if (!useBinding(found->second, wanted, stages, where)) return VK_NULL_HANDLE;
+        useBinding(bound(toRegister(wanted.binding)), wanted, stages);
     }
     if (set_ != VK_NULL_HANDLE) return set_;
     const auto set = allocateSet(pipeline.setLayout);
@@ -142,7 +88,7 @@ VkDescriptorSet CommandListImpl::makeSet(const PipelineCore& pipeline, VkPipelin
     std::vector<VkWriteDescriptorSet> writes;
     for (std::size_t i = 0; i < pipeline.bindings.size(); ++i) {
         const ReflectedBinding& wanted = pipeline.bindings[i];
-        const Binding& binding = bound_.at(wanted.binding);
+        const Binding& binding = bound(toRegister(wanted.binding));
         auto write = make<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
         write.dstSet = *set;
         write.dstBinding = wanted.binding;

@@ -14,8 +14,8 @@ constexpr Use kCopyRead{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_
 constexpr Use kCopyWrite{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                          VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, true, false};
 
-bool inRange(std::uint64_t offset, std::uint64_t size, std::uint64_t total) {
-    return offset <= total && size <= total - offset;
+BufferImpl& impl(const BufferPlace& place) {
+    return static_cast<BufferImpl&>(*place.buffer);
 }
 
 VkBufferImageCopy wholeImage(const TextureImpl& texture, std::uint64_t bufferOffset) {
@@ -69,38 +69,6 @@ CommandListImpl::~CommandListImpl() {
     if (onClose_) onClose_();
 }
 
-void CommandListImpl::wrong(const std::string& what) {
-    const std::string where = pass_ == PassKind::None ? std::string() : "pass '" + passDesc_.name + "': ";
-    wrong(Error{{}, {}, where + what, {}});
-}
-
-void CommandListImpl::wrong(const Error& error) {
-    if (!error_) error_ = error;
-}
-
-bool CommandListImpl::requirePass(PassKind kind, const char* call) {
-    if (pass_ == kind) return true;
-    wrong(std::string(call) +
-          (kind == PassKind::Graphics ? " outside a graphics pass" : " outside a compute pass"));
-    return false;
-}
-
-bool CommandListImpl::requireOutside(const char* call) {
-    if (pass_ == PassKind::None) return true;
-    wrong(std::string(call) + " inside a pass");
-    return false;
-}
-
-BufferImpl* CommandListImpl::keep(const BufferPtr& buffer) {
-    recording_->retained.push_back(buffer);
-    return static_cast<BufferImpl*>(buffer.get());
-}
-
-TextureImpl* CommandListImpl::keep(const TexturePtr& texture) {
-    recording_->retained.push_back(texture);
-    return static_cast<TextureImpl*>(texture.get());
-}
-
 Result<CommandListImpl::Staged> CommandListImpl::stage(std::span<const std::byte> bytes) {
     const std::uint64_t needed = (bytes.size() + kArenaAlignment - 1) / kArenaAlignment * kArenaAlignment;
     if (arena_.buffer == nullptr || arenaUsed_ + needed > arena_.buffer->desc().size) {
@@ -128,78 +96,49 @@ void CommandListImpl::writeTimestamp(bool end) {
                          query);
 }
 
-void CommandListImpl::updateBuffer(const BufferPtr& target, std::uint64_t offset,
+void CommandListImpl::recordUpdate(const BufferPtr& target, std::uint64_t offset,
                                    std::span<const std::byte> bytes) {
-    if (!requireOutside("updateBuffer")) return;
-    if (target == nullptr || !inRange(offset, bytes.size(), target->desc().size) || bytes.empty()) {
-        return wrong("updateBuffer: range outside buffer '" + (target ? target->desc().name : "(none)") +
-                     "'");
-    }
     const auto staged = stage(bytes);
     if (!staged) return wrong(staged.error());
-    BufferImpl* buffer = keep(target);
-    barriers_.use(*buffer, kCopyWrite);
+    auto& buffer = static_cast<BufferImpl&>(*target);
+    barriers_.use(buffer, kCopyWrite);
     barriers_.flush(recording_->commands);
     const VkBufferCopy copy{staged->offset, offset, bytes.size()};
-    vkCmdCopyBuffer(recording_->commands, staged->buffer->handle, buffer->handle, 1, &copy);
+    vkCmdCopyBuffer(recording_->commands, staged->buffer->handle, buffer.handle, 1, &copy);
 }
 
 void CommandListImpl::updateTexture(const TexturePtr& target, std::span<const std::byte> bytes) {
     const auto staged = stage(bytes);
     if (!staged) return wrong(staged.error());
-    TextureImpl* texture = keep(target);
-    barriers_.use(*texture, kCopyWrite);
+    keep(target);
+    auto& texture = static_cast<TextureImpl&>(*target);
+    barriers_.use(texture, kCopyWrite);
     barriers_.flush(recording_->commands);
-    const VkBufferImageCopy copy = wholeImage(*texture, staged->offset);
-    vkCmdCopyBufferToImage(recording_->commands, staged->buffer->handle, texture->handle,
+    const VkBufferImageCopy copy = wholeImage(texture, staged->offset);
+    vkCmdCopyBufferToImage(recording_->commands, staged->buffer->handle, texture.handle,
                            VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
 }
 
-void CommandListImpl::copyBuffer(const BufferPtr& source, std::uint64_t sourceOffset, const BufferPtr& target,
-                                 std::uint64_t targetOffset, std::uint64_t size) {
-    if (!requireOutside("copyBuffer")) return;
-    if (source == nullptr || target == nullptr || source == target) {
-        return wrong("copyBuffer needs two different buffers");
-    }
-    if (size == 0 || !inRange(sourceOffset, size, source->desc().size)) {
-        return wrong("copyBuffer: range outside buffer '" + source->desc().name + "'");
-    }
-    if (!inRange(targetOffset, size, target->desc().size)) {
-        return wrong("copyBuffer: range outside buffer '" + target->desc().name + "'");
-    }
-    BufferImpl* from = keep(source);
-    BufferImpl* to = keep(target);
-    barriers_.use(*from, kCopyRead);
-    barriers_.use(*to, kCopyWrite);
+void CommandListImpl::recordCopy(const BufferPlace& source, const BufferPlace& target, std::uint64_t size) {
+    barriers_.use(impl(source), kCopyRead);
+    barriers_.use(impl(target), kCopyWrite);
     barriers_.flush(recording_->commands);
-    const VkBufferCopy copy{sourceOffset, targetOffset, size};
-    vkCmdCopyBuffer(recording_->commands, from->handle, to->handle, 1, &copy);
+    const VkBufferCopy copy{source.offset, target.offset, size};
+    vkCmdCopyBuffer(recording_->commands, impl(source).handle, impl(target).handle, 1, &copy);
 }
 
-void CommandListImpl::copyTextureToBuffer(const TexturePtr& source, const BufferPtr& target,
-                                          std::uint64_t targetOffset) {
-    if (!requireOutside("copyTextureToBuffer")) return;
-    if (source == nullptr || target == nullptr)
-        return wrong("copyTextureToBuffer needs a texture and a buffer");
-    const TextureDesc& desc = source->desc();
-    if (desc.samples != 1) return wrong("copy of multisampled texture '" + desc.name + "': resolve it first");
-    const std::uint64_t size = std::uint64_t{desc.width} * desc.height * bytesPerTexel(desc.format);
-    if (targetOffset % 16 != 0 || !inRange(targetOffset, size, target->desc().size)) {
-        return wrong("copyTextureToBuffer: range outside buffer '" + target->desc().name + "'");
-    }
-    TextureImpl* from = keep(source);
-    BufferImpl* to = keep(target);
-    barriers_.use(*from, kCopyRead);
-    barriers_.use(*to, kCopyWrite);
+void CommandListImpl::recordTextureCopy(const TexturePtr& source, const BufferPlace& target) {
+    auto& from = static_cast<TextureImpl&>(*source);
+    barriers_.use(from, kCopyRead);
+    barriers_.use(impl(target), kCopyWrite);
     barriers_.flush(recording_->commands);
-    const VkBufferImageCopy copy = wholeImage(*from, targetOffset);
-    vkCmdCopyImageToBuffer(recording_->commands, from->handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                           to->handle, 1, &copy);
+    const VkBufferImageCopy copy = wholeImage(from, target.offset);
+    vkCmdCopyImageToBuffer(recording_->commands, from.handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                           impl(target).handle, 1, &copy);
 }
 
 Result<std::unique_ptr<Recording>> CommandListImpl::finish() {
-    if (pass_ != PassKind::None) wrong("the pass was not ended");
-    if (error_) return tl::unexpected(*error_);
+    if (auto status = checkFinished(); !status) return tl::unexpected(status.error());
     auto barrier = make<VkMemoryBarrier2>(VK_STRUCTURE_TYPE_MEMORY_BARRIER_2);
     barrier.srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
     barrier.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;

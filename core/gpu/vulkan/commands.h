@@ -3,9 +3,6 @@
 // Recording. A graphics pass is kept as a list of draws until it ends: only then is known which barriers have
 // to stand before it, and none may stand inside.
 
-#include <map>
-#include <variant>
-
 #include "core/gpu/vulkan/barriers.h"
 
 namespace hairloom::gpu::vulkan {
@@ -26,8 +23,6 @@ struct Recording {
     std::vector<std::string> passNames;  ///< pass i has the queries 2i and 2i + 1
 };
 
-inline constexpr std::uint32_t kMaxPasses = 256;
-
 struct DrawCall {
     VkDescriptorSet set = VK_NULL_HANDLE;
     const GraphicsPipelineImpl* pipeline = nullptr;
@@ -37,51 +32,15 @@ struct DrawCall {
     std::uint64_t indexOffset = 0;
     VkViewport viewport{};
     VkRect2D scissor{};
-    struct Direct {
-        std::uint32_t vertices, instances, firstVertex, firstInstance;
-    };
-    struct Indexed {
-        std::uint32_t indices, instances, firstIndex;
-        std::int32_t vertexOffset;
-        std::uint32_t firstInstance;
-    };
-    struct Indirect {
-        VkBuffer buffer;
-        std::uint64_t offset;
-    };
-    std::variant<Direct, Indexed, Indirect> arguments;
+    DrawArguments arguments;
 };
 
-class CommandListImpl final : public CommandList {
+class CommandListImpl final : public CheckedList {
   public:
     /// `onClose` runs when the list is destroyed.
     static Result<std::unique_ptr<CommandListImpl>> create(const ContextPtr& context,
                                                            std::function<void()> onClose);
     ~CommandListImpl() override;
-
-    void beginPass(const PassDesc& desc) override;
-    void endPass() override;
-    void setPipeline(const GraphicsPipelinePtr& pipeline) override;
-    void setPipeline(const ComputePipelinePtr& pipeline) override;
-    void bind(std::span<const Binding> bindings) override;
-    void setConstants(std::uint32_t slot, std::span<const std::byte> bytes) override;
-    void setVertexBuffer(const BufferPtr& buffer, std::uint64_t offset) override;
-    void setIndexBuffer(const BufferPtr& buffer, std::uint64_t offset) override;
-    void setViewport(const Viewport& viewport) override;
-    void setScissor(const ScissorRect& scissor) override;
-    void draw(std::uint32_t vertices, std::uint32_t instances, std::uint32_t firstVertex,
-              std::uint32_t firstInstance) override;
-    void drawIndexed(std::uint32_t indices, std::uint32_t instances, std::uint32_t firstIndex,
-                     std::int32_t vertexOffset, std::uint32_t firstInstance) override;
-    void drawIndirect(const BufferPtr& arguments, std::uint64_t offset) override;
-    void dispatch(std::uint32_t x, std::uint32_t y, std::uint32_t z) override;
-    void dispatchIndirect(const BufferPtr& arguments, std::uint64_t offset) override;
-    void updateBuffer(const BufferPtr& target, std::uint64_t offset,
-                      std::span<const std::byte> bytes) override;
-    void copyBuffer(const BufferPtr& source, std::uint64_t sourceOffset, const BufferPtr& target,
-                    std::uint64_t targetOffset, std::uint64_t size) override;
-    void copyTextureToBuffer(const TexturePtr& source, const BufferPtr& target,
-                             std::uint64_t targetOffset) override;
 
     /// For the first content of a texture.
     void updateTexture(const TexturePtr& target, std::span<const std::byte> bytes);
@@ -92,20 +51,25 @@ class CommandListImpl final : public CommandList {
     std::uint64_t stagedBytes() const { return stagedBytes_; }
 
   private:
-    enum class PassKind { None, Graphics, Compute };
     struct Staged {
         std::shared_ptr<BufferImpl> buffer;
         std::uint64_t offset = 0;
     };
 
     CommandListImpl(std::unique_ptr<Recording> recording, std::function<void()> onClose);
-    void wrong(const std::string& what);
-    void wrong(const Error& error);
-    bool requirePass(PassKind kind, const char* call);
-    bool requireOutside(const char* call);
-    void keep(std::shared_ptr<const void> object) { recording_->retained.push_back(std::move(object)); }
-    BufferImpl* keep(const BufferPtr& buffer);
-    TextureImpl* keep(const TexturePtr& texture);
+    void keep(std::shared_ptr<const void> object) override {
+        recording_->retained.push_back(std::move(object));
+    }
+    void recordPassBegin() override;
+    void recordPassEnd() override;
+    void bindingsChanged() override { set_ = VK_NULL_HANDLE; }
+    Result<Binding> stageConstants(std::uint32_t slot, std::span<const std::byte> bytes) override;
+    void recordDraw(const DrawArguments& arguments) override;
+    void recordDispatch(const DispatchArguments& arguments) override;
+    void recordUpdate(const BufferPtr& target, std::uint64_t offset,
+                      std::span<const std::byte> bytes) override;
+    void recordCopy(const BufferPlace& source, const BufferPlace& target, std::uint64_t size) override;
+    void recordTextureCopy(const TexturePtr& source, const BufferPlace& target) override;
 
     /// Copies bytes into upload memory at a multiple of 256.
     Result<Staged> stage(std::span<const std::byte> bytes);
@@ -114,31 +78,19 @@ class CommandListImpl final : public CommandList {
     // bindings.cpp
     VkDescriptorSet makeSet(const PipelineCore& pipeline, VkPipelineStageFlags2 stages);
     Result<VkDescriptorSet> allocateSet(VkDescriptorSetLayout layout);
-    bool useBinding(const Binding& binding, const ReflectedBinding& wanted, VkPipelineStageFlags2 stages,
-                    const std::string& where);
+    void useBinding(const Binding& binding, const ReflectedBinding& wanted, VkPipelineStageFlags2 stages);
 
     // passes.cpp
-    bool checkTargets(const PassDesc& desc, std::uint32_t& width, std::uint32_t& height);
     void useTargets();
+    void usePlace(const BufferPlace& place, VkPipelineStageFlags2 stage, VkAccessFlags2 access);
     void beginRendering();
     void replay(const DrawCall& call);
-    void addDraw(DrawCall call);
-    bool prepareDispatch();
 
     std::unique_ptr<Recording> recording_;
     std::function<void()> onClose_;
     BarrierTracker barriers_;
-    std::optional<Error> error_;
-
-    PassKind pass_ = PassKind::None;
-    PassDesc passDesc_;
-    std::uint32_t width_ = 0, height_ = 0;
     std::vector<DrawCall> draws_;
-    DrawCall current_;
-    std::shared_ptr<const GraphicsPipelineImpl> graphics_;
-    std::shared_ptr<const ComputePipelineImpl> compute_;
-    std::map<std::uint32_t, Binding> bound_;  // by binding number
-    VkDescriptorSet set_ = VK_NULL_HANDLE;    // valid while nothing was bound since
+    VkDescriptorSet set_ = VK_NULL_HANDLE;  // valid while nothing was bound since
 
     Staged arena_;
     std::uint64_t arenaUsed_ = 0;

@@ -16,50 +16,6 @@ namespace {
 
 constexpr std::uint64_t kUploadFlushBytes = std::uint64_t{64} << 20u;
 
-std::string lower(std::string text) {
-    std::ranges::transform(text, text.begin(),
-                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return text;
-}
-
-// A GPU before a software rasteriser; among GPUs the discrete one.
-int rank(DeviceType type) {
-    switch (type) {
-        case DeviceType::Discrete:
-            return 0;
-        case DeviceType::Integrated:
-            return 1;
-        case DeviceType::Virtual:
-            return 2;
-        case DeviceType::Other:
-            return 3;
-        case DeviceType::Cpu:
-            break;
-    }
-    return 4;
-}
-
-Result<DeviceInfo> choose(const std::vector<DeviceInfo>& infos, const DeviceOptions& options) {
-    const DeviceInfo* best = nullptr;
-    const DeviceInfo* refused = nullptr;
-    for (const DeviceInfo& info : infos) {
-        if (options.index && *options.index != info.index) continue;
-        if (lower(info.name).find(lower(options.name)) == std::string::npos) continue;
-        if (!info.usable) {
-            refused = &info;
-        } else if (best == nullptr || rank(info.type) < rank(best->type)) {
-            best = &info;
-        }
-    }
-    if (best != nullptr) return *best;
-    if (refused != nullptr)
-        return fail("GPU '" + refused->name + "' cannot be used: " + refused->whyUnusable);
-    std::string names;
-    for (const DeviceInfo& info : infos)
-        names += fmt::format("{}{}: {}", names.empty() ? "" : ", ", info.index, info.name);
-    return fail("no such GPU", "one of " + names);
-}
-
 Status openDevice(Context& context) {
     const int family = findQueueFamily(context.physical);
     context.queueFamily = static_cast<std::uint32_t>(family);
@@ -115,33 +71,29 @@ tl::unexpected<Error> Context::failed(VkResult result, const std::string& what) 
 }
 
 Status Context::checkAlive() const {
-    if (lost) return fail("GPU '" + info.name + "' is lost", "a new device");
+    if (lost) return deviceLost(info);
     return {};
 }
 
-Result<std::unique_ptr<gpu::Device>> DeviceImpl::create(const DeviceOptions& options) {
+Result<std::unique_ptr<gpu::Device>> DeviceImpl::create(std::uint32_t index, const DeviceInfo& info,
+                                                        const DeviceOptions& options) {
     auto context = std::make_shared<Context>();
     auto instance = Instance::create(options.validation);
     if (!instance) return tl::unexpected(instance.error());
     context->instance = std::move(*instance);
     const auto physical = context->instance->physicalDevices();
     if (!physical) return tl::unexpected(physical.error());
-    std::vector<DeviceInfo> infos;
-    for (VkPhysicalDevice device : *physical) {
-        infos.push_back(
-            describe(device, static_cast<std::uint32_t>(infos.size()), context->instance->presents()));
-    }
-    const auto chosen = choose(infos, options);
-    if (!chosen) return tl::unexpected(chosen.error());
-    context->info = *chosen;
-    context->physical = (*physical)[chosen->index];
+    if (index >= physical->size()) return fail("GPU '" + info.name + "' has gone");
+    context->info = info;
+    context->physical = (*physical)[index];
     context->timeoutSeconds = options.timeoutSeconds;
     if (auto status = openDevice(*context); !status) return tl::unexpected(status.error());
     return std::unique_ptr<gpu::Device>(std::make_unique<DeviceImpl>(std::move(context)));
 }
 
-Result<std::unique_ptr<gpu::Device>> createDevice(const DeviceOptions& options) {
-    return DeviceImpl::create(options);
+Result<std::unique_ptr<gpu::Device>> openDevice(std::uint32_t index, const DeviceInfo& info,
+                                                const DeviceOptions& options) {
+    return DeviceImpl::create(index, info, options);
 }
 
 DeviceImpl::~DeviceImpl() {
@@ -232,7 +184,7 @@ Result<std::unique_ptr<SwapChain>> DeviceImpl::createSwapChain(const SwapChainDe
 
 Result<std::unique_ptr<CommandList>> DeviceImpl::createCommandList() {
     if (auto status = context_->checkAlive(); !status) return tl::unexpected(status.error());
-    if (*listOpen_) return fail("another command list is open", "submit or destroy it first");
+    if (*listOpen_) return anotherListIsOpen();
     retire();
     auto list = CommandListImpl::create(context_, [open = listOpen_] { *open = false; });
     if (!list) return tl::unexpected(list.error());

@@ -28,7 +28,8 @@ class SubmissionImpl final : public Submission {
 
 class DeviceImpl final : public gpu::Device {
   public:
-    static Result<std::unique_ptr<gpu::Device>> create(const DeviceOptions& options);
+    static Result<std::unique_ptr<gpu::Device>> create(std::uint32_t index, const DeviceInfo& info,
+                                                       const DeviceOptions& options);
     explicit DeviceImpl(ContextPtr context) : context_(std::move(context)) {}
     ~DeviceImpl() override;
 

@@ -181,7 +181,8 @@ DeviceInfo describe(VkPhysicalDevice physical, std::uint32_t index, bool surface
     DeviceInfo info;
     info.index = index;
     info.name = first.deviceName;
-    info.backend = "Vulkan";
+    info.backend = Backend::Vulkan;
+    info.validates = hasLayer(kValidationLayer);
     info.apiVersion =
         fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(first.apiVersion),
                     VK_API_VERSION_MINOR(first.apiVersion), VK_API_VERSION_PATCH(first.apiVersion));

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "core/gpu/checks.h"
 #include "core/gpu/vulkan/resources.h"
 
 namespace hairloom::gpu::vulkan {
@@ -84,6 +85,23 @@ VkCompareOp toVulkan(Compare compare) {
     return static_cast<VkCompareOp>(compare);
 }
 
+RegisterShape shapeOf(VkDescriptorType type) {
+    switch (type) {
+        case VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER:
+            return RegisterShape::Constants;
+        case VK_DESCRIPTOR_TYPE_SAMPLER:
+            return RegisterShape::Sampler;
+        case VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE:
+        case VK_DESCRIPTOR_TYPE_STORAGE_IMAGE:
+            return RegisterShape::Texture;
+        case VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER:
+        case VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER:
+            return RegisterShape::TypedBuffer;
+        default:
+            return RegisterShape::Buffer;
+    }
+}
+
 VkPipelineShaderStageCreateInfo stageInfo(const ShaderImpl& shader) {
     auto info = make<VkPipelineShaderStageCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO);
     info.stage = toVulkan(shader.stage);
@@ -105,50 +123,24 @@ VkPipelineColorBlendAttachmentState blendState(const BlendDesc& blend) {
     return state;
 }
 
-Status checkDesc(const DeviceInfo& info, const GraphicsPipelineDesc& desc) {
-    const auto wrong = [&](const std::string& what) { return fail("pipeline '" + desc.name + "': " + what); };
-    const auto isStage = [](const ShaderPtr& shader, ShaderStage stage) {
-        return shader == nullptr || static_cast<const ShaderImpl&>(*shader).stage == stage;
-    };
-    if (desc.vertex == nullptr) return wrong("no vertex shader");
-    if (!isStage(desc.vertex, ShaderStage::Vertex) || !isStage(desc.hull, ShaderStage::Hull) ||
-        !isStage(desc.domain, ShaderStage::Domain) || !isStage(desc.pixel, ShaderStage::Pixel)) {
-        return wrong("a shader stands in the place of another stage");
-    }
-    if ((desc.hull == nullptr) != (desc.domain == nullptr))
-        return wrong("hull and domain shaders come together");
-    const bool patches = desc.topology == Topology::PatchList;
-    if (patches != (desc.hull != nullptr)) return wrong("a patch list and a hull shader come together");
-    if (patches && !info.tessellation) return wrong("the device has no tessellation");
-    if (patches && (desc.patchControlPoints < 1 || desc.patchControlPoints > 32)) {
-        return wrong("1 to 32 control points a patch are possible");
-    }
-    if (desc.raster.fill == Fill::Wireframe && !info.wireframe)
-        return wrong("the device has no wireframe mode");
-    if (!desc.raster.depthClip && !info.depthClamp) return wrong("the device cannot clamp depth");
-    if (desc.blend.size() != desc.colourFormats.size())
-        return wrong("one blend state per colour target is needed");
-    if (std::ranges::find(info.sampleCounts, desc.samples) == info.sampleCounts.end()) {
-        return wrong("the device has no " + std::to_string(desc.samples) + " samples a pixel");
-    }
-    return {};
-}
-
 }  // namespace
 
 Result<std::shared_ptr<ShaderImpl>> ShaderImpl::create(const ContextPtr& context, const ShaderDesc& desc) {
-    if (desc.code.size() % 4 != 0)
+    if (desc.spirv.size() % 4 != 0)
         return fail("shader '" + desc.name + "': not SPIR-V", "a multiple of 4 bytes");
-    std::vector<std::uint32_t> words(desc.code.size() / 4);
-    std::memcpy(words.data(), desc.code.data(), desc.code.size());
+    std::vector<std::uint32_t> words(desc.spirv.size() / 4);
+    std::memcpy(words.data(), desc.spirv.data(), desc.spirv.size());
     std::shared_ptr<ShaderImpl> result(new ShaderImpl(context));
     result->stage = desc.stage;
     result->name = desc.name;
     auto bindings = reflect(words, toVulkan(desc.stage));
     if (!bindings) return fail("shader '" + desc.name + "': " + bindings.error().message());
     result->bindings = std::move(*bindings);
+    for (const ReflectedBinding& b : result->bindings) {
+        result->uses.push_back({toRegister(b.binding), shapeOf(b.type), 0});
+    }
     auto info = make<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
-    info.codeSize = desc.code.size();
+    info.codeSize = desc.spirv.size();
     info.pCode = words.data();
     const VkResult r = vkCreateShaderModule(context->device, &info, nullptr, &result->handle);
     if (r != VK_SUCCESS) return context->failed(r, "creating shader '" + desc.name + "'");
@@ -171,21 +163,14 @@ Status PipelineCore::createLayout(std::span<const ShaderImpl* const> shaders) {
             const auto same = std::ranges::find(bindings, b.binding, &ReflectedBinding::binding);
             if (same == bindings.end()) {
                 bindings.push_back(b);
-            } else if (same->type == b.type) {
-                same->stages |= b.stages;
             } else {
-                return fail("pipeline '" + name +
-                            "': its shaders see different kinds of resource at register " +
-                            toString(toRegister(b.binding)));
+                same->stages |= b.stages;
             }
         }
     }
     std::ranges::sort(bindings, {}, &ReflectedBinding::binding);
     std::vector<VkDescriptorSetLayoutBinding> entries;
-    for (const ReflectedBinding& b : bindings) {
-        entries.push_back({b.binding, b.type, 1, b.stages, nullptr});
-        registers.push_back(toRegister(b.binding));
-    }
+    for (const ReflectedBinding& b : bindings) entries.push_back({b.binding, b.type, 1, b.stages, nullptr});
     auto set = make<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
     set.bindingCount = static_cast<std::uint32_t>(entries.size());
     set.pBindings = entries.data();
@@ -200,12 +185,13 @@ Status PipelineCore::createLayout(std::span<const ShaderImpl* const> shaders) {
 }
 
 Result<ComputePipelinePtr> createPipeline(const ContextPtr& context, const ComputePipelineDesc& desc) {
+    if (auto status = checkDesc(desc); !status) return tl::unexpected(status.error());
     const auto* shader = static_cast<const ShaderImpl*>(desc.shader.get());
-    if (shader == nullptr || shader->stage != ShaderStage::Compute) {
-        return fail("pipeline '" + desc.name + "': no compute shader");
-    }
     auto result = std::make_shared<ComputePipelineImpl>(context);
     result->core.name = desc.name;
+    result->desc = desc;
+    if (auto status = result->uses.add(shader->uses, desc.name); !status)
+        return tl::unexpected(status.error());
     result->core.bindPoint = VK_PIPELINE_BIND_POINT_COMPUTE;
     if (auto status = result->core.createLayout({&shader, 1}); !status) return tl::unexpected(status.error());
     auto info = make<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
@@ -224,7 +210,10 @@ Result<GraphicsPipelinePtr> createPipeline(const ContextPtr& context, const Grap
     result->desc = desc;
     std::vector<const ShaderImpl*> shaders;
     for (const ShaderPtr& shader : {desc.vertex, desc.hull, desc.domain, desc.pixel}) {
-        if (shader != nullptr) shaders.push_back(static_cast<const ShaderImpl*>(shader.get()));
+        if (shader == nullptr) continue;
+        shaders.push_back(static_cast<const ShaderImpl*>(shader.get()));
+        auto status = result->uses.add(shaders.back()->uses, desc.name);
+        if (!status) return tl::unexpected(status.error());
     }
     if (auto status = result->core.createLayout(shaders); !status) return tl::unexpected(status.error());
     std::vector<VkPipelineShaderStageCreateInfo> stages;

@@ -6,7 +6,7 @@
 #include <atomic>
 #include <memory>
 
-#include "core/gpu/device.h"
+#include "core/gpu/checked_list.h"
 #include "core/gpu/vulkan/instance.h"
 #include "core/gpu/vulkan/memory.h"
 #include "core/gpu/vulkan/reflection.h"
@@ -88,13 +88,11 @@ class SamplerImpl final : public Sampler {
     ContextPtr context_;
 };
 
-class ShaderImpl final : public Shader {
+class ShaderImpl final : public CheckedShader {
   public:
     static Result<std::shared_ptr<ShaderImpl>> create(const ContextPtr& context, const ShaderDesc& desc);
     ~ShaderImpl() override;
     VkShaderModule handle = VK_NULL_HANDLE;
-    ShaderStage stage = ShaderStage::Vertex;
-    std::string name;
     std::vector<ReflectedBinding> bindings;
 
   private:
@@ -117,23 +115,17 @@ struct PipelineCore {
     VkPipelineLayout layout = VK_NULL_HANDLE;
     VkPipeline handle = VK_NULL_HANDLE;
     std::vector<ReflectedBinding> bindings;  ///< ascending
-    std::vector<ShaderRegister> registers;   ///< the same as the interface names them
 };
 
-class GraphicsPipelineImpl final : public GraphicsPipeline {
+class GraphicsPipelineImpl final : public CheckedGraphicsPipeline {
   public:
     explicit GraphicsPipelineImpl(ContextPtr context) : core(std::move(context)) {}
-    const std::string& name() const override { return core.name; }
-    std::span<const ShaderRegister> registers() const override { return core.registers; }
     PipelineCore core;
-    GraphicsPipelineDesc desc;
 };
 
-class ComputePipelineImpl final : public ComputePipeline {
+class ComputePipelineImpl final : public CheckedComputePipeline {
   public:
     explicit ComputePipelineImpl(ContextPtr context) : core(std::move(context)) {}
-    const std::string& name() const override { return core.name; }
-    std::span<const ShaderRegister> registers() const override { return core.registers; }
     PipelineCore core;
 };
 

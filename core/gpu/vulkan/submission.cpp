@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "core/gpu/checks.h"
 #include "core/gpu/vulkan/device.h"
 
 namespace hairloom::gpu::vulkan {
@@ -72,25 +73,14 @@ Result<std::vector<PassTime>> SubmissionImpl::passTimes() {
 }
 
 Result<BufferPtr> DeviceImpl::createReadBack(std::uint64_t size) {
-    BufferDesc desc;
-    desc.name = "read back";
-    desc.size = size;
-    desc.usage = Usage::None;
-    desc.memory = MemoryKind::ReadBack;
     // Only copies touch it, so the limit on what shaders see does not apply.
-    auto buffer = BufferImpl::create(context_, desc, MemoryUse::ReadBack);
+    auto buffer = BufferImpl::create(context_, readBackDesc(size), MemoryUse::ReadBack);
     if (!buffer) return tl::unexpected(buffer.error());
     return BufferPtr(std::move(*buffer));
 }
 
 Status DeviceImpl::readMapped(const BufferPtr& buffer, std::uint64_t offset, std::span<std::byte> target) {
-    if (buffer == nullptr || buffer->desc().memory != MemoryKind::ReadBack) {
-        return fail("reading a buffer that is not made for reading back");
-    }
-    const std::uint64_t size = buffer->desc().size;
-    if (offset > size || target.size() > size - offset) {
-        return fail("reading outside buffer '" + buffer->desc().name + "'");
-    }
+    if (auto status = checkReadMapped(buffer, offset, target.size()); !status) return status;
     const auto& impl = static_cast<const BufferImpl&>(*buffer);
     std::memcpy(target.data(), impl.memory.mapped() + offset, target.size());
     return {};
@@ -110,11 +100,7 @@ Status DeviceImpl::readBuffer(const BufferPtr& buffer, std::uint64_t offset, std
 }
 
 Status DeviceImpl::readTexture(const TexturePtr& texture, std::span<std::byte> target) {
-    if (texture == nullptr) return fail("no texture to read");
-    const TextureDesc& desc = texture->desc();
-    if (target.size() != std::uint64_t{desc.width} * desc.height * bytesPerTexel(desc.format)) {
-        return fail("reading texture '" + desc.name + "' into memory of another size");
-    }
+    if (auto status = checkReadTexture(texture, target.size()); !status) return status;
     const auto readBack = createReadBack(target.size());
     if (!readBack) return tl::unexpected(readBack.error());
     auto list = createCommandList();

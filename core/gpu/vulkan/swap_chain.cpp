@@ -59,7 +59,7 @@ Status SwapChainImpl::openSurface() {
     if (desc_.window.connection == nullptr) return fail("no connection to an X server");
     auto info = make<VkXcbSurfaceCreateInfoKHR>(VK_STRUCTURE_TYPE_XCB_SURFACE_CREATE_INFO_KHR);
     info.connection = static_cast<xcb_connection_t*>(desc_.window.connection);
-    info.window = desc_.window.window;
+    info.window = static_cast<xcb_window_t>(desc_.window.window);
     VkResult r = vkCreateXcbSurfaceKHR(context_->instance->handle(), &info, nullptr, &surface_);
     if (r != VK_SUCCESS) return context_->failed(r, "drawing to the window");
     VkBool32 supported = VK_FALSE;
@@ -177,12 +177,7 @@ SwapChainImpl::~SwapChainImpl() {
 
 Status SwapChainImpl::resize(std::uint32_t width, std::uint32_t height) {
     if (auto status = context_->checkAlive(); !status) return status;
-    TextureDesc desc;
-    desc.name = "back buffer";
-    desc.width = width;
-    desc.height = height;
-    desc.format = Format::Bgra8Unorm;
-    desc.usage = Usage::RenderTarget | Usage::ShaderRead;
+    const TextureDesc desc = backBufferDesc(width, height);
     if (auto status = checkDesc(context_->info, desc, 0); !status) return status;
     auto texture = TextureImpl::create(context_, desc);
     if (!texture) return tl::unexpected(texture.error());

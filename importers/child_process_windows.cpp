@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <windows.h>
+// psapi.h needs what windows.h defines.
+#include <fmt/format.h>
+#include <psapi.h>
+
+#include <algorithm>
+#include <system_error>
+#include <utility>
+
+#include "importers/child_watch.h"
+
+namespace hairloom {
+namespace {
+
+constexpr DWORD kPipeBytes = 1u << 20u;
+constexpr DWORD kKilled = 1;
+// Statuses from here on are those that the system ends a process with (NTSTATUS of severity "error").
+constexpr DWORD kFirstException = 0xc0000000u;
+
+std::string systemMessage(DWORD code) {
+    return std::system_category().message(static_cast<int>(code));
+}
+
+class Handle {
+  public:
+    Handle() = default;
+    explicit Handle(HANDLE handle) : handle_(handle == INVALID_HANDLE_VALUE ? nullptr : handle) {}
+    Handle(Handle&& other) noexcept : handle_(std::exchange(other.handle_, nullptr)) {}
+    Handle& operator=(Handle&& other) noexcept {
+        std::swap(handle_, other.handle_);
+        return *this;
+    }
+    ~Handle() {
+        if (handle_ != nullptr) CloseHandle(handle_);
+    }
+    HANDLE get() const { return handle_; }
+
+  private:
+    HANDLE handle_ = nullptr;
+};
+
+/// As CommandLineToArgvW and the C runtime take it apart again.
+std::wstring quoted(const std::wstring& argument) {
+    std::wstring result = L"\"";
+    std::size_t backslashes = 0;
+    for (const wchar_t c : argument) {
+        if (c == L'\\') {
+            ++backslashes;
+            continue;
+        }
+        // Backslashes are themselves but before a quotation mark.
+        result.append(c == L'"' ? 2 * backslashes + 1 : backslashes, L'\\');
+        backslashes = 0;
+        result += c;
+    }
+    result.append(2 * backslashes, L'\\');
+    return result + L"\"";
+}
+
+Handle openNull(DWORD access) {
+    SECURITY_ATTRIBUTES inherited{sizeof(SECURITY_ATTRIBUTES), nullptr, TRUE};
+    return Handle(CreateFileW(L"NUL", access, FILE_SHARE_READ | FILE_SHARE_WRITE, &inherited, OPEN_EXISTING,
+                              0, nullptr));
+}
+
+/// A job that ends its processes when it is closed, and denies them memory over the limit.
+Handle createJob(const ChildLimits& limits) {
+    Handle job(CreateJobObjectW(nullptr, nullptr));
+    JOBOBJECT_EXTENDED_LIMIT_INFORMATION info{};
+    info.BasicLimitInformation.LimitFlags = JOB_OBJECT_LIMIT_KILL_ON_JOB_CLOSE |
+                                            JOB_OBJECT_LIMIT_PROCESS_MEMORY |
+                                            JOB_OBJECT_LIMIT_DIE_ON_UNHANDLED_EXCEPTION;
+    info.ProcessMemoryLimit = static_cast<SIZE_T>(limits.residentBytes);
+    if (job.get() != nullptr)
+        SetInformationJobObject(job.get(), JobObjectExtendedLimitInformation, &info, sizeof(info));
+    return job;
+}
+
+/// Kills the child when it goes out of scope.
+struct Child {
+    Handle job, process, output;
+
+    Child() = default;
+    Child(Child&&) = default;
+    Child& operator=(Child&&) = delete;
+    ~Child() {
+        if (process.get() == nullptr) return;
+        // Also where the system refused the job.
+        TerminateProcess(process.get(), kKilled);
+        WaitForSingleObject(process.get(), INFINITE);
+    }
+};
+
+/// The list of handles that a child inherits: these and no others.
+class InheritedHandles {
+  public:
+    explicit InheritedHandles(std::vector<HANDLE> handles) : handles_(std::move(handles)) {
+        SIZE_T size = 0;
+        InitializeProcThreadAttributeList(nullptr, 1, 0, &size);
+        memory_.resize(size);
+        usable_ = InitializeProcThreadAttributeList(list(), 1, 0, &size) != 0;
+        if (usable_) {
+            UpdateProcThreadAttribute(list(), 0, PROC_THREAD_ATTRIBUTE_HANDLE_LIST, handles_.data(),
+                                      handles_.size() * sizeof(HANDLE), nullptr, nullptr);
+        }
+    }
+    InheritedHandles(const InheritedHandles&) = delete;
+    InheritedHandles& operator=(const InheritedHandles&) = delete;
+    ~InheritedHandles() {
+        if (usable_) DeleteProcThreadAttributeList(list());
+    }
+    LPPROC_THREAD_ATTRIBUTE_LIST list() {
+        return reinterpret_cast<LPPROC_THREAD_ATTRIBUTE_LIST>(memory_.data());
+    }
+
+  private:
+    std::vector<HANDLE> handles_;
+    std::vector<std::byte> memory_;
+    bool usable_ = false;
+};
+
+Result<Child> spawn(const std::string& name, const std::filesystem::path& program,
+                    const std::vector<std::string>& arguments, const ChildLimits& limits) {
+    SECURITY_ATTRIBUTES inherited{sizeof(SECURITY_ATTRIBUTES), nullptr, TRUE};
+    HANDLE readEnd = nullptr, writeEnd = nullptr;
+    if (CreatePipe(&readEnd, &writeEnd, &inherited, kPipeBytes) == 0)
+        return fail(fmt::format("no pipe to {}: {}", name, systemMessage(GetLastError())));
+    Child child;
+    child.output = Handle(readEnd);
+    const Handle output(writeEnd);
+    SetHandleInformation(readEnd, HANDLE_FLAG_INHERIT, 0);
+    const Handle input = openNull(GENERIC_READ);
+    const Handle errors = openNull(GENERIC_WRITE);
+
+    InheritedHandles handles({input.get(), output.get(), errors.get()});
+    STARTUPINFOEXW startup{};
+    startup.StartupInfo.cb = sizeof(startup);
+    startup.StartupInfo.dwFlags = STARTF_USESTDHANDLES;
+    startup.StartupInfo.hStdInput = input.get();
+    startup.StartupInfo.hStdOutput = output.get();
+    startup.StartupInfo.hStdError = errors.get();
+    startup.lpAttributeList = handles.list();
+    std::wstring words = quoted(program.wstring());
+    for (const std::string& argument : arguments) {
+        const auto* utf8 = reinterpret_cast<const char8_t*>(argument.c_str());
+        words += L" " + quoted(std::filesystem::path(utf8).wstring());
+    }
+    PROCESS_INFORMATION started{};
+    // Suspended until it is in its job, so that nothing it starts escapes.
+    constexpr DWORD kFlags = CREATE_SUSPENDED | CREATE_NO_WINDOW | EXTENDED_STARTUPINFO_PRESENT;
+    if (CreateProcessW(program.wstring().c_str(), words.data(), nullptr, nullptr, TRUE, kFlags, nullptr,
+                       nullptr, &startup.StartupInfo, &started) == 0) {
+        return notStarted(name, program, systemMessage(GetLastError()));
+    }
+    child.process = Handle(started.hProcess);
+    const Handle thread(started.hThread);
+    child.job = createJob(limits);
+    if (child.job.get() != nullptr) AssignProcessToJobObject(child.job.get(), child.process.get());
+    ResumeThread(thread.get());
+    return child;
+}
+
+std::uint64_t residentBytes(HANDLE process) {
+    PROCESS_MEMORY_COUNTERS counters{};
+    counters.cb = sizeof(counters);
+    return GetProcessMemoryInfo(process, &counters, sizeof(counters)) == 0 ? 0 : counters.WorkingSetSize;
+}
+
+/// Appends what can be read without waiting; false at the end of the pipe.
+bool readSome(HANDLE pipe, std::vector<std::byte>& output) {
+    DWORD available = 0;
+    if (PeekNamedPipe(pipe, nullptr, 0, nullptr, &available, nullptr) == 0) return false;
+    if (available == 0) return true;
+    const std::size_t before = output.size();
+    output.resize(before + available);
+    DWORD got = 0;
+    const bool open = ReadFile(pipe, output.data() + before, available, &got, nullptr) != 0;
+    output.resize(before + got);
+    return open;
+}
+
+}  // namespace
+
+Result<std::vector<std::byte>> runChild(const std::string& name, const std::filesystem::path& program,
+                                        const std::vector<std::string>& arguments,
+                                        const ChildLimits& limits) {
+    auto child = spawn(name, program, arguments, limits);
+    if (!child) return tl::unexpected(child.error());
+    const HANDLE process = child->process.get();
+    ChildWatch watch(name, limits, [process] { return residentBytes(process); });
+    std::vector<std::byte> output;
+    for (bool ended = false;;) {
+        const std::size_t before = output.size();
+        const bool open = readSome(child->output.get(), output);
+        if (auto status = watch.check(output.size()); !status) return tl::unexpected(status.error());
+        if (!open) break;
+        if (output.size() > before) continue;
+        if (ended) break;
+        // A pipe cannot be waited for; the end of the process can, and then there may be a last piece.
+        ended = WaitForSingleObject(process, 1) == WAIT_OBJECT_0;
+    }
+    // A child may close its output and linger.
+    while (WaitForSingleObject(process, static_cast<DWORD>(kWatchInterval.count())) != WAIT_OBJECT_0) {
+        if (auto status = watch.check(output.size()); !status) return tl::unexpected(status.error());
+    }
+    DWORD end = 0;
+    GetExitCodeProcess(process, &end);
+    if (end >= kFirstException) {
+        return tl::unexpected(crashed(name, fmt::format("exception 0x{:08x}", end)).error());
+    }
+    if (end != 0) return tl::unexpected(gaveUp(name, static_cast<int>(end)).error());
+    return output;
+}
+
+std::filesystem::path programFolder() {
+    std::wstring path(32768, L'\0');
+    const DWORD length = GetModuleFileNameW(nullptr, path.data(), static_cast<DWORD>(path.size()));
+    if (length == 0 || length == path.size()) return {};
+    path.resize(length);
+    return std::filesystem::path(path).parent_path();
+}
+
+}  // namespace hairloom

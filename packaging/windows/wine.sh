@@ -1,0 +1,18 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# usage: packaging/windows/wine.sh PROGRAM.exe [ARGUMENT…]
+# Runs a Windows program under Wine, in a prefix of its own that is made on first use. Programs that draw need a display
+# (xvfb-run). HAIRLOOM_CACHE names the folder that holds the prefix.
+set -euo pipefail
+cache=${HAIRLOOM_CACHE:-${XDG_CACHE_HOME:-$HOME/.cache}/hairloom}
+mkdir -p "$cache"
+export WINEPREFIX=$cache/wine WINEARCH=win64 WINEDEBUG=${WINEDEBUG:--all}
+# No .NET, no browser, no menu entries. Microsoft's shader compiler, loaded by its path, may replace Wine's.
+export WINEDLLOVERRIDES="mscoree,mshtml=;winemenubuilder.exe=d;d3dcompiler_47=n,b"
+if [ ! -f "$WINEPREFIX/.ready" ]; then
+    (
+        flock 9
+        [ -f "$WINEPREFIX/.ready" ] || { wine wineboot --init > /dev/null 2>&1 && wineserver -w && touch "$WINEPREFIX/.ready"; }
+    ) 9> "$cache/wine.lock"
+fi
+exec wine "$@"

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How far two linear pictures are apart, and sheets that show them side by side."""
+
+from pathlib import Path
+
+import numpy as np
+
+_LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+
+
+def luminance(image: np.ndarray) -> np.ndarray:
+    return image @ _LUMINANCE
+
+
+def mean_where(image: np.ndarray, coverage: np.ndarray) -> float:
+    """Mean luminance of the pixels that hair covers at least half."""
+    return float(luminance(image)[coverage > 0.5].mean())
+
+
+def mean_colour_where(image: np.ndarray, coverage: np.ndarray) -> np.ndarray:
+    return image[coverage > 0.5].mean(axis=0)
+
+
+def _blurred(image: np.ndarray, radius: int) -> np.ndarray:
+    """Box means over (2 radius + 1)² pixels, by running sums."""
+    for axis in (0, 1):
+        padding = [(0, 0)] * image.ndim
+        padding[axis] = (radius + 1, radius)
+        sums = np.cumsum(np.pad(image, padding, mode="edge"), axis=axis)
+        width = 2 * radius + 1
+        upper = np.take(sums, range(width, sums.shape[axis]), axis=axis)
+        lower = np.take(sums, range(sums.shape[axis] - width), axis=axis)
+        image = (upper - lower) / width
+    return image
+
+
+def blurred_relative_mse(image: np.ndarray, truth: np.ndarray, coverage: np.ndarray, radius: int = 4) -> float:
+    """Mean of (a − b)² / (b² + ε) of the blurred pictures where hair covers: path-traced noise is gone, lobes stay."""
+    a, b = _blurred(image, radius), _blurred(truth, radius)
+    relative = (a - b) ** 2 / (b**2 + 1e-3)
+    return float(relative[coverage > 0.5].mean())
+
+
+def to_display(image: np.ndarray, exposure: float) -> np.ndarray:
+    """sRGB in 0 … 1 without tone mapping."""
+    x = np.clip(image * exposure, 0, 1)
+    return np.where(x <= 0.0031308, 12.92 * x, 1.055 * np.power(x, 1 / 2.4) - 0.055)
+
+
+def flip(image: np.ndarray, truth: np.ndarray, exposure: float) -> float:
+    """Mean FLIP of the displayed pictures, 0 equal … 1."""
+    import flip_evaluator
+
+    shown = [np.ascontiguousarray(to_display(i, exposure), dtype=np.float32) for i in (truth, image)]
+    _, mean, _ = flip_evaluator.evaluate(*shown, "LDR", inputsRGB=True, applyMagma=False)
+    return float(mean)
+
+
+def save_sheet(mi, rows: list[list[np.ndarray]], exposure: float, path: Path) -> None:
+    """Pictures of equal size in rows, with a thin gap."""
+    gap = 4
+    height, width, _ = rows[0][0].shape
+    columns = max(len(row) for row in rows)
+    sheet = np.ones((len(rows) * (height + gap) - gap, columns * (width + gap) - gap, 3), dtype=np.float32)
+    for y, row in enumerate(rows):
+        for x, image in enumerate(row):
+            top, left = y * (height + gap), x * (width + gap)
+            sheet[top : top + height, left : left + width] = to_display(image, exposure)
+    bitmap = mi.Bitmap((sheet * 255 + 0.5).astype(np.uint8))
+    bitmap.set_srgb_gamma(True)
+    bitmap.write(str(path))

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Renders a groom with hairloom-cli and with Mitsuba 3 from the same view file, for blond, brown and black hair, and
+reports how far they are apart. ./dev truth runs it; --help lists what can be chosen."""
+
+import argparse
+import json
+import subprocess
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+
+import judge
+import path_trace
+from hair_file import Strands, read_hair
+
+# Eumelanin of the three colours, and what a unit of it absorbs over one fibre radius (Chiang et al. 2016).
+COLOURS = {"blond": 0.3, "brown": 1.3, "black": 8.0}
+ABSORPTION = np.array([0.419, 0.697, 1.37])
+HEADS = {"skin": [0.5, 0.35, 0.27], "black": [0.0, 0.0, 0.0]}
+ALL_ORDERS = 100
+EXPOSURE = 6.0
+
+
+@dataclass
+class Verdict:
+    colour: str
+    head: str
+    truth_ratio: float
+    our_ratio: float
+    single_over_truth: float
+    all_over_truth: float
+    blurred_relative_mse: float
+    flip: float
+
+
+def view_of(strands: Strands, size: int) -> dict:
+    """A camera before and to the right of the head, and one key light; the whole of the hair in the picture."""
+    low, high = strands.bounds()
+    target = (low + high) / 2
+    direction = np.array([0.42, 0.08, 0.9])
+    direction /= np.linalg.norm(direction)
+    distance = np.linalg.norm(high - low) / 2 / np.sin(np.radians(22 / 2))
+    return {
+        "camera": {
+            "eye": (target + distance * direction).tolist(),
+            "target": target.tolist(),
+            "up": [0, 1, 0],
+            "fov_y_deg": 22.0,
+        },
+        "size": [size, size],
+        "lights": [{"type": "directional", "to_light": [0.5, 0.8, 0.6], "irradiance": [np.pi] * 3}],
+        "hair": {
+            "radius_m": 0.0002,
+            "tip_scale": 0.3,
+            "ior": 1.55,
+            "beta_deg": [8.3, 4.2, 16.7],
+            "alpha_deg": [-2.0, 1.0, 3.0],
+            "azimuthal_roughness": 0.3,
+        },
+    }
+
+
+class Ours:
+    def __init__(self, cli: Path, groom: Path, folder: Path, mi):
+        self.cli, self.groom, self.folder, self.mi = cli, groom, folder, mi
+
+    def render(self, view: dict, name: str, scatter: str) -> np.ndarray:
+        view_file = self.folder / f"{name}.view.json"
+        view_file.write_text(json.dumps(view, indent=1))
+        exr = self.folder / f"{name}.{scatter}.exr"
+        command = [self.cli, "render", self.groom, "--view", view_file, "--shading", "marschner"]
+        command += ["--scatter", scatter, "--shadow", "dom", "--exr", exr]
+        command += ["-o", self.folder / f"{name}.{scatter}.png"]
+        subprocess.run([str(c) for c in command], check=True, stdout=subprocess.DEVNULL)
+        return np.array(self.mi.Bitmap(str(exr)))[..., :3].astype(np.float64)
+
+
+def compare(args: argparse.Namespace) -> tuple[list[Verdict], dict]:
+    mi = path_trace.start()
+    args.out.mkdir(parents=True, exist_ok=True)
+    hair_file = args.out / "strands.hair"
+    subprocess.run(
+        [str(args.cli), "export", str(args.groom), "--format", "hair", "-o", str(hair_file)],
+        check=True,
+        stdout=subprocess.DEVNULL,
+    )
+    strands = read_hair(hair_file)
+    view = json.loads(args.view.read_text()) if args.view else view_of(strands, args.size)
+    if args.size:
+        view["size"] = [args.size, args.size]
+    hair = view["hair"]
+    curves = path_trace.write_curves(strands, hair["radius_m"], hair["tip_scale"], args.out / "curves")
+    ours = Ours(args.cli, args.groom, args.out, mi)
+    verdicts, sheets = [], {}
+    for head, albedo in HEADS.items():
+        view["head_albedo"] = albedo
+        rows: list[list[np.ndarray]] = [[], [], [], []]
+        for colour, eumelanin in COLOURS.items():
+            hair["sigma_a_per_radius"] = (eumelanin * ABSORPTION).tolist()
+            scene = path_trace.TruthScene(mi, view, eumelanin, args.head, curves)
+            truth = {depth: scene.render(depth, args.samples) for depth in (2, ALL_ORDERS)}
+            covered = scene.coverage()
+            name = f"{head}_{colour}"
+            single, dual = (ours.render(view, name, scatter) for scatter in ("single", "dual"))
+            mean = {
+                key: judge.mean_where(image, covered)
+                for key, image in (("s", truth[2]), ("a", truth[ALL_ORDERS]), ("os", single), ("od", dual))
+            }
+            verdicts.append(
+                Verdict(
+                    colour,
+                    head,
+                    mean["a"] / mean["s"],
+                    mean["od"] / mean["os"],
+                    mean["os"] / mean["s"],
+                    mean["od"] / mean["a"],
+                    judge.blurred_relative_mse(dual, truth[ALL_ORDERS], covered),
+                    judge.flip(dual, truth[ALL_ORDERS], EXPOSURE),
+                )
+            )
+            for row, image in zip(rows, (truth[2], single, truth[ALL_ORDERS], dual)):
+                row.append(image)
+        sheets[head] = rows
+        judge.save_sheet(mi, rows, EXPOSURE, args.out / f"sheet_{head}.png")
+    return verdicts, sheets
+
+
+def table(verdicts: list[Verdict]) -> str:
+    lines = [
+        "| hair | head | all / single, path-traced | ours | single, ours / truth | all, ours / truth | "
+        "blurred relMSE | FLIP |",
+        "|---|---|---|---|---|---|---|---|",
+    ]
+    for v in verdicts:
+        lines.append(
+            f"| {v.colour} | {v.head} | {v.truth_ratio:.3f} | {v.our_ratio:.3f} | {v.single_over_truth:.2f} | "
+            f"{v.all_over_truth:.2f} | {v.blurred_relative_mse:.4f} | {v.flip:.3f} |"
+        )
+    return "\n".join(lines) + "\n"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--cli", type=Path, required=True, help="hairloom-cli")
+    parser.add_argument("--groom", type=Path, required=True, help="project, at rest")
+    parser.add_argument("--head", type=Path, required=True, help="its head as OBJ or PLY, in metres")
+    parser.add_argument("--view", type=Path, help="view file; else a camera that fits the hair, and a key light")
+    parser.add_argument("--size", type=int, default=256, help="pixels along one side")
+    parser.add_argument("--samples", type=int, default=128, help="paths a pixel, a multiple of 16")
+    parser.add_argument("-o", "--out", type=Path, required=True, help="folder of results")
+    args = parser.parse_args()
+    verdicts, _ = compare(args)
+    (args.out / "truth.json").write_text(json.dumps([asdict(v) for v in verdicts], indent=1) + "\n")
+    (args.out / "truth.md").write_text(table(verdicts))
+    print(table(verdicts), end="")
+
+
+if __name__ == "__main__":
+    main()
