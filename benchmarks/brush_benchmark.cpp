@@ -113,22 +113,22 @@ void pickOneStrand(benchmark::State& state) {
 }
 
 constexpr auto kMs = benchmark::kMillisecond;
-BENCHMARK_CAPTURE(dab, comb, "comb")->Unit(kMs)->UseRealTime();
-BENCHMARK_CAPTURE(dab, brush, "brush")->Unit(kMs)->UseRealTime();
-BENCHMARK_CAPTURE(dab, grab, "grab")->Unit(kMs)->UseRealTime();
-BENCHMARK_CAPTURE(dab, smooth, "smooth")->Unit(kMs)->UseRealTime();
-BENCHMARK_CAPTURE(dab, puff, "puff")->Unit(kMs)->UseRealTime();
-BENCHMARK_CAPTURE(dab, pinch, "pinch")->Unit(kMs)->UseRealTime();
-BENCHMARK_CAPTURE(dab, length, "length")->Unit(kMs)->UseRealTime();
-BENCHMARK_CAPTURE(dab, cut, "cut")->Unit(kMs)->UseRealTime();
-BENCHMARK_CAPTURE(dab, cut_line, "cut_line")->Unit(kMs)->UseRealTime();
-BENCHMARK_CAPTURE(dab, add, "add")->Unit(kMs)->UseRealTime();
-BENCHMARK_CAPTURE(dab, delete, "delete")->Unit(kMs)->UseRealTime();
-BENCHMARK_CAPTURE(dab, freeze, "freeze")->Unit(kMs)->UseRealTime();
-BENCHMARK_CAPTURE(undoStroke, comb, "comb")->Unit(kMs)->UseRealTime();
-BENCHMARK_CAPTURE(undoStroke, delete, "delete")->Unit(kMs)->UseRealTime();
-BENCHMARK_CAPTURE(undoStroke, add, "add")->Unit(kMs)->UseRealTime();
-BENCHMARK(pickOneStrand)->Unit(kMs)->UseRealTime();
+BENCHMARK_CAPTURE(dab, comb, "comb")->Unit(kMs)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(dab, brush, "brush")->Unit(kMs)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(dab, grab, "grab")->Unit(kMs)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(dab, smooth, "smooth")->Unit(kMs)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(dab, puff, "puff")->Unit(kMs)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(dab, pinch, "pinch")->Unit(kMs)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(dab, length, "length")->Unit(kMs)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(dab, cut, "cut")->Unit(kMs)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(dab, cut_line, "cut_line")->Unit(kMs)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(dab, add, "add")->Unit(kMs)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(dab, delete, "delete")->Unit(kMs)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(dab, freeze, "freeze")->Unit(kMs)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(undoStroke, comb, "comb")->Unit(kMs)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(undoStroke, delete, "delete")->Unit(kMs)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(undoStroke, add, "add")->Unit(kMs)->MeasureProcessCPUTime();
+BENCHMARK(pickOneStrand)->Unit(kMs)->MeasureProcessCPUTime();
 
 }  // namespace
 }  // namespace hairloom::editing

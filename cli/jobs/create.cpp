@@ -28,18 +28,25 @@ struct CreateOptions {
     std::string output;
 };
 
-Result<Placement> place(const ScalpMesh& mesh, const FaceSet& faces, const CreateOptions& options) {
+/// The settings as a project keeps them, so that an editor goes on from them.
+PlacementSettings settingsOf(const CreateOptions& options, std::size_t placed) {
+    PlacementSettings settings;
+    settings.darts = options.placement == "dart";
+    settings.count = static_cast<std::uint32_t>(placed);
+    settings.densityPerCm2 = static_cast<float>(options.density);
+    settings.length = options.length;
+    settings.points = options.points;
+    settings.seed = options.seed;
+    return settings;
+}
+
+Result<Placement> place(const ScalpMesh& mesh, const FaceSet& faces, const CreateOptions& options,
+                        std::span<const float> mask) {
     PlacementRequest request;
     request.count = options.count;
     request.densityPerCm2 = options.density;
     request.seed = options.seed;
-    std::vector<float> mask;
-    if (!options.mask.empty()) {
-        auto read = readVertexMask(options.mask, mesh);
-        if (!read) return tl::unexpected(read.error());
-        mask = std::move(*read);
-        request.mask = mask;
-    }
+    request.mask = mask;
     return options.placement == "random" ? placeRandom(mesh, faces, request)
                                          : placeDarts(mesh, faces, request);
 }
@@ -52,7 +59,13 @@ Result<Report> create(const CreateOptions& options) {
     auto faces = selectFaces(*mesh, options.scalp);
     if (!faces) return tl::unexpected(faces.error());
     const double areaCm2 = selectionArea(*mesh, *faces) * 1e4;
-    const auto placement = place(*mesh, *faces, options);
+    std::vector<float> mask;
+    if (!options.mask.empty()) {
+        auto read = readVertexMask(options.mask, *mesh);
+        if (!read) return tl::unexpected(read.error());
+        mask = std::move(*read);
+    }
+    const auto placement = place(*mesh, *faces, options, mask);
     if (!placement) return tl::unexpected(placement.error());
     auto groom = growStraight(mesh, std::move(*faces), placement->roots, options.length, options.points);
     if (!groom) return tl::unexpected(groom.error());
@@ -60,6 +73,8 @@ Result<Report> create(const CreateOptions& options) {
     groom->characterFile = options.mesh;
     if (!options.unit.empty()) groom->characterMetresPerUnit = metresPerUnit(options.unit);
     groom->interpolation.seed = options.seed;
+    groom->placement = settingsOf(options, placement->roots.size());
+    groom->scalpDensity = std::move(mask);
     if (auto saved = saveProject(*groom, options.output); !saved) return tl::unexpected(saved.error());
 
     Report report;

@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/editing/model.h"
@@ -25,6 +26,13 @@ class Command {
     virtual Change exchange(Model& model) = 0;
     /// Memory held, bytes.
     virtual std::size_t bytes() const = 0;
+
+    /// The operation of a script that does the same (JSON), or empty where there is none.
+    const std::string& record() const { return record_; }
+    void setRecord(std::string record) { record_ = std::move(record); }
+
+  private:
+    std::string record_;
 };
 
 /// Commands that are done in order and undone in reverse, as one.

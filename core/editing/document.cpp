@@ -63,6 +63,7 @@ void Document::tell(const Change& change) {
 void Document::perform(std::unique_ptr<Command> command, std::string record) {
     assert(!stroke_);
     if (!command) return;
+    if (record.empty()) record = command->record();
     const Change change = command->exchange(model_);
     history_.add(std::move(command), std::move(record));
     changed({change.parts | Part::History, change.strands});

@@ -50,7 +50,7 @@ class Document {
     [[nodiscard]] Subscription observe(Observer observer);
 
     /// Carries a command out and remembers it; null does nothing. `record`: the operation of a script that
-    /// does the same, or empty. Not during a stroke.
+    /// does the same, where the command knows none. Not during a stroke.
     void perform(std::unique_ptr<Command> command, std::string record = {});
     bool canUndo() const { return !stroke_ && history_.canUndo(); }
     bool canRedo() const { return !stroke_ && history_.canRedo(); }

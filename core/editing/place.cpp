@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/editing/delta_command.h"
+#include "core/editing/records.h"
 #include "core/geometry/placement.h"
 
 namespace hairloom::editing {
@@ -107,6 +108,10 @@ Result<std::unique_ptr<Command>> place(const Groom& groom, const PlaceRequest& r
 
     auto whole = std::make_unique<CommandGroup>("Place", std::move(steps), true);
     whole->exchange(trial);
+    whole->setRecord(recordOf("place", {{"region", runsOf(request.region)},
+                                        {"reach", readableDecimal(request.reach)},
+                                        {"collide", skin.query != nullptr},
+                                        {"clearance", readableDecimal(skin.clearance)}}));
     return whole;
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/editing/document.h"
+#include "core/editing/records.h"
 
 namespace hairloom::editing {
 namespace {
@@ -21,6 +22,19 @@ Result<std::size_t> replayOn(Groom& groom, const Stroke& stroke, Document::HeadD
     return touched;
 }
 
+Result<std::size_t> performOn(Groom& groom, const MakeCommand& make, Document::HeadData& shared) {
+    Document document(std::move(groom));
+    if (shared.head == document.groom().scalp) document.setHeadData(shared);
+    auto command = make(document);
+    const bool works = command.has_value();
+    if (works) document.perform(std::move(*command));
+    shared = document.headData();
+    groom = std::move(document).takeGroom();
+    // How many strands a setting touches is nothing that a script reports.
+    if (works) return 0;
+    return tl::unexpected(command.error());
+}
+
 }  // namespace
 
 std::vector<ScriptExtension> scriptExtensions() {
@@ -29,7 +43,17 @@ std::vector<ScriptExtension> scriptExtensions() {
         return
             [shared, stroke = readStroke(reader)](Groom& groom) { return replayOn(groom, stroke, *shared); };
     };
-    return {{"stroke", readStrokeStep}};
+    std::vector<ScriptExtension> extensions{{"stroke", readStrokeStep}};
+    for (const RecordedOperation& operation : recordedOperations()) {
+        extensions.push_back({operation.name,
+                              [shared, read = operation.read](
+                                  JsonReader& reader) -> std::function<Result<std::size_t>(Groom&)> {
+                                  return [shared, make = read(reader)](Groom& groom) {
+                                      return performOn(groom, make, *shared);
+                                  };
+                              }});
+    }
+    return extensions;
 }
 
 }  // namespace hairloom::editing

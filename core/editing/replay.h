@@ -9,7 +9,8 @@
 
 namespace hairloom::editing {
 
-/// For parseScript(): "stroke". Those of one call share what they derive from a head.
+/// For parseScript(): "stroke" and the operations of records.h. Those of one call share what they derive from
+/// a head.
 std::vector<ScriptExtension> scriptExtensions();
 
 }  // namespace hairloom::editing

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/editing/delta_command.h"
+#include "core/editing/records.h"
 
 namespace hairloom::editing {
 namespace {
@@ -15,13 +16,19 @@ using Indices = std::vector<std::uint32_t>;
 /// Carries deltas out on a copy of the groom (which shares what is not touched) and takes them back, so that
 /// the command is ready to be done.
 template <class Change>
-std::unique_ptr<Command> prepared(const Model& model, std::string name, Change change) {
+std::unique_ptr<Command> prepared(const Model& model, std::string name, std::string record, Change change) {
     Model trial{model.groom, {}};
     Deltas deltas;
     change(trial.groom, deltas);
     auto command = commandOf(std::move(name), std::move(deltas));
-    if (command) command->exchange(trial);
+    if (!command) return nullptr;
+    command->exchange(trial);
+    command->setRecord(std::move(record));
     return command;
+}
+
+std::string strandsRecord(std::string_view way, std::span<const std::uint32_t> strands) {
+    return recordOf("strands", {{"do", way}, {"strands", runsOf(strands)}});
 }
 
 Indices chosen(const Indices& now, std::span<const std::uint32_t> given, Choice choice) {
@@ -56,7 +63,7 @@ std::unique_ptr<Command> selectStrands(const Model& model, std::span<const std::
                                        Choice choice) {
     const Indices now = strandsWithFlag(model.groom, attribute::kSelected);
     const Indices wanted = chosen(now, strands, choice);
-    return prepared(model, "Select", [&](Groom& groom, Deltas& deltas) {
+    return prepared(model, "Select", strandsRecord("select", wanted), [&](Groom& groom, Deltas& deltas) {
         deltas.selected.set(groom, without(now, wanted), false);
         deltas.selected.set(groom, without(wanted, now), true);
     });
@@ -87,36 +94,41 @@ std::vector<std::uint32_t> allStrands(const Groom& groom) {
 }
 
 std::unique_ptr<Command> hideStrands(const Model& model, std::span<const std::uint32_t> strands) {
-    return prepared(model, "Hide",
+    return prepared(model, "Hide", strandsRecord("hide", strands),
                     [&](Groom& groom, Deltas& deltas) { deltas.hidden.set(groom, strands, true); });
 }
 
 std::unique_ptr<Command> showStrands(const Model& model) {
     const Indices hidden = strandsWithFlag(model.groom, attribute::kHidden);
-    return prepared(model, "Show all",
+    return prepared(model, "Show all", recordOf("strands", {{"do", "show"}}),
                     [&](Groom& groom, Deltas& deltas) { deltas.hidden.set(groom, hidden, false); });
 }
 
 std::unique_ptr<Command> freezeStrands(const Model& model, std::span<const std::uint32_t> strands,
                                        bool frozen) {
-    return prepared(model, frozen ? "Freeze" : "Thaw",
+    return prepared(model, frozen ? "Freeze" : "Thaw", strandsRecord(frozen ? "freeze" : "thaw", strands),
                     [&](Groom& groom, Deltas& deltas) { deltas.frozen.set(groom, strands, frozen); });
 }
 
 std::unique_ptr<Command> deleteStrands(const Model& model, std::span<const std::uint32_t> strands) {
-    return prepared(model, "Delete",
+    return prepared(model, "Delete", strandsRecord("delete", strands),
                     [&](Groom& groom, Deltas& deltas) { deltas.strands.remove(groom, strands); });
 }
 
-std::unique_ptr<Command> selectScalp(const Model& model, FaceSet faces, Choice choice,
+std::unique_ptr<Command> selectScalp(const Model& model, const FaceSet& faces, Choice choice,
                                      std::string expression) {
-    return prepared(model, "Select scalp", [&](Groom& groom, Deltas& deltas) {
-        deltas.faces.set(groom, chosen(groom.scalpSelection, faces, choice), std::move(expression));
+    FaceSet wanted = chosen(model.groom.scalpSelection, faces, choice);
+    std::string record = recordOf("scalp", {{"faces", runsOf(wanted)}, {"expression", expression}});
+    return prepared(model, "Select scalp", std::move(record), [&](Groom& groom, Deltas& deltas) {
+        deltas.faces.set(groom, std::move(wanted), std::move(expression));
     });
 }
 
 std::unique_ptr<Command> setDensity(const Model& model, std::span<const float> density) {
-    return prepared(model, "Density", [&](Groom& groom, Deltas& deltas) {
+    auto recorded = nlohmann::ordered_json::array();
+    for (const float value : density) recorded.push_back(readableDecimal(value));
+    std::string record = recordOf("density", {{"values", std::move(recorded)}});
+    return prepared(model, "Density", std::move(record), [&](Groom& groom, Deltas& deltas) {
         Indices vertices;
         std::vector<float> values;
         for (std::uint32_t v = 0; v < density.size(); ++v) {

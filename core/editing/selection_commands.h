@@ -30,7 +30,7 @@ std::unique_ptr<Command> freezeStrands(const Model& model, std::span<const std::
 std::unique_ptr<Command> deleteStrands(const Model& model, std::span<const std::uint32_t> strands);
 
 /// `expression`: how the selection was made, as Groom::scalpExpression; may be empty.
-std::unique_ptr<Command> selectScalp(const Model& model, FaceSet faces, Choice choice,
+std::unique_ptr<Command> selectScalp(const Model& model, const FaceSet& faces, Choice choice,
                                      std::string expression = {});
 /// One value in [0, 1] for each vertex of the head.
 std::unique_ptr<Command> setDensity(const Model& model, std::span<const float> density);

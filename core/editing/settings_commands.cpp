@@ -5,6 +5,7 @@
 #include <cassert>
 #include <utility>
 
+#include "core/editing/records.h"
 #include "core/groom/groom_hash.h"
 #include "core/groom/settings_json.h"
 
@@ -35,8 +36,23 @@ class ValueCommand final : public Command {
 
 template <class T>
 std::unique_ptr<Command> valueCommand(std::string name, Part part, T& (*access)(Model&), T value,
-                                      std::size_t heapBytes = 0) {
-    return std::make_unique<ValueCommand<T>>(std::move(name), part, access, std::move(value), heapBytes);
+                                      std::string record, std::size_t heapBytes = 0) {
+    auto command =
+        std::make_unique<ValueCommand<T>>(std::move(name), part, access, std::move(value), heapBytes);
+    command->setRecord(std::move(record));
+    return command;
+}
+
+template <class S>
+std::string settingsRecord(std::string_view op, const S& settings) {
+    return recordOf(op, {{"settings", toJson(settings)}});
+}
+
+nlohmann::ordered_json layersToJson(const std::vector<Layer>& layers) {
+    auto list = nlohmann::ordered_json::array();
+    for (const Layer& layer : layers)
+        list.push_back({{"name", layer.name}, {"visible", layer.visible}, {"locked", layer.locked}});
+    return list;
 }
 
 std::size_t arrayBytes(const Groom& groom) {
@@ -55,37 +71,42 @@ std::size_t arrayBytes(const Groom& groom) {
 std::unique_ptr<Command> setMaterial(const Model& model, const HairMaterial& material) {
     if (toJson(model.groom.material) == toJson(material)) return nullptr;
     return valueCommand<HairMaterial>(
-        "Look", Part::Material, [](Model& m) -> HairMaterial& { return m.groom.material; }, material);
+        "Look", Part::Material, [](Model& m) -> HairMaterial& { return m.groom.material; }, material,
+        settingsRecord("material", material));
 }
 
 std::unique_ptr<Command> setPhysics(const Model& model, const runtime::SimulationSettings& settings) {
     if (toJson(model.groom.simulation) == toJson(settings)) return nullptr;
     return valueCommand<runtime::SimulationSettings>(
         "Physics", Part::Physics, [](Model& m) -> runtime::SimulationSettings& { return m.groom.simulation; },
-        settings);
+        settings, settingsRecord("simulation", settings));
 }
 
 std::unique_ptr<Command> setInterpolation(const Model& model, const InterpolationSettings& settings) {
     if (toJson(model.groom.interpolation) == toJson(settings)) return nullptr;
     return valueCommand<InterpolationSettings>(
         "Follow hairs", Part::Interpolation,
-        [](Model& m) -> InterpolationSettings& { return m.groom.interpolation; }, settings);
+        [](Model& m) -> InterpolationSettings& { return m.groom.interpolation; }, settings,
+        settingsRecord("interpolation", settings));
 }
 
 std::unique_ptr<Command> setPlacementSettings(const Model& model, const PlacementSettings& settings) {
     if (toJson(model.groom.placement) == toJson(settings)) return nullptr;
     return valueCommand<PlacementSettings>(
         "Placement settings", Part::Placement,
-        [](Model& m) -> PlacementSettings& { return m.groom.placement; }, settings);
+        [](Model& m) -> PlacementSettings& { return m.groom.placement; }, settings,
+        settingsRecord("placement", settings));
 }
 
 std::unique_ptr<Command> setSpheres(const Model& model, std::vector<CollisionSphere> spheres,
                                     std::string name) {
     if (toJson(model.groom.spheres) == toJson(spheres)) return nullptr;
     const std::size_t bytes = std::max(spheres.size(), model.groom.spheres.size()) * sizeof(CollisionSphere);
+    std::string record = recordOf("spheres", {{"spheres", toJson(spheres)}});
     return valueCommand<std::vector<CollisionSphere>>(
         std::move(name), Part::Spheres,
-        [](Model& m) -> std::vector<CollisionSphere>& { return m.groom.spheres; }, std::move(spheres), bytes);
+        [](Model& m) -> std::vector<CollisionSphere>& { return m.groom.spheres; }, std::move(spheres),
+        std::move(record), bytes);
 }
 
 std::unique_ptr<Command> setLayers(const Model& model, std::vector<Layer> layers) {
@@ -97,9 +118,10 @@ std::unique_ptr<Command> setLayers(const Model& model, std::vector<Layer> layers
         });
     if (isSame) return nullptr;
     const std::size_t bytes = layers.size() * sizeof(Layer);
+    std::string record = recordOf("layers", {{"layers", layersToJson(layers)}});
     return valueCommand<std::vector<Layer>>(
         "Layers", Part::Layers, [](Model& m) -> std::vector<Layer>& { return m.groom.layers; },
-        std::move(layers), bytes);
+        std::move(layers), std::move(record), bytes);
 }
 
 std::unique_ptr<Command> replaceGroom(const Model& model, Groom groom, std::string name) {
@@ -107,7 +129,7 @@ std::unique_ptr<Command> replaceGroom(const Model& model, Groom groom, std::stri
     const std::size_t bytes = std::max(arrayBytes(groom), arrayBytes(model.groom));
     return valueCommand<Groom>(
         std::move(name), Part::Everything, [](Model& m) -> Groom& { return m.groom; }, std::move(groom),
-        bytes);
+        std::string(), bytes);
 }
 
 std::unique_ptr<Command> triangulate(const Model& model) {
@@ -119,7 +141,8 @@ std::unique_ptr<Command> triangulate(const Model& model) {
     const std::size_t bytes = made->triangles.size() * sizeof(Triangle);
     return valueCommand<RootTriangulation>(
         "Triangulate roots", Part::Triangulation,
-        [](Model& m) -> RootTriangulation& { return m.groom.triangulation; }, std::move(*made), bytes);
+        [](Model& m) -> RootTriangulation& { return m.groom.triangulation; }, std::move(*made),
+        recordOf("triangulate", nlohmann::ordered_json::object()), bytes);
 }
 
 }  // namespace hairloom::editing

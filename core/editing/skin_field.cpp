@@ -20,6 +20,10 @@ float halfDiagonal(float cell) {
     return 0.5f * std::sqrt(3.0f) * cell * kCells;
 }
 
+std::ptrdiff_t cornerIndex(const Eigen::Array3i& cell) {
+    return (cell.z() * kCorners + cell.y()) * kCorners + cell.x();
+}
+
 /// Value and gradient (per cell) at `t` in [0, 1]³ of a cell whose first corner is given.
 Vec4f interpolate(const float* corner, const Vec3f& t) {
     const auto at = [&](int x, int y, int z) { return corner[(z * kCorners + y) * kCorners + x]; };
@@ -92,32 +96,45 @@ const float* SkinField::corners(std::size_t block) const {
     return measured.release();
 }
 
-SkinDistance SkinField::distanceAt(const Vec3f& point) const {
+SkinField::Place SkinField::locate(const Vec3f& point) const {
     const Vec3f cells = (point - low_) / cell_;
     const Eigen::Array3i block = (cells / kCells).array().floor().cast<int>();
-    if (!point.allFinite() || (block < 0).any() || (block >= size_).any()) {
-        const Vec3f nearest = point.cwiseMax(meshBounds_.min()).cwiseMin(meshBounds_.max());
-        const Vec3f away = point - nearest;
-        const float distance = away.norm();
-        return {distance, distance > 0 ? Vec3f(away / distance) : Vec3f(Vec3f::UnitY())};
-    }
-    const auto index = static_cast<std::size_t>((block.z() * size_.y() + block.y()) * size_.x() + block.x());
-    const float centre = centreDistance(index);
-    const float reach = halfDiagonal(cell_) + kReach;
-    if (centre > reach) {
-        const Vec3f fromCentre = point - centreOf(index);
-        return {centre - fromCentre.norm(), Vec3f::UnitY()};
-    }
-    if (centre < -reach) return skin_->distanceAt(point);
+    if (!point.allFinite() || (block < 0).any() || (block >= size_).any()) return {};
     const Vec3f local = cells - (block * kCells).cast<float>().matrix();
     const Eigen::Array3i cell = local.array().floor().cast<int>().max(0).min(kCells - 1);
-    const float* corner = corners(index) + (cell.z() * kCorners + cell.y()) * kCorners + cell.x();
-    const Vec4f value = interpolate(corner, local - cell.cast<float>().matrix());
+    return {static_cast<std::size_t>((block.z() * size_.y() + block.y()) * size_.x() + block.x()), cell,
+            local - cell.cast<float>().matrix()};
+}
+
+SkinDistance SkinField::beyondTable(const Vec3f& point) const {
+    const Vec3f away = point - point.cwiseMax(meshBounds_.min()).cwiseMin(meshBounds_.max());
+    const float distance = away.norm();
+    return {distance, distance > 0 ? Vec3f(away / distance) : Vec3f(Vec3f::UnitY())};
+}
+
+SkinDistance SkinField::distanceAt(const Vec3f& point) const {
+    const Place place = locate(point);
+    if (!place.block) return beyondTable(point);
+    const float centre = centreDistance(*place.block);
+    const float reach = halfDiagonal(cell_) + kReach;
+    if (centre > reach) return {centre - (point - centreOf(*place.block)).norm(), Vec3f::UnitY()};
+    if (centre < -reach) return skin_->distanceAt(point);
+    const Vec4f value = interpolate(corners(*place.block) + cornerIndex(place.cell), place.inCell);
     const float slope = value.tail<3>().norm();
     // On the ridge between two sides of the skin the interpolated slope vanishes.
     constexpr float kSlopeless = 0.2f;
     if (slope < kSlopeless * cell_) return skin_->distanceAt(point);
     return {value[0], value.tail<3>() / slope};
+}
+
+float SkinField::distanceUpTo(const Vec3f& point, float enough) const {
+    const Place place = locate(point);
+    if (!place.block) return beyondTable(point).distance;
+    // From the middle of a block the distance falls by no more than the way to its corner.
+    const float least = centreDistance(*place.block) - halfDiagonal(cell_);
+    if (least > enough) return least;
+    if (least > kReach || least < -2 * halfDiagonal(cell_) - kReach) return distanceAt(point).distance;
+    return interpolate(corners(*place.block) + cornerIndex(place.cell), place.inCell)[0];
 }
 
 void SkinField::prepare(std::span<const std::uint32_t> faces) const {

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -28,6 +29,7 @@ class SkinField final : public SkinQuery {
     SkinField& operator=(const SkinField&) = delete;
 
     SkinDistance distanceAt(const Vec3f& point) const override;
+    float distanceUpTo(const Vec3f& point, float enough) const override;
     /// Measures what lies near these faces ahead of time, in parallel.
     void prepare(std::span<const std::uint32_t> faces) const;
     float cell() const { return cell_; }
@@ -37,6 +39,14 @@ class SkinField final : public SkinQuery {
         std::atomic<float> centre;          ///< signed distance there; not finite until measured
         std::atomic<const float*> corners;  ///< owned; null until measured
     };
+    /// Where a point is: its block, or none outside the table, and its place there in cells.
+    struct Place {
+        std::optional<std::size_t> block;
+        Eigen::Array3i cell;
+        Vec3f inCell;
+    };
+    Place locate(const Vec3f& point) const;
+    SkinDistance beyondTable(const Vec3f& point) const;
     Vec3f centreOf(std::size_t block) const;
     /// Measured if it was not.
     float centreDistance(std::size_t block) const;

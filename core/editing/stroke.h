@@ -23,7 +23,7 @@ struct Dab {
     float pressure = 1.0f;               ///< 0 … 1; multiplies the strength
 };
 
-/// Every field has a range in brushFields() (core/editing/brush_list.h).
+/// Ranges stand in fieldsOf() (core/editing/brush_list.h).
 struct BrushSettings {
     float radius = 0.02f;      ///< metres, 0.0001 … 1; of dabs made from these settings
     float strength = 0.5f;     ///< 0 … 1; of dabs made from these settings

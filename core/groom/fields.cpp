@@ -46,7 +46,7 @@ constexpr Field<P> kPlacementFields[] = {
     {"count", "", 1, 5e6, "number of roots; used while densityPerCm2 is 0", &P::count},
     {"densityPerCm2", "1/cm²", 0, 10000, "roots per area where the density map is 1; 0 uses the count",
      &P::densityPerCm2},
-    {"length", "m", 0.001, 5, "length of the strands that grow", &P::length},
+    {"length", "m", 0.0001, 10, "length of the strands that grow", &P::length},
     {"points", "", 2, 1024, "points of a strand: more bend more finely and cost more", &P::points},
     {"seed", "", 0, kLargestSeed, "another seed places other roots", &P::seed},
 };

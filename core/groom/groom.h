@@ -47,7 +47,7 @@ struct PlacementSettings {
     bool darts = true;           ///< true: at even distances (Poisson disk); false: at random
     std::uint32_t count = 3000;  ///< roots, 1 … 5,000,000; used while densityPerCm2 is 0
     float densityPerCm2 = 0;     ///< roots per cm², 0 … 10,000, where the density map is 1
-    float length = 0.15f;        ///< metres, 0.001 … 5
+    float length = 0.15f;        ///< metres, 0.0001 … 10
     std::uint32_t points = 16;   ///< of a strand, 2 … 1024
     std::uint64_t seed = 1;
 };

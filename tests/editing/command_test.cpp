@@ -6,6 +6,8 @@
 #include <functional>
 
 #include "core/editing/place.h"
+#include "core/editing/records.h"
+#include "core/editing/replay.h"
 #include "core/editing/selection_commands.h"
 #include "core/editing/settings_commands.h"
 #include "core/editing/sphere_commands.h"
@@ -176,6 +178,15 @@ TEST_P(EveryCommand, DoesUndoesAndDoesAgain) {
         EXPECT_EQ(contentHash(document.groom()), after);
     }
     EXPECT_FALSE(hasErrors(validate(document.groom())));
+    if (std::string_view(GetParam().name) == "ReplaceGroom") return;  // nothing that a script could hold
+    const auto script = document.script();
+    ASSERT_TRUE(script) << script.error().message();
+    const auto parsed = parseScript("s.json", *script, scriptExtensions());
+    ASSERT_TRUE(parsed) << parsed.error().message();
+    Groom replayed = groom;
+    const auto report = runScript(*parsed, replayed);
+    ASSERT_TRUE(report) << report.error().message();
+    EXPECT_EQ(contentHash(replayed), after);
 }
 
 /// A stroke of any tool somewhere on the head.
@@ -207,10 +218,13 @@ void randomStroke(Document& document, Random& random) {
 }
 
 TEST(AnySequence, Of500ActionsLeavesTheDocumentInOrder) {
-    const std::vector<Action> all = actions();
+    std::vector<Action> all = actions();
+    std::erase_if(all, [](const Action& action) { return std::string_view(action.name) == "ReplaceGroom"; });
+    int scripts = 0;
     for (const std::uint64_t seed : {1u, 2u}) {
         Random random(seed);
-        Document document(hairOnHead(80, 6));
+        const Groom start = hairOnHead(80, 6);
+        Document document(start);
         const std::uint64_t first = contentHash(document.groom());
         document.setHistoryLimit(std::size_t{1} << 30u);
         for (int i = 0; i < 500; ++i) {
@@ -235,6 +249,13 @@ TEST(AnySequence, Of500ActionsLeavesTheDocumentInOrder) {
             }
         }
         const std::uint64_t last = contentHash(document.groom());
+        if (const auto script = document.script()) {
+            Groom replayed = start;
+            const auto report = runScript(*parseScript("s.json", *script, scriptExtensions()), replayed);
+            ASSERT_TRUE(report) << report.error().message();
+            EXPECT_EQ(contentHash(replayed), last);
+            ++scripts;
+        }
         const std::size_t steps = document.history().doneCount();
         while (document.undo()) {
         }
@@ -247,6 +268,34 @@ TEST(AnySequence, Of500ActionsLeavesTheDocumentInOrder) {
         ASSERT_EQ(document.bounds().size(), fresh.size());
         for (std::size_t s = 0; s < fresh.size(); ++s) EXPECT_EQ(document.bounds()[s].low, fresh[s].low);
     }
+    EXPECT_EQ(scripts, 2);
+}
+
+TEST(Records, NameWhatIsWrong) {
+    const auto problem = [](std::string_view step) -> std::string {
+        const auto script =
+            parseScript("s.json", R"({"hairloom_script": 1, "operations": [)" + std::string(step) + "]}",
+                        scriptExtensions());
+        if (!script) return script.error().message();
+        Groom groom = hairOnHead(20);
+        const auto report = runScript(*script, groom);
+        return report ? "it ran" : report.error().message();
+    };
+    using testing::HasSubstr;
+    EXPECT_EQ(problem(R"({"op": "strands", "do": "delete", "strands": [3, 2, 9, 1]})"), "it ran");
+    EXPECT_THAT(problem(R"({"op": "strands", "do": "delete", "strands": [3, 2, 4, 1]})"),
+                HasSubstr("/operations/0/strands does not ascend at value 2"));
+    EXPECT_THAT(problem(R"({"op": "strands", "do": "delete", "strands": [3]})"), HasSubstr("odd number"));
+    EXPECT_THAT(problem(R"({"op": "strands", "do": "delete", "strands": [20, 1]})"),
+                HasSubstr("strand 20 is named; there are 20"));
+    EXPECT_THAT(problem(R"({"op": "strands", "do": "delete", "strands": [0, 4294967295]})"),
+                HasSubstr("expected ascending runs"));
+    EXPECT_THAT(problem(R"({"op": "scalp", "faces": [99999, 1], "expression": ""})"),
+                HasSubstr("face 99999 is named"));
+    EXPECT_THAT(problem(R"({"op": "density", "values": [1]})"), HasSubstr("1 densities"));
+    EXPECT_THAT(problem(R"({"op": "layers", "layers": []})"), HasSubstr("0 layers"));
+    EXPECT_THAT(problem(R"({"op": "material", "settings": {"specular": 9}})"),
+                HasSubstr("/operations/0/settings/specular is 9"));
 }
 
 TEST(Commands, ThatWouldChangeNothingAreNone) {

@@ -24,6 +24,12 @@ TEST(SkinField, IsNearTheExactDistanceWhereItIsAskedFor) {
         const Vec3f point = randomPoint(random, 0.12f);
         const Skin::Sample exact = skin->at(point);
         const SkinDistance quick = field.distanceAt(point);
+        const float upTo = field.distanceUpTo(point, 0.001f);
+        if (upTo > 0.001f) {
+            EXPECT_LE(upTo, quick.distance + 1e-5f);
+        } else {
+            EXPECT_NEAR(upTo, quick.distance, 1e-6f);
+        }
         if (std::abs(exact.distance) < SkinField::kReach) {
             ++near;
             EXPECT_NEAR(quick.distance, exact.distance, 1e-4f);

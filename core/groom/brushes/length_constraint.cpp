@@ -33,7 +33,7 @@ class Watch {
     bool tooNear(const Vec3f& point, float way, float clearance) {
         known_ -= way;
         if (known_ > clearance) return false;
-        known_ = skin_.distanceAt(point).distance;
+        known_ = skin_.distanceUpTo(point, clearance);
         return known_ < clearance - kSlack;
     }
     void forget() { known_ = 0; }

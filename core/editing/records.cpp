@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/editing/records.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/editing/document.h"
+#include "core/editing/place.h"
+#include "core/editing/selection_commands.h"
+#include "core/editing/settings_commands.h"
+#include "core/groom/settings_json.h"
+
+namespace hairloom::editing {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Indices = std::vector<std::uint32_t>;
+using Made = Result<std::unique_ptr<Command>>;
+
+constexpr std::size_t kMostNumbers = 4'000'000;
+
+/// Settings under "settings"; those that are not named have their defaults.
+template <class S, std::unique_ptr<Command> (*Make)(const Model&, const S&)>
+MakeCommand readSettingsStep(JsonReader& reader) {
+    S checked;
+    readSettings(reader.object("settings"), checked);
+    return [checked](const Document& document) -> Made { return Make(document.model(), checked); };
+}
+
+MakeCommand readSpheres(JsonReader& reader) {
+    std::vector<CollisionSphere> spheres;
+    for (JsonReader& entry : reader.objects("spheres")) spheres.push_back(readSphere(entry));
+    return [spheres](const Document& document) -> Made {
+        return setSpheres(document.model(), spheres, "Spheres");
+    };
+}
+
+MakeCommand readLayers(JsonReader& reader) {
+    std::vector<Layer> layers;
+    for (JsonReader& entry : reader.objects("layers")) {
+        layers.push_back({entry.string("name"), entry.boolean("visible"), entry.boolean("locked")});
+        entry.finish();
+    }
+    return [layers](const Document& document) -> Made {
+        if (layers.size() < document.groom().layers.size())
+            return fail(fmt::format("{} layers", layers.size()), "as many as there are, or more");
+        return setLayers(document.model(), layers);
+    };
+}
+
+Status checkBelow(const Indices& indices, std::size_t count, std::string_view what) {
+    if (indices.empty() || indices.back() < count) return {};
+    return fail(fmt::format("{} {} is named", what, indices.back()), fmt::format("there are {}", count));
+}
+
+MakeCommand readStrands(JsonReader& reader) {
+    constexpr std::string_view kWays[] = {"select", "hide", "show", "freeze", "thaw", "delete"};
+    const std::string_view way = kWays[reader.choice("do", kWays)];
+    const Indices strands = way == "show" ? Indices() : readRuns(reader, "strands");
+    return [way, strands](const Document& document) -> Made {
+        const Model& model = document.model();
+        if (auto status = checkBelow(strands, model.groom.strandCount(), "strand"); !status)
+            return tl::unexpected(status.error());
+        if (way == "select") return selectStrands(model, strands, Choice::Replace);
+        if (way == "hide") return hideStrands(model, strands);
+        if (way == "show") return showStrands(model);
+        if (way == "delete") return deleteStrands(model, strands);
+        return freezeStrands(model, strands, way == "freeze");
+    };
+}
+
+MakeCommand readScalp(JsonReader& reader) {
+    const Indices faces = readRuns(reader, "faces");
+    const std::string expression = reader.string("expression");
+    return [faces, expression](const Document& document) -> Made {
+        const std::size_t count = document.groom().scalp ? document.groom().scalp->triangleCount() : 0;
+        if (auto status = checkBelow(faces, count, "face"); !status) return tl::unexpected(status.error());
+        return selectScalp(document.model(), faces, Choice::Replace, expression);
+    };
+}
+
+MakeCommand readDensity(JsonReader& reader) {
+    std::vector<float> values;
+    for (const double value : reader.numbers("values", 0, 1, kMostNumbers))
+        values.push_back(static_cast<float>(value));
+    return [values](const Document& document) -> Made {
+        const std::size_t vertices = document.groom().scalp ? document.groom().scalp->vertexCount() : 0;
+        if (values.size() != vertices)
+            return fail(fmt::format("{} densities", values.size()),
+                        fmt::format("one for each of {} vertices", vertices));
+        return setDensity(document.model(), values);
+    };
+}
+
+MakeCommand readPlace(JsonReader& reader) {
+    PlaceRequest request;
+    request.region = readRuns(reader, "region");
+    request.reach = static_cast<float>(reader.number("reach", 0, 10, "m"));
+    const bool collide = reader.boolean("collide");
+    const auto clearance = static_cast<float>(reader.number("clearance", 0, 0.01, "m"));
+    return [request, collide, clearance](const Document& document) -> Made {
+        return place(document.groom(), request, KeepOut{collide ? document.skinField() : nullptr, clearance});
+    };
+}
+
+MakeCommand readTriangulate(JsonReader&) {
+    return [](const Document& document) -> Made { return triangulate(document.model()); };
+}
+
+constexpr RecordedOperation kOperations[] = {
+    {"material", readSettingsStep<HairMaterial, setMaterial>},
+    {"simulation", readSettingsStep<runtime::SimulationSettings, setPhysics>},
+    {"interpolation", readSettingsStep<InterpolationSettings, setInterpolation>},
+    {"placement", readSettingsStep<PlacementSettings, setPlacementSettings>},
+    {"spheres", readSpheres},
+    {"layers", readLayers},
+    {"strands", readStrands},
+    {"scalp", readScalp},
+    {"density", readDensity},
+    {"place", readPlace},
+    {"triangulate", readTriangulate},
+};
+
+}  // namespace
+
+Json runsOf(std::span<const std::uint32_t> ascending) {
+    Json runs = Json::array();
+    for (std::size_t i = 0; i < ascending.size();) {
+        std::size_t end = i + 1;
+        while (end < ascending.size() && ascending[end] == ascending[end - 1] + 1) ++end;
+        runs.push_back(ascending[i]);
+        runs.push_back(end - i);
+        i = end;
+    }
+    return runs;
+}
+
+Indices readRuns(JsonReader& reader, std::string_view name) {
+    constexpr double kLargest = 4294967295.0;
+    const std::vector<double> runs = reader.numbers(name, 0, kLargest, kMostNumbers);
+    Indices numbers;
+    std::uint64_t next = 0;
+    for (std::size_t i = 0; i + 1 < runs.size(); i += 2) {
+        const auto first = static_cast<std::uint64_t>(runs[i]);
+        const auto count = static_cast<std::uint64_t>(runs[i + 1]);
+        if (first < next || count > kMostNumbers - numbers.size()) {
+            reader.complain(name, fmt::format("does not ascend at value {}", i),
+                            fmt::format("expected ascending runs of up to {} numbers", kMostNumbers));
+            return {};
+        }
+        for (std::uint64_t k = 0; k < count; ++k) numbers.push_back(static_cast<std::uint32_t>(first + k));
+        next = first + count;
+    }
+    if (runs.size() % 2 != 0) reader.complain(name, "has an odd number of values", "first, count, …");
+    return numbers;
+}
+
+std::string recordOf(std::string_view op, Json members) {
+    Json record{{"op", op}};
+    record.update(members);
+    return record.dump();
+}
+
+std::span<const RecordedOperation> recordedOperations() {
+    return kOperations;
+}
+
+}  // namespace hairloom::editing
