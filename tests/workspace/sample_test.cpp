@@ -44,7 +44,7 @@ TEST(GroomSceneTest, PosingMovesHeadAndHairAndBackAgain) {
         return std::vector<Vec3f>(view.begin(), view.end());
     };
     const std::vector<Vec3f> rest = points();
-    EXPECT_EQ(rest.size(), groom->pointCount() * 3);
+    EXPECT_EQ(rest.size(), groom->pointCount() * groom->interpolation.followPerGuide);
     HeadPose pose;
     pose.head_ws = Eigen::Translation3f(0, 0, 1) * Eigen::Isometry3f::Identity();
     std::vector<Vec3f> moved(groom->positions().begin(), groom->positions().end());
