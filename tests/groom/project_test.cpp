@@ -148,7 +148,7 @@ struct Forger {
     Json head;
     std::map<std::string, AttributeData> arrays;
     std::string kind = "project";
-    std::uint32_t version = 1;
+    std::uint32_t version = kProjectVersion;
 
     explicit Forger(const TemporaryFolder& folder) : path(folder / "forged.hairloom") {
         EXPECT_TRUE(saveProject(fullGroom(), path));
@@ -178,7 +178,7 @@ TEST(HostileProject, VersionsAndKindsAreNamed) {
     const TemporaryFolder folder;
     Forger newer(folder);
     newer.version = 7;
-    EXPECT_THAT(newer.error(), HasSubstr("project is version 7; this program reads versions up to 1"));
+    EXPECT_THAT(newer.error(), HasSubstr("project is version 7; this program reads versions up to 2"));
     Forger other(folder);
     other.kind = "cache";
     EXPECT_THAT(other.error(), HasSubstr("/kind is 'cache'; expected 'project'"));
@@ -209,6 +209,8 @@ TEST(HostileProject, HeadsAreReadStrictly) {
         {[](Json& h) { h["spheres"][1]["radius"] = 0; }, "/spheres/1/radius is 0"},
         {[](Json& h) { h["spheres"][0]["centre"] = "here"; }, "/spheres/0/centre"},
         {[](Json& h) { h["interpolation"]["seed"] = -1; }, "/interpolation/seed is -1"},
+        {[](Json& h) { h.erase("placement"); }, "/placement is missing"},
+        {[](Json& h) { h["placement"]["points"] = 1; }, "/placement/points is 1"},
         {[](Json& h) { h["strands"] = 4; }, "has 5 values; expected 4"},
         {[](Json& h) { h["points"] = 4294967296u * 9ull; }, "/points is 38654705664"},
         {[](Json& h) { h["groups"] = {"front"}; }, "1 groups"},
@@ -251,6 +253,9 @@ TEST(HostileProject, ArraysAreReadStrictly) {
         {[](Arrays& a) { std::get<CowArray<Vec3f>>(a.at("scalp/positions")).edit()[0].x() = NAN; },
          "not finite"},
         {[](Arrays& a) { a.erase("point/position"); }, "no positions"},
+        {[](Arrays& a) { a.erase("scalp/density"); }, "array 'scalp/density' is missing"},
+        {[](Arrays& a) { std::get<CowArray<float>>(a.at("scalp/density")).edit().pop_back(); },
+         "the density map has 17 values for 18 vertices"},
     };
     const TemporaryFolder folder;
     for (const auto& [bend, expected] : cases) {
