@@ -50,7 +50,7 @@ void BrushTool::hover(const Pointer& pointer) {
         resize(pointer.at_px);
         return;
     }
-    place_ = placeUnder(session_, pointer.at_px);
+    place_ = underPointer(pointer);
     Q_EMIT updated();
 }
 
@@ -67,8 +67,12 @@ void BrushTool::press(const Pointer& pointer) {
     if (begin(pointer)) putDown(*place_, pointer.pressure);
 }
 
+BrushPlace BrushTool::underPointer(const Pointer& pointer) const {
+    return paintsTheHead(brush_) ? skinUnder(session_, pointer.at_px) : placeUnder(session_, pointer.at_px);
+}
+
 bool BrushTool::begin(const Pointer& pointer) {
-    place_ = placeUnder(session_, pointer.at_px);
+    place_ = underPointer(pointer);
     if (paintsTheHead(brush_) && !place_->skin) return false;
     editing::Stroke header;
     header.tool = pointer.modifiers & Qt::ShiftModifier ? "smooth" : brush_;
@@ -98,7 +102,7 @@ bool BrushTool::putDown(const BrushPlace& place, double pressure) {
 void BrushTool::drag(const Pointer& pointer) {
     pointer_px_ = pointer.at_px;
     if (!last_) return;
-    BrushPlace to = placeUnder(session_, pointer.at_px);
+    BrushPlace to = underPointer(pointer);
     place_ = to;
     if (paintsTheHead(brush_) && !to.skin) return;
     if (!paintsTheHead(brush_)) {

@@ -42,6 +42,7 @@ class BrushTool : public Tool {
     enum class Resizing { None, Radius, Strength };
 
     bool begin(const Pointer& pointer);
+    BrushPlace underPointer(const Pointer& pointer) const;
     bool putDown(const BrushPlace& place, double pressure);
     void resize(const QPointF& to_px);
     void changed();

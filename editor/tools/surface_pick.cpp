@@ -20,7 +20,9 @@ Vec2f toPixels(const QPointF& at_px) {
     return {static_cast<float>(at_px.x()), static_cast<float>(at_px.y())};
 }
 
-BrushPlace placeUnder(const Session& session, const QPointF& at_px) {
+namespace {
+
+BrushPlace placeAt(const Session& session, const QPointF& at_px, bool onHair) {
     const editing::Document& document = session.document.editing();
     const editing::View view = viewOf(session);
     const OrbitCamera& camera = session.viewport->camera();
@@ -36,6 +38,10 @@ BrushPlace placeUnder(const Session& session, const QPointF& at_px) {
         place.skin = hit->surface;
         place.normal_ss = document.groom().scalp->normalAt(hit->surface.triangle, hit->surface.barycentric);
     }
+    if (!onHair && place.skin) {
+        place.position_ss = ray.origin_ws + ray.direction_ws * (depth / slant);
+        return place;
+    }
     const auto strand =
         editing::pickStrand(document.groom(), document.bounds(), document.surface(), view, toPixels(at_px));
     if (strand) {
@@ -47,6 +53,16 @@ BrushPlace placeUnder(const Session& session, const QPointF& at_px) {
     }
     place.position_ss = ray.origin_ws + ray.direction_ws * (depth / slant);
     return place;
+}
+
+}  // namespace
+
+BrushPlace placeUnder(const Session& session, const QPointF& at_px) {
+    return placeAt(session, at_px, true);
+}
+
+BrushPlace skinUnder(const Session& session, const QPointF& at_px) {
+    return placeAt(session, at_px, false);
 }
 
 }  // namespace hairloom::editor

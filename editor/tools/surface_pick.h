@@ -24,5 +24,7 @@ struct BrushPlace {
     std::optional<SurfacePoint> skin;      ///< where the pointer is over the head
 };
 BrushPlace placeUnder(const Session& session, const QPointF& at_px);
+/// The same for what works on the skin: hair before it does not count.
+BrushPlace skinUnder(const Session& session, const QPointF& at_px);
 
 }  // namespace hairloom::editor

@@ -144,11 +144,11 @@ TEST_F(ToolsTest, AddGrowsHairOnTheScalp) {
     auto& tool = dynamic_cast<BrushTool&>(activate("add"));
     tool.settings().radius = 0.02f;
     tool.settings().parameters["density"] = 40;
-    // On the scalp: at the root that faces the view most.
+    // On the scalp: at the root nearest to the view.
     Vec3f front = groom().strand(0).front();
     for (std::size_t s = 1; s < groom().strandCount(); ++s) {
         const Vec3f& root = groom().strand(s).front();
-        if (root.y() + root.z() > front.y() + front.z()) front = root;
+        if (root.z() > front.z()) front = root;
     }
     crown = at(front);
     strokeAndBack("add");

@@ -83,6 +83,8 @@ class WindowTest : public testing::Test {
     }
     void moveTo(const QPoint& at) {
         send([&](auto* target) { QTest::mouseMove(target, at); });
+        // On a display the pointer itself is moved, and the X server says so in its own time.
+        QTest::qWait(20);
     }
     void release(const QPoint& at, Qt::KeyboardModifiers modifiers = {},
                  Qt::MouseButton button = Qt::LeftButton) {
