@@ -44,8 +44,9 @@ class LiveMethod : public StrandMethod {
 }  // namespace
 
 MethodMaker liveMethod(std::shared_ptr<LiveKnobs> knobs) {
-    return [knobs](const SceneInput& scene) -> Result<std::unique_ptr<StrandMethod>> {
-        auto engine = makeEngineMethod(scene, std::nullopt);
+    return [knobs](const SceneInput& scene, const std::optional<runtime::HairVolumeSettings>& hairHair)
+               -> Result<std::unique_ptr<StrandMethod>> {
+        auto engine = makeEngineMethod(scene, hairHair);
         if (!engine) return tl::unexpected(engine.error());
         knobs->engine = engine->get();
         knobs->spheres = scene.groom().spheres;
