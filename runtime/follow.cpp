@@ -139,32 +139,8 @@ HairBinding packHair(const FollowView& view, std::size_t hair) {
     return packed;
 }
 
-/// A place along a guide: between point `segment` and the next.
-struct Sample {
-    std::uint32_t segment;
-    float share;
-};
-
-/// `count` samples at even shares of the guide's length.
-void sampleEvenly(std::span<const Float3> guide, std::uint32_t count, std::vector<Sample>& samples) {
-    std::vector<double> arc(guide.size(), 0.0);
-    for (std::size_t p = 1; p < guide.size(); ++p) {
-        const Float3 step = guide[p] - guide[p - 1];
-        arc[p] = arc[p - 1] + std::hypot(double{step.x}, double{step.y}, double{step.z});
-    }
-    std::size_t segment = 0;
-    for (std::uint32_t i = 0; i + 1 < count; ++i) {
-        const double target = arc.back() * i / (count - 1);
-        while (segment + 2 < guide.size() && arc[segment + 1] < target) ++segment;
-        const double length = arc[segment + 1] - arc[segment];
-        const double share = length > 0.0 ? std::clamp((target - arc[segment]) / length, 0.0, 1.0) : 0.0;
-        samples.push_back({static_cast<std::uint32_t>(segment), static_cast<float>(share)});
-    }
-    samples.push_back({static_cast<std::uint32_t>(guide.size() - 2), 1.0f});
-}
-
 /// Both ends exactly, and a share of 0 or 1 leaves out the point that it takes nothing of.
-Float3 between(const Float3* points, Sample sample) {
+Float3 between(const Float3* points, GuideSample sample) {
     const Float3 from = points[sample.segment], to = points[sample.segment + 1];
     if (sample.share == 0.0f) return from;
     if (sample.share == 1.0f) return to;
@@ -189,13 +165,30 @@ void forPieces(const Host& host, std::size_t count, std::size_t grain, const Bod
 
 }  // namespace
 
+void sampleEvenly(std::span<const Float3> guide, std::uint32_t count, std::vector<GuideSample>& samples) {
+    std::vector<double> arc(guide.size(), 0.0);
+    for (std::size_t p = 1; p < guide.size(); ++p) {
+        const Float3 step = guide[p] - guide[p - 1];
+        arc[p] = arc[p - 1] + std::hypot(double{step.x}, double{step.y}, double{step.z});
+    }
+    std::size_t segment = 0;
+    for (std::uint32_t i = 0; i + 1 < count; ++i) {
+        const double target = arc.back() * i / (count - 1);
+        while (segment + 2 < guide.size() && arc[segment + 1] < target) ++segment;
+        const double length = arc[segment + 1] - arc[segment];
+        const double share = length > 0.0 ? std::clamp((target - arc[segment]) / length, 0.0, 1.0) : 0.0;
+        samples.push_back({static_cast<std::uint32_t>(segment), static_cast<float>(share)});
+    }
+    samples.push_back({static_cast<std::uint32_t>(guide.size() - 2), 1.0f});
+}
+
 struct FollowHairs::Impl {
     std::uint32_t points = 0;
     std::size_t rowFloats = 0;
     std::vector<std::uint32_t> guideOffsets;
     std::vector<RootPlane> rootPlanes;
     std::vector<std::size_t> firstSample;  // per guide; kNoSamples where its points are taken as they are
-    std::vector<Sample> samples;           // `points` of them for each guide that is resampled
+    std::vector<GuideSample> samples;      // `points` of them for each guide that is resampled
     std::vector<float> radii;
     std::vector<HairBinding> hairs;
     Floats positions, wisps, frames;  // of the frame, as GuideRows has them
@@ -235,7 +228,7 @@ void FollowHairs::Impl::fillRow(std::size_t guide, std::span<const Float3> value
         std::memcpy(row, first, points * sizeof(Float3));
         return;
     }
-    const Sample* sample = samples.data() + firstSample[guide];
+    const GuideSample* sample = samples.data() + firstSample[guide];
     for (std::uint32_t i = 0; i < points; ++i) {
         const Float3 value = between(first, sample[i]);
         std::memcpy(row + std::size_t{i} * 3, &value, sizeof(Float3));

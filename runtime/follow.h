@@ -15,6 +15,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "runtime/host.h"
 #include "runtime/math.h"
@@ -90,6 +91,14 @@ class FollowHairs {
     explicit FollowHairs(std::unique_ptr<Impl> impl);
     std::unique_ptr<Impl> impl_;
 };
+
+/// A place along a guide: between point `segment` and the next.
+struct GuideSample {
+    std::uint32_t segment;
+    float share;
+};
+/// Appends `count` ≥ 2 samples at even shares of the length of a guide of two points or more.
+void sampleEvenly(std::span<const Float3> guide, std::uint32_t count, std::vector<GuideSample>& samples);
 
 struct FollowHairs::Made {
     std::optional<FollowHairs> hairs;

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "cli/gpu_bench.h"
 #include "cli/job.h"
 #include "cli/measurements.h"
 #include "cli/render_bench.h"
@@ -23,6 +24,8 @@ struct BenchOptions {
     std::vector<std::uint32_t> strands;
     bool quick = false;
     std::string markdown;
+    std::string output;
+    bool deviceGiven = false;
 };
 
 Result<Report> benchSimulation(const BenchOptions& options, const std::string& command) {
@@ -40,6 +43,30 @@ Result<Report> benchSimulation(const BenchOptions& options, const std::string& c
             return tl::unexpected(written.error());
         report["output"] = options.markdown;
     }
+    return report;
+}
+
+Result<Report> benchGpuSimulation(const BenchOptions& options, const std::string& command) {
+    GpuBenchOptions wanted;
+    if (options.deviceGiven) wanted.device = options.device;
+    if (options.quick) {
+        wanted.strands = {100, 300};
+        wanted.details = {100};
+        wanted.seconds = 0.02;
+    }
+    if (!options.strands.empty()) {
+        wanted.strands = options.strands;
+        wanted.details = {options.strands.back()};
+    }
+    const auto bench = runGpuBench(wanted);
+    if (!bench) return tl::unexpected(bench.error());
+    Report report = reportOf(*bench);
+    if (options.output.empty()) return report;
+    const auto written = writeFiles(options.output, {{"gpu-sim.csv", csvOf(*bench)},
+                                                     {"gpu-sim.md", markdownOf(*bench, command)},
+                                                     {"figure-27.svg", figureOf(*bench)}});
+    if (!written) return tl::unexpected(written.error());
+    report["output"] = *written;
     return report;
 }
 
@@ -64,9 +91,13 @@ Result<Report> benchRendering(const BenchOptions& options, const std::string& co
 
 Result<Report> bench(const BenchOptions& options, const std::string& command) {
     if (options.name == "sim") return benchSimulation(options, command);
+    if (options.name == "gpu-sim") return benchGpuSimulation(options, command);
     if (options.name == "render") return benchRendering(options, command);
     if (options.quick || !options.strands.empty() || !options.markdown.empty())
-        return fail("--strands, --quick and --markdown are of `bench sim`, --markdown of `bench render` too");
+        return fail(
+            "--strands and --quick are of `bench sim` and `bench gpu-sim`, --markdown of `bench sim` and "
+            "`bench "
+            "render`");
     const auto measured = runBenchmarkProgram(options.name, options.repetitions);
     if (!measured) return tl::unexpected(measured.error());
     Report rows = Report::array();
@@ -83,25 +114,31 @@ void addBenchJob(Jobs& jobs) {
                  "sim --quick --json", [options, &jobs] { return bench(*options, jobs.commandLine()); });
     job.add_option("name", options->name, "What to measure")
         ->required()
-        ->check(CLI::IsMember({"brush", "interpolate", "io", "place", "project", "render", "sim"}));
+        ->check(
+            CLI::IsMember({"brush", "gpu-sim", "interpolate", "io", "place", "project", "render", "sim"}));
     auto* const repetitions =
         job.add_option("--repeat,--repetitions", options->repetitions, "Runs of each measurement")
             ->check(CLI::Range(1, 1000));
-    job.add_option("--strands", options->strands, "sim: numbers of strands, instead of 300,2000,10000,100000")
+    job.add_option("--strands", options->strands,
+                   "sim, gpu-sim: numbers of strands, instead of the usual ones, ascending")
         ->delimiter(',')
         ->check(CLI::Range(1, 1'000'000));
-    job.add_flag("--quick", options->quick, "sim: shorter runs of fewer strands, to see that it works");
+    job.add_flag("--quick", options->quick,
+                 "sim, gpu-sim: shorter runs of fewer strands, to see that it works");
     job.add_option("--markdown", options->markdown, "sim, render: file to write the tables to");
     job.add_option("--hairs", options->render.hairs,
                    "render: numbers of hairs, instead of 3100,9300,18300,100000")
         ->delimiter(',')
         ->check(CLI::Range(1, 1'000'000));
     job.add_option("--size", options->size, "render: pixels WxH of all pictures");
+    job.add_option("-o,--output", options->output,
+                   "gpu-sim: folder to write the table, its Markdown and the chart to");
     auto* const device =
-        job.add_option("--device", options->device, "render: GPU to use, by its index in `devices`");
+        job.add_option("--device", options->device, "gpu-sim, render: GPU to use, by its index in `devices`");
     job.final_callback([options, repetitions, device] {
         options->repetitionsGiven = repetitions->count() > 0;
-        if (device->count() > 0) options->render.device = options->device;
+        options->deviceGiven = device->count() > 0;
+        if (options->deviceGiven) options->render.device = options->device;
     });
 }
 

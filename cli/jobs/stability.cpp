@@ -3,7 +3,9 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
+#include "cli/backend.h"
 #include "cli/job.h"
 #include "core/accuracy/stability_report.h"
 #include "core/base/file.h"
@@ -17,6 +19,8 @@ struct StabilityJobOptions {
     std::uint32_t cells = 24;
     std::uint32_t steps = 2000;
     std::uint64_t stepsAtRest = StabilityOptions{}.stepsAtRest;
+    std::string backend = "cpu";
+    std::optional<std::uint32_t> device;
 };
 
 std::vector<std::string> integratorNames() {
@@ -67,12 +71,24 @@ Report mapReport(const StabilityMap& map) {
 }
 
 Result<Report> stability(const StabilityJobOptions& options, const std::string& commandLine) {
-    const std::vector<runtime::Integrator> integrators = chosenIntegrators(options.integrators);
+    std::vector<runtime::Integrator> integrators = chosenIntegrators(options.integrators);
     StabilityOptions suite;
+    std::unique_ptr<GpuBackend> gpu;
+    if (options.backend == "vulkan") {
+        auto made = GpuBackend::make(gpu::Backend::Vulkan, options.device);
+        if (!made) return tl::unexpected(made.error());
+        gpu = std::move(*made);
+        suite.engines = gpuTrialEngines(gpu->device(), gpu->kernels());
+        // Backward Euler runs on the CPU only.
+        std::erase(suite.integrators, runtime::Integrator::implicitEuler);
+        std::erase(integrators, runtime::Integrator::implicitEuler);
+    }
     suite.stepsAtRest = options.stepsAtRest;
     const std::vector<StabilityResult> results = runHardCases(integrators, suite);
     std::vector<StabilityMap> maps;
+    // Maps are of the integrators, not of what runs them.
     for (const MappedForce force : {MappedForce::coils, MappedForce::angular}) {
+        if (gpu) break;
         for (const runtime::Integrator integrator : integrators)
             maps.push_back(mapStability(integrator, force, options.cells, options.steps));
     }
@@ -109,6 +125,9 @@ void addStabilityJob(Jobs& jobs) {
     job.add_option("--integrators", options->integrators, "Integrators to run, instead of all")
         ->delimiter(',')
         ->check(CLI::IsMember(integratorNames()));
+    job.add_option("--backend", options->backend, "What runs the cases; maps are made on the CPU only")
+        ->check(CLI::IsMember({"cpu", "vulkan"}));
+    job.add_option("--device", options->device, "GPU to use, by its index in `devices`");
     job.add_option("--cells", options->cells, "Steps and stiffnesses of a map")->check(CLI::Range(2, 200));
     job.add_option("--steps", options->steps, "Steps of a cell")->check(CLI::Range(40, 100'000));
     job.add_option("--steps-at-rest", options->stepsAtRest, "Substeps of the case at rest")

@@ -69,7 +69,7 @@ void changesInMidRun(Trial& trial) {
             trial.frame();
         }
     };
-    for (const runtime::Integrator other : allIntegrators()) {
+    for (const runtime::Integrator other : trial.options().integrators) {
         // Explicit Euler holds no undamped wave; it is a neighbour that others must recover from.
         SimulationSettings s = trial.settings();
         s.integrator = other;

@@ -77,7 +77,9 @@ std::vector<StabilityResult> runHardCases(std::span<const runtime::Integrator> i
                                           const std::function<void(std::size_t)>& progress) {
     std::vector<StabilityResult> results(hardCases().size() * integrators.size());
     std::atomic<std::size_t> done{0};
-    parallelFor(results.size(), 1, [&](std::size_t begin, std::size_t end) {
+    // A device is used from one thread.
+    const std::size_t piece = options.engines ? results.size() : 1;
+    parallelFor(results.size(), std::max<std::size_t>(piece, 1), [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             results[i] = runHardCase(hardCases()[i / integrators.size()], integrators[i % integrators.size()],
                                      options);

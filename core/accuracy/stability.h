@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "core/accuracy/trial_engine.h"
 #include "runtime/settings.h"
 
 namespace hairloom {
@@ -46,9 +47,18 @@ struct StabilityResult {
     const StabilityMark& closest() const;
 };
 
+/// The integrators' names as in settings.
+std::string integratorName(runtime::Integrator integrator);
+/// All, as settings list them.
+std::vector<runtime::Integrator> allIntegrators();
+
 struct StabilityOptions {
     std::uint64_t stepsAtRest = 1'000'000;  ///< substeps of case 18, at least 8
     double freeSeconds = 60.0;              ///< of case 17, at least 2
+    /// What runs the cases; empty: the engine on the CPU. Another runs them one after the other.
+    TrialEngineMaker engines = {};
+    /// That `engines` can have.
+    std::vector<runtime::Integrator> integrators = allIntegrators();
 };
 
 class Trial;
@@ -72,10 +82,5 @@ StabilityResult runHardCase(const HardCase& hardCase, runtime::Integrator integr
 std::vector<StabilityResult> runHardCases(std::span<const runtime::Integrator> integrators,
                                           const StabilityOptions& options = {},
                                           const std::function<void(std::size_t)>& progress = {});
-
-/// The integrators' names as in settings.
-std::string integratorName(runtime::Integrator integrator);
-/// All, as settings list them.
-std::vector<runtime::Integrator> allIntegrators();
 
 }  // namespace hairloom

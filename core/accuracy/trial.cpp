@@ -35,14 +35,20 @@ void Trial::start(StrandSet strands, runtime::SimulationSettings settings, float
     settings.substeps = substepsFor(strands_, settings, longestFrame);
     const runtime::StableAdvice advice = runtime::adviseStability(strands_.view(), settings, longestFrame);
     if (limit_.empty()) limit_ = advice.words;
-    runtime::Engine::Made made = runtime::Engine::make(strands_.view(), settings);
-    if (!made.engine) {
-        expect("refused: " + made.error, "", 1.0, 0.0);
-        made = runtime::Engine::make({}, {});
-    }
-    engine_.emplace(std::move(*made.engine));
+    engine_ = another(settings);
     roots_ = strands_.roots();
     engine_->reset(roots_);
+}
+
+std::unique_ptr<TrialEngine> Trial::another(const runtime::SimulationSettings& settings) {
+    MadeTrialEngine made = options_.engines ? options_.engines(strands_.view(), settings)
+                                            : makeCpuTrialEngine(strands_.view(), settings);
+    if (made.engine == nullptr) {
+        expect("refused: " + made.error, "", 1.0, 0.0);
+        strands_ = {};
+        made = makeCpuTrialEngine({}, {});
+    }
+    return std::move(made.engine);
 }
 
 void Trial::change(const runtime::SimulationSettings& settings) {
@@ -84,6 +90,7 @@ void Trial::settle(double most) {
 
 void Trial::inspect() {
     const runtime::Measurements m = engine_->measure();
+    if (const std::string problem = engine_->problem(); !problem.empty()) expect(problem, "", 1.0, 0.0);
     const bool held = settings().lengthMethod == runtime::LengthMethod::constraint;
     const double stretch = held ? 0.01 : 0.48;
     const double broken = static_cast<double>(m.nanCount) +

@@ -9,7 +9,7 @@
 
 #include "core/accuracy/stability.h"
 #include "core/accuracy/strand_set.h"
-#include "runtime/engine.h"
+#include "core/accuracy/trial_engine.h"
 
 namespace hairloom {
 
@@ -31,9 +31,11 @@ class Trial {
     const StabilityOptions& options() const { return options_; }
     runtime::Integrator integrator() const { return integrator_; }
     const StrandSet& strands() const { return strands_; }
-    runtime::Engine& engine() { return *engine_; }
+    TrialEngine& engine() { return *engine_; }
+    /// Another one with these strands, at rest.
+    std::unique_ptr<TrialEngine> another(const runtime::SimulationSettings& settings);
     /// As the trial runs them.
-    const runtime::SimulationSettings& settings() const { return engine_->settings(); }
+    runtime::SimulationSettings settings() const { return engine_->settings(); }
     /// Takes other settings; the substeps and integrator stay as given.
     void change(const runtime::SimulationSettings& settings);
 
@@ -75,7 +77,7 @@ class Trial {
     runtime::Integrator integrator_;
     StabilityOptions options_;
     StrandSet strands_;
-    std::optional<runtime::Engine> engine_;
+    std::unique_ptr<TrialEngine> engine_;
     std::vector<runtime::RootFrame> roots_;
     std::vector<runtime::Sphere> spheres_;
     std::vector<StabilityMark> marks_;

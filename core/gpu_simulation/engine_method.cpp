@@ -53,6 +53,8 @@ class GpuEngineMethod final : public StrandMethod {
             effects.push_back({runtime::effectName(effect), engine_.plan().on(effect),
                                reasonAlone(engine_.plan().why(effect)), 0.0, engine_.effectBytes(effect)});
         }
+        if (engine_.volumeBytes() > 0)
+            effects.push_back({"hair-hair", true, "on, asked for", 0.0, engine_.volumeBytes()});
         return effects;
     }
 
@@ -73,10 +75,13 @@ class GpuEngineMethod final : public StrandMethod {
 }  // namespace
 
 MethodMaker engineOn(gpu::Device& device, std::shared_ptr<KernelLibrary> kernels) {
-    return [&device, kernels](const SceneInput& scene) -> Result<std::unique_ptr<StrandMethod>> {
+    return [&device, kernels](const SceneInput& scene,
+                              const std::optional<runtime::HairVolumeSettings>& hairHair)
+               -> Result<std::unique_ptr<StrandMethod>> {
         EngineOptions options;
         // A driver that compiles for a CPU takes seconds for unrolled loops and gains nothing by them.
         options.layout.unroll = device.info().type != gpu::DeviceType::Cpu;
+        options.hairHair = hairHair;
         auto engine = StrandEngine::make(device, kernels, scene.strands(), scene.groom().simulation, options);
         if (!engine) return tl::unexpected(engine.error());
         return std::make_unique<GpuEngineMethod>(std::move(*engine));

@@ -14,11 +14,11 @@ using runtime::Effect;
 using runtime::Integrator;
 using runtime::StageId;
 
-/// "stageAngularCheap(); "
+/// "stageAngularCheap();"
 std::string callOf(StageId stage) {
     std::string name = runtime::stageName(stage);
     name.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(name.front())));
-    return "stage" + name + "(); ";
+    return fmt::format("stage{}();", name);
 }
 
 std::uint32_t evaluationOf(Integrator integrator) {
@@ -60,7 +60,10 @@ KernelKey keyFor(const runtime::EffectPlan& plan, const runtime::SimulationSetti
         key.spheres = spheres > HAIRLOOM_CONSTANT_SPHERES ? SphereSource::buffer : SphereSource::constants;
     }
     key.wind = plan.on(Effect::wind);
-    for (const StageId stage : plan.stages()) key.stages += callOf(stage);
+    for (const StageId stage : plan.stages()) {
+        if (!key.stages.empty()) key.stages.push_back(' ');
+        key.stages.append(callOf(stage));
+    }
     return key;
 }
 

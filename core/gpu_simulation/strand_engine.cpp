@@ -38,6 +38,11 @@ Result<StrandEngine> StrandEngine::make(gpu::Device& device, std::shared_ptr<Ker
     impl->batches = makeBatches(*impl->shape, options.layout);
     impl->roots.resize(impl->shape->restRoots.size());
     if (auto made = impl->makeBuffers(); !made) return tl::unexpected(made.error());
+    if (options.hairHair) {
+        auto volume = HairVolume::make(device, *options.hairHair);
+        if (!volume) return tl::unexpected(volume.error());
+        impl->volume.emplace(std::move(*volume));
+    }
     StrandEngine engine(std::move(impl));
     if (auto placed = engine.reset(engine.impl_->shape->restRoots); !placed)
         return tl::unexpected(placed.error());
@@ -132,9 +137,9 @@ Status StrandEngine::Impl::allocate() {
 
 StrandEngine::Impl::Run StrandEngine::Impl::runFor(const runtime::SimulationSettings& settings,
                                                    const runtime::FrameInput& input, Float3 low,
-                                                   Float3 high) const {
+                                                   Float3 high) {
     Run next{settings, {runtime::makeWind(settings), run.wind.given}, {}};
-    runtime::takeWind(settings, input, next.wind);
+    rejectedWinds = runtime::takeWind(settings, input, next.wind);
     runtime::FrameOutlook outlook;
     outlook.strandCount = static_cast<std::uint32_t>(shape->restRoots.size());
     outlook.longestPointCount = shape->longestPointCount;
@@ -261,6 +266,10 @@ std::size_t StrandEngine::effectBytes(Effect effect) const {
     if (effect == Effect::collision) add(impl_->spheres);
     if (effect == Effect::wind && impl_->run.plan.on(effect)) bytes = sizeof(runtime::Wind);
     return bytes;
+}
+
+std::size_t StrandEngine::volumeBytes() const {
+    return impl_->volume ? impl_->volume->bytes() : 0;
 }
 
 std::size_t StrandEngine::frameBytes() const {

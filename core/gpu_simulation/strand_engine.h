@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "core/gpu_simulation/hair_volume.h"
 #include "core/gpu_simulation/kernel_library.h"
 #include "core/gpu_simulation/strand_batch.h"
 #include "runtime/frame_setup.h"
@@ -27,6 +28,8 @@ struct EngineOptions {
     /// While a plan's kernel is being made, the frame waits for it. Else the last plan goes on until it is
     /// ready, with the settings that it was made from.
     bool waitForKernels = true;
+    /// Hair against hair between frames.
+    std::optional<runtime::HairVolumeSettings> hairHair = {};
 };
 
 /// What the last frame took and met.
@@ -35,6 +38,10 @@ struct FrameReport {
     std::uint32_t restoredStrands = 0;
     std::uint32_t asleep = 0;  ///< strands
     float fastest = 0.0f;      ///< m/s
+    // Of the input, as runtime::StepReport counts them.
+    std::uint32_t rejectedRoots = 0;
+    std::uint32_t rejectedSpheres = 0;
+    std::uint32_t rejectedWinds = 0;
 };
 
 class StrandEngine {
@@ -77,11 +84,15 @@ class StrandEngine {
     bool isSwitching() const;
     /// Bytes of buffers that exist because of this effect.
     std::size_t effectBytes(runtime::Effect effect) const;
+    /// Of hair against hair.
+    std::size_t volumeBytes() const;
     /// Bytes of particles, roots and curves that a substep reads or writes, of all strands, where they are
     /// not kept in threads: each frame's is shared by its substeps.
     std::size_t frameBytes() const;
 
     // These wait for the device.
+    /// Until the last step is done; milliseconds of its dispatches, 0 without timestamps.
+    Result<double> wait();
     Result<FrameReport> report();
     /// All of it, in the form of the engine on the CPU.
     Result<runtime::State> readState();

@@ -37,9 +37,13 @@ std::vector<bool> StrandEngine::Impl::takeRoots(const runtime::FrameInput& input
     std::vector<bool> moved(roots.size(), false);
     Float3 low{1e30f, 1e30f, 1e30f}, high{-1e30f, -1e30f, -1e30f};
     rootMotion = 0.0f;
+    rejectedRoots = 0;
     for (std::size_t s = 0; s < roots.size(); ++s) {
         RootFrame root = input.roots_ws[s];
-        if (!runtime::usableWithin(root, runtime::kFarthest)) continue;
+        if (!runtime::usableWithin(root, runtime::kFarthest)) {
+            ++rejectedRoots;
+            continue;
+        }
         const Float3 p = root.position;
         low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
         high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
@@ -76,12 +80,13 @@ std::vector<shaders::SphereConstants> StrandEngine::Impl::sphereConstants() cons
 }
 
 /// Where kernels read them from buffers.
-void StrandEngine::Impl::uploadSpheres(gpu::CommandList& list, const runtime::SubstepContext&) {
+void StrandEngine::Impl::uploadSpheres(gpu::CommandList& list) {
     const auto upload = [&]<class T>(gpu::BufferPtr& buffer, const char* name,
                                      const std::vector<T>& content) {
         const std::size_t count = std::max<std::size_t>(content.size(), 1);
         if (buffer == nullptr || buffer->desc().size < count * sizeof(T)) {
-            auto made = makeBuffer<T>(device, name, gpu::Usage::ShaderRead, 2 * count, {});
+            const std::vector<T> nothing(2 * count);
+            auto made = makeBuffer<T>(device, name, gpu::Usage::ShaderRead, nothing.size(), nothing);
             // An engine without the buffer names it when it binds it.
             buffer = made ? std::move(*made) : nullptr;
         }
@@ -231,6 +236,7 @@ void StrandEngine::Impl::dispatch(gpu::CommandList& list, const StrandBatch& bat
 
 Status StrandEngine::Impl::record(gpu::CommandList& list, const runtime::FrameInput& input) {
     if (!(input.dt > 0.0f) || !std::isfinite(input.dt)) return {};
+    known.reset();
     const Float3 lowBefore = rootsMin_ws, highBefore = rootsMax_ws;
     const std::vector<bool> moved = takeRoots(input);
     runtime::takeSpheres(wanted, shape->longestStrand, spheresBefore, input.spheres, frameSpheres);
@@ -249,7 +255,7 @@ Status StrandEngine::Impl::record(gpu::CommandList& list, const runtime::FrameIn
     // Roots that rest are there already.
     if (substep == 0.0f || std::ranges::find(moved, true) != moved.end()) uploadRoots(list);
     uploadChanges(list);
-    uploadSpheres(list, context);
+    uploadSpheres(list);
     if (run.plan.on(Effect::angular) && bendSubstep != context.h) {
         uploadBend(list, context.h);
         bendSubstep = context.h;
@@ -259,6 +265,7 @@ Status StrandEngine::Impl::record(gpu::CommandList& list, const runtime::FrameIn
     list.beginPass(pass);
     for (const StrandBatch& batch : batches) dispatch(list, batch, constants(context, input, batch));
     list.endPass();
+    if (volume) volume->record(list, batches, run.settings.clampedPoints, input.dt, context.h);
     spheresBefore = frameSpheres.usable;
     substep = context.h;
     wakeAll = false;

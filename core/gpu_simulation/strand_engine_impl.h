@@ -22,6 +22,7 @@ struct StrandEngine::Impl {
     EngineOptions options;
     std::shared_ptr<const runtime::RestShape> shape;
     std::vector<StrandBatch> batches;
+    std::optional<HairVolume> volume;
     gpu::BufferPtr reportBuffer, places, velocities;
     gpu::BufferPtr waking, spheres;  // null while sleep, or many spheres, are off
 
@@ -34,6 +35,7 @@ struct StrandEngine::Impl {
     std::vector<runtime::RootFrame> roots;  // one per strand, sound, at the end of the last frame
     runtime::Float3 rootsMin_ws, rootsMax_ws;
     float rootMotion = 0.0f;
+    std::uint32_t rejectedRoots = 0, rejectedWinds = 0;
     runtime::FrameSpheres frameSpheres;
     std::vector<runtime::Sphere> spheresBefore;
     std::vector<runtime::MovingSphere> movingSpheres;
@@ -43,6 +45,8 @@ struct StrandEngine::Impl {
     bool wakeAll = false;
 
     std::deque<gpu::SubmissionPtr> underWay;
+    std::optional<runtime::State> known;  ///< what was read since the last frame
+    double milliseconds = 0.0;            ///< of the last step that was waited for
 
     Impl(gpu::Device& d, std::shared_ptr<KernelLibrary> k, EngineOptions o)
         : device(d), kernels(std::move(k)), options(o) {}
@@ -53,13 +57,13 @@ struct StrandEngine::Impl {
     Status adopt(const Run& next);
     Status choose(const runtime::FrameInput& input, runtime::Float3 low, runtime::Float3 high);
     Run runFor(const runtime::SimulationSettings& settings, const runtime::FrameInput& input,
-               runtime::Float3 low, runtime::Float3 high) const;
+               runtime::Float3 low, runtime::Float3 high);
     Result<bool> kernelsFor(const Run& next, bool wait);
     // strand_engine_frame.cpp
     Status record(gpu::CommandList& list, const runtime::FrameInput& input);
     std::vector<bool> takeRoots(const runtime::FrameInput& input);
     void uploadRoots(gpu::CommandList& list);
-    void uploadSpheres(gpu::CommandList& list, const runtime::SubstepContext& context);
+    void uploadSpheres(gpu::CommandList& list);
     void uploadBend(gpu::CommandList& list, float h);
     void uploadChanges(gpu::CommandList& list);
     shaders::SimulationConstants constants(const runtime::SubstepContext& context,
@@ -73,7 +77,8 @@ struct StrandEngine::Impl {
         values.resize(buffer->desc().size / sizeof(T));
         return device.readBuffer(buffer, 0, std::as_writable_bytes(std::span(values)));
     }
-    Status readBatch(const StrandBatch& batch, runtime::State& state) const;
+    Result<std::vector<std::byte>> readTogether(const std::vector<gpu::BufferPtr>& buffers) const;
+    void takeBatch(const StrandBatch& batch, std::span<const std::byte>& bytes, runtime::State& state) const;
     Status writeBatch(gpu::CommandList& list, const StrandBatch& batch, const runtime::State& state) const;
     Status writeState(const runtime::State& state);
 };

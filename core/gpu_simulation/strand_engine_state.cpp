@@ -5,6 +5,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 
 #include "core/gpu_simulation/strand_engine_impl.h"
 #include "runtime/checks.h"
@@ -37,30 +38,70 @@ std::vector<float> rowsOfBatch(const StrandBatch& batch, const float* blocks, st
     return values;
 }
 
+/// Of a batch, in the order in which takeBatch() takes them.
+std::vector<gpu::BufferPtr> changingBuffers(const StrandBatch& batch) {
+    std::vector<gpu::BufferPtr> buffers;
+    for (const auto& buffer : {batch.state, batch.roots, batch.curves, batch.tanks, batch.rests}) {
+        if (buffer != nullptr) buffers.push_back(buffer);
+    }
+    return buffers;
+}
+
 }  // namespace
 
-Status StrandEngine::Impl::readBatch(const StrandBatch& batch, runtime::State& state) const {
-    std::vector<float> values;
-    if (auto status = read(batch.state, values); !status) return status;
-    planesOfBlocks(*shape, batch, values, state.planes, runtime::kStatePlanes);
-    if (auto status = read(batch.roots, values); !status) return status;
-    rowsToBlocks(batch, values, runtime::kRootRows, state.roots.data());
+/// All in one submission, one after the other.
+Result<std::vector<std::byte>> StrandEngine::Impl::readTogether(
+    const std::vector<gpu::BufferPtr>& buffers) const {
+    std::uint64_t size = 0;
+    for (const gpu::BufferPtr& buffer : buffers) size += buffer->desc().size;
+    gpu::BufferDesc desc;
+    desc.name = "read back";
+    desc.size = size;
+    desc.usage = gpu::Usage::None;
+    desc.memory = gpu::MemoryKind::ReadBack;
+    const auto target = device.createBuffer(desc);
+    if (!target) return tl::unexpected(target.error());
+    auto list = device.createCommandList();
+    if (!list) return tl::unexpected(list.error());
+    std::uint64_t at = 0;
+    for (const gpu::BufferPtr& buffer : buffers) {
+        (*list)->copyBuffer(buffer, 0, *target, at, buffer->desc().size);
+        at += buffer->desc().size;
+    }
+    const auto submission = device.submit(std::move(*list));
+    if (!submission) return tl::unexpected(submission.error());
+    if (auto status = (*submission)->wait(); !status) return tl::unexpected(status.error());
+    std::vector<std::byte> bytes(static_cast<std::size_t>(size));
+    if (auto status = device.readMapped(*target, 0, bytes); !status) return tl::unexpected(status.error());
+    return bytes;
+}
+
+/// Takes the state of a batch from the front of what was read.
+void StrandEngine::Impl::takeBatch(const StrandBatch& batch, std::span<const std::byte>& bytes,
+                                   runtime::State& state) const {
+    const auto take = [&](const gpu::BufferPtr& buffer) {
+        std::vector<float> values(static_cast<std::size_t>(buffer->desc().size / sizeof(float)));
+        std::memcpy(values.data(), bytes.data(), values.size() * sizeof(float));
+        bytes = bytes.subspan(values.size() * sizeof(float));
+        return values;
+    };
+    planesOfBlocks(*shape, batch, take(batch.state), state.planes, runtime::kStatePlanes);
+    rowsToBlocks(batch, take(batch.roots), runtime::kRootRows, state.roots.data());
     if (batch.curves != nullptr) {
-        if (auto status = read(batch.curves, values); !status) return status;
-        planesOfBlocks(*shape, batch, values, state.curves, 3);
-        if (auto status = read(batch.tanks, values); !status) return status;
-        const std::span<const float> all = values;
+        planesOfBlocks(*shape, batch, take(batch.curves), state.curves, 3);
+        const std::vector<float> tanks = take(batch.tanks);
+        const std::span<const float> all = tanks;
         rowsToBlocks(batch, all.first(batch.slots), 1, state.tanks.data());
         rowsToBlocks(batch, all.subspan(batch.slots), 1, state.motions.data());
     }
-    if (batch.rests == nullptr) return {};
-    if (auto status = read(batch.rests, values); !status) return status;
+    if (batch.rests == nullptr) return;
+    const std::vector<float> rests = take(batch.rests);
     for (std::size_t n = 0; n < batch.blocks.size(); ++n)
-        state.rests[batch.blocks[n]] = {values[2 * n], values[2 * n + 1] != 0.0f};
-    return {};
+        state.rests[batch.blocks[n]] = {rests[2 * n], rests[2 * n + 1] != 0.0f};
 }
 
 Result<runtime::State> StrandEngine::readState() {
+    if (impl_->known) return *impl_->known;
     const Impl& impl = *impl_;
     const runtime::RestShape& shape = *impl.shape;
     runtime::State state;
@@ -72,13 +113,20 @@ Result<runtime::State> StrandEngine::readState() {
         state.tanks.assign(shape.blocks.size() * kBlockLanes, runtime::kNoCurve);
         state.motions.assign(shape.blocks.size() * kBlockLanes, 0.0f);
     }
+    std::vector<gpu::BufferPtr> buffers;
     for (const StrandBatch& batch : impl.batches) {
-        if (auto status = impl.readBatch(batch, state); !status) return tl::unexpected(status.error());
+        const auto own = changingBuffers(batch);
+        buffers.insert(buffers.end(), own.begin(), own.end());
     }
+    const auto bytes = impl.readTogether(buffers);
+    if (!bytes) return tl::unexpected(bytes.error());
+    std::span<const std::byte> rest = *bytes;
+    for (const StrandBatch& batch : impl.batches) impl.takeBatch(batch, rest, state);
     state.spheres = impl.spheresBefore;
     state.rootsMin_ws = impl.rootsMin_ws;
     state.rootsMax_ws = impl.rootsMax_ws;
     state.substep = impl.substep;
+    impl_->known = state;
     return state;
 }
 
@@ -98,6 +146,8 @@ Status StrandEngine::Impl::writeBatch(gpu::CommandList& list, const StrandBatch&
             const std::vector<float> motions = rowsOfBatch(batch, state.motions.data(), 1);
             std::ranges::copy(kept, tanks.begin());
             std::ranges::copy(motions, tanks.begin() + batch.slots);
+        } else {
+            send(batch.curves, std::vector<float>(std::size_t{batch.shape.points} * batch.slots * 3, 0.0f));
         }
         send(batch.tanks, tanks);
     }
@@ -113,6 +163,7 @@ Status StrandEngine::Impl::writeBatch(gpu::CommandList& list, const StrandBatch&
 }
 
 Status StrandEngine::Impl::writeState(const runtime::State& state) {
+    known.reset();
     auto list = device.createCommandList();
     if (!list) return tl::unexpected(list.error());
     for (const StrandBatch& batch : batches) {
@@ -183,11 +234,24 @@ Result<FrameReport> StrandEngine::report() {
     if (impl_->substep > 0.0f) report.fastest = std::sqrt(std::bit_cast<float>(words[0])) / impl_->substep;
     report.restoredStrands = words[1];
     report.asleep = words[2];
-    if (impl_->underWay.empty()) return report;
-    const auto times = impl_->underWay.back()->passTimes();
-    if (!times) return tl::unexpected(times.error());
-    for (const gpu::PassTime& time : *times) report.milliseconds += time.milliseconds;
+    report.rejectedRoots = impl_->rejectedRoots;
+    report.rejectedSpheres = impl_->frameSpheres.rejected;
+    report.rejectedWinds = impl_->rejectedWinds;
+    const auto milliseconds = wait();
+    if (!milliseconds) return tl::unexpected(milliseconds.error());
+    report.milliseconds = *milliseconds;
     return report;
+}
+
+Result<double> StrandEngine::wait() {
+    while (!impl_->underWay.empty()) {
+        const auto times = impl_->underWay.front()->passTimes();
+        if (!times) return tl::unexpected(times.error());
+        impl_->underWay.pop_front();
+        impl_->milliseconds = 0.0;
+        for (const gpu::PassTime& time : *times) impl_->milliseconds += time.milliseconds;
+    }
+    return impl_->milliseconds;
 }
 
 Result<runtime::Measurements> StrandEngine::measure() {

@@ -12,9 +12,8 @@ namespace {
 
 Result<std::unique_ptr<StrandMethod>> makeMethod(const SceneInput& scene, const SimulationOptions& options) {
     if (options.backend) {
-        if (options.method == SimulationMethod::strands && !options.hairHair) return options.backend(scene);
-        return fail("only the strand engine alone runs on the device",
-                    "expected the method 'strands' without hair against hair");
+        if (options.method == SimulationMethod::strands) return options.backend(scene, options.hairHair);
+        return fail("only the strand engine runs on the device", "expected the method 'strands'");
     }
     if (options.method == SimulationMethod::strands) return makeEngineMethod(scene, options.hairHair);
     if (options.hairHair) {

@@ -48,7 +48,8 @@ enum class SimulationMethod {
 class SceneInput;
 class StrandMethod;
 /// Makes what moves the strands of a scene (core/simulation/strand_method.h).
-using MethodMaker = std::function<Result<std::unique_ptr<StrandMethod>>(const SceneInput& scene)>;
+using MethodMaker = std::function<Result<std::unique_ptr<StrandMethod>>(
+    const SceneInput& scene, const std::optional<runtime::HairVolumeSettings>& hairHair)>;
 
 struct SimulationOptions {
     SimulationMethod method = SimulationMethod::strands;

@@ -8,8 +8,26 @@
 
 namespace hairloom::gpu_simulation {
 
-/// One device with validation and one library for all cases of the program; any message fails the case in
-/// which it came.
+/// One device with validation and one library for all cases of the program. They go before the program's
+/// statics do: the layers keep statics of their own.
+class SharedDevice : public testing::Environment {
+  public:
+    static std::unique_ptr<gpu::Device>& device() {
+        static std::unique_ptr<gpu::Device> device;
+        return device;
+    }
+    static std::shared_ptr<KernelLibrary>& library() {
+        static std::shared_ptr<KernelLibrary> library;
+        return library;
+    }
+    void TearDown() override {
+        library().reset();
+        device().reset();
+    }
+};
+inline testing::Environment* const kSharedDevice = testing::AddGlobalTestEnvironment(new SharedDevice);
+
+/// On the shared device; any message fails the case in which it came.
 class GpuSimulationTest : public testing::Test {
   protected:
     static void SetUpTestSuite() {
@@ -31,14 +49,8 @@ class GpuSimulationTest : public testing::Test {
         for (std::size_t i = messages_; i < messages.size(); ++i) ADD_FAILURE() << messages[i];
     }
 
-    static std::unique_ptr<gpu::Device>& device() {
-        static std::unique_ptr<gpu::Device> device;
-        return device;
-    }
-    static std::shared_ptr<KernelLibrary>& library() {
-        static std::shared_ptr<KernelLibrary> library;
-        return library;
-    }
+    static std::unique_ptr<gpu::Device>& device() { return SharedDevice::device(); }
+    static std::shared_ptr<KernelLibrary>& library() { return SharedDevice::library(); }
 
     /// Lavapipe takes long to compile unrolled loops.
     static EngineOptions options(StrandStorage storage = StrandStorage::threads) {

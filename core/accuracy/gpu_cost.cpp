@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/accuracy/gpu_cost.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "core/accuracy/statistics.h"
+
+namespace hairloom {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using gpu_simulation::StrandStorage;
+
+constexpr float kFrame = 1.0f / 60.0f;
+constexpr std::uint32_t kTogether = 16;  // frames that are timed as one
+constexpr double kWarmUp = 0.1;          // seconds
+
+double millisecondsSince(Clock::time_point begin) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+}
+
+runtime::SimulationSettings settingsOf(const GpuStepScene& scene) {
+    runtime::SimulationSettings s = scenes::settingsFor(scene.acting);
+    s.substeps = scene.substeps;
+    switch (scene.leftOut) {
+        case LeftOut::nothing:
+        case LeftOut::collision:
+            break;
+        case LeftOut::wind:
+            s.airDrag = 0.0f;
+            break;
+        case LeftOut::angular:
+            s.angularStiffness = 0.0f;
+            break;
+        case LeftOut::length:
+            s.lengthIterations = 0;
+            break;
+        case LeftOut::damping:
+            s.dampingTime = 0.0f;
+            break;
+    }
+    return s;
+}
+
+}  // namespace
+
+const char* leftOutName(LeftOut effect) {
+    constexpr const char* kNames[] = {"nothing", "wind", "collision", "angular", "length", "damping"};
+    return kNames[static_cast<std::size_t>(effect)];
+}
+
+std::vector<NamedLayout> measuredLayouts(gpu::DeviceType type) {
+    std::vector<NamedLayout> layouts{{"threads, unrolled", {StrandStorage::threads, true}},
+                                     {"threads, loops", {StrandStorage::threads, false}},
+                                     {"groups, unrolled", {StrandStorage::groups, true}},
+                                     {"groups, loops", {StrandStorage::groups, false}},
+                                     {"buffers", {StrandStorage::buffers, false}}};
+    if (type == gpu::DeviceType::Cpu)
+        std::erase_if(layouts, [](const NamedLayout& layout) { return layout.options.unroll; });
+    return layouts;
+}
+
+GpuStepRun::GpuStepRun(const GpuStepScene& scene, scenes::HeadOfHair head,
+                       gpu_simulation::StrandEngine engine)
+    : scene_(scene), head_(std::move(head)), engine_(std::move(engine)) {}
+
+Result<GpuStepRun> GpuStepRun::make(gpu::Device& device,
+                                    std::shared_ptr<gpu_simulation::KernelLibrary> kernels,
+                                    const GpuStepScene& scene) {
+    scenes::HeadOfHair head(scene.strands, scene.points);
+    gpu_simulation::EngineOptions options;
+    options.layout = scene.layout;
+    auto engine = gpu_simulation::StrandEngine::make(device, std::move(kernels), head.view(),
+                                                     settingsOf(scene), options);
+    if (!engine) return tl::unexpected(engine.error());
+    std::vector<runtime::RootFrame> roots;
+    head.placeRoots(0.0, roots);
+    if (auto placed = engine->reset(roots); !placed) return tl::unexpected(placed.error());
+    return GpuStepRun(scene, std::move(head), std::move(*engine));
+}
+
+void GpuStepRun::nextFrame() {
+    time_ += static_cast<double>(kFrame);
+    head_.placeRoots(time_, roots_);
+    input_.dt = kFrame;
+    input_.time = time_;
+    input_.roots_ws = roots_;
+    const bool spheres =
+        scene_.acting == scenes::Acting::windAndSpheres && scene_.leftOut != LeftOut::collision;
+    if (spheres) input_.spheres = head_.spheres;
+}
+
+Result<GpuFrameCost> GpuStepRun::cost(std::uint32_t frames) {
+    std::vector<double> device, wall, together;
+    for (std::uint32_t f = 0; f < frames; ++f) {
+        nextFrame();
+        const auto begin = Clock::now();
+        if (auto status = engine_.step(input_); !status) return tl::unexpected(status.error());
+        const auto spent = engine_.wait();
+        wall.push_back(millisecondsSince(begin));
+        if (!spent) return tl::unexpected(spent.error());
+        device.push_back(*spent);
+    }
+    for (std::uint32_t f = 0; f < std::max(frames / kTogether, 1u); ++f) {
+        const auto begin = Clock::now();
+        double between = 0.0;
+        for (std::uint32_t n = 0; n < kTogether; ++n) {
+            const auto making = Clock::now();
+            nextFrame();
+            between += millisecondsSince(making);
+            if (auto status = engine_.step(input_); !status) return tl::unexpected(status.error());
+        }
+        if (const auto done = engine_.wait(); !done) return tl::unexpected(done.error());
+        // While roots are made the device may work on: what is left is at least what the frames took of both.
+        together.push_back(std::max(millisecondsSince(begin) - between, 0.0) / kTogether);
+    }
+    return GpuFrameCost{quartiles(device).median, quartiles(wall).median, quartiles(together).median};
+}
+
+Result<std::uint32_t> GpuStepRun::framesFor(double seconds) {
+    const auto begin = Clock::now();
+    double last = 1.0;
+    for (std::uint32_t run = 0; run < 20 || (millisecondsSince(begin) < 1e3 * kWarmUp && run < 1000); ++run) {
+        const auto cost = this->cost(1);
+        if (!cost) return tl::unexpected(cost.error());
+        last = cost->wall;
+        if (millisecondsSince(begin) > 1e4 * kWarmUp) break;
+    }
+    return static_cast<std::uint32_t>(std::clamp(std::ceil(seconds * 1e3 / last), 4.0, 240.0));
+}
+
+double GpuStepRun::work() const {
+    return static_cast<double>(engine_.pointCount()) * scene_.substeps;
+}
+
+Result<double> copyBandwidth(gpu::Device& device) {
+    constexpr std::uint64_t kMost = 256u << 20u;
+    constexpr int kCopies = 8, kRuns = 5;
+    gpu::BufferDesc desc;
+    desc.name = "copied";
+    desc.size = std::min(kMost, device.info().maxBufferBytes);
+    const std::vector<std::byte> zeros(static_cast<std::size_t>(desc.size));
+    const auto source = device.createBuffer(desc, zeros);
+    if (!source) return tl::unexpected(source.error());
+    const auto target = device.createBuffer(desc);
+    if (!target) return tl::unexpected(target.error());
+    double best = 0.0;
+    for (int run = 0; run < kRuns; ++run) {
+        auto list = device.createCommandList();
+        if (!list) return tl::unexpected(list.error());
+        for (int n = 0; n < kCopies; ++n) (*list)->copyBuffer(*source, 0, *target, 0, desc.size);
+        const auto begin = Clock::now();
+        const auto submission = device.submit(std::move(*list));
+        if (!submission) return tl::unexpected(submission.error());
+        if (auto status = (*submission)->wait(); !status) return tl::unexpected(status.error());
+        const double bytes = 2.0 * kCopies * static_cast<double>(desc.size);
+        best = std::max(best, bytes * 1e-6 / millisecondsSince(begin));
+    }
+    return best;
+}
+
+std::optional<double> crossing(const std::vector<double>& counts, const std::vector<double>& falling,
+                               const std::vector<double>& other) {
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+        const double now = std::log(falling[i] / other[i]);
+        if (!(now < 0.0)) continue;
+        if (i == 0) return counts.front();
+        const double before = std::log(falling[i - 1] / other[i - 1]);
+        const double share = before / (before - now);
+        return std::exp(std::log(counts[i - 1]) + share * std::log(counts[i] / counts[i - 1]));
+    }
+    return {};
+}
+
+}  // namespace hairloom

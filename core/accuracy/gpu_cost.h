@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What a frame of the strand engine costs on a GPU, on the scenes of benchmark_scenes.h, and which share of
+// it falls to each effect. Roots and spheres are made before the clock starts, as in step_cost.h.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/accuracy/benchmark_scenes.h"
+#include "core/gpu_simulation/strand_engine.h"
+
+namespace hairloom {
+
+/// An effect that can be taken out of the scene with wind and ten spheres.
+enum class LeftOut { nothing, wind, collision, angular, length, damping };
+inline constexpr LeftOut kLeftOut[] = {LeftOut::nothing, LeftOut::wind,   LeftOut::collision,
+                                       LeftOut::angular, LeftOut::length, LeftOut::damping};
+const char* leftOutName(LeftOut effect);
+
+/// How a scene is laid out on the device, by name.
+struct NamedLayout {
+    const char* name;
+    gpu_simulation::LayoutOptions options;
+};
+/// Those worth measuring on such a device, its own first: a driver that compiles for a CPU takes minutes for
+/// unrolled loops.
+std::vector<NamedLayout> measuredLayouts(gpu::DeviceType type);
+
+struct GpuStepScene {
+    std::uint32_t strands = 0;
+    std::uint32_t points = 16;
+    std::uint32_t substeps = 8;
+    scenes::Acting acting = scenes::Acting::windAndSpheres;
+    LeftOut leftOut = LeftOut::nothing;
+    gpu_simulation::LayoutOptions layout;
+};
+
+/// Milliseconds a frame, medians.
+struct GpuFrameCost {
+    double device = 0.0;    ///< the dispatches, by the device's timestamps
+    double wall = 0.0;      ///< from recording to the device being done, one frame at a time
+    double together = 0.0;  ///< wall clock of frames that do not wait for each other, divided by their number
+};
+
+/// A scene that runs on from measurement to measurement.
+class GpuStepRun {
+  public:
+    /// Errors: those of StrandEngine::make.
+    static Result<GpuStepRun> make(gpu::Device& device,
+                                   std::shared_ptr<gpu_simulation::KernelLibrary> kernels,
+                                   const GpuStepScene& scene);
+
+    /// Of `frames` ≥ 1 frames of 1/60 s.
+    Result<GpuFrameCost> cost(std::uint32_t frames);
+    /// As many frames as take about `seconds`, 4 to 240; runs some to find out, in which the hair comes into
+    /// motion and the device to speed.
+    Result<std::uint32_t> framesFor(double seconds);
+    gpu_simulation::StrandEngine& engine() { return engine_; }
+    /// Particles times substeps of a frame.
+    double work() const;
+
+  private:
+    GpuStepRun(const GpuStepScene& scene, scenes::HeadOfHair head, gpu_simulation::StrandEngine engine);
+    void nextFrame();
+
+    GpuStepScene scene_;
+    scenes::HeadOfHair head_;
+    gpu_simulation::StrandEngine engine_;
+    std::vector<runtime::RootFrame> roots_;
+    runtime::FrameInput input_;
+    double time_ = 0.0;
+};
+
+/// Bytes a second that the device reads and writes when it copies buffers of up to 256 MiB, in GB/s.
+Result<double> copyBandwidth(gpu::Device& device);
+
+/// Where a falling cost passes below another: `counts` ascending, costs above 0. Straight lines in the
+/// logarithms between neighbours; absent where they do not cross, the first count where it is below at once.
+std::optional<double> crossing(const std::vector<double>& counts, const std::vector<double>& falling,
+                               const std::vector<double>& other);
+
+}  // namespace hairloom

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/gpu_simulation/follow_hairs.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <vector>
+
+#include "core/gpu_simulation/compiled_kernel.h"
+#include "core/gpu_simulation/strand_batch.h"
+#include "shaders/simulation/follow_types.h"
+
+namespace hairloom::gpu_simulation {
+namespace {
+
+using gpu::Usage;
+using runtime::Float3;
+
+constexpr std::uint32_t kGuidesPerGroup = 32;  // as in follow_wisps.comp.hlsl
+constexpr std::uint32_t kPointsPerGroup = 64;  // as in follow_hairs.comp.hlsl
+constexpr std::uint32_t kMostGroups = 65535;   // of one dimension, on every device
+constexpr std::size_t kRows = 4;
+
+shaders::float4 quad(Float3 v, float w = 0.0f) {
+    return {v.x, v.y, v.z, w};
+}
+
+shaders::FollowBinding bindingOf(const runtime::FollowView& view, std::size_t hair) {
+    const float blend = view.blends[hair];
+    const Float3 weights = view.weights[hair] * blend;
+    const Float3 roots = (view.rootWeights[hair] - view.weights[hair]) * blend;
+    auto guides = view.guides[hair];
+    // What is no number would show even through a weight of 0.
+    if (weights.y == 0.0f && roots.y == 0.0f) guides[1] = guides[0];
+    if (weights.z == 0.0f && roots.z == 0.0f) guides[2] = guides[0];
+    shaders::FollowBinding binding;
+    binding.guides = {guides[0], guides[1], guides[2], 0};
+    binding.weights = quad(weights, 1.0f - blend);
+    binding.roots = quad(roots);
+    binding.shift = quad(view.rootShifts[hair]);
+    binding.wisp = {(1.0f - blend) * view.wispOffsets[hair][0], (1.0f - blend) * view.wispOffsets[hair][1], 0,
+                    0};
+    return binding;
+}
+
+/// Point and share of each point of a hair along each guide.
+std::vector<std::array<float, 2>> samplesOf(const runtime::FollowView& view) {
+    std::vector<std::array<float, 2>> all;
+    std::vector<runtime::GuideSample> samples;
+    for (std::size_t g = 0; g + 1 < view.guideOffsets.size(); ++g) {
+        const std::uint32_t first = view.guideOffsets[g], count = view.guideOffsets[g + 1] - first;
+        samples.clear();
+        if (count == view.pointsPerHair) {
+            for (std::uint32_t p = 0; p < count; ++p) samples.push_back({p, 0.0f});
+        } else {
+            runtime::sampleEvenly(view.guideRestPositions_ss.subspan(first, count), view.pointsPerHair,
+                                  samples);
+        }
+        for (const runtime::GuideSample& sample : samples)
+            all.push_back({std::bit_cast<float>(first + sample.segment), sample.share});
+    }
+    return all;
+}
+
+}  // namespace
+
+struct FollowHairs::Impl {
+    shaders::FollowConstants constants;
+    std::vector<shaders::FollowPlane> planes;  // with the turns of the last frame
+    gpu::BufferPtr samples, radii, bindings, planeBuffer, rows, hairs;
+    gpu::ComputePipelinePtr wisps, sums;
+
+    Status makeBuffers(gpu::Device& device, const runtime::FollowView& view);
+};
+
+Status FollowHairs::Impl::makeBuffers(gpu::Device& device, const runtime::FollowView& view) {
+    Status status;
+    const auto keep = [&](gpu::BufferPtr& buffer, Result<gpu::BufferPtr> made) {
+        if (!status) return;
+        if (made) {
+            buffer = std::move(*made);
+        } else {
+            status = tl::unexpected(made.error());
+        }
+    };
+    std::vector<shaders::FollowBinding> all;
+    for (std::size_t hair = 0; hair < view.guides.size(); ++hair) all.push_back(bindingOf(view, hair));
+    const auto samplesAll = samplesOf(view);
+    const std::size_t points = constants.points;
+    keep(samples, makeBuffer<std::array<float, 2>>(device, "guide samples", Usage::ShaderRead,
+                                                   samplesAll.size(), samplesAll));
+    keep(radii, makeBuffer<float>(device, "wisp radii", Usage::ShaderRead, points, view.radii));
+    keep(bindings,
+         makeBuffer<shaders::FollowBinding>(device, "hair bindings", Usage::ShaderRead, all.size(), all));
+    keep(planeBuffer,
+         makeBuffer<shaders::FollowPlane>(device, "root planes", Usage::ShaderRead, planes.size(), planes));
+    const Usage both = Usage::ShaderRead | Usage::UnorderedAccess;
+    keep(rows, makeBuffer<shaders::float4>(device, "wisps", both, planes.size() * kRows * points, {}));
+    keep(hairs, makeBuffer<shaders::float4>(device, "follow hairs", both, all.size() * points, {}));
+    return status;
+}
+
+Result<FollowHairs> FollowHairs::make(gpu::Device& device, const runtime::FollowView& view) {
+    if (const auto checked = runtime::FollowHairs::make(view); !checked.hairs) return fail(checked.error);
+    if (view.guides.empty()) return fail("there are no hairs to follow", "expected bindings");
+    auto impl = std::make_unique<Impl>();
+    impl->constants.guides = static_cast<std::uint32_t>(view.rootPlanes_ss.size());
+    impl->constants.hairs = static_cast<std::uint32_t>(view.guides.size());
+    impl->constants.points = view.pointsPerHair;
+    for (const runtime::RootPlane& plane : view.rootPlanes_ss)
+        impl->planes.push_back({quad(plane.x), quad(plane.y), quad(plane.normal), {0, 0, 0, 1}});
+    if (auto made = impl->makeBuffers(device, view); !made) return tl::unexpected(made.error());
+    auto wisps = compiledKernel(device, "follow_wisps");
+    if (!wisps) return tl::unexpected(wisps.error());
+    auto sums = compiledKernel(device, "follow_hairs");
+    if (!sums) return tl::unexpected(sums.error());
+    impl->wisps = std::move(*wisps);
+    impl->sums = std::move(*sums);
+    return FollowHairs(std::move(impl));
+}
+
+FollowHairs::FollowHairs(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+FollowHairs::FollowHairs(FollowHairs&&) noexcept = default;
+FollowHairs& FollowHairs::operator=(FollowHairs&&) noexcept = default;
+FollowHairs::~FollowHairs() = default;
+
+std::uint32_t FollowHairs::hairCount() const {
+    return impl_->constants.hairs;
+}
+std::uint32_t FollowHairs::pointsPerHair() const {
+    return impl_->constants.points;
+}
+gpu::BufferPtr FollowHairs::positions_ws() const {
+    return impl_->hairs;
+}
+
+void FollowHairs::record(gpu::CommandList& list, const FollowInput& input) {
+    Impl& impl = *impl_;
+    assert(input.rootRotations_ws.empty() || input.rootRotations_ws.size() == impl.planes.size());
+    bool turned = false;
+    for (std::size_t g = 0; g < impl.planes.size(); ++g) {
+        runtime::Quat turn = input.rootRotations_ws.empty() ? runtime::Quat{} : input.rootRotations_ws[g];
+        if (!runtime::normalize(turn)) turn = {};
+        shaders::float4& kept = impl.planes[g].turn;
+        turned = turned || kept.x != turn.x || kept.y != turn.y || kept.z != turn.z || kept.w != turn.w;
+        kept = {turn.x, turn.y, turn.z, turn.w};
+    }
+    if (turned) list.updateBuffer(impl.planeBuffer, 0, std::as_bytes(std::span(impl.planes)));
+    shaders::FollowConstants constants = impl.constants;
+    constants.wispSpread = input.wispSpread;
+    constants.hasVelocities = input.velocities_ws != nullptr ? 1 : 0;
+    const gpu::BufferPtr& velocities =
+        input.velocities_ws != nullptr ? input.velocities_ws : input.positions_ws;
+    const auto run = [&](const gpu::ComputePipelinePtr& pipeline, const char* name,
+                         std::span<const gpu::Binding> bound, std::uint32_t x, std::uint32_t y) {
+        gpu::PassDesc pass;
+        pass.name = name;
+        list.beginPass(pass);
+        list.setPipeline(pipeline);
+        list.bind(bound);
+        list.setConstants(0, gpu::bytesOf(constants));
+        list.dispatch(x, y);
+        list.endPass();
+    };
+    using gpu::Binding;
+    const std::array<Binding, 6> ofWisps{Binding::read(0, input.positions_ws), Binding::read(1, velocities),
+                                         Binding::read(2, impl.planeBuffer),   Binding::read(3, impl.samples),
+                                         Binding::read(4, impl.radii),         Binding::write(0, impl.rows)};
+    run(impl.wisps, "wisps", ofWisps, (constants.guides + kGuidesPerGroup - 1) / kGuidesPerGroup, 1);
+    const std::array<Binding, 4> ofHairs{Binding::read(0, impl.rows), Binding::read(1, impl.planeBuffer),
+                                         Binding::read(2, impl.bindings), Binding::write(0, impl.hairs)};
+    const std::uint32_t groups = (constants.hairs * constants.points + kPointsPerGroup - 1) / kPointsPerGroup;
+    run(impl.sums, "follow hairs", ofHairs, std::min(groups, kMostGroups),
+        (groups + kMostGroups - 1) / kMostGroups);
+}
+
+}  // namespace hairloom::gpu_simulation

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Hair against hair through a volume (runtime/alternatives/hair_volume.h) between the frames of strands on a
+// GPU. The grid is laid out on the device, from the box of the points there.
+//
+// Differs from the runtime's: places and pressures are in single precision, and velocities of a sum are whole
+// numbers of up to 23 bits; sums are exact and equal in any order all the same.
+
+#include <span>
+
+#include "core/gpu_simulation/strand_batch.h"
+#include "runtime/alternatives/hair_volume.h"
+
+namespace hairloom::gpu_simulation {
+
+class HairVolume {
+  public:
+    /// Errors: a setting outside its range, what the device says.
+    static Result<HairVolume> make(gpu::Device& device, const runtime::HairVolumeSettings& settings);
+
+    /// Records the change of velocities that a frame of `dt` seconds, whose substeps took `h`, gives the
+    /// strands.
+    void record(gpu::CommandList& list, std::span<const StrandBatch> batches, std::uint32_t clampedPoints,
+                float dt, float h) const;
+    std::size_t bytes() const;
+
+  private:
+    explicit HairVolume(const runtime::HairVolumeSettings& settings) : settings_(settings) {}
+    Status makeBuffers(gpu::Device& device);
+    Status makeKernels(gpu::Device& device);
+
+    runtime::HairVolumeSettings settings_;
+    gpu::BufferPtr box_, nodes_, fields_, noRests_;
+    gpu::ComputePipelinePtr measure_, clear_, add_, resolve_, push_;
+};
+
+}  // namespace hairloom::gpu_simulation

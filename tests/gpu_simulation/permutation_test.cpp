@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which kernel runs a plan, where it comes from, and that what is off is not there.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstring>
+#include <thread>
+
+#include "core/accuracy/strand_set.h"
+#include "core/base/file.h"
+#include "core/gpu/validation.h"
+#include "shaders/shaders.h"
+#include "shaders/simulation/simulation_types.h"
+#include "tests/gpu_simulation/gpu_simulation_fixture.h"
+
+namespace hairloom::shaders {
+std::span<const Shader> table_test_gpu_simulation();  // NOLINT(readability-identifier-naming)
+}
+
+namespace hairloom::gpu_simulation {
+namespace {
+
+using runtime::SimulationSettings;
+using testing::Contains;
+using testing::IsSupersetOf;
+using testing::Not;
+
+class Permutation : public GpuSimulationTest {
+  protected:
+    static gpu::ValidationDevice& watched() { return *gpu::validationOf(*device()); }
+    static std::vector<std::string> livingNames() {
+        std::vector<std::string> names;
+        for (const gpu::LivingResource& resource : watched().living()) names.push_back(resource.name);
+        return names;
+    }
+    /// Names that the dispatches of a frame read and write.
+    std::vector<std::string> usedBy(StrandEngine& engine, std::span<const runtime::Sphere> spheres = {}) {
+        watched().clearRecord();
+        runtime::FrameInput input;
+        const auto roots = strands.roots();
+        input.roots_ws = roots;
+        input.spheres = spheres;
+        EXPECT_TRUE(engine.step(input));
+        // What is under way keeps its buffers.
+        EXPECT_TRUE(engine.wait());
+        std::vector<std::string> names;
+        for (const gpu::RecordedWork& work : watched().record()) {
+            if (work.kind != gpu::RecordedWork::Kind::Dispatch) continue;
+            for (const auto* list : {&work.reads, &work.writes}) {
+                // "buffer 'places'"
+                for (const std::string& resource : *list) {
+                    const std::size_t quote = resource.find('\'') + 1;
+                    names.push_back(resource.substr(quote, resource.rfind('\'') - quote));
+                }
+            }
+        }
+        return names;
+    }
+
+    StrandSet strands = tuft(6);
+};
+
+SimulationSettings withoutAll() {
+    SimulationSettings s;
+    s.gravity = {};
+    s.dampingTime = 0.0f;
+    s.airDrag = 0.0f;
+    s.angularStiffness = 0.0f;
+    s.lengthIterations = 0;
+    s.sleepSpeed = 0.0f;
+    return s;
+}
+
+TEST_F(Permutation, WhatIsOffHasNoBufferAndIsNotRead) {
+    const std::vector<std::string> ofEffects{"angular springs", "rest directions", "curves", "tanks", "rests",
+                                             "spheres",         "waking spheres",  "scratch"};
+    StrandEngine engine = engineOf(strands.view(), withoutAll(), options());
+    const std::vector<std::string> used = usedBy(engine);
+    EXPECT_THAT(used, IsSupersetOf({"state", "roots", "places"}));
+    for (const std::string& name : ofEffects) {
+        EXPECT_THAT(used, Not(Contains(name)));
+        EXPECT_THAT(livingNames(), Not(Contains(name)));
+    }
+    for (std::uint32_t effect = 0; effect < runtime::kEffectCount; ++effect)
+        EXPECT_EQ(engine.effectBytes(static_cast<runtime::Effect>(effect)), 0u);
+}
+
+TEST_F(Permutation, BuffersComeAndGoWithTheirEffects) {
+    SimulationSettings s;
+    StrandEngine engine = engineOf(strands.view(), s, options());
+    const std::vector<std::string> curved{"angular springs", "rest directions", "curves", "tanks", "rests"};
+    EXPECT_THAT(usedBy(engine), IsSupersetOf(curved));
+    EXPECT_GT(engine.effectBytes(runtime::Effect::torsion), 0u);
+    // Straight hair that carries no weight at rest needs no frames.
+    s.restGravity = 0.0f;
+    ASSERT_TRUE(engine.setSettings(s));
+    const auto used = usedBy(engine);
+    EXPECT_THAT(used, Contains("angular springs"));
+    EXPECT_THAT(used, Not(Contains("curves")));
+    EXPECT_THAT(livingNames(), Not(Contains("curves")));
+    EXPECT_EQ(engine.effectBytes(runtime::Effect::torsion), 0u);
+}
+
+TEST_F(Permutation, ManySpheresStandInABuffer) {
+    SimulationSettings s = withoutAll();
+    s.lengthIterations = 1;
+    StrandEngine engine = engineOf(strands.view(), s, options());
+    const std::vector<runtime::Sphere> few(64, {{0.0f, 0.05f, 0.0f}, 0.01f}), many(65, few.front());
+    EXPECT_THAT(usedBy(engine, few), Not(Contains("spheres")));
+    EXPECT_THAT(usedBy(engine, many), Contains("spheres"));
+    EXPECT_THAT(usedBy(engine), Not(Contains("spheres")));
+    EXPECT_THAT(livingNames(), Not(Contains("spheres")));
+}
+
+TEST_F(Permutation, KernelsOfTheProgramAreThoseOfDefaultPlans) {
+    KernelLibrary own(*device(), {});
+    SimulationSettings s;
+    runtime::SceneDescription scene;
+    scene.settings = s;
+    scene.strandCount = 1;
+    scene.longestPointCount = 16;
+    scene.longestStrand = 1.0f;
+    scene.fastest = std::numeric_limits<float>::infinity();
+    const runtime::Sphere sphere{{}, 0.1f};
+    std::vector<std::string> asked;
+    for (const float wind : {0.0f, 3.0f}) {
+        for (const std::size_t spheres : {0u, 1u}) {
+            scene.settings.windSpeed = wind;
+            scene.spheres = {&sphere, spheres};
+            const BatchShape shape{16, true, true, StrandStorage::threads};
+            asked.push_back(keyFor(runtime::plan(scene), scene.settings, shape, spheres, false).defines());
+        }
+    }
+    std::vector<std::string> built;
+    for (const shaders::Source& source : shaders::sources()) {
+        if (!source.path.ends_with(".comp.hlsl")) continue;
+        std::string defines;
+        for (std::size_t at = 0; at < source.text.size();) {
+            const std::size_t end = source.text.find('\n', at) + 1;
+            if (source.text.substr(at).starts_with("#define ")) defines += source.text.substr(at, end - at);
+            at = end;
+        }
+        // Other kernels have no permutations.
+        if (defines.find("HAIR_STAGES") != std::string::npos) built.push_back(defines);
+    }
+    EXPECT_THAT(built, testing::UnorderedElementsAreArray(asked));
+}
+
+TEST_F(Permutation, KernelsAreKeptOnDiskAndDamageIsFound) {
+    const std::filesystem::path folder =
+        std::filesystem::path(testing::TempDir()) / "hairloom-kernels-of-a-test";
+    std::filesystem::remove_all(folder);
+    KernelKey key;
+    key.shape = {3, true, false, StrandStorage::threads};
+    key.stages = "stageRoots(); stageVerlet();";
+    const auto made = [&] {
+        KernelLibrary library(*device(), folder);
+        EXPECT_TRUE(library.get(key));
+        EXPECT_TRUE(library.get(key));
+        return library.sources();
+    };
+    EXPECT_EQ(made().compiled, 1u);
+    EXPECT_EQ(made().disk, 1u);
+    const auto file = std::filesystem::directory_iterator(folder)->path();
+    auto bytes = readFile(file).value();
+    bytes[bytes.size() / 2] ^= std::byte{1};
+    ASSERT_TRUE(writeFileAtomically(file, bytes));
+    EXPECT_EQ(made().compiled, 1u);
+    EXPECT_EQ(made().disk, 1u);
+    std::filesystem::remove_all(folder);
+}
+
+TEST_F(Permutation, AKernelThatDoesNotCompileIsAnError) {
+    KernelKey key;
+    key.shape = {3, true, false, StrandStorage::threads};
+    key.stages = "stageNobodyKnows();";
+    const auto kernel = library()->get(key);
+    ASSERT_FALSE(kernel);
+    EXPECT_THAT(kernel.error().message(), testing::HasSubstr("stageNobodyKnows"));
+}
+
+/// The old plan goes on while the new kernel is made in the background, and then gives way.
+TEST_F(Permutation, PlansChangeWithoutWaiting) {
+    EngineOptions patient = options();
+    patient.waitForKernels = false;
+    SimulationSettings s = withoutAll();
+    s.gravity = {0.0f, -9.81f, 0.0f};
+    auto own = std::make_shared<KernelLibrary>(*device(), std::filesystem::path());
+    auto made = StrandEngine::make(*device(), own, strands.view(), s, patient);
+    ASSERT_TRUE(made);
+    StrandEngine& engine = *made;
+    usedBy(engine);
+    ASSERT_FALSE(engine.isSwitching());
+    s.lengthIterations = 1;
+    s.gravity = {};
+    ASSERT_TRUE(engine.setSettings(s));
+    usedBy(engine);
+    // Compiling takes longer than a frame of a few strands; where it did not, there is nothing to see.
+    int served = 0;
+    const auto begin = std::chrono::steady_clock::now();
+    while (engine.isSwitching() && std::chrono::steady_clock::now() - begin < std::chrono::seconds(60)) {
+        EXPECT_FALSE(engine.plan().on(runtime::Effect::length));
+        EXPECT_FLOAT_EQ(engine.settings().gravity.y, -9.81f);
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        usedBy(engine);
+        ++served;
+    }
+    EXPECT_GT(served, 0);
+    EXPECT_FALSE(engine.isSwitching());
+    EXPECT_TRUE(engine.plan().on(runtime::Effect::length));
+    EXPECT_FLOAT_EQ(engine.settings().gravity.y, 0.0f);
+}
+
+TEST_F(Permutation, BackwardEulerIsRefusedInWords) {
+    SimulationSettings s;
+    s.integrator = runtime::Integrator::implicitEuler;
+    const auto made = StrandEngine::make(*device(), library(), strands.view(), s, options());
+    ASSERT_FALSE(made);
+    EXPECT_THAT(made.error().message(), testing::HasSubstr("implicitEuler"));
+}
+
+/// Structs are where shader and C++ think they are.
+TEST_F(Permutation, ConstantsArriveWhereTheyAreRead) {
+    std::array<float, sizeof(shaders::SimulationConstants) / 4> numbers{};
+    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<float>(i + 1);
+    const shaders::Shader& echo = shaders::table_test_gpu_simulation().front();
+    const auto shader =
+        device()->createShader({"echo", gpu::ShaderStage::Compute, std::as_bytes(echo.spirv)}).value();
+    const auto pipeline = device()->createComputePipeline({"echo", shader}).value();
+    std::array<shaders::SphereConstants, 2> spheres{};
+    spheres[1] = {{1.0f, 2.0f, 3.0f, 4.0f}, {5.0f, 6.0f, 7.0f, 8.0f}};
+    const auto input =
+        makeBuffer<shaders::SphereConstants>(*device(), "two spheres", gpu::Usage::ShaderRead, 2, spheres)
+            .value();
+    constexpr std::size_t kResults = 22;
+    const std::vector<shaders::float4> nothing(kResults);
+    const auto output =
+        makeBuffer<shaders::float4>(*device(), "results", gpu::Usage::UnorderedAccess, kResults, nothing)
+            .value();
+    auto list = device()->createCommandList().value();
+    gpu::PassDesc pass;
+    pass.name = "echo";
+    list->beginPass(pass);
+    list->setPipeline(pipeline);
+    const std::array<gpu::Binding, 2> bindings{gpu::Binding::read(0, input), gpu::Binding::write(0, output)};
+    list->bind(bindings);
+    list->setConstants(0, std::as_bytes(std::span(numbers)));
+    list->dispatch(1);
+    list->endPass();
+    ASSERT_TRUE(device()->submit(std::move(list)).value()->wait());
+    std::array<float, kResults * 4> results{};
+    ASSERT_TRUE(device()->readBuffer(output, 0, std::as_writable_bytes(std::span(results))));
+    for (std::size_t i = 0; i < numbers.size(); ++i) EXPECT_EQ(results[i], numbers[i]) << i;
+    for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(results[numbers.size() + i], static_cast<float>(i + 1));
+}
+
+}  // namespace
+}  // namespace hairloom::gpu_simulation

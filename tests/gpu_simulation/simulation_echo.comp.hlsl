@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Writes back what the strand kernels are told, so that a test sees where the shader finds it.
+#include "shaders/simulation/simulation_types.h"
+
+cbuffer Frame : register(b0) { SimulationConstants gFrame; };
+StructuredBuffer<SphereConstants> gSpheres : register(t0);
+RWStructuredBuffer<float4> gResults : register(u0);
+
+[numthreads(1, 1, 1)]
+void main() {
+    gResults[0] = asfloat(uint4(gFrame.slots, gFrame.substeps, gFrame.sphereCount, gFrame.lengthIterations));
+    gResults[1] = asfloat(uint4(gFrame.wakingCount, gFrame.windKind, gFrame.wakeAll, asuint(gFrame.h)));
+    gResults[2] = float4(gFrame.dt, gFrame.rescale, gFrame.velocityShare, gFrame.dragShare);
+    gResults[3] = float4(gFrame.springStep, gFrame.penaltyStep, gFrame.bendRate, gFrame.maximalExtension);
+    gResults[4] = float4(gFrame.pearlRoot, gFrame.pearlTip, gFrame.friction, gFrame.restitution);
+    gResults[5] = float4(gFrame.teleportDistance, gFrame.slowSquared, gFrame.sleepDelay, gFrame.slowSweep);
+    gResults[6] = gFrame.gravityStep;
+    gResults[7] = gFrame.wind;
+    for (uint m = 0; m < HAIRLOOM_WIND_MODES; ++m) {
+        gResults[8 + m] = gFrame.windAmplitudes[m];
+        gResults[8 + HAIRLOOM_WIND_MODES + m] = gFrame.windWaves[m];
+    }
+    gResults[20] = gSpheres[1].from;
+    gResults[21] = gSpheres[1].step;
+}
