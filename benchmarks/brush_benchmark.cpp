@@ -45,6 +45,7 @@ Stroke strokeOf(std::string_view tool) {
     Stroke stroke;
     stroke.tool = tool;
     if (tool == "cut_line") stroke.settings.depth = 0.05f;
+    if (tool == "add") stroke.settings.parameters["density"] = 500;  // twice what is there
     for (int i = 0; i < 24; ++i) {
         stroke.dabs.push_back(dabAt(stroke.settings, onHair(-60.0f + 5.0f * static_cast<float>(i))));
         if (tool == "cut_line") stroke.dabs.back().direction_ss = -Vec3f::UnitZ();
@@ -113,22 +114,22 @@ void pickOneStrand(benchmark::State& state) {
 }
 
 constexpr auto kMs = benchmark::kMillisecond;
-BENCHMARK_CAPTURE(dab, comb, "comb")->Unit(kMs)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(dab, brush, "brush")->Unit(kMs)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(dab, grab, "grab")->Unit(kMs)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(dab, smooth, "smooth")->Unit(kMs)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(dab, puff, "puff")->Unit(kMs)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(dab, pinch, "pinch")->Unit(kMs)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(dab, length, "length")->Unit(kMs)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(dab, cut, "cut")->Unit(kMs)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(dab, cut_line, "cut_line")->Unit(kMs)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(dab, add, "add")->Unit(kMs)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(dab, delete, "delete")->Unit(kMs)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(dab, freeze, "freeze")->Unit(kMs)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(undoStroke, comb, "comb")->Unit(kMs)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(undoStroke, delete, "delete")->Unit(kMs)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(undoStroke, add, "add")->Unit(kMs)->MeasureProcessCPUTime();
-BENCHMARK(pickOneStrand)->Unit(kMs)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(dab, comb, "comb")->Unit(kMs)->MinTime(0.2)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(dab, brush, "brush")->Unit(kMs)->MinTime(0.2)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(dab, grab, "grab")->Unit(kMs)->MinTime(0.2)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(dab, smooth, "smooth")->Unit(kMs)->MinTime(0.2)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(dab, puff, "puff")->Unit(kMs)->MinTime(0.2)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(dab, pinch, "pinch")->Unit(kMs)->MinTime(0.2)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(dab, length, "length")->Unit(kMs)->MinTime(0.2)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(dab, cut, "cut")->Unit(kMs)->MinTime(0.2)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(dab, cut_line, "cut_line")->Unit(kMs)->MinTime(0.2)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(dab, add, "add")->Unit(kMs)->MinTime(0.2)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(dab, delete, "delete")->Unit(kMs)->MinTime(0.2)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(dab, freeze, "freeze")->Unit(kMs)->MinTime(0.2)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(undoStroke, comb, "comb")->Unit(kMs)->MinTime(0.2)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(undoStroke, delete, "delete")->Unit(kMs)->MinTime(0.2)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(undoStroke, add, "add")->Unit(kMs)->MinTime(0.2)->MeasureProcessCPUTime();
+BENCHMARK(pickOneStrand)->Unit(kMs)->MinTime(0.2)->MeasureProcessCPUTime();
 
 }  // namespace
 }  // namespace hairloom::editing

@@ -1,33 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/motions.h"
 
-#include <fmt/format.h>
-
 #include "cli/documents.h"
 #include "cli/vectors.h"
-#include "core/simulation/clip_motion.h"
 
 namespace hairloom::cli {
-
-Result<std::unique_ptr<HeadMotion>> makeMotion(const std::string& name, const std::string& character,
-                                               const Groom& groom) {
-    constexpr std::string_view kClip = "clip:";
-    if (name.rfind(kClip, 0) != 0) return makeRigidMotion(name, groom);
-    const std::string file = character.empty() ? groom.characterFile : character;
-    if (file.empty()) return fail("the groom names no file with clips", "expected --character FILE");
-    MeshImportOptions options;
-    if (character.empty() && groom.characterMetresPerUnit > 0)
-        options.metresPerUnit = groom.characterMetresPerUnit;
-    auto scene = importSceneLoud(file, options);
-    if (!scene) return tl::unexpected(scene.error());
-    auto actor = Actor::make(std::make_shared<const ScalpMesh>(std::move(scene->mesh)),
-                             std::move(scene->skeleton), std::move(scene->clips), std::move(scene->skin));
-    if (!actor) return tl::unexpected(inFile(actor.error(), file));
-    auto motion =
-        makeClipMotion(std::make_shared<const Actor>(std::move(*actor)), name.substr(kClip.size()), groom);
-    if (!motion) return tl::unexpected(inFile(motion.error(), file));
-    return motion;
-}
 
 Status setWind(Groom& groom, const std::string& wind) {
     if (wind.empty()) return {};

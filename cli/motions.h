@@ -6,13 +6,9 @@
 #include <string>
 
 #include "core/simulation/motion.h"
+#include "workspace/motions.h"
 
 namespace hairloom::cli {
-
-/// The motion that --motion names: none, spin, nod or clip:NAME. Clips come from `character`, or where that
-/// is empty from the file that the groom's scalp came from.
-Result<std::unique_ptr<HeadMotion>> makeMotion(const std::string& name, const std::string& character,
-                                               const Groom& groom);
 
 /// The wind of --wind, "X,Y,Z" in m/s, instead of the groom's own; an empty text changes nothing.
 Status setWind(Groom& groom, const std::string& wind);

@@ -10,11 +10,11 @@
 #include "cli/documents.h"
 #include "cli/job.h"
 #include "cli/progress.h"
-#include "cli/scene.h"
 #include "cli/vectors.h"
 #include "core/render/exr.h"
 #include "core/render/png.h"
 #include "core/simulation/frame_record.h"
+#include "workspace/groom_scene.h"
 
 namespace hairloom::cli {
 namespace {

@@ -9,6 +9,7 @@
 #include "core/groom/project_file.h"
 #include "core/groom/settings_json.h"
 #include "runtime/presets.h"
+#include "workspace/hair_preset.h"
 
 namespace hairloom::cli {
 namespace {
@@ -44,12 +45,7 @@ std::size_t membersIn(const nlohmann::json& document) {
 
 /// Sections that are absent keep their values. Returns the number of fields that were given.
 Result<std::size_t> apply(const nlohmann::json& document, const std::string& source, Groom& groom) {
-    JsonReader reader(document, source);
-    if (reader.has("simulation")) readSettings(reader.object("simulation"), groom.simulation);
-    if (reader.has("material")) readSettings(reader.object("material"), groom.material);
-    if (reader.has("interpolation")) readSettings(reader.object("interpolation"), groom.interpolation);
-    reader.finish();
-    if (auto status = reader.status(); !status) return tl::unexpected(status.error());
+    if (auto status = applySettings(document, source, groom); !status) return tl::unexpected(status.error());
     return membersIn(document);
 }
 
@@ -57,22 +53,6 @@ std::vector<std::string> presetNames() {
     std::vector<std::string> names;
     for (const runtime::HairPreset& preset : runtime::presets()) names.emplace_back(preset.name);
     return names;
-}
-
-Vec3f colourOf(runtime::Float3 colour) {
-    return {colour.x, colour.y, colour.z};
-}
-
-/// Stiffness, thickness and colour of a measured fibre; the fields stand in docs/cli.md. Returns their
-/// number.
-std::size_t applyPreset(const runtime::HairPreset& preset, Groom& groom) {
-    runtime::applyPreset(preset, groom.simulation);
-    groom.material.rootRadius = static_cast<float>(0.5 * preset.diameter);
-    groom.material.rootColour = colourOf(preset.rootColour);
-    groom.material.tipColour = colourOf(preset.tipColour);
-    groom.material.eumelanin = preset.eumelanin;
-    groom.material.pheomelanin = 0.0f;
-    return 7;
 }
 
 Result<Report> set(const SetOptions& options) {

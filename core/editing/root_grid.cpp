@@ -46,9 +46,14 @@ void RootGrid::visit(const Vec3f& point, float radius, Visit visit) const {
 std::vector<RootGrid::Neighbour> RootGrid::nearest(const Vec3f& point_ss, std::size_t count,
                                                    float radius) const {
     std::vector<Neighbour> found;
-    visit(point_ss, radius, [&](std::uint32_t strand, float distance) {
-        found.push_back({strand, distance});
-    });
+    // No farther than needed: where roots are dense the whole radius would hold thousands.
+    for (float reach = std::min(cell_, radius);; reach = std::min(2 * reach, radius)) {
+        found.clear();
+        visit(point_ss, reach, [&](std::uint32_t strand, float distance) {
+            found.push_back({strand, distance});
+        });
+        if (found.size() >= count || reach >= radius) break;
+    }
     std::sort(found.begin(), found.end(), [](const Neighbour& a, const Neighbour& b) {
         return std::tie(a.distance, a.strand) < std::tie(b.distance, b.strand);
     });

@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "core/base/parallel.h"
+#include "core/simulation/engine_control.h"
 #include "core/simulation/strand_method.h"
 
 namespace hairloom {
@@ -47,6 +48,10 @@ class EngineMethod : public StrandMethod {
         volumeMilliseconds_ += spent;
     }
 
+    std::string setSettings(const runtime::SimulationSettings& settings) {
+        return engine_.setSettings(settings);
+    }
+
     void readPositions(std::span<runtime::Float3> positions_ws) const override {
         engine_.readPositions(positions_ws);
     }
@@ -85,6 +90,13 @@ class EngineMethod : public StrandMethod {
 std::string reasonAlone(const std::string& why) {
     const std::size_t colon = why.find(": ");
     return colon == std::string::npos ? why : why.substr(colon + 2);
+}
+
+Status setEngineSettings(StrandMethod& method, const runtime::SimulationSettings& settings) {
+    auto* engine = dynamic_cast<EngineMethod*>(&method);
+    if (!engine) return fail("this way of moving strands takes no other settings while it runs");
+    if (const std::string problem = engine->setSettings(settings); !problem.empty()) return fail(problem);
+    return {};
 }
 
 runtime::Host applicationHost() {

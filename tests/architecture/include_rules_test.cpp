@@ -52,11 +52,12 @@ const std::map<std::string, Rooms>& allowed() {
             {"importers", with(groom, {"core/animation"})},
             {"exporters", with(groom, {"core/animation", "importers"})},
             {"shaders", {}},
-            {"cli", all},
-            {"editor", all},
+            {"workspace", all},
+            {"cli", with(all, {"workspace"})},
+            {"editor", with(all, {"workspace"})},
             {"samples", all},
             {"benchmarks", with(all, {"tests"})},  // scenes are shared with the tests
-            {"tests", with(all, {"cli", "samples", "tests"})},
+            {"tests", with(all, {"workspace", "cli", "editor", "samples", "tests"})},
         };
     }();
     return rules;
@@ -78,8 +79,8 @@ std::vector<Include> includesOf(const fs::path& top) {
     static const std::regex pattern(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");
     static const std::set<std::string> extensions{".h", ".hpp", ".cpp", ".hlsl", ".hlsli"};
     std::vector<Include> found;
-    for (const char* folder : {"core", "runtime", "importers", "exporters", "shaders", "editor", "cli",
-                               "samples", "benchmarks", "tests"}) {
+    for (const char* folder : {"core", "runtime", "importers", "exporters", "shaders", "workspace", "editor",
+                               "cli", "samples", "benchmarks", "tests"}) {
         if (!fs::exists(top / folder)) continue;
         for (const auto& entry : fs::recursive_directory_iterator(top / folder)) {
             if (!extensions.contains(entry.path().extension().string())) continue;

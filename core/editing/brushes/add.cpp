@@ -29,7 +29,7 @@ class Add final : public Brush {
         constexpr float kPerM2 = 1e4f;
         distance_ = std::sqrt(kFilled / (target.parameter(kInfo, "density") * kPerM2));
         reach_ = target.parameter(kInfo, "reach");
-        grid_.emplace(gridOfRoots(target.groom(), std::max(distance_, 0.25f * target.settings.radius)));
+        grid_.emplace(gridOfRoots(target.groom(), std::max(distance_, 0.1f * reach_)));
         isSelected_.assign(target.groom().scalp->triangleCount(),
                            target.groom().scalpSelection.empty() ? 1 : 0);
         for (const std::uint32_t face : target.groom().scalpSelection) isSelected_[face] = 1;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/editing/brush_list.h"
-#include "core/geometry/curve.h"
 
 namespace hairloom::editing {
 namespace {
@@ -30,8 +29,11 @@ class BrushAlong final : public StrandBrush {
             const float length = segment.norm();
             Vec3f direction = length > 0 ? Vec3f(segment / length) : wanted;
             if (strand.weights[i] > 0) {
-                const Quatf turn = shortestArc(direction, wanted);
-                direction = Quatf::Identity().slerp(strand.weights[i], turn) * direction;
+                const Vec3f mixed = direction + strand.weights[i] * (wanted - direction);
+                const float norm = mixed.norm();
+                // Hair that points the opposite way turns over the outside.
+                constexpr float kOpposite = 1e-3f;
+                direction = norm > kOpposite ? Vec3f(mixed / norm) : strand.rootNormal_ss;
             }
             strand.points[i] = strand.points[i - 1] + direction * length;
         }

@@ -8,11 +8,12 @@
 #include <vector>
 
 #include "core/groom/groom.h"
+#include "core/interpolation/follow_hairs.h"
 #include "core/render/picture.h"
 #include "core/shading/melanin.h"
 #include "core/simulation/motion.h"
 
-namespace hairloom::cli {
+namespace hairloom {
 
 /// How a view sees light in fibres; what it does not say comes from the groom.
 struct FibreView {
@@ -54,6 +55,10 @@ class GroomScene {
                                    const HeadPose* pose, const ViewFile& view,
                                    const std::vector<std::string>& hiddenGroups);
 
+    /// Moves it to where a frame of a simulation of the same groom has it; points in the groom's order.
+    /// Error: follow hairs that cannot be made.
+    Status pose(std::span<const Vec3f> positions_ws, const HeadPose& pose);
+
     /// Meshes and strands; camera and lights are the caller's. Valid while this object lives and is not
     /// moved.
     render::RenderScene scene() const;
@@ -63,14 +68,19 @@ class GroomScene {
     Box3f subject() const;
 
   private:
+    Status makeFollowHairs();
+
+    Groom rest_;
     Groom posed_;
-    std::vector<std::uint32_t> indices_;  ///< of the head's triangles that are drawn
-    std::vector<Vec3f> triangleAlbedo_;   ///< of these: skin, tinted by hair where the scalp is
+    std::optional<FollowBindings> bindings_;  ///< where the groom asks for follow hairs
+    std::vector<std::uint32_t> indices_;      ///< of the head's triangles that are drawn
+    std::vector<Vec3f> triangleAlbedo_;       ///< of these: skin, tinted by hair where the scalp is
     std::vector<std::uint32_t>
         hairOffsets_;  ///< of follow hairs; empty where the strands themselves are drawn
     std::vector<Vec3f> hairPositions_ws_;
+    std::vector<float> radii_;  ///< of the strands' points where some are hidden, which have no thickness
     render::HairMaterial material_;
     bool matte_ = false;  ///< the head, where a view says what it is
 };
 
-}  // namespace hairloom::cli
+}  // namespace hairloom

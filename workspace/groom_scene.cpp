@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/scene.h"
+#include "workspace/groom_scene.h"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@
 #include "core/render/png.h"
 #include "core/simulation/simulation.h"
 
-namespace hairloom::cli {
+namespace hairloom {
 namespace {
 
 constexpr double kAnyPlace = 1e6;  // metres
@@ -155,6 +155,28 @@ std::vector<Vec3f> headColours(const Groom& groom, const std::optional<Vec3f>& a
     return albedo;
 }
 
+/// Radii with none for strands that are hidden or on a layer that is; empty where all strands are shown.
+std::vector<float> radiiOfShown(const Groom& groom, const HairMaterial& material) {
+    const auto hidden = groom.strandAttributes.view<std::uint8_t>(attribute::kHidden);
+    const auto layers = groom.strandAttributes.view<std::uint32_t>(attribute::kLayer);
+    const auto isHidden = [&](std::size_t strand) {
+        if (strand < hidden.size() && hidden[strand] != 0) return true;
+        const std::uint32_t layer = strand < layers.size() ? layers[strand] : 0;
+        return layer < groom.layers.size() && !groom.layers[layer].visible;
+    };
+    const auto authored = groom.pointAttributes.view<float>(attribute::kRadius);
+    std::vector<float> radii;
+    for (std::size_t s = 0; s < groom.strandCount(); ++s) {
+        if (!isHidden(s)) continue;
+        if (radii.empty()) {
+            radii.assign(authored.begin(), authored.end());
+            radii.resize(groom.pointCount(), material.rootRadius);
+        }
+        std::fill(radii.begin() + groom.offsets[s], radii.begin() + groom.offsets[s + 1], 0.0f);
+    }
+    return radii;
+}
+
 std::vector<Quatf> rootRotations(const Groom& rest, const Groom& posed, const FollowBindings& bindings) {
     const std::vector<SurfacePoint> all = rest.rootBindings();
     if (!rest.scalp || all.empty()) return {};
@@ -230,8 +252,10 @@ Result<GroomScene> GroomScene::make(const Groom& groom, const std::vector<Vec3f>
                                     const HeadPose* pose, const ViewFile& view,
                                     const std::vector<std::string>& hiddenGroups) {
     GroomScene scene;
+    scene.rest_ = groom;
     scene.posed_ = pose ? posedGroom(groom, *positions_ws, *pose) : groom;
     scene.material_ = materialOf(groom.material, view);
+    scene.radii_ = radiiOfShown(groom, groom.material);
     scene.matte_ = view.headAlbedo.has_value();
     if (!groom.scalp && !hiddenGroups.empty()) return fail("there is no head to hide groups of");
     if (groom.scalp) {
@@ -246,18 +270,26 @@ Result<GroomScene> GroomScene::make(const Groom& groom, const std::vector<Vec3f>
     }
     if (groom.interpolation.followPerGuide == 0 || groom.strandCount() == 0) return scene;
 
-    const auto bindings = bindFollowHairs(groom, groom.interpolation);
+    auto bindings = bindFollowHairs(groom, groom.interpolation);
     if (!bindings) return tl::unexpected(bindings.error());
-    const std::vector<Vec3f> guides_ws = guidePositions(scene.posed_, *bindings);
-    const std::vector<Quatf> rotations = rootRotations(groom, scene.posed_, *bindings);
-    scene.hairPositions_ws_.resize(bindings->hairCount() * bindings->pointsPerHair);
-    const auto status =
-        evaluateFollowHairs(*bindings, {guides_ws, {}, rotations}, {}, scene.hairPositions_ws_);
-    if (!status) return tl::unexpected(status.error());
     for (std::size_t hair = 0; hair <= bindings->hairCount(); ++hair) {
         scene.hairOffsets_.push_back(static_cast<std::uint32_t>(hair * bindings->pointsPerHair));
     }
+    scene.bindings_ = std::move(*bindings);
+    if (auto status = scene.makeFollowHairs(); !status) return tl::unexpected(status.error());
     return scene;
+}
+
+Status GroomScene::pose(std::span<const Vec3f> positions_ws, const HeadPose& pose) {
+    posed_ = posedGroom(rest_, positions_ws, pose);
+    return bindings_ ? makeFollowHairs() : Status();
+}
+
+Status GroomScene::makeFollowHairs() {
+    const std::vector<Vec3f> guides_ws = guidePositions(posed_, *bindings_);
+    const std::vector<Quatf> rotations = rootRotations(rest_, posed_, *bindings_);
+    hairPositions_ws_.resize(bindings_->hairCount() * bindings_->pointsPerHair);
+    return evaluateFollowHairs(*bindings_, {guides_ws, {}, rotations}, {}, hairPositions_ws_);
 }
 
 render::RenderScene GroomScene::scene() const {
@@ -277,7 +309,7 @@ render::RenderScene GroomScene::scene() const {
     if (hairOffsets_.empty()) {
         strands.offsets = posed_.offsets.view();
         strands.positions_ws = posed_.positions();
-        strands.radii = posed_.pointAttributes.view<float>(attribute::kRadius);
+        strands.radii = radii_.empty() ? posed_.pointAttributes.view<float>(attribute::kRadius) : radii_;
         strands.colours = posed_.strandAttributes.view<Vec3f>(attribute::kStrandColour);
     } else {
         strands.offsets = hairOffsets_;
@@ -305,4 +337,4 @@ Box3f GroomScene::subject() const {
     return box.intersection(all);
 }
 
-}  // namespace hairloom::cli
+}  // namespace hairloom

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "editor/dialogs/export_dialog.h"
+
+#include <QDialogButtonBox>
+#include <QFileDialog>
+#include <QFileInfo>
+#include <QFormLayout>
+#include <QHeaderView>
+#include <QPointer>
+#include <QVBoxLayout>
+
+#include "exporters/strands.h"
+#include "importers/length_unit.h"
+
+namespace hairloom::editor {
+
+const std::vector<ExportTarget>& exportTargets() {
+    static const std::vector<ExportTarget> targets{
+        {QObject::tr("TressFX"),
+         QObject::tr(".tfx version 4, metres, Y up; strands resampled to 4, 8, 16, 32 or 64"), "tfx", 1.0f,
+         false, 0},
+        {QObject::tr("TressFX for Unreal"), QObject::tr(".tfx in centimetres, Z up, 16 points a strand"),
+         "tfx", 0.01f, true, 16},
+        {QObject::tr("Yuksel .hair"), QObject::tr(".hair in metres, Y up; strands keep their points"), "hair",
+         1.0f, false, 0},
+        {QObject::tr("Jolt Physics"),
+         QObject::tr(".hair in metres, Y up; 32 points a strand, as Jolt advises"), "hair", 1.0f, false, 32},
+        {QObject::tr("Unity hair"), QObject::tr(".hair in metres, Y up; at most 128 points and 64k strands"),
+         "hair", 1.0f, false, 0},
+    };
+    return targets;
+}
+
+ExportDialog::ExportDialog(Session& session, QWidget* parent)
+    : QDialog(parent),
+      session_(session),
+      target_(new QComboBox),
+      note_(new QLabel),
+      unit_(new QComboBox),
+      up_(new QComboBox),
+      points_(new QSpinBox),
+      summary_(new QLabel),
+      findings_(new QTreeWidget) {
+    setWindowTitle(tr("Export hair"));
+    resize(620, 480);
+    auto* layout = new QVBoxLayout(this);
+    layout->setContentsMargins(20, 20, 20, 16);
+    layout->setSpacing(12);
+    auto* form = new QFormLayout;
+    form->setHorizontalSpacing(16);
+    form->setVerticalSpacing(8);
+    form->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
+    layout->addLayout(form);
+    for (const ExportTarget& target : exportTargets()) target_->addItem(target.name);
+    target_->setObjectName("target");
+    target_->setToolTip(tr("Sets unit, axis and points as this program expects them"));
+    note_->setProperty("role", "dim");
+    note_->setWordWrap(true);
+    for (const LengthUnit& unit : lengthUnits()) unit_->addItem(unit.name, unit.metres);
+    unit_->setToolTip(tr("One unit of the file; a wrong one makes hair a hundred times too large or small"));
+    up_->addItems({tr("Y up"), tr("Z up")});
+    up_->setToolTip(tr("Axis of the file that points up"));
+    points_->setRange(0, 1024);
+    points_->setSpecialValueText(tr("as they are"));
+    points_->setToolTip(tr("Points of every strand, resampled evenly"));
+    form->addRow(tr("For"), target_);
+    form->addRow(QString(), note_);
+    form->addRow(tr("Unit"), unit_);
+    form->addRow(tr("Axis"), up_);
+    form->addRow(tr("Points a strand"), points_);
+    summary_->setWordWrap(true);
+    summary_->setText(tr("The file is read back after writing and compared with the hair."));
+    layout->addWidget(summary_);
+    findings_->setObjectName("findings");
+    findings_->setHeaderLabels({tr("Finding"), tr("Where"), tr("What to do")});
+    findings_->setRootIsDecorated(false);
+    findings_->setWordWrap(true);
+    findings_->header()->resizeSection(0, 220);
+    layout->addWidget(findings_, 1);
+    auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close);
+    write_ = buttons->addButton(tr("Export…"), QDialogButtonBox::AcceptRole);
+    write_->setDefault(true);
+    write_->setToolTip(tr("Asks for a file name and writes"));
+    layout->addWidget(buttons);
+    connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
+    connect(write_, &QPushButton::clicked, this, &ExportDialog::choosePath);
+    connect(target_, &QComboBox::currentIndexChanged, this, &ExportDialog::takeTarget);
+    takeTarget(0);
+    write_->setEnabled(session_.document.groom().strandCount() > 0);
+}
+
+void ExportDialog::takeTarget(int index) {
+    const ExportTarget& target = exportTargets()[static_cast<std::size_t>(index)];
+    note_->setText(target.note);
+    for (int i = 0; i < unit_->count(); ++i) {
+        if (static_cast<float>(unit_->itemData(i).toDouble()) == target.metresPerUnit)
+            unit_->setCurrentIndex(i);
+    }
+    up_->setCurrentIndex(target.zUp ? 1 : 0);
+    points_->setValue(target.points);
+}
+
+void ExportDialog::choosePath() {
+    const ExportTarget& target = exportTargets()[static_cast<std::size_t>(target_->currentIndex())];
+    const QString name = QFileInfo(session_.document.title()).completeBaseName() + "." + target.suffix;
+    const QString path = QFileDialog::getSaveFileName(this, windowTitle(), name, "*." + target.suffix);
+    if (!path.isEmpty()) exportTo(path);
+}
+
+void ExportDialog::exportTo(const QString& path) {
+    const ExportTarget& target = exportTargets()[static_cast<std::size_t>(target_->currentIndex())];
+    StrandExportOptions options;
+    options.metresPerUnit = static_cast<float>(unit_->currentData().toDouble());
+    options.up = up_->currentIndex() == 1 ? UpAxis::Z : UpAxis::Y;
+    options.pointsPerStrand = static_cast<std::uint32_t>(points_->value());
+    write_->setEnabled(false);
+    const bool started = session_.tasks.run<ExportReport>(
+        tr("Exporting %1").arg(QFileInfo(path).fileName()),
+        [groom = session_.document.groom(), path, options, tfx = target.suffix == "tfx"](TaskControl&) {
+            return tfx ? writeTfx(groom, path.toStdString(), options)
+                       : writeHair(groom, path.toStdString(), options);
+        },
+        [self = QPointer(this), &session = session_, path](ExportReport report) {
+            session.messages.say(tr("%1 written and read back").arg(QFileInfo(path).fileName()));
+            if (!self) return;
+            self->report_ = std::move(report);
+            self->showReport();
+        });
+    if (!started) write_->setEnabled(true);
+    connect(&session_.tasks, &Tasks::stopped, this, [this] { write_->setEnabled(true); });
+}
+
+void ExportDialog::showReport() {
+    summary_->setText(
+        tr("%1: %L2 strands, %L3 points, %4 MB. Farthest point of the file from the hair: %5 mm.")
+            .arg(QString::fromStdString(report_.format))
+            .arg(report_.strands)
+            .arg(report_.points)
+            .arg(static_cast<double>(report_.bytes) / 1e6, 0, 'f', 1)
+            .arg(report_.maxErrorMm, 0, 'g', 3));
+    findings_->clear();
+    if (report_.findings.empty()) findings_->addTopLevelItem(new QTreeWidgetItem({tr("Nothing to mend")}));
+    for (const Finding& finding : report_.findings) {
+        auto* item =
+            new QTreeWidgetItem({QString::fromStdString(finding.what), QString::fromStdString(finding.where),
+                                 QString::fromStdString(finding.fix)});
+        for (int c = 0; c < 3; ++c) item->setToolTip(c, item->text(c));
+        findings_->addTopLevelItem(item);
+    }
+}
+
+}  // namespace hairloom::editor

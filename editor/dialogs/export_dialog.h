@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Writes the hair for another program and says what came back when the file was read again.
+
+#include <QComboBox>
+#include <QDialog>
+#include <QLabel>
+#include <QPushButton>
+#include <QSpinBox>
+#include <QTreeWidget>
+
+#include "editor/session.h"
+#include "exporters/report.h"
+
+namespace hairloom::editor {
+
+/// A consumer and what it wants of a file.
+struct ExportTarget {
+    QString name;
+    QString note;
+    QString suffix;  ///< "tfx" or "hair"
+    float metresPerUnit;
+    bool zUp;
+    int points;  ///< per strand; 0 keeps what the format allows
+};
+const std::vector<ExportTarget>& exportTargets();
+
+class ExportDialog : public QDialog {
+    Q_OBJECT
+
+  public:
+    explicit ExportDialog(Session& session, QWidget* parent = nullptr);
+
+    /// Writes to this file with the options that are set; the report follows when it is done.
+    void exportTo(const QString& path);
+    /// Of the last export; format is empty before it.
+    const ExportReport& report() const { return report_; }
+
+  private:
+    void takeTarget(int index);
+    void showReport();
+    void choosePath();
+
+    Session& session_;
+    QComboBox* target_;
+    QLabel* note_;
+    QComboBox* unit_;
+    QComboBox* up_;
+    QSpinBox* points_;
+    QPushButton* write_;
+    QLabel* summary_;
+    QTreeWidget* findings_;
+    ExportReport report_;
+};
+
+}  // namespace hairloom::editor

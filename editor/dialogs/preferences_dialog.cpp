@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "editor/dialogs/preferences_dialog.h"
+
+#include <QComboBox>
+#include <QDialogButtonBox>
+#include <QFormLayout>
+#include <QPainter>
+#include <QPainterPath>
+#include <QSpinBox>
+#include <QVBoxLayout>
+#include <cmath>
+
+#include "editor/fields/number_box.h"
+
+namespace hairloom::editor {
+namespace {
+
+/// Pressure of the pen to pressure of the brush.
+class CurveView : public QWidget {
+  public:
+    explicit CurveView(const Preferences& preferences) : preferences_(preferences) {
+        setFixedSize(120, 90);
+        setToolTip(QObject::tr("Right: harder on the pen. Up: more from the brush."));
+        connect(&preferences, &Preferences::changed, this, [this] { update(); });
+    }
+
+  protected:
+    void paintEvent(QPaintEvent*) override {
+        QPainter painter(this);
+        painter.setRenderHint(QPainter::Antialiasing);
+        const QRectF box = QRectF(rect()).adjusted(1, 1, -1, -1);
+        painter.setPen(palette().color(QPalette::Mid));
+        painter.drawRoundedRect(box, 4, 4);
+        QPainterPath path;
+        for (int i = 0; i <= 40; ++i) {
+            const double pressure = i / 40.0;
+            const QPointF at(box.left() + pressure * box.width(),
+                             box.bottom() - std::pow(pressure, preferences_.tabletCurve()) * box.height());
+            i == 0 ? path.moveTo(at) : path.lineTo(at);
+        }
+        painter.setPen(QPen(palette().color(QPalette::Highlight), 2));
+        painter.drawPath(path);
+    }
+
+  private:
+    const Preferences& preferences_;
+};
+
+template <class Enum>
+QComboBox* choice(const QStringList& names, Enum now, const QString& tip, std::function<void(Enum)> take) {
+    auto* box = new QComboBox;
+    box->addItems(names);
+    box->setCurrentIndex(static_cast<int>(now));
+    box->setToolTip(tip);
+    QObject::connect(box, &QComboBox::activated, box,
+                     [take = std::move(take)](int index) { take(static_cast<Enum>(index)); });
+    return box;
+}
+
+}  // namespace
+
+PreferencesDialog::PreferencesDialog(Preferences& preferences, QWidget* parent) : QDialog(parent) {
+    setWindowTitle(tr("Preferences"));
+    auto* layout = new QVBoxLayout(this);
+    layout->setContentsMargins(20, 20, 20, 16);
+    layout->setSpacing(16);
+    auto* form = new QFormLayout;
+    form->setHorizontalSpacing(16);
+    form->setVerticalSpacing(10);
+    form->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
+    layout->addLayout(form);
+
+    auto* theme = choice<Theme>({tr("Dark"), tr("Light")}, preferences.theme(), tr("Colours of the window"),
+                                [&preferences](Theme value) { preferences.setTheme(value); });
+    theme->setObjectName("theme");
+    form->addRow(tr("Theme"), theme);
+    auto* unit = choice<DisplayUnit>({tr("Metres"), tr("Centimetres"), tr("Millimetres"), tr("Inches")},
+                                     preferences.unit(),
+                                     tr("Unit in which lengths are shown; documents are always in metres"),
+                                     [&preferences](DisplayUnit value) { preferences.setUnit(value); });
+    unit->setObjectName("unit");
+    form->addRow(tr("Lengths in"), unit);
+    auto* orbit = choice<OrbitStyle>({tr("Maya: Alt and a mouse button"), tr("Blender: middle mouse button")},
+                                     preferences.orbitStyle(),
+                                     tr("Maya: Alt + left turns, Alt + middle moves, Alt + right "
+                                        "zooms.\nBlender: middle turns, Shift + middle "
+                                        "moves, Ctrl + middle zooms.\nThe wheel zooms in both."),
+                                     [&preferences](OrbitStyle value) { preferences.setOrbitStyle(value); });
+    orbit->setObjectName("orbitStyle");
+    form->addRow(tr("Turning the view"), orbit);
+
+    auto* curve = new NumberBox(0.25, 4, false);
+    curve->setObjectName("tabletCurve");
+    curve->setToolTip(tr("Exponent from pen pressure to brush strength: above 1 needs a firmer hand"));
+    curve->setValue(preferences.tabletCurve());
+    connect(curve, &NumberBox::edited, &preferences, &Preferences::setTabletCurve);
+    form->addRow(tr("Pen pressure"), curve);
+    form->addRow(QString(), new CurveView(preferences));
+
+    auto* autosave = new QSpinBox;
+    autosave->setObjectName("autosave");
+    autosave->setRange(0, 60);
+    autosave->setSuffix(tr(" min"));
+    autosave->setSpecialValueText(tr("never"));
+    autosave->setValue(preferences.autosaveMinutes());
+    autosave->setToolTip(
+        tr("Minutes between copies of unsaved work, from which it comes back after a crash"));
+    connect(autosave, &QSpinBox::valueChanged, &preferences, &Preferences::setAutosaveMinutes);
+    form->addRow(tr("Keep a copy every"), autosave);
+
+    auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close);
+    connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
+    layout->addWidget(buttons);
+}
+
+}  // namespace hairloom::editor

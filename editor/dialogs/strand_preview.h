@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Strands and a head as lines, to be turned with the mouse: small, at once, and without the graphics device.
+
+#include <QWidget>
+
+#include "core/groom/groom.h"
+#include "editor/viewport/orbit_camera.h"
+
+namespace hairloom::editor {
+
+class StrandPreview : public QWidget {
+    Q_OBJECT
+
+  public:
+    explicit StrandPreview(QWidget* parent = nullptr);
+    /// `head` may be null.
+    void show(const Groom& strands, std::shared_ptr<const ScalpMesh> head);
+
+  protected:
+    void paintEvent(QPaintEvent* event) override;
+    void mousePressEvent(QMouseEvent* event) override;
+    void mouseMoveEvent(QMouseEvent* event) override;
+    void wheelEvent(QWheelEvent* event) override;
+    void resizeEvent(QResizeEvent* event) override;
+
+  private:
+    void frame();
+    QPolygonF projected(std::span<const Vec3f> points) const;
+
+    Groom strands_;
+    std::shared_ptr<const ScalpMesh> head_;
+    OrbitCamera camera_;
+    QPointF last_px_;
+};
+
+}  // namespace hairloom::editor

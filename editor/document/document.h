@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The groom being edited, for widgets: the document of core/editing with Qt's signals. Everything that
+// changes it is a command; everyone else listens.
+
+#include <QObject>
+#include <QString>
+#include <memory>
+
+#include "core/groom/groom.h"
+
+namespace hairloom::editing {
+class Command;
+class Document;
+class Subscription;
+enum class Part : std::uint32_t;
+}  // namespace hairloom::editing
+
+namespace hairloom::editor {
+
+/// Parts of a groom that a change touches.
+enum class Change : unsigned {
+    Strands = 1,  ///< strands or points came, went or moved
+    Scalp = 2,    ///< the mesh, what of it is selected, or how dense hair grows on it
+    Spheres = 4,
+    Look = 8,
+    Simulation = 16,
+    FollowHairs = 32,
+    Placement = 64,
+};
+Q_DECLARE_FLAGS(Changes, Change)
+Q_DECLARE_OPERATORS_FOR_FLAGS(Changes)
+inline constexpr Changes kEverything{0x7f};
+
+class Document : public QObject {
+    Q_OBJECT
+
+  public:
+    explicit Document(QObject* parent = nullptr);
+    ~Document() override;
+
+    const Groom& groom() const;
+    /// For tools: strokes and commands. Valid until another groom is opened.
+    editing::Document& editing() { return *editing_; }
+    const editing::Document& editing() const { return *editing_; }
+    /// Neither a head nor hair.
+    bool isEmpty() const { return !groom().scalp && groom().strandCount() == 0; }
+
+    /// The project file; empty before the first save.
+    const QString& path() const { return path_; }
+    /// File name, or what the document was made from.
+    QString title() const;
+    bool isModified() const;
+
+    /// Takes another groom and forgets the history. `path` is its project file, if it has one; `name` is what
+    /// title() says otherwise.
+    void open(Groom groom, const QString& path, const QString& name);
+    /// As open(), for a groom that is not what the file at `path` holds.
+    void restore(Groom groom, const QString& path, const QString& name);
+
+    /// Carries a command out; null does nothing.
+    void perform(std::unique_ptr<editing::Command> command);
+    /// Makes `after` the groom, undoably. Changes that follow each other with the same `mergeKey` other than
+    /// 0 become one step: a slider being dragged.
+    void change(const QString& text, Changes changes, Groom after, quint64 mergeKey = 0);
+
+    /// Writes the project and takes `path` as its file.
+    Status save(const QString& path);
+
+    // The history: steps done and, after them, steps undone.
+    int stepCount() const;
+    int doneSteps() const;
+    QString stepName(int step) const;
+    void undo();
+    void redo();
+    /// Undoes or redoes until so many steps are done.
+    void goToStep(int done);
+    /// Memory that the history holds beyond the groom itself, and how much it may hold; bytes.
+    std::size_t historyBytes() const;
+    std::size_t historyLimit() const;
+
+  Q_SIGNALS:
+    void changed(hairloom::editor::Changes changes);
+    void historyChanged();
+    /// Another groom has been opened; changed() follows.
+    void replaced();
+    /// Path, name or modification.
+    void titleChanged();
+
+  private:
+    void watch();
+    void tell(editing::Part parts);
+
+    std::unique_ptr<editing::Document> editing_;
+    std::unique_ptr<editing::Subscription> subscription_;
+    QString path_;
+    QString name_;
+    bool restored_ = false;
+    quint64 lastMerge_ = 0;  ///< key of the newest step, while another change may join it
+    bool silent_ = false;    ///< between taking a step back and doing its successor
+};
+
+}  // namespace hairloom::editor

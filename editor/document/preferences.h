@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What a person has set for all documents; kept in QSettings.
+
+#include <QObject>
+#include <QStringList>
+
+namespace hairloom::editor {
+
+enum class OrbitStyle { Maya, Blender };
+enum class Theme { Dark, Light };
+enum class DisplayUnit { Metre, Centimetre, Millimetre, Inch };
+
+class Preferences : public QObject {
+    Q_OBJECT
+
+  public:
+    explicit Preferences(QObject* parent = nullptr);
+
+    Theme theme() const { return theme_; }
+    void setTheme(Theme theme);
+    /// How lengths are shown; documents are in metres.
+    DisplayUnit unit() const { return unit_; }
+    void setUnit(DisplayUnit unit);
+    /// Maya: Alt and a button; Blender: the middle button.
+    OrbitStyle orbitStyle() const { return orbitStyle_; }
+    void setOrbitStyle(OrbitStyle style);
+    /// Exponent that takes the pressure of a pen to that of a brush, 0.25 … 4; above 1 is harder to press.
+    double tabletCurve() const { return tabletCurve_; }
+    void setTabletCurve(double exponent);
+    /// Minutes between copies for crash recovery, 0 … 60; 0 never.
+    int autosaveMinutes() const { return autosaveMinutes_; }
+    void setAutosaveMinutes(int minutes);
+
+    /// The most recent first; those that are gone are left out.
+    QStringList recentFiles() const;
+    void addRecentFile(const QString& path);
+    void clearRecentFiles();
+
+  Q_SIGNALS:
+    void changed();
+    void recentFilesChanged();
+
+  private:
+    template <class T>
+    void store(const char* key, T& member, T value);
+
+    Theme theme_;
+    DisplayUnit unit_;
+    OrbitStyle orbitStyle_;
+    double tabletCurve_;
+    int autosaveMinutes_;
+};
+
+}  // namespace hairloom::editor

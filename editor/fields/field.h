@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// One authored number, choice or colour of a groom as a panel shows it. The tables of core/groom/fields.h and
+// runtime/settings.h describe the fields; this is the one form that panels take them in.
+
+#include <QString>
+#include <QStringList>
+#include <array>
+#include <functional>
+#include <vector>
+
+#include "editor/document/document.h"
+#include "editor/document/preferences.h"
+
+namespace hairloom::editor {
+
+enum class FieldKind { Number, Whole, Truth, Choice, Vector, Colour };
+
+struct Field {
+    QString name;   ///< as in files: "windSpeed"
+    QString label;  ///< "Wind speed"
+    QString unit;   ///< of the value; "" for a pure number
+    QString meaning;
+    FieldKind kind = FieldKind::Number;
+    double min = 0;
+    double max = 1;
+    std::array<double, 3> standard{};  ///< the default of each component
+    QStringList choices;
+    Changes changes;
+    std::function<double(const Groom&, std::uint32_t component)> value;
+    /// False, and no change, where the value is not allowed.
+    std::function<bool(Groom&, double value, std::uint32_t component)> set;
+
+    std::uint32_t components() const {
+        return kind == FieldKind::Vector || kind == FieldKind::Colour ? 3 : 1;
+    }
+};
+
+std::vector<Field> simulationFields();
+std::vector<Field> materialFields();
+std::vector<Field> followHairFields();
+std::vector<Field> placementFields();
+
+/// The fields of these names, in that order. Each name is one of `all`.
+std::vector<Field> pick(const std::vector<Field>& all, const QStringList& names);
+
+/// "Wind speed" from "windSpeed".
+QString labelOf(const QString& name);
+
+/// How a value is shown: times `factor`, in `unit`. Metres become what suits the range: micrometres,
+/// millimetres, or the unit of the preferences.
+struct Shown {
+    double factor = 1;
+    QString unit;
+    int decimals = 2;
+};
+Shown shownAs(const QString& unit, double min, double max, DisplayUnit lengths);
+
+/// What turning it does, its unit, range and default, for a tooltip.
+QString tooltipOf(const Field& field, DisplayUnit lengths);
+
+}  // namespace hairloom::editor

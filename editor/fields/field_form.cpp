@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "editor/fields/field_form.h"
+
+#include <QCheckBox>
+#include <QColorDialog>
+#include <QComboBox>
+#include <QLabel>
+#include <QPushButton>
+#include <QSignalBlocker>
+#include <QToolButton>
+
+#include "editor/fields/colour.h"
+#include "editor/fields/number_box.h"
+#include "editor/shell/icons.h"
+
+namespace hairloom::editor {
+namespace {
+
+quint64 nextInteraction() {
+    static quint64 last = 0;
+    return ++last;
+}
+
+}  // namespace
+
+FieldForm::FieldForm(Document& document, const Preferences& preferences, std::vector<Field> fields,
+                     QWidget* parent)
+    : QWidget(parent),
+      document_(document),
+      preferences_(preferences),
+      fields_(std::move(fields)),
+      grid_(new QGridLayout(this)) {
+    grid_->setContentsMargins(0, 0, 0, 0);
+    grid_->setHorizontalSpacing(8);
+    grid_->setVerticalSpacing(5);
+    grid_->setColumnStretch(1, 1);
+    grid_->setColumnMinimumWidth(0, 116);
+    for (const Field& field : fields_) {
+        shown_ |= field.changes;
+        addRow(field);
+    }
+    connect(&document_, &Document::changed, this, &FieldForm::refresh);
+    connect(&preferences_, &Preferences::changed, this, [this] { refresh(kEverything); });
+    refresh(kEverything);
+}
+
+void FieldForm::addRow(const Field& field) {
+    QWidget* control = nullptr;
+    switch (field.kind) {
+        case FieldKind::Truth:
+            control = makeTruth(field);
+            break;
+        case FieldKind::Choice:
+            control = makeChoice(field);
+            break;
+        case FieldKind::Vector:
+            control = makeVector(field);
+            break;
+        case FieldKind::Colour:
+            control = makeColour(field);
+            break;
+        case FieldKind::Number:
+        case FieldKind::Whole:
+            control = makeNumber(field);
+            break;
+    }
+    control->setObjectName(field.name);
+    auto* label = new QLabel(field.label);
+    label->setBuddy(control);
+    auto* standard = new QToolButton;
+    standard->setObjectName("standard");
+    standard->setIcon(icon("reset"));
+    standard->setIconSize({12, 12});
+    standard->setAutoRaise(true);
+    standard->setToolTip(tr("Back to the standard value"));
+    standard->setFocusPolicy(Qt::NoFocus);
+    connect(standard, &QToolButton::clicked, this, [this, &field] {
+        begin();
+        for (std::uint32_t c = 0; c < field.components(); ++c) store(field, field.standard[c], c);
+    });
+    const int row = grid_->rowCount();
+    grid_->addWidget(label, row, 0);
+    grid_->addWidget(control, row, 1);
+    grid_->addWidget(standard, row, 2);
+    refreshers_.push_back([this, &field, label, control, standard] {
+        const QString tip = tooltipOf(field, preferences_.unit());
+        label->setToolTip(tip);
+        control->setToolTip(tip);
+        bool isStandard = true;
+        for (std::uint32_t c = 0; c < field.components(); ++c) {
+            isStandard = isStandard && field.value(document_.groom(), c) == field.standard[c];
+        }
+        standard->setEnabled(!isStandard);
+    });
+}
+
+QWidget* FieldForm::makeNumber(const Field& field) {
+    auto* box = new NumberBox(field.min, field.max, field.kind == FieldKind::Whole);
+    connect(box, &NumberBox::begun, this, &FieldForm::begin);
+    connect(box, &NumberBox::edited, this, [this, &field](double value) { store(field, value); });
+    refreshers_.push_back([this, &field, box] {
+        const Shown shown = shownAs(field.unit, field.min, field.max, preferences_.unit());
+        box->setShown(shown.factor, shown.unit, shown.decimals);
+        box->setValue(field.value(document_.groom(), 0));
+    });
+    return box;
+}
+
+QWidget* FieldForm::makeTruth(const Field& field) {
+    auto* box = new QCheckBox;
+    connect(box, &QCheckBox::clicked, this, [this, &field](bool on) {
+        begin();
+        store(field, on ? 1 : 0);
+    });
+    refreshers_.push_back([this, &field, box] { box->setChecked(field.value(document_.groom(), 0) != 0); });
+    return box;
+}
+
+QWidget* FieldForm::makeChoice(const Field& field) {
+    auto* box = new QComboBox;
+    box->addItems(field.choices);
+    connect(box, &QComboBox::activated, this, [this, &field](int index) {
+        begin();
+        store(field, index);
+    });
+    refreshers_.push_back([this, &field, box] {
+        const QSignalBlocker quiet(box);
+        box->setCurrentIndex(static_cast<int>(field.value(document_.groom(), 0)));
+    });
+    return box;
+}
+
+QWidget* FieldForm::makeVector(const Field& field) {
+    auto* widget = new QWidget;
+    auto* layout = new QHBoxLayout(widget);
+    layout->setContentsMargins(0, 0, 0, 0);
+    layout->setSpacing(4);
+    for (std::uint32_t c = 0; c < 3; ++c) {
+        auto* box = new QDoubleSpinBox;
+        box->setRange(field.min, field.max);
+        box->setDecimals(2);
+        box->setSingleStep((field.max - field.min) / 200);
+        box->setKeyboardTracking(false);
+        box->setPrefix(QStringLiteral("XYZ").mid(static_cast<int>(c), 1) + ' ');
+        box->setMinimumWidth(60);
+        layout->addWidget(box, 1);
+        connect(box, &QDoubleSpinBox::valueChanged, this, [this, &field, c](double value) {
+            begin();
+            store(field, value, c);
+        });
+        refreshers_.push_back([this, &field, box, c] {
+            const QSignalBlocker quiet(box);
+            box->setValue(field.value(document_.groom(), c));
+        });
+    }
+    return widget;
+}
+
+QWidget* FieldForm::makeColour(const Field& field) {
+    auto* button = new QPushButton;
+    button->setProperty("swatch", true);
+    const auto colour = [this, &field] {
+        const Groom& groom = document_.groom();
+        return fromLinear({static_cast<float>(field.value(groom, 0)),
+                           static_cast<float>(field.value(groom, 1)),
+                           static_cast<float>(field.value(groom, 2))});
+    };
+    connect(button, &QPushButton::clicked, this, [this, &field, colour] {
+        const QColor chosen = QColorDialog::getColor(colour(), this, field.label);
+        if (!chosen.isValid()) return;
+        begin();
+        const Vec3f linear = toLinear(chosen);
+        for (std::uint32_t c = 0; c < 3; ++c) store(field, static_cast<double>(linear[c]), c);
+    });
+    refreshers_.push_back([button, colour] {
+        const QColor shown = colour();
+        button->setText(shown.name());
+        button->setStyleSheet(QStringLiteral("QPushButton { background: %1; color: %2; }")
+                                  .arg(shown.name(), shown.lightnessF() > 0.45f ? QStringLiteral("#101010")
+                                                                                : QStringLiteral("#f4f4f4")));
+    });
+    return button;
+}
+
+void FieldForm::begin() {
+    interaction_ = nextInteraction();
+}
+
+void FieldForm::store(const Field& field, double value, std::uint32_t component) {
+    if (field.value(document_.groom(), component) == value) return;
+    Groom groom = document_.groom();
+    if (!field.set(groom, value, component)) return;
+    document_.change(field.label, field.changes, std::move(groom), interaction_);
+}
+
+void FieldForm::refresh(Changes changes) {
+    if (!(changes & shown_)) return;
+    for (const auto& refresh : refreshers_) refresh();
+}
+
+}  // namespace hairloom::editor

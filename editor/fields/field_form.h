@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Controls for described fields, one row each: label, control, and a way back to the standard. They follow
+// the document and change it through its commands.
+
+#include <QGridLayout>
+#include <QWidget>
+#include <functional>
+#include <vector>
+
+#include "editor/document/preferences.h"
+#include "editor/fields/field.h"
+
+namespace hairloom::editor {
+
+class FieldForm : public QWidget {
+    Q_OBJECT
+
+  public:
+    FieldForm(Document& document, const Preferences& preferences, std::vector<Field> fields,
+              QWidget* parent = nullptr);
+
+    /// The control of a field, for tests and help; null where there is none of that name. Objects are named
+    /// after their fields.
+    QWidget* control(const QString& name) const { return findChild<QWidget*>(name); }
+
+  private:
+    void addRow(const Field& field);
+    QWidget* makeNumber(const Field& field);
+    QWidget* makeTruth(const Field& field);
+    QWidget* makeChoice(const Field& field);
+    QWidget* makeVector(const Field& field);
+    QWidget* makeColour(const Field& field);
+    /// A change of one component that belongs to the interaction which began last.
+    void store(const Field& field, double value, std::uint32_t component = 0);
+    void begin();
+    void refresh(Changes changes);
+
+    Document& document_;
+    const Preferences& preferences_;
+    std::vector<Field> fields_;
+    QGridLayout* grid_;
+    Changes shown_;
+    std::vector<std::function<void()>> refreshers_;
+    quint64 interaction_ = 0;
+};
+
+}  // namespace hairloom::editor

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <QApplication>
+#include <QCommandLineParser>
+#include <QTimer>
+
+#include "editor/shell/main_window.h"
+#include "editor/shell/theme.h"
+
+int main(int argc, char** argv) {
+    using namespace hairloom::editor;
+    QApplication application(argc, argv);
+    QCoreApplication::setApplicationName("Hairloom");
+    QCoreApplication::setOrganizationName("Hairloom");
+    QCoreApplication::setApplicationVersion(HAIRLOOM_VERSION);
+    QCommandLineParser parser;
+    parser.setApplicationDescription(QObject::tr("Hairstyles for games: groom, simulate, export."));
+    parser.addHelpOption();
+    parser.addVersionOption();
+    const QCommandLineOption quit("quit-when-shown",
+                                  QObject::tr("Ends as soon as the window stands; for measuring the start."));
+    parser.addOption(quit);
+    parser.addPositionalArgument("file", QObject::tr("Project, head or hair to open"), "[file]");
+    parser.process(application);
+    applyTheme(application, Preferences().theme());
+    MainWindow window;
+    window.show();
+    if (const QStringList files = parser.positionalArguments(); !files.isEmpty()) window.open(files.first());
+    if (parser.isSet(quit)) {
+        QTimer::singleShot(0, &window, [&window] {
+            window.repaint();
+            QCoreApplication::quit();
+        });
+    }
+    return QApplication::exec();
+}

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+
+#include "editor/overlays/overlay_mode.h"
+#include "editor/session.h"
+
+namespace hairloom::editor {
+
+void drawStrain(const Session& session, Marks& marks) {
+    constexpr float kMost = 0.01f;
+    const Groom& groom = session.document.groom();
+    const auto rest = groom.positions();
+    const auto now = shownPositions(session);
+    for (std::size_t s = 0; s < groom.strandCount(); ++s) {
+        for (std::uint32_t p = groom.offsets[s] + 1; p < groom.offsets[s + 1]; ++p) {
+            const float length = (rest[p] - rest[p - 1]).norm();
+            if (!(length > 0)) continue;
+            const float strain = std::abs((now[p] - now[p - 1]).norm() / length - 1);
+            marks.line(now[p - 1], now[p], heat(strain / kMost), 1);
+        }
+    }
+}
+
+}  // namespace hairloom::editor

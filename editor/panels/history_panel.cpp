@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What was done, what can be done again, and the memory that it takes.
+#include <QLabel>
+#include <QListWidget>
+#include <QVBoxLayout>
+
+#include "editor/panels/list.h"
+#include "editor/session.h"
+
+namespace hairloom::editor {
+namespace {
+
+class HistoryPanel : public QWidget {
+  public:
+    explicit HistoryPanel(Session& session)
+        : document_(session.document), list_(new QListWidget), memory_(new QLabel) {
+        auto* layout = new QVBoxLayout(this);
+        layout->setContentsMargins(12, 8, 12, 12);
+        list_->setObjectName("steps");
+        list_->setToolTip(tr("Click a step to go back or forward to it"));
+        memory_->setProperty("role", "dim");
+        layout->addWidget(list_, 1);
+        layout->addWidget(memory_);
+        connect(list_, &QListWidget::itemClicked, this,
+                [this](QListWidgetItem* item) { document_.goToStep(list_->row(item)); });
+        connect(&document_, &Document::historyChanged, this, [this] { fill(); });
+        connect(&document_, &Document::replaced, this, [this] { fill(); });
+        fill();
+    }
+
+  private:
+    void fill() {
+        list_->clear();
+        list_->addItem(tr("As opened"));
+        for (int step = 0; step < document_.stepCount(); ++step) {
+            auto* item = new QListWidgetItem(document_.stepName(step));
+            if (step >= document_.doneSteps()) {
+                item->setForeground(palette().color(QPalette::Disabled, QPalette::Text));
+            }
+            list_->addItem(item);
+        }
+        list_->setCurrentRow(document_.doneSteps());
+        memory_->setText(tr("%1 of at most %2 MB")
+                             .arg(static_cast<double>(document_.historyBytes()) / 1e6, 0, 'f', 1)
+                             .arg(static_cast<double>(document_.historyLimit()) / 1e6, 0, 'f', 0));
+    }
+
+    Document& document_;
+    QListWidget* list_;
+    QLabel* memory_;
+};
+
+}  // namespace
+
+QWidget* makeHistoryPanel(Session& session) {
+    return new HistoryPanel(session);
+}
+
+}  // namespace hairloom::editor

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How the hair moves: presets of measured hair, and all settings of the engine. A change shows in the running
+// simulation at once.
+#include <QComboBox>
+#include <QVBoxLayout>
+
+#include "editor/fields/field_form.h"
+#include "editor/panels/list.h"
+#include "editor/panels/panel.h"
+#include "editor/session.h"
+#include "workspace/hair_preset.h"
+
+namespace hairloom::editor {
+namespace {
+
+struct Group {
+    QString title;
+    QStringList fields;
+    bool open;
+};
+
+std::vector<Group> groups() {
+    return {
+        {QObject::tr("Time"),
+         {"integrator", "substeps", "dampingTime", "teleportDistance", "sleepSpeed", "sleepDelay"},
+         true},
+        {QObject::tr("Shape"),
+         {"angularMethod", "angularStiffness", "angularTipShare", "bendDampingTime", "restGravity"},
+         true},
+        {QObject::tr("Wind and gravity"),
+         {"windSpeed", "windKind", "windDirection", "windGustiness", "windFrequency", "windGustSize",
+          "windSeed", "airDrag", "gravity"},
+         true},
+        {QObject::tr("Length"),
+         {"lengthMethod", "lengthIterations", "maximalExtension", "springFrequency", "clampedPoints"},
+         false},
+        {QObject::tr("Collision"),
+         {"collisionResponse", "pearlRadiusRoot", "pearlRadiusTip", "friction", "restitution",
+          "penaltyFrequency"},
+         false},
+    };
+}
+
+QWidget* makePresets(Session& session) {
+    auto* row = new QWidget;
+    auto* layout = new QVBoxLayout(row);
+    layout->setContentsMargins(0, 0, 0, 0);
+    auto* box = new QComboBox;
+    box->setObjectName("preset");
+    box->setToolTip(QObject::tr("Stiffness, thickness and colour of measured hair; settings of motion stay"));
+    box->addItem(QObject::tr("Preset of measured hair…"));
+    for (const runtime::HairPreset& preset : runtime::presets()) {
+        box->addItem(labelOf(preset.name));
+        box->setItemData(box->count() - 1, QString::fromUtf8(preset.description), Qt::ToolTipRole);
+    }
+    QObject::connect(box, &QComboBox::activated, box, [&session, box](int index) {
+        if (index == 0) return;
+        const runtime::HairPreset& preset = runtime::presets()[static_cast<std::size_t>(index - 1)];
+        Groom groom = session.document.groom();
+        applyPreset(preset, groom);
+        session.document.change(QObject::tr("Preset %1").arg(box->itemText(index)),
+                                Changes(Change::Simulation) | Change::Look, std::move(groom));
+        box->setCurrentIndex(0);
+    });
+    layout->addWidget(box);
+    return row;
+}
+
+}  // namespace
+
+QWidget* makePhysicsPanel(Session& session) {
+    const std::vector<Field> fields = simulationFields();
+    QWidget* const content = column({makePresets(session)});
+    auto* layout = static_cast<QVBoxLayout*>(content->layout());
+    QStringList shown;
+    for (const Group& group : groups()) {
+        shown += group.fields;
+        auto* form = new FieldForm(session.document, session.preferences, pick(fields, group.fields));
+        layout->insertWidget(layout->count() - 1, foldable(group.title, form, group.open));
+    }
+    // Fields that the engine has gained since.
+    QStringList others;
+    for (const Field& field : fields) {
+        if (!shown.contains(field.name)) others.append(field.name);
+    }
+    if (!others.isEmpty()) {
+        auto* form = new FieldForm(session.document, session.preferences, pick(fields, others));
+        layout->insertWidget(layout->count() - 1, foldable(QObject::tr("More"), form, false));
+    }
+    return scrolled(content);
+}
+
+}  // namespace hairloom::editor

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The collision spheres: a list, their numbers, fitting them to the head, and how well they do.
+#include <QComboBox>
+#include <QHeaderView>
+#include <QLabel>
+#include <QPushButton>
+#include <QSpinBox>
+#include <QTreeWidget>
+#include <QVBoxLayout>
+
+#include "core/editing/document.h"
+#include "core/editing/settings_commands.h"
+#include "core/editing/sphere_commands.h"
+#include "core/editing/sphere_fit.h"
+#include "editor/panels/list.h"
+#include "editor/panels/panel.h"
+#include "editor/session.h"
+#include "editor/tools/option_form.h"
+
+namespace hairloom::editor {
+namespace {
+
+constexpr float kNearHair = 0.04f;  // metres: skin that spheres have to cover
+
+QPushButton* button(const char* name, const QString& text, const QString& tip) {
+    auto* made = new QPushButton(text);
+    made->setObjectName(name);
+    made->setToolTip(tip);
+    return made;
+}
+
+class SpheresPanel : public QWidget {
+  public:
+    explicit SpheresPanel(Session& session)
+        : session_(session),
+          list_(new QTreeWidget),
+          bone_(new QComboBox),
+          count_(new QSpinBox),
+          fit_(new QLabel) {
+        auto* layout = new QVBoxLayout(this);
+        layout->setContentsMargins(0, 0, 0, 0);
+        layout->setSpacing(8);
+        list_->setObjectName("spheres");
+        list_->setHeaderLabels({tr("Sphere"), tr("Radius"), tr("Bone")});
+        list_->setRootIsDecorated(false);
+        list_->setMinimumHeight(200);
+        list_->header()->resizeSection(0, 130);
+        list_->header()->resizeSection(1, 80);
+        list_->setToolTip(tr("The spheres that hair collides with"));
+        layout->addWidget(list_, 1);
+
+        auto* row = new QHBoxLayout;
+        auto* mirror =
+            button("sphereMirror", tr("Mirror"), tr("Adds the sphere again on the other side of the head"));
+        auto* remove = button("sphereRemove", tr("Remove"), tr("Takes the sphere away"));
+        row->addWidget(mirror);
+        row->addWidget(remove);
+        layout->addLayout(row);
+        connect(mirror, &QPushButton::clicked, this, [this] {
+            onSelected([](const editing::Model& model, std::size_t index) {
+                return editing::mirrorSphere(model, index);
+            });
+        });
+        connect(remove, &QPushButton::clicked, this, [this] {
+            onSelected([](const editing::Model& model, std::size_t index) {
+                return editing::removeSphere(model, index);
+            });
+        });
+        makeNumbers(*layout);
+
+        layout->addWidget(heading(tr("Fit to the head")));
+        auto* fitRow = new QHBoxLayout;
+        count_->setObjectName("sphereCount");
+        count_->setRange(1, 64);
+        count_->setValue(12);
+        count_->setSuffix(tr(" spheres"));
+        count_->setToolTip(tr("Number of spheres; more lie closer to the skin and cost more"));
+        auto* fit = button("sphereFit", tr("Fit"),
+                           tr("Replaces all spheres by ones that cover head, neck and shoulders "
+                              "where hair comes near"));
+        fitRow->addWidget(count_, 1);
+        fitRow->addWidget(fit);
+        layout->addLayout(fitRow);
+        fit_->setProperty("role", "dim");
+        fit_->setWordWrap(true);
+        layout->addWidget(fit_);
+        connect(fit, &QPushButton::clicked, this, &SpheresPanel::fit);
+        connect(&session_.document, &Document::changed, this, [this](Changes changes) {
+            if (changes & Change::Spheres) refresh();
+        });
+        connect(&session_.player, &Player::motionsChanged, this, &SpheresPanel::refresh);
+        connect(list_, &QTreeWidget::currentItemChanged, this, [this] { showNumbers(); });
+        refresh();
+    }
+
+  private:
+    const std::vector<CollisionSphere>& spheres() const { return session_.document.groom().spheres; }
+
+    void makeNumbers(QVBoxLayout& layout) {
+        numbers_ = new OptionForm(session_.preferences);
+        numbers_->addNumber(
+            "selectedRadius", tr("Radius"), tr("Radius of the chosen sphere"), "m", 0.001, 0.5, false,
+            [this] { return selected() ? static_cast<double>(spheres()[*selected()].radius) : 0.001; },
+            [this](double radius) {
+                onSelected([radius](const editing::Model& model, std::size_t index) {
+                    return editing::resizeSphere(model, index, static_cast<float>(radius));
+                });
+            });
+        bone_->setObjectName("sphereBone");
+        bone_->setToolTip(tr("Bone that carries the sphere; without one it moves with the head as a whole"));
+        connect(bone_, &QComboBox::activated, this, [this](int index) {
+            const std::string bone = index == 0 ? std::string() : bone_->itemText(index).toStdString();
+            onSelected([bone](const editing::Model& model, std::size_t at) {
+                return editing::attachSphere(model, at, bone);
+            });
+        });
+        numbers_->addWidget(tr("Bone"), bone_);
+        layout.addWidget(numbers_);
+    }
+
+    std::optional<std::size_t> selected() const {
+        const int row = list_->indexOfTopLevelItem(list_->currentItem());
+        if (row < 0 || static_cast<std::size_t>(row) >= spheres().size()) return std::nullopt;
+        return static_cast<std::size_t>(row);
+    }
+
+    template <class MakeCommand>
+    void onSelected(MakeCommand make) {
+        const auto index = selected();
+        if (!index) {
+            session_.messages.say(tr("Choose a sphere in the list first"));
+            return;
+        }
+        session_.document.perform(make(session_.document.editing().model(), *index));
+    }
+
+    void refresh() {
+        const int row = list_->indexOfTopLevelItem(list_->currentItem());
+        const QSignalBlocker quiet(list_);
+        list_->clear();
+        for (const CollisionSphere& sphere : spheres()) {
+            list_->addTopLevelItem(new QTreeWidgetItem({QString::fromStdString(sphere.name),
+                                                        tr("%1 mm").arg(sphere.radius * 1000, 0, 'f', 1),
+                                                        QString::fromStdString(sphere.bone)}));
+        }
+        if (!spheres().empty()) {
+            list_->setCurrentItem(list_->topLevelItem(std::clamp(row, 0, list_->topLevelItemCount() - 1)));
+        }
+        showNumbers();
+    }
+
+    void showNumbers() {
+        numbers_->setEnabled(selected().has_value());
+        numbers_->refresh();
+        bone_->clear();
+        bone_->addItem(tr("none"));
+        if (const auto& actor = session_.player.actor()) {
+            for (const Bone& bone : actor->skeleton().bones())
+                bone_->addItem(QString::fromStdString(bone.name));
+        }
+        if (selected()) {
+            const QString bone = QString::fromStdString(spheres()[*selected()].bone);
+            bone_->setCurrentIndex(std::max(0, bone_->findText(bone)));
+        }
+    }
+
+    void fit() {
+        const Groom& groom = session_.document.groom();
+        if (!groom.scalp) return;
+        session_.tasks.run<editing::SphereFit>(
+            tr("Fitting spheres"),
+            [groom, count = count_->value()](TaskControl&) {
+                editing::SphereFitOptions options;
+                options.count = static_cast<std::uint32_t>(count);
+                if (groom.strandCount() > 0) options.region = editing::facesNearHair(groom, kNearHair);
+                return editing::fitSpheres(*groom.scalp, options);
+            },
+            [this](editing::SphereFit fit) {
+                fit_->setText(tr("Worst gap %1 mm, mean %2 mm; farthest bulge %3 mm")
+                                  .arg(fit.worstGap * 1000, 0, 'f', 1)
+                                  .arg(fit.meanGap * 1000, 0, 'f', 1)
+                                  .arg(fit.worstBulge * 1000, 0, 'f', 1));
+                session_.document.perform(editing::setSpheres(session_.document.editing().model(),
+                                                              std::move(fit.spheres), "Fit spheres"));
+            });
+    }
+
+    Session& session_;
+    QTreeWidget* list_;
+    OptionForm* numbers_ = nullptr;
+    QComboBox* bone_;
+    QSpinBox* count_;
+    QLabel* fit_;
+};
+
+}  // namespace
+
+QWidget* makeSpheresPanel(Session& session) {
+    return scrolled(column({new SpheresPanel(session)}));
+}
+
+}  // namespace hairloom::editor

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "editor/panels/stability_gauge.h"
+
+#include <QPushButton>
+#include <cmath>
+
+#include "editor/session.h"
+#include "editor/shell/theme.h"
+
+namespace hairloom::editor {
+namespace {
+
+constexpr float kFrameTime = 1.0f / 60.0f;
+
+runtime::StableAdvice adviceFor(const Groom& groom) {
+    static_assert(sizeof(Vec3f) == sizeof(runtime::Float3));
+    const auto positions = groom.positions();
+    runtime::StrandsView strands;
+    strands.offsets = groom.offsets.view();
+    strands.restPositions_ss = {reinterpret_cast<const runtime::Float3*>(positions.data()), positions.size()};
+    return runtime::adviseStability(strands, groom.simulation, kFrameTime);
+}
+
+}  // namespace
+
+StabilityGauge::StabilityGauge(Session& session, QWidget* parent)
+    : QWidget(parent),
+      session_(session),
+      bar_(new QProgressBar),
+      words_(new QLabel),
+      offers_(new QVBoxLayout) {
+    auto* layout = new QVBoxLayout(this);
+    layout->setContentsMargins(0, 0, 0, 0);
+    layout->setSpacing(6);
+    bar_->setObjectName("stability");
+    bar_->setRange(0, 100);
+    bar_->setTextVisible(false);
+    bar_->setFixedHeight(10);
+    bar_->setToolTip(tr("Step over the longest stable one: full is where the simulation would explode"));
+    words_->setWordWrap(true);
+    words_->setProperty("role", "dim");
+    layout->addWidget(bar_);
+    layout->addWidget(words_);
+    layout->addLayout(offers_);
+    soon_.setSingleShot(true);
+    soon_.setInterval(80);
+    connect(&soon_, &QTimer::timeout, this, &StabilityGauge::update);
+    connect(&session_.document, &Document::changed, this, [this](Changes changes) {
+        if (changes & (Changes(Change::Simulation) | Change::Strands)) soon_.start();
+    });
+    connect(&session_.preferences, &Preferences::changed, this, &StabilityGauge::update);
+    update();
+}
+
+void StabilityGauge::update() {
+    while (QLayoutItem* item = offers_->takeAt(0)) {
+        delete item->widget();
+        delete item;
+    }
+    advice_ = {};
+    const Groom& groom = session_.document.groom();
+    setVisible(groom.strandCount() > 0);
+    if (groom.strandCount() == 0) return;
+    advice_ = adviceFor(groom);
+    const double factor = advice_.region.factor;
+    bar_->setValue(std::isfinite(factor) ? static_cast<int>(std::min(100.0, 100 * factor)) : 100);
+    const ThemeColours colours = themeColours(session_.preferences.theme());
+    const QColor colour = factor > 1 ? colours.bad : factor > 0.8 ? colours.caution : colours.good;
+    bar_->setStyleSheet(QStringLiteral("QProgressBar::chunk { background: %1; }").arg(colour.name()));
+    words_->setText(!advice_.words.empty() ? QString::fromStdString(advice_.words)
+                    : factor > 0 ? tr("Stable: at %1 % of the longest step").arg(100 * factor, 0, 'f', 0)
+                                 : tr("Stable at any step: nothing stiff is left explicit"));
+    for (const runtime::StableOffer& offer : advice_.offers) {
+        auto* button = new QPushButton(QString::fromStdString(offer.words));
+        button->setToolTip(tr("Changes the settings to these, undoably"));
+        offers_->addWidget(button);
+        connect(button, &QPushButton::clicked, this, [this, settings = offer.settings] {
+            Groom mended = session_.document.groom();
+            mended.simulation = settings;
+            session_.document.change(tr("Stable settings"), Change::Simulation, std::move(mended));
+        });
+    }
+}
+
+}  // namespace hairloom::editor

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The settings of the tool that has the pointer.
+#include <QLabel>
+#include <QStackedWidget>
+#include <QVBoxLayout>
+
+#include "editor/panels/list.h"
+#include "editor/panels/panel.h"
+#include "editor/session.h"
+
+namespace hairloom::editor {
+
+QWidget* makeToolPanel(Session& session) {
+    auto* pages = new QStackedWidget;
+    const auto page = [](const QString& title, const QString& tip, QWidget* options) {
+        auto* text = new QLabel(tip);
+        text->setProperty("role", "dim");
+        text->setWordWrap(true);
+        return options ? column({heading(title), text, options}) : column({heading(title), text});
+    };
+    pages->addWidget(
+        page(QObject::tr("Move the view"),
+             QObject::tr("Drag turns the view, the middle button moves it, the wheel zooms. Choose a tool at "
+                         "the left to change something."),
+             nullptr));
+    QHash<Tool*, QWidget*> pageOf;
+    for (const auto& tool : session.tools.all()) {
+        QWidget* const made = page(tool->info().name, tool->info().tip, tool->makeOptions());
+        pages->addWidget(made);
+        pageOf.insert(tool.get(), made);
+    }
+    QObject::connect(&session.tools, &ToolBox::activeChanged, pages, [pages, pageOf](Tool* tool) {
+        pages->setCurrentWidget(tool ? pageOf.value(tool) : pages->widget(0));
+    });
+    return scrolled(pages);
+}
+
+}  // namespace hairloom::editor

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The program's own icons: one-colour SVG drawings that take the text colour of the theme.
+
+#include <QIcon>
+#include <QString>
+
+namespace hairloom::editor {
+
+/// The drawing editor/resources/icons/NAME.svg, sharp at any size; follows the palette of the application.
+QIcon icon(const QString& name);
+
+}  // namespace hairloom::editor

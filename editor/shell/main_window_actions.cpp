@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The commands of the window: menus, shortcuts, tooltips.
+#include <QApplication>
+#include <QMenuBar>
+#include <QMessageBox>
+
+#include "editor/dialogs/export_dialog.h"
+#include "editor/dialogs/preferences_dialog.h"
+#include "editor/dialogs/shortcut_dialog.h"
+#include "editor/shell/icons.h"
+#include "editor/shell/main_window.h"
+
+namespace hairloom::editor {
+
+void MainWindow::addFileActions() {
+    QMenu* menu = menuBar()->addMenu(tr("&File"));
+    menu->setToolTipsVisible(true);
+    const auto add = [&](const ActionInfo& info, std::function<void()> run) {
+        menu->addAction(&actions_->add(info, std::move(run)));
+    };
+    add({"file.new", tr("&New"), "new", tr("Closes the document and shows the start page"),
+         QKeySequence::New},
+        [this] { newDocument(); });
+    add({"file.open", tr("&Open…"), "open", tr("Opens a project, a head or hair"), QKeySequence::Open},
+        [this] { chooseAndOpen(); });
+    recentMenu_ = menu->addMenu(icon("history"), tr("Open &recent"));
+    recentMenu_->setToolTipsVisible(true);
+    menu->addSeparator();
+    add({"file.save", tr("&Save"), "save", tr("Writes the project"), QKeySequence::Save}, [this] { save(); });
+    add({"file.saveAs", tr("Save &as…"), "", tr("Writes the project to another file"),
+         QKeySequence("Ctrl+Shift+S")},
+        [this] { saveAs(); });
+    menu->addSeparator();
+    add({"file.import", tr("&Import hair…"), "import",
+         tr("Takes strands of another program onto the head, after a look at them"), QKeySequence("Ctrl+I")},
+        [this] { chooseAndImport(); });
+    add({"file.export", tr("&Export hair…"), "export",
+         tr("Writes the hair for a game and reads it back to compare"), QKeySequence("Ctrl+E")},
+        [this] {
+            ExportDialog dialog(session_, this);
+            dialog.exec();
+        });
+    menu->addSeparator();
+    add({"file.quit", tr("&Quit"), "", tr("Leaves the program"), QKeySequence("Ctrl+Q")},
+        [this] { close(); });
+}
+
+void MainWindow::addEditActions() {
+    QMenu* menu = menuBar()->addMenu(tr("&Edit"));
+    menu->setToolTipsVisible(true);
+    const auto add = [&](const ActionInfo& info, std::function<void()> run) -> QAction& {
+        QAction& action = actions_->add(info, std::move(run));
+        menu->addAction(&action);
+        return action;
+    };
+    QAction& undo =
+        add({"edit.undo", tr("&Undo"), "undo", tr("Takes the last step back"), QKeySequence("Ctrl+Z")},
+            [this] { session_.document.undo(); });
+    QAction& redo = add({"edit.redo", tr("&Redo"), "redo", tr("Does the step again that was taken back"),
+                         QKeySequence("Ctrl+Shift+Z")},
+                        [this] { session_.document.redo(); });
+    const auto enable = [this, &undo, &redo] {
+        const Document& document = session_.document;
+        undo.setEnabled(document.doneSteps() > 0);
+        redo.setEnabled(document.doneSteps() < document.stepCount());
+        undo.setText(undo.isEnabled() ? tr("&Undo %1").arg(document.stepName(document.doneSteps() - 1))
+                                      : tr("&Undo"));
+        redo.setText(redo.isEnabled() ? tr("&Redo %1").arg(document.stepName(document.doneSteps()))
+                                      : tr("&Redo"));
+    };
+    connect(&session_.document, &Document::historyChanged, this, enable);
+    connect(&session_.document, &Document::replaced, this, enable);
+    enable();
+    menu->addSeparator();
+    add({"edit.preferences", tr("&Preferences…"), "settings", tr("Theme, units, mouse, pen, autosave"),
+         QKeySequence("Ctrl+,")},
+        [this] {
+            PreferencesDialog dialog(session_.preferences, this);
+            dialog.exec();
+        });
+    add({"edit.shortcuts",
+         tr("&Keyboard shortcuts…"),
+         "keyboard",
+         tr("Shows and changes the keys of all commands"),
+         {}},
+        [this] {
+            ShortcutDialog dialog(*actions_, this);
+            dialog.exec();
+        });
+}
+
+void MainWindow::addViewActions() {
+    QMenu* menu = menuBar()->addMenu(tr("&View"));
+    menu->setToolTipsVisible(true);
+    const auto add = [&](const ActionInfo& info, std::function<void()> run) -> QAction& {
+        QAction& action = actions_->add(info, std::move(run));
+        menu->addAction(&action);
+        return action;
+    };
+    add({"view.frame", tr("&Frame all"), "frame", tr("Shows all of the hair"), QKeySequence("Home")},
+        [this] { session_.viewport->frameAll(); });
+    const struct {
+        const char *id, *text, *key;
+        render::View view;
+    } kViews[] = {
+        {"view.front", QT_TR_NOOP("From the &front"), "1", render::View::Front},
+        {"view.back", QT_TR_NOOP("From the &back"), "Ctrl+1", render::View::Back},
+        {"view.left", QT_TR_NOOP("From the &left"), "3", render::View::Left},
+        {"view.right", QT_TR_NOOP("From the &right"), "Ctrl+3", render::View::Right},
+        {"view.threeQuarter", QT_TR_NOOP("Three &quarters"), "7", render::View::ThreeQuarter},
+    };
+    for (const auto& view : kViews) {
+        add({view.id, tr(view.text), "", tr("Looks at the head from this side"), QKeySequence(view.key)},
+            [this, at = view.view] { session_.viewport->look(at); });
+    }
+    menu->addSeparator();
+    QAction& ortho = add({"view.orthographic", tr("&Orthographic"), "ortho",
+                          tr("Takes perspective out of the view"), QKeySequence("5"), true},
+                         [] {});
+    connect(&ortho, &QAction::toggled, session_.viewport, &Viewport::setOrthographic);
+    QAction& turntable = add({"view.turntable", tr("&Turntable"), "turntable",
+                              tr("Turns the view about the head"), QKeySequence("Shift+T"), true},
+                             [] {});
+    connect(&turntable, &QAction::toggled, session_.viewport, &Viewport::setTurntable);
+    menu->addSeparator();
+    panelMenu_ = menu->addMenu(tr("&Panels"));
+    add({"view.resetLayout",
+         tr("Reset la&yout"),
+         "",
+         tr("Puts all panels back to where they were first"),
+         {}},
+        [this] { resetLayout(); });
+    add({"view.theme", tr("Light or &dark"), "theme", tr("Changes between the two themes"),
+         QKeySequence("Ctrl+T")},
+        [this] {
+            Preferences& preferences = session_.preferences;
+            preferences.setTheme(preferences.theme() == Theme::Dark ? Theme::Light : Theme::Dark);
+        });
+}
+
+void MainWindow::addPlayActions() {
+    QMenu* menu = menuBar()->addMenu(tr("&Simulation"));
+    menu->setToolTipsVisible(true);
+    const auto add = [&](const ActionInfo& info, std::function<void()> run) -> QAction& {
+        QAction& action = actions_->add(info, std::move(run));
+        menu->addAction(&action);
+        return action;
+    };
+    QAction& toggle =
+        add({"play.toggle", tr("&Play"), "play", tr("Lets the hair move, or stops it where it is"),
+             QKeySequence("Space")},
+            [this] { session_.player.isPlaying() ? session_.player.pause() : session_.player.play(); });
+    add({"play.step", tr("&Step"), "step", tr("Moves the hair by one frame of 1/60 s"), QKeySequence(".")},
+        [this] { session_.player.step(); });
+    add({"play.reset", tr("&Reset to rest"), "reset", tr("Puts the hair back to its authored shape"),
+         QKeySequence("Shift+Space")},
+        [this] { session_.player.reset(); });
+    connect(&session_.player, &Player::stateChanged, this, [this, &toggle] {
+        toggle.setIcon(icon(session_.player.isPlaying() ? "pause" : "play"));
+        toggle.setText(session_.player.isPlaying() ? tr("&Pause") : tr("&Play"));
+    });
+}
+
+void MainWindow::addToolActions() {
+    QMenu* menu = menuBar()->addMenu(tr("&Tools"));
+    menu->setToolTipsVisible(true);
+    toolGroup_->setExclusive(true);
+    const auto add = [&](const ActionInfo& info, Tool* tool) {
+        QAction& action = actions_->add(info, [this, tool] { session_.tools.activate(tool); });
+        toolGroup_->addAction(&action);
+        menu->addAction(&action);
+        connect(&session_.tools, &ToolBox::activeChanged, &action,
+                [&action, tool](Tool* active) { action.setChecked(active == tool); });
+    };
+    add({"tool.view", tr("Move the view"), "navigate",
+         tr("Drag turns the view, the middle button moves it, the wheel zooms"), QKeySequence("Q"), true},
+        nullptr);
+    for (const auto& tool : session_.tools.all()) {
+        const ToolInfo& info = tool->info();
+        add({"tool." + info.id, info.name, info.icon, info.tip, info.shortcut, true}, tool.get());
+    }
+    actions_->get("tool.view").setChecked(true);
+}
+
+void MainWindow::addHelpActions() {
+    QMenu* menu = menuBar()->addMenu(tr("&Help"));
+    menu->addAction(&actions_->add(
+        {"help.about", tr("&About Hairloom"), "hairloom", tr("Version and licence"), {}}, [this] {
+            QMessageBox::about(this, tr("Hairloom"),
+                               tr("<p><b>Hairloom %1</b></p><p>Hairstyles for games. GPL-3.0-or-later.</p>")
+                                   .arg(QCoreApplication::applicationVersion()));
+        }));
+}
+
+}  // namespace hairloom::editor

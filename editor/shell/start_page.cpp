@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "editor/shell/start_page.h"
+
+#include <QFileInfo>
+#include <QLabel>
+#include <QLocale>
+#include <QPushButton>
+
+#include "editor/document/files.h"
+#include "editor/fields/field.h"
+#include "editor/panels/panel.h"
+#include "editor/shell/icons.h"
+#include "workspace/sample.h"
+
+namespace hairloom::editor {
+namespace {
+
+QPushButton* card(const QString& title, const QString& iconName, const QString& tip) {
+    auto* button = new QPushButton(icon(iconName), title);
+    button->setProperty("role", "card");
+    button->setIconSize({20, 20});
+    button->setToolTip(tip);
+    button->setCursor(Qt::PointingHandCursor);
+    return button;
+}
+
+void clear(QLayout& layout) {
+    while (QLayoutItem* item = layout.takeAt(0)) {
+        delete item->widget();
+        delete item;
+    }
+}
+
+QLabel* dim(const QString& text) {
+    auto* label = new QLabel(text);
+    label->setProperty("role", "dim");
+    label->setWordWrap(true);
+    return label;
+}
+
+}  // namespace
+
+StartPage::StartPage(Session& session, QWidget* parent)
+    : QWidget(parent), session_(session), recent_(new QVBoxLayout), recoveries_(new QVBoxLayout) {
+    setProperty("role", "page");
+    setAttribute(Qt::WA_StyledBackground);
+    auto* outer = new QHBoxLayout(this);
+    outer->addStretch(1);
+    auto* page = new QVBoxLayout;
+    page->setSpacing(10);
+    outer->addLayout(page, 4);
+    outer->addStretch(1);
+    page->addStretch(2);
+    auto* title = new QLabel("Hairloom");
+    title->setProperty("role", "title");
+    page->addWidget(title);
+    auto* first = new QLabel(tr("Open a head and paint where hair grows, or start from a sample."));
+    first->setObjectName("firstStep");
+    first->setWordWrap(true);
+    page->addWidget(first);
+    page->addSpacing(8);
+    page->addLayout(recoveries_);
+
+    auto* open =
+        card(tr("Open a head, hair or project…"), "open",
+             tr("Meshes: OBJ, PLY, STL, FBX, glTF. Hair: .hair, .tfx, OBJ lines, Cinema 4D. Or drop a file "
+                "anywhere in this window."));
+    open->setObjectName("open");
+    connect(open, &QPushButton::clicked, this, &StartPage::openRequested);
+    page->addWidget(open);
+
+    page->addWidget(heading(tr("Samples")));
+    auto* samples = new QHBoxLayout;
+    samples->setSpacing(8);
+    page->addLayout(samples);
+    const auto folder = samplesFolder();
+    const auto addSample = [&](const QString& name, const QString& label, const QString& tip) {
+        auto* button = card(label, "hairloom", tip);
+        button->setObjectName("sample:" + name);
+        connect(button, &QPushButton::clicked, this, [this, name] { openSample(session_, name); });
+        samples->addWidget(button);
+    };
+    if (folder.empty()) {
+        samples->addWidget(dim(tr("The samples were not found beside the program.")));
+    } else {
+        addSample({}, tr("Bare head"), tr("A bust with a skeleton and clips, no hair"));
+        for (const std::string& name : sampleNames(folder)) {
+            const QString sample = QString::fromStdString(name);
+            addSample(sample, labelOf(sample),
+                      tr("Makes the hairstyle “%1” on the bust in a few seconds").arg(sample));
+        }
+    }
+    page->addWidget(heading(tr("Recent files")));
+    page->addLayout(recent_);
+    page->addStretch(3);
+    connect(&session_.preferences, &Preferences::recentFilesChanged, this, &StartPage::fillRecent);
+    fillRecent();
+    fillRecoveries();
+}
+
+void StartPage::fillRecent() {
+    clear(*recent_);
+    const QStringList files = session_.preferences.recentFiles();
+    if (files.isEmpty()) recent_->addWidget(dim(tr("Files that you open will stand here.")));
+    for (const QString& path : files.mid(0, 6)) {
+        auto* button = card(QFileInfo(path).fileName(), "history", path);
+        connect(button, &QPushButton::clicked, this, [this, path] { openFile(session_, path); });
+        recent_->addWidget(button);
+    }
+}
+
+void StartPage::fillRecoveries() {
+    for (const Recovery& recovery : Autosave::recoveries()) {
+        auto* row = new QWidget;
+        auto* layout = new QHBoxLayout(row);
+        layout->setContentsMargins(0, 0, 0, 0);
+        auto* restore = card(tr("Unsaved work: %1, %2")
+                                 .arg(recovery.name, QLocale().toString(recovery.when, QLocale::ShortFormat)),
+                             "warning", tr("Brings back what was not saved when the program ended"));
+        restore->setObjectName("recover");
+        auto* discard = new QPushButton(tr("Discard"));
+        discard->setToolTip(tr("Deletes the copy for good"));
+        layout->addWidget(restore, 1);
+        layout->addWidget(discard);
+        connect(restore, &QPushButton::clicked, this, [this, recovery] {
+            openRecovered(session_, recovery.file, recovery.documentPath, recovery.name);
+        });
+        connect(discard, &QPushButton::clicked, row, [row, recovery] {
+            Autosave::discard(recovery);
+            row->deleteLater();
+        });
+        recoveries_->addWidget(row);
+    }
+}
+
+}  // namespace hairloom::editor

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What an empty window shows: what to do first, the samples, recent files, and work that a crash left.
+
+#include <QVBoxLayout>
+#include <QWidget>
+
+#include "editor/document/autosave.h"
+#include "editor/session.h"
+
+namespace hairloom::editor {
+
+class StartPage : public QWidget {
+    Q_OBJECT
+
+  public:
+    explicit StartPage(Session& session, QWidget* parent = nullptr);
+
+  Q_SIGNALS:
+    void openRequested();
+
+  private:
+    void fillRecent();
+    void fillRecoveries();
+
+    Session& session_;
+    QVBoxLayout* recent_;
+    QVBoxLayout* recoveries_;
+};
+
+}  // namespace hairloom::editor

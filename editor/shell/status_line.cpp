@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "editor/shell/status_line.h"
+
+#include "editor/shell/icons.h"
+#include "editor/shell/theme.h"
+
+namespace hairloom::editor {
+
+StatusLine::StatusLine(Session& session, QWidget* parent)
+    : QStatusBar(parent),
+      session_(session),
+      message_(new QLabel),
+      counts_(new QLabel),
+      frameTime_(new QLabel),
+      device_(new QLabel),
+      progress_(new QProgressBar),
+      cancel_(new QToolButton) {
+    setSizeGripEnabled(false);
+    message_->setObjectName("message");
+    message_->setTextInteractionFlags(Qt::TextSelectableByMouse);
+    message_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
+    progress_->setFixedWidth(140);
+    progress_->setTextVisible(false);
+    cancel_->setIcon(icon("close"));
+    cancel_->setIconSize({12, 12});
+    cancel_->setToolTip(tr("Stops the work and drops what it found"));
+    counts_->setToolTip(tr("Strands and points of the document"));
+    frameTime_->setToolTip(tr("Milliseconds for the last picture, and for the last frame of the simulation"));
+    device_->setToolTip(tr("What draws the pictures"));
+    addWidget(message_, 1);
+    addWidget(progress_);
+    addWidget(cancel_);
+    addPermanentWidget(counts_);
+    addPermanentWidget(frameTime_);
+    addPermanentWidget(device_);
+    progress_->hide();
+    cancel_->hide();
+
+    poll_.setInterval(100);
+    connect(&poll_, &QTimer::timeout, this, &StatusLine::showWork);
+    fade_.setSingleShot(true);
+    fade_.setInterval(8000);
+    connect(&fade_, &QTimer::timeout, this, [this] { setHint(hint_); });
+    connect(&session_.messages, &Messages::said, this, &StatusLine::say);
+    connect(&session_.tasks, &Tasks::started, this, [this](const QString& name) {
+        say(name + QChar(0x2026), false);
+        fade_.stop();
+        showWork();
+        progress_->show();
+        cancel_->show();
+        poll_.start();
+    });
+    connect(&session_.tasks, &Tasks::stopped, this, [this] {
+        poll_.stop();
+        progress_->hide();
+        cancel_->hide();
+        fade_.start(0);
+    });
+    connect(&session_.tasks, &Tasks::failed, this, [this](const QString& text) { say(text, true); });
+    connect(&session_.player, &Player::failed, this, [this](const QString& text) { say(text, true); });
+    connect(cancel_, &QToolButton::clicked, &session_.tasks, &Tasks::cancel);
+    connect(&session_.document, &Document::changed, this, &StatusLine::showCounts);
+    connect(session_.viewport, &Viewport::failed, this, [this](const QString& text) { say(text, true); });
+    connect(session_.viewport, &Viewport::drawn, this, [this](const PictureReport& report) {
+        const auto& frame = session_.player.frame();
+        const QString picture = tr("%1 ms").arg(report.milliseconds, 0, 'f', 1);
+        frameTime_->setText(frame ? tr("%1 + %2 ms").arg(picture).arg(frame->milliseconds, 0, 'f', 1)
+                                  : picture);
+    });
+    connect(session_.viewport, &Viewport::deviceReady, this,
+            [this](const QString& name, const QString& problem) {
+                device_->setText(problem.isEmpty() ? name.section(" (", 0, 0) : tr("no graphics device"));
+                if (!problem.isEmpty()) say(problem, true);
+            });
+    device_->setText(tr("looking for a device"));
+    showCounts();
+}
+
+void StatusLine::say(const QString& text, bool isWarning) {
+    warning_ = isWarning;
+    message_->setText(text);
+    message_->setToolTip(text);
+    const ThemeColours colours = themeColours(session_.preferences.theme());
+    message_->setStyleSheet(isWarning ? QStringLiteral("QLabel { color: %1; }").arg(colours.bad.name())
+                                      : QString());
+    fade_.start(isWarning ? 20'000 : 8000);
+}
+
+void StatusLine::setHint(const QString& hint) {
+    hint_ = hint;
+    if (fade_.isActive()) return;
+    message_->setStyleSheet({});
+    message_->setText(hint);
+    message_->setToolTip(hint);
+}
+
+void StatusLine::showCounts() {
+    const Groom& groom = session_.document.groom();
+    counts_->setText(tr("%L1 strands   %L2 points").arg(groom.strandCount()).arg(groom.pointCount()));
+}
+
+void StatusLine::showWork() {
+    const float progress = session_.tasks.progress();
+    progress_->setRange(0, progress < 0 ? 0 : 100);
+    progress_->setValue(static_cast<int>(100 * progress));
+}
+
+}  // namespace hairloom::editor

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "editor/simulation/live_method.h"
+
+namespace hairloom::editor {
+namespace {
+
+std::vector<runtime::Sphere> spheresAt(const std::vector<CollisionSphere>& spheres, const HeadPose& pose) {
+    std::vector<runtime::Sphere> placed;
+    for (std::size_t s = 0; s < spheres.size(); ++s) {
+        const bool byBone = pose.sphereCentres_ws.size() == spheres.size();
+        const Vec3f centre = byBone ? pose.sphereCentres_ws[s] : Vec3f(pose.head_ws * spheres[s].centre);
+        placed.push_back({{centre.x(), centre.y(), centre.z()}, spheres[s].radius});
+    }
+    return placed;
+}
+
+class LiveMethod : public StrandMethod {
+  public:
+    LiveMethod(std::unique_ptr<StrandMethod> engine, std::shared_ptr<LiveKnobs> knobs)
+        : engine_(std::move(engine)), knobs_(std::move(knobs)) {}
+
+    void reset(const SceneInput& scene, const HeadPose& pose) override { engine_->reset(scene, pose); }
+    void step(const SceneInput& scene, const HeadPose& pose, const runtime::FrameInput& input) override {
+        const std::vector<runtime::Sphere> spheres = spheresAt(knobs_->spheres, pose);
+        runtime::FrameInput live = input;
+        live.spheres = spheres;
+        engine_->step(scene, pose, live);
+    }
+    void readPositions(std::span<runtime::Float3> positions_ws) const override {
+        engine_->readPositions(positions_ws);
+    }
+    double stepMilliseconds() const override { return engine_->stepMilliseconds(); }
+    Status status() const override { return engine_->status(); }
+    std::uint32_t restoredStrands() const override { return engine_->restoredStrands(); }
+    runtime::Measurements measure() const override { return engine_->measure(); }
+    std::uint64_t stateHash() const override { return engine_->stateHash(); }
+    std::vector<EffectReport> effects() const override { return engine_->effects(); }
+
+  private:
+    std::unique_ptr<StrandMethod> engine_;
+    std::shared_ptr<LiveKnobs> knobs_;
+};
+
+}  // namespace
+
+MethodMaker liveMethod(std::shared_ptr<LiveKnobs> knobs) {
+    return [knobs](const SceneInput& scene, const std::optional<runtime::HairVolumeSettings>& hairHair)
+               -> Result<std::unique_ptr<StrandMethod>> {
+        auto engine = makeEngineMethod(scene, hairHair);
+        if (!engine) return tl::unexpected(engine.error());
+        knobs->engine = engine->get();
+        knobs->spheres = scene.groom().spheres;
+        return std::make_unique<LiveMethod>(std::move(*engine), knobs);
+    };
+}
+
+}  // namespace hairloom::editor

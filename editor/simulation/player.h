@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The simulation of the document, live, on a thread of its own: the engine that games run. Plays at most in
+// real time; where a frame takes longer, the hair moves in slow motion and the frame time says so.
+
+#include <QObject>
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "core/animation/actor.h"
+#include "core/simulation/simulation.h"
+#include "editor/document/document.h"
+#include "editor/viewport/picture_request.h"
+
+namespace hairloom::editor {
+
+/// A frame that was simulated.
+struct PlayedFrame {
+    std::shared_ptr<const HairPose> pose;
+    double time = 0;          ///< seconds since the start
+    double milliseconds = 0;  ///< of the step
+    SimulationStats stats;
+};
+
+class Player : public QObject {
+    Q_OBJECT
+
+  public:
+    explicit Player(Document& document, QObject* parent = nullptr);
+    ~Player() override;
+
+    void play();
+    void pause();
+    /// One frame of 1/60 s.
+    void step();
+    /// Hair at rest, time zero, paused.
+    void reset();
+    bool isPlaying() const { return playing_; }
+    /// Anything but at rest at time zero.
+    bool isUnderWay() const { return frame_ != nullptr; }
+    /// The last frame; null at rest.
+    const std::shared_ptr<const PlayedFrame>& frame() const { return frame_; }
+
+    /// none, spin, nod or clip:NAME. Starts anew. An error leaves the motion as it was.
+    Status setMotion(const QString& name);
+    const QString& motion() const { return motion_; }
+    /// Names that setMotion() takes for this document.
+    QStringList motions() const;
+    /// The character with skeleton and clips; null where the head came without.
+    void setActor(std::shared_ptr<const Actor> actor);
+    const std::shared_ptr<const Actor>& actor() const { return actor_; }
+
+    /// Moves the head on top of its motion: by the hand of a person.
+    void setHeadOffset(const Eigen::Isometry3f& offset);
+
+  Q_SIGNALS:
+    void frameReady();
+    /// Playing, paused or reset.
+    void stateChanged();
+    void motionsChanged();
+    void failed(const QString& problem);
+
+  private:
+    struct Orders;
+    void run();
+    /// Gives the thread the groom as it is now. Not before it is needed: strokes pay for copies that are
+    /// held.
+    void capture();
+    void deliver(std::shared_ptr<const PlayedFrame> frame, quint64 epoch);
+    void documentChanged(Changes changes);
+    void order(const std::function<void(Orders&)>& change);
+
+    Document& document_;
+    std::shared_ptr<const Actor> actor_;
+    QString motion_ = "none";
+    bool playing_ = false;
+    bool captured_ = false;  ///< the thread has the groom as it is now
+    std::shared_ptr<const PlayedFrame> frame_;
+    quint64 epoch_ = 0;  ///< frames of earlier ones are dropped
+
+    std::unique_ptr<Orders> orders_;
+    std::mutex mutex_;
+    std::condition_variable wake_;
+    std::thread thread_;
+};
+
+}  // namespace hairloom::editor

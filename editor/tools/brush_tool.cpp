@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "editor/tools/brush_tool.h"
+
+#include <QComboBox>
+#include <cmath>
+
+#include "core/editing/document.h"
+#include "editor/fields/field.h"
+#include "editor/session.h"
+
+namespace hairloom::editor {
+namespace {
+
+constexpr float kSmallest = 0.001f, kLargest = 0.2f;  // metres
+constexpr float kStep = 1.15f;
+constexpr float kSpacing = 0.25f;  // of the radius, between dabs
+
+QString text(std::string_view words) {
+    return QString::fromUtf8(words.data(), static_cast<qsizetype>(words.size()));
+}
+
+bool paintsTheHead(const std::string& brush) {
+    return brush == "scalp_paint" || brush == "density_paint" || brush == "add";
+}
+
+}  // namespace
+
+BrushTool::BrushTool(Session& session, std::string brush, ToolInfo info)
+    : session_(session), brush_(std::move(brush)), info_(std::move(info)) {
+    for (const editing::BrushParameter& parameter : editing::brushInfo(brush_).parameters) {
+        settings_.parameters.emplace(parameter.name, parameter.defaultValue);
+    }
+}
+
+QString BrushTool::hint() const {
+    const editing::BrushInfo& brush = editing::brushInfo(brush_);
+    QString hint = info_.tip;
+    if (!brush.inverse.empty()) hint += tr(". Ctrl: %1").arg(text(brush.inverse));
+    return hint + tr(". Shift smooths, F and [ ] set the size, Esc cancels");
+}
+
+void BrushTool::activate() {
+    // Brushes work on the hair as it is authored.
+    if (session_.player.isUnderWay()) session_.player.reset();
+}
+
+void BrushTool::hover(const Pointer& pointer) {
+    pointer_px_ = pointer.at_px;
+    if (resizing_ != Resizing::None) {
+        resize(pointer.at_px);
+        return;
+    }
+    place_ = underPointer(pointer);
+    Q_EMIT updated();
+}
+
+void BrushTool::leave() {
+    place_.reset();
+    Q_EMIT updated();
+}
+
+void BrushTool::press(const Pointer& pointer) {
+    if (resizing_ != Resizing::None) {
+        resizing_ = Resizing::None;
+        return;
+    }
+    if (begin(pointer)) putDown(*place_, pointer.pressure);
+}
+
+BrushPlace BrushTool::underPointer(const Pointer& pointer) const {
+    return paintsTheHead(brush_) ? skinUnder(session_, pointer.at_px) : placeUnder(session_, pointer.at_px);
+}
+
+bool BrushTool::begin(const Pointer& pointer) {
+    place_ = underPointer(pointer);
+    if (paintsTheHead(brush_) && !place_->skin) return false;
+    editing::Stroke header;
+    header.tool = pointer.modifiers & Qt::ShiftModifier ? "smooth" : brush_;
+    header.settings = settings_;
+    if (header.tool != brush_) header.settings.parameters.clear();
+    if (pointer.modifiers & Qt::ControlModifier) header.settings.invert = !settings_.invert;
+    if (auto begun = session_.document.editing().beginStroke(std::move(header)); !begun) {
+        session_.messages.warn(QString::fromStdString(begun.error().message()));
+        return false;
+    }
+    return true;
+}
+
+bool BrushTool::putDown(const BrushPlace& place, double pressure) {
+    // A brush on the head is a ball; one on the hair reaches along the view.
+    const Vec3f direction = paintsTheHead(brush_) ? Vec3f(Vec3f::Zero()) : place.direction_ss;
+    const auto dab = editing::dabAt(settings_, place.position_ss, direction, static_cast<float>(pressure));
+    if (auto done = session_.document.editing().dab(dab); !done) {
+        session_.messages.warn(QString::fromStdString(done.error().message()));
+        cancel();
+        return false;
+    }
+    last_ = place;
+    return true;
+}
+
+void BrushTool::drag(const Pointer& pointer) {
+    pointer_px_ = pointer.at_px;
+    if (!last_) return;
+    BrushPlace to = underPointer(pointer);
+    place_ = to;
+    if (paintsTheHead(brush_) && !to.skin) return;
+    if (!paintsTheHead(brush_)) {
+        // Stays at the depth where the stroke began, so that hair that moves does not pull it in and out.
+        const Vec3f forward = session_.viewport->camera().forward_ws();
+        const float off = (last_->position_ss - to.position_ss).dot(forward);
+        to.position_ss += to.direction_ss * (off / to.direction_ss.dot(forward));
+    }
+    const BrushPlace from = *last_;
+    const float length = (to.position_ss - from.position_ss).norm();
+    const int dabs = static_cast<int>(length / (kSpacing * settings_.radius));
+    for (int i = 1; i <= dabs; ++i) {
+        const float share = static_cast<float>(i) / static_cast<float>(dabs);
+        BrushPlace at = to;
+        at.position_ss = from.position_ss + share * (to.position_ss - from.position_ss);
+        if (!putDown(at, pointer.pressure)) return;
+    }
+    Q_EMIT updated();
+}
+
+void BrushTool::release(const Pointer&) {
+    if (!last_) return;
+    last_.reset();
+    session_.document.editing().endStroke();
+}
+
+void BrushTool::cancel() {
+    resizing_ = Resizing::None;
+    if (session_.document.editing().stroke()) session_.document.editing().cancelStroke();
+    last_.reset();
+}
+
+bool BrushTool::key(int key, Qt::KeyboardModifiers modifiers) {
+    const bool shift = modifiers & Qt::ShiftModifier;
+    const auto scaleRadius = [this](float factor) {
+        settings_.radius = std::clamp(settings_.radius * factor, kSmallest, kLargest);
+        changed();
+    };
+    const auto addStrength = [this](float by) {
+        settings_.strength = std::clamp(settings_.strength + by, 0.0f, 1.0f);
+        changed();
+    };
+    switch (key) {
+        case Qt::Key_F:
+            resizing_ = shift ? Resizing::Strength : Resizing::Radius;
+            resizeFrom_px_ = pointer_px_;
+            resizeFrom_ = shift ? settings_.strength : settings_.radius;
+            return true;
+        case Qt::Key_BracketLeft:
+            shift ? addStrength(-0.05f) : scaleRadius(1 / kStep);
+            return true;
+        case Qt::Key_BracketRight:
+            shift ? addStrength(0.05f) : scaleRadius(kStep);
+            return true;
+        case Qt::Key_BraceLeft:
+            addStrength(-0.05f);
+            return true;
+        case Qt::Key_BraceRight:
+            addStrength(0.05f);
+            return true;
+        default:
+            return false;
+    }
+}
+
+void BrushTool::resize(const QPointF& to_px) {
+    const auto by_px = static_cast<float>(to_px.x() - resizeFrom_px_.x());
+    if (resizing_ == Resizing::Strength) {
+        settings_.strength = std::clamp(resizeFrom_ + 0.005f * by_px, 0.0f, 1.0f);
+    } else {
+        const Vec3f at = place_ ? place_->position_ss : session_.viewport->camera().target_ws();
+        const float metres =
+            session_.viewport->camera().metresPerPixel(at, session_.viewport->viewSize_px()) * by_px;
+        settings_.radius = std::clamp(resizeFrom_ + metres, kSmallest, kLargest);
+    }
+    changed();
+}
+
+void BrushTool::changed() {
+    Q_EMIT settingsChanged();
+    Q_EMIT updated();
+}
+
+void BrushTool::draw(Marks& marks) const {
+    if (!place_) return;
+    const bool paints = paintsTheHead(brush_);
+    const Vec3f normal = paints ? place_->normal_ss : Vec3f(-session_.viewport->camera().forward_ws());
+    const QColor outer(255, 255, 255, 230);
+    const QColor inner(255, 255, 255, 110);
+    marks.circle(place_->position_ss, normal, settings_.radius, QColor(0, 0, 0, 120), 3.5f,
+                 Marks::Depth::OnTop);
+    marks.circle(place_->position_ss, normal, settings_.radius, outer, 1.5f, Marks::Depth::OnTop);
+    if (settings_.strength > 0) {
+        marks.circle(place_->position_ss, normal, settings_.radius * settings_.strength, inner, 1,
+                     Marks::Depth::OnTop);
+    }
+    if (settings_.symmetric) {
+        const editing::Dab mirror =
+            editing::mirrored(editing::dabAt(settings_, place_->position_ss), settings_);
+        marks.circle(mirror.position_ss, normal, settings_.radius, inner, 1.5f, Marks::Depth::OnTop);
+    }
+}
+
+OptionForm* BrushTool::makeBasicOptions() {
+    auto* form = new OptionForm(session_.preferences);
+    const auto number = [&](const char* name, const QString& label, const QString& tip, const char* unit,
+                            float min, float max, float editing::BrushSettings::*member) {
+        form->addNumber(
+            name, label, tip, unit, static_cast<double>(min), static_cast<double>(max), false,
+            [this, member] { return static_cast<double>(settings_.*member); },
+            [this, member](double value) {
+                settings_.*member = static_cast<float>(value);
+                Q_EMIT updated();
+            });
+    };
+    number("brushRadius", tr("Radius"), tr("Reach of the brush. Keys: F and move, or [ and ]"), "m",
+           kSmallest, kLargest, &editing::BrushSettings::radius);
+    number("brushStrength", tr("Strength"),
+           tr("Share of the full effect that one dab has. Keys: Shift+F, or { and }"), "", 0, 1,
+           &editing::BrushSettings::strength);
+    QStringList falloffs;
+    for (const std::string_view name : editing::BrushCurve::falloffNames())
+        falloffs.append(labelOf(text(name)));
+    form->addChoice(
+        "brushFalloff", tr("Falloff"), tr("How the effect fades from the middle of the brush to its rim"),
+        falloffs,
+        [this] {
+            const auto names = editing::BrushCurve::falloffNames();
+            return static_cast<int>(std::ranges::find(names, falloff_) - names.begin());
+        },
+        [this](int index) {
+            falloff_ = editing::BrushCurve::falloffNames()[static_cast<std::size_t>(index)];
+            settings_.falloff = editing::BrushCurve::falloff(falloff_);
+        });
+    if (!paintsTheHead(brush_)) {
+        form->addChoice(
+            "brushProfile", tr("Root to tip"), tr("Where along the strand the brush works most"),
+            {tr("Everywhere"), tr("More at the tip"), tr("More at the root")},
+            [this] {
+                const auto& values = settings_.profile.values();
+                return values.empty() ? 0 : values.front() < values.back() ? 1 : 2;
+            },
+            [this](int index) {
+                settings_.profile = index == 0   ? editing::BrushCurve()
+                                    : index == 1 ? editing::BrushCurve({0.0f, 1.0f})
+                                                 : editing::BrushCurve({1.0f, 0.0f});
+            });
+        number("brushDepth", tr("Depth"), tr("How far before and behind its place the brush reaches"), "m", 0,
+               0.3f, &editing::BrushSettings::depth);
+        number("brushClearance", tr("Clearance"), tr("Distance that hair keeps from the skin"), "m", 0, 0.01f,
+               &editing::BrushSettings::clearance);
+        form->addTruth(
+            "brushCollide", tr("Keep out of the head"),
+            tr("Hair that a dab would push into the head stays out"), [this] { return settings_.collide; },
+            [this](bool on) { settings_.collide = on; });
+    }
+    form->addTruth(
+        "brushSymmetric", tr("Symmetric"), tr("Each dab again on the other side of the head"),
+        [this] { return settings_.symmetric; },
+        [this](bool on) {
+            settings_.symmetric = on;
+            Q_EMIT updated();
+        });
+    const editing::BrushInfo& brush = editing::brushInfo(brush_);
+    if (!brush.inverse.empty()) {
+        form->addTruth(
+            "brushInvert", tr("Invert"),
+            tr("The opposite: %1. Ctrl does it for one stroke").arg(text(brush.inverse)),
+            [this] { return settings_.invert; }, [this](bool on) { settings_.invert = on; });
+    }
+    return form;
+}
+
+QWidget* BrushTool::makeOptions() {
+    OptionForm* const form = makeBasicOptions();
+    for (const editing::BrushParameter& parameter : editing::brushInfo(brush_).parameters) {
+        const std::string name(parameter.name);
+        const QString label = labelOf(text(parameter.name));
+        if (parameter.isFlag) {
+            form->addTruth(
+                "brush:" + text(name), label, text(parameter.meaning),
+                [this, name] { return settings_.parameters[name] != 0; },
+                [this, name](bool on) { settings_.parameters[name] = on ? 1.0f : 0.0f; });
+        } else {
+            form->addNumber(
+                "brush:" + text(name), label, text(parameter.meaning), text(parameter.unit),
+                static_cast<double>(parameter.min), static_cast<double>(parameter.max), false,
+                [this, name] { return static_cast<double>(settings_.parameters[name]); },
+                [this, name](double value) { settings_.parameters[name] = static_cast<float>(value); });
+        }
+    }
+    connect(this, &BrushTool::settingsChanged, form, &OptionForm::refresh);
+    return form;
+}
+
+}  // namespace hairloom::editor

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Any brush of core/editing in the hand of a person: picks where it goes down, spaces dabs along the drag,
+// shows its ring, changes size and strength by keys.
+
+#include "core/editing/brush_list.h"
+#include "editor/tools/option_form.h"
+#include "editor/tools/surface_pick.h"
+#include "editor/tools/tool.h"
+
+namespace hairloom::editor {
+
+class Session;
+
+class BrushTool : public Tool {
+    Q_OBJECT
+
+  public:
+    /// `brush` is one of editing::brushNames().
+    BrushTool(Session& session, std::string brush, ToolInfo info);
+
+    const ToolInfo& info() const override { return info_; }
+    QString hint() const override;
+    void activate() override;
+    void hover(const Pointer& pointer) override;
+    void press(const Pointer& pointer) override;
+    void drag(const Pointer& pointer) override;
+    void release(const Pointer& pointer) override;
+    void leave() override;
+    void cancel() override;
+    bool key(int key, Qt::KeyboardModifiers modifiers) override;
+    void draw(Marks& marks) const override;
+    QWidget* makeOptions() override;
+
+    editing::BrushSettings& settings() { return settings_; }
+
+  Q_SIGNALS:
+    /// By keys; the options show it.
+    void settingsChanged();
+
+  private:
+    enum class Resizing { None, Radius, Strength };
+
+    bool begin(const Pointer& pointer);
+    BrushPlace underPointer(const Pointer& pointer) const;
+    bool putDown(const BrushPlace& place, double pressure);
+    void resize(const QPointF& to_px);
+    void changed();
+    OptionForm* makeBasicOptions();
+
+    Session& session_;
+    std::string brush_;
+    ToolInfo info_;
+    editing::BrushSettings settings_;
+    std::string falloff_ = "smooth";
+    std::optional<BrushPlace> place_;  ///< under the pointer
+    std::optional<BrushPlace> last_;   ///< of the last dab; none outside a stroke
+    Resizing resizing_ = Resizing::None;
+    QPointF resizeFrom_px_;
+    float resizeFrom_ = 0;
+    QPointF pointer_px_;
+};
+
+}  // namespace hairloom::editor

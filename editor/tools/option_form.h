@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Controls for the settings of tools, which are no part of the document: a label, a control, a tooltip each.
+
+#include <QFormLayout>
+#include <QWidget>
+#include <functional>
+
+#include "editor/document/preferences.h"
+
+namespace hairloom::editor {
+
+class OptionForm : public QWidget {
+    Q_OBJECT
+
+  public:
+    explicit OptionForm(const Preferences& preferences, QWidget* parent = nullptr);
+
+    /// `unit` as in fields ("m", ""); the tooltip tells range and unit. `get` is asked again at refresh().
+    void addNumber(const QString& name, const QString& label, const QString& tip, const QString& unit,
+                   double min, double max, bool whole, std::function<double()> get,
+                   std::function<void(double)> set);
+    void addTruth(const QString& name, const QString& label, const QString& tip, std::function<bool()> get,
+                  std::function<void(bool)> set);
+    void addChoice(const QString& name, const QString& label, const QString& tip, const QStringList& choices,
+                   std::function<int()> get, std::function<void(int)> set);
+    void addWidget(const QString& label, QWidget* widget);
+
+    void refresh();
+
+  private:
+    const Preferences& preferences_;
+    QFormLayout* layout_;
+    std::vector<std::function<void()>> refreshers_;
+};
+
+}  // namespace hairloom::editor

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Collision spheres by hand: a click on the head places one, a drag of its middle moves it, of its rim
+// resizes it.
+#include "core/editing/document.h"
+#include "core/editing/sphere_commands.h"
+#include "editor/overlays/overlay_mode.h"
+#include "editor/session.h"
+#include "editor/tools/option_form.h"
+#include "editor/tools/registry.h"
+#include "editor/tools/surface_pick.h"
+
+namespace hairloom::editor {
+namespace {
+
+class SphereTool : public Tool {
+  public:
+    explicit SphereTool(Session& session) : session_(session) {}
+
+    const ToolInfo& info() const override { return info_; }
+
+    void activate() override {
+        if (session_.player.isUnderWay()) session_.player.reset();
+    }
+
+    void press(const Pointer& pointer) override {
+        editing::Document& document = session_.document.editing();
+        from_px_ = pointer.at_px;
+        held_ = editing::pickSphere(document.groom().spheres, viewOf(session_), toPixels(pointer.at_px));
+        if (held_) {
+            start_ = document.groom().spheres[*held_];
+            resizing_ = onRim(start_, pointer.at_px);
+            moved_ = start_;
+            return;
+        }
+        const BrushPlace place = placeUnder(session_, pointer.at_px);
+        if (!place.skin) return;
+        document.perform(editing::placeSphere(document.model(), *place.skin, radius_));
+        session_.messages.say(tr("Sphere placed; drag its middle to move it, its rim to resize it"));
+    }
+
+    void drag(const Pointer& pointer) override {
+        if (!held_) return;
+        const OrbitCamera& camera = session_.viewport->camera();
+        const float metres = camera.metresPerPixel(start_.centre, session_.viewport->viewSize_px());
+        const QPointF by = pointer.at_px - from_px_;
+        moved_ = start_;
+        if (resizing_) {
+            const auto centre = camera.project(start_.centre, session_.viewport->viewSize_px());
+            if (!centre) return;
+            const QPointF out = pointer.at_px - *centre;
+            moved_.radius = std::clamp(metres * static_cast<float>(std::hypot(out.x(), out.y())),
+                                       editing::kSmallestSphere, editing::kLargestSphere);
+        } else {
+            moved_.centre += metres * (static_cast<float>(by.x()) * camera.right_ws() -
+                                       static_cast<float>(by.y()) * camera.up_ws());
+        }
+        Q_EMIT updated();
+    }
+
+    void release(const Pointer&) override {
+        if (!held_) return;
+        editing::Document& document = session_.document.editing();
+        document.perform(resizing_ ? editing::resizeSphere(document.model(), *held_, moved_.radius)
+                                   : editing::moveSphere(document.model(), *held_, moved_.centre));
+        held_.reset();
+        Q_EMIT updated();
+    }
+
+    void cancel() override { held_.reset(); }
+
+    bool key(int key, Qt::KeyboardModifiers) override {
+        if (key != Qt::Key_Delete || !held_) return false;
+        editing::Document& document = session_.document.editing();
+        document.perform(editing::removeSphere(document.model(), *held_));
+        held_.reset();
+        return true;
+    }
+
+    void draw(Marks& marks) const override {
+        drawSpheres(session_, marks);
+        if (!held_) return;
+        marks.circle(moved_.centre, -session_.viewport->camera().forward_ws(), moved_.radius,
+                     QColor(255, 200, 80), 2.5f, Marks::Depth::OnTop);
+    }
+
+    QWidget* makeOptions() override {
+        auto* form = new OptionForm(session_.preferences);
+        form->addNumber(
+            "sphereRadius", tr("Radius"), tr("Radius of spheres that a click places"), "m", 0.005, 0.2, false,
+            [this] { return static_cast<double>(radius_); },
+            [this](double value) { radius_ = static_cast<float>(value); });
+        return form;
+    }
+
+  private:
+    bool onRim(const CollisionSphere& sphere, const QPointF& at_px) const {
+        const QSizeF view = session_.viewport->viewSize_px();
+        const auto centre = session_.viewport->camera().project(sphere.centre, view);
+        if (!centre) return false;
+        const float rim = sphere.radius / session_.viewport->camera().metresPerPixel(sphere.centre, view);
+        return std::hypot(at_px.x() - centre->x(), at_px.y() - centre->y()) > 0.75 * static_cast<double>(rim);
+    }
+
+    Session& session_;
+    ToolInfo info_{"sphere", tr("Spheres"), "sphere",
+                   tr("Click the head to place a sphere; drag its middle to move it, its rim to resize it"),
+                   QKeySequence("O")};
+    float radius_ = 0.05f;
+    std::optional<std::size_t> held_;
+    bool resizing_ = false;
+    CollisionSphere start_, moved_;
+    QPointF from_px_;
+};
+
+}  // namespace
+
+ToolMaker sphereTool() {
+    return [](Session& session) -> std::unique_ptr<Tool> { return std::make_unique<SphereTool>(session); };
+}
+
+}  // namespace hairloom::editor

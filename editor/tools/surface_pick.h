@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The view in the terms of core/editing, and what lies under the pointer.
+
+#include <QPointF>
+#include <optional>
+
+#include "core/editing/picking.h"
+#include "core/editing/view.h"
+
+namespace hairloom::editor {
+
+class Session;
+
+editing::View viewOf(const Session& session);
+Vec2f toPixels(const QPointF& at_px);
+
+/// A place for a brush: on the hair or the head, whichever is nearer, else at the depth of the middle of the
+/// view.
+struct BrushPlace {
+    Vec3f position_ss = Vec3f::Zero();
+    Vec3f normal_ss = Vec3f::UnitZ();      ///< of the skin, else towards the eye; unit length
+    Vec3f direction_ss = -Vec3f::UnitZ();  ///< into the view; unit length
+    std::optional<SurfacePoint> skin;      ///< where the pointer is over the head
+};
+BrushPlace placeUnder(const Session& session, const QPointF& at_px);
+/// The same for what works on the skin: hair before it does not count.
+BrushPlace skinUnder(const Session& session, const QPointF& at_px);
+
+}  // namespace hairloom::editor

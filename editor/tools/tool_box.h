@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The tools there are, and which one has the pointer.
+
+#include <QObject>
+#include <memory>
+#include <vector>
+
+#include "editor/tools/tool.h"
+
+namespace hairloom::editor {
+
+class Session;
+
+class ToolBox : public QObject {
+    Q_OBJECT
+
+  public:
+    explicit ToolBox(QObject* parent = nullptr);
+    ~ToolBox() override;
+
+    /// Makes all tools of tools/registry.cpp; once.
+    void fill(Session& session);
+    const std::vector<std::unique_ptr<Tool>>& all() const { return tools_; }
+    Tool* find(const QString& id) const;
+    Tool* active() const { return active_; }
+    /// Null: the pointer moves the view.
+    void activate(Tool* tool);
+
+  Q_SIGNALS:
+    void activeChanged(hairloom::editor::Tool* tool);
+
+  private:
+    std::vector<std::unique_ptr<Tool>> tools_;
+    Tool* active_ = nullptr;
+};
+
+}  // namespace hairloom::editor

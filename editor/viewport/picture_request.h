@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What the viewport asks its render thread for, and what it is told.
+
+#include <QMetaType>
+#include <memory>
+#include <vector>
+
+#include "core/groom/groom.h"
+#include "core/render/camera.h"
+#include "core/render/overlay.h"
+#include "core/simulation/motion.h"
+
+namespace hairloom::editor {
+
+/// Where hair and head are at a moment of the simulation.
+struct HairPose {
+    std::vector<Vec3f> positions_ws;  ///< per point of the groom
+    HeadPose head;
+};
+
+struct PictureRequest {
+    std::shared_ptr<const Groom> groom;    ///< another pointer is another groom
+    std::shared_ptr<const HairPose> pose;  ///< null: at rest
+    render::Camera camera;
+    render::Overlay marks;
+    std::uint32_t width = 1, height = 1;  ///< device pixels
+    bool moving = false;                  ///< something moves: fast before fine
+    bool showHair = true;
+    bool showHead = true;
+    float lightTurn = 0;  ///< degrees by which the lights are turned about the vertical
+    float exposure = 1.6f;
+    Vec3f background{0.02f, 0.022f, 0.025f};  ///< linear RGB
+};
+
+struct PictureReport {
+    double milliseconds = 0;   ///< of this frame, everything included
+    std::uint64_t hairs = 0;   ///< drawn
+    std::uint32_t frames = 0;  ///< in the average
+    bool moving = false;
+    bool presented = false;  ///< shown by the device; else the picture comes along
+};
+
+}  // namespace hairloom::editor
+
+Q_DECLARE_METATYPE(hairloom::editor::PictureReport)

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Makes the pictures of the viewport on a thread of its own, which owns the device: into a window's swap
+// chain where there is one, else read back. Of several requests that come while it is busy, the last one
+// counts; while none comes, it adds frames to the average.
+
+#include <QImage>
+#include <QObject>
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "core/gpu/device.h"
+#include "editor/viewport/picture_request.h"
+
+namespace hairloom::editor {
+
+class RenderThread : public QObject {
+    Q_OBJECT
+
+  public:
+    explicit RenderThread(QObject* parent = nullptr);
+    ~RenderThread() override;
+
+    void post(PictureRequest request);
+    /// Nothing is being drawn or waits to be, the average is complete.
+    bool isIdle() const;
+
+    /// Pictures go to this window from now on; to no window where it is empty. Waits until that is so: a
+    /// window may be destroyed after it has been taken away.
+    void setWindow(std::optional<gpu::NativeWindow> window);
+
+  Q_SIGNALS:
+    /// The device has been found, or `problem` says why there is none. `wantsWindow`: it can show pictures by
+    /// itself and is fast enough not to need them smaller.
+    void deviceReady(const QString& name, bool wantsWindow, const QString& problem);
+    void pictureReady(const QImage& picture, const hairloom::editor::PictureReport& report);
+    /// The window cannot be drawn to; pictures are read back instead.
+    void windowRefused(const QString& problem);
+    void failed(const QString& problem);
+
+  private:
+    void run();
+
+    mutable std::mutex mutex_;
+    std::condition_variable wake_;
+    std::condition_variable windowTaken_;
+    std::optional<PictureRequest> next_;
+    std::optional<gpu::NativeWindow> window_;
+    bool windowChanged_ = false;
+    bool idle_ = true;
+    bool stop_ = false;
+    bool ended_ = false;
+    std::thread thread_;
+};
+
+}  // namespace hairloom::editor

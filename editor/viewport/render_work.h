@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What the render thread keeps between pictures: device, renderer, the scene on the device, and the window or
+// texture that it draws into. Used on that thread only.
+
+#include <QImage>
+#include <memory>
+#include <optional>
+
+#include "core/gpu/device.h"
+#include "core/render/renderer.h"
+#include "editor/viewport/picture_request.h"
+#include "workspace/groom_scene.h"
+
+namespace hairloom::editor {
+
+class RenderWork {
+  public:
+    explicit RenderWork(std::unique_ptr<gpu::Device> device);
+
+    const gpu::DeviceInfo& info() const { return device_->info(); }
+
+    Status setWindow(const std::optional<gpu::NativeWindow>& window);
+    /// Takes what differs from the last request to the device.
+    Status take(PictureRequest request);
+    /// One more frame. The image is null where a window shows it.
+    Result<std::pair<QImage, PictureReport>> draw();
+    /// The average of the last request is complete, or nothing was asked for.
+    bool isComplete() const;
+    /// Drops the last request: it could not be drawn.
+    void forget() {
+        last_.reset();
+        scene_.reset();
+    }
+
+  private:
+    Status takeScene(const PictureRequest& request, bool draft);
+    Status replaceScene(const PictureRequest& request, bool draft);
+    Status movePoints(const PictureRequest& request);
+    Status resize(std::uint32_t width, std::uint32_t height);
+    void adapt(double milliseconds);
+    render::RenderOptions options() const;
+    Result<QImage> readBack() const;
+
+    std::unique_ptr<gpu::Device> device_;
+    render::Renderer renderer_;
+    std::optional<gpu::NativeWindow> window_;
+    std::unique_ptr<gpu::SwapChain> swapChain_;  ///< null: pictures are read back from target_
+    gpu::TexturePtr target_;
+    std::uint32_t width_ = 0, height_ = 0;  ///< of the target
+
+    std::optional<PictureRequest> last_;
+    std::optional<GroomScene> scene_;  ///< of last_
+    bool hairShown_ = true, headShown_ = true;
+    bool draft_ = false;       ///< scene_ is without follow hairs
+    bool needsDraft_ = false;  ///< follow hairs are too slow to move
+    float scale_ = 1;          ///< of pictures in motion that are read back, so that they come in time
+};
+
+}  // namespace hairloom::editor

@@ -1,0 +1,422 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "editor/viewport/viewport.h"
+
+#include <qguiapplication_platform.h>
+#include <QApplication>
+#include <QKeyEvent>
+#include <QMouseEvent>
+#include <QPainter>
+#include <QPlatformSurfaceEvent>
+#include <QVBoxLayout>
+#include <cmath>
+
+#include "editor/fields/colour.h"
+#include "editor/shell/theme.h"
+
+namespace hairloom::editor {
+namespace {
+
+constexpr int kSettleMs = 220;
+constexpr float kZoomPerPixel = 0.006f;
+constexpr float kTurntableDegrees = 0.6f;  // per tick
+constexpr int kTurntableMs = 25;
+
+/// What the environment variable HAIRLOOM_VIEWPORT asks for: "window", "readback", "none" (no pictures at
+/// all), or nothing.
+QByteArray wishedSurface() {
+    return qgetenv("HAIRLOOM_VIEWPORT");
+}
+
+Box3f boundsToShow(const Groom& groom, const HairPose* pose) {
+    Box3f box = groom.bounds();
+    if (pose) {
+        for (const Vec3f& point : pose->positions_ws) box.extend(point);
+    }
+    if (!groom.scalp) return box;
+    if (box.isEmpty()) return groom.scalp->bounds();
+    for (const std::uint32_t triangle : groom.scalpSelection) {
+        for (const std::uint32_t vertex : groom.scalp->triangles()[triangle]) {
+            box.extend(groom.scalp->positions()[vertex]);
+        }
+    }
+    // The face belongs to a hairstyle.
+    constexpr float kHeadHeight = 0.30f;
+    box.min().y() = std::min(box.min().y(), box.max().y() - kHeadHeight);
+    return box;
+}
+
+}  // namespace
+
+/// Shows the pictures that were read back.
+class Viewport::Canvas : public QWidget {
+  public:
+    explicit Canvas(Viewport& viewport) : QWidget(&viewport), viewport_(viewport) {
+        setAttribute(Qt::WA_OpaquePaintEvent);
+        setMouseTracking(true);
+        setFocusPolicy(Qt::StrongFocus);
+        setAcceptDrops(false);
+    }
+
+  protected:
+    void paintEvent(QPaintEvent*) override {
+        QPainter painter(this);
+        if (viewport_.picture_.isNull()) {
+            painter.fillRect(rect(), themeColours(viewport_.preferences_.theme()).viewport);
+            return;
+        }
+        painter.setRenderHint(QPainter::SmoothPixmapTransform);
+        painter.drawImage(rect(), viewport_.picture_);
+    }
+
+  private:
+    Viewport& viewport_;
+};
+
+Viewport::Viewport(Document& document, const Preferences& preferences, QWidget* parent)
+    : QWidget(parent), document_(document), preferences_(preferences) {
+    setObjectName("viewport");
+    setMinimumSize(240, 180);
+    auto* layout = new QVBoxLayout(this);
+    layout->setContentsMargins(0, 0, 0, 0);
+    useCanvas();
+    settle_.setSingleShot(true);
+    settle_.setInterval(kSettleMs);
+    connect(&settle_, &QTimer::timeout, this, [this] {
+        moving_ = false;
+        post();
+    });
+    postSoon_.setSingleShot(true);
+    postSoon_.setInterval(0);
+    connect(&postSoon_, &QTimer::timeout, this, &Viewport::post);
+    turntable_.setInterval(kTurntableMs);
+    connect(&turntable_, &QTimer::timeout, this, [this] {
+        camera_.spin(kTurntableDegrees);
+        redraw(true);
+    });
+    connect(&renderer_, &RenderThread::deviceReady, this,
+            [this](const QString& name, bool wantsWindow, const QString& problem) {
+                const QByteArray wish = wishedSurface();
+                const bool byItself = (wantsWindow && wish.isEmpty()) || wish == "window";
+                if (problem.isEmpty() && byItself) useWindow();
+                Q_EMIT deviceReady(name, problem);
+            });
+    connect(&renderer_, &RenderThread::pictureReady, this,
+            [this](const QImage& picture, const PictureReport& report) {
+                if (!report.presented) {
+                    picture_ = picture;
+                    if (canvas_) canvas_->update();
+                }
+                Q_EMIT drawn(report);
+            });
+    connect(&renderer_, &RenderThread::windowRefused, this, [this](const QString& problem) {
+        useCanvas();
+        redraw();
+        Q_EMIT failed(problem);
+    });
+    connect(&renderer_, &RenderThread::failed, this, &Viewport::failed);
+    connect(&document_, &Document::changed, this, &Viewport::documentChanged);
+    connect(&document_, &Document::replaced, this, [this] {
+        pose_.reset();
+        framed_ = false;
+    });
+    connect(&preferences_, &Preferences::changed, this, [this] { redraw(); });
+}
+
+Viewport::~Viewport() {
+    if (window_) renderer_.setWindow(std::nullopt);
+}
+
+void Viewport::useCanvas() {
+    if (canvas_) return;
+    if (window_) {
+        window_->removeEventFilter(this);
+        window_ = nullptr;
+        shown_->deleteLater();
+    }
+    canvas_ = new Canvas(*this);
+    canvas_->installEventFilter(this);
+    layout()->addWidget(canvas_);
+    shown_ = canvas_;
+}
+
+void Viewport::useWindow() {
+    if (window_ || !qApp->nativeInterface<QNativeInterface::QX11Application>()) return;
+    window_ = new QWindow;
+    window_->setSurfaceType(QSurface::VulkanSurface);
+    window_->installEventFilter(this);
+    delete canvas_;
+    canvas_ = nullptr;
+    shown_ = QWidget::createWindowContainer(window_, this);
+    shown_->setFocusPolicy(Qt::StrongFocus);
+    layout()->addWidget(shown_);
+    shown_->show();
+    window_->create();
+    redraw();
+}
+
+void Viewport::surfaceChanged(bool exists) {
+    const auto* x11 = qApp->nativeInterface<QNativeInterface::QX11Application>();
+    if (exists && x11) {
+        renderer_.setWindow(
+            gpu::NativeWindow{x11->connection(), static_cast<std::uint32_t>(window_->winId())});
+        redraw();
+    } else {
+        renderer_.setWindow(std::nullopt);
+    }
+}
+
+QObject* Viewport::input() const {
+    return window_ ? static_cast<QObject*>(window_) : canvas_;
+}
+
+bool Viewport::waitForPicture(int milliseconds) {
+    QElapsedTimer clock;
+    clock.start();
+    while (settle_.isActive() || postSoon_.isActive() || !renderer_.isIdle()) {
+        QCoreApplication::processEvents(QEventLoop::AllEvents, 20);
+        if (clock.elapsed() > milliseconds) return false;
+    }
+    QCoreApplication::processEvents();
+    return true;
+}
+
+void Viewport::setTool(Tool* tool) {
+    if (tool_ == tool) return;
+    if (tool_) {
+        tool_->deactivate();
+        tool_->disconnect(this);
+    }
+    tool_ = tool;
+    toolPressed_ = false;
+    if (tool_) {
+        connect(tool_, &Tool::updated, this, [this] {
+            redraw(toolPressed_);
+            Q_EMIT hintChanged();
+        });
+        tool_->activate();
+    }
+    Q_EMIT hintChanged();
+    redraw();
+}
+
+void Viewport::setPose(std::shared_ptr<const HairPose> pose) {
+    pose_ = std::move(pose);
+    redraw(pose_ != nullptr);
+}
+void Viewport::setHairShown(bool on) {
+    showHair_ = on;
+    redraw();
+}
+void Viewport::setHeadShown(bool on) {
+    showHead_ = on;
+    redraw();
+}
+void Viewport::setLightTurn(float degrees) {
+    lightTurn_ = degrees;
+    redraw(true);
+}
+void Viewport::setExposure(float factor) {
+    exposure_ = factor;
+    redraw();
+}
+void Viewport::setTurntable(bool on) {
+    on ? turntable_.start() : turntable_.stop();
+}
+void Viewport::look(render::View view) {
+    camera_.look(view);
+    redraw();
+}
+void Viewport::setOrthographic(bool on) {
+    camera_.setOrthographic(on);
+    redraw();
+}
+
+void Viewport::frameAll() {
+    const float aspect = static_cast<float>(width()) / static_cast<float>(std::max(height(), 1));
+    camera_.frame(boundsToShow(document_.groom(), pose_.get()), aspect);
+    redraw();
+}
+
+void Viewport::addMarks(std::function<void(Marks&)> draw) {
+    marks_.push_back(std::move(draw));
+}
+
+void Viewport::redraw(bool moving) {
+    if (moving) {
+        moving_ = true;
+        settle_.start();
+    }
+    // Several changes of one turn of the event loop make one picture.
+    if (!postSoon_.isActive()) postSoon_.start();
+}
+
+void Viewport::documentChanged(Changes changes) {
+    // Copied when it is drawn next: a stroke parts from the copy once per picture, not once per dab.
+    groom_.reset();
+    if (changes & Change::Strands && pose_ && pose_->positions_ws.size() != document_.groom().pointCount()) {
+        pose_.reset();
+    }
+    if (!framed_ && !document_.isEmpty()) {
+        framed_ = true;
+        frameAll();
+    }
+    redraw(toolPressed_);
+}
+
+void Viewport::post() {
+    if (document_.isEmpty() || wishedSurface() == "none") return;
+    // The copy shares its arrays with the document.
+    if (!groom_) groom_ = std::make_shared<const Groom>(document_.groom());
+    Marks marks;
+    for (const auto& draw : marks_) draw(marks);
+    if (tool_) tool_->draw(marks);
+    PictureRequest request;
+    request.groom = groom_;
+    request.pose = pose_;
+    request.camera = camera_.camera();
+    request.marks = marks.overlay();
+    const qreal ratio = devicePixelRatioF();
+    request.width = static_cast<std::uint32_t>(std::max(16.0, std::round(width() * ratio)));
+    request.height = static_cast<std::uint32_t>(std::max(16.0, std::round(height() * ratio)));
+    request.moving = moving_;
+    request.showHair = showHair_;
+    request.showHead = showHead_;
+    request.lightTurn = lightTurn_;
+    request.exposure = exposure_;
+    request.background = toLinear(themeColours(preferences_.theme()).viewport);
+    renderer_.post(std::move(request));
+}
+
+void Viewport::resizeEvent(QResizeEvent* event) {
+    QWidget::resizeEvent(event);
+    redraw(true);
+}
+
+Viewport::Move Viewport::viewMove(Qt::MouseButton button, Qt::KeyboardModifiers modifiers) const {
+    if (preferences_.orbitStyle() == OrbitStyle::Blender) {
+        if (button == Qt::MiddleButton) {
+            if (modifiers & Qt::ShiftModifier) return Move::Pan;
+            return modifiers & Qt::ControlModifier ? Move::Zoom : Move::Turn;
+        }
+    } else if (modifiers & Qt::AltModifier) {
+        if (button == Qt::LeftButton) return Move::Turn;
+        if (button == Qt::MiddleButton) return Move::Pan;
+        if (button == Qt::RightButton) return Move::Zoom;
+    }
+    if (button == Qt::MiddleButton) return Move::Pan;
+    if (button == Qt::RightButton) return Move::Turn;
+    return tool_ ? Move::None : Move::Turn;
+}
+
+Pointer Viewport::pointerAt(const QPointF& at_px, Qt::MouseButton button,
+                            Qt::KeyboardModifiers modifiers) const {
+    return {at_px, button, modifiers, pressure_};
+}
+
+bool Viewport::mousePress(const QMouseEvent& event) {
+    last_px_ = event.position();
+    move_ = viewMove(event.button(), event.modifiers());
+    if (move_ != Move::None) return true;
+    if (!tool_ || event.button() != Qt::LeftButton) return false;
+    toolPressed_ = true;
+    tool_->press(pointerAt(event.position(), event.button(), event.modifiers()));
+    return true;
+}
+
+bool Viewport::mouseMove(const QMouseEvent& event) {
+    if (move_ != Move::None) {
+        dragView(event.position());
+        return true;
+    }
+    if (!tool_) return false;
+    const Pointer pointer = pointerAt(event.position(), Qt::NoButton, event.modifiers());
+    toolPressed_ ? tool_->drag(pointer) : tool_->hover(pointer);
+    return true;
+}
+
+bool Viewport::mouseRelease(const QMouseEvent& event) {
+    if (move_ != Move::None) {
+        move_ = Move::None;
+        return true;
+    }
+    if (!toolPressed_ || event.button() != Qt::LeftButton) return false;
+    toolPressed_ = false;
+    if (tool_) tool_->release(pointerAt(event.position(), event.button(), event.modifiers()));
+    redraw();
+    return true;
+}
+
+void Viewport::dragView(const QPointF& to_px) {
+    const QPointF by = to_px - last_px_;
+    last_px_ = to_px;
+    switch (move_) {
+        case Move::Turn:
+            camera_.turn(by);
+            break;
+        case Move::Pan:
+            camera_.move(by, viewSize_px());
+            break;
+        case Move::Zoom:
+            camera_.zoom(std::exp(kZoomPerPixel * static_cast<float>(by.x() - by.y())));
+            break;
+        case Move::None:
+            return;
+    }
+    redraw(true);
+}
+
+bool Viewport::tablet(const QTabletEvent& event) {
+    const double pressed = event.type() == QEvent::TabletRelease ? 1.0 : event.pressure();
+    pressure_ = std::pow(std::clamp(pressed, 0.0, 1.0), preferences_.tabletCurve());
+    // Qt makes a mouse event of it, which carries the stroke on.
+    return false;
+}
+
+bool Viewport::keyPress(const QKeyEvent& event) {
+    if (event.key() == Qt::Key_Escape && tool_) {
+        tool_->cancel();
+        toolPressed_ = false;
+        redraw();
+        return true;
+    }
+    if (tool_ && tool_->key(event.key(), event.modifiers())) return true;
+    if (window_) Q_EMIT keyPressed(event.key(), event.modifiers());
+    return window_ != nullptr;
+}
+
+bool Viewport::eventFilter(QObject* object, QEvent* event) {
+    switch (event->type()) {
+        case QEvent::MouseButtonPress:
+            return mousePress(*static_cast<QMouseEvent*>(event));
+        case QEvent::MouseMove:
+            return mouseMove(*static_cast<QMouseEvent*>(event));
+        case QEvent::MouseButtonRelease:
+            return mouseRelease(*static_cast<QMouseEvent*>(event));
+        case QEvent::Wheel:
+            camera_.zoom(
+                std::exp(0.0012f * static_cast<float>(static_cast<QWheelEvent*>(event)->angleDelta().y())));
+            redraw(true);
+            return true;
+        case QEvent::TabletPress:
+        case QEvent::TabletMove:
+        case QEvent::TabletRelease:
+            return tablet(*static_cast<QTabletEvent*>(event));
+        case QEvent::KeyPress:
+            return keyPress(*static_cast<QKeyEvent*>(event));
+        case QEvent::Leave:
+            if (tool_ && !toolPressed_) tool_->leave();
+            break;
+        case QEvent::Expose:
+            redraw();
+            break;
+        case QEvent::PlatformSurface:
+            surfaceChanged(static_cast<QPlatformSurfaceEvent*>(event)->surfaceEventType() ==
+                           QPlatformSurfaceEvent::SurfaceCreated);
+            break;
+        default:
+            break;
+    }
+    return QWidget::eventFilter(object, event);
+}
+
+}  // namespace hairloom::editor

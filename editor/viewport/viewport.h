@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The live view of the document. Shows the pictures of the render thread: by a swap chain on a window of its
+// own where the device can, else read back into a widget. Moves its camera, or hands the pointer to a tool.
+
+#include <QElapsedTimer>
+#include <QTimer>
+#include <QWidget>
+#include <QWindow>
+#include <functional>
+#include <memory>
+
+#include "editor/document/document.h"
+#include "editor/document/preferences.h"
+#include "editor/tools/tool.h"
+#include "editor/viewport/orbit_camera.h"
+#include "editor/viewport/render_thread.h"
+
+namespace hairloom::editor {
+
+class Viewport : public QWidget {
+    Q_OBJECT
+
+  public:
+    Viewport(Document& document, const Preferences& preferences, QWidget* parent = nullptr);
+    ~Viewport() override;
+
+    OrbitCamera& camera() { return camera_; }
+    const OrbitCamera& camera() const { return camera_; }
+    QSizeF viewSize_px() const { return size(); }
+
+    /// Null: every drag moves the camera.
+    void setTool(Tool* tool);
+    Tool* tool() const { return tool_; }
+
+    // What is shown. Each redraws.
+    void setPose(std::shared_ptr<const HairPose> pose);
+    const std::shared_ptr<const HairPose>& pose() const { return pose_; }
+    void setHairShown(bool on);
+    void setHeadShown(bool on);
+    bool isHairShown() const { return showHair_; }
+    bool isHeadShown() const { return showHead_; }
+    void setLightTurn(float degrees);
+    void setExposure(float factor);
+    void setTurntable(bool on);
+    bool hasTurntable() const { return turntable_.isActive(); }
+    void look(render::View view);
+    void setOrthographic(bool on);
+    void frameAll();
+
+    /// Draws over the picture, each time anew; called in the order in which they were added.
+    void addMarks(std::function<void(Marks&)> draw);
+    /// Takes everything anew. `moving` asks for speed.
+    void redraw(bool moving = false);
+
+    /// Where pointer and keys go: a QWindow where the device presents, else a QWidget; for tests.
+    QObject* input() const;
+    bool presents() const { return window_ != nullptr; }
+    /// Waits until what was asked for is drawn; false after `milliseconds`.
+    bool waitForPicture(int milliseconds = 20'000);
+    /// The last picture that was read back.
+    const QImage& picture() const { return picture_; }
+
+  Q_SIGNALS:
+    void deviceReady(const QString& name, const QString& problem);
+    void drawn(const hairloom::editor::PictureReport& report);
+    void failed(const QString& problem);
+    /// The pointer's tool has something else to say.
+    void hintChanged();
+    /// A key that neither camera nor tool took.
+    void keyPressed(int key, Qt::KeyboardModifiers modifiers);
+
+  protected:
+    bool eventFilter(QObject* object, QEvent* event) override;
+    void resizeEvent(QResizeEvent* event) override;
+
+  private:
+    class Canvas;
+    enum class Move { None, Turn, Pan, Zoom };
+
+    void useWindow();
+    /// The window system has made or is about to take away what the device draws to.
+    void surfaceChanged(bool exists);
+    void useCanvas();
+    void post();
+    void dragView(const QPointF& to_px);
+    Move viewMove(Qt::MouseButton button, Qt::KeyboardModifiers modifiers) const;
+    bool mousePress(const QMouseEvent& event);
+    bool mouseMove(const QMouseEvent& event);
+    bool mouseRelease(const QMouseEvent& event);
+    bool keyPress(const QKeyEvent& event);
+    bool tablet(const QTabletEvent& event);
+    Pointer pointerAt(const QPointF& at_px, Qt::MouseButton button, Qt::KeyboardModifiers modifiers) const;
+    void documentChanged(Changes changes);
+
+    Document& document_;
+    const Preferences& preferences_;
+    OrbitCamera camera_;
+    RenderThread renderer_;
+    Canvas* canvas_ = nullptr;
+    QWindow* window_ = nullptr;
+    QWidget* shown_ = nullptr;  ///< canvas or the window's container
+    Tool* tool_ = nullptr;
+    std::shared_ptr<const Groom> groom_;
+    std::shared_ptr<const HairPose> pose_;
+    std::vector<std::function<void(Marks&)>> marks_;
+    QImage picture_;
+    QTimer settle_;  ///< from fast pictures to fine ones
+    QTimer turntable_;
+    QTimer postSoon_;
+    bool moving_ = false;
+    bool showHair_ = true, showHead_ = true;
+    float lightTurn_ = 0;
+    float exposure_ = 1.6f;
+    Move move_ = Move::None;
+    bool toolPressed_ = false;
+    QPointF last_px_;
+    double pressure_ = 1;
+    bool framed_ = false;
+};
+
+}  // namespace hairloom::editor

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Opening, saving, leaving, recovering, preferences, shortcuts.
+#include <QComboBox>
+#include <QDropEvent>
+#include <QKeySequenceEdit>
+#include <QMimeData>
+#include <QProgressBar>
+#include <QPushButton>
+#include <QStandardPaths>
+
+#include "core/groom/project_file.h"
+#include "editor/dialogs/export_dialog.h"
+#include "editor/dialogs/import_dialog.h"
+#include "editor/dialogs/preferences_dialog.h"
+#include "editor/dialogs/shortcut_dialog.h"
+#include "editor/panels/panel.h"
+#include "importers/strands.h"
+#include "tests/editor/window_fixture.h"
+
+namespace hairloom::editor {
+namespace {
+
+class ShellTest : public WindowTest {};
+
+TEST_F(ShellTest, AnEmptyWindowSaysWhatToDoFirstAndOffersTheSamples) {
+    auto* first = find<QLabel>("firstStep");
+    EXPECT_TRUE(first->isVisible());
+    EXPECT_FALSE(first->text().contains('\n'));
+    for (const char* name : {"sample:", "sample:long", "sample:short", "sample:shoulder"}) {
+        EXPECT_TRUE(find<QPushButton>(name)->isVisible()) << name;
+    }
+    QTest::mouseClick(find<QPushButton>("sample:"), Qt::LeftButton);
+    finishWork();
+    EXPECT_TRUE(groom().scalp);
+    EXPECT_FALSE(first->isVisible());
+    EXPECT_TRUE(session().player.actor());
+    EXPECT_TRUE(session().player.motions().contains("clip:nod_and_turn"));
+}
+
+TEST_F(ShellTest, WhatIsSavedOpensAgainWithTheSameHash) {
+    openSampleHair("short");
+    const auto before = hash();
+    ASSERT_TRUE(window->saveTo(inFolder("a.hairloom")));
+    EXPECT_FALSE(window->isWindowModified());
+    trigger("file.new");
+    EXPECT_TRUE(document().isEmpty());
+    window->open(inFolder("a.hairloom"));
+    finishWork();
+    EXPECT_EQ(hash(), before);
+    EXPECT_EQ(document().path(), inFolder("a.hairloom"));
+    EXPECT_EQ(session().preferences.recentFiles().value(0), inFolder("a.hairloom"));
+}
+
+TEST_F(ShellTest, AFileThatCannotBeReadIsToldInTheStatusLineAndChangesNothing) {
+    openSampleHair("short");
+    const auto before = hash();
+    QFile file(inFolder("broken.hair"));
+    ASSERT_TRUE(file.open(QIODevice::WriteOnly));
+    file.write("HAIR and then nothing");
+    file.close();
+    openFile(session(), file.fileName());
+    finishWork();
+    EXPECT_TRUE(window->statusLine().message().contains("broken.hair"))
+        << window->statusLine().message().toStdString();
+    EXPECT_EQ(hash(), before);
+}
+
+TEST_F(ShellTest, UnsavedChangesAreGuarded) {
+    openSampleHair("short");
+    ASSERT_TRUE(window->saveTo(inFolder("guarded.hairloom")));
+    Groom changed = groom();
+    changed.material.specular = 1.25f;
+    document().change("Specular", Change::Look, changed);
+    EXPECT_TRUE(window->isWindowModified());
+    const auto unsaved = hash();
+    window->setUnsavedAnswer(MainWindow::Unsaved::Keep);
+    trigger("file.new");
+    EXPECT_EQ(hash(), unsaved);
+    EXPECT_FALSE(window->close());
+    window->setUnsavedAnswer(MainWindow::Unsaved::Save);
+    trigger("file.new");
+    EXPECT_TRUE(document().isEmpty());
+    const auto saved = loadProject(inFolder("guarded.hairloom").toStdString());
+    ASSERT_TRUE(saved);
+    EXPECT_EQ(contentHash(*saved), unsaved);
+}
+
+TEST_F(ShellTest, DroppedFilesOpen) {
+    QMimeData data;
+    data.setUrls({QUrl::fromLocalFile(QString::fromStdString((samplesFolder() / "bust/bust.obj").string()))});
+    QDragEnterEvent enter({10, 10}, Qt::CopyAction, &data, Qt::LeftButton, {});
+    QCoreApplication::sendEvent(window.get(), &enter);
+    EXPECT_TRUE(enter.isAccepted());
+    QDropEvent drop({10, 10}, Qt::CopyAction, &data, Qt::LeftButton, {});
+    QCoreApplication::sendEvent(window.get(), &drop);
+    finishWork();
+    EXPECT_TRUE(groom().scalp);
+}
+
+TEST_F(ShellTest, WorkCanBeCancelled) {
+    openSample(session(), "long");
+    session().tasks.cancel();
+    finishWork();
+    EXPECT_TRUE(document().isEmpty());
+    EXPECT_FALSE(session().tasks.isBusy());
+}
+
+TEST_F(ShellTest, AfterACrashTheWorkIsOffered) {
+    openSampleHair("short");
+    Groom changed = groom();
+    changed.material.specular = 1.25f;
+    document().change("Specular", Change::Look, changed);
+    const auto unsaved = hash();
+    // A copy whose program is gone: its lock is not held.
+    ASSERT_TRUE(saveProject(groom(), (QStandardPaths::writableLocation(QStandardPaths::AppDataLocation) +
+                                      "/recovery/crashed.hairloom")
+                                         .toStdString()));
+    const QList<Recovery> found = Autosave::recoveries();
+    ASSERT_EQ(found.size(), 1);
+    trigger("file.new");
+    openRecovered(session(), found[0].file, {}, "crashed");
+    finishWork();
+    EXPECT_EQ(hash(), unsaved);
+    EXPECT_TRUE(window->isWindowModified());
+    Autosave::discard(found[0]);
+    EXPECT_TRUE(Autosave::recoveries().isEmpty());
+}
+
+TEST_F(ShellTest, AutosaveKeepsWhatIsUnsavedUntilTheProgramEndsProperly) {
+    Document edited;
+    const Preferences preferences;
+    QString file;
+    {
+        Autosave autosave(edited, preferences);
+        file = autosave.file();
+        openSampleHair("short");
+        edited.open(groom(), {}, "short");
+        autosave.saveNow();
+        autosave.finish();
+        EXPECT_FALSE(QFile::exists(file)) << "nothing is unsaved yet";
+        Groom changed = groom();
+        changed.material.specular = 0.75f;
+        edited.change("Specular", Change::Look, changed);
+        autosave.saveNow();
+        autosave.finish();
+        const auto copy = loadProject(file.toStdString());
+        ASSERT_TRUE(copy) << copy.error().message();
+        EXPECT_EQ(contentHash(*copy), contentHash(edited.groom()));
+        EXPECT_TRUE(Autosave::recoveries().isEmpty()) << "the program still runs";
+    }
+    EXPECT_FALSE(QFile::exists(file));
+}
+
+TEST_F(ShellTest, PreferencesTakeEffectAtOnceAndLast) {
+    PreferencesDialog dialog(session().preferences);
+    auto* unit = dialog.findChild<QComboBox*>("unit");
+    unit->setCurrentIndex(3);
+    Q_EMIT unit->activated(3);
+    EXPECT_EQ(session().preferences.unit(), DisplayUnit::Inch);
+    EXPECT_EQ(Preferences().unit(), DisplayUnit::Inch);
+    const QColor dark = QApplication::palette().color(QPalette::Window);
+    trigger("view.theme");
+    EXPECT_GT(QApplication::palette().color(QPalette::Window).lightness(), dark.lightness());
+    trigger("view.theme");
+    EXPECT_EQ(QApplication::palette().color(QPalette::Window), dark);
+}
+
+TEST_F(ShellTest, ShortcutsCanBeChangedAndAreUnique) {
+    ShortcutDialog dialog(window->actions());
+    auto* edit = dialog.findChild<QKeySequenceEdit*>("view.frame");
+    ASSERT_TRUE(edit);
+    const QKeySequence taken = window->actions().get("file.save").shortcut();
+    edit->setKeySequence(taken);
+    Q_EMIT edit->editingFinished();
+    EXPECT_EQ(window->actions().get("view.frame").shortcut(), taken);
+    EXPECT_TRUE(window->actions().get("file.save").shortcut().isEmpty());
+    window->actions().resetShortcuts();
+    EXPECT_EQ(window->actions().get("file.save").shortcut(), taken);
+}
+
+TEST_F(ShellTest, EveryActionHasATipAndNoTwoShareKeys) {
+    QHash<QString, QString> keys;
+    for (const ActionInfo& info : window->actions().all()) {
+        EXPECT_FALSE(info.tip.isEmpty()) << info.id.toStdString();
+        const QString shortcut = info.shortcut.toString();
+        if (shortcut.isEmpty()) continue;
+        EXPECT_FALSE(keys.contains(shortcut))
+            << info.id.toStdString() << " and " << keys[shortcut].toStdString() << " share "
+            << shortcut.toStdString();
+        keys[shortcut] = info.id;
+    }
+}
+
+TEST_F(ShellTest, EveryControlOfThePanelsHasATip) {
+    for (const PanelInfo& info : panels()) {
+        for (QWidget* control : window->panel(info.id)->widget()->findChildren<QWidget*>()) {
+            const bool isControl =
+                qobject_cast<QAbstractButton*>(control) || qobject_cast<QComboBox*>(control) ||
+                qobject_cast<QAbstractSpinBox*>(control) || qobject_cast<QSlider*>(control);
+            if (!isControl) continue;
+            bool hasTip = false;
+            for (QWidget* at = control; at && !hasTip; at = at->parentWidget())
+                hasTip = !at->toolTip().isEmpty();
+            EXPECT_TRUE(hasTip) << info.id.toStdString() << ": " << control->objectName().toStdString() << " "
+                                << control->metaObject()->className();
+        }
+    }
+}
+
+TEST_F(ShellTest, ExportIsReadBackAndReported) {
+    openSampleHair("short");
+    ExportDialog dialog(session());
+    dialog.findChild<QComboBox*>("target")->setCurrentText("Yuksel .hair");
+    dialog.exportTo(inFolder("hair.hair"));
+    finishWork();
+    EXPECT_EQ(dialog.report().strands, groom().strandCount());
+    EXPECT_LT(dialog.report().maxErrorMm, 0.001);
+    const auto back = importStrands(inFolder("hair.hair").toStdString());
+    ASSERT_TRUE(back) << back.error().message();
+    EXPECT_EQ(back->groom.strandCount(), groom().strandCount());
+}
+
+TEST_F(ShellTest, ImportShowsTheStrandsBeforeTheyAreTakenAndBindsThemToTheHead) {
+    openSampleHair("short");
+    const std::size_t strands = groom().strandCount();
+    {
+        ExportDialog dialog(session());
+        dialog.exportTo(inFolder("hair.tfx"));
+        finishWork();
+    }
+    openBust();
+    ImportDialog dialog(session(), inFolder("hair.tfx"));
+    finishWork();
+    EXPECT_EQ(dialog.preview().strandCount(), strands);
+    const float metres = dialog.preview().bounds().sizes().y();
+    auto* unit = dialog.findChild<QComboBox*>("unit");
+    unit->setCurrentText("cm");
+    finishWork();
+    EXPECT_NEAR(dialog.preview().bounds().sizes().y(), 0.01f * metres, 1e-4f);
+    unit->setCurrentText("m");
+    finishWork();
+    importStrandsInto(session(), inFolder("hair.tfx"), dialog.options());
+    finishWork();
+    EXPECT_EQ(groom().strandCount(), strands);
+    EXPECT_EQ(groom().rootBindings().size(), strands);
+    EXPECT_EQ(document().stepCount(), 1);
+    document().undo();
+    EXPECT_EQ(groom().strandCount(), 0u);
+}
+
+}  // namespace
+}  // namespace hairloom::editor

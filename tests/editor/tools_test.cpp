@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Every tool in a person's hand: it changes what it should, undo and redo restore every bit, Esc leaves
+// nothing behind, and hair stays sound.
+#include <QPushButton>
+#include <algorithm>
+
+#include "core/base/random.h"
+#include "editor/tools/brush_tool.h"
+#include "tests/editor/window_fixture.h"
+
+namespace hairloom::editor {
+namespace {
+
+class ToolsTest : public WindowTest {
+  protected:
+    void SetUp() override {
+        WindowTest::SetUp();
+        openSampleHair("short");
+        viewport().look(render::View::Front);
+        viewport().frameAll();
+        middle = QPoint(viewport().width() / 2, viewport().height() / 2);
+        // Hair, not skin, is under the pointer in the upper part of the head.
+        Box3f roots;
+        for (std::size_t s = 0; s < groom().strandCount(); ++s) roots.extend(groom().strand(s).front());
+        crown = at(Vec3f(0, roots.max().y() - 0.03f, roots.max().z()));
+    }
+    Tool& activate(const QString& id) {
+        trigger(("tool." + id).toUtf8().constData());
+        Tool* const tool = session().tools.find(id);
+        EXPECT_EQ(viewport().tool(), tool);
+        return *tool;
+    }
+    /// A stroke across the hair, and what becomes of it when it is undone and done again.
+    void strokeAndBack(const QString& id, Qt::KeyboardModifiers modifiers = {}) {
+        const auto before = hash();
+        const int steps = document().doneSteps();
+        drag({crown, crown + QPoint(20, 4), crown + QPoint(45, 10), crown + QPoint(70, 12)}, modifiers);
+        const auto after = hash();
+        EXPECT_NE(after, before) << id.toStdString() << " did nothing";
+        EXPECT_EQ(document().doneSteps(), steps + 1) << id.toStdString();
+        expectSound();
+        trigger("edit.undo");
+        EXPECT_EQ(hash(), before) << id.toStdString();
+        trigger("edit.redo");
+        EXPECT_EQ(hash(), after) << id.toStdString();
+        trigger("edit.undo");
+    }
+
+    QPoint middle, crown;
+};
+
+class BrushToolTest : public ToolsTest, public testing::WithParamInterface<const char*> {};
+
+TEST_P(BrushToolTest, AStrokeChangesHairAndIsOneStep) {
+    auto& tool = dynamic_cast<BrushTool&>(activate(GetParam()));
+    tool.settings().radius = 0.03f;
+    tool.settings().strength = 1;
+    strokeAndBack(GetParam());
+}
+
+TEST_P(BrushToolTest, EscapeLeavesNothing) {
+    auto& tool = dynamic_cast<BrushTool&>(activate(GetParam()));
+    tool.settings().radius = 0.03f;
+    const auto before = hash();
+    press(crown);
+    moveTo(crown + QPoint(30, 5));
+    moveTo(crown + QPoint(60, 5));
+    key(Qt::Key_Escape);
+    EXPECT_EQ(hash(), before);
+    EXPECT_EQ(document().stepCount(), 0);
+    release(crown + QPoint(60, 5));
+    EXPECT_EQ(hash(), before);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, BrushToolTest,
+                         testing::Values("comb", "brush", "grab", "smooth", "puff", "pinch", "length", "cut",
+                                         "cut_line", "delete", "freeze"),
+                         [](const auto& brush) { return std::string(brush.param); });
+
+TEST_F(ToolsTest, KeysChangeSizeAndStrength) {
+    auto& tool = dynamic_cast<BrushTool&>(activate("comb"));
+    const float radius = tool.settings().radius;
+    key(Qt::Key_BracketRight);
+    EXPECT_GT(tool.settings().radius, radius);
+    key(Qt::Key_BracketLeft);
+    EXPECT_FLOAT_EQ(tool.settings().radius, radius);
+    const float strength = tool.settings().strength;
+    key(Qt::Key_BracketRight, Qt::ShiftModifier);
+    EXPECT_GT(tool.settings().strength, strength);
+    moveTo(crown);
+    key(Qt::Key_F);
+    moveTo(crown + QPoint(40, 0));
+    EXPECT_GT(tool.settings().radius, radius);
+    press(crown + QPoint(40, 0));
+    release(crown + QPoint(40, 0));
+    EXPECT_EQ(document().stepCount(), 0) << "the click ends the resizing and combs nothing";
+}
+
+TEST_F(ToolsTest, ControlInvertsAndShiftSmooths) {
+    auto& tool = dynamic_cast<BrushTool&>(activate("length"));
+    tool.settings().radius = 0.03f;
+    tool.settings().strength = 1;
+    const auto lengthOfAll = [this] {
+        double sum = 0;
+        for (std::size_t s = 0; s < groom().strandCount(); ++s) {
+            const auto strand = groom().strand(s);
+            for (std::size_t p = 1; p < strand.size(); ++p)
+                sum += static_cast<double>((strand[p] - strand[p - 1]).norm());
+        }
+        return sum;
+    };
+    const double before = lengthOfAll();
+    drag({crown, crown + QPoint(40, 5)});
+    EXPECT_GT(lengthOfAll(), before * (1 + 1e-5));
+    trigger("edit.undo");
+    drag({crown, crown + QPoint(40, 5)}, Qt::ControlModifier);
+    EXPECT_LT(lengthOfAll(), before * (1 - 1e-5));
+    trigger("edit.undo");
+    drag({crown, crown + QPoint(40, 5)}, Qt::ShiftModifier);
+    EXPECT_NEAR(lengthOfAll(), before, before * 1e-4) << "smoothing keeps lengths";
+    EXPECT_EQ(document().stepName(0), "Smooth");
+}
+
+TEST_F(ToolsTest, CombingKeepsRootsAndLengths) {
+    auto& tool = dynamic_cast<BrushTool&>(activate("comb"));
+    tool.settings().radius = 0.04f;
+    const Groom before = groom();
+    drag({crown, crown + QPoint(30, 8), crown + QPoint(60, 20)});
+    std::size_t moved = 0;
+    for (std::size_t s = 0; s < groom().strandCount(); ++s) {
+        const auto a = before.strand(s), b = groom().strand(s);
+        ASSERT_EQ(a.size(), b.size());
+        EXPECT_EQ(a.front(), b.front());
+        moved += a.back() != b.back() ? 1 : 0;
+        for (std::size_t p = 1; p < a.size(); ++p) {
+            const float rest = (a[p] - a[p - 1]).norm();
+            ASSERT_NEAR((b[p] - b[p - 1]).norm(), rest, 1e-3f * rest + 1e-6f) << "strand " << s;
+        }
+    }
+    EXPECT_GT(moved, 10u);
+}
+
+TEST_F(ToolsTest, AddGrowsHairOnTheScalp) {
+    auto& tool = dynamic_cast<BrushTool&>(activate("add"));
+    tool.settings().radius = 0.02f;
+    tool.settings().parameters["density"] = 40;
+    // On the scalp: at the root nearest to the view.
+    Vec3f front = groom().strand(0).front();
+    for (std::size_t s = 1; s < groom().strandCount(); ++s) {
+        const Vec3f& root = groom().strand(s).front();
+        if (root.z() > front.z()) front = root;
+    }
+    crown = at(front);
+    strokeAndBack("add");
+}
+
+TEST_F(ToolsTest, ScalpIsPaintedBoxedAndLassoed) {
+    trigger("file.new");
+    openBust();
+    viewport().look(render::View::Front);
+    viewport().frameAll();
+    const Box3f box = groom().scalp->bounds();
+    const QPoint top = at(Vec3f(0, box.max().y() - 0.03f, 0.08f));
+    for (const char* id : {"scalp_paint", "scalp_box", "scalp_lasso"}) {
+        if (auto* brush = dynamic_cast<BrushTool*>(&activate(id))) brush->settings().radius = 0.03f;
+        const auto before = hash();
+        drag({top, top + QPoint(60, 0), top + QPoint(60, 50), top + QPoint(10, 60)});
+        EXPECT_FALSE(groom().scalpSelection.empty()) << id;
+        const auto after = hash();
+        trigger("edit.undo");
+        EXPECT_EQ(hash(), before) << id;
+        EXPECT_TRUE(groom().scalpSelection.empty()) << id;
+        trigger("edit.redo");
+        EXPECT_EQ(hash(), after) << id;
+        trigger("edit.undo");
+    }
+}
+
+TEST_F(ToolsTest, StrandsAreSelectedAndBrushesKeepToThem) {
+    activate("select");
+    drag({crown + QPoint(-30, -30), crown + QPoint(0, -30), crown + QPoint(0, 30), crown + QPoint(-30, 30)});
+    const auto flags = groom().strandAttributes.view<std::uint8_t>(attribute::kSelected);
+    const std::vector<std::uint8_t> selected(flags.begin(), flags.end());
+    const auto count = std::ranges::count(selected, std::uint8_t{1});
+    ASSERT_GT(count, 0);
+    ASSERT_LT(static_cast<std::size_t>(count), groom().strandCount());
+    const Groom before = groom();
+    auto& comb = dynamic_cast<BrushTool&>(activate("comb"));
+    comb.settings().radius = 0.05f;
+    drag({crown + QPoint(-40, 0), crown + QPoint(0, 8), crown + QPoint(60, 20)});
+    for (std::size_t s = 0; s < groom().strandCount(); ++s) {
+        if (selected[s] != 0) continue;
+        ASSERT_EQ(before.strand(s).back(), groom().strand(s).back()) << s;
+    }
+    EXPECT_EQ(document().doneSteps(), 2);
+}
+
+TEST_F(ToolsTest, SpheresArePlacedMovedResizedAndRemoved) {
+    Groom bare = groom();
+    bare.spheres.clear();
+    document().open(bare, {}, "bare");
+    viewport().look(render::View::Front);
+    viewport().frameAll();
+    activate("sphere");
+    const Box3f box = groom().scalp->bounds();
+    const QPoint face = at(Vec3f(0, box.max().y() - 0.12f, 0.1f));
+    press(face);
+    release(face);
+    ASSERT_EQ(groom().spheres.size(), 1u) << window->statusLine().message().toStdString();
+    const CollisionSphere placed = groom().spheres[0];
+    const QPoint centre = at(placed.centre);
+    drag({centre, centre + QPoint(10, -8), centre + QPoint(20, -16)});
+    EXPECT_GT((groom().spheres[0].centre - placed.centre).norm(), 0.002f);
+    EXPECT_EQ(groom().spheres[0].radius, placed.radius);
+    const CollisionSphere moved = groom().spheres[0];
+    const QPoint newCentre = at(moved.centre);
+    const auto metres = viewport().camera().metresPerPixel(moved.centre, viewport().viewSize_px());
+    const QPoint rim = newCentre + QPoint(static_cast<int>(0.9f * moved.radius / metres), 0);
+    drag({rim, rim + QPoint(12, 0), rim + QPoint(25, 0)});
+    EXPECT_GT(groom().spheres[0].radius, moved.radius);
+    EXPECT_EQ(document().doneSteps(), 3);
+    find<QPushButton>("sphereRemove")->click();
+    EXPECT_TRUE(groom().spheres.empty());
+    document().goToStep(1);
+    EXPECT_EQ(groom().spheres[0].centre, placed.centre);
+}
+
+TEST_F(ToolsTest, SpheresAreFittedToTheHead) {
+    find<QPushButton>("sphereFit")->click();
+    finishWork();
+    EXPECT_EQ(groom().spheres.size(), 12u);
+    EXPECT_EQ(document().stepName(0), "Fit spheres");
+    find<QPushButton>("sphereMirror")->click();
+    EXPECT_EQ(groom().spheres.size(), 13u);
+}
+
+TEST_F(ToolsTest, WindFollowsTheArrowAndADragIsOneStep) {
+    activate("wind");
+    const QPoint centre = at(viewport().camera().target_ws());
+    const auto before = hash();
+    drag({centre, centre + QPoint(40, 0), centre + QPoint(90, 0)});
+    EXPECT_NEAR(groom().simulation.windSpeed, 5, 0.3f);
+    EXPECT_GT(groom().simulation.windDirection.x, 0.99f);
+    EXPECT_EQ(document().stepCount(), 1);
+    trigger("edit.undo");
+    EXPECT_EQ(hash(), before);
+}
+
+TEST_F(ToolsTest, TheHeadIsDraggedAndTheHairFollows) {
+    activate("head");
+    const auto before = hash();
+    const QPoint centre = at(viewport().camera().target_ws());
+    press(centre);
+    moveTo(centre + QPoint(60, 0));
+    ASSERT_TRUE(QTest::qWaitFor(
+        [this] {
+            const auto& frame = session().player.frame();
+            return frame && frame->pose->head.head_ws.translation().x() > 0.01f;
+        },
+        20'000));
+    release(centre + QPoint(60, 0));
+    EXPECT_EQ(hash(), before);
+}
+
+TEST_F(ToolsTest, RandomActionsNeverBreakTheDocument) {
+    Random random(7, 1);
+    const std::vector<QString> ids{"comb",        "brush",  "grab",        "smooth",        "puff",
+                                   "pinch",       "length", "cut",         "cut_line",      "add",
+                                   "delete",      "freeze", "scalp_paint", "density_paint", "select",
+                                   "scalp_lasso", "sphere", "wind"};
+    const auto below = [&random](int count) {
+        return static_cast<int>(random.below(static_cast<std::uint32_t>(count)));
+    };
+    const auto somewhere = [&] { return crown + QPoint(below(200) - 100, below(160) - 40); };
+    for (int action = 0; action < 500; ++action) {
+        switch (below(8)) {
+            case 0:
+                trigger("edit.undo");
+                break;
+            case 1:
+                trigger("edit.redo");
+                break;
+            case 2:
+                key(std::array{Qt::Key_BracketLeft, Qt::Key_BracketRight, Qt::Key_Escape,
+                               Qt::Key_F}[static_cast<std::size_t>(below(4))]);
+                break;
+            case 3:
+                activate(ids[static_cast<std::size_t>(below(static_cast<int>(ids.size())))]);
+                break;
+            default: {
+                const auto modifiers = std::array<Qt::KeyboardModifiers, 4>{
+                    Qt::NoModifier, Qt::NoModifier, Qt::ControlModifier,
+                    Qt::ShiftModifier}[static_cast<std::size_t>(below(4))];
+                drag({somewhere(), somewhere(), somewhere()}, modifiers);
+            }
+        }
+        if (action % 50 == 49) expectSound();
+        if (HasFailure()) FAIL() << "after action " << action;
+    }
+    document().goToStep(document().stepCount());
+    const auto last = hash();
+    const int steps = document().stepCount();
+    document().goToStep(0);
+    document().goToStep(steps);
+    EXPECT_EQ(hash(), last) << "all the way back and forth";
+}
+
+}  // namespace
+}  // namespace hairloom::editor

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The camera, the pictures, the live simulation.
+#include <QCheckBox>
+#include <QScreen>
+#include <cstdlib>
+
+#include "tests/editor/window_fixture.h"
+
+namespace hairloom::editor {
+namespace {
+
+TEST(OrbitCameraTest, RaysGoThroughThePointsThatProjectThere) {
+    OrbitCamera camera;
+    camera.frame(Box3f(Vec3f(-0.2f, 1.4f, -0.2f), Vec3f(0.2f, 1.9f, 0.2f)), 1.5f);
+    const QSizeF view(900, 600);
+    for (const bool orthographic : {false, true}) {
+        camera.setOrthographic(orthographic);
+        for (const Vec3f& point : {Vec3f(0, 1.6f, 0), Vec3f(0.1f, 1.7f, 0.15f), Vec3f(-0.12f, 1.5f, -0.1f)}) {
+            const auto px = camera.project(point, view);
+            ASSERT_TRUE(px);
+            const Ray ray = camera.rayThrough(*px, view);
+            const Vec3f off = (point - ray.origin_ws).cross(ray.direction_ws);
+            EXPECT_LT(off.norm(), 2e-4f) << "orthographic " << orthographic;
+        }
+    }
+}
+
+TEST(OrbitCameraTest, FramingShowsTheWholeBox) {
+    OrbitCamera camera;
+    const Box3f box(Vec3f(-0.3f, 1, -0.1f), Vec3f(0.3f, 2, 0.4f));
+    for (const QSizeF view : {QSizeF(1200, 600), QSizeF(300, 800)}) {
+        for (int turn = 0; turn < 12; ++turn) {
+            camera.spin(30);
+            camera.frame(box, static_cast<float>(view.width() / view.height()));
+            for (int corner = 0; corner < 8; ++corner) {
+                const auto px = camera.project(box.corner(static_cast<Box3f::CornerType>(corner)), view);
+                ASSERT_TRUE(px);
+                EXPECT_TRUE(QRectF(QPointF(), view).contains(*px)) << px->x() << " " << px->y();
+            }
+        }
+    }
+}
+
+TEST(OrbitCameraTest, MovingKeepsThePointUnderThePointer) {
+    OrbitCamera camera;
+    const QSizeF view(800, 600);
+    const Vec3f point = camera.target_ws();
+    const QPointF before = *camera.project(point, view);
+    camera.move({40, -25}, view);
+    const QPointF after = *camera.project(point, view);
+    EXPECT_NEAR(after.x() - before.x(), 40, 0.2);
+    EXPECT_NEAR(after.y() - before.y(), -25, 0.2);
+}
+
+class ViewportTest : public WindowTest {};
+
+class PictureTest : public WindowTest {
+  protected:
+    PictureTest() : WindowTest(true) {}
+    void SetUp() override {
+        WindowTest::SetUp();
+        window->resize(900, 560);
+    }
+    /// A sample without the hairs between its guides, which take a software device long.
+    void openGuides() {
+        openSampleHair("short");
+        Groom guides = groom();
+        guides.interpolation.followPerGuide = 0;
+        document().open(std::move(guides), {}, "guides");
+    }
+};
+
+TEST_F(PictureTest, ShowsHairAndHead) {
+    if (viewport().presents()) GTEST_SKIP() << "pictures are not read back";
+    openGuides();
+    ASSERT_TRUE(viewport().waitForPicture(60'000));
+    const QImage both = viewport().picture();
+    ASSERT_FALSE(both.isNull()) << window->statusLine().message().toStdString();
+    find<QCheckBox>("hair")->click();
+    ASSERT_TRUE(viewport().waitForPicture(60'000));
+    const QImage bald = viewport().picture();
+    ASSERT_EQ(bald.size(), both.size());
+    int different = 0;
+    for (int y = 0; y < bald.height(); y += 4) {
+        for (int x = 0; x < bald.width(); x += 4) {
+            different += std::abs(qGray(both.pixel(x, y)) - qGray(bald.pixel(x, y))) > 8 ? 1 : 0;
+        }
+    }
+    EXPECT_GT(different, 200) << "thin dark hair over skin";
+}
+
+TEST_F(ViewportTest, BothOrbitStylesTurnMoveAndZoom) {
+    openBust();
+    const auto eye = [this] { return viewport().camera().camera().eye_ws; };
+    const auto target = [this] { return viewport().camera().target_ws(); };
+    const QPoint a(300, 300), b(360, 320);
+    for (const OrbitStyle style : {OrbitStyle::Maya, OrbitStyle::Blender}) {
+        session().preferences.setOrbitStyle(style);
+        const bool maya = style == OrbitStyle::Maya;
+        Vec3f eyeBefore = eye(), targetBefore = target();
+        drag({a, b}, maya ? Qt::AltModifier : Qt::NoModifier, maya ? Qt::LeftButton : Qt::MiddleButton);
+        EXPECT_GT((eye() - eyeBefore).norm(), 0.01f);
+        EXPECT_LT((target() - targetBefore).norm(), 1e-6f);
+        targetBefore = target();
+        drag({a, b}, maya ? Qt::AltModifier : Qt::ShiftModifier, Qt::MiddleButton);
+        EXPECT_GT((target() - targetBefore).norm(), 0.001f);
+        const float far = (eye() - target()).norm();
+        drag({a, b}, maya ? Qt::AltModifier : Qt::ControlModifier, maya ? Qt::RightButton : Qt::MiddleButton);
+        EXPECT_NE((eye() - target()).norm(), far);
+    }
+}
+
+TEST_F(PictureTest, OverlaysAreDrawn) {
+    if (viewport().presents()) GTEST_SKIP() << "pictures are not read back";
+    openGuides();
+    for (const char* name : {"scalp", "roots", "guides", "triangulation", "spheres", "wireframe"}) {
+        ASSERT_TRUE(viewport().waitForPicture(60'000));
+        const QImage without = viewport().picture();
+        find<QCheckBox>(name)->click();
+        ASSERT_TRUE(viewport().waitForPicture(60'000));
+        EXPECT_NE(viewport().picture(), without) << name;
+        find<QCheckBox>(name)->click();
+    }
+}
+
+/// The picture shows the X server's view of the window where the device presents by itself.
+TEST_F(PictureTest, AWindowOfTheDeviceShowsTheHead) {
+    if (qgetenv("HAIRLOOM_VIEWPORT") != "window") GTEST_SKIP() << "pictures are read back";
+    openBust();
+    ASSERT_TRUE(QTest::qWaitFor([this] { return viewport().presents(); }, 20'000));
+    ASSERT_TRUE(viewport().waitForPicture(60'000));
+    QTest::qWait(300);
+    const QImage screen = QGuiApplication::primaryScreen()->grabWindow(0).toImage();
+    const QPoint corner = viewport().mapToGlobal(QPoint(0, 0));
+    int skin = 0;
+    for (int y = 0; y < viewport().height(); y += 4) {
+        for (int x = 0; x < viewport().width(); x += 4) {
+            const QColor colour = screen.pixelColor(corner + QPoint(x, y));
+            skin += colour.red() > colour.blue() + 20 ? 1 : 0;
+        }
+    }
+    EXPECT_GT(skin, 300);
+    // Events reach the window that the device draws to.
+    const Vec3f eye = viewport().camera().camera().eye_ws;
+    drag({QPoint(200, 200), QPoint(260, 200)});
+    EXPECT_GT((viewport().camera().camera().eye_ws - eye).norm(), 0.01f);
+}
+
+TEST_F(ViewportTest, PlayingMovesTheHairAndResettingPutsItBack) {
+    openSampleHair("short");
+    const auto authored = hash();
+    Groom windy = groom();
+    windy.simulation.windSpeed = 8;
+    document().change("Wind", Change::Simulation, windy);
+    trigger("play.toggle");
+    ASSERT_TRUE(QTest::qWaitFor(
+        [this] {
+            const auto& f = session().player.frame();
+            return f && f->time > 0.2;
+        },
+        20'000));
+    const auto pose = viewport().pose();
+    ASSERT_TRUE(pose);
+    float farthest = 0;
+    for (std::size_t p = 0; p < groom().pointCount(); ++p) {
+        farthest = std::max(farthest, (pose->positions_ws[p] - groom().positions()[p]).norm());
+    }
+    EXPECT_GT(farthest, 0.002f);
+    EXPECT_EQ(session().player.frame()->stats.nanCount, 0u);
+    trigger("play.reset");
+    EXPECT_FALSE(viewport().pose());
+    document().undo();
+    EXPECT_EQ(hash(), authored) << "playing changes no document";
+}
+
+TEST_F(ViewportTest, SettingsTakeEffectWhileItPlays) {
+    openSampleHair("short");
+    trigger("play.toggle");
+    const auto played = [this](double seconds) {
+        return QTest::qWaitFor(
+            [&] {
+                const auto& f = session().player.frame();
+                return f && f->time > seconds;
+            },
+            20'000);
+    };
+    ASSERT_TRUE(played(0.05));
+    const auto windIsOn = [this] {
+        for (const EffectReport& effect : session().player.frame()->stats.effects) {
+            if (effect.name == "wind") return effect.on;
+        }
+        return false;
+    };
+    EXPECT_FALSE(windIsOn());
+    Groom windy = groom();
+    windy.simulation.windSpeed = 8;
+    document().change("Wind", Change::Simulation, windy);
+    const double now = session().player.frame()->time;
+    ASSERT_TRUE(played(now + 0.1)) << "it went on from where it was";
+    EXPECT_TRUE(windIsOn());
+}
+
+TEST_F(ViewportTest, ClipsOfTheCharacterPlay) {
+    openSampleHair("short");
+    ASSERT_TRUE(session().player.setMotion("clip:nod_and_turn"));
+    EXPECT_FALSE(session().player.setMotion("clip:no_such"));
+    trigger("play.step");
+    ASSERT_TRUE(QTest::qWaitFor([this] { return session().player.frame() != nullptr; }, 20'000));
+    EXPECT_EQ(session().player.frame()->pose->head.scalpPositions_ws.size(), groom().scalp->vertexCount());
+}
+
+}  // namespace
+}  // namespace hairloom::editor

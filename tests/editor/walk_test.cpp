@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From an empty window to an exported, moving hairstyle, as a person goes: the walk that docs/manual.md
+// shows.
+#include <QPushButton>
+
+#include "editor/dialogs/export_dialog.h"
+#include "editor/fields/number_box.h"
+#include "editor/tools/brush_tool.h"
+#include "importers/strands.h"
+#include "tests/editor/window_fixture.h"
+
+namespace hairloom::editor {
+namespace {
+
+class WalkTest : public WindowTest {};
+
+TEST_F(WalkTest, FromAnEmptyWindowToAnExportedMovingHairstyle) {
+    // A head.
+    openBust();
+    viewport().look(render::View::Front);
+    viewport().frameAll();
+    // A scalp, painted from the front and from behind.
+    trigger("tool.scalp_paint");
+    auto& paint = dynamic_cast<BrushTool&>(*session().tools.find("scalp_paint"));
+    paint.settings().radius = 0.03f;
+    const Box3f box = groom().scalp->bounds();
+    const auto onHead = [&](float x, float down, float z) { return at(Vec3f(x, box.max().y() - down, z)); };
+    drag({onHead(-0.06f, 0.04f, 0.05f), onHead(-0.03f, 0.02f, 0.06f), onHead(0.03f, 0.02f, 0.06f),
+          onHead(0.06f, 0.04f, 0.05f)});
+    viewport().look(render::View::Back);
+    drag({onHead(0.06f, 0.05f, -0.1f), onHead(0, 0.04f, -0.1f), onHead(-0.06f, 0.05f, -0.1f),
+          onHead(-0.05f, 0.10f, -0.1f), onHead(0.05f, 0.10f, -0.1f)});
+    ASSERT_GT(groom().scalpSelection.size(), 50u);
+    EXPECT_EQ(document().stepCount(), 2);
+    // Hair on it.
+    find<NumberBox>("count")->spinBox().setValue(800);
+    find<NumberBox>("length")->setFocus();
+    Groom settings = groom();
+    settings.placement.length = 0.12f;
+    document().change("Length", Change::Placement, settings);
+    find<QPushButton>("placePreview")->click();
+    finishWork();
+    find<QPushButton>("place")->click();
+    finishWork();
+    ASSERT_EQ(groom().strandCount(), 800u) << window->statusLine().message().toStdString();
+    expectSound();
+    // Grooming: comb down behind, cut the ends.
+    trigger("tool.comb");
+    auto& comb = dynamic_cast<BrushTool&>(*session().tools.find("comb"));
+    comb.settings().radius = 0.04f;
+    comb.settings().strength = 0.8f;
+    const auto placed = hash();
+    drag({onHead(0.02f, 0.06f, -0.15f), onHead(0.02f, 0.10f, -0.16f), onHead(0.02f, 0.16f, -0.16f)});
+    const auto combed = hash();
+    EXPECT_NE(combed, placed);
+    trigger("tool.cut_line");
+    drag({onHead(0.12f, 0.14f, -0.15f), onHead(0, 0.14f, -0.15f), onHead(-0.12f, 0.14f, -0.15f)});
+    const auto cut = hash();
+    EXPECT_NE(cut, combed);
+    trigger("edit.undo");
+    EXPECT_EQ(hash(), combed);
+    trigger("edit.redo");
+    EXPECT_EQ(hash(), cut);
+    // Spheres.
+    find<QPushButton>("sphereFit")->click();
+    finishWork();
+    ASSERT_FALSE(groom().spheres.empty());
+    // Wind, and let it blow.
+    trigger("tool.wind");
+    const QPoint centre = at(viewport().camera().target_ws());
+    drag({centre, centre + QPoint(70, 0), centre + QPoint(110, 0)});
+    EXPECT_GT(groom().simulation.windSpeed, 4);
+    trigger("play.toggle");
+    ASSERT_TRUE(QTest::qWaitFor(
+        [this] {
+            const auto& f = session().player.frame();
+            return f && f->time > 0.3;
+        },
+        30'000));
+    const SimulationStats stats = session().player.frame()->stats;
+    EXPECT_EQ(stats.nanCount, 0u);
+    EXPECT_EQ(stats.restoredStrands, 0u);
+    trigger("play.reset");
+    expectSound();
+    // Out, and back in again.
+    ASSERT_TRUE(window->saveTo(inFolder("walk.hairloom")));
+    const auto saved = hash();
+    ExportDialog dialog(session());
+    dialog.exportTo(inFolder("walk.tfx"));
+    finishWork();
+    EXPECT_EQ(dialog.report().strands, groom().strandCount());
+    const auto exported = importStrands(inFolder("walk.tfx").toStdString());
+    ASSERT_TRUE(exported) << exported.error().message();
+    EXPECT_EQ(exported->groom.strandCount(), groom().strandCount());
+    trigger("file.new");
+    window->open(inFolder("walk.hairloom"));
+    finishWork();
+    EXPECT_EQ(hash(), saved);
+}
+
+}  // namespace
+}  // namespace hairloom::editor

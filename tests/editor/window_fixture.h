@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// A window as a person has it, and a person's hands.
+
+#include <gtest/gtest.h>
+
+#include <QElapsedTimer>
+#include <QSettings>
+#include <QTemporaryDir>
+#include <QTest>
+#include <QWindow>
+#include <map>
+#include <memory>
+
+#include "core/groom/groom_hash.h"
+#include "core/groom/validate.h"
+#include "editor/document/files.h"
+#include "editor/shell/main_window.h"
+
+namespace hairloom::editor {
+
+class WindowTest : public testing::Test {
+  protected:
+    /// `pictures` are drawn: slow on a software device, and needed by few tests.
+    explicit WindowTest(bool pictures = false) : pictures_(pictures) {}
+    void SetUp() override {
+        QSettings().clear();
+        if (!pictures_) qputenv("HAIRLOOM_VIEWPORT", "none");
+        ASSERT_TRUE(folder.isValid());
+        open();
+    }
+    void TearDown() override {
+        window->setUnsavedAnswer(MainWindow::Unsaved::Discard);
+        window->close();
+        window.reset();
+        if (!pictures_)
+            wished_.isEmpty() ? qunsetenv("HAIRLOOM_VIEWPORT") : qputenv("HAIRLOOM_VIEWPORT", wished_);
+    }
+    void open() {
+        window = std::make_unique<MainWindow>();
+        window->setUnsavedAnswer(MainWindow::Unsaved::Discard);
+        window->resize(1280, 800);
+        window->show();
+        ASSERT_TRUE(QTest::qWaitForWindowExposed(window.get()));
+    }
+
+    Session& session() { return window->session(); }
+    Document& document() { return window->session().document; }
+    const Groom& groom() { return document().groom(); }
+    Viewport& viewport() { return *window->session().viewport; }
+    std::uint64_t hash() { return contentHash(groom()); }
+
+    void trigger(const char* id) { window->actions().get(id).trigger(); }
+    /// Waits for work off the interface thread and what comes of it.
+    void finishWork() {
+        session().tasks.finish();
+        QCoreApplication::processEvents();
+    }
+    /// Made once for all tests; AnEmptyWindow… opens one as a person does.
+    void openSampleHair(const QString& name) {
+        static std::map<QString, std::pair<Groom, std::shared_ptr<const Actor>>> made;
+        if (!made.contains(name)) {
+            openSample(session(), name);
+            finishWork();
+            ASSERT_GT(groom().strandCount(), 0u) << window->statusLine().message().toStdString();
+            made[name] = {groom(), session().player.actor()};
+            return;
+        }
+        document().open(made[name].first, {}, name);
+        session().player.setActor(made[name].second);
+    }
+    void openBust() {
+        openSample(session(), {});
+        finishWork();
+        ASSERT_TRUE(groom().scalp) << window->statusLine().message().toStdString();
+    }
+    QString inFolder(const char* name) const { return folder.filePath(name); }
+
+    // The pointer over the viewport, in its pixels.
+    void press(const QPoint& at, Qt::KeyboardModifiers modifiers = {},
+               Qt::MouseButton button = Qt::LeftButton) {
+        send([&](auto* target) { QTest::mousePress(target, button, modifiers, at); });
+    }
+    void moveTo(const QPoint& at) {
+        send([&](auto* target) { QTest::mouseMove(target, at); });
+        // On a display the pointer itself is moved, and the X server says so in its own time.
+        QTest::qWait(20);
+    }
+    void release(const QPoint& at, Qt::KeyboardModifiers modifiers = {},
+                 Qt::MouseButton button = Qt::LeftButton) {
+        send([&](auto* target) { QTest::mouseRelease(target, button, modifiers, at); });
+    }
+    /// Presses at the first point, moves over the others, releases at the last.
+    void drag(std::initializer_list<QPoint> points, Qt::KeyboardModifiers modifiers = {},
+              Qt::MouseButton button = Qt::LeftButton) {
+        press(*points.begin(), modifiers, button);
+        for (const QPoint& point : points) moveTo(point);
+        release(*(points.end() - 1), modifiers, button);
+    }
+    void key(Qt::Key key, Qt::KeyboardModifiers modifiers = {}) {
+        send([&](auto* target) { QTest::keyClick(target, key, modifiers); });
+    }
+    /// Where a point of the world is in the viewport.
+    QPoint at(const Vec3f& point_ws) {
+        const auto px = viewport().camera().project(point_ws, viewport().viewSize_px());
+        EXPECT_TRUE(px);
+        return px.value_or(QPointF()).toPoint();
+    }
+
+    template <class Widget>
+    Widget* find(const char* name) {
+        auto* widget = window->findChild<Widget*>(name);
+        EXPECT_TRUE(widget) << "no control named " << name;
+        return widget;
+    }
+
+    void expectSound() {
+        for (const Finding& finding : validate(groom())) {
+            EXPECT_NE(finding.severity, Severity::Error) << finding.what << " at " << finding.where;
+        }
+    }
+
+    QTemporaryDir folder;
+    std::unique_ptr<MainWindow> window;
+
+  private:
+    bool pictures_;
+    QByteArray wished_ = qgetenv("HAIRLOOM_VIEWPORT");
+
+    template <class Act>
+    void send(Act act) {
+        QObject* const target = viewport().input();
+        if (auto* native = qobject_cast<QWindow*>(target)) {
+            act(native);
+        } else {
+            act(static_cast<QWidget*>(target));
+        }
+        QCoreApplication::processEvents();
+    }
+};
+
+}  // namespace hairloom::editor

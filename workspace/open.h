@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Files of any supported kind, as the command line and the editor open them.
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "core/groom/groom.h"
+#include "core/groom/validate.h"
+#include "importers/scene.h"
+
+namespace hairloom {
+
+/// Metres of one unit of that name (m, dm, cm, mm, inch); 1 for an empty or unknown name.
+float metresPerUnit(const std::string& unit);
+
+/// The mesh, skeleton and clips of a file; its warnings go to the log.
+Result<ImportedScene> importSceneLoud(const std::string& path, const MeshImportOptions& options);
+/// The same with the name of a unit, which may be empty.
+Result<ImportedScene> importSceneWithUnit(const std::string& path, const std::string& unit);
+
+/// A groom from a project, or from a hair file of any supported format.
+Result<Groom> loadDocument(const std::string& path);
+
+/// What is in a file of any supported kind.
+struct Opened {
+    std::string format;
+    Groom groom;  ///< for meshes: the scalp and no strands
+    std::vector<Finding> findings;
+};
+Result<Opened> openAny(const std::string& path, const std::string& unit);
+
+/// From a JSON list of {"name", "centre": [x, y, z], "radius", "bone"}; metres, radius > 0.
+Result<std::vector<CollisionSphere>> readSpheres(const std::string& path);
+
+/// What a JSON object says of "simulation", "material" and "interpolation"; what it leaves out keeps its
+/// value. Errors: unknown names and values out of range. `source` is named in errors.
+Status applySettings(const nlohmann::json& document, const std::string& source, Groom& groom);
+
+/// Says findings on standard error, as warnings about `path`.
+void logFindings(const std::string& path, const std::vector<Finding>& findings);
+
+}  // namespace hairloom
