@@ -81,7 +81,5 @@ Result<ImportedStrands> importStrandsFromMemory(const std::string& file, std::sp
 
 /// Whether the content starts like one of the formats above that hold nothing but strands (.hair, .tfx).
 bool looksLikeStrandFile(std::span<const std::byte> bytes);
-/// Reads the first bytes only; false where that fails.
-bool looksLikeStrandFile(const std::filesystem::path& path);
 
 }  // namespace hairloom

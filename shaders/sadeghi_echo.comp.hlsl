@@ -1,19 +1,3 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Evaluates the model on given cases: single scattering first, then what dual scattering adds.
 #include "shaders/sadeghi.hlsli"
-#include "shaders/dual.hlsli"
-
-cbuffer Fibre : register(b1) { FibreConstants gFibre; };
-StructuredBuffer<FibreCase> gCases : register(t0);
-RWStructuredBuffer<float4> gResults : register(u0);
-
-[numthreads(64, 1, 1)]
-void main(uint3 id : SV_DispatchThreadID) {
-    uint count, stride;
-    gCases.GetDimensions(count, stride);
-    if (id.x >= count) return;
-    const FibreCase c = gCases[id.x];
-    const FibreFrame f = fibreFrame(c.tangent.xyz, c.toLight.xyz, c.toView.xyz);
-    gResults[2 * id.x] = float4(fibreScattering(gFibre, f, c.tangent.w, 1.0), 0);
-    gResults[2 * id.x + 1] = float4(multipleScattering(gFibre, f, c.toLight.w, c.toView.w, 1.0), 0);
-}
+#include "shaders/fibre_echo.hlsli"

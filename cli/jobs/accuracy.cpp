@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "cli/accuracy_jobs.h"
 #include "cli/documents.h"
 #include "cli/job.h"
 #include "cli/motions.h"
@@ -21,10 +22,7 @@ struct AccuracyOptions {
     std::uint32_t strands = 200;
     std::uint32_t repeats = 5;
     std::uint64_t seed = 1;
-    std::string truth = "reference";
-    std::uint32_t truthStrands = 16;
-    std::uint32_t truthSubsteps = 64;
-    double truthTolerance = 0.01;  ///< mm
+    TruthOptions truth;
     std::vector<std::string> integrators, substeps, iterations, points, threadCounts;
     std::vector<std::string> vary;  ///< FIELD=V1,V2,…
 };
@@ -82,12 +80,6 @@ Result<std::vector<GridAxis>> axesOf(const AccuracyOptions& options, const Groom
     return axes;
 }
 
-std::unique_ptr<TruthSource> truthOf(const AccuracyOptions& options) {
-    if (options.truth == "engine") return std::make_unique<EngineConverged>(options.truthSubsteps);
-    return std::make_unique<ReferenceConverged>(
-        ReferenceConverged::Options{options.truthStrands, options.truthTolerance, options.truthSubsteps});
-}
-
 Report settingReport(const WorkPrecision& result, const WorkPrecisionRun& run) {
     Report setting = Report::object();
     for (std::size_t a = 0; a < run.values.size(); ++a) {
@@ -139,7 +131,8 @@ Result<Report> accuracy(const AccuracyOptions& options, const std::string& comma
         if (!progress) progress.emplace("measuring", total);
         progress->done(done);
     };
-    const auto result = measureWorkPrecision(scene->groom, *scene->motion, measuring, *truthOf(options));
+    const auto result =
+        measureWorkPrecision(scene->groom, *scene->motion, measuring, *makeTruth(options.truth));
     progress.reset();
     if (!result) return tl::unexpected(result.error());
     const auto files = writeWorkPrecision(*result, {options.motion.input, options.motion.motion, commandLine},
@@ -185,18 +178,7 @@ void addAccuracyJob(Jobs& jobs) {
     list("--thread-counts", options->threadCounts, "Numbers of threads to try, instead of --threads alone");
     job.add_option("--vary", options->vary, "Another setting to try, FIELD=VALUE,VALUE,…; may be repeated");
     job.add_option("--repeat", options->repeats, "Timed runs of each setting")->check(CLI::Range(1, 1000));
-    job.add_option("--truth", options->truth,
-                   "What counts as true: the reference in double precision, or the engine converged")
-        ->check(CLI::IsMember({"reference", "engine"}));
-    job.add_option("--truth-strands", options->truthStrands,
-                   "Strands that errors are taken from when the reference is true; it is slow")
-        ->check(CLI::Range(1, 100'000));
-    job.add_option("--truth-tolerance", options->truthTolerance,
-                   "Millimetres by which a doubling of the reference's steps may still move a point")
-        ->check(CLI::Range(1e-6, 10.0));
-    job.add_option("--truth-substeps", options->truthSubsteps,
-                   "Most steps, in each quarter of a frame, of the run that counts as true")
-        ->check(CLI::IsMember({8, 16, 32, 64}));
+    addTruthOptions(job, options->truth);
     job.add_option("--seed", options->seed, "Another seed draws other strands");
 }
 

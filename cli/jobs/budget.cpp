@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "cli/accuracy_jobs.h"
 #include "cli/documents.h"
 #include "cli/job.h"
 #include "cli/motions.h"
@@ -21,8 +22,7 @@ struct BudgetJobOptions {
     std::string output;
     std::uint32_t strands = 100;
     std::uint32_t repeats = 5;
-    std::string truth = "reference";
-    std::uint32_t truthStrands = 16;
+    TruthOptions truth;
     std::uint64_t seed = 1;
 };
 
@@ -42,17 +42,6 @@ class Bars {
     std::size_t total_ = 0;
 };
 
-std::unique_ptr<TruthSource> truthOf(const BudgetJobOptions& options) {
-    if (options.truth == "engine") return std::make_unique<EngineConverged>();
-    ReferenceConverged::Options reference;
-    reference.strands = options.truthStrands;
-    return std::make_unique<ReferenceConverged>(reference);
-}
-
-Report toReport(const Quartiles& times) {
-    return Report{{"median", times.median}, {"q1", times.q1}, {"q3", times.q3}};
-}
-
 Result<Report> budget(const BudgetJobOptions& options) {
     const auto scene = openMovingGroom(options.motion);
     if (!scene) return tl::unexpected(scene.error());
@@ -67,7 +56,7 @@ Result<Report> budget(const BudgetJobOptions& options) {
     solving.progress = [&](const std::string& what, std::size_t done, std::size_t total) {
         bars->show(what, done, total);
     };
-    const auto solved = solveBudget(scene->groom, *scene->motion, solving, *truthOf(options));
+    const auto solved = solveBudget(scene->groom, *scene->motion, solving, *makeTruth(options.truth));
     bars.reset();
     if (!solved) return tl::unexpected(solved.error());
     if (!solved->fits) {
@@ -114,12 +103,7 @@ void addBudgetJob(Jobs& jobs) {
                    "Strands that errors are taken from, drawn from the groom's")
         ->check(CLI::Range(1, 1'000'000));
     job.add_option("--repeat", options->repeats, "Timed runs of each candidate")->check(CLI::Range(1, 1000));
-    job.add_option("--truth", options->truth,
-                   "What counts as true: the reference in double precision, or the engine converged")
-        ->check(CLI::IsMember({"reference", "engine"}));
-    job.add_option("--truth-strands", options->truthStrands,
-                   "Strands that errors are taken from when the reference is true; it is slow")
-        ->check(CLI::Range(1, 100'000));
+    addTruthOptions(job, options->truth);
     job.add_option("--seed", options->seed, "Another seed draws other strands");
 }
 

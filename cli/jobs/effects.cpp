@@ -2,6 +2,7 @@
 #include <memory>
 #include <optional>
 
+#include "cli/accuracy_jobs.h"
 #include "cli/documents.h"
 #include "cli/job.h"
 #include "cli/motions.h"
@@ -58,9 +59,7 @@ Result<Report> effects(const EffectsOptions& options) {
     report["points"] = scene->groom.pointCount();
     report["frames"] = measuring.time.frames;
     report["runs"] = measuring.repeats;
-    report["ms_per_frame"] = Report{{"median", costs->milliseconds.median},
-                                    {"q1", costs->milliseconds.q1},
-                                    {"q3", costs->milliseconds.q3}};
+    report["ms_per_frame"] = toReport(costs->milliseconds);
     report["effects"] = Report::array();
     for (const EffectCost& effect : costs->effects) report["effects"].push_back(effectRow(*costs, effect));
     return report;

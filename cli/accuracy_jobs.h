@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What the jobs of core/accuracy have in common.
+
+#include <CLI/App.hpp>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "cli/job.h"
+#include "core/accuracy/statistics.h"
+#include "core/accuracy/truth.h"
+
+namespace hairloom::cli {
+
+struct TruthOptions {
+    std::string truth = "reference";
+    std::uint32_t strands = 16;
+    std::uint32_t substeps = 64;
+    double toleranceMm = 0.01;
+};
+/// --truth, --truth-strands, --truth-tolerance, --truth-substeps.
+void addTruthOptions(CLI::App& job, TruthOptions& options);
+std::unique_ptr<TruthSource> makeTruth(const TruthOptions& options);
+
+/// median, q1, q3.
+Report toReport(const Quartiles& times);
+
+}  // namespace hairloom::cli
