@@ -98,8 +98,9 @@ MadeTrialEngine makeCpuTrialEngine(const runtime::StrandsView& strands,
 
 TrialEngineMaker gpuTrialEngines(gpu::Device& device,
                                  std::shared_ptr<gpu_simulation::KernelLibrary> kernels) {
-    return [&device, kernels](const runtime::StrandsView& strands,
-                              const runtime::SimulationSettings& settings) -> MadeTrialEngine {
+    return [&device, kernels = std::move(kernels)](
+               const runtime::StrandsView& strands,
+               const runtime::SimulationSettings& settings) -> MadeTrialEngine {
         gpu_simulation::EngineOptions options;
         options.layout.unroll = device.info().type != gpu::DeviceType::Cpu;
         auto engine = gpu_simulation::StrandEngine::make(device, kernels, strands, settings, options);

@@ -158,7 +158,7 @@ Indices readRuns(JsonReader& reader, std::string_view name) {
 
 std::string recordOf(std::string_view op, Json members) {
     Json record{{"op", op}};
-    record.update(members);
+    for (auto& [name, value] : members.items()) record[name] = std::move(value);
     return record.dump();
 }
 

@@ -75,8 +75,8 @@ class GpuEngineMethod final : public StrandMethod {
 }  // namespace
 
 MethodMaker engineOn(gpu::Device& device, std::shared_ptr<KernelLibrary> kernels) {
-    return [&device, kernels](const SceneInput& scene,
-                              const std::optional<runtime::HairVolumeSettings>& hairHair)
+    return [&device, kernels = std::move(kernels)](const SceneInput& scene,
+                                                   const std::optional<runtime::HairVolumeSettings>& hairHair)
                -> Result<std::unique_ptr<StrandMethod>> {
         EngineOptions options;
         // A driver that compiles for a CPU takes seconds for unrolled loops and gains nothing by them.

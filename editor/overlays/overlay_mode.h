@@ -6,6 +6,7 @@
 #include <QString>
 #include <span>
 
+#include "core/geometry/scalp_mesh.h"
 #include "editor/viewport/marks.h"
 
 namespace hairloom::editor {

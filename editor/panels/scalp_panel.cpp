@@ -95,13 +95,13 @@ class ScalpPanel : public QWidget {
             session_.messages.warn(QString::fromStdString(faces.error().message()));
             return;
         }
-        perform(std::move(*faces), expression);
+        perform(*faces, expression);
     }
 
-    void perform(FaceSet faces, const QString& expression = {}) {
+    void perform(const FaceSet& faces, const QString& expression = {}) {
         const auto& model = session_.document.editing().model();
-        session_.document.perform(editing::selectScalp(model, std::move(faces), editing::Choice::Replace,
-                                                       expression.toStdString()));
+        session_.document.perform(
+            editing::selectScalp(model, faces, editing::Choice::Replace, expression.toStdString()));
     }
 
     void refresh() {

@@ -44,7 +44,8 @@ class LiveMethod : public StrandMethod {
 }  // namespace
 
 MethodMaker liveMethod(std::shared_ptr<LiveKnobs> knobs) {
-    return [knobs](const SceneInput& scene, const std::optional<runtime::HairVolumeSettings>& hairHair)
+    return [knobs = std::move(knobs)](const SceneInput& scene,
+                                      const std::optional<runtime::HairVolumeSettings>& hairHair)
                -> Result<std::unique_ptr<StrandMethod>> {
         auto engine = makeEngineMethod(scene, hairHair);
         if (!engine) return tl::unexpected(engine.error());

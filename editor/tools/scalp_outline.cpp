@@ -35,7 +35,7 @@ class ScalpOutlineTool : public OutlineTool {
         const ScalpMesh& mesh = *document.groom().scalp;
         FaceSet faces = editing::facesIn(region, mesh, *document.surface(), viewOf(session()), through_);
         if (symmetric_) faces = editing::symmetricFaces(mesh, *document.surface(), faces);
-        document.perform(editing::selectScalp(document.model(), std::move(faces), choice));
+        document.perform(editing::selectScalp(document.model(), faces, choice));
     }
 
   private:

@@ -108,8 +108,8 @@ Status RenderWork::replaceScene(const PictureRequest& request, bool draft) {
 
 Status RenderWork::movePoints(const PictureRequest& request) {
     const bool posed = request.pose && request.pose->positions_ws.size() == request.groom->pointCount();
-    const auto moved = posed ? scene_->pose(request.pose->positions_ws, request.pose->head)
-                             : scene_->pose(request.groom->positions(), {});
+    auto moved = posed ? scene_->pose(request.pose->positions_ws, request.pose->head)
+                       : scene_->pose(request.groom->positions(), {});
     if (!moved) return moved;
     const render::RenderScene shown = scene_->scene();
     if (request.showHead && !shown.meshes.empty()) {

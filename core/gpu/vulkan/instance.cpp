@@ -46,8 +46,7 @@ bool hasLayer(const char* name) {
 /// The extensions that make surfaces of windows; empty where the loader lacks one.
 std::vector<const char*> surfaceExtensions() {
 #ifdef VK_USE_PLATFORM_XCB_KHR
-    const std::vector<const char*> wanted = {VK_KHR_SURFACE_EXTENSION_NAME,
-                                             VK_KHR_XCB_SURFACE_EXTENSION_NAME};
+    std::vector<const char*> wanted = {VK_KHR_SURFACE_EXTENSION_NAME, VK_KHR_XCB_SURFACE_EXTENSION_NAME};
     std::uint32_t count = 0;
     vkEnumerateInstanceExtensionProperties(nullptr, &count, nullptr);
     std::vector<VkExtensionProperties> offered(count);
