@@ -16,8 +16,10 @@ void main(uint3 id : SV_DispatchThreadID) {
     const uint at = id.y * gPack.size.z + gPack.size.y + id.x;
     const bool fixedLayers = gPack.size.w == HAIRLOOM_SHADOWS_OPACITY_MAPS;
     const uint layers = fixedLayers ? 4u : 3u;
-    float4 share = 0;
-    for (uint k = 0; k < layers; ++k) share[k] = float(gCounts[texel * layers + k]) * (OPACITY_UNIT / FIBRE_COUNT);
+    const uint counts = texel * layers;
+    float4 share = float4(gCounts[counts], gCounts[counts + 1u], gCounts[counts + 2u], 0);
+    if (fixedLayers) share.w = float(gCounts[counts + 3u]);
+    share *= OPACITY_UNIT / FIBRE_COUNT;
     if (!fixedLayers) {
         const float z = asfloat(gFirst[at]);
         share.w = z < 1.0 ? 1.0 - saturate(metresBehindNear(gPack.range, z) / gPack.range.x) : 0.0;

@@ -64,7 +64,7 @@ void dispatchMeshes(gpu::CommandList& list, RendererState& state, const Mat4f& c
         const auto triangles = static_cast<std::uint32_t>(mesh.indices.size() / 3);
         if (triangles == 0) continue;
         const std::uint32_t row = std::min(triangles, kRowGroups);
-        const std::uint32_t slices = std::clamp(kWantedGroups / triangles, 1u, kMostSlices);
+        const std::uint32_t slices = state.onCpu ? 1 : std::clamp(kWantedGroups / triangles, 1u, kMostSlices);
         raster.numbers.x = triangles;
         raster.numbers.y = row;
         raster.samples.z = slices;
