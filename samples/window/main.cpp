@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <map>
+#include <thread>
 
 #include "samples/window/show.h"
 #include "workspace/sample.h"
@@ -20,6 +21,7 @@ struct Options {
     float wind = 4;
     bool guides = false;
     std::uint64_t pictures = 0;
+    float hold = 0;
 };
 
 Result<Groom> sample(const std::string& style, const std::filesystem::path& programFolder) {
@@ -58,6 +60,10 @@ Status show(const Options& options, const std::filesystem::path& programFolder) 
         if (shown % 10 == 0) say(shown, elapsed.count());
         if (shown == options.pictures) break;
     }
+    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<float>(options.hold);
+    while ((*window)->handleEvents() && std::chrono::steady_clock::now() < end) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
     return {};
 }
 
@@ -74,6 +80,8 @@ int run(int argc, char** argv) {
     program.add_flag("--guides", options.guides,
                      "Without the hairs between the simulated ones, which take a software device long");
     program.add_option("--pictures", options.pictures, "Ends after so many; 0: when the window is closed");
+    program.add_option("--hold", options.hold, "Seconds for which the last picture stays")
+        ->check(CLI::Range(0, 3600));
     CLI11_PARSE(program, argc, argv);
     const auto folder = std::filesystem::path(argv[0]).parent_path();
     if (const auto status = show(options, folder); !status) {

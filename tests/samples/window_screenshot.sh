@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # usage: xvfb-run -a -s "-screen 0 640x640x24" tests/samples/window_screenshot.sh PICTURE.png PROGRAM [ARGUMENT…]
-# Runs hairloom-window on a display of its own and photographs the screen twice. The first photograph stays as PICTURE.png.
+# Runs hairloom-window on a display of its own and photographs the screen after ten pictures and after twenty. The first
+# photograph stays as PICTURE.png.
 # Fails unless the program ends well, the screen shows a shaded picture, and that picture moves.
 set -euo pipefail
 picture=$1
@@ -21,7 +22,7 @@ while read -r line; do
     sleep 0.3
     if [ "$shown" -eq 1 ]; then import -window root "$picture"; fi
     if [ "$shown" -eq 2 ]; then import -window root "$later"; fi
-done < <("$@" --pictures 20; echo "ended with $?")
+done < <("$@" --pictures 20 --hold 4; echo "ended with $?")
 [ "$last" = 'ended with 0' ] || { echo "error: the program failed" >&2; exit 1; }
 [ "$shown" -ge 2 ] || { echo "error: the program showed nothing" >&2; exit 1; }
 
