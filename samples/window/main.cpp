@@ -70,6 +70,7 @@ Status show(const Options& options, const std::filesystem::path& programFolder) 
 int run(int argc, char** argv) {
     Options options;
     CLI::App program("Shows a sample hairstyle turning in the wind.", "hairloom-window");
+    program.allow_windows_style_options(false);
     program.add_option("style", options.style, "A file of samples/hairstyles, without its ending");
     program
         .add_option("--backend", options.backend, "Graphics API; the system's own where this is not given")
