@@ -58,6 +58,7 @@ struct RendererState {
 /// Views from the lights, and the constants that follow from camera and lights.
 void setUpLights(RendererState& state);
 shaders::ShadeConstants shadeConstants(const RendererState& state, const HairMaterial& material);
+shaders::LookConstants lookConstants(const shading::StrandLook& look);
 
 void recordCurves(gpu::CommandList& list, RendererState& state);
 void recordShadowMaps(gpu::CommandList& list, RendererState& state);

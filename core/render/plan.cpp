@@ -79,7 +79,10 @@ class Planner {
              facts_.hair ? fmt::format("{} curve segments a segment of a strand", options_.subdivisions)
                          : "no hair");
         pass(Pass::shade, facts_.hair,
-             facts_.hair ? fmt::format("{} lights, once a point of a curve", facts_.lights) : "no hair");
+             facts_.hair ? fmt::format("{} lights, once a point of a curve; {}", facts_.lights,
+                                       facts_.look ? "colour or absorption changes from place to place"
+                                                   : "all of a material's hair looks the same")
+                         : "no hair");
         pass(Pass::draw, true,
              blends ? "the head, and hair that covers whole samples" : "head, hair and background");
         pass(Pass::blend, blends, blends ? "fine hair blends in any order" : "no hair is blended by weights");
