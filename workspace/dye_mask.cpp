@@ -21,7 +21,8 @@ float paintedValue(const render::LinearImage& image, const Vec2f& uv) {
     const std::uint32_t y = texel(1 - wrapped(uv.y()), image.height);
     const float* rgba = &image.rgba[4 * (std::size_t{y} * image.width + x)];
     // What people paint as half is half.
-    return 0.2126f * render::encodeSrgb(rgba[0]) + 0.7152f * render::encodeSrgb(rgba[1]) + 0.0722f * render::encodeSrgb(rgba[2]);
+    return 0.2126f * render::encodeSrgb(rgba[0]) + 0.7152f * render::encodeSrgb(rgba[1]) +
+           0.0722f * render::encodeSrgb(rgba[2]);
 }
 
 template <class T>

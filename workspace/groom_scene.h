@@ -87,7 +87,7 @@ class GroomScene {
     std::vector<float> radii_;  ///< of the strands' points where some are hidden, which have no thickness
     render::HairMaterial material_;
     StrandShares shares_;  ///< of what is drawn, where the material has a look
-    bool matte_ = false;  ///< the head, where a view says what it is
+    bool matte_ = false;   ///< the head, where a view says what it is
 };
 
 }  // namespace hairloom

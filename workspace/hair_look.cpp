@@ -23,8 +23,7 @@ double roughnessOf(const HairMaterial& authored, const FibreView& view) {
 }
 
 Vec3d melaninAbsorption(const HairMaterial& authored, double factor) {
-    return factor *
-           shading::absorption({asDouble(authored.eumelanin), asDouble(authored.pheomelanin)});
+    return factor * shading::absorption({asDouble(authored.eumelanin), asDouble(authored.pheomelanin)});
 }
 
 /// The colours of Kajiya-Kay.
@@ -114,8 +113,7 @@ bool isEven(const HairMaterial& authored, const shading::StrandLook& look, bool 
 }
 
 void finishLook(const HairMaterial& authored, shading::StrandLook& look) {
-    look.gradient =
-        shading::Ramp::between(asDouble(authored.gradientStart), asDouble(authored.gradientEnd));
+    look.gradient = shading::Ramp::between(asDouble(authored.gradientStart), asDouble(authored.gradientEnd));
     look.dyeAlong = shading::Ramp::between(asDouble(authored.dyeStart), asDouble(authored.dyeEnd));
     look.spread = asDouble(authored.melaninVariation);
     look.emissionRoot = asDouble(authored.emission) * authored.emissionRootColour.cast<double>();
@@ -144,8 +142,7 @@ render::FibreMaterial fibreMaterial(const HairMaterial& authored, const FibreVie
                                              : absorptionLook(authored, roughness).root;
     m.azimuthal.width = shading::azimuthalWidth(roughness);
     if (m.azimuthal.width >= shading::kLeastAzimuthalWidth) m.azimuthal.causticWidth = 0;
-    m.azimuthal.axisRatio =
-        view.axisRatio.value_or(shading::axisRatio(asDouble(authored.eccentricity)));
+    m.azimuthal.axisRatio = view.axisRatio.value_or(shading::axisRatio(asDouble(authored.eccentricity)));
     shading::setScales(m, asDouble(authored.scaleTiltDegrees) * shading::kDegree,
                        shading::longitudinalWidth(asDouble(authored.longitudinalRoughness)));
     const LobeControls controls(authored);

@@ -82,7 +82,8 @@ Result<Report> set(const SetOptions& options) {
     if (!applied) return tl::unexpected(applied.error());
     changed += *applied;
     if (!options.dyeImage.empty()) {
-        if (auto status = dyeFromImage(options.dyeImage, *groom); !status) return tl::unexpected(status.error());
+        if (auto status = dyeFromImage(options.dyeImage, *groom); !status)
+            return tl::unexpected(status.error());
         ++changed;
     }
     if (!options.dyeAttribute.empty()) {

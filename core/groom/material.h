@@ -51,18 +51,18 @@ struct HairMaterial {
     // and Sadeghi; colours, the azimuthal width and glints for Sadeghi alone.
     float eccentricity = 0.0f;  ///< 0 … 0.95 of the cross-section; Marschner
     float rIntensity = 1.0f, ttIntensity = 1.0f, trtIntensity = 1.0f;  ///< 0 … 10, factors
-    float rWidth = 1.0f, ttWidth = 1.0f, trtWidth = 1.0f;              ///< 0.1 … 10, factors, along the hair
+    float rWidth = 1.0f, ttWidth = 1.0f, trtWidth = 1.0f;  ///< 0.1 … 10, factors, along the hair
     float rShiftDegrees = 0.0f, ttShiftDegrees = 0.0f, trtShiftDegrees = 0.0f;  ///< −30 … 30, added
     Vec3f rColour = Vec3f::Ones(), ttColour = Vec3f::Ones(), trtColour = Vec3f::Ones();  ///< linear, 0 … 1
-    float ttAzimuthalWidth = 1.0f;    ///< 0.1 … 10, factor
-    float glintIntensity = 1.0f;      ///< 0 … 20, factor
-    float glintWidthDegrees = 10.0f;  ///< 1 … 90, around the hair
+    float ttAzimuthalWidth = 1.0f;                            ///< 0.1 … 10, factor
+    float glintIntensity = 1.0f;                              ///< 0 … 20, factor
+    float glintWidthDegrees = 10.0f;                          ///< 1 … 90, around the hair
     float glintNearDegrees = 30.0f, glintFarDegrees = 45.0f;  ///< 0 … 180; each strand's glint lies between
 
     float rootOpacity = 1.0f;  ///< 0 … 1 at the root; changes evenly
     float tipOpacity = 1.0f;   ///< 0 … 1 at the tip
     float emission = 0.0f;     ///< 0 … 1000; light that strands give off by themselves, 0: none
-    Vec3f emissionRootColour = Vec3f(1.0f, 0.6f, 0.2f);   ///< linear RGB, 0 … 1
+    Vec3f emissionRootColour = Vec3f(1.0f, 0.6f, 0.2f);  ///< linear RGB, 0 … 1
     Vec3f emissionTipColour = Vec3f(0.6f, 0.05f, 0.0f);  ///< linear RGB, 0 … 1
 };
 

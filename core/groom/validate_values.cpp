@@ -108,7 +108,8 @@ void findDye(const Groom& groom, std::vector<Finding>& findings) {
     for (std::size_t s = 0; s < mask.size(); ++s) {
         if (!(mask[s] >= 0 && mask[s] <= 1)) places.strand(s);
     }
-    places.report(findings, Severity::Error, "the mask of the dye is not from 0 to 1", "dye the strands again");
+    places.report(findings, Severity::Error, "the mask of the dye is not from 0 to 1",
+                  "dye the strands again");
 }
 
 void findTriangleBindings(const Groom& groom, std::span<const SurfacePoint> roots,

@@ -9,7 +9,7 @@ namespace hairloom::shading {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-// σ = m u/(1 + m/σ_max − u): the steps near 0 are a seventh of even ones.
+// σ = m u/(1 + m/σ_max − u): steps near 0 are an eleventh of even ones.
 constexpr double kBend = 0.7;
 static_assert(kAbsorptionLayers % 3 == 0);
 
@@ -141,9 +141,8 @@ DualLayers bakeDualLayers(const SadeghiParameters& model, const AzimuthalParamet
     SadeghiParameters grey = model;
     for (SadeghiLobe* lobe : {&grey.r, &grey.tt, &grey.trt}) lobe->tint.setConstant(lobe->tint.mean());
     grey.r.colour.setConstant(grey.r.colour.mean());
-    return bakeDualOf(azimuth, inclination, [&](const Vec3d& absorptions) {
-        return withAbsorption(grey, fibre, absorptions);
-    });
+    return bakeDualOf(azimuth, inclination,
+                      [&](const Vec3d& absorptions) { return withAbsorption(grey, fibre, absorptions); });
 }
 
 }  // namespace hairloom::shading

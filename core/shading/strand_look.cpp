@@ -36,8 +36,7 @@ Vec3d colourOfMoreAbsorption(const Vec3d& colour, double factor) {
 
 Vec3d lookAt(const StrandLook& look, const StrandPlace& place) {
     const double t = look.gradient(place.along);
-    const Vec3d plain =
-        place.ownColour ? ofOwnColour(look, *place.ownColour) : mix(look.root, look.tip, t);
+    const Vec3d plain = place.ownColour ? ofOwnColour(look, *place.ownColour) : mix(look.root, look.tip, t);
     const Vec3d streaked = mix(plain, mix(look.streakRoot, look.streakTip, t), place.streak);
     const Vec3d dyed = mix(streaked, look.dye, place.dye * look.dyeAlong(place.along));
     const double factor = 1 + look.spread * (2 * place.random - 1);

@@ -40,10 +40,10 @@ struct StrandLook {
 
 /// A point of a strand.
 struct StrandPlace {
-    double along = 0;   ///< 0 root … 1 tip
-    double random = 0;  ///< 0…1, the strand's
-    double streak = 0;  ///< 0…1, how much the strand is in a streak
-    double dye = 0;     ///< 0…1
+    double along = 0;                  ///< 0 root … 1 tip
+    double random = 0;                 ///< 0…1, the strand's
+    double streak = 0;                 ///< 0…1, how much the strand is in a streak
+    double dye = 0;                    ///< 0…1
     const Vec3d* ownColour = nullptr;  ///< in place of root and tip; linear RGB
 };
 

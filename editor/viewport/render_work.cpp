@@ -39,8 +39,7 @@ bool differsInPositionsOnly(const Groom& a, const Groom& b) {
            sameButPositions(a.strandAttributes, b.strandAttributes) && a.scalp == b.scalp &&
            a.scalpSelection == b.scalpSelection && a.interpolation.followPerGuide == 0 &&
            b.interpolation.followPerGuide == 0 && a.material.rootColour == b.material.rootColour &&
-           hasSameShares(a.material, b.material) &&
-           a.layers.size() == b.layers.size();
+           hasSameShares(a.material, b.material) && a.layers.size() == b.layers.size();
 }
 
 /// As a groom shown without its follow hairs.

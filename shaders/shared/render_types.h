@@ -121,8 +121,8 @@ struct FibreConstants {
     float4 spread;   // x, y: least and largest width of the table of wide lobes, radians
 };
 
-// Colours (linear RGB) or absorption (RGB per fibre radius) from place to place, of hair that does not look the
-// same everywhere: shading::StrandLook.
+// Colours (linear RGB) or absorption (RGB per fibre radius) from place to place, of hair that does not look
+// the same everywhere: shading::StrandLook.
 struct LookConstants {
     float4 root;          // w: where the gradient starts
     float4 tip;           // w: one by its length

@@ -99,12 +99,12 @@ struct FibreCases {
             if (std::max(std::abs(here.thetaIn), std::abs(here.thetaOut)) > 1.3) continue;
             const double before = 4 * random.uniformDouble();
             angles.push_back(here);
-            cases.push_back(
-                {toFloat4(tangent, random.uniformDouble()),
-                 toFloat4(toLight, before),
-                 toFloat4(toView, before + 4 * random.uniformDouble()),
-                 {random.uniform(), random.uniform(), random.uniform(), random.uniform()},
-                 {random.uniform(), random.uniform(), random.uniform(), cases.size() % 3 == 0 ? 1.0f : 0.0f}});
+            cases.push_back({toFloat4(tangent, random.uniformDouble()),
+                             toFloat4(toLight, before),
+                             toFloat4(toView, before + 4 * random.uniformDouble()),
+                             {random.uniform(), random.uniform(), random.uniform(), random.uniform()},
+                             {random.uniform(), random.uniform(), random.uniform(),
+                              cases.size() % 3 == 0 ? 1.0f : 0.0f}});
         }
     }
 };
@@ -203,9 +203,9 @@ TEST_F(ShaderTest, HairThatVariesAgreesWithTheReference) {
         const auto tables = FibreTables::make(*device, material, true);
         ASSERT_TRUE(tables) << tables.error().message();
         const auto constants = lookConstants(look);
-        const auto result = run(isMarschner ? "marschner_look_echo.comp" : "sadeghi_look_echo.comp",
-                                2 * kCases, kCases / 64, {gpu::Binding::read(0, buffer(given.cases))}, {},
-                                &*tables, gpu::bytesOf(constants));
+        const auto result =
+            run(isMarschner ? "marschner_look_echo.comp" : "sadeghi_look_echo.comp", 2 * kCases, kCases / 64,
+                {gpu::Binding::read(0, buffer(given.cases))}, {}, &*tables, gpu::bytesOf(constants));
         RelativeError single, multiple;
         for (std::uint32_t i = 0; i < kCases; ++i) {
             const auto& [in, out, phi] = given.angles[i];
@@ -217,10 +217,10 @@ TEST_F(ShaderTest, HairThatVariesAgreesWithTheReference) {
             shading::MarschnerParameters fibre = material.marschner;
             fibre.azimuthal.absorption = absorption;
             const shading::Marschner marschner(fibre);
-            const auto sadeghi = isMarschner ? material.sadeghi
-                                             : shading::withAbsorption(material.sadeghi,
-                                                                       material.marschner.azimuthal,
-                                                                       absorption);
+            const auto sadeghi =
+                isMarschner
+                    ? material.sadeghi
+                    : shading::withAbsorption(material.sadeghi, material.marschner.azimuthal, absorption);
             const shading::DualScattering dual =
                 isMarschner ? shading::DualScattering(marschner) : shading::DualScattering(sadeghi);
             const Vec3d expected =

@@ -42,9 +42,9 @@ TEST(HairLook, EvenHairHasNone) {
     coloured.material.dyed = true;
     const auto dyed = renderMaterial(coloured, kMarschner).look;
     ASSERT_TRUE(dyed);
-    EXPECT_TRUE(dyed->tip.isApprox(shading::absorptionOfColour(
-        coloured.material.tipColour.cast<double>(),
-        static_cast<double>(coloured.material.azimuthalRoughness))));
+    EXPECT_TRUE(dyed->tip.isApprox(
+        shading::absorptionOfColour(coloured.material.tipColour.cast<double>(),
+                                    static_cast<double>(coloured.material.azimuthalRoughness))));
 }
 
 TEST(HairLook, EachFeatureAsksForOne) {
