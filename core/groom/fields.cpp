@@ -13,7 +13,7 @@ using I = InterpolationSettings;
 using P = PlacementSettings;
 
 constexpr Field<M> kMaterialFields[] = {
-    {"rootRadius", "m", 5e-6, 0.005, "half the fibre's diameter at the root; a hair has 25e-6 to 60e-6",
+    {"rootRadius", "m", 5e-6, 0.05, "half the fibre's diameter at the root; a hair has 25e-6 to 60e-6",
      &M::rootRadius},
     {"tipScale", "", 0, 1, "radius at the tip over radius at the root: lower is more pointed", &M::tipScale},
     {"rootColour", "", 0, 1, "linear red, green and blue at the root", &M::rootColour},
@@ -85,6 +85,7 @@ constexpr Field<M> kMaterialFields[] = {
     {"glintNearDegrees", "°", 0, 180, "least angle of a strand's glints, which is random (Sadeghi)",
      &M::glintNearDegrees},
     {"glintFarDegrees", "°", 0, 180, "largest angle of a strand's glints (Sadeghi)", &M::glintFarDegrees},
+    {"tubes", "", 0, 1, "true draws strands as round tubes with skin, as tentacles have", &M::tubes},
     {"rootOpacity", "", 0, 1, "how opaque hair is at the root", &M::rootOpacity},
     {"tipOpacity", "", 0, 1, "how opaque hair is at the tip: lower fades out", &M::tipOpacity},
     {"emission", "", 0, 1000, "light that hair gives off by itself, as fire does; 0 is none", &M::emission},

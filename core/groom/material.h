@@ -59,6 +59,8 @@ struct HairMaterial {
     float glintWidthDegrees = 10.0f;                          ///< 1 … 90, around the hair
     float glintNearDegrees = 30.0f, glintFarDegrees = 45.0f;  ///< 0 … 180; each strand's glint lies between
 
+    bool tubes = false;  ///< strands are round and have skin: tentacles; no model of hair is used
+
     float rootOpacity = 1.0f;  ///< 0 … 1 at the root; changes evenly
     float tipOpacity = 1.0f;   ///< 0 … 1 at the tip
     float emission = 0.0f;     ///< 0 … 1000; light that strands give off by themselves, 0: none
