@@ -10,6 +10,7 @@
 #include "core/geometry/selection.h"
 #include "core/groom/json_reader.h"
 #include "core/interpolation/follow_hairs.h"
+#include "core/render/exr.h"
 #include "core/render/png.h"
 #include "core/simulation/simulation.h"
 #include "workspace/hair_look.h"
@@ -40,7 +41,7 @@ Result<render::Environment> readEnvironment(JsonReader& reader, const std::files
         const std::filesystem::path image = folder / reader.string("image");
         const double scale = reader.has("scale") ? reader.number("scale", 0, kAnyRadiance) : 1;
         if (!reader.ok()) return render::Environment();
-        const auto pixels = render::readPng(image);
+        const auto pixels = image.extension() == ".exr" ? render::readExr(image) : render::readPng(image);
         if (!pixels) return tl::unexpected(pixels.error());
         return render::Environment::fromImage(*pixels, static_cast<float>(scale));
     }

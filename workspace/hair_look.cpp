@@ -183,7 +183,8 @@ render::HairMaterial renderMaterial(const Groom& groom, const ViewFile& view) {
     material.primaryShift = 2 * authored.scaleTiltDegrees;
     material.secondaryShift = -3 * authored.scaleTiltDegrees;
     material.fibre = fibreMaterial(authored, view.fibre);
-    const bool isKajiya = view.fibre.model == render::ShadingModel::kajiya;
+    material.tubes = authored.tubes;
+    const bool isKajiya = view.fibre.model == render::ShadingModel::kajiya || authored.tubes;
     if (!isKajiya && view.fibre.saysColour()) {
         material.variation = 0;
         return material;

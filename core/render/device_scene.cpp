@@ -445,6 +445,7 @@ Status DeviceScene::prepareCurves(gpu::Device& device, std::uint32_t subdivision
 
 Status DeviceScene::prepareFibres(gpu::Device& device) {
     for (StrandGroup& group : groups) {
+        if (group.material.tubes) continue;
         const bool varies = group.material.look.has_value();
         if (group.fibre.isFor(group.material.fibre, varies)) continue;
         auto made = FibreTables::make(device, group.material.fibre, varies);

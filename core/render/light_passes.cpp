@@ -226,8 +226,9 @@ void recordShading(gpu::CommandList& list, RendererState& state) {
     bindShadows(list, state);
     for (const StrandBatch& batch : state.scene.batches) {
         const StrandGroup& group = state.scene.groups[batch.group];
-        list.setPipeline(state.pipelines.compute(group.fibre.shader()));
-        group.fibre.bind(list);
+        const char* const tube = group.material.look ? "tube_albedo_look.comp" : "tube_albedo.comp";
+        list.setPipeline(state.pipelines.compute(group.material.tubes ? tube : group.fibre.shader()));
+        if (!group.material.tubes) group.fibre.bind(list);
         if (group.material.look) list.setConstants(2, gpu::bytesOf(lookConstants(*group.material.look)));
         auto constants = shadeConstants(state, group.material);
         const std::uint32_t points =

@@ -74,8 +74,8 @@ void recordOverlay(gpu::CommandList& list, RendererState& state, const gpu::Text
 
 /// All triangles, or only those of matte meshes or the others, with whatever pipeline is set.
 void drawMeshes(gpu::CommandList& list, const RendererState& state, std::optional<bool> matte = {});
-/// All strands that are drawn, as strips of the curves' points.
-void drawStrips(gpu::CommandList& list, const RendererState& state);
+/// All strands that are drawn, or only those of tubes or the others, as strips of the curves' points.
+void drawStrips(gpu::CommandList& list, const RendererState& state, std::optional<bool> tubes = {});
 void bind(gpu::CommandList& list, std::initializer_list<gpu::Binding> bindings);
 void bindShadows(gpu::CommandList& list, const RendererState& state);
 

@@ -46,6 +46,9 @@ struct HairMaterial {
     float opacity = 0.65f;         ///< 0…1: how much one fibre takes from the light behind it
     float rootOpacity = 1;         ///< 0…1, times how much of a ribbon the hair covers; changes evenly
     float tipOpacity = 1;
+    /// Strands are round and have skin, shaded once a pixel: a wrapped diffuse term of the albedo or the
+    /// look, and the first highlight.
+    bool tubes = false;
     FibreMaterial fibre;  ///< which model, and what the others than Kajiya-Kay take
     /// For hair that does not look the same everywhere: in place of albedo and the two brightnesses, or of
     /// the fibre's absorption. Nothing: neither its shader nor its tables are used.
