@@ -10,7 +10,7 @@ namespace hairloom {
 
 struct HairMaterial {
     float rootRadius =
-        0.00004f;  ///< metres, 5e-6 … 0.005; half the fibre's diameter at the root (a hair: 25–60 µm)
+        0.00004f;  ///< metres, 5e-6 … 0.05; half the fibre's diameter at the root (a hair: 25–60 µm)
     float tipScale = 0.4f;                          ///< 0 … 1; radius at the tip over radius at the root
     Vec3f rootColour = Vec3f(0.16f, 0.08f, 0.04f);  ///< linear RGB, 0 … 1
     Vec3f tipColour = Vec3f(0.30f, 0.17f, 0.09f);   ///< linear RGB, 0 … 1

@@ -6,6 +6,7 @@
 #include <array>
 #include <vector>
 
+#include "core/gpu/device.h"
 #include "core/render/options.h"
 #include "core/render/scene.h"
 #include "shaders/shared/render_types.h"

@@ -40,7 +40,9 @@ TEST(Webp, AnimationsHoldTheirFrames) {
     std::uint32_t count = 0, time = 0;
     for (std::size_t at = 12; at + 8 <= file.size();) {
         const std::uint32_t size = numberAt(file, at + 4, 4);
-        if (isAt(at, "ANIM")) EXPECT_EQ(numberAt(file, at + 12, 2), 0u) << "plays for ever";
+        if (isAt(at, "ANIM")) {
+            EXPECT_EQ(numberAt(file, at + 12, 2), 0u) << "plays for ever";
+        }
         if (isAt(at, "ANMF")) {
             ++count;
             time += numberAt(file, at + 8 + 12, 3);

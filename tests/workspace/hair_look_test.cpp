@@ -97,7 +97,9 @@ TEST(HairLook, DyeComesFromTheMaskAndFollowHairsShareIt) {
     ASSERT_TRUE(rest);
     for (std::size_t h = 0; h < shares->dyes.size(); h += 7) {
         const float x = rest->strand(h)[0].x();
-        if (std::abs(x) > 0.02f) EXPECT_NEAR(shares->dyes[h], x > 0 ? 0.5f : 0.0f, 1e-5f) << h;
+        if (std::abs(x) > 0.02f) {
+            EXPECT_NEAR(shares->dyes[h], x > 0 ? 0.5f : 0.0f, 1e-5f) << h;
+        }
     }
 }
 
