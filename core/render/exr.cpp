@@ -39,6 +39,9 @@ struct Loaded {
     Loaded& operator=(const Loaded&) = delete;
 
     std::string why() const { return error != nullptr ? error : "damaged"; }
+    /// After a failure the library has freed what it made, but still points to it.
+    void forgetHeader() { InitEXRHeader(&header); }
+    void forgetImage() { InitEXRImage(&image); }
 };
 
 /// Place of a channel, or -1.
@@ -65,6 +68,7 @@ Result<LinearImage> readExr(const std::filesystem::path& path) {
         return failed("is tiled, deep or of several parts");
     if (ParseEXRHeaderFromMemory(&loaded.header, &loaded.version, bytes, file->size(), &loaded.error) !=
         TINYEXR_SUCCESS) {
+        loaded.forgetHeader();
         return failed("cannot be read: " + loaded.why());
     }
     const auto& window = loaded.header.data_window;
@@ -81,6 +85,7 @@ Result<LinearImage> readExr(const std::filesystem::path& path) {
         loaded.header.requested_pixel_types[c] = TINYEXR_PIXELTYPE_FLOAT;
     if (LoadEXRImageFromMemory(&loaded.image, &loaded.header, bytes, file->size(), &loaded.error) !=
         TINYEXR_SUCCESS) {
+        loaded.forgetImage();
         return failed("cannot be read: " + loaded.why());
     }
     if (loaded.image.images == nullptr) return failed("has no pixels");
