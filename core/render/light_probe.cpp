@@ -43,6 +43,9 @@ Status prepare(gpu::Device& device, const RenderScene& scene, const RenderOption
     auto nothing = device.createTexture(desc, black);
     if (!nothing) return tl::unexpected(nothing.error());
     state.nothing = std::move(*nothing);
+    auto noWords = makeBuffer(device, "no words", black, 4);
+    if (!noWords) return tl::unexpected(noWords.error());
+    state.noWords = std::move(*noWords);
     return {};
 }
 
