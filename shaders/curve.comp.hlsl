@@ -59,7 +59,7 @@ void main(uint3 id : SV_DispatchThreadID) {
             result.tangentXy = packUnit(tangent);
             result.along = float(i) / float(last);
             result.strand = id.x;
-            result.unused = 0;
+            result.opacity = lerp(gCurve.opacity.x, gCurve.opacity.y, result.along);
             gResult[first + i] = result;
         }
         p0 = p1;

@@ -3,8 +3,55 @@
 #include "shaders/fibre_tables.hlsli"
 
 Texture2D<float4> gSpread : register(t14);         // N averaged over light from half of the directions
-Texture2D<float4> gAverages : register(t15);       // shares of light sent on and back, tilts and variances
 Texture2D<float4> gSpreadFactors : register(t16);  // what normalises a wide lobe
+
+// A fibre's shares of light sent on and back with their variances, and its tilts.
+struct FibreAverages {
+    float4 forward, backward;
+    float4 rest;  // tilt of light sent on, sent back and of all; variance of all
+};
+#ifdef HAIRLOOM_LOOK
+#include "shaders/layer_averages.hlsli"
+
+FibreAverages averagesAt(float thetaD, float3 absorption) {
+    FibreAverages a;
+    a.forward = 0;
+    a.backward = 0;
+    float2 variance = 0;
+    float2 tilt = 0;
+    [unroll] for (uint c = 0; c < 3u; ++c) {
+        const LayerAverages one = layerAverages(thetaD, absorption[c]);
+        a.forward[c] = one.shares.x;
+        a.backward[c] = one.shares.y;
+        variance += one.shares.zw;
+        tilt += one.tilts.xy;
+    }
+    const float2 shares = max(float2(dot(a.forward.rgb, 1.0), dot(a.backward.rgb, 1.0)), 1e-6);
+    a.forward.w = variance.x / shares.x;
+    a.backward.w = variance.y / shares.y;
+    const float all = shares.x + shares.y;
+    a.rest = float4(tilt / shares, (tilt.x + tilt.y) / all, (variance.x + variance.y) / all);
+    return a;
+}
+
+float3 spreadAt(float2 at, float3 absorption) {
+    float3 n = 0;
+    [unroll] for (uint c = 0; c < 3u; ++c) n[c] = lookUpLayers(gSpread, at, absorption[c]).r;
+    return n;
+}
+#else
+Texture2D<float4> gAverages : register(t15);  // shares of light sent on and back, tilts and variances
+
+FibreAverages averagesAt(float thetaD, float3 absorption) {
+    FibreAverages a;
+    a.forward = lookUp(gAverages, float2(thetaD, 0.0));
+    a.backward = lookUp(gAverages, float2(thetaD, 0.5));
+    a.rest = lookUp(gAverages, float2(thetaD, 1.0));
+    return a;
+}
+
+float3 spreadAt(float2 at, float3 absorption) { return lookUp(gSpread, at).rgb; }
+#endif
 
 float spreadLongitudinal(FibreConstants fibre, FibreFrame f, float tilt, float variance) {
     const float width = clamp(sqrt(variance), fibre.spread.x, fibre.spread.y);
@@ -18,14 +65,16 @@ float spreadLongitudinal(FibreConstants fibre, FibreFrame f, float tilt, float v
 float scatteringsOf(float x) { return x < 1e-2 ? 1.0 + 0.5 * x : x / (1.0 - exp(-x)); }
 
 // Times the irradiance: as S cos theta_i. `before` fibres up to the light, `all` from side to side.
-float3 multipleScattering(FibreConstants fibre, FibreFrame f, float before, float all, float3 tint) {
+float3 multipleScattering(FibreConstants fibre, FibreFrame f, float before, float all, float3 tint,
+                          float3 absorption) {
     const float cosIn = sqrt(saturate(1.0 - f.sinIn * f.sinIn));
     const float cosOut = sqrt(saturate(1.0 - f.sinOut * f.sinOut));
     const float cosDSquared = max(0.5 * (1.0 + cosIn * cosOut + f.sinIn * f.sinOut), 1e-4);
     const float thetaD = acos(sqrt(min(cosDSquared, 1.0))) * (2.0 / 3.14159265);
-    const float4 forward = lookUp(gAverages, float2(thetaD, 0.0));
-    const float4 backward = lookUp(gAverages, float2(thetaD, 0.5));
-    const float4 rest = lookUp(gAverages, float2(thetaD, 1.0));
+    const FibreAverages averages = averagesAt(thetaD, absorption);
+    const float4 forward = averages.forward;
+    const float4 backward = averages.backward;
+    const float4 rest = averages.rest;
     // A tint may be above 1; no fibre gives more light than it gets.
     const float3 share = min(tint, 0.99 / max(forward.rgb + backward.rgb, 1e-4));
     const float3 lost = 1.0 - forward.rgb * share;
@@ -43,7 +92,7 @@ float3 multipleScattering(FibreConstants fibre, FibreFrame f, float before, floa
     const float downM = spreadLongitudinal(fibre, f, rest.z + passed * rest.x, rest.w + passed * forward.w);
     const float upM = spreadLongitudinal(fibre, f, rest.z + (passed + 1.0) * rest.x + rest.y,
                                          rest.w + (passed + 1.0) * forward.w + backward.w);
-    const float3 downN = lookUp(gSpread, float2(0.5 + 0.5 * f.cosPhi, thetaD)).rgb;
-    const float3 upN = lookUp(gSpread, float2(0.5 - 0.5 * f.cosPhi, thetaD)).rgb;
+    const float3 downN = spreadAt(float2(0.5 + 0.5 * f.cosPhi, thetaD), absorption);
+    const float3 upN = spreadAt(float2(0.5 - 0.5 * f.cosPhi, thetaD), absorption);
     return share * (downM * down * downN + upM * up * upN) * (cosIn / cosDSquared);
 }

@@ -17,6 +17,6 @@ RibbonCorner ribbonCorner(ViewConstants view, CurvePoint p, bool second) {
     RibbonCorner corner;
     corner.position = mul(view.clipFromWorld, float4(centre_ws + side * (second ? radius : -radius), 1));
     // A hair thinner than the least width keeps its share of light by being as transparent as it is too wide.
-    corner.coverage = radius > 0 ? p.position_ws.w / radius : 0;
+    corner.coverage = radius > 0 ? p.opacity * p.position_ws.w / radius : 0;
     return corner;
 }

@@ -4,6 +4,9 @@
 #include "shaders/curve.hlsli"
 #include "shaders/kajiya.hlsli"
 #include "shaders/shadows.hlsli"
+#ifdef HAIRLOOM_LOOK
+#include "shaders/look.hlsli"
+#endif
 
 cbuffer Constants : register(b0) { ShadeConstants gShade; };
 StructuredBuffer<CurvePoint> gCurve : register(t0);
@@ -27,8 +30,12 @@ void main(uint3 id : SV_DispatchThreadID) {
     const float3 toView = normalize(gShade.eye_ws.xyz - p.position_ws.xyz);
 
     const float vary = 1.0 + gShade.rootTip.z * (strand.random * 2.0 - 1.0);
+#ifdef HAIRLOOM_LOOK
+    const float3 albedo = saturate(lookAt(placeOf(strand, p.along)) * vary);
+#else
     const float3 own = strand.albedo.w > 0 ? strand.albedo.rgb : gShade.albedo.rgb;
     const float3 albedo = saturate(own * lerp(gShade.rootTip.x, gShade.rootTip.y, p.along) * vary);
+#endif
     const float jitter = (hashUnit(p.strand * 2u + 1u) - 0.5) * 0.06;
     const float3 tangent1 = tilt(tangent, toView, gShade.shift.x + jitter);
     const float3 tangent2 = tilt(tangent, toView, gShade.shift.y + jitter);
@@ -59,5 +66,8 @@ void main(uint3 id : SV_DispatchThreadID) {
     if (hasEnvironment(gShade)) {
         colour += albedo * environmentOnHair(gShade, tangent, 1.0 - 0.5 * p.along) * openness;
     }
+#ifdef HAIRLOOM_LOOK
+    colour += emissionAt(p.along);
+#endif
     gColour[index] = float4(colour, 1);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Light leaving each curve point towards the camera, by a model of light in fibres: HAIRLOOM_SADEGHI or Marschner's, with
-// HAIRLOOM_DUAL also what other fibres have scattered before. shade.comp.hlsl does the same for Kajiya-Kay.
+// HAIRLOOM_DUAL also what other fibres have scattered before, with HAIRLOOM_LOOK for hair that does not absorb the same
+// everywhere. shade.comp.hlsl does the same for Kajiya-Kay.
 #include "shaders/curve.hlsli"
 #include "shaders/shadows.hlsli"
 #ifdef HAIRLOOM_SADEGHI
@@ -10,6 +11,10 @@
 #endif
 #ifdef HAIRLOOM_DUAL
 #include "shaders/dual.hlsli"
+#endif
+#ifdef HAIRLOOM_LOOK
+#include "shaders/layer_averages.hlsli"
+#include "shaders/look.hlsli"
 #endif
 
 cbuffer Constants : register(b0) { ShadeConstants gShade; };
@@ -27,10 +32,18 @@ void main(uint3 id : SV_DispatchThreadID) {
     const float3 tangent = unpackUnit(p.tangentXy);
     const float3 toView = normalize(gShade.eye_ws.xyz - p.position_ws.xyz);
 
-    // A strand's own colour is known against the material's, whose absorption the tables hold.
     const float vary = 1.0 + gShade.rootTip.z * (strand.random * 2.0 - 1.0);
+#ifdef HAIRLOOM_LOOK
+    const float3 tint = vary;
+    const float3 absorption = lookAt(placeOf(strand, p.along));
+    const float3 ambient = ambientOf(absorption);
+#else
+    // A strand's own colour is known against the material's, whose absorption the tables hold.
     const float3 own = strand.albedo.w > 0 ? strand.albedo.rgb / max(gShade.albedo.rgb, 1e-3) : 1.0;
     const float3 tint = own * (lerp(gShade.rootTip.x, gShade.rootTip.y, p.along) * vary);
+    const float3 absorption = 0;
+    const float3 ambient = gFibre.ambient.rgb;
+#endif
     const float clumping = gFibre.lobes.w;
 
     float3 colour = 0;
@@ -41,16 +54,19 @@ void main(uint3 id : SV_DispatchThreadID) {
         const Occlusion o = occlusion(light, p.position_ws.xyz, 0.0007, 0.004);
         const float before = clumping * o.fibres;
         const FibreFrame f = fibreFrame(tangent, toLight, toView);
-        float3 scattered = exp(-before) * fibreScattering(gFibre, f, hashUnit(p.strand * 2u), tint);
+        float3 scattered = exp(-before) * fibreScattering(gFibre, f, hashUnit(p.strand * 2u), tint, absorption);
 #ifdef HAIRLOOM_DUAL
-        scattered += multipleScattering(gFibre, f, before, clumping * o.allFibres, tint);
+        scattered += multipleScattering(gFibre, f, before, clumping * o.allFibres, tint, absorption);
 #endif
         colour += irradianceOf(light, p.position_ws.xyz) * o.visibility * scattered;
         openness += exp(-0.35 * o.fibres) * lerp(0.25, 1.0, o.visibility);
     }
     openness = gShade.counts.y > 0 ? openness / float(gShade.counts.y) : 1.0;
     if (hasEnvironment(gShade)) {
-        colour += gFibre.ambient.rgb * tint * environmentOnHair(gShade, tangent, 1.0 - 0.5 * p.along) * openness;
+        colour += ambient * tint * environmentOnHair(gShade, tangent, 1.0 - 0.5 * p.along) * openness;
     }
+#ifdef HAIRLOOM_LOOK
+    colour += emissionAt(p.along);
+#endif
     gColour[index] = float4(colour, 1);
 }

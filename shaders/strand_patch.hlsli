@@ -6,7 +6,7 @@
 
 struct ControlPoint {
     float4 position_ws : POSITION;  // w: radius
-    float3 tangent : TANGENT;       // m of Eq. 56
+    float4 tangent : TANGENT;       // m of Eq. 56; w: opacity
     nointerpolation uint4 patch : PATCH;  // x: strand, y: curve point of the ribbon's first, z: its segments,
                                           // w: 1 when the first control point only lends its place; << 8: their number
 };

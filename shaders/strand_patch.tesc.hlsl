@@ -57,6 +57,6 @@ ControlPoint main(InputPatch<ControlPoint, POINTS> points, uint i : SV_OutputCon
     const float3 here = points[k].position_ws.xyz;
     const float3 before = k > 0u ? points[k - 1u].position_ws.xyz : 2 * here - points[1].position_ws.xyz;
     const float3 after = k < last ? points[k + 1u].position_ws.xyz : 2 * here - points[k - 1u].position_ws.xyz;
-    o.tangent = 0.5 * (after - before);
+    o.tangent.xyz = 0.5 * (after - before);
     return o;
 }

@@ -26,8 +26,8 @@ Output main(PatchFactors factors, float2 place : SV_DomainLocation,
     const uint a = k + (patch.w & 1u);
     const float4 pa = points[a].position_ws;
     const float4 pb = points[a + 1u].position_ws;
-    const float3 ma = points[a].tangent;
-    const float3 mb = points[a + 1u].tangent;
+    const float3 ma = points[a].tangent.xyz;
+    const float3 mb = points[a + 1u].tangent.xyz;
     const float t2 = t * t;
     const float t3 = t2 * t;
     CurvePoint p;
@@ -40,7 +40,7 @@ Output main(PatchFactors factors, float2 place : SV_DomainLocation,
     p.tangentXy = packUnit(speed > 1e-12 ? tangent / speed : normalize(pb.xyz - pa.xyz + float3(0, 1e-12, 0)));
     p.along = 0;
     p.strand = patch.x;
-    p.unused = 0;
+    p.opacity = lerp(points[a].tangent.w, points[a + 1u].tangent.w, t);
     const RibbonCorner corner = ribbonCorner(gView, p, place.y > 0.5);
     // Light was worked out at the points of the strip's curve.
     const float at = x * float(gPatch.numbers.y);

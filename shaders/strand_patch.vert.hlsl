@@ -13,8 +13,9 @@ ControlPoint main(uint id : SV_VertexID) {
     const uint root = gStrands[patch.strand].segmentsBefore * subdivisions + patch.strand;
     const uint skipped = patch.firstPoint > 0u ? 1u : 0u;
     ControlPoint o;
-    o.position_ws = gCurve[root + (patch.firstPoint + k) * subdivisions].position_ws;
-    o.tangent = 0;
+    const CurvePoint p = gCurve[root + (patch.firstPoint + k) * subdivisions];
+    o.position_ws = p.position_ws;
+    o.tangent = float4(0, 0, 0, p.opacity);
     o.patch = uint4(patch.strand, root + (patch.firstPoint + skipped) * subdivisions, patch.segments,
                     skipped | (patch.pointCount << 8u));
     return o;

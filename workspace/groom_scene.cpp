@@ -10,8 +10,10 @@
 #include "core/geometry/selection.h"
 #include "core/groom/json_reader.h"
 #include "core/interpolation/follow_hairs.h"
+#include "core/render/exr.h"
 #include "core/render/png.h"
 #include "core/simulation/simulation.h"
+#include "workspace/hair_look.h"
 
 namespace hairloom {
 namespace {
@@ -39,7 +41,7 @@ Result<render::Environment> readEnvironment(JsonReader& reader, const std::files
         const std::filesystem::path image = folder / reader.string("image");
         const double scale = reader.has("scale") ? reader.number("scale", 0, kAnyRadiance) : 1;
         if (!reader.ok()) return render::Environment();
-        const auto pixels = render::readPng(image);
+        const auto pixels = image.extension() == ".exr" ? render::readExr(image) : render::readPng(image);
         if (!pixels) return tl::unexpected(pixels.error());
         return render::Environment::fromImage(*pixels, static_cast<float>(scale));
     }
@@ -108,41 +110,6 @@ void readHair(JsonReader reader, ViewFile& view) {
     reader.finish();
 }
 
-float luminance(const Vec3f& colour) {
-    return colour.dot(Vec3f(0.2126f, 0.7152f, 0.0722f));
-}
-
-render::HairMaterial materialOf(const HairMaterial& authored, const ViewFile& view) {
-    render::HairMaterial material;
-    material.albedo = authored.tipColour;
-    material.tipBrightness = 1;
-    material.rootBrightness = std::clamp(
-        luminance(authored.rootColour) / std::max(luminance(authored.tipColour), 1e-4f), 0.0f, 4.0f);
-    material.variation = authored.colourVariation;
-    material.radius = view.rootRadius.value_or(authored.rootRadius);
-    material.tipScale = view.tipScale.value_or(authored.tipScale);
-    // One authored highlight drives both of the shader's: the light's own colour, narrow, and the fibre's,
-    // wide.
-    material.primary = Vec3f::Constant(0.32f * authored.specular);
-    material.primaryExponent = 1.5f * authored.shininess;
-    material.secondary = Vec3f::Constant(1.1f * authored.specular);
-    material.secondaryExponent = 0.4f * authored.shininess;
-    material.primaryShift = 2 * authored.scaleTiltDegrees;
-    material.secondaryShift = -3 * authored.scaleTiltDegrees;
-    material.fibre = fibreMaterial(authored, view.fibre);
-    if (view.fibre.model == render::ShadingModel::kajiya) return material;
-    if (view.fibre.saysColour()) {
-        material.rootBrightness = material.tipBrightness = 1;
-        material.variation = 0;
-    } else {
-        // Melanin is that of the middle of the strand.
-        const float middle = 0.5f * (material.rootBrightness + 1);
-        material.rootBrightness /= middle;
-        material.tipBrightness /= middle;
-    }
-    return material;
-}
-
 /// Skin, and where hair grows half its colour: roots too fine to be drawn one by one shade the skin between
 /// them. A view's albedo is that of the whole head.
 std::vector<Vec3f> headColours(const Groom& groom, const std::optional<Vec3f>& asked) {
@@ -191,30 +158,6 @@ std::vector<Quatf> rootRotations(const Groom& rest, const Groom& posed, const Fo
 
 }  // namespace
 
-render::FibreMaterial fibreMaterial(const HairMaterial& authored, const FibreView& view) {
-    const double roughness = view.azimuthalRoughness.value_or(authored.azimuthalRoughness);
-    shading::MarschnerParameters m;
-    m.azimuthal.ior = view.ior.value_or(authored.indexOfRefraction);
-    m.azimuthal.absorption = view.absorption ? *view.absorption
-                             : view.colour   ? shading::absorptionOfColour(*view.colour, roughness)
-                                             : shading::absorption(view.melanin.value_or(
-                                                   shading::Melanin{authored.eumelanin, authored.pheomelanin}));
-    m.azimuthal.width = shading::azimuthalWidth(roughness);
-    if (m.azimuthal.width >= shading::kLeastAzimuthalWidth) m.azimuthal.causticWidth = 0;
-    m.azimuthal.axisRatio = view.axisRatio.value_or(1.0);
-    shading::setScales(m, static_cast<double>(authored.scaleTiltDegrees) * shading::kDegree,
-                       shading::longitudinalWidth(static_cast<double>(authored.longitudinalRoughness)));
-    if (view.width) m.width = *view.width;
-    if (view.tilt) m.tilt = *view.tilt;
-
-    render::FibreMaterial fibre;
-    fibre.model = view.model;
-    fibre.scattering = view.scattering;
-    if (view.model == render::ShadingModel::marschner) fibre.marschner = m;
-    if (view.model == render::ShadingModel::sadeghi) fibre.sadeghi = sadeghiLike(shading::Marschner(m));
-    return fibre;
-}
-
 Result<ViewFile> readViewFile(const std::string& path) {
     const auto text = readTextFile(path, kMaxJsonBytes);
     if (!text) return tl::unexpected(text.error());
@@ -254,7 +197,7 @@ Result<GroomScene> GroomScene::make(const Groom& groom, const std::vector<Vec3f>
     GroomScene scene;
     scene.rest_ = groom;
     scene.posed_ = pose ? posedGroom(groom, *positions_ws, *pose) : groom;
-    scene.material_ = materialOf(groom.material, view);
+    scene.material_ = renderMaterial(groom, view);
     scene.radii_ = radiiOfShown(groom, groom.material);
     scene.matte_ = view.headAlbedo.has_value();
     if (!groom.scalp && !hiddenGroups.empty()) return fail("there is no head to hide groups of");
@@ -268,7 +211,10 @@ Result<GroomScene> GroomScene::make(const Groom& groom, const std::vector<Vec3f>
             scene.triangleAlbedo_.push_back(colours[face]);
         }
     }
-    if (groom.interpolation.followPerGuide == 0 || groom.strandCount() == 0) return scene;
+    if (groom.interpolation.followPerGuide == 0 || groom.strandCount() == 0) {
+        if (scene.material_.look) scene.shares_ = sharesOfStrands(groom);
+        return scene;
+    }
 
     auto bindings = bindFollowHairs(groom, groom.interpolation);
     if (!bindings) return tl::unexpected(bindings.error());
@@ -276,6 +222,11 @@ Result<GroomScene> GroomScene::make(const Groom& groom, const std::vector<Vec3f>
         scene.hairOffsets_.push_back(static_cast<std::uint32_t>(hair * bindings->pointsPerHair));
     }
     scene.bindings_ = std::move(*bindings);
+    if (scene.material_.look) {
+        auto shares = sharesOfFollowHairs(groom, *scene.bindings_);
+        if (!shares) return tl::unexpected(shares.error());
+        scene.shares_ = std::move(*shares);
+    }
     if (auto status = scene.makeFollowHairs(); !status) return tl::unexpected(status.error());
     return scene;
 }
@@ -315,6 +266,8 @@ render::RenderScene GroomScene::scene() const {
         strands.offsets = hairOffsets_;
         strands.positions_ws = hairPositions_ws_;
     }
+    strands.streaks = shares_.streaks;
+    strands.dyes = shares_.dyes;
     scene.strands.push_back(strands);
     return scene;
 }

@@ -46,6 +46,12 @@ struct ViewFile {
 };
 Result<ViewFile> readViewFile(const std::string& path);
 
+/// What of streaks and dye each strand that is drawn has, 0…1; empty: nothing.
+struct StrandShares {
+    std::vector<float> streaks;
+    std::vector<float> dyes;
+};
+
 /// Owns the arrays that a RenderScene looks at.
 class GroomScene {
   public:
@@ -80,7 +86,8 @@ class GroomScene {
     std::vector<Vec3f> hairPositions_ws_;
     std::vector<float> radii_;  ///< of the strands' points where some are hidden, which have no thickness
     render::HairMaterial material_;
-    bool matte_ = false;  ///< the head, where a view says what it is
+    StrandShares shares_;  ///< of what is drawn, where the material has a look
+    bool matte_ = false;   ///< the head, where a view says what it is
 };
 
 }  // namespace hairloom

@@ -7,6 +7,7 @@
 #include "cli/job.h"
 #include "cli/measurements.h"
 #include "cli/render_bench.h"
+#include "cli/shadow_bench.h"
 #include "cli/simulation_bench.h"
 #include "cli/vectors.h"
 #include "core/base/file.h"
@@ -89,10 +90,26 @@ Result<Report> benchRendering(const BenchOptions& options, const std::string& co
     return report;
 }
 
+Result<Report> benchShadows(const BenchOptions& options, const std::string& command) {
+    ShadowBenchOptions wanted;
+    wanted.quick = options.quick;
+    if (options.deviceGiven) wanted.device = options.device;
+    const auto bench = runShadowBench(wanted);
+    if (!bench) return tl::unexpected(bench.error());
+    Report report = reportOf(*bench);
+    if (options.output.empty()) return report;
+    const auto written = writeFiles(
+        options.output, {{"shadows.md", markdownOf(*bench, command)}, {"shadows.svg", figureOf(*bench)}});
+    if (!written) return tl::unexpected(written.error());
+    report["output"] = *written;
+    return report;
+}
+
 Result<Report> bench(const BenchOptions& options, const std::string& command) {
     if (options.name == "sim") return benchSimulation(options, command);
     if (options.name == "gpu-sim") return benchGpuSimulation(options, command);
     if (options.name == "render") return benchRendering(options, command);
+    if (options.name == "shadows") return benchShadows(options, command);
     if (options.quick || !options.strands.empty() || !options.markdown.empty())
         return fail(
             "--strands and --quick are of `bench sim` and `bench gpu-sim`, --markdown of `bench sim` and "
@@ -114,8 +131,8 @@ void addBenchJob(Jobs& jobs) {
                  "sim --quick --json", [options, &jobs] { return bench(*options, jobs.commandLine()); });
     job.add_option("name", options->name, "What to measure")
         ->required()
-        ->check(
-            CLI::IsMember({"brush", "gpu-sim", "interpolate", "io", "place", "project", "render", "sim"}));
+        ->check(CLI::IsMember(
+            {"brush", "gpu-sim", "interpolate", "io", "place", "project", "render", "shadows", "sim"}));
     auto* const repetitions =
         job.add_option("--repeat,--repetitions", options->repetitions, "Runs of each measurement")
             ->check(CLI::Range(1, 1000));
@@ -124,7 +141,7 @@ void addBenchJob(Jobs& jobs) {
         ->delimiter(',')
         ->check(CLI::Range(1, 1'000'000));
     job.add_flag("--quick", options->quick,
-                 "sim, gpu-sim: shorter runs of fewer strands, to see that it works");
+                 "sim, gpu-sim, shadows: shorter runs of fewer strands, to see that it works");
     job.add_option("--markdown", options->markdown, "sim, render: file to write the tables to");
     job.add_option("--hairs", options->render.hairs,
                    "render: numbers of hairs, instead of 3100,9300,18300,100000")
@@ -132,9 +149,9 @@ void addBenchJob(Jobs& jobs) {
         ->check(CLI::Range(1, 1'000'000));
     job.add_option("--size", options->size, "render: pixels WxH of all pictures");
     job.add_option("-o,--output", options->output,
-                   "gpu-sim: folder to write the table, its Markdown and the chart to");
-    auto* const device =
-        job.add_option("--device", options->device, "gpu-sim, render: GPU to use, by its index in `devices`");
+                   "gpu-sim, shadows: folder to write the table, its Markdown and the chart to");
+    auto* const device = job.add_option("--device", options->device,
+                                        "gpu-sim, render, shadows: GPU to use, by its index in `devices`");
     job.final_callback([options, repetitions, device] {
         options->repetitionsGiven = repetitions->count() > 0;
         options->deviceGiven = device->count() > 0;

@@ -13,8 +13,12 @@
 #include "cli/vectors.h"
 #include "core/render/exr.h"
 #include "core/render/png.h"
+#include "core/render/webp.h"
 #include "core/simulation/frame_record.h"
+#include "importers/child_process.h"
 #include "workspace/groom_scene.h"
+#include "workspace/sample.h"
+#include "workspace/sample_material.h"
 
 namespace hairloom::cli {
 namespace {
@@ -24,6 +28,7 @@ struct RenderJobOptions {
     std::string size;
     std::string camera = "three-quarter";
     std::string view;
+    std::string material;
     std::string shading = "kajiya";
     std::string scatter = "dual";
     std::string shadow = "dom";
@@ -285,8 +290,12 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
     if (!how) return tl::unexpected(how.error());
     const auto shots = shotsOf(options);
     if (!shots) return tl::unexpected(shots.error());
-    const auto groom = loadDocument(options.input);
+    auto groom = loadDocument(options.input);
     if (!groom) return tl::unexpected(groom.error());
+    if (!options.material.empty()) {
+        const auto status = wearMaterial(findSamples(programFolder()), options.material, *groom);
+        if (!status) return tl::unexpected(status.error());
+    }
     gpu::DeviceOptions deviceOptions;
     if (options.chooseDevice) deviceOptions.index = options.device;
     if (options.backend != "any") deviceOptions.backend = kGpuBackends.at(options.backend);
@@ -310,7 +319,9 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
     progress.reset();
     if (options.sequence()) report["pictures"] = shots->size();
     if (!options.animation.empty()) {
-        auto written = render::writeAnimatedPng(options.animation, images, options.milliseconds);
+        const bool isWebp = std::filesystem::path(options.animation).extension() == ".webp";
+        auto written = isWebp ? render::writeAnimatedWebp(options.animation, images, options.milliseconds)
+                              : render::writeAnimatedPng(options.animation, images, options.milliseconds);
         if (!written) return tl::unexpected(written.error());
     }
     if (!options.strip.empty()) {
@@ -338,6 +349,8 @@ void addRenderJob(Jobs& jobs) {
            "Groups of the head mesh to leave out of the picture, NAME or BEGINNING*, with commas between")
         ->delimiter(',')
         ->allow_extra_args(false);
+    job.add_option("--material", options->material,
+                   "Sample material (fire, tentacles, …) or JSON file of material fields to wear");
     job.add_option("--shading", options->shading, "Shading model")
         ->check(CLI::IsMember({"kajiya", "marschner", "sadeghi"}));
     job.add_option(
@@ -380,7 +393,8 @@ void addRenderJob(Jobs& jobs) {
     job.add_option("--turntable", options->turntable, "Pictures of one turn of the camera around the hair")
         ->check(CLI::Range(1, 10'000))
         ->excludes(frames);
-    job.add_option("--animation", options->animation, "Animated PNG to write all pictures to");
+    job.add_option("--animation", options->animation,
+                   "Animated PNG, or WebP where the name ends in .webp, to write all pictures to");
     job.add_option("--strip", options->strip, "PNG to write all pictures side by side to");
     job.add_option("--milliseconds", options->milliseconds, "Of a picture in the animation")
         ->check(CLI::Range(1, 65'535));

@@ -9,6 +9,7 @@
 #include "core/groom/project_file.h"
 #include "core/groom/settings_json.h"
 #include "runtime/presets.h"
+#include "workspace/dye_mask.h"
 #include "workspace/hair_preset.h"
 
 namespace hairloom::cli {
@@ -19,6 +20,8 @@ struct SetOptions {
     std::vector<std::string> assignments;
     std::string preset;
     std::string from;
+    std::string dyeImage;
+    std::string dyeAttribute;
     std::string output;
     bool list = false;
 };
@@ -78,6 +81,16 @@ Result<Report> set(const SetOptions& options) {
     const auto applied = apply(assignments, "", *groom);
     if (!applied) return tl::unexpected(applied.error());
     changed += *applied;
+    if (!options.dyeImage.empty()) {
+        if (auto status = dyeFromImage(options.dyeImage, *groom); !status)
+            return tl::unexpected(status.error());
+        ++changed;
+    }
+    if (!options.dyeAttribute.empty()) {
+        if (auto status = dyeFromAttribute(options.dyeAttribute, *groom); !status)
+            return tl::unexpected(status.error());
+        ++changed;
+    }
     if (auto saved = saveProject(*groom, options.output); !saved) return tl::unexpected(saved.error());
     return Report{{"changed", changed}, {"output", options.output}};
 }
@@ -137,6 +150,11 @@ void addSetJob(Jobs& jobs) {
            "--preset", options->preset,
            "Measured hair to take stiffness, thickness and colour from; fields and --from come after it")
         ->check(CLI::IsMember(presetNames()));
+    auto* image = job.add_option("--dye-image", options->dyeImage,
+                                 "PNG over the root UVs: white where strands take the material's dye");
+    job.add_option("--dye-attribute", options->dyeAttribute,
+                   "Strand attribute of numbers, 0 to 1, that says how much of the dye a strand takes")
+        ->excludes(image);
     job.add_option("--from", options->from, "JSON file of sections with fields");
     auto* output = job.add_option("-o,--output", options->output, "Project to write");
     job.final_callback([listing, input, output] {

@@ -15,7 +15,7 @@ constexpr std::array<KnownAttribute, 4> kPointTypes = {{{attribute::kPosition, "
                                                         {attribute::kRadius, "float"},
                                                         {attribute::kPointColour, "float3"},
                                                         {attribute::kTransparency, "float"}}};
-constexpr std::array<KnownAttribute, 11> kStrandTypes = {{{attribute::kRootTriangle, "uint32"},
+constexpr std::array<KnownAttribute, 12> kStrandTypes = {{{attribute::kRootTriangle, "uint32"},
                                                           {attribute::kRootBarycentric, "float3"},
                                                           {attribute::kRootUv, "float2"},
                                                           {attribute::kGroup, "uint32"},
@@ -25,6 +25,7 @@ constexpr std::array<KnownAttribute, 11> kStrandTypes = {{{attribute::kRootTrian
                                                           {attribute::kHidden, "uint8"},
                                                           {attribute::kLayer, "uint32"},
                                                           {attribute::kStrandColour, "float3"},
+                                                          {attribute::kDye, "float"},
                                                           {attribute::kStrandId, "uint32"}}};
 
 bool findOffsets(const Groom& groom, std::vector<Finding>& findings) {

@@ -102,6 +102,16 @@ void findDensities(const Groom& groom, std::vector<Finding>& findings) {
                   "paint the density again");
 }
 
+void findDye(const Groom& groom, std::vector<Finding>& findings) {
+    const auto mask = groom.strandAttributes.view<float>(attribute::kDye);
+    Places places;
+    for (std::size_t s = 0; s < mask.size(); ++s) {
+        if (!(mask[s] >= 0 && mask[s] <= 1)) places.strand(s);
+    }
+    places.report(findings, Severity::Error, "the mask of the dye is not from 0 to 1",
+                  "dye the strands again");
+}
+
 void findTriangleBindings(const Groom& groom, std::span<const SurfacePoint> roots,
                           std::vector<Finding>& findings) {
     std::vector<std::uint8_t> selected(groom.scalp->triangleCount(), groom.scalpSelection.empty() ? 1 : 0);
@@ -145,6 +155,7 @@ void findGeometry(const Groom& groom, std::vector<Finding>& findings) {
     findFlags(groom, findings);
     findIds(groom, findings);
     findDensities(groom, findings);
+    findDye(groom, findings);
 }
 
 void findBinding(const Groom& groom, std::vector<Finding>& findings) {

@@ -115,6 +115,8 @@ Status uploadBatch(gpu::Device& device, const RenderStrands& strands, std::size_
         header.random = Random(1, i).uniform();
         header.albedo = strands.colours.empty() ? shaders::float4{} : toFloat4(strands.colours[i], 1);
         header.source = static_cast<std::uint32_t>(i);
+        header.streak = strands.streaks.empty() ? 0 : strands.streaks[i];
+        header.dye = strands.dyes.empty() ? 0 : strands.dyes[i];
         headers.push_back(header);
         batch.segmentsBefore.push_back(header.segmentsBefore + header.pointCount - 1);
     }
@@ -270,8 +272,10 @@ Status DeviceScene::replaceStrands(std::size_t group, gpu::BufferPtr positions_w
 
 Status DeviceScene::prepareFibres(gpu::Device& device) {
     for (StrandGroup& group : groups) {
-        if (group.fibre.isFor(group.material.fibre)) continue;
-        auto made = FibreTables::make(device, group.material.fibre);
+        if (group.material.tubes) continue;
+        const bool varies = group.material.look.has_value();
+        if (group.fibre.isFor(group.material.fibre, varies)) continue;
+        auto made = FibreTables::make(device, group.material.fibre, varies);
         if (!made) return tl::unexpected(made.error());
         group.fibre = std::move(*made);
     }

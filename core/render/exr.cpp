@@ -16,7 +16,88 @@ namespace {
 constexpr std::array<const char*, 4> kNames{"A", "B", "G", "R"};
 constexpr std::array<std::size_t, 4> kPlaces{3, 2, 1, 0};
 
+constexpr std::uint64_t kMaxFileBytes = std::uint64_t{1} << 30u;
+constexpr int kMaxSide = 16384;
+
+/// The library's own memory.
+struct Loaded {
+    EXRVersion version{};
+    EXRHeader header{};
+    EXRImage image{};
+    const char* error = nullptr;
+
+    Loaded() {
+        InitEXRHeader(&header);
+        InitEXRImage(&image);
+    }
+    ~Loaded() {
+        FreeEXRImage(&image);
+        FreeEXRHeader(&header);
+        if (error != nullptr) FreeEXRErrorMessage(error);
+    }
+    Loaded(const Loaded&) = delete;
+    Loaded& operator=(const Loaded&) = delete;
+
+    std::string why() const { return error != nullptr ? error : "damaged"; }
+    /// After a failure the library has freed what it made, but still points to it.
+    void forgetHeader() { InitEXRHeader(&header); }
+    void forgetImage() { InitEXRImage(&image); }
+};
+
+/// Place of a channel, or -1.
+int channelNamed(const EXRHeader& header, const char* name) {
+    for (int c = 0; c < header.num_channels; ++c) {
+        if (std::strcmp(header.channels[c].name, name) == 0) return c;
+    }
+    return -1;
+}
+
 }  // namespace
+
+Result<LinearImage> readExr(const std::filesystem::path& path) {
+    const auto file = readFile(path, kMaxFileBytes);
+    if (!file) return tl::unexpected(file.error());
+    const auto failed = [&](const std::string& why) {
+        return failIn(path.string(), {}, why, "an OpenEXR of one part in lines of pixels");
+    };
+    const auto* const bytes = reinterpret_cast<const unsigned char*>(file->data());
+    Loaded loaded;
+    if (ParseEXRVersionFromMemory(&loaded.version, bytes, file->size()) != TINYEXR_SUCCESS)
+        return failed("is no OpenEXR");
+    if (loaded.version.tiled != 0 || loaded.version.non_image != 0 || loaded.version.multipart != 0)
+        return failed("is tiled, deep or of several parts");
+    if (ParseEXRHeaderFromMemory(&loaded.header, &loaded.version, bytes, file->size(), &loaded.error) !=
+        TINYEXR_SUCCESS) {
+        loaded.forgetHeader();
+        return failed("cannot be read: " + loaded.why());
+    }
+    const auto& window = loaded.header.data_window;
+    const std::int64_t width = std::int64_t{window.max_x} - window.min_x + 1;
+    const std::int64_t height = std::int64_t{window.max_y} - window.min_y + 1;
+    if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide)
+        return failed("is no picture of up to 16384 pixels along a side");
+    std::array<int, 4> places{channelNamed(loaded.header, "R"), channelNamed(loaded.header, "G"),
+                              channelNamed(loaded.header, "B"), channelNamed(loaded.header, "A")};
+    if (const int grey = channelNamed(loaded.header, "Y"); places[0] < 0 && grey >= 0)
+        places[0] = places[1] = places[2] = grey;
+    if (places[0] < 0 || places[1] < 0 || places[2] < 0) return failed("has no channels R, G and B, or Y");
+    for (int c = 0; c < loaded.header.num_channels; ++c)
+        loaded.header.requested_pixel_types[c] = TINYEXR_PIXELTYPE_FLOAT;
+    if (LoadEXRImageFromMemory(&loaded.image, &loaded.header, bytes, file->size(), &loaded.error) !=
+        TINYEXR_SUCCESS) {
+        loaded.forgetImage();
+        return failed("cannot be read: " + loaded.why());
+    }
+    if (loaded.image.images == nullptr) return failed("has no pixels");
+    LinearImage image{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height),
+                      std::vector<float>(static_cast<std::size_t>(4 * width * height), 1.0f)};
+    for (std::size_t c = 0; c < 4; ++c) {
+        if (places[c] < 0) continue;
+        const auto* const plane = reinterpret_cast<const float*>(loaded.image.images[places[c]]);
+        for (std::size_t i = 0; i < image.rgba.size() / 4; ++i) image.rgba[4 * i + c] = plane[i];
+    }
+    return image;
+}
 
 Status writeExr(const std::filesystem::path& path, const LinearImage& image) {
     const std::size_t pixels = std::size_t{image.width} * image.height;

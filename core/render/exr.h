@@ -12,4 +12,9 @@ namespace hairloom::render {
 /// was there; the same image gives the same bytes.
 Status writeExr(const std::filesystem::path& path, const LinearImage& image);
 
+/// OpenEXR of one part in lines of pixels: R, G, B, and A where it is there (else 1), or Y as grey. Half and
+/// single floats, any compression that the library knows. Errors: not there, damaged, tiled, deep or of
+/// several parts, more than 16384 pixels along a side, no such channels.
+Result<LinearImage> readExr(const std::filesystem::path& path);
+
 }  // namespace hairloom::render

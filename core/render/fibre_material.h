@@ -17,8 +17,10 @@ enum class Scattering {
 struct FibreMaterial {
     ShadingModel model = ShadingModel::kajiya;
     Scattering scattering = Scattering::dual;
-    shading::MarschnerParameters marschner;  ///< where it is the model
-    shading::SadeghiParameters sadeghi;      ///< where it is
+    /// Where it is the model; the fibre that colours Sadeghi's lobes where absorption changes from place to
+    /// place.
+    shading::MarschnerParameters marschner;
+    shading::SadeghiParameters sadeghi;  ///< where it is
     /// Fibres that stand in the light's way by those that lie there: hair grows in clumps. Traced Sintel
     /// strands have 0.81. 0…1.
     float clumping = 0.81f;

@@ -3,14 +3,18 @@
 
 #include <algorithm>
 
-#include "core/shading/tables.h"
+#include "core/shading/absorption_layers.h"
 
 namespace hairloom::render {
 namespace {
 
-constexpr std::uint32_t kFirstTable = 11;
-/// Registers of dual scattering follow the three that the models may use.
-constexpr std::uint32_t kFirstDual = 14;
+// Registers of the shaders.
+constexpr std::uint32_t kLongitudinal = 11;
+constexpr std::uint32_t kAzimuthal = 12;
+constexpr std::uint32_t kSecondAzimuthal = 13;
+constexpr std::uint32_t kSpread = 14;
+constexpr std::uint32_t kAverages = 15;
+constexpr std::uint32_t kSpreadFactors = 16;
 /// Of light in evenly lit hair, the part that a fibre has scattered and that meets another: with it 1/(1 −
 /// 0.84 a) is within 4 % what a path tracer finds for blond, brown and black hair under a white sky.
 constexpr double kMeetsAgain = 0.84;
@@ -32,6 +36,29 @@ shaders::float4 toFloat4(const Vec3d& v) {
     return {f.x(), f.y(), f.z(), 0};
 }
 
+/// The share of light from everywhere that leaves, with what other fibres scatter again.
+double withMeetings(double albedo) {
+    return albedo / (1 - kMeetsAgain * std::min(albedo, 1.0));
+}
+
+/// With `varies` absorption colours Sadeghi's TT and TRT.
+shaders::FibreConstants constantsOf(const FibreMaterial& material, bool varies) {
+    shaders::FibreConstants c;
+    c.spread = {static_cast<float>(shading::kLeastSpread), static_cast<float>(shading::kLargestSpread), 0, 0};
+    if (material.model == ShadingModel::marschner) {
+        const auto& intensity = material.marschner.intensity;
+        c.lobes = {static_cast<float>(intensity[0]), static_cast<float>(intensity[1]),
+                   static_cast<float>(intensity[2]), material.clumping};
+        return c;
+    }
+    const shading::SadeghiParameters& model = material.sadeghi;
+    c.lobes = {1, 1, 1, material.clumping};
+    c.r = toFloat4(model.r.light());
+    c.tt = toFloat4(varies ? Vec3d(model.tt.intensity * model.tt.tint) : model.tt.light());
+    c.trt = toFloat4(varies ? Vec3d(model.trt.intensity * model.trt.tint) : model.trt.light());
+    return c;
+}
+
 const shading::Table& spreadFactors() {
     static const shading::Table kTable = shading::bakeSpreadFactors();
     return kTable;
@@ -39,54 +66,101 @@ const shading::Table& spreadFactors() {
 
 }  // namespace
 
-Result<FibreTables> FibreTables::make(gpu::Device& device, const FibreMaterial& material) {
+/// Bakes what one material needs and remembers the first error.
+class FibreTables::Baker {
+  public:
+    Baker(gpu::Device& device, FibreTables& result) : device_(device), result_(result) {}
+
+    void even() {
+        const FibreMaterial& material = result_.material_;
+        if (material.model == ShadingModel::marschner) {
+            const shading::Marschner model(material.marschner);
+            const shading::MarschnerTables tables = shading::bakeMarschner(model);
+            add(kLongitudinal, "longitudinal scattering", tables.longitudinal);
+            add(kAzimuthal, "azimuthal scattering, R and TT", tables.transmitted);
+            add(kSecondAzimuthal, "azimuthal scattering, TRT", tables.reflected);
+            evenDual(shading::DualScattering(model));
+        } else {
+            const shading::SadeghiTables tables = shading::bakeSadeghi(material.sadeghi);
+            add(kLongitudinal, "longitudinal scattering", tables.longitudinal);
+            add(kAzimuthal, "azimuthal scattering", tables.azimuthal);
+            evenDual(shading::DualScattering(material.sadeghi));
+        }
+    }
+
+    /// For absorption that changes from place to place.
+    void layers() {
+        const FibreMaterial& material = result_.material_;
+        if (material.model == ShadingModel::marschner) {
+            const shading::MarschnerLayers tables = shading::bakeMarschnerLayers(material.marschner);
+            add(kLongitudinal, "longitudinal scattering", tables.longitudinal);
+            add(kAzimuthal, "azimuthal scattering by absorption", tables.azimuthal);
+            dualLayers(shading::bakeDualLayers(material.marschner));
+        } else {
+            const shading::AzimuthalParameters& fibre = material.marschner.azimuthal;
+            const shading::SadeghiLayers layers = shading::bakeSadeghiLayers(material.sadeghi, fibre);
+            add(kLongitudinal, "longitudinal scattering", layers.tables.longitudinal);
+            add(kAzimuthal, "azimuthal scattering", layers.tables.azimuthal);
+            add(kSecondAzimuthal, "energies by absorption", layers.energies);
+            dualLayers(shading::bakeDualLayers(material.sadeghi, fibre));
+        }
+    }
+
+    const Status& status() const { return status_; }
+
+  private:
+    bool isDual() const { return result_.material_.scattering == Scattering::dual; }
+    void add(std::uint32_t slot, const char* name, const shading::Table& table) {
+        auto texture = upload(device_, name, table);
+        if (texture) {
+            result_.textures_.push_back({slot, std::move(*texture)});
+        } else if (status_) {
+            status_ = tl::unexpected(texture.error());
+        }
+    }
+    void evenDual(const shading::DualScattering& dual) {
+        Vec3d ambient = dual.meanAlbedo();
+        if (isDual()) {
+            const shading::DualTables tables = shading::bakeDual(dual);
+            add(kSpread, "spread scattering", tables.spread);
+            add(kAverages, "average scattering", tables.averages);
+            add(kSpreadFactors, "wide lobes", spreadFactors());
+            ambient = ambient.unaryExpr([](double albedo) { return withMeetings(albedo); });
+        }
+        result_.constants_.ambient = toFloat4(ambient);
+    }
+    void dualLayers(shading::DualLayers layers) {
+        if (isDual()) {
+            add(kSpread, "spread scattering by absorption", layers.spread);
+            add(kSpreadFactors, "wide lobes", spreadFactors());
+            for (std::uint32_t layer = 0; layer < shading::kAbsorptionLayers; ++layer) {
+                for (std::uint32_t x = 0; x < layers.averages.width; ++x) {
+                    float& ambient = layers.averages.texel(x, 2 * layer + 1)[2];
+                    ambient = static_cast<float>(withMeetings(static_cast<double>(ambient)));
+                }
+            }
+        }
+        add(kAverages, "average scattering by absorption", layers.averages);
+    }
+
+    gpu::Device& device_;
+    FibreTables& result_;
+    Status status_;
+};
+
+Result<FibreTables> FibreTables::make(gpu::Device& device, const FibreMaterial& material, bool varies) {
     FibreTables result;
     result.material_ = material;
+    result.varies_ = varies;
     if (material.model == ShadingModel::kajiya) return result;
-    Status status;
-    const auto add = [&](const char* name, const shading::Table& table) {
-        auto texture = upload(device, name, table);
-        if (!texture) {
-            status = tl::unexpected(texture.error());
-        } else {
-            result.textures_.push_back(std::move(*texture));
-        }
-    };
-    const auto finish = [&](const shading::DualScattering& dual) {
-        Vec3d ambient = dual.meanAlbedo();
-        if (material.scattering == Scattering::dual) {
-            const shading::DualTables tables = shading::bakeDual(dual);
-            add("spread scattering", tables.spread);
-            add("average scattering", tables.averages);
-            add("wide lobes", spreadFactors());
-            ambient = ambient.array() / (1 - kMeetsAgain * ambient.array().min(1.0));
-        }
-        result.constants_.ambient = toFloat4(ambient);
-    };
-    shaders::FibreConstants& c = result.constants_;
-    c.spread = {static_cast<float>(shading::kLeastSpread), static_cast<float>(shading::kLargestSpread), 0, 0};
-    if (material.model == ShadingModel::marschner) {
-        const shading::Marschner model(material.marschner);
-        const auto& intensity = material.marschner.intensity;
-        c.lobes = {static_cast<float>(intensity[0]), static_cast<float>(intensity[1]),
-                   static_cast<float>(intensity[2]), material.clumping};
-        const shading::MarschnerTables tables = shading::bakeMarschner(model);
-        add("longitudinal scattering", tables.longitudinal);
-        add("azimuthal scattering, R and TT", tables.transmitted);
-        add("azimuthal scattering, TRT", tables.reflected);
-        finish(shading::DualScattering(model));
+    result.constants_ = constantsOf(material, varies);
+    Baker baker(device, result);
+    if (varies) {
+        baker.layers();
     } else {
-        const shading::SadeghiParameters& model = material.sadeghi;
-        c.lobes = {1, 1, 1, material.clumping};
-        c.r = toFloat4(model.r.intensity * model.r.colour);
-        c.tt = toFloat4(model.tt.intensity * model.tt.colour);
-        c.trt = toFloat4(model.trt.intensity * model.trt.colour);
-        const shading::SadeghiTables tables = shading::bakeSadeghi(model);
-        add("longitudinal scattering", tables.longitudinal);
-        add("azimuthal scattering", tables.azimuthal);
-        finish(shading::DualScattering(model));
+        baker.even();
     }
-    if (!status) return tl::unexpected(status.error());
+    if (!baker.status()) return tl::unexpected(baker.status().error());
     auto sampler = device.createSampler({});
     if (!sampler) return tl::unexpected(sampler.error());
     result.sampler_ = std::move(*sampler);
@@ -99,29 +173,27 @@ const char* FibreTables::shader() const {
         case ShadingModel::kajiya:
             break;
         case ShadingModel::marschner:
+            if (varies_) return dual ? "shade_marschner_dual_look.comp" : "shade_marschner_look.comp";
             return dual ? "shade_marschner_dual.comp" : "shade_marschner.comp";
         case ShadingModel::sadeghi:
+            if (varies_) return dual ? "shade_sadeghi_dual_look.comp" : "shade_sadeghi_look.comp";
             return dual ? "shade_sadeghi_dual.comp" : "shade_sadeghi.comp";
     }
-    return "shade.comp";
+    return varies_ ? "shade_look.comp" : "shade.comp";
 }
 
 void FibreTables::bind(gpu::CommandList& list) const {
     if (textures_.empty()) return;
     list.setConstants(1, gpu::bytesOf(constants_));
     std::vector<gpu::Binding> bindings{gpu::Binding::sample(0, sampler_)};
-    const std::size_t own = material_.model == ShadingModel::marschner ? 3 : 2;
-    for (std::size_t i = 0; i < textures_.size(); ++i) {
-        const std::size_t slot = i < own ? kFirstTable + i : kFirstDual + i - own;
-        bindings.push_back(gpu::Binding::read(static_cast<std::uint32_t>(slot), textures_[i]));
-    }
+    for (const Bound& bound : textures_) bindings.push_back(gpu::Binding::read(bound.slot, bound.texture));
     list.bind(bindings);
 }
 
 std::uint64_t FibreTables::bytes() const {
     std::uint64_t sum = 0;
-    for (const gpu::TexturePtr& texture : textures_) {
-        const gpu::TextureDesc& desc = texture->desc();
+    for (const Bound& bound : textures_) {
+        const gpu::TextureDesc& desc = bound.texture->desc();
         sum += std::uint64_t{desc.width} * desc.height * gpu::bytesPerTexel(desc.format);
     }
     return sum;

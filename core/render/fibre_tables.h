@@ -8,13 +8,16 @@
 
 namespace hairloom::render {
 
-/// Only what the model needs is made: none for Kajiya-Kay, those of dual scattering where it is on.
+/// Only what the model needs is made: none for Kajiya-Kay, those of dual scattering where it is on, several
+/// absorptions (core/shading/absorption_layers.h) where hair does not look the same everywhere.
 class FibreTables {
   public:
     /// Bakes on all cores and leaves the upload to the device: nothing waits.
-    static Result<FibreTables> make(gpu::Device& device, const FibreMaterial& material);
+    static Result<FibreTables> make(gpu::Device& device, const FibreMaterial& material, bool varies = false);
 
-    bool isFor(const FibreMaterial& material) const { return material_ == material; }
+    bool isFor(const FibreMaterial& material, bool varies) const {
+        return varies_ == varies && material_ == material;
+    }
     /// The compute shader that shades with this material.
     const char* shader() const;
     /// Tables and constants, registers b1, s0 and from t11 on; nothing for Kajiya-Kay.
@@ -24,9 +27,16 @@ class FibreTables {
     std::uint64_t bytes() const;  ///< of all tables on the device
 
   private:
+    struct Bound {
+        std::uint32_t slot;
+        gpu::TexturePtr texture;
+    };
+    class Baker;
+
     FibreMaterial material_;
+    bool varies_ = false;
     shaders::FibreConstants constants_;
-    std::vector<gpu::TexturePtr> textures_;  ///< in the order of their registers
+    std::vector<Bound> textures_;
     gpu::SamplerPtr sampler_;
 };
 

@@ -162,6 +162,7 @@ shaders::CurveConstants curveConstants(const RendererState& state, const StrandB
     c.floatsPerPoint = own ? 3 : group.floatsPerPoint;
     c.strandMajor = own ? 0 : static_cast<std::uint32_t>(group.strandCount);
     c.radius = {material.radius, material.tipScale, group.hasRadii ? 1.0f : 0.0f, material.radiusVariation};
+    c.opacity = {material.rootOpacity, material.tipOpacity, 0, 0};
     c.detail = {0.9f * state.detail.share, 1.1f * state.detail.share,
                 1 / static_cast<float>(batch.strandCount()), state.detail.widening()};
     return c;
@@ -205,6 +206,23 @@ shaders::ShadeConstants shadeConstants(const RendererState& state, const HairMat
     return c;
 }
 
+shaders::LookConstants lookConstants(const shading::StrandLook& look) {
+    const auto pack = [](const Vec3d& v, double w) {
+        return toShader(v.cast<float>(), static_cast<float>(w));
+    };
+    const bool absorbs = look.quantity == shading::LookQuantity::absorption;
+    shaders::LookConstants c;
+    c.root = pack(look.root, look.gradient.start);
+    c.tip = pack(look.tip, look.gradient.scale);
+    c.streakRoot = pack(look.streakRoot, look.spread);
+    c.streakTip = pack(look.streakTip, absorbs ? 1 : 0);
+    c.dye = pack(look.dye, look.ownScale);
+    c.along = {static_cast<float>(look.dyeAlong.start), static_cast<float>(look.dyeAlong.scale), 0, 0};
+    c.emissionRoot = pack(look.emissionRoot, 0);
+    c.emissionTip = pack(look.emissionTip, 0);
+    return c;
+}
+
 void recordCurves(gpu::CommandList& list, RendererState& state) {
     list.beginPass({passName(Pass::curves), {}, {}});
     list.setPipeline(state.pipelines.compute("curve.comp"));
@@ -231,8 +249,10 @@ void recordShading(gpu::CommandList& list, RendererState& state) {
     bindShadows(list, state);
     for (const StrandBatch& batch : state.scene.batches) {
         const StrandGroup& group = state.scene.groups[batch.group];
-        list.setPipeline(state.pipelines.compute(group.fibre.shader()));
-        group.fibre.bind(list);
+        const char* const tube = group.material.look ? "tube_albedo_look.comp" : "tube_albedo.comp";
+        list.setPipeline(state.pipelines.compute(group.material.tubes ? tube : group.fibre.shader()));
+        if (!group.material.tubes) group.fibre.bind(list);
+        if (group.material.look) list.setConstants(2, gpu::bytesOf(lookConstants(*group.material.look)));
         auto constants = shadeConstants(state, group.material);
         const std::uint32_t points =
             batch.curvePoints(batch.strandCount(state.detail), state.detail.subdivisions);

@@ -75,6 +75,7 @@ void drawPatches(gpu::CommandList& list, const RendererState& state) {
     constants.view = {static_cast<float>(state.options.width), static_cast<float>(state.options.height),
                       kPixelsPerPiece, 0};
     for (const StrandBatch& batch : state.scene.batches) {
+        if (state.scene.groups[batch.group].material.tubes) continue;
         bind(list, {Binding::read(0, batch.curve), Binding::read(1, batch.colour),
                     Binding::read(2, batch.headers), Binding::read(3, batch.patches)});
         const std::uint32_t count = batch.patchesBefore[batch.strandCount(state.detail)];
@@ -94,8 +95,27 @@ void drawHair(gpu::CommandList& list, RendererState& state, const Mat4f& clipFro
     if (state.options.ribbons == Ribbons::tessellated) {
         drawPatches(list, state);
     } else {
-        drawStrips(list, state);
+        drawStrips(list, state, false);
     }
+}
+
+/// Strands that are round and have skin: opaque, and never thinner than a pixel.
+void drawTubes(gpu::CommandList& list, RendererState& state, const Mat4f& clipFromWorld,
+               std::uint32_t number) {
+    const auto tubes = std::ranges::find_if(state.scene.groups,
+                                            [](const StrandGroup& group) { return group.material.tubes; });
+    if (tubes == state.scene.groups.end()) return;
+    list.setPipeline(state.pipelines.graphics({.vertex = "tube.vert",
+                                               .pixel = "tube.frag",
+                                               .topology = gpu::Topology::TriangleStrip,
+                                               .colour = kColourFormat,
+                                               .depthTest = true,
+                                               .depthWrite = true,
+                                               .samples = state.samples}));
+    bindShadows(list, state);
+    list.setConstants(0, gpu::bytesOf(viewConstants(state, clipFromWorld, number)));
+    list.setConstants(1, gpu::bytesOf(shadeConstants(state, tubes->material)));
+    drawStrips(list, state, true);
 }
 
 void drawHeads(gpu::CommandList& list, RendererState& state, const Mat4f& clipFromWorld) {
@@ -169,9 +189,10 @@ void bindShadows(gpu::CommandList& list, const RendererState& state) {
                 Binding::read(10, state.orNothing(BufferId::opacity))});
 }
 
-void drawStrips(gpu::CommandList& list, const RendererState& state) {
+void drawStrips(gpu::CommandList& list, const RendererState& state, std::optional<bool> tubes) {
     const std::uint32_t subdivisions = state.detail.subdivisions;
     for (const StrandBatch& batch : state.scene.batches) {
+        if (tubes && *tubes != state.scene.groups[batch.group].material.tubes) continue;
         bind(list, {Binding::read(0, batch.curve), Binding::read(1, batch.colour)});
         list.setIndexBuffer(batch.indices.at(subdivisions));
         list.drawIndexed(batch.indexCount(batch.strandCount(state.detail), subdivisions));
@@ -250,6 +271,7 @@ void recordFrame(gpu::CommandList& list, RendererState& state, std::uint32_t num
     pass.depth = {t[TargetId::depth], gpu::LoadOp::Clear, 1};
     list.beginPass(pass);
     if (state.scene.triangles() > 0) drawHeads(list, state, clipFromWorld);
+    drawTubes(list, state, clipFromWorld, number);
     const bool blend = state.plan.runs(Pass::blend);
     if (!state.scene.batches.empty() && !blend) drawHair(list, state, clipFromWorld, number);
     list.endPass();

@@ -60,6 +60,7 @@ struct RendererState {
 /// Views from the lights, and the constants that follow from camera and lights.
 void setUpLights(RendererState& state);
 shaders::ShadeConstants shadeConstants(const RendererState& state, const HairMaterial& material);
+shaders::LookConstants lookConstants(const shading::StrandLook& look);
 
 void recordCurves(gpu::CommandList& list, RendererState& state);
 void recordShadowMaps(gpu::CommandList& list, RendererState& state);
@@ -78,9 +79,9 @@ void recordOverlay(gpu::CommandList& list, RendererState& state, const gpu::Text
 
 /// All triangles, or only those of matte meshes or the others, with whatever pipeline is set.
 void drawMeshes(gpu::CommandList& list, const RendererState& state, std::optional<bool> matte = {});
-/// All strands that are drawn, as strips of the curves' points.
-void drawStrips(gpu::CommandList& list, const RendererState& state);
-/// The same by the kernel that is set, whose other registers are bound: `raster` says where to.
+/// All strands that are drawn, or only those of tubes or the others, as strips of the curves' points.
+void drawStrips(gpu::CommandList& list, const RendererState& state, std::optional<bool> tubes = {});
+/// All strands by the kernel that is set, whose other registers are bound: `raster` says where to.
 void dispatchStrands(gpu::CommandList& list, const RendererState& state, shaders::RasterConstants raster);
 void fill(gpu::CommandList& list, RendererState& state, BufferId buffer, std::uint32_t value);
 /// One thread for each of `count`, in rows of at most 65,536 groups: returns the row length in threads.

@@ -93,7 +93,10 @@ class Planner {
              facts_.hair ? fmt::format("{} curve segments a segment of a strand", options_.subdivisions)
                          : "no hair");
         pass(Pass::shade, facts_.hair,
-             facts_.hair ? fmt::format("{} lights, once a point of a curve", facts_.lights) : "no hair");
+             facts_.hair ? fmt::format("{} lights, once a point of a curve; {}", facts_.lights,
+                                       facts_.look ? "colour or absorption changes from place to place"
+                                                   : "all of a material's hair looks the same")
+                         : "no hair");
         const bool kernels = options_.ribbons == Ribbons::compute;
         pass(Pass::nearest, kernels,
              kernels ? "what is in front in each sample" : "the device's rasteriser finds what is in front");

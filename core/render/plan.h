@@ -71,6 +71,7 @@ struct SceneFacts {
     std::uint32_t shadowLights = 0;  ///< of them
     bool overlay = false;            ///< marks that meshes hide
     bool overlayOnTop = false;
+    bool look = false;             ///< some hair does not look the same everywhere
     bool presents = true;          ///< there is a target to show the picture in
     std::uint64_t tableBytes = 0;  ///< of the materials' look-up tables on the device
 

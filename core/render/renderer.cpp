@@ -112,7 +112,9 @@ Status Renderer::setMaterial(std::size_t group, const HairMaterial& material) {
     if (group >= groups.size()) return fail(fmt::format("group {} of {} of strands", group, groups.size()));
     const HairMaterial& before = groups[group].material;
     const bool sameShape = before.radius == material.radius && before.tipScale == material.tipScale &&
-                           before.radiusVariation == material.radiusVariation;
+                           before.radiusVariation == material.radiusVariation &&
+                           before.rootOpacity == material.rootOpacity &&
+                           before.tipOpacity == material.tipOpacity;
     groups[group].material = material;
     parts_->changes.add(sameShape ? Changes::looks() : Changes::geometry());
     return {};
@@ -168,6 +170,8 @@ SceneFacts Renderer::Parts::facts(bool presents) const {
         static_cast<std::uint32_t>(std::ranges::count(state.lights, true, &Light::castsShadow));
     facts.overlay = state.overlay.needsDepth();
     facts.overlayOnTop = std::ranges::any_of(state.overlay.overlay.batches, &OverlayBatch::onTop);
+    facts.look = std::ranges::any_of(
+        state.scene.groups, [](const StrandGroup& group) { return group.material.look.has_value(); });
     facts.presents = presents;
     for (const StrandGroup& group : state.scene.groups) facts.tableBytes += group.fibre.bytes();
     return facts;
@@ -225,6 +229,10 @@ Status Renderer::Parts::prepare(const RenderOptions& options, bool presents) {
     if (!samples) return tl::unexpected(samples.error());
     RenderOptions resolved = options;
     resolved.ribbons = chooseRibbons(options, *samples, device.info());
+    // Round strands are shaded a pixel at a time, which kernels do not do.
+    const bool tubes = std::ranges::any_of(state.scene.groups,
+                                           [](const StrandGroup& group) { return group.material.tubes; });
+    if (tubes && resolved.ribbons == Ribbons::compute) resolved.ribbons = Ribbons::strip;
     changes.add(compare(state.options, resolved));
     state.options = resolved;
     state.samples = *samples;

@@ -35,6 +35,11 @@ Status checkStrands(const RenderStrands& strands) {
     if (!strands.colours.empty() && strands.colours.size() != count) {
         return fail(fmt::format("{} strands with {} colours", count, strands.colours.size()));
     }
+    for (const std::span<const float> shares : {strands.streaks, strands.dyes}) {
+        if (!shares.empty() && shares.size() != count) {
+            return fail(fmt::format("{} strands with {} shares of streaks or dye", count, shares.size()));
+        }
+    }
     for (std::size_t i = 0; i < count; ++i) {
         if (strands.offsets[i] > strands.offsets[i + 1] || strands.offsets[i + 1] > points) {
             return fail(fmt::format("strand {} has the points {} to {}, of {}", i, strands.offsets[i],

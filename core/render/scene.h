@@ -2,6 +2,7 @@
 #pragma once
 // What a picture shows: heads and strands, seen through spans, with camera and lights.
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "core/render/environment.h"
 #include "core/render/fibre_material.h"
 #include "core/render/light.h"
+#include "core/shading/strand_look.h"
 
 namespace hairloom::render {
 
@@ -42,7 +44,15 @@ struct HairMaterial {
     float tipBrightness = 1.10f;   ///< and at the tip
     float variation = 0.18f;       ///< random brightness per strand, ±
     float opacity = 0.65f;         ///< 0…1: how much one fibre takes from the light behind it
-    FibreMaterial fibre;           ///< which model, and what the others than Kajiya-Kay take
+    float rootOpacity = 1;         ///< 0…1, times how much of a ribbon the hair covers; changes evenly
+    float tipOpacity = 1;
+    /// Strands are round and have skin, shaded once a pixel: a wrapped diffuse term of the albedo or the
+    /// look, and the first highlight.
+    bool tubes = false;
+    FibreMaterial fibre;  ///< which model, and what the others than Kajiya-Kay take
+    /// For hair that does not look the same everywhere: in place of albedo and the two brightnesses, or of
+    /// the fibre's absorption. Nothing: neither its shader nor its tables are used.
+    std::optional<shading::StrandLook> look;
 };
 
 /// Strands of one material. Strand i has the points offsets[i] … offsets[i + 1] - 1, root first.
@@ -52,6 +62,8 @@ struct RenderStrands {
     std::span<const Vec3f> positions_ws;
     std::span<const float> radii;    ///< metres, one a point; empty: from the material
     std::span<const Vec3f> colours;  ///< albedo, one a strand; empty: from the material
+    std::span<const float> streaks;  ///< 0…1, one a strand, for the look; empty: none is in a streak
+    std::span<const float> dyes;     ///< 0…1, one a strand, for the look; empty: none is dyed
     HairMaterial material;
 };
 

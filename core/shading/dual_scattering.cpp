@@ -41,23 +41,21 @@ Halves halves(const Channels& n) {
 
 AverageScattering averageOf(const LobeRows& rows, const std::array<LobeShape, 3>& shapes) {
     AverageScattering a;
-    double forth = 0, back = 0;
     for (const Lobe lobe : kLobes) {
         const Halves h = halves(rows[index(lobe)]);
         const auto& [tilt, deviation] = shapes[index(lobe)];
         a.forward += h.forth;
         a.backward += h.back;
-        forth += h.forth.sum();
-        back += h.back.sum();
-        a.forwardVariance += h.forth.sum() * deviation * deviation;
-        a.backwardVariance += h.back.sum() * deviation * deviation;
-        a.forwardTilt += h.forth.sum() * tilt;
-        a.backwardTilt += h.back.sum() * tilt;
+        a.forwardVariances += h.forth * (deviation * deviation);
+        a.backwardVariances += h.back * (deviation * deviation);
+        a.forwardTilts += h.forth * tilt;
+        a.backwardTilts += h.back * tilt;
     }
-    a.forwardVariance /= std::max(forth, 1e-12);
-    a.backwardVariance /= std::max(back, 1e-12);
-    a.forwardTilt /= std::max(forth, 1e-12);
-    a.backwardTilt /= std::max(back, 1e-12);
+    const double forth = std::max(a.forward.sum(), 1e-12), back = std::max(a.backward.sum(), 1e-12);
+    a.forwardVariance = a.forwardVariances.sum() / forth;
+    a.backwardVariance = a.backwardVariances.sum() / back;
+    a.forwardTilt = a.forwardTilts.sum() / forth;
+    a.backwardTilt = a.backwardTilts.sum() / back;
     return a;
 }
 
@@ -134,10 +132,11 @@ DualScattering::Row DualScattering::at(double thetaD) const {
             shapes[index(lobe)] = {l.shift, l.width / std::sqrt(2 * kPi)};
             for (std::size_t i = 0; i <= kLast; ++i) {
                 // The area of M' over θ_o is twice the width.
-                const double n = 2 * l.width * l.intensity *
-                                 sadeghiAzimuthal(sadeghi_, lobe, static_cast<double>(i) * kStep, 0.5);
+                const double n =
+                    2 * l.width * sadeghiAzimuthal(sadeghi_, lobe, static_cast<double>(i) * kStep, 0.5);
+                const Vec3d light = l.light();
                 for (std::size_t c = 0; c < 3; ++c) {
-                    rows[index(lobe)][c][i] = static_cast<float>(n * l.colour[static_cast<int>(c)]);
+                    rows[index(lobe)][c][i] = static_cast<float>(n * light[static_cast<int>(c)]);
                 }
             }
         }

@@ -26,6 +26,9 @@ struct AverageScattering {
     double backwardVariance = 0;     ///< β̄_b²
     double forwardTilt = 0;          ///< ᾱ_f in θ_h
     double backwardTilt = 0;         ///< ᾱ_b
+    /// Of each channel, times its share: what adds up to those of all channels.
+    Vec3d forwardVariances = Vec3d::Zero(), backwardVariances = Vec3d::Zero();
+    Vec3d forwardTilts = Vec3d::Zero(), backwardTilts = Vec3d::Zero();
 
     double tilt() const;      ///< of all light
     double variance() const;  ///< in θ_h, of all light

@@ -11,10 +11,14 @@ Vec3d absorption(const Melanin& melanin) {
     return melanin.eumelanin * Vec3d(0.419, 0.697, 1.37) + melanin.pheomelanin * Vec3d(0.187, 0.4, 1.05);
 }
 
-Vec3d absorptionOfColour(const Vec3d& colour, double azimuthalRoughness) {
+double absorptionScale(double azimuthalRoughness) {
     const double b = std::clamp(azimuthalRoughness, 0.0, 1.0);
-    const double scale = 5.969 + b * (-0.215 + b * (2.532 + b * (-10.73 + b * (5.574 + b * 0.245))));
-    return (colour.cwiseMax(0.001).cwiseMin(1.0).array().log() / scale).square().matrix();
+    return 1 / (5.969 + b * (-0.215 + b * (2.532 + b * (-10.73 + b * (5.574 + b * 0.245)))));
+}
+
+Vec3d absorptionOfColour(const Vec3d& colour, double azimuthalRoughness) {
+    const double scale = absorptionScale(azimuthalRoughness);
+    return (scale * colour.cwiseMax(0.001).cwiseMin(1.0).array().log()).square().matrix();
 }
 
 double longitudinalWidth(double roughness) {

@@ -51,8 +51,8 @@ Vec3d evaluate(const SadeghiParameters& parameters, double thetaIn, double theta
     Vec3d sum = Vec3d::Zero();
     for (const Lobe lobe : kLobes) {
         const SadeghiLobe& l = parameters.lobe(lobe);
-        sum += l.intensity * sadeghiLongitudinal(parameters, lobe, thetaIn, thetaOut) *
-               sadeghiAzimuthal(parameters, lobe, phi, glint) * l.colour;
+        sum += sadeghiLongitudinal(parameters, lobe, thetaIn, thetaOut) *
+               sadeghiAzimuthal(parameters, lobe, phi, glint) * l.light();
     }
     return sum / (cosine * cosine);
 }
@@ -79,6 +79,32 @@ SadeghiParameters sadeghiLike(const Marschner& model) {
     s.tt = lobeOf(energy(Lobe::TT), s.ttAzimuthalWidth, m.tilt[1], m.width[1]);
     s.trt = lobeOf(energy(Lobe::TRT), roundArea / (1 - kGlintShare), m.tilt[2], m.width[2]);
     return s;
+}
+
+TransmittedEnergies transmittedEnergies(const AzimuthalParameters& fibre, const Vec3d& absorption) {
+    AzimuthalParameters other = fibre;
+    other.absorption = absorption;
+    const AzimuthalProfile across(other, 0);
+    return {across.energy(Lobe::TT), across.energy(Lobe::TRT)};
+}
+
+SadeghiParameters withAbsorption(const SadeghiParameters& parameters, const AzimuthalParameters& fibre,
+                                 const Vec3d& absorption) {
+    const TransmittedEnergies before = transmittedEnergies(fibre, fibre.absorption);
+    const TransmittedEnergies now = transmittedEnergies(fibre, absorption);
+    SadeghiParameters result = parameters;
+    const auto change = [](SadeghiLobe& lobe, const Vec3d& from, const Vec3d& to) {
+        const double most = to.maxCoeff();
+        if (!(most > 0) || !(from.maxCoeff() > 0)) {
+            lobe.intensity = 0;
+            return;
+        }
+        lobe.intensity *= most / from.maxCoeff();
+        lobe.colour = to / most;
+    };
+    change(result.tt, before.tt, now.tt);
+    change(result.trt, before.trt, now.trt);
+    return result;
 }
 
 }  // namespace hairloom::shading

@@ -10,6 +10,7 @@ namespace hairloom::shading {
 
 struct SadeghiLobe {
     Vec3d colour = Vec3d::Ones();  ///< C_p, 0…1
+    Vec3d tint = Vec3d::Ones();    ///< factor on the colour, which absorption does not change
     double intensity = 0;          ///< I_p, >= 0
     double shift = 0;              ///< α_p in θ_h
     /// β_p in θ_h, > 0. The Gaussians are exp(−π ν²/β²), of height 1 and area β; their deviation is β/√(2π).
@@ -17,6 +18,7 @@ struct SadeghiLobe {
     double width = 0.3;
 
     bool operator==(const SadeghiLobe&) const = default;
+    Vec3d light() const { return intensity * colour.cwiseProduct(tint); }
 };
 
 struct SadeghiParameters {
@@ -46,5 +48,16 @@ Vec3d evaluate(const SadeghiParameters& parameters, double thetaIn, double theta
 /// The controls at which the lobes have place, width, colour and energy of Marschner's for light across the
 /// fibre: where an artist starts from. A fifth of TRT's energy goes into the glints.
 SadeghiParameters sadeghiLike(const Marschner& model);
+
+/// ½ ∫ A_p dh across the fibre of light that is absorbed, TT and TRT: what colours those two lobes.
+struct TransmittedEnergies {
+    Vec3d tt, trt;
+};
+TransmittedEnergies transmittedEnergies(const AzimuthalParameters& fibre, const Vec3d& absorption);
+
+/// The controls for the same hair of another absorption: TT and TRT get its colours and change in intensity
+/// as the energies do. `fibre` has the absorption at which the intensities of `parameters` hold.
+SadeghiParameters withAbsorption(const SadeghiParameters& parameters, const AzimuthalParameters& fibre,
+                                 const Vec3d& absorption);
 
 }  // namespace hairloom::shading

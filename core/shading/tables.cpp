@@ -128,8 +128,13 @@ Table bakeLongitudinal(const SadeghiParameters& model, std::uint32_t size) {
 }
 
 MarschnerTables bakeMarschner(const Marschner& model, const TableSizes& sizes) {
-    MarschnerTables tables;
+    MarschnerTables tables = bakeAzimuthal(model, sizes);
     tables.longitudinal = bakeLongitudinal(model, sizes.longitudinal);
+    return tables;
+}
+
+MarschnerTables bakeAzimuthal(const Marschner& model, const TableSizes& sizes) {
+    MarschnerTables tables;
     tables.transmitted = makeTable(sizes.azimuth, sizes.inclination);
     tables.reflected = makeTable(sizes.azimuth, sizes.inclination);
     const std::vector<GridPlace> places = gridPlaces(sizes.azimuth);
@@ -169,7 +174,7 @@ SadeghiTables bakeSadeghi(const SadeghiParameters& model, const TableSizes& size
 }
 
 DualTables bakeDual(const DualScattering& model, std::uint32_t azimuth, std::uint32_t inclination) {
-    DualTables tables{makeTable(azimuth, inclination), makeTable(inclination, 3)};
+    DualTables tables{makeTable(azimuth, inclination), makeTable(inclination, 3), makeTable(inclination, 4)};
     const std::vector<GridPlace> places = gridPlaces(azimuth);
     forRows(tables.spread, [&](std::uint32_t y) {
         const DualScattering::Row row =
@@ -190,6 +195,12 @@ DualTables bakeDual(const DualScattering& model, std::uint32_t azimuth, std::uin
         set(0, a.forward.x(), a.forward.y(), a.forward.z(), a.forwardVariance);
         set(1, a.backward.x(), a.backward.y(), a.backward.z(), a.backwardVariance);
         set(2, a.forwardTilt, a.backwardTilt, a.tilt(), a.variance());
+        std::uint32_t line = 0;
+        for (const Vec3d* moment :
+             {&a.forwardVariances, &a.backwardVariances, &a.forwardTilts, &a.backwardTilts}) {
+            float* texel = tables.variances.texel(y, line++);
+            for (int c = 0; c < 3; ++c) texel[c] = static_cast<float>((*moment)[c]);
+        }
     });
     return tables;
 }
@@ -223,7 +234,7 @@ Vec3d lookUp(const SadeghiTables& tables, const SadeghiParameters& model, double
     Vec3d sum = Vec3d::Zero();
     for (const Lobe lobe : kLobes) {
         const SadeghiLobe& l = model.lobe(lobe);
-        sum += m[index(lobe)] * n[index(lobe)] * l.intensity * l.colour;
+        sum += m[index(lobe)] * n[index(lobe)] * l.light();
     }
     return sum;
 }

@@ -42,6 +42,8 @@ struct MarschnerTables {
     Table reflected;    ///< RGB: N_TRT; alpha: 1
 };
 MarschnerTables bakeMarschner(const Marschner& model, const TableSizes& sizes = {});
+/// The same without `longitudinal`, which absorption does not change.
+MarschnerTables bakeAzimuthal(const Marschner& model, const TableSizes& sizes = {});
 
 struct SadeghiTables {
     Table longitudinal;
@@ -55,6 +57,9 @@ struct DualTables {
     /// By 2|θ_d|/π; its rows: ā_f and β̄_f²; ā_b and β̄_b²; tilt of ā_f, of ā_b, of all, and the variance of
     /// all.
     Table averages;
+    /// By the same, not for shaders: rows of AverageScattering's variances and tilts of each channel, forward
+    /// before backward.
+    Table variances;
 };
 DualTables bakeDual(const DualScattering& model, std::uint32_t azimuth = 64, std::uint32_t inclination = 16);
 

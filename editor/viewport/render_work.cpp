@@ -19,6 +19,13 @@ std::vector<render::Light> lightsOf(const PictureRequest& request) {
     return lights;
 }
 
+/// The same strands are in streaks and dyed, as strands and not the material say.
+bool hasSameShares(const HairMaterial& a, const HairMaterial& b) {
+    return a.streakShare == b.streakShare && a.streakWidth == b.streakWidth &&
+           a.streakSoftness == b.streakSoftness && a.streakSeed == b.streakSeed &&
+           a.dyeStrength == b.dyeStrength;
+}
+
 /// Same strands, of which at most the points have moved.
 bool differsInPositionsOnly(const Groom& a, const Groom& b) {
     const auto sameButPositions = [](const AttributeSet& x, const AttributeSet& y) {
@@ -32,7 +39,7 @@ bool differsInPositionsOnly(const Groom& a, const Groom& b) {
            sameButPositions(a.strandAttributes, b.strandAttributes) && a.scalp == b.scalp &&
            a.scalpSelection == b.scalpSelection && a.interpolation.followPerGuide == 0 &&
            b.interpolation.followPerGuide == 0 && a.material.rootColour == b.material.rootColour &&
-           a.layers.size() == b.layers.size();
+           hasSameShares(a.material, b.material) && a.layers.size() == b.layers.size();
 }
 
 /// As a groom shown without its follow hairs.

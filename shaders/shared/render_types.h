@@ -31,9 +31,9 @@ struct StrandHeader {
     float random;         // 0…1, the strand's own
     float4 albedo;        // linear RGB, w: 1 where it is the strand's own, 0 where the material's counts
     uint source;          // its place among the strands of its group
-    uint unused0;
-    uint unused1;
-    uint unused2;
+    float streak;         // 0...1, how much it is in a streak
+    float dye;            // 0...1
+    uint unused;
 };
 
 // One point of the finer curve.
@@ -42,7 +42,7 @@ struct CurvePoint {
     uint tangentXy;      // two snorm16 of an octahedral unit vector, root to tip
     float along;         // 0 root … 1 tip
     uint strand;
-    uint unused;
+    float opacity;  // 0...1
 };
 
 // A run of a strand's given points that one tessellated ribbon has as control points.
@@ -64,6 +64,7 @@ struct CurveConstants {
                     // own, w: random spread from strand to strand, a part of it
     float4 detail;  // x: share of the strands that have their full width, y: share from which they have none,
                     // z: one by the number of strands, w: widening
+    float4 opacity;  // x: at the root, y: at the tip
 };
 
 struct PatchConstants {
@@ -118,6 +119,19 @@ struct FibreConstants {
     float4 trt;
     float4 ambient;  // share of light from everywhere that leaves, linear RGB
     float4 spread;   // x, y: least and largest width of the table of wide lobes, radians
+};
+
+// Colours (linear RGB) or absorption (RGB per fibre radius) from place to place, of hair that does not look
+// the same everywhere: shading::StrandLook.
+struct LookConstants {
+    float4 root;          // w: where the gradient starts
+    float4 tip;           // w: one by its length
+    float4 streakRoot;    // w: random spread of absorption
+    float4 streakTip;     // w: 1 for absorption, 0 for colours
+    float4 dye;           // w: what the logarithm of a strand's own colour is multiplied with
+    float4 along;         // x: where dye starts, y: one by the length over which it does
+    float4 emissionRoot;  // linear RGB radiance
+    float4 emissionTip;
 };
 
 // Where compute kernels that rasterise put what they find.
@@ -196,6 +210,8 @@ struct FibreCase {
     float4 tangent;  // w: the strand's random number
     float4 toLight;  // w: fibres before the point
     float4 toView;   // w: all fibres
+    float4 place;    // x: 0 root ... 1 tip, y: streak, z: dye, w: the strand's random number of absorption
+    float4 own;      // the strand's own colour; w: 1 where it has one
 };
 
 #ifdef __cplusplus
@@ -209,7 +225,7 @@ HAIRLOOM_OFFSET(CurvePoint, strand, 24);
 static_assert(sizeof(CurvePoint) == 32);
 static_assert(sizeof(StrandPatch) == 16);
 static_assert(sizeof(PatchConstants) == 32);
-static_assert(sizeof(CurveConstants) == 48);
+static_assert(sizeof(CurveConstants) == 64);
 HAIRLOOM_OFFSET(ViewConstants, eye_ws, 64);
 HAIRLOOM_OFFSET(ViewConstants, pixel, 80);
 HAIRLOOM_OFFSET(ViewConstants, sampling, 96);
@@ -225,6 +241,7 @@ HAIRLOOM_OFFSET(ShadeConstants, albedo, 240);
 HAIRLOOM_OFFSET(ShadeConstants, counts, 256);
 HAIRLOOM_OFFSET(ShadeConstants, lights, 272);
 static_assert(sizeof(ShadeConstants) == 272 + 144 * HAIRLOOM_MAX_LIGHTS);
+static_assert(sizeof(LookConstants) == 128);
 static_assert(sizeof(MeshConstants) == 80);
 HAIRLOOM_OFFSET(RasterConstants, places, 64);
 static_assert(sizeof(RasterConstants) == 128);
@@ -238,7 +255,7 @@ static_assert(sizeof(OverlayVertex) == 32);
 static_assert(sizeof(LightCase) == 32);
 static_assert(sizeof(KajiyaCase) == 48);
 static_assert(sizeof(FibreConstants) == 96);
-static_assert(sizeof(FibreCase) == 48);
+static_assert(sizeof(FibreCase) == 80);
 }  // namespace hairloom::shaders
 #endif
 #endif

@@ -178,7 +178,7 @@ TEST(HostileProject, VersionsAndKindsAreNamed) {
     const TemporaryFolder folder;
     Forger newer(folder);
     newer.version = 7;
-    EXPECT_THAT(newer.error(), HasSubstr("project is version 7; this program reads versions up to 2"));
+    EXPECT_THAT(newer.error(), HasSubstr("project is version 7; this program reads versions up to 3"));
     Forger other(folder);
     other.kind = "cache";
     EXPECT_THAT(other.error(), HasSubstr("/kind is 'cache'; expected 'project'"));

@@ -69,6 +69,12 @@ std::vector<Broken> brokenGrooms() {
          warning, "from corner to corner", "bounds"},
         {"Flag", [](Groom& g) { g.strandAttributes.edit<std::uint8_t>(attribute::kFrozen)[4] = 2; }, warning,
          "frozen is neither", "strand 4"},
+        {"Dye",
+         [](Groom& g) {
+             g.strandAttributes.set(attribute::kDye, std::vector<float>(g.strandCount(), 0.5f));
+             g.strandAttributes.edit<float>(attribute::kDye)[3] = 1.5f;
+         },
+         error, "mask of the dye", "strand 3"},
         {"RepeatedId",
          [](Groom& g) { g.strandAttributes.edit<std::uint32_t>(attribute::kStrandId)[4] = 101; }, error,
          "same id", "id 101"},

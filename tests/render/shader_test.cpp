@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The shaders' functions and layouts against C++.
 #include "core/render/fibre_tables.h"
+#include "core/render/passes.h"
 #include "core/shading/kajiya_kay.h"
 #include "core/shading/melanin.h"
 #include "core/shading/tables.h"
@@ -24,7 +25,8 @@ class ShaderTest : public RenderTest {
     }
     std::vector<shaders::float4> run(const char* name, std::size_t results, std::uint32_t groups,
                                      std::vector<gpu::Binding> bindings, std::span<const std::byte> constants,
-                                     const FibreTables* fibre = nullptr) {
+                                     const FibreTables* fibre = nullptr,
+                                     std::span<const std::byte> look = {}) {
         const shaders::Shader* shader = shaders::find(name);
         auto module =
             device
@@ -40,6 +42,7 @@ class ShaderTest : public RenderTest {
         list->bind(bindings);
         if (!constants.empty()) list->setConstants(0, constants);
         if (fibre != nullptr) fibre->bind(*list);
+        if (!look.empty()) list->setConstants(2, look);
         list->dispatch(groups);
         list->endPass();
         const auto submission = device->submit(std::move(list));
@@ -96,8 +99,12 @@ struct FibreCases {
             if (std::max(std::abs(here.thetaIn), std::abs(here.thetaOut)) > 1.3) continue;
             const double before = 4 * random.uniformDouble();
             angles.push_back(here);
-            cases.push_back({toFloat4(tangent, random.uniformDouble()), toFloat4(toLight, before),
-                             toFloat4(toView, before + 4 * random.uniformDouble())});
+            cases.push_back({toFloat4(tangent, random.uniformDouble()),
+                             toFloat4(toLight, before),
+                             toFloat4(toView, before + 4 * random.uniformDouble()),
+                             {random.uniform(), random.uniform(), random.uniform(), random.uniform()},
+                             {random.uniform(), random.uniform(), random.uniform(),
+                              cases.size() % 3 == 0 ? 1.0f : 0.0f}});
         }
     }
 };
@@ -161,6 +168,78 @@ TEST_F(ShaderTest, FibreModelsAgreeWithTheReference) {
     }
 }
 
+/// Blond to brown hair with dark streaks and a red dye.
+shading::StrandLook variedLook() {
+    shading::StrandLook look;
+    look.quantity = shading::LookQuantity::absorption;
+    look.root = shading::absorption({1.3, 0.2});
+    look.tip = shading::absorption({0.2, 0});
+    look.gradient = shading::Ramp::between(0.2, 0.9);
+    look.streakRoot = look.streakTip = shading::absorption({3, 0});
+    look.dye = shading::absorptionOfColour(Vec3d(0.5, 0.02, 0.05), 0.3);
+    look.dyeAlong = shading::Ramp::between(0, 0.5);
+    look.spread = 0.4;
+    look.ownScale = shading::absorptionScale(0.3);
+    return look;
+}
+
+Vec3d absorptionOf(const shading::StrandLook& look, const shaders::FibreCase& c) {
+    const Vec3d own = Vec3f(c.own.x, c.own.y, c.own.z).cast<double>();
+    return shading::lookAt(look, {.along = static_cast<double>(c.place.x),
+                                  .random = static_cast<double>(c.place.w),
+                                  .streak = static_cast<double>(c.place.y),
+                                  .dye = static_cast<double>(c.place.z),
+                                  .ownColour = c.own.w > 0 ? &own : nullptr});
+}
+
+TEST_F(ShaderTest, HairThatVariesAgreesWithTheReference) {
+    constexpr std::uint32_t kCases = 1024;
+    const FibreCases given(kCases);
+    const shading::StrandLook look = variedLook();
+    for (const ShadingModel model : {ShadingModel::marschner, ShadingModel::sadeghi}) {
+        const bool isMarschner = model == ShadingModel::marschner;
+        FibreMaterial material = blondFibre(model);
+        material.marschner = blondFibre(ShadingModel::marschner).marschner;
+        const auto tables = FibreTables::make(*device, material, true);
+        ASSERT_TRUE(tables) << tables.error().message();
+        const auto constants = lookConstants(look);
+        const auto result =
+            run(isMarschner ? "marschner_look_echo.comp" : "sadeghi_look_echo.comp", 2 * kCases, kCases / 64,
+                {gpu::Binding::read(0, buffer(given.cases))}, {}, &*tables, gpu::bytesOf(constants));
+        RelativeError single, multiple;
+        for (std::uint32_t i = 0; i < kCases; ++i) {
+            const auto& [in, out, phi] = given.angles[i];
+            const shaders::FibreCase& c = given.cases[i];
+            const Vec3d absorption = absorptionOf(look, c);
+            ASSERT_NEAR(static_cast<double>(result[2 * i].w), absorption.x(), 1e-3 * (1 + absorption.x()));
+            ASSERT_NEAR(static_cast<double>(result[2 * i + 1].w), absorption.y(),
+                        1e-3 * (1 + absorption.y()));
+            shading::MarschnerParameters fibre = material.marschner;
+            fibre.azimuthal.absorption = absorption;
+            const shading::Marschner marschner(fibre);
+            const auto sadeghi =
+                isMarschner
+                    ? material.sadeghi
+                    : shading::withAbsorption(material.sadeghi, material.marschner.azimuthal, absorption);
+            const shading::DualScattering dual =
+                isMarschner ? shading::DualScattering(marschner) : shading::DualScattering(sadeghi);
+            const Vec3d expected =
+                isMarschner ? marschner(in, out, phi)
+                            : shading::evaluate(sadeghi, in, out, phi, static_cast<double>(c.tangent.w));
+            single.add(result[2 * i], std::cos(in) * expected);
+            multiple.add(result[2 * i + 1],
+                         shading::multipleScattering(dual.at(0.5 * std::abs(out - in)), in, out, phi,
+                                                     static_cast<double>(c.toLight.w),
+                                                     static_cast<double>(c.toView.w)));
+        }
+        RecordProperty(isMarschner ? "marschner_single" : "sadeghi_single", std::to_string(single.value()));
+        RecordProperty(isMarschner ? "marschner_multiple" : "sadeghi_multiple",
+                       std::to_string(multiple.value()));
+        EXPECT_LT(single.value(), 0.02) << isMarschner;
+        EXPECT_LT(multiple.value(), 0.03) << isMarschner;
+    }
+}
+
 TEST_F(ShaderTest, SharedLayoutsAgree) {
     shaders::ShadeConstants shade;
     shade.eye_ws = {1, 2, 3, 4};
@@ -170,10 +249,10 @@ TEST_F(ShaderTest, SharedLayoutsAgree) {
     shade.lights[2].range = {17, 18, 19, 20};
     for (int i = 0; i < 4; ++i) shade.lights[1].clipFromWorld.m[12 + i] = static_cast<float>(21 + i);
     std::vector<shaders::StrandHeader> strands(2);
-    strands[1] = {30, 31, 32, 0.5f, {33, 34, 35, 36}, 37, 0, 0, 0};
+    strands[1] = {30, 31, 32, 0.5f, {33, 34, 35, 36}, 37, 0.25f, 0.75f, 0};
     std::vector<shaders::CurvePoint> curve(2);
-    curve[1] = {{1, 1, 1, 1}, 40, 0.25f, 41, 0};
-    const auto r = run("layout_echo.comp", 8, 1,
+    curve[1] = {{1, 1, 1, 1}, 40, 0.25f, 41, 0.5f};
+    const auto r = run("layout_echo.comp", 9, 1,
                        {gpu::Binding::read(0, buffer(strands)), gpu::Binding::read(1, buffer(curve))},
                        gpu::bytesOf(shade));
     const auto expect = [&](std::size_t i, float x, float y, float z, float w) {
@@ -191,6 +270,7 @@ TEST_F(ShaderTest, SharedLayoutsAgree) {
     expect(5, 21, 22, 23, 24);
     expect(6, 33, 34, 35, 36);
     expect(7, 0.5f, std::bit_cast<float>(32u), 0.25f, std::bit_cast<float>(41u));
+    expect(8, 0.25f, 0.75f, 0.5f, 0);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "core/groom/brushes/collide.h"
 #include "core/groom/brushes/curl.h"
 #include "core/groom/brushes/drape.h"
+#include "core/groom/brushes/dye.h"
 #include "core/groom/brushes/flow.h"
 #include "core/groom/brushes/noise.h"
 #include "core/groom/brushes/set_length.h"
@@ -69,6 +70,7 @@ constexpr Operation kOperations[] = {
     operation<DrapeSettings, drape>("drape", "bends strands down as gravity does"),
     operation<TrimSettings, trim>("trim", "cuts strands by a plane or at a length, blunt or ragged"),
     operation<CollideSettings, collide>("collide", "pushes strands out of the head"),
+    operation<DyeSettings, dye>("dye", "says which strands the material's dye colours, and how much"),
 };
 
 std::vector<std::string_view> operationNames(std::span<const ScriptExtension> extensions) {

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/shadow_bench.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "cli/progress.h"
+#include "core/accuracy/plot.h"
+#include "core/base/random.h"
+#include "core/render/shadow_truth.h"
+
+namespace hairloom::cli {
+namespace {
+
+using render::Shadows;
+
+struct Kind {
+    const char* name;
+    Shadows shadows;
+    render::DeepLayers layers;
+};
+// Ends of layers as parts of the depth that hair takes up. Layers that end where the next begins are none.
+constexpr Kind kKinds[] = {
+    {"deep opacity, 1 layer", Shadows::deepOpacity, {0.9998f, 0.9999f, 1.0f}},
+    {"deep opacity, 2 layers (0.1, 1)", Shadows::deepOpacity, {0.1f, 0.9999f, 1.0f}},
+    {"deep opacity, 3 layers (0.02, 0.08, 1)", Shadows::deepOpacity, {0.02f, 0.08f, 1.0f}},
+    {"deep opacity, 3 layers (0.04, 0.14, 1)", Shadows::deepOpacity, {0.04f, 0.14f, 1.0f}},
+    {"deep opacity, 3 layers (0.08, 0.25, 1)", Shadows::deepOpacity, {0.08f, 0.25f, 1.0f}},
+    {"deep opacity, 3 layers (0.15, 0.4, 1)", Shadows::deepOpacity, {0.15f, 0.4f, 1.0f}},
+    {"deep opacity, 3 equal layers", Shadows::deepOpacity, {0.3333f, 0.6667f, 1.0f}},
+    {"opacity maps, 4 equal layers", Shadows::opacityMaps, {}},
+    {"absorption by depth", Shadows::absorption, {}},
+};
+
+/// Hair combed down around a head that is not there.
+struct BallOfHair {
+    std::vector<std::uint32_t> offsets{0};
+    std::vector<Vec3f> points;
+    std::vector<float> radii;
+
+    explicit BallOfHair(std::uint32_t hairs) {
+        constexpr int kPoints = 8;
+        constexpr float kRadius = 0.00015f;
+        Random random(11);
+        for (std::uint32_t i = 0; i < hairs; ++i) {
+            const float around = random.uniform(0, 2 * kPi), down = random.uniform(0.05f, 1.2f);
+            const float lift = random.uniform(1.02f, 1.12f);
+            for (int k = 0; k < kPoints; ++k) {
+                const float size = 1 + (lift - 1) * std::min(1.0f, static_cast<float>(k) / 2);
+                const float angle = down + 0.16f * static_cast<float>(k);
+                points.emplace_back(size * 0.075f * std::sin(angle) * std::cos(around),
+                                    size * 0.11f * std::cos(angle),
+                                    size * 0.095f * std::sin(angle) * std::sin(around));
+                radii.push_back(kRadius);
+            }
+            offsets.push_back(static_cast<std::uint32_t>(points.size()));
+        }
+    }
+    render::RenderScene scene() const {
+        render::RenderScene scene;
+        render::RenderStrands strands;
+        strands.offsets = offsets;
+        strands.positions_ws = points;
+        strands.radii = radii;
+        scene.strands = {strands};
+        render::Light light;
+        light.toLight_ws = Vec3f(0.4f, 0.8f, 0.45f);
+        scene.lights = {light};
+        return scene;
+    }
+};
+
+}  // namespace
+
+Result<ShadowBench> runShadowBench(const ShadowBenchOptions& options) {
+    gpu::DeviceOptions wanted;
+    wanted.index = options.device;
+    const auto device = gpu::createDevice(wanted);
+    if (!device) return tl::unexpected(device.error());
+    constexpr std::uint32_t kHairs = 1500;
+    const BallOfHair hair(kHairs);
+    const render::RenderScene scene = hair.scene();
+    ShadowBench bench;
+    bench.device = (*device)->info().name;
+    bench.hairs = kHairs;
+    bench.points = options.quick ? 100 : 600;
+    bench.resolutions = {32, 64, 128, 256, 512, 1024, 2048};
+    if (options.quick) bench.resolutions = {64, 128};
+    const render::ShadowCases cases = countFibres(scene, bench.points, 8);
+    bench.fibres = std::accumulate(cases.counted.begin(), cases.counted.end(), 0.0) /
+                   static_cast<double>(cases.counted.size());
+    Progress progress("shadow maps", std::size(kKinds));
+    for (const Kind& kind : kKinds) {
+        ShadowRow row{kind.name, {}};
+        for (const std::uint32_t resolution : bench.resolutions) {
+            const auto error = shadowError(**device, scene, cases, kind.shadows, resolution, kind.layers);
+            if (!error) return tl::unexpected(error.error());
+            row.errors.push_back(*error);
+        }
+        bench.rows.push_back(std::move(row));
+        progress.done(bench.rows.size());
+    }
+    return bench;
+}
+
+Report reportOf(const ShadowBench& bench) {
+    Report rows = Report::array();
+    for (const ShadowRow& row : bench.rows)
+        rows.push_back(Report{{"name", row.name}, {"errors", row.errors}});
+    return Report{{"device", bench.device},           {"hairs", bench.hairs},
+                  {"points", bench.points},           {"fibres", bench.fibres},
+                  {"resolutions", bench.resolutions}, {"rows", std::move(rows)}};
+}
+
+std::string markdownOf(const ShadowBench& bench, const std::string& command) {
+    std::string text = fmt::format(
+        "Root mean square error of the transmittance exp(−n/2) of {} points in {} hairs, against n counted "
+        "along beams of\n"
+        "{:.0f} mm across (mean n {:.2f}); maps of one RGBA16 texture but absorption, which has none. {}. "
+        "`{}`\n\n| map |",
+        bench.points, bench.hairs, 2000 * render::kShadowFootprint, bench.fibres, bench.device, command);
+    for (const std::uint32_t resolution : bench.resolutions) text += fmt::format(" {}² |", resolution);
+    text += "\n|---|";
+    for (std::size_t i = 0; i < bench.resolutions.size(); ++i) text += "---|";
+    text += "\n";
+    for (const ShadowRow& row : bench.rows) {
+        text += fmt::format("| {} |", row.name);
+        for (const double error : row.errors) text += fmt::format(" {:.3f} |", error);
+        text += "\n";
+    }
+    return text;
+}
+
+std::string figureOf(const ShadowBench& bench) {
+    Plot plot;
+    plot.title = "Shadow maps of hair against counted fibres";
+    plot.note = fmt::format("{} points in {} hairs, beams of {:.0f} mm across", bench.points, bench.hairs,
+                            2000 * render::kShadowFootprint);
+    std::vector<double> sides(bench.resolutions.begin(), bench.resolutions.end());
+    plot.x = {.title = "resolution along a side", .scale = Scale::Logarithmic, .ticks = ticksAt(sides)};
+    plot.y = {.title = "error of the transmittance", .low = 0};
+    for (const ShadowRow& row : bench.rows) {
+        const bool isDeep = row.name.starts_with("deep");
+        Series series{.name = row.name,
+                      .marker = isDeep ? Marker::Circle : Marker::Square,
+                      .line = isDeep ? LineStyle::Solid : LineStyle::Dashed};
+        for (std::size_t i = 0; i < sides.size(); ++i) series.points.push_back({sides[i], row.errors[i]});
+        plot.series.push_back(std::move(series));
+    }
+    return svg(plot);
+}
+
+}  // namespace hairloom::cli

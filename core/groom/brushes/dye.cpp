@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/groom/brushes/dye.h"
+
+#include <algorithm>
+
+namespace hairloom {
+namespace {
+
+using S = DyeSettings;
+
+constexpr Field<S> kFields[] = {
+    {"amount", "", 0, 1, "what the mask becomes: 1 is all of the material's dye", &S::amount},
+    {"centre", "m", -kAnywhere, kAnywhere, "middle of the ball in which roots are reached", &S::centre},
+    {"radius", "m", 0, kAnywhere, "of that ball; 0 reaches all roots", &S::radius},
+    {"softness", "m", 0, 1, "way over which the reach fades at the ball's rim", &S::softness},
+    {"variation", "", 0, 1, "random share by which a strand's amount may be lower", &S::variation},
+    seedField<S>("another seed varies the strands differently"),
+};
+
+/// 0 outside of the ball … 1 well inside.
+float reachOf(const S& settings, const Vec3f& root_ss) {
+    if (settings.radius <= 0) return 1;
+    const float inside = settings.radius - (root_ss - settings.centre).norm();
+    return settings.softness > 0 ? std::clamp(inside / settings.softness, 0.0f, 1.0f)
+                                 : (inside >= 0 ? 1.0f : 0.0f);
+}
+
+}  // namespace
+
+std::span<const Field<S>> fieldsOf(const S&) {
+    return kFields;
+}
+
+Result<std::size_t> dye(Groom& groom, const S& settings, const Region& region) {
+    if (auto status = checkFields("dye", settings); !status) return tl::unexpected(status.error());
+    const auto before = groom.strandAttributes.view<float>(attribute::kDye);
+    std::vector<float> mask(before.begin(), before.end());
+    mask.resize(groom.strandCount(), 0.0f);
+    const std::vector<float> old = mask;
+    // The loop keeps frozen strands and those of locked layers out; no point moves.
+    const auto reached = editStrands(groom, region, {}, [&](StrandEdit& strand) {
+        const float reach = reachOf(settings, strand.points[0]);
+        const float amount =
+            settings.amount * (1 - settings.variation * strand.random(settings.seed).uniform());
+        mask[strand.index] += reach * (amount - mask[strand.index]);
+    });
+    static_cast<void>(reached);
+    std::size_t changed = 0;
+    for (std::size_t s = 0; s < mask.size(); ++s) changed += mask[s] != old[s] ? 1 : 0;
+    if (changed > 0) groom.strandAttributes.set(attribute::kDye, std::move(mask));
+    return changed;
+}
+
+}  // namespace hairloom

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/render/light_probe.h"
+
+#include "core/render/passes.h"
+
+namespace hairloom::render {
+namespace {
+
+constexpr std::uint32_t kGroup = 64;
+
+Result<gpu::BufferPtr> makeBuffer(gpu::Device& device, const char* name, std::span<const std::byte> content,
+                                  std::uint32_t element) {
+    gpu::BufferDesc desc;
+    desc.name = name;
+    desc.size = content.size();
+    desc.elementBytes = element;
+    desc.usage = gpu::Usage::ShaderRead | gpu::Usage::UnorderedAccess;
+    return device.createBuffer(desc, content);
+}
+
+/// Scene, plan and targets of a frame that is only lit.
+Status prepare(gpu::Device& device, const RenderScene& scene, const RenderOptions& options,
+               RendererState& state) {
+    auto uploaded = DeviceScene::upload(device, scene);
+    if (!uploaded) return tl::unexpected(uploaded.error());
+    state.scene = std::move(*uploaded);
+    state.lights = scene.lights;
+    state.environment = scene.environment;
+    state.camera = scene.camera;
+    state.options = options;
+    state.detail.subdivisions = options.subdivisions;
+    SceneFacts facts;
+    facts.meshes = state.scene.triangles() > 0;
+    facts.hair = !state.scene.batches.empty();
+    facts.lights = facts.shadowLights = static_cast<std::uint32_t>(scene.lights.size());
+    state.plan = planRender(facts, options, 1);
+    if (const auto fitted = state.targets.fit(device, state.plan); !fitted)
+        return tl::unexpected(fitted.error());
+    if (auto status = state.scene.prepareCurves(device, options.subdivisions); !status) return status;
+    gpu::TextureDesc desc;
+    desc.name = "nothing";
+    const std::array<std::byte, 4> black{};
+    auto nothing = device.createTexture(desc, black);
+    if (!nothing) return tl::unexpected(nothing.error());
+    state.nothing = std::move(*nothing);
+    auto noWords = makeBuffer(device, "no words", black, 4);
+    if (!noWords) return tl::unexpected(noWords.error());
+    state.noWords = std::move(*noWords);
+    return {};
+}
+
+}  // namespace
+
+Result<std::vector<shaders::float4>> probeLight(gpu::Device& device, const RenderScene& scene,
+                                                const RenderOptions& options,
+                                                std::span<const shaders::LightCase> cases,
+                                                const DeepLayers& layers) {
+    const auto failed = [](const Error& error) { return tl::unexpected(error); };
+    RendererState state(device);
+    state.deepLayers = layers;
+    if (auto status = prepare(device, scene, options, state); !status) return failed(status.error());
+    std::vector<shaders::float4> results(2 * cases.size());
+    const auto in = makeBuffer(device, "cases", std::as_bytes(cases), sizeof(shaders::LightCase));
+    if (!in) return failed(in.error());
+    const auto out =
+        makeBuffer(device, "results", std::as_bytes(std::span(results)), sizeof(shaders::float4));
+    if (!out) return failed(out.error());
+    auto list = device.createCommandList();
+    if (!list) return failed(list.error());
+    gpu::CommandList& commands = **list;
+    setUpLights(state);
+    if (!state.scene.batches.empty()) recordCurves(commands, state);
+    recordShadowMaps(commands, state);
+    commands.beginPass({"light", {}, {}});
+    commands.setPipeline(state.pipelines.compute("light_echo.comp"));
+    commands.setConstants(0, gpu::bytesOf(state.shade));
+    bindShadows(commands, state);
+    bind(commands, {gpu::Binding::read(0, *in), gpu::Binding::write(0, *out)});
+    commands.dispatch(static_cast<std::uint32_t>((cases.size() + kGroup - 1) / kGroup));
+    commands.endPass();
+    if (auto status = state.pipelines.takeStatus(); !status) return failed(status.error());
+    const auto submission = device.submit(std::move(*list));
+    if (!submission) return failed(submission.error());
+    if (auto read = device.readBuffer(*out, 0, std::as_writable_bytes(std::span(results))); !read)
+        return failed(read.error());
+    return results;
+}
+
+}  // namespace hairloom::render

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/render/shadow_truth.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/parallel.h"
+#include "core/base/random.h"
+#include "core/render/passes.h"
+
+namespace hairloom::render {
+namespace {
+
+constexpr double kBias = 0.0007;  // metres, as the shading has it
+
+/// Length of the part of a segment that lies inside a disc around the origin.
+double insideDisc(const Vec2d& a, const Vec2d& b, double radius) {
+    const Vec2d d = b - a;
+    const double qa = d.squaredNorm(), qb = 2 * a.dot(d), qc = a.squaredNorm() - radius * radius;
+    if (qa <= 0) return 0;
+    const double discriminant = qb * qb - 4 * qa * qc;
+    if (discriminant <= 0) return 0;
+    const double root = std::sqrt(discriminant);
+    const double t0 = std::clamp((-qb - root) / (2 * qa), 0.0, 1.0);
+    const double t1 = std::clamp((-qb + root) / (2 * qa), 0.0, 1.0);
+    return (t1 - t0) * std::sqrt(qa);
+}
+
+/// Marches a beam from a point towards the light through all strands.
+class Beam {
+  public:
+    Beam(const RenderStrands& strands, const Vec3d& toLight)
+        : strands_(strands),
+          toLight_(toLight.normalized()),
+          right_(
+              (std::abs(toLight_.x()) < 0.9 ? Vec3d::UnitX() : Vec3d::UnitY()).cross(toLight_).normalized()),
+          up_(toLight_.cross(right_)) {}
+
+    double fibresBefore(const Vec3d& p) const {
+        double area = 0;
+        for (std::size_t s = 0; s + 1 < strands_.offsets.size(); ++s) {
+            for (std::uint32_t k = strands_.offsets[s]; k + 1 < strands_.offsets[s + 1]; ++k) {
+                area += shadeOf(strands_.positions_ws[k].cast<double>() - p,
+                                strands_.positions_ws[k + 1].cast<double>() - p) *
+                        2 * static_cast<double>(strands_.radii[k]);
+            }
+        }
+        return area / (static_cast<double>(kPi) * kShadowFootprint * kShadowFootprint);
+    }
+
+  private:
+    /// Length of a segment in front of the point and within the beam, seen from the light.
+    double shadeOf(Vec3d a, Vec3d b) const {
+        const double da = a.dot(toLight_) - kBias, db = b.dot(toLight_) - kBias;
+        if (da <= 0 && db <= 0) return 0;
+        if (da < 0) a += (b - a) * (-da / (db - da));
+        if (db < 0) b += (a - b) * (-db / (da - db));
+        return insideDisc({a.dot(right_), a.dot(up_)}, {b.dot(right_), b.dot(up_)}, kShadowFootprint);
+    }
+
+    const RenderStrands& strands_;
+    Vec3d toLight_, right_, up_;
+};
+
+}  // namespace
+
+ShadowCases countFibres(const RenderScene& scene, std::size_t count, std::uint64_t seed) {
+    const RenderStrands& strands = scene.strands.front();
+    const Beam beam(strands, scene.lights.front().toLight_ws.cast<double>());
+    ShadowCases result;
+    Random random(seed);
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto at = random.below(static_cast<std::uint32_t>(strands.positions_ws.size()));
+        result.cases.push_back({toShader(strands.positions_ws[at], static_cast<float>(kBias)), {0, 1, 0, 0}});
+    }
+    result.counted.resize(count);
+    parallelFor(count, 8, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const shaders::float4& p = result.cases[i].position_ws;
+            result.counted[i] = beam.fibresBefore(Vec3f(p.x, p.y, p.z).cast<double>());
+        }
+    });
+    return result;
+}
+
+Result<double> shadowError(gpu::Device& device, const RenderScene& scene, const ShadowCases& cases,
+                           Shadows kind, std::uint32_t resolution, const DeepLayers& layers) {
+    RenderOptions options;
+    options.shadows = kind;
+    options.shadowResolution = resolution;
+    options.subdivisions = 1;
+    const auto results = probeLight(device, scene, options, cases.cases, layers);
+    if (!results) return tl::unexpected(results.error());
+    double sum = 0;
+    for (std::size_t i = 0; i < cases.counted.size(); ++i) {
+        const double found = static_cast<double>((*results)[2 * i].w);
+        const double error = std::exp(-0.5 * found) - std::exp(-0.5 * cases.counted[i]);
+        sum += error * error;
+    }
+    return std::sqrt(sum / static_cast<double>(cases.counted.size()));
+}
+
+}  // namespace hairloom::render

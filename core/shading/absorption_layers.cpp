@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/shading/absorption_layers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace hairloom::shading {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+// σ = m u/(1 + m/σ_max − u): steps near 0 are an eleventh of even ones.
+constexpr double kBend = 0.7;
+static_assert(kAbsorptionLayers % 3 == 0);
+
+Table makeTable(std::uint32_t width, std::uint32_t height) {
+    return {width, height, std::vector<float>(std::size_t{4} * width * height)};
+}
+
+/// Absorptions of three layers, as the channels of one fibre.
+Vec3d absorptionsOf(std::uint32_t firstLayer) {
+    return {absorptionOfLayer(firstLayer), absorptionOfLayer(firstLayer + 1),
+            absorptionOfLayer(firstLayer + 2)};
+}
+
+/// Of the rows of `averages`, weighted as meanAlbedo() weighs inclinations.
+double meanAlbedoOf(const Table& averages, std::uint32_t layer) {
+    double sum = 0, weights = 0;
+    for (std::uint32_t x = 0; x < averages.width; ++x) {
+        const double cosine = std::cos(kPi / 2 * x / (averages.width - 1));
+        const double weight = (x == 0 ? 0.5 : 1.0) * cosine * cosine;
+        const float* texel = averages.texel(x, 2 * layer);
+        sum += weight * static_cast<double>(texel[0] + texel[1]);
+        weights += weight;
+    }
+    return sum / weights;
+}
+
+/// `at` gives the model of three layers.
+template <class ModelOf>
+DualLayers bakeDualOf(std::uint32_t azimuth, std::uint32_t inclination, const ModelOf& modelOf) {
+    DualLayers layers{makeTable(azimuth, inclination * kAbsorptionLayers),
+                      makeTable(inclination, 2 * kAbsorptionLayers)};
+    for (std::uint32_t first = 0; first < kAbsorptionLayers; first += 3) {
+        const auto model = modelOf(absorptionsOf(first));
+        const DualScattering dual(model);
+        const DualTables tables = bakeDual(dual, azimuth, inclination);
+        for (std::uint32_t c = 0; c < 3; ++c) {
+            for (std::uint32_t y = 0; y < inclination; ++y) {
+                for (std::uint32_t x = 0; x < azimuth; ++x) {
+                    layers.spread.texel(x, (first + c) * inclination + y)[0] = tables.spread.texel(x, y)[c];
+                }
+                float* shares = layers.averages.texel(y, 2 * (first + c));
+                float* tilts = layers.averages.texel(y, 2 * (first + c) + 1);
+                shares[0] = tables.averages.texel(y, 0)[c];
+                shares[1] = tables.averages.texel(y, 1)[c];
+                shares[2] = tables.variances.texel(y, 0)[c];
+                shares[3] = tables.variances.texel(y, 1)[c];
+                tilts[0] = tables.variances.texel(y, 2)[c];
+                tilts[1] = tables.variances.texel(y, 3)[c];
+            }
+        }
+    }
+    for (std::uint32_t layer = 0; layer < kAbsorptionLayers; ++layer) {
+        const auto mean = static_cast<float>(meanAlbedoOf(layers.averages, layer));
+        for (std::uint32_t x = 0; x < inclination; ++x) layers.averages.texel(x, 2 * layer + 1)[2] = mean;
+    }
+    return layers;
+}
+
+}  // namespace
+
+double absorptionOfLayer(std::uint32_t layer) {
+    const double u = static_cast<double>(layer) / (kAbsorptionLayers - 1);
+    return kBend * u / (1 + kBend / kMostAbsorption - u);
+}
+
+LayerPlace layerPlace(double absorption) {
+    const double sigma = std::clamp(absorption, 0.0, kMostAbsorption);
+    const double u = sigma * (1 + kBend / kMostAbsorption) / (kBend + sigma);
+    const double at = u * (kAbsorptionLayers - 1);
+    const auto low = std::min(static_cast<std::uint32_t>(at), kAbsorptionLayers - 2);
+    const double below = absorptionOfLayer(low), above = absorptionOfLayer(low + 1);
+    return {low, std::clamp((sigma - below) / (above - below), 0.0, 1.0)};
+}
+
+MarschnerLayers bakeMarschnerLayers(const MarschnerParameters& model, const TableSizes& sizes) {
+    MarschnerLayers layers;
+    layers.azimuthal = makeTable(sizes.azimuth, sizes.inclination * kAbsorptionLayers);
+    for (std::uint32_t first = 0; first < kAbsorptionLayers; first += 3) {
+        MarschnerParameters three = model;
+        three.azimuthal.absorption = absorptionsOf(first);
+        const Marschner fibre(three);
+        if (first == 0) layers.longitudinal = bakeLongitudinal(fibre, sizes.longitudinal);
+        const MarschnerTables tables = bakeAzimuthal(fibre, sizes);
+        for (std::uint32_t c = 0; c < 3; ++c) {
+            for (std::uint32_t y = 0; y < sizes.inclination; ++y) {
+                for (std::uint32_t x = 0; x < sizes.azimuth; ++x) {
+                    float* texel = layers.azimuthal.texel(x, (first + c) * sizes.inclination + y);
+                    texel[0] = tables.transmitted.texel(x, y)[c];
+                    texel[1] = tables.reflected.texel(x, y)[c];
+                    texel[2] = tables.transmitted.texel(x, y)[3];
+                    texel[3] = 1;
+                }
+            }
+        }
+    }
+    return layers;
+}
+
+SadeghiLayers bakeSadeghiLayers(const SadeghiParameters& model, const AzimuthalParameters& fibre,
+                                const TableSizes& sizes) {
+    SadeghiLayers layers{bakeSadeghi(model, sizes), makeTable(2, kAbsorptionLayers)};
+    const TransmittedEnergies own = transmittedEnergies(fibre, fibre.absorption);
+    for (std::uint32_t first = 0; first < kAbsorptionLayers; first += 3) {
+        const TransmittedEnergies three = transmittedEnergies(fibre, absorptionsOf(first));
+        for (std::uint32_t c = 0; c < 3; ++c) {
+            for (std::uint32_t x = 0; x < 2; ++x) {
+                float* texel = layers.energies.texel(x, first + c);
+                const int channel = static_cast<int>(c);
+                texel[0] = static_cast<float>(three.tt[channel] / std::max(own.tt.maxCoeff(), 1e-12));
+                texel[1] = static_cast<float>(three.trt[channel] / std::max(own.trt.maxCoeff(), 1e-12));
+                texel[2] = texel[3] = 1;
+            }
+        }
+    }
+    return layers;
+}
+
+DualLayers bakeDualLayers(const MarschnerParameters& model, std::uint32_t azimuth,
+                          std::uint32_t inclination) {
+    return bakeDualOf(azimuth, inclination, [&](const Vec3d& absorptions) {
+        MarschnerParameters three = model;
+        three.azimuthal.absorption = absorptions;
+        return Marschner(three);
+    });
+}
+
+DualLayers bakeDualLayers(const SadeghiParameters& model, const AzimuthalParameters& fibre,
+                          std::uint32_t azimuth, std::uint32_t inclination) {
+    SadeghiParameters grey = model;
+    for (SadeghiLobe* lobe : {&grey.r, &grey.tt, &grey.trt}) lobe->tint.setConstant(lobe->tint.mean());
+    grey.r.colour.setConstant(grey.r.colour.mean());
+    return bakeDualOf(azimuth, inclination,
+                      [&](const Vec3d& absorptions) { return withAbsorption(grey, fibre, absorptions); });
+}
+
+}  // namespace hairloom::shading

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/shading/strand_look.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hairloom::shading {
+namespace {
+
+constexpr double kDarkest = 0.001;  // as absorptionOfColour() has it
+constexpr double kStep = 1e6;       // slope of a ramp without length
+
+Vec3d mix(const Vec3d& a, const Vec3d& b, double t) {
+    return a + t * (b - a);
+}
+
+Vec3d ofOwnColour(const StrandLook& look, const Vec3d& colour) {
+    if (look.quantity == LookQuantity::colour) return colour;
+    return (look.ownScale * colour.cwiseMax(kDarkest).cwiseMin(1.0).array().log()).square().matrix();
+}
+
+}  // namespace
+
+Ramp Ramp::between(double start, double end) {
+    if (end > start) return {start, 1 / (end - start)};
+    return {start - 10 / kStep, kStep};
+}
+
+double Ramp::operator()(double x) const {
+    return std::clamp((x - start) * scale, 0.0, 1.0);
+}
+
+Vec3d colourOfMoreAbsorption(const Vec3d& colour, double factor) {
+    return colour.array().max(0.0).pow(std::sqrt(factor)).matrix();
+}
+
+Vec3d lookAt(const StrandLook& look, const StrandPlace& place) {
+    const double t = look.gradient(place.along);
+    const Vec3d plain = place.ownColour ? ofOwnColour(look, *place.ownColour) : mix(look.root, look.tip, t);
+    const Vec3d streaked = mix(plain, mix(look.streakRoot, look.streakTip, t), place.streak);
+    const Vec3d dyed = mix(streaked, look.dye, place.dye * look.dyeAlong(place.along));
+    const double factor = 1 + look.spread * (2 * place.random - 1);
+    return look.quantity == LookQuantity::absorption ? Vec3d(factor * dyed)
+                                                     : colourOfMoreAbsorption(dyed, factor);
+}
+
+}  // namespace hairloom::shading

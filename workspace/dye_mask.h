@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Where the mask of the dye (strand attribute `dye`) comes from, beside the script operation.
+
+#include <string>
+
+#include "core/groom/groom.h"
+
+namespace hairloom {
+
+/// The luminance of a PNG's values (0…1, as they are painted, not made linear) at each strand's root UV; (0,
+/// 0) is the image's lower left corner, and it repeats. Error: no PNG, or strands without root UVs.
+Status dyeFromImage(const std::string& path, Groom& groom);
+/// A strand attribute of numbers or flags, clamped to 0…1. Error: no such attribute, or one of another type.
+Status dyeFromAttribute(const std::string& name, Groom& groom);
+
+}  // namespace hairloom
