@@ -16,44 +16,18 @@ constexpr std::size_t kBlocksPerJob = 4;
 /// Seconds; what the plan assumes before the first frame.
 constexpr float kUsualFrame = 1.0f / 60.0f;
 
-/// Box and longest way of many roots, lane by lane, so that compilers find vectors in it.
-class RootBounds {
-  public:
-    explicit RootBounds(float cut) : cut_(cut * cut) {
-        std::fill_n(low_[0], 3 * kBlockLanes, 1e30f);
-        std::fill_n(high_[0], 3 * kBlockLanes, -1e30f);
-    }
-
-    /// The rows of a block at the last frame's end and at this one's; every lane has a strand's.
-    void add(const float* from, const float* to) {
-        float ways[kBlockLanes] = {};
-        for (std::size_t r = 0; r < 3; ++r) {
-            for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
-                const float at = to[r * kBlockLanes + lane], way = at - from[r * kBlockLanes + lane];
-                low_[r][lane] = at < low_[r][lane] ? at : low_[r][lane];
-                high_[r][lane] = at > high_[r][lane] ? at : high_[r][lane];
-                ways[lane] += way * way;
-            }
-        }
-        for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
-            const float way = ways[lane] <= cut_ ? ways[lane] : 0.0f;
-            longest_[lane] = way > longest_[lane] ? way : longest_[lane];
-        }
-    }
-
-    Float3 low() const { return {least(low_[0]), least(low_[1]), least(low_[2])}; }
-    Float3 high() const { return {most(high_[0]), most(high_[1]), most(high_[2])}; }
-    /// Of those that are no cuts, metres.
-    float longestWay() const { return std::sqrt(most(longest_)); }
-
-  private:
-    static float least(const float* row) { return *std::min_element(row, row + kBlockLanes); }
-    static float most(const float* row) { return *std::max_element(row, row + kBlockLanes); }
-
-    float cut_;
-    float low_[3][kBlockLanes], high_[3][kBlockLanes];
-    float longest_[kBlockLanes] = {};
-};
+RootBounds noRoots() {
+    RootBounds bounds{};
+    std::fill_n(bounds.low[0], 3 * kBlockLanes, 1e30f);
+    std::fill_n(bounds.high[0], 3 * kBlockLanes, -1e30f);
+    return bounds;
+}
+float least(const float* row) {
+    return *std::min_element(row, row + kBlockLanes);
+}
+float most(const float* row) {
+    return *std::max_element(row, row + kBlockLanes);
+}
 
 }  // namespace
 
@@ -161,29 +135,48 @@ void Engine::allocateForPlan() {
 
 /// Keeps the roots that the frame ends on, their box and how far they go. What is no root stays where it was.
 void Engine::takeRoots(const FrameInput& input) {
-    RootBounds bounds(settings_.teleportDistance);
+    RootBounds bounds = noRoots();
+    const float cut = settings_.teleportDistance * settings_.teleportDistance;
+    const Kernels& table = kernels();
     for (std::size_t b = 0; b < shape_->blocks.size(); ++b) {
         const Block& block = shape_->blocks[b];
         const float* rows = state_.roots.data() + b * kRootRows * kBlockLanes;
         float* const next = nextRoots_.data() + b * kRootRows * kBlockLanes;
         for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
-            RootFrame root = input.roots_ws[block.strandOfLane[lane]];
-            if (!usableWithin(root, kFarthest)) {
-                const auto row = [&](std::size_t r) { return rows[r * kBlockLanes + lane]; };
-                root = {{row(0), row(1), row(2)}, {row(3), row(4), row(5), row(6)}};
-                if (lane < block.strands) ++report_.rejectedRoots;
-            }
+            const RootFrame& root = input.roots_ws[block.strandOfLane[lane]];
             const float values[kRootRows] = {root.position.x, root.position.y, root.position.z,
                                              root.rotation.x, root.rotation.y, root.rotation.z,
                                              root.rotation.w};
             for (std::size_t r = 0; r < kRootRows; ++r) next[r * kBlockLanes + lane] = values[r];
         }
+        if (!table.takeRoots(rows, next, false, cut, bounds)) {
+            repairRoots(b);
+            table.takeRoots(rows, next, true, cut, bounds);
+        }
         blockReports_[b].rootsMoved = std::memcmp(rows, next, kRootRows * kBlockLanes * sizeof(float)) != 0;
-        bounds.add(rows, next);
     }
-    rootMotion_ = bounds.longestWay();
-    state_.rootsMin_ws = bounds.low();
-    state_.rootsMax_ws = bounds.high();
+    rootMotion_ = std::sqrt(most(bounds.longest));
+    state_.rootsMin_ws = {least(bounds.low[0]), least(bounds.low[1]), least(bounds.low[2])};
+    state_.rootsMax_ws = {most(bounds.high[0]), most(bounds.high[1]), most(bounds.high[2])};
+}
+
+/// Puts the block's roots that are no places back to those of the last frame.
+void Engine::repairRoots(std::size_t block) {
+    const float* const rows = state_.roots.data() + block * kRootRows * kBlockLanes;
+    float* const next = nextRoots_.data() + block * kRootRows * kBlockLanes;
+    for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+        const auto given = [&](std::size_t r) -> float& { return next[r * kBlockLanes + lane]; };
+        RootFrame root{{given(0), given(1), given(2)}, {given(3), given(4), given(5), given(6)}};
+        if (usableWithin(root, kFarthest)) {
+            given(3) = root.rotation.x;
+            given(4) = root.rotation.y;
+            given(5) = root.rotation.z;
+            given(6) = root.rotation.w;
+            continue;
+        }
+        for (std::size_t r = 0; r < kRootRows; ++r) given(r) = rows[r * kBlockLanes + lane];
+        if (lane < shape_->blocks[block].strands) ++report_.rejectedRoots;
+    }
 }
 
 /// Whether a sphere that has changed since the last frame comes within reach of the block's strands.

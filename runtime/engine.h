@@ -94,6 +94,7 @@ class Engine {
                 Float3 rootsMax_ws, float frameTime);
     void allocateForPlan();
     void takeRoots(const FrameInput& input);
+    void repairRoots(std::size_t block);
     void wakeBlocks();
     bool sphereNear(std::size_t block) const;
     Frame makeFrame(const FrameInput& input);

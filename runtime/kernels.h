@@ -122,6 +122,14 @@ float slowestSwept(const SubstepContext& context);
 
 using Stage = void (*)(const BlockView& block, LaneFrame& lanes, const SubstepContext& context);
 
+inline constexpr std::size_t kRootRows = 7;  ///< of a block's roots: place x, y, z, rotation x, y, z, w
+
+/// Box and longest way of many roots, lane by lane.
+struct alignas(64) RootBounds {
+    float low[3][kBlockLanes], high[3][kBlockLanes];  ///< world
+    float longest[kBlockLanes];                       ///< square metres, of those that are no cuts
+};
+
 /// What the strands move through.
 enum class Air : std::uint32_t { none, still, moving };
 inline constexpr std::size_t kAirCount = 3;
@@ -141,6 +149,11 @@ struct Kernels {
     /// point is no number or has left the range of sound places.
     /// Keeps each lane's in `motion`.
     float (*fastest)(const BlockView& block, float h);
+    /// Makes the rotations in a block's rows of roots `next` unit length, and adds the roots to `bounds`;
+    /// `before` are those of the last frame. False, and nothing else, where a root is no place: not finite,
+    /// or too far away. A way whose square is above `cut` is none. With `sound` roots it neither looks nor
+    /// changes.
+    bool (*takeRoots)(const float* before, float* next, bool sound, float cut, RootBounds& bounds);
     const char* target;  ///< name of the instruction set
 };
 

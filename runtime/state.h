@@ -103,7 +103,6 @@ struct Bend {
 inline constexpr float kNoCurve = -1.0f;
 inline constexpr std::size_t kRestPlanes = 6;
 inline constexpr std::size_t kStatePlanes = 6;
-inline constexpr std::size_t kRootRows = 7;
 /// Planes of integrators that evaluate forces: start, rate; RK4 also kick, sum and sumRate.
 inline constexpr std::size_t kEvaluationPlanes = 6;
 inline constexpr std::size_t kRungeKuttaPlanes = 15;

@@ -142,13 +142,11 @@ Trajectory trajectoryOf(const SceneHair& hair, const SceneTime& time, const Foll
 
 std::string detailOf(const std::vector<StrandTruth>& strands, double toleranceMm) {
     std::size_t reached = 0;
-    std::uint64_t failed = 0;
     std::uint32_t fewest = std::numeric_limits<std::uint32_t>::max(), most = 0;
     double worst = 0;
     for (const StrandTruth& strand : strands) {
         const reference::Convergence& motion = *strand.motion;
         reached += motion.reached;
-        failed += motion.report.failed;
         fewest = std::min(fewest, motion.substeps);
         most = std::max(most, motion.substeps);
         worst = std::max(worst, motion.change);
@@ -159,7 +157,6 @@ std::string detailOf(const std::vector<StrandTruth>& strands, double toleranceMm
     if (reached < strands.size())
         detail +=
             fmt::format("; the last doubling moved a point of the others by up to {:.3g} mm", 1e3 * worst);
-    if (failed > 0) detail += fmt::format("; {} steps could not be solved", failed);
     return detail;
 }
 
@@ -235,12 +232,12 @@ Result<Truth> ReferenceConverged::compute(const SceneHair& hair, const HeadMotio
     truth.followed.shares = followed.shares;
     for (std::size_t i = 0; i < strands.size(); ++i) {
         if (!strands[i].motion) return tl::unexpected(strands[i].motion.error());
-        if (!std::isfinite(strands[i].motion->change)) continue;
+        if (!std::isfinite(strands[i].motion->change) || strands[i].motion->report.failed > 0) continue;
         truth.followed.strands.push_back(followed.strands[i]);
         solved.push_back(std::move(strands[i]));
     }
     if (solved.empty())
-        return fail("the reference is not finite", "expected a motion and a groom without NaN");
+        return fail("the reference could not solve any strand", "expected a motion and a groom without NaN");
     std::size_t curved = 0;
     for (const StrandTruth& strand : solved) {
         last.push_back(&strand.motion->positions_ws);
@@ -252,9 +249,10 @@ Result<Truth> ReferenceConverged::compute(const SceneHair& hair, const HeadMotio
     truth.detail = detailOf(solved, options_.toleranceMm);
     truth.notes = notesOf(hair.groom.simulation, curved, solved.size());
     if (solved.size() < strands.size()) {
-        truth.notes.push_back(
-            fmt::format("The reference could not solve {} of {} strands; they are left out of the errors.",
-                        strands.size() - solved.size(), strands.size()));
+        truth.notes.push_back(fmt::format(
+            "The reference could not solve every step of {} of {} strands, which are left out of the "
+            "errors: hair that is pressed end-on or between two spheres has no sound motion there.",
+            strands.size() - solved.size(), strands.size()));
     }
 
     const auto engine = EngineConverged(kEngineSubsteps).compute(hair, motion, time, truth.followed);

@@ -30,8 +30,8 @@ double medianOf(std::vector<double>& values) {
 }
 
 /// What one thread does is measured in its processor time, what several do together on the wall.
-std::uint64_t workNanoseconds(bool allThreads) {
-    return allThreads ? nanosecondsNow() : threadNanoseconds();
+std::uint64_t workNanoseconds(bool onWall) {
+    return onWall ? nanosecondsNow() : threadNanoseconds();
 }
 
 double milliseconds(std::uint64_t nanoseconds) {
@@ -59,14 +59,15 @@ double StepRun::milliseconds(std::uint32_t frames) {
     runtime::FrameInput input;
     input.dt = kFrame;
     if (scene_.acting == scenes::Acting::windAndSpheres) input.spheres = head_.spheres;
+    const bool onWall = scene_.allThreads || scene_.byStage;
     for (std::uint32_t f = 0; f < frames; ++f) {
         time_ += static_cast<double>(kFrame);
         head_.placeRoots(time_, roots_);
         input.time = time_;
         input.roots_ws = roots_;
-        const std::uint64_t begin = workNanoseconds(scene_.allThreads);
+        const std::uint64_t begin = workNanoseconds(onWall);
         engine_->step(input);
-        whole.push_back(hairloom::milliseconds(workNanoseconds(scene_.allThreads) - begin));
+        whole.push_back(hairloom::milliseconds(workNanoseconds(onWall) - begin));
         for (std::size_t i = 0; i < stages.size(); ++i)
             stages[i].push_back(engine_->lastStep().stageMilliseconds[i]);
     }

@@ -59,7 +59,7 @@ class EngineConverged : public TruthSource {
 /// substeps doubled until its points move by less than `toleranceMm`, and is left as it is at the most
 /// substeps. Strands run in parallel, each for itself: the same bits for any number of threads.
 ///
-/// A strand whose motion is not finite at two resolutions in a row is left out. It leaves out what
+/// A strand with a step that could not be solved, at its finest resolution, is left out. It leaves out what
 /// docs/engine.md says the reference leaves out: sleep, maximal extension on coil springs, and the tank that
 /// bounds how far held curves turn. What the scene has of it stands in the notes, and with it how far the
 /// converged engine is from the reference.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Moves the roots; keeps the speed when the length of the substep changes.
+// Takes in and moves the roots; keeps the speed when the length of the substep changes.
 #if defined(HAIRLOOM_RUNTIME_ROOTS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HAIRLOOM_RUNTIME_ROOTS_INL_H
 #undef HAIRLOOM_RUNTIME_ROOTS_INL_H
@@ -7,7 +7,10 @@
 #define HAIRLOOM_RUNTIME_ROOTS_INL_H
 #endif
 
+#include <cfloat>
+
 #include "hwy/highway.h"
+#include "runtime/checks.h"
 #include "runtime/kernels.h"
 #include "runtime/kernels/lanes-inl.h"
 
@@ -44,6 +47,46 @@ void moveRoots(const BlockView& block, LaneFrame& lanes, const SubstepContext& c
             store3(rotate(now, load3(block.rest, lane)), block.position, i);
         }
     }
+}
+
+/// As usableWithin(), for each lane.
+HWY_INLINE hn::Mask<D> usableRoots(V3 place, V squaredRotation) {
+    const auto near = dot(place, place) <= all(kFarthest * kFarthest);
+    return hn::And(near, hn::And(squaredRotation > all(1e-12f), squaredRotation <= all(FLT_MAX)));
+}
+
+bool takeRoots(const float* before, float* next, bool sound, float cut, RootBounds& bounds) {
+    const Planes places{next, kBlockLanes};
+    const auto rotationAt = [&](std::size_t lane) HWY_ATTR {
+        const float* const at = next + 3 * kBlockLanes + lane;
+        return V4{hn::Load(D(), at), hn::Load(D(), at + kBlockLanes), hn::Load(D(), at + 2 * kBlockLanes),
+                  hn::Load(D(), at + 3 * kBlockLanes)};
+    };
+    const auto squareOf = [](V4 q) HWY_ATTR { return q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w; };
+    if (!sound) {
+        auto usable = hn::Not(noLane());
+        for (std::size_t lane = 0; lane < kBlockLanes; lane += kWidth)
+            usable = hn::And(usable, usableRoots(load3(places, lane), squareOf(rotationAt(lane))));
+        if (!hn::AllTrue(D(), usable)) return false;
+    }
+    for (std::size_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+        if (!sound) {
+            const V4 q = rotationAt(lane);
+            const V inverse = all(1.0f) / hn::Sqrt(squareOf(q));
+            store3({q.x * inverse, q.y * inverse, q.z * inverse}, Planes{next + 3 * kBlockLanes, kBlockLanes},
+                   lane);
+            hn::Store(q.w * inverse, D(), next + 6 * kBlockLanes + lane);
+        }
+        const V3 place = load3(places, lane), way = place - load3(ConstPlanes{before, kBlockLanes}, lane);
+        const V3 low = load3(bounds.low, lane), high = load3(bounds.high, lane);
+        store3({hn::Min(low.x, place.x), hn::Min(low.y, place.y), hn::Min(low.z, place.z)}, bounds.low, lane);
+        store3({hn::Max(high.x, place.x), hn::Max(high.y, place.y), hn::Max(high.z, place.z)}, bounds.high,
+               lane);
+        const V squared = dot(way, way);
+        const V counted = hn::IfThenElseZero(squared <= all(cut), squared);
+        hn::Store(hn::Max(hn::Load(D(), bounds.longest + lane), counted), D(), bounds.longest + lane);
+    }
+    return true;
 }
 
 void rescale(const BlockView& block, float factor) {

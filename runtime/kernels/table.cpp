@@ -128,6 +128,7 @@ Kernels makeTable() {
     fillMoves<true, Air::still>(table);
     fillMoves<true, Air::moving>(table);
     table.rescale = rescale;
+    table.takeRoots = takeRoots;
     table.sampleWind = sampleWind;
     table.fastest = fastestOf;
     table.target = hwy::TargetName(HWY_TARGET);

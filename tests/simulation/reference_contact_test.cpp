@@ -159,5 +159,29 @@ TEST(ReferenceContact, PenaltySpringHoldsTheWeightAtItsDepth) {
     EXPECT_NEAR(kSphere.center_ws.y() + kSphere.radius - solver.positions_ws()[1].y(), depth, 1e-8);
 }
 
+/// Stiff hair whose tip a sphere presses straight towards the root, which another sphere surrounds: lengths
+/// and contacts have no common solution but buckling at once. It is solved badly, which the report tells, but
+/// stays a strand.
+TEST(ReferenceContact, HairPressedEndOnStaysAStrand) {
+    runtime::SimulationSettings s = bareSettings();
+    s.clampedPoints = 2;
+    s.angularStiffness = 0.97f;
+    s.bendDampingTime = 0.03f;
+    s.dampingTime = 0.2f;
+    s.pearlRadiusTip = 0.002f;
+    reference::Solver solver = solverOf(straightStrand(23, 0.07, Vec3d::UnitY()), s);
+    std::uint64_t failed = 0;
+    for (int f = 0; f < 30; ++f) {
+        reference::Frame frame = stillFrame(1.0 / 120.0, f / 120.0);
+        frame.spheres = {{Vec3d(0.0005, 0.13 - 0.001 * f, 0.0), 0.05}, {Vec3d(0.0, -0.04, 0.0), 0.05}};
+        const reference::StepReport report = solver.step(frame, {4, 2});
+        EXPECT_LT(report.largestStretch, 1e-9) << f;
+        failed += report.failed;
+        for (const Vec3d& v : solver.velocities_ws()) ASSERT_TRUE(v.allFinite()) << f;
+        for (const Vec3d& x : solver.positions_ws()) ASSERT_LE(x.norm(), 0.0701) << f;
+    }
+    EXPECT_GT(failed, 0u);
+}
+
 }  // namespace
 }  // namespace hairloom

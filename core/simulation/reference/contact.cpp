@@ -11,6 +11,10 @@ namespace {
 constexpr int kMostSweeps = 1000;
 constexpr double kSmallSpeed = 1e-11;     // m/s
 constexpr double kSmallDistance = 1e-12;  // m
+/// Points change by at most so many times the fastest approach and the deepest penetration. What would need
+/// more has no sound solution: a straight strand pressed end-on would have to buckle at once, one between two
+/// spheres has nowhere to go.
+constexpr double kMostGain = 8.0;
 
 struct Contact {
     std::size_t point;
@@ -57,19 +61,35 @@ void press(const Physics& physics, double mass, Contact& contact, Vec3d& v) {
     contact.rubbed = rubbed;
 }
 
-void solveVelocities(const Physics& physics, const StrandShape& shape, std::vector<Contact>& contacts,
+double largestChange(const std::vector<Vec3d>& from, const std::vector<Vec3d>& to) {
+    double largest = 0.0;
+    for (std::size_t p = 0; p < from.size(); ++p)
+        largest = std::max(largest, (to[p] - from[p]).cwiseAbs().maxCoeff());
+    return largest;
+}
+
+double fastestApproach(const std::vector<Contact>& contacts, const std::vector<Vec3d>& v) {
+    double fastest = 0.0;
+    for (const Contact& contact : contacts)
+        fastest = std::max(fastest, -contact.normal.dot(v[contact.point] - contact.sphereVelocity));
+    return fastest;
+}
+
+/// False where the strand cannot take the blow.
+bool solveVelocities(const Physics& physics, const StrandShape& shape, std::vector<Contact>& contacts,
                      StrandState& state) {
+    const std::vector<Vec3d> start = state.v;
+    const double most = kMostGain * fastestApproach(contacts, start);
     std::vector<Vec3d> before;
     for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
         before = state.v;
         for (Contact& contact : contacts)
             press(physics, shape.masses[contact.point], contact, state.v[contact.point]);
         if (physics.lengthHeld) projectVelocities(shape, state.x, state.v);
-        double change = 0.0;
-        for (std::size_t p = 0; p < before.size(); ++p)
-            change = std::max(change, (state.v[p] - before[p]).cwiseAbs().maxCoeff());
-        if (change < kSmallSpeed) return;
+        if (!(largestChange(start, state.v) <= most)) return false;
+        if (largestChange(before, state.v) < kSmallSpeed) break;
     }
+    return true;
 }
 
 /// Deepest penetration, before the points that are inside go to the surface.
@@ -87,6 +107,22 @@ double pushOut(const Physics& physics, const StrandShape& shape, std::span<const
     return deepest;
 }
 
+/// Moves the points from `moved` to the surfaces, with their lengths. Where that would take them too far they
+/// stay at `x`, which has its lengths.
+void resolvePlaces(const Physics& physics, const StrandShape& shape, std::span<const SphereNow> spheres,
+                   const std::vector<Vec3d>& moved, std::vector<Vec3d>& x) {
+    std::vector<Vec3d> next = moved;
+    const double most =
+        kMostGain * std::max(pushOut(physics, shape, spheres, x, false), largestChange(x, moved));
+    for (int pass = 0; pass < kMostSweeps; ++pass) {
+        const double deepest = pushOut(physics, shape, spheres, next, true);
+        if (physics.lengthHeld && !projectLengths(shape, next)) return;
+        if (!(largestChange(x, next) <= most)) return;
+        if (deepest < kSmallDistance) break;
+    }
+    x = std::move(next);
+}
+
 }  // namespace
 
 ContactReport resolveContacts(const Physics& physics, const StrandShape& shape, double h,
@@ -97,20 +133,19 @@ ContactReport resolveContacts(const Physics& physics, const StrandShape& shape, 
     if (contacts.empty()) return report;
 
     const std::vector<Vec3d> before = state.v;
-    solveVelocities(physics, shape, contacts, state);
-    for (std::size_t p = shape.firstFree; p < shape.points(); ++p)
-        state.x[p] += 0.5 * h * (state.v[p] - before[p]);
-    for (int pass = 0; pass < kMostSweeps; ++pass) {
-        const double deepest = pushOut(physics, shape, spheres, state.x, true);
-        if (physics.lengthHeld) projectLengths(shape, state.x);
-        if (deepest < kSmallDistance) break;
+    if (!solveVelocities(physics, shape, contacts, state)) {
+        // It stops, without bounce: no energy comes from what cannot be resolved.
+        std::fill(state.v.begin() + static_cast<std::ptrdiff_t>(shape.firstFree), state.v.end(),
+                  state.v[shape.firstFree - 1]);
+        if (physics.lengthHeld) projectVelocities(shape, state.x, state.v);
     }
+    std::vector<Vec3d> moved = state.x;
+    for (std::size_t p = shape.firstFree; p < shape.points(); ++p)
+        moved[p] += 0.5 * h * (state.v[p] - before[p]);
+    resolvePlaces(physics, shape, spheres, moved, state.x);
     if (physics.lengthHeld) projectVelocities(shape, state.x, state.v);
     report.penetration = pushOut(physics, shape, spheres, state.x, false);
-    for (const Contact& contact : contacts) {
-        report.approach =
-            std::max(report.approach, -contact.normal.dot(state.v[contact.point] - contact.sphereVelocity));
-    }
+    report.approach = fastestApproach(contacts, state.v);
     return report;
 }
 

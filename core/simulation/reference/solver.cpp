@@ -30,6 +30,12 @@ bool usable(const Sphere& sphere) {
     return sphere.center_ws.allFinite() && std::isfinite(sphere.radius) && sphere.radius > 0.0;
 }
 
+double largestMove(const std::vector<Vec3d>& from, const std::vector<Vec3d>& to) {
+    double largest = 0.0;
+    for (std::size_t p = 0; p < from.size(); ++p) largest = std::max(largest, (to[p] - from[p]).norm());
+    return largest;
+}
+
 Status check(const Strands& strands, const runtime::SimulationSettings& settings) {
     for (const runtime::FieldProblem& problem : runtime::validate(settings)) return fail(problem.message);
     if (!(settings.angularStiffness < 1.0f))
@@ -227,16 +233,39 @@ void Solver::stepStrand(Strand& strand, const Path& path, const StepOptions& opt
         report.largestStretch = std::max(report.largestStretch, largestStretch(shape, strand.state.x));
 }
 
-void Solver::advance(Strand& strand, const Path& path, double from, double to, double weight,
-                     StepReport& report, int halvings) const {
+bool Solver::trySubstep(Strand& strand, const Path& path, double from, double to, double weight) const {
     const double within = from + weight * (to - from), h = (to - from) * path.dt;
     const std::vector<SphereNow> spheres = path.spheres(within);
     const Surroundings around{path.endTime - (1.0 - within) * path.dt, path.rotation(within), path.velocity(),
                               spheres};
     StrandState next = strand.state;
-    const bool solved =
+    const bool converged =
         substep(physics_, strand.shape, h, weight, around, path.clamped(strand.shape, to), next, strand.work);
-    if (!solved) strand.work = {};
+    // The equations of a strand in a tangle have other solutions far away.
+    const bool solved =
+        converged && largestMove(strand.state.x, next.x) <
+                         0.5 * strand.shape.lengths.back() * static_cast<double>(strand.shape.segments());
+    if (solved) {
+        strand.state = std::move(next);
+    } else {
+        strand.work = {};
+    }
+    return solved;
+}
+
+/// Takes the strand along with its root, without speed: what has no solution is not let run away.
+void Solver::carryAlong(Strand& strand, const Path& path, double from, double to) {
+    const Quaterniond turn = path.rotation(to) * path.rotation(from).conjugate();
+    for (Vec3d& x : strand.state.x) x = path.position(to) + turn * (x - path.position(from));
+    std::fill(strand.state.v.begin(), strand.state.v.end(), path.velocity());
+    const ClampedEnd end = path.clamped(strand.shape, to);
+    std::copy(end.x.begin(), end.x.end(), strand.state.x.begin());
+    std::copy(end.v.begin(), end.v.end(), strand.state.v.begin());
+}
+
+void Solver::advance(Strand& strand, const Path& path, double from, double to, double weight,
+                     StepReport& report, int halvings) const {
+    const bool solved = trySubstep(strand, path, from, to, weight);
     if (!solved && halvings > 0) {
         ++report.halved;
         const double middle = 0.5 * (from + to);
@@ -244,11 +273,13 @@ void Solver::advance(Strand& strand, const Path& path, double from, double to, d
         advance(strand, path, middle, to, weight, report, halvings - 1);
         return;
     }
-    strand.state = std::move(next);
     ++report.steps;
     report.failed += solved ? 0 : 1;
+    if (!solved) carryAlong(strand, path, from, to);
+    const std::vector<SphereNow> spheres = path.spheres(to);
     if (physics_.penalty || spheres.empty()) return;
-    const ContactReport contact = resolveContacts(physics_, strand.shape, h, path.spheres(to), strand.state);
+    const ContactReport contact =
+        resolveContacts(physics_, strand.shape, (to - from) * path.dt, spheres, strand.state);
     report.contacts += contact.points;
     report.deepestPenetration = std::max(report.deepestPenetration, contact.penetration);
     report.fastestApproach = std::max(report.fastestApproach, contact.approach);

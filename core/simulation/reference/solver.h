@@ -9,7 +9,8 @@
 // count, `implicit` springs are `cheap` ones, `springVelocities` are `springs`, and `backward` response is
 // `radial`: they differ only by a step's length. Kelvin-Voigt damping of bending acts in both directions of
 // angular springs. The wind is that of runtime/wind.h at each point itself. Does not do: maximal extension of
-// springs, sleep.
+// springs, sleep; stiff hair that is pressed end-on or between two spheres, where lengths and hard contacts
+// have no sound common solution: StepReport::failed tells.
 
 #include <cstdint>
 #include <span>
@@ -64,10 +65,12 @@ struct StepOptions {
 /// How well the equations of a frame were solved.
 struct StepReport {
     std::uint64_t steps = 0;
-    std::uint64_t halved = 0;     ///< steps whose iteration did not converge and that were taken in halves
-    std::uint64_t failed = 0;     ///< steps that did not converge, or whose lengths are off by 1e-12, even so
-    double largestStretch = 0.0;  ///< ||e|/l − 1| at the end of the frame
-    std::uint64_t contacts = 0;   ///< points that touched a sphere, summed over steps
+    std::uint64_t halved = 0;  ///< steps whose iteration did not converge and that were taken in halves
+    /// Steps that did not converge, or whose lengths are off by 1e-12, even so: in them the strand goes along
+    /// with its root, without speed.
+    std::uint64_t failed = 0;
+    double largestStretch = 0.0;      ///< ||e|/l − 1| at the end of the frame
+    std::uint64_t contacts = 0;       ///< points that touched a sphere, summed over steps
     double deepestPenetration = 0.0;  ///< left after a step, m
     double fastestApproach = 0.0;     ///< left after a step, m/s
 };
@@ -113,6 +116,8 @@ class Solver {
     Solver(const runtime::SimulationSettings& settings, BendingForce bendingForce)
         : settings_(settings), physics_(settings, bendingForce) {}
     void stepStrand(Strand& strand, const Path& path, const StepOptions& options, StepReport& report) const;
+    bool trySubstep(Strand& strand, const Path& path, double from, double to, double weight) const;
+    static void carryAlong(Strand& strand, const Path& path, double from, double to);
     void advance(Strand& strand, const Path& path, double from, double to, double weight, StepReport& report,
                  int halvings) const;
 
