@@ -36,9 +36,10 @@ function(hairloom_icons_as_png target icons)
         string(APPEND entries "<file>icons/${name}.png</file>")
     endforeach()
     file(CONFIGURE OUTPUT "${folder}/icons_png.qrc" CONTENT "<RCC><qresource prefix=\"/\">${entries}</qresource></RCC>")
-    set_source_files_properties("${folder}/icons_png.qrc" PROPERTIES OBJECT_DEPENDS "${outputs}")
-    add_custom_target(hairloom_icons DEPENDS ${outputs})
-    target_sources(${target} PRIVATE "${folder}/icons_png.qrc")
-    add_dependencies(${target} hairloom_icons)
-    set_property(TARGET ${target} APPEND PROPERTY AUTOGEN_TARGET_DEPENDS hairloom_icons)
+    add_custom_command(OUTPUT "${folder}/icons_png.cpp"
+        COMMAND Qt6::rcc --no-zstd --name icons_png "${folder}/icons_png.qrc" -o "${folder}/icons_png.cpp"
+        DEPENDS "${folder}/icons_png.qrc" ${outputs} VERBATIM)
+    # An object of the programs, not of the library, from which a linker takes only what is called.
+    add_library(hairloom_icons OBJECT "${folder}/icons_png.cpp")
+    target_sources(${target} INTERFACE $<TARGET_OBJECTS:hairloom_icons>)
 endfunction()

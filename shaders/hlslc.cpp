@@ -103,10 +103,12 @@ std::string compile(const Compiler& compiler, const std::string& path, const std
                     const char* profile, Includes& includes) {
     ID3DBlob* code = nullptr;
     ID3DBlob* messages = nullptr;
-    constexpr UINT kFlags = D3DCOMPILE_OPTIMIZATION_LEVEL3 | D3DCOMPILE_ENABLE_STRICTNESS;
+    // Kernels take sums in the order that is written, as their counterparts on the CPU do.
+    const UINT order = std::string_view(profile) == "cs_5_0" ? D3DCOMPILE_IEEE_STRICTNESS : 0u;
+    const UINT flags = D3DCOMPILE_OPTIMIZATION_LEVEL3 | D3DCOMPILE_ENABLE_STRICTNESS | order;
     const D3D_SHADER_MACRO macros[] = {{"HAIRLOOM_DXBC", "1"}, {nullptr, nullptr}};
     const HRESULT r = compiler.compile(source.data(), source.size(), path.c_str(), macros, &includes, "main",
-                                       profile, kFlags, 0, &code, &messages);
+                                       profile, flags, 0, &code, &messages);
     std::fputs(textOf(messages).c_str(), stderr);
     std::string bytes = textOf(code);
     return FAILED(r) ? std::string() : bytes;

@@ -58,9 +58,11 @@ Result<std::vector<std::uint32_t>> compileToDxbc(const std::string& path, const 
     Includer includer;
     ID3DBlob* code = nullptr;
     ID3DBlob* messages = nullptr;
+    // Sums are taken in the order that is written, as on the CPU.
+    constexpr UINT kFlags = D3DCOMPILE_OPTIMIZATION_LEVEL3 | D3DCOMPILE_IEEE_STRICTNESS;
     const D3D_SHADER_MACRO macros[] = {{"HAIRLOOM_DXBC", "1"}, {nullptr, nullptr}};
     const HRESULT r = kCompile(text.data(), text.size(), path.c_str(), macros, &includer, "main", "cs_5_0",
-                               D3DCOMPILE_OPTIMIZATION_LEVEL3, 0, &code, &messages);
+                               kFlags, 0, &code, &messages);
     const std::string_view bytes = bytesIn(code);
     const std::string said(bytesIn(messages));
     std::vector<std::uint32_t> words(bytes.size() / 4);

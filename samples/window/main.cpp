@@ -60,7 +60,8 @@ Status show(const Options& options, const std::filesystem::path& programFolder) 
         if (shown % 10 == 0) say(shown, elapsed.count());
         if (shown == options.pictures) break;
     }
-    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<float>(options.hold);
+    const auto end =
+        std::chrono::steady_clock::now() + std::chrono::milliseconds(static_cast<int>(1000 * options.hold));
     while ((*window)->handleEvents() && std::chrono::steady_clock::now() < end) {
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }

@@ -111,14 +111,15 @@ class WindowTest : public testing::Test {
 
     /// What people see: the window system's view, with what devices present by themselves.
     static QImage onScreen() { return QGuiApplication::primaryScreen()->grabWindow(0).toImage(); }
-    /// Pixels of the viewport, every fourth each way, that are redder than blue.
-    int skinPixels(const QImage& screen) const {
-        const QPoint corner = window->session().viewport->mapToGlobal(QPoint(0, 0));
-        const QSize size = window->session().viewport->size();
+    QImage viewportOnScreen() {
+        return onScreen().copy(QRect(viewport().mapToGlobal(QPoint(0, 0)), viewport().size()));
+    }
+    /// Pixels, every fourth each way, that are redder than blue.
+    static int skinPixels(const QImage& picture) {
         int count = 0;
-        for (int y = 0; y < size.height(); y += 4) {
-            for (int x = 0; x < size.width(); x += 4) {
-                const QColor colour = screen.pixelColor(corner + QPoint(x, y));
+        for (int y = 0; y < picture.height(); y += 4) {
+            for (int x = 0; x < picture.width(); x += 4) {
+                const QColor colour = picture.pixelColor(x, y);
                 count += colour.red() > colour.blue() + 20 ? 1 : 0;
             }
         }

@@ -23,7 +23,7 @@ TEST(Png, ComesBackAsItWent) {
     ASSERT_TRUE(writePng(path, image));
     png_image png{};
     png.version = PNG_IMAGE_VERSION;
-    ASSERT_NE(png_image_begin_read_from_file(&png, path.c_str()), 0);
+    ASSERT_NE(png_image_begin_read_from_file(&png, path.string().c_str()), 0);
     ASSERT_EQ(png.width, 33u);
     ASSERT_EQ(png.height, 7u);
     png.format = PNG_FORMAT_RGBA;
@@ -102,7 +102,7 @@ TEST(Exr, ComesBackAsItWent) {
     float* pixels = nullptr;
     int width = 0, height = 0;
     const char* error = nullptr;
-    ASSERT_EQ(LoadEXR(&pixels, &width, &height, path.c_str(), &error), 0) << error;
+    ASSERT_EQ(LoadEXR(&pixels, &width, &height, path.string().c_str(), &error), 0) << error;
     ASSERT_EQ(width, 19);
     ASSERT_EQ(height, 33);
     const std::vector<float> read(pixels, pixels + image.rgba.size());
