@@ -169,7 +169,9 @@ struct CpuFrame {
         outlook.longestPointCount = shape.longestPointCount;
         outlook.longestStrand = shape.longestStrand;
         outlook.straight = shape.straight;
-        outlook.couples = false;
+        outlook.sharpestCurl = shape.sharpestCurl;
+        outlook.unevenness = shape.unevenness;
+        outlook.substep = kStep;
         outlook.rootsMin_ws = {-1.0f, -1.0f, -1.0f};
         outlook.rootsMax_ws = {1.0f, 1.0f, 1.0f};
         outlook.fastest = std::numeric_limits<float>::infinity();
@@ -219,6 +221,7 @@ inline runtime::State runOnCpu(const Scene& scene) {
     runtime::Bend bend;
     bend.factored = frame.plan.factored();
     bend.targets = frame.plan.on(runtime::Effect::torsion);
+    bend.coupled = frame.plan.on(runtime::Effect::coupling);
     if (frame.plan.on(runtime::Effect::angular))
         bend.planes.assign(shape.planeFloats * bend.planeCount(), 0.0f);
     if (frame.plan.keepsCurves()) {
@@ -226,6 +229,7 @@ inline runtime::State runOnCpu(const Scene& scene) {
         state.tanks.assign(shape.blocks.size() * runtime::kBlockLanes, runtime::kNoCurve);
         state.motions.assign(shape.blocks.size() * runtime::kBlockLanes, 0.0f);
     }
+    if (frame.plan.keepsTensions()) state.tensions.assign(shape.planeFloats, 0.0f);
     runtime::Floats evaluation(shape.planeFloats * runtime::kRungeKuttaPlanes, 0.0f);
     if (scene.settings.integrator == runtime::Integrator::verlet) evaluation.clear();
     for (std::size_t b = 0; b < shape.blocks.size(); ++b) {

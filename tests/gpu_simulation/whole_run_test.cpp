@@ -83,7 +83,8 @@ TEST_F(WholeRun, LayoutsAgree) {
     std::vector<Float3> first;
     for (const LayoutOptions layout :
          {LayoutOptions{StrandStorage::threads, false}, LayoutOptions{StrandStorage::threads, true},
-          LayoutOptions{StrandStorage::groups, false}, LayoutOptions{StrandStorage::buffers, false}}) {
+          LayoutOptions{StrandStorage::groups, false}, LayoutOptions{StrandStorage::buffers, false},
+          LayoutOptions{StrandStorage::lanes, false}, LayoutOptions{StrandStorage::lanes, true, 4}}) {
         EngineOptions options;
         options.layout = layout;
         options.velocities = layout.unroll;
