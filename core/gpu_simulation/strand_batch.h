@@ -27,6 +27,9 @@ struct LayoutOptions {
 /// For such a device.
 LayoutOptions layoutFor(gpu::DeviceType type);
 
+/// Of StrandBatch::state: those of runtime::State, and what is kept of the tension.
+inline constexpr std::size_t kDevicePlanes = runtime::kStatePlanes + 1;
+
 struct StrandBatch {
     BatchShape shape;
     std::vector<std::uint32_t> blocks;  ///< of the rest shape
@@ -34,7 +37,7 @@ struct StrandBatch {
     // Made with the batch; names as in shaders/simulation/storage.hlsli.
     gpu::BufferPtr rest, segments, blockCounts, firstPoints, rootsTo, state, roots;
     // Null while what needs them is off.
-    gpu::BufferPtr bend, targets, curves, tanks, tensions, rests, gathered, scratch;
+    gpu::BufferPtr bend, targets, curves, tanks, rests, gathered, scratch;
     KernelKey key;
     gpu::ComputePipelinePtr kernel;
 };

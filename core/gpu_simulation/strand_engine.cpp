@@ -42,6 +42,7 @@ Result<StrandEngine> StrandEngine::make(gpu::Device& device, std::shared_ptr<Ker
     const bool lanes = layout.storage.value_or(StrandStorage::lanes) == StrandStorage::lanes;
     if (direct3d && lanes) layout.storage = StrandStorage::threads;
     impl->batches = makeBatches(*impl->shape, layout);
+    if (const std::string why = impl->whyNoVelocities(); !why.empty()) return fail(why);
     impl->roots.resize(impl->shape->restRoots.size());
     if (auto made = impl->makeBuffers(); !made) return tl::unexpected(made.error());
     if (options.hairHair) {
@@ -59,6 +60,14 @@ StrandEngine::StrandEngine(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) 
 StrandEngine::StrandEngine(StrandEngine&&) noexcept = default;
 StrandEngine& StrandEngine::operator=(StrandEngine&&) noexcept = default;
 StrandEngine::~StrandEngine() = default;
+
+/// Why this device cannot write the velocities that were asked for; empty where it can.
+std::string StrandEngine::Impl::whyNoVelocities() const {
+    const bool inBuffers = std::ranges::any_of(
+        batches, [](const StrandBatch& batch) { return batch.shape.storage == StrandStorage::buffers; });
+    if (!options.velocities || !inBuffers || device.info().backend != gpu::Backend::Direct3D11) return {};
+    return "Direct3D 11 lets a kernel write to eight buffers, too few for velocities of strands this long";
+}
 
 /// Those that exist whatever the plan.
 Status StrandEngine::Impl::makeBuffers() {
@@ -82,7 +91,7 @@ Status StrandEngine::Impl::makeBuffers() {
     for (StrandBatch& batch : batches) {
         if (auto made = makeRestBuffers(device, *shape, batch); !made) return made;
         const std::size_t plane = std::size_t{batch.shape.points} * batch.slots;
-        if (auto made = make(batch.state, "state", plane * runtime::kStatePlanes, 4); !made) return made;
+        if (auto made = make(batch.state, "state", plane * kDevicePlanes, 4); !made) return made;
         if (auto made = make(batch.roots, "roots", std::size_t{batch.slots} * runtime::kRootRows, 4); !made)
             return made;
         if (auto made = make(batch.rootsTo, "roots of the frame", std::size_t{batch.slots} * 2,
@@ -129,7 +138,6 @@ Status StrandEngine::Impl::allocate() {
         if (fresh) bendSubstep = 0.0f;
         have(batch.curves, "curves", key.curves ? plane * 3 : 0, 4);
         have(batch.tanks, "tanks", key.curves ? std::size_t{batch.slots} * 2 : 0, 4, batch.slots);
-        have(batch.tensions, "tensions", key.tensions ? plane : 0, 4);
         const bool gathers = key.sleep && key.shape.storage == StrandStorage::lanes;
         have(batch.gathered, "gathered", gathers ? batch.blocks.size() * 4 : 0, 4);
         have(batch.rests, "rests", key.sleep ? batch.blocks.size() * 2 : 0, 4);
@@ -194,6 +202,7 @@ Status StrandEngine::Impl::adopt(const Run& next) {
         bendSubstep = 0.0f;
         curvesVoid = wakeAll = true;
     }
+    if (adopted && !run.plan.keepsTensions() && next.plan.keepsTensions()) tensionsVoid = true;
     if (run.plan.on(Effect::coupling) != next.plan.on(Effect::coupling)) bendSubstep = 0.0f;
     run = next;
     adopted = true;
@@ -268,10 +277,7 @@ std::size_t StrandEngine::effectBytes(Effect effect) const {
         if (buffer != nullptr) bytes += static_cast<std::size_t>(buffer->desc().size);
     };
     for (const StrandBatch& batch : impl_->batches) {
-        if (effect == Effect::angular) {
-            add(batch.bend);
-            add(batch.tensions);
-        }
+        if (effect == Effect::angular) add(batch.bend);
         if (effect == Effect::torsion) {
             add(batch.targets);
             add(batch.curves);
@@ -297,7 +303,7 @@ std::size_t StrandEngine::volumeBytes() const {
 std::size_t StrandEngine::frameBytes() const {
     std::size_t bytes = 0;
     for (const StrandBatch& batch : impl_->batches) {
-        for (const auto& changing : {batch.state, batch.roots, batch.curves, batch.tanks, batch.tensions}) {
+        for (const auto& changing : {batch.state, batch.roots, batch.curves, batch.tanks}) {
             if (changing != nullptr) bytes += 2 * static_cast<std::size_t>(changing->desc().size);
         }
         bytes += static_cast<std::size_t>(batch.rootsTo->desc().size);

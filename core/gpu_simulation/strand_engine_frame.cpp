@@ -136,8 +136,16 @@ void StrandEngine::Impl::uploadBend(gpu::CommandList& list, float h) {
     }
 }
 
-/// What other settings do to the state: kept curves are void, and nothing sleeps.
+/// What other settings and plans do to the state: kept curves or tensions are void, and nothing sleeps.
 void StrandEngine::Impl::uploadChanges(gpu::CommandList& list) {
+    if (tensionsVoid) {
+        for (const StrandBatch& batch : batches) {
+            const std::vector<float> none(std::size_t{batch.shape.points} * batch.slots);
+            list.updateBuffer(batch.state, runtime::kStatePlanes * none.size() * sizeof(float),
+                              bytesOfVector(none));
+        }
+        tensionsVoid = false;
+    }
     if (!curvesVoid) return;
     for (const StrandBatch& batch : batches) {
         if (batch.tanks != nullptr) {
@@ -228,10 +236,9 @@ void StrandEngine::Impl::dispatch(gpu::CommandList& list, const StrandBatch& bat
     write(4, places);
     write(5, batch.curves);
     write(6, batch.tanks);
-    write(7, batch.scratch);
-    write(8, velocities);
-    write(9, batch.gathered);
-    write(10, batch.tensions);
+    const bool inBuffers = batch.key.shape.storage == StrandStorage::buffers;
+    write(7, inBuffers ? batch.scratch : velocities);
+    write(8, inBuffers ? velocities : batch.gathered);
     list.bind(bindings);
     list.setConstants(0, gpu::bytesOf(constants));
     if (batch.key.spheres == SphereSource::constants) {

@@ -39,9 +39,10 @@ struct StrandEngine::Impl {
     runtime::FrameSpheres frameSpheres;
     std::vector<runtime::Sphere> spheresBefore;
     std::vector<runtime::MovingSphere> movingSpheres;
-    float substep = 0.0f;      ///< seconds of the last one; 0 before the first
-    float bendSubstep = 0.0f;  ///< that the springs' buffers are for; 0: none
-    bool curvesVoid = false;   ///< the kept curves fit other settings
+    float substep = 0.0f;       ///< seconds of the last one; 0 before the first
+    float bendSubstep = 0.0f;   ///< that the springs' buffers are for; 0: none
+    bool curvesVoid = false;    ///< the kept curves fit other settings
+    bool tensionsVoid = false;  ///< those on the device are of a plan that is over
     bool wakeAll = false;
     bool rootsMoved = false;  ///< in the last frame, as the device knows
 
@@ -55,6 +56,7 @@ struct StrandEngine::Impl {
         : device(d), kernels(std::move(k)), options(o) {}
 
     // strand_engine.cpp
+    std::string whyNoVelocities() const;
     Status makeBuffers();
     Status allocate();
     Status adopt(const Run& next);

@@ -41,8 +41,7 @@ std::vector<float> rowsOfBatch(const StrandBatch& batch, const float* blocks, st
 /// Of a batch, in the order in which takeBatch() takes them.
 std::vector<gpu::BufferPtr> changingBuffers(const StrandBatch& batch) {
     std::vector<gpu::BufferPtr> buffers;
-    for (const auto& buffer :
-         {batch.state, batch.roots, batch.curves, batch.tanks, batch.tensions, batch.rests}) {
+    for (const auto& buffer : {batch.state, batch.roots, batch.curves, batch.tanks, batch.rests}) {
         if (buffer != nullptr) buffers.push_back(buffer);
     }
     return buffers;
@@ -89,7 +88,13 @@ void StrandEngine::Impl::takeBatch(const StrandBatch& batch, std::span<const std
         bytes = bytes.subspan(values.size() * sizeof(float));
         return values;
     };
-    planesOfBlocks(*shape, batch, take(batch.state), state.planes, runtime::kStatePlanes);
+    const std::vector<float> moving = take(batch.state);
+    planesOfBlocks(*shape, batch, moving, state.planes, runtime::kStatePlanes);
+    if (!state.tensions.empty()) {
+        const std::size_t plane = std::size_t{batch.shape.points} * batch.slots;
+        planesOfBlocks(*shape, batch, std::span(moving).subspan(runtime::kStatePlanes * plane),
+                       state.tensions, 1);
+    }
     rowsToBlocks(batch, take(batch.roots), runtime::kRootRows, state.roots.data());
     if (batch.curves != nullptr) {
         planesOfBlocks(*shape, batch, take(batch.curves), state.curves, 3);
@@ -98,7 +103,6 @@ void StrandEngine::Impl::takeBatch(const StrandBatch& batch, std::span<const std
         rowsToBlocks(batch, all.first(batch.slots), 1, state.tanks.data());
         rowsToBlocks(batch, all.subspan(batch.slots), 1, state.motions.data());
     }
-    if (batch.tensions != nullptr) planesOfBlocks(*shape, batch, take(batch.tensions), state.tensions, 1);
     if (batch.rests == nullptr) return;
     const std::vector<float> rests = take(batch.rests);
     for (std::size_t n = 0; n < batch.blocks.size(); ++n) {
@@ -125,10 +129,7 @@ Result<runtime::State> StrandEngine::readState() {
         state.tanks.assign(shape.blocks.size() * kBlockLanes, runtime::kNoCurve);
         state.motions.assign(shape.blocks.size() * kBlockLanes, 0.0f);
     }
-    if (std::ranges::any_of(impl.batches,
-                            [](const StrandBatch& batch) { return batch.tensions != nullptr; })) {
-        state.tensions.assign(shape.planeFloats, 0.0f);
-    }
+    if (impl.run.plan.keepsTensions()) state.tensions.assign(shape.planeFloats, 0.0f);
     std::vector<gpu::BufferPtr> buffers;
     for (const StrandBatch& batch : impl.batches) {
         const auto own = changingBuffers(batch);
@@ -151,7 +152,13 @@ Status StrandEngine::Impl::writeBatch(gpu::CommandList& list, const StrandBatch&
     const auto send = [&](const gpu::BufferPtr& buffer, const std::vector<float>& values) {
         list.updateBuffer(buffer, 0, std::as_bytes(std::span(values)));
     };
-    send(batch.state, planesOfBatch(*shape, batch, state.planes, runtime::kStatePlanes));
+    std::vector<float> moving = planesOfBatch(*shape, batch, state.planes, runtime::kStatePlanes);
+    if (!state.tensions.empty()) {
+        const std::vector<float> tensions = planesOfBatch(*shape, batch, state.tensions, 1);
+        moving.insert(moving.end(), tensions.begin(), tensions.end());
+    }
+    moving.resize(std::size_t{batch.shape.points} * batch.slots * kDevicePlanes, 0.0f);
+    send(batch.state, moving);
     send(batch.roots, rowsOfBatch(batch, state.roots.data(), runtime::kRootRows));
     if (batch.curves != nullptr) {
         std::vector<float> tanks(std::size_t{batch.slots} * 2, 0.0f);
@@ -166,11 +173,6 @@ Status StrandEngine::Impl::writeBatch(gpu::CommandList& list, const StrandBatch&
             send(batch.curves, std::vector<float>(std::size_t{batch.shape.points} * batch.slots * 3, 0.0f));
         }
         send(batch.tanks, tanks);
-    }
-    if (batch.tensions != nullptr) {
-        send(batch.tensions, !state.tensions.empty()
-                                 ? planesOfBatch(*shape, batch, state.tensions, 1)
-                                 : std::vector<float>(std::size_t{batch.shape.points} * batch.slots, 0.0f));
     }
     if (batch.rests != nullptr) {
         std::vector<float> rests;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editor/viewport/render_thread.h"
 
+#include <chrono>
 #include <utility>
 
+#include "editor/viewport/native_window.h"
 #include "editor/viewport/render_work.h"
 
 namespace hairloom::editor {
@@ -40,7 +42,12 @@ void RenderThread::setWindow(std::optional<gpu::NativeWindow> window) {
     window_ = window;
     windowChanged_ = true;
     wake_.notify_all();
-    windowTaken_.wait(lock, [this] { return !windowChanged_ || ended_; });
+    constexpr std::chrono::milliseconds kPatience(5);
+    while (!windowTaken_.wait_for(lock, kPatience, [this] { return !windowChanged_ || ended_; })) {
+        lock.unlock();
+        answerWindowSystem();
+        lock.lock();
+    }
 }
 
 void RenderThread::run() {

@@ -82,6 +82,7 @@ class Viewport : public QWidget {
     /// The window system has made or is about to take away what the device draws to.
     void surfaceChanged(bool exists);
     void useCanvas();
+    void placeApart();
     void post();
     void dragView(const QPointF& to_px);
     Move viewMove(Qt::MouseButton button, Qt::KeyboardModifiers modifiers) const;
@@ -99,6 +100,7 @@ class Viewport : public QWidget {
     RenderThread renderer_;
     Canvas* canvas_ = nullptr;
     QWindow* window_ = nullptr;
+    bool apart_ = false;        ///< the window lies over the viewport instead of within it
     QWidget* shown_ = nullptr;  ///< canvas or the window's container
     Tool* tool_ = nullptr;
     std::shared_ptr<const Groom> groom_;

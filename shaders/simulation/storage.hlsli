@@ -18,7 +18,7 @@ StructuredBuffer<uint2> gBlocks : register(t4);      // points of each strand of
 StructuredBuffer<uint> gFirstPoints : register(t5);  // place in the caller's order
 StructuredBuffer<float4> gRootsTo : register(t6);    // position, 1 where it moves; rotation at the end of the frame
 
-RWStructuredBuffer<float> gState : register(u0);     // position x y z, previous x y z
+RWStructuredBuffer<float> gState : register(u0);     // position x y z, previous x y z, tension
 RWStructuredBuffer<float> gRoots : register(u1);     // position, rotation at the end of the last frame
 RWStructuredBuffer<uint> gReport : register(u3);     // see the indices below
 RWStructuredBuffer<float4> gPlaces : register(u4);   // world, in the caller's order, w 1
@@ -26,6 +26,13 @@ RWStructuredBuffer<float4> gPlaces : register(u4);   // world, in the caller's o
 #define REPORT_FASTEST 0   // bits of the greatest squared displacement of a substep
 #define REPORT_RESTORED 1  // strands put back to rest
 #define REPORT_ASLEEP 2    // strands
+
+// Direct3D 11.0 has u0 to u7; scratch memory takes the last where strands live in the buffers.
+#if HAIR_STORAGE == 2
+#define HAIR_VELOCITIES_REGISTER u8
+#else
+#define HAIR_VELOCITIES_REGISTER u7
+#endif
 
 #if HAIR_BEND == 1
 StructuredBuffer<float> gStiffness : register(t2);
@@ -43,13 +50,10 @@ RWStructuredBuffer<float> gTanks : register(u6);     // tank, greatest squared s
 RWStructuredBuffer<float> gRests : register(u2);     // per work group: seconds at rest, 1 when asleep
 #endif
 #if HAIR_SLEEP && HAIR_STORAGE == 3
-RWStructuredBuffer<uint> gGathered : register(u9);   // per block: work groups done, fastest, restored, unused
-#endif
-#if HAIR_TENSIONS
-RWStructuredBuffer<float> gTensions : register(u10);
+RWStructuredBuffer<uint> gGathered : register(u8);   // per block: work groups done, fastest, restored, unused
 #endif
 #if HAIR_VELOCITIES
-RWStructuredBuffer<float4> gVelocities : register(u8);  // m/s, in the caller's order
+RWStructuredBuffer<float4> gVelocities : register(HAIR_VELOCITIES_REGISTER);  // m/s, in the caller's order
 #endif
 
 static uint gSlot;
@@ -59,7 +63,8 @@ static uint gSlot;
 static uint gPointCount;
 #define POINTS gPointCount
 #endif
-#if HAIR_UNROLL
+// Microsoft's compiler takes minutes to unroll a strand that meets spheres; drivers unroll what it leaves.
+#if HAIR_UNROLL && !defined(HAIRLOOM_DXBC)
 #define EACH [unroll]
 #else
 #define EACH [loop]
@@ -99,8 +104,8 @@ BUFFER_ARRAY(float3, savedPrevious, savePrevious, gState, 3)
 BUFFER_ARRAY(float3, savedCurve, saveCurve, gCurves, 0)
 #endif
 #if HAIR_TENSIONS
-float savedTension(uint p) { return gTensions[slotOf(0, p)]; }
-void saveTension(uint p, float v) { gTensions[slotOf(0, p)] = v; }
+float savedTension(uint p) { return gState[slotOf(6, p)]; }
+void saveTension(uint p, float v) { gState[slotOf(6, p)] = v; }
 #endif
 
 #if HAIR_STORAGE == 2

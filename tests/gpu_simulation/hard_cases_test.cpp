@@ -20,9 +20,9 @@ TEST_F(HardCases, WhatTheCpuHoldsTheDeviceHolds) {
     for (const HardCase& hardCase : hardCases()) {
         if (!runHardCase(hardCase, runtime::Integrator::verlet, quick).pass) continue;
         const StabilityResult result = runHardCase(hardCase, runtime::Integrator::verlet, onDevice);
-        EXPECT_TRUE(result.pass)
-            << result.number << " " << result.name << ": " << result.closest().what << " "
-            << result.closest().worst << " " << result.closest().unit << ", mark " << result.closest().mark;
+        EXPECT_TRUE(result.pass) << result.number << " " << result.name << ": " << result.closest().what
+                                 << " " << result.closest().worst << " " << result.closest().unit << ", mark "
+                                 << result.closest().mark;
         ++held;
     }
     EXPECT_GE(held, 18);
