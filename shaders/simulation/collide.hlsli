@@ -203,6 +203,8 @@ groupshared float4 gSpheresNow[SPHERE_SET];  // centre, and square of the reach 
 /// The spheres of a set, a lane each, for the work group to read.
 void gatherSpheres(uint first, uint end, float step) {
     const float pearl = max(gFrame.pearlRoot, gFrame.pearlTip);
+    // Lanes may still look at the last set.
+    GroupMemoryBarrierWithGroupSync();
     [loop] for (uint k = first + gLane; k < end; k += HAIR_THREADS) {
         const float reach = gSpheres[k].from.w + pearl;
         gSpheresNow[k - first] = float4(sphereCentre(k, step), reach * reach * 1.0001);
@@ -250,9 +252,9 @@ void collide(bool backward) {
         tell(float4(gPosition, own.asks ? 1.0 : 0.0), float4(gPrevious, 0));
         if (own.asks) {
             float3 inner = told(FIRST_FREE - 1).xyz;
-            [loop] for (uint p = FIRST_FREE; p < POINTS; ++p) {
+            [loop] for (uint p = FIRST_FREE; p <= gPoint; ++p) {
                 const float4 at = told(p);
-                if (at.w != 0.0 && p <= gPoint) {
+                if (at.w != 0.0) {
                     own = touchNear(backward, p, at.xyz, toldToo(p).xyz, inner, true, first, end, root, step);
                     inner = own.at;
                 } else {

@@ -69,12 +69,10 @@ void stageExtension() {
     if (begin <= gPoint && gPoint < POINTS) {
         float4 parent = told(begin - 1);
         float3 move = float3(0, 0, 0);
-        [loop] for (uint p = FIRST_FREE; p < POINTS; ++p) {
-            if (p >= begin && p <= gPoint) {
-                const float4 own = told(p);
-                move = bringBack(own.xyz - parent.xyz, parent.w);
-                parent = float4(own.xyz + move, own.w);
-            }
+        [loop] for (uint p = begin; p <= gPoint; ++p) {
+            const float4 own = told(p);
+            move = bringBack(own.xyz - parent.xyz, parent.w);
+            parent = float4(own.xyz + move, own.w);
         }
         takeMove(gPoint, move);
     }

@@ -82,7 +82,8 @@ inline void addStrands(Scene& scene, Hair hair, std::uint32_t count, std::span<c
 
 /// Moves every point of the state off its rest place and gives it a speed. Nasty states have points in one
 /// place, folds by 180° and a point that flies at 500 m/s.
-inline void disturb(Scene& scene, Hair hair, Dice& dice) {
+/// Others are off by up to `most` metres along each axis.
+inline void disturb(Scene& scene, Hair hair, Dice& dice, float most = 0.002f) {
     runtime::State& state = scene.state;
     for (const runtime::Block& block : scene.shape->blocks) {
         const std::size_t size = planeSize(block);
@@ -92,7 +93,7 @@ inline void disturb(Scene& scene, Hair hair, Dice& dice) {
                 const std::size_t i = std::size_t{p} * runtime::kBlockLanes + lane;
                 const std::size_t source = lane < block.strands ? lane : block.strands - 1;
                 const std::size_t from = std::size_t{p} * runtime::kBlockLanes + source;
-                Float3 shift = dice.inside(hair == Hair::nasty ? 0.01f : 0.002f);
+                Float3 shift = dice.inside(hair == Hair::nasty ? 0.01f : most);
                 Float3 moved = dice.inside(3.0f * kStep);
                 const bool odd = hair == Hair::nasty && p > 2;
                 for (std::size_t k = 0; k < 3; ++k) {
@@ -117,7 +118,7 @@ inline void disturb(Scene& scene, Hair hair, Dice& dice) {
 
 /// A scene of 64 strands whose roots move and turn, about three spheres of which one moves.
 inline Scene makeScene(const runtime::SimulationSettings& settings, Hair hair, std::uint32_t seed,
-                       std::span<const std::uint32_t> points) {
+                       std::span<const std::uint32_t> points, float most = 0.002f) {
     Scene scene;
     scene.settings = settings;
     Dice dice(seed);
@@ -142,7 +143,7 @@ inline Scene makeScene(const runtime::SimulationSettings& settings, Hair hair, s
             runtime::placeAtRest(shape, state, b, lane);
         }
     }
-    disturb(scene, hair, dice);
+    disturb(scene, hair, dice, most);
     scene.spheres = {
         {{0.0f, -0.05f, 0.0f}, 0.06f}, {{0.05f, -0.1f, 0.02f}, 0.05f}, {{-0.1f, 0.0f, 0.0f}, 0.03f}};
     state.spheres = scene.spheres;
