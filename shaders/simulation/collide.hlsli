@@ -17,7 +17,7 @@ float3 sphereCentre(uint k, float step) { return gSpheres[k].from.xyz + gSpheres
 
 // Spheres that are looked at together, so that they are fetched while others are worked on; the last stands for
 // those past the end.
-#define SPHERES_AT_ONCE 4
+#define SPHERES_AT_ONCE 5
 #define EACH_SPHERE(first, end) \
     [loop] for (uint sphereRow = first; sphereRow < end; sphereRow += SPHERES_AT_ONCE) \
         [unroll] for (uint sphereAt = 0; sphereAt < SPHERES_AT_ONCE; ++sphereAt)
