@@ -49,8 +49,8 @@ struct SimulationConstants {
     float tensionShare;      ///< of a substep's change of tension that bending takes on
     uint groups;             ///< work groups of the batch, in rows of HAIRLOOM_GROUP_ROW
     float unused0, unused1;
-    float4 gravityStep;      ///< g h², w unused
-    float4 wind;             ///< mean velocity, m/s; w: strength of gusts
+    float4 gravityStep;                          ///< g h², w unused
+    float4 wind;                                 ///< mean velocity, m/s; w: strength of gusts
     float4 windAmplitudes[HAIRLOOM_WIND_MODES];  ///< m/s; w: phase at the start of the frame, turns
     float4 windWaves[HAIRLOOM_WIND_MODES];       ///< turns per metre; w: phase at the end of the frame
 };
