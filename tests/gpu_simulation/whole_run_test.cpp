@@ -89,7 +89,7 @@ TEST_F(WholeRun, LayoutsAgree) {
     for (const LayoutOptions layout :
          {LayoutOptions{StrandStorage::threads, false}, LayoutOptions{StrandStorage::threads, true},
           LayoutOptions{StrandStorage::groups, false}, LayoutOptions{StrandStorage::buffers, false},
-          LayoutOptions{StrandStorage::lanes, false}, LayoutOptions{StrandStorage::lanes, true, 4}}) {
+          LayoutOptions{StrandStorage::lanes, false, 4}}) {
         EngineOptions options;
         options.layout = layout;
         options.velocities = layout.unroll;
