@@ -27,6 +27,9 @@ class Rows {
         if (!run) return tl::unexpected(run.error());
         const auto frames = run->framesFor(options_.seconds);
         if (!frames) return tl::unexpected(frames.error());
+        // While the kernel was made, in the first of these frames, the device rested.
+        if (auto fast = bringToSpeed(backend_.device(), options_.seconds); !fast)
+            return tl::unexpected(fast.error());
         const auto cost = run->cost(*frames);
         if (!cost) return tl::unexpected(cost.error());
         GpuBenchRow row;

@@ -102,7 +102,6 @@ EffectPlan planFrame(const SimulationSettings& settings, const FrameOutlook& out
     scene.longestPointCount = outlook.longestPointCount;
     scene.longestStrand = outlook.longestStrand;
     scene.straight = outlook.straight;
-    scene.couples = outlook.couples;
     scene.sharpestCurl = outlook.sharpestCurl;
     scene.unevenness = outlook.unevenness;
     scene.substep = outlook.substep;

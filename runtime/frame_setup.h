@@ -48,8 +48,7 @@ struct FrameOutlook {
     float fastest = 0.0f;             ///< m/s, greatest speed of a point at the end of the last frame
     std::uint32_t asleep = 0;         ///< strands
     float restTime = 0.0f;            ///< seconds
-    bool couples = true;              ///< this runner has the stages of Effect::coupling
-    // Of the rest shape; read where it couples.
+    // Of the rest shape.
     float sharpestCurl = 0.0f;
     float unevenness = 1.0f;
     float substep = 0.0f;  ///< seconds

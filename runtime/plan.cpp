@@ -80,7 +80,6 @@ constexpr float kTightestCurl = 4.0f;
 Decision decideCoupling(const SceneDescription& scene, bool possible) {
     const SimulationSettings& s = scene.settings;
     if (!possible) return {false, Reason::lengthsFree, 0.0f};
-    if (!scene.couples) return {false, Reason::notHere, 0.0f};
     if (!(s.bendDampingTime > 0.0f)) return {true, Reason::undamped, 0.0f};
     if (scene.unevenness > kMostUneven) return {true, Reason::uneven, scene.unevenness};
     const double stiffness = bendingStiffnessOf(static_cast<double>(s.angularStiffness));

@@ -92,7 +92,6 @@ struct SceneDescription {
     std::uint32_t longestPointCount = 0;   ///< of any strand
     float longestStrand = 0.0f;            ///< metres, at rest
     bool straight = false;                 ///< every strand is straight
-    bool couples = true;                   ///< the runner has the stages of Effect::coupling
     float sharpestCurl = 0.0f;             ///< RestShape::sharpestCurl
     float unevenness = 1.0f;               ///< RestShape::unevenness
     float substep = 0.0f;                  ///< seconds
@@ -125,7 +124,6 @@ enum class Reason : std::uint32_t {
     straightHair,
     curvedHair,
     lengthsFree,
-    notHere,
     evenHair,
     undamped,
     uneven,

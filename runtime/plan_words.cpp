@@ -85,8 +85,6 @@ std::string words(Effect effect, const Decision& decision) {
             return "hair is curved or carries its weight";
         case Reason::lengthsFree:
             return "not with implicit angular springs and the length constraint";
-        case Reason::notHere:
-            return "only the engine on the CPU has it";
         case Reason::evenHair:
             return "bending is damped, hair is even and has no tight curls";
         case Reason::undamped:

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/accuracy/statistics.h"
+#include "core/gpu_simulation/compiled_kernel.h"
 
 namespace hairloom {
 namespace {
@@ -52,7 +53,13 @@ const char* leftOutName(LeftOut effect) {
 }
 
 std::vector<NamedLayout> measuredLayouts(gpu::DeviceType type) {
-    std::vector<NamedLayout> layouts{{"threads, unrolled", {StrandStorage::threads, true}},
+    std::vector<NamedLayout> layouts{{"chosen", {}},
+                                     {"lanes, 1 strand a group", {StrandStorage::lanes, true, 1}},
+                                     {"lanes, 2 strands a group", {StrandStorage::lanes, true, 2}},
+                                     {"lanes, 4 strands a group", {StrandStorage::lanes, true, 4}},
+                                     {"lanes, 8 strands a group", {StrandStorage::lanes, true, 8}},
+                                     {"lanes, loops", {StrandStorage::lanes, false}},
+                                     {"threads, unrolled", {StrandStorage::threads, true}},
                                      {"threads, loops", {StrandStorage::threads, false}},
                                      {"groups, unrolled", {StrandStorage::groups, true}},
                                      {"groups, loops", {StrandStorage::groups, false}},
@@ -135,30 +142,89 @@ double GpuStepRun::work() const {
     return static_cast<double>(engine_.pointCount()) * scene_.substeps;
 }
 
+namespace {
+
+/// Buffers that are copied over and over by a kernel.
+class Copies {
+  public:
+    static Result<Copies> make(gpu::Device& device, std::uint64_t bytes) {
+        gpu::BufferDesc desc;
+        desc.name = "copied";
+        desc.size = std::min(bytes, device.info().maxBufferBytes) / kGroupBytes * kGroupBytes;
+        desc.usage = gpu::Usage::ShaderRead | gpu::Usage::UnorderedAccess;
+        desc.elementBytes = kElementBytes;
+        auto source = device.createBuffer(desc);
+        if (!source) return tl::unexpected(source.error());
+        auto target = device.createBuffer(desc);
+        if (!target) return tl::unexpected(target.error());
+        auto kernel = gpu_simulation::compiledKernel(device, "copy_buffer");
+        if (!kernel) return tl::unexpected(kernel.error());
+        return Copies(device, std::move(*source), std::move(*target), std::move(*kernel));
+    }
+
+    /// GB/s read and written by the device's clock, or by this machine's where the device has none.
+    Result<double> run() const {
+        auto list = device_->createCommandList();
+        if (!list) return tl::unexpected(list.error());
+        const auto groups = static_cast<std::uint32_t>(source_->desc().size / kGroupBytes);
+        gpu::PassDesc pass;
+        pass.name = "copies";
+        (*list)->beginPass(pass);
+        (*list)->setPipeline(kernel_);
+        const gpu::Binding bindings[] = {gpu::Binding::read(0, source_), gpu::Binding::write(0, target_)};
+        (*list)->bind(bindings);
+        for (int n = 0; n < kCopies; ++n)
+            (*list)->dispatch(std::min(groups, kRow), (groups + kRow - 1) / kRow);
+        (*list)->endPass();
+        const auto begin = Clock::now();
+        const auto submission = device_->submit(std::move(*list));
+        if (!submission) return tl::unexpected(submission.error());
+        const auto times = (*submission)->passTimes();
+        if (!times) return tl::unexpected(times.error());
+        const double wall = millisecondsSince(begin), own = times->front().milliseconds;
+        return 2.0 * kCopies * static_cast<double>(source_->desc().size) * 1e-6 / (own > 0.0 ? own : wall);
+    }
+
+  private:
+    static constexpr std::uint32_t kElementBytes = 16, kGroupBytes = 256 * kElementBytes, kRow = 65535;
+    static constexpr int kCopies = 8;
+
+    Copies(gpu::Device& device, gpu::BufferPtr source, gpu::BufferPtr target, gpu::ComputePipelinePtr kernel)
+        : device_(&device),
+          source_(std::move(source)),
+          target_(std::move(target)),
+          kernel_(std::move(kernel)) {}
+
+    gpu::Device* device_;
+    gpu::BufferPtr source_, target_;
+    gpu::ComputePipelinePtr kernel_;
+};
+
+}  // namespace
+
 Result<double> copyBandwidth(gpu::Device& device) {
+    constexpr int kRuns = 5;
     constexpr std::uint64_t kMost = 256u << 20u;
-    constexpr int kCopies = 8, kRuns = 5;
-    gpu::BufferDesc desc;
-    desc.name = "copied";
-    desc.size = std::min(kMost, device.info().maxBufferBytes);
-    const std::vector<std::byte> zeros(static_cast<std::size_t>(desc.size));
-    const auto source = device.createBuffer(desc, zeros);
-    if (!source) return tl::unexpected(source.error());
-    const auto target = device.createBuffer(desc);
-    if (!target) return tl::unexpected(target.error());
+    const auto copies = Copies::make(device, kMost);
+    if (!copies) return tl::unexpected(copies.error());
     double best = 0.0;
     for (int run = 0; run < kRuns; ++run) {
-        auto list = device.createCommandList();
-        if (!list) return tl::unexpected(list.error());
-        for (int n = 0; n < kCopies; ++n) (*list)->copyBuffer(*source, 0, *target, 0, desc.size);
-        const auto begin = Clock::now();
-        const auto submission = device.submit(std::move(*list));
-        if (!submission) return tl::unexpected(submission.error());
-        if (auto status = (*submission)->wait(); !status) return tl::unexpected(status.error());
-        const double bytes = 2.0 * kCopies * static_cast<double>(desc.size);
-        best = std::max(best, bytes * 1e-6 / millisecondsSince(begin));
+        const auto bandwidth = copies->run();
+        if (!bandwidth) return bandwidth;
+        best = std::max(best, *bandwidth);
     }
     return best;
+}
+
+Status bringToSpeed(gpu::Device& device, double seconds) {
+    constexpr std::uint64_t kSome = 16u << 20u;
+    const auto copies = Copies::make(device, kSome);
+    if (!copies) return tl::unexpected(copies.error());
+    const auto begin = Clock::now();
+    do {
+        if (const auto ran = copies->run(); !ran) return tl::unexpected(ran.error());
+    } while (millisecondsSince(begin) < 1e3 * seconds);
+    return {};
 }
 
 std::optional<double> crossing(const std::vector<double>& counts, const std::vector<double>& falling,

@@ -72,8 +72,11 @@ class GpuStepRun {
     double time_ = 0.0;
 };
 
-/// Bytes a second that the device reads and writes when it copies buffers of up to 256 MiB, in GB/s.
+/// Bytes a second that the device reads and writes when a kernel copies buffers of up to 256 MiB, in GB/s.
 Result<double> copyBandwidth(gpu::Device& device);
+
+/// Keeps the device busy for that long: a GPU that rests clocks itself down, and takes its time to come back.
+Status bringToSpeed(gpu::Device& device, double seconds);
 
 /// Where a falling cost passes below another: `counts` ascending, costs above 0. Straight lines in the
 /// logarithms between neighbours; absent where they do not cross, the first count where it is below at once.

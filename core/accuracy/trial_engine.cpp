@@ -102,7 +102,7 @@ TrialEngineMaker gpuTrialEngines(gpu::Device& device,
                const runtime::StrandsView& strands,
                const runtime::SimulationSettings& settings) -> MadeTrialEngine {
         gpu_simulation::EngineOptions options;
-        options.layout.unroll = device.info().type != gpu::DeviceType::Cpu;
+        options.layout = gpu_simulation::layoutFor(device.info().type);
         auto engine = gpu_simulation::StrandEngine::make(device, kernels, strands, settings, options);
         if (!engine) return {nullptr, engine.error().message()};
         return {std::make_unique<GpuTrialEngine>(std::move(*engine), settings), {}};

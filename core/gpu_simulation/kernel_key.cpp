@@ -32,12 +32,15 @@ std::string KernelKey::defines() const {
     const auto flag = [](bool on) { return on ? 1 : 0; };
     return fmt::format(
         "#define HAIR_POINTS {}\n#define HAIR_EXACT {}\n#define HAIR_UNROLL {}\n#define HAIR_STORAGE {}\n"
+        "#define HAIR_STRANDS {}\n"
         "#define HAIR_CLAMPED {}\n#define HAIR_EVALUATION {}\n#define HAIR_BEND {}\n#define HAIR_TARGETS {}\n"
-        "#define HAIR_CURVES {}\n#define HAIR_SPHERES {}\n#define HAIR_WIND {}\n#define HAIR_SLEEP {}\n"
+        "#define HAIR_CURVES {}\n#define HAIR_TENSIONS {}\n#define HAIR_COUPLED {}\n#define HAIR_SPHERES "
+        "{}\n#define HAIR_WIND {}\n#define HAIR_SLEEP {}\n"
         "#define HAIR_VELOCITIES {}\n#define HAIR_STAGES {}\n",
         shape.points, flag(shape.exact), flag(shape.unrolled), static_cast<std::uint32_t>(shape.storage),
-        clampedPoints, evaluation, bend, flag(targets), flag(curves), static_cast<std::uint32_t>(spheres),
-        flag(wind), flag(sleep), flag(velocities), stages);
+        shape.strands, clampedPoints, evaluation, bend, flag(targets), flag(curves), flag(tensions),
+        flag(coupled), static_cast<std::uint32_t>(spheres), flag(wind), flag(sleep), flag(velocities),
+        stages);
 }
 
 KernelKey keyFor(const runtime::EffectPlan& plan, const runtime::SimulationSettings& settings,
@@ -56,6 +59,13 @@ KernelKey keyFor(const runtime::EffectPlan& plan, const runtime::SimulationSetti
     if (plan.on(Effect::angular)) key.bend = plan.factored() ? 2 : 1;
     key.targets = plan.on(Effect::torsion);
     key.curves = plan.keepsCurves();
+    key.tensions = plan.keepsTensions();
+    key.coupled = plan.on(Effect::coupling);
+    // That system is solved point after point.
+    if (key.coupled && shape.storage == StrandStorage::lanes) {
+        key.shape.storage = StrandStorage::threads;
+        key.shape.strands = runtime::kBlockLanes;
+    }
     if (plan.on(Effect::collision)) {
         key.spheres = spheres > HAIRLOOM_CONSTANT_SPHERES ? SphereSource::buffer : SphereSource::constants;
     }

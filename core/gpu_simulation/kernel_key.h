@@ -5,12 +5,14 @@
 #include <cstdint>
 #include <string>
 
+#include "runtime/kernels.h"
 #include "runtime/plan.h"
 
 namespace hairloom::gpu_simulation {
 
 /// Where a strand is between the substeps of a frame (shaders/simulation/storage.hlsli).
-enum class StrandStorage : std::uint32_t { threads, groups, buffers };
+/// With `lanes` each point has a thread of its own; Direct3D 11 has `threads` in its place.
+enum class StrandStorage : std::uint32_t { threads, groups, buffers, lanes };
 
 /// How the strands of a batch are laid out and looped over.
 struct BatchShape {
@@ -18,6 +20,7 @@ struct BatchShape {
     bool exact = false;        ///< all have as many
     bool unrolled = false;     ///< loops along the strand
     StrandStorage storage = StrandStorage::threads;
+    std::uint32_t strands = runtime::kBlockLanes;  ///< of a work group, a divisor of those of a block
 
     friend bool operator==(const BatchShape&, const BatchShape&) = default;
 };
@@ -32,6 +35,8 @@ struct KernelKey {
     std::uint32_t bend = 0;        ///< none, stiffness, factors
     bool targets = false;
     bool curves = false;
+    bool tensions = false;  ///< are kept from substep to substep
+    bool coupled = false;   ///< bending and lengths are one system
     SphereSource spheres = SphereSource::none;
     bool wind = false;
     bool sleep = false;

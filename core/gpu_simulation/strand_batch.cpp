@@ -22,20 +22,53 @@ constexpr std::uint32_t kMostInGroups = 32 * 1024 / (6 * sizeof(float) * kBlockL
 /// More different point counts than this share batches.
 constexpr std::size_t kMostExact = 3;
 constexpr std::uint32_t kLeastShared = 4;
+/// A lane each solves for x, y and z.
+constexpr std::uint32_t kLeastInLanes = 4;
+/// Blocks of strands from which on a thread for each strand is faster: docs/gpu-simulation.md, "What is
+/// measured".
+constexpr std::size_t kMostBlocksInLanes = 100'000 / kBlockLanes;
 
-BatchShape shapeFor(std::uint32_t points, bool exact, const LayoutOptions& options) {
+/// Fewest strands of a work group that leave the fewest threads of its waves of 32 idle.
+std::uint32_t strandsThatFill(std::uint32_t points) {
+    constexpr std::uint32_t kWave = 32, kMostThreads = 128;
+    std::uint32_t best = 1;
+    double bestShare = 0.0;
+    for (std::uint32_t strands = 1; strands <= kBlockLanes; strands *= 2) {
+        const std::uint32_t threads = strands * points;
+        if (strands > 1 && threads > kMostThreads) break;
+        const double share = static_cast<double>(threads) / ((threads + kWave - 1) / kWave * kWave);
+        if (share > bestShare + 0.05) {
+            best = strands;
+            bestShare = share;
+        }
+    }
+    return best;
+}
+
+BatchShape shapeFor(std::uint32_t points, bool exact, StrandStorage storage, const LayoutOptions& options) {
     BatchShape shape;
     shape.points = points;
     shape.exact = exact;
-    shape.storage = options.storage;
+    shape.storage = storage;
+    if (shape.storage == StrandStorage::lanes && points < kLeastInLanes)
+        shape.storage = StrandStorage::threads;
     if (shape.storage == StrandStorage::groups && points > kMostInGroups)
         shape.storage = StrandStorage::threads;
     if (points > kMostInThreads) shape.storage = StrandStorage::buffers;
     shape.unrolled = options.unroll && exact && points <= kMostUnrolled;
+    if (shape.storage == StrandStorage::lanes)
+        shape.strands = options.groupStrands.value_or(strandsThatFill(points));
     return shape;
 }
 
 }  // namespace
+
+LayoutOptions layoutFor(gpu::DeviceType type) {
+    // A driver that compiles for a CPU takes seconds for unrolled loops and gains nothing by them, and its
+    // work groups are loops themselves.
+    if (type == gpu::DeviceType::Cpu) return {StrandStorage::threads, false};
+    return {};
+}
 
 std::vector<StrandBatch> makeBatches(const runtime::RestShape& shape, const LayoutOptions& options) {
     std::map<std::uint32_t, std::vector<std::uint32_t>> blocksOf;
@@ -49,10 +82,13 @@ std::vector<StrandBatch> makeBatches(const runtime::RestShape& shape, const Layo
         }
         blocksOf = std::move(shared);
     }
+    const bool few = shape.blocks.size() <= kMostBlocksInLanes;
+    const StrandStorage storage =
+        options.storage.value_or(few ? StrandStorage::lanes : StrandStorage::threads);
     std::vector<StrandBatch> batches;
     for (auto& [points, blocks] : blocksOf) {
         StrandBatch batch;
-        batch.shape = shapeFor(points, exact, options);
+        batch.shape = shapeFor(points, exact, storage, options);
         batch.slots = static_cast<std::uint32_t>(blocks.size()) * kBlockLanes;
         batch.blocks = std::move(blocks);
         batches.push_back(std::move(batch));

@@ -5,6 +5,7 @@
 // block repeat its last.
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "core/gpu/device.h"
@@ -15,9 +16,19 @@
 namespace hairloom::gpu_simulation {
 
 struct LayoutOptions {
-    StrandStorage storage = StrandStorage::threads;
+    /// Absent: what was measured to be fastest for as many strands.
+    std::optional<StrandStorage> storage = {};
     bool unroll = true;  ///< where all strands of a batch have as many points, up to 32
+    /// Strands of a work group of StrandStorage::lanes, a power of 2 up to 32; absent: those that fill its
+    /// waves.
+    std::optional<std::uint32_t> groupStrands = {};
 };
+
+/// For such a device.
+LayoutOptions layoutFor(gpu::DeviceType type);
+
+/// Of StrandBatch::state: those of runtime::State, and what is kept of the tension.
+inline constexpr std::size_t kDevicePlanes = runtime::kStatePlanes + 1;
 
 struct StrandBatch {
     BatchShape shape;
@@ -26,7 +37,7 @@ struct StrandBatch {
     // Made with the batch; names as in shaders/simulation/storage.hlsli.
     gpu::BufferPtr rest, segments, blockCounts, firstPoints, rootsTo, state, roots;
     // Null while what needs them is off.
-    gpu::BufferPtr bend, targets, curves, tanks, rests, scratch;
+    gpu::BufferPtr bend, targets, curves, tanks, rests, gathered, scratch;
     KernelKey key;
     gpu::ComputePipelinePtr kernel;
 };

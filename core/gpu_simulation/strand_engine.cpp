@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <limits>
 
 #include "core/gpu_simulation/strand_engine_impl.h"
@@ -19,6 +20,7 @@ constexpr std::size_t kReportWords = 4;
 constexpr std::size_t kMostUnderWay = 2;
 /// Floats a point that a kernel of StrandStorage::buffers works in: see storage.hlsli.
 constexpr std::array<std::size_t, 3> kScratchPlanes{5, 11, 20};
+constexpr std::size_t kCoupledPlanes = 29;
 constexpr Usage kReadWrite = Usage::ShaderRead | Usage::UnorderedAccess;
 
 }  // namespace
@@ -35,7 +37,11 @@ Result<StrandEngine> StrandEngine::make(gpu::Device& device, std::shared_ptr<Ker
     impl->shape = runtime::makeRestShape(strands);
     impl->wanted = settings;
     impl->run.settings = settings;
-    impl->batches = makeBatches(*impl->shape, options.layout);
+    LayoutOptions layout = options.layout;
+    const bool direct3d = device.info().backend == gpu::Backend::Direct3D11;
+    const bool lanes = layout.storage.value_or(StrandStorage::lanes) == StrandStorage::lanes;
+    if (direct3d && lanes) layout.storage = StrandStorage::threads;
+    impl->batches = makeBatches(*impl->shape, layout);
     if (const std::string why = impl->whyNoVelocities(); !why.empty()) return fail(why);
     impl->roots.resize(impl->shape->restRoots.size());
     if (auto made = impl->makeBuffers(); !made) return tl::unexpected(made.error());
@@ -85,7 +91,7 @@ Status StrandEngine::Impl::makeBuffers() {
     for (StrandBatch& batch : batches) {
         if (auto made = makeRestBuffers(device, *shape, batch); !made) return made;
         const std::size_t plane = std::size_t{batch.shape.points} * batch.slots;
-        if (auto made = make(batch.state, "state", plane * runtime::kStatePlanes, 4); !made) return made;
+        if (auto made = make(batch.state, "state", plane * kDevicePlanes, 4); !made) return made;
         if (auto made = make(batch.roots, "roots", std::size_t{batch.slots} * runtime::kRootRows, 4); !made)
             return made;
         if (auto made = make(batch.rootsTo, "roots of the frame", std::size_t{batch.slots} * 2,
@@ -132,9 +138,12 @@ Status StrandEngine::Impl::allocate() {
         if (fresh) bendSubstep = 0.0f;
         have(batch.curves, "curves", key.curves ? plane * 3 : 0, 4);
         have(batch.tanks, "tanks", key.curves ? std::size_t{batch.slots} * 2 : 0, 4, batch.slots);
+        const bool gathers = key.sleep && key.shape.storage == StrandStorage::lanes;
+        have(batch.gathered, "gathered", gathers ? batch.blocks.size() * 4 : 0, 4);
         have(batch.rests, "rests", key.sleep ? batch.blocks.size() * 2 : 0, 4);
         const bool scratch = batch.shape.storage == StrandStorage::buffers && !key.stages.empty();
-        have(batch.scratch, "scratch", scratch ? plane * kScratchPlanes[key.evaluation] : 0, 4);
+        const std::size_t planes = key.coupled ? kCoupledPlanes : kScratchPlanes[key.evaluation];
+        have(batch.scratch, "scratch", scratch ? plane * planes : 0, 4);
         sleeps = sleeps || key.sleep;
     }
     if (!sleeps) waking = nullptr;
@@ -154,7 +163,9 @@ StrandEngine::Impl::Run StrandEngine::Impl::runFor(const runtime::SimulationSett
     outlook.longestPointCount = shape->longestPointCount;
     outlook.longestStrand = shape->longestStrand;
     outlook.straight = shape->straight;
-    outlook.couples = false;
+    outlook.sharpestCurl = shape->sharpestCurl;
+    outlook.unevenness = shape->unevenness;
+    outlook.substep = input.dt / static_cast<float>(settings.substeps);
     outlook.rootsMin_ws = low;
     outlook.rootsMax_ws = high;
     outlook.rootMotion = rootMotion;
@@ -191,6 +202,8 @@ Status StrandEngine::Impl::adopt(const Run& next) {
         bendSubstep = 0.0f;
         curvesVoid = wakeAll = true;
     }
+    if (adopted && !run.plan.keepsTensions() && next.plan.keepsTensions()) tensionsVoid = true;
+    if (run.plan.on(Effect::coupling) != next.plan.on(Effect::coupling)) bendSubstep = 0.0f;
     run = next;
     adopted = true;
     return allocate();
@@ -200,7 +213,10 @@ Status StrandEngine::Impl::adopt(const Run& next) {
 Status StrandEngine::Impl::choose(const runtime::FrameInput& input, Float3 low, Float3 high) {
     const Run next = runFor(wanted, input, low, high);
     const bool wait = options.waitForKernels || !adopted;
+    const auto begin = std::chrono::steady_clock::now();
     auto ready = kernelsFor(next, wait);
+    kernelMilliseconds =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
     if (!ready) return tl::unexpected(ready.error());
     switching = !*ready;
     if (*ready) return adopt(next);
@@ -267,7 +283,10 @@ std::size_t StrandEngine::effectBytes(Effect effect) const {
             add(batch.curves);
             add(batch.tanks);
         }
-        if (effect == Effect::sleep) add(batch.rests);
+        if (effect == Effect::sleep) {
+            add(batch.rests);
+            add(batch.gathered);
+        }
         if (effect == Effect::collision && batch.key.spheres == SphereSource::constants && bytes == 0)
             bytes = sizeof(shaders::SphereConstants) * HAIRLOOM_CONSTANT_SPHERES;
     }

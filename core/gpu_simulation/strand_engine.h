@@ -34,7 +34,8 @@ struct EngineOptions {
 
 /// What the last frame took and met.
 struct FrameReport {
-    double milliseconds = 0.0;  ///< on the device, of the dispatches; 0 without timestamps
+    double milliseconds = 0.0;        ///< on the device, of the dispatches; 0 without timestamps
+    double kernelMilliseconds = 0.0;  ///< that the frame waited for kernels to be made
     std::uint32_t restoredStrands = 0;
     std::uint32_t asleep = 0;  ///< strands
     float fastest = 0.0f;      ///< m/s

@@ -58,13 +58,15 @@ std::vector<bool> StrandEngine::Impl::takeRoots(const runtime::FrameInput& input
     return moved;
 }
 
-void StrandEngine::Impl::uploadRoots(gpu::CommandList& list) {
+/// `moved` may be empty: none has.
+void StrandEngine::Impl::uploadRoots(gpu::CommandList& list, const std::vector<bool>& moved) {
     for (const StrandBatch& batch : batches) {
         std::vector<shaders::float4> rows(std::size_t{batch.slots} * 2);
         for (std::size_t slot = 0; slot < batch.slots; ++slot) {
             const runtime::Block& block = shape->blocks[batch.blocks[slot / runtime::kBlockLanes]];
-            const RootFrame& root = roots[block.strandOfLane[slot % runtime::kBlockLanes]];
-            rows[2 * slot] = quad(root.position, 0.0f);
+            const std::uint32_t strand = block.strandOfLane[slot % runtime::kBlockLanes];
+            const RootFrame& root = roots[strand];
+            rows[2 * slot] = quad(root.position, !moved.empty() && moved[strand] ? 1.0f : 0.0f);
             rows[2 * slot + 1] = {root.rotation.x, root.rotation.y, root.rotation.z, root.rotation.w};
         }
         list.updateBuffer(batch.rootsTo, 0, bytesOfVector(rows));
@@ -110,6 +112,7 @@ void StrandEngine::Impl::uploadBend(gpu::CommandList& list, float h) {
     runtime::Bend bend;
     bend.factored = run.plan.factored();
     bend.targets = run.plan.on(Effect::torsion);
+    bend.coupled = run.plan.on(Effect::coupling);
     bend.planes = runtime::Floats(shape->planeFloats * bend.planeCount(), 0.0f);
     parallelFor(shape->blocks.size(), kBlocksPerJob, [&](std::size_t first, std::size_t end) {
         for (std::size_t b = first; b < end; ++b) runtime::fillBend(*shape, run.settings, h, b, bend);
@@ -133,8 +136,16 @@ void StrandEngine::Impl::uploadBend(gpu::CommandList& list, float h) {
     }
 }
 
-/// What other settings do to the state: kept curves are void, and nothing sleeps.
+/// What other settings and plans do to the state: kept curves or tensions are void, and nothing sleeps.
 void StrandEngine::Impl::uploadChanges(gpu::CommandList& list) {
+    if (tensionsVoid) {
+        for (const StrandBatch& batch : batches) {
+            const std::vector<float> none(std::size_t{batch.shape.points} * batch.slots);
+            list.updateBuffer(batch.state, runtime::kStatePlanes * none.size() * sizeof(float),
+                              bytesOfVector(none));
+        }
+        tensionsVoid = false;
+    }
     if (!curvesVoid) return;
     for (const StrandBatch& batch : batches) {
         if (batch.tanks != nullptr) {
@@ -181,6 +192,9 @@ shaders::SimulationConstants StrandEngine::Impl::constants(const runtime::Subste
     c.slowSquared = slow * slow;
     c.sleepDelay = s.sleepDelay;
     c.slowSweep = runtime::slowestSwept(context);
+    c.tensionShare = context.tensionShare;
+    c.groups = batch.slots / batch.key.shape.strands;
+    c.unused0 = c.unused1 = 0.0f;
     c.gravityStep = quad(context.gravityStep, 0.0f);
     const runtime::Wind& wind = run.wind.wind;
     c.windKind = static_cast<std::uint32_t>(wind.kind);
@@ -222,9 +236,9 @@ void StrandEngine::Impl::dispatch(gpu::CommandList& list, const StrandBatch& bat
     write(4, places);
     write(5, batch.curves);
     write(6, batch.tanks);
-    const bool inBuffers = batch.shape.storage == StrandStorage::buffers;
+    const bool inBuffers = batch.key.shape.storage == StrandStorage::buffers;
     write(7, inBuffers ? batch.scratch : velocities);
-    if (inBuffers) write(8, velocities);
+    write(8, inBuffers ? velocities : batch.gathered);
     list.bind(bindings);
     list.setConstants(0, gpu::bytesOf(constants));
     if (batch.key.spheres == SphereSource::constants) {
@@ -232,7 +246,9 @@ void StrandEngine::Impl::dispatch(gpu::CommandList& list, const StrandBatch& bat
         all.resize(HAIRLOOM_CONSTANT_SPHERES);
         list.setConstants(1, bytesOfVector(all));
     }
-    list.dispatch(static_cast<std::uint32_t>(batch.blocks.size()));
+    const std::uint32_t groups = constants.groups;
+    list.dispatch(std::min<std::uint32_t>(groups, HAIRLOOM_GROUP_ROW),
+                  (groups + HAIRLOOM_GROUP_ROW - 1) / HAIRLOOM_GROUP_ROW);
 }
 
 Status StrandEngine::Impl::record(gpu::CommandList& list, const runtime::FrameInput& input) {
@@ -253,8 +269,10 @@ Status StrandEngine::Impl::record(gpu::CommandList& list, const runtime::FrameIn
 
     constexpr std::array<std::uint32_t, 4> kNothing{};
     list.updateBuffer(reportBuffer, 0, std::as_bytes(std::span(kNothing)));
-    // Roots that rest are there already.
-    if (substep == 0.0f || std::ranges::find(moved, true) != moved.end()) uploadRoots(list);
+    // Roots that rest are there already, once the device knows that they do.
+    const bool moves = std::ranges::find(moved, true) != moved.end();
+    if (substep == 0.0f || moves || rootsMoved) uploadRoots(list, moved);
+    rootsMoved = moves;
     uploadChanges(list);
     uploadSpheres(list);
     if (run.plan.on(Effect::angular) && bendSubstep != context.h) {

@@ -39,14 +39,18 @@ struct StrandEngine::Impl {
     runtime::FrameSpheres frameSpheres;
     std::vector<runtime::Sphere> spheresBefore;
     std::vector<runtime::MovingSphere> movingSpheres;
-    float substep = 0.0f;      ///< seconds of the last one; 0 before the first
-    float bendSubstep = 0.0f;  ///< that the springs' buffers are for; 0: none
-    bool curvesVoid = false;   ///< the kept curves fit other settings
+    float substep = 0.0f;       ///< seconds of the last one; 0 before the first
+    float bendSubstep = 0.0f;   ///< that the springs' buffers are for; 0: none
+    bool curvesVoid = false;    ///< the kept curves fit other settings
+    bool tensionsVoid = false;  ///< those on the device are of a plan that is over
     bool wakeAll = false;
+    bool rootsMoved = false;  ///< in the last frame, as the device knows
 
     std::deque<gpu::SubmissionPtr> underWay;
     std::optional<runtime::State> known;  ///< what was read since the last frame
     double milliseconds = 0.0;            ///< of the last step that was waited for
+    double kernelMilliseconds = 0.0;      ///< that the last frame waited for kernels
+    mutable gpu::BufferPtr readBack;      ///< what is read passes through it; grows
 
     Impl(gpu::Device& d, std::shared_ptr<KernelLibrary> k, EngineOptions o)
         : device(d), kernels(std::move(k)), options(o) {}
@@ -63,7 +67,7 @@ struct StrandEngine::Impl {
     // strand_engine_frame.cpp
     Status record(gpu::CommandList& list, const runtime::FrameInput& input);
     std::vector<bool> takeRoots(const runtime::FrameInput& input);
-    void uploadRoots(gpu::CommandList& list);
+    void uploadRoots(gpu::CommandList& list, const std::vector<bool>& moved);
     void uploadSpheres(gpu::CommandList& list);
     void uploadBend(gpu::CommandList& list, float h);
     void uploadChanges(gpu::CommandList& list);
@@ -73,11 +77,6 @@ struct StrandEngine::Impl {
                   const shaders::SimulationConstants& constants) const;
     std::vector<shaders::SphereConstants> sphereConstants() const;
     // strand_engine_state.cpp
-    template <class T>
-    Status read(const gpu::BufferPtr& buffer, std::vector<T>& values) const {
-        values.resize(buffer->desc().size / sizeof(T));
-        return device.readBuffer(buffer, 0, std::as_writable_bytes(std::span(values)));
-    }
     Result<std::vector<std::byte>> readTogether(const std::vector<gpu::BufferPtr>& buffers) const;
     void takeBatch(const StrandBatch& batch, std::span<const std::byte>& bytes, runtime::State& state) const;
     Status writeBatch(gpu::CommandList& list, const StrandBatch& batch, const runtime::State& state) const;

@@ -54,25 +54,28 @@ Result<std::vector<std::byte>> StrandEngine::Impl::readTogether(
     const std::vector<gpu::BufferPtr>& buffers) const {
     std::uint64_t size = 0;
     for (const gpu::BufferPtr& buffer : buffers) size += buffer->desc().size;
-    gpu::BufferDesc desc;
-    desc.name = "read back";
-    desc.size = size;
-    desc.usage = gpu::Usage::None;
-    desc.memory = gpu::MemoryKind::ReadBack;
-    const auto target = device.createBuffer(desc);
-    if (!target) return tl::unexpected(target.error());
+    if (readBack == nullptr || readBack->desc().size < size) {
+        gpu::BufferDesc desc;
+        desc.name = "read back";
+        desc.size = size;
+        desc.usage = gpu::Usage::None;
+        desc.memory = gpu::MemoryKind::ReadBack;
+        auto made = device.createBuffer(desc);
+        if (!made) return tl::unexpected(made.error());
+        readBack = std::move(*made);
+    }
     auto list = device.createCommandList();
     if (!list) return tl::unexpected(list.error());
     std::uint64_t at = 0;
     for (const gpu::BufferPtr& buffer : buffers) {
-        (*list)->copyBuffer(buffer, 0, *target, at, buffer->desc().size);
+        (*list)->copyBuffer(buffer, 0, readBack, at, buffer->desc().size);
         at += buffer->desc().size;
     }
     const auto submission = device.submit(std::move(*list));
     if (!submission) return tl::unexpected(submission.error());
     if (auto status = (*submission)->wait(); !status) return tl::unexpected(status.error());
     std::vector<std::byte> bytes(static_cast<std::size_t>(size));
-    if (auto status = device.readMapped(*target, 0, bytes); !status) return tl::unexpected(status.error());
+    if (auto status = device.readMapped(readBack, 0, bytes); !status) return tl::unexpected(status.error());
     return bytes;
 }
 
@@ -85,7 +88,13 @@ void StrandEngine::Impl::takeBatch(const StrandBatch& batch, std::span<const std
         bytes = bytes.subspan(values.size() * sizeof(float));
         return values;
     };
-    planesOfBlocks(*shape, batch, take(batch.state), state.planes, runtime::kStatePlanes);
+    const std::vector<float> moving = take(batch.state);
+    planesOfBlocks(*shape, batch, moving, state.planes, runtime::kStatePlanes);
+    if (!state.tensions.empty()) {
+        const std::size_t plane = std::size_t{batch.shape.points} * batch.slots;
+        planesOfBlocks(*shape, batch, std::span(moving).subspan(runtime::kStatePlanes * plane),
+                       state.tensions, 1);
+    }
     rowsToBlocks(batch, take(batch.roots), runtime::kRootRows, state.roots.data());
     if (batch.curves != nullptr) {
         planesOfBlocks(*shape, batch, take(batch.curves), state.curves, 3);
@@ -96,8 +105,15 @@ void StrandEngine::Impl::takeBatch(const StrandBatch& batch, std::span<const std
     }
     if (batch.rests == nullptr) return;
     const std::vector<float> rests = take(batch.rests);
-    for (std::size_t n = 0; n < batch.blocks.size(); ++n)
-        state.rests[batch.blocks[n]] = {rests[2 * n], rests[2 * n + 1] != 0.0f};
+    for (std::size_t n = 0; n < batch.blocks.size(); ++n) {
+        const bool asleep = rests[2 * n + 1] != 0.0f;
+        state.rests[batch.blocks[n]] = {rests[2 * n], asleep};
+        if (!asleep) continue;
+        // What sleeps has no speed; kernels of lanes take it away when they wake it.
+        const runtime::Block& block = shape->blocks[batch.blocks[n]];
+        float* const planes = state.planes.data() + block.firstPlane * runtime::kStatePlanes;
+        std::copy_n(planes, 3 * planeSize(block), planes + 3 * planeSize(block));
+    }
 }
 
 Result<runtime::State> StrandEngine::readState() {
@@ -113,6 +129,7 @@ Result<runtime::State> StrandEngine::readState() {
         state.tanks.assign(shape.blocks.size() * kBlockLanes, runtime::kNoCurve);
         state.motions.assign(shape.blocks.size() * kBlockLanes, 0.0f);
     }
+    if (impl.run.plan.keepsTensions()) state.tensions.assign(shape.planeFloats, 0.0f);
     std::vector<gpu::BufferPtr> buffers;
     for (const StrandBatch& batch : impl.batches) {
         const auto own = changingBuffers(batch);
@@ -135,7 +152,13 @@ Status StrandEngine::Impl::writeBatch(gpu::CommandList& list, const StrandBatch&
     const auto send = [&](const gpu::BufferPtr& buffer, const std::vector<float>& values) {
         list.updateBuffer(buffer, 0, std::as_bytes(std::span(values)));
     };
-    send(batch.state, planesOfBatch(*shape, batch, state.planes, runtime::kStatePlanes));
+    std::vector<float> moving = planesOfBatch(*shape, batch, state.planes, runtime::kStatePlanes);
+    if (!state.tensions.empty()) {
+        const std::vector<float> tensions = planesOfBatch(*shape, batch, state.tensions, 1);
+        moving.insert(moving.end(), tensions.begin(), tensions.end());
+    }
+    moving.resize(std::size_t{batch.shape.points} * batch.slots * kDevicePlanes, 0.0f);
+    send(batch.state, moving);
     send(batch.roots, rowsOfBatch(batch, state.roots.data(), runtime::kRootRows));
     if (batch.curves != nullptr) {
         std::vector<float> tanks(std::size_t{batch.slots} * 2, 0.0f);
@@ -184,7 +207,8 @@ Status StrandEngine::Impl::writeState(const runtime::State& state) {
                                                           {row(3), row(4), row(5), row(6)}};
         }
     }
-    uploadRoots(**list);
+    uploadRoots(**list, {});
+    rootsMoved = false;
     auto submission = device.submit(std::move(*list));
     if (!submission) return tl::unexpected(submission.error());
     spheresBefore = state.spheres;
@@ -229,11 +253,14 @@ Status StrandEngine::reset(std::span<const RootFrame> roots_ws) {
 
 Result<FrameReport> StrandEngine::report() {
     FrameReport report;
-    std::vector<std::uint32_t> words;
-    if (auto status = impl_->read(impl_->reportBuffer, words); !status) return tl::unexpected(status.error());
+    const auto bytes = impl_->readTogether({impl_->reportBuffer});
+    if (!bytes) return tl::unexpected(bytes.error());
+    std::array<std::uint32_t, 3> words{};
+    std::memcpy(words.data(), bytes->data(), sizeof(words));
     if (impl_->substep > 0.0f) report.fastest = std::sqrt(std::bit_cast<float>(words[0])) / impl_->substep;
     report.restoredStrands = words[1];
     report.asleep = words[2];
+    report.kernelMilliseconds = impl_->kernelMilliseconds;
     report.rejectedRoots = impl_->rejectedRoots;
     report.rejectedSpheres = impl_->frameSpheres.rejected;
     report.rejectedWinds = impl_->rejectedWinds;
@@ -262,9 +289,10 @@ Result<runtime::Measurements> StrandEngine::measure() {
 
 Status StrandEngine::readPositions(std::span<Float3> positions_ws) {
     assert(positions_ws.size() == pointCount());
-    std::vector<shaders::float4> quads;
-    if (auto status = impl_->read(impl_->places, quads); !status) return status;
-    for (std::size_t p = 0; p < quads.size(); ++p) positions_ws[p] = {quads[p].x, quads[p].y, quads[p].z};
+    const auto bytes = impl_->readTogether({impl_->places});
+    if (!bytes) return tl::unexpected(bytes.error());
+    for (std::size_t p = 0; p < positions_ws.size(); ++p)
+        std::memcpy(&positions_ws[p], bytes->data() + p * sizeof(shaders::float4), sizeof(Float3));
     return {};
 }
 

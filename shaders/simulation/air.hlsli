@@ -2,24 +2,23 @@
 // External forces: gravity, drag of still air, wind.
 
 void stageGravity() {
-    EACH for (uint p = FIRST_FREE; p < POINTS; ++p) setPrevious(p, previous(p) - gFrame.gravityStep.xyz);
+    FREE_POINTS(p) setPrevious(p, previous(p) - gFrame.gravityStep.xyz);
 }
 
 /// Hair takes on the air's velocity at the rate airDrag · sin of its angle to the tangent (Rünz 2012, Section
 /// 3.3). `atRoot` and `atTip` are the air's way in one substep.
 void takeAir(float3 atRoot, float3 atTip) {
-    float3 parent = position(FIRST_FREE - 1);
-    EACH for (uint p = FIRST_FREE; p < POINTS; ++p) {
+    tellPositions();
+    FREE_POINTS(p) {
         const float3 here = position(p);
         const float3 before = previous(p);
         const float along = float(p) * (1.0 / float(POINTS - 1));
         const float3 flow = before - here + atRoot + (atTip - atRoot) * along;
-        const float3 tangent = here - parent;
+        const float3 tangent = here - toldPosition(p - 1);
         const float both = dot(flow, flow) * dot(tangent, tangent);
         const float parallel = dot(flow, tangent);
         const float sineSquared = max(both - parallel * parallel, 0.0) / (both + 1e-30);
         setPrevious(p, before - flow * (gFrame.dragShare * sqrt(min(sineSquared, 1.0))));
-        parent = here;
     }
 }
 
@@ -57,6 +56,19 @@ float3 windAt(float3 place_ws, uint end) {
     return mean * (1.0 + strength * gFrame.wind.w);
 }
 
+#if HAIR_STORAGE == 3
+/// A lane each for both places and both ends.
+void sampleWind() {
+    tellPositions();
+    const bool atTip = (gPoint & 1u) != 0u;
+    const float3 place = atTip ? gRoot + told(POINTS - 1).xyz : gRoot;
+    tell(float4(windAt(place, (gPoint >> 1) & 1u) * gFrame.h, 0));
+    [unroll] for (uint end = 0; end < 2; ++end) {
+        gWindRoot[end] = told(2 * end).xyz;
+        gWindTip[end] = told(2 * end + 1).xyz;
+    }
+}
+#else
 void sampleWind() {
     const float3 tip = gRoot + position(POINTS - 1);
     [unroll] for (uint end = 0; end < 2; ++end) {
@@ -64,6 +76,7 @@ void sampleWind() {
         gWindTip[end] = windAt(tip, end) * gFrame.h;
     }
 }
+#endif
 
 void stageWind() {
     const float t = float(gSubstep + 1) / float(gFrame.substeps);

@@ -26,11 +26,33 @@ float3 fromFrame(float3 tangent, float3 normal, float3 local) {
 }
 
 /// The direction and the normal that the root carries, before the first segment.
-float3 rootTangent() { return rotate(gRotation, restVector(0) * inverseLength(0)); }
+float3 rootTangent() { return rotate(gRotation, rootSegment() * rootInverseLength()); }
 #if HAIR_TARGETS
-float3 rootNormal() { return rotate(gRotation, target(POINTS - 1)); }
+float3 rootNormal() { return rotate(gRotation, normalAtRest()); }
 #endif
 
+#if HAIR_CURVES
+static float gTank, gMotion;
+
+/// The share of a change of curves that the strand's tank pays, and what that does to the tank. `gain` and `size` are
+/// Σ pull · change and Σ stiffness · change² over the joints.
+float takeShare(float gain, float size) {
+    const bool fresh = gTank < 0.0;
+    const float squared = gFrame.h * gFrame.h;
+    const float saved = max(gTank, 0.0) * squared;
+    // Turning by the share α changes the energy by ½ α² s − α d.
+    const float most = (gain + sqrt(gain * gain + (size + size) * saved)) / max(size, 1e-30);
+    const float leak = min(gFrame.h / LEAK_TIME, 1.0) * max(1.0 - gMotion / (LEAK_SPEED * LEAK_SPEED), 0.0);
+    const float share = fresh ? 1.0 : max(min(most, 1.0), leak);
+    const float gained = share * (gain - 0.5 * share * size) / squared;
+    gTank = fresh ? 0.0 : max(max(gTank, 0.0) + gained, 0.0) * gFrame.velocityShare;
+    return share;
+}
+#endif
+
+#if HAIR_STORAGE == 3
+#include "shaders/simulation/lanes_bend.hlsli"
+#else
 /// Pulls of angular springs at `position`.
 void measurePulls(bool frames, bool exact) {
     float3 inner = rootTangent(), unit = inner, normal = float3(0, 0, 0);
@@ -89,8 +111,6 @@ void stageStraightExact() { applyAngular(false, true); }
 
 #if HAIR_BEND == 2
 #if HAIR_CURVES
-static float gTank, gMotion;
-
 /// Turns the curves that the joints hold towards those of the frames at `previous`, as far as the strand's tank
 /// lasts, which holds what earlier turning took out of the springs (energy tanks, Duindam and Stramigioli 2004).
 /// While the strand rests, curves that lag creep home. `work` keeps each joint's whole change; returns the share
@@ -114,16 +134,7 @@ float followFrames() {
         if (dot(before, tangent) < FOLD) known = 0.0;
         before = tangent;
     }
-    const bool fresh = gTank < 0.0;
-    const float squared = gFrame.h * gFrame.h;
-    const float saved = max(gTank, 0.0) * squared;
-    // Turning by the share α changes the energy by ½ α² s − α d.
-    const float most = (gain + sqrt(gain * gain + (size + size) * saved)) / max(size, 1e-30);
-    const float leak = min(gFrame.h / LEAK_TIME, 1.0) * max(1.0 - gMotion / (LEAK_SPEED * LEAK_SPEED), 0.0);
-    const float share = fresh ? 1.0 : max(min(most, 1.0), leak);
-    const float gained = share * (gain - 0.5 * share * size) / squared;
-    gTank = fresh ? 0.0 : max(max(gTank, 0.0) + gained, 0.0) * gFrame.velocityShare;
-    return share;
+    return takeShare(gain, size);
 }
 #endif
 
@@ -148,6 +159,15 @@ void measureAhead(float share) {
     setWork(POINTS - 1, float3(0, 0, 0));
 }
 
+/// And the tension of the last substep, along the segment at the start of this one.
+float3 segmentForce(uint s) {
+    float3 force = segmentPull(s, false);
+#if HAIR_TENSIONS
+    force += (previous(s + 1) - previous(s)) * (inverseLength(s) * tension(s));
+#endif
+    return force;
+}
+
 /// Angular springs after position Verlet: the step of their force through (M + (¼ + q) h² K)⁻¹ by the LDLᵀ
 /// factors of the strand, stable for any stiffness (docs/engine.md). The slot of joint p − 1 is free once
 /// point p has its right side, and keeps it, then its move.
@@ -157,11 +177,11 @@ void bendBack() {
     share = followFrames();
 #endif
     measureAhead(share);
-    float3 inner = segmentPull(FIRST_FREE - 1, false);
+    float3 inner = segmentForce(FIRST_FREE - 1);
     float3 one = float3(0, 0, 0), two = float3(0, 0, 0);  // right sides of the last two points
     EACH for (uint p = FIRST_FREE; p < POINTS; ++p) {
         float3 outer = float3(0, 0, 0);
-        if (p + 1 < POINTS) outer = segmentPull(p, false);
+        if (p + 1 < POINTS) outer = segmentForce(p);
         const float4 factors = gFactors[slotOf(0, p)];
         const float3 side = outer - inner - one * factors.y - two * factors.z;
         setWork(p - 1, side);
@@ -185,5 +205,6 @@ void bendBack() {
 }
 void stageAngular() { bendBack(); }
 void stageAngularStraight() { bendBack(); }
+#endif
 #endif
 #endif

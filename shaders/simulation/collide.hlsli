@@ -15,6 +15,14 @@ StructuredBuffer<SphereConstants> gSpheres : register(t7);
 
 float3 sphereCentre(uint k, float step) { return gSpheres[k].from.xyz + gSpheres[k].step.xyz * step; }
 
+// Spheres that are looked at together, so that they are fetched while others are worked on; the last stands for
+// those past the end.
+#define SPHERES_AT_ONCE 5
+#define EACH_SPHERE(first, end) \
+    [loop] for (uint sphereRow = first; sphereRow < end; sphereRow += SPHERES_AT_ONCE) \
+        [unroll] for (uint sphereAt = 0; sphereAt < SPHERES_AT_ONCE; ++sphereAt)
+#define SPHERE_BEFORE(end) min(sphereRow + sphereAt, end - 1)
+
 /// Pearl radius at a point, growing linearly to the tip.
 float pearlAt(uint p) {
     return gFrame.pearlRoot + (gFrame.pearlTip - gFrame.pearlRoot) / float(POINTS - 1) * float(p);
@@ -98,10 +106,12 @@ float3 nearestOfCircle(float3 at, Contact contact, float3 centre, float reach, o
 /// which it is deepest have in common, until it is free.
 void settle(Contact contact, uint first, uint end, float pearl, float3 root, float step, inout float3 at,
             inout float3 before) {
-    [loop] for (uint k = 0; k < 16; ++k) {
+    bool inside = true;
+    [loop] for (uint k = 0; k < 16 && inside; ++k) {
         float deepest = 0.0;
         Contact next = contact;
-        [loop] for (uint j = first; j < end; ++j) {
+        EACH_SPHERE(first, end) {
+            const uint j = SPHERE_BEFORE(end);
             const float3 centre = sphereCentre(j, step) - root;
             const float reach = gSpheres[j].from.w + pearl;
             const float3 offset = at - centre;
@@ -114,19 +124,22 @@ void settle(Contact contact, uint first, uint end, float pearl, float3 root, flo
                 next.reach = reach;
             }
         }
-        if (!(deepest > 0.0)) break;
-        bool meet;
-        const float3 onCircle = nearestOfCircle(at, contact, next.centre, next.reach, meet);
-        next.from = meet ? onCircle : at - next.centre;
-        contact = next;
-        respond(contact, at, before);
+        inside = deepest > 0.0;
+        if (inside) {
+            bool meet;
+            const float3 onCircle = nearestOfCircle(at, contact, next.centre, next.reach, meet);
+            next.from = meet ? onCircle : at - next.centre;
+            contact = next;
+            respond(contact, at, before);
+        }
     }
 }
 
 /// Whether a place lies in one of the spheres but `own`.
 bool insideOthers(float3 at, uint own, uint first, uint end, float pearl, float3 root, float step) {
     bool inside = false;
-    [loop] for (uint j = first; j < end; ++j) {
+    EACH_SPHERE(first, end) {
+        const uint j = SPHERE_BEFORE(end);
         const float3 offset = at - (sphereCentre(j, step) - root);
         const float reach = gSpheres[j].from.w + pearl;
         inside = inside || (j != own && dot(offset, offset) < reach * reach);
@@ -134,14 +147,24 @@ bool insideOthers(float3 at, uint own, uint first, uint end, float pearl, float3
     return inside;
 }
 
-/// One point against the spheres first … end − 1 of a set that the strand's box meets by `near`. Only spheres in
-/// which it is at the start count: one that another pushes it into is settled.
-void touchSpheres(bool backward, uint p, uint first, uint end, uint2 near, float3 root, float step) {
+/// What one substep of collisions does to a point.
+struct Touch {
+    float3 at, before;  // its place now and a substep ago
+    bool touched;
+    bool asks;          // for the place of the point before it, which is not known
+};
+
+/// One point against the spheres first … end − 1 of a set that it or its strand is near to by `near`. Only spheres in
+/// which it is at the start count: one that another pushes it into is settled. `inner` is the place of the point
+/// before it.
+Touch touchSpheres(bool backward, uint p, float3 at, float3 before, float3 inner, bool knowsInner, uint first, uint end,
+                   uint2 near, float3 root, float step) {
     const float pearl = pearlAt(p);
-    const float3 began = position(p);
-    float3 at = began, before = previous(p);
-    bool touched = false;
-    [loop] while ((near.x | near.y) != 0u) {
+    const float3 began = at;
+    Touch result;
+    result.touched = result.asks = false;
+    const uint count = countbits(near.x) + countbits(near.y);
+    [loop] for (uint turn = 0; turn < count; ++turn) {
         const bool low = near.x != 0u;
         const uint bit = firstbitlow(low ? near.x : near.y);
         if (low) {
@@ -159,25 +182,97 @@ void touchSpheres(bool backward, uint p, uint first, uint end, uint2 near, float
             contact.step = gSpheres[k].step.xyz;
             contact.from = offset;
             if (backward) contact.from = backAlong(offset, at - before - contact.step, squared, contact.reach);
-            if (gFrame.lengthIterations > 0u && squared < reachSquared * (DEEP * DEEP))
-                contact.from = acrossStrand(offset, at - position(p - 1));
+            if (gFrame.lengthIterations > 0u && squared < reachSquared * (DEEP * DEEP)) {
+                result.asks = result.asks || !knowsInner;
+                contact.from = acrossStrand(offset, at - inner);
+            }
             respond(contact, at, before);
-            touched = true;
+            result.touched = true;
             if (insideOthers(at, k, first, end, pearl, root, step))
                 settle(contact, first, end, pearl, root, step, at, before);
         }
     }
-    if (touched) {
-        setPosition(p, at);
-        setPrevious(p, before);
-    }
+    result.at = at;
+    result.before = before;
+    return result;
 }
 
+#if HAIR_STORAGE == 3
+groupshared float4 gSpheresNow[SPHERE_SET];  // centre, and square of the reach with the largest pearl
+
+/// The spheres of a set, a lane each, for the work group to read.
+void gatherSpheres(uint first, uint end, float step) {
+    const float pearl = max(gFrame.pearlRoot, gFrame.pearlTip);
+    // Lanes may still look at the last set.
+    GroupMemoryBarrierWithGroupSync();
+    [loop] for (uint k = first + gLane; k < end; k += HAIR_THREADS) {
+        const float reach = gSpheres[k].from.w + pearl;
+        gSpheresNow[k - first] = float4(sphereCentre(k, step), reach * reach * 1.0001);
+    }
+    GroupMemoryBarrierWithGroupSync();
+}
+
+/// Which of up to 32 spheres of the set a place may lie in, as bits. In the world, whose rounding the margin covers.
+uint spheresAround(float3 place_ws, uint first, uint end) {
+    uint near = 0u;
+    EACH_SPHERE(first, end) {
+        const uint k = SPHERE_BEFORE(end);
+        const float4 sphere = gSpheresNow[k];
+        const float3 offset = place_ws - sphere.xyz;
+        near |= dot(offset, offset) <= sphere.w ? 1u << (k - first) : 0u;
+    }
+    return near;
+}
+
+Touch touchNear(bool backward, uint p, float3 at, float3 before, float3 inner, bool knowsInner, uint first, uint end,
+                float3 root, float step) {
+    const uint count = end - first;
+    uint2 near = uint2(spheresAround(at + root, 0, min(count, 32u)), 0u);
+    if (count > 32u) near.y = spheresAround(at + root, 32, count);
+    return touchSpheres(backward, p, at, before, inner, knowsInner, first, end, near, root, step);
+}
+
+/// Pushes points and their pearls out of spheres (Eq. 14).
+void collide(bool backward) {
+    const float step = float(gSubstep + 1);
+    const float3 root = gRoot + gRootStep * step;
+    [loop] for (uint first = 0; first < gFrame.sphereCount; first += SPHERE_SET) {
+        const uint end = min(first + SPHERE_SET, gFrame.sphereCount);
+        gatherSpheres(first, end, step);
+        Touch own;
+        own.at = gPosition;
+        own.before = gPrevious;
+        own.touched = own.asks = false;
+        if (isFree()) own = touchNear(backward, gPoint, gPosition, gPrevious, gPosition, false, first, end, root, step);
+        if (own.touched && !own.asks) {
+            gPosition = own.at;
+            gPrevious = own.before;
+        }
+        // Deep in a sphere a point asks where the one before it has gone: each lane that does goes the way from the root.
+        tell(float4(gPosition, own.asks ? 1.0 : 0.0), float4(gPrevious, 0));
+        if (own.asks) {
+            float3 inner = told(FIRST_FREE - 1).xyz;
+            [loop] for (uint p = FIRST_FREE; p <= gPoint; ++p) {
+                const float4 at = told(p);
+                if (at.w != 0.0) {
+                    own = touchNear(backward, p, at.xyz, toldToo(p).xyz, inner, true, first, end, root, step);
+                    inner = own.at;
+                } else {
+                    inner = at.xyz;
+                }
+            }
+            gPosition = own.at;
+            gPrevious = own.before;
+        }
+    }
+}
+#else
 /// Spheres of a set that, with the largest pearl, meet the box of a strand, as bits.
 uint2 nearSpheres(uint first, uint end, float3 low, float3 high, float3 root, float step) {
     uint2 near = uint2(0, 0);
     const float pearl = max(gFrame.pearlRoot, gFrame.pearlTip);
-    [loop] for (uint k = first; k < end; ++k) {
+    EACH_SPHERE(first, end) {
+        const uint k = SPHERE_BEFORE(end);
         const float3 centre = sphereCentre(k, step) - root;
         const float3 gap = max(max(low - centre, centre - high), 0.0);
         const float reach = gSpheres[k].from.w + pearl;
@@ -204,11 +299,18 @@ void collide(bool backward) {
         }
         const uint2 near = nearSpheres(first, end, low, high, root, step);
         if ((near.x | near.y) != 0u) {
-            EACH for (uint q = FIRST_FREE; q < POINTS; ++q)
-                touchSpheres(backward, q, first, end, near, root, step);
+            EACH for (uint q = FIRST_FREE; q < POINTS; ++q) {
+                const Touch touch = touchSpheres(backward, q, position(q), previous(q), position(q - 1), true, first, end,
+                                                 near, root, step);
+                if (touch.touched) {
+                    setPosition(q, touch.at);
+                    setPrevious(q, touch.before);
+                }
+            }
         }
     }
 }
+#endif
 void stageCollision() { collide(false); }
 void stageCollisionBack() { collide(true); }
 
@@ -223,7 +325,8 @@ void sweepPoint(uint p, float3 root, float step) {
         Contact contact;
         contact.centre = contact.step = contact.from = float3(0, 0, 0);
         contact.reach = 0.0;
-        [loop] for (uint k = 0; k < gFrame.sphereCount; ++k) {
+        EACH_SPHERE(0, gFrame.sphereCount) {
+            const uint k = SPHERE_BEFORE(gFrame.sphereCount);
             const float3 centre = sphereCentre(k, step) - root;
             const float reach = gSpheres[k].from.w + pearl;
             const float3 relative = moved - gSpheres[k].step.xyz;
@@ -252,7 +355,7 @@ void sweepPoint(uint p, float3 root, float step) {
 void stageSweep() {
     const float step = float(gSubstep + 1);
     const float3 root = gRoot + gRootStep * step;
-    EACH for (uint p = FIRST_FREE; p < POINTS; ++p) sweepPoint(p, root, step);
+    FREE_POINTS(p) sweepPoint(p, root, step);
 }
 
 /// Penalty force: a spring of frequency penaltyFrequency from the point to its p_a on each sphere that it is
@@ -260,7 +363,7 @@ void stageSweep() {
 void stagePenalty() {
     const float step = float(gSubstep);
     const float3 root = gRoot + gRootStep * step;
-    EACH for (uint p = FIRST_FREE; p < POINTS; ++p) {
+    FREE_POINTS(p) {
         const float pearl = pearlAt(p);
         const float3 at = position(p);
         float3 way = float3(0, 0, 0);

@@ -4,13 +4,13 @@
 /// Slows motion relative to the moving root. First in a substep, so that it acts on velocity alone.
 void stageDamping() {
     const float lost = 1.0 - gFrame.velocityShare;
-    EACH for (uint p = FIRST_FREE; p < POINTS; ++p)
+    FREE_POINTS(p)
         setPrevious(p, previous(p) + (position(p) - previous(p) - gRootStep) * lost);
 }
 
 /// Position Verlet (Rünz 2012, Eq. 10).
 void stageVerlet() {
-    EACH for (uint p = FIRST_FREE; p < POINTS; ++p) {
+    FREE_POINTS(p) {
         const float3 here = position(p);
         const float3 from = here - gRootStep;
         setPosition(p, from + (here - previous(p)));
@@ -33,7 +33,7 @@ float3 takeKick(uint p, float3 moving) {
 /// Keeps where the substep starts, relative to the root at its end, and the displacement of the last one;
 /// that of a clamped point is its way in this substep. Forces are evaluated after the share `way` of it.
 void open(float way) {
-    EACH for (uint p = 0; p < POINTS; ++p) {
+    ALL_POINTS(p) {
         const float3 here = position(p);
         const float3 before = previous(p);
         const float3 moving = here - before;
@@ -48,7 +48,7 @@ void stageOpenHalfway() { open(0.5); }
 
 /// Explicit Euler (Eq. 7): the way of the old velocity.
 void stageExplicitEuler() {
-    EACH for (uint p = 0; p < POINTS; ++p) {
+    ALL_POINTS(p) {
         const float3 moving = rate(p);
         aim(p, start(p) + moving, moving + takeKick(p, moving));
     }
@@ -56,7 +56,7 @@ void stageExplicitEuler() {
 
 /// Drift-kick-drift: the second half drift after the kick halfway.
 void stageLeapfrog() {
-    EACH for (uint p = 0; p < POINTS; ++p) {
+    ALL_POINTS(p) {
         const float3 moving = rate(p);
         const float3 after = moving + takeKick(p, moving);
         aim(p, start(p) + (moving + after) * 0.5, after);
@@ -65,7 +65,7 @@ void stageLeapfrog() {
 
 /// Velocity Verlet (Eq. 12), first half kick and drift.
 void stageVerletDrift() {
-    EACH for (uint p = 0; p < POINTS; ++p) {
+    ALL_POINTS(p) {
         const float3 moving = rate(p);
         const float3 half_ = moving + takeKick(p, moving) * 0.5;
         aim(p, start(p) + half_, half_);
@@ -75,7 +75,7 @@ void stageVerletDrift() {
 /// Velocity Verlet: forces see where the constraints have put the points and the velocity predicted for the
 /// end of the step; `start` keeps it.
 void stageVerletAim() {
-    EACH for (uint p = 0; p < POINTS; ++p) {
+    ALL_POINTS(p) {
         const float3 place = position(p);
         const float3 half_ = place - previous(p);
         const float3 predicted = half_ + half_ - rate(p);
@@ -87,7 +87,7 @@ void stageVerletAim() {
 
 /// Velocity Verlet, second half kick.
 void stageVerletKick() {
-    EACH for (uint p = 0; p < POINTS; ++p)
+    ALL_POINTS(p)
         aim(p, position(p), rate(p) + takeKick(p, start(p)) * 0.5);
 }
 #endif
@@ -96,7 +96,7 @@ void stageVerletKick() {
 /// The classical Runge-Kutta method. With A_k what the forces give at slope k, the velocities are u, u + A₁/2,
 /// u + A₂/2 and u + A₃, so the places need only sums of A.
 void stageRungeKutta1() {
-    EACH for (uint p = 0; p < POINTS; ++p) {
+    ALL_POINTS(p) {
         const float3 moving = rate(p);
         const float3 added = takeKick(p, moving);
         setKick(p, added);
@@ -106,7 +106,7 @@ void stageRungeKutta1() {
     }
 }
 void stageRungeKutta2() {
-    EACH for (uint p = 0; p < POINTS; ++p) {
+    ALL_POINTS(p) {
         const float3 moving = rate(p), here = moving + kick(p) * 0.5;
         const float3 added = takeKick(p, here);
         setKick(p, added);
@@ -116,7 +116,7 @@ void stageRungeKutta2() {
     }
 }
 void stageRungeKutta3() {
-    EACH for (uint p = 0; p < POINTS; ++p) {
+    ALL_POINTS(p) {
         const float3 moving = rate(p), here = moving + kick(p) * 0.5;
         const float3 added = takeKick(p, here);
         setKick(p, added);
@@ -126,7 +126,7 @@ void stageRungeKutta3() {
     }
 }
 void stageRungeKutta4() {
-    EACH for (uint p = 0; p < POINTS; ++p) {
+    ALL_POINTS(p) {
         const float3 moving = rate(p);
         const float3 added = takeKick(p, moving + kick(p));
         aim(p, start(p) + moving + sum(p) * (1.0 / 6.0), moving + (sumRate(p) + added) * (1.0 / 6.0));

@@ -21,6 +21,44 @@ float3 actingGradient(int holding, float3 wanted, uint s, float inverse) {
     return dot(wanted, before) > 0.5 * dot(wanted, wanted) ? before : wanted;
 }
 
+#if HAIR_TENSIONS
+/// Keeps tension for the bending of the next substep. Slowly: what bending makes of it comes back a substep late. And
+/// no more than Verlet holds across a segment, by half of its limit. `weights` of the segment's ends together.
+void keepTension(uint s, float added, float size, float weights) {
+    const float most = 0.5 * size / weights;
+    setTension(s, clamp(tension(s) + added * gFrame.tensionShare, -most, most));
+}
+#endif
+
+/// Whether a segment is shorter than (1 − ε) or longer than (1 + ε) of its length.
+bool isWrong(float3 edge, float rest) {
+    const float low = rest * (1.0 - gFrame.maximalExtension), high = rest * (1.0 + gFrame.maximalExtension);
+    const float squared = dot(edge, edge);
+    return squared > high * high || squared < low * low;
+}
+
+/// The way that brings the outer end of a segment back to between both (Provot 1995, both ways).
+float3 bringBack(float3 edge, float rest) {
+    if (!isWrong(edge, rest)) return float3(0, 0, 0);
+    const float size = sqrt(dot(edge, edge));
+    const float bounded =
+        min(max(size, rest * (1.0 - gFrame.maximalExtension)), rest * (1.0 + gFrame.maximalExtension));
+    const bool flat = size < 1e-12;
+    return (flat ? float3(0, -bounded, 0) : edge * (bounded / (flat ? 1.0 : size))) - edge;
+}
+
+/// The move counts as velocity only where that slows the point relative to its root: it never adds energy.
+void takeMove(uint p, float3 move) {
+    const float3 here = position(p), before = previous(p);
+    const float3 moving = here - before - gRootStep;
+    const float braking = -dot(moving, move) / (dot(move, move) + 1e-30);
+    setPosition(p, here + move);
+    setPrevious(p, before + move * (1.0 - min(max(braking, 0.0), 1.0)));
+}
+
+#if HAIR_STORAGE == 3
+#include "shaders/simulation/lanes_length.hlsli"
+#else
 /// One Newton step on all length constraints ½(|e|²/l − l) = 0 of a strand together, or on their rates
 /// e·ė/l = 0; clamped points have infinite mass. The system is tridiagonal and is solved directly (after
 /// Goldenthal et al. 2007; with rates, RATTLE, Andersen 1983). Collapsed segments keep a diagonal of at least
@@ -65,16 +103,34 @@ void holdStrand(int holding) {
     EACH for (int t = int(POINTS) - 2; t >= FIRST_FREE - 1; --t) {
         lambda = right(t) + upAfter * lambda;
         upAfter = upper(t);
-        const float3 tension = work(t) * lambda;
-        const float3 move = (after - tension) * inverseMass(t + 1);
+        const float3 pull = work(t) * lambda;
+        const float3 move = (after - pull) * inverseMass(t + 1);
         if (holding == HOLD_RATES) {
             setPrevious(t + 1, previous(t + 1) - move);
         } else {
             setPosition(t + 1, position(t + 1) + move);
         }
-        after = tension;
+#if HAIR_TENSIONS
+        if (holding == HOLD_PLACES) keepTension(t, lambda, segmentLength(t), inverseMass(t) + inverseMass(t + 1));
+#endif
+        after = pull;
     }
 }
+
+/// Maximal extension, root to tip.
+void stageExtension() {
+    float3 parent = position(FIRST_FREE - 1);
+    EACH for (uint p = FIRST_FREE; p < POINTS; ++p) {
+        const float3 here = position(p), edge = here - parent;
+        parent = here;
+        if (isWrong(edge, segmentLength(p - 1))) {
+            const float3 move = bringBack(edge, segmentLength(p - 1));
+            takeMove(p, move);
+            parent = here + move;
+        }
+    }
+}
+#endif
 
 void stageLength() {
     [loop] for (uint n = 0; n < gFrame.lengthIterations; ++n) holdStrand(HOLD_PLACES);
@@ -83,30 +139,3 @@ void stageLengthNow() {
     [loop] for (uint n = 0; n < gFrame.lengthIterations; ++n) holdStrand(HOLD_PLACES_NOW);
 }
 void stageLengthRate() { holdStrand(HOLD_RATES); }
-
-/// Root to tip, brings segments back to between (1 − ε) and (1 + ε) of their length (Provot 1995, both ways).
-/// The move counts as velocity only where that slows the point relative to its root: it never adds energy.
-void stageExtension() {
-    float3 parent = position(FIRST_FREE - 1);
-    EACH for (uint p = FIRST_FREE; p < POINTS; ++p) {
-        const float3 here = position(p);
-        const float3 edge = here - parent;
-        const float rest = segmentLength(p - 1);
-        const float low = rest * (1.0 - gFrame.maximalExtension), high = rest * (1.0 + gFrame.maximalExtension);
-        const float squared = dot(edge, edge);
-        parent = here;
-        if (squared > high * high || squared < low * low) {
-            const float size = sqrt(squared);
-            const float bounded = min(max(size, low), high);
-            const float3 fixedEdge =
-                size < 1e-12 ? float3(0, -bounded, 0) : edge * (bounded / (size < 1e-12 ? 1.0 : size));
-            const float3 move = fixedEdge - edge;
-            const float3 before = previous(p);
-            const float3 moving = here - before - gRootStep;
-            const float braking = -dot(moving, move) / (dot(move, move) + 1e-30);
-            parent = here + move;
-            setPosition(p, parent);
-            setPrevious(p, before + move * (1.0 - min(max(braking, 0.0), 1.0)));
-        }
-    }
-}

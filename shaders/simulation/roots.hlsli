@@ -13,7 +13,7 @@ void enterFrame() {
     // A cut carries the strand along rigidly.
     if (!(dot(way, way) <= gFrame.teleportDistance * gFrame.teleportDistance)) {
         const float4 turn = multiply(rotationTo, conjugate(rotationFrom));
-        EACH for (uint p = 0; p < POINTS; ++p) {
+        ALL_POINTS(p) {
             setPosition(p, rotate(turn, position(p)));
             setPrevious(p, rotate(turn, previous(p)));
 #if HAIR_CURVES
@@ -43,15 +43,17 @@ void stageRoots() {
     const float4 now = mixed * (1.0 / sqrt(dot(mixed, mixed)));
     gTurn = multiply(now, conjugate(gRotation));
     gRotation = now;
-    setPrevious(0, -gRootStep);
+    ONLY_POINT(0) setPrevious(0, -gRootStep);
 #if HAIR_CLAMPED > 1
-    setPrevious(1, position(1) - gRootStep);
-    setPosition(1, rotate(now, restVector(0)));
+    ONLY_POINT(1) {
+        setPrevious(1, position(1) - gRootStep);
+        setPosition(1, rotate(now, rootSegment()));
+    }
 #endif
 }
 
 /// The speed stays when the length of the substep changes.
 void rescaleMotion() {
-    EACH for (uint p = 0; p < POINTS; ++p)
+    ALL_POINTS(p)
         setPrevious(p, position(p) - (position(p) - previous(p)) * gFrame.rescale);
 }

@@ -18,6 +18,9 @@ namespace hairloom::shaders {
 /// In a tank: the curves of the strand are void.
 #define HAIRLOOM_NO_CURVE (-1.0)
 
+/// As many work groups as a dispatch has along one axis.
+#define HAIRLOOM_GROUP_ROW 65535
+
 struct SimulationConstants {
     uint slots;     ///< strands of the batch, with those that fill the last block
     uint substeps;  ///< per frame
@@ -43,8 +46,11 @@ struct SimulationConstants {
     float slowSquared;       ///< square metres in a substep; slower strands rest
     float sleepDelay;        ///< seconds
     float slowSweep;         ///< metres in a substep; slower points cannot pass a sphere unseen
-    float4 gravityStep;      ///< g h², w unused
-    float4 wind;             ///< mean velocity, m/s; w: strength of gusts
+    float tensionShare;      ///< of a substep's change of tension that bending takes on
+    uint groups;             ///< work groups of the batch, in rows of HAIRLOOM_GROUP_ROW
+    float unused0, unused1;
+    float4 gravityStep;                          ///< g h², w unused
+    float4 wind;                                 ///< mean velocity, m/s; w: strength of gusts
     float4 windAmplitudes[HAIRLOOM_WIND_MODES];  ///< m/s; w: phase at the start of the frame, turns
     float4 windWaves[HAIRLOOM_WIND_MODES];       ///< turns per metre; w: phase at the end of the frame
 };
@@ -56,9 +62,9 @@ struct SphereConstants {
 };
 
 #ifdef __cplusplus
-static_assert(offsetof(SimulationConstants, h) == 28 && offsetof(SimulationConstants, gravityStep) == 96);
-static_assert(offsetof(SimulationConstants, windWaves) == 128 + 16 * HAIRLOOM_WIND_MODES);
-static_assert(sizeof(SimulationConstants) == 128 + 32 * HAIRLOOM_WIND_MODES);
+static_assert(offsetof(SimulationConstants, h) == 28 && offsetof(SimulationConstants, gravityStep) == 112);
+static_assert(offsetof(SimulationConstants, windWaves) == 144 + 16 * HAIRLOOM_WIND_MODES);
+static_assert(sizeof(SimulationConstants) == 144 + 32 * HAIRLOOM_WIND_MODES);
 static_assert(sizeof(SphereConstants) == 32);
 }  // namespace hairloom::shaders
 #endif

@@ -1,6 +1,17 @@
 // SPDX-License-Identifier: MIT
 // Coil and flexion springs, and maximal extension by velocities.
 
+/// The impulse along a segment that would leave its bounds; `weights` of its ends together.
+float3 limitImpulse(float3 way, float rest, float weights) {
+    const Direction edge = edgeOf(way);
+    const float wrong = edge.size - min(max(edge.size, rest * (1.0 - gFrame.maximalExtension)),
+                                        rest * (1.0 + gFrame.maximalExtension));
+    return edge.unit * (wrong / weights);
+}
+
+#if HAIR_STORAGE == 3
+#include "shaders/simulation/lanes_springs.hlsli"
+#else
 /// Coil springs (Rünz 2012, Eq. 3; the whole force on each end), k h² the harmonic mean of the masses of the
 /// ends times (ω h)².
 void stageSprings() {
@@ -36,16 +47,13 @@ void stageFlexion() {
 void stageSpringLimit() {
     [loop] for (uint n = 0; n < gFrame.lengthIterations; ++n) {
         EACH for (uint p = FIRST_FREE; p < POINTS; ++p) {
-            const float rest = segmentLength(p - 1);
             const float3 from = position(p - 1), to = position(p);
-            const Direction edge = edgeOf(to - from);
-            const float wrong = edge.size - min(max(edge.size, rest * (1.0 - gFrame.maximalExtension)),
-                                                rest * (1.0 + gFrame.maximalExtension));
             const float outer = inverseMass(p);
             const float inner = p > FIRST_FREE ? inverseMass(p - 1) : 0.0;
-            const float3 impulse = edge.unit * (wrong / (outer + inner));
+            const float3 impulse = limitImpulse(to - from, segmentLength(p - 1), outer + inner);
             setPosition(p, to - impulse * outer);
             if (p > FIRST_FREE) setPosition(p - 1, from + impulse * inner);
         }
     }
 }
+#endif

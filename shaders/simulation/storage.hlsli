@@ -3,7 +3,8 @@
 // so that neighbouring threads read neighbouring floats. Between the substeps of a frame a strand lives
 //   HAIR_STORAGE 0: in arrays of its thread (registers where HAIR_UNROLL makes all indices constant),
 //   HAIR_STORAGE 1: position and previous in the memory of the work group, the rest as 0,
-//   HAIR_STORAGE 2: in the buffers, for strands too long for either.
+//   HAIR_STORAGE 2: in the buffers, for strands too long for either,
+//   HAIR_STORAGE 3: each point in a thread of its own, see lanes.hlsli.
 //
 // Positions are relative to the strand's root; `previous` is the position one substep ago relative to the root
 // of now, so position − previous is the displacement in the world. Forces add a·h² to it by taking it from
@@ -15,9 +16,9 @@ StructuredBuffer<float4> gRest : register(t0);       // rest vector of the segme
 StructuredBuffer<float2> gSegments : register(t1);   // that length, the point's inverse mass
 StructuredBuffer<uint2> gBlocks : register(t4);      // points of each strand of a work group, strands
 StructuredBuffer<uint> gFirstPoints : register(t5);  // place in the caller's order
-StructuredBuffer<float4> gRootsTo : register(t6);    // position, rotation at the end of the frame
+StructuredBuffer<float4> gRootsTo : register(t6);    // position, 1 where it moves; rotation at the end of the frame
 
-RWStructuredBuffer<float> gState : register(u0);     // position x y z, previous x y z
+RWStructuredBuffer<float> gState : register(u0);     // position x y z, previous x y z, tension
 RWStructuredBuffer<float> gRoots : register(u1);     // position, rotation at the end of the last frame
 RWStructuredBuffer<uint> gReport : register(u3);     // see the indices below
 RWStructuredBuffer<float4> gPlaces : register(u4);   // world, in the caller's order, w 1
@@ -48,6 +49,9 @@ RWStructuredBuffer<float> gTanks : register(u6);     // tank, greatest squared s
 #if HAIR_SLEEP
 RWStructuredBuffer<float> gRests : register(u2);     // per work group: seconds at rest, 1 when asleep
 #endif
+#if HAIR_SLEEP && HAIR_STORAGE == 3
+RWStructuredBuffer<uint> gGathered : register(u8);   // per block: work groups done, fastest, restored, unused
+#endif
 #if HAIR_VELOCITIES
 RWStructuredBuffer<float4> gVelocities : register(HAIR_VELOCITIES_REGISTER);  // m/s, in the caller's order
 #endif
@@ -66,6 +70,12 @@ static uint gPointCount;
 #define EACH [loop]
 #endif
 #define FIRST_FREE HAIR_CLAMPED
+#if HAIR_STORAGE != 3
+// What concerns each point of a strand, whoever it is done by.
+#define ALL_POINTS(p) EACH for (uint p = 0; p < POINTS; ++p)
+#define FREE_POINTS(p) EACH for (uint p = FIRST_FREE; p < POINTS; ++p)
+#define ONLY_POINT(n)
+#endif
 
 /// What the strand goes through in the frame.
 static float3 gRoot;        // at the start of the frame, world
@@ -93,6 +103,10 @@ BUFFER_ARRAY(float3, savedPrevious, savePrevious, gState, 3)
 #if HAIR_CURVES
 BUFFER_ARRAY(float3, savedCurve, saveCurve, gCurves, 0)
 #endif
+#if HAIR_TENSIONS
+float savedTension(uint p) { return gState[slotOf(6, p)]; }
+void saveTension(uint p, float v) { gState[slotOf(6, p)] = v; }
+#endif
 
 #if HAIR_STORAGE == 2
 #define position savedPosition
@@ -101,12 +115,16 @@ BUFFER_ARRAY(float3, savedCurve, saveCurve, gCurves, 0)
 #define setPrevious savePrevious
 #define curve savedCurve
 #define setCurve saveCurve
+#define tension savedTension
+#define setTension saveTension
 RWStructuredBuffer<float> gScratch : register(u7);
 #define SCRATCH_ARRAY(get, put, name, plane) BUFFER_ARRAY(float3, get, put, gScratch, plane)
 float upper(uint p) { return gScratch[slotOf(3, p)]; }
 void setUpper(uint p, float v) { gScratch[slotOf(3, p)] = v; }
 float right(uint p) { return gScratch[slotOf(4, p)]; }
 void setRight(uint p, float v) { gScratch[slotOf(4, p)] = v; }
+#elif HAIR_STORAGE == 3
+#include "shaders/simulation/lanes.hlsli"
 #else
 #if HAIR_STORAGE == 1
 groupshared float gShared[6 * HAIR_POINTS * HAIRLOOM_GROUP_STRANDS];
@@ -123,13 +141,20 @@ LOCAL_ARRAY(float3, previous, setPrevious, gPreviouses)
 #if HAIR_CURVES
 LOCAL_ARRAY(float3, curve, setCurve, gCurve)
 #endif
+#if HAIR_TENSIONS
+LOCAL_ARRAY(float, tension, setTension, gTension)
+#endif
 #define SCRATCH_ARRAY(get, put, name, plane) LOCAL_ARRAY(float3, get, put, name)
 LOCAL_ARRAY(float, upper, setUpper, gUpper)
 LOCAL_ARRAY(float, right, setRight, gRight)
 #endif
 
-/// Pulls of angular springs, and tension of segments: never both at once.
+#if HAIR_STORAGE != 3
+/// Pulls of angular springs, and what holds segments: never both at once.
 SCRATCH_ARRAY(work, setWork, gWork, 0)
+void tellPositions() {}
+float3 toldPosition(uint p) { return position(p); }
+#endif
 // Of integrators that evaluate forces elsewhere than at the last place; displacements in one substep but for
 // `start`, a place.
 #if HAIR_EVALUATION >= 1
@@ -155,4 +180,21 @@ float stiffness(uint p) { return gFactors[slotOf(0, p)].w; }
 #endif
 #if HAIR_TARGETS
 float3 target(uint p) { return gTargets[slotOf(0, p)].xyz; }
+#endif
+#if HAIR_STORAGE == 3
+float3 rootSegment() { return gRootSegment; }
+float rootInverseLength() { return gRootInverseLength; }
+#else
+float3 rootSegment() { return restVector(0); }
+float rootInverseLength() { return inverseLength(0); }
+#endif
+#if HAIR_TARGETS
+/// The normal that the root carries.
+float3 normalAtRest() {
+#if HAIR_STORAGE == 3
+    return gNormalAtRest;
+#else
+    return target(POINTS - 1);
+#endif
+}
 #endif

@@ -4,11 +4,14 @@
 #define HAIR_EXACT 1
 #define HAIR_UNROLL 1
 #define HAIR_STORAGE 0
+#define HAIR_STRANDS 32
 #define HAIR_CLAMPED 2
 #define HAIR_EVALUATION 0
 #define HAIR_BEND 2
 #define HAIR_TARGETS 1
 #define HAIR_CURVES 1
+#define HAIR_TENSIONS 1
+#define HAIR_COUPLED 0
 #define HAIR_SPHERES 1
 #define HAIR_WIND 1
 #define HAIR_SLEEP 1

@@ -82,7 +82,8 @@ inline void addStrands(Scene& scene, Hair hair, std::uint32_t count, std::span<c
 
 /// Moves every point of the state off its rest place and gives it a speed. Nasty states have points in one
 /// place, folds by 180° and a point that flies at 500 m/s.
-inline void disturb(Scene& scene, Hair hair, Dice& dice) {
+/// Others are off by up to `most` metres along each axis, and move in proportion, at 3 m/s for 2 mm.
+inline void disturb(Scene& scene, Hair hair, Dice& dice, float most = 0.002f) {
     runtime::State& state = scene.state;
     for (const runtime::Block& block : scene.shape->blocks) {
         const std::size_t size = planeSize(block);
@@ -92,8 +93,8 @@ inline void disturb(Scene& scene, Hair hair, Dice& dice) {
                 const std::size_t i = std::size_t{p} * runtime::kBlockLanes + lane;
                 const std::size_t source = lane < block.strands ? lane : block.strands - 1;
                 const std::size_t from = std::size_t{p} * runtime::kBlockLanes + source;
-                Float3 shift = dice.inside(hair == Hair::nasty ? 0.01f : 0.002f);
-                Float3 moved = dice.inside(3.0f * kStep);
+                Float3 shift = dice.inside(hair == Hair::nasty ? 0.01f : most);
+                Float3 moved = dice.inside(3.0f * kStep * most / 0.002f);
                 const bool odd = hair == Hair::nasty && p > 2;
                 for (std::size_t k = 0; k < 3; ++k) {
                     float& place = planes[k * size + i];
@@ -117,7 +118,7 @@ inline void disturb(Scene& scene, Hair hair, Dice& dice) {
 
 /// A scene of 64 strands whose roots move and turn, about three spheres of which one moves.
 inline Scene makeScene(const runtime::SimulationSettings& settings, Hair hair, std::uint32_t seed,
-                       std::span<const std::uint32_t> points) {
+                       std::span<const std::uint32_t> points, float most = 0.002f) {
     Scene scene;
     scene.settings = settings;
     Dice dice(seed);
@@ -142,7 +143,7 @@ inline Scene makeScene(const runtime::SimulationSettings& settings, Hair hair, s
             runtime::placeAtRest(shape, state, b, lane);
         }
     }
-    disturb(scene, hair, dice);
+    disturb(scene, hair, dice, most);
     scene.spheres = {
         {{0.0f, -0.05f, 0.0f}, 0.06f}, {{0.05f, -0.1f, 0.02f}, 0.05f}, {{-0.1f, 0.0f, 0.0f}, 0.03f}};
     state.spheres = scene.spheres;
@@ -169,7 +170,9 @@ struct CpuFrame {
         outlook.longestPointCount = shape.longestPointCount;
         outlook.longestStrand = shape.longestStrand;
         outlook.straight = shape.straight;
-        outlook.couples = false;
+        outlook.sharpestCurl = shape.sharpestCurl;
+        outlook.unevenness = shape.unevenness;
+        outlook.substep = kStep;
         outlook.rootsMin_ws = {-1.0f, -1.0f, -1.0f};
         outlook.rootsMax_ws = {1.0f, 1.0f, 1.0f};
         outlook.fastest = std::numeric_limits<float>::infinity();
@@ -219,6 +222,7 @@ inline runtime::State runOnCpu(const Scene& scene) {
     runtime::Bend bend;
     bend.factored = frame.plan.factored();
     bend.targets = frame.plan.on(runtime::Effect::torsion);
+    bend.coupled = frame.plan.on(runtime::Effect::coupling);
     if (frame.plan.on(runtime::Effect::angular))
         bend.planes.assign(shape.planeFloats * bend.planeCount(), 0.0f);
     if (frame.plan.keepsCurves()) {
@@ -226,6 +230,7 @@ inline runtime::State runOnCpu(const Scene& scene) {
         state.tanks.assign(shape.blocks.size() * runtime::kBlockLanes, runtime::kNoCurve);
         state.motions.assign(shape.blocks.size() * runtime::kBlockLanes, 0.0f);
     }
+    if (frame.plan.keepsTensions()) state.tensions.assign(shape.planeFloats, 0.0f);
     runtime::Floats evaluation(shape.planeFloats * runtime::kRungeKuttaPlanes, 0.0f);
     if (scene.settings.integrator == runtime::Integrator::verlet) evaluation.clear();
     for (std::size_t b = 0; b < shape.blocks.size(); ++b) {

@@ -74,8 +74,9 @@ SimulationSettings withoutAll() {
 }
 
 TEST_F(Permutation, WhatIsOffHasNoBufferAndIsNotRead) {
-    const std::vector<std::string> ofEffects{"angular springs", "rest directions", "curves", "tanks", "rests",
-                                             "spheres",         "waking spheres",  "scratch"};
+    const std::vector<std::string> ofEffects{"angular springs", "rest directions", "curves",
+                                             "tanks",           "rests",           "spheres",
+                                             "waking spheres",  "scratch",         "gathered"};
     StrandEngine engine = engineOf(strands.view(), withoutAll(), options());
     const std::vector<std::string> used = usedBy(engine);
     EXPECT_THAT(used, IsSupersetOf({"state", "roots", "places"}));
@@ -129,8 +130,11 @@ TEST_F(Permutation, KernelsOfTheProgramAreThoseOfDefaultPlans) {
         for (const std::size_t spheres : {0u, 1u}) {
             scene.settings.windSpeed = wind;
             scene.spheres = {&sphere, spheres};
-            const BatchShape shape{16, true, true, StrandStorage::threads};
-            asked.push_back(keyFor(runtime::plan(scene), scene.settings, shape, spheres, false).defines());
+            const BatchShape threads{16, true, true, StrandStorage::threads};
+            asked.push_back(keyFor(runtime::plan(scene), scene.settings, threads, spheres, false).defines());
+            if (device()->info().backend == gpu::Backend::Direct3D11) continue;
+            const BatchShape lanes{16, true, true, StrandStorage::lanes, 2};
+            asked.push_back(keyFor(runtime::plan(scene), scene.settings, lanes, spheres, false).defines());
         }
     }
     std::vector<std::string> built;
@@ -236,7 +240,7 @@ TEST_F(Permutation, ConstantsArriveWhereTheyAreRead) {
     const auto input =
         makeBuffer<shaders::SphereConstants>(*device(), "two spheres", gpu::Usage::ShaderRead, 2, spheres)
             .value();
-    constexpr std::size_t kResults = 22;
+    constexpr std::size_t kResults = 23;
     const std::vector<shaders::float4> nothing(kResults);
     const auto output =
         makeBuffer<shaders::float4>(*device(), "results", gpu::Usage::UnorderedAccess, kResults, nothing)

@@ -14,12 +14,13 @@ void main() {
     gResults[3] = float4(gFrame.springStep, gFrame.penaltyStep, gFrame.bendRate, gFrame.maximalExtension);
     gResults[4] = float4(gFrame.pearlRoot, gFrame.pearlTip, gFrame.friction, gFrame.restitution);
     gResults[5] = float4(gFrame.teleportDistance, gFrame.slowSquared, gFrame.sleepDelay, gFrame.slowSweep);
-    gResults[6] = gFrame.gravityStep;
-    gResults[7] = gFrame.wind;
+    gResults[6] = float4(gFrame.tensionShare, asfloat(gFrame.groups), gFrame.unused0, gFrame.unused1);
+    gResults[7] = gFrame.gravityStep;
+    gResults[8] = gFrame.wind;
     for (uint m = 0; m < HAIRLOOM_WIND_MODES; ++m) {
-        gResults[8 + m] = gFrame.windAmplitudes[m];
-        gResults[8 + HAIRLOOM_WIND_MODES + m] = gFrame.windWaves[m];
+        gResults[9 + m] = gFrame.windAmplitudes[m];
+        gResults[9 + HAIRLOOM_WIND_MODES + m] = gFrame.windWaves[m];
     }
-    gResults[20] = gSpheres[1].from;
-    gResults[21] = gSpheres[1].step;
+    gResults[21] = gSpheres[1].from;
+    gResults[22] = gSpheres[1].step;
 }

@@ -41,12 +41,18 @@ class WholeRun : public GpuSimulationTest {
     }
 };
 
+class EachLayout : public WholeRun, public testing::WithParamInterface<StrandStorage> {};
+INSTANTIATE_TEST_SUITE_P(Layouts, EachLayout, testing::Values(StrandStorage::threads, StrandStorage::lanes),
+                         [](const auto& instance) {
+                             return instance.param == StrandStorage::lanes ? "lanes" : "threads";
+                         });
+
 /// Every effect on a head of hair that turns. Contacts amplify rounding, so that single points part; the hair
 /// as a whole does not, and no bound is broken.
-TEST_F(WholeRun, EveryEffectStaysWithTheCpu) {
+TEST_P(EachLayout, EveryEffectStaysWithTheCpu) {
     const scenes::HeadOfHair head(64, 16);
     const SimulationSettings settings = scenes::settingsFor(scenes::Acting::windAndSpheres);
-    StrandEngine gpu = engineOf(head.view(), settings, options());
+    StrandEngine gpu = engineOf(head.view(), settings, options(GetParam()));
     runtime::Engine cpu = *runtime::Engine::make(head.view(), settings).engine;
     std::vector<RootFrame> roots;
     head.placeRoots(0.0, roots);
@@ -71,7 +77,6 @@ TEST_F(WholeRun, EveryEffectStaysWithTheCpu) {
         EXPECT_LE(farthest(positionsOf(gpu), onCpu), 1e-3);
     }
     cpu.readPositions(onCpu);
-    // The engine's bending knows the tension of the strand, the device's does not.
     EXPECT_LE(meanDistance(positionsOf(gpu), onCpu), 2e-3);
     EXPECT_NEAR(energyGpu, energyCpu, 0.05 * energyCpu);
 }
@@ -83,7 +88,8 @@ TEST_F(WholeRun, LayoutsAgree) {
     std::vector<Float3> first;
     for (const LayoutOptions layout :
          {LayoutOptions{StrandStorage::threads, false}, LayoutOptions{StrandStorage::threads, true},
-          LayoutOptions{StrandStorage::groups, false}, LayoutOptions{StrandStorage::buffers, false}}) {
+          LayoutOptions{StrandStorage::groups, false}, LayoutOptions{StrandStorage::buffers, false},
+          LayoutOptions{StrandStorage::lanes, false, 4}}) {
         EngineOptions options;
         options.layout = layout;
         options.velocities = layout.unroll;
@@ -115,8 +121,9 @@ TEST_F(WholeRun, ManyPointCountsAndFrameTimes) {
     test::addStrands(scene, test::Hair::curled, 70, kPoints, dice);
     SimulationSettings settings;
     settings.substeps = 2;
-    // These strands' uneven segments would be solved as coupled systems on the CPU.
-    settings.angularStiffness = 0.0f;
+    // Uneven segments: bending and lengths are solved as one system, which multiplies what rounding makes of
+    // lengths by 2,000 and more.
+    settings.angularStiffness = 0.3f;
     StrandEngine gpu = engineOf(scene.view(), settings, options());
     runtime::Engine cpu = *runtime::Engine::make(scene.view(), settings).engine;
     std::vector<RootFrame> roots;
@@ -132,7 +139,7 @@ TEST_F(WholeRun, ManyPointCountsAndFrameTimes) {
     }
     std::vector<Float3> onCpu(cpu.pointCount());
     cpu.readPositions(onCpu);
-    EXPECT_LE(farthest(positionsOf(gpu), onCpu), 2e-5);
+    EXPECT_LE(farthest(positionsOf(gpu), onCpu), 1e-3);
 }
 
 /// A hinged strand without damping swings as the double-precision reference says.
@@ -164,7 +171,7 @@ TEST_F(WholeRun, SwingsAsTheReferenceSays) {
 }
 
 /// Hair at rest falls asleep and stays as it is; a sphere or a root that moves wakes it, and only near it.
-TEST_F(WholeRun, SleepsAndWakes) {
+TEST_P(EachLayout, SleepsAndWakes) {
     StrandSet strands;
     for (int s = 0; s < 64; ++s) {
         // Two blocks, a metre apart.
@@ -173,7 +180,7 @@ TEST_F(WholeRun, SleepsAndWakes) {
     }
     SimulationSettings s;
     s.sleepDelay = 0.1f;
-    StrandEngine engine = engineOf(strands.view(), s, options());
+    StrandEngine engine = engineOf(strands.view(), s, options(GetParam()));
     std::vector<RootFrame> roots = strands.roots();
     std::vector<runtime::Sphere> spheres{{{0.0f, 0.0f, 0.0f}, 0.017f}};
     const auto frame = [&] { ASSERT_TRUE(engine.step({kFrame, 0.0, roots, spheres})); };
@@ -192,15 +199,14 @@ TEST_F(WholeRun, SleepsAndWakes) {
     EXPECT_EQ(engine.report()->asleep, 32u);
     EXPECT_EQ(engine.measure()->asleep, 32u);
 }
-
 /// A cut carries strands along rigidly; what is no number goes back to rest and is counted, and roots,
 /// spheres and winds that are none are left out.
-TEST_F(WholeRun, CutsAndLostStrands) {
+TEST_P(EachLayout, CutsAndLostStrands) {
     StrandSet strands = tuft(6);
     SimulationSettings s;
     s.gravity = {};
     s.restGravity = 0.0f;
-    StrandEngine engine = engineOf(strands.view(), s, options());
+    StrandEngine engine = engineOf(strands.view(), s, options(GetParam()));
     std::vector<RootFrame> roots = strands.roots();
     ASSERT_TRUE(engine.step({kFrame, 0.0, roots, {}}));
     const std::vector<Float3> before = positionsOf(engine);
@@ -226,7 +232,6 @@ TEST_F(WholeRun, CutsAndLostStrands) {
     const std::vector<Float3> restored = positionsOf(engine);
     EXPECT_LE(farthest(restored, after), 1e-4);
 }
-
 /// Equal input, equal bits; and a state that was read goes on as if nothing had been.
 TEST_F(WholeRun, StatesCanBeTakenAndPutBack) {
     const scenes::HeadOfHair head(40, 5);

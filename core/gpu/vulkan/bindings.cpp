@@ -28,6 +28,10 @@ Result<Binding> CommandListImpl::stageConstants(std::uint32_t slot, std::span<co
 
 Result<VkDescriptorSet> CommandListImpl::allocateSet(VkDescriptorSetLayout layout) {
     Recording& r = *recording_;
+    if (setsLeft_ == 0 && r.descriptorPoolsUsed < r.descriptorPools.size()) {
+        ++r.descriptorPoolsUsed;
+        setsLeft_ = kSetsPerPool;
+    }
     if (setsLeft_ == 0) {
         constexpr VkDescriptorPoolSize kSizes[] = {
             {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 4 * kSetsPerPool},
@@ -45,10 +49,11 @@ Result<VkDescriptorSet> CommandListImpl::allocateSet(VkDescriptorSetLayout layou
         const VkResult result = vkCreateDescriptorPool(r.context->device, &info, nullptr, &pool);
         if (result != VK_SUCCESS) return r.context->failed(result, "binding resources");
         r.descriptorPools.push_back(pool);
+        ++r.descriptorPoolsUsed;
         setsLeft_ = kSetsPerPool;
     }
     auto info = make<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
-    info.descriptorPool = r.descriptorPools.back();
+    info.descriptorPool = r.descriptorPools[r.descriptorPoolsUsed - 1];
     info.descriptorSetCount = 1;
     info.pSetLayouts = &layout;
     VkDescriptorSet set = VK_NULL_HANDLE;

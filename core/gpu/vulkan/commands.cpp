@@ -29,27 +29,26 @@ VkBufferImageCopy wholeImage(const TextureImpl& texture, std::uint64_t bufferOff
 }  // namespace
 
 Recording::~Recording() {
+    vkDestroyFence(context->device, fence, nullptr);
     for (VkDescriptorPool p : descriptorPools) vkDestroyDescriptorPool(context->device, p, nullptr);
     vkDestroyQueryPool(context->device, queries, nullptr);
     vkDestroyCommandPool(context->device, pool, nullptr);
 }
 
-Result<std::unique_ptr<CommandListImpl>> CommandListImpl::create(const ContextPtr& context,
-                                                                 std::function<void()> onClose) {
-    auto recording = std::make_unique<Recording>(context);
+Result<std::unique_ptr<Recording>> Recording::create(const ContextPtr& context) {
+    std::unique_ptr<Recording> recording(new Recording(context));
+    const auto fence = make<VkFenceCreateInfo>(VK_STRUCTURE_TYPE_FENCE_CREATE_INFO);
+    VkResult r = vkCreateFence(context->device, &fence, nullptr, &recording->fence);
+    if (r != VK_SUCCESS) return context->failed(r, "creating a command list");
     auto pool = make<VkCommandPoolCreateInfo>(VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO);
     pool.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
     pool.queueFamilyIndex = context->queueFamily;
-    VkResult r = vkCreateCommandPool(context->device, &pool, nullptr, &recording->pool);
+    r = vkCreateCommandPool(context->device, &pool, nullptr, &recording->pool);
     if (r != VK_SUCCESS) return context->failed(r, "creating a command list");
     auto info = make<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
     info.commandPool = recording->pool;
     info.commandBufferCount = 1;
     r = vkAllocateCommandBuffers(context->device, &info, &recording->commands);
-    if (r != VK_SUCCESS) return context->failed(r, "creating a command list");
-    auto begin = make<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
-    begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-    r = vkBeginCommandBuffer(recording->commands, &begin);
     if (r != VK_SUCCESS) return context->failed(r, "creating a command list");
     if (context->info.timestampPeriodNs > 0) {
         auto query = make<VkQueryPoolCreateInfo>(VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO);
@@ -57,13 +56,50 @@ Result<std::unique_ptr<CommandListImpl>> CommandListImpl::create(const ContextPt
         query.queryCount = 2 * kMaxPasses;
         r = vkCreateQueryPool(context->device, &query, nullptr, &recording->queries);
         if (r != VK_SUCCESS) return context->failed(r, "creating a command list");
-        vkCmdResetQueryPool(recording->commands, recording->queries, 0, 2 * kMaxPasses);
     }
-    return std::unique_ptr<CommandListImpl>(new CommandListImpl(std::move(recording), std::move(onClose)));
+    return recording;
+}
+
+Status Recording::reset() {
+    retained.clear();
+    passNames.clear();
+    descriptorPoolsUsed = 0;
+    VkResult r = vkResetFences(context->device, 1, &fence);
+    if (r == VK_SUCCESS) r = vkResetCommandPool(context->device, pool, 0);
+    for (VkDescriptorPool p : descriptorPools) {
+        if (r == VK_SUCCESS) r = vkResetDescriptorPool(context->device, p, 0);
+    }
+    if (r != VK_SUCCESS) return context->failed(r, "reusing a command list");
+    return {};
+}
+
+Result<std::unique_ptr<Recording>> RecordingStore::take() {
+    if (idle_.empty()) return Recording::create(context_);
+    auto recording = std::move(idle_.back());
+    idle_.pop_back();
+    return recording;
+}
+
+void RecordingStore::giveBack(std::unique_ptr<Recording> recording) {
+    // A device that is lost gets no more work.
+    if (recording->reset()) idle_.push_back(std::move(recording));
+}
+
+Result<std::unique_ptr<CommandListImpl>> CommandListImpl::create(RecordingStore& store,
+                                                                 std::function<void()> onClose) {
+    auto recording = store.take();
+    if (!recording) return tl::unexpected(recording.error());
+    auto begin = make<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
+    begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+    const VkResult r = vkBeginCommandBuffer((*recording)->commands, &begin);
+    if (r != VK_SUCCESS) return (*recording)->context->failed(r, "creating a command list");
+    return std::unique_ptr<CommandListImpl>(new CommandListImpl(std::move(*recording), std::move(onClose)));
 }
 
 CommandListImpl::CommandListImpl(std::unique_ptr<Recording> recording, std::function<void()> onClose)
-    : recording_(std::move(recording)), onClose_(std::move(onClose)) {}
+    : recording_(std::move(recording)), onClose_(std::move(onClose)) {
+    arena_.buffer = recording_->arena;
+}
 
 CommandListImpl::~CommandListImpl() {
     if (onClose_) onClose_();
@@ -79,6 +115,7 @@ Result<CommandListImpl::Staged> CommandListImpl::stage(std::span<const std::byte
         auto buffer = BufferImpl::create(recording_->context, desc, MemoryUse::Upload);
         if (!buffer) return tl::unexpected(buffer.error());
         recording_->retained.push_back(*buffer);
+        if (recording_->arena == nullptr && desc.size == kArenaBytes) recording_->arena = *buffer;
         arena_.buffer = *buffer;
         arenaUsed_ = 0;
     }
@@ -92,6 +129,7 @@ Result<CommandListImpl::Staged> CommandListImpl::stage(std::span<const std::byte
 void CommandListImpl::writeTimestamp(bool end) {
     if (recording_->queries == VK_NULL_HANDLE) return;
     const auto query = static_cast<std::uint32_t>(2 * (recording_->passNames.size() - 1) + (end ? 1 : 0));
+    if (!end) vkCmdResetQueryPool(recording_->commands, recording_->queries, query, 2);
     vkCmdWriteTimestamp2(recording_->commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, recording_->queries,
                          query);
 }

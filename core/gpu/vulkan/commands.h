@@ -9,18 +9,43 @@ namespace hairloom::gpu::vulkan {
 
 /// What one list owns until the device has run it.
 struct Recording {
-    explicit Recording(ContextPtr c) : context(std::move(c)) {}
+    /// Errors: out of memory.
+    static Result<std::unique_ptr<Recording>> create(const ContextPtr& context);
     ~Recording();
     Recording(const Recording&) = delete;
     Recording& operator=(const Recording&) = delete;
 
+    /// Forgets what was recorded and keeps the pools; the device has run it.
+    Status reset();
+
     ContextPtr context;
+    VkFence fence = VK_NULL_HANDLE;  ///< of the submission that ends with it
     VkCommandPool pool = VK_NULL_HANDLE;
     VkCommandBuffer commands = VK_NULL_HANDLE;
     VkQueryPool queries = VK_NULL_HANDLE;
     std::vector<VkDescriptorPool> descriptorPools;
+    std::size_t descriptorPoolsUsed = 0;
+    std::shared_ptr<BufferImpl> arena;  ///< the first upload memory
     std::vector<std::shared_ptr<const void>> retained;
     std::vector<std::string> passNames;  ///< pass i has the queries 2i and 2i + 1
+
+  private:
+    explicit Recording(ContextPtr c) : context(std::move(c)) {}
+};
+
+/// Recordings that the device has run, to be used again: making pools takes longer than recording a short
+/// list.
+class RecordingStore {
+  public:
+    explicit RecordingStore(ContextPtr context) : context_(std::move(context)) {}
+    /// One without content.
+    Result<std::unique_ptr<Recording>> take();
+    /// One that the device has run.
+    void giveBack(std::unique_ptr<Recording> recording);
+
+  private:
+    ContextPtr context_;
+    std::vector<std::unique_ptr<Recording>> idle_;
 };
 
 struct DrawCall {
@@ -38,7 +63,7 @@ struct DrawCall {
 class CommandListImpl final : public CheckedList {
   public:
     /// `onClose` runs when the list is destroyed.
-    static Result<std::unique_ptr<CommandListImpl>> create(const ContextPtr& context,
+    static Result<std::unique_ptr<CommandListImpl>> create(RecordingStore& store,
                                                            std::function<void()> onClose);
     ~CommandListImpl() override;
 

@@ -107,7 +107,7 @@ void DeviceImpl::retire() {
 
 Status DeviceImpl::upload(const std::function<void(CommandListImpl&)>& record) {
     if (uploads_ == nullptr) {
-        auto list = CommandListImpl::create(context_, {});
+        auto list = CommandListImpl::create(*store_, {});
         if (!list) return tl::unexpected(list.error());
         uploads_ = std::move(*list);
     }
@@ -186,7 +186,7 @@ Result<std::unique_ptr<CommandList>> DeviceImpl::createCommandList() {
     if (auto status = context_->checkAlive(); !status) return tl::unexpected(status.error());
     if (*listOpen_) return anotherListIsOpen();
     retire();
-    auto list = CommandListImpl::create(context_, [open = listOpen_] { *open = false; });
+    auto list = CommandListImpl::create(*store_, [open = listOpen_] { *open = false; });
     if (!list) return tl::unexpected(list.error());
     *listOpen_ = true;
     return std::unique_ptr<CommandList>(std::move(*list));
@@ -211,7 +211,7 @@ Result<SubmissionPtr> DeviceImpl::submit(std::unique_ptr<CommandList> list) {
 }
 
 Result<SubmissionPtr> DeviceImpl::run(std::vector<std::unique_ptr<Recording>> recordings) {
-    auto submission = std::make_shared<SubmissionImpl>(context_, std::move(recordings));
+    auto submission = std::make_shared<SubmissionImpl>(context_, store_, std::move(recordings));
     if (auto status = submission->start(); !status) return tl::unexpected(status.error());
     running_.push_back(submission);
     return SubmissionPtr(std::move(submission));

@@ -9,8 +9,9 @@ namespace hairloom::gpu::vulkan {
 
 class SubmissionImpl final : public Submission {
   public:
-    SubmissionImpl(ContextPtr context, std::vector<std::unique_ptr<Recording>> recordings)
-        : context_(std::move(context)), recordings_(std::move(recordings)) {}
+    SubmissionImpl(ContextPtr context, std::weak_ptr<RecordingStore> store,
+                   std::vector<std::unique_ptr<Recording>> recordings)
+        : context_(std::move(context)), store_(std::move(store)), recordings_(std::move(recordings)) {}
     ~SubmissionImpl() override;
     Status start();
     bool isDone() override;
@@ -20,9 +21,10 @@ class SubmissionImpl final : public Submission {
   private:
     void finish();
     ContextPtr context_;
+    std::weak_ptr<RecordingStore> store_;                 // goes with the device
     std::vector<std::unique_ptr<Recording>> recordings_;  // the caller's list is the last
     std::vector<PassTime> times_;
-    VkFence fence_ = VK_NULL_HANDLE;
+    bool started_ = false;
     bool done_ = false;
 };
 
@@ -30,7 +32,8 @@ class DeviceImpl final : public gpu::Device {
   public:
     static Result<std::unique_ptr<gpu::Device>> create(std::uint32_t index, const DeviceInfo& info,
                                                        const DeviceOptions& options);
-    explicit DeviceImpl(ContextPtr context) : context_(std::move(context)) {}
+    explicit DeviceImpl(ContextPtr context)
+        : context_(std::move(context)), store_(std::make_shared<RecordingStore>(context_)) {}
     ~DeviceImpl() override;
 
     const DeviceInfo& info() const override { return context_->info; }
@@ -56,6 +59,7 @@ class DeviceImpl final : public gpu::Device {
     void retire();
 
     ContextPtr context_;
+    std::shared_ptr<RecordingStore> store_;
     std::unique_ptr<CommandListImpl> uploads_;
     std::shared_ptr<bool> listOpen_ = std::make_shared<bool>(false);
     std::deque<std::shared_ptr<SubmissionImpl>> running_;

@@ -9,16 +9,10 @@
 namespace hairloom::gpu::vulkan {
 
 SubmissionImpl::~SubmissionImpl() {
-    if (fence_ == VK_NULL_HANDLE) return;
-    if (!done_) vkDeviceWaitIdle(context_->device);
-    vkDestroyFence(context_->device, fence_, nullptr);
+    if (started_ && !done_) vkDeviceWaitIdle(context_->device);
 }
 
 Status SubmissionImpl::start() {
-    const auto fence = make<VkFenceCreateInfo>(VK_STRUCTURE_TYPE_FENCE_CREATE_INFO);
-    VkFence created = VK_NULL_HANDLE;
-    VkResult r = vkCreateFence(context_->device, &fence, nullptr, &created);
-    if (r != VK_SUCCESS) return context_->failed(r, "submitting work");
     std::vector<VkCommandBufferSubmitInfo> commands;
     for (const auto& recording : recordings_) {
         auto info = make<VkCommandBufferSubmitInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO);
@@ -28,12 +22,9 @@ Status SubmissionImpl::start() {
     auto info = make<VkSubmitInfo2>(VK_STRUCTURE_TYPE_SUBMIT_INFO_2);
     info.commandBufferInfoCount = static_cast<std::uint32_t>(commands.size());
     info.pCommandBufferInfos = commands.data();
-    r = vkQueueSubmit2(context_->queue, 1, &info, created);
-    if (r != VK_SUCCESS) {
-        vkDestroyFence(context_->device, created, nullptr);
-        return context_->failed(r, "submitting work");
-    }
-    fence_ = created;
+    const VkResult r = vkQueueSubmit2(context_->queue, 1, &info, recordings_.back()->fence);
+    if (r != VK_SUCCESS) return context_->failed(r, "submitting work");
+    started_ = true;
     return {};
 }
 
@@ -50,18 +41,21 @@ void SubmissionImpl::finish() {
         const double spent = static_cast<double>(ticks[2 * i + 1] - ticks[2 * i]);
         times_.push_back({last.passNames[i], spent * context_->info.timestampPeriodNs * 1e-6});
     }
+    if (const auto store = store_.lock()) {
+        for (auto& recording : recordings_) store->giveBack(std::move(recording));
+    }
     recordings_.clear();
 }
 
 bool SubmissionImpl::isDone() {
-    if (!done_ && vkGetFenceStatus(context_->device, fence_) == VK_SUCCESS) finish();
+    if (!done_ && vkGetFenceStatus(context_->device, recordings_.back()->fence) == VK_SUCCESS) finish();
     return done_;
 }
 
 Status SubmissionImpl::wait() {
     if (done_) return {};
     const auto nanoseconds = static_cast<std::uint64_t>(std::clamp(context_->timeoutSeconds, 0.0, 1e6) * 1e9);
-    const VkResult r = vkWaitForFences(context_->device, 1, &fence_, VK_TRUE, nanoseconds);
+    const VkResult r = vkWaitForFences(context_->device, 1, &recordings_.back()->fence, VK_TRUE, nanoseconds);
     if (r != VK_SUCCESS) return context_->failed(r, "waiting for the GPU");
     finish();
     return {};

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+// A frame of a strand whose points follow each other in a thread; a work group is a block of the engine.
+
+void loadState() {
+#if HAIR_STORAGE != 2
+    EACH for (uint p = 0; p < POINTS; ++p) {
+        setPosition(p, savedPosition(p));
+        setPrevious(p, savedPrevious(p));
+#if HAIR_CURVES
+        setCurve(p, savedCurve(p));
+#endif
+#if HAIR_TENSIONS
+        setTension(p, savedTension(p));
+#endif
+    }
+#endif
+#if HAIR_CURVES
+    gTank = gTanks[gSlot];
+    gMotion = gTanks[gFrame.slots + gSlot];
+#endif
+}
+
+void saveState() {
+#if HAIR_STORAGE != 2
+    EACH for (uint p = 0; p < POINTS; ++p) {
+        savePosition(p, position(p));
+        savePrevious(p, previous(p));
+#if HAIR_CURVES
+        saveCurve(p, curve(p));
+#endif
+#if HAIR_TENSIONS
+        saveTension(p, tension(p));
+#endif
+    }
+#endif
+#if HAIR_CURVES
+    gTanks[gSlot] = gTank;
+    gTanks[gFrame.slots + gSlot] = gMotion;
+#endif
+}
+
+/// Puts the strand to its rest place on the root of the end of the frame, without speed.
+void placeAtRest() {
+    float3 at = float3(0, 0, 0);
+    EACH for (uint p = 0; p < POINTS; ++p) {
+        setPosition(p, at);
+        setPrevious(p, at);
+        at += rotate(gRotationTo, restVector(p));
+#if HAIR_CURVES
+        setCurve(p, float3(0, 0, 0));
+#endif
+#if HAIR_TENSIONS
+        setTension(p, 0.0);
+#endif
+    }
+#if HAIR_CURVES
+    gTank = HAIRLOOM_NO_CURVE;
+    gMotion = 0.0;
+#endif
+}
+
+/// Greatest squared displacement of a free point in the last substep; `sound` is false where a point is no
+/// number or has left the range in which its square is one.
+float fastest(out bool sound) {
+    float most = 0.0;
+    sound = true;
+    EACH for (uint p = 0; p < POINTS; ++p) {
+        const float3 here = position(p);
+        const float3 moved = here - previous(p);
+        const float squared = dot(moved, moved);
+        sound = sound && isSound(here) && isSound(moved) && dot(here, here) < 1e12 && squared < 1e12;
+        if (p >= FIRST_FREE) most = max(most, squared);
+    }
+    return most;
+}
+
+void writePlaces() {
+    const uint first = gFirstPoints[gSlot];
+    if (first == 0xffffffffu) return;
+    const float3 root = gRootsTo[2 * gSlot].xyz;
+    EACH for (uint p = 0; p < POINTS; ++p) {
+        gPlaces[first + p] = float4(root + position(p), 1.0);
+#if HAIR_VELOCITIES
+        gVelocities[first + p] = float4((position(p) - previous(p)) * (1.0 / gFrame.h), 0.0);
+#endif
+    }
+}
+
+/// Takes stock after the last substep; the group's greatest displacement in gGroupFastest.
+void finishStrand(uint block, uint lane) {
+    bool sound;
+    float most = fastest(sound);
+#if HAIR_CURVES
+    gMotion = most * (1.0 / (gFrame.h * gFrame.h));
+#endif
+    if (!sound) {
+        placeAtRest();
+        most = 0.0;
+        if (lane < gBlocks[block].y) InterlockedAdd(gReport[REPORT_RESTORED], 1u);
+        InterlockedOr(gGroupRestored, 1u);
+    }
+    InterlockedMax(gGroupFastest, asuint(most));
+}
+
+[numthreads(HAIR_STRANDS, 1, 1)]
+void main(uint3 group : SV_GroupID, uint lane : SV_GroupIndex) {
+    const uint block = group.y * HAIRLOOM_GROUP_ROW + group.x;
+    if (block >= gFrame.groups) return;
+    gSlot = block * HAIR_STRANDS + lane;
+#if HAIR_STORAGE == 1
+    gLane = lane;
+#endif
+#if !HAIR_EXACT
+    gPointCount = gBlocks[block].x;
+#endif
+    if (lane == 0) gGroupMoved = gGroupFastest = gGroupRestored = gGroupNear = 0u;
+    GroupMemoryBarrierWithGroupSync();
+    if (rootMoves(gSlot)) InterlockedOr(gGroupMoved, 1u);
+    bool runs = true;
+#if HAIR_SLEEP
+    // Read by all before the last barrier, written by one after it.
+    float rested = gRests[2 * block];
+    bool asleep = gRests[2 * block + 1] != 0.0;
+    if (asleep && sphereNear(gRootsTo[2 * gSlot].xyz)) InterlockedOr(gGroupNear, 1u);
+    GroupMemoryBarrierWithGroupSync();
+    if (asleep && (gGroupMoved != 0u || gGroupNear != 0u || gFrame.wakeAll != 0u)) {
+        asleep = false;
+        rested = 0.0;
+    }
+    runs = !asleep;
+#endif
+    if (runs) {
+        loadState();
+        enterFrame();
+        if (gFrame.rescale != 1.0) rescaleMotion();
+        runSubsteps();
+        finishStrand(block, lane);
+    }
+    GroupMemoryBarrierWithGroupSync();
+#if HAIR_SLEEP
+    if (runs) {
+        const bool slow = gGroupMoved == 0u && gGroupRestored == 0u && asfloat(gGroupFastest) < gFrame.slowSquared;
+        rested = slow ? rested + gFrame.dt : 0.0;
+        asleep = slow && rested >= gFrame.sleepDelay;
+        if (asleep) {
+            EACH for (uint p = 0; p < POINTS; ++p) setPrevious(p, position(p));
+        }
+    } else {
+        rested += gFrame.dt;
+    }
+    if (lane == 0) {
+        gRests[2 * block] = rested;
+        gRests[2 * block + 1] = asleep ? 1.0 : 0.0;
+        if (asleep) InterlockedAdd(gReport[REPORT_ASLEEP], gBlocks[block].y);
+    }
+#endif
+    if (runs) {
+        saveState();
+        leaveFrame();
+        writePlaces();
+        if (lane == 0 && gGroupRestored == 0u) InterlockedMax(gReport[REPORT_FASTEST], gGroupFastest);
+    }
+}
