@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Every tool in a person's hand: it changes what it should, undo and redo restore every bit, Esc leaves
 // nothing behind, and hair stays sound.
+#include <QComboBox>
 #include <QPushButton>
 #include <algorithm>
+#include <set>
 
 #include "core/base/random.h"
 #include "editor/tools/brush_tool.h"
@@ -230,6 +232,15 @@ TEST_F(ToolsTest, SpheresAreFittedToTheHead) {
     finishWork();
     EXPECT_EQ(groom().spheres.size(), 12u);
     EXPECT_EQ(document().stepName(0), "Fit spheres");
+    std::set<std::string> bones;
+    for (const CollisionSphere& sphere : groom().spheres) {
+        EXPECT_TRUE(session().player.actor()->skeleton().find(sphere.bone))
+            << sphere.name << " on " << sphere.bone;
+        bones.insert(sphere.bone);
+    }
+    EXPECT_TRUE(bones.contains("head"));
+    auto* bone = find<QComboBox>("sphereBone");
+    EXPECT_EQ(bone->currentText().toStdString(), groom().spheres[0].bone);
     find<QPushButton>("sphereMirror")->click();
     EXPECT_EQ(groom().spheres.size(), 13u);
 }
@@ -267,13 +278,13 @@ TEST_F(ToolsTest, RandomActionsNeverBreakTheDocument) {
     const std::vector<QString> ids{"comb",        "brush",  "grab",        "smooth",        "puff",
                                    "pinch",       "length", "cut",         "cut_line",      "add",
                                    "delete",      "freeze", "scalp_paint", "density_paint", "select",
-                                   "scalp_lasso", "sphere", "wind"};
+                                   "scalp_lasso", "sphere", "wind",        "replace",       "scalp_box"};
     const auto below = [&random](int count) {
         return static_cast<int>(random.below(static_cast<std::uint32_t>(count)));
     };
     const auto somewhere = [&] { return crown + QPoint(below(200) - 100, below(160) - 40); };
     for (int action = 0; action < 500; ++action) {
-        switch (below(8)) {
+        switch (below(9)) {
             case 0:
                 trigger("edit.undo");
                 break;
@@ -283,6 +294,11 @@ TEST_F(ToolsTest, RandomActionsNeverBreakTheDocument) {
             case 2:
                 key(std::array{Qt::Key_BracketLeft, Qt::Key_BracketRight, Qt::Key_Escape,
                                Qt::Key_F}[static_cast<std::size_t>(below(4))]);
+                break;
+            case 8:
+                trigger(std::array{"select.all", "select.none", "select.invert", "select.hide", "select.show",
+                                   "select.freeze", "select.thaw",
+                                   "select.hideOthers"}[static_cast<std::size_t>(below(8))]);
                 break;
             case 3:
                 activate(ids[static_cast<std::size_t>(below(static_cast<int>(ids.size())))]);

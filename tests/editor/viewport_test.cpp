@@ -2,6 +2,7 @@
 // The camera, the pictures, the live simulation.
 #include <QCheckBox>
 #include <QScreen>
+#include <array>
 #include <cstdlib>
 
 #include "tests/editor/window_fixture.h"
@@ -50,6 +51,26 @@ TEST(OrbitCameraTest, MovingKeepsThePointUnderThePointer) {
     const QPointF after = *camera.project(point, view);
     EXPECT_NEAR(after.x() - before.x(), 40, 0.2);
     EXPECT_NEAR(after.y() - before.y(), -25, 0.2);
+}
+
+TEST(OrbitCameraTest, OrthographicViewsHaveNoPerspective) {
+    OrbitCamera camera;
+    const QSizeF view(800, 600);
+    camera.setOrthographic(true);
+    const Vec3f near = camera.target_ws() + 0.1f * camera.right_ws() - 0.3f * camera.forward_ws();
+    const Vec3f far = near + 0.8f * camera.forward_ws();
+    const Vec3f behindTheEye = near - 5 * camera.forward_ws();
+    ASSERT_TRUE(camera.project(behindTheEye, view));
+    for (const Vec3f& point : {far, behindTheEye}) {
+        const QPointF off = *camera.project(point, view) - *camera.project(near, view);
+        EXPECT_LT(off.manhattanLength(), 0.05);
+    }
+    const Ray a = camera.rayThrough({10, 20}, view), b = camera.rayThrough({700, 500}, view);
+    EXPECT_LT((a.direction_ws - b.direction_ws).norm(), 1e-6f);
+    // Turning perspective off keeps the size of what is in the middle.
+    const float flat = camera.metresPerPixel(camera.target_ws(), view);
+    camera.setOrthographic(false);
+    EXPECT_NEAR(camera.metresPerPixel(camera.target_ws(), view), flat, 1e-6f);
 }
 
 class ViewportTest : public WindowTest {};
@@ -110,10 +131,70 @@ TEST_F(ViewportTest, BothOrbitStylesTurnMoveAndZoom) {
     }
 }
 
+/// The renderer's view and the pointer's are one.
+TEST_F(PictureTest, MarksStandWhereTheCameraProjectsThem) {
+    if (viewport().presents()) GTEST_SKIP() << "pictures are not read back";
+    openBust();
+    const Vec3f middle = viewport().camera().target_ws();
+    const std::array points{Vec3f(middle + Vec3f(0.1f, 0.08f, 0.2f)),
+                            Vec3f(middle + Vec3f(-0.12f, -0.05f, -0.3f))};
+    const std::array colours{QColor(255, 0, 255), QColor(0, 255, 255)};
+    viewport().addMarks([&](Marks& marks) {
+        for (std::size_t i = 0; i < 2; ++i) marks.point(points[i], colours[i], 9, Marks::Depth::OnTop);
+    });
+    for (const bool orthographic : {false, true}) {
+        viewport().setOrthographic(orthographic);
+        ASSERT_TRUE(viewport().waitForPicture(60'000));
+        const QImage& picture = viewport().picture();
+        for (std::size_t i = 0; i < 2; ++i) {
+            QPointF sum;
+            int count = 0;
+            for (int y = 0; y < picture.height(); ++y) {
+                for (int x = 0; x < picture.width(); ++x) {
+                    if (picture.pixelColor(x, y).rgb() != colours[i].rgb()) continue;
+                    sum += QPointF(x + 0.5, y + 0.5);
+                    ++count;
+                }
+            }
+            ASSERT_GT(count, 20) << orthographic;
+            const QPointF off =
+                sum / count - *viewport().camera().project(points[i], viewport().viewSize_px());
+            EXPECT_LT(off.manhattanLength(), 1.5) << "orthographic " << orthographic << ", point " << i;
+        }
+    }
+}
+
 TEST_F(PictureTest, OverlaysAreDrawn) {
     if (viewport().presents()) GTEST_SKIP() << "pictures are not read back";
     openGuides();
-    for (const char* name : {"scalp", "roots", "guides", "triangulation", "spheres", "wireframe"}) {
+    for (const char* name :
+         {"scalp", "roots", "guides", "triangulation", "spheres", "wireframe", "density", "wind"}) {
+        ASSERT_TRUE(viewport().waitForPicture(60'000));
+        const QImage without = viewport().picture();
+        find<QCheckBox>(name)->click();
+        ASSERT_TRUE(viewport().waitForPicture(60'000));
+        EXPECT_NE(viewport().picture(), without) << name;
+        find<QCheckBox>(name)->click();
+    }
+}
+
+TEST_F(PictureTest, OverlaysOfMotionAreDrawn) {
+    if (viewport().presents()) GTEST_SKIP() << "pictures are not read back";
+    openGuides();
+    Groom windy = groom();
+    windy.simulation.windSpeed = 12;
+    // A sphere that hair is in from the start shows as deep.
+    windy.spheres.push_back({"deep", windy.strand(0).back(), 0.03f, {}});
+    windy.simulation.lengthIterations = 0;
+    document().change("Wind", Changes(Change::Simulation) | Change::Spheres, windy);
+    for (int i = 0; i < 3; ++i) trigger("play.step");
+    ASSERT_TRUE(QTest::qWaitFor(
+        [this] {
+            const auto& frame = session().player.frame();
+            return frame && frame->time > 0.04;
+        },
+        20'000));
+    for (const char* name : {"strain", "penetration", "effectCost"}) {
         ASSERT_TRUE(viewport().waitForPicture(60'000));
         const QImage without = viewport().picture();
         find<QCheckBox>(name)->click();
