@@ -108,36 +108,6 @@ void readHair(JsonReader reader, ViewFile& view) {
     reader.finish();
 }
 
-/// What an artist has turned of the lobes that the fibre gives.
-void turnLobes(const HairMaterial& authored, shading::MarschnerParameters& m) {
-    const std::array intensity{authored.rIntensity, authored.ttIntensity, authored.trtIntensity};
-    const std::array width{authored.rWidth, authored.ttWidth, authored.trtWidth};
-    const std::array shift{authored.rShift, authored.ttShift, authored.trtShift};
-    for (std::size_t i = 0; i < 3; ++i) {
-        m.intensity[i] *= static_cast<double>(intensity[i]);
-        m.width[i] *= static_cast<double>(width[i]);
-        m.tilt[i] += static_cast<double>(shift[i]) * shading::kDegree;
-    }
-    m.azimuthal.glint *= static_cast<double>(authored.glintIntensity);
-    m.azimuthal.causticWidth *= static_cast<double>(authored.glintWidth);
-    m.azimuthal.causticFade = static_cast<double>(authored.causticFade);
-}
-
-shading::SadeghiParameters sadeghiOf(const HairMaterial& authored, const shading::MarschnerParameters& m) {
-    shading::SadeghiParameters s = sadeghiLike(shading::Marschner(m));
-    s.ttAzimuthalWidth *= static_cast<double>(authored.ttSpread);
-    s.glintIntensity *= static_cast<double>(authored.glintIntensity);
-    s.glintWidth *= static_cast<double>(authored.glintWidth);
-    s.glintNear =
-        static_cast<double>(std::min(authored.glintNearDegrees, authored.glintFarDegrees)) * shading::kDegree;
-    s.glintFar =
-        static_cast<double>(std::max(authored.glintNearDegrees, authored.glintFarDegrees)) * shading::kDegree;
-    s.r.colour = s.r.colour.cwiseProduct(authored.rTint.cast<double>());
-    s.tt.colour = s.tt.colour.cwiseProduct(authored.ttTint.cast<double>());
-    s.trt.colour = s.trt.colour.cwiseProduct(authored.trtTint.cast<double>());
-    return s;
-}
-
 float luminance(const Vec3f& colour) {
     return colour.dot(Vec3f(0.2126f, 0.7152f, 0.0722f));
 }
@@ -155,12 +125,10 @@ render::HairMaterial materialOf(const HairMaterial& authored, const ViewFile& vi
     // wide.
     material.primary = Vec3f::Constant(0.32f * authored.specular);
     material.primaryExponent = 1.5f * authored.shininess;
-    material.secondary = Vec3f::Constant(1.1f * authored.specular * authored.secondSpecular);
+    material.secondary = Vec3f::Constant(1.1f * authored.specular);
     material.secondaryExponent = 0.4f * authored.shininess;
     material.primaryShift = 2 * authored.scaleTiltDegrees;
     material.secondaryShift = -3 * authored.scaleTiltDegrees;
-    material.diffuse = authored.diffuse;
-    material.scattering = authored.scattering;
     material.fibre = fibreMaterial(authored, view.fibre);
     if (view.fibre.model == render::ShadingModel::kajiya) return material;
     if (view.fibre.saysColour()) {
@@ -233,19 +201,17 @@ render::FibreMaterial fibreMaterial(const HairMaterial& authored, const FibreVie
                                                    shading::Melanin{authored.eumelanin, authored.pheomelanin}));
     m.azimuthal.width = shading::azimuthalWidth(roughness);
     if (m.azimuthal.width >= shading::kLeastAzimuthalWidth) m.azimuthal.causticWidth = 0;
-    m.azimuthal.axisRatio =
-        view.axisRatio.value_or(shading::axisRatio(static_cast<double>(authored.eccentricity)));
+    m.azimuthal.axisRatio = view.axisRatio.value_or(1.0);
     shading::setScales(m, static_cast<double>(authored.scaleTiltDegrees) * shading::kDegree,
                        shading::longitudinalWidth(static_cast<double>(authored.longitudinalRoughness)));
     if (view.width) m.width = *view.width;
     if (view.tilt) m.tilt = *view.tilt;
-    turnLobes(authored, m);
 
     render::FibreMaterial fibre;
     fibre.model = view.model;
     fibre.scattering = view.scattering;
     if (view.model == render::ShadingModel::marschner) fibre.marschner = m;
-    if (view.model == render::ShadingModel::sadeghi) fibre.sadeghi = sadeghiOf(authored, m);
+    if (view.model == render::ShadingModel::sadeghi) fibre.sadeghi = sadeghiLike(shading::Marschner(m));
     return fibre;
 }
 

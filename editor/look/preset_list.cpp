@@ -98,8 +98,6 @@ class PresetList : public QWidget {
         list_->clear();
         for (const LookPreset& preset : lookPresets()) {
             HairMaterial material;
-            // Thumbnails show light in fibres: that is what pigments differ in.
-            material.shadingModel = 1;
             applyLook(preset, material);
             add({words(preset.name), material, &preset}, words(preset.description));
         }

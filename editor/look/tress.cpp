@@ -52,6 +52,7 @@ PictureRequest tressPicture(const HairMaterial& material, std::uint32_t side_px,
     request.camera.orthographicHeight = 0.074f;
     request.width = request.height = side_px;
     request.background = background;
+    request.quality.model = render::ShadingModel::marschner;
     request.quality.frames = 4;
     return request;
 }

@@ -86,11 +86,12 @@ class EffectsPanel : public QWidget {
     }
 
     void takeCheck(QTreeWidgetItem* item, int column) {
-        if (column != kName || filling_) return;
+        if (column != kName || filling_ || !(item->flags() & Qt::ItemIsUserCheckable)) return;
         const QString effect = item->data(kName, Qt::UserRole).toString();
         QStringList leftOut = session_.player.leftOut();
-        leftOut.removeAll(effect);
-        if (item->checkState(kName) == Qt::Unchecked) leftOut.append(effect);
+        const bool out = item->checkState(kName) == Qt::Unchecked;
+        if (leftOut.contains(effect) == out) return;
+        out ? leftOut.append(effect) : static_cast<void>(leftOut.removeAll(effect));
         session_.player.setLeftOut(leftOut);
     }
 

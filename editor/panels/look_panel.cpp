@@ -3,7 +3,9 @@
 // picker, how finely it is drawn, and the hairs between the guides.
 #include <QComboBox>
 #include <QPushButton>
+#include <QSettings>
 #include <QVBoxLayout>
+#include <algorithm>
 
 #include "editor/fields/field_form.h"
 #include "editor/look/parts.h"
@@ -15,6 +17,7 @@
 namespace hairloom::editor {
 namespace {
 
+constexpr const char* kModelKey = "look/shadingModel";
 constexpr unsigned kKajiya = 1, kMarschner = 2, kSadeghi = 4;
 constexpr unsigned kFibres = kMarschner | kSadeghi;
 constexpr unsigned kAll = kKajiya | kFibres;
@@ -32,22 +35,10 @@ const std::vector<Group>& groups() {
         {QT_TR_NOOP("Colour"), {"rootColour", "tipColour", "colourVariation"}, kAll, true},
         {QT_TR_NOOP("Pigment"), {"eumelanin", "pheomelanin"}, kAll, true},
         {QT_TR_NOOP("Fibre"), {"rootRadius", "tipScale", "scaleTiltDegrees"}, kAll, true},
-        {QT_TR_NOOP("Highlights"),
-         {"specular", "shininess", "secondSpecular", "diffuse", "scattering"},
-         kKajiya,
-         true},
+        {QT_TR_NOOP("Highlights"), {"specular", "shininess"}, kKajiya, true},
         {QT_TR_NOOP("Fibre optics"),
-         {"indexOfRefraction", "longitudinalRoughness", "azimuthalRoughness", "eccentricity"},
+         {"indexOfRefraction", "longitudinalRoughness", "azimuthalRoughness"},
          kFibres,
-         true},
-        {QT_TR_NOOP("Surface highlight (R)"), {"rIntensity", "rWidth", "rShift"}, kFibres, false},
-        {QT_TR_NOOP("Light through hair (TT)"), {"ttIntensity", "ttWidth", "ttShift"}, kFibres, false},
-        {QT_TR_NOOP("Coloured highlight (TRT)"), {"trtIntensity", "trtWidth", "trtShift"}, kFibres, false},
-        {QT_TR_NOOP("Glints"), {"glintIntensity", "glintWidth"}, kFibres, false},
-        {QT_TR_NOOP("Caustics"), {"causticFade"}, kMarschner, false},
-        {QT_TR_NOOP("Artist's lobes"),
-         {"rTint", "ttTint", "trtTint", "ttSpread", "glintNearDegrees", "glintFarDegrees"},
-         kSadeghi,
          true},
     };
     return all;
@@ -66,9 +57,7 @@ class LookPanel : public QWidget {
         makeGroups();
         layout_->addWidget(foldable(tr("Edges and shadows"), makePictureForm(session_), false));
         layout_->addWidget(foldable(tr("Hairs between the guides"), form(followHairFields()), false));
-        connect(&session_.document, &Document::changed, this, [this](Changes changes) {
-            if (changes & Change::Look) refresh();
-        });
+        connect(session_.viewport, &Viewport::lookChanged, this, &LookPanel::refresh);
         refresh();
     }
 
@@ -87,11 +76,15 @@ class LookPanel : public QWidget {
         model_->setItemData(2, tr("Marschner's lobes as separate controls for an artist"), Qt::ToolTipRole);
         model_->setToolTip(tr("How light scatters in a fibre; each model keeps its own controls"));
         connect(model_, &QComboBox::activated, this, [this](int index) {
-            Groom groom = session_.document.groom();
-            if (groom.material.shadingModel == static_cast<std::uint32_t>(index)) return;
-            groom.material.shadingModel = static_cast<std::uint32_t>(index);
-            session_.document.change(tr("Shading model"), Change::Look, std::move(groom));
+            PictureQuality quality = session_.viewport->quality();
+            quality.model = static_cast<render::ShadingModel>(index);
+            session_.viewport->setQuality(quality);
+            QSettings().setValue(kModelKey, index);
         });
+        PictureQuality quality = session_.viewport->quality();
+        quality.model = static_cast<render::ShadingModel>(
+            std::clamp(QSettings().value(kModelKey, 0).toInt(), 0, model_->count() - 1));
+        session_.viewport->setQuality(quality);
         layout_->addWidget(model_);
     }
 
@@ -104,6 +97,13 @@ class LookPanel : public QWidget {
             layout_->addWidget(folded);
             shownFor_.emplace_back(folded, group.models);
         }
+        // Fields that materials have gained since.
+        std::vector<Field> others;
+        for (const Field& field : fields) {
+            const auto has = [&](const Group& group) { return group.fields.contains(field.name); };
+            if (std::ranges::none_of(groups(), has)) others.push_back(field);
+        }
+        if (!others.empty()) layout_->addWidget(foldable(tr("More"), form(others), false));
     }
 
     /// For Kajiya-Kay, which knows colours only, and for those who want to go on from a natural colour.
@@ -126,7 +126,7 @@ class LookPanel : public QWidget {
     }
 
     void refresh() {
-        const std::uint32_t model = session_.document.groom().material.shadingModel;
+        const auto model = static_cast<unsigned>(session_.viewport->quality().model);
         model_->setCurrentIndex(static_cast<int>(model));
         for (const auto& [group, models] : shownFor_) group->setVisible((models >> model) & 1u);
     }

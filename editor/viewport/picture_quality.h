@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// How finely the viewport draws: edges, shadows, hair over hair. Not part of the document.
+// How the viewport draws: by which model, and how finely. Not part of the document, whose material serves all
+// models.
 
 #include "core/render/fibre_material.h"
 #include "core/render/options.h"
@@ -8,6 +9,7 @@
 namespace hairloom::editor {
 
 struct PictureQuality {
+    render::ShadingModel model = render::ShadingModel::kajiya;
     std::uint32_t samples =
         4;  ///< a pixel and frame, as render::RenderOptions; more than the device has: its most
     std::uint32_t frames = 8;  ///< averaged when the picture is still, 1…256

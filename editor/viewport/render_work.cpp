@@ -71,7 +71,7 @@ std::uint32_t mostSamples(const gpu::DeviceInfo& device, std::uint32_t asked) {
 
 ViewFile viewOf(const PictureRequest& request) {
     ViewFile view;
-    view.fibre.model = static_cast<render::ShadingModel>(request.groom->material.shadingModel);
+    view.fibre.model = request.quality.model;
     view.fibre.scattering = request.quality.scattering;
     return view;
 }
@@ -148,7 +148,9 @@ Status RenderWork::takeScene(const PictureRequest& request, bool draft) {
     if (!sameGroom && (!sameStrands(now, before) || (followed && !samePoints(now, before)))) {
         return replaceScene(request, draft);
     }
-    if (!sameGroom || request.quality.scattering != last_->quality.scattering) {
+    const bool sameModel = request.quality.model == last_->quality.model &&
+                           request.quality.scattering == last_->quality.scattering;
+    if (!sameGroom || !sameModel) {
         if (!scene_->setMaterial(now.material, viewOf(request))) return replaceScene(request, draft);
         if (auto set = showMaterial(request); !set) return set;
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The panels about motion: what runs before and while it plays, effects left out for a try, the stiffness
 // curve.
+#include <QMouseEvent>
 #include <QPushButton>
 #include <QTreeWidget>
 
@@ -22,7 +23,8 @@ class EffectsTest : public WindowTest {
     QTreeWidgetItem* row(const QString& effect) {
         auto* table = find<QTreeWidget>("effects");
         for (int i = 0; i < table->topLevelItemCount(); ++i) {
-            if (table->topLevelItem(i)->data(0, Qt::UserRole) == effect) return table->topLevelItem(i);
+            if (table->topLevelItem(i)->data(0, Qt::UserRole).toString() == effect)
+                return table->topLevelItem(i);
         }
         return nullptr;
     }

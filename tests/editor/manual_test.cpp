@@ -111,9 +111,9 @@ TEST_F(ManualTest, GroomingSpheresMotionAndLook) {
     applyLook(lookPresets()[4], auburn.material);
     document().change("Look", Change::Look, auburn);
     find<QPushButton>("compareKeep")->click();
-    Groom fibres = groom();
-    fibres.material.shadingModel = 1;
-    document().change("Shading model", Change::Look, fibres);
+    PictureQuality fibres = viewport().quality();
+    fibres.model = render::ShadingModel::marschner;
+    viewport().setQuality(fibres);
     find<QPushButton>("compareShow")->setChecked(true);
     ASSERT_TRUE(viewport().waitForPicture(kPatience));
     // Thumbnails come when nothing else is to be drawn.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What can be done with strands that are chosen, and hair that is placed anew where somebody paints.
 #include <QComboBox>
+#include <QMenu>
 #include <algorithm>
 
 #include "core/editing/document.h"

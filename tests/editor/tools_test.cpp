@@ -2,11 +2,15 @@
 // Every tool in a person's hand: it changes what it should, undo and redo restore every bit, Esc leaves
 // nothing behind, and hair stays sound.
 #include <QComboBox>
+#include <QLabel>
+#include <QPointingDevice>
 #include <QPushButton>
+#include <QTabletEvent>
 #include <algorithm>
 #include <set>
 
 #include "core/base/random.h"
+#include "core/editing/document.h"
 #include "editor/tools/brush_tool.h"
 #include "tests/editor/window_fixture.h"
 
@@ -176,6 +180,69 @@ TEST_F(ToolsTest, ScalpIsPaintedBoxedAndLassoed) {
         EXPECT_EQ(hash(), after) << id;
         trigger("edit.undo");
     }
+}
+
+TEST_F(ToolsTest, DensityIsPaintedAndCtrlTakesItAway) {
+    auto& tool = dynamic_cast<BrushTool&>(activate("density_paint"));
+    tool.settings().radius = 0.03f;
+    tool.settings().strength = 1;
+    // Ctrl first: where nothing is painted, density is full.
+    drag({crown, crown + QPoint(20, 4), crown + QPoint(40, 8)}, Qt::ControlModifier);
+    ASSERT_EQ(groom().scalpDensity.size(), groom().scalp->vertexCount());
+    const float thinned = *std::ranges::min_element(groom().scalpDensity);
+    EXPECT_LT(thinned, 0.9f);
+    const auto after = hash();
+    trigger("edit.undo");
+    EXPECT_NE(hash(), after);
+    trigger("edit.redo");
+    EXPECT_EQ(hash(), after);
+    drag({crown, crown + QPoint(20, 4), crown + QPoint(40, 8)});
+    EXPECT_GT(*std::ranges::min_element(groom().scalpDensity), thinned);
+}
+
+TEST_F(ToolsTest, ThePressureOfAPenIsThatOfTheDabs) {
+    activate("comb");
+    const QPointingDevice pen("pen", 1, QInputDevice::DeviceType::Stylus, QPointingDevice::PointerType::Pen,
+                              QInputDevice::Capability::Pressure, 1, 1);
+    QObject* const target = viewport().input();
+    const auto touch = [&](QEvent::Type type, double pressure) {
+        QTabletEvent event(type, &pen, crown, crown, pressure, 0, 0, 0, 0, 0, Qt::NoModifier, Qt::LeftButton,
+                           Qt::LeftButton);
+        QCoreApplication::sendEvent(target, &event);
+    };
+    session().preferences.setTabletCurve(2);
+    touch(QEvent::TabletPress, 0.5);
+    press(crown);
+    touch(QEvent::TabletMove, 0.8);
+    moveTo(crown + QPoint(30, 6));
+    const auto dabs = document().editing().stroke()->stroke().dabs;
+    release(crown + QPoint(30, 6));
+    touch(QEvent::TabletRelease, 0);
+    ASSERT_GE(dabs.size(), 2u);
+    EXPECT_NEAR(dabs.front().pressure, 0.25f, 1e-3f) << "after the curve of the preferences";
+    EXPECT_NEAR(dabs.back().pressure, 0.64f, 1e-3f);
+}
+
+TEST_F(ToolsTest, RootsArePreviewedAndFollowTheSettings) {
+    auto* preview = find<QPushButton>("placePreview");
+    const auto noted = [&](const QString& words) {
+        for (const QLabel* label : window->panel("scalp")->findChildren<QLabel*>()) {
+            if (label->text().contains(words)) return true;
+        }
+        return false;
+    };
+    const auto before = hash();
+    preview->click();
+    finishWork();
+    Groom fewer = groom();
+    fewer.placement.count = 777;
+    document().change("Count", Change::Placement, fewer);
+    finishWork();
+    EXPECT_TRUE(noted("777 roots"));
+    preview->click();
+    EXPECT_FALSE(noted("777 roots"));
+    trigger("edit.undo");
+    EXPECT_EQ(hash(), before) << "a preview places nothing";
 }
 
 TEST_F(ToolsTest, StrandsAreSelectedAndBrushesKeepToThem) {

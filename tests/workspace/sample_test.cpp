@@ -61,49 +61,6 @@ TEST(GroomSceneTest, PosingMovesHeadAndHairAndBackAgain) {
     EXPECT_EQ(points(), rest);
 }
 
-TEST(FibreMaterialTest, WhatAnArtistTurnsOfALobeChangesThatLobeAlone) {
-    FibreView view;
-    view.model = render::ShadingModel::sadeghi;
-    const HairMaterial plain;
-    const auto before = fibreMaterial(plain, view).sadeghi;
-    HairMaterial turned = plain;
-    turned.ttIntensity = 2;
-    turned.trtWidth = 0.5f;
-    turned.rShift = 3;
-    turned.ttTint = Vec3f(0.5f, 1, 1);
-    turned.ttSpread = 2;
-    turned.glintWidth = 3;
-    turned.glintNearDegrees = 50;
-    turned.glintFarDegrees = 20;
-    const auto after = fibreMaterial(turned, view).sadeghi;
-    EXPECT_DOUBLE_EQ(after.tt.intensity, 2 * before.tt.intensity);
-    EXPECT_DOUBLE_EQ(after.tt.colour.x(), 0.5 * before.tt.colour.x());
-    EXPECT_DOUBLE_EQ(after.tt.colour.y(), before.tt.colour.y());
-    EXPECT_DOUBLE_EQ(after.tt.width, before.tt.width);
-    EXPECT_DOUBLE_EQ(after.trt.width, 0.5 * before.trt.width);
-    EXPECT_DOUBLE_EQ(after.trt.shift, before.trt.shift);
-    EXPECT_NEAR(after.r.shift, before.r.shift + 3 * shading::kDegree, 1e-12);
-    EXPECT_DOUBLE_EQ(after.r.intensity, before.r.intensity);
-    EXPECT_DOUBLE_EQ(after.ttAzimuthalWidth, 2 * before.ttAzimuthalWidth);
-    EXPECT_DOUBLE_EQ(after.glintWidth, 3 * before.glintWidth);
-    EXPECT_NEAR(after.glintNear, 20 * shading::kDegree, 1e-12) << "the nearer of the two, whichever is which";
-    EXPECT_NEAR(after.glintFar, 50 * shading::kDegree, 1e-12);
-}
-
-TEST(FibreMaterialTest, MarschnersControlsReachItsParameters) {
-    FibreView view;
-    view.model = render::ShadingModel::marschner;
-    HairMaterial turned;
-    turned.trtIntensity = 0;
-    turned.eccentricity = 0.8f;
-    turned.causticFade = 0.7f;
-    const auto m = fibreMaterial(turned, view).marschner;
-    EXPECT_EQ(m.intensity[2], 0);
-    EXPECT_EQ(m.intensity[0], 1);
-    EXPECT_NEAR(m.azimuthal.axisRatio, 1 / 0.6, 1e-6);
-    EXPECT_FLOAT_EQ(static_cast<float>(m.azimuthal.causticFade), 0.7f);
-}
-
 TEST(MotionsTest, ClipsComeFromTheGroomsOwnFile) {
     const auto groom = makeSample(kSamples, "short");
     ASSERT_TRUE(groom);
