@@ -15,7 +15,7 @@ struct Input {
 };
 
 float4 main(Input i) : SV_Target0 {
-    const float3 toView = normalize(gShade.eye_ws.xyz - i.position_ws * gShade.eye_ws.w);
+    const float3 toView = normalize(gShade.eye_ws.xyz - i.position_ws);
     float3 normal = normalize(i.normal_ws);
     if (dot(normal, toView) < 0) normal = -normal;
     float3 colour = 0;

@@ -2,6 +2,8 @@
 #include "workspace/look_presets.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "core/base/file.h"
 #include "core/groom/json_reader.h"
@@ -28,6 +30,13 @@ constexpr LookPreset kPresets[] = {
 };
 constexpr std::string_view kSuffix = ".look.json";
 
+/// The reverse of shading::absorptionOfColour(), which is (k · ln colour)²: one colour tells k.
+Vec3d colourOfAbsorption(const Vec3d& absorption, double azimuthalRoughness) {
+    const double half = shading::absorptionOfColour(Vec3d::Constant(0.5), azimuthalRoughness).x();
+    const double k = std::sqrt(half) / std::numbers::ln2;
+    return (-absorption.cwiseMax(0.0).array().sqrt() / k).exp().matrix();
+}
+
 }  // namespace
 
 std::span<const LookPreset> lookPresets() {
@@ -42,9 +51,10 @@ void applyLook(const LookPreset& preset, HairMaterial& material) {
 }
 
 void colourByMelanin(HairMaterial& material) {
-    const Vec3d inside = shading::absorption({material.eumelanin, material.pheomelanin});
+    const Vec3d inside = shading::absorption(
+        {static_cast<double>(material.eumelanin), static_cast<double>(material.pheomelanin)});
     const Vec3f colour =
-        shading::colourOfAbsorption(inside, static_cast<double>(material.azimuthalRoughness)).cast<float>();
+        colourOfAbsorption(inside, static_cast<double>(material.azimuthalRoughness)).cast<float>();
     // Sun and wear lighten hair towards its tip.
     constexpr float kRoot = 0.8f;
     constexpr float kTip = 1.15f;

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <limits>
 
 #include "core/animation/root_motion.h"
 
@@ -74,25 +73,6 @@ std::vector<Eigen::Affine3f> Actor::sphereTransforms(std::span<const CollisionSp
         transforms.push_back(bone ? pose.boneMatrices_ws[*bone] : Eigen::Affine3f(placement_));
     }
     return transforms;
-}
-
-std::optional<std::uint32_t> Actor::boneNear(const Vec3f& point_ss) const {
-    if (skin_.vertexCount() != mesh_->vertexCount()) return std::nullopt;
-    const auto distance = [&](std::size_t vertex) { return (mesh_->positions()[vertex] - point_ss).norm(); };
-    float nearest = std::numeric_limits<float>::max();
-    for (std::size_t v = 0; v < mesh_->vertexCount(); ++v) nearest = std::min(nearest, distance(v));
-    // A sphere within a neck is as near to skin all around it.
-    constexpr float kAround = 0.02f;  // metres
-    std::vector<float> carried(skeleton_.bones().size(), 0.0f);
-    for (std::size_t v = 0; v < mesh_->vertexCount(); ++v) {
-        if (distance(v) > nearest + kAround) continue;
-        for (std::size_t i = 0; i < skin_.bones[v].size(); ++i) {
-            if (skin_.weights[v][i] > 0) carried[skin_.bones[v][i]] += skin_.weights[v][i];
-        }
-    }
-    const auto most = std::ranges::max_element(carried);
-    if (most == carried.end() || !(*most > 0)) return std::nullopt;
-    return static_cast<std::uint32_t>(most - carried.begin());
 }
 
 std::vector<Eigen::Isometry3f> Actor::rootTransforms(std::span<const SurfacePoint> roots,

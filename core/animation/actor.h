@@ -4,7 +4,6 @@
 // them each frame.
 
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -47,10 +46,6 @@ class Actor {
     /// bone, or with one that the skeleton lacks, goes with the character's placement.
     std::vector<Eigen::Affine3f> sphereTransforms(std::span<const CollisionSphere> spheres,
                                                   const ActorPose& pose) const;
-
-    /// The bone that carries most of the skin around a point of the mesh's rest space; nothing where that
-    /// skin hangs on none.
-    std::optional<std::uint32_t> boneNear(const Vec3f& point_ss) const;
 
     /// The rigid motion of each root from rest: the posed triangle's frame against the resting one's, about
     /// the root's point. A triangle that is flat at rest or posed gives the motion without rotation.

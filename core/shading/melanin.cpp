@@ -7,28 +7,14 @@
 
 namespace hairloom::shading {
 
-namespace {
-
-/// What the logarithm of a colour is divided by, of an azimuthal roughness 0…1 (Chiang et al. 2016).
-double colourScale(double azimuthalRoughness) {
-    const double b = std::clamp(azimuthalRoughness, 0.0, 1.0);
-    return 5.969 + b * (-0.215 + b * (2.532 + b * (-10.73 + b * (5.574 + b * 0.245))));
-}
-
-}  // namespace
-
 Vec3d absorption(const Melanin& melanin) {
     return melanin.eumelanin * Vec3d(0.419, 0.697, 1.37) + melanin.pheomelanin * Vec3d(0.187, 0.4, 1.05);
 }
 
 Vec3d absorptionOfColour(const Vec3d& colour, double azimuthalRoughness) {
-    const double scale = colourScale(azimuthalRoughness);
+    const double b = std::clamp(azimuthalRoughness, 0.0, 1.0);
+    const double scale = 5.969 + b * (-0.215 + b * (2.532 + b * (-10.73 + b * (5.574 + b * 0.245))));
     return (colour.cwiseMax(0.001).cwiseMin(1.0).array().log() / scale).square().matrix();
-}
-
-Vec3d colourOfAbsorption(const Vec3d& absorption, double azimuthalRoughness) {
-    const double scale = colourScale(azimuthalRoughness);
-    return (-scale * absorption.cwiseMax(0.0).array().sqrt()).exp().matrix();
 }
 
 double longitudinalWidth(double roughness) {

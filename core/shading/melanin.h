@@ -20,9 +20,6 @@ Vec3d absorption(const Melanin& melanin);
 /// fit of Chiang et al. 2016. `azimuthalRoughness` 0…1. 0 of a channel is taken as 0.001.
 Vec3d absorptionOfColour(const Vec3d& colour, double azimuthalRoughness);
 
-/// The reverse: the colour, 0…1, that a volume of such hair has.
-Vec3d colourOfAbsorption(const Vec3d& absorption, double azimuthalRoughness);
-
 /// β of the R lobe in θ_h, radians, of a roughness 0…1 (Chiang et al. 2016, whose variance is one of
 /// θ_o).
 double longitudinalWidth(double roughness);

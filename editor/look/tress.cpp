@@ -49,7 +49,7 @@ PictureRequest tressPicture(const HairMaterial& material, std::uint32_t side_px,
     request.groom = std::make_shared<const Groom>(std::move(groom));
     request.camera.target_ws = Vec3f(0, -0.004f, 0.01f);
     request.camera.eye_ws = Vec3f(0.02f, 0.02f, 0.5f);
-    request.camera.orthographicHeight = 0.074f;
+    request.camera.verticalFov = 8.5f;
     request.width = request.height = side_px;
     request.background = background;
     request.quality.model = render::ShadingModel::marschner;

@@ -177,7 +177,8 @@ class SpheresPanel : public QWidget {
                 if (groom.strandCount() > 0) options.region = editing::facesNearHair(groom, kNearHair);
                 auto fit = editing::fitSpheres(*groom.scalp, options);
                 if (!fit || !actor) return fit;
-                for (CollisionSphere& sphere : fit->spheres) sphere.bone = boneNear(*actor, sphere.centre);
+                for (CollisionSphere& sphere : fit->spheres)
+                    sphere.bone = boneNear(actor->skeleton(), sphere.centre);
                 return fit;
             },
             [this](editing::SphereFit fit) {

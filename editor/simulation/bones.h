@@ -3,14 +3,12 @@
 
 #include <string>
 
-#include "core/animation/actor.h"
+#include "core/animation/skeleton.h"
 
 namespace hairloom::editor {
 
-/// Name of the bone that carries the skin around a point of the head at rest; empty where none does.
-inline std::string boneNear(const Actor& actor, const Vec3f& point_ss) {
-    const auto bone = actor.boneNear(point_ss);
-    return bone ? actor.skeleton().bones()[*bone].name : std::string();
-}
+/// Name of the bone nearest to a point of the head at rest, each bone reaching from its joint to those of its
+/// children; empty where the skeleton is.
+std::string boneNear(const Skeleton& skeleton, const Vec3f& point_ss);
 
 }  // namespace hairloom::editor

@@ -36,7 +36,7 @@ class SphereTool : public Tool {
         const BrushPlace place = placeUnder(session_, pointer.at_px);
         if (!place.skin) return;
         const auto& actor = session_.player.actor();
-        const std::string bone = actor ? boneNear(*actor, place.position_ss) : std::string();
+        const std::string bone = actor ? boneNear(actor->skeleton(), place.position_ss) : std::string();
         document.perform(editing::placeSphere(document.model(), *place.skin, radius_, bone));
         session_.messages.say(tr("Sphere placed; drag its middle to move it, its rim to resize it"));
     }

@@ -96,7 +96,7 @@ struct LightConstants {
 };
 
 struct ShadeConstants {
-    float4 eye_ws;          // w = 1: position of a perspective eye; w = 0: direction towards an orthographic one
+    float4 eye_ws;
     float4 environment[9];  // radiance from around as real spherical harmonics, linear RGB; w of the first: 1
                             // when there is any
     float4 primary;         // RGB strength of the first highlight, w: exponent

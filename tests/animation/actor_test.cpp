@@ -79,16 +79,6 @@ TEST_F(ActorTest, VerticesSpheresAndRootsFollowTheirBones) {
     EXPECT_TRUE(moved[1].isApprox(Eigen::Isometry3f::Identity(), 1e-6f));
 }
 
-TEST_F(ActorTest, TheBoneNearAPointCarriesTheSkinThere) {
-    const auto& bones = actor.skeleton().bones();
-    EXPECT_EQ(bones[actor.boneNear(Vec3f(0.2f, 0.1f, -0.2f)).value()].name, "hip");
-    EXPECT_EQ(bones[actor.boneNear(Vec3f(0.2f, 0.9f, -0.2f)).value()].name, "head");
-    EXPECT_EQ(bones[actor.boneNear(Vec3f(-5, 30, 0)).value()].name, "head");
-    auto still = Actor::make(shared, Skeleton(), {}, {});
-    ASSERT_TRUE(still);
-    EXPECT_FALSE(still->boneNear(Vec3f::Zero())) << "nothing carries a mesh without a skeleton";
-}
-
 TEST_F(ActorTest, PlacementMovesEverythingRigidly) {
     const Eigen::Isometry3f placement =
         Eigen::Translation3f(3, -1, 2) * Eigen::AngleAxisf(0.8f, Vec3f::UnitZ());

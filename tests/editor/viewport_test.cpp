@@ -53,26 +53,6 @@ TEST(OrbitCameraTest, MovingKeepsThePointUnderThePointer) {
     EXPECT_NEAR(after.y() - before.y(), -25, 0.2);
 }
 
-TEST(OrbitCameraTest, OrthographicViewsHaveNoPerspective) {
-    OrbitCamera camera;
-    const QSizeF view(800, 600);
-    camera.setOrthographic(true);
-    const Vec3f near = camera.target_ws() + 0.1f * camera.right_ws() - 0.3f * camera.forward_ws();
-    const Vec3f far = near + 0.8f * camera.forward_ws();
-    const Vec3f behindTheEye = near - 5 * camera.forward_ws();
-    ASSERT_TRUE(camera.project(behindTheEye, view));
-    for (const Vec3f& point : {far, behindTheEye}) {
-        const QPointF off = *camera.project(point, view) - *camera.project(near, view);
-        EXPECT_LT(off.manhattanLength(), 0.05);
-    }
-    const Ray a = camera.rayThrough({10, 20}, view), b = camera.rayThrough({700, 500}, view);
-    EXPECT_LT((a.direction_ws - b.direction_ws).norm(), 1e-6f);
-    // Turning perspective off keeps the size of what is in the middle.
-    const float flat = camera.metresPerPixel(camera.target_ws(), view);
-    camera.setOrthographic(false);
-    EXPECT_NEAR(camera.metresPerPixel(camera.target_ws(), view), flat, 1e-6f);
-}
-
 class ViewportTest : public WindowTest {};
 
 class PictureTest : public WindowTest {

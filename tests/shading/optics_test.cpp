@@ -126,15 +126,6 @@ TEST(Melanin, LighterColoursAbsorbLess) {
     EXPECT_TRUE(absorptionOfColour(Vec3d::Zero(), 0.3).allFinite());
 }
 
-TEST(Melanin, ColoursComeBackFromWhatTheyAbsorb) {
-    for (const double roughness : {0.05, 0.3, 0.9}) {
-        for (const Vec3d& colour : {Vec3d(0.02, 0.5, 0.9), Vec3d(0.3, 0.12, 0.04), Vec3d(1, 1, 1)}) {
-            const Vec3d back = colourOfAbsorption(absorptionOfColour(colour, roughness), roughness);
-            EXPECT_TRUE(back.isApprox(colour, 1e-9)) << back.transpose();
-        }
-    }
-}
-
 TEST(Melanin, AxisRatioOfTheThesisGroups) {
     EXPECT_EQ(axisRatio(0), 1);
     EXPECT_NEAR(axisRatio(0.67), 1.347, 1e-3);
