@@ -59,6 +59,8 @@ int runChosenJob(const hairloom::cli::Jobs& jobs, bool json) {
 int main(int argc, char** argv) {
     CLI::App app("Hairloom: author hairstyles for games, without a window.");
     app.require_subcommand(1);
+    // On Windows, too, a word that begins with a slash is a path.
+    app.allow_windows_style_options(false);
     app.fallthrough();
     app.set_version_flag("--version", "hairloom-cli " HAIRLOOM_VERSION);
     bool json = false;

@@ -188,7 +188,8 @@ class CaseList {
         vary("shadows: absorption", [](auto& o) { o.shadows = render::Shadows::absorption; });
         vary("shadows: opacity maps", [](auto& o) { o.shadows = render::Shadows::opacityMaps; });
         vary("shadows: deep opacity maps", [](auto&) {});
-        vary("ribbons: strip", [](auto&) {});
+        vary("ribbons: compute", [](auto& o) { o.ribbons = render::Ribbons::compute; });
+        vary("ribbons: strip", [](auto& o) { o.ribbons = render::Ribbons::strip; });
         if (device_.tessellation) {
             vary("ribbons: tessellated", [](auto& o) { o.ribbons = render::Ribbons::tessellated; });
         } else {
@@ -333,7 +334,7 @@ std::string markdownOf(const RenderBench& bench, const std::string& command) {
         bench.device.name, bench.device.driver);
     for (const std::string& note : bench.notes) fmt::format_to(out, "\nNote: {}.\n", note);
     fmt::format_to(out,
-                   "\n| case | hairs | pixels | samples | frame | wall | targets, MiB | wanted |\n"
+                   "\n| case | hairs | pixels | samples | frame | wall | memory, MiB | wanted |\n"
                    "|---|---|---|---|---|---|---|---|\n");
     for (const RenderCase& c : bench.cases) {
         const std::string wanted =

@@ -141,7 +141,10 @@ Result<Child> spawn(const std::string& name, const std::filesystem::path& progra
     startup.StartupInfo.hStdOutput = output.get();
     startup.StartupInfo.hStdError = errors.get();
     startup.lpAttributeList = handles.list();
-    std::wstring words = quoted(program.wstring());
+    // Programs are named as on other systems.
+    std::filesystem::path file = program;
+    if (!file.has_extension()) file += L".exe";
+    std::wstring words = quoted(file.wstring());
     for (const std::string& argument : arguments) {
         const auto* utf8 = reinterpret_cast<const char8_t*>(argument.c_str());
         words += L" " + quoted(std::filesystem::path(utf8).wstring());
@@ -149,8 +152,8 @@ Result<Child> spawn(const std::string& name, const std::filesystem::path& progra
     PROCESS_INFORMATION started{};
     // Suspended until it is in its job, so that nothing it starts escapes.
     constexpr DWORD kFlags = CREATE_SUSPENDED | CREATE_NO_WINDOW | EXTENDED_STARTUPINFO_PRESENT;
-    if (CreateProcessW(program.wstring().c_str(), words.data(), nullptr, nullptr, TRUE, kFlags, nullptr,
-                       nullptr, &startup.StartupInfo, &started) == 0) {
+    if (CreateProcessW(file.wstring().c_str(), words.data(), nullptr, nullptr, TRUE, kFlags, nullptr, nullptr,
+                       &startup.StartupInfo, &started) == 0) {
         return notStarted(name, program, systemMessage(GetLastError()));
     }
     child.process = Handle(started.hProcess);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef HAIRLOOM_CURVE_HLSLI
+#define HAIRLOOM_CURVE_HLSLI
 #include "shaders/shared/render_types.h"
 
 // Octahedral unit vectors (Cigolle et al. 2014) in two snorm16.
@@ -30,3 +32,4 @@ uint hashUint(uint x) {
 }
 
 float hashUnit(uint x) { return float(hashUint(x) >> 8u) * (1.0 / 16777216.0); }
+#endif

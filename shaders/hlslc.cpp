@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // hairloom-hlslc SOURCE PROFILE TOP OUTPUT: compiles the function main of one HLSL file to DXBC with
 // Microsoft's compiler, twice, and refuses what does not come out alike or asks more of the hardware than
-// feature level 11_0 has. Includes are found from the folder TOP; OUTPUT.d lists them for the build system.
-// The environment variable HAIRLOOM_D3DCOMPILER names the DLL; without it the system's is taken.
+// feature level 11_0 has. Shaders see the macro HAIRLOOM_DXBC. Includes are found from the folder TOP;
+// OUTPUT.d lists them for the build system. The environment variable HAIRLOOM_D3DCOMPILER names the DLL;
+// without it the system's is taken.
 
 #include <windows.h>
 // windows.h first.
@@ -103,7 +104,8 @@ std::string compile(const Compiler& compiler, const std::string& path, const std
     ID3DBlob* code = nullptr;
     ID3DBlob* messages = nullptr;
     constexpr UINT kFlags = D3DCOMPILE_OPTIMIZATION_LEVEL3 | D3DCOMPILE_ENABLE_STRICTNESS;
-    const HRESULT r = compiler.compile(source.data(), source.size(), path.c_str(), nullptr, &includes, "main",
+    const D3D_SHADER_MACRO macros[] = {{"HAIRLOOM_DXBC", "1"}, {nullptr, nullptr}};
+    const HRESULT r = compiler.compile(source.data(), source.size(), path.c_str(), macros, &includes, "main",
                                        profile, kFlags, 0, &code, &messages);
     std::fputs(textOf(messages).c_str(), stderr);
     std::string bytes = textOf(code);

@@ -6,8 +6,8 @@
 #include "shaders/opacity.hlsli"
 
 Texture2D<float> gHeadDepth : register(t8);
-Texture2D<float> gFirstHair : register(t9);
-Texture2D<float4> gOpacity : register(t10);
+StructuredBuffer<uint> gFirstHair : register(t9);  // depths as bits
+StructuredBuffer<uint> gOpacity : register(t10);    // two words a texel
 
 struct Occlusion {
     float fibres;      // crossed on the way to the light
@@ -16,14 +16,14 @@ struct Occlusion {
 };
 
 // Fibres in front of a depth, as one texel of a map tells; `bias` metres of them are left out.
-float fibresAt(LightConstants light, int3 texel, float depth, float bias) {
+float fibresAt(LightConstants light, uint texel, float depth, float bias) {
     const uint mode = uint(light.range.y);
     if (mode == HAIRLOOM_SHADOWS_ABSORPTION) {
         // Dachsbacher and Stamminger 2003 for hair: evenly spread, up to as many as there are from side to side.
-        const float behind = depth - metresBehindNear(light.range, gFirstHair.Load(texel)) - bias;
+        const float behind = depth - metresBehindNear(light.range, asfloat(gFirstHair[texel])) - bias;
         return light.layers.y * (1.0 - exp(-max(behind, 0.0) * light.layers.x / max(light.layers.y, 1e-6)));
     }
-    const float4 layers = gOpacity.Load(texel);
+    const float4 layers = unpackShares(uint2(gOpacity[2u * texel], gOpacity[2u * texel + 1u]));
     if (mode == HAIRLOOM_SHADOWS_OPACITY_MAPS) {
         const float4 begins = float4(0, light.layers.xyz);
         const float4 part = saturate((depth - bias - light.range.w - begins) / (light.layers - begins));
@@ -48,9 +48,9 @@ Occlusion occlusion(LightConstants light, float3 position_ws, float hairBias, fl
     const float2 uv = float2(0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w);
     if (any(uv < 0.0) || any(uv > 1.0)) return result;
     const int size = int(light.tile.y);
-    const float2 texel = uv * light.tile.y - 0.5;
-    const int2 base = int2(floor(texel));
-    const float2 f = texel - float2(base);
+    const float2 place = uv * light.tile.y - 0.5;
+    const int2 base = int2(floor(place));
+    const float2 f = place - float2(base);
     const float depth = metresBehindNear(light.range, clip.z / clip.w);
     // A quadratic B-spline over 3 x 3 texels of finished comparisons.
     const float3 wx = float3(0.5 * (1 - f.x) * (1 - f.x), 0.5 + f.x * (1 - f.x), 0.5 * f.x * f.x);
@@ -62,11 +62,12 @@ Occlusion occlusion(LightConstants light, float3 position_ws, float hairBias, fl
         for (int x = 0; x < 3; ++x) {
             const int2 at = clamp(base + int2(x, y), int2(0, 0), int2(size - 1, size - 1));
             const int3 where = int3(at.x + int(light.tile.x), at.y, 0);
+            const uint texel = uint(at.y) * uint(light.tile.w) + uint(where.x);
             const float w = wx[x] * wy[y];
             const float headDepth = metresBehindNear(light.range, head ? gHeadDepth.Load(where) : 1.0);
             if (hair) {
-                fibres += w * fibresAt(light, where, depth, hairBias);
-                all += w * fibresAt(light, where, headDepth, 0);
+                fibres += w * fibresAt(light, texel, depth, hairBias);
+                all += w * fibresAt(light, texel, headDepth, 0);
             }
             if (head) visible += w * (depth - headDepth < headBias ? 1.0 : 0.0);
         }

@@ -4,10 +4,10 @@
 #include "shaders/tone_map.hlsli"
 
 cbuffer Constants : register(b0) { ToneConstants gTone; };
-Texture2D<float4> gSum : register(t0);
+StructuredBuffer<float4> gSum : register(t0);
 
 float4 main(float4 position : SV_Position) : SV_Target0 {
-    const float4 average = gSum.Load(int3(int2(position.xy), 0)) * gTone.exposure.y;
+    const float4 average = gSum[uint(position.y) * uint(gTone.exposure.w) + uint(position.x)] * gTone.exposure.y;
     const float3 shown = toneCurve(average.rgb * gTone.exposure.x);
     return float4(gTone.exposure.z > 0 ? encodeSrgb(shown) : shown, saturate(average.a));
 }

@@ -28,7 +28,7 @@ struct RenderJobOptions {
     std::string scatter = "dual";
     std::string shadow = "dom";
     std::string antiAliasing = "auto";
-    std::string ribbons = "strip";
+    std::string ribbons = "auto";
     std::string transparency = "auto";
     float detail = 0;
     std::string record;
@@ -66,8 +66,10 @@ const std::map<std::string, render::Shadows> kShadows{{"none", render::Shadows::
                                                       {"dom", render::Shadows::deepOpacity},
                                                       {"absorption", render::Shadows::absorption},
                                                       {"opacity", render::Shadows::opacityMaps}};
-const std::map<std::string, render::Ribbons> kRibbons{{"strip", render::Ribbons::strip},
-                                                      {"tess", render::Ribbons::tessellated}};
+const std::map<std::string, render::Ribbons> kRibbons{{"auto", render::Ribbons::automatic},
+                                                      {"strip", render::Ribbons::strip},
+                                                      {"tess", render::Ribbons::tessellated},
+                                                      {"compute", render::Ribbons::compute}};
 const std::map<std::string, render::Transparency> kTransparency{
     {"stochastic", render::Transparency::stochastic},
     {"a2c", render::Transparency::alphaToCoverage},
@@ -190,7 +192,19 @@ Report planReport(const render::RenderPlan& plan) {
                                  {"bytes", target.bytes()},
                                  {"why", target.why}});
     }
-    return Report{{"passes", std::move(passes)}, {"targets", std::move(targets)}, {"bytes", plan.bytes()}};
+    Report buffers = Report::array();
+    for (std::size_t i = 0; i < render::kBufferCount; ++i) {
+        const render::PlannedBuffer& buffer = plan.buffers[i];
+        if (buffer.elements == 0) continue;
+        buffers.push_back(Report{{"name", render::bufferName(static_cast<render::BufferId>(i))},
+                                 {"bytes", buffer.bytes()},
+                                 {"why", buffer.why}});
+    }
+    return Report{{"passes", std::move(passes)},
+                  {"targets", std::move(targets)},
+                  {"buffers", std::move(buffers)},
+                  {"tables", Report{{"bytes", plan.tables.bytes}, {"why", plan.tables.why}}},
+                  {"bytes", plan.bytes()}};
 }
 
 Report reportOf(const render::Picture& picture, const RenderJobOptions& options) {
@@ -339,7 +353,8 @@ void addRenderJob(Jobs& jobs) {
            "Samples a pixel and frame (auto: the most the device has, up to 8), or FXAA, which draws once")
         ->check(CLI::IsMember(namesOf(kAntiAliasing)));
     job.add_option("--ribbons", options->ribbons,
-                   "How hairs become triangles: pulled strips, or tessellated patches")
+                   "How hairs are drawn: as pulled strips, as tessellated patches, or rasterised by kernels; "
+                   "auto: kernels on a GPU, strips without one or where hair is blended")
         ->check(CLI::IsMember(namesOf(kRibbons)));
     job.add_option("--transparency", options->transparency,
                    "Hairs thinner than a sample: a random part of the samples, a fixed part, or blended by "

@@ -19,6 +19,7 @@ Status ValidationDevice::checkAlive() const {
 
 Status ValidationDevice::beforeCreation(const std::string& what) {
     if (auto status = checkAlive(); !status) return status;
+    const std::lock_guard lock(creationsMutex_);
     if (!creationsLeft_) return {};
     if (*creationsLeft_ > 0) {
         --*creationsLeft_;
@@ -26,6 +27,11 @@ Status ValidationDevice::beforeCreation(const std::string& what) {
     }
     creationsLeft_.reset();
     return fail("creating " + what + ": out of device memory");
+}
+
+void ValidationDevice::failCreation(std::uint64_t calls) {
+    const std::lock_guard lock(creationsMutex_);
+    creationsLeft_ = calls;
 }
 
 void ValidationDevice::track(const std::shared_ptr<const void>& resource, LivingResource described,

@@ -9,9 +9,11 @@
 // - indices, vertices or indirect arguments beyond their buffer;
 // - reading a read-back buffer on the CPU while the submission that fills it may still run.
 
+#include <atomic>
 #include <deque>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -52,7 +54,7 @@ class ValidationDevice final : public Device {
     void clearRecord() { record_.clear(); }
     std::vector<LivingResource> living();
     /// The creation (of anything) after `calls` more successful ones fails as if memory had run out, once.
-    void failCreation(std::uint64_t calls) { creationsLeft_ = calls; }
+    void failCreation(std::uint64_t calls);
     /// The submission after `calls` more fails as a lost device does, and so does everything after it.
     void loseDevice(std::uint64_t calls) { submissionsLeft_ = calls; }
 
@@ -88,8 +90,11 @@ class ValidationDevice final : public Device {
     ContentStates contents_;
     std::map<std::weak_ptr<const void>, GraphicsPipelineDesc, std::owner_less<std::weak_ptr<const void>>>
         pipelines_;
-    std::optional<std::uint64_t> creationsLeft_, submissionsLeft_;
-    bool lost_ = false;
+    std::optional<std::uint64_t> submissionsLeft_;
+    // Shaders and compute pipelines may be made on another thread.
+    std::mutex creationsMutex_;
+    std::optional<std::uint64_t> creationsLeft_;
+    std::atomic<bool> lost_ = false;
 };
 
 /// The wrapper that createDevice() put around the device where validation was asked for; else nullptr.

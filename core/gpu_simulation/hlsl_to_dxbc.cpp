@@ -58,7 +58,8 @@ Result<std::vector<std::uint32_t>> compileToDxbc(const std::string& path, const 
     Includer includer;
     ID3DBlob* code = nullptr;
     ID3DBlob* messages = nullptr;
-    const HRESULT r = kCompile(text.data(), text.size(), path.c_str(), nullptr, &includer, "main", "cs_5_0",
+    const D3D_SHADER_MACRO macros[] = {{"HAIRLOOM_DXBC", "1"}, {nullptr, nullptr}};
+    const HRESULT r = kCompile(text.data(), text.size(), path.c_str(), macros, &includer, "main", "cs_5_0",
                                D3DCOMPILE_OPTIMIZATION_LEVEL3, 0, &code, &messages);
     const std::string_view bytes = bytesIn(code);
     const std::string said(bytesIn(messages));

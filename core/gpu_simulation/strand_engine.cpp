@@ -36,6 +36,7 @@ Result<StrandEngine> StrandEngine::make(gpu::Device& device, std::shared_ptr<Ker
     impl->wanted = settings;
     impl->run.settings = settings;
     impl->batches = makeBatches(*impl->shape, options.layout);
+    if (const std::string why = impl->whyNoVelocities(); !why.empty()) return fail(why);
     impl->roots.resize(impl->shape->restRoots.size());
     if (auto made = impl->makeBuffers(); !made) return tl::unexpected(made.error());
     if (options.hairHair) {
@@ -53,6 +54,14 @@ StrandEngine::StrandEngine(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) 
 StrandEngine::StrandEngine(StrandEngine&&) noexcept = default;
 StrandEngine& StrandEngine::operator=(StrandEngine&&) noexcept = default;
 StrandEngine::~StrandEngine() = default;
+
+/// Why this device cannot write the velocities that were asked for; empty where it can.
+std::string StrandEngine::Impl::whyNoVelocities() const {
+    const bool inBuffers = std::ranges::any_of(
+        batches, [](const StrandBatch& batch) { return batch.shape.storage == StrandStorage::buffers; });
+    if (!options.velocities || !inBuffers || device.info().backend != gpu::Backend::Direct3D11) return {};
+    return "Direct3D 11 lets a kernel write to eight buffers, too few for velocities of strands this long";
+}
 
 /// Those that exist whatever the plan.
 Status StrandEngine::Impl::makeBuffers() {

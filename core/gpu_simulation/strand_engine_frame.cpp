@@ -222,8 +222,9 @@ void StrandEngine::Impl::dispatch(gpu::CommandList& list, const StrandBatch& bat
     write(4, places);
     write(5, batch.curves);
     write(6, batch.tanks);
-    write(7, batch.scratch);
-    write(8, velocities);
+    const bool inBuffers = batch.shape.storage == StrandStorage::buffers;
+    write(7, inBuffers ? batch.scratch : velocities);
+    if (inBuffers) write(8, velocities);
     list.bind(bindings);
     list.setConstants(0, gpu::bytesOf(constants));
     if (batch.key.spheres == SphereSource::constants) {

@@ -52,6 +52,7 @@ struct StrandEngine::Impl {
         : device(d), kernels(std::move(k)), options(o) {}
 
     // strand_engine.cpp
+    std::string whyNoVelocities() const;
     Status makeBuffers();
     Status allocate();
     Status adopt(const Run& next);

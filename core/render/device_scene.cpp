@@ -4,17 +4,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/base/parallel.h"
 #include "core/base/random.h"
+#include "core/render/device_buffers.h"
 
 namespace hairloom::render {
 namespace {
 
-// Curves 32 times as fine still fit the smallest buffers that devices offer, of 128 MiB.
-constexpr std::uint32_t kMaxPointsPerBatch = 1u << 17u;
-constexpr std::uint32_t kRestart = 0xffffffffu;
+/// Curves 32 times as fine still fit one of the device's buffers; the smallest that are offered have 128 MiB.
+std::uint32_t maxPointsPerBatch(const gpu::DeviceInfo& device) {
+    constexpr std::uint64_t kLeast = 1u << 17u, kMost = 1u << 20u;
+    return static_cast<std::uint32_t>(
+        std::clamp(device.maxBufferBytes / (32 * sizeof(shaders::CurvePoint)), kLeast, kMost));
+}
 
 std::vector<Vec3f> averagedNormals(std::span<const Vec3f> positions, std::span<const std::uint32_t> indices) {
     std::vector<Vec3f> normals(positions.size(), Vec3f::Zero());
@@ -58,49 +61,6 @@ Result<Box3f> finiteBounds(std::span<const Vec3f> positions, const char* what) {
 
 shaders::float4 toFloat4(const Vec3f& v, float w) {
     return {v.x(), v.y(), v.z(), w};
-}
-
-/// A buffer of elements that shaders read; `floats` of plain numbers such as the components of vectors.
-Result<gpu::BufferPtr> structured(gpu::Device& device, const char* name, std::uint32_t elementBytes,
-                                  std::span<const std::byte> content) {
-    gpu::BufferDesc desc;
-    desc.name = name;
-    desc.size = content.size();
-    desc.elementBytes = elementBytes;
-    return device.createBuffer(desc, content);
-}
-
-Result<gpu::BufferPtr> written(gpu::Device& device, const char* name, std::uint64_t count,
-                               std::uint32_t element) {
-    gpu::BufferDesc desc;
-    desc.name = name;
-    desc.size = count * element;
-    desc.elementBytes = element;
-    desc.usage = gpu::Usage::ShaderRead | gpu::Usage::UnorderedAccess;
-    return device.createBuffer(desc);
-}
-
-/// Moves results into their places and remembers the first error.
-class Gather {
-  public:
-    template <class T>
-    Gather& operator()(T& target, Result<T> result) {
-        if (result) {
-            target = std::move(*result);
-        } else if (status_) {
-            status_ = tl::unexpected(result.error());
-        }
-        return *this;
-    }
-    const Status& status() const { return status_; }
-
-  private:
-    Status status_;
-};
-
-template <class T>
-std::span<const std::byte> bytes(const std::vector<T>& values) {
-    return std::as_bytes(std::span(values));
 }
 
 Result<MeshOnDevice> uploadMesh(gpu::Device& device, const RenderMesh& mesh) {
@@ -176,68 +136,19 @@ Status uploadBatch(gpu::Device& device, const RenderStrands& strands, std::size_
 Status uploadStrands(gpu::Device& device, const RenderStrands& strands, std::size_t group,
                      std::vector<StrandBatch>& batches) {
     const std::size_t count = strands.offsets.empty() ? 0 : strands.offsets.size() - 1;
+    const std::uint32_t most = maxPointsPerBatch(device.info());
     std::size_t first = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const std::uint32_t points = strands.offsets[i + 1] - strands.offsets[i];
-        if (points > kMaxPointsPerBatch) {
-            return fail(fmt::format("strand {} has {} points", i, points),
-                        fmt::format("at most {}", kMaxPointsPerBatch));
+        if (points > most) {
+            return fail(fmt::format("strand {} has {} points", i, points), fmt::format("at most {}", most));
         }
-        if (strands.offsets[i + 1] - strands.offsets[first] > kMaxPointsPerBatch) {
+        if (strands.offsets[i + 1] - strands.offsets[first] > most) {
             if (auto status = uploadBatch(device, strands, group, first, i, batches); !status) return status;
             first = i;
         }
     }
     return count > first ? uploadBatch(device, strands, group, first, count, batches) : Status{};
-}
-
-std::vector<std::uint32_t> ribbonIndices(const StrandBatch& batch, std::uint32_t subdivisions) {
-    std::vector<std::uint32_t> indices;
-    indices.reserve(batch.indexCount(batch.strandCount(), subdivisions));
-    std::uint32_t next = 0;
-    for (std::uint32_t strand = 0; strand < batch.strandCount(); ++strand) {
-        const std::uint32_t segments = batch.segmentsBefore[strand + 1] - batch.segmentsBefore[strand];
-        for (std::uint32_t i = 0; i < 2 * (segments * subdivisions + 1); ++i) indices.push_back(next++);
-        indices.push_back(kRestart);
-    }
-    return indices;
-}
-
-/// Strands of more than 32 points become several patches that overlap, so that each knows its neighbours'
-/// tangents.
-std::vector<shaders::StrandPatch> strandPatches(StrandBatch& batch) {
-    constexpr std::uint32_t kControlPoints = HAIRLOOM_PATCH_POINTS;
-    std::vector<shaders::StrandPatch> patches;
-    batch.patchesBefore = {0};
-    for (std::uint32_t strand = 0; strand < batch.strandCount(); ++strand) {
-        const std::uint32_t segments = batch.segmentsBefore[strand + 1] - batch.segmentsBefore[strand];
-        for (std::uint32_t done = 0; done < segments;) {
-            shaders::StrandPatch patch;
-            const std::uint32_t before = done > 0 ? 1 : 0;
-            patch.strand = strand;
-            patch.firstPoint = done - before;
-            patch.pointCount = std::min(segments + 1 - patch.firstPoint, kControlPoints);
-            const bool ends = patch.firstPoint + patch.pointCount == segments + 1;
-            patch.segments = patch.pointCount - 1 - before - (ends ? 0 : 1);
-            done += patch.segments;
-            patches.push_back(patch);
-        }
-        batch.patchesBefore.push_back(static_cast<std::uint32_t>(patches.size()));
-    }
-    return patches;
-}
-
-std::uint64_t cellOf(const Vec3f& p, float size) {
-    const auto place = [&](float x) {
-        return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(x / size)) + (1 << 20)) &
-               0x1fffffu;
-    };
-    return place(p.x()) | place(p.y()) << 21u | place(p.z()) << 42u;
-}
-
-std::size_t countDistinct(std::vector<std::uint64_t> cells) {
-    std::ranges::sort(cells);
-    return static_cast<std::size_t>(std::unique(cells.begin(), cells.end()) - cells.begin());
 }
 
 /// About kSampleSize points, spread over all strands.
@@ -257,16 +168,6 @@ void takeSample(StrandGroup& group, std::span<const Vec3f> positions_ws) {
 }
 
 }  // namespace
-
-float HairDetail::widening() const {
-    const float full = 0.9f * share;
-    const float none = 1.1f * share;
-    if (full >= 1) return 1;
-    if (none <= 1) return 1 / share;
-    // The mean over all strands of the factors of levelWidth() in shaders/curve.comp.hlsl.
-    const float fading = (none - full) * (none - full) - (none - 1) * (none - 1);
-    return 1 / (full + fading / (2 * (none - full)));
-}
 
 std::uint32_t StrandBatch::strandCount(const HairDetail& detail) const {
     const float wanted = std::ceil(std::min(1.1f * detail.share, 1.0f) * static_cast<float>(strandCount()));
@@ -300,59 +201,6 @@ Result<DeviceScene> DeviceScene::upload(gpu::Device& device, const RenderScene& 
         }
     }
     result.measureSpace(scene);
-    return result;
-}
-
-void DeviceScene::measureSpace(const RenderScene& scene) {
-    constexpr float kCell = 0.01f;  // metres, about a wisp
-    std::vector<std::uint64_t> cells;
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-        const RenderStrands& strands = scene.strands[g];
-        StrandGroup& group = groups[g];
-        for (std::size_t i = 0; i + 1 < strands.offsets.size(); ++i) {
-            for (std::uint32_t p = strands.offsets[i] + 1; p < strands.offsets[i + 1]; ++p) {
-                const Vec3f& a = strands.positions_ws[p - 1];
-                const Vec3f& b = strands.positions_ws[p];
-                const double step = static_cast<double>((b - a).norm());
-                group.length += step;
-                ++group.segments;
-                if (group.hasRadii) {
-                    group.ownRadius +=
-                        step * static_cast<double>(0.5f * (strands.radii[p - 1] + strands.radii[p]));
-                }
-                cells.push_back(cellOf(0.5f * (a + b), kCell));
-            }
-        }
-        if (group.length > 0) group.ownRadius /= group.length;
-    }
-    const double cell = static_cast<double>(kCell);
-    for (const unsigned axis : {0u, 21u, 42u}) {
-        auto flat = cells;
-        for (std::uint64_t& c : flat) c &= ~(std::uint64_t{0x1fffff} << axis);
-        hairShadow_ += static_cast<double>(countDistinct(std::move(flat))) * cell * cell / 3;
-    }
-    hairVolume_ = static_cast<double>(countDistinct(std::move(cells))) * cell * cell * cell;
-}
-
-HairMeasure DeviceScene::measure() const {
-    double length = 0, surface = 0;
-    std::size_t segments = 0;
-    for (const StrandGroup& group : groups) {
-        // The profile of shaders/curve.comp.hlsl has this mean.
-        const double authored =
-            static_cast<double>(group.material.radius * (2 + group.material.tipScale) / 3);
-        length += group.length;
-        surface += group.length * 2 * (group.hasRadii ? group.ownRadius : authored);
-        segments += group.segments;
-    }
-    HairMeasure result;
-    if (!(length > 0) || !(hairVolume_ > 0)) return result;
-    result.segment = static_cast<float>(length / static_cast<double>(segments));
-    result.diameter = static_cast<float>(surface / length);
-    // Of cylinders in all directions a ray sees π/4 of length times diameter.
-    const double crossed = surface * static_cast<double>(kPi) / 4;
-    result.fibresPerMetre = static_cast<float>(crossed / hairVolume_);
-    result.fibresThrough = static_cast<float>(crossed / hairShadow_);
     return result;
 }
 
@@ -420,27 +268,6 @@ Status DeviceScene::replaceStrands(std::size_t group, gpu::BufferPtr positions_w
     return {};
 }
 
-Status DeviceScene::prepareCurves(gpu::Device& device, std::uint32_t subdivisions) {
-    Gather gather;
-    for (StrandBatch& batch : batches) {
-        const std::uint32_t count = batch.curvePoints(batch.strandCount(), subdivisions);
-        if (subdivisions > batch.curveSubdivisions) {
-            gather(batch.curve, written(device, "curve points", count, sizeof(shaders::CurvePoint)));
-            gather(batch.colour, written(device, "curve colours", count, sizeof(shaders::float4)));
-            batch.curveSubdivisions = subdivisions;
-        }
-        gpu::BufferPtr& indices = batch.indices[subdivisions];
-        if (indices != nullptr) continue;
-        const auto content = ribbonIndices(batch, subdivisions);
-        gpu::BufferDesc desc;
-        desc.name = "ribbon indices";
-        desc.size = content.size() * sizeof(std::uint32_t);
-        desc.usage = gpu::Usage::Index;
-        gather(indices, device.createBuffer(desc, bytes(content)));
-    }
-    return gather.status();
-}
-
 Status DeviceScene::prepareFibres(gpu::Device& device) {
     for (StrandGroup& group : groups) {
         if (group.fibre.isFor(group.material.fibre)) continue;
@@ -449,17 +276,6 @@ Status DeviceScene::prepareFibres(gpu::Device& device) {
         group.fibre = std::move(*made);
     }
     return {};
-}
-
-Status DeviceScene::preparePatches(gpu::Device& device) {
-    Gather gather;
-    for (StrandBatch& batch : batches) {
-        if (batch.patches != nullptr) continue;
-        const auto patches = strandPatches(batch);
-        gather(batch.patches,
-               structured(device, "strand patches", sizeof(shaders::StrandPatch), bytes(patches)));
-    }
-    return gather.status();
 }
 
 void DeviceScene::recordUploads(gpu::CommandList& list) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Curves, shadow maps and shading: what stays while the scene does.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "core/render/passes.h"
@@ -11,13 +12,6 @@ namespace {
 
 using gpu::Binding;
 
-constexpr GraphicsNeeds kStrandDepth{.vertex = "strand_depth.vert",
-                                     .topology = gpu::Topology::TriangleStrip,
-                                     .depthTest = true,
-                                     .depthWrite = true};
-constexpr std::uint32_t kGroup = 64;
-constexpr std::uint32_t kRowGroups = 32768;
-
 bool castsShadow(const RendererState& state, std::size_t light) {
     return state.options.shadows != Shadows::none && state.lights[light].castsShadow;
 }
@@ -27,6 +21,11 @@ std::uint32_t tileOf(const RendererState& state, std::size_t light) {
     std::uint32_t tile = 0;
     for (std::size_t i = 0; i < light; ++i) tile += castsShadow(state, i) ? 1 : 0;
     return tile;
+}
+
+/// Pixels in a row of the atlas.
+float atlasWidth(const RendererState& state) {
+    return static_cast<float>(state.options.shadowResolution * tileOf(state, state.lights.size()));
 }
 
 shaders::float4 layersOf(const RendererState& state, const LightView& view) {
@@ -46,6 +45,10 @@ shaders::float4 layersOf(const RendererState& state, const LightView& view) {
     return {};
 }
 
+std::uint32_t layerCount(Shadows shadows) {
+    return shadows == Shadows::deepOpacity ? 3 : 4;
+}
+
 shaders::float4 rangeOf(const LightView& view, std::uint32_t mode) {
     return {view.depthRange, static_cast<float>(mode), view.nearPlane, view.hairStart};
 }
@@ -60,7 +63,7 @@ shaders::LightConstants lightConstants(const RendererState& state, std::size_t i
     c.clipFromWorld = toShader(view.clipFromWorld);
     c.toLight_ws = {view.eye_ws.x(), view.eye_ws.y(), view.eye_ws.z(), view.eye_ws.w()};
     c.irradiance = toShader(light.kind == LightKind::point ? light.intensity : light.irradiance, 0);
-    c.tile = {size * static_cast<float>(tileOf(state, i)), size, head ? 1.0f : 0.0f, 0};
+    c.tile = {size * static_cast<float>(tileOf(state, i)), size, head ? 1.0f : 0.0f, atlasWidth(state)};
     c.range = rangeOf(view, hair ? static_cast<std::uint32_t>(state.options.shadows) : 0u);
     c.layers = layersOf(state, view);
     return c;
@@ -87,13 +90,51 @@ void setTile(gpu::CommandList& list, const RendererState& state, std::size_t lig
     list.setScissor({x, 0, size, size});
 }
 
-void drawStrandsFromLights(gpu::CommandList& list, const RendererState& state) {
+/// Strands into a light's square, with the kernel that is set.
+void rasteriseFromLight(gpu::CommandList& list, const RendererState& state, std::size_t light) {
+    const std::uint32_t size = state.options.shadowResolution;
+    const auto side = static_cast<float>(size);
+    shaders::RasterConstants raster;
+    raster.window = {static_cast<float>(tileOf(state, light) * size), 0, side, side};
+    raster.numbers = {0, 0, static_cast<std::uint32_t>(atlasWidth(state)), 0};
+    raster.samples = {1, layerCount(state.options.shadows), 1, 0};
+    list.setConstants(0, gpu::bytesOf(lightViewConstants(state, light)));
+    dispatchStrands(list, state, raster);
+}
+
+void recordFirstHair(gpu::CommandList& list, RendererState& state) {
+    list.beginPass({passName(Pass::firstHair), {}, {}});
+    fill(list, state, BufferId::firstHair, std::bit_cast<std::uint32_t>(1.0f));
+    list.setPipeline(state.pipelines.compute("light_first.comp"));
+    bind(list, {Binding::write(0, state.targets[BufferId::firstHair])});
+    for (std::size_t i = 0; i < state.lights.size(); ++i) {
+        if (castsShadow(state, i)) rasteriseFromLight(list, state, i);
+    }
+    list.endPass();
+}
+
+void recordOpacity(gpu::CommandList& list, RendererState& state) {
+    const std::uint32_t size = state.options.shadowResolution;
+    list.beginPass({passName(Pass::opacity), {}, {}});
     for (std::size_t i = 0; i < state.lights.size(); ++i) {
         if (!castsShadow(state, i)) continue;
-        setTile(list, state, i);
-        list.setConstants(0, gpu::bytesOf(lightViewConstants(state, i)));
-        drawStrips(list, state);
+        fill(list, state, BufferId::layerCounts, 0);
+        list.setPipeline(state.pipelines.compute("light_layers.comp"));
+        bind(list, {Binding::read(2, state.orNothing(BufferId::firstHair)),
+                    Binding::write(0, state.targets[BufferId::layerCounts])});
+        rasteriseFromLight(list, state, i);
+        list.setPipeline(state.pipelines.compute("light_pack.comp"));
+        shaders::PackConstants constants;
+        const auto mode = static_cast<std::uint32_t>(state.options.shadows);
+        constants.size = {size, tileOf(state, i) * size, static_cast<std::uint32_t>(atlasWidth(state)), mode};
+        constants.range = rangeOf(state.lightViews[i], mode);
+        list.setConstants(0, gpu::bytesOf(constants));
+        bind(list, {Binding::read(0, state.orNothing(BufferId::firstHair)),
+                    Binding::read(1, state.targets[BufferId::layerCounts]),
+                    Binding::write(0, state.targets[BufferId::opacity])});
+        list.dispatch((size + 7) / 8, (size + 7) / 8);
     }
+    list.endPass();
 }
 
 void recordHeadDepth(gpu::CommandList& list, RendererState& state) {
@@ -174,33 +215,15 @@ void recordCurves(gpu::CommandList& list, RendererState& state) {
         bind(list, {Binding::read(0, batch.headers),
                     Binding::read(1, group.devicePositions ? group.devicePositions : batch.positions),
                     Binding::read(2, batch.radii), Binding::write(0, batch.curve)});
-        list.dispatch((constants.strandCount + kGroup - 1) / kGroup);
+        list.dispatch((constants.strandCount + 63) / 64);
     }
     list.endPass();
 }
 
 void recordShadowMaps(gpu::CommandList& list, RendererState& state) {
     if (state.plan.runs(Pass::headDepth)) recordHeadDepth(list, state);
-    if (state.plan.runs(Pass::firstHair)) {
-        list.beginPass(
-            {passName(Pass::firstHair), {}, {state.targets[TargetId::firstHair], gpu::LoadOp::Clear, 1}});
-        list.setPipeline(state.pipelines.graphics(kStrandDepth));
-        drawStrandsFromLights(list, state);
-        list.endPass();
-    }
-    if (!state.plan.runs(Pass::opacity)) return;
-    const bool deep = state.options.shadows == Shadows::deepOpacity;
-    list.beginPass({passName(Pass::opacity),
-                    {{state.targets[TargetId::opacity], gpu::LoadOp::Clear, {0, 0, 0, 0}, {}}},
-                    {}});
-    list.setPipeline(state.pipelines.graphics({.vertex = "strand_opacity.vert",
-                                               .pixel = "opacity.frag",
-                                               .topology = gpu::Topology::TriangleStrip,
-                                               .colour = gpu::Format::Rgba16Unorm,
-                                               .blend = deep ? Blend::addAndNearest : Blend::add}));
-    bind(list, {Binding::read(2, state.orNothing(TargetId::firstHair))});
-    drawStrandsFromLights(list, state);
-    list.endPass();
+    if (state.plan.runs(Pass::firstHair)) recordFirstHair(list, state);
+    if (state.plan.runs(Pass::opacity)) recordOpacity(list, state);
 }
 
 void recordShading(gpu::CommandList& list, RendererState& state) {
@@ -213,13 +236,12 @@ void recordShading(gpu::CommandList& list, RendererState& state) {
         auto constants = shadeConstants(state, group.material);
         const std::uint32_t points =
             batch.curvePoints(batch.strandCount(state.detail), state.detail.subdivisions);
-        const std::uint32_t groups = (points + kGroup - 1) / kGroup;
-        const std::uint32_t row = std::min(groups, kRowGroups);
-        constants.counts = {points, constants.counts.y, row * kGroup, 0};
+        const Rows rows(points);
+        constants.counts = {points, constants.counts.y, rows.threads(), 0};
         list.setConstants(0, gpu::bytesOf(constants));
         bind(list, {Binding::read(0, batch.curve), Binding::read(1, batch.headers),
                     Binding::write(0, batch.colour)});
-        list.dispatch(row, (groups + row - 1) / row);
+        list.dispatch(rows.groups, rows.rows);
     }
     list.endPass();
 }

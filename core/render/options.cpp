@@ -27,6 +27,10 @@ Status check(const RenderOptions& o, const gpu::DeviceInfo& device) {
     if (o.ribbons == Ribbons::tessellated && !device.tessellation) {
         return fail("tessellated ribbons on " + device.name, "a device with tessellation");
     }
+    if (o.ribbons == Ribbons::compute && o.transparency == Transparency::weighted) {
+        return fail("hair that kernels rasterise, blended by weights",
+                    "stochastic or a fixed set of samples");
+    }
     if (!(o.exposure > 0) || !(o.exposure < 1e6f)) return fail("an exposure that is not positive");
     return {};
 }
@@ -42,6 +46,15 @@ Result<std::uint32_t> chooseSamples(const RenderOptions& options, const gpu::Dev
                     "one of " + counts);
     }
     return options.samples;
+}
+
+Ribbons chooseRibbons(const RenderOptions& options, std::uint32_t samples, const gpu::DeviceInfo& device) {
+    if (options.ribbons != Ribbons::automatic) return options.ribbons;
+    const std::uint64_t words = std::uint64_t{options.width} * options.height * samples;
+    // A software device has no fixed-function units to be slower than its kernels.
+    const bool can = device.type != gpu::DeviceType::Cpu && options.transparency != Transparency::weighted &&
+                     words * sizeof(std::uint32_t) <= device.maxBufferBytes;
+    return can ? Ribbons::compute : Ribbons::strip;
 }
 
 }  // namespace hairloom::render

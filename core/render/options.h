@@ -16,10 +16,12 @@ enum class Shadows {
     opacityMaps,  ///< Kim and Neumann 2001: four layers at fixed depths
 };
 
-/// How ribbons come about. Both draw the same curve.
+/// How ribbons come about. All draw the same curve.
 enum class Ribbons {
+    automatic,    ///< compute on a GPU where it can, else strip: chooseRibbons()
     strip,        ///< a vertex shader pulls the points of the curve
     tessellated,  ///< hull and domain shaders, finer near the eye; needs DeviceInfo::tessellation
+    compute,      ///< kernels rasterise hair and head; no weighted transparency
 };
 
 /// How hair that covers part of a sample shows what lies behind it.
@@ -44,7 +46,7 @@ struct RenderOptions {
     std::uint32_t subdivisions = 2;  ///< curve segments per segment of a strand, 1…64
     std::uint32_t shadowResolution = 1024;  ///< pixels of a light's square shadow map, 64…4096
     Shadows shadows = Shadows::deepOpacity;
-    Ribbons ribbons = Ribbons::strip;
+    Ribbons ribbons = Ribbons::automatic;
     Transparency transparency = Transparency::stochastic;
     PostFilter filter = PostFilter::none;
     /// Hairs are left out and curves made coarser where a hair of mean width is thinner than this part of a
@@ -62,5 +64,8 @@ Status check(const RenderOptions& options, const gpu::DeviceInfo& device);
 
 /// `samples` of the options, with 0 resolved. Errors: the device has no such number of samples.
 Result<std::uint32_t> chooseSamples(const RenderOptions& options, const gpu::DeviceInfo& device);
+
+/// `ribbons` of the options, with automatic resolved for a picture of so many samples a pixel.
+Ribbons chooseRibbons(const RenderOptions& options, std::uint32_t samples, const gpu::DeviceInfo& device);
 
 }  // namespace hairloom::render

@@ -105,9 +105,10 @@ void recordPresent(gpu::CommandList& list, RendererState& state, std::uint32_t f
         {.vertex = "fullscreen.vert", .pixel = "tone_map.frag", .colour = shown->desc().format}));
     shaders::ToneConstants constants;
     constants.exposure = {state.options.exposure, 1 / static_cast<float>(frames),
-                          encodesItself(shown->desc().format) ? 0.0f : 1.0f, 0};
+                          encodesItself(shown->desc().format) ? 0.0f : 1.0f,
+                          static_cast<float>(state.options.width)};
     list.setConstants(0, gpu::bytesOf(constants));
-    bind(list, {Binding::read(0, state.targets[TargetId::sum])});
+    bind(list, {Binding::read(0, state.targets[BufferId::sum])});
     list.draw(3);
     list.endPass();
     if (filter) recordFilter(list, state, target);

@@ -48,18 +48,6 @@ float pixelSpread(const RendererState& state) {
     return 2 * std::tan(radians(state.camera.verticalFov) / 2) / static_cast<float>(state.options.height);
 }
 
-shaders::ViewConstants viewConstants(const RendererState& state, const Mat4f& clipFromWorld,
-                                     std::uint32_t number) {
-    const auto [nearest, farthest] = distances(state.camera, state.scene.hairBounds());
-    shaders::ViewConstants view;
-    view.clipFromWorld = toShader(clipFromWorld);
-    view.eye_ws = toShader(state.camera.eye_ws, 1);
-    view.pixel = {pixelSpread(state), 1, 0, 0};
-    view.sampling = {state.samples, number, static_cast<std::uint32_t>(state.options.transparency), 0};
-    view.range = {std::max(nearest, 0.0f), farthest - std::max(nearest, 0.0f), 0, 0};
-    return view;
-}
-
 GraphicsNeeds strandPipeline(const RendererState& state) {
     const bool blend = state.plan.runs(Pass::blend);
     GraphicsNeeds needs{.vertex = blend ? "strand_blend.vert" : "strand.vert",
@@ -120,10 +108,7 @@ void drawHeads(gpu::CommandList& list, RendererState& state, const Mat4f& clipFr
     bindShadows(list, state);
     list.setConstants(0, gpu::bytesOf(state.shade));
     for (const bool matte : {false, true}) {
-        shaders::MeshConstants mesh;
-        mesh.clipFromWorld = toShader(clipFromWorld);
-        mesh.skin = matte ? kMatte : kSkin;
-        list.setConstants(1, gpu::bytesOf(mesh));
+        list.setConstants(1, gpu::bytesOf(meshConstants(clipFromWorld, matte)));
         drawMeshes(list, state, matte);
     }
 }
@@ -155,14 +140,33 @@ void recordBlend(gpu::CommandList& list, RendererState& state, const Mat4f& clip
 
 }  // namespace
 
+shaders::ViewConstants viewConstants(const RendererState& state, const Mat4f& clipFromWorld,
+                                     std::uint32_t number) {
+    const auto [nearest, farthest] = distances(state.camera, state.scene.hairBounds());
+    shaders::ViewConstants view;
+    view.clipFromWorld = toShader(clipFromWorld);
+    view.eye_ws = toShader(state.camera.eye_ws, 1);
+    view.pixel = {pixelSpread(state), 1, 0, 0};
+    view.sampling = {state.samples, number, static_cast<std::uint32_t>(state.options.transparency), 0};
+    view.range = {std::max(nearest, 0.0f), farthest - std::max(nearest, 0.0f), 0, 0};
+    return view;
+}
+
+shaders::MeshConstants meshConstants(const Mat4f& clipFromWorld, bool matte) {
+    shaders::MeshConstants constants;
+    constants.clipFromWorld = toShader(clipFromWorld);
+    constants.skin = matte ? kMatte : kSkin;
+    return constants;
+}
+
 void bind(gpu::CommandList& list, std::initializer_list<Binding> bindings) {
     list.bind(std::span<const Binding>(bindings.begin(), bindings.size()));
 }
 
 void bindShadows(gpu::CommandList& list, const RendererState& state) {
     bind(list, {Binding::read(8, state.orNothing(TargetId::headDepth)),
-                Binding::read(9, state.orNothing(TargetId::firstHair)),
-                Binding::read(10, state.orNothing(TargetId::opacity))});
+                Binding::read(9, state.orNothing(BufferId::firstHair)),
+                Binding::read(10, state.orNothing(BufferId::opacity))});
 }
 
 void drawStrips(gpu::CommandList& list, const RendererState& state) {
@@ -231,6 +235,10 @@ Mat4f cameraMatrix(const RendererState& state, const Box3f& bounds_ws, float jit
 void recordFrame(gpu::CommandList& list, RendererState& state, std::uint32_t number) {
     const auto [jitterX, jitterY] = jitter(number, state.options.frames);
     const Mat4f clipFromWorld = cameraMatrix(state, state.bounds(), jitterX, jitterY);
+    if (state.plan.runs(Pass::nearest)) {
+        recordRasterised(list, state, clipFromWorld, number);
+        return;
+    }
     const Vec3f& back = state.background;
     const Targets& t = state.targets;
 
@@ -247,16 +255,15 @@ void recordFrame(gpu::CommandList& list, RendererState& state, std::uint32_t num
     list.endPass();
     if (blend) recordBlend(list, state, clipFromWorld, number);
 
-    list.beginPass(
-        {passName(Pass::accumulate),
-         {{t[TargetId::sum], number == 0 ? gpu::LoadOp::Clear : gpu::LoadOp::Load, {0, 0, 0, 0}, {}}},
-         {}});
-    list.setPipeline(state.pipelines.graphics({.vertex = "fullscreen.vert",
-                                               .pixel = "accumulate.frag",
-                                               .colour = gpu::Format::Rgba32Float,
-                                               .blend = Blend::add}));
-    bind(list, {Binding::read(0, t.frame())});
-    list.draw(3);
+    list.beginPass({passName(Pass::accumulate), {}, {}});
+    list.setPipeline(state.pipelines.compute("accumulate.comp"));
+    shaders::ResolveConstants constants;
+    const std::uint32_t width = state.options.width;
+    const std::uint32_t height = state.options.height;
+    constants.size = {width * height, width, 1, number == 0 ? 1u : 0u};
+    list.setConstants(0, gpu::bytesOf(constants));
+    bind(list, {Binding::read(0, t.frame()), Binding::write(0, t[BufferId::sum])});
+    list.dispatch((width + 7) / 8, (height + 7) / 8);
     list.endPass();
 }
 

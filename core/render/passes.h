@@ -47,12 +47,14 @@ struct RendererState {
     bool onCpu;  ///< the device is a software rasteriser
     Targets targets;
     gpu::TexturePtr nothing;       ///< one pixel, bound where a texture is not there
+    gpu::BufferPtr noWords;        ///< bound where a buffer is not there
     gpu::SamplerPtr linearFilter;  ///< once a filter was asked for
     std::vector<LightView> lightViews;
     shaders::ShadeConstants shade;  ///< all but the material
 
     Box3f bounds() const;  ///< of all meshes and strands
     const gpu::TexturePtr& orNothing(TargetId id) const { return targets[id] ? targets[id] : nothing; }
+    const gpu::BufferPtr& orNothing(BufferId id) const { return targets[id] ? targets[id] : noWords; }
 };
 
 /// Views from the lights, and the constants that follow from camera and lights.
@@ -62,6 +64,9 @@ shaders::ShadeConstants shadeConstants(const RendererState& state, const HairMat
 void recordCurves(gpu::CommandList& list, RendererState& state);
 void recordShadowMaps(gpu::CommandList& list, RendererState& state);
 void recordShading(gpu::CommandList& list, RendererState& state);
+/// Head and hair in the samples of a frame, by kernels; then added to the sum.
+void recordRasterised(gpu::CommandList& list, RendererState& state, const Mat4f& clipFromWorld,
+                      std::uint32_t number);
 /// One frame, moved by a part of a pixel, added to the sum.
 void recordFrame(gpu::CommandList& list, RendererState& state, std::uint32_t number);
 /// The average of `frames` frames, with exposure and tone curve.
@@ -75,6 +80,20 @@ void recordOverlay(gpu::CommandList& list, RendererState& state, const gpu::Text
 void drawMeshes(gpu::CommandList& list, const RendererState& state, std::optional<bool> matte = {});
 /// All strands that are drawn, as strips of the curves' points.
 void drawStrips(gpu::CommandList& list, const RendererState& state);
+/// The same by the kernel that is set, whose other registers are bound: `raster` says where to.
+void dispatchStrands(gpu::CommandList& list, const RendererState& state, shaders::RasterConstants raster);
+void fill(gpu::CommandList& list, RendererState& state, BufferId buffer, std::uint32_t value);
+/// One thread for each of `count`, in rows of at most 65,536 groups: returns the row length in threads.
+struct Rows {
+    explicit Rows(std::uint64_t count);
+    std::uint32_t groups = 1;  ///< in a row
+    std::uint32_t rows = 1;
+    std::uint32_t threads() const;  ///< in a row
+};
+shaders::ViewConstants viewConstants(const RendererState& state, const Mat4f& clipFromWorld,
+                                     std::uint32_t number);
+/// How the skin of a mesh looks.
+shaders::MeshConstants meshConstants(const Mat4f& clipFromWorld, bool matte);
 void bind(gpu::CommandList& list, std::initializer_list<gpu::Binding> bindings);
 void bindShadows(gpu::CommandList& list, const RendererState& state);
 

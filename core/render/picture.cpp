@@ -81,7 +81,7 @@ Result<Picture> renderPicture(gpu::Device& device, const RenderScene& scene, con
     Picture picture;
     picture.linear = {options.width, options.height, std::vector<float>(values)};
     const auto linear = std::as_writable_bytes(std::span(picture.linear.rgba));
-    if (auto status = device.readTexture(renderer.linearSum(), linear); !status)
+    if (auto status = device.readBuffer(renderer.linearSum(), 0, linear); !status)
         return failed(status.error());
     const float share = 1 / static_cast<float>(options.frames);
     for (float& value : picture.linear.rgba) value *= share;

@@ -10,13 +10,8 @@ namespace hairloom::render {
 namespace {
 
 gpu::BlendDesc blendOf(Blend blend) {
-    gpu::BlendDesc desc = gpu::BlendDesc::additive();
-    if (blend == Blend::add || blend == Blend::weighedAndRest) return desc;
-    if (blend == Blend::addAndNearest) {
-        desc.opAlpha = gpu::BlendOp::Max;
-        return desc;
-    }
-    desc = {};
+    if (blend == Blend::weighedAndRest) return gpu::BlendDesc::additive();
+    gpu::BlendDesc desc;
     if (blend == Blend::replace) return desc;
     desc.enabled = true;
     desc.source = gpu::BlendFactor::SourceAlpha;

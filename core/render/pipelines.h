@@ -12,9 +12,7 @@ namespace hairloom::render {
 
 enum class Blend {
     replace,
-    add,
     over,
-    addAndNearest,   ///< adds colour, keeps the largest alpha
     weighedAndRest,  ///< first target: adds; second: times what the source leaves
 };
 

@@ -20,6 +20,8 @@ class Planner {
         planPicture();
         planOutput();
         planOverlay();
+        plan_.tables = {facts_.tableBytes, facts_.tableBytes > 0 ? "light in fibres is looked up in tables"
+                                                                 : "no hair, or a model without tables"};
         return std::move(plan_);
     }
 
@@ -38,6 +40,14 @@ class Planner {
         plan_.targets[static_cast<std::size_t>(which)] = {options_.width, options_.height, format, samples,
                                                           std::move(why)};
     }
+
+    void buffer(BufferId which, std::uint64_t elements, std::uint32_t elementBytes, bool wanted,
+                std::string why) {
+        if (wanted) {
+            plan_.buffers[static_cast<std::size_t>(which)] = {elements, elementBytes, std::move(why)};
+        }
+    }
+    std::uint64_t pixels() const { return std::uint64_t{options_.width} * options_.height; }
 
     void planShadows() {
         const bool cast = facts_.shadowLights > 0;
@@ -67,10 +77,14 @@ class Planner {
                     : noHair);
         atlas(TargetId::headDepth, Format::D32Float, on && facts_.meshes,
               "what the head hides from the lights");
-        atlas(TargetId::firstHair, Format::D32Float, first, "where hair begins as seen from the lights");
-        atlas(TargetId::opacity, Format::Rgba16Unorm, layers,
-              options_.shadows == Shadows::deepOpacity ? "three layers and the depth they count from"
-                                                       : "four layers");
+        const std::uint64_t square = std::uint64_t{options_.shadowResolution} * options_.shadowResolution;
+        const bool deep = options_.shadows == Shadows::deepOpacity;
+        buffer(BufferId::firstHair, square * facts_.shadowLights, 4, first,
+               "where hair begins as seen from the lights");
+        buffer(BufferId::layerCounts, square * (deep ? 3 : 4), 4, layers,
+               "fibres of one light's layers while they are counted");
+        buffer(BufferId::opacity, 2 * square * facts_.shadowLights, 4, layers,
+               deep ? "three layers and the depth they count from" : "four layers");
     }
 
     void planPicture() {
@@ -80,15 +94,23 @@ class Planner {
                          : "no hair");
         pass(Pass::shade, facts_.hair,
              facts_.hair ? fmt::format("{} lights, once a point of a curve", facts_.lights) : "no hair");
+        const bool kernels = options_.ribbons == Ribbons::compute;
+        pass(Pass::nearest, kernels,
+             kernels ? "what is in front in each sample" : "the device's rasteriser finds what is in front");
         pass(Pass::draw, true,
-             blends ? "the head, and hair that covers whole samples" : "head, hair and background");
+             kernels  ? "light of what is in front"
+             : blends ? "the head, and hair that covers whole samples"
+                      : "head, hair and background");
         pass(Pass::blend, blends, blends ? "fine hair blends in any order" : "no hair is blended by weights");
         pass(Pass::composite, blends, blends ? "blended hair goes over the head" : "nothing was blended");
         const std::string many =
             samples_ > 1 ? fmt::format("{} samples a pixel", samples_) : "one sample a pixel";
-        picture(TargetId::colour, kColourFormat, samples_, true, "linear light, " + many);
-        picture(TargetId::resolved, kColourFormat, 1, samples_ > 1, "the samples' average");
-        picture(TargetId::depth, Format::D32Float, samples_, true, "what is in front, " + many);
+        picture(TargetId::colour, kColourFormat, samples_, !kernels, "linear light, " + many);
+        picture(TargetId::resolved, kColourFormat, 1, !kernels && samples_ > 1, "the samples' average");
+        picture(TargetId::depth, Format::D32Float, samples_, !kernels, "what is in front, " + many);
+        buffer(BufferId::nearest, pixels() * samples_, 4, kernels, "depth of what is in front, " + many);
+        buffer(BufferId::light, pixels() * samples_, 4, kernels,
+               "linear light with a common exponent, " + many);
         picture(TargetId::blendSum, Format::Rgba16Float, samples_, blends, "weighted light of blended hair");
         picture(TargetId::blendRest, Format::Rgba16Float, samples_, blends, "what blended hair lets through");
         picture(TargetId::blendSumResolved, Format::Rgba16Float, 1, blends && samples_ > 1,
@@ -101,7 +123,7 @@ class Planner {
         pass(Pass::accumulate, true,
              options_.frames > 1 ? fmt::format("{} frames are averaged", options_.frames)
                                  : "the frame is kept in single precision");
-        picture(TargetId::sum, Format::Rgba32Float, 1, true, "sum of the frames");
+        buffer(BufferId::sum, pixels(), 16, true, "sum of the frames");
         const bool filter = facts_.presents && options_.filter != PostFilter::none;
         pass(Pass::toneMap, facts_.presents,
              facts_.presents ? "exposure and tone curve" : "no target to show the picture in");
@@ -136,32 +158,32 @@ class Planner {
 
 const char* passName(Pass pass) {
     constexpr std::array<const char*, kPassCount> kNames{
-        "curves", "head depth",    "first hair", "opacity layers", "shade",
-        "draw",   "blend",         "composite",  "accumulate",     "tone map",
-        "filter", "overlay depth", "overlay",    "overlay on top"};
+        "curves",   "head depth", "first hair",    "opacity layers", "shade",
+        "nearest",  "draw",       "blend",         "composite",      "accumulate",
+        "tone map", "filter",     "overlay depth", "overlay",        "overlay on top"};
     return kNames[static_cast<std::size_t>(pass)];
 }
 
 const char* targetName(TargetId target) {
-    constexpr std::array<const char*, kTargetCount> kNames{"head depth",
-                                                           "first hair",
-                                                           "opacity layers",
-                                                           "colour",
-                                                           "resolved",
-                                                           "depth",
-                                                           "blend sum",
-                                                           "blend rest",
-                                                           "blend sum resolved",
-                                                           "blend rest resolved",
-                                                           "sum",
-                                                           "shown",
-                                                           "overlay depth"};
+    constexpr std::array<const char*, kTargetCount> kNames{
+        "head depth", "colour",       "resolved",           "depth",
+        "blend sum",  "blend rest",   "blend sum resolved", "blend rest resolved",
+        "shown",      "overlay depth"};
     return kNames[static_cast<std::size_t>(target)];
 }
 
+const char* bufferName(BufferId buffer) {
+    constexpr std::array<const char*, kBufferCount> kNames{"first hair", "layer counts", "opacity layers",
+                                                           "nearest",    "light",        "sum"};
+    return kNames[static_cast<std::size_t>(buffer)];
+}
+
 std::uint64_t RenderPlan::bytes() const {
-    return std::accumulate(targets.begin(), targets.end(), std::uint64_t{0},
-                           [](std::uint64_t sum, const PlannedTarget& t) { return sum + t.bytes(); });
+    const auto sum = [](const auto& all) {
+        return std::accumulate(all.begin(), all.end(), std::uint64_t{0},
+                               [](std::uint64_t bytes, const auto& one) { return bytes + one.bytes(); });
+    };
+    return sum(targets) + sum(buffers) + tables.bytes;
 }
 
 RenderPlan planRender(const SceneFacts& facts, const RenderOptions& options, std::uint32_t samples) {

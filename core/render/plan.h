@@ -21,6 +21,7 @@ enum class Pass {
     firstHair,
     opacity,
     shade,
+    nearest,  ///< where kernels rasterise: what is in front, before its light is drawn
     draw,
     blend,      ///< hair over head, in any order
     composite,  ///< of the blended hair
@@ -37,8 +38,6 @@ const char* passName(Pass pass);
 
 enum class TargetId {
     headDepth,  ///< shadow atlas: a square for each light that casts shadows, side by side
-    firstHair,
-    opacity,
     colour,
     resolved,
     depth,
@@ -46,12 +45,23 @@ enum class TargetId {
     blendRest,
     blendSumResolved,
     blendRestResolved,
-    sum,
     shown,
     overlayDepth,
 };
 inline constexpr std::size_t kTargetCount = static_cast<std::size_t>(TargetId::overlayDepth) + 1;
 const char* targetName(TargetId target);
+
+/// What passes keep in buffers.
+enum class BufferId {
+    firstHair,    ///< depths as bits; an atlas as TargetId::headDepth
+    layerCounts,  ///< one light's fibres, before they become shares
+    opacity,      ///< an atlas: four 16-bit shares of 1 a texel
+    nearest,      ///< depths of all samples as bits
+    light,        ///< of all samples
+    sum,          ///< of frames
+};
+inline constexpr std::size_t kBufferCount = static_cast<std::size_t>(BufferId::sum) + 1;
+const char* bufferName(BufferId buffer);
 
 /// What the plan looks at.
 struct SceneFacts {
@@ -61,7 +71,8 @@ struct SceneFacts {
     std::uint32_t shadowLights = 0;  ///< of them
     bool overlay = false;            ///< marks that meshes hide
     bool overlayOnTop = false;
-    bool presents = true;  ///< there is a target to show the picture in
+    bool presents = true;          ///< there is a target to show the picture in
+    std::uint64_t tableBytes = 0;  ///< of the materials' look-up tables on the device
 
     bool operator==(const SceneFacts&) const = default;
 };
@@ -83,17 +94,35 @@ struct PlannedTarget {
     }
 };
 
+struct PlannedBuffer {
+    std::uint64_t elements = 0;  ///< 0: not there
+    std::uint32_t elementBytes = 4;
+    std::string why;
+
+    std::uint64_t bytes() const { return elements * elementBytes; }
+};
+
+/// Look-up tables of the hair's materials; they are kept with the scene.
+struct PlannedTables {
+    std::uint64_t bytes = 0;
+    std::string why;
+};
+
 struct RenderPlan {
     std::array<PlannedPass, kPassCount> passes;
     std::array<PlannedTarget, kTargetCount> targets;
+    std::array<PlannedBuffer, kBufferCount> buffers;
+    PlannedTables tables;
 
     bool runs(Pass pass) const { return passes[static_cast<std::size_t>(pass)].on; }
     const PlannedTarget& target(TargetId id) const { return targets[static_cast<std::size_t>(id)]; }
     bool has(TargetId id) const { return target(id).width > 0; }
-    std::uint64_t bytes() const;  ///< of all targets
+    const PlannedBuffer& buffer(BufferId id) const { return buffers[static_cast<std::size_t>(id)]; }
+    bool has(BufferId id) const { return buffer(id).elements > 0; }
+    std::uint64_t bytes() const;  ///< of all targets, buffers and tables
 };
 
-/// `samples` as chooseSamples() gives them.
+/// `samples` and the ribbons of the options as chooseSamples() and chooseRibbons() give them.
 RenderPlan planRender(const SceneFacts& facts, const RenderOptions& options, std::uint32_t samples);
 
 }  // namespace hairloom::render

@@ -169,6 +169,7 @@ SceneFacts Renderer::Parts::facts(bool presents) const {
     facts.overlay = state.overlay.needsDepth();
     facts.overlayOnTop = std::ranges::any_of(state.overlay.overlay.batches, &OverlayBatch::onTop);
     facts.presents = presents;
+    for (const StrandGroup& group : state.scene.groups) facts.tableBytes += group.fibre.bytes();
     return facts;
 }
 
@@ -183,12 +184,11 @@ Status Renderer::Parts::prepareTargets(bool presents) {
     }
     const auto isNew = state.targets.fit(device, state.plan);
     if (!isNew) return tl::unexpected(isNew.error());
-    for (const TargetId id : {TargetId::headDepth, TargetId::firstHair, TargetId::opacity}) {
-        if ((*isNew)[static_cast<std::size_t>(id)]) changes.add(Changes::lights());
+    if (isNew->has(TargetId::headDepth) || isNew->has(BufferId::firstHair) || isNew->has(BufferId::opacity)) {
+        changes.add(Changes::lights());
     }
-    for (const TargetId id : {TargetId::colour, TargetId::sum}) {
-        changes.picture |= (*isNew)[static_cast<std::size_t>(id)];
-    }
+    changes.picture |=
+        isNew->has(TargetId::colour) || isNew->has(BufferId::nearest) || isNew->has(BufferId::sum);
     return {};
 }
 
@@ -202,6 +202,15 @@ Status Renderer::Parts::prepareHelpers() {
         if (!made) return tl::unexpected(made.error());
         state.nothing = std::move(*made);
     }
+    if (state.noWords == nullptr) {
+        gpu::BufferDesc desc;
+        desc.name = "no words";
+        desc.size = 4;
+        desc.elementBytes = 4;
+        auto made = device.createBuffer(desc, std::array<std::byte, 4>{});
+        if (!made) return tl::unexpected(made.error());
+        state.noWords = std::move(*made);
+    }
     if (state.plan.runs(Pass::filter) && state.linearFilter == nullptr) {
         auto made = device.createSampler({});
         if (!made) return tl::unexpected(made.error());
@@ -214,18 +223,20 @@ Status Renderer::Parts::prepare(const RenderOptions& options, bool presents) {
     if (auto status = check(options, device.info()); !status) return status;
     const auto samples = chooseSamples(options, device.info());
     if (!samples) return tl::unexpected(samples.error());
-    changes.add(compare(state.options, options));
-    state.options = options;
+    RenderOptions resolved = options;
+    resolved.ribbons = chooseRibbons(options, *samples, device.info());
+    changes.add(compare(state.options, resolved));
+    state.options = resolved;
     state.samples = *samples;
     const HairDetail detail = detailOf(state);
     if (detail != state.detail) changes.add(Changes::geometry());
     state.detail = detail;
+    if (auto status = state.scene.prepareFibres(device); !status) return status;
     if (auto status = prepareTargets(presents); !status) return status;
     if (auto status = prepareHelpers(); !status) return status;
-    if (options.ribbons == Ribbons::tessellated) {
+    if (resolved.ribbons == Ribbons::tessellated) {
         if (auto status = state.scene.preparePatches(device); !status) return status;
     }
-    if (auto status = state.scene.prepareFibres(device); !status) return status;
     return state.scene.prepareCurves(device, detail.subdivisions);
 }
 
@@ -266,8 +277,8 @@ std::uint32_t Renderer::accumulated() const {
     return parts_->changes.picture ? 0 : parts_->accumulated;
 }
 
-const gpu::TexturePtr& Renderer::linearSum() const {
-    return parts_->state.targets[TargetId::sum];
+const gpu::BufferPtr& Renderer::linearSum() const {
+    return parts_->state.targets[BufferId::sum];
 }
 
 Box3f Renderer::bounds() const {

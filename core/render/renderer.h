@@ -68,8 +68,9 @@ class Renderer {
     void restart();
     /// Frames in the average, 0 before the first.
     std::uint32_t accumulated() const;
-    /// Sum of accumulated() frames: linear RGB before exposure, and coverage; Rgba32Float.
-    const gpu::TexturePtr& linearSum() const;
+    /// Sum of accumulated() frames: linear RGB before exposure, and coverage; four floats a pixel, the upper
+    /// row first.
+    const gpu::BufferPtr& linearSum() const;
 
     Box3f bounds() const;  ///< of all meshes and strands
     std::uint64_t triangles() const;

@@ -24,10 +24,24 @@ gpu::TextureDesc describe(TargetId id, const PlannedTarget& planned) {
     return desc;
 }
 
+bool fits(const gpu::BufferPtr& buffer, const PlannedBuffer& planned) {
+    if (buffer == nullptr) return planned.elements == 0;
+    return buffer->desc().size == planned.bytes() && buffer->desc().elementBytes == planned.elementBytes;
+}
+
+gpu::BufferDesc describe(BufferId id, const PlannedBuffer& planned) {
+    gpu::BufferDesc desc;
+    desc.name = bufferName(id);
+    desc.size = planned.bytes();
+    desc.elementBytes = planned.elementBytes;
+    desc.usage = gpu::Usage::ShaderRead | gpu::Usage::UnorderedAccess;
+    return desc;
+}
+
 }  // namespace
 
-Result<std::array<bool, kTargetCount>> Targets::fit(gpu::Device& device, const RenderPlan& plan) {
-    std::array<bool, kTargetCount> isNew{};
+Result<Targets::New> Targets::fit(gpu::Device& device, const RenderPlan& plan) {
+    New isNew;
     for (std::size_t i = 0; i < kTargetCount; ++i) {
         if (fits(textures_[i], plan.targets[i])) continue;
         textures_[i] = nullptr;
@@ -35,7 +49,16 @@ Result<std::array<bool, kTargetCount>> Targets::fit(gpu::Device& device, const R
         auto made = device.createTexture(describe(static_cast<TargetId>(i), plan.targets[i]));
         if (!made) return tl::unexpected(made.error());
         textures_[i] = std::move(*made);
-        isNew[i] = true;
+        isNew.textures[i] = true;
+    }
+    for (std::size_t i = 0; i < kBufferCount; ++i) {
+        if (fits(buffers_[i], plan.buffers[i])) continue;
+        buffers_[i] = nullptr;
+        if (plan.buffers[i].elements == 0) continue;
+        auto made = device.createBuffer(describe(static_cast<BufferId>(i), plan.buffers[i]));
+        if (!made) return tl::unexpected(made.error());
+        buffers_[i] = std::move(*made);
+        isNew.buffers[i] = true;
     }
     return isNew;
 }

@@ -2,6 +2,7 @@
 #include "editor/shell/icons.h"
 
 #include <QApplication>
+#include <QFile>
 #include <QIconEngine>
 #include <QImageReader>
 #include <QPainter>
@@ -56,7 +57,9 @@ class TintedEngine : public QIconEngine {
 }  // namespace
 
 QIcon icon(const QString& name) {
-    return QIcon(new TintedEngine(QStringLiteral(":/icons/%1.svg").arg(name)));
+    // Builds for systems without Qt's SVG plugin carry the icons as PNG too.
+    static const QString kEnding = QFile::exists(":/icons/open.png") ? "png" : "svg";
+    return QIcon(new TintedEngine(QStringLiteral(":/icons/%1.%2").arg(name, kEnding)));
 }
 
 }  // namespace hairloom::editor

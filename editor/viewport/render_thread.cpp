@@ -2,9 +2,11 @@
 #include "editor/viewport/render_thread.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <utility>
 
+#include "editor/viewport/native_window.h"
 #include "editor/viewport/render_work.h"
 
 namespace hairloom::editor {
@@ -102,7 +104,12 @@ void RenderThread::setWindow(std::optional<gpu::NativeWindow> window) {
     window_ = window;
     windowChanged_ = true;
     wake_.notify_all();
-    windowTaken_.wait(lock, [this] { return !windowChanged_ || ended_; });
+    constexpr std::chrono::milliseconds kPatience(5);
+    while (!windowTaken_.wait_for(lock, kPatience, [this] { return !windowChanged_ || ended_; })) {
+        lock.unlock();
+        answerWindowSystem();
+        lock.lock();
+    }
 }
 
 void RenderThread::run() {

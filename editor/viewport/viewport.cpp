@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editor/viewport/viewport.h"
 
-#include <qguiapplication_platform.h>
 #include <QApplication>
 #include <QKeyEvent>
 #include <QMouseEvent>
@@ -11,6 +10,7 @@
 
 #include "editor/fields/colour.h"
 #include "editor/shell/theme.h"
+#include "editor/viewport/native_window.h"
 
 namespace hairloom::editor {
 namespace {
@@ -20,8 +20,9 @@ constexpr float kZoomPerPixel = 0.006f;
 constexpr float kTurntableDegrees = 0.6f;  // per tick
 constexpr int kTurntableMs = 25;
 
-/// What the environment variable HAIRLOOM_VIEWPORT asks for: "window", "readback", "none" (no pictures at
-/// all), or nothing.
+/// What the environment variable HAIRLOOM_VIEWPORT asks for: "window", "apart" (a window of its own that lies
+/// over the viewport, where the system shows no device's picture within another window), "readback", "none"
+/// (no pictures at all), or nothing.
 QByteArray wishedSurface() {
     return qgetenv("HAIRLOOM_VIEWPORT");
 }
@@ -70,7 +71,7 @@ Viewport::Viewport(Document& document, const Preferences& preferences, QWidget* 
     connect(&renderer_, &RenderThread::deviceReady, this,
             [this](const QString& name, bool wantsWindow, const QString& problem) {
                 const QByteArray wish = wishedSurface();
-                const bool byItself = (wantsWindow && wish.isEmpty()) || wish == "window";
+                const bool byItself = (wantsWindow && wish.isEmpty()) || wish == "window" || wish == "apart";
                 presentsByItself_ = problem.isEmpty() && byItself;
                 chooseSurface();
                 Q_EMIT deviceReady(name, problem);
@@ -101,6 +102,7 @@ Viewport::Viewport(Document& document, const Preferences& preferences, QWidget* 
 
 Viewport::~Viewport() {
     if (window_) renderer_.setWindow(std::nullopt);
+    if (apart_) delete window_;
 }
 
 void Viewport::chooseSurface() {
@@ -113,6 +115,7 @@ void Viewport::useCanvas() {
     if (window_) {
         window_->removeEventFilter(this);
         renderer_.setWindow(std::nullopt);
+        if (apart_) window_->deleteLater();
         window_ = nullptr;
         shown_->deleteLater();
     }
@@ -132,25 +135,34 @@ void Viewport::showOnCanvas() {
 }
 
 void Viewport::useWindow() {
-    if (window_ || !qApp->nativeInterface<QNativeInterface::QX11Application>()) return;
+    if (window_ || !hasNativeWindows()) return;
+    apart_ = wishedSurface() == "apart";
     window_ = new QWindow;
-    window_->setSurfaceType(QSurface::VulkanSurface);
+    prepareNativeWindow(*window_);
     window_->installEventFilter(this);
     delete canvas_;
     canvas_ = nullptr;
-    shown_ = QWidget::createWindowContainer(window_, this);
+    shown_ = apart_ ? new QWidget(this) : QWidget::createWindowContainer(window_, this);
     shown_->setFocusPolicy(Qt::StrongFocus);
     layout()->addWidget(shown_);
     shown_->show();
+    if (apart_) {
+        window_->setFlags(Qt::Tool | Qt::FramelessWindowHint);
+        window_->setTransientParent(window()->windowHandle());
+        placeApart();
+        window_->show();
+    }
     window_->create();
     redraw();
 }
 
+void Viewport::placeApart() {
+    window_->setGeometry(QRect(mapToGlobal(QPoint()), size()));
+}
+
 void Viewport::surfaceChanged(bool exists) {
-    const auto* x11 = qApp->nativeInterface<QNativeInterface::QX11Application>();
-    if (exists && x11) {
-        renderer_.setWindow(
-            gpu::NativeWindow{x11->connection(), static_cast<std::uint32_t>(window_->winId())});
+    if (exists) {
+        renderer_.setWindow(nativeWindow(*window_));
         redraw();
     } else {
         renderer_.setWindow(std::nullopt);
@@ -332,6 +344,7 @@ void Viewport::post() {
 
 void Viewport::resizeEvent(QResizeEvent* event) {
     QWidget::resizeEvent(event);
+    if (window_ && apart_) placeApart();
     redraw(true);
 }
 

@@ -118,6 +118,7 @@ class Viewport : public QWidget {
     void surfaceChanged(bool exists);
     void useCanvas();
     void showOnCanvas();
+    void placeApart();
     void post();
     void dragView(const QPointF& to_px);
     Move viewMove(Qt::MouseButton button, Qt::KeyboardModifiers modifiers) const;
@@ -136,6 +137,7 @@ class Viewport : public QWidget {
     RenderThread renderer_;
     Canvas* canvas_ = nullptr;
     QWindow* window_ = nullptr;
+    bool apart_ = false;        ///< the window lies over the viewport instead of within it
     QWidget* shown_ = nullptr;  ///< canvas or the window's container
     Tool* tool_ = nullptr;
     std::shared_ptr<const Groom> groom_;

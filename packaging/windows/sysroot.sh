@@ -3,7 +3,7 @@
 # usage: packaging/windows/sysroot.sh FOLDER [ARCHIVES]
 # Fills FOLDER with the libraries that Hairloom links and Debian has no mingw-w64 build of: static ones, built from
 # Debian's own source packages, and links to headers that are the same on every system. What is there already stays.
-# assimp and OpenMesh, which take longest, are unpacked from the folder ARCHIVES where it has them.
+# Qt, assimp and OpenMesh, which take longest, are unpacked from the folder ARCHIVES where it has them.
 set -euo pipefail
 here=$(dirname "$(readlink -f "$0")")
 mkdir -p "$1"
@@ -135,6 +135,27 @@ build_openmesh() {
     cmake_install openmesh "$work/openmesh" -DBUILD_APPS=OFF -DOPENMESH_BUILD_UNIT_TESTS=OFF -DOPENMESH_DOCS=OFF
 }
 
+# Core, Gui, Widgets and Test, as libraries of the host's version, whose moc, rcc and uic are used.
+build_qtbase() {
+    source_of qt6-base
+    local source=$work/qt6-base
+    local windows=$source/src/plugins/platforms/windows
+    # Debian's archive has no wintab.h: pens come through Windows' own messages. QTabletEvent stays.
+    sed -i 's/QT_CONFIG(tabletevent)/0/' "$windows"/qwindowspointerhandler.{h,cpp} "$windows/qwindowscontext.cpp"
+    sed -i 's/CONDITION QT_FEATURE_tabletevent/CONDITION FALSE/' "$windows/CMakeLists.txt"
+    # Without OpenGL a guard is missing, and Direct2D's plugin has no headers in mingw-w64.
+    sed -i '/isSoftwareGl()/,/#if/ s/#if QT_CONFIG(dynamicgl)$/#if QT_CONFIG(dynamicgl) \&\& QT_CONFIG(opengl)/' \
+        "$windows/qwindowswindow.cpp"
+    sed -i '/add_subdirectory(direct2d)/d' "$source/src/plugins/platforms/CMakeLists.txt"
+    cmake_install qtbase "$source" "-DCMAKE_INSTALL_PREFIX=$root/qt" -DBUILD_SHARED_LIBS=ON -DCMAKE_EXE_LINKER_FLAGS= \
+        -DQT_BUILD_{EXAMPLES,TESTS}=OFF -DQT_BUILD_TOOLS_WHEN_CROSSCOMPILING=OFF \
+        -DFEATURE_{dbus,sql,network,opengl,vulkan,printsupport,pkg_config,icu,zstd,glib}=OFF \
+        -DFEATURE_system_{zlib,png,jpeg,freetype,harfbuzz,pcre2,doubleconversion}=OFF
+    cp "$(x86_64-w64-mingw32-gcc-posix -print-file-name=libgcc_s_seh-1.dll)" \
+        "$(x86_64-w64-mingw32-gcc-posix -print-file-name=libstdc++-6.dll)" \
+        /usr/x86_64-w64-mingw32/lib/libwinpthread-1.dll "$root/qt/bin/"
+}
+
 # once NAME: runs build_NAME unless it has been run to its end.
 once() {
     [ -f "$root/done/$1" ] && return
@@ -149,6 +170,12 @@ if [ -n "$archives" ] && [ -n "$meshes" ] && [ ! -f "$root/done/assimp" ]; then
     tar --zstd -xf "$meshes" -C "$root" --strip-components=1
     touch "$root/done/assimp" "$root/done/openmesh"
 fi
-for library in headers fmtlib spdlog highway tbb png tinyexr googletest assimp openmesh; do
+qt=$(compgen -G "$archives/qtbase-*-mingw64.tar.zst" | tail -1 || true)
+if [ -n "$archives" ] && [ -n "$qt" ] && [ ! -f "$root/done/qtbase" ]; then
+    say "windows: qtbase from $qt"
+    tar --zstd -xf "$qt" -C "$root"
+    touch "$root/done/qtbase"
+fi
+for library in headers fmtlib spdlog highway tbb png tinyexr googletest assimp openmesh qtbase; do
     once "$library"
 done

@@ -88,7 +88,7 @@ struct LightConstants {
     float4 toLight_ws;  // w = 0: unit direction; w = 1: place of a point light
     float4 irradiance;  // linear RGB, perpendicular to the light; of a point light at 1 m
     float4 tile;    // x: left edge of the light's square in the atlas, y: its size, in pixels; z: 1 where the
-                    // head casts shadows
+                    // head casts shadows; w: pixels in a row of the atlas
     float4 range;   // x: depth range of the frustum in metres, y: HAIRLOOM_SHADOWS_*, z: near plane of a
                     // perspective view, 0 for an orthographic one; w: where hair begins, metres behind it
     float4 layers;  // ends of the opacity layers in metres behind the first hair, or behind where hair
@@ -120,6 +120,36 @@ struct FibreConstants {
     float4 spread;   // x, y: least and largest width of the table of wide lobes, radians
 };
 
+// Where compute kernels that rasterise put what they find.
+#define HAIRLOOM_MAX_SAMPLES 8
+struct RasterConstants {
+    float4 window;  // x, y: upper left corner of what is drawn, in pixels of the buffer, z, w: its size
+    uint4 numbers;  // x: curve points, or triangles; y: row length of the dispatch, in threads (of triangles:
+                    // in groups); z: pixels in a row of the buffer; w: HAIRLOOM_PHASE_*
+    uint4 samples;  // x: in a pixel, y: opacity layers, z: slices that a triangle is cut into
+    float4 reach;   // x: farthest that a sample lies from the middle of its pixel along x or y, in pixels
+    float4 places[HAIRLOOM_MAX_SAMPLES / 2];  // of the samples from the middle, in pixels, two in each
+};
+#define HAIRLOOM_PHASE_NEAREST 0
+#define HAIRLOOM_PHASE_LIGHT 1
+
+struct FillConstants {
+    uint4 numbers;  // x: value, y: elements, z: row length of the dispatch
+};
+
+// From samples to pixels.
+struct ResolveConstants {
+    uint4 size;         // x: pixels, y: row length of the dispatch, z: samples a pixel, w: 1: the sum begins
+    float4 background;  // linear RGB and coverage
+};
+
+// From counted fibres to a light's square of the opacity map.
+struct PackConstants {
+    uint4 size;  // x: pixels along a side of the square, y: left edge in the atlas, z: pixels in a row of it
+                 // w: HAIRLOOM_SHADOWS_*
+    float4 range;  // see LightConstants
+};
+
 struct MeshConstants {
     float4x4 clipFromWorld;
     float4 skin;  // x: wrap, y: specular strength, z: specular exponent
@@ -127,7 +157,7 @@ struct MeshConstants {
 
 struct ToneConstants {
     float4 exposure;  // x: factor on the light, y: on the sum of frames, z: 1 when the shader encodes sRGB
-                      // itself
+                      // itself, w: pixels in a row
 };
 
 struct FilterConstants {
@@ -196,6 +226,11 @@ HAIRLOOM_OFFSET(ShadeConstants, counts, 256);
 HAIRLOOM_OFFSET(ShadeConstants, lights, 272);
 static_assert(sizeof(ShadeConstants) == 272 + 144 * HAIRLOOM_MAX_LIGHTS);
 static_assert(sizeof(MeshConstants) == 80);
+HAIRLOOM_OFFSET(RasterConstants, places, 64);
+static_assert(sizeof(RasterConstants) == 128);
+static_assert(sizeof(FillConstants) == 16);
+static_assert(sizeof(ResolveConstants) == 32);
+static_assert(sizeof(PackConstants) == 32);
 static_assert(sizeof(ToneConstants) == 16);
 static_assert(sizeof(FilterConstants) == 32);
 static_assert(sizeof(OverlayConstants) == 96);

@@ -26,6 +26,13 @@ RWStructuredBuffer<float4> gPlaces : register(u4);   // world, in the caller's o
 #define REPORT_RESTORED 1  // strands put back to rest
 #define REPORT_ASLEEP 2    // strands
 
+// Direct3D 11.0 has u0 to u7; scratch memory takes the last where strands live in the buffers.
+#if HAIR_STORAGE == 2
+#define HAIR_VELOCITIES_REGISTER u8
+#else
+#define HAIR_VELOCITIES_REGISTER u7
+#endif
+
 #if HAIR_BEND == 1
 StructuredBuffer<float> gStiffness : register(t2);
 #elif HAIR_BEND == 2
@@ -42,7 +49,7 @@ RWStructuredBuffer<float> gTanks : register(u6);     // tank, greatest squared s
 RWStructuredBuffer<float> gRests : register(u2);     // per work group: seconds at rest, 1 when asleep
 #endif
 #if HAIR_VELOCITIES
-RWStructuredBuffer<float4> gVelocities : register(u8);  // m/s, in the caller's order
+RWStructuredBuffer<float4> gVelocities : register(HAIR_VELOCITIES_REGISTER);  // m/s, in the caller's order
 #endif
 
 static uint gSlot;
@@ -52,7 +59,8 @@ static uint gSlot;
 static uint gPointCount;
 #define POINTS gPointCount
 #endif
-#if HAIR_UNROLL
+// Microsoft's compiler takes minutes to unroll a strand that meets spheres; drivers unroll what it leaves.
+#if HAIR_UNROLL && !defined(HAIRLOOM_DXBC)
 #define EACH [unroll]
 #else
 #define EACH [loop]

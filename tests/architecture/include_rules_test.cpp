@@ -55,7 +55,7 @@ const std::map<std::string, Rooms>& allowed() {
             {"workspace", all},
             {"cli", with(all, {"workspace"})},
             {"editor", with(all, {"workspace"})},
-            {"samples", all},
+            {"samples", with(all, {"workspace"})},
             {"benchmarks", with(all, {"tests"})},  // scenes are shared with the tests
             {"tests", with(all, {"workspace", "cli", "editor", "samples", "tests"})},
         };

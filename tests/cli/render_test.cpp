@@ -26,10 +26,12 @@ class RenderJob : public CommandLineTest {
     nlohmann::json picture(const std::string& more) const {
         return runJson("render hair.hairloom -o hair.png --size 48x48 --passes 1 " + more);
     }
-    /// Target names of a report's plan.
+    /// Names of what a report's plan has made.
     static std::set<std::string> targets(const nlohmann::json& report) {
         std::set<std::string> names;
-        for (const auto& target : report["plan"]["targets"]) names.insert(target["name"]);
+        for (const char* const kind : {"targets", "buffers"}) {
+            for (const auto& made : report["plan"][kind]) names.insert(made["name"]);
+        }
         return names;
     }
 };
@@ -37,6 +39,9 @@ class RenderJob : public CommandLineTest {
 TEST_F(RenderJob, PlansHoldOnlyWhatIsUsed) {
     EXPECT_TRUE(targets(picture("")).contains("opacity layers"));
     EXPECT_FALSE(targets(picture("--shadow absorption")).contains("opacity layers"));
+    EXPECT_FALSE(targets(picture("--ribbons compute --transparency stochastic")).contains("depth"));
+    EXPECT_EQ(picture("--shading kajiya")["plan"]["tables"]["bytes"], 0);
+    EXPECT_GT(picture("--shading marschner")["plan"]["tables"]["bytes"], 100'000);
     EXPECT_FALSE(targets(picture("--shadow none")).contains("head depth"));
     const auto dark = picture(view("dark.json", R"({"lights": []})"));
     EXPECT_FALSE(targets(dark).contains("head depth"));

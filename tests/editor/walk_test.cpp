@@ -12,7 +12,20 @@
 namespace hairloom::editor {
 namespace {
 
-class WalkTest : public WindowTest {};
+/// With pictures where HAIRLOOM_VIEWPORT says how they are shown, else without any.
+class WalkTest : public WindowTest {
+  protected:
+    WalkTest() : WindowTest(!qEnvironmentVariableIsEmpty("HAIRLOOM_VIEWPORT")) {}
+
+    /// While it plays: the screen shows the head, and the picture moves. The screen stays as a file.
+    void expectLivePicture() {
+        if (!viewport().presents()) return;
+        const QImage before = onScreen();
+        EXPECT_TRUE(before.save(QStringLiteral(HAIRLOOM_SCREENSHOTS "/walk.png")));
+        EXPECT_GT(skinPixels(before), 300);
+        EXPECT_TRUE(QTest::qWaitFor([&] { return onScreen() != before; }, 10'000));
+    }
+};
 
 TEST_F(WalkTest, FromAnEmptyWindowToAnExportedMovingHairstyle) {
     // A head.
@@ -77,6 +90,7 @@ TEST_F(WalkTest, FromAnEmptyWindowToAnExportedMovingHairstyle) {
             return f && f->time > 0.3;
         },
         30'000));
+    expectLivePicture();
     const SimulationStats stats = session().player.frame()->stats;
     EXPECT_EQ(stats.nanCount, 0u);
     EXPECT_EQ(stats.restoredStrands, 0u);

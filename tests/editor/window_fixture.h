@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <QElapsedTimer>
+#include <QGuiApplication>
+#include <QScreen>
 #include <QSettings>
 #include <QTemporaryDir>
 #include <QTest>
@@ -105,6 +107,22 @@ class WindowTest : public testing::Test {
         const auto px = viewport().camera().project(point_ws, viewport().viewSize_px());
         EXPECT_TRUE(px);
         return px.value_or(QPointF()).toPoint();
+    }
+
+    /// What people see: the window system's view, with what devices present by themselves.
+    static QImage onScreen() { return QGuiApplication::primaryScreen()->grabWindow(0).toImage(); }
+    /// Pixels of the viewport, every fourth each way, that are redder than blue.
+    int skinPixels(const QImage& screen) const {
+        const QPoint corner = window->session().viewport->mapToGlobal(QPoint(0, 0));
+        const QSize size = window->session().viewport->size();
+        int count = 0;
+        for (int y = 0; y < size.height(); y += 4) {
+            for (int x = 0; x < size.width(); x += 4) {
+                const QColor colour = screen.pixelColor(corner + QPoint(x, y));
+                count += colour.red() > colour.blue() + 20 ? 1 : 0;
+            }
+        }
+        return count;
     }
 
     template <class Widget>

@@ -61,10 +61,10 @@ TEST_F(GpuTest, BuffersComeBackAsTheyWent) {
     }
 }
 
-TEST_F(GpuTest, TexturesComeBackAsTheyWent) {
-    Random random(4);
-    for (const Format format :
-         {Format::R8Unorm, Format::Rgba8Unorm, Format::Rgba16Unorm, Format::Rgba32Float}) {
+class RoundTrip : public GpuTest {
+  protected:
+    void expectRoundTrip(Format format) {
+        Random random(4);
         TextureDesc desc;
         desc.name = "round trip";
         desc.width = 37;
@@ -77,6 +77,17 @@ TEST_F(GpuTest, TexturesComeBackAsTheyWent) {
         ASSERT_TRUE(texture) << texture.error().message();
         EXPECT_EQ(read<std::uint8_t>(*texture), content);
     }
+};
+
+TEST_F(RoundTrip, TexturesComeBackAsTheyWent) {
+    for (const Format format : {Format::Rgba8Unorm, Format::Rgba16Unorm, Format::Rgba32Float})
+        expectRoundTrip(format);
+}
+
+/// Rows of no whole number of words: Wine 8 loses all but the first through its Vulkan renderer
+/// (docs/windows.md).
+TEST_F(RoundTrip, RowsOfOddBytesComeBackAsTheyWent) {
+    expectRoundTrip(Format::R8Unorm);
 }
 
 TEST_F(GpuTest, DescriptionsOutsideTheLimitsAreErrors) {

@@ -5,6 +5,7 @@
 
 #include "core/gpu/device.h"
 #include "shaders/shaders.h"
+#include "tests/gpu/test_backend.h"
 
 namespace hairloom::shaders {
 std::span<const Shader> table_test_gpu();  // NOLINT(readability-identifier-naming)
@@ -16,9 +17,7 @@ namespace hairloom::gpu {
 class GpuTest : public testing::Test {
   protected:
     void SetUp() override {
-        DeviceOptions options;
-        options.validation = true;
-        auto result = createDevice(options);
+        auto result = createDevice(testDevice());
         ASSERT_TRUE(result) << result.error().message();
         device = std::move(*result);
     }

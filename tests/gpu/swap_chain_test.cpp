@@ -45,9 +45,9 @@ class SwapChainTest : public GpuTest {
         const auto status = chain->present();
         ASSERT_TRUE(status) << status.error().message();
     }
-    /// Presenting is not done when present() returns: looks again for up to two seconds.
+    /// Presenting is not done when present() returns: looks again for up to ten seconds.
     std::uint32_t pixelOnceShown(int x, int y, std::uint32_t expected) {
-        for (int i = 0; i < 200 && window->pixel(x, y) != expected; ++i)
+        for (int i = 0; i < 1000 && window->pixel(x, y) != expected; ++i)
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
         return window->pixel(x, y);
     }

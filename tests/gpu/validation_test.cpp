@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include <thread>
+
 #include "tests/gpu/gpu_fixture.h"
 
 namespace hairloom::gpu {
@@ -181,6 +183,24 @@ TEST_F(ValidationTest, RecordsWhatRanAndWhatLives) {
     ASSERT_EQ(living.size(), 1u);
     EXPECT_EQ(living.front().name, "in");
     EXPECT_EQ(living.front().bytes, 256u);
+}
+
+/// Shaders and compute pipelines may be made on another thread; what counts creations counts those too.
+TEST_F(ValidationTest, CreationsOfTwoThreadsAreCountedTogether) {
+    constexpr int kEach = 200;
+    const ShaderPtr code = shader("double.comp", ShaderStage::Compute);
+    watch->failCreation(kEach);
+    int failedThere = 0, failedHere = 0;
+    std::thread other([&] {
+        for (int i = 0; i < kEach; ++i) failedThere += device->createComputePipeline({"other", code}) ? 0 : 1;
+    });
+    BufferDesc desc;
+    desc.name = "here";
+    desc.size = 16;
+    for (int i = 0; i < kEach; ++i) failedHere += device->createBuffer(desc) ? 0 : 1;
+    other.join();
+    EXPECT_EQ(failedThere + failedHere, 1);
+    EXPECT_TRUE(device->createBuffer(desc));
 }
 
 TEST_F(ValidationTest, FaultsComeOnceOrForGood) {

@@ -5,6 +5,7 @@
 
 #include "core/gpu/device.h"
 #include "core/gpu_simulation/strand_engine.h"
+#include "tests/gpu/test_backend.h"
 
 namespace hairloom::gpu_simulation {
 
@@ -32,9 +33,7 @@ class GpuSimulationTest : public testing::Test {
   protected:
     static void SetUpTestSuite() {
         if (device() != nullptr) return;
-        gpu::DeviceOptions options;
-        options.validation = true;
-        auto made = gpu::createDevice(options);
+        auto made = gpu::createDevice(gpu::testDevice());
         ASSERT_TRUE(made) << made.error().message();
         device() = std::move(*made);
         library() = std::make_shared<KernelLibrary>(*device(), std::filesystem::path());

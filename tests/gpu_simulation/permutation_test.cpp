@@ -227,7 +227,9 @@ TEST_F(Permutation, ConstantsArriveWhereTheyAreRead) {
     for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<float>(i + 1);
     const shaders::Shader& echo = shaders::table_test_gpu_simulation().front();
     const auto shader =
-        device()->createShader({"echo", gpu::ShaderStage::Compute, std::as_bytes(echo.spirv)}).value();
+        device()
+            ->createShader({"echo", gpu::ShaderStage::Compute, std::as_bytes(echo.spirv), echo.dxbc})
+            .value();
     const auto pipeline = device()->createComputePipeline({"echo", shader}).value();
     std::array<shaders::SphereConstants, 2> spheres{};
     spheres[1] = {{1.0f, 2.0f, 3.0f, 4.0f}, {5.0f, 6.0f, 7.0f, 8.0f}};

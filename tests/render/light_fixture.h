@@ -31,6 +31,7 @@ class LightTest : public RenderTest {
         gpu::TextureDesc nothing;
         nothing.name = "nothing";
         state.nothing = device->createTexture(nothing, std::array<std::byte, 4>{}).value();
+        state.noWords = buffer("no words", std::array<std::byte, 4>{}, 4);
 
         std::vector<shaders::float4> results(2 * cases.size());
         const auto in = buffer("cases", std::as_bytes(std::span(cases)), sizeof(shaders::LightCase));

@@ -27,7 +27,8 @@ RenderOptions options(Shadows shadows = Shadows::deepOpacity) {
 
 bool anyShadow(const RenderPlan& plan) {
     return plan.runs(Pass::headDepth) || plan.runs(Pass::firstHair) || plan.runs(Pass::opacity) ||
-           plan.has(TargetId::headDepth) || plan.has(TargetId::firstHair) || plan.has(TargetId::opacity);
+           plan.has(TargetId::headDepth) || plan.has(BufferId::firstHair) || plan.has(BufferId::opacity) ||
+           plan.has(BufferId::layerCounts);
 }
 
 TEST(RenderPlan, ShadowsNeedALightThatCastsThemAndSomethingThatThrowsThem) {
@@ -54,8 +55,10 @@ TEST(RenderPlan, EachKindOfShadowHasItsPasses) {
     EXPECT_FALSE(maps.runs(Pass::firstHair));
     EXPECT_TRUE(maps.runs(Pass::opacity));
     const RenderPlan deep = planRender(wholeScene(), options(), 1);
-    EXPECT_EQ(deep.target(TargetId::opacity).bytes(), maps.target(TargetId::opacity).bytes());
-    EXPECT_EQ(deep.target(TargetId::opacity).bytes(), 2u * 64u * 64u * 8u);
+    EXPECT_EQ(deep.buffer(BufferId::opacity).bytes(), maps.buffer(BufferId::opacity).bytes());
+    EXPECT_EQ(deep.buffer(BufferId::opacity).bytes(), 2u * 64u * 64u * 8u);
+    // What counts them is there for one light after the other.
+    EXPECT_EQ(deep.buffer(BufferId::layerCounts).bytes(), 64u * 64u * 3u * 4u);
 }
 
 TEST(RenderPlan, BytesAreThoseOfItsTargets) {
@@ -64,6 +67,13 @@ TEST(RenderPlan, BytesAreThoseOfItsTargets) {
     // Colour and depth with four samples, the resolved colour, the sum.
     EXPECT_EQ(planRender(facts, options(), 4).bytes(), 100u * 50u * (4u * (8u + 4u) + 8u + 16u));
     EXPECT_EQ(planRender(facts, options(), 1).bytes(), 100u * 50u * (8u + 4u + 16u));
+    // Depth and light of four samples, the sum; no textures.
+    RenderOptions kernels = options();
+    kernels.ribbons = Ribbons::compute;
+    EXPECT_EQ(planRender(facts, kernels, 4).bytes(), 100u * 50u * (4u * (4u + 4u) + 16u));
+    facts.tableBytes = 1234;
+    EXPECT_EQ(planRender(facts, kernels, 4).bytes(), 100u * 50u * (4u * (4u + 4u) + 16u) + 1234u);
+    facts.tableBytes = 0;
     RenderOptions filtered = options();
     filtered.filter = PostFilter::fxaa;
     EXPECT_EQ(planRender(facts, filtered, 1).bytes(), 100u * 50u * (8u + 4u + 16u + 4u));
@@ -100,6 +110,10 @@ TEST(RenderPlan, SaysWhy) {
             const RenderPlan plan = planRender(facts, options(shadows), 4);
             for (const PlannedPass& pass : plan.passes) EXPECT_FALSE(pass.why.empty());
             for (const PlannedTarget& target : plan.targets) EXPECT_EQ(target.why.empty(), target.width == 0);
+            for (const PlannedBuffer& buffer : plan.buffers) {
+                EXPECT_EQ(buffer.why.empty(), buffer.elements == 0);
+            }
+            EXPECT_FALSE(plan.tables.why.empty());
         }
     }
     std::set<std::string> names;
@@ -108,6 +122,9 @@ TEST(RenderPlan, SaysWhy) {
     names.clear();
     for (std::size_t i = 0; i < kTargetCount; ++i) names.insert(targetName(static_cast<TargetId>(i)));
     EXPECT_EQ(names.size(), kTargetCount);
+    names.clear();
+    for (std::size_t i = 0; i < kBufferCount; ++i) names.insert(bufferName(static_cast<BufferId>(i)));
+    EXPECT_EQ(names.size(), kBufferCount);
 }
 
 }  // namespace

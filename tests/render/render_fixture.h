@@ -7,6 +7,7 @@
 
 #include "core/base/random.h"
 #include "core/render/picture.h"
+#include "tests/gpu/test_backend.h"
 
 namespace hairloom::render {
 
@@ -14,9 +15,7 @@ namespace hairloom::render {
 class RenderTest : public testing::Test {
   protected:
     void SetUp() override {
-        gpu::DeviceOptions options;
-        options.validation = true;
-        auto result = gpu::createDevice(options);
+        auto result = gpu::createDevice(gpu::testDevice());
         ASSERT_TRUE(result) << result.error().message();
         device = std::move(*result);
     }

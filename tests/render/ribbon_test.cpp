@@ -78,6 +78,58 @@ TEST_F(RibbonTest, TessellatedOnesGiveTheSamePicture) {
     EXPECT_LT(far, strip.rgba.size() / 200);
 }
 
+// Kernels draw the same samples by the same chances; what differs lies on the very edge of a piece or is the
+// rounding of light to 9 bits.
+TEST_F(RibbonTest, KernelsGiveTheSamePicture) {
+    const TestHead head(300);
+    RenderScene scene = head.scene();
+    for (const auto& [samples, width] : {std::pair(1u, 3.0f), std::pair(4u, 0.2f)}) {
+        TestStrands strands_ = head.strands;
+        for (float& radius : strands_.radii) radius *= width;
+        scene.strands = {strands_.view()};
+        RenderOptions how = options(64, 1);
+        how.samples = samples;
+        how.ribbons = Ribbons::strip;
+        const LinearImage strip = draw(scene, how);
+        how.ribbons = Ribbons::compute;
+        const LinearImage kernels = draw(scene, how);
+        ASSERT_GT(coverage(strip), 500);
+        EXPECT_NEAR(coverage(kernels), coverage(strip), 0.003 * coverage(strip));
+        EXPECT_NEAR(meanLuminance(kernels), meanLuminance(strip), 0.006 * meanLuminance(strip));
+        std::size_t far = 0;
+        for (std::size_t i = 0; i < strip.rgba.size(); ++i) {
+            far += std::abs(strip.rgba[i] - kernels.rgba[i]) > 0.02f ? 1 : 0;
+        }
+        EXPECT_LT(far, strip.rgba.size() / 100) << samples << " samples, width " << width;
+    }
+}
+
+// Close by, the head reaches behind the eye.
+TEST_F(RibbonTest, KernelsDrawTrianglesThatReachBehindTheEye) {
+    RenderScene scene;
+    const std::vector<Vec3f> corners{{-5, -0.1f, 5}, {5, -0.1f, 5}, {0, -0.1f, -9}};
+    const std::vector<std::uint32_t> indices{0, 1, 2};
+    RenderMesh ground;
+    ground.positions_ws = corners;
+    ground.indices = indices;
+    scene.meshes = {ground};
+    scene.camera.eye_ws = {0, 0, 0};
+    scene.camera.target_ws = {0, -0.02f, -1};
+    scene.lights = studioLights(scene.camera);
+    RenderOptions how = options(64, 1);
+    how.samples = 4;
+    how.ribbons = Ribbons::strip;
+    const LinearImage strip = draw(scene, how);
+    how.ribbons = Ribbons::compute;
+    const LinearImage kernels = draw(scene, how);
+    ASSERT_GT(coverage(strip), 1000);
+    std::size_t far = 0;
+    for (std::size_t i = 0; i < strip.rgba.size(); ++i) {
+        far += std::abs(strip.rgba[i] - kernels.rgba[i]) > 0.02f ? 1 : 0;
+    }
+    EXPECT_LT(far, strip.rgba.size() / 200);
+}
+
 TEST_F(RibbonTest, EachKindOfTransparencyKeepsTheWidth) {
     RenderScene scene;
     scene.camera.eye_ws = {0, 0, 1};

@@ -3,6 +3,7 @@
 // What stands behind the interface's objects. Each keeps the context, and with it the device, alive; Direct3D
 // itself keeps what unfinished work uses.
 
+#include <atomic>
 #include <map>
 #include <utility>
 
@@ -18,7 +19,7 @@ struct Context {
     ComPtr<ID3D11InfoQueue> messages;  ///< of the debug layer, where it was asked for
     DeviceInfo info;
     double timeoutSeconds = 0;
-    bool lost = false;
+    std::atomic<bool> lost = false;  ///< may be noted by the thread that makes shaders
 
     /// Notes a lost device; every later call fails at once.
     tl::unexpected<Error> failed(HRESULT result, const std::string& what);

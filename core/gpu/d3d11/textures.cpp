@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Textures and samplers.
-#include <cstring>
-
 #include "core/gpu/d3d11/resources.h"
 
 namespace hairloom::gpu::d3d11 {
@@ -31,23 +29,6 @@ D3D11_TEXTURE2D_DESC toD3d11(const TextureDesc& desc) {
     return info;
 }
 
-/// First content with rows of whole words: Wine's way through Vulkan loses the others.
-struct Rows {
-    Rows(std::span<const std::byte> content, const TextureDesc& desc) {
-        const std::size_t rowBytes = std::size_t{desc.width} * bytesPerTexel(desc.format);
-        const std::size_t pitch = (rowBytes + 3) / 4 * 4;
-        data = {content.data(), static_cast<UINT>(pitch), 0};
-        if (content.empty() || pitch == rowBytes) return;
-        padded.resize(pitch * desc.height);
-        for (std::size_t y = 0; y < desc.height; ++y) {
-            std::memcpy(padded.data() + y * pitch, content.data() + y * rowBytes, rowBytes);
-        }
-        data.pSysMem = padded.data();
-    }
-    std::vector<std::byte> padded;
-    D3D11_SUBRESOURCE_DATA data{};
-};
-
 }  // namespace
 
 Result<std::shared_ptr<TextureImpl>> TextureImpl::create(const ContextPtr& context, const TextureDesc& desc,
@@ -56,9 +37,8 @@ Result<std::shared_ptr<TextureImpl>> TextureImpl::create(const ContextPtr& conte
                              std::to_string(desc.height);
     std::shared_ptr<TextureImpl> result(new TextureImpl(desc));
     const D3D11_TEXTURE2D_DESC info = toD3d11(desc);
-    const Rows rows(content, desc);
-    HRESULT r =
-        context->device->CreateTexture2D(&info, content.empty() ? nullptr : &rows.data, &result->handle);
+    const D3D11_SUBRESOURCE_DATA data{content.data(), desc.width * bytesPerTexel(desc.format), 0};
+    HRESULT r = context->device->CreateTexture2D(&info, content.empty() ? nullptr : &data, &result->handle);
     if (SUCCEEDED(r)) r = result->createViews(context->device.Get());
     if (r == E_INVALIDARG) {
         return fail(what + ": the device has no such combination of format, usage and samples");

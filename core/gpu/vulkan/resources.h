@@ -22,7 +22,7 @@ struct Context {
     DeviceInfo info;
     Allocator allocator;
     double timeoutSeconds = 0;
-    bool lost = false;
+    std::atomic<bool> lost = false;  ///< may be noted by the thread that makes shaders
 
     Context() = default;
     ~Context();

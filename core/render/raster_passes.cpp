@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Frames by kernels: what is in front in each sample, then its light, then their mean.
+#include <algorithm>
+#include <bit>
+
+#include "core/render/passes.h"
+
+namespace hairloom::render {
+namespace {
+
+using gpu::Binding;
+
+constexpr std::uint32_t kGroup = 64;
+constexpr std::uint32_t kRowGroups = 32768;
+
+/// Of a pixel's samples from its middle: Direct3D's standard patterns, in sixteenths of a pixel.
+std::span<const std::array<int, 2>> samplePattern(std::uint32_t samples) {
+    static constexpr std::array<std::array<int, 2>, 1> kOne{{{0, 0}}};
+    static constexpr std::array<std::array<int, 2>, 2> kTwo{{{4, 4}, {-4, -4}}};
+    static constexpr std::array<std::array<int, 2>, 4> kFour{{{-2, -6}, {6, -2}, {-6, 2}, {2, 6}}};
+    static constexpr std::array<std::array<int, 2>, 8> kEight{
+        {{1, -3}, {-1, 3}, {5, 1}, {-3, -5}, {-5, 5}, {-7, -1}, {3, 7}, {7, -7}}};
+    switch (samples) {
+        case 2:
+            return kTwo;
+        case 4:
+            return kFour;
+        case 8:
+            return kEight;
+        default:
+            return kOne;
+    }
+}
+
+shaders::RasterConstants frameConstants(const RendererState& state, std::uint32_t phase) {
+    const std::uint32_t width = state.options.width;
+    shaders::RasterConstants c;
+    c.window = {0, 0, static_cast<float>(width), static_cast<float>(state.options.height)};
+    c.numbers = {0, 0, width, phase};
+    c.samples = {state.samples, 0, 1, 0};
+    const auto pattern = samplePattern(state.samples);
+    int reach = 0;
+    for (std::size_t i = 0; i < pattern.size(); ++i) {
+        const auto [x, y] = pattern[i];
+        reach = std::max({reach, std::abs(x), std::abs(y)});
+        shaders::float4& two = c.places[i / 2];
+        (i % 2 == 0 ? two.x : two.z) = static_cast<float>(x) / 16;
+        (i % 2 == 0 ? two.y : two.w) = static_cast<float>(y) / 16;
+    }
+    c.reach = {static_cast<float>(reach) / 16, 0, 0, 0};
+    return c;
+}
+
+void dispatchMeshes(gpu::CommandList& list, RendererState& state, const Mat4f& clipFromWorld,
+                    std::uint32_t phase) {
+    // So many groups that few large triangles keep a device busy as well.
+    constexpr std::uint32_t kWantedGroups = 1u << 15u;
+    constexpr std::uint32_t kMostSlices = 64;
+    list.setPipeline(state.pipelines.compute("mesh_raster.comp"));
+    bindShadows(list, state);
+    list.setConstants(0, gpu::bytesOf(state.shade));
+    shaders::RasterConstants raster = frameConstants(state, phase);
+    for (const MeshOnDevice& mesh : state.scene.meshes) {
+        const auto triangles = static_cast<std::uint32_t>(mesh.indices.size() / 3);
+        if (triangles == 0) continue;
+        const std::uint32_t row = std::min(triangles, kRowGroups);
+        const std::uint32_t slices = state.onCpu ? 1 : std::clamp(kWantedGroups / triangles, 1u, kMostSlices);
+        raster.numbers.x = triangles;
+        raster.numbers.y = row;
+        raster.samples.z = slices;
+        list.setConstants(1, gpu::bytesOf(meshConstants(clipFromWorld, mesh.matte)));
+        list.setConstants(2, gpu::bytesOf(raster));
+        bind(list, {Binding::read(0, mesh.positions), Binding::read(1, mesh.normals),
+                    Binding::read(2, mesh.indexBuffer), Binding::read(3, mesh.albedo)});
+        list.dispatch(row, (triangles + row - 1) / row, slices);
+    }
+}
+
+void dispatchPhase(gpu::CommandList& list, RendererState& state, const Mat4f& clipFromWorld,
+                   std::uint32_t number, std::uint32_t phase) {
+    const Targets& t = state.targets;
+    bind(list, {Binding::write(0, t[BufferId::nearest]), Binding::write(1, t[BufferId::light])});
+    if (state.scene.triangles() > 0) dispatchMeshes(list, state, clipFromWorld, phase);
+    if (state.scene.batches.empty()) return;
+    list.setPipeline(state.pipelines.compute("strand_raster.comp"));
+    list.setConstants(0, gpu::bytesOf(viewConstants(state, clipFromWorld, number)));
+    dispatchStrands(list, state, frameConstants(state, phase));
+}
+
+void recordResolve(gpu::CommandList& list, RendererState& state, std::uint32_t number) {
+    const std::uint32_t pixels = state.options.width * state.options.height;
+    const Targets& t = state.targets;
+    const Rows rows(pixels);
+    shaders::ResolveConstants constants;
+    constants.size = {pixels, rows.threads(), state.samples, number == 0 ? 1u : 0u};
+    constants.background =
+        state.options.transparentBackground ? shaders::float4{0, 0, 0, 0} : toShader(state.background, 1);
+    list.beginPass({passName(Pass::accumulate), {}, {}});
+    list.setPipeline(state.pipelines.compute("resolve.comp"));
+    list.setConstants(0, gpu::bytesOf(constants));
+    bind(list, {Binding::read(0, t[BufferId::nearest]), Binding::read(1, t[BufferId::light]),
+                Binding::write(0, t[BufferId::sum])});
+    list.dispatch(rows.groups, rows.rows);
+    list.endPass();
+}
+
+}  // namespace
+
+Rows::Rows(std::uint64_t count) {
+    const auto all = static_cast<std::uint32_t>((count + kGroup - 1) / kGroup);
+    groups = std::clamp(all, 1u, kRowGroups);
+    rows = std::max((all + groups - 1) / groups, 1u);
+}
+
+std::uint32_t Rows::threads() const {
+    return groups * kGroup;
+}
+
+void fill(gpu::CommandList& list, RendererState& state, BufferId buffer, std::uint32_t value) {
+    const auto words = static_cast<std::uint32_t>(state.targets[buffer]->desc().size / 4);
+    const Rows rows(words);
+    shaders::FillConstants constants;
+    constants.numbers = {value, words, rows.threads(), 0};
+    list.setPipeline(state.pipelines.compute("fill.comp"));
+    list.setConstants(0, gpu::bytesOf(constants));
+    bind(list, {Binding::write(0, state.targets[buffer])});
+    list.dispatch(rows.groups, rows.rows);
+}
+
+void dispatchStrands(gpu::CommandList& list, const RendererState& state, shaders::RasterConstants raster) {
+    for (const StrandBatch& batch : state.scene.batches) {
+        const std::uint32_t points =
+            batch.curvePoints(batch.strandCount(state.detail), state.detail.subdivisions);
+        const Rows rows(points);
+        raster.numbers.x = points;
+        raster.numbers.y = rows.threads();
+        list.setConstants(2, gpu::bytesOf(raster));
+        bind(list, {Binding::read(0, batch.curve), Binding::read(1, batch.colour)});
+        list.dispatch(rows.groups, rows.rows);
+    }
+}
+
+void recordRasterised(gpu::CommandList& list, RendererState& state, const Mat4f& clipFromWorld,
+                      std::uint32_t number) {
+    list.beginPass({passName(Pass::nearest), {}, {}});
+    fill(list, state, BufferId::nearest, std::bit_cast<std::uint32_t>(1.0f));
+    fill(list, state, BufferId::light, 0);
+    dispatchPhase(list, state, clipFromWorld, number, HAIRLOOM_PHASE_NEAREST);
+    list.endPass();
+    list.beginPass({passName(Pass::draw), {}, {}});
+    dispatchPhase(list, state, clipFromWorld, number, HAIRLOOM_PHASE_LIGHT);
+    list.endPass();
+    recordResolve(list, state, number);
+}
+
+}  // namespace hairloom::render

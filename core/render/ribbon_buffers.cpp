@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What ribbons of some fineness need on the device: room for their curves, indices of strips, patches.
+#include <algorithm>
+
+#include "core/render/device_buffers.h"
+#include "core/render/device_scene.h"
+
+namespace hairloom::render {
+namespace {
+
+constexpr std::uint32_t kRestart = 0xffffffffu;
+
+Result<gpu::BufferPtr> written(gpu::Device& device, const char* name, std::uint64_t count,
+                               std::uint32_t element) {
+    gpu::BufferDesc desc;
+    desc.name = name;
+    desc.size = count * element;
+    desc.elementBytes = element;
+    desc.usage = gpu::Usage::ShaderRead | gpu::Usage::UnorderedAccess;
+    return device.createBuffer(desc);
+}
+
+std::vector<std::uint32_t> ribbonIndices(const StrandBatch& batch, std::uint32_t subdivisions) {
+    std::vector<std::uint32_t> indices;
+    indices.reserve(batch.indexCount(batch.strandCount(), subdivisions));
+    std::uint32_t next = 0;
+    for (std::uint32_t strand = 0; strand < batch.strandCount(); ++strand) {
+        const std::uint32_t segments = batch.segmentsBefore[strand + 1] - batch.segmentsBefore[strand];
+        for (std::uint32_t i = 0; i < 2 * (segments * subdivisions + 1); ++i) indices.push_back(next++);
+        indices.push_back(kRestart);
+    }
+    return indices;
+}
+
+/// Strands of more than 32 points become several patches that overlap, so that each knows its neighbours'
+/// tangents.
+std::vector<shaders::StrandPatch> strandPatches(StrandBatch& batch) {
+    constexpr std::uint32_t kControlPoints = HAIRLOOM_PATCH_POINTS;
+    std::vector<shaders::StrandPatch> patches;
+    batch.patchesBefore = {0};
+    for (std::uint32_t strand = 0; strand < batch.strandCount(); ++strand) {
+        const std::uint32_t segments = batch.segmentsBefore[strand + 1] - batch.segmentsBefore[strand];
+        for (std::uint32_t done = 0; done < segments;) {
+            shaders::StrandPatch patch;
+            const std::uint32_t before = done > 0 ? 1 : 0;
+            patch.strand = strand;
+            patch.firstPoint = done - before;
+            patch.pointCount = std::min(segments + 1 - patch.firstPoint, kControlPoints);
+            const bool ends = patch.firstPoint + patch.pointCount == segments + 1;
+            patch.segments = patch.pointCount - 1 - before - (ends ? 0 : 1);
+            done += patch.segments;
+            patches.push_back(patch);
+        }
+        batch.patchesBefore.push_back(static_cast<std::uint32_t>(patches.size()));
+    }
+    return patches;
+}
+
+}  // namespace
+
+Status DeviceScene::prepareCurves(gpu::Device& device, std::uint32_t subdivisions) {
+    Gather gather;
+    for (StrandBatch& batch : batches) {
+        const std::uint32_t count = batch.curvePoints(batch.strandCount(), subdivisions);
+        if (subdivisions > batch.curveSubdivisions) {
+            gather(batch.curve, written(device, "curve points", count, sizeof(shaders::CurvePoint)));
+            gather(batch.colour, written(device, "curve colours", count, sizeof(shaders::float4)));
+            batch.curveSubdivisions = subdivisions;
+        }
+        gpu::BufferPtr& indices = batch.indices[subdivisions];
+        if (indices != nullptr) continue;
+        const auto content = ribbonIndices(batch, subdivisions);
+        gpu::BufferDesc desc;
+        desc.name = "ribbon indices";
+        desc.size = content.size() * sizeof(std::uint32_t);
+        desc.usage = gpu::Usage::Index;
+        gather(indices, device.createBuffer(desc, bytes(content)));
+    }
+    return gather.status();
+}
+
+Status DeviceScene::preparePatches(gpu::Device& device) {
+    Gather gather;
+    for (StrandBatch& batch : batches) {
+        if (batch.patches != nullptr) continue;
+        const auto patches = strandPatches(batch);
+        gather(batch.patches,
+               structured(device, "strand patches", sizeof(shaders::StrandPatch), bytes(patches)));
+    }
+    return gather.status();
+}
+
+}  // namespace hairloom::render

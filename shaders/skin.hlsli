@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Skin: diffuse light that wraps a little around the terminator, a soft highlight, shadows of head and hair.
+#include "shaders/shadows.hlsli"
+
+float3 skinLight(ShadeConstants shade, MeshConstants mesh, float3 position_ws, float3 normal_ws, float3 albedo) {
+    const float kPi = 3.14159265;
+    const float3 toView = normalize(shade.eye_ws.xyz - position_ws);
+    float3 normal = normalize(normal_ws);
+    if (dot(normal, toView) < 0) normal = -normal;
+    float3 colour = 0;
+    float openness = 0;
+    for (uint k = 0; k < shade.counts.y; ++k) {
+        const LightConstants light = shade.lights[k];
+        const float3 toLight = directionToLight(light, position_ws);
+        const Occlusion o = occlusion(light, position_ws + normal * 0.002, 0.0, 0.002);
+        const float nl = dot(normal, toLight);
+        // Red light travels farther under the skin. The denominator keeps the energy of a Lambertian.
+        const float3 wrap = mesh.skin.x * float3(1, 0.5, 0.35);
+        const float3 diffuse = saturate((nl + wrap) / ((1 + wrap) * (1 + wrap)));
+        const float3 middle = normalize(toLight + toView);
+        const float fresnel = 0.04 + 0.96 * pow(1.0 - saturate(dot(toView, middle)), 5.0);
+        const float m = mesh.skin.z;
+        const float specular = mesh.skin.y * fresnel * (m + 8.0) / (8.0 * kPi) *
+                               pow(saturate(dot(normal, middle)), m) * saturate(nl);
+        const float lit = lerp(0.0, o.visibility, saturate(nl * 8.0 + 0.6));
+        colour += irradianceOf(light, position_ws) * (albedo / kPi * diffuse + specular) * (lit * exp(-0.5 * o.fibres));
+        openness += exp(-0.3 * o.fibres);
+    }
+    openness = shade.counts.y > 0 ? openness / float(shade.counts.y) : 1.0;
+    if (hasEnvironment(shade)) colour += albedo * environmentOnSkin(shade, normal) * openness;
+    return colour;
+}
