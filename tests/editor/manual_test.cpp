@@ -88,6 +88,13 @@ TEST_F(ManualTest, ScalpAndRoots) {
 
 TEST_F(ManualTest, GroomingSpheresMotionAndLook) {
     openSampleHair("shoulder");
+    // As many hairs as a software device draws in a minute.
+    Groom fewer = groom();
+    fewer.interpolation.followPerGuide = 6;
+    document().change("Follow hairs", Change::FollowHairs, fewer);
+    PictureQuality quality = viewport().quality();
+    quality.frames = 4;
+    viewport().setQuality(quality);
     viewport().look(render::View::ThreeQuarter);
     viewport().frameAll();
     viewport().camera().zoom(1.35f);
