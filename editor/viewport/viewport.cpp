@@ -96,7 +96,10 @@ Viewport::Viewport(Document& document, const Preferences& preferences, QWidget* 
         pose_.reset();
         framed_ = false;
     });
-    connect(&preferences_, &Preferences::changed, this, [this] { redraw(); });
+    connect(&preferences_, &Preferences::changed, this, [this] {
+        showOnCanvas();
+        redraw();
+    });
     connect(&renderer_, &RenderThread::sidePictureReady, this, &Viewport::sidePictureReady);
 }
 
