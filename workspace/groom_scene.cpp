@@ -156,6 +156,13 @@ std::vector<Quatf> rootRotations(const Groom& rest, const Groom& posed, const Fo
     return rotations;
 }
 
+/// The same strands are in streaks and dyed, as strands and not the material say.
+bool hasSameShares(const HairMaterial& a, const HairMaterial& b) {
+    return a.streakShare == b.streakShare && a.streakWidth == b.streakWidth &&
+           a.streakSoftness == b.streakSoftness && a.streakSeed == b.streakSeed &&
+           a.dyeStrength == b.dyeStrength;
+}
+
 }  // namespace
 
 Result<ViewFile> readViewFile(const std::string& path) {
@@ -234,6 +241,15 @@ Result<GroomScene> GroomScene::make(const Groom& groom, const std::vector<Vec3f>
 Status GroomScene::pose(std::span<const Vec3f> positions_ws, const HeadPose& pose) {
     posed_ = posedGroom(rest_, positions_ws, pose);
     return bindings_ ? makeFollowHairs() : Status();
+}
+
+bool GroomScene::setMaterial(const HairMaterial& authored, const ViewFile& view) {
+    const HairMaterial& before = rest_.material;
+    if (authored.rootColour != before.rootColour || !hasSameShares(authored, before)) return false;
+    if (!radii_.empty() && authored.rootRadius != before.rootRadius) return false;
+    rest_.material = authored;
+    material_ = materialOf(authored, view);
+    return true;
 }
 
 Status GroomScene::makeFollowHairs() {

@@ -65,6 +65,10 @@ class GroomScene {
     /// Error: follow hairs that cannot be made.
     Status pose(std::span<const Vec3f> positions_ws, const HeadPose& pose);
 
+    /// Another look of the same strands. False, and nothing changed, where it takes make() anew: colours that
+    /// stand in the head, thickness that stands in points.
+    bool setMaterial(const HairMaterial& authored, const ViewFile& view);
+
     /// Meshes and strands; camera and lights are the caller's. Valid while this object lives and is not
     /// moved.
     render::RenderScene scene() const;

@@ -14,6 +14,7 @@
 #include "core/editing/model.h"
 #include "core/editing/strand_bounds.h"
 #include "core/editing/stroke.h"
+#include "core/geometry/scalp_mesh.h"
 #include "core/groom/brushes/skin.h"
 
 namespace hairloom::editing {
@@ -64,10 +65,17 @@ struct StrandUnderBrush {
     std::size_t first;               ///< first point with a weight, ≥ 1
     float strongest;                 ///< greatest weight
     std::uint32_t index;
-    std::uint32_t id;     ///< its id attribute, else its index
-    Vec3f rootNormal_ss;  ///< out of the skin at its root; +Y for unbound hair
+    std::uint32_t id;            ///< its id attribute, else its index
+    std::uint32_t rootTriangle;  ///< of `head`
+    Vec3f rootBarycentric;
+    const ScalpMesh* head;  ///< null for unbound hair
 
     const SkinQuery* skin;  ///< null without a head, or where collisions are off
+
+    /// Out of the skin at its root; +Y for unbound hair.
+    Vec3f rootNormal_ss() const {
+        return head ? head->normalAt(rootTriangle, rootBarycentric) : Vec3f(Vec3f::UnitY());
+    }
 
     Random random(std::uint64_t seed) const { return Random(seed, id); }
     /// Moves points by `offset` times their weight; what hangs on them towards the tip is carried along, so

@@ -67,4 +67,10 @@ bool RootGrid::anyWithin(const Vec3f& point_ss, float radius) const {
     return any;
 }
 
+std::size_t RootGrid::countWithin(const Vec3f& point_ss, float radius) const {
+    std::size_t count = 0;
+    visit(point_ss, radius, [&](std::uint32_t, float) { ++count; });
+    return count;
+}
+
 }  // namespace hairloom::editing

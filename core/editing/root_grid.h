@@ -23,6 +23,7 @@ class RootGrid {
     /// Nearest first, then by strand; at most `count`, none farther than `radius`.
     std::vector<Neighbour> nearest(const Vec3f& point_ss, std::size_t count, float radius) const;
     bool anyWithin(const Vec3f& point_ss, float radius) const;
+    std::size_t countWithin(const Vec3f& point_ss, float radius) const;
 
   private:
     struct Entry {

@@ -51,6 +51,8 @@ SkinField::SkinField(std::shared_ptr<const Skin> skin, float cell)
     while (sizeAt(cell_).cast<double>().prod() > kMostBlocks) cell_ *= kGrowth;
     size_ = sizeAt(cell_);
     low_ = meshBounds_.min() - Vec3f::Constant(kReach + cell_ * kCells);
+    perCell_ = 1 / cell_;
+    extent_ = (size_ * kCells).cast<float>();
     blocks_ = std::vector<Block>(static_cast<std::size_t>(size_.prod()));
     for (Block& block : blocks_) {
         block.centre.store(kUnknown, std::memory_order_relaxed);
@@ -97,13 +99,14 @@ const float* SkinField::corners(std::size_t block) const {
 }
 
 SkinField::Place SkinField::locate(const Vec3f& point) const {
-    const Vec3f cells = (point - low_) / cell_;
-    const Eigen::Array3i block = (cells / kCells).array().floor().cast<int>();
-    if (!point.allFinite() || (block < 0).any() || (block >= size_).any()) return {};
-    const Vec3f local = cells - (block * kCells).cast<float>().matrix();
-    const Eigen::Array3i cell = local.array().floor().cast<int>().max(0).min(kCells - 1);
-    return {static_cast<std::size_t>((block.z() * size_.y() + block.y()) * size_.x() + block.x()), cell,
-            local - cell.cast<float>().matrix()};
+    const Vec3f cells = (point - low_) * perCell_;
+    // What is no number is not inside either.
+    if (!(cells.array() >= 0).all() || !(cells.array() < extent_.array()).all()) return {};
+    const Eigen::Array3i whole(static_cast<int>(cells.x()), static_cast<int>(cells.y()),
+                               static_cast<int>(cells.z()));
+    const Eigen::Array3i block = whole / kCells;
+    return {static_cast<std::size_t>((block.z() * size_.y() + block.y()) * size_.x() + block.x()),
+            whole - block * kCells, cells - whole.cast<float>().matrix()};
 }
 
 SkinDistance SkinField::beyondTable(const Vec3f& point) const {

@@ -56,7 +56,9 @@ class SkinField final : public SkinQuery {
     Box3f meshBounds_;
     Vec3f low_ = Vec3f::Zero();
     float cell_;
+    float perCell_ = 0;
     Eigen::Array3i size_ = Eigen::Array3i::Zero();  ///< blocks along each axis
+    Vec3f extent_ = Vec3f::Zero();                  ///< in cells
     mutable std::vector<Block> blocks_;
 };
 

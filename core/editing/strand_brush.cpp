@@ -27,10 +27,7 @@ struct StrandFacts {
           barycentrics(groom.strandAttributes.view<Vec3f>(attribute::kRootBarycentric)),
           scalp(groom.scalp.get()) {}
     std::uint32_t id(std::uint32_t s) const { return s < ids.size() ? ids[s] : s; }
-    Vec3f rootNormal(std::uint32_t s) const {
-        const bool bound = scalp && s < triangles.size() && s < barycentrics.size();
-        return bound ? scalp->normalAt(triangles[s], barycentrics[s]) : Vec3f(Vec3f::UnitY());
-    }
+    bool isBound(std::uint32_t s) const { return scalp && s < triangles.size() && s < barycentrics.size(); }
 };
 
 std::size_t firstWeighted(std::span<const float> weights) {
@@ -122,7 +119,9 @@ void StrandBrush::editReached(StrokeTarget& target, const DabContext& dab, const
                                     *std::max_element(weights.begin(), weights.end()),
                                     s,
                                     facts.id(s),
-                                    facts.rootNormal(s),
+                                    facts.isBound(s) ? facts.triangles[s] : 0,
+                                    facts.isBound(s) ? facts.barycentrics[s] : Vec3f(Vec3f::Zero()),
+                                    facts.isBound(s) ? facts.scalp : nullptr,
                                     skin};
             if (!edit(dab, strand)) continue;
             if (keepsLengths) {

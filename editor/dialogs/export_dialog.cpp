@@ -9,6 +9,7 @@
 #include <QPointer>
 #include <QVBoxLayout>
 
+#include "editor/panels/panel.h"
 #include "exporters/strands.h"
 #include "importers/length_unit.h"
 
@@ -75,7 +76,9 @@ ExportDialog::ExportDialog(Session& session, QWidget* parent)
     findings_->setHeaderLabels({tr("Finding"), tr("Where"), tr("What to do")});
     findings_->setRootIsDecorated(false);
     findings_->setWordWrap(true);
-    findings_->header()->resizeSection(0, 220);
+    findings_->header()->resizeSection(0, 240);
+    findings_->header()->resizeSection(1, 110);
+    findings_->setSelectionMode(QAbstractItemView::NoSelection);
     layout->addWidget(findings_, 1);
     auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close);
     write_ = buttons->addButton(tr("Export…"), QDialogButtonBox::AcceptRole);
@@ -147,6 +150,7 @@ void ExportDialog::showReport() {
         for (int c = 0; c < 3; ++c) item->setToolTip(c, item->text(c));
         findings_->addTopLevelItem(item);
     }
+    wrapRows(*findings_);
 }
 
 }  // namespace hairloom::editor

@@ -3,6 +3,7 @@
 
 #include <QMouseEvent>
 #include <QPainter>
+#include <algorithm>
 #include <cmath>
 
 namespace hairloom::editor {
@@ -41,25 +42,45 @@ QPolygonF StrandPreview::projected(std::span<const Vec3f> points) const {
 void StrandPreview::paintEvent(QPaintEvent*) {
     QPainter painter(this);
     painter.fillRect(rect(), palette().color(QPalette::Base));
-    painter.setRenderHint(QPainter::Antialiasing);
     if (head_) {
+        // Without antialiasing, which would leave seams between the faces.
         painter.setPen(Qt::NoPen);
-        QColor skin = palette().color(QPalette::Mid);
+        const QColor skin(196, 160, 138);
         for (std::uint32_t t = 0; t < head_->triangleCount(); ++t) {
             const float facing = -head_->triangleNormal(t).dot(camera_.forward_ws());
             if (facing <= 0) continue;
             std::array<Vec3f, 3> corners;
             for (std::size_t i = 0; i < 3; ++i) corners[i] = head_->positions()[head_->triangles()[t][i]];
-            painter.setBrush(skin.darker(static_cast<int>(100 + 60 * (1 - facing))));
+            painter.setBrush(skin.darker(static_cast<int>(100 + 90 * (1 - facing))));
             painter.drawPolygon(projected(corners));
         }
     }
-    QColor hair = palette().color(QPalette::Highlight);
-    hair.setAlpha(150);
-    painter.setPen(QPen(hair, 1));
+    painter.setRenderHint(QPainter::Antialiasing);
+    // Far strands first; those on the far side of the head are hidden by it only where they lie behind its
+    // middle.
     const std::size_t stride = std::max<std::size_t>(1, strands_.strandCount() / kMostStrands);
+    std::vector<std::pair<float, std::size_t>> order;
     for (std::size_t s = 0; s < strands_.strandCount(); s += stride) {
-        painter.drawPolyline(projected(strands_.strand(s)));
+        const auto points = strands_.strand(s);
+        order.emplace_back(-points[points.size() / 2].dot(camera_.forward_ws()), s);
+    }
+    std::ranges::sort(order);
+    for (const auto& [depth, s] : order) drawStrand(painter, s);
+}
+
+void StrandPreview::drawStrand(QPainter& painter, std::size_t strand) const {
+    // Kajiya and Kay's highlight of a light beside the eye, on brown.
+    const Vec3f toLight = (Vec3f(0, 0.7f, 0) - camera_.forward_ws() - 0.4f * camera_.right_ws()).normalized();
+    const auto points = strands_.strand(strand);
+    for (std::size_t p = 1; p < points.size(); ++p) {
+        const auto a = camera_.project(points[p - 1], size()), b = camera_.project(points[p], size());
+        if (!a || !b) continue;
+        const float along = (points[p] - points[p - 1]).normalized().dot(toLight);
+        const float across = std::sqrt(std::max(0.0f, 1 - along * along));
+        const float bright = 0.25f + 0.4f * across + 0.5f * std::pow(across, 24.0f);
+        const auto tone = [bright](float full) { return std::min(1.0f, full * bright); };
+        painter.setPen(QPen(QColor::fromRgbF(tone(0.62f), tone(0.42f), tone(0.27f), 0.8f), 1));
+        painter.drawLine(*a, *b);
     }
 }
 

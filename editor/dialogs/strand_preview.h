@@ -26,6 +26,7 @@ class StrandPreview : public QWidget {
 
   private:
     void frame();
+    void drawStrand(QPainter& painter, std::size_t strand) const;
     QPolygonF projected(std::span<const Vec3f> points) const;
 
     Groom strands_;

@@ -133,6 +133,10 @@ QString labelOf(const QString& name) {
         if (letter.isUpper() && !label.isEmpty()) label += ' ';
         label += label.isEmpty() ? letter.toUpper() : letter.toLower();
     }
+    // The unit stands beside the value.
+    for (const QLatin1String unit : {QLatin1String(" degrees"), QLatin1String(" per cm2")}) {
+        if (label.endsWith(unit)) label.chop(unit.size());
+    }
     return label;
 }
 

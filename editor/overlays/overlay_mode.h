@@ -40,5 +40,10 @@ void drawWireframe(const Session& session, Marks& marks);
 void drawScalp(const Session& session, Marks& marks);
 void drawStrain(const Session& session, Marks& marks);
 void drawPenetration(const Session& session, Marks& marks);
+void drawDensity(const Session& session, Marks& marks);
+void drawEffectCost(const Session& session, Marks& marks);
+/// An arrow from the middle of the view, kWindPixels long for each m/s.
+inline constexpr float kWindPixels = 18;
+void drawWind(const Session& session, Marks& marks);
 
 }  // namespace hairloom::editor

@@ -20,6 +20,15 @@ std::span<const OverlayMode> overlayModes() {
          drawStrain},
         {"penetration", QT_TR_NOOP("Penetration"),
          QT_TR_NOOP("Points inside a sphere: red by 2 mm and deeper"), drawPenetration},
+        {"density", QT_TR_NOOP("Density"),
+         QT_TR_NOOP("Roots by how many lie within 1 cm, and the density that was painted: red is dense"),
+         drawDensity},
+        {"effectCost", QT_TR_NOOP("Effect cost"),
+         QT_TR_NOOP("Strands by what the simulation spends on each while it plays: red is the dearest, grey "
+                    "rests and costs nothing"),
+         drawEffectCost},
+        {"wind", QT_TR_NOOP("Wind"), QT_TR_NOOP("An arrow where the wind blows to; longer is stronger"),
+         drawWind},
     };
     return kModes;
 }

@@ -19,6 +19,7 @@ class HistoryPanel : public QWidget {
         list_->setObjectName("steps");
         list_->setToolTip(tr("Click a step to go back or forward to it"));
         memory_->setProperty("role", "dim");
+        memory_->setToolTip(tr("Memory that undo holds; the oldest steps are forgotten beyond the bound"));
         layout->addWidget(list_, 1);
         layout->addWidget(memory_);
         connect(list_, &QListWidget::itemClicked, this,
@@ -40,9 +41,10 @@ class HistoryPanel : public QWidget {
             list_->addItem(item);
         }
         list_->setCurrentRow(document_.doneSteps());
-        memory_->setText(tr("%1 of at most %2 MB")
-                             .arg(static_cast<double>(document_.historyBytes()) / 1e6, 0, 'f', 1)
-                             .arg(static_cast<double>(document_.historyLimit()) / 1e6, 0, 'f', 0));
+        constexpr double kMega = 1 << 20;
+        memory_->setText(tr("Memory: %1 of at most %2 MB")
+                             .arg(static_cast<double>(document_.historyBytes()) / kMega, 0, 'f', 1)
+                             .arg(static_cast<double>(document_.historyLimit()) / kMega, 0, 'f', 0));
     }
 
     Document& document_;

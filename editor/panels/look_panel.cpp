@@ -1,46 +1,146 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How the hair looks: colour, thickness, scattering, and the hairs between the guides. The controls follow
-// the table of material fields, so that those of a new shading model appear by themselves.
+// How the hair looks: presets, the shading model with the controls that it has, colour by pigment or by
+// picker, how finely it is drawn, and the hairs between the guides.
 #include <QComboBox>
+#include <QPushButton>
+#include <QSettings>
+#include <QVBoxLayout>
 #include <algorithm>
 
 #include "editor/fields/field_form.h"
+#include "editor/look/parts.h"
 #include "editor/panels/list.h"
 #include "editor/panels/panel.h"
 #include "editor/session.h"
-#include "workspace/hair_preset.h"
+#include "workspace/look_presets.h"
 
 namespace hairloom::editor {
 namespace {
 
-const QStringList kColour{"rootColour", "tipColour", "colourVariation"};
-const QStringList kPigment{"eumelanin", "pheomelanin"};
-const QStringList kFibre{"rootRadius", "tipScale"};
+constexpr const char* kModelKey = "look/shadingModel";
+constexpr unsigned kKajiya = 1, kMarschner = 2, kSadeghi = 4;
+constexpr unsigned kFibres = kMarschner | kSadeghi;
+constexpr unsigned kAll = kKajiya | kFibres;
 
-FieldForm* form(Session& session, const std::vector<Field>& fields) {
-    return new FieldForm(session.document, session.preferences, fields);
+/// Rows of fields that belong together, for some of the models.
+struct Group {
+    const char* title;
+    QStringList fields;
+    unsigned models;
+    bool open;
+};
+
+const std::vector<Group>& groups() {
+    static const std::vector<Group> all{
+        {QT_TR_NOOP("Colour"), {"rootColour", "tipColour", "colourVariation"}, kAll, true},
+        {QT_TR_NOOP("Pigment"), {"eumelanin", "pheomelanin"}, kAll, true},
+        {QT_TR_NOOP("Fibre"), {"rootRadius", "tipScale", "scaleTiltDegrees"}, kAll, true},
+        {QT_TR_NOOP("Highlights"), {"specular", "shininess"}, kKajiya, true},
+        {QT_TR_NOOP("Fibre optics"),
+         {"indexOfRefraction", "longitudinalRoughness", "azimuthalRoughness"},
+         kFibres,
+         true},
+    };
+    return all;
 }
 
-/// Those that no other group shows.
-std::vector<Field> scatteringFields(const std::vector<Field>& all) {
-    std::vector<Field> rest;
-    const QStringList elsewhere = kColour + kPigment + kFibre;
-    std::ranges::copy_if(all, std::back_inserter(rest),
-                         [&](const Field& field) { return !elsewhere.contains(field.name); });
-    return rest;
-}
+class LookPanel : public QWidget {
+  public:
+    explicit LookPanel(Session& session)
+        : session_(session), model_(new QComboBox), layout_(new QVBoxLayout(this)) {
+        layout_->setContentsMargins(0, 0, 0, 0);
+        layout_->setSpacing(8);
+        layout_->addWidget(foldable(tr("Presets"), makePresetList(session_)));
+        layout_->addWidget(foldable(tr("Compare"), makeCompareBar(session_)));
+        layout_->addWidget(heading(tr("Shading model")));
+        makeModels();
+        makeGroups();
+        layout_->addWidget(foldable(tr("Edges and shadows"), makePictureForm(session_), false));
+        layout_->addWidget(foldable(tr("Hairs between the guides"), form(followHairFields()), false));
+        connect(session_.viewport, &Viewport::lookChanged, this, &LookPanel::refresh);
+        refresh();
+    }
+
+  private:
+    FieldForm* form(const std::vector<Field>& fields) {
+        return new FieldForm(session_.document, session_.preferences, fields);
+    }
+
+    void makeModels() {
+        model_->setObjectName("shadingModel");
+        model_->addItems({tr("Kajiya-Kay"), tr("Marschner"), tr("Sadeghi")});
+        model_->setItemData(0, tr("Two highlights of a thread: fast, and easy to push around"),
+                            Qt::ToolTipRole);
+        model_->setItemData(1, tr("Light in a fibre of glass with pigment, as measured: natural hair"),
+                            Qt::ToolTipRole);
+        model_->setItemData(2, tr("Marschner's lobes as separate controls for an artist"), Qt::ToolTipRole);
+        model_->setToolTip(tr("How light scatters in a fibre; each model keeps its own controls"));
+        connect(model_, &QComboBox::activated, this, [this](int index) {
+            PictureQuality quality = session_.viewport->quality();
+            quality.model = static_cast<render::ShadingModel>(index);
+            session_.viewport->setQuality(quality);
+            QSettings().setValue(kModelKey, index);
+        });
+        PictureQuality quality = session_.viewport->quality();
+        quality.model = static_cast<render::ShadingModel>(
+            std::clamp(QSettings().value(kModelKey, 0).toInt(), 0, model_->count() - 1));
+        session_.viewport->setQuality(quality);
+        layout_->addWidget(model_);
+    }
+
+    void makeGroups() {
+        const std::vector<Field> fields = materialFields();
+        for (const Group& group : groups()) {
+            QWidget* rows = form(pick(fields, group.fields));
+            if (QLatin1String(group.title) == QLatin1String("Pigment")) rows = withColourButton(rows);
+            QWidget* const folded = foldable(tr(group.title), rows, group.open);
+            layout_->addWidget(folded);
+            shownFor_.emplace_back(folded, group.models);
+        }
+        // Fields that materials have gained since.
+        std::vector<Field> others;
+        for (const Field& field : fields) {
+            const auto has = [&](const Group& group) { return group.fields.contains(field.name); };
+            if (std::ranges::none_of(groups(), has)) others.push_back(field);
+        }
+        if (!others.empty()) layout_->addWidget(foldable(tr("More"), form(others), false));
+    }
+
+    /// For Kajiya-Kay, which knows colours only, and for those who want to go on from a natural colour.
+    QWidget* withColourButton(QWidget* rows) {
+        auto* widget = new QWidget;
+        auto* layout = new QVBoxLayout(widget);
+        layout->setContentsMargins(0, 0, 0, 0);
+        layout->setSpacing(5);
+        layout->addWidget(rows);
+        auto* button = new QPushButton(tr("Colours from the pigment"));
+        button->setObjectName("colourByMelanin");
+        button->setToolTip(tr("Gives root and tip the colour that this pigment makes of much hair"));
+        connect(button, &QPushButton::clicked, this, [this] {
+            Groom groom = session_.document.groom();
+            colourByMelanin(groom.material);
+            session_.document.change(tr("Colours from the pigment"), Change::Look, std::move(groom));
+        });
+        layout->addWidget(button);
+        return widget;
+    }
+
+    void refresh() {
+        const auto model = static_cast<unsigned>(session_.viewport->quality().model);
+        model_->setCurrentIndex(static_cast<int>(model));
+        for (const auto& [group, models] : shownFor_) group->setVisible((models >> model) & 1u);
+    }
+
+    Session& session_;
+    QComboBox* model_;
+    QVBoxLayout* layout_;
+    std::vector<std::pair<QWidget*, unsigned>> shownFor_;
+};
 
 }  // namespace
 
 QWidget* makeLookPanel(Session& session) {
-    const std::vector<Field> fields = materialFields();
-    return scrolled(column({
-        foldable(QObject::tr("Colour"), form(session, pick(fields, kColour))),
-        foldable(QObject::tr("Pigment"), form(session, pick(fields, kPigment))),
-        foldable(QObject::tr("Fibre"), form(session, pick(fields, kFibre))),
-        foldable(QObject::tr("Scattering"), form(session, scatteringFields(fields))),
-        foldable(QObject::tr("Hairs between the guides"), form(session, followHairFields())),
-    }));
+    return scrolled(column({new LookPanel(session)}));
 }
 
 }  // namespace hairloom::editor

@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editor/panels/panel.h"
 
+#include <QHeaderView>
 #include <QLabel>
 #include <QScrollArea>
 #include <QToolButton>
 #include <QVBoxLayout>
+#include <algorithm>
 
 namespace hairloom::editor {
 
 QWidget* heading(const QString& text) {
     auto* label = new QLabel(text);
     label->setProperty("role", "heading");
+    label->setIndent(0);
     return label;
 }
 
@@ -32,6 +35,34 @@ QWidget* column(std::initializer_list<QWidget*> rows) {
     for (QWidget* row : rows) layout->addWidget(row);
     layout->addStretch(1);
     return widget;
+}
+
+namespace {
+
+void wrapNow(QTreeWidget& table) {
+    constexpr int kAside = 12, kAbove = 8;  // pixels that a cell has besides its words
+    for (int row = 0; row < table.topLevelItemCount(); ++row) {
+        QTreeWidgetItem* const item = table.topLevelItem(row);
+        int height = table.fontMetrics().height();
+        for (int c = 0; c < table.columnCount(); ++c) {
+            const int width = std::max(20, table.columnWidth(c) - kAside);
+            height =
+                std::max(height, table.fontMetrics()
+                                     .boundingRect(QRect(0, 0, width, 4000), Qt::TextWordWrap, item->text(c))
+                                     .height());
+        }
+        const QSize hint(0, height + kAbove);
+        if (item->sizeHint(0).height() != hint.height()) item->setSizeHint(0, hint);
+    }
+}
+
+}  // namespace
+
+void wrapRows(QTreeWidget& table) {
+    wrapNow(table);
+    if (table.property("wraps").toBool()) return;
+    table.setProperty("wraps", true);
+    QObject::connect(table.header(), &QHeaderView::sectionResized, &table, [&table] { wrapNow(table); });
 }
 
 QWidget* foldable(const QString& title, QWidget* content, bool open) {

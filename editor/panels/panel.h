@@ -4,6 +4,7 @@
 // them.
 
 #include <QString>
+#include <QTreeWidget>
 #include <QWidget>
 #include <functional>
 #include <vector>
@@ -30,6 +31,8 @@ QWidget* heading(const QString& text);
 QWidget* scrolled(QWidget* content);
 /// A widget with a vertical layout, margins and spacing of a panel.
 QWidget* column(std::initializer_list<QWidget*> rows);
+/// Rows become as high as their words need in columns as wide as they are now, and follow when those change.
+void wrapRows(QTreeWidget& table);
 /// Folds away under its heading; `open` at first.
 QWidget* foldable(const QString& title, QWidget* content, bool open = true);
 

@@ -5,6 +5,7 @@
 #include <QVBoxLayout>
 
 #include "editor/fields/field_form.h"
+#include "editor/fields/stiffness_curve.h"
 #include "editor/panels/list.h"
 #include "editor/panels/panel.h"
 #include "editor/session.h"
@@ -66,6 +67,16 @@ QWidget* makePresets(Session& session) {
     return row;
 }
 
+QWidget* withCurve(Session& session, QWidget* form) {
+    auto* widget = new QWidget;
+    auto* layout = new QVBoxLayout(widget);
+    layout->setContentsMargins(0, 0, 0, 0);
+    layout->setSpacing(6);
+    layout->addWidget(new StiffnessCurve(session.document));
+    layout->addWidget(form);
+    return widget;
+}
+
 }  // namespace
 
 QWidget* makePhysicsPanel(Session& session) {
@@ -75,7 +86,8 @@ QWidget* makePhysicsPanel(Session& session) {
     QStringList shown;
     for (const Group& group : groups()) {
         shown += group.fields;
-        auto* form = new FieldForm(session.document, session.preferences, pick(fields, group.fields));
+        QWidget* form = new FieldForm(session.document, session.preferences, pick(fields, group.fields));
+        if (group.fields.contains("angularStiffness")) form = withCurve(session, form);
         layout->insertWidget(layout->count() - 1, foldable(group.title, form, group.open));
     }
     // Fields that the engine has gained since.

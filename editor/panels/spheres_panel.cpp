@@ -15,6 +15,7 @@
 #include "editor/panels/list.h"
 #include "editor/panels/panel.h"
 #include "editor/session.h"
+#include "editor/simulation/bones.h"
 #include "editor/tools/option_form.h"
 
 namespace hairloom::editor {
@@ -139,9 +140,9 @@ class SpheresPanel : public QWidget {
         const QSignalBlocker quiet(list_);
         list_->clear();
         for (const CollisionSphere& sphere : spheres()) {
-            list_->addTopLevelItem(new QTreeWidgetItem({QString::fromStdString(sphere.name),
-                                                        tr("%1 mm").arg(sphere.radius * 1000, 0, 'f', 1),
-                                                        QString::fromStdString(sphere.bone)}));
+            list_->addTopLevelItem(new QTreeWidgetItem(
+                {QString::fromStdString(sphere.name), tr("%1 mm").arg(sphere.radius * 1000, 0, 'f', 1),
+                 sphere.bone.empty() ? QStringLiteral("–") : QString::fromStdString(sphere.bone)}));
         }
         if (!spheres().empty()) {
             list_->setCurrentItem(list_->topLevelItem(std::clamp(row, 0, list_->topLevelItemCount() - 1)));
@@ -158,10 +159,11 @@ class SpheresPanel : public QWidget {
             for (const Bone& bone : actor->skeleton().bones())
                 bone_->addItem(QString::fromStdString(bone.name));
         }
-        if (selected()) {
-            const QString bone = QString::fromStdString(spheres()[*selected()].bone);
-            bone_->setCurrentIndex(std::max(0, bone_->findText(bone)));
-        }
+        if (!selected()) return;
+        const QString bone = QString::fromStdString(spheres()[*selected()].bone);
+        // Named in the document, though no skeleton has it here.
+        if (!bone.isEmpty() && bone_->findText(bone) < 0) bone_->addItem(bone);
+        bone_->setCurrentIndex(bone.isEmpty() ? 0 : bone_->findText(bone));
     }
 
     void fit() {
@@ -169,11 +171,15 @@ class SpheresPanel : public QWidget {
         if (!groom.scalp) return;
         session_.tasks.run<editing::SphereFit>(
             tr("Fitting spheres"),
-            [groom, count = count_->value()](TaskControl&) {
+            [groom, count = count_->value(), actor = session_.player.actor()](TaskControl&) {
                 editing::SphereFitOptions options;
                 options.count = static_cast<std::uint32_t>(count);
                 if (groom.strandCount() > 0) options.region = editing::facesNearHair(groom, kNearHair);
-                return editing::fitSpheres(*groom.scalp, options);
+                auto fit = editing::fitSpheres(*groom.scalp, options);
+                if (!fit || !actor) return fit;
+                for (CollisionSphere& sphere : fit->spheres)
+                    sphere.bone = boneNear(actor->skeleton(), sphere.centre);
+                return fit;
             },
             [this](editing::SphereFit fit) {
                 fit_->setText(tr("Worst gap %1 mm, mean %2 mm; farthest bulge %3 mm")

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the viewport shows besides the hair, and in which light.
 #include <QCheckBox>
+#include <QFileDialog>
 #include <QFormLayout>
+#include <QPushButton>
 #include <QVBoxLayout>
 #include <memory>
 #include <set>
@@ -73,14 +75,76 @@ QWidget* makeLight(Session& session) {
         session.viewport->setExposure(static_cast<float>(factor));
     });
     layout->addRow(QObject::tr("Exposure"), exposure);
+    const auto factor = [&](const char* name, const QString& label, const QString& tip, auto take) {
+        auto* box = new NumberBox(0, 3, false);
+        box->setObjectName(name);
+        box->setValue(1);
+        box->setToolTip(tip);
+        QObject::connect(box, &NumberBox::edited, session.viewport,
+                         [take](double value) { take(static_cast<float>(value)); });
+        layout->addRow(label, box);
+    };
+    Viewport* const viewport = session.viewport;
+    factor("lightScale", QObject::tr("Lights"),
+           QObject::tr("Factor on the key, fill and rim light; 1 as they come"),
+           [viewport](float value) { viewport->setLight(value, viewport->surroundings()); });
+    factor("surroundings", QObject::tr("Surroundings"),
+           QObject::tr("Factor on the light from all around; 0 leaves the lights alone"),
+           [viewport](float value) { viewport->setLight(viewport->lightScale(), value); });
+    return widget;
+}
+
+QWidget* makeReference(Session& session) {
+    auto* widget = new QWidget;
+    auto* layout = new QVBoxLayout(widget);
+    layout->setContentsMargins(0, 0, 0, 0);
+    layout->setSpacing(6);
+    auto* row = new QHBoxLayout;
+    auto* choose = new QPushButton(QObject::tr("Choose…"));
+    choose->setObjectName("referenceChoose");
+    choose->setToolTip(QObject::tr("A picture behind the head, to groom after: PNG, JPEG"));
+    auto* clear = new QPushButton(QObject::tr("Remove"));
+    clear->setObjectName("referenceClear");
+    clear->setToolTip(QObject::tr("Takes the picture away"));
+    clear->setEnabled(false);
+    row->addWidget(choose);
+    row->addWidget(clear);
+    layout->addLayout(row);
+    auto* opacity = new NumberBox(0, 1, false);
+    opacity->setObjectName("referenceOpacity");
+    opacity->setValue(1);
+    opacity->setToolTip(QObject::tr("0 hides the picture, 1 shows it as it is"));
+    opacity->setEnabled(false);
+    layout->addWidget(opacity);
+    const auto show = [&session, opacity, clear](const QImage& image) {
+        session.viewport->setReference(image, opacity->value());
+        opacity->setEnabled(!image.isNull());
+        clear->setEnabled(!image.isNull());
+    };
+    QObject::connect(choose, &QPushButton::clicked, widget, [&session, widget, show] {
+        const QString path = QFileDialog::getOpenFileName(widget, QObject::tr("Reference picture"), {},
+                                                          QObject::tr("Pictures (*.png *.jpg *.jpeg *.bmp)"));
+        if (path.isEmpty()) return;
+        const QImage image(path);
+        if (image.isNull()) {
+            session.messages.warn(QObject::tr("%1 is no picture that can be read").arg(path));
+        } else {
+            show(image);
+        }
+    });
+    QObject::connect(clear, &QPushButton::clicked, widget, [show] { show({}); });
+    QObject::connect(opacity, &NumberBox::edited, session.viewport, [&session](double value) {
+        session.viewport->setReference(session.viewport->reference(), value);
+    });
     return widget;
 }
 
 }  // namespace
 
 QWidget* makeViewPanel(Session& session) {
-    return scrolled(column({heading(QObject::tr("Show")), makeParts(session), heading(QObject::tr("Light")),
-                            makeLight(session)}));
+    return scrolled(
+        column({heading(QObject::tr("Show")), makeParts(session), heading(QObject::tr("Light")),
+                makeLight(session), heading(QObject::tr("Reference picture")), makeReference(session)}));
 }
 
 }  // namespace hairloom::editor

@@ -48,6 +48,7 @@ MainWindow::MainWindow()
 
     addFileActions();
     addEditActions();
+    addSelectActions();
     addViewActions();
     addPlayActions();
     addToolActions();
@@ -139,7 +140,7 @@ void MainWindow::makeBars() {
 
     auto* tools = new QToolBar(tr("Tools"));
     tools->setObjectName("bar:tools");
-    tools->setIconSize({22, 22});
+    tools->setIconSize({20, 20});
     addToolBar(Qt::LeftToolBarArea, tools);
     tools->addActions(toolGroup_->actions());
 }
@@ -160,7 +161,15 @@ void MainWindow::showTitle() {
 }
 
 void MainWindow::showPage() {
-    pages_->setCurrentWidget(session_.document.isEmpty() ? static_cast<QWidget*>(start_) : session_.viewport);
+    const bool empty = session_.document.isEmpty();
+    pages_->setCurrentWidget(empty ? static_cast<QWidget*>(start_) : session_.viewport);
+    // Nothing to work on: what would do nothing looks so.
+    for (const PanelInfo& info : panels()) panel(info.id)->widget()->setEnabled(!empty);
+    for (QAction* tool : toolGroup_->actions()) tool->setEnabled(!empty);
+    for (const char* id : {"file.save", "file.saveAs", "file.import", "file.export", "play.toggle",
+                           "play.step", "play.reset", "view.frame", "view.turntable", "view.orthographic"}) {
+        actions_->get(id).setEnabled(!empty);
+    }
 }
 
 bool MainWindow::mayLeaveDocument() {

@@ -44,6 +44,8 @@ class MainWindow : public QMainWindow {
   private:
     void addFileActions();
     void addEditActions();
+    void addSelectActions();
+    void fillGroupMenu();
     void addViewActions();
     void addPlayActions();
     void addToolActions();
@@ -72,6 +74,7 @@ class MainWindow : public QMainWindow {
     StatusLine* status_;
     QMenu* recentMenu_ = nullptr;
     QMenu* panelMenu_ = nullptr;
+    QMenu* groupMenu_ = nullptr;
     QActionGroup* toolGroup_;
     QByteArray firstLayout_;
     Unsaved unsaved_ = Unsaved::Ask;

@@ -64,6 +64,7 @@ QString styleSheetOf(const Tones& t) {
         {"@line", t.line},     {"@text", t.text},         {"@dim", t.dim},     {"@disabled", t.disabled},
         {"@accent", t.accent}, {"@on-accent", t.onAccent}};
     for (const auto& [name, tone] : names) sheet.replace(name, tone);
+    sheet.replace("@theme", &t == &kDark ? "dark" : "light");
     return sheet;
 }
 

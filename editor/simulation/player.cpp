@@ -5,7 +5,9 @@
 #include <chrono>
 #include <optional>
 
+#include "core/editing/document.h"
 #include "core/simulation/clip_motion.h"
+#include "core/simulation/effect_switch.h"
 #include "core/simulation/engine_control.h"
 #include "editor/simulation/live_method.h"
 
@@ -13,6 +15,7 @@ namespace hairloom::editor {
 namespace {
 
 constexpr float kFrameTime = 1.0f / 60.0f;
+constexpr int kOutlookMs = 300;
 constexpr QLatin1String kClip("clip:");
 
 Result<std::unique_ptr<HeadMotion>> motionOf(const QString& name, const std::shared_ptr<const Actor>& actor,
@@ -20,6 +23,17 @@ Result<std::unique_ptr<HeadMotion>> motionOf(const QString& name, const std::sha
     if (!name.startsWith(kClip)) return makeRigidMotion(name.toStdString(), groom);
     if (!actor) return fail("this head came without clips");
     return makeClipMotion(actor, name.mid(kClip.size()).toStdString(), groom);
+}
+
+/// The settings without the effects that are left out.
+runtime::SimulationSettings without(runtime::SimulationSettings settings, const QStringList& leftOut) {
+    for (const QString& effect : leftOut) turnEffectOff(settings, effect.toStdString());
+    return settings;
+}
+
+std::vector<CollisionSphere> without(std::vector<CollisionSphere> spheres, const QStringList& leftOut) {
+    if (leftOut.contains(QLatin1String(kCollisionEffect.data(), kCollisionEffect.size()))) spheres.clear();
+    return spheres;
 }
 
 void apply(const Eigen::Isometry3f& offset, HeadPose& pose) {
@@ -41,6 +55,8 @@ struct Player::Orders {
     Eigen::Isometry3f offset = Eigen::Isometry3f::Identity();
     std::optional<runtime::SimulationSettings> settings;
     std::optional<std::vector<CollisionSphere>> spheres;
+    QStringList leftOut;
+    std::shared_ptr<const Groom> outlook;  ///< whose plan is asked for
     quint64 epoch = 0;
     std::shared_ptr<const PlayedFrame> delivered;  ///< waits for the interface
 };
@@ -54,6 +70,9 @@ Player::Player(Document& document, QObject* parent)
         reset();
         Q_EMIT motionsChanged();
     });
+    outlookSoon_.setSingleShot(true);
+    outlookSoon_.setInterval(kOutlookMs);
+    connect(&outlookSoon_, &QTimer::timeout, this, &Player::askForOutlook);
     thread_ = std::thread([this] { run(); });
 }
 
@@ -152,12 +171,58 @@ void Player::setActor(std::shared_ptr<const Actor> actor) {
     Q_EMIT motionsChanged();
 }
 
+void Player::setLeftOut(const QStringList& effects) {
+    leftOut_ = effects;
+    const Groom& groom = document_.groom();
+    order([&](Orders& orders) {
+        orders.leftOut = effects;
+        orders.settings = groom.simulation;
+        orders.spheres = groom.spheres;
+    });
+    outlookSoon_.start();
+    Q_EMIT outlookChanged();
+}
+
+std::vector<EffectReport> Player::effects() const {
+    return frame_ ? frame_->stats.effects : outlook_;
+}
+
+void Player::askForOutlook() {
+    // Not amid a stroke, which would pay for parting from the copy.
+    if (document_.editing().stroke()) {
+        outlookSoon_.start();
+        return;
+    }
+    if (frame_) return;
+    if (document_.groom().strandCount() == 0) {
+        outlook_.clear();
+        Q_EMIT outlookChanged();
+        return;
+    }
+    order([this](Orders& orders) { orders.outlook = std::make_shared<const Groom>(document_.groom()); });
+}
+
+void Player::findOutlook(const Groom& groom, const QStringList& leftOut) {
+    Groom tried = groom;
+    tried.simulation = without(tried.simulation, leftOut);
+    tried.spheres = without(std::move(tried.spheres), leftOut);
+    const auto motion = makeRigidMotion("none", tried);
+    if (!motion) return;
+    const auto made = Simulation::make(tried, (*motion)->poseAt(0), {});
+    if (!made) return;
+    QMetaObject::invokeMethod(this, [this, effects = made->stats().effects] {
+        outlook_ = effects;
+        Q_EMIT outlookChanged();
+    });
+}
+
 void Player::setHeadOffset(const Eigen::Isometry3f& offset) {
     order([&](Orders& orders) { orders.offset = offset; });
 }
 
 void Player::documentChanged(Changes changes) {
     const Groom& groom = document_.groom();
+    outlookSoon_.start();
     if (changes & (Changes(Change::Strands) | Change::Scalp)) {
         if (!captured_) return;
         const bool play = playing_ && groom.strandCount() > 0;
@@ -184,6 +249,7 @@ void Player::run() {
     std::optional<Simulation> simulation;
     std::shared_ptr<const Groom> groom;
     std::shared_ptr<HeadMotion> motion;
+    std::shared_ptr<const HairPose> before;
     double time = 0;
     quint64 epoch = 0;
     auto due = std::chrono::steady_clock::now();
@@ -191,17 +257,25 @@ void Player::run() {
         Eigen::Isometry3f offset;
         std::optional<runtime::SimulationSettings> settings;
         std::optional<std::vector<CollisionSphere>> spheres;
+        QStringList leftOut;
         bool restart = false;
         {
             std::unique_lock lock(mutex_);
             wake_.wait(lock, [&] {
                 const bool letGo = orders_->restart && simulation;
-                return orders_->stop || orders_->playing || orders_->steps > 0 || letGo;
+                return orders_->stop || orders_->playing || orders_->steps > 0 || letGo || orders_->outlook;
             });
             if (orders_->steps == 0 && orders_->playing) {
                 wake_.wait_until(lock, due, [this] { return orders_->stop; });
             }
             if (orders_->stop) return;
+            leftOut = orders_->leftOut;
+            if (orders_->outlook) {
+                const auto outlook = std::exchange(orders_->outlook, nullptr);
+                lock.unlock();
+                findOutlook(*outlook, leftOut);
+                continue;
+            }
             if (!orders_->playing && orders_->steps == 0) {
                 if (orders_->restart) {
                     simulation.reset();
@@ -233,18 +307,24 @@ void Player::run() {
             if (!groom || !motion) continue;
             SimulationOptions options;
             options.backend = liveMethod(knobs);
-            auto made = Simulation::make(*groom, motion->poseAt(0), options);
+            Groom tried = *groom;
+            tried.simulation = without(tried.simulation, leftOut);
+            auto made = Simulation::make(tried, motion->poseAt(0), options);
             if (!made) {
                 order([](Orders& orders) { orders.playing = false; });
                 refuse(made.error());
                 continue;
             }
             simulation.emplace(std::move(*made));
+            knobs->spheres = without(groom->spheres, leftOut);
+            before.reset();
         }
         if (settings) {
-            if (auto taken = setEngineSettings(*knobs->engine, *settings); !taken) refuse(taken.error());
+            if (auto taken = setEngineSettings(*knobs->engine, without(*settings, leftOut)); !taken) {
+                refuse(taken.error());
+            }
         }
-        if (spheres) knobs->spheres = std::move(*spheres);
+        if (spheres) knobs->spheres = without(std::move(*spheres), leftOut);
         time += static_cast<double>(kFrameTime);
         auto pose = std::make_shared<HairPose>();
         pose->head = motion->poseAt(static_cast<float>(time));
@@ -253,6 +333,7 @@ void Player::run() {
         const auto points = simulation->positions_ws();
         pose->positions_ws.assign(points.begin(), points.end());
         auto frame = std::make_shared<PlayedFrame>();
+        frame->before = std::exchange(before, pose);
         frame->pose = std::move(pose);
         frame->time = time;
         frame->milliseconds =

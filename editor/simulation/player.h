@@ -4,6 +4,8 @@
 // real time; where a frame takes longer, the hair moves in slow motion and the frame time says so.
 
 #include <QObject>
+#include <QStringList>
+#include <QTimer>
 #include <condition_variable>
 #include <memory>
 #include <mutex>
@@ -19,8 +21,9 @@ namespace hairloom::editor {
 /// A frame that was simulated.
 struct PlayedFrame {
     std::shared_ptr<const HairPose> pose;
-    double time = 0;          ///< seconds since the start
-    double milliseconds = 0;  ///< of the step
+    std::shared_ptr<const HairPose> before;  ///< the frame before; null for the first
+    double time = 0;                         ///< seconds since the start
+    double milliseconds = 0;                 ///< of the step
     SimulationStats stats;
 };
 
@@ -52,6 +55,14 @@ class Player : public QObject {
     void setActor(std::shared_ptr<const Actor> actor);
     const std::shared_ptr<const Actor>& actor() const { return actor_; }
 
+    /// Effects by name that are left out for a try, from the next frame on; the document is not touched.
+    /// Those that cannot be turned off are ignored.
+    void setLeftOut(const QStringList& effects);
+    const QStringList& leftOut() const { return leftOut_; }
+    /// What runs and what it costs: of the last frame, else what would run, without times. Empty without
+    /// hair.
+    std::vector<EffectReport> effects() const;
+
     /// Moves the head on top of its motion: by the hand of a person.
     void setHeadOffset(const Eigen::Isometry3f& offset);
 
@@ -60,6 +71,8 @@ class Player : public QObject {
     /// Playing, paused or reset.
     void stateChanged();
     void motionsChanged();
+    /// effects() has changed while nothing played.
+    void outlookChanged();
     void failed(const QString& problem);
 
   private:
@@ -70,6 +83,9 @@ class Player : public QObject {
     void capture();
     void deliver(std::shared_ptr<const PlayedFrame> frame, quint64 epoch);
     void documentChanged(Changes changes);
+    void askForOutlook();
+    /// Makes the simulation to see its plan; on the thread.
+    void findOutlook(const Groom& groom, const QStringList& leftOut);
     void order(const std::function<void(Orders&)>& change);
 
     Document& document_;
@@ -79,6 +95,10 @@ class Player : public QObject {
     bool captured_ = false;  ///< the thread has the groom as it is now
     std::shared_ptr<const PlayedFrame> frame_;
     quint64 epoch_ = 0;  ///< frames of earlier ones are dropped
+
+    QStringList leftOut_;
+    std::vector<EffectReport> outlook_;
+    QTimer outlookSoon_;
 
     std::unique_ptr<Orders> orders_;
     std::mutex mutex_;

@@ -7,6 +7,7 @@ std::vector<ToolMaker> toolMakers() {
     std::vector<ToolMaker> makers = headBrushes();
     makers.push_back(scalpBoxTool());
     makers.push_back(scalpLassoTool());
+    makers.push_back(replaceTool());
     makers.push_back(strandSelectTool());
     for (ToolMaker& brush : hairBrushes()) makers.push_back(std::move(brush));
     makers.push_back(sphereTool());

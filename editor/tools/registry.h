@@ -19,6 +19,7 @@ std::vector<ToolMaker> toolMakers();
 // Each in the file of its tool.
 ToolMaker scalpBoxTool();
 ToolMaker scalpLassoTool();
+ToolMaker replaceTool();
 ToolMaker strandSelectTool();
 ToolMaker sphereTool();
 ToolMaker windTool();

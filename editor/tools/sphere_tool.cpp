@@ -5,6 +5,7 @@
 #include "core/editing/sphere_commands.h"
 #include "editor/overlays/overlay_mode.h"
 #include "editor/session.h"
+#include "editor/simulation/bones.h"
 #include "editor/tools/option_form.h"
 #include "editor/tools/registry.h"
 #include "editor/tools/surface_pick.h"
@@ -34,7 +35,9 @@ class SphereTool : public Tool {
         }
         const BrushPlace place = placeUnder(session_, pointer.at_px);
         if (!place.skin) return;
-        document.perform(editing::placeSphere(document.model(), *place.skin, radius_));
+        const auto& actor = session_.player.actor();
+        const std::string bone = actor ? boneNear(actor->skeleton(), place.position_ss) : std::string();
+        document.perform(editing::placeSphere(document.model(), *place.skin, radius_, bone));
         session_.messages.say(tr("Sphere placed; drag its middle to move it, its rim to resize it"));
     }
 

@@ -2,14 +2,14 @@
 // The wind as an arrow in the view: drag to turn it, away from the head for more of it.
 #include <cmath>
 
+#include "editor/overlays/overlay_mode.h"
 #include "editor/session.h"
 #include "editor/tools/registry.h"
 
 namespace hairloom::editor {
 namespace {
 
-constexpr float kPixelsPerSpeed = 18;  // for 1 m/s
-constexpr float kFastest = 25;         // m/s that a drag reaches
+constexpr float kFastest = 25;  // m/s that a drag reaches
 
 class WindTool : public Tool {
   public:
@@ -37,7 +37,7 @@ class WindTool : public Tool {
         const auto x = static_cast<float>(out.x()), y = static_cast<float>(-out.y());
         const float length = std::hypot(x, y);
         runtime::SimulationSettings settings = *before_;
-        settings.windSpeed = length < 12 ? 0.0f : std::min(length / kPixelsPerSpeed, kFastest);
+        settings.windSpeed = length < 12 ? 0.0f : std::min(length / kWindPixels, kFastest);
         if (length >= 12) {
             const Vec3f direction = (x * camera.right_ws() + y * camera.up_ws()).normalized();
             settings.windDirection = {direction.x(), direction.y(), direction.z()};
@@ -61,24 +61,7 @@ class WindTool : public Tool {
         release({});
     }
 
-    void draw(Marks& marks) const override {
-        const auto& settings = session_.document.groom().simulation;
-        const Vec3f direction(settings.windDirection.x, settings.windDirection.y, settings.windDirection.z);
-        const Vec3f from = middle_ws();
-        const QColor colour(120, 200, 255);
-        marks.point(from, colour, 8, Marks::Depth::OnTop);
-        if (settings.windSpeed <= 0 || direction.norm() < 1e-6f) return;
-        const float metres =
-            session_.viewport->camera().metresPerPixel(from, session_.viewport->viewSize_px()) *
-            kPixelsPerSpeed * std::min(settings.windSpeed, kFastest);
-        const Vec3f along = direction.normalized();
-        const Vec3f to = from + metres * along;
-        const Vec3f side = along.cross(session_.viewport->camera().forward_ws()).normalized();
-        marks.line(from, to, colour, 3, Marks::Depth::OnTop);
-        const float head = std::min(0.25f * metres, 0.04f);
-        marks.line(to, to - head * along + 0.6f * head * side, colour, 3, Marks::Depth::OnTop);
-        marks.line(to, to - head * along - 0.6f * head * side, colour, 3, Marks::Depth::OnTop);
-    }
+    void draw(Marks& marks) const override { drawWind(session_, marks); }
 
   private:
     Vec3f middle_ws() const { return session_.viewport->camera().target_ws(); }

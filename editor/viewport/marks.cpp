@@ -33,8 +33,13 @@ void Marks::point(const Vec3f& at_ws, const QColor& colour, float diameter_px, D
 }
 
 void Marks::triangle(const std::array<Vec3f, 3>& corners_ws, const QColor& colour, Depth depth) {
+    triangle(corners_ws, {colour, colour, colour}, depth);
+}
+
+void Marks::triangle(const std::array<Vec3f, 3>& corners_ws, const std::array<QColor, 3>& colours,
+                     Depth depth) {
     auto& vertices = batch(render::OverlayShape::triangles, 1, depth).vertices;
-    for (const Vec3f& corner : corners_ws) vertices.push_back(vertex(corner, colour));
+    for (std::size_t i = 0; i < 3; ++i) vertices.push_back(vertex(corners_ws[i], colours[i]));
 }
 
 void Marks::circle(const Vec3f& centre_ws, const Vec3f& normal_ws, float radius, const QColor& colour,

@@ -24,6 +24,9 @@ class Marks {
               Depth depth = Depth::Hidden);
     void point(const Vec3f& at_ws, const QColor& colour, float diameter_px = 5, Depth depth = Depth::Hidden);
     void triangle(const std::array<Vec3f, 3>& corners_ws, const QColor& colour, Depth depth = Depth::Hidden);
+    /// One colour a corner.
+    void triangle(const std::array<Vec3f, 3>& corners_ws, const std::array<QColor, 3>& colours,
+                  Depth depth = Depth::Hidden);
     /// Around `centre_ws`, at right angles to `normal_ws`; metres.
     void circle(const Vec3f& centre_ws, const Vec3f& normal_ws, float radius, const QColor& colour,
                 float width_px = 1.5f, Depth depth = Depth::Hidden);

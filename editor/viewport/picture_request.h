@@ -10,6 +10,7 @@
 #include "core/render/camera.h"
 #include "core/render/overlay.h"
 #include "core/simulation/motion.h"
+#include "editor/viewport/picture_quality.h"
 
 namespace hairloom::editor {
 
@@ -30,7 +31,16 @@ struct PictureRequest {
     bool showHead = true;
     float lightTurn = 0;  ///< degrees by which the lights are turned about the vertical
     float exposure = 1.6f;
+    float lightScale = 1;                     ///< factor on the lights
+    float surroundings = 1;                   ///< factor on the light from around
     Vec3f background{0.02f, 0.022f, 0.025f};  ///< linear RGB
+    bool seeThrough = false;  ///< where nothing is, the picture is transparent instead; read back only
+    PictureQuality quality;
+    /// Another look of the same hair for the part of the picture left of `split` (0…1, of its width); null:
+    /// none. Read back only.
+    std::shared_ptr<const Groom> other;
+    PictureQuality otherQuality;
+    float split = 0.5f;
 };
 
 struct PictureReport {

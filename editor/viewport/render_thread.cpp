@@ -1,13 +1,67 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editor/viewport/render_thread.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 #include "editor/viewport/native_window.h"
 #include "editor/viewport/render_work.h"
 
 namespace hairloom::editor {
+namespace {
+
+Status takeBoth(gpu::Device& device, RenderWork& work, std::optional<RenderWork>& other, float& split,
+                PictureRequest request) {
+    split = request.split;
+    if (!request.other) {
+        other.reset();
+        return work.take(std::move(request));
+    }
+    PictureRequest left = request;
+    left.groom = std::exchange(request.other, nullptr);
+    left.other.reset();
+    left.quality = request.otherQuality;
+    if (!other) other.emplace(device);
+    if (auto taken = other->take(std::move(left)); !taken) return taken;
+    return work.take(std::move(request));
+}
+
+Result<std::pair<QImage, PictureReport>> drawBoth(RenderWork& work, std::optional<RenderWork>& other,
+                                                  float split) {
+    auto drawn = work.draw();
+    if (drawn && drawn->first.isNull()) other.reset();  // a window shows it
+    if (!drawn || !other) return drawn;
+    auto left = other->draw();
+    if (!left) return left;
+    QImage& picture = drawn->first;
+    const QImage beside =
+        left->first.size() == picture.size() ? left->first : left->first.scaled(picture.size());
+    const int columns = std::clamp(static_cast<int>(std::lround(split * static_cast<float>(picture.width()))),
+                                   0, picture.width());
+    for (int y = 0; y < picture.height(); ++y) {
+        std::copy_n(reinterpret_cast<const QRgb*>(beside.constScanLine(y)), columns,
+                    reinterpret_cast<QRgb*>(picture.scanLine(y)));
+    }
+    drawn->second.milliseconds += left->second.milliseconds;
+    return drawn;
+}
+
+/// All frames of a picture, with a renderer of its own.
+Result<QImage> drawAlone(gpu::Device& device, PictureRequest request) {
+    RenderWork work(device);
+    if (auto taken = work.take(std::move(request)); !taken) return tl::unexpected(taken.error());
+    QImage picture;
+    while (!work.isComplete()) {
+        auto drawn = work.draw();
+        if (!drawn) return tl::unexpected(drawn.error());
+        picture = std::move(drawn->first);
+    }
+    return picture;
+}
+
+}  // namespace
 
 RenderThread::RenderThread(QObject* parent) : QObject(parent) {
     qRegisterMetaType<PictureReport>();
@@ -28,6 +82,14 @@ void RenderThread::post(PictureRequest request) {
         const std::lock_guard lock(mutex_);
         next_ = std::move(request);
         idle_ = false;
+    }
+    wake_.notify_all();
+}
+
+void RenderThread::postSide(const QString& name, PictureRequest request) {
+    {
+        const std::lock_guard lock(mutex_);
+        side_.insert_or_assign(name, std::move(request));
     }
     wake_.notify_all();
 }
@@ -63,8 +125,10 @@ void RenderThread::run() {
         });
         return;
     }
-    RenderWork work(std::move(*device));
-    const gpu::DeviceInfo& info = work.info();
+    RenderWork work(**device);
+    std::optional<RenderWork> other;  // the look to compare with
+    float split = 0.5f;
+    const gpu::DeviceInfo& info = (*device)->info();
     const bool wantsWindow = info.presents && info.type != gpu::DeviceType::Cpu;
     // By way of the event loop: listeners may connect after the constructor.
     QMetaObject::invokeMethod(this, [this, name = QString::fromStdString(info.name), wantsWindow] {
@@ -74,8 +138,9 @@ void RenderThread::run() {
         std::optional<PictureRequest> request;
         {
             std::unique_lock lock(mutex_);
-            idle_ = !next_ && work.isComplete();
-            wake_.wait(lock, [&] { return stop_ || next_ || windowChanged_ || !work.isComplete(); });
+            const bool complete = work.isComplete() && (!other || other->isComplete());
+            idle_ = !next_ && complete;
+            wake_.wait(lock, [&] { return stop_ || next_ || windowChanged_ || !complete || !side_.empty(); });
             if (stop_) break;
             if (windowChanged_) {
                 const auto taken = work.setWindow(window_);
@@ -86,11 +151,19 @@ void RenderThread::run() {
                 continue;
             }
             request = std::exchange(next_, std::nullopt);
+            if (!request && complete) {
+                auto asked = side_.extract(side_.begin());
+                lock.unlock();
+                if (auto picture = drawAlone(**device, std::move(asked.mapped()))) {
+                    Q_EMIT sidePictureReady(asked.key(), *picture);
+                }
+                continue;
+            }
         }
         Status ready;
-        if (request) ready = work.take(std::move(*request));
+        if (request) ready = takeBoth(**device, work, other, split, std::move(*request));
         if (ready) {
-            auto drawn = work.draw();
+            auto drawn = drawBoth(work, other, split);
             if (drawn) {
                 Q_EMIT pictureReady(drawn->first, drawn->second);
                 continue;
@@ -98,6 +171,7 @@ void RenderThread::run() {
             ready = tl::unexpected(drawn.error());
         }
         work.forget();
+        other.reset();
         Q_EMIT failed(QString::fromStdString(ready.error().message()));
     }
     const std::lock_guard lock(mutex_);

@@ -7,6 +7,7 @@
 #include <QImage>
 #include <QObject>
 #include <condition_variable>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -24,6 +25,8 @@ class RenderThread : public QObject {
     ~RenderThread() override;
 
     void post(PictureRequest request);
+    /// A small picture of something else, drawn when nothing waits; of two of one name the later counts.
+    void postSide(const QString& name, PictureRequest request);
     /// Nothing is being drawn or waits to be, the average is complete.
     bool isIdle() const;
 
@@ -36,6 +39,7 @@ class RenderThread : public QObject {
     /// itself and is fast enough not to need them smaller.
     void deviceReady(const QString& name, bool wantsWindow, const QString& problem);
     void pictureReady(const QImage& picture, const hairloom::editor::PictureReport& report);
+    void sidePictureReady(const QString& name, const QImage& picture);
     /// The window cannot be drawn to; pictures are read back instead.
     void windowRefused(const QString& problem);
     void failed(const QString& problem);
@@ -47,6 +51,7 @@ class RenderThread : public QObject {
     std::condition_variable wake_;
     std::condition_variable windowTaken_;
     std::optional<PictureRequest> next_;
+    std::map<QString, PictureRequest> side_;
     std::optional<gpu::NativeWindow> window_;
     bool windowChanged_ = false;
     bool idle_ = true;

@@ -3,43 +3,77 @@
 
 #include <QElapsedTimer>
 #include <algorithm>
+#include <array>
 #include <cmath>
+
+#include "core/groom/fields.h"
 
 namespace hairloom::editor {
 namespace {
 
 constexpr double kMovingBudget = 50;  // ms
 constexpr float kSmallestScale = 0.4f;
-constexpr std::uint32_t kFramesWhenStill = 8;
 
 std::vector<render::Light> lightsOf(const PictureRequest& request) {
     std::vector<render::Light> lights = render::studioLights(request.camera);
     const Mat3f turn = Eigen::AngleAxisf(radians(request.lightTurn), Vec3f::UnitY()).toRotationMatrix();
-    for (render::Light& light : lights) light.toLight_ws = turn * light.toLight_ws;
+    for (render::Light& light : lights) {
+        light.toLight_ws = turn * light.toLight_ws;
+        light.irradiance *= request.lightScale;
+    }
     return lights;
 }
 
-/// The same strands are in streaks and dyed, as strands and not the material say.
-bool hasSameShares(const HairMaterial& a, const HairMaterial& b) {
-    return a.streakShare == b.streakShare && a.streakWidth == b.streakWidth &&
-           a.streakSoftness == b.streakSoftness && a.streakSeed == b.streakSeed &&
-           a.dyeStrength == b.dyeStrength;
+render::Environment environmentOf(const PictureRequest& request) {
+    render::Environment environment = render::RenderScene().environment;
+    for (Vec3f& coefficient : environment.coefficients) coefficient *= request.surroundings;
+    return environment;
 }
 
-/// Same strands, of which at most the points have moved.
-bool differsInPositionsOnly(const Groom& a, const Groom& b) {
+template <class S>
+bool sameFields(const S& a, const S& b) {
+    return std::ranges::all_of(fieldsOf(S()), [&](const hairloom::Field<S>& field) {
+        for (std::uint32_t c = 0; c < componentCount(field); ++c) {
+            if (fieldValue(a, field, c) != fieldValue(b, field, c)) return false;
+        }
+        return true;
+    });
+}
+
+/// Same strands on the same head, of which at most points have moved and the material has changed.
+bool sameStrands(const Groom& a, const Groom& b) {
     const auto sameButPositions = [](const AttributeSet& x, const AttributeSet& y) {
         if (x.all().size() != y.all().size()) return false;
         return std::ranges::all_of(x.all(), [&y](const auto& entry) {
             return entry.first == attribute::kPosition || versionOf(entry.second) == y.version(entry.first);
         });
     };
+    const auto sameLayer = [](const Layer& x, const Layer& y) { return x.visible == y.visible; };
     return a.offsets.version() == b.offsets.version() &&
            sameButPositions(a.pointAttributes, b.pointAttributes) &&
            sameButPositions(a.strandAttributes, b.strandAttributes) && a.scalp == b.scalp &&
-           a.scalpSelection == b.scalpSelection && a.interpolation.followPerGuide == 0 &&
-           b.interpolation.followPerGuide == 0 && a.material.rootColour == b.material.rootColour &&
-           hasSameShares(a.material, b.material) && a.layers.size() == b.layers.size();
+           a.scalpSelection == b.scalpSelection && sameFields(a.interpolation, b.interpolation) &&
+           std::ranges::equal(a.layers, b.layers, sameLayer);
+}
+
+bool samePoints(const Groom& a, const Groom& b) {
+    return a.pointAttributes.version(attribute::kPosition) == b.pointAttributes.version(attribute::kPosition);
+}
+
+/// The most samples up to those that were asked for.
+std::uint32_t mostSamples(const gpu::DeviceInfo& device, std::uint32_t asked) {
+    std::uint32_t most = 1;
+    for (const std::uint32_t count : device.sampleCounts) {
+        if (count <= asked) most = std::max(most, count);
+    }
+    return most;
+}
+
+ViewFile viewOf(const PictureRequest& request) {
+    ViewFile view;
+    view.fibre.model = request.quality.model;
+    view.fibre.scattering = request.quality.scattering;
+    return view;
 }
 
 /// As a groom shown without its follow hairs.
@@ -48,10 +82,31 @@ Groom withoutFollowHairs(Groom groom) {
     return groom;
 }
 
+/// From light times coverage, as the renderer leaves it, to colour and coverage. Both are encoded as sRGB, of
+/// which a power of 2.2 is close enough here.
+void straighten(QImage& image) {
+    constexpr float kGamma = 2.2f;
+    std::array<float, 256> factor{};
+    for (std::size_t a = 1; a < factor.size(); ++a) {
+        factor[a] = std::pow(255.0f / static_cast<float>(a), 1 / kGamma);
+    }
+    for (int y = 0; y < image.height(); ++y) {
+        auto* const row = reinterpret_cast<QRgb*>(image.scanLine(y));
+        for (int x = 0; x < image.width(); ++x) {
+            const int alpha = qAlpha(row[x]);
+            if (alpha == 255) continue;
+            const auto straight = [&](int value) {
+                return std::min(255, static_cast<int>(factor[static_cast<std::size_t>(alpha)] *
+                                                      static_cast<float>(value)));
+            };
+            row[x] = qRgba(straight(qRed(row[x])), straight(qGreen(row[x])), straight(qBlue(row[x])), alpha);
+        }
+    }
+}
+
 }  // namespace
 
-RenderWork::RenderWork(std::unique_ptr<gpu::Device> device)
-    : device_(std::move(device)), renderer_(*device_) {}
+RenderWork::RenderWork(gpu::Device& device) : device_(device), renderer_(device) {}
 
 Status RenderWork::setWindow(const std::optional<gpu::NativeWindow>& window) {
     swapChain_.reset();
@@ -59,7 +114,7 @@ Status RenderWork::setWindow(const std::optional<gpu::NativeWindow>& window) {
     width_ = height_ = 0;
     window_ = window;
     if (!window) return {};
-    auto made = device_->createSwapChain({*window, 1, 1, true});
+    auto made = device_.createSwapChain({*window, 1, 1, true});
     if (!made) {
         window_.reset();
         return tl::unexpected(made.error());
@@ -73,6 +128,9 @@ Status RenderWork::take(PictureRequest request) {
     if (auto taken = takeScene(request, draft); !taken) return taken;
     if (auto set = renderer_.setCamera(request.camera); !set) return set;
     if (auto set = renderer_.setLights(lightsOf(request)); !set) return set;
+    if (!last_ || last_->surroundings != request.surroundings) {
+        renderer_.setEnvironment(environmentOf(request));
+    }
     if (!last_ || last_->background != request.background) renderer_.setBackground(request.background);
     if (auto set = renderer_.setOverlay(request.marks); !set) return set;
     last_ = std::move(request);
@@ -82,20 +140,27 @@ Status RenderWork::take(PictureRequest request) {
 Status RenderWork::takeScene(const PictureRequest& request, bool draft) {
     const bool sameShown = last_ && request.showHair == hairShown_ && request.showHead == headShown_;
     if (!scene_ || !sameShown || draft != draft_) return replaceScene(request, draft);
-    if (request.groom != last_->groom) {
-        const bool onlyMoved = draft_ ? differsInPositionsOnly(withoutFollowHairs(*request.groom),
-                                                               withoutFollowHairs(*last_->groom))
-                                      : differsInPositionsOnly(*request.groom, *last_->groom);
-        if (!onlyMoved) return replaceScene(request, draft);
-    } else if (request.pose == last_->pose) {
-        return {};
+    const Groom& now = *request.groom;
+    const Groom& before = *last_->groom;
+    const bool sameGroom = request.groom == last_->groom;
+    const bool followed = !draft_ && now.interpolation.followPerGuide > 0;
+    // Follow hairs are bound to their guides at rest.
+    if (!sameGroom && (!sameStrands(now, before) || (followed && !samePoints(now, before)))) {
+        return replaceScene(request, draft);
     }
-    return movePoints(request);
+    const bool sameModel = request.quality.model == last_->quality.model &&
+                           request.quality.scattering == last_->quality.scattering;
+    if (!sameGroom || !sameModel) {
+        if (!scene_->setMaterial(now.material, viewOf(request))) return replaceScene(request, draft);
+        if (auto set = showMaterial(request); !set) return set;
+    }
+    const bool moved = request.pose != last_->pose || (!sameGroom && !samePoints(now, before));
+    return moved ? movePoints(request) : Status();
 }
 
 Status RenderWork::replaceScene(const PictureRequest& request, bool draft) {
     auto made = GroomScene::make(draft ? withoutFollowHairs(*request.groom) : *request.groom, nullptr,
-                                 nullptr, {}, {});
+                                 nullptr, viewOf(request), {});
     if (!made) return tl::unexpected(made.error());
     scene_ = std::move(*made);
     draft_ = draft;
@@ -110,6 +175,7 @@ Status RenderWork::replaceScene(const PictureRequest& request, bool draft) {
     shown.camera = request.camera;
     shown.lights = lightsOf(request);
     shown.background = request.background;
+    shown.environment = environmentOf(request);
     return renderer_.setScene(shown);
 }
 
@@ -124,20 +190,33 @@ Status RenderWork::movePoints(const PictureRequest& request) {
         if (auto set = renderer_.setMeshPositions(0, mesh.positions_ws, mesh.normals_ws); !set) return set;
     }
     if (!request.showHair || shown.strands.empty()) return {};
-    if (auto set = renderer_.setStrandPositions(0, shown.strands.front().positions_ws); !set) return set;
+    return renderer_.setStrandPositions(0, shown.strands.front().positions_ws);
+}
+
+Status RenderWork::showMaterial(const PictureRequest& request) {
+    const render::RenderScene shown = scene_->scene();
+    if (!request.showHair || shown.strands.empty()) return {};
     return renderer_.setMaterial(0, shown.strands.front().material);
 }
 
 render::RenderOptions RenderWork::options() const {
+    const PictureQuality& quality = last_->quality;
+    const gpu::DeviceInfo& device = device_.info();
     render::RenderOptions options;
     options.width = width_;
     options.height = height_;
     options.exposure = last_->exposure;
-    options.samples = last_->moving ? 1 : 4;
-    options.frames = last_->moving ? 1 : kFramesWhenStill;
-    options.subdivisions = last_->moving ? 1 : 2;
-    options.shadowResolution = last_->moving ? 512 : 1024;
+    options.samples = last_->moving ? 1 : mostSamples(device, quality.samples);
+    options.frames = last_->moving ? 1 : quality.frames;
+    options.filter = quality.filter;
+    options.transparency = quality.transparency;
+    if (device.tessellation) options.ribbons = quality.ribbons;
+    options.subdivisions = last_->moving ? 1 : quality.subdivisions;
+    options.shadows = quality.shadows;
+    options.shadowResolution =
+        last_->moving ? std::min(512u, quality.shadowResolution) : quality.shadowResolution;
     options.detail = last_->moving ? 0.5f : 0.0f;
+    options.transparentBackground = last_->seeThrough && !swapChain_;
     return options;
 }
 
@@ -152,7 +231,7 @@ Status RenderWork::resize(std::uint32_t width, std::uint32_t height) {
         desc.height = height;
         desc.format = gpu::Format::Bgra8Unorm;
         desc.usage = gpu::Usage::RenderTarget;
-        auto made = device_->createTexture(desc);
+        auto made = device_.createTexture(desc);
         if (!made) return tl::unexpected(made.error());
         target_ = std::move(*made);
     }
@@ -171,12 +250,12 @@ Result<std::pair<QImage, PictureReport>> RenderWork::draw() {
     if (auto resized = resize(side(last_->width), side(last_->height)); !resized) {
         return tl::unexpected(resized.error());
     }
-    auto list = device_->createCommandList();
+    auto list = device_.createCommandList();
     if (!list) return tl::unexpected(list.error());
     const auto recorded =
         renderer_.record(**list, options(), swapChain_ ? swapChain_->backBuffer() : target_);
     if (!recorded) return tl::unexpected(recorded.error());
-    const auto submitted = device_->submit(std::move(*list));
+    const auto submitted = device_.submit(std::move(*list));
     if (!submitted) return tl::unexpected(submitted.error());
     std::pair<QImage, PictureReport> result;
     if (swapChain_) {
@@ -198,12 +277,15 @@ Result<std::pair<QImage, PictureReport>> RenderWork::draw() {
 }
 
 Result<QImage> RenderWork::readBack() const {
-    QImage image(static_cast<int>(width_), static_cast<int>(height_), QImage::Format_RGB32);
+    const bool seeThrough = last_->seeThrough;
+    QImage image(static_cast<int>(width_), static_cast<int>(height_),
+                 seeThrough ? QImage::Format_ARGB32 : QImage::Format_RGB32);
     // Rows of 32-bit pixels have no gaps.
     const std::span<uchar> bytes(image.bits(), static_cast<std::size_t>(image.sizeInBytes()));
-    if (auto read = device_->readTexture(target_, std::as_writable_bytes(bytes)); !read) {
+    if (auto read = device_.readTexture(target_, std::as_writable_bytes(bytes)); !read) {
         return tl::unexpected(read.error());
     }
+    if (seeThrough) straighten(image);
     return image;
 }
 

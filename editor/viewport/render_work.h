@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// What the render thread keeps between pictures: device, renderer, the scene on the device, and the window or
-// texture that it draws into. Used on that thread only.
+// What the render thread keeps between pictures: renderer, the scene on the device, and the window or texture
+// that it draws into. Used on that thread only.
 
 #include <QImage>
-#include <memory>
 #include <optional>
 
 #include "core/gpu/device.h"
@@ -16,9 +15,8 @@ namespace hairloom::editor {
 
 class RenderWork {
   public:
-    explicit RenderWork(std::unique_ptr<gpu::Device> device);
-
-    const gpu::DeviceInfo& info() const { return device_->info(); }
+    /// `device` outlives it.
+    explicit RenderWork(gpu::Device& device);
 
     Status setWindow(const std::optional<gpu::NativeWindow>& window);
     /// Takes what differs from the last request to the device.
@@ -37,12 +35,13 @@ class RenderWork {
     Status takeScene(const PictureRequest& request, bool draft);
     Status replaceScene(const PictureRequest& request, bool draft);
     Status movePoints(const PictureRequest& request);
+    Status showMaterial(const PictureRequest& request);
     Status resize(std::uint32_t width, std::uint32_t height);
     void adapt(double milliseconds);
     render::RenderOptions options() const;
     Result<QImage> readBack() const;
 
-    std::unique_ptr<gpu::Device> device_;
+    gpu::Device& device_;
     render::Renderer renderer_;
     std::optional<gpu::NativeWindow> window_;
     std::unique_ptr<gpu::SwapChain> swapChain_;  ///< null: pictures are read back from target_

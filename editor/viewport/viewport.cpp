@@ -4,7 +4,6 @@
 #include <QApplication>
 #include <QKeyEvent>
 #include <QMouseEvent>
-#include <QPainter>
 #include <QPlatformSurfaceEvent>
 #include <QVBoxLayout>
 #include <cmath>
@@ -48,31 +47,6 @@ Box3f boundsToShow(const Groom& groom, const HairPose* pose) {
 
 }  // namespace
 
-/// Shows the pictures that were read back.
-class Viewport::Canvas : public QWidget {
-  public:
-    explicit Canvas(Viewport& viewport) : QWidget(&viewport), viewport_(viewport) {
-        setAttribute(Qt::WA_OpaquePaintEvent);
-        setMouseTracking(true);
-        setFocusPolicy(Qt::StrongFocus);
-        setAcceptDrops(false);
-    }
-
-  protected:
-    void paintEvent(QPaintEvent*) override {
-        QPainter painter(this);
-        if (viewport_.picture_.isNull()) {
-            painter.fillRect(rect(), themeColours(viewport_.preferences_.theme()).viewport);
-            return;
-        }
-        painter.setRenderHint(QPainter::SmoothPixmapTransform);
-        painter.drawImage(rect(), viewport_.picture_);
-    }
-
-  private:
-    Viewport& viewport_;
-};
-
 Viewport::Viewport(Document& document, const Preferences& preferences, QWidget* parent)
     : QWidget(parent), document_(document), preferences_(preferences) {
     setObjectName("viewport");
@@ -98,19 +72,21 @@ Viewport::Viewport(Document& document, const Preferences& preferences, QWidget* 
             [this](const QString& name, bool wantsWindow, const QString& problem) {
                 const QByteArray wish = wishedSurface();
                 const bool byItself = (wantsWindow && wish.isEmpty()) || wish == "window" || wish == "apart";
-                if (problem.isEmpty() && byItself) useWindow();
+                presentsByItself_ = problem.isEmpty() && byItself;
+                chooseSurface();
                 Q_EMIT deviceReady(name, problem);
             });
     connect(&renderer_, &RenderThread::pictureReady, this,
             [this](const QImage& picture, const PictureReport& report) {
                 if (!report.presented) {
                     picture_ = picture;
-                    if (canvas_) canvas_->update();
+                    if (canvas_) canvas_->setPicture(picture);
                 }
                 Q_EMIT drawn(report);
             });
     connect(&renderer_, &RenderThread::windowRefused, this, [this](const QString& problem) {
-        useCanvas();
+        presentsByItself_ = false;
+        chooseSurface();
         redraw();
         Q_EMIT failed(problem);
     });
@@ -120,7 +96,11 @@ Viewport::Viewport(Document& document, const Preferences& preferences, QWidget* 
         pose_.reset();
         framed_ = false;
     });
-    connect(&preferences_, &Preferences::changed, this, [this] { redraw(); });
+    connect(&preferences_, &Preferences::changed, this, [this] {
+        showOnCanvas();
+        redraw();
+    });
+    connect(&renderer_, &RenderThread::sidePictureReady, this, &Viewport::sidePictureReady);
 }
 
 Viewport::~Viewport() {
@@ -128,18 +108,33 @@ Viewport::~Viewport() {
     if (apart_) delete window_;
 }
 
+void Viewport::chooseSurface() {
+    const bool blends = comparison_ || !reference_.isNull();
+    presentsByItself_ && !blends ? useWindow() : useCanvas();
+}
+
 void Viewport::useCanvas() {
     if (canvas_) return;
     if (window_) {
         window_->removeEventFilter(this);
+        renderer_.setWindow(std::nullopt);
         if (apart_) window_->deleteLater();
         window_ = nullptr;
         shown_->deleteLater();
     }
-    canvas_ = new Canvas(*this);
+    canvas_ = new Canvas(this);
     canvas_->installEventFilter(this);
     layout()->addWidget(canvas_);
     shown_ = canvas_;
+    showOnCanvas();
+    redraw();
+}
+
+void Viewport::showOnCanvas() {
+    if (!canvas_) return;
+    canvas_->setBackground(themeColours(preferences_.theme()).viewport);
+    canvas_->setReference(reference_, referenceOpacity_);
+    canvas_->setSplit(comparison_ ? std::optional(split_) : std::nullopt);
 }
 
 void Viewport::useWindow() {
@@ -231,6 +226,11 @@ void Viewport::setExposure(float factor) {
     exposure_ = factor;
     redraw();
 }
+void Viewport::setLight(float lights, float surroundings) {
+    lightScale_ = lights;
+    surroundings_ = surroundings;
+    redraw();
+}
 void Viewport::setTurntable(bool on) {
     on ? turntable_.start() : turntable_.stop();
 }
@@ -240,6 +240,36 @@ void Viewport::look(render::View view) {
 }
 void Viewport::setOrthographic(bool on) {
     camera_.setOrthographic(on);
+    redraw();
+}
+
+void Viewport::setQuality(const PictureQuality& quality) {
+    if (quality == quality_) return;
+    quality_ = quality;
+    redraw();
+    Q_EMIT lookChanged();
+}
+
+void Viewport::setComparison(std::optional<Comparison> look) {
+    comparison_ = std::move(look);
+    other_.reset();
+    chooseSurface();
+    showOnCanvas();
+    redraw();
+    Q_EMIT lookChanged();
+}
+
+void Viewport::setSplit(float share) {
+    split_ = std::clamp(share, 0.0f, 1.0f);
+    showOnCanvas();
+    redraw();
+}
+
+void Viewport::setReference(const QImage& image, double opacity) {
+    reference_ = image;
+    referenceOpacity_ = opacity;
+    chooseSurface();
+    showOnCanvas();
     redraw();
 }
 
@@ -265,6 +295,7 @@ void Viewport::redraw(bool moving) {
 void Viewport::documentChanged(Changes changes) {
     // Copied when it is drawn next: a stroke parts from the copy once per picture, not once per dab.
     groom_.reset();
+    other_.reset();
     if (changes & Change::Strands && pose_ && pose_->positions_ws.size() != document_.groom().pointCount()) {
         pose_.reset();
     }
@@ -295,7 +326,22 @@ void Viewport::post() {
     request.showHead = showHead_;
     request.lightTurn = lightTurn_;
     request.exposure = exposure_;
+    request.lightScale = lightScale_;
+    request.surroundings = surroundings_;
     request.background = toLinear(themeColours(preferences_.theme()).viewport);
+    request.quality = quality_;
+    request.seeThrough = canvas_ && !reference_.isNull();
+    if (comparison_ && canvas_) {
+        if (!other_) {
+            Groom other = *groom_;
+            other.material = comparison_->material;
+            other.interpolation = comparison_->interpolation;
+            other_ = std::make_shared<const Groom>(std::move(other));
+        }
+        request.other = other_;
+        request.otherQuality = comparison_->quality;
+        request.split = split_;
+    }
     renderer_.post(std::move(request));
 }
 
@@ -328,6 +374,10 @@ Pointer Viewport::pointerAt(const QPointF& at_px, Qt::MouseButton button,
 
 bool Viewport::mousePress(const QMouseEvent& event) {
     last_px_ = event.position();
+    if (overSplit(event.position()) && event.button() == Qt::LeftButton) {
+        move_ = Move::Split;
+        return true;
+    }
     move_ = viewMove(event.button(), event.modifiers());
     if (move_ != Move::None) return true;
     if (!tool_ || event.button() != Qt::LeftButton) return false;
@@ -341,6 +391,7 @@ bool Viewport::mouseMove(const QMouseEvent& event) {
         dragView(event.position());
         return true;
     }
+    if (canvas_) canvas_->setCursor(overSplit(event.position()) ? Qt::SplitHCursor : Qt::ArrowCursor);
     if (!tool_) return false;
     const Pointer pointer = pointerAt(event.position(), Qt::NoButton, event.modifiers());
     toolPressed_ ? tool_->drag(pointer) : tool_->hover(pointer);
@@ -372,10 +423,18 @@ void Viewport::dragView(const QPointF& to_px) {
         case Move::Zoom:
             camera_.zoom(std::exp(kZoomPerPixel * static_cast<float>(by.x() - by.y())));
             break;
+        case Move::Split:
+            setSplit(static_cast<float>(to_px.x() / std::max(width(), 1)));
+            return;
         case Move::None:
             return;
     }
     redraw(true);
+}
+
+bool Viewport::overSplit(const QPointF& at_px) const {
+    constexpr double kReach_px = 6;
+    return comparison_ && canvas_ && std::abs(at_px.x() - static_cast<double>(split_) * width()) < kReach_px;
 }
 
 bool Viewport::tablet(const QTabletEvent& event) {

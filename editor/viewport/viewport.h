@@ -9,10 +9,12 @@
 #include <QWindow>
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "editor/document/document.h"
 #include "editor/document/preferences.h"
 #include "editor/tools/tool.h"
+#include "editor/viewport/canvas.h"
 #include "editor/viewport/orbit_camera.h"
 #include "editor/viewport/render_thread.h"
 
@@ -33,6 +35,31 @@ class Viewport : public QWidget {
     void setTool(Tool* tool);
     Tool* tool() const { return tool_; }
 
+    /// How finely it draws.
+    const PictureQuality& quality() const { return quality_; }
+    void setQuality(const PictureQuality& quality);
+
+    /// Another look of the hair, to compare with.
+    struct Comparison {
+        HairMaterial material;
+        InterpolationSettings interpolation;
+        PictureQuality quality;
+    };
+    /// Shows that look left of a line that can be dragged; nothing: only the document's.
+    void setComparison(std::optional<Comparison> look);
+    const std::optional<Comparison>& comparison() const { return comparison_; }
+    /// Where the line is, as a part of the width.
+    void setSplit(float share);
+    float split() const { return split_; }
+    /// A picture behind the head, to groom after; null: none. `opacity` 0…1.
+    void setReference(const QImage& image, double opacity);
+    const QImage& reference() const { return reference_; }
+
+    /// A picture of something else, made when nothing else is to be drawn; sidePictureReady() brings it.
+    void requestSidePicture(const QString& name, PictureRequest request) {
+        renderer_.postSide(name, std::move(request));
+    }
+
     // What is shown. Each redraws.
     void setPose(std::shared_ptr<const HairPose> pose);
     const std::shared_ptr<const HairPose>& pose() const { return pose_; }
@@ -42,6 +69,10 @@ class Viewport : public QWidget {
     bool isHeadShown() const { return showHead_; }
     void setLightTurn(float degrees);
     void setExposure(float factor);
+    /// Factors on the lights and on the light from around; 1 as they come.
+    void setLight(float lights, float surroundings);
+    float lightScale() const { return lightScale_; }
+    float surroundings() const { return surroundings_; }
     void setTurntable(bool on);
     bool hasTurntable() const { return turntable_.isActive(); }
     void look(render::View view);
@@ -65,6 +96,9 @@ class Viewport : public QWidget {
     void deviceReady(const QString& name, const QString& problem);
     void drawn(const hairloom::editor::PictureReport& report);
     void failed(const QString& problem);
+    /// Quality or comparison.
+    void lookChanged();
+    void sidePictureReady(const QString& name, const QImage& picture);
     /// The pointer's tool has something else to say.
     void hintChanged();
     /// A key that neither camera nor tool took.
@@ -75,13 +109,15 @@ class Viewport : public QWidget {
     void resizeEvent(QResizeEvent* event) override;
 
   private:
-    class Canvas;
-    enum class Move { None, Turn, Pan, Zoom };
+    enum class Move { None, Turn, Pan, Zoom, Split };
 
+    /// Pictures that are blended with others are read back.
+    void chooseSurface();
     void useWindow();
     /// The window system has made or is about to take away what the device draws to.
     void surfaceChanged(bool exists);
     void useCanvas();
+    void showOnCanvas();
     void placeApart();
     void post();
     void dragView(const QPointF& to_px);
@@ -90,6 +126,7 @@ class Viewport : public QWidget {
     bool mouseMove(const QMouseEvent& event);
     bool mouseRelease(const QMouseEvent& event);
     bool keyPress(const QKeyEvent& event);
+    bool overSplit(const QPointF& at_px) const;
     bool tablet(const QTabletEvent& event);
     Pointer pointerAt(const QPointF& at_px, Qt::MouseButton button, Qt::KeyboardModifiers modifiers) const;
     void documentChanged(Changes changes);
@@ -114,6 +151,14 @@ class Viewport : public QWidget {
     bool showHair_ = true, showHead_ = true;
     float lightTurn_ = 0;
     float exposure_ = 1.6f;
+    float lightScale_ = 1, surroundings_ = 1;
+    bool presentsByItself_ = false;  ///< the device can and shall
+    PictureQuality quality_;
+    std::optional<Comparison> comparison_;
+    std::shared_ptr<const Groom> other_;  ///< with the look of comparison_
+    float split_ = 0.5f;
+    QImage reference_;
+    double referenceOpacity_ = 1;
     Move move_ = Move::None;
     bool toolPressed_ = false;
     QPointF last_px_;

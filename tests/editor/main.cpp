@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
     const QTemporaryDir home;
     qputenv("XDG_CONFIG_HOME", home.path().toUtf8());
     qputenv("XDG_DATA_HOME", home.path().toUtf8());
+    qputenv("XDG_CACHE_HOME", home.path().toUtf8());
 #ifdef _WIN32
     // Windows asks no environment variable for these folders.
     QStandardPaths::setTestModeEnabled(true);

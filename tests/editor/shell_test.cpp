@@ -178,6 +178,33 @@ TEST_F(ShellTest, ShortcutsCanBeChangedAndAreUnique) {
     EXPECT_EQ(window->actions().get("file.save").shortcut(), taken);
 }
 
+TEST_F(ShellTest, TheHistoryPanelSaysHowMuchMemoryUndoHolds) {
+    openSampleHair("short");
+    const auto said = [this] {
+        for (const QLabel* label : window->panel("history")->findChildren<QLabel*>()) {
+            if (label->text().contains("of at most 512 MB")) return label->text();
+        }
+        return QString();
+    };
+    const QString empty = said();
+    EXPECT_FALSE(empty.isEmpty());
+    Groom moved = groom();
+    for (Vec3f& point : moved.pointAttributes.edit<Vec3f>(attribute::kPosition)) point.y() += 1e-4f;
+    document().change("Move", Change::Strands, moved);
+    EXPECT_NE(said(), empty);
+    EXPECT_GT(document().historyBytes(), groom().pointCount() * sizeof(Vec3f) - 1);
+}
+
+TEST_F(ShellTest, AnEmptyWindowOffersNothingThatWouldDoNothing) {
+    EXPECT_FALSE(window->actions().get("file.save").isEnabled());
+    EXPECT_FALSE(window->actions().get("tool.comb").isEnabled());
+    EXPECT_FALSE(window->panel("look")->widget()->isEnabled());
+    openBust();
+    EXPECT_TRUE(window->actions().get("file.save").isEnabled());
+    EXPECT_TRUE(window->actions().get("tool.comb").isEnabled());
+    EXPECT_TRUE(window->panel("look")->widget()->isEnabled());
+}
+
 TEST_F(ShellTest, EveryActionHasATipAndNoTwoShareKeys) {
     QHash<QString, QString> keys;
     for (const ActionInfo& info : window->actions().all()) {

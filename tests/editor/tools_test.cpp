@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Every tool in a person's hand: it changes what it should, undo and redo restore every bit, Esc leaves
 // nothing behind, and hair stays sound.
+#include <QComboBox>
+#include <QLabel>
+#include <QPointingDevice>
 #include <QPushButton>
+#include <QTabletEvent>
 #include <algorithm>
+#include <set>
 
 #include "core/base/random.h"
+#include "core/editing/document.h"
 #include "editor/tools/brush_tool.h"
 #include "tests/editor/window_fixture.h"
 
@@ -176,6 +182,69 @@ TEST_F(ToolsTest, ScalpIsPaintedBoxedAndLassoed) {
     }
 }
 
+TEST_F(ToolsTest, DensityIsPaintedAndCtrlTakesItAway) {
+    auto& tool = dynamic_cast<BrushTool&>(activate("density_paint"));
+    tool.settings().radius = 0.03f;
+    tool.settings().strength = 1;
+    // Ctrl first: where nothing is painted, density is full.
+    drag({crown, crown + QPoint(20, 4), crown + QPoint(40, 8)}, Qt::ControlModifier);
+    ASSERT_EQ(groom().scalpDensity.size(), groom().scalp->vertexCount());
+    const float thinned = *std::ranges::min_element(groom().scalpDensity);
+    EXPECT_LT(thinned, 0.9f);
+    const auto after = hash();
+    trigger("edit.undo");
+    EXPECT_NE(hash(), after);
+    trigger("edit.redo");
+    EXPECT_EQ(hash(), after);
+    drag({crown, crown + QPoint(20, 4), crown + QPoint(40, 8)});
+    EXPECT_GT(*std::ranges::min_element(groom().scalpDensity), thinned);
+}
+
+TEST_F(ToolsTest, ThePressureOfAPenIsThatOfTheDabs) {
+    activate("comb");
+    const QPointingDevice pen("pen", 1, QInputDevice::DeviceType::Stylus, QPointingDevice::PointerType::Pen,
+                              QInputDevice::Capability::Pressure, 1, 1);
+    QObject* const target = viewport().input();
+    const auto touch = [&](QEvent::Type type, double pressure) {
+        QTabletEvent event(type, &pen, crown, crown, pressure, 0, 0, 0, 0, 0, Qt::NoModifier, Qt::LeftButton,
+                           Qt::LeftButton);
+        QCoreApplication::sendEvent(target, &event);
+    };
+    session().preferences.setTabletCurve(2);
+    touch(QEvent::TabletPress, 0.5);
+    press(crown);
+    touch(QEvent::TabletMove, 0.8);
+    moveTo(crown + QPoint(30, 6));
+    const auto dabs = document().editing().stroke()->stroke().dabs;
+    release(crown + QPoint(30, 6));
+    touch(QEvent::TabletRelease, 0);
+    ASSERT_GE(dabs.size(), 2u);
+    EXPECT_NEAR(dabs.front().pressure, 0.25f, 1e-3f) << "after the curve of the preferences";
+    EXPECT_NEAR(dabs.back().pressure, 0.64f, 1e-3f);
+}
+
+TEST_F(ToolsTest, RootsArePreviewedAndFollowTheSettings) {
+    auto* preview = find<QPushButton>("placePreview");
+    const auto noted = [&](const QString& words) {
+        for (const QLabel* label : window->panel("scalp")->findChildren<QLabel*>()) {
+            if (label->text().contains(words)) return true;
+        }
+        return false;
+    };
+    const auto before = hash();
+    preview->click();
+    finishWork();
+    Groom fewer = groom();
+    fewer.placement.count = 777;
+    document().change("Count", Change::Placement, fewer);
+    finishWork();
+    EXPECT_TRUE(noted("777 roots"));
+    preview->click();
+    EXPECT_FALSE(noted("777 roots"));
+    trigger("edit.undo");
+    EXPECT_EQ(hash(), before) << "a preview places nothing";
+}
+
 TEST_F(ToolsTest, StrandsAreSelectedAndBrushesKeepToThem) {
     activate("select");
     drag({crown + QPoint(-30, -30), crown + QPoint(0, -30), crown + QPoint(0, 30), crown + QPoint(-30, 30)});
@@ -230,6 +299,15 @@ TEST_F(ToolsTest, SpheresAreFittedToTheHead) {
     finishWork();
     EXPECT_EQ(groom().spheres.size(), 12u);
     EXPECT_EQ(document().stepName(0), "Fit spheres");
+    std::set<std::string> bones;
+    for (const CollisionSphere& sphere : groom().spheres) {
+        EXPECT_TRUE(session().player.actor()->skeleton().find(sphere.bone))
+            << sphere.name << " on " << sphere.bone;
+        bones.insert(sphere.bone);
+    }
+    EXPECT_TRUE(bones.contains("head"));
+    auto* bone = find<QComboBox>("sphereBone");
+    EXPECT_EQ(bone->currentText().toStdString(), groom().spheres[0].bone);
     find<QPushButton>("sphereMirror")->click();
     EXPECT_EQ(groom().spheres.size(), 13u);
 }
@@ -267,13 +345,13 @@ TEST_F(ToolsTest, RandomActionsNeverBreakTheDocument) {
     const std::vector<QString> ids{"comb",        "brush",  "grab",        "smooth",        "puff",
                                    "pinch",       "length", "cut",         "cut_line",      "add",
                                    "delete",      "freeze", "scalp_paint", "density_paint", "select",
-                                   "scalp_lasso", "sphere", "wind"};
+                                   "scalp_lasso", "sphere", "wind",        "replace",       "scalp_box"};
     const auto below = [&random](int count) {
         return static_cast<int>(random.below(static_cast<std::uint32_t>(count)));
     };
     const auto somewhere = [&] { return crown + QPoint(below(200) - 100, below(160) - 40); };
     for (int action = 0; action < 500; ++action) {
-        switch (below(8)) {
+        switch (below(9)) {
             case 0:
                 trigger("edit.undo");
                 break;
@@ -283,6 +361,11 @@ TEST_F(ToolsTest, RandomActionsNeverBreakTheDocument) {
             case 2:
                 key(std::array{Qt::Key_BracketLeft, Qt::Key_BracketRight, Qt::Key_Escape,
                                Qt::Key_F}[static_cast<std::size_t>(below(4))]);
+                break;
+            case 8:
+                trigger(std::array{"select.all", "select.none", "select.invert", "select.hide", "select.show",
+                                   "select.freeze", "select.thaw",
+                                   "select.hideOthers"}[static_cast<std::size_t>(below(8))]);
                 break;
             case 3:
                 activate(ids[static_cast<std::size_t>(below(static_cast<int>(ids.size())))]);

@@ -2,6 +2,7 @@
 // The camera, the pictures, the live simulation.
 #include <QCheckBox>
 #include <QScreen>
+#include <array>
 #include <cstdlib>
 
 #include "tests/editor/window_fixture.h"
@@ -110,10 +111,70 @@ TEST_F(ViewportTest, BothOrbitStylesTurnMoveAndZoom) {
     }
 }
 
+/// The renderer's view and the pointer's are one.
+TEST_F(PictureTest, MarksStandWhereTheCameraProjectsThem) {
+    if (viewport().presents()) GTEST_SKIP() << "pictures are not read back";
+    openBust();
+    const Vec3f middle = viewport().camera().target_ws();
+    const std::array points{Vec3f(middle + Vec3f(0.1f, 0.08f, 0.2f)),
+                            Vec3f(middle + Vec3f(-0.12f, -0.05f, -0.3f))};
+    const std::array colours{QColor(255, 0, 255), QColor(0, 255, 255)};
+    viewport().addMarks([&](Marks& marks) {
+        for (std::size_t i = 0; i < 2; ++i) marks.point(points[i], colours[i], 9, Marks::Depth::OnTop);
+    });
+    for (const bool orthographic : {false, true}) {
+        viewport().setOrthographic(orthographic);
+        ASSERT_TRUE(viewport().waitForPicture(60'000));
+        const QImage& picture = viewport().picture();
+        for (std::size_t i = 0; i < 2; ++i) {
+            QPointF sum;
+            int count = 0;
+            for (int y = 0; y < picture.height(); ++y) {
+                for (int x = 0; x < picture.width(); ++x) {
+                    if (picture.pixelColor(x, y).rgb() != colours[i].rgb()) continue;
+                    sum += QPointF(x + 0.5, y + 0.5);
+                    ++count;
+                }
+            }
+            ASSERT_GT(count, 20) << orthographic;
+            const QPointF off =
+                sum / count - *viewport().camera().project(points[i], viewport().viewSize_px());
+            EXPECT_LT(off.manhattanLength(), 1.5) << "orthographic " << orthographic << ", point " << i;
+        }
+    }
+}
+
 TEST_F(PictureTest, OverlaysAreDrawn) {
     if (viewport().presents()) GTEST_SKIP() << "pictures are not read back";
     openGuides();
-    for (const char* name : {"scalp", "roots", "guides", "triangulation", "spheres", "wireframe"}) {
+    for (const char* name :
+         {"scalp", "roots", "guides", "triangulation", "spheres", "wireframe", "density", "wind"}) {
+        ASSERT_TRUE(viewport().waitForPicture(60'000));
+        const QImage without = viewport().picture();
+        find<QCheckBox>(name)->click();
+        ASSERT_TRUE(viewport().waitForPicture(60'000));
+        EXPECT_NE(viewport().picture(), without) << name;
+        find<QCheckBox>(name)->click();
+    }
+}
+
+TEST_F(PictureTest, OverlaysOfMotionAreDrawn) {
+    if (viewport().presents()) GTEST_SKIP() << "pictures are not read back";
+    openGuides();
+    Groom windy = groom();
+    windy.simulation.windSpeed = 12;
+    // A sphere that hair is in from the start shows as deep.
+    windy.spheres.push_back({"deep", windy.strand(0).back(), 0.03f, {}});
+    windy.simulation.lengthIterations = 0;
+    document().change("Wind", Changes(Change::Simulation) | Change::Spheres, windy);
+    for (int i = 0; i < 3; ++i) trigger("play.step");
+    ASSERT_TRUE(QTest::qWaitFor(
+        [this] {
+            const auto& frame = session().player.frame();
+            return frame && frame->time > 0.04;
+        },
+        20'000));
+    for (const char* name : {"strain", "penetration", "effectCost"}) {
         ASSERT_TRUE(viewport().waitForPicture(60'000));
         const QImage without = viewport().picture();
         find<QCheckBox>(name)->click();

@@ -33,7 +33,7 @@ class BrushAlong final : public StrandBrush {
                 const float norm = mixed.norm();
                 // Hair that points the opposite way turns over the outside.
                 constexpr float kOpposite = 1e-3f;
-                direction = norm > kOpposite ? Vec3f(mixed / norm) : strand.rootNormal_ss;
+                direction = norm > kOpposite ? Vec3f(mixed / norm) : strand.rootNormal_ss();
             }
             strand.points[i] = strand.points[i - 1] + direction * length;
         }

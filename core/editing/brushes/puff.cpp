@@ -19,7 +19,7 @@ class Puff final : public StrandBrush {
         height_ = target.parameter(kInfo, "height");
     }
     bool edit(const DabContext& dab, StrandUnderBrush& strand) const override {
-        strand.carry(strand.points, strand.rootNormal_ss * (height_ * dab.sign));
+        strand.carry(strand.points, strand.rootNormal_ss() * (height_ * dab.sign));
         return true;
     }
 

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Turning single effects of the engine off, to see what they do and cost.
+
+#include <string>
+#include <string_view>
+
+#include "runtime/settings.h"
+
+namespace hairloom {
+
+/// What turns `effect`, named as in EffectReport, off: "simulation.windSpeed=0". Empty, and nothing changed,
+/// where no setting does, as for torsion, coupling and sweep, which follow from the hair's shape and its
+/// speed, and for collision, which goes with the spheres.
+std::string turnEffectOff(runtime::SimulationSettings& settings, std::string_view effect);
+
+/// Whether there is a way to turn it off: by a setting, or by taking the spheres away.
+bool canTurnOff(std::string_view effect);
+
+inline constexpr std::string_view kCollisionEffect = "collision";
+
+}  // namespace hairloom

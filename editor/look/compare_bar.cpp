@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QPushButton>
+#include <QVBoxLayout>
+
+#include "editor/look/parts.h"
+#include "editor/session.h"
+
+namespace hairloom::editor {
+namespace {
+
+class CompareBar : public QWidget {
+  public:
+    explicit CompareBar(Session& session) : session_(session), note_(new QLabel) {
+        auto* layout = new QVBoxLayout(this);
+        layout->setContentsMargins(0, 0, 0, 0);
+        layout->setSpacing(6);
+        auto* row = new QHBoxLayout;
+        row->setSpacing(6);
+        layout->addLayout(row);
+        const auto add = [&](const char* name, const QString& text, const QString& tip) {
+            auto* button = new QPushButton(text);
+            button->setObjectName(name);
+            button->setToolTip(tip);
+            row->addWidget(button, 1);
+            return button;
+        };
+        keep_ = add("compareKeep", tr("Keep as A"),
+                    tr("Remembers the look as it is now, to compare others with it"));
+        show_ = add("compareShow", tr("A | B"),
+                    tr("Shows A left of a line in the view and the look of now right of it; drag the line"));
+        swap_ = add("compareSwap", tr("Swap"), tr("Takes look A and keeps that of now as A; can be undone"));
+        show_->setCheckable(true);
+        note_->setProperty("role", "dim");
+        note_->setWordWrap(true);
+        layout->addWidget(note_);
+        connect(keep_, &QPushButton::clicked, this, [this] {
+            kept_ = now();
+            session_.viewport->setComparison(show_->isChecked() ? kept_ : std::nullopt);
+            refresh();
+        });
+        connect(show_, &QPushButton::toggled, this, [this](bool on) {
+            if (on && !kept_) kept_ = now();
+            session_.viewport->setComparison(on ? kept_ : std::nullopt);
+            refresh();
+        });
+        connect(swap_, &QPushButton::clicked, this, &CompareBar::swapLooks);
+        connect(&session_.document, &Document::replaced, this, [this] {
+            kept_.reset();
+            show_->setChecked(false);
+            refresh();
+        });
+        refresh();
+    }
+
+  private:
+    Viewport::Comparison now() const {
+        const Groom& groom = session_.document.groom();
+        return {groom.material, groom.interpolation, session_.viewport->quality()};
+    }
+
+    void swapLooks() {
+        if (!kept_) return;
+        const Viewport::Comparison before = now();
+        Groom groom = session_.document.groom();
+        groom.material = kept_->material;
+        groom.interpolation = kept_->interpolation;
+        const PictureQuality quality = kept_->quality;
+        kept_ = before;
+        session_.document.change(tr("Swap looks"), Changes(Change::Look) | Change::FollowHairs,
+                                 std::move(groom));
+        session_.viewport->setQuality(quality);
+        if (show_->isChecked()) session_.viewport->setComparison(kept_);
+    }
+
+    void refresh() {
+        swap_->setEnabled(kept_.has_value());
+        note_->setText(!kept_               ? tr("Keep a look, change it, and compare.")
+                       : show_->isChecked() ? tr("Drag the line in the view.")
+                                            : tr("A is kept."));
+    }
+
+    Session& session_;
+    QPushButton *keep_, *show_, *swap_;
+    QLabel* note_;
+    std::optional<Viewport::Comparison> kept_;
+};
+
+}  // namespace
+
+QWidget* makeCompareBar(Session& session) {
+    return new CompareBar(session);
+}
+
+}  // namespace hairloom::editor

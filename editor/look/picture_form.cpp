@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <bit>
+
+#include "editor/look/parts.h"
+#include "editor/session.h"
+#include "editor/tools/option_form.h"
+
+namespace hairloom::editor {
+namespace {
+
+class PictureForm : public OptionForm {
+  public:
+    explicit PictureForm(Session& session) : OptionForm(session.preferences), viewport_(*session.viewport) {
+        addEdges();
+        addShadows();
+        connect(&viewport_, &Viewport::lookChanged, this, &OptionForm::refresh);
+    }
+
+  private:
+    template <class T>
+    void addEnum(const char* name, const QString& label, const QString& tip, const QStringList& choices,
+                 T PictureQuality::*member) {
+        addChoice(
+            name, label, tip, choices,
+            [this, member] { return static_cast<int>(viewport_.quality().*member); },
+            [this, member](int index) {
+                PictureQuality quality = viewport_.quality();
+                quality.*member = static_cast<T>(index);
+                viewport_.setQuality(quality);
+            });
+    }
+
+    /// A choice of powers of two, from `least` on.
+    void addPower(const char* name, const QString& label, const QString& tip, std::uint32_t least, int count,
+                  const QString& unit, std::uint32_t PictureQuality::*member) {
+        QStringList choices;
+        for (int i = 0; i < count; ++i) choices.append(unit.arg(least << static_cast<std::uint32_t>(i)));
+        addChoice(
+            name, label, tip, choices,
+            [this, member, least] {
+                return static_cast<int>(std::countr_zero(viewport_.quality().*member) -
+                                        std::countr_zero(least));
+            },
+            [this, member, least](int index) {
+                PictureQuality quality = viewport_.quality();
+                quality.*member = least << static_cast<std::uint32_t>(index);
+                viewport_.setQuality(quality);
+            });
+    }
+
+    void addEdges() {
+        addPower(
+            "samples", tr("Samples"),
+            tr("Samples a pixel (MSAA); more give smoother edges and cost more. The device may have fewer."),
+            1, 4, tr("%1 a pixel"), &PictureQuality::samples);
+        addPower("frames", tr("Frames"),
+                 tr("Frames that are averaged while nothing moves, each moved by part of a pixel: more give "
+                    "finer hair"),
+                 1, 7, tr("%1 averaged"), &PictureQuality::frames);
+        addEnum("filter", tr("Filter"), tr("Softens the edges that are left in the finished picture"),
+                {tr("None"), tr("FXAA"), tr("FXAA, long search")}, &PictureQuality::filter);
+        addEnum("transparency", tr("Thin hair"),
+                tr("How hair that is thinner than a sample shows what lies behind it: by a random part of "
+                   "the samples, "
+                   "by a fixed part, or blended in any order"),
+                {tr("Random samples"), tr("Fixed samples"), tr("Blended")}, &PictureQuality::transparency);
+        addEnum("ribbons", tr("Curves"),
+                tr("How curves become ribbons; tessellated ones are finer near the eye and need a device "
+                   "that can"),
+                {tr("Strips"), tr("Tessellated")}, &PictureQuality::ribbons);
+        addNumber(
+            "subdivisions", tr("Subdivisions"),
+            tr("Pieces of curve for each segment of a strand: more are rounder"), "", 1, 8, true,
+            [this] { return static_cast<double>(viewport_.quality().subdivisions); },
+            [this](double value) {
+                PictureQuality quality = viewport_.quality();
+                quality.subdivisions = static_cast<std::uint32_t>(value);
+                viewport_.setQuality(quality);
+            });
+    }
+
+    void addShadows() {
+        addEnum("shadows", tr("Shadows"),
+                tr("How hair stands in the light of other hair: layers behind the first hair, depth alone, "
+                   "layers at "
+                   "fixed depths, or none"),
+                {tr("None"), tr("Deep opacity"), tr("Absorption"), tr("Opacity maps")},
+                &PictureQuality::shadows);
+        addPower("shadowResolution", tr("Shadow map"),
+                 tr("Pixels along the side of each light's shadow map: more are sharper"), 256, 5,
+                 tr("%1 px"), &PictureQuality::shadowResolution);
+        addEnum("scattering", tr("Scattered light"),
+                tr("Light that other hairs have scattered: lost, or passed on (dual scattering); Marschner "
+                   "and Sadeghi"),
+                {tr("Single"), tr("Dual")}, &PictureQuality::scattering);
+    }
+
+    Viewport& viewport_;
+};
+
+}  // namespace
+
+QWidget* makePictureForm(Session& session) {
+    return new PictureForm(session);
+}
+
+}  // namespace hairloom::editor

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <QCryptographicHash>
+#include <QDir>
+#include <QHBoxLayout>
+#include <QInputDialog>
+#include <QListWidget>
+#include <QPainter>
+#include <QPushButton>
+#include <QStandardPaths>
+#include <QVBoxLayout>
+
+#include "core/groom/settings_json.h"
+#include "editor/fields/colour.h"
+#include "editor/look/parts.h"
+#include "editor/look/tress.h"
+#include "editor/session.h"
+#include "editor/shell/theme.h"
+#include "workspace/look_presets.h"
+
+namespace hairloom::editor {
+namespace {
+
+constexpr int kSide = 60;  // of a thumbnail, in pixels of the interface
+constexpr int kPicture = 2 * kSide;
+constexpr int kSoonMs = 700;
+
+QString words(const std::string& text) {
+    return QString::fromStdString(text);
+}
+
+std::filesystem::path folderOfLooks() {
+    return (QStandardPaths::writableLocation(QStandardPaths::AppDataLocation) + "/looks").toStdString();
+}
+
+/// While the device has not drawn it yet, and where there is none: tip over root.
+QPixmap swatch(const HairMaterial& material) {
+    QPixmap pixmap(kPicture, kPicture);
+    QPainter painter(&pixmap);
+    QLinearGradient gradient(0, 0, 0, kPicture);
+    gradient.setColorAt(0, fromLinear(material.rootColour));
+    gradient.setColorAt(1, fromLinear(material.tipColour));
+    painter.fillRect(pixmap.rect(), gradient);
+    return pixmap;
+}
+
+class PresetList : public QWidget {
+  public:
+    explicit PresetList(Session& session) : session_(session), list_(new QListWidget) {
+        auto* layout = new QVBoxLayout(this);
+        layout->setContentsMargins(0, 0, 0, 0);
+        layout->setSpacing(6);
+        list_->setObjectName("looks");
+        list_->setViewMode(QListView::IconMode);
+        list_->setResizeMode(QListView::Adjust);
+        list_->setMovement(QListView::Static);
+        list_->setUniformItemSizes(true);
+        list_->setIconSize({kSide, kSide});
+        list_->setGridSize({kSide + 18, kSide + 28});
+        list_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+        list_->setFixedHeight(2 * (kSide + 28) + 8);
+        list_->setToolTip(tr("Click a look to give it to the hair"));
+        layout->addWidget(list_);
+        auto* row = new QHBoxLayout;
+        auto* save = new QPushButton(tr("Keep this look…"));
+        save->setObjectName("saveLook");
+        save->setToolTip(tr("Keeps all settings of this panel's material under a name, for other documents"));
+        row->addWidget(save);
+        row->addStretch(1);
+        layout->addLayout(row);
+        connect(list_, &QListWidget::itemClicked, this, &PresetList::apply);
+        connect(save, &QPushButton::clicked, this, &PresetList::save);
+        connect(session_.viewport, &Viewport::sidePictureReady, this, &PresetList::takePicture);
+        soon_.setSingleShot(true);
+        soon_.setInterval(kSoonMs);
+        connect(&soon_, &QTimer::timeout, this, &PresetList::askForPictures);
+        // Not while the program starts or a document opens.
+        connect(session_.viewport, &Viewport::drawn, this, [this] {
+            if (!asked_ && isVisible()) soon_.start();
+        });
+        connect(&session_.preferences, &Preferences::changed, this,
+                [this, theme = session_.preferences.theme()]() mutable {
+                    if (theme == session_.preferences.theme()) return;
+                    theme = session_.preferences.theme();
+                    asked_ = false;
+                });
+        fill();
+    }
+
+  private:
+    struct Look {
+        QString name;
+        HairMaterial material;
+        const LookPreset* preset = nullptr;  ///< of those that come along
+    };
+
+    void fill() {
+        looks_.clear();
+        list_->clear();
+        for (const LookPreset& preset : lookPresets()) {
+            HairMaterial material;
+            applyLook(preset, material);
+            add({words(preset.name), material, &preset}, words(preset.description));
+        }
+        for (const std::string& name : savedLooks(folderOfLooks())) {
+            if (auto material = loadLook(folderOfLooks(), name)) {
+                add({words(name), *material, nullptr}, tr("A look that you kept"));
+            } else {
+                session_.messages.warn(words(material.error().message()));
+            }
+        }
+        asked_ = false;
+    }
+
+    void add(Look look, const QString& tip) {
+        QString label = look.name;
+        label[0] = label[0].toUpper();
+        auto* item = new QListWidgetItem(QIcon(swatch(look.material)), label);
+        item->setToolTip(tip);
+        list_->addItem(item);
+        looks_.push_back(std::move(look));
+    }
+
+    void apply(QListWidgetItem* item) {
+        const Look& look = looks_[static_cast<std::size_t>(list_->row(item))];
+        Groom groom = session_.document.groom();
+        if (look.preset) {
+            applyLook(*look.preset, groom.material);
+        } else {
+            groom.material = look.material;
+        }
+        session_.document.change(tr("Look %1").arg(item->text()), Change::Look, std::move(groom));
+    }
+
+    void save() {
+        bool taken = false;
+        const QString name =
+            QInputDialog::getText(this, tr("Keep this look"), tr("Name"), QLineEdit::Normal, {}, &taken);
+        if (!taken || name.trimmed().isEmpty()) return;
+        const auto& material = session_.document.groom().material;
+        if (auto saved = saveLook(folderOfLooks(), name.trimmed().toStdString(), material); !saved) {
+            session_.messages.warn(words(saved.error().message()));
+            return;
+        }
+        fill();
+        askForPictures();
+    }
+
+    /// Drawn once for a material and a theme, then kept on disk.
+    QString cacheFile(const HairMaterial& material) const {
+        QByteArray what = QByteArray::fromStdString(toJson(material).dump());
+        what += session_.preferences.theme() == Theme::Dark ? "dark" : "light";
+        const QByteArray hash = QCryptographicHash::hash(what, QCryptographicHash::Sha1).toHex();
+        return QStandardPaths::writableLocation(QStandardPaths::CacheLocation) + "/looks/" +
+               QString::fromLatin1(hash) + ".png";
+    }
+
+    void askForPictures() {
+        asked_ = true;
+        const Vec3f background = toLinear(palette().color(QPalette::Base));
+        for (std::size_t i = 0; i < looks_.size(); ++i) {
+            const QPixmap kept(cacheFile(looks_[i].material));
+            if (!kept.isNull()) {
+                show(i, kept);
+            } else {
+                session_.viewport->requestSidePicture("look:" + looks_[i].name,
+                                                      tressPicture(looks_[i].material, kPicture, background));
+            }
+        }
+    }
+
+    void takePicture(const QString& name, const QImage& picture) {
+        for (std::size_t i = 0; i < looks_.size(); ++i) {
+            if (name != "look:" + looks_[i].name) continue;
+            const QString file = cacheFile(looks_[i].material);
+            QDir().mkpath(QFileInfo(file).path());
+            // Only a cache: where it cannot be written, it is drawn again.
+            static_cast<void>(picture.save(file));
+            show(i, QPixmap::fromImage(picture));
+        }
+    }
+
+    void show(std::size_t look, const QPixmap& picture) {
+        QListWidgetItem* const item = list_->item(static_cast<int>(look));
+        item->setIcon(QIcon(picture));
+        item->setData(Qt::UserRole, true);  // drawn
+    }
+
+    Session& session_;
+    QListWidget* list_;
+    std::vector<Look> looks_;
+    QTimer soon_;
+    bool asked_ = false;
+};
+
+}  // namespace
+
+QWidget* makePresetList(Session& session) {
+    return new PresetList(session);
+}
+
+}  // namespace hairloom::editor

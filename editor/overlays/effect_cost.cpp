@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the simulation spends on each strand: the measured times of the effects, shared out over the points
+// that they work on. Strands at rest, which the engine leaves out, cost nothing; collision is shared by those
+// within reach of a sphere.
+#include <algorithm>
+
+#include "editor/overlays/overlay_mode.h"
+#include "editor/session.h"
+
+namespace hairloom::editor {
+namespace {
+
+bool isAboutSpheres(const std::string& effect) {
+    return effect == "collision" || effect == "pearls" || effect == "sweep";
+}
+
+/// Moved since the frame before by more than its root did.
+bool isAwake(const Groom& groom, std::size_t strand, const PlayedFrame& frame) {
+    if (!frame.before) return true;
+    constexpr float kStill = 1e-6f;  // metres
+    const std::uint32_t root = groom.offsets[strand], tip = groom.offsets[strand + 1] - 1;
+    const auto way = [&](std::uint32_t p) -> Vec3f {
+        return frame.pose->positions_ws[p] - frame.before->positions_ws[p];
+    };
+    return (way(tip) - way(root)).norm() > kStill || (way((root + tip) / 2) - way(root)).norm() > kStill;
+}
+
+/// At rest: the head carries its spheres along.
+bool reachesSphere(const Groom& groom, std::size_t strand) {
+    const auto points = groom.strand(strand);
+    float length = 0;
+    for (std::size_t p = 1; p < points.size(); ++p) length += (points[p] - points[p - 1]).norm();
+    return std::ranges::any_of(groom.spheres, [&](const CollisionSphere& sphere) {
+        return (points.front() - sphere.centre).norm() < sphere.radius + length;
+    });
+}
+
+}  // namespace
+
+void drawEffectCost(const Session& session, Marks& marks) {
+    const auto& frame = session.player.frame();
+    const Groom& groom = session.document.groom();
+    if (!frame || frame->pose->positions_ws.size() != groom.pointCount()) return;
+    double all = 0, spheres = 0;
+    for (const EffectReport& effect : frame->stats.effects) {
+        (isAboutSpheres(effect.name) ? spheres : all) += effect.milliseconds;
+    }
+    std::vector<float> points(groom.strandCount()), near(groom.strandCount());
+    double awake = 0, reached = 0;
+    for (std::size_t s = 0; s < groom.strandCount(); ++s) {
+        if (!isAwake(groom, s, *frame)) continue;
+        points[s] = static_cast<float>(groom.offsets[s + 1] - groom.offsets[s]);
+        if (reachesSphere(groom, s)) near[s] = points[s];
+        awake += static_cast<double>(points[s]);
+        reached += static_cast<double>(near[s]);
+    }
+    std::vector<float> cost(groom.strandCount());
+    const auto perPoint = static_cast<float>(all / std::max(awake, 1.0));
+    const auto perNear = static_cast<float>(spheres / std::max(reached, 1.0));
+    float most = 0;
+    for (std::size_t s = 0; s < cost.size(); ++s) {
+        cost[s] = points[s] * perPoint + near[s] * perNear;
+        most = std::max(most, cost[s]);
+    }
+    const auto& shown = frame->pose->positions_ws;
+    for (std::size_t s = 0; s < cost.size(); ++s) {
+        const QColor colour = cost[s] > 0 ? heat(cost[s] / most) : QColor(110, 130, 160);
+        for (std::uint32_t p = groom.offsets[s] + 1; p < groom.offsets[s + 1]; ++p)
+            marks.line(shown[p - 1], shown[p], colour, 1);
+    }
+}
+
+}  // namespace hairloom::editor

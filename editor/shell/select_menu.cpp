@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The menu over strands that are chosen: select, hide and show, freeze, delete.
+#include <QMenuBar>
+#include <algorithm>
+#include <iterator>
+
+#include "core/editing/document.h"
+#include "core/editing/selection_commands.h"
+#include "editor/shell/main_window.h"
+
+namespace hairloom::editor {
+namespace {
+
+std::vector<std::uint32_t> others(const Groom& groom, const std::vector<std::uint32_t>& strands) {
+    std::vector<std::uint32_t> rest;
+    std::ranges::set_difference(editing::allStrands(groom), strands, std::back_inserter(rest));
+    return rest;
+}
+
+}  // namespace
+
+void MainWindow::addSelectActions() {
+    QMenu* menu = menuBar()->addMenu(tr("&Select"));
+    menu->setToolTipsVisible(true);
+    using Strands = std::vector<std::uint32_t>;
+    using Make =
+        std::function<std::unique_ptr<editing::Command>(const editing::Model&, const Strands& selected)>;
+    const auto add = [&](const ActionInfo& info, Make make, bool needsSelection) {
+        menu->addAction(&actions_->add(info, [this, make = std::move(make), needsSelection] {
+            const editing::Model& model = session_.document.editing().model();
+            const Strands selected = editing::strandsWithFlag(model.groom, attribute::kSelected);
+            if (needsSelection && selected.empty()) {
+                session_.messages.say(tr("Select strands first (E)"));
+                return;
+            }
+            session_.document.perform(make(model, selected));
+        }));
+    };
+    using editing::Choice;
+    add(
+        {"select.all", tr("&All strands"), "", tr("Selects every strand"), QKeySequence("Ctrl+A")},
+        [](const editing::Model& model, const Strands&) {
+            return editing::selectStrands(model, editing::allStrands(model.groom), Choice::Replace);
+        },
+        false);
+    add(
+        {"select.none", tr("&None"), "", tr("Selects no strand: brushes touch all of them again"),
+         QKeySequence("Ctrl+Shift+A")},
+        [](const editing::Model& model, const Strands&) {
+            return editing::selectStrands(model, {}, Choice::Replace);
+        },
+        false);
+    add(
+        {"select.invert", tr("&Invert"), "", tr("Selects the strands that are not selected"),
+         QKeySequence("Ctrl+Shift+I")},
+        [](const editing::Model& model, const Strands& selected) {
+            return editing::selectStrands(model, others(model.groom, selected), Choice::Replace);
+        },
+        false);
+    groupMenu_ = menu->addMenu(tr("By &group"));
+    groupMenu_->setToolTipsVisible(true);
+    connect(groupMenu_, &QMenu::aboutToShow, this, &MainWindow::fillGroupMenu);
+    menu->addSeparator();
+    add(
+        {"select.hide", tr("&Hide selected"), "", tr("Hides the selected strands; brushes do not touch them"),
+         QKeySequence("Ctrl+H")},
+        [](const editing::Model& model, const Strands& selected) {
+            return editing::hideStrands(model, selected);
+        },
+        true);
+    add(
+        {"select.hideOthers", tr("Hide &others"), "", tr("Hides all strands but the selected ones"),
+         QKeySequence("Ctrl+Shift+H")},
+        [](const editing::Model& model, const Strands& selected) {
+            return editing::hideStrands(model, others(model.groom, selected));
+        },
+        true);
+    add(
+        {"select.show", tr("&Show all"), "", tr("Shows the strands that were hidden"), QKeySequence("Alt+H")},
+        [](const editing::Model& model, const Strands&) { return editing::showStrands(model); }, false);
+    menu->addSeparator();
+    add(
+        {"select.freeze",
+         tr("&Freeze selected"),
+         "freeze",
+         tr("Keeps brushes from touching the selected strands"),
+         {}},
+        [](const editing::Model& model, const Strands& selected) {
+            return editing::freezeStrands(model, selected, true);
+        },
+        true);
+    add(
+        {"select.thaw", tr("&Thaw all"), "", tr("Lets brushes touch all strands again"), {}},
+        [](const editing::Model& model, const Strands&) {
+            return editing::freezeStrands(model, editing::allStrands(model.groom), false);
+        },
+        false);
+    add(
+        {"select.delete", tr("&Delete selected"), "delete", tr("Removes the selected strands"),
+         QKeySequence("Del")},
+        [](const editing::Model& model, const Strands& selected) {
+            return editing::deleteStrands(model, selected);
+        },
+        true);
+}
+
+void MainWindow::fillGroupMenu() {
+    groupMenu_->clear();
+    const Groom& groom = session_.document.groom();
+    for (std::uint32_t g = 0; g < groom.groupNames.size(); ++g) {
+        const std::vector<std::uint32_t> strands = editing::strandsOfGroup(groom, g);
+        QAction* action = groupMenu_->addAction(
+            tr("%1 (%L2 strands)").arg(QString::fromStdString(groom.groupNames[g])).arg(strands.size()));
+        action->setToolTip(tr("Selects the strands of this group"));
+        connect(action, &QAction::triggered, this, [this, g] {
+            const editing::Model& model = session_.document.editing().model();
+            session_.document.perform(editing::selectStrands(model, editing::strandsOfGroup(model.groom, g),
+                                                             editing::Choice::Replace));
+        });
+    }
+    if (groom.groupNames.empty()) groupMenu_->addAction(tr("The hair has no groups"))->setEnabled(false);
+}
+
+}  // namespace hairloom::editor

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "editor/simulation/bones.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace hairloom::editor {
+namespace {
+
+float distanceToSegment(const Vec3f& point, const Vec3f& a, const Vec3f& b) {
+    const Vec3f along = b - a;
+    const float squared = along.squaredNorm();
+    const float t = squared > 0 ? std::clamp((point - a).dot(along) / squared, 0.0f, 1.0f) : 0.0f;
+    return (point - (a + t * along)).norm();
+}
+
+}  // namespace
+
+std::string boneNear(const Skeleton& skeleton, const Vec3f& point_ss) {
+    const auto& bones = skeleton.bones();
+    // Where a bone is in the mesh's rest space is the reverse of what takes that space to the bone's.
+    const auto joint = [&](std::size_t bone) -> Vec3f {
+        return bones[bone].inverseBind.inverse().translation();
+    };
+    std::string nearest;
+    float least = std::numeric_limits<float>::max();
+    const auto offer = [&](std::size_t bone, float distance) {
+        if (distance >= least) return;
+        least = distance;
+        nearest = bones[bone].name;
+    };
+    for (std::size_t b = 0; b < bones.size(); ++b) {
+        const std::uint32_t parent = bones[b].parent;
+        if (parent != kNoBone) offer(parent, distanceToSegment(point_ss, joint(parent), joint(b)));
+        offer(b, (point_ss - joint(b)).norm());
+    }
+    return nearest;
+}
+
+}  // namespace hairloom::editor

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Places hair anew only where somebody paints: with the settings of the scalp panel, when the brush is
+// lifted.
+#include <algorithm>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+#include "core/editing/document.h"
+#include "core/editing/place.h"
+#include "core/editing/surface_disc.h"
+#include "editor/session.h"
+#include "editor/tools/option_form.h"
+#include "editor/tools/registry.h"
+#include "editor/tools/surface_pick.h"
+
+namespace hairloom::editor {
+namespace {
+
+constexpr float kSmallest = 0.002f, kLargest = 0.2f;  // metres
+
+class ReplaceTool : public Tool {
+  public:
+    explicit ReplaceTool(Session& session) : session_(session) {}
+    const ToolInfo& info() const override { return info_; }
+    QString hint() const override { return tr("%1. [ ] set the size, Esc cancels").arg(info_.tip); }
+
+    void activate() override {
+        if (session_.player.isUnderWay()) session_.player.reset();
+    }
+    void hover(const Pointer& pointer) override {
+        place_ = skinUnder(session_, pointer.at_px);
+        Q_EMIT updated();
+    }
+    void leave() override {
+        place_.reset();
+        Q_EMIT updated();
+    }
+    void press(const Pointer& pointer) override {
+        painting_ = true;
+        drag(pointer);
+    }
+    void drag(const Pointer& pointer) override {
+        place_ = skinUnder(session_, pointer.at_px);
+        editing::Document& document = session_.document.editing();
+        if (!painting_ || !place_->skin || !document.surface()) return;
+        const Groom& groom = document.groom();
+        FaceSet here = editing::faceDisc(*groom.scalp, *document.surface(), place_->position_ss, radius_);
+        // Hair grows on the scalp only.
+        std::erase_if(here, [&](std::uint32_t face) {
+            return !std::ranges::binary_search(groom.scalpSelection, face);
+        });
+        FaceSet both;
+        std::ranges::set_union(region_, here, std::back_inserter(both));
+        region_ = std::move(both);
+        Q_EMIT updated();
+    }
+    void release(const Pointer&) override {
+        if (!painting_) return;
+        painting_ = false;
+        const FaceSet region = std::exchange(region_, {});
+        if (!region.empty()) replaceHair(region);
+        Q_EMIT updated();
+    }
+    void cancel() override {
+        painting_ = false;
+        region_.clear();
+        Q_EMIT updated();
+    }
+    bool key(int key, Qt::KeyboardModifiers) override {
+        if (key != Qt::Key_BracketLeft && key != Qt::Key_BracketRight) return false;
+        radius_ = std::clamp(radius_ * (key == Qt::Key_BracketLeft ? 1 / 1.15f : 1.15f), kSmallest, kLargest);
+        if (form_) form_->refresh();
+        Q_EMIT updated();
+        return true;
+    }
+
+    void draw(Marks& marks) const override {
+        const Groom& groom = session_.document.groom();
+        if (!groom.scalp) return;
+        for (const std::uint32_t face : region_) {
+            marks.triangle(
+                {groom.scalp->pointAt(face, Vec3f::UnitX()), groom.scalp->pointAt(face, Vec3f::UnitY()),
+                 groom.scalp->pointAt(face, Vec3f::UnitZ())},
+                QColor(90, 230, 140, 120));
+        }
+        if (!place_ || !place_->skin) return;
+        marks.circle(place_->position_ss, place_->normal_ss, radius_, QColor(0, 0, 0, 120), 3.5f,
+                     Marks::Depth::OnTop);
+        marks.circle(place_->position_ss, place_->normal_ss, radius_, QColor(255, 255, 255, 230), 1.5f,
+                     Marks::Depth::OnTop);
+    }
+
+    QWidget* makeOptions() override {
+        form_ = new OptionForm(session_.preferences);
+        form_->addNumber(
+            "replaceRadius", tr("Radius"), tr("Reach of the brush on the skin. Keys: [ and ]"), "m",
+            static_cast<double>(kSmallest), static_cast<double>(kLargest), false,
+            [this] { return static_cast<double>(radius_); },
+            [this](double value) {
+                radius_ = static_cast<float>(value);
+                Q_EMIT updated();
+            });
+        form_->addNumber(
+            "replaceReach", tr("Keep shape"),
+            tr("How far away hair may be whose shape the new hair takes; 0 grows straight hair"), "m", 0, 0.2,
+            false, [this] { return static_cast<double>(reach_); },
+            [this](double value) { reach_ = static_cast<float>(value); });
+        return form_;
+    }
+
+  private:
+    void replaceHair(const FaceSet& region) {
+        editing::Document& document = session_.document.editing();
+        auto command = editing::place(document.groom(), {region, reach_}, {document.skinField(), 0.001f});
+        if (!command) {
+            session_.messages.warn(QString::fromStdString(command.error().message()));
+            return;
+        }
+        session_.document.perform(std::move(*command));
+        session_.messages.say(tr("%L1 strands now").arg(document.groom().strandCount()));
+    }
+
+    Session& session_;
+    ToolInfo info_{"replace", tr("Place anew"), "place",
+                   tr("Paint over the scalp; hair there is placed anew with the settings of the Scalp panel"),
+                   QKeySequence("N")};
+    float radius_ = 0.02f;
+    float reach_ = 0.03f;
+    bool painting_ = false;
+    FaceSet region_;
+    std::optional<BrushPlace> place_;
+    OptionForm* form_ = nullptr;  ///< the panel owns it
+};
+
+}  // namespace
+
+ToolMaker replaceTool() {
+    return [](Session& session) -> std::unique_ptr<Tool> { return std::make_unique<ReplaceTool>(session); };
+}
+
+}  // namespace hairloom::editor

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "editor/viewport/canvas.h"
+
+#include <QPainter>
+
+namespace hairloom::editor {
+
+Canvas::Canvas(QWidget* parent) : QWidget(parent) {
+    setAttribute(Qt::WA_OpaquePaintEvent);
+    setMouseTracking(true);
+    setFocusPolicy(Qt::StrongFocus);
+    setAcceptDrops(false);
+}
+
+void Canvas::setPicture(const QImage& picture) {
+    picture_ = picture;
+    update();
+}
+
+void Canvas::setBackground(const QColor& colour) {
+    background_ = colour;
+    update();
+}
+
+void Canvas::setReference(const QImage& image, double opacity) {
+    reference_ = image;
+    referenceOpacity_ = opacity;
+    update();
+}
+
+void Canvas::setSplit(std::optional<float> split) {
+    split_ = split;
+    update();
+}
+
+void Canvas::paintEvent(QPaintEvent*) {
+    QPainter painter(this);
+    const bool covers = !picture_.isNull() && !picture_.hasAlphaChannel();
+    if (!covers) {
+        painter.fillRect(rect(), background_);
+        paintReference(painter);
+    }
+    if (!picture_.isNull()) {
+        painter.setRenderHint(QPainter::SmoothPixmapTransform);
+        painter.drawImage(rect(), picture_);
+    }
+    if (split_) paintSplit(painter);
+}
+
+void Canvas::paintReference(QPainter& painter) const {
+    if (reference_.isNull()) return;
+    const QSizeF fitted = QSizeF(reference_.size()).scaled(size(), Qt::KeepAspectRatio);
+    const QPointF corner((width() - fitted.width()) / 2, (height() - fitted.height()) / 2);
+    painter.save();
+    painter.setRenderHint(QPainter::SmoothPixmapTransform);
+    painter.setOpacity(referenceOpacity_);
+    painter.drawImage(QRectF(corner, fitted), reference_);
+    painter.restore();
+}
+
+void Canvas::paintSplit(QPainter& painter) const {
+    constexpr int kHandle = 9;
+    const double x = static_cast<double>(*split_) * width();
+    painter.setRenderHint(QPainter::Antialiasing);
+    painter.setPen(QPen(QColor(0, 0, 0, 130), 4));
+    painter.drawLine(QPointF(x, 0), QPointF(x, height()));
+    painter.setPen(QPen(Qt::white, 1.5));
+    painter.drawLine(QPointF(x, 0), QPointF(x, height()));
+    painter.setBrush(QColor(30, 32, 36, 220));
+    painter.drawEllipse(QPointF(x, height() / 2.0), kHandle, kHandle);
+    painter.drawLine(QPointF(x - 4, height() / 2.0), QPointF(x + 4, height() / 2.0));
+    const auto badge = [&](double left, const QString& letter) {
+        const QRectF box(left, 10, 24, 24);
+        painter.setPen(Qt::NoPen);
+        painter.drawRoundedRect(box, 5, 5);
+        painter.setPen(Qt::white);
+        painter.drawText(box, Qt::AlignCenter, letter);
+    };
+    badge(x - 34, QStringLiteral("A"));
+    badge(x + 10, QStringLiteral("B"));
+}
+
+}  // namespace hairloom::editor

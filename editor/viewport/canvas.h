@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Shows pictures that were read back, over a reference picture where there is one, with the line that parts
+// two looks.
+
+#include <QImage>
+#include <QWidget>
+#include <optional>
+
+namespace hairloom::editor {
+
+class Canvas : public QWidget {
+    Q_OBJECT
+
+  public:
+    explicit Canvas(QWidget* parent = nullptr);
+
+    /// Transparent parts show what is behind.
+    void setPicture(const QImage& picture);
+    const QImage& picture() const { return picture_; }
+    void setBackground(const QColor& colour);
+    /// Behind the picture, as large as fits; null: none. `opacity` 0…1.
+    void setReference(const QImage& image, double opacity);
+    /// Draws the line between two looks at this part of the width; nothing: none.
+    void setSplit(std::optional<float> split);
+
+  protected:
+    void paintEvent(QPaintEvent* event) override;
+
+  private:
+    void paintReference(QPainter& painter) const;
+    void paintSplit(QPainter& painter) const;
+
+    QImage picture_;
+    QImage reference_;
+    double referenceOpacity_ = 1;
+    QColor background_;
+    std::optional<float> split_;
+};
+
+}  // namespace hairloom::editor

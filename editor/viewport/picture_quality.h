@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// How the viewport draws: by which model, and how finely. Not part of the document, whose material serves all
+// models.
+
+#include "core/render/fibre_material.h"
+#include "core/render/options.h"
+
+namespace hairloom::editor {
+
+struct PictureQuality {
+    render::ShadingModel model = render::ShadingModel::kajiya;
+    std::uint32_t samples =
+        4;  ///< a pixel and frame, as render::RenderOptions; more than the device has: its most
+    std::uint32_t frames = 8;  ///< averaged when the picture is still, 1…256
+    render::PostFilter filter = render::PostFilter::none;
+    render::Transparency transparency = render::Transparency::stochastic;
+    render::Ribbons ribbons = render::Ribbons::strip;  ///< tessellated where the device can
+    render::Shadows shadows = render::Shadows::deepOpacity;
+    std::uint32_t shadowResolution = 1024;
+    std::uint32_t subdivisions = 2;                            ///< curve segments per segment of a strand
+    render::Scattering scattering = render::Scattering::dual;  ///< not of Kajiya-Kay
+
+    bool operator==(const PictureQuality&) const = default;
+};
+
+}  // namespace hairloom::editor

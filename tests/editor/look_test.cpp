@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Shading models with their controls, presets and thumbnails, two looks side by side, a reference picture,
+// how finely the viewport draws.
+#include <QComboBox>
+#include <QListWidget>
+#include <QPushButton>
+#include <cstdlib>
+
+#include "editor/fields/field_form.h"
+#include "editor/fields/number_box.h"
+#include "editor/look/tress.h"
+#include "tests/editor/window_fixture.h"
+#include "workspace/look_presets.h"
+
+namespace hairloom::editor {
+namespace {
+
+class LookTest : public WindowTest {
+  protected:
+    void SetUp() override {
+        WindowTest::SetUp();
+        openSampleHair("short");
+    }
+    void chooseModel(int index) {
+        auto* models = find<QComboBox>("shadingModel");
+        models->setCurrentIndex(index);
+        Q_EMIT models->activated(index);
+    }
+    bool offers(const char* field) {
+        return find<QWidget>(field)->isVisibleTo(window->panel("look")->widget());
+    }
+};
+
+TEST_F(LookTest, EachModelShowsItsOwnControls) {
+    const auto before = hash();
+    EXPECT_TRUE(offers("specular"));
+    EXPECT_FALSE(offers("indexOfRefraction"));
+    chooseModel(1);
+    EXPECT_EQ(viewport().quality().model, render::ShadingModel::marschner);
+    EXPECT_FALSE(offers("specular"));
+    EXPECT_TRUE(offers("indexOfRefraction"));
+    chooseModel(2);
+    EXPECT_TRUE(offers("indexOfRefraction"));
+    EXPECT_EQ(hash(), before) << "the material serves all models";
+    EXPECT_EQ(QSettings().value("look/shadingModel").toInt(), 2) << "kept for the next time";
+}
+
+TEST_F(LookTest, APresetGivesItsPigmentAndColours) {
+    const auto before = hash();
+    auto* looks = find<QListWidget>("looks");
+    ASSERT_GE(looks->count(), static_cast<int>(lookPresets().size()));
+    for (int i = 0; i < static_cast<int>(lookPresets().size()); ++i) {
+        const LookPreset& preset = lookPresets()[static_cast<std::size_t>(i)];
+        Q_EMIT looks->itemClicked(looks->item(i));
+        EXPECT_EQ(groom().material.eumelanin, preset.eumelanin) << preset.name;
+        EXPECT_FLOAT_EQ(groom().material.pheomelanin, preset.pheomelanin) << preset.name;
+        EXPECT_TRUE((groom().material.rootColour.array() <= groom().material.tipColour.array()).all());
+    }
+    expectSound();
+    document().goToStep(0);
+    EXPECT_EQ(hash(), before);
+    Q_EMIT looks->itemClicked(looks->item(0));
+    const Vec3f black = groom().material.tipColour;
+    Q_EMIT looks->itemClicked(looks->item(static_cast<int>(lookPresets().size()) - 1));
+    EXPECT_GT(groom().material.tipColour.minCoeff(), 10 * black.maxCoeff());
+}
+
+TEST_F(LookTest, LooksAreKeptInFilesAndFoundAgain) {
+    const std::filesystem::path looks = folder.path().toStdString();
+    HairMaterial material;
+    applyLook(lookPresets()[4], material);
+    material.scaleTiltDegrees = 3.5f;
+    material.specular = 1.75f;
+    ASSERT_TRUE(saveLook(looks, "my auburn", material));
+    EXPECT_EQ(savedLooks(looks), std::vector<std::string>{"my auburn"});
+    const auto back = loadLook(looks, "my auburn");
+    ASSERT_TRUE(back) << back.error().message();
+    Groom a, b;
+    a.material = material;
+    b.material = *back;
+    EXPECT_EQ(contentHash(a), contentHash(b));
+    EXPECT_FALSE(saveLook(looks, "../elsewhere", material));
+    EXPECT_FALSE(loadLook(looks, "no such"));
+}
+
+TEST_F(LookTest, ColoursFollowThePigmentWhenAsked) {
+    find<NumberBox>("eumelanin")->spinBox().setValue(6);
+    find<QPushButton>("colourByMelanin")->click();
+    const Vec3f dark = groom().material.tipColour;
+    find<NumberBox>("eumelanin")->spinBox().setValue(0.1);
+    find<QPushButton>("colourByMelanin")->click();
+    EXPECT_GT(groom().material.tipColour.minCoeff(), dark.maxCoeff());
+    EXPECT_EQ(document().stepCount(), 4);
+}
+
+TEST_F(LookTest, SwappingLooksIsAStep) {
+    find<QPushButton>("compareKeep")->click();
+    const auto a = hash();
+    find<NumberBox>("specular")->spinBox().setValue(1.5);
+    const auto b = hash();
+    find<QPushButton>("compareSwap")->click();
+    EXPECT_EQ(hash(), a);
+    find<QPushButton>("compareSwap")->click();
+    EXPECT_EQ(hash(), b);
+    EXPECT_EQ(document().stepCount(), 3);
+}
+
+class LookPictureTest : public LookTest {
+  protected:
+    void SetUp() override {
+        qputenv("HAIRLOOM_VIEWPORT", "readback");
+        LookTest::SetUp();
+        qputenv("HAIRLOOM_VIEWPORT", "readback");
+        window->resize(820, 520);
+        Groom guides = groom();
+        guides.interpolation.followPerGuide = 0;
+        document().open(std::move(guides), {}, "guides");
+        viewport().look(render::View::Front);
+    }
+    QImage shot() {
+        EXPECT_TRUE(viewport().waitForPicture(120'000));
+        EXPECT_FALSE(viewport().picture().isNull()) << window->statusLine().message().toStdString();
+        return viewport().picture().convertToFormat(QImage::Format_RGB32);
+    }
+    static double difference(const QImage& a, const QImage& b, const QRect& where) {
+        double sum = 0;
+        for (int y = where.top(); y <= where.bottom(); ++y) {
+            for (int x = where.left(); x <= where.right(); ++x) {
+                sum += std::abs(qGray(a.pixel(x, y)) - qGray(b.pixel(x, y)));
+            }
+        }
+        return sum / (where.width() * where.height());
+    }
+};
+
+TEST_F(LookPictureTest, ModelsAndTheirControlsShowInThePicture) {
+    QImage last = shot();
+    for (const int model : {1, 2, 0}) {
+        chooseModel(model);
+        const QImage now = shot();
+        EXPECT_GT(difference(last, now, now.rect()), 0.05) << "model " << model;
+        last = now;
+        find<NumberBox>(model == 0 ? "specular" : "longitudinalRoughness")
+            ->spinBox()
+            .setValue(model == 0 ? 2 : 0.9 - 0.2 * model);
+        const QImage turned = shot();
+        EXPECT_GT(difference(last, turned, now.rect()), 0.01) << "control of model " << model;
+        last = turned;
+    }
+}
+
+TEST_F(LookPictureTest, TwoLooksStandSideBySideAndTheLineIsDragged) {
+    const QImage a = shot();
+    find<QPushButton>("compareKeep")->click();
+    Groom pale = groom();
+    applyLook(lookPresets().back(), pale.material);
+    document().change("Look", Change::Look, pale);
+    const QImage b = shot();
+    find<QPushButton>("compareShow")->setChecked(true);
+    const QImage both = shot();
+    const int half = both.width() / 2;
+    const QRect left(0, 0, half - 2, both.height()),
+        right(half + 2, 0, both.width() - half - 2, both.height());
+    EXPECT_LT(difference(both, a, left), 0.02);
+    EXPECT_LT(difference(both, b, right), 0.02);
+    EXPECT_GT(difference(a, b, left), 0.2);
+    const QPoint line(viewport().width() / 2, 60);
+    drag({line, line + QPoint(-40, 0), line + QPoint(-100, 0)});
+    EXPECT_LT(viewport().split(), 0.45f);
+    const QImage dragged = shot();
+    EXPECT_LT(difference(dragged, b, right), 0.02);
+    find<QPushButton>("compareShow")->setChecked(false);
+    EXPECT_LT(difference(shot(), b, b.rect()), 0.02);
+}
+
+TEST_F(LookPictureTest, QualityChangesThePicture) {
+    const QImage before = shot();
+    auto* shadows = find<QComboBox>("shadows");
+    shadows->setCurrentIndex(0);
+    Q_EMIT shadows->activated(0);
+    EXPECT_EQ(viewport().quality().shadows, render::Shadows::none);
+    const QImage bright = shot();
+    EXPECT_GT(difference(before, bright, before.rect()), 0.1);
+    auto* frames = find<QComboBox>("frames");
+    frames->setCurrentIndex(0);
+    Q_EMIT frames->activated(0);
+    EXPECT_EQ(viewport().quality().frames, 1u);
+    EXPECT_GT(difference(bright, shot(), bright.rect()), 0);
+}
+
+TEST_F(LookPictureTest, AReferencePictureStandsBehindTheHead) {
+    QImage red(64, 64, QImage::Format_RGB32);
+    red.fill(QColor(200, 20, 20));
+    viewport().setReference(red, 1);
+    ASSERT_TRUE(viewport().waitForPicture(60'000));
+    const QImage seen = viewport().grab().toImage();
+    const QImage& picture = viewport().picture();
+    ASSERT_TRUE(picture.hasAlphaChannel());
+    const QPoint corner(seen.width() / 2, 4), middle(seen.width() / 2, seen.height() / 2);
+    EXPECT_GT(seen.pixelColor(corner).red(), 190) << "above the head";
+    EXPECT_LT(seen.pixelColor(corner).green(), 40);
+    EXPECT_GT(seen.pixelColor(middle).green(), 40) << "the head is opaque";
+    viewport().setReference({}, 1);
+    ASSERT_TRUE(viewport().waitForPicture(60'000));
+    EXPECT_LT(viewport().grab().toImage().pixelColor(corner).red(), 100);
+}
+
+TEST_F(LookPictureTest, ThumbnailsAreDrawnWhenNothingElseIs) {
+    QImage thumbnail;
+    QObject::connect(&viewport(), &Viewport::sidePictureReady, window.get(),
+                     [&](const QString& name, const QImage& picture) {
+                         if (name == "test") thumbnail = picture;
+                     });
+    HairMaterial material;
+    applyLook(lookPresets()[0], material);
+    const Vec3f white = Vec3f::Ones();
+    viewport().requestSidePicture("test", tressPicture(material, 64, white));
+    ASSERT_TRUE(QTest::qWaitFor([&] { return !thumbnail.isNull(); }, 60'000));
+    EXPECT_EQ(thumbnail.size(), QSize(64, 64));
+    EXPECT_LT(qGray(thumbnail.pixel(32, 32)), 90) << "black hair";
+    EXPECT_GT(qGray(thumbnail.pixel(1, 32)), 150) << "beside it";
+}
+
+}  // namespace
+}  // namespace hairloom::editor

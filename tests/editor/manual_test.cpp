@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The pictures of docs/manual.md, from the window itself: docs/pictures/make_editor_pictures.sh runs it. Only
+// when HAIRLOOM_MANUAL names a folder, because full heads of hair take a software device minutes.
+#include <QCheckBox>
+#include <QComboBox>
+#include <QDir>
+#include <QListWidget>
+#include <QPushButton>
+
+#include "core/editing/document.h"
+#include "editor/dialogs/export_dialog.h"
+#include "editor/fields/number_box.h"
+#include "editor/tools/brush_tool.h"
+#include "tests/editor/window_fixture.h"
+#include "workspace/look_presets.h"
+
+namespace hairloom::editor {
+namespace {
+
+constexpr int kPatience = 600'000;  // ms
+
+class ManualTest : public WindowTest {
+  protected:
+    ManualTest() : WindowTest(true) {}
+    void SetUp() override {
+        if (qEnvironmentVariableIsEmpty("HAIRLOOM_MANUAL")) GTEST_SKIP() << "HAIRLOOM_MANUAL names no folder";
+        qputenv("HAIRLOOM_VIEWPORT", "readback");
+        WindowTest::SetUp();
+        window->resize(1280, 800);
+        ASSERT_TRUE(QDir().mkpath(qEnvironmentVariable("HAIRLOOM_MANUAL")));
+    }
+    void TearDown() override {
+        if (window) WindowTest::TearDown();
+    }
+    void shoot(QWidget& widget, const QString& name) {
+        QCoreApplication::processEvents();
+        const QImage picture = widget.grab().toImage();
+        // 256 colours make a third of the file.
+        const QString file = qEnvironmentVariable("HAIRLOOM_MANUAL") + "/editor-" + name + ".png";
+        EXPECT_TRUE(picture.convertToFormat(QImage::Format_Indexed8, Qt::DiffuseDither).save(file))
+            << name.toStdString();
+    }
+    void shootWindow(const QString& name) {
+        EXPECT_TRUE(viewport().waitForPicture(kPatience)) << name.toStdString();
+        shoot(*window, name);
+    }
+    void raise(const char* panel) {
+        window->panel(panel)->raise();
+        QCoreApplication::processEvents();
+    }
+    BrushTool& brush(const char* id) {
+        trigger((std::string("tool.") + id).c_str());
+        return dynamic_cast<BrushTool&>(*session().tools.find(id));
+    }
+    QPoint onHead(float x, float down, float z) {
+        return at(Vec3f(x, groom().scalp->bounds().max().y() - down, z));
+    }
+    void show(const char* overlay, bool on) {
+        auto* box = find<QCheckBox>(overlay);
+        if (box->isChecked() != on) box->click();
+    }
+};
+
+TEST_F(ManualTest, ScalpAndRoots) {
+    shoot(*window, "start");
+    openBust();
+    viewport().look(render::View::ThreeQuarter);
+    viewport().frameAll();
+    shootWindow("head");
+    raise("tool");
+    auto& paint = brush("scalp_paint");
+    paint.settings().radius = 0.035f;
+    show("scalp", true);
+    drag({onHead(-0.02f, 0.05f, 0.09f), onHead(0.03f, 0.03f, 0.07f), onHead(0.06f, 0.05f, 0.03f),
+          onHead(0.07f, 0.08f, -0.02f)});
+    moveTo(onHead(0.05f, 0.06f, 0.04f));
+    shootWindow("selection");
+    raise("scalp");
+    trigger("tool.view");
+    Groom groom = document().groom();
+    groom.placement.count = 1500;
+    groom.placement.length = 0.16f;
+    document().change("Placement", Change::Placement, groom);
+    find<QPushButton>("placePreview")->click();
+    finishWork();
+    shootWindow("placement");
+}
+
+TEST_F(ManualTest, GroomingSpheresMotionAndLook) {
+    openSampleHair("shoulder");
+    // As many hairs as a software device draws in a minute.
+    Groom fewer = groom();
+    fewer.interpolation.followPerGuide = 6;
+    document().change("Follow hairs", Change::FollowHairs, fewer);
+    PictureQuality quality = viewport().quality();
+    quality.frames = 4;
+    viewport().setQuality(quality);
+    viewport().look(render::View::ThreeQuarter);
+    viewport().frameAll();
+    viewport().camera().zoom(1.35f);
+    viewport().redraw();
+    trigger("tool.comb");
+    raise("tool");
+    raise("look");
+    brush("comb").settings().radius = 0.03f;
+    moveTo(onHead(0.08f, 0.10f, 0.05f));
+    shootWindow("grooming");
+    trigger("tool.view");
+    raise("view");
+    raise("spheres");
+    show("spheres", true);
+    shootWindow("spheres");
+    show("spheres", false);
+    // Marschner's model beside Kajiya and Kay's, in auburn.
+    raise("look");
+    raise("tool");
+    Groom auburn = groom();
+    applyLook(lookPresets()[4], auburn.material);
+    document().change("Look", Change::Look, auburn);
+    find<QPushButton>("compareKeep")->click();
+    PictureQuality fibres = viewport().quality();
+    fibres.model = render::ShadingModel::marschner;
+    viewport().setQuality(fibres);
+    find<QPushButton>("compareShow")->setChecked(true);
+    ASSERT_TRUE(viewport().waitForPicture(kPatience));
+    // Thumbnails come when nothing else is to be drawn.
+    auto* looks = find<QListWidget>("looks");
+    const auto drawn = [&] { return looks->item(looks->count() - 1)->data(Qt::UserRole).toBool(); };
+    EXPECT_TRUE(QTest::qWaitFor(drawn, kPatience));
+    shootWindow("look");
+    find<QPushButton>("compareShow")->setChecked(false);
+    // Wind.
+    raise("effects");
+    trigger("tool.wind");
+    Groom windy = groom();
+    windy.simulation.windSpeed = 7;
+    windy.simulation.windDirection = {-1, 0.1f, 0.1f};
+    document().change("Wind", Change::Simulation, windy);
+    trigger("play.toggle");
+    ASSERT_TRUE(QTest::qWaitFor(
+        [this] {
+            const auto& frame = session().player.frame();
+            return frame && frame->time > 1.2;
+        },
+        kPatience));
+    trigger("play.toggle");
+    shootWindow("wind");
+    trigger("play.reset");
+    ExportDialog exporting(session(), window.get());
+    exporting.show();
+    exporting.exportTo(inFolder("shoulder.tfx"));
+    finishWork();
+    shoot(exporting, "export");
+}
+
+}  // namespace
+}  // namespace hairloom::editor
