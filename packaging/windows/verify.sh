@@ -53,8 +53,8 @@ roomTests() {
 # Wine 8's Vulkan renderer loses all rows but the first of textures of one byte a texel whose width is no multiple of four,
 # whatever program asks; nothing here makes such textures (docs/windows.md).
 flaw_of_wine=RoundTrip.RowsOfOddBytesComeBackAsTheyWent
-# Wine's shaders for OpenGL round otherwise than those for Vulkan, which give the bits of a Vulkan device: there kernels are
-# held to the numeric tolerance.
+# Wine's shaders for OpenGL give other numbers than those for Vulkan (docs/windows.md), through which a device gives the bits of
+# a Vulkan device: there kernels are held to the numeric tolerance.
 but_for_parity='-*Parity*:HardCases*:WholeRun*'
 listsDirect3D() { cli devices --json | tee /dev/stderr | grep -q '"Direct3D 11"'; }
 
