@@ -14,5 +14,5 @@ void main(uint3 id : SV_DispatchThreadID) {
     const FibreCase c = gCases[id.x];
     const FibreFrame f = fibreFrame(c.tangent.xyz, c.toLight.xyz, c.toView.xyz);
     gResults[2 * id.x] = float4(fibreScattering(gFibre, f, c.tangent.w, 1.0), 0);
-    gResults[2 * id.x + 1] = float4(multipleScattering(gFibre, f, c.toLight.w, c.toView.w, 1.0), 0);
+    gResults[2 * id.x + 1] = float4(multipleScattering(gFibre, f, c.toLight.w, c.toView.w, 1.0, c.ground.rgb), 0);
 }

@@ -31,19 +31,18 @@ void main(uint3 id : SV_DispatchThreadID) {
     const float vary = 1.0 + gShade.rootTip.z * (strand.random * 2.0 - 1.0);
     const float3 own = strand.albedo.w > 0 ? strand.albedo.rgb / max(gShade.albedo.rgb, 1e-3) : 1.0;
     const float3 tint = own * (lerp(gShade.rootTip.x, gShade.rootTip.y, p.along) * vary);
-    const float clumping = gFibre.lobes.w;
-
     float3 colour = 0;
     float openness = 0;
     for (uint i = 0; i < gShade.counts.y; ++i) {
         const LightConstants light = gShade.lights[i];
         const float3 toLight = directionToLight(light, p.position_ws.xyz);
         const Occlusion o = occlusion(light, p.position_ws.xyz, 0.0007, 0.004);
-        const float before = clumping * o.fibres;
         const FibreFrame f = fibreFrame(tangent, toLight, toView);
-        float3 scattered = exp(-before) * fibreScattering(gFibre, f, hashUnit(p.strand * 2u), tint);
+        float3 scattered =
+            passedDirectly(light, o.fibres, gFibre.lobes.w) * fibreScattering(gFibre, f, hashUnit(p.strand * 2u), tint);
 #ifdef HAIRLOOM_DUAL
-        scattered += multipleScattering(gFibre, f, before, clumping * o.allFibres, tint);
+        scattered += multipleScattering(gFibre, f, gFibre.lobes.w * o.fibres, gFibre.lobes.w * o.allFibres, tint,
+                                        gShade.ground.rgb * o.ground);
 #endif
         colour += irradianceOf(light, p.position_ws.xyz) * o.visibility * scattered;
         openness += exp(-0.35 * o.fibres) * lerp(0.25, 1.0, o.visibility);

@@ -2,6 +2,7 @@
 #include "core/render/fibre_tables.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/shading/tables.h"
 
@@ -30,6 +31,21 @@ Result<gpu::TexturePtr> upload(gpu::Device& device, const char* name, const shad
 shaders::float4 toFloat4(const Vec3d& v) {
     const Vec3f f = v.cast<float>();
     return {f.x(), f.y(), f.z(), 0};
+}
+
+/// Of light across the fibres. In single scattering what meets a fibre is lost.
+HairFlux fluxOf(const FibreMaterial& material, const shading::DualScattering& dual) {
+    HairFlux flux{Vec3f::Ones(), Vec3f::Zero(), material.clumping};
+    if (material.scattering == Scattering::single) return flux;
+    const shading::AverageScattering average = dual.at(0).average;
+    for (int c = 0; c < 3; ++c) {
+        const double lost = 1 - average.forward[c];
+        const double rate =
+            std::sqrt(std::max(lost * lost - average.backward[c] * average.backward[c], 1e-6));
+        flux.rate[c] = static_cast<float>(rate);
+        flux.returned[c] = static_cast<float>(average.backward[c] / (lost + rate));
+    }
+    return flux;
 }
 
 const shading::Table& spreadFactors() {
@@ -62,6 +78,7 @@ Result<FibreTables> FibreTables::make(gpu::Device& device, const FibreMaterial& 
             ambient = ambient.array() / (1 - kMeetsAgain * ambient.array().min(1.0));
         }
         result.constants_.ambient = toFloat4(ambient);
+        result.flux_ = fluxOf(material, dual);
     };
     shaders::FibreConstants& c = result.constants_;
     c.spread = {static_cast<float>(shading::kLeastSpread), static_cast<float>(shading::kLargestSpread), 0, 0};

@@ -8,6 +8,14 @@
 
 namespace hairloom::render {
 
+/// How light sinks through hair to the skin.
+struct HairFlux {
+    /// The logarithm of what a fibre takes, linear RGB. That of Kajiya-Kay is an artist's.
+    Vec3f rate = Vec3f::Constant(0.62f);
+    Vec3f returned = Vec3f::Zero();  ///< share that hair without end sends back
+    float clumping = 0.81f;          ///< see FibreMaterial
+};
+
 /// Only what the model needs is made: none for Kajiya-Kay, those of dual scattering where it is on.
 class FibreTables {
   public:
@@ -21,11 +29,13 @@ class FibreTables {
     void bind(gpu::CommandList& list) const;
 
     const shaders::FibreConstants& constants() const { return constants_; }
+    const HairFlux& flux() const { return flux_; }
     std::uint64_t bytes() const;  ///< of all tables on the device
 
   private:
     FibreMaterial material_;
     shaders::FibreConstants constants_;
+    HairFlux flux_;
     std::vector<gpu::TexturePtr> textures_;  ///< in the order of their registers
     gpu::SamplerPtr sampler_;
 };

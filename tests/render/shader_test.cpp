@@ -83,6 +83,8 @@ TEST_F(ShaderTest, KajiyaKayAgreesWithTheReference) {
     }
 }
 
+const Vec3d kGround(0.5, 0.35, 0.27);
+
 struct FibreCases {
     std::vector<shaders::FibreCase> cases;
     std::vector<shading::FibreAngles> angles;
@@ -97,7 +99,7 @@ struct FibreCases {
             const double before = 4 * random.uniformDouble();
             angles.push_back(here);
             cases.push_back({toFloat4(tangent, random.uniformDouble()), toFloat4(toLight, before),
-                             toFloat4(toView, before + 4 * random.uniformDouble())});
+                             toFloat4(toView, before + 4 * random.uniformDouble()), toFloat4(kGround, 0)});
         }
     }
 };
@@ -154,7 +156,7 @@ TEST_F(ShaderTest, FibreModelsAgreeWithTheReference) {
             multiple.add(result[2 * i + 1],
                          shading::multipleScattering(dual.at(0.5 * std::abs(out - in)), in, out, phi,
                                                      static_cast<double>(c.toLight.w),
-                                                     static_cast<double>(c.toView.w)));
+                                                     static_cast<double>(c.toView.w), kGround));
         }
         EXPECT_LT(single.value(), 0.01) << isMarschner;
         EXPECT_LT(multiple.value(), 0.02) << isMarschner;
