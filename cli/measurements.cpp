@@ -12,10 +12,42 @@
 namespace hairloom::cli {
 namespace {
 
-std::vector<Measurement> measurementsOf(const nlohmann::json& result) {
+/// Google Benchmark writes statistics that are no numbers, such as the variation of a counter that stays 0,
+/// as bare NaN and Infinity, which JSON does not have; here they are null.
+std::string withoutBareWords(std::string_view text) {
+    constexpr std::string_view kWords[] = {"NaN", "-NaN", "Infinity", "-Infinity"};
+    std::string json;
+    bool quoted = false;
+    for (std::size_t i = 0; i < text.size();) {
+        if (quoted && text[i] == '\\') {
+            json += text.substr(i, 2);
+            i += 2;
+            continue;
+        }
+        if (text[i] == '"') quoted = !quoted;
+        const std::string_view rest = text.substr(i);
+        const auto* const word = std::ranges::find_if(
+            kWords, [&](std::string_view candidate) { return !quoted && rest.starts_with(candidate); });
+        if (word == std::end(kWords)) {
+            json += text[i++];
+        } else {
+            json += "null";
+            i += word->size();
+        }
+    }
+    return json;
+}
+
+}  // namespace
+
+Result<std::vector<Measurement>> measurementsOf(std::string_view benchmarkJson) {
+    const auto result = nlohmann::json::parse(withoutBareWords(benchmarkJson), nullptr, false);
+    const auto benchmarks = result.is_object() ? result.find("benchmarks") : result.end();
+    if (benchmarks == result.end())
+        return fail("the benchmark wrote no JSON", "expected Google Benchmark's format");
     std::vector<Measurement> measurements;
     std::map<std::string, std::size_t> places;
-    for (const auto& run : result.at("benchmarks")) {
+    for (const auto& run : *benchmarks) {
         if (run.at("run_type") != "iteration" || run.contains("error_occurred")) continue;
         const auto name = run.at("name").get<std::string>();
         const auto [place, isNew] = places.try_emplace(name, measurements.size());
@@ -24,8 +56,6 @@ std::vector<Measurement> measurementsOf(const nlohmann::json& result) {
     }
     return measurements;
 }
-
-}  // namespace
 
 double Measurement::median() const {
     return quartiles(values).median;
@@ -52,10 +82,7 @@ Result<std::vector<Measurement>> runBenchmarkProgram(const std::string& name, in
     const auto output = runChild("the benchmark", programFolder() / ("bench_" + name), all, limits);
     if (!output) return tl::unexpected(output.error());
     const char* const text = reinterpret_cast<const char*>(output->data());
-    const auto result = nlohmann::json::parse(text, text + output->size(), nullptr, false);
-    if (result.is_discarded())
-        return fail("the benchmark wrote no JSON", "expected Google Benchmark's format");
-    return measurementsOf(result);
+    return measurementsOf(std::string_view(text, output->size()));
 }
 
 }  // namespace hairloom::cli

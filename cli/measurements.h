@@ -3,6 +3,7 @@
 // Repeated measurements, and the programs that make some of them.
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/job.h"
@@ -20,6 +21,9 @@ struct Measurement {
 
 /// name, n, median, min, max, unit.
 Report rowOf(const Measurement& measurement);
+
+/// The real times that a benchmark program wrote. Errors: that is not Google Benchmark's JSON.
+Result<std::vector<Measurement>> measurementsOf(std::string_view benchmarkJson);
 
 /// Runs bench_NAME, which must lie beside this program, and returns the real times of its measurements.
 /// Errors: it is not there, fails, or writes what is not Google Benchmark's JSON.

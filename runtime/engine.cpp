@@ -220,6 +220,8 @@ Engine::Frame Engine::makeFrame(const FrameInput& input) {
     }
     frame.rescale = state_.substep > 0.0f ? h / state_.substep : 1.0f;
     frame.newBend = plan_.on(Effect::angular) && bend_.substep != h;
+    frame.kernels = &kernels();
+    if (!host_.nanoseconds) frame.passes = passesOf(plan_.stages(), *frame.kernels);
     return frame;
 }
 
@@ -298,8 +300,8 @@ void Engine::addVelocities(std::span<const Float3> changes_ws) {
                 if (!isFinite(change) || change == Float3{}) continue;
                 const std::size_t i = std::size_t{p} * kBlockLanes + lane;
                 previous.x[i] -= change.x * h;
-                previous.y[i] -= change.y * h;
-                previous.z[i] -= change.z * h;
+                previous.y()[i] -= change.y * h;
+                previous.z()[i] -= change.z * h;
                 changed = true;
             }
         }

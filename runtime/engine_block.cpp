@@ -23,13 +23,13 @@ void Engine::runBlock(std::size_t block, const Frame& frame) {
     const BlockView blockView = view(block);
     LaneFrame lanes;
     enterFrame(block, blockView, lanes, frame);
-    if (frame.rescale != 1.0f) kernels().rescale(blockView, frame.rescale);
+    if (frame.rescale != 1.0f) frame.kernels->rescale(blockView, frame.rescale);
     if (frame.windy) {
-        kernels().sampleWind(blockView, lanes, frame.context.h, wind_.wind, frame.windFrom.data(),
-                             frame.windTo.data());
+        frame.kernels->sampleWind(blockView, lanes, frame.context.h, wind_.wind, frame.windFrom.data(),
+                                  frame.windTo.data());
     }
     runStages(block, blockView, lanes, frame);
-    report.fastest = kernels().fastest(blockView, frame.context.h);
+    report.fastest = frame.kernels->fastest(blockView, frame.context.h);
     if (!std::isfinite(report.fastest)) restoreStrands(block, blockView);
     rest(block, blockView, frame);
 }
@@ -42,7 +42,7 @@ void Engine::restoreStrands(std::size_t block, const BlockView& blockView) {
         for (std::uint32_t p = 0; p < blockView.points; ++p) {
             const std::size_t i = std::size_t{p} * kBlockLanes + lane;
             const auto at = [&](const Planes& planes) {
-                return Float3{planes.x[i], planes.y[i], planes.z[i]};
+                return Float3{planes.x[i], planes.y()[i], planes.z()[i]};
             };
             const Float3 place = at(blockView.position), moved = place - at(blockView.previous);
             // As Kernels::fastest has it: comparisons with what is no number are false.
@@ -70,8 +70,8 @@ void Engine::rest(std::size_t block, const BlockView& blockView, const Frame& fr
     if (!rest.asleep) return;
     const std::size_t floats = std::size_t{blockView.points} * kBlockLanes;
     std::copy_n(blockView.position.x, floats, blockView.previous.x);
-    std::copy_n(blockView.position.y, floats, blockView.previous.y);
-    std::copy_n(blockView.position.z, floats, blockView.previous.z);
+    std::copy_n(blockView.position.y(), floats, blockView.previous.y());
+    std::copy_n(blockView.position.z(), floats, blockView.previous.z());
 }
 
 /// A cut turns the strand along rigidly: places, velocities and curves.
@@ -80,10 +80,10 @@ void Engine::turnAlong(const BlockView& view, std::uint32_t lane, Quat turn) {
         const std::size_t i = std::size_t{p} * kBlockLanes + lane;
         for (const Planes& planes : {view.position, view.previous, view.curve}) {
             if (!planes.x) continue;
-            const Float3 turned = rotate(turn, Float3{planes.x[i], planes.y[i], planes.z[i]});
+            const Float3 turned = rotate(turn, Float3{planes.x[i], planes.y()[i], planes.z()[i]});
             planes.x[i] = turned.x;
-            planes.y[i] = turned.y;
-            planes.z[i] = turned.z;
+            planes.y()[i] = turned.y;
+            planes.z()[i] = turned.z;
         }
     }
 }
@@ -124,12 +124,10 @@ void Engine::enterFrame(std::size_t block, const BlockView& view, LaneFrame& lan
 }
 
 void Engine::runStages(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame) {
-    const Kernels& table = kernels();
     SubstepContext context = frame.context;
     if (!host_.nanoseconds) {
         for (context.index = 0; context.index < context.count; ++context.index) {
-            for (const StageId id : plan_.stages())
-                table.stages[static_cast<std::size_t>(id)](view, lanes, context);
+            for (std::size_t i = 0; i < frame.passes.count; ++i) frame.passes.calls[i](view, lanes, context);
         }
         return;
     }
@@ -137,7 +135,7 @@ void Engine::runStages(std::size_t block, const BlockView& view, LaneFrame& lane
     std::uint64_t before = host_.nanoseconds();
     for (context.index = 0; context.index < context.count; ++context.index) {
         for (const StageId id : plan_.stages()) {
-            table.stages[static_cast<std::size_t>(id)](view, lanes, context);
+            frame.kernels->stages[static_cast<std::size_t>(id)](view, lanes, context);
             const std::uint64_t after = host_.nanoseconds();
             times[static_cast<std::size_t>(id)] += after - before;
             before = after;

@@ -16,6 +16,8 @@ struct Engine::Frame {
     bool windy;
     float rescale;  ///< new substep over old, 1 when equal
     bool newBend;
+    const Kernels* kernels;
+    Passes passes;  ///< of the plan, where no clock stands between its stages
 };
 
 }  // namespace hairloom::runtime

@@ -13,6 +13,8 @@
 // `previous` is the position one substep ago relative to the root of now, so position − previous is the world
 // displacement.
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -23,22 +25,22 @@ namespace hairloom::runtime {
 
 inline constexpr std::uint32_t kBlockLanes = 32;
 
-/// x, y and z of one quantity, each an array.
-struct Planes {
-    float* x = nullptr;
-    float* y = nullptr;
-    float* z = nullptr;
-};
+/// x, y and z of one quantity: three arrays, `pitch` floats apart.
+template <class Float>
+struct PlanesOf {
+    Float* x = nullptr;
+    std::size_t pitch = 0;
 
-struct ConstPlanes {
-    const float* x = nullptr;
-    const float* y = nullptr;
-    const float* z = nullptr;
+    Float* y() const { return x + pitch; }
+    Float* z() const { return x + 2 * pitch; }
 };
+using Planes = PlanesOf<float>;
+using ConstPlanes = PlanesOf<const float>;
 
 struct BlockView {
     std::uint32_t points;     ///< per strand
     std::uint32_t firstFree;  ///< points before it are clamped
+    std::size_t pitch;        ///< of all planes below
     Planes position;
     Planes previous;
     ConstPlanes rest;            ///< vector of segment s, from point s to s + 1, in the root's frame, at
@@ -120,8 +122,15 @@ float slowestSwept(const SubstepContext& context);
 
 using Stage = void (*)(const BlockView& block, LaneFrame& lanes, const SubstepContext& context);
 
+/// What the strands move through.
+enum class Air : std::uint32_t { none, still, moving };
+inline constexpr std::size_t kAirCount = 3;
+
 struct Kernels {
     Stage stages[kStageCount];  ///< by StageId
+    /// Stages that follow each other, in one pass and with the same bits: damping or none, by 0 and 1, then
+    /// the air's stage, by Air, then gravity or none, then `verlet`.
+    Stage moves[2][kAirCount][2];
     /// Multiplies every displacement by `factor`: the speed stays when the length of the substep changes.
     void (*rescale)(const BlockView& block, float factor);
     /// Fills windRoot and windTip, for substeps of h seconds, for the frame that begins at the phases `from`
@@ -134,6 +143,13 @@ struct Kernels {
     float (*fastest)(const BlockView& block, float h);
     const char* target;  ///< name of the instruction set
 };
+
+/// The stages of a plan as passes over a block, as few as there are kernels for.
+struct Passes {
+    std::array<Stage, kMostStages> calls;
+    std::size_t count = 0;
+};
+Passes passesOf(std::span<const StageId> stages, const Kernels& kernels);
 
 /// The kernels for the best instruction set of this machine.
 const Kernels& kernels();

@@ -202,14 +202,15 @@ BlockView viewOf(const Arrays& arrays, std::size_t index, std::uint32_t clampedP
     const Block& block = arrays.shape.blocks[index];
     const std::size_t size = planeSize(block);
     const float* rest = arrays.shape.planes.data() + block.firstPlane * kRestPlanes;
-    const auto three = [&](float* first) { return Planes{first, first + size, first + 2 * size}; };
+    const auto three = [&](float* first) { return Planes{first, size}; };
     float* moving = arrays.state.planes.data() + block.firstPlane * kStatePlanes;
     BlockView view{};
     view.points = block.points;
     view.firstFree = clampedPoints;
+    view.pitch = size;
     view.position = three(moving);
     view.previous = three(moving + 3 * size);
-    view.rest = {rest, rest + size, rest + 2 * size};
+    view.rest = {rest, size};
     view.length = rest + 3 * size;
     view.inverseLength = rest + 4 * size;
     view.inverseMass = rest + 5 * size;
@@ -223,7 +224,7 @@ BlockView viewOf(const Arrays& arrays, std::size_t index, std::uint32_t clampedP
             view.lower2 = plane + 2 * size;
             plane += 3 * size;
         }
-        if (arrays.bend.targets) view.target = {plane, plane + size, plane + 2 * size};
+        if (arrays.bend.targets) view.target = {plane, size};
     }
     if (!arrays.state.curves.empty()) {
         view.curve = three(arrays.state.curves.data() + block.firstPlane * 3);

@@ -77,8 +77,10 @@ Wind makeWind(const SimulationSettings& settings, const WindInput& input) {
 std::array<float, kWindModes> windPhases(const Wind& wind, double time) {
     std::array<float, kWindModes> phases{};
     for (std::size_t m = 0; m < kWindModes; ++m) {
-        const double turns = static_cast<double>(wind.modes[m].turns) -
-                             static_cast<double>(wind.modes[m].turnsPerSecond) * time;
+        // Whole turns go before the product: it may leave the range of a double, or have no fraction left.
+        const double rate = static_cast<double>(wind.modes[m].turnsPerSecond);
+        const double past = rate == 0.0 ? 0.0 : std::remainder(time, 1.0 / rate) * rate;
+        const double turns = static_cast<double>(wind.modes[m].turns) - past;
         phases[m] = static_cast<float>(turns - std::round(turns));
     }
     return phases;

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "core/accuracy/thread_clock.h"
 #include "core/base/parallel.h"
 #include "core/base/profiler.h"
 
@@ -28,8 +29,13 @@ double medianOf(std::vector<double>& values) {
     return *middle;
 }
 
-double millisecondsSince(std::uint64_t begin) {
-    return static_cast<double>(nanosecondsNow() - begin) * 1e-6;
+/// What one thread does is measured in its processor time, what several do together on the wall.
+std::uint64_t workNanoseconds(bool allThreads) {
+    return allThreads ? nanosecondsNow() : threadNanoseconds();
+}
+
+double milliseconds(std::uint64_t nanoseconds) {
+    return static_cast<double>(nanoseconds) * 1e-6;
 }
 
 }  // namespace
@@ -58,9 +64,9 @@ double StepRun::milliseconds(std::uint32_t frames) {
         head_.placeRoots(time_, roots_);
         input.time = time_;
         input.roots_ws = roots_;
-        const std::uint64_t begin = nanosecondsNow();
+        const std::uint64_t begin = workNanoseconds(scene_.allThreads);
         engine_->step(input);
-        whole.push_back(millisecondsSince(begin));
+        whole.push_back(hairloom::milliseconds(workNanoseconds(scene_.allThreads) - begin));
         for (std::size_t i = 0; i < stages.size(); ++i)
             stages[i].push_back(engine_->lastStep().stageMilliseconds[i]);
     }
@@ -125,7 +131,7 @@ double BareIntegrator::milliseconds(std::uint32_t frames) {
     for (std::uint32_t f = 0; f < frames; ++f) {
         time_ += static_cast<double>(kFrame);
         head_.placeRoots(time_, roots_);
-        const std::uint64_t begin = nanosecondsNow();
+        const std::uint64_t begin = threadNanoseconds();
         for (std::size_t b = 0; b < shape_->blocks.size(); ++b) {
             const runtime::BlockView view =
                 runtime::viewOf({*shape_, state_, bend_, evaluation_, 0}, b, clamped);
@@ -136,7 +142,7 @@ double BareIntegrator::milliseconds(std::uint32_t frames) {
                 verlet(view, lanes, context);
             }
         }
-        times.push_back(millisecondsSince(begin));
+        times.push_back(hairloom::milliseconds(threadNanoseconds() - begin));
     }
     return medianOf(times);
 }
@@ -149,9 +155,9 @@ double followMilliseconds(runtime::FollowHairs& hairs, const scenes::Lawn& lawn,
     hairs.evaluate(lawn.motion(), points, host);  // touches the memory
     std::vector<double> times;
     for (std::uint32_t f = 0; f < frames; ++f) {
-        const std::uint64_t begin = nanosecondsNow();
+        const std::uint64_t begin = workNanoseconds(allThreads);
         hairs.evaluate(lawn.motion(), points, host);
-        times.push_back(millisecondsSince(begin));
+        times.push_back(milliseconds(workNanoseconds(allThreads) - begin));
     }
     return medianOf(times);
 }
@@ -160,11 +166,11 @@ double profilerScopeNanoseconds(std::uint32_t batches) {
     constexpr int kScopes = 1000;
     std::vector<double> times;
     for (std::uint32_t b = 0; b < batches; ++b) {
-        const std::uint64_t begin = nanosecondsNow();
+        const std::uint64_t begin = threadNanoseconds();
         for (int i = 0; i < kScopes; ++i) {
             HAIRLOOM_PROFILE("measuring the profiler");
         }
-        times.push_back(millisecondsSince(begin) * 1e6 / kScopes);
+        times.push_back(static_cast<double>(threadNanoseconds() - begin) / kScopes);
     }
     return medianOf(times);
 }

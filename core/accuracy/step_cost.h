@@ -26,8 +26,8 @@ class StepRun {
   public:
     explicit StepRun(const StepScene& scene);
 
-    /// Milliseconds of the median one of the next `frames` ≥ 1 frames of 1/60 s: what else the machine does
-    /// in between falls on few of them.
+    /// Milliseconds of the median one of the next `frames` ≥ 1 frames of 1/60 s; of one thread in its
+    /// processor time, of all on the wall, where what else the machine does falls on few of them.
     double milliseconds(std::uint32_t frames);
     /// As many frames as take about `seconds` on this machine, 2 to 240; runs up to 20 to find out, in which
     /// the hair also comes into motion.
@@ -68,7 +68,7 @@ class BareIntegrator {
     double time_ = 0.0;
 };
 
-/// Milliseconds in which `hairs` follow their guides, the median of `frames`.
+/// Milliseconds in which `hairs` follow their guides, the median of `frames`, as StepRun::milliseconds.
 double followMilliseconds(runtime::FollowHairs& hairs, const scenes::Lawn& lawn, bool allThreads,
                           std::uint32_t frames);
 

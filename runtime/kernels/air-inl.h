@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// External forces: gravity, drag of still air, wind.
+// The wind at the strands of a block.
 #if defined(HAIRLOOM_RUNTIME_AIR_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HAIRLOOM_RUNTIME_AIR_INL_H
 #undef HAIRLOOM_RUNTIME_AIR_INL_H
@@ -16,52 +16,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {
 namespace HWY_NAMESPACE {
-
-void applyGravity(const BlockView& block, LaneFrame&, const SubstepContext& context) {
-    const V3 step = all3(context.gravityStep);
-    const std::size_t end = std::size_t{block.points} * kBlockLanes;
-    for (std::size_t i = std::size_t{block.firstFree} * kBlockLanes; i < end; i += kWidth) {
-        store3(load3(block.previous, i) - step, block.previous, i);
-    }
-}
-
-/// Hair takes on the air's velocity at the rate airDrag · sin of its angle to the tangent (Rünz 2012,
-/// Section 3.3).
-template <bool kWind>
-void applyAir(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
-    const V share = all(context.dragShare);
-    const V tiny = all(1e-30f);
-    const float now = static_cast<float>(context.index + 1) / static_cast<float>(context.count);
-    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
-        V3 atRoot{}, slope{};
-        if constexpr (kWind) {
-            const V t = all(now);
-            const V3 r0 = load3(lanes.windRoot[0], lane), r1 = load3(lanes.windRoot[1], lane);
-            const V3 t0 = load3(lanes.windTip[0], lane), t1 = load3(lanes.windTip[1], lane);
-            atRoot = {lerp(r0.x, r1.x, t), lerp(r0.y, r1.y, t), lerp(r0.z, r1.z, t)};
-            slope = V3{lerp(t0.x, t1.x, t), lerp(t0.y, t1.y, t), lerp(t0.z, t1.z, t)} - atRoot;
-        }
-        const float inverseLast = 1.0f / static_cast<float>(block.points - 1);
-        V3 parent = load3(block.position, (block.firstFree - 1) * kBlockLanes + lane);
-        for (std::uint32_t p = block.firstFree; p < block.points; ++p) {
-            const std::size_t i = std::size_t{p} * kBlockLanes + lane;
-            const V3 position = load3(block.position, i);
-            const V3 previous = load3(block.previous, i);
-            V3 flow = previous - position;
-            if constexpr (kWind) {
-                const V along = all(static_cast<float>(p) * inverseLast);
-                flow = flow + atRoot + slope * along;
-            }
-            const V3 tangent = position - parent;
-            const V both = dot(flow, flow) * dot(tangent, tangent);
-            const V parallel = dot(flow, tangent);
-            const V sineSquared = hn::Max(both - parallel * parallel, hn::Zero(D())) / (both + tiny);
-            const V part = share * hn::Sqrt(hn::Min(sineSquared, all(1.0f)));
-            store3(previous - flow * part, block.previous, i);
-            parent = position;
-        }
-    }
-}
 
 /// Velocity of the air at one place: the mean flow and its gusts or eddies.
 HWY_INLINE V3 windAt(const Wind& wind, const float* phases, V3 place_ws) {

@@ -8,6 +8,7 @@
 #endif
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -169,26 +170,25 @@ class Contacts {
     }
 
   private:
-    /// What is out of reach is left out in three steps: spheres that miss the box of all points, then pieces
-    /// of strands whose own boxes all miss it, then points.
+    /// What is out of reach is left out in three steps: spheres that miss the box of a strip, then pieces of
+    /// strands whose own boxes all miss it, then points.
     HWY_INLINE void findPieces(std::uint32_t begin, std::uint32_t end) {
         pieceCount_ = touchCount_ = 0;
-        PieceBoxes boxes[kStrips];
-        WideBox world = WideBox::empty();
-        for (std::uint32_t n = 0; n < kStrips; ++n) {
-            world.add(boxes[n].take(block_, n * kWidth, begin, end), load3(roots_, n * kWidth));
-        }
-        spheres_.forEachMeeting(world.reduced(), [&](std::size_t k) HWY_ATTR {
-            const V widest = all(spheres_.widest[k] * spheres_.widest[k] * 1.0001f);
-            for (std::uint32_t n = 0; n < kStrips; ++n) {
-                const V3 centre = spheres_.centre(k) - load3(roots_, n * kWidth);
-                for (std::uint32_t piece = 0; piece < boxes[n].count; ++piece) {
-                    const bool misses = hn::AllFalse(D(), boxes[n].squaredGap(piece, centre) <= widest);
-                    pieces_[pieceCount_] = pair(k, begin + piece * PieceBoxes::kPoints, n * kWidth);
+        PieceBoxes boxes;
+        for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+            const V3 root = load3(roots_, lane);
+            WideBox world = WideBox::empty();
+            world.add(boxes.take(block_, lane, begin, end), root);
+            spheres_.forEachMeeting(world.reduced(), [&](std::size_t k) HWY_ATTR {
+                const V widest = all(spheres_.widest[k] * spheres_.widest[k] * 1.0001f);
+                const V3 centre = spheres_.centre(k) - root;
+                for (std::uint32_t piece = 0; piece < boxes.count; ++piece) {
+                    const bool misses = hn::AllFalse(D(), boxes.squaredGap(piece, centre) <= widest);
+                    pieces_[pieceCount_] = pair(k, begin + piece * PieceBoxes::kPoints, lane);
                     pieceCount_ += misses ? 0u : 1u;
                 }
-            }
-        });
+            });
+        }
     }
 
     HWY_INLINE void findPoints(std::uint32_t end) {
@@ -209,20 +209,19 @@ class Contacts {
         }
     }
 
-    HWY_INLINE void touchAll() const {
-        std::uint16_t others[SphereSet::kMost];
-        std::uint32_t count = 0;
-        std::size_t k = SphereSet::kMost;
-        for (std::uint32_t t = 0; t < touchCount_; ++t) {
-            if (touches_[t].sphere != k) {
-                k = touches_[t].sphere;
-                count = spheres_.overlapping(k, others);
-            }
-            touch(t, others, count);
-        }
+    HWY_INLINE void touchAll() {
+        for (std::uint32_t t = 0; t < touchCount_; ++t) touch(t, overlapsOf(touches_[t].sphere));
     }
 
-    HWY_INLINE void touch(std::uint32_t t, const std::uint16_t* others, std::uint32_t count) const {
+    /// The spheres that overlap sphere k, as bits.
+    HWY_INLINE std::uint64_t overlapsOf(std::size_t k) {
+        const std::uint64_t bit = std::uint64_t{1} << k;
+        if ((overlapsKnown_ & bit) == 0) overlaps_[k] = spheres_.overlapping(k);
+        overlapsKnown_ |= bit;
+        return overlaps_[k];
+    }
+
+    HWY_INLINE void touch(std::uint32_t t, std::uint64_t others) const {
         const std::size_t k = touches_[t].sphere, i = touches_[t].index;
         const V3 root = load3(roots_, touches_[t].index % kBlockLanes);
         const V pearl = all(pearls_[i / kBlockLanes]);
@@ -244,9 +243,10 @@ class Contacts {
         const auto inside = hn::And(hn::LoadMaskBits(D(), touching_[t]), squared < reach * reach);
         const V3 placed = respond(block_, context_, i, {inside, centre, step, reach, from});
         auto again = noLane();
-        for (std::uint32_t n = 0; n < count; ++n) {
-            const V3 itsOffset = placed - (spheres_.centre(others[n]) - root);
-            const V itsReach = all(spheres_.radius[others[n]]) + pearl;
+        for (; others != 0; others &= others - 1) {
+            const auto other = static_cast<std::size_t>(std::countr_zero(others));
+            const V3 itsOffset = placed - (spheres_.centre(other) - root);
+            const V itsReach = all(spheres_.radius[other]) + pearl;
             again = hn::Or(again, dot(itsOffset, itsOffset) < itsReach * itsReach);
         }
         again = hn::And(again, inside);
@@ -274,6 +274,8 @@ class Contacts {
     const float* const pearls_;
     const float deepest_;  ///< square of kDeep; 0 where no length holds a point back
     alignas(64) float roots_[3][kBlockLanes];
+    std::uint64_t overlaps_[SphereSet::kMost];
+    std::uint64_t overlapsKnown_ = 0;  ///< which of them are filled
     std::uint32_t pieceCount_ = 0;
     std::uint32_t touchCount_ = 0;
     Pair pieces_[kMostPieces];
@@ -285,7 +287,8 @@ class Contacts {
 /// pushes into others goes to their common edge. Of more than SphereSet::kMost spheres this holds within each
 /// kMost of them.
 template <bool kBackward>
-void collide(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
+void collide(const BlockView& given, LaneFrame& lanes, const SubstepContext& context) {
+    const BlockView block = localCopy(given);
     const float step = static_cast<float>(context.index + 1);
     alignas(64) float pearls[kMaxPoints];
     fillPearls(block, context, pearls);

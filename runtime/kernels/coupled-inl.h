@@ -11,7 +11,7 @@
 
 #include "hwy/highway.h"
 #include "runtime/kernels.h"
-#include "runtime/kernels/bend-inl.h"
+#include "runtime/kernels/bend_solve-inl.h"
 #include "runtime/kernels/implicit-inl.h"
 #include "runtime/kernels/lanes-inl.h"
 #include "runtime/kernels/spheres-inl.h"
@@ -71,9 +71,9 @@ HWY_INLINE V reducedMass(const BlockView& block, std::uint32_t s, std::size_t i)
 }
 
 /// Reads a segment at the start of the substep (`previous`) and after the integration (`position`). Returns
-/// the force on its inner point, reversed on its outer one: the pulls of its joints, the tension of the last
-/// substep, what turning adds to that, and what gives the segment its length.
-HWY_INLINE V3 openSegment(const BlockView& block, Pulls& pulls, std::uint32_t s, std::size_t i,
+/// the force on its inner point, reversed on its outer one: the pulls of its joints (`pull`), the tension of
+/// the last substep, what turning adds to that, and what gives the segment its length.
+HWY_INLINE V3 openSegment(const BlockView& block, V3 pull, std::uint32_t s, std::size_t i,
                           CoupledSegment& segment) {
     const V zero = hn::Zero(D()), half = all(0.5f);
     const V inverseLength = hn::Load(D(), block.inverseLength + i);
@@ -92,7 +92,7 @@ HWY_INLINE V3 openSegment(const BlockView& block, Pulls& pulls, std::uint32_t s,
     segment = {direction, hn::IfThenElse(flat, zero, hardness), hn::IfThenElse(flat, hardness, across),
                wrong};
     const V3 held = direction * (tension + hardness * wrong) + (free - start) * across;
-    return segmentPull<false>(block, pulls, i) + select(flat, free * hardness, held);
+    return pull + select(flat, free * hardness, held);
 }
 
 /// Factors M + (¼ + q) h² K + segments.
@@ -189,16 +189,14 @@ HWY_INLINE void moveSystem(const BlockView& block, std::size_t lane, CoupledSyst
 /// of the last substep. The lengths' gradients G are those at the start of the substep, so that without
 /// damping this is SHAKE with the mass M + ¼ h² K: it keeps the energy.
 template <Shape kShape>
-void bendCoupled(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
+void bendCoupled(const BlockView& given, LaneFrame& lanes, const SubstepContext& context) {
+    const BlockView block = localCopy(given);
     if (block.points <= block.firstFree) return;
-    Pulls pulls;
-    alignas(64) float share[kBlockLanes];
-    if constexpr (kShape == Shape::curved) followFrames(block, lanes, context, pulls, share);
-    measureAhead<kShape>(block, lanes, context, pulls, share);
     CoupledSystem system;
     for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+        SegmentPulls<kShape> pulls(block, lanes, context, lane);
         fillSystem(block, lane, system, [&](std::uint32_t s, std::size_t i) HWY_ATTR {
-            return openSegment(block, pulls, s, i, system.segments[s]);
+            return openSegment(block, pulls.next(s), s, i, system.segments[s]);
         });
         factorSystem(block, context, lane, system);
         auto active = hn::Not(noLane());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Backward Euler with coil springs: a direct solve along each strand.
+// Backward Euler: a direct solve along each strand.
 #if defined(HAIRLOOM_RUNTIME_IMPLICIT_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HAIRLOOM_RUNTIME_IMPLICIT_INL_H
 #undef HAIRLOOM_RUNTIME_IMPLICIT_INL_H
@@ -9,7 +9,7 @@
 
 #include "hwy/highway.h"
 #include "runtime/kernels.h"
-#include "runtime/kernels/bend-inl.h"
+#include "runtime/kernels/bend_solve-inl.h"
 #include "runtime/kernels/lanes-inl.h"
 #include "runtime/kernels/springs-inl.h"
 
@@ -21,16 +21,9 @@ namespace HWY_NAMESPACE {
 struct S3 {
     V xx, xy, xz, yy, yz, zz;
 };
-/// Rows.
-struct M3 {
-    V3 x, y, z;
-};
 HWY_INLINE V3 operator*(const S3& s, V3 v) {
     return {s.xx * v.x + s.xy * v.y + s.xz * v.z, s.xy * v.x + s.yy * v.y + s.yz * v.z,
             s.xz * v.x + s.yz * v.y + s.zz * v.z};
-}
-HWY_INLINE V3 operator*(const M3& m, V3 v) {
-    return {dot(m.x, v), dot(m.y, v), dot(m.z, v)};
 }
 HWY_INLINE V3 transposedTimes(const M3& m, V3 v) {
     return m.x * v.x + m.y * v.y + m.z * v.z;
@@ -57,6 +50,60 @@ HWY_INLINE S3 inverseOf(const S3& s) {
             second + c * c * third,
             c * third,
             third};
+}
+
+/// Closes a step of backward Euler whose displacement is `rate`.
+HWY_INLINE void finishImplicit(const BlockView& block, std::size_t i, V3 rate) {
+    const V3 start = load3(block.start, i);
+    store3(start + rate, block.position, i);
+    store3(start, block.previous, i);
+}
+
+/// Puts clamped points to the end of their way.
+HWY_INLINE void finishClamped(const BlockView& block) {
+    const std::size_t end = std::size_t{block.firstFree} * kBlockLanes;
+    for (std::size_t i = 0; i < end; i += kWidth) {
+        const V3 start = load3(block.start, i);
+        store3(start, block.previous, i);
+        store3(start + load3(block.rate, i), block.position, i);
+    }
+}
+
+/// Backward Euler without stiff forces: symplectic Euler.
+void advanceFree(const BlockView& block, LaneFrame&, const SubstepContext&) {
+    finishClamped(block);
+    const std::size_t end = std::size_t{block.points} * kBlockLanes;
+    for (std::size_t i = std::size_t{block.firstFree} * kBlockLanes; i < end; i += kWidth)
+        finishImplicit(block, i, load3(block.position, i) - load3(block.previous, i));
+}
+
+/// Backward Euler (Eq. 9) with angular springs: (M + h² K) d = M u + h² f, where u + h² f/M is the
+/// displacement that the forces left, so that d = u + h² f/M + δ with (M + h² K) δ = −h² K of it.
+void advanceImplicitBend(const BlockView& block, LaneFrame&, const SubstepContext&) {
+    const auto rateAt = [&](std::size_t i)
+                            HWY_ATTR { return load3(block.position, i) - load3(block.previous, i); };
+    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+        V3 behind = zero3(), from = rateAt(lane);
+        const auto jointPull = [&](std::uint32_t j) HWY_ATTR {
+            const std::size_t i = std::size_t{j} * kBlockLanes + lane;
+            const V3 to = rateAt(i + kBlockLanes);
+            const V3 turning = (to - from) * hn::Load(D(), block.inverseLength + i);
+            const V3 pull = (turning - behind) * hn::Load(D(), block.stiffness + i);
+            from = to;
+            behind = turning;
+            return pull;
+        };
+        V3 pull = zero3();
+        for (std::uint32_t j = 0; j < block.firstFree && j + 1 < block.points; ++j) pull = jointPull(j);
+        const auto forceOf = [&](std::uint32_t s) HWY_ATTR {
+            const V3 inner = pull;
+            pull = s + 2 < block.points ? jointPull(s + 1) : zero3();
+            return (inner - pull) * hn::Load(D(), block.inverseLength + std::size_t{s} * kBlockLanes + lane);
+        };
+        solveBend(block, lane, forceOf,
+                  [&](std::size_t i, V3 delta) HWY_ATTR { finishImplicit(block, i, rateAt(i) + delta); });
+    }
+    finishClamped(block);
 }
 
 /// Scalar entries of h²·K of the angular springs at point p (docs/engine.md).

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Integrators (docs/engine.md) and the measure of motion.
+// Integrators other than position Verlet (docs/engine.md), and the measure of motion.
 #if defined(HAIRLOOM_RUNTIME_INTEGRATE_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HAIRLOOM_RUNTIME_INTEGRATE_INL_H
 #undef HAIRLOOM_RUNTIME_INTEGRATE_INL_H
@@ -16,33 +16,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {
 namespace HWY_NAMESPACE {
-
-/// Slows motion relative to the moving root. First in a substep, so that it acts on velocity alone and leaves
-/// what holds the hair at rest untouched.
-void dampMotion(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
-    const V lost = all(1.0f - context.velocityShare);
-    for (std::uint32_t p = block.firstFree; p < block.points; ++p) {
-        for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
-            const std::size_t i = std::size_t{p} * kBlockLanes + lane;
-            const V3 previous = load3(block.previous, i);
-            const V3 moved = load3(block.position, i) - previous - load3(lanes.rootStep, lane);
-            store3(previous + moved * lost, block.previous, i);
-        }
-    }
-}
-
-/// Position Verlet (Rünz 2012, Eq. 10).
-void advanceVerlet(const BlockView& block, LaneFrame& lanes, const SubstepContext&) {
-    for (std::uint32_t p = block.firstFree; p < block.points; ++p) {
-        for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
-            const std::size_t i = std::size_t{p} * kBlockLanes + lane;
-            const V3 position = load3(block.position, i);
-            const V3 start = position - load3(lanes.rootStep, lane);
-            store3(start + (position - load3(block.previous, i)), block.position, i);
-            store3(start, block.previous, i);
-        }
-    }
-}
 
 /// Calls visit(index, point) for every point of the block, clamped ones too.
 template <class Visit>

@@ -42,11 +42,10 @@ HWY_INLINE V3 zero3() {
     return {hn::Zero(D()), hn::Zero(D()), hn::Zero(D())};
 }
 
-HWY_INLINE V3 load3(const Planes& p, std::size_t i) {
-    return {hn::Load(D(), p.x + i), hn::Load(D(), p.y + i), hn::Load(D(), p.z + i)};
-}
-HWY_INLINE V3 load3(const ConstPlanes& p, std::size_t i) {
-    return {hn::Load(D(), p.x + i), hn::Load(D(), p.y + i), hn::Load(D(), p.z + i)};
+template <class Float>
+HWY_INLINE V3 load3(const PlanesOf<Float>& p, std::size_t i) {
+    const Float* const at = p.x + i;
+    return {hn::Load(D(), at), hn::Load(D(), at + p.pitch), hn::Load(D(), at + 2 * p.pitch)};
 }
 HWY_INLINE V3 load3(const float (*p)[kBlockLanes], std::size_t i) {
     return {hn::Load(D(), p[0] + i), hn::Load(D(), p[1] + i), hn::Load(D(), p[2] + i)};
@@ -56,12 +55,15 @@ HWY_INLINE V4 load4(const float (*p)[kBlockLanes], std::size_t i) {
             hn::Load(D(), p[3] + i)};
 }
 HWY_INLINE void store3(V3 v, const Planes& p, std::size_t i) {
-    hn::Store(v.x, D(), p.x + i);
-    hn::Store(v.y, D(), p.y + i);
-    hn::Store(v.z, D(), p.z + i);
+    float* const at = p.x + i;
+    hn::Store(v.x, D(), at);
+    hn::Store(v.y, D(), at + p.pitch);
+    hn::Store(v.z, D(), at + 2 * p.pitch);
 }
 HWY_INLINE void store3(V3 v, float (*p)[kBlockLanes], std::size_t i) {
-    store3(v, Planes{p[0], p[1], p[2]}, i);
+    hn::Store(v.x, D(), p[0] + i);
+    hn::Store(v.y, D(), p[1] + i);
+    hn::Store(v.z, D(), p[2] + i);
 }
 HWY_INLINE void store4(V4 v, float (*p)[kBlockLanes], std::size_t i) {
     store3({v.x, v.y, v.z}, p, i);
@@ -77,6 +79,16 @@ HWY_INLINE V3 operator-(V3 a, V3 b) {
 HWY_INLINE V3 operator*(V3 a, V s) {
     return {a.x * s, a.y * s, a.z * s};
 }
+/// A copy that stores through vectors cannot change, as compilers take them to; with the one pitch that all
+/// planes have.
+HWY_INLINE BlockView localCopy(const BlockView& given) {
+    BlockView block = given;
+    for (Planes* const planes : {&block.position, &block.previous, &block.curve, &block.start, &block.rate})
+        planes->pitch = given.pitch;
+    block.rest.pitch = block.target.pitch = given.pitch;
+    return block;
+}
+
 HWY_INLINE V lerp(V a, V b, V t) {
     return a + (b - a) * t;
 }
@@ -97,10 +109,54 @@ HWY_INLINE V3 rotate(V4 q, V3 v) {
     const V3 twice = half + half;
     return v + twice * q.w + cross(axis, twice);
 }
+/// A vector of lanes for each point of a strip. Compilers keep arrays of registers behind copies in memory;
+/// these are stored and loaded by name.
+struct StripRow {
+    /// A cache line more keeps neighbouring rows off each other's 4 KiB aliases.
+    alignas(64) float values[std::size_t{kMaxPoints} * kWidth + 16];
+
+    HWY_INLINE V operator[](std::size_t p) const { return hn::Load(D(), values + p * kWidth); }
+    HWY_INLINE void set(std::size_t p, V v) { hn::Store(v, D(), values + p * kWidth); }
+};
+struct StripRow3 {
+    StripRow x, y, z;
+
+    HWY_INLINE V3 operator[](std::size_t p) const { return {x[p], y[p], z[p]}; }
+    HWY_INLINE void set(std::size_t p, V3 v) {
+        x.set(p, v.x);
+        y.set(p, v.y);
+        z.set(p, v.z);
+    }
+};
+
+/// Rows.
+struct M3 {
+    V3 x, y, z;
+};
+HWY_INLINE V3 operator*(const M3& m, V3 v) {
+    return {dot(m.x, v), dot(m.y, v), dot(m.z, v)};
+}
+/// Of a rotation of unit length.
+HWY_INLINE M3 matrixOf(V4 q) {
+    const V one = all(1.0f);
+    const V x = q.x + q.x, y = q.y + q.y, z = q.z + q.z;
+    return {{one - (q.y * y + q.z * z), q.x * y - q.w * z, q.x * z + q.w * y},
+            {q.x * y + q.w * z, one - (q.x * x + q.z * z), q.y * z - q.w * x},
+            {q.x * z - q.w * y, q.y * z + q.w * x, one - (q.x * x + q.y * y)}};
+}
+
 /// First b, then a.
 HWY_INLINE V4 multiply(V4 a, V4 b) {
     return {a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y, a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
             a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
+}
+
+/// Zero in the other lanes.
+HWY_INLINE V3 onlyWhere(hn::Mask<D> which, V3 v) {
+    return {hn::IfThenElseZero(which, v.x), hn::IfThenElseZero(which, v.y), hn::IfThenElseZero(which, v.z)};
+}
+HWY_INLINE hn::Mask<D> noLane() {
+    return hn::FirstN(D(), 0);
 }
 
 /// sin(2π·turns) to 0.1 %: a parabola, refined once by its own square.

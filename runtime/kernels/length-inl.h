@@ -30,93 +30,114 @@ struct Gradients {
     V3 wanted, acting;
 };
 template <Holding kHolding>
-HWY_INLINE Gradients gradientsAt(const BlockView& block, const Planes& start, V3 edge, std::size_t i) {
-    const V inverseLength = hn::Load(D(), block.inverseLength + i);
+HWY_INLINE Gradients gradientsOf(V3 edge, V3 edgeBefore, V inverseLength) {
     const V3 wanted = edge * inverseLength;
     if constexpr (kHolding != Holding::places) return {wanted, wanted};
-    const V3 before = (load3(start, i + kBlockLanes) - load3(start, i)) * inverseLength;
+    const V3 before = edgeBefore * inverseLength;
     const auto alike = dot(wanted, before) > all(0.5f) * dot(wanted, wanted);
     return {wanted, select(alike, before, wanted)};
 }
 
 /// Keeps tension for the bending of the next substep. Slowly: what bending makes of it comes back a substep
-/// late. And no more than Verlet holds across a segment, by half of its limit.
+/// late. And no more than Verlet holds across a segment, by half of its limit; hardly a segment pulls as
+/// much.
 HWY_INLINE void keepTension(const BlockView& block, const SubstepContext& context, std::size_t i, V added) {
     const V weight =
         hn::Load(D(), block.inverseMass + i) + hn::Load(D(), block.inverseMass + i + kBlockLanes);
-    const V most = all(0.5f) * hn::Load(D(), block.length + i) / weight;
-    const V kept = hn::Load(D(), block.tension + i) + added * all(context.tensionShare);
-    hn::Store(hn::Min(hn::Max(kept, hn::Zero(D()) - most), most), D(), block.tension + i);
+    const V half = all(0.5f) * hn::Load(D(), block.length + i);
+    V kept = hn::Load(D(), block.tension + i) + added * all(context.tensionShare);
+    const auto tooMuch = hn::Abs(kept) * weight > half;
+    if (HWY_UNLIKELY(!hn::AllFalse(D(), tooMuch)))
+        kept = hn::IfThenElse(tooMuch, hn::CopySign(half / weight, kept), kept);
+    hn::Store(kept, D(), block.tension + i);
 }
+
+/// The tridiagonal system of a strip of strands whose lengths are held; by segment.
+struct LengthSystem {
+    StripRow3 acting;  ///< Gradients::acting
+    StripRow upper, right;
+};
 
 /// One Newton step on all length constraints ½(|e|²/l − l) = 0 of a strand together, or on their rates
 /// e·ė/l = 0; clamped points have infinite mass. The system is tridiagonal and is solved directly (after
 /// Goldenthal et al. 2007; with rates, RATTLE, Andersen 1983), so momentum travels along the whole strand in
 /// one step. Collapsed segments keep a diagonal of at least ¼ of their masses': no overshoot.
-template <Holding kHolding, bool kKept = false>
-void holdStrands(const BlockView& block, const SubstepContext& context) {
-    alignas(64) float ux[kScratchPlane], uy[kScratchPlane], uz[kScratchPlane], upper[kScratchPlane],
-        right[kScratchPlane];
-    alignas(64) float inverses[kBlockLanes], lastWanted[3][kBlockLanes];
-    const Planes u{ux, uy, uz};
+template <Holding kHolding>
+HWY_INLINE void reduceLengths(const BlockView& block, std::size_t lane, LengthSystem& system) {
     const Planes& start = block.start.x ? block.start : block.previous;
-    const V half = all(0.5f), least = all(0.25f), zero = hn::Zero(D());
+    const V half = all(0.5f), least = all(0.25f), zero = hn::Zero(D()), one = all(1.0f);
     const std::uint32_t first = block.firstFree - 1;
-    const std::uint32_t end = block.points - 1;
-    const auto rateAt = [&](std::size_t i) { return load3(block.position, i) - load3(block.previous, i); };
-    for (std::uint32_t s = first; s < end; ++s) {
-        for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
-            const std::size_t i = std::size_t{s} * kBlockLanes + lane, o = i + kBlockLanes;
-            const V3 edge = load3(block.position, o) - load3(block.position, i);
-            const auto [wanted, acting] = gradientsAt<kHolding>(block, start, edge, i);
-            V error;
-            if constexpr (kHolding != Holding::rates) {
-                error = half * (dot(edge, wanted) - hn::Load(D(), block.length + i));
-            } else {
-                error = dot(wanted, rateAt(o) - rateAt(i));
-            }
-            const V own = hn::Max(dot(wanted, acting), least);
-            const V outer = hn::Load(D(), block.inverseMass + o);
-            V up = zero, inverse;
-            if (s == first) {
-                inverse = all(1.0f) / (own * outer);
-                error = error * inverse;
-            } else {
-                const V inner = hn::Load(D(), block.inverseMass + i);
-                const V below = dot(wanted, load3(u, i - kBlockLanes)) * inner;
-                const V above = dot(load3(lastWanted, lane), acting) * inner;
-                up = above * hn::Load(D(), inverses + lane);
-                inverse = all(1.0f) / (own * (inner + outer) - below * up);
-                error = (error + below * hn::Load(D(), right + i - kBlockLanes)) * inverse;
-            }
-            hn::Store(inverse, D(), inverses + lane);
-            hn::Store(up, D(), upper + i);
-            hn::Store(error, D(), right + i);
-            store3(acting, u, i);
-            store3(wanted, lastWanted, lane);
+    const std::size_t begin = std::size_t{first} * kBlockLanes + lane;
+    const auto rateAt = [&](std::size_t i, V3 place) HWY_ATTR { return place - load3(block.previous, i); };
+    V3 at = load3(block.position, begin), before = zero3(), rate = zero3();
+    if constexpr (kHolding == Holding::places) before = load3(start, begin);
+    if constexpr (kHolding == Holding::rates) rate = rateAt(begin, at);
+    V3 lastWanted = zero3(), lastActing = zero3();
+    V inner = zero, lastInverse = zero, lastRight = zero;
+    for (std::uint32_t s = first; s + 1 < block.points; ++s) {
+        const std::size_t i = std::size_t{s} * kBlockLanes + lane, o = i + kBlockLanes;
+        const V3 to = load3(block.position, o);
+        V3 edgeBefore = zero3();
+        if constexpr (kHolding == Holding::places) {
+            const V3 toBefore = load3(start, o);
+            edgeBefore = toBefore - before;
+            before = toBefore;
         }
+        const auto [wanted, acting] =
+            gradientsOf<kHolding>(to - at, edgeBefore, hn::Load(D(), block.inverseLength + i));
+        V error;
+        if constexpr (kHolding == Holding::rates) {
+            const V3 toRate = rateAt(o, to);
+            error = dot(wanted, toRate - rate);
+            rate = toRate;
+        } else {
+            error = half * (dot(to - at, wanted) - hn::Load(D(), block.length + i));
+        }
+        const V own = hn::Max(dot(wanted, acting), least);
+        const V outer = hn::Load(D(), block.inverseMass + o);
+        const V below = dot(wanted, lastActing) * inner;
+        const V up = dot(lastWanted, acting) * inner * lastInverse;
+        lastInverse = one / (own * (inner + outer) - below * up);
+        lastRight = (error + below * lastRight) * lastInverse;
+        system.acting.set(s, acting);
+        system.upper.set(s, up);
+        system.right.set(s, lastRight);
+        at = to;
+        inner = outer;
+        lastWanted = wanted;
+        lastActing = acting;
     }
-    // `right` becomes the multiplier λ, and u·λ the tension.
-    for (std::uint32_t s = end; s-- > first;) {
-        for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
-            const std::size_t i = std::size_t{s} * kBlockLanes + lane, o = i + kBlockLanes;
-            V lambda = hn::Load(D(), right + i);
-            V3 after = zero3();
-            if (s + 1 < end) {
-                lambda = lambda + hn::Load(D(), upper + o) * hn::Load(D(), right + o);
-                after = load3(u, o);
-            }
-            const V3 tension = load3(u, i) * lambda;
-            const V3 move = (after - tension) * hn::Load(D(), block.inverseMass + o);
-            if constexpr (kHolding != Holding::rates) {
-                store3(load3(block.position, o) + move, block.position, o);
-            } else {
-                store3(load3(block.previous, o) - move, block.previous, o);
-            }
-            hn::Store(lambda, D(), right + i);
-            if constexpr (kKept) keepTension(block, context, i, lambda);
-            store3(tension, u, i);
+}
+
+/// Moves the points by the tension that the system gives.
+template <Holding kHolding, bool kKept>
+HWY_INLINE void applyTension(const BlockView& block, const SubstepContext& context, std::size_t lane,
+                             const LengthSystem& system) {
+    V3 after = zero3();
+    V lambda = hn::Zero(D()), upper = lambda;
+    for (std::uint32_t s = block.points - 1; s-- > block.firstFree - 1;) {
+        const std::size_t i = std::size_t{s} * kBlockLanes + lane, o = i + kBlockLanes;
+        lambda = system.right[s] + upper * lambda;
+        upper = system.upper[s];
+        const V3 tension = system.acting[s] * lambda;
+        const V3 move = (after - tension) * hn::Load(D(), block.inverseMass + o);
+        if constexpr (kHolding != Holding::rates) {
+            store3(load3(block.position, o) + move, block.position, o);
+        } else {
+            store3(load3(block.previous, o) - move, block.previous, o);
         }
+        if constexpr (kKept) keepTension(block, context, i, lambda);
+        after = tension;
+    }
+}
+
+template <Holding kHolding, bool kKept = false>
+void holdStrands(const BlockView& given, const SubstepContext& context) {
+    const BlockView block = localCopy(given);
+    LengthSystem system;
+    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+        reduceLengths<kHolding>(block, lane, system);
+        applyTension<kHolding, kKept>(block, context, lane, system);
     }
 }
 
@@ -137,7 +158,8 @@ void holdRates(const BlockView& block, LaneFrame&, const SubstepContext& context
 
 /// Root to tip, brings segments back to between (1 − ε) and (1 + ε) of their length (Provot 1995, both ways).
 /// The move counts as velocity only where that slows the point relative to its root: it never adds energy.
-void limitExtension(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
+void limitExtension(const BlockView& given, LaneFrame& lanes, const SubstepContext& context) {
+    const BlockView block = localCopy(given);
     const V longest = all(1.0f + context.maximalExtension);
     const V shortest = all(1.0f - context.maximalExtension);
     const V tiny = all(1e-12f), one = all(1.0f);

@@ -21,10 +21,6 @@ HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {
 namespace HWY_NAMESPACE {
 
-HWY_INLINE hn::Mask<D> noLane() {
-    return hn::FirstN(D(), 0);
-}
-
 /// 1/√x to 6e-7 of it, for x of 1e-37 and more: a first guess from the bits (Lomont 2003) and two Newton
 /// steps. A step leaves its error on one side, so each is scaled to leave half of it on both. Dividers are
 /// many times slower, and this rounds the same on all instruction sets.
@@ -102,19 +98,20 @@ class SphereSet {
         }
     }
 
-    /// Fills `others` with the spheres in which a point on sphere k can be; how many they are.
-    HWY_INLINE std::uint32_t overlapping(std::size_t k, std::uint16_t* others) const {
+    /// The spheres in which a point on sphere k can be, as bits.
+    HWY_INLINE std::uint64_t overlapping(std::size_t k) const {
+        static_assert(kMost <= 64);
         const V3 at = centre(k);
         const V own = all(widest[k]);
-        std::uint32_t found = 0;
+        std::uint64_t others = 0;
         for (std::size_t j = 0; j < count_; j += kWidth) {
             const V3 gap = V3{hn::Load(D(), x_ + j), hn::Load(D(), y_ + j), hn::Load(D(), z_ + j)} - at;
             const V reach = hn::Load(D(), widest + j) + own;
             forEachSet(j, dot(gap, gap) < reach * reach, [&](std::size_t other) HWY_ATTR {
-                if (other != k) others[found++] = static_cast<std::uint16_t>(other);
+                if (other != k) others |= std::uint64_t{1} << other;
             });
         }
-        return found;
+        return others;
     }
 
   private:

@@ -17,6 +17,7 @@
 #include "runtime/kernels/implicit-inl.h"
 #include "runtime/kernels/integrate-inl.h"
 #include "runtime/kernels/length-inl.h"
+#include "runtime/kernels/motion-inl.h"
 #include "runtime/kernels/roots-inl.h"
 #include "runtime/kernels/springs-inl.h"
 
@@ -29,13 +30,13 @@ Stage stageOf(StageId id) {
         case StageId::roots:
             return moveRoots;
         case StageId::damping:
-            return dampMotion;
+            return moveFree<true, Air::none, false, false>;
         case StageId::drag:
-            return applyAir<false>;
+            return moveFree<false, Air::still, false, false>;
         case StageId::wind:
-            return applyAir<true>;
+            return moveFree<false, Air::moving, false, false>;
         case StageId::gravity:
-            return applyGravity;
+            return moveFree<false, Air::none, true, false>;
         case StageId::springs:
             return applySprings;
         case StageId::angularCheap:
@@ -51,7 +52,7 @@ Stage stageOf(StageId id) {
         case StageId::penalty:
             return applyPenalty;
         case StageId::verlet:
-            return advanceVerlet;
+            return moveFree<false, Air::none, false, true>;
         case StageId::open:
             return openStep<0>;
         case StageId::openHalfway:
@@ -110,9 +111,22 @@ Stage stageOf(StageId id) {
     return nullptr;
 }
 
+template <bool kDamped, Air kAir>
+void fillMoves(Kernels& table) {
+    auto& moves = table.moves[kDamped ? 1 : 0][static_cast<std::size_t>(kAir)];
+    moves[0] = moveFree<kDamped, kAir, false, true>;
+    moves[1] = moveFree<kDamped, kAir, true, true>;
+}
+
 Kernels makeTable() {
     Kernels table{};
     for (std::uint32_t id = 0; id < kStageCount; ++id) table.stages[id] = stageOf(static_cast<StageId>(id));
+    fillMoves<false, Air::none>(table);
+    fillMoves<false, Air::still>(table);
+    fillMoves<false, Air::moving>(table);
+    fillMoves<true, Air::none>(table);
+    fillMoves<true, Air::still>(table);
+    fillMoves<true, Air::moving>(table);
     table.rescale = rescale;
     table.sampleWind = sampleWind;
     table.fastest = fastestOf;

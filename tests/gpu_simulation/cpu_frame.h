@@ -203,8 +203,8 @@ inline void fillLanes(const Scene& scene, std::size_t b, runtime::LaneFrame& lan
 inline bool isSound(const runtime::BlockView& view, std::uint32_t lane) {
     for (std::uint32_t p = 0; p < view.points; ++p) {
         const std::size_t i = std::size_t{p} * runtime::kBlockLanes + lane;
-        const Float3 place{view.position.x[i], view.position.y[i], view.position.z[i]};
-        const Float3 before{view.previous.x[i], view.previous.y[i], view.previous.z[i]};
+        const Float3 place{view.position.x[i], view.position.y()[i], view.position.z()[i]};
+        const Float3 before{view.previous.x[i], view.previous.y()[i], view.previous.z()[i]};
         const Float3 moved = place - before;
         if (!(dot(place, place) < 1e12f) || !(dot(moved, moved) < 1e12f)) return false;
     }

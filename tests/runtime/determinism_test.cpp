@@ -55,6 +55,42 @@ TEST(Determinism, SameBitsForEveryInstructionSet) {
     }
 }
 
+/// A host with a clock has each stage by itself, one without has those that follow each other in one pass.
+TEST(Determinism, SameBitsWhetherStagesAreTimedOrNot) {
+    const Strands strands = tuft(6, true);
+    Host clock;
+    clock.nanoseconds = [] { return std::uint64_t{0}; };
+    for (int which = 0; which < 12; ++which) {
+        SimulationSettings s;
+        s.airDrag = which % 3 > 0 ? 2.0f : 0.0f;
+        s.windSpeed = which % 3 > 1 ? 6.0f : 0.0f;
+        if (which / 3 % 2 > 0) s.gravity = {};
+        if (which / 6 > 0) s.dampingTime = 0.0f;
+        Engine plain = makeEngine(strands, s), timed = makeEngine(strands, s, clock);
+        runMoving(plain, strands, 0, 8);
+        runMoving(timed, strands, 0, 8);
+        EXPECT_EQ(plain.stateHash(), timed.stateHash()) << which;
+    }
+}
+
+TEST(Determinism, StagesThatFollowEachOtherAreOnePass) {
+    using enum StageId;
+    const Kernels& table = kernels();
+    const auto passes = [&](std::initializer_list<StageId> stages) {
+        const Passes made = passesOf({stages.begin(), stages.size()}, table);
+        return std::vector<Stage>(made.calls.begin(), made.calls.begin() + made.count);
+    };
+    const auto alone = [&](StageId id) { return table.stages[static_cast<std::size_t>(id)]; };
+    EXPECT_EQ(passes({roots, damping, wind, gravity, verlet, length}),
+              (std::vector<Stage>{alone(roots), table.moves[1][2][1], alone(length)}));
+    EXPECT_EQ(passes({roots, verlet}), (std::vector<Stage>{alone(roots), table.moves[0][0][0]}));
+    // Another force between them, or another integrator after them: each by itself.
+    EXPECT_EQ(passes({damping, gravity, springs, verlet}),
+              (std::vector<Stage>{alone(damping), alone(gravity), alone(springs), table.moves[0][0][0]}));
+    EXPECT_EQ(passes({open, drag, gravity, explicitEuler}),
+              (std::vector<Stage>{alone(open), alone(drag), alone(gravity), alone(explicitEuler)}));
+}
+
 TEST(Determinism, ACopyRunsOnWithTheSameBits) {
     const Strands strands = tuft(40, true);
     for (const SimulationSettings& s : {everything(), coupled()}) {

@@ -266,5 +266,20 @@ TEST(Wind, WhatIsNoWindIsIgnoredAndCounted) {
     }
 }
 
+/// Whole turns are left out before they can overflow, and time keeps its fraction for centuries.
+TEST(Wind, PhasesAreSoundAtAnyTime) {
+    SimulationSettings s;
+    s.windSpeed = 150.0f;
+    s.windGustSize = 0.01f;
+    s.windFrequency = 20.0f;
+    const Wind wind = makeWind(s);
+    for (const double time : {0.0, 3.25, 1e6, -1e9, 1e17, 1e300, -1.7e308}) {
+        for (const float phase : windPhases(wind, time)) EXPECT_LE(std::abs(phase), 0.5f) << time;
+    }
+    // A whole number of turns later it is the same phase.
+    const double period = 1.0 / static_cast<double>(wind.modes[0].turnsPerSecond);
+    EXPECT_NEAR(windPhases(wind, 0.3)[0], windPhases(wind, 0.3 + period * 1e6)[0], 1e-5);
+}
+
 }  // namespace
 }  // namespace hairloom::runtime

@@ -8,6 +8,7 @@
 
 #include "core/simulation/reference/converge.h"
 #include "core/simulation/reference/forces.h"
+#include "runtime/engine.h"
 #include "tests/simulation/reference_fixture.h"
 
 namespace hairloom {
@@ -196,6 +197,63 @@ TEST(ReferenceAir, GustsAreTheWavesOfTheWind) {
         }
         EXPECT_NEAR((reference::airVelocity(physics, place, time) - sum).norm(), 0.0, 1e-5);
     }
+}
+
+/// What the engine's strands are told of the air at a place is what the reference has there, for every kind.
+TEST(ReferenceAir, EveryKindOfWindIsTheEngines) {
+    for (const runtime::WindKind kind : {runtime::WindKind::uniform, runtime::WindKind::gusting,
+                                         runtime::WindKind::turbulent, runtime::WindKind::vehicle}) {
+        runtime::SimulationSettings s = bareSettings();
+        s.airDrag = 1000.0f;  // hair has the speed of the air at once
+        s.windKind = kind;
+        s.windSpeed = 4.0f;
+        s.windGustiness = 0.8f;
+        s.windFrequency = 1.0f;
+        s.windGustSize = 5.0f;
+        s.gravity = {};
+        s.dampingTime = 0.0f;
+        s.lengthIterations = 0;
+        s.substeps = 64;
+        const std::vector<runtime::Float3> points{{0.1f, 0.2f, 0.3f}, {0.1f, 0.9f, 1.0f}};
+        const std::vector<std::uint32_t> offsets{0, 2};
+        auto made = runtime::Engine::make({offsets, points}, s);
+        ASSERT_TRUE(made.engine) << made.error;
+        const std::vector<runtime::RootFrame> roots{{points[0], {}}};
+        for (const double time : {0.4, 1.7}) {
+            runtime::FrameInput input;
+            input.dt = 0.008f;
+            input.time = time;
+            input.roots_ws = roots;
+            input.actorVelocity_ws = {0.0f, 0.0f, 1.5f};
+            made.engine->reset(roots);
+            made.engine->step(input);
+            std::vector<runtime::Float3> speeds(2);
+            made.engine->readVelocities(speeds);
+            const Vec3d engine(static_cast<double>(speeds[1].x), static_cast<double>(speeds[1].y),
+                               static_cast<double>(speeds[1].z));
+            reference::Physics physics(s);
+            physics.takeWind(s, {{}, input.actorVelocity_ws});
+            const Vec3d air = reference::airVelocity(physics, Vec3d(0.1, 0.9, 1.0), time);
+            EXPECT_GT(air.norm(), 0.5);
+            // Hair lags a millisecond behind.
+            EXPECT_NEAR((engine - air).norm() / air.norm(), 0.0, 0.02)
+                << static_cast<int>(kind) << " at " << time;
+        }
+    }
+}
+
+TEST(ReferenceAir, AFramesWindTakesThePlaceOfTheSettings) {
+    runtime::SimulationSettings s = bareSettings();
+    s.airDrag = 2.0f;
+    s.windKind = runtime::WindKind::uniform;
+    reference::Solver solver = solverOf(straightStrand(1, 0.1), s);
+    reference::Frame frame = stillFrame(0.001);
+    solver.step(frame);
+    const double still = solver.velocities_ws()[1].z();
+    frame.wind.mean_ws = runtime::Float3{0.0f, 0.0f, 5.0f};
+    solver.step(frame);
+    EXPECT_EQ(still, 0.0);
+    EXPECT_NEAR(solver.velocities_ws()[1].z(), 2.0 * 5.0 * 0.001, 1e-4);
 }
 
 TEST(ReferenceDamping, MotionRelativeToTheRootDecays) {

@@ -196,14 +196,24 @@ std::vector<Quaterniond> carriedFrames(const StrandShape& shape, const std::vect
 }
 
 Vec3d airVelocity(const Physics& physics, const Vec3d& place, double time) {
-    if (!physics.windy) return Vec3d::Zero();
-    Vec3d sum = toDouble(physics.wind.mean);
-    for (const runtime::WindMode& mode : physics.wind.modes) {
+    const runtime::Wind& wind = physics.wind;
+    const Vec3d mean = toDouble(wind.mean);
+    if (!physics.windy || wind.kind == runtime::WindKind::uniform)
+        return physics.windy ? mean : Vec3d(Vec3d::Zero());
+    double waves = 0.0;
+    Vec3d eddies = Vec3d::Zero();
+    for (const runtime::WindMode& mode : wind.modes) {
         const double turns = toDouble(mode.waveVector).dot(place) + static_cast<double>(mode.turns) -
                              static_cast<double>(mode.turnsPerSecond) * time;
-        sum += toDouble(mode.amplitude) * std::sin(2.0 * std::numbers::pi * turns);
+        const double wave = std::sin(2.0 * std::numbers::pi * turns);
+        waves += wave;
+        eddies += toDouble(mode.amplitude) * wave;
     }
-    return sum;
+    if (wind.kind != runtime::WindKind::gusting) return mean + eddies;
+    // A quarter turn of the sine for each standard deviation of the waves' sum, which is √(modes/2).
+    const double deviation = std::sqrt(0.5 * static_cast<double>(wind.modes.size()));
+    const double gust = std::sin(0.5 * std::numbers::pi * waves / deviation);
+    return mean * (1.0 + static_cast<double>(wind.strength) * gust);
 }
 
 void addForces(const Physics& physics, const StrandShape& shape, const std::vector<Vec3d>& x,

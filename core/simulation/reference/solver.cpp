@@ -104,7 +104,7 @@ Strands strandsOf(const runtime::StrandsView& view) {
 }
 
 Frame frameOf(const runtime::FrameInput& input) {
-    Frame frame{static_cast<double>(input.dt), input.time, {}, {}};
+    Frame frame{static_cast<double>(input.dt), input.time, {}, {}, {input.wind_ws, input.actorVelocity_ws}};
     for (const runtime::RootFrame& root : input.roots_ws)
         frame.roots_ws.push_back({toDouble(root.position), toDouble(root.rotation)});
     for (const runtime::Sphere& sphere : input.spheres)
@@ -115,7 +115,7 @@ Frame frameOf(const runtime::FrameInput& input) {
 Result<Solver> Solver::make(const Strands& strands, const runtime::SimulationSettings& settings,
                             BendingForce bendingForce) {
     if (Status status = check(strands, settings); !status) return tl::unexpected(status.error());
-    Solver solver(Physics(settings, bendingForce));
+    Solver solver(settings, bendingForce);
     for (std::size_t s = 0; s + 1 < strands.offsets.size(); ++s) {
         const std::uint32_t first = strands.offsets[s], end = strands.offsets[s + 1];
         Root root{strands.restPositions_ss[first], Quaterniond::Identity()};
@@ -168,6 +168,7 @@ StepReport Solver::step(const Frame& frame, const StepOptions& options) {
     assert(frame.roots_ws.size() == strands_.size() && options.substeps > 0);
     StepReport report;
     if (!(frame.dt > 0.0)) return report;
+    physics_.takeWind(settings_, frame.wind);
     std::vector<SphereNow> spheres;
     for (std::size_t i = 0; i < frame.spheres.size(); ++i) {
         if (!usable(frame.spheres[i])) continue;

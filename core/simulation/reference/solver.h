@@ -43,10 +43,11 @@ struct Sphere {
 
 /// As runtime::FrameInput.
 struct Frame {
-    double dt = 1.0 / 60.0;       ///< s, above 0
-    double time = 0.0;            ///< s, at the end of the frame
-    std::vector<Root> roots_ws;   ///< one per strand
-    std::vector<Sphere> spheres;  ///< of radius 0 or less: left out
+    double dt = 1.0 / 60.0;        ///< s, above 0
+    double time = 0.0;             ///< s, at the end of the frame
+    std::vector<Root> roots_ws;    ///< one per strand
+    std::vector<Sphere> spheres;   ///< of radius 0 or less: left out
+    runtime::WindInput wind = {};  ///< what the frame gives in place of the settings' air
 };
 
 Strands strandsOf(const runtime::StrandsView& view);
@@ -109,11 +110,13 @@ class Solver {
     };
     struct Path;
 
-    explicit Solver(const Physics& physics) : physics_(physics) {}
+    Solver(const runtime::SimulationSettings& settings, BendingForce bendingForce)
+        : settings_(settings), physics_(settings, bendingForce) {}
     void stepStrand(Strand& strand, const Path& path, const StepOptions& options, StepReport& report) const;
     void advance(Strand& strand, const Path& path, double from, double to, double weight, StepReport& report,
                  int halvings) const;
 
+    runtime::SimulationSettings settings_;
     Physics physics_;
     std::vector<Strand> strands_;
     std::vector<Root> restRoots_;

@@ -104,9 +104,14 @@ Physics::Physics(const runtime::SimulationSettings& s, BendingForce bendingForce
       friction(static_cast<double>(s.friction)),
       restitution(static_cast<double>(s.restitution)),
       clampedPoints(s.clampedPoints),
-      teleportDistance(static_cast<double>(s.teleportDistance)),
-      windy(s.windSpeed > 0.0f && s.airDrag > 0.0f),
-      wind(runtime::makeWind(s)) {}
+      teleportDistance(static_cast<double>(s.teleportDistance)) {
+    takeWind(s, {});
+}
+
+void Physics::takeWind(const runtime::SimulationSettings& settings, const runtime::WindInput& input) {
+    wind = runtime::makeWind(settings, input);
+    windy = airDrag > 0.0 && length(wind.mean) > 0.0f;
+}
 
 double bendingStiffness(double authored) {
     return runtime::kHairBendingStiffness * authored / (1.0 - authored);

@@ -27,6 +27,8 @@ enum class BendingForce {
 struct Physics {
     explicit Physics(const runtime::SimulationSettings& settings,
                      BendingForce bendingForce = BendingForce::framesHeld);
+    /// Both values of `input` are finite.
+    void takeWind(const runtime::SimulationSettings& settings, const runtime::WindInput& input);
 
     Vec3d gravity;           ///< m/s²
     double airDrag;          ///< 1/s

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#include "runtime/kernels.h"
+
+namespace hairloom::runtime {
+namespace {
+
+/// Reads stages in their order.
+class StageReader {
+  public:
+    explicit StageReader(std::span<const StageId> stages) : stages_(stages) {}
+
+    bool atEnd() const { return next_ == stages_.size(); }
+    StageId take() { return stages_[next_++]; }
+    /// Whether this stage comes next; then it is taken.
+    bool takeIf(StageId stage) {
+        if (atEnd() || stages_[next_] != stage) return false;
+        ++next_;
+        return true;
+    }
+
+    /// The pass of Kernels::moves that comes next, or null and nothing is taken.
+    Stage takeMove(const Kernels& kernels) {
+        const std::size_t begin = next_;
+        const std::size_t damped = takeIf(StageId::damping) ? 1 : 0;
+        const Air air = takeIf(StageId::drag) ? Air::still : takeIf(StageId::wind) ? Air::moving : Air::none;
+        const std::size_t heavy = takeIf(StageId::gravity) ? 1 : 0;
+        if (takeIf(StageId::verlet)) return kernels.moves[damped][static_cast<std::size_t>(air)][heavy];
+        next_ = begin;
+        return nullptr;
+    }
+
+  private:
+    std::span<const StageId> stages_;
+    std::size_t next_ = 0;
+};
+
+}  // namespace
+
+Passes passesOf(std::span<const StageId> stages, const Kernels& kernels) {
+    Passes passes;
+    for (StageReader reader(stages); !reader.atEnd();) {
+        Stage pass = reader.takeMove(kernels);
+        if (!pass) pass = kernels.stages[static_cast<std::size_t>(reader.take())];
+        passes.calls[passes.count++] = pass;
+    }
+    return passes;
+}
+
+}  // namespace hairloom::runtime
