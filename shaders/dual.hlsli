@@ -64,9 +64,10 @@ float spreadLongitudinal(FibreConstants fibre, FibreFrame f, float tilt, float v
 
 float scatteringsOf(float x) { return x < 1e-2 ? 1.0 + 0.5 * x : x / (1.0 - exp(-x)); }
 
-// Times the irradiance: as S cos theta_i. `before` fibres up to the light, `all` from side to side.
+// Times the irradiance: as S cos theta_i. `before` fibres up to the light, `all` from side to side; `ground`: albedo of
+// what lies behind them.
 float3 multipleScattering(FibreConstants fibre, FibreFrame f, float before, float all, float3 tint,
-                          float3 absorption) {
+                          float3 absorption, float3 ground) {
     const float cosIn = sqrt(saturate(1.0 - f.sinIn * f.sinIn));
     const float cosOut = sqrt(saturate(1.0 - f.sinOut * f.sinOut));
     const float cosDSquared = max(0.5 * (1.0 + cosIn * cosOut + f.sinIn * f.sinOut), 1e-4);
@@ -88,11 +89,24 @@ float3 multipleScattering(FibreConstants fibre, FibreFrame f, float before, floa
     const float3 down = max((falling - returned * returned * back) / turns - exp(-before), 0.0);
     const float3 up = returned * (falling - back) / turns;
 
+    // What comes back from the ground goes up and down again.
+    const float3 deep = exp(-rate * max(all, before));
+    const float3 reached = (1.0 - returned * returned) * deep / turns;
+    const float3 kept = returned * (1.0 - deep * deep) / turns;
+    const float3 sent = ground * reached / (1.0 - ground * kept);
+    const float3 rising = exp(-rate * max(all - before, 0.0));
+    const float3 turning = deep * falling;
+    const float3 groundUp = sent * (rising - returned * returned * turning) / turns;
+    const float3 groundDown = sent * returned * (rising - turning) / turns;
+    // It remembers nothing of the light's direction: 2 / pi N towards all; and meets pi / 2 times the fibres.
+    const float evenM = cosDSquared;
+
     const float passed = scatteringsOf(before * dot(forward.rgb * share, 1.0 / 3.0));
     const float downM = spreadLongitudinal(fibre, f, rest.z + passed * rest.x, rest.w + passed * forward.w);
     const float upM = spreadLongitudinal(fibre, f, rest.z + (passed + 1.0) * rest.x + rest.y,
                                          rest.w + (passed + 1.0) * forward.w + backward.w);
     const float3 downN = spreadAt(float2(0.5 + 0.5 * f.cosPhi, thetaD), absorption);
     const float3 upN = spreadAt(float2(0.5 - 0.5 * f.cosPhi, thetaD), absorption);
-    return share * (downM * down * downN + upM * up * upN) * (cosIn / cosDSquared);
+    return share * ((downM * down + evenM * groundDown) * downN + (upM * up + evenM * groundUp) * upN) *
+           (cosIn / cosDSquared);
 }

@@ -29,5 +29,5 @@ void main(uint3 id : SV_DispatchThreadID) {
 #endif
     gResults[2 * id.x] = float4(fibreScattering(gFibre, f, c.tangent.w, 1.0, absorption), absorption.x);
     gResults[2 * id.x + 1] =
-        float4(multipleScattering(gFibre, f, c.toLight.w, c.toView.w, 1.0, absorption), absorption.y);
+        float4(multipleScattering(gFibre, f, c.toLight.w, c.toView.w, 1.0, absorption, c.ground.rgb), absorption.y);
 }

@@ -44,7 +44,6 @@ void main(uint3 id : SV_DispatchThreadID) {
     const float3 absorption = 0;
     const float3 ambient = gFibre.ambient.rgb;
 #endif
-    const float clumping = gFibre.lobes.w;
 
     float3 colour = 0;
     float openness = 0;
@@ -52,11 +51,12 @@ void main(uint3 id : SV_DispatchThreadID) {
         const LightConstants light = gShade.lights[i];
         const float3 toLight = directionToLight(light, p.position_ws.xyz);
         const Occlusion o = occlusion(light, p.position_ws.xyz, 0.0007, 0.004);
-        const float before = clumping * o.fibres;
         const FibreFrame f = fibreFrame(tangent, toLight, toView);
-        float3 scattered = exp(-before) * fibreScattering(gFibre, f, hashUnit(p.strand * 2u), tint, absorption);
+        float3 scattered = passedDirectly(light, o.fibres, gFibre.lobes.w) *
+                           fibreScattering(gFibre, f, hashUnit(p.strand * 2u), tint, absorption);
 #ifdef HAIRLOOM_DUAL
-        scattered += multipleScattering(gFibre, f, before, clumping * o.allFibres, tint, absorption);
+        scattered += multipleScattering(gFibre, f, gFibre.lobes.w * o.fibres, gFibre.lobes.w * o.allFibres, tint,
+                                        absorption, gShade.ground.rgb * o.ground);
 #endif
         colour += irradianceOf(light, p.position_ws.xyz) * o.visibility * scattered;
         openness += exp(-0.35 * o.fibres) * lerp(0.25, 1.0, o.visibility);

@@ -9,11 +9,21 @@ Texture2D<float> gHeadDepth : register(t8);
 StructuredBuffer<uint> gFirstHair : register(t9);  // depths as bits
 StructuredBuffer<uint> gOpacity : register(t10);    // two words a texel
 
+static const float kSkinPatch = 0.05;  // metres: radius of skin that is lit alike
+
 struct Occlusion {
     float fibres;      // crossed on the way to the light
     float allFibres;   // from the hair's lit side to its other, or to the head
     float visibility;  // 0 behind the head ... 1
+    float ground;      // share of the light that the head, where the light's way ends on it, can send back here
 };
+
+// What is left of light after so many fibres that a map counts. A beam of 5 mm crosses numbers of them that vary more than
+// by chance, for hair grows in clumps, and more of it passes than of their mean: `clumping` of them count. The finer the
+// texels, the more of this the map resolves itself, down to single fibres, which let nothing through at all.
+float passedDirectly(LightConstants light, float fibres, float clumping) {
+    return exp(-(clumping + light.filtering.x) * fibres);
+}
 
 // Fibres in front of a depth, as one texel of a map tells; `bias` metres of them are left out.
 float fibresAt(LightConstants light, uint texel, float depth, float bias) {
@@ -41,6 +51,7 @@ Occlusion occlusion(LightConstants light, float3 position_ws, float hairBias, fl
     result.fibres = 0;
     result.allFibres = 0;
     result.visibility = 1;
+    result.ground = 0;
     const float4 clip = mul(light.clipFromWorld, float4(position_ws, 1));
     const bool hair = light.range.y > 0;
     const bool head = light.tile.z > 0;
@@ -58,6 +69,9 @@ Occlusion occlusion(LightConstants light, float3 position_ws, float hairBias, fl
     float fibres = 0;
     float visible = 0;
     float all = 0;
+    float ends = 0;
+    float behind = 0;   // metres of the head behind the point
+    float2 rise = 0;    // of the head's depth from texel to texel
     for (int y = 0; y < 3; ++y) {
         for (int x = 0; x < 3; ++x) {
             const int2 at = clamp(base + int2(x, y), int2(0, 0), int2(size - 1, size - 1));
@@ -69,12 +83,21 @@ Occlusion occlusion(LightConstants light, float3 position_ws, float hairBias, fl
                 fibres += w * fibresAt(light, texel, depth, hairBias);
                 all += w * fibresAt(light, texel, headDepth, 0);
             }
-            if (head) visible += w * (depth - headDepth < headBias ? 1.0 : 0.0);
+            if (head) {
+                visible += w * (depth - headDepth < headBias ? 1.0 : 0.0);
+                ends += w * (headDepth < light.range.x ? 1.0 : 0.0);
+                behind += w * max(headDepth - depth, 0.0);
+                rise += float2(x - 1, y - 1) * (headDepth / 6.0);
+            }
         }
     }
     result.fibres = fibres;
     result.allFibres = max(all, fibres);
     result.visibility = head ? visible : 1.0;
+    // A slope gets less light on its area; and from afar the lit skin is a smaller part of what lies around.
+    const float texelSize = light.filtering.y;
+    const float facing = texelSize * rsqrt(texelSize * texelSize + dot(rise, rise));
+    result.ground = ends * facing * kSkinPatch * kSkinPatch / (kSkinPatch * kSkinPatch + behind * behind);
     return result;
 }
 #endif

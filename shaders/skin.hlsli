@@ -2,6 +2,18 @@
 // Skin: diffuse light that wraps a little around the terminator, a soft highlight, shadows of head and hair.
 #include "shaders/shadows.hlsli"
 
+// The share of light that reaches the skin through so many fibres: the two-flux equations (Kubelka and Munk 1931), with what
+// the skin sends back into the hair and the hair returns once more.
+float3 throughHair(ShadeConstants shade, LightConstants light, float fibres, float3 albedo) {
+    const float counted = shade.sinking.w * fibres;
+    const float3 falling = exp(-shade.sinking.rgb * counted);
+    const float3 r = shade.returning.rgb;
+    const float3 turns = 1.0 - r * r * falling * falling;
+    const float3 returned = r * (1.0 - falling * falling) / turns;
+    const float3 all = (1.0 - r * r) * falling / (turns * (1.0 - albedo * returned));
+    return max(all - exp(-counted), 0.0) + passedDirectly(light, fibres, shade.sinking.w);
+}
+
 float3 skinLight(ShadeConstants shade, MeshConstants mesh, float3 position_ws, float3 normal_ws, float3 albedo) {
     const float kPi = 3.14159265;
     const float3 toView = normalize(shade.eye_ws.xyz - position_ws);
@@ -23,7 +35,8 @@ float3 skinLight(ShadeConstants shade, MeshConstants mesh, float3 position_ws, f
         const float specular = mesh.skin.y * fresnel * (m + 8.0) / (8.0 * kPi) *
                                pow(saturate(dot(normal, middle)), m) * saturate(nl);
         const float lit = lerp(0.0, o.visibility, saturate(nl * 8.0 + 0.6));
-        colour += irradianceOf(light, position_ws) * (albedo / kPi * diffuse + specular) * (lit * exp(-0.5 * o.fibres));
+        colour += irradianceOf(light, position_ws) * (albedo / kPi * diffuse + specular) *
+                  (lit * throughHair(shade, light, o.fibres, albedo));
         openness += exp(-0.3 * o.fibres);
     }
     openness = shade.counts.y > 0 ? openness / float(shade.counts.y) : 1.0;

@@ -74,8 +74,16 @@ Result<MeshOnDevice> uploadMesh(gpu::Device& device, const RenderMesh& mesh) {
     const std::span<const Vec3f> normals = mesh.normals_ws.empty() ? computed : mesh.normals_ws;
     std::vector<shaders::float4> albedo;
     for (std::size_t t = 0; t < mesh.indices.size() / 3; ++t) {
-        albedo.push_back(toFloat4(mesh.triangleAlbedo.empty() ? mesh.albedo : mesh.triangleAlbedo[t], 1));
+        const Vec3f& colour = mesh.triangleAlbedo.empty() ? mesh.albedo : mesh.triangleAlbedo[t];
+        albedo.push_back(toFloat4(colour, 1));
+        const Vec3f& a = mesh.positions_ws[mesh.indices[3 * t]];
+        const Vec3f ab = mesh.positions_ws[mesh.indices[3 * t + 1]] - a;
+        const Vec3f ac = mesh.positions_ws[mesh.indices[3 * t + 2]] - a;
+        const float area = 0.5f * ab.cross(ac).norm();
+        result.area += area;
+        result.meanAlbedo += area * colour;
     }
+    if (result.area > 0) result.meanAlbedo /= result.area;
     Gather gather;
     gather(result.positions, structured(device, "mesh positions", 4, std::as_bytes(mesh.positions_ws)));
     gather(result.normals, structured(device, "mesh normals", 4, std::as_bytes(normals)));
@@ -300,6 +308,16 @@ void DeviceScene::recordUploads(gpu::CommandList& list) {
         }
         group.positions_ws.clear();
     }
+}
+
+Vec3f DeviceScene::groundAlbedo() const {
+    Vec3f sum = Vec3f::Zero();
+    float area = 0;
+    for (const MeshOnDevice& mesh : meshes) {
+        sum += mesh.area * mesh.meanAlbedo;
+        area += mesh.area;
+    }
+    return area > 0 ? Vec3f(sum / area) : sum;
 }
 
 Box3f DeviceScene::meshBounds() const {

@@ -81,6 +81,8 @@ struct MeshOnDevice {
     gpu::BufferPtr positions, normals, indexBuffer, albedo;
     Box3f bounds_ws;
     bool matte = false;
+    float area = 0;  ///< m², where it stood when it was set
+    Vec3f meanAlbedo = Vec3f::Zero();
 };
 
 class DeviceScene {
@@ -102,6 +104,8 @@ class DeviceScene {
     /// Records the uploads that wait.
     void recordUploads(gpu::CommandList& list);
 
+    /// Mean albedo of all meshes.
+    Vec3f groundAlbedo() const;
     Box3f meshBounds() const;
     Box3f hairBounds() const;
     std::uint64_t triangles() const;

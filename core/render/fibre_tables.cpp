@@ -2,6 +2,7 @@
 #include "core/render/fibre_tables.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/shading/absorption_layers.h"
 
@@ -34,6 +35,21 @@ Result<gpu::TexturePtr> upload(gpu::Device& device, const char* name, const shad
 shaders::float4 toFloat4(const Vec3d& v) {
     const Vec3f f = v.cast<float>();
     return {f.x(), f.y(), f.z(), 0};
+}
+
+/// Of light across the fibres. In single scattering what meets a fibre is lost.
+HairFlux fluxOf(const FibreMaterial& material, const shading::DualScattering& dual) {
+    HairFlux flux{Vec3f::Ones(), Vec3f::Zero(), material.clumping};
+    if (material.scattering == Scattering::single) return flux;
+    const shading::AverageScattering average = dual.at(0).average;
+    for (int c = 0; c < 3; ++c) {
+        const double lost = 1 - average.forward[c];
+        const double rate =
+            std::sqrt(std::max(lost * lost - average.backward[c] * average.backward[c], 1e-6));
+        flux.rate[c] = static_cast<float>(rate);
+        flux.returned[c] = static_cast<float>(average.backward[c] / (lost + rate));
+    }
+    return flux;
 }
 
 /// The share of light from everywhere that leaves, with what other fibres scatter again.
@@ -72,43 +88,42 @@ class FibreTables::Baker {
     Baker(gpu::Device& device, FibreTables& result) : device_(device), result_(result) {}
 
     void even() {
-        const FibreMaterial& material = result_.material_;
-        if (material.model == ShadingModel::marschner) {
-            const shading::Marschner model(material.marschner);
+        if (material().model == ShadingModel::marschner) {
+            const shading::Marschner model(material().marschner);
             const shading::MarschnerTables tables = shading::bakeMarschner(model);
             add(kLongitudinal, "longitudinal scattering", tables.longitudinal);
             add(kAzimuthal, "azimuthal scattering, R and TT", tables.transmitted);
             add(kSecondAzimuthal, "azimuthal scattering, TRT", tables.reflected);
             evenDual(shading::DualScattering(model));
         } else {
-            const shading::SadeghiTables tables = shading::bakeSadeghi(material.sadeghi);
+            const shading::SadeghiTables tables = shading::bakeSadeghi(material().sadeghi);
             add(kLongitudinal, "longitudinal scattering", tables.longitudinal);
             add(kAzimuthal, "azimuthal scattering", tables.azimuthal);
-            evenDual(shading::DualScattering(material.sadeghi));
+            evenDual(shading::DualScattering(material().sadeghi));
         }
     }
 
     /// For absorption that changes from place to place.
     void layers() {
-        const FibreMaterial& material = result_.material_;
-        if (material.model == ShadingModel::marschner) {
-            const shading::MarschnerLayers tables = shading::bakeMarschnerLayers(material.marschner);
+        if (material().model == ShadingModel::marschner) {
+            const shading::MarschnerLayers tables = shading::bakeMarschnerLayers(material().marschner);
             add(kLongitudinal, "longitudinal scattering", tables.longitudinal);
             add(kAzimuthal, "azimuthal scattering by absorption", tables.azimuthal);
-            dualLayers(shading::bakeDualLayers(material.marschner));
+            dualLayers(shading::bakeDualLayers(material().marschner));
         } else {
-            const shading::AzimuthalParameters& fibre = material.marschner.azimuthal;
-            const shading::SadeghiLayers layers = shading::bakeSadeghiLayers(material.sadeghi, fibre);
+            const shading::AzimuthalParameters& fibre = material().marschner.azimuthal;
+            const shading::SadeghiLayers layers = shading::bakeSadeghiLayers(material().sadeghi, fibre);
             add(kLongitudinal, "longitudinal scattering", layers.tables.longitudinal);
             add(kAzimuthal, "azimuthal scattering", layers.tables.azimuthal);
             add(kSecondAzimuthal, "energies by absorption", layers.energies);
-            dualLayers(shading::bakeDualLayers(material.sadeghi, fibre));
+            dualLayers(shading::bakeDualLayers(material().sadeghi, fibre));
         }
     }
 
     const Status& status() const { return status_; }
 
   private:
+    const FibreMaterial& material() const { return result_.material_; }
     bool isDual() const { return result_.material_.scattering == Scattering::dual; }
     void add(std::uint32_t slot, const char* name, const shading::Table& table) {
         auto texture = upload(device_, name, table);
@@ -128,6 +143,7 @@ class FibreTables::Baker {
             ambient = ambient.unaryExpr([](double albedo) { return withMeetings(albedo); });
         }
         result_.constants_.ambient = toFloat4(ambient);
+        result_.flux_ = fluxOf(material(), dual);
     }
     void dualLayers(shading::DualLayers layers) {
         if (isDual()) {
@@ -141,6 +157,11 @@ class FibreTables::Baker {
             }
         }
         add(kAverages, "average scattering by absorption", layers.averages);
+        // The skin is lit as through hair of the material's own absorption.
+        const shading::Marschner model(material().marschner);
+        const bool isMarschner = material().model == ShadingModel::marschner;
+        result_.flux_ = fluxOf(material(), isMarschner ? shading::DualScattering(model)
+                                                       : shading::DualScattering(material().sadeghi));
     }
 
     gpu::Device& device_;

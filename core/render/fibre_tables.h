@@ -8,6 +8,14 @@
 
 namespace hairloom::render {
 
+/// How light sinks through hair to the skin.
+struct HairFlux {
+    /// The logarithm of what a fibre takes, linear RGB. That of Kajiya-Kay is an artist's.
+    Vec3f rate = Vec3f::Constant(0.62f);
+    Vec3f returned = Vec3f::Zero();  ///< share that hair without end sends back
+    float clumping = 0.81f;          ///< see FibreMaterial
+};
+
 /// Only what the model needs is made: none for Kajiya-Kay, those of dual scattering where it is on, several
 /// absorptions (core/shading/absorption_layers.h) where hair does not look the same everywhere.
 class FibreTables {
@@ -24,6 +32,7 @@ class FibreTables {
     void bind(gpu::CommandList& list) const;
 
     const shaders::FibreConstants& constants() const { return constants_; }
+    const HairFlux& flux() const { return flux_; }
     std::uint64_t bytes() const;  ///< of all tables on the device
 
   private:
@@ -36,6 +45,7 @@ class FibreTables {
     FibreMaterial material_;
     bool varies_ = false;
     shaders::FibreConstants constants_;
+    HairFlux flux_;
     std::vector<Bound> textures_;
     gpu::SamplerPtr sampler_;
 };

@@ -12,6 +12,14 @@ namespace {
 
 using gpu::Binding;
 
+/// What FibreMaterial::clumping must grow by where the light's map has texels of so many metres. The Sintel
+/// strands let as much through as traced ones with 0.86 at 2.2 mm, 1.02 at 1.1 mm and about 1.45 at 0.28 mm;
+/// the 0.81 of a beam of 5 mm stands at two texels a beam.
+float resolvedClumps(float texel) {
+    constexpr float kBeam = 0.0025f, kEachHalving = 0.2f;
+    return std::clamp(kEachHalving * std::log2(kBeam / texel), -0.2f, 1.0f);
+}
+
 bool castsShadow(const RendererState& state, std::size_t light) {
     return state.options.shadows != Shadows::none && state.lights[light].castsShadow;
 }
@@ -66,6 +74,10 @@ shaders::LightConstants lightConstants(const RendererState& state, std::size_t i
     c.tile = {size * static_cast<float>(tileOf(state, i)), size, head ? 1.0f : 0.0f, atlasWidth(state)};
     c.range = rangeOf(view, hair ? static_cast<std::uint32_t>(state.options.shadows) : 0u);
     c.layers = layersOf(state, view);
+    const float distance =
+        light.kind == LightKind::point ? view.nearPlane + view.hairStart + 0.5f * view.hairRange : 1.0f;
+    const float texel = view.spread * distance / size;
+    c.filtering = {resolvedClumps(texel), texel, 0, 0};
     return c;
 }
 
@@ -186,6 +198,10 @@ void setUpLights(RendererState& state) {
         shade.environment[i] =
             toShader(state.environment.coefficients[i], state.environment.dark() ? 0.0f : 1.0f);
     }
+    shade.ground = toShader(state.scene.groundAlbedo(), 0);
+    const HairFlux flux = state.scene.groups.empty() ? HairFlux() : state.scene.groups.front().fibre.flux();
+    shade.sinking = toShader(flux.rate, flux.clumping);
+    shade.returning = toShader(flux.returned, 0);
     shade.counts.y = static_cast<std::uint32_t>(state.lights.size());
     for (std::size_t i = 0; i < state.lights.size(); ++i) shade.lights[i] = lightConstants(state, i);
 }

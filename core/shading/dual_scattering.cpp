@@ -92,7 +92,7 @@ double AverageScattering::variance() const {
     return (forth * forwardVariance + back * backwardVariance) / std::max(forth + back, 1e-12);
 }
 
-TwoFlux twoFlux(const Vec3d& forward, const Vec3d& backward, double before, double all) {
+TwoFlux twoFlux(const Vec3d& forward, const Vec3d& backward, double before, double all, const Vec3d& ground) {
     TwoFlux flux;
     const double behind = std::max(all - before, 0.0);
     for (int c = 0; c < 3; ++c) {
@@ -105,6 +105,14 @@ TwoFlux twoFlux(const Vec3d& forward, const Vec3d& backward, double before, doub
         const double turns = 1 - returned * returned * std::exp(-2 * rate * (before + behind));
         flux.down[c] = (falling - returned * returned * back) / turns;
         flux.up[c] = returned * (falling - back) / turns;
+        // What the ground gets and the hair above returns to it, again and again; then as if lit from there.
+        const double deep = std::exp(-rate * (before + behind));
+        const double reached = (1 - returned * returned) * deep / turns;
+        const double kept = returned * (1 - deep * deep) / turns;
+        const double sent = ground[c] * reached / (1 - ground[c] * kept);
+        const double rising = std::exp(-rate * behind);
+        flux.groundUp[c] = sent * (rising - returned * returned * deep * falling) / turns;
+        flux.groundDown[c] = sent * returned * (rising - deep * falling) / turns;
     }
     return flux;
 }
@@ -178,9 +186,9 @@ double spreadLongitudinal(double tilt, double variance, double thetaIn, double t
 }
 
 Vec3d multipleScattering(const DualScattering::Row& row, double thetaIn, double thetaOut, double phi,
-                         double before, double all) {
+                         double before, double all, const Vec3d& ground) {
     const AverageScattering& a = row.average;
-    const TwoFlux flux = twoFlux(a.forward, a.backward, before, all);
+    const TwoFlux flux = twoFlux(a.forward, a.backward, before, all, ground);
     const Vec3d down = (flux.down - Vec3d::Constant(std::exp(-before))).cwiseMax(0.0);
     const double cosine = std::max(std::cos(0.5 * (thetaOut - thetaIn)), 1e-6);
     const double factor = std::cos(thetaIn) / (cosine * cosine);
@@ -203,7 +211,11 @@ Vec3d multipleScattering(const DualScattering::Row& row, double thetaIn, double 
     const double upM = spreadLongitudinal(
         a.tilt() + (passed + 1) * a.forwardTilt + a.backwardTilt,
         a.variance() + (passed + 1) * a.forwardVariance + a.backwardVariance, thetaIn, thetaOut);
-    return factor * (downM * down.cwiseProduct(spread(phi)) + upM * flux.up.cwiseProduct(spread(phi + kPi)));
+    // Light from the ground has no memory of the light's inclination: 2 / π N towards all directions. Even
+    // light in a half space meets π / 2 times the fibres that light straight through does.
+    const double evenM = cosine * cosine;
+    return factor * ((downM * down + evenM * flux.groundDown).cwiseProduct(spread(phi)) +
+                     (upM * flux.up + evenM * flux.groundUp).cwiseProduct(spread(phi + kPi)));
 }
 
 }  // namespace hairloom::shading

@@ -39,9 +39,13 @@ struct AverageScattering {
 struct TwoFlux {
     Vec3d down = Vec3d::Zero();  ///< still away from the light; with what has met no fibre, exp(−before)
     Vec3d up = Vec3d::Zero();    ///< back towards it
+    Vec3d groundDown = Vec3d::Zero();  ///< of what the ground has sent back
+    Vec3d groundUp = Vec3d::Zero();
 };
-/// `before` fibres between the point and the light, `all` >= before from one side of the hair to the other.
-TwoFlux twoFlux(const Vec3d& forward, const Vec3d& backward, double before, double all);
+/// `before` fibres between the point and the light, `all` >= before from one side of the hair to the other,
+/// where it lies on a ground of this albedo.
+TwoFlux twoFlux(const Vec3d& forward, const Vec3d& backward, double before, double all,
+                const Vec3d& ground = Vec3d::Zero());
 
 class DualScattering {
   public:
@@ -73,7 +77,7 @@ double scatteringsOf(double x);
 /// What leaves the point towards the view of light that other fibres have scattered, as S cos θ_i of
 /// Marschner's: times the irradiance that the hair's lit side gets.
 Vec3d multipleScattering(const DualScattering::Row& row, double thetaIn, double thetaOut, double phi,
-                         double before, double all);
+                         double before, double all, const Vec3d& ground = Vec3d::Zero());
 
 /// The longitudinal spread of such light.
 double spreadLongitudinal(double tilt, double variance, double thetaIn, double thetaOut);

@@ -94,6 +94,7 @@ struct LightConstants {
                     // perspective view, 0 for an orthographic one; w: where hair begins, metres behind it
     float4 layers;  // ends of the opacity layers in metres behind the first hair, or behind where hair
                     // begins; absorption: x: fibres a metre, y: most fibres
+    float4 filtering;  // x: by how much more fibres stop light than over a beam of 5 mm, y: metres of a texel
 };
 
 struct ShadeConstants {
@@ -106,6 +107,10 @@ struct ShadeConstants {
     float4 normalisation;  // x: 1/(pi R_O(0)), y, z: 1/(pi R_O(m)) of the two highlights
     float4 rootTip;        // x: brightness at the root, y: at the tip, z: random variation, w: fibre opacity
     float4 albedo;         // linear RGB of strands without a colour of their own
+    float4 ground;         // linear RGB, albedo of what hair grows on
+    float4 sinking;        // of light on its way through hair to the skin: RGB, what a fibre takes, as the
+                           // logarithm; w: fibres in the way by those that are counted
+    float4 returning;      // RGB, share that hair without end sends back
     uint4 counts;          // x: curve points, y: lights, z: row length of the dispatch in points
     LightConstants lights[HAIRLOOM_MAX_LIGHTS];
 };
@@ -210,6 +215,7 @@ struct FibreCase {
     float4 tangent;  // w: the strand's random number
     float4 toLight;  // w: fibres before the point
     float4 toView;   // w: all fibres
+    float4 ground;   // albedo of what lies behind them
     float4 place;    // x: 0 root ... 1 tip, y: streak, z: dye, w: the strand's random number of absorption
     float4 own;      // the strand's own colour; w: 1 where it has one
 };
@@ -235,12 +241,12 @@ static_assert(sizeof(ViewConstants) == 144);
 HAIRLOOM_OFFSET(LightConstants, toLight_ws, 64);
 HAIRLOOM_OFFSET(LightConstants, range, 112);
 HAIRLOOM_OFFSET(LightConstants, layers, 128);
-static_assert(sizeof(LightConstants) == 144);
+static_assert(sizeof(LightConstants) == 160);
 HAIRLOOM_OFFSET(ShadeConstants, shift, 192);
 HAIRLOOM_OFFSET(ShadeConstants, albedo, 240);
-HAIRLOOM_OFFSET(ShadeConstants, counts, 256);
-HAIRLOOM_OFFSET(ShadeConstants, lights, 272);
-static_assert(sizeof(ShadeConstants) == 272 + 144 * HAIRLOOM_MAX_LIGHTS);
+HAIRLOOM_OFFSET(ShadeConstants, counts, 304);
+HAIRLOOM_OFFSET(ShadeConstants, lights, 320);
+static_assert(sizeof(ShadeConstants) == 320 + 160 * HAIRLOOM_MAX_LIGHTS);
 static_assert(sizeof(LookConstants) == 128);
 static_assert(sizeof(MeshConstants) == 80);
 HAIRLOOM_OFFSET(RasterConstants, places, 64);
@@ -255,7 +261,7 @@ static_assert(sizeof(OverlayVertex) == 32);
 static_assert(sizeof(LightCase) == 32);
 static_assert(sizeof(KajiyaCase) == 48);
 static_assert(sizeof(FibreConstants) == 96);
-static_assert(sizeof(FibreCase) == 80);
+static_assert(sizeof(FibreCase) == 96);
 }  // namespace hairloom::shaders
 #endif
 #endif

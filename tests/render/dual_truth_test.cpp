@@ -16,8 +16,7 @@ namespace fs = std::filesystem;
 
 const fs::path kData = fs::path(HAIRLOOM_SOURCE_DIR) / "../shared/data";
 
-/// The view of truth.md on a black head, so that all that is seen comes from hair but for the skin's own
-/// highlight.
+/// The view of truth.md: the strands on a matte head.
 class SintelHair {
   public:
     SintelHair(ImportedStrands strands, ImportedScene head)
@@ -25,12 +24,12 @@ class SintelHair {
         for (const Triangle& t : head_.mesh.triangles()) indices_.insert(indices_.end(), t.begin(), t.end());
     }
 
-    RenderScene scene(double eumelanin, Scattering scattering) const {
+    RenderScene scene(double eumelanin, Scattering scattering, const Vec3f& skin) const {
         RenderScene scene;
         RenderMesh mesh;
         mesh.positions_ws = head_.mesh.positions();
         mesh.indices = indices_;
-        mesh.albedo = Vec3f::Zero();
+        mesh.albedo = skin;
         mesh.matte = true;
         scene.meshes = {mesh};
         RenderStrands hair;
@@ -64,18 +63,36 @@ class SintelHair {
     std::vector<std::uint32_t> indices_;
 };
 
-/// Linear light of all pixels, RGB.
-Vec3d light(gpu::Device& device, const RenderScene& scene) {
+RenderOptions truthOptions() {
     RenderOptions options;
     options.width = options.height = 80;
     options.frames = 2;
     options.subdivisions = 1;
+    return options;
+}
+
+LinearImage draw(gpu::Device& device, const RenderScene& scene, const RenderOptions& options) {
     const auto picture = renderPicture(device, scene, options);
     EXPECT_TRUE(picture) << picture.error().message();
+    return picture ? picture->linear : LinearImage();
+}
+
+/// The hair's share of each pixel: white hair on a black head under white light from everywhere.
+LinearImage coverage(gpu::Device& device, RenderScene scene) {
+    scene.meshes[0].albedo = Vec3f::Zero();
+    scene.strands[0].material.albedo = Vec3f::Ones();
+    scene.strands[0].material.fibre.model = ShadingModel::kajiya;
+    scene.environment = Environment::gradient(Vec3f::Ones(), Vec3f::Ones());
+    scene.lights.clear();
+    return draw(device, scene, truthOptions());
+}
+
+/// Linear light of the pixels that hair covers by half or more, RGB.
+Vec3d light(gpu::Device& device, const RenderScene& scene, const LinearImage& covered) {
+    const LinearImage all = draw(device, scene, truthOptions());
     Vec3d sum = Vec3d::Zero();
-    if (!picture) return sum;
-    for (std::size_t i = 0; i < picture->linear.rgba.size(); i += 4) {
-        sum += Eigen::Map<const Vec3f>(&picture->linear.rgba[i]).cast<double>();
+    for (std::size_t i = 0; i < all.rgba.size(); i += 4) {
+        if (covered.rgba[i] >= 0.5f) sum += Eigen::Map<const Vec3f>(&all.rgba[i]).cast<double>();
     }
     return sum;
 }
@@ -88,18 +105,26 @@ TEST_F(RenderTest, DualScatteringBrightensHairAsAPathTracerDoes) {
     ASSERT_TRUE(strands && head);
     const SintelHair hair(std::move(*strands), std::move(*head));
     const Vec3d luminance(0.2126, 0.7152, 0.0722);
+    const LinearImage covered = coverage(*device, hair.scene(1, Scattering::single, Vec3f::Zero()));
+    const Vec3f black = Vec3f::Zero(), skin(0.5f, 0.35f, 0.27f);
     struct Truth {
+        Vec3f skin;
         double eumelanin, ratio;
     };
-    for (const Truth& truth : {Truth{0.3, 2.679}, Truth{1.3, 1.287}, Truth{8, 1.054}}) {
-        const Vec3d single = light(*device, hair.scene(truth.eumelanin, Scattering::single));
-        const Vec3d all = light(*device, hair.scene(truth.eumelanin, Scattering::dual));
+    for (const Truth& truth : {Truth{black, 0.3, 2.679}, Truth{black, 1.3, 1.287}, Truth{black, 8, 1.054},
+                               Truth{skin, 0.3, 3.496}, Truth{skin, 1.3, 1.449}, Truth{skin, 8, 1.094}}) {
+        const Vec3d single =
+            light(*device, hair.scene(truth.eumelanin, Scattering::single, truth.skin), covered);
+        const Vec3d all = light(*device, hair.scene(truth.eumelanin, Scattering::dual, truth.skin), covered);
         const double ratio = all.dot(luminance) / single.dot(luminance);
         const Vec3d channels = all.cwiseQuotient(single);
-        EXPECT_NEAR(ratio, truth.ratio, 0.15 * truth.ratio) << truth.eumelanin;
-        RecordProperty("eumelanin_" + std::to_string(truth.eumelanin), std::to_string(ratio));
-        std::printf("eumelanin %.1f: %.3f, truth %.3f; red, green, blue %.2f %.2f %.2f\n", truth.eumelanin,
-                    ratio, truth.ratio, channels.x(), channels.y(), channels.z());
+        EXPECT_NEAR(ratio, truth.ratio, 0.15 * truth.ratio)
+            << truth.eumelanin << " on " << truth.skin.transpose();
+        RecordProperty("eumelanin_" + std::to_string(truth.eumelanin) + (truth.skin.x() > 0 ? "_skin" : ""),
+                       std::to_string(ratio));
+        std::printf("eumelanin %.1f, skin %.2f: %.3f, truth %.3f; red, green, blue %.2f %.2f %.2f\n",
+                    truth.eumelanin, static_cast<double>(truth.skin.x()), ratio, truth.ratio, channels.x(),
+                    channels.y(), channels.z());
     }
 }
 

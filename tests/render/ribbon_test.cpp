@@ -2,6 +2,7 @@
 // The two kinds of ribbons, hairs thinner than a pixel, and hair far away.
 #include <numeric>
 
+#include "core/render/renderer.h"
 #include "tests/render/render_fixture.h"
 
 namespace hairloom::render {
@@ -197,30 +198,108 @@ TEST_F(RibbonTest, FewerHairsFarAwayCoverAsMuch) {
     EXPECT_LT(before, 300u);
 }
 
-// A step of 0.2 % in distance changes no more where hairs come and go than where all are drawn.
-TEST_F(RibbonTest, HairsDoNotPop) {
-    TestHead head(400);
-    RenderScene scene = head.scene();
-    scene.meshes.clear();
-    const Vec3f towards = (scene.camera.eye_ws - scene.camera.target_ws).normalized();
-    const auto largestStep = [&](float detail) {
-        RenderOptions how = options(48, 32);
-        how.detail = detail;
+/// Hair without a head, seen from farther and farther away by one renderer.
+class Walk {
+  public:
+    Walk(gpu::Device& device, std::uint32_t hairs, float radius) : device_(device), renderer_(device) {
+        TestHead head(hairs);
+        std::fill(head.strands.radii.begin(), head.strands.radii.end(), radius);
+        RenderScene scene = head.scene();
+        scene.meshes.clear();
+        camera_ = scene.camera;
+        towards_ = (camera_.eye_ws - camera_.target_ws).normalized();
+        EXPECT_TRUE(renderer_.setScene(scene));
+    }
+    /// Alpha of all pixels.
+    std::vector<float> at(float distance, RenderOptions how) {
+        camera_.eye_ws = camera_.target_ws + distance * towards_;
+        EXPECT_TRUE(renderer_.setCamera(camera_));
         how.shadows = Shadows::none;
-        LinearImage last;
-        double largest = 0;
-        for (int i = 0; i < 4; ++i) {
-            scene.camera.eye_ws = scene.camera.target_ws + (1.5f + 0.003f * static_cast<float>(i)) * towards;
-            const LinearImage now = draw(scene, how);
-            for (std::size_t p = 3; p < last.rgba.size(); p += 4) {
-                largest = std::max(largest, std::abs(static_cast<double>(now.rgba[p] - last.rgba[p])));
-            }
-            last = now;
+        for (std::uint32_t i = 0; i < how.frames; ++i) {
+            auto list = device_.createCommandList().value();
+            EXPECT_TRUE(renderer_.record(*list, how, nullptr));
+            EXPECT_TRUE(device_.submit(std::move(list)).value()->wait());
         }
-        return largest;
+        std::vector<float> sum(std::size_t{4} * how.width * how.height);
+        EXPECT_TRUE(device_.readBuffer(renderer_.linearSum(), 0, std::as_writable_bytes(std::span(sum))));
+        std::vector<float> alpha;
+        for (std::size_t i = 3; i < sum.size(); i += 4) {
+            alpha.push_back(sum[i] / static_cast<float>(how.frames));
+        }
+        return alpha;
+    }
+    std::uint64_t strands() const { return renderer_.strands(); }
+    std::uint64_t pointsPerStrand() const { return renderer_.curvePoints() / renderer_.strands(); }
+
+  private:
+    gpu::Device& device_;
+    Renderer renderer_;
+    Camera camera_;
+    Vec3f towards_;
+};
+
+struct Change {
+    double mean = 0, most = 0;
+};
+Change between(const std::vector<float>& a, const std::vector<float>& b) {
+    Change change;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        const double difference = std::abs(static_cast<double>(a[i] - b[i]));
+        change.mean += difference / static_cast<double>(a.size());
+        change.most = std::max(change.most, difference);
+    }
+    return change;
+}
+
+// From where all hairs are drawn to where few are. A step of 0.2 % in distance changes no more than where all
+// are drawn, where hairs come and go and where curves become coarser.
+TEST_F(RibbonTest, HairsDoNotPop) {
+    Walk walk(*device, 400, 0.00015f);
+    RenderOptions whole = options(48, 16);
+    RenderOptions some = whole;
+    some.detail = 0.3f;
+    RenderOptions glance = some;
+    glance.frames = 1;
+    const auto pointsAt = [&](float distance) {
+        walk.at(distance, glance);
+        return walk.pointsPerStrand();
     };
-    const double whole = largestStep(0);
-    EXPECT_LT(largestStep(0.3f), whole + 0.1);
+    const std::uint64_t finest = pointsAt(0.2f);
+    EXPECT_EQ(walk.strands(), 400u);
+    EXPECT_LT(pointsAt(3), finest) << "curves stay as fine as they are";
+    EXPECT_LT(walk.strands(), 150u);
+    float fine = 0.2f, coarse = 3;
+    for (int i = 0; i < 14; ++i) {
+        const float middle = 0.5f * (fine + coarse);
+        (pointsAt(middle) == finest ? fine : coarse) = middle;
+    }
+    const std::vector<float> places{fine, 1.2f, 2.0f};
+    for (const float distance : places) {
+        const Change all = between(walk.at(0.999f * distance, whole), walk.at(1.001f * distance, whole));
+        const Change fewer = between(walk.at(0.999f * distance, some), walk.at(1.001f * distance, some));
+        EXPECT_LT(fewer.most, all.most + 0.13) << distance << " m";
+        EXPECT_LT(fewer.mean, 1.5 * all.mean + 0.002) << distance << " m";
+    }
+}
+
+// What hair covers falls with the square of the distance, and no pixel of thin hair stays bright.
+TEST_F(RibbonTest, HairThinsWithDistanceAndDoesNotSparkle) {
+    Walk walk(*device, 150, 0.00004f);
+    const RenderOptions how = options(96, 16);
+    double before = 0;
+    float brightest = 1;
+    for (const float distance : {0.5f, 1.0f, 2.0f, 4.0f}) {
+        const std::vector<float> alpha = walk.at(distance, how);
+        const double covered = std::accumulate(alpha.begin(), alpha.end(), 0.0) *
+                               static_cast<double>(distance) * static_cast<double>(distance);
+        if (before > 0) {
+            EXPECT_NEAR(covered, before, 0.05 * before) << distance << " m";
+        }
+        before = covered;
+        const float most = *std::max_element(alpha.begin(), alpha.end());
+        EXPECT_LE(most, brightest) << distance << " m";
+        brightest = std::min(brightest, most + 0.2f);
+    }
 }
 
 TEST_F(RibbonTest, RadiiSpreadFromStrandToStrand) {

@@ -86,6 +86,8 @@ TEST_F(ShaderTest, KajiyaKayAgreesWithTheReference) {
     }
 }
 
+const Vec3d kGround(0.5, 0.35, 0.27);
+
 struct FibreCases {
     std::vector<shaders::FibreCase> cases;
     std::vector<shading::FibreAngles> angles;
@@ -102,6 +104,7 @@ struct FibreCases {
             cases.push_back({toFloat4(tangent, random.uniformDouble()),
                              toFloat4(toLight, before),
                              toFloat4(toView, before + 4 * random.uniformDouble()),
+                             toFloat4(kGround, 0),
                              {random.uniform(), random.uniform(), random.uniform(), random.uniform()},
                              {random.uniform(), random.uniform(), random.uniform(),
                               cases.size() % 3 == 0 ? 1.0f : 0.0f}});
@@ -161,7 +164,7 @@ TEST_F(ShaderTest, FibreModelsAgreeWithTheReference) {
             multiple.add(result[2 * i + 1],
                          shading::multipleScattering(dual.at(0.5 * std::abs(out - in)), in, out, phi,
                                                      static_cast<double>(c.toLight.w),
-                                                     static_cast<double>(c.toView.w)));
+                                                     static_cast<double>(c.toView.w), kGround));
         }
         EXPECT_LT(single.value(), 0.01) << isMarschner;
         EXPECT_LT(multiple.value(), 0.02) << isMarschner;
@@ -230,7 +233,7 @@ TEST_F(ShaderTest, HairThatVariesAgreesWithTheReference) {
             multiple.add(result[2 * i + 1],
                          shading::multipleScattering(dual.at(0.5 * std::abs(out - in)), in, out, phi,
                                                      static_cast<double>(c.toLight.w),
-                                                     static_cast<double>(c.toView.w)));
+                                                     static_cast<double>(c.toView.w), kGround));
         }
         RecordProperty(isMarschner ? "marschner_single" : "sadeghi_single", std::to_string(single.value()));
         RecordProperty(isMarschner ? "marschner_multiple" : "sadeghi_multiple",

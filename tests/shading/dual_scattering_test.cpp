@@ -75,12 +75,37 @@ TEST(DualScattering, TwoFluxSolvesItsEquations) {
     EXPECT_NEAR(twoFlux(Vec3d::Zero(), Vec3d::Zero(), 2, 3).down.x(), std::exp(-2.0), 1e-3);
 }
 
+TEST(DualScattering, GroundSendsBackItsShare) {
+    const Vec3d forward(0.6, 0.4, 0.78), backward(0.2, 0.05, 0.21), ground(0.5, 0.35, 0.9);
+    constexpr double kAll = 3, kSmall = 1e-4;
+    const auto down = [&](double before) {
+        const TwoFlux f = twoFlux(forward, backward, before, kAll, ground);
+        return Vec3d(f.down + f.groundDown);
+    };
+    const auto up = [&](double before) {
+        const TwoFlux f = twoFlux(forward, backward, before, kAll, ground);
+        return Vec3d(f.up + f.groundUp);
+    };
+    EXPECT_TRUE(up(kAll).isApprox(ground.cwiseProduct(down(kAll)), 1e-9));
+    EXPECT_TRUE(down(0).isApprox(Vec3d::Ones(), 1e-9));
+    for (const double before : {0.3, 1.5, 2.5}) {
+        for (int c = 0; c < 3; ++c) {
+            EXPECT_NEAR((down(before + kSmall) - down(before))[c] / kSmall,
+                        -(1 - forward[c]) * down(before)[c] + backward[c] * up(before)[c], 1e-3);
+            EXPECT_NEAR((up(before + kSmall) - up(before))[c] / kSmall,
+                        (1 - forward[c]) * up(before)[c] - backward[c] * down(before)[c], 1e-3);
+        }
+    }
+    const TwoFlux black = twoFlux(forward, backward, 1, kAll);
+    EXPECT_EQ(black.groundUp.norm() + black.groundDown.norm(), 0);
+}
+
 /// Light that a slab of parallel fibres, lit across, sends back at an angle to its normal: all of it over
 /// what has been scattered once.
 struct SlabRatio {
     double traced, dual;
 };
-SlabRatio slab(double eumelanin, int channel, double depth, double cameraAngle) {
+SlabRatio slab(double eumelanin, int channel, double depth, double cameraAngle, double ground = 0) {
     const Marschner model = hair(eumelanin);
     const AzimuthalProfile::Grid grid = model.azimuthal(0).grid();
     const auto c = static_cast<std::size_t>(channel);
@@ -99,11 +124,21 @@ SlabRatio slab(double eumelanin, int channel, double depth, double cameraAngle) 
     double once = 0, all = 0;
     for (int ray = 0; ray < 20000; ++ray) {
         double at = 0, heading = 0, weight = 1;  // heading 0: into the slab
-        for (int scatterings = 0; weight > 1e-3; ++scatterings) {
+        bool fresh = true;
+        while (weight > 1e-3) {
             at -= std::cos(heading) * std::log(1 - random.uniformDouble());
+            if (at > depth && ground > 0) {
+                // A matte ground, in the plane across the fibres.
+                at = depth;
+                weight *= ground;
+                heading = kPi + std::asin(2 * random.uniformDouble() - 1);
+                fresh = false;
+                continue;
+            }
             if (at < 0 || at > depth) break;
             const double seen = weight * sample(n, cameraAngle - heading) * std::exp(-at / cosine) / cosine;
-            if (scatterings == 0) once += seen;
+            if (fresh) once += seen;
+            fresh = false;
             all += seen;
             weight *= albedo;
             const double drawn = random.uniformDouble() * albedo;
@@ -121,10 +156,13 @@ SlabRatio slab(double eumelanin, int channel, double depth, double cameraAngle) 
     for (int i = 0; i < kLayers; ++i) {
         const double before = (i + 0.5) * step;
         const double seen = std::exp(-before / cosine) / cosine * step;
-        const TwoFlux flux = twoFlux(row.average.forward, row.average.backward, before, depth);
+        const TwoFlux flux =
+            twoFlux(row.average.forward, row.average.backward, before, depth, Vec3d::Constant(ground));
+        const double down = flux.down[channel] + kPi / 2 * flux.groundDown[channel] - std::exp(-before);
         single += seen * std::exp(-before) * sample(n, cameraAngle);
-        multiple += seen * ((flux.down[channel] - std::exp(-before)) * sample(row.spread[c], cameraAngle) +
-                            flux.up[channel] * sample(row.spread[c], cameraAngle + kPi));
+        multiple +=
+            seen * (down * sample(row.spread[c], cameraAngle) +
+                    (flux.up + kPi / 2 * flux.groundUp)[channel] * sample(row.spread[c], cameraAngle + kPi));
     }
     return {all / once, 1 + multiple / single};
 }
@@ -139,6 +177,18 @@ TEST(DualScattering, BrightensASlabAsTracedLightDoes) {
                         << "eumelanin " << eumelanin << " channel " << channel << " depth " << depth
                         << " camera " << degrees;
                 }
+            }
+        }
+    }
+}
+
+TEST(DualScattering, SkinUnderASlabBrightensItAsTracedLightDoes) {
+    for (const double eumelanin : {0.3, 1.3, 8.0}) {
+        for (const double depth : {1.0, 2.0, 5.0}) {
+            for (const double degrees : {0.0, 43.0}) {
+                const SlabRatio ratio = slab(eumelanin, 0, depth, degrees * kDegree, 0.5);
+                EXPECT_NEAR(ratio.dual, ratio.traced, 0.2 * ratio.traced)
+                    << "eumelanin " << eumelanin << " depth " << depth << " camera " << degrees;
             }
         }
     }

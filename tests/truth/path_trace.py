@@ -61,7 +61,8 @@ def write_curves(strands: Strands, root_radius: float, tip_scale: float, folder:
         controls = spline_controls(strands[i])
         length = np.linalg.norm(np.diff(controls, axis=0), axis=1)
         along = np.concatenate([[0], np.cumsum(length)])
-        radius = root_radius * (1 + (tip_scale - 1) * along / max(along[-1], 1e-12))
+        # The profile of hairloom-cli.
+        radius = root_radius * (1 + (tip_scale - 1) * (along / max(along[-1], 1e-12)) ** 2)
         if segments + len(controls) > _SEGMENTS_PER_SHAPE:
             flush()
         lines.append("")
