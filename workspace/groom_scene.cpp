@@ -248,7 +248,7 @@ bool GroomScene::setMaterial(const HairMaterial& authored, const ViewFile& view)
     if (authored.rootColour != before.rootColour || !hasSameShares(authored, before)) return false;
     if (!radii_.empty() && authored.rootRadius != before.rootRadius) return false;
     rest_.material = authored;
-    material_ = materialOf(authored, view);
+    material_ = renderMaterial(rest_, view);
     return true;
 }
 
