@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -30,10 +31,14 @@ bool usable(const Sphere& sphere) {
     return sphere.center_ws.allFinite() && std::isfinite(sphere.radius) && sphere.radius > 0.0;
 }
 
-double largestMove(const std::vector<Vec3d>& from, const std::vector<Vec3d>& to) {
-    double largest = 0.0;
-    for (std::size_t p = 0; p < from.size(); ++p) largest = std::max(largest, (to[p] - from[p]).norm());
-    return largest;
+/// Whether a point moves by more than half the strand's length beside its root: the equations of a strand in
+/// a tangle have other solutions far away.
+bool leaps(const StrandShape& shape, const std::vector<Vec3d>& from, const std::vector<Vec3d>& to) {
+    const double most = 0.5 * std::accumulate(shape.lengths.begin(), shape.lengths.end(), 0.0);
+    for (std::size_t p = 0; p < from.size(); ++p) {
+        if (!((to[p] - from[p] - (to[0] - from[0])).norm() <= most)) return true;
+    }
+    return false;
 }
 
 Status check(const Strands& strands, const runtime::SimulationSettings& settings) {
@@ -241,10 +246,7 @@ bool Solver::trySubstep(Strand& strand, const Path& path, double from, double to
     StrandState next = strand.state;
     const bool converged =
         substep(physics_, strand.shape, h, weight, around, path.clamped(strand.shape, to), next, strand.work);
-    // The equations of a strand in a tangle have other solutions far away.
-    const bool solved =
-        converged && largestMove(strand.state.x, next.x) <
-                         0.5 * strand.shape.lengths.back() * static_cast<double>(strand.shape.segments());
+    const bool solved = converged && !(physics_.lengthHeld && leaps(strand.shape, strand.state.x, next.x));
     if (solved) {
         strand.state = std::move(next);
     } else {
