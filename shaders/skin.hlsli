@@ -11,6 +11,7 @@ float3 throughHair(ShadeConstants shade, LightConstants light, float fibres, flo
     const float3 turns = 1.0 - r * r * falling * falling;
     const float3 returned = r * (1.0 - falling * falling) / turns;
     const float3 all = (1.0 - r * r) * falling / (turns * (1.0 - albedo * returned));
+    if (shade.returning.w == 0) return all;
     return max(all - exp(-counted), 0.0) + passedDirectly(light, fibres, shade.sinking.w);
 }
 

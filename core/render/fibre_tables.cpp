@@ -39,7 +39,7 @@ shaders::float4 toFloat4(const Vec3d& v) {
 
 /// Of light across the fibres. In single scattering what meets a fibre is lost.
 HairFlux fluxOf(const FibreMaterial& material, const shading::DualScattering& dual) {
-    HairFlux flux{Vec3f::Ones(), Vec3f::Zero(), material.clumping};
+    HairFlux flux{Vec3f::Ones(), Vec3f::Zero(), material.clumping, true};
     if (material.scattering == Scattering::single) return flux;
     const shading::AverageScattering average = dual.at(0).average;
     for (int c = 0; c < 3; ++c) {

@@ -8,12 +8,12 @@
 
 namespace hairloom::render {
 
-/// How light sinks through hair to the skin.
+/// How light sinks through hair to the skin; that of Kajiya-Kay is an artist's.
 struct HairFlux {
-    /// The logarithm of what a fibre takes, linear RGB. That of Kajiya-Kay is an artist's.
-    Vec3f rate = Vec3f::Constant(0.62f);
-    Vec3f returned = Vec3f::Zero();  ///< share that hair without end sends back
-    float clumping = 0.81f;          ///< see FibreMaterial
+    Vec3f rate = Vec3f::Constant(0.5f);  ///< the logarithm of what a fibre takes, linear RGB
+    Vec3f returned = Vec3f::Zero();      ///< share that hair without end sends back
+    float clumping = 1;                  ///< see FibreMaterial
+    bool direct = false;  ///< what has met no fibre is known by itself, as shadow maps resolve it
 };
 
 /// Only what the model needs is made: none for Kajiya-Kay, those of dual scattering where it is on, several

@@ -201,7 +201,7 @@ void setUpLights(RendererState& state) {
     shade.ground = toShader(state.scene.groundAlbedo(), 0);
     const HairFlux flux = state.scene.groups.empty() ? HairFlux() : state.scene.groups.front().fibre.flux();
     shade.sinking = toShader(flux.rate, flux.clumping);
-    shade.returning = toShader(flux.returned, 0);
+    shade.returning = toShader(flux.returned, flux.direct ? 1.0f : 0.0f);
     shade.counts.y = static_cast<std::uint32_t>(state.lights.size());
     for (std::size_t i = 0; i < state.lights.size(); ++i) shade.lights[i] = lightConstants(state, i);
 }

@@ -84,7 +84,7 @@ void drawStrips(gpu::CommandList& list, const RendererState& state, std::optiona
 /// All strands by the kernel that is set, whose other registers are bound: `raster` says where to.
 void dispatchStrands(gpu::CommandList& list, const RendererState& state, shaders::RasterConstants raster);
 void fill(gpu::CommandList& list, RendererState& state, BufferId buffer, std::uint32_t value);
-/// One thread for each of `count`, in rows of at most 65,536 groups: returns the row length in threads.
+/// A thread for each of `count`, 64 in a group: devices take no more than 65,535 groups in a row.
 struct Rows {
     explicit Rows(std::uint64_t count);
     std::uint32_t groups = 1;  ///< in a row

@@ -7,9 +7,9 @@
 // What is different here. Zinke et al. multiply the forward shares of the fibres before the point, and add
 // the light that turns back behind it, up to three turns, as of sheets that let no light pass between fibres.
 // Fibres here lie at random: both are solutions of the two-flux equations (Kubelka and Munk 1931) in the
-// number of fibres, all turns included, and hair of finite depth over black. Light that arrives scattered
-// comes evenly from half of the directions around the fibre, the side of the light or the side behind, and is
-// scattered by the fibre's own N, averaged over that half.
+// number of fibres, all turns included, and hair of finite depth over black or a matte ground. Light that
+// arrives scattered comes evenly from half of the directions around the fibre, the side of the light or the
+// side behind, and is scattered by the fibre's own N, averaged over that half.
 //
 // Angles in radians, colours linear RGB, 0 the azimuth back towards the light, as in marschner.h.
 

@@ -110,8 +110,9 @@ struct ShadeConstants {
     float4 ground;         // linear RGB, albedo of what hair grows on
     float4 sinking;        // of light on its way through hair to the skin: RGB, what a fibre takes, as the
                            // logarithm; w: fibres in the way by those that are counted
-    float4 returning;      // RGB, share that hair without end sends back
-    uint4 counts;          // x: curve points, y: lights, z: row length of the dispatch in points
+    float4
+        returning;  // RGB, share that hair without end sends back, w: 1 where direct light counts by itself
+    uint4 counts;   // x: curve points, y: lights, z: row length of the dispatch in points
     LightConstants lights[HAIRLOOM_MAX_LIGHTS];
 };
 
