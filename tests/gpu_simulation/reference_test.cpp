@@ -67,7 +67,8 @@ Scene sceneFor(const SimulationSettings& settings, Hair rest, bool nasty, std::s
 SimulationSettings nothing() {
     SimulationSettings s;
     s.substeps = 1;
-    s.dampingTime = s.airDrag = s.angularStiffness = s.sleepSpeed = 0.0f;
+    // Explicit springs bend without damping.
+    s.dampingTime = s.bendDampingTime = s.airDrag = s.angularStiffness = s.sleepSpeed = 0.0f;
     s.gravity = {};
     s.lengthIterations = 0;
     return s;
@@ -168,7 +169,7 @@ TEST_P(ReferenceForces, AreThoseOfTheModel) {
             const auto truth = [&](std::size_t s, const Strand& before) {
                 const runtime::Float3 place = scene.roots[s].position;
                 const Vector3d root(place.x, place.y, place.z);
-                Places x, v, force;
+                Places x, v, force(before.places.size(), Vector3d::Zero());
                 for (std::size_t p = 0; p < before.places.size(); ++p) {
                     x.push_back(root + before.places[p]);
                     v.emplace_back(before.moved[p] / kSubstep);
