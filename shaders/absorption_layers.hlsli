@@ -4,7 +4,7 @@
 #define HAIRLOOM_ABSORPTION_LAYERS_HLSLI
 #include "shaders/fibre_tables.hlsli"
 
-#define ABSORPTION_LAYERS 6
+#define ABSORPTION_LAYERS 9
 #define ABSORPTION_BEND 0.7
 #define ABSORPTION_MOST 8.0
 

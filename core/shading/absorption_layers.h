@@ -10,7 +10,7 @@
 namespace hairloom::shading {
 
 /// A multiple of 3: three layers are baked at once, as the channels of one fibre.
-inline constexpr std::uint32_t kAbsorptionLayers = 6;
+inline constexpr std::uint32_t kAbsorptionLayers = 9;
 /// Per fibre radius; what absorbs more looks the same.
 inline constexpr double kMostAbsorption = 8;
 

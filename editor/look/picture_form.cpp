@@ -64,10 +64,11 @@ class PictureForm : public OptionForm {
                    "the samples, "
                    "by a fixed part, or blended in any order"),
                 {tr("Random samples"), tr("Fixed samples"), tr("Blended")}, &PictureQuality::transparency);
-        addEnum("ribbons", tr("Curves"),
-                tr("How curves become ribbons; tessellated ones are finer near the eye and need a device "
-                   "that can"),
-                {tr("Strips"), tr("Tessellated")}, &PictureQuality::ribbons);
+        addEnum(
+            "ribbons", tr("Curves"),
+            tr("How curves become ribbons: as is fastest on the device, as strips, or tessellated, which is "
+               "finer near the eye and needs a device that can"),
+            {tr("Automatic"), tr("Strips"), tr("Tessellated")}, &PictureQuality::ribbons);
         addNumber(
             "subdivisions", tr("Subdivisions"),
             tr("Pieces of curve for each segment of a strand: more are rounder"), "", 1, 8, true,

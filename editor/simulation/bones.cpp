@@ -30,9 +30,10 @@ std::string boneNear(const Skeleton& skeleton, const Vec3f& point_ss) {
         nearest = bones[bone].name;
     };
     for (std::size_t b = 0; b < bones.size(); ++b) {
+        // What lies beyond the end of a segment is as near to its last joint: it hangs on that.
+        offer(b, (point_ss - joint(b)).norm());
         const std::uint32_t parent = bones[b].parent;
         if (parent != kNoBone) offer(parent, distanceToSegment(point_ss, joint(parent), joint(b)));
-        offer(b, (point_ss - joint(b)).norm());
     }
     return nearest;
 }

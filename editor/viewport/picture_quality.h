@@ -10,12 +10,13 @@ namespace hairloom::editor {
 
 struct PictureQuality {
     render::ShadingModel model = render::ShadingModel::kajiya;
-    std::uint32_t samples =
-        4;  ///< a pixel and frame, as render::RenderOptions; more than the device has: its most
+    /// A pixel and frame, as render::RenderOptions; more than the device has: its most.
+    std::uint32_t samples = 4;
     std::uint32_t frames = 8;  ///< averaged when the picture is still, 1…256
     render::PostFilter filter = render::PostFilter::none;
     render::Transparency transparency = render::Transparency::stochastic;
-    render::Ribbons ribbons = render::Ribbons::strip;  ///< tessellated where the device can
+    /// Strips where the device cannot tessellate.
+    render::Ribbons ribbons = render::Ribbons::automatic;
     render::Shadows shadows = render::Shadows::deepOpacity;
     std::uint32_t shadowResolution = 1024;
     std::uint32_t subdivisions = 2;                            ///< curve segments per segment of a strand

@@ -210,7 +210,8 @@ render::RenderOptions RenderWork::options() const {
     options.frames = last_->moving ? 1 : quality.frames;
     options.filter = quality.filter;
     options.transparency = quality.transparency;
-    if (device.tessellation) options.ribbons = quality.ribbons;
+    if (device.tessellation || quality.ribbons != render::Ribbons::tessellated)
+        options.ribbons = quality.ribbons;
     options.subdivisions = last_->moving ? 1 : quality.subdivisions;
     options.shadows = quality.shadows;
     options.shadowResolution =

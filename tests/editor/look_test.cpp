@@ -116,6 +116,7 @@ class LookPictureTest : public LookTest {
         guides.interpolation.followPerGuide = 0;
         document().open(std::move(guides), {}, "guides");
         viewport().look(render::View::Front);
+        drawQuickly();
     }
     QImage shot() {
         EXPECT_TRUE(viewport().waitForPicture(120'000));

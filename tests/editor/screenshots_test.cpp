@@ -62,6 +62,7 @@ TEST_P(ScreenshotsTest, StartPage) {
 }
 
 TEST_P(ScreenshotsTest, WindowAndPanels) {
+    drawQuickly();
     openSampleHair("shoulder");
     Groom fewer = groom();
     // As many as a software device draws in a few seconds.

@@ -61,6 +61,7 @@ class PictureTest : public WindowTest {
     void SetUp() override {
         WindowTest::SetUp();
         window->resize(900, 560);
+        drawQuickly();
     }
     /// A sample without the hairs between its guides, which take a software device long.
     void openGuides() {

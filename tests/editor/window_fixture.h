@@ -54,6 +54,14 @@ class WindowTest : public testing::Test {
 
     void trigger(const char* id) { window->actions().get(id).trigger(); }
     /// Waits for work off the interface thread and what comes of it.
+    /// Pictures that a software device makes in seconds.
+    void drawQuickly() {
+        PictureQuality quality = viewport().quality();
+        quality.samples = 1;
+        quality.frames = 2;
+        quality.shadowResolution = 256;
+        viewport().setQuality(quality);
+    }
     void finishWork() {
         session().tasks.finish();
         QCoreApplication::processEvents();
