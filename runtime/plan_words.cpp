@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The plan in words.
+#include <iomanip>
 #include <sstream>
 
 #include "runtime/plan.h"
@@ -93,7 +94,7 @@ std::string words(Effect effect, const Decision& decision) {
             text << "masses or segments differ " << decision.value << " times along a strand";
             return text.str();
         case Reason::tightCurls:
-            text << "curls spring back " << decision.value << " times in a substep";
+            text << "curls spring back " << std::setprecision(2) << decision.value << " times in a substep";
             return text.str();
         case Reason::noCollision:
             return "no collision";

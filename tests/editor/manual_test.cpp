@@ -35,10 +35,8 @@ class ManualTest : public WindowTest {
     void shoot(QWidget& widget, const QString& name) {
         QCoreApplication::processEvents();
         const QImage picture = widget.grab().toImage();
-        // 256 colours make a third of the file.
         const QString file = qEnvironmentVariable("HAIRLOOM_MANUAL") + "/editor-" + name + ".png";
-        EXPECT_TRUE(picture.convertToFormat(QImage::Format_Indexed8, Qt::DiffuseDither).save(file))
-            << name.toStdString();
+        EXPECT_TRUE(picture.convertToFormat(QImage::Format_RGB888).save(file)) << name.toStdString();
     }
     void shootWindow(const QString& name) {
         EXPECT_TRUE(viewport().waitForPicture(kPatience)) << name.toStdString();
@@ -78,7 +76,7 @@ TEST_F(ManualTest, ScalpAndRoots) {
     raise("scalp");
     trigger("tool.view");
     Groom groom = document().groom();
-    groom.placement.count = 1500;
+    groom.placement.count = 400;
     groom.placement.length = 0.16f;
     document().change("Placement", Change::Placement, groom);
     find<QPushButton>("placePreview")->click();
@@ -90,7 +88,7 @@ TEST_F(ManualTest, GroomingSpheresMotionAndLook) {
     openSampleHair("shoulder");
     // As many hairs as a software device draws in a minute.
     Groom fewer = groom();
-    fewer.interpolation.followPerGuide = 6;
+    fewer.interpolation.followPerGuide = 5;
     document().change("Follow hairs", Change::FollowHairs, fewer);
     PictureQuality quality = viewport().quality();
     quality.frames = 4;

@@ -79,7 +79,7 @@ TEST(Plan, BendingAndLengthsAreOneSystemWhereApartTheyWouldUndoEachOther) {
             16.0 / (bendingStiffnessOf(static_cast<double>(s.settings.angularStiffness)) * 0.002 * 0.002));
     };
     EXPECT_EQ(planOf(curled).why(Effect::coupling),
-              "coupling: on, curls spring back 0.63662 times in a substep");
+              "coupling: on, curls spring back 0.64 times in a substep");
     EXPECT_FALSE(planOf([&](SceneDescription& s) {
                      curled(s);
                      s.settings.integrator = Integrator::rk4;
