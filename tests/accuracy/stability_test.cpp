@@ -76,6 +76,28 @@ TEST(HardCaseLimits, WhatIsNotClaimedSaysWhyAndWhereItFails) {
     EXPECT_THAT(verdict(tiny), HasSubstr("limit, at substep"));
 }
 
+/// What is promised is kept: a case that fails has its reason in theory, or at the marks of energy and rest
+/// that the integrator does not claim.
+TEST(HardCaseLimits, EveryIntegratorHoldsWhatItClaims) {
+    StabilityOptions options = quick();
+    options.stepsAtRest = 10'000;
+    for (const StabilityResult& r : runHardCases(allIntegrators(), options)) {
+        EXPECT_EQ(r.claimed, r.limit.empty()) << r.number << " " << r.integrator;
+        EXPECT_TRUE(r.pass || !r.claimed) << r.number << " " << r.integrator << ": " << told(r);
+    }
+}
+
+TEST(HardCaseLimits, AMarkOfEnergyIsClaimedWhereBendingKnowsOfLengths) {
+    const auto claims = [](Integrator integrator) {
+        const StabilityResult r = runHardCase(hardCases()[14], integrator, quick());
+        const auto rest = std::ranges::find(r.marks, "time to rest", &StabilityMark::what);
+        const auto stretch = std::ranges::find(r.marks, "stretch", &StabilityMark::what);
+        return std::pair(rest->claimed, stretch->claimed);
+    };
+    EXPECT_EQ(claims(Integrator::verlet), std::pair(true, true));
+    EXPECT_EQ(claims(Integrator::rk4), std::pair(false, true));
+}
+
 struct BorderCase {
     Integrator integrator;
     MappedForce force;
