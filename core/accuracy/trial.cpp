@@ -19,8 +19,9 @@ constexpr std::uint32_t kMostSubsteps = 64;
 constexpr const char* kLengthsAfterBending =
     "lengths are held after bending has moved the points, and the two undo part of each other's work; only "
     "position Verlet bends with the tension of the lengths";
-/// What an integrator claims lies this far inside of its stable region.
-constexpr double kMargin = 0.9;
+/// What an integrator claims lies this far inside of its stable region: about ten steps to the period of the
+/// fastest wave, where waves no longer resonate with the step (docs/stability.md).
+constexpr double kMargin = 0.3;
 
 /// Fewest substeps within the integrator's stable region, at least those of the settings; 64 where none are.
 std::uint32_t substepsFor(const StrandSet& strands, runtime::SimulationSettings settings, float frame) {
