@@ -209,7 +209,7 @@ Result<double> copyBandwidth(gpu::Device& device) {
     if (!copies) return tl::unexpected(copies.error());
     double best = 0.0;
     for (int run = 0; run < kRuns; ++run) {
-        const auto bandwidth = copies->run();
+        auto bandwidth = copies->run();
         if (!bandwidth) return bandwidth;
         best = std::max(best, *bandwidth);
     }
