@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "cli/bench_head.h"
 #include "cli/progress.h"
 #include "core/accuracy/plot.h"
 #include "core/base/random.h"
@@ -51,9 +52,7 @@ struct BallOfHair {
             for (int k = 0; k < kPoints; ++k) {
                 const float size = 1 + (lift - 1) * std::min(1.0f, static_cast<float>(k) / 2);
                 const float angle = down + 0.16f * static_cast<float>(k);
-                points.emplace_back(size * 0.075f * std::sin(angle) * std::cos(around),
-                                    size * 0.11f * std::cos(angle),
-                                    size * 0.095f * std::sin(angle) * std::sin(around));
+                points.push_back(onBenchHead(size, angle, around));
                 radii.push_back(kRadius);
             }
             offsets.push_back(static_cast<std::uint32_t>(points.size()));

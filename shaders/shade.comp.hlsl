@@ -27,7 +27,7 @@ void main(uint3 id : SV_DispatchThreadID) {
     const CurvePoint p = gCurve[index];
     const StrandHeader strand = gStrands[p.strand];
     const float3 tangent = unpackUnit(p.tangentXy);
-    const float3 toView = normalize(gShade.eye_ws.xyz - p.position_ws.xyz);
+    const float3 toView = normalize(gShade.eye_ws.xyz - p.position_ws.xyz * gShade.eye_ws.w);
 
     const float vary = 1.0 + gShade.rootTip.z * (strand.random * 2.0 - 1.0);
 #ifdef HAIRLOOM_LOOK

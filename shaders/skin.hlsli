@@ -17,7 +17,7 @@ float3 throughHair(ShadeConstants shade, LightConstants light, float fibres, flo
 
 float3 skinLight(ShadeConstants shade, MeshConstants mesh, float3 position_ws, float3 normal_ws, float3 albedo) {
     const float kPi = 3.14159265;
-    const float3 toView = normalize(shade.eye_ws.xyz - position_ws);
+    const float3 toView = normalize(shade.eye_ws.xyz - position_ws * shade.eye_ws.w);
     float3 normal = normalize(normal_ws);
     if (dot(normal, toView) < 0) normal = -normal;
     float3 colour = 0;

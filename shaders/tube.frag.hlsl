@@ -23,7 +23,7 @@ float4 main(Input i) : SV_Target0 {
     const float x = clamp(i.across, -1.0, 1.0);
     const float3 normal = normalize(x * i.side_ws + sqrt(1.0 - x * x) * i.front_ws);
     const float3 position_ws = i.centre_ws.xyz + i.centre_ws.w * normal;
-    const float3 toView = normalize(gShade.eye_ws.xyz - position_ws);
+    const float3 toView = normalize(gShade.eye_ws.xyz - position_ws * gShade.eye_ws.w);
     const float facing = saturate(dot(normal, toView));
     const float m = gShade.primary.w;
     float3 colour = 0;

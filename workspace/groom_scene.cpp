@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <filesystem>
 
 #include "core/animation/root_motion.h"
@@ -25,7 +26,12 @@ render::Camera readCamera(JsonReader reader) {
     camera.eye_ws = reader.vector("eye", -kAnyPlace, kAnyPlace, "m");
     camera.target_ws = reader.vector("target", -kAnyPlace, kAnyPlace, "m");
     if (reader.has("up")) camera.up_ws = reader.vector("up", -1, 1);
-    camera.verticalFov = static_cast<float>(reader.number("fov_y_deg", 1, 150, "degrees"));
+    if (reader.has("orthographic_height")) {
+        camera.orthographicHeight =
+            static_cast<float>(reader.number("orthographic_height", 1e-4, kAnyPlace, "m"));
+    } else {
+        camera.verticalFov = static_cast<float>(reader.number("fov_y_deg", 1, 150, "degrees"));
+    }
     reader.finish();
     return camera;
 }
@@ -241,6 +247,17 @@ Result<GroomScene> GroomScene::make(const Groom& groom, const std::vector<Vec3f>
 Status GroomScene::pose(std::span<const Vec3f> positions_ws, const HeadPose& pose) {
     posed_ = posedGroom(rest_, positions_ws, pose);
     return bindings_ ? makeFollowHairs() : Status();
+}
+
+void GroomScene::moveStrands(std::span<const std::uint32_t> strands, std::span<const Vec3f> points_ws) {
+    assert(!bindings_);
+    std::vector<Vec3f>& points = posed_.pointAttributes.edit<Vec3f>(attribute::kPosition);
+    auto from = points_ws.begin();
+    for (const std::uint32_t s : strands) {
+        const auto count = static_cast<std::ptrdiff_t>(posed_.strand(s).size());
+        std::copy_n(from, count, points.begin() + static_cast<std::ptrdiff_t>(posed_.offsets[s]));
+        from += count;
+    }
 }
 
 bool GroomScene::setMaterial(const HairMaterial& authored, const ViewFile& view) {

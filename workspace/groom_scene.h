@@ -64,9 +64,12 @@ class GroomScene {
     /// Moves it to where a frame of a simulation of the same groom has it; points in the groom's order.
     /// Error: follow hairs that cannot be made.
     Status pose(std::span<const Vec3f> positions_ws, const HeadPose& pose);
+    /// Puts the points of some strands elsewhere, one strand after the other; the rest stays. Not where there
+    /// are follow hairs, which are bound to guides at rest: these take make() anew.
+    void moveStrands(std::span<const std::uint32_t> strands, std::span<const Vec3f> points_ws);
 
     /// Another look of the same strands. False, and nothing changed, where it takes make() anew: colours that
-    /// stand in the head, thickness that stands in points.
+    /// stand in the head, thickness that stands in points, the share of streaks and dye that each strand has.
     bool setMaterial(const HairMaterial& authored, const ViewFile& view);
 
     /// Meshes and strands; camera and lights are the caller's. Valid while this object lives and is not

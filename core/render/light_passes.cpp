@@ -193,7 +193,7 @@ void setUpLights(RendererState& state) {
     for (const Light& light : state.lights) state.lightViews.push_back(fitLight(light, fitted, all));
 
     shaders::ShadeConstants& shade = state.shade;
-    shade.eye_ws = toShader(state.camera.eye_ws, 1);
+    shade.eye_ws = eyeOf(state.camera);
     for (std::size_t i = 0; i < state.environment.coefficients.size(); ++i) {
         shade.environment[i] =
             toShader(state.environment.coefficients[i], state.environment.dark() ? 0.0f : 1.0f);

@@ -105,5 +105,7 @@ HairDetail detailOf(const RendererState& state);
 Mat4f cameraMatrix(const RendererState& state, const Box3f& bounds_ws, float jitterX = 0, float jitterY = 0);
 shaders::float4x4 toShader(const Mat4f& m);
 shaders::float4 toShader(const Vec3f& v, float w);
+/// The eye as ViewConstants and ShadeConstants have it: a place, or a direction without perspective.
+shaders::float4 eyeOf(const Camera& camera);
 
 }  // namespace hairloom::render

@@ -135,16 +135,28 @@ void BrushTool::cancel() {
     last_.reset();
 }
 
+void BrushTool::setRadius(float metres) {
+    settings_.radius = std::clamp(metres, kSmallest, kLargest);
+    changed();
+}
+
+void BrushTool::setStrength(float strength) {
+    settings_.strength = std::clamp(strength, 0.0f, 1.0f);
+    changed();
+}
+
+void BrushTool::setParameter(const std::string& name, float value) {
+    const auto parameters = editing::brushInfo(brush_).parameters;
+    const auto known = std::ranges::find(parameters, name, &editing::BrushParameter::name);
+    if (known == parameters.end()) return;
+    settings_.parameters[name] = std::clamp(value, known->min, known->max);
+    changed();
+}
+
 bool BrushTool::key(int key, Qt::KeyboardModifiers modifiers) {
     const bool shift = modifiers & Qt::ShiftModifier;
-    const auto scaleRadius = [this](float factor) {
-        settings_.radius = std::clamp(settings_.radius * factor, kSmallest, kLargest);
-        changed();
-    };
-    const auto addStrength = [this](float by) {
-        settings_.strength = std::clamp(settings_.strength + by, 0.0f, 1.0f);
-        changed();
-    };
+    const auto scaleRadius = [this](float factor) { setRadius(settings_.radius * factor); };
+    const auto addStrength = [this](float by) { setStrength(settings_.strength + by); };
     switch (key) {
         case Qt::Key_F:
             resizing_ = shift ? Resizing::Strength : Resizing::Radius;
@@ -171,14 +183,13 @@ bool BrushTool::key(int key, Qt::KeyboardModifiers modifiers) {
 void BrushTool::resize(const QPointF& to_px) {
     const auto by_px = static_cast<float>(to_px.x() - resizeFrom_px_.x());
     if (resizing_ == Resizing::Strength) {
-        settings_.strength = std::clamp(resizeFrom_ + 0.005f * by_px, 0.0f, 1.0f);
+        setStrength(resizeFrom_ + 0.005f * by_px);
     } else {
         const Vec3f at = place_ ? place_->position_ss : session_.viewport->camera().target_ws();
         const float metres =
             session_.viewport->camera().metresPerPixel(at, session_.viewport->viewSize_px()) * by_px;
-        settings_.radius = std::clamp(resizeFrom_ + metres, kSmallest, kLargest);
+        setRadius(resizeFrom_ + metres);
     }
-    changed();
 }
 
 void BrushTool::changed() {

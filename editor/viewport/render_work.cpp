@@ -123,8 +123,28 @@ Status RenderWork::setWindow(const std::optional<gpu::NativeWindow>& window) {
     return {};
 }
 
+void RenderWork::takeMoves(PictureRequest& request) {
+    if (request.groom != handed_) {
+        handed_ = request.groom;
+        moved_.reset();
+    }
+    if (request.moves) {
+        if (!moved_) moved_ = std::make_shared<Groom>(*handed_);
+        // Parts from the array of whoever handed it over, once.
+        std::vector<Vec3f>& points = moved_->pointAttributes.edit<Vec3f>(attribute::kPosition);
+        auto from = request.moves->points_ws.begin();
+        for (const std::uint32_t s : request.moves->strands) {
+            const auto count = static_cast<std::ptrdiff_t>(moved_->strand(s).size());
+            std::copy_n(from, count, points.begin() + static_cast<std::ptrdiff_t>(moved_->offsets[s]));
+            from += count;
+        }
+    }
+    if (moved_) request.groom = moved_;
+}
+
 Status RenderWork::take(PictureRequest request) {
-    const bool draft = request.moving && needsDraft_;
+    takeMoves(request);
+    const bool draft = request.moving && needsDraft_ && request.groom->interpolation.followPerGuide > 0;
     if (auto taken = takeScene(request, draft); !taken) return taken;
     if (auto set = renderer_.setCamera(request.camera); !set) return set;
     if (auto set = renderer_.setLights(lightsOf(request)); !set) return set;
@@ -148,6 +168,7 @@ Status RenderWork::takeScene(const PictureRequest& request, bool draft) {
     if (!sameGroom && (!sameStrands(now, before) || (followed && !samePoints(now, before)))) {
         return replaceScene(request, draft);
     }
+    if (followed && request.moves) return replaceScene(request, draft);
     const bool sameModel = request.quality.model == last_->quality.model &&
                            request.quality.scattering == last_->quality.scattering;
     if (!sameGroom || !sameModel) {
@@ -155,7 +176,8 @@ Status RenderWork::takeScene(const PictureRequest& request, bool draft) {
         if (auto set = showMaterial(request); !set) return set;
     }
     const bool moved = request.pose != last_->pose || (!sameGroom && !samePoints(now, before));
-    return moved ? movePoints(request) : Status();
+    if (moved) return movePoints(request);
+    return request.moves && !request.pose ? moveStrands(request) : Status();
 }
 
 Status RenderWork::replaceScene(const PictureRequest& request, bool draft) {
@@ -190,6 +212,14 @@ Status RenderWork::movePoints(const PictureRequest& request) {
         if (auto set = renderer_.setMeshPositions(0, mesh.positions_ws, mesh.normals_ws); !set) return set;
     }
     if (!request.showHair || shown.strands.empty()) return {};
+    return renderer_.setStrandPositions(0, shown.strands.front().positions_ws);
+}
+
+Status RenderWork::moveStrands(const PictureRequest& request) {
+    scene_->moveStrands(request.moves->strands, request.moves->points_ws);
+    const render::RenderScene shown = scene_->scene();
+    if (!request.showHair || shown.strands.empty()) return {};
+    // One copy of all is sooner on the device than thousands of small ones with a barrier between each.
     return renderer_.setStrandPositions(0, shown.strands.front().positions_ws);
 }
 

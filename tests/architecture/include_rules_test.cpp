@@ -56,7 +56,7 @@ const std::map<std::string, Rooms>& allowed() {
             {"cli", with(all, {"workspace"})},
             {"editor", with(all, {"workspace"})},
             {"samples", with(all, {"workspace"})},
-            {"benchmarks", with(all, {"tests"})},  // scenes are shared with the tests
+            {"benchmarks", with(all, {"workspace", "editor", "tests"})},  // scenes are shared with the tests
             {"tests", with(all, {"workspace", "cli", "editor", "samples", "tests"})},
         };
     }();
