@@ -132,7 +132,8 @@ void addBenchJob(Jobs& jobs) {
     job.add_option("name", options->name, "What to measure")
         ->required()
         ->check(CLI::IsMember(
-            {"brush", "gpu-sim", "interpolate", "io", "place", "project", "render", "shadows", "sim"}));
+            {"brush", "gpu-sim", "interpolate", "io", "material", "place", "project", "render", "shading",
+             "shadows", "sim"}));
     auto* const repetitions =
         job.add_option("--repeat,--repetitions", options->repetitions, "Runs of each measurement")
             ->check(CLI::Range(1, 1000));

@@ -36,6 +36,7 @@ class RenderWork {
     Status replaceScene(const PictureRequest& request, bool draft);
     Status movePoints(const PictureRequest& request);
     Status showMaterial(const PictureRequest& request);
+    Status showDye(const PictureRequest& request);
     Status resize(std::uint32_t width, std::uint32_t height);
     void adapt(double milliseconds);
     render::RenderOptions options() const;
