@@ -69,6 +69,9 @@ struct StrandGroup {
     double ownRadius = 0;                ///< metres, mean along the strands, where points have their own
     std::vector<Vec3f> sample_ws;        ///< points that lights are fitted to
     std::vector<std::uint32_t> sampled;  ///< their places among the group's points
+    std::vector<shaders::StrandHeader>
+        someStrands;              ///< by chance, for means of the look; points of the group
+    std::vector<float> someDyes;  ///< of these, mean of what their points have of the dye
 };
 
 /// How hair fills space, measured where the strands stood when they were set.
@@ -127,6 +130,8 @@ class DeviceScene {
     std::vector<StrandBatch> batches;
     /// With the radii of now.
     HairMeasure measure() const;
+    /// What the hair of the first group lets through to the skin; prepareFibres() comes before.
+    HairFlux flux() const;
 
   private:
     void measureSpace(const RenderScene& scene);
