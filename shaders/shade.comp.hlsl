@@ -5,7 +5,7 @@
 #include "shaders/kajiya.hlsli"
 #include "shaders/shadows.hlsli"
 #ifdef HAIRLOOM_LOOK
-#include "shaders/look.hlsli"
+#include "shaders/point_dye.hlsli"
 #endif
 
 cbuffer Constants : register(b0) { ShadeConstants gShade; };
@@ -48,7 +48,7 @@ void main(uint3 id : SV_DispatchThreadID) {
     for (uint i = 0; i < gShade.counts.y; ++i) {
         const LightConstants light = gShade.lights[i];
         const float3 toLight = directionToLight(light, p.position_ws.xyz);
-        const Occlusion o = occlusion(light, p.position_ws.xyz, 0.0007, 0.004);
+        const Occlusion o = occlusion(light, p.position_ws.xyz, 0.0007, 0.004, light.filtering.z);
         const float3 direct = pow(passed, o.fibres) * o.visibility;
         const float3 scattered = pow(passed, 0.5 * o.fibres) * lerp(0.15, 1.0, o.visibility);
         const float diffuse = kajiyaDiffuse(tangent, toLight);

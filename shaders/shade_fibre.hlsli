@@ -14,7 +14,7 @@
 #endif
 #ifdef HAIRLOOM_LOOK
 #include "shaders/layer_averages.hlsli"
-#include "shaders/look.hlsli"
+#include "shaders/point_dye.hlsli"
 #endif
 
 cbuffer Constants : register(b0) { ShadeConstants gShade; };
@@ -50,7 +50,7 @@ void main(uint3 id : SV_DispatchThreadID) {
     for (uint i = 0; i < gShade.counts.y; ++i) {
         const LightConstants light = gShade.lights[i];
         const float3 toLight = directionToLight(light, p.position_ws.xyz);
-        const Occlusion o = occlusion(light, p.position_ws.xyz, 0.0007, 0.004);
+        const Occlusion o = occlusion(light, p.position_ws.xyz, 0.0007, 0.004, light.filtering.z);
         const FibreFrame f = fibreFrame(tangent, toLight, toView);
         float3 scattered = passedDirectly(light, o.fibres, gFibre.lobes.w) *
                            fibreScattering(gFibre, f, hashUnit(p.strand * 2u), tint, absorption);

@@ -25,7 +25,7 @@ float3 skinLight(ShadeConstants shade, MeshConstants mesh, float3 position_ws, f
     for (uint k = 0; k < shade.counts.y; ++k) {
         const LightConstants light = shade.lights[k];
         const float3 toLight = directionToLight(light, position_ws);
-        const Occlusion o = occlusion(light, position_ws + normal * 0.002, 0.0, 0.002);
+        const Occlusion o = occlusion(light, position_ws + normal * 0.002, 0.0, 0.002, 0.0);
         const float nl = dot(normal, toLight);
         // Red light travels farther under the skin. The denominator keeps the energy of a Lambertian.
         const float3 wrap = mesh.skin.x * float3(1, 0.5, 0.35);

@@ -33,7 +33,7 @@ struct StrandHeader {
     uint source;          // its place among the strands of its group
     float streak;         // 0...1, how much it is in a streak
     float dye;            // 0...1
-    uint unused;
+    uint hasPointDyes;    // 1 where its points have shares of that
 };
 
 // One point of the finer curve.
@@ -95,7 +95,9 @@ struct LightConstants {
                     // perspective view, 0 for an orthographic one; w: where hair begins, metres behind it
     float4 layers;  // ends of the opacity layers in metres behind the first hair, or behind where hair
                     // begins; absorption: x: fibres a metre, y: most fibres
-    float4 filtering;  // x: by how much more fibres stop light than over a beam of 5 mm, y: metres of a texel
+    float4 filtering;  // x: by how much more fibres stop light than over a beam of 5 mm, y: metres of a
+                       // texel, z: absorption of hair behind the head, 1/m, 0: a test of depth; w: 1: shadows
+                       // are left out
 };
 
 struct ShadeConstants {
@@ -181,6 +183,12 @@ struct ToneConstants {
                       // itself, w: pixels in a row
 };
 
+// Shadows blurred on the screen, along rows first.
+struct BlurConstants {
+    uint4 size;     // x, y: of the picture in pixels, z: 0 along rows, 1 along columns, w: reach in pixels
+    float4 kernel;  // x: -1 by twice the variance
+};
+
 struct FilterConstants {
     float4 size;    // x, y: of the picture in pixels, z, w: one by them
     float4 output;  // x: 1 when colours stay sRGB, y: 1 for the long search
@@ -257,6 +265,7 @@ static_assert(sizeof(FillConstants) == 16);
 static_assert(sizeof(ResolveConstants) == 32);
 static_assert(sizeof(PackConstants) == 32);
 static_assert(sizeof(ToneConstants) == 16);
+static_assert(sizeof(BlurConstants) == 32);
 static_assert(sizeof(FilterConstants) == 32);
 static_assert(sizeof(OverlayConstants) == 96);
 static_assert(sizeof(OverlayVertex) == 32);
