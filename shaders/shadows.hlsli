@@ -15,6 +15,7 @@ struct Occlusion {
     float fibres;      // crossed on the way to the light
     float allFibres;   // from the hair's lit side to its other, or to the head
     float visibility;  // 0 behind the head ... 1
+    float ends;        // 1 where the light's way ends on the head
     float ground;      // share of the light that the head, where the light's way ends on it, can send back here
 };
 
@@ -58,6 +59,7 @@ Occlusion occlusion(LightConstants light, float3 position_ws, float hairBias, fl
     result.fibres = 0;
     result.allFibres = 0;
     result.visibility = 1;
+    result.ends = 0;
     result.ground = 0;
     const float4 clip = mul(light.clipFromWorld, float4(position_ws, 1));
     const bool hair = light.range.y > 0;
@@ -105,6 +107,7 @@ Occlusion occlusion(LightConstants light, float3 position_ws, float hairBias, fl
     // A slope gets less light on its area; and from afar the lit skin is a smaller part of what lies around.
     const float texelSize = light.filtering.y;
     const float facing = texelSize * rsqrt(texelSize * texelSize + dot(rise, rise));
+    result.ends = ends;
     result.ground = ends * facing * kSkinPatch * kSkinPatch / (kSkinPatch * kSkinPatch + behind * behind);
     return result;
 }

@@ -13,15 +13,13 @@ namespace hairloom::render {
 
 /// How light sinks through hair to the skin; that of Kajiya-Kay is an artist's.
 struct HairFlux {
-    Vec3f rate = Vec3f::Constant(0.5f);  ///< the logarithm of what a fibre takes, linear RGB
-    Vec3f returned = Vec3f::Zero();      ///< share that hair without end sends back
-    float clumping = 1;                  ///< see FibreMaterial
-    bool direct = false;  ///< what has met no fibre is known by itself, as shadow maps resolve it
-};
-
-/// Of light across the fibres that meets one, the shares that it sends on and back, RGB.
-struct AverageShares {
-    Vec3d forward = Vec3d::Zero(), backward = Vec3d::Zero();
+    /// What a fibre scatters, and the moments of it (AverageScattering); of Kajiya-Kay the logarithm of what
+    /// it takes. Linear RGB.
+    Vec3f scattered = Vec3f::Constant(0.5f);
+    Vec3f first = Vec3f::Zero(), second = Vec3f::Zero();
+    float clumping = 1;  ///< see FibreMaterial
+    /// False for Kajiya-Kay; else what has met no fibre is known by itself, as shadow maps resolve it.
+    bool ofFibres = false;
 };
 
 /// Only what the model needs is made: none for Kajiya-Kay, those of dual scattering where it is on, several
@@ -65,7 +63,7 @@ class FibreTables {
     FibreMaterial material_;
     bool varies_ = false;
     shaders::FibreConstants constants_;
-    AverageShares shares_;          ///< of the material's own absorption
+    shading::AverageScattering across_;  ///< of the material's own absorption
     shading::Table averages_;       ///< shading::DualLayers::averages, where tables hold several absorptions
     std::vector<Waiting> waiting_;  ///< for their upload
     std::vector<Bound> textures_;

@@ -180,6 +180,34 @@ shaders::CurveConstants curveConstants(const RendererState& state, const StrandB
     return c;
 }
 
+/// A linear function of direction is known by its values along some: the least one that has them, damped
+/// where lights stand close together, is a sum of these vectors times the values.
+void lookAround(const RendererState& state, shaders::ShadeConstants& shade) {
+    constexpr float kDamping = 0.05f;
+    std::vector<std::size_t> known;
+    for (std::size_t i = 0; i < state.lights.size(); ++i) {
+        if (castsShadow(state, i) && !state.scene.batches.empty()) known.push_back(i);
+    }
+    if (known.empty()) return;
+    const auto count = static_cast<Eigen::Index>(known.size());
+    Eigen::MatrixXf directions(count, 3);
+    for (Eigen::Index i = 0; i < count; ++i) {
+        const Light& light = state.lights[known[static_cast<std::size_t>(i)]];
+        const Vec3f towards = light.kind == LightKind::point
+                                  ? Vec3f(light.position_ws - state.scene.hairBounds().center())
+                                  : light.toLight_ws;
+        directions.row(i) = towards.stableNormalized().transpose();
+    }
+    const Eigen::MatrixXf overlap =
+        directions * directions.transpose() + kDamping * Eigen::MatrixXf::Identity(count, count);
+    const Eigen::MatrixXf around = (1 + kDamping) * directions.transpose() * overlap.inverse();
+    for (Eigen::Index i = 0; i < count; ++i) {
+        const Vec3f vector = around.col(i);
+        shade.lights[known[static_cast<std::size_t>(i)]].around =
+            toShader(vector, 1 / static_cast<float>(count));
+    }
+}
+
 }  // namespace
 
 void setUpLights(RendererState& state) {
@@ -200,10 +228,12 @@ void setUpLights(RendererState& state) {
     }
     shade.ground = toShader(state.scene.groundAlbedo(), 0);
     const HairFlux flux = state.scene.flux();
-    shade.sinking = toShader(flux.rate, flux.clumping);
-    shade.returning = toShader(flux.returned, flux.direct ? 1.0f : 0.0f);
+    shade.sinking = toShader(flux.scattered, flux.clumping);
+    shade.turning = toShader(flux.first, flux.ofFibres ? 1.0f : 0.0f);
+    shade.straight = toShader(flux.second, 0);
     shade.counts.y = static_cast<std::uint32_t>(state.lights.size());
     for (std::size_t i = 0; i < state.lights.size(); ++i) shade.lights[i] = lightConstants(state, i);
+    lookAround(state, shade);
 }
 
 shaders::ShadeConstants lightsOfFrame(const RendererState& state) {

@@ -98,6 +98,9 @@ struct LightConstants {
     float4 filtering;  // x: by how much more fibres stop light than over a beam of 5 mm, y: metres of a
                        // texel, z: absorption of hair behind the head, 1/m, 0: a test of depth; w: 1: shadows
                        // are left out
+    float4 around;  // xyz: what a change of light from around along the light's direction, against those of
+                    // the other lights, is a change along; w: the light's weight in the mean of those that
+                    // know the hair around a point, 0 where its map knows nothing
 };
 
 struct ShadeConstants {
@@ -111,11 +114,12 @@ struct ShadeConstants {
     float4 rootTip;        // x: brightness at the root, y: at the tip, z: random variation, w: fibre opacity
     float4 albedo;         // linear RGB of strands without a colour of their own
     float4 ground;         // linear RGB, albedo of what hair grows on
-    float4 sinking;        // of light on its way through hair to the skin: RGB, what a fibre takes, as the
-                           // logarithm; w: fibres in the way by those that are counted
-    float4
-        returning;  // RGB, share that hair without end sends back, w: 1 where direct light counts by itself
-    uint4 counts;   // x: curve points, y: lights, z: row length of the dispatch in points
+    float4 sinking;   // of light on its way through hair to the skin: RGB, the share that a fibre scatters;
+                      // of Kajiya-Kay, what it takes, as the logarithm; w: fibres in the way by those
+                      // that are counted
+    float4 turning;   // RGB, first moment of the angle by which they turn light; w: 0 for Kajiya-Kay
+    float4 straight;  // RGB, second
+    uint4 counts;     // x: curve points, y: lights, z: row length of the dispatch in points
     LightConstants lights[HAIRLOOM_MAX_LIGHTS];
 };
 
@@ -126,8 +130,7 @@ struct FibreConstants {
     float4 r;      // Sadeghi's: colour times intensity, linear RGB
     float4 tt;
     float4 trt;
-    float4 ambient;  // share of light from everywhere that leaves, linear RGB
-    float4 spread;   // x, y: least and largest width of the table of wide lobes, radians
+    float4 spread;  // x, y: least and largest width of the table of wide lobes, radians
 };
 
 // Colours (linear RGB) or absorption (RGB per fibre radius) from place to place, of hair that does not look
@@ -251,12 +254,12 @@ static_assert(sizeof(ViewConstants) == 144);
 HAIRLOOM_OFFSET(LightConstants, toLight_ws, 64);
 HAIRLOOM_OFFSET(LightConstants, range, 112);
 HAIRLOOM_OFFSET(LightConstants, layers, 128);
-static_assert(sizeof(LightConstants) == 160);
+static_assert(sizeof(LightConstants) == 176);
 HAIRLOOM_OFFSET(ShadeConstants, shift, 192);
 HAIRLOOM_OFFSET(ShadeConstants, albedo, 240);
-HAIRLOOM_OFFSET(ShadeConstants, counts, 304);
-HAIRLOOM_OFFSET(ShadeConstants, lights, 320);
-static_assert(sizeof(ShadeConstants) == 320 + 160 * HAIRLOOM_MAX_LIGHTS);
+HAIRLOOM_OFFSET(ShadeConstants, counts, 320);
+HAIRLOOM_OFFSET(ShadeConstants, lights, 336);
+static_assert(sizeof(ShadeConstants) == 336 + 176 * HAIRLOOM_MAX_LIGHTS);
 static_assert(sizeof(LookConstants) == 128);
 static_assert(sizeof(MeshConstants) == 80);
 HAIRLOOM_OFFSET(RasterConstants, places, 64);
@@ -271,7 +274,7 @@ static_assert(sizeof(OverlayConstants) == 96);
 static_assert(sizeof(OverlayVertex) == 32);
 static_assert(sizeof(LightCase) == 32);
 static_assert(sizeof(KajiyaCase) == 48);
-static_assert(sizeof(FibreConstants) == 96);
+static_assert(sizeof(FibreConstants) == 80);
 static_assert(sizeof(FibreCase) == 96);
 }  // namespace hairloom::shaders
 #endif
