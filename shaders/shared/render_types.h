@@ -80,9 +80,8 @@ struct ViewConstants {
                      // pixels
     uint4 sampling;  // x: samples a pixel, y: frame number, z: HAIRLOOM_TRANSPARENCY_*, w: HAIRLOOM_SHADOWS_*
     float4 layers;   // of a light: see LightConstants
-    float4
-        range;  // of a light: see LightConstants; of the camera: x: where hair begins, y: its depth, in metres or
-                // as RibbonCorner::depth has it
+    float4 range;    // of a light: see LightConstants; of the camera: x: where hair begins, y: its depth, in
+                     // metres or as RibbonCorner::depth has it
 };
 
 struct LightConstants {
@@ -104,7 +103,7 @@ struct LightConstants {
 };
 
 struct ShadeConstants {
-    float4 eye_ws;          // w = 1: position of a perspective eye; w = 0: direction towards an orthographic one
+    float4 eye_ws;  // w = 1: position of a perspective eye; w = 0: direction towards an orthographic one
     float4 environment[9];  // radiance from around as real spherical harmonics, linear RGB; w of the first: 1
                             // when there is any
     float4 primary;         // RGB strength of the first highlight, w: exponent
