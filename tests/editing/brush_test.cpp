@@ -93,6 +93,10 @@ TEST_P(EveryBrush, LeavesFrozenHiddenLockedAndUnselectedStrandsAlone) {
         const auto a = groom.strand(old);
         const auto b = document.groom().strand(s);
         EXPECT_TRUE(std::equal(a.begin(), a.end(), b.begin(), b.end())) << "strand " << s;
+        const auto dyes = document.groom().pointAttributes.view<float>(attribute::kPointDye);
+        if (!dyes.empty()) {
+            EXPECT_THAT(dyes.subspan(document.groom().offsets[s], b.size()), testing::Each(0.0f));
+        }
     }
     EXPECT_EQ(kept, 240u);
 }
@@ -387,7 +391,9 @@ TEST(DyePaint, DyesWhatItReachesFromRootToTipAndTurnsTheDyeOn) {
     EXPECT_EQ(top.document.groom().material.dyeStrength, 1);
     for (std::size_t p = 0; p < 16; ++p) {
         const float away = (top.points()[p] - top.points()[8]).norm();
-        if (std::abs(away - 0.03f) > 0.005f) EXPECT_EQ(valueAt(p), away < 0.03f ? 0.75f : 0.0f) << p;
+        if (std::abs(away - 0.03f) > 0.005f) {
+            EXPECT_EQ(valueAt(p), away < 0.03f ? 0.75f : 0.0f) << p;
+        }
     }
     Stroke more = stroke;
     more.settings.parameters["amount"] = 1;
@@ -414,8 +420,9 @@ TEST(DyePaint, FollowsTheProfileAndReachesRoots) {
     const auto mask = top.document.groom().pointAttributes.view<float>(attribute::kPointDye);
     for (std::size_t s = 0; s < 300; s += 23) {
         for (std::size_t p = 0; p < 16; ++p) {
-            if ((top.document.groom().strand(s)[p] - top.points()[8]).norm() < 0.18f)
+            if ((top.document.groom().strand(s)[p] - top.points()[8]).norm() < 0.18f) {
                 EXPECT_NEAR(mask[16 * s + p], static_cast<float>(p) / 15, 1e-6f);
+            }
         }
     }
     TopStrand other;
