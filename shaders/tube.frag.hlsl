@@ -62,12 +62,13 @@ float3 lightFromAround(Place p, float3 albedo) {
            fresnel * 3.0 * gShade.primary.rgb * environmentOnSkin(gShade, mirrored);
 }
 
-// The part of the tube that the pixel sees: from where to where across, -1 to 1.
+// From where to where across, -1 to 1, the pixel sees the tube. At the rim it is the outermost part as wide as a pixel,
+// however little of it is covered: the rim itself may be bright without bounds.
 float2 partSeen(float across) {
     const float reach = 0.5 * length(float2(ddx(across), ddy(across)));
-    const float2 part = float2(max(across - reach, -1.0), min(across + reach, 1.0));
-    // Samples at the rim may belong to a pixel whose middle is farther out than that.
-    return part.x < part.y ? part : sign(across) * float2(0.98, 0.98);
+    const float most = max(1.0 - reach, 0.0);
+    const float middle = clamp(across, -most, most);
+    return clamp(float2(middle - reach, middle + reach), -1.0, 1.0);
 }
 
 float4 main(Input i) : SV_Target0 {
