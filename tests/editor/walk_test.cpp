@@ -42,10 +42,10 @@ TEST_F(WalkTest, FromAnEmptyWindowToAnExportedMovingHairstyle) {
     paint.setRadius(0.03f);
     const Box3f box = groom().scalp->bounds();
     const auto onHead = [&](float x, float down, float z) { return at(Vec3f(x, box.max().y() - down, z)); };
-    drag({onHead(-0.06f, 0.04f, 0.05f), onHead(-0.03f, 0.02f, 0.06f), onHead(0.03f, 0.02f, 0.06f),
-          onHead(0.06f, 0.04f, 0.05f)});
+    drag({onHead(-0.05f, 0.04f, 0.05f), onHead(-0.03f, 0.02f, 0.06f), onHead(0.03f, 0.02f, 0.06f),
+          onHead(0.05f, 0.04f, 0.05f)});
     viewport().look(render::View::Back);
-    drag({onHead(0.06f, 0.05f, -0.1f), onHead(0, 0.04f, -0.1f), onHead(-0.06f, 0.05f, -0.1f),
+    drag({onHead(0.05f, 0.05f, -0.1f), onHead(0, 0.04f, -0.1f), onHead(-0.05f, 0.05f, -0.1f),
           onHead(-0.05f, 0.10f, -0.1f), onHead(0.05f, 0.10f, -0.1f)});
     ASSERT_GT(groom().scalpSelection.size(), 50u);
     EXPECT_EQ(document().stepCount(), 2);

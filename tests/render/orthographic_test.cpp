@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pictures without perspective: what is equal looks equal, near, far and behind the eye.
 #include <array>
-#include <string>
+#include <optional>
+#include <utility>
 
 #include "tests/render/render_fixture.h"
 
@@ -22,7 +23,7 @@ Camera headOn() {
 RenderOptions optionsOf(Ribbons ribbons) {
     RenderOptions options;
     options.width = options.height = kSize;
-    options.frames = 4;
+    options.frames = 1;
     options.shadows = Shadows::none;
     options.ribbons = ribbons;
     options.transparentBackground = true;
@@ -55,39 +56,34 @@ class OrthographicTest : public RenderTest {
     }
 };
 
-TEST_F(OrthographicTest, EqualHairsAtAnyDepthAreOfEqualSizeAndLight) {
-    TestStrands strands;
-    const std::array<float, 3> depths{0.6f, -2.0f, 3.0f};  // the last behind the eye
-    for (std::size_t i = 0; i < 3; ++i) {
-        const float y = kHeight / 3 * (1 - static_cast<float>(i));
-        strands.add({Vec3f(-0.06f, y, depths[i]), Vec3f(0, y, depths[i]), Vec3f(0.06f, y, depths[i])},
-                    0.006f);
-    }
-    for (const ShadingModel model : {ShadingModel::kajiya, ShadingModel::marschner}) {
-        RenderScene scene;
-        scene.camera = headOn();
-        scene.environment = Environment();
-        scene.lights = {Light{}};
-        scene.lights[0].toLight_ws = Vec3f(0.3f, 0.8f, 0.6f).normalized();
-        scene.lights[0].irradiance = Vec3f::Constant(3);
-        scene.strands = {strands.view()};
-        scene.strands[0].material.variation = 0;
-        scene.strands[0].material.fibre.model = model;
-        for (const Ribbons ribbons : {Ribbons::strip, Ribbons::tessellated, Ribbons::compute}) {
-            if (ribbons == Ribbons::tessellated && !device->info().tessellation) continue;
+TEST_F(OrthographicTest, AHairIsOfEqualSizeAndLightAtAnyDepth) {
+    const std::array<std::pair<Ribbons, ShadingModel>, 4> ways{{{Ribbons::strip, ShadingModel::kajiya},
+                                                                {Ribbons::tessellated, ShadingModel::kajiya},
+                                                                {Ribbons::compute, ShadingModel::kajiya},
+                                                                {Ribbons::strip, ShadingModel::marschner}}};
+    for (const auto& [ribbons, model] : ways) {
+        if (ribbons == Ribbons::tessellated && !device->info().tessellation) continue;
+        std::optional<Band> first;
+        for (const float z : {-2.0f, 0.6f, 3.0f}) {  // the last is behind the eye
+            TestStrands strands;
+            strands.add({Vec3f(-0.06f, 0.01f, z), Vec3f(0, 0.01f, z), Vec3f(0.06f, 0.01f, z)}, 0.006f);
+            RenderScene scene;
+            scene.camera = headOn();
+            scene.environment = Environment();
+            scene.lights = {Light{}};
+            scene.lights[0].toLight_ws = Vec3f(0.3f, 0.8f, 0.6f);
+            scene.strands = {strands.view()};
+            scene.strands[0].material.fibre.model = model;
             const LinearImage image = draw(scene, optionsOf(ribbons));
             ASSERT_FALSE(image.rgba.empty());
-            const Band first = third(image, 0);
+            const Band band = third(image, 1);
             // 0.12 m by 0.012 m, in pixels of 0.24 m / 96.
-            EXPECT_NEAR(first.alpha, 48 * 4.8, 0.03 * 48 * 4.8);
-            EXPECT_GT(first.light.sum(), 0.5);
-            for (const std::size_t other : {1u, 2u}) {
-                const Band band = third(image, other);
-                EXPECT_NEAR(band.alpha, first.alpha, 0.02 * first.alpha) << other;
-                EXPECT_LT((band.light - first.light).norm(), 0.03 * first.light.norm())
-                    << other << ", ribbons " << static_cast<int>(ribbons) << ", model "
-                    << static_cast<int>(model);
-            }
+            EXPECT_NEAR(band.alpha, 48 * 4.8, 48 * 0.25) << "a quarter of a row";
+            EXPECT_GT(band.light.sum(), 0.5);
+            if (!first) first = band;
+            EXPECT_NEAR(band.alpha, first->alpha, 1) << z << ", ribbons " << static_cast<int>(ribbons);
+            EXPECT_LT((band.light - first->light).norm(), 0.01 * first->light.norm())
+                << z << ", ribbons " << static_cast<int>(ribbons) << ", model " << static_cast<int>(model);
         }
     }
 }
@@ -116,7 +112,7 @@ TEST_F(OrthographicTest, EqualHeadsAtAnyDepthAreOfEqualSize) {
         const LinearImage image = draw(scene, optionsOf(ribbons));
         ASSERT_FALSE(image.rgba.empty());
         const Band first = third(image, 0);
-        EXPECT_NEAR(first.alpha, 24 * 24, 6);
+        EXPECT_NEAR(first.alpha, 24 * 24, 13);
         for (const std::size_t other : {1u, 2u}) {
             const Band band = third(image, other);
             EXPECT_NEAR(band.alpha, first.alpha, 0.5) << other;
