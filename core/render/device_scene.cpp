@@ -106,9 +106,11 @@ std::vector<std::size_t> drawingOrder(const RenderStrands& strands, std::size_t 
     return order;
 }
 
+constexpr std::size_t kSomeStrands = 64;  // a batch
+
 /// Strands first…last - 1 of a group.
 Status uploadBatch(gpu::Device& device, const RenderStrands& strands, std::size_t group, std::size_t first,
-                   std::size_t last, std::vector<StrandBatch>& batches) {
+                   std::size_t last, std::vector<StrandGroup>& groups, std::vector<StrandBatch>& batches) {
     StrandBatch batch;
     batch.group = group;
     batch.firstPoint = strands.offsets[first];
@@ -129,6 +131,10 @@ Status uploadBatch(gpu::Device& device, const RenderStrands& strands, std::size_
         batch.segmentsBefore.push_back(header.segmentsBefore + header.pointCount - 1);
     }
     if (headers.empty()) return {};
+    const std::size_t some = std::min(headers.size(), kSomeStrands);
+    auto& someStrands = groups[group].someStrands;
+    someStrands.insert(someStrands.end(), headers.begin(),
+                       headers.begin() + static_cast<std::ptrdiff_t>(some));
     const std::vector<float> none(1, 0.0f);
     const auto radii = strands.radii.empty() ? std::span<const float>(none)
                                              : strands.radii.subspan(batch.firstPoint, batch.pointCount);
@@ -144,7 +150,7 @@ Status uploadBatch(gpu::Device& device, const RenderStrands& strands, std::size_
 }
 
 Status uploadStrands(gpu::Device& device, const RenderStrands& strands, std::size_t group,
-                     std::vector<StrandBatch>& batches) {
+                     std::vector<StrandGroup>& groups, std::vector<StrandBatch>& batches) {
     const std::size_t count = strands.offsets.empty() ? 0 : strands.offsets.size() - 1;
     const std::uint32_t most = maxPointsPerBatch(device.info());
     std::size_t first = 0;
@@ -154,11 +160,13 @@ Status uploadStrands(gpu::Device& device, const RenderStrands& strands, std::siz
             return fail(fmt::format("strand {} has {} points", i, points), fmt::format("at most {}", most));
         }
         if (strands.offsets[i + 1] - strands.offsets[first] > most) {
-            if (auto status = uploadBatch(device, strands, group, first, i, batches); !status) return status;
+            if (auto status = uploadBatch(device, strands, group, first, i, groups, batches); !status) {
+                return status;
+            }
             first = i;
         }
     }
-    return count > first ? uploadBatch(device, strands, group, first, count, batches) : Status{};
+    return count > first ? uploadBatch(device, strands, group, first, count, groups, batches) : Status{};
 }
 
 /// About kSampleSize points, spread over all strands.
@@ -206,7 +214,7 @@ Result<DeviceScene> DeviceScene::upload(gpu::Device& device, const RenderScene& 
         group.sampled = samplePoints(group.pointCount);
         takeSample(group, strands.positions_ws);
         result.groups.push_back(std::move(group));
-        if (auto status = uploadStrands(device, strands, i, result.batches); !status) {
+        if (auto status = uploadStrands(device, strands, i, result.groups, result.batches); !status) {
             return tl::unexpected(status.error());
         }
     }

@@ -64,6 +64,7 @@ struct StrandGroup {
     double ownRadius = 0;                ///< metres, mean along the strands, where points have their own
     std::vector<Vec3f> sample_ws;        ///< points that lights are fitted to
     std::vector<std::uint32_t> sampled;  ///< their places among the group's points
+    std::vector<shaders::StrandHeader> someStrands;  ///< by chance, for means of the look
 };
 
 /// How hair fills space, measured where the strands stood when they were set.
@@ -117,6 +118,8 @@ class DeviceScene {
     std::vector<StrandBatch> batches;
     /// With the radii of now.
     HairMeasure measure() const;
+    /// What the hair of the first group lets through to the skin; prepareFibres() comes before.
+    HairFlux flux() const;
 
   private:
     void measureSpace(const RenderScene& scene);

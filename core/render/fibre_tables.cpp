@@ -37,19 +37,31 @@ shaders::float4 toFloat4(const Vec3d& v) {
     return {f.x(), f.y(), f.z(), 0};
 }
 
-/// Of light across the fibres. In single scattering what meets a fibre is lost.
-HairFlux fluxOf(const FibreMaterial& material, const shading::DualScattering& dual) {
+/// In single scattering what meets a fibre is lost.
+HairFlux fluxOf(const FibreMaterial& material, const AverageShares& shares) {
     HairFlux flux{Vec3f::Ones(), Vec3f::Zero(), material.clumping, true};
     if (material.scattering == Scattering::single) return flux;
-    const shading::AverageScattering average = dual.at(0).average;
     for (int c = 0; c < 3; ++c) {
-        const double lost = 1 - average.forward[c];
-        const double rate =
-            std::sqrt(std::max(lost * lost - average.backward[c] * average.backward[c], 1e-6));
+        const double lost = 1 - shares.forward[c];
+        const double rate = std::sqrt(std::max(lost * lost - shares.backward[c] * shares.backward[c], 1e-6));
         flux.rate[c] = static_cast<float>(rate);
-        flux.returned[c] = static_cast<float>(average.backward[c] / (lost + rate));
+        flux.returned[c] = static_cast<float>(shares.backward[c] / (lost + rate));
     }
     return flux;
+}
+
+/// The two-flux equations are linear in the shares: those of fibres that lie mixed are the mean.
+AverageShares meanShares(const shading::Table& averages, std::span<const Vec3d> absorptions) {
+    AverageShares sum;
+    for (const Vec3d& absorption : absorptions) {
+        for (int c = 0; c < 3; ++c) {
+            const shading::LayerShares one = shading::sharesAcross(averages, absorption[c]);
+            sum.forward[c] += one.forward;
+            sum.backward[c] += one.backward;
+        }
+    }
+    const auto count = static_cast<double>(absorptions.size());
+    return {sum.forward / count, sum.backward / count};
 }
 
 /// The share of light from everywhere that leaves, with what other fibres scatter again.
@@ -143,7 +155,8 @@ class FibreTables::Baker {
             ambient = ambient.unaryExpr([](double albedo) { return withMeetings(albedo); });
         }
         result_.constants_.ambient = toFloat4(ambient);
-        result_.flux_ = fluxOf(material(), dual);
+        const shading::AverageScattering across = dual.at(0).average;
+        result_.shares_ = {across.forward, across.backward};
     }
     void dualLayers(shading::DualLayers layers) {
         if (isDual()) {
@@ -157,11 +170,9 @@ class FibreTables::Baker {
             }
         }
         add(kAverages, "average scattering by absorption", layers.averages);
-        // The skin is lit as through hair of the material's own absorption.
-        const shading::Marschner model(material().marschner);
-        const bool isMarschner = material().model == ShadingModel::marschner;
-        result_.flux_ = fluxOf(material(), isMarschner ? shading::DualScattering(model)
-                                                       : shading::DualScattering(material().sadeghi));
+        const Vec3d own = material().marschner.azimuthal.absorption;
+        result_.shares_ = meanShares(layers.averages, std::span(&own, 1));
+        result_.averages_ = std::move(layers.averages);
     }
 
     gpu::Device& device_;
@@ -186,6 +197,12 @@ Result<FibreTables> FibreTables::make(gpu::Device& device, const FibreMaterial& 
     if (!sampler) return tl::unexpected(sampler.error());
     result.sampler_ = std::move(*sampler);
     return result;
+}
+
+HairFlux FibreTables::flux(std::span<const Vec3d> absorptions) const {
+    if (material_.model == ShadingModel::kajiya) return {};
+    const bool own = absorptions.empty() || averages_.rgba.empty();
+    return fluxOf(material_, own ? shares_ : meanShares(averages_, absorptions));
 }
 
 const char* FibreTables::shader() const {

@@ -2,8 +2,11 @@
 #pragma once
 // The look-up tables of one material on the device.
 
+#include <span>
+
 #include "core/gpu/device.h"
 #include "core/render/fibre_material.h"
+#include "core/shading/tables.h"
 #include "shaders/shared/render_types.h"
 
 namespace hairloom::render {
@@ -14,6 +17,11 @@ struct HairFlux {
     Vec3f returned = Vec3f::Zero();      ///< share that hair without end sends back
     float clumping = 1;                  ///< see FibreMaterial
     bool direct = false;  ///< what has met no fibre is known by itself, as shadow maps resolve it
+};
+
+/// Of light across the fibres that meets one, the shares that it sends on and back, RGB.
+struct AverageShares {
+    Vec3d forward = Vec3d::Zero(), backward = Vec3d::Zero();
 };
 
 /// Only what the model needs is made: none for Kajiya-Kay, those of dual scattering where it is on, several
@@ -32,7 +40,9 @@ class FibreTables {
     void bind(gpu::CommandList& list) const;
 
     const shaders::FibreConstants& constants() const { return constants_; }
-    const HairFlux& flux() const { return flux_; }
+    /// Of hair in which the fibres absorb these, RGB per fibre radius, as many each; of the material's own
+    /// absorption where the tables hold no others.
+    HairFlux flux(std::span<const Vec3d> absorptions = {}) const;
     std::uint64_t bytes() const;  ///< of all tables on the device
 
   private:
@@ -45,7 +55,8 @@ class FibreTables {
     FibreMaterial material_;
     bool varies_ = false;
     shaders::FibreConstants constants_;
-    HairFlux flux_;
+    AverageShares shares_;     ///< of the material's own absorption
+    shading::Table averages_;  ///< shading::DualLayers::averages, where tables hold several absorptions
     std::vector<Bound> textures_;
     gpu::SamplerPtr sampler_;
 };

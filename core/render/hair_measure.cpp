@@ -21,6 +21,28 @@ std::size_t countDistinct(std::vector<std::uint64_t> cells) {
     return static_cast<std::size_t>(std::unique(cells.begin(), cells.end()) - cells.begin());
 }
 
+/// At places along some strands, for what they let through.
+std::vector<Vec3d> absorptionsOf(const StrandGroup& group) {
+    constexpr int kPlaces = 6;
+    std::vector<Vec3d> absorptions;
+    if (!group.material.look) return absorptions;
+    const auto count = static_cast<double>(group.someStrands.size());
+    for (const shaders::StrandHeader& strand : group.someStrands) {
+        const Vec3d own = Vec3f(strand.albedo.x, strand.albedo.y, strand.albedo.z).cast<double>();
+        for (int i = 0; i < kPlaces; ++i) {
+            // Strands stand in an order of chance: even steps of the random number are its spread.
+            const double random = (static_cast<double>(absorptions.size() / kPlaces) + 0.5) / count;
+            absorptions.push_back(
+                shading::lookAt(*group.material.look, {.along = (i + 0.5) / kPlaces,
+                                                       .random = random,
+                                                       .streak = static_cast<double>(strand.streak),
+                                                       .dye = static_cast<double>(strand.dye),
+                                                       .ownColour = strand.albedo.w > 0 ? &own : nullptr}));
+        }
+    }
+    return absorptions;
+}
+
 }  // namespace
 
 float HairDetail::widening() const {
@@ -62,6 +84,12 @@ void DeviceScene::measureSpace(const RenderScene& scene) {
         hairShadow_ += static_cast<double>(countDistinct(std::move(flat))) * cell * cell / 3;
     }
     hairVolume_ = static_cast<double>(countDistinct(std::move(cells))) * cell * cell * cell;
+}
+
+HairFlux DeviceScene::flux() const {
+    if (groups.empty()) return {};
+    const StrandGroup& group = groups.front();
+    return group.fibre.flux(absorptionsOf(group));
 }
 
 HairMeasure DeviceScene::measure() const {

@@ -199,7 +199,7 @@ void setUpLights(RendererState& state) {
             toShader(state.environment.coefficients[i], state.environment.dark() ? 0.0f : 1.0f);
     }
     shade.ground = toShader(state.scene.groundAlbedo(), 0);
-    const HairFlux flux = state.scene.groups.empty() ? HairFlux() : state.scene.groups.front().fibre.flux();
+    const HairFlux flux = state.scene.flux();
     shade.sinking = toShader(flux.rate, flux.clumping);
     shade.returning = toShader(flux.returned, flux.direct ? 1.0f : 0.0f);
     shade.counts.y = static_cast<std::uint32_t>(state.lights.size());

@@ -145,4 +145,17 @@ DualLayers bakeDualLayers(const SadeghiParameters& model, const AzimuthalParamet
                       [&](const Vec3d& absorptions) { return withAbsorption(grey, fibre, absorptions); });
 }
 
+LayerShares sharesAcross(const Table& averages, double absorption) {
+    const LayerPlace place = layerPlace(absorption);
+    const auto between = [&](std::size_t share) {
+        const auto logarithm = [&](std::uint32_t layer) {
+            const auto value = static_cast<double>(averages.texel(0, 2 * layer)[share]);
+            return std::log(std::max(value, 1e-7));
+        };
+        const double low = logarithm(place.low);
+        return std::exp(low + place.part * (logarithm(place.low + 1) - low));
+    };
+    return {between(0), between(1)};
+}
+
 }  // namespace hairloom::shading

@@ -54,4 +54,10 @@ DualLayers bakeDualLayers(const MarschnerParameters& model, std::uint32_t azimut
 DualLayers bakeDualLayers(const SadeghiParameters& model, const AzimuthalParameters& fibre,
                           std::uint32_t azimuth = 64, std::uint32_t inclination = 16);
 
+/// Of DualLayers::averages, as the shader finds them.
+struct LayerShares {
+    double forward = 0, backward = 0;  ///< ā_f and ā_b across the fibre (θ_d = 0) of one channel
+};
+LayerShares sharesAcross(const Table& averages, double absorption);
+
 }  // namespace hairloom::shading

@@ -68,12 +68,10 @@ void stageExtension() {
     const uint begin = gFirstWrong[gStrand];
     if (begin <= gPoint && gPoint < POINTS) {
         float4 parent = told(begin - 1);
-        float3 move = float3(0, 0, 0);
         [loop] for (uint p = begin; p <= gPoint; ++p) {
             const float4 own = told(p);
-            move = bringBack(own.xyz - parent.xyz, parent.w);
-            parent = float4(own.xyz + move, own.w);
+            parent = float4(withinExtension(parent.xyz, own.xyz, parent.w), own.w);
         }
-        takeMove(gPoint, move);
+        takePlace(gPoint, parent.xyz);
     }
 }
