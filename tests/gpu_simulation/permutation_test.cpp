@@ -140,6 +140,9 @@ TEST_F(Permutation, KernelsOfTheProgramAreThoseOfDefaultPlans) {
     std::vector<std::string> built;
     for (const shaders::Source& source : shaders::sources()) {
         if (!source.path.ends_with(".comp.hlsl")) continue;
+        // Direct3D has none with lanes.
+        const std::string name = std::filesystem::path(source.path).stem().string();
+        if (shaders::find(name) == nullptr) continue;
         std::string defines;
         for (std::size_t at = 0; at < source.text.size();) {
             const std::size_t end = source.text.find('\n', at) + 1;
