@@ -133,8 +133,11 @@ TEST_F(Permutation, KernelsOfTheProgramAreThoseOfDefaultPlans) {
             const BatchShape threads{16, true, true, StrandStorage::threads};
             asked.push_back(keyFor(runtime::plan(scene), scene.settings, threads, spheres, false).defines());
             if (device()->info().backend == gpu::Backend::Direct3D11) continue;
-            const BatchShape lanes{16, true, true, StrandStorage::lanes, 2};
-            asked.push_back(keyFor(runtime::plan(scene), scene.settings, lanes, spheres, false).defines());
+            for (const bool tables : {false, true}) {
+                const BatchShape lanes{16, true, true, StrandStorage::lanes, 2, true, tables};
+                asked.push_back(
+                    keyFor(runtime::plan(scene), scene.settings, lanes, spheres, false).defines());
+            }
         }
     }
     std::vector<std::string> built;
