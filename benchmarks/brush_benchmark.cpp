@@ -1,44 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Dabs, strokes, undo and picking on 100,000 strands of 16 points, 20 cm long, combed over a head. A dab has
-// a radius of 2 cm. Times are those of what the name says alone.
+// Dabs, strokes, undo and picking on combedHair(). A dab has a radius of 2 cm. Times are those of what the
+// name says alone; window_benchmark has them as a person waits for them.
 
 #include <benchmark/benchmark.h>
 
 #include <cmath>
 
+#include "benchmarks/combed_hair.h"
 #include "core/editing/document.h"
 #include "core/editing/picking.h"
-#include "core/geometry/placement.h"
-#include "core/geometry/selection.h"
-#include "core/groom/brushes/flow.h"
-#include "tests/geometry/test_meshes.h"
 
 namespace hairloom::editing {
 namespace {
 
-constexpr float kHeadRadius = 0.09f;
-constexpr std::uint32_t kStrands = 100'000;
-
-Groom combedHair() {
-    const auto head = std::make_shared<const ScalpMesh>(test::meshOf(test::icosphereSoup(5, kHeadRadius)));
-    FaceSet faces = selectFaces(*head, "cap:80").value();
-    PlacementRequest request;
-    request.count = kStrands;
-    Groom groom = growStraight(head, faces, placeRandom(*head, faces, request)->roots, 0.2f, 16).value();
-    FlowSettings settings;
-    settings.crown = Vec3f(0, kHeadRadius, -0.02f);
-    flow(groom, settings).value();
-    return groom;
-}
-
 Document& document() {
     static Document shared(combedHair());
     return shared;
-}
-
-Vec3f onHair(float degrees) {
-    const float angle = radians(degrees);
-    return Vec3f(std::sin(angle), std::cos(angle), 0.2f).normalized() * (kHeadRadius + 0.012f);
 }
 
 Stroke strokeOf(std::string_view tool) {
@@ -47,7 +24,7 @@ Stroke strokeOf(std::string_view tool) {
     if (tool == "cut_line") stroke.settings.depth = 0.05f;
     if (tool == "add") stroke.settings.parameters["density"] = 500;  // twice what is there
     for (int i = 0; i < 24; ++i) {
-        stroke.dabs.push_back(dabAt(stroke.settings, onHair(-60.0f + 5.0f * static_cast<float>(i))));
+        stroke.dabs.push_back(dabAt(stroke.settings, onCombedHair(-60.0f + 5.0f * static_cast<float>(i))));
         if (tool == "cut_line") stroke.dabs.back().direction_ss = -Vec3f::UnitZ();
     }
     return stroke;

@@ -9,6 +9,7 @@
 #include <memory>
 #include <tuple>
 
+#include "cli/bench_head.h"
 #include "cli/progress.h"
 #include "cli/stopwatch.h"
 #include "core/base/random.h"
@@ -39,7 +40,7 @@ struct HeadOfHair {
                 const float along = static_cast<float>(k) / kBenchSegments;
                 const float grown = 1 + (lift - 1) * std::min(1.0f, 4 * along);
                 const float side = around + 0.03f * std::sin(9 * along + wave);
-                const Vec3f p = place(grown, down + 1.3f * along, side);
+                const Vec3f p = onBenchHead(grown, down + 1.3f * along, side);
                 hair.push_back(p);
                 moved.push_back(p + Vec3f(0.03f, 0.01f, 0.015f) * (along * along));
             }
@@ -61,16 +62,12 @@ struct HeadOfHair {
     }
 
   private:
-    static Vec3f place(float size, float down, float around) {
-        return {size * 0.075f * std::sin(down) * std::cos(around), size * 0.11f * std::cos(down),
-                size * 0.095f * std::sin(down) * std::sin(around)};
-    }
     void makeHead() {
         constexpr std::uint32_t kRings = 48, kSectors = 96;
         for (std::uint32_t r = 0; r <= kRings; ++r) {
             for (std::uint32_t s = 0; s < kSectors; ++s) {
-                head.push_back(place(1, kPi * static_cast<float>(r) / kRings,
-                                     2 * kPi * static_cast<float>(s) / kSectors));
+                head.push_back(onBenchHead(1, kPi * static_cast<float>(r) / kRings,
+                                           2 * kPi * static_cast<float>(s) / kSectors));
             }
         }
         for (std::uint32_t r = 0; r < kRings; ++r) {

@@ -12,11 +12,19 @@ function(hairloom_room name)
 endfunction()
 
 # hairloom_program(NAME SOURCES file... LINK target...)
+# On Windows all text of a program is UTF-8, by its manifest.
 function(hairloom_program name)
     cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
     add_executable(${name} ${ARG_SOURCES})
     target_include_directories(${name} PRIVATE "${PROJECT_SOURCE_DIR}")
     target_link_libraries(${name} PRIVATE ${ARG_LINK} hairloom_warnings)
+    if(MSVC)
+        target_sources(${name} PRIVATE "${PROJECT_SOURCE_DIR}/packaging/windows/hairloom.manifest")
+    elseif(WIN32)
+        target_sources(${name} PRIVATE "${PROJECT_SOURCE_DIR}/packaging/windows/manifest.rc")
+        set_source_files_properties("${PROJECT_SOURCE_DIR}/packaging/windows/manifest.rc" PROPERTIES
+            OBJECT_DEPENDS "${PROJECT_SOURCE_DIR}/packaging/windows/hairloom.manifest")
+    endif()
 endfunction()
 
 # hairloom_test(NAME SOURCES file... LINK target... [TIMEOUT seconds])

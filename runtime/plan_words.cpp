@@ -13,25 +13,25 @@ std::string quantity(Effect effect, float value) {
     std::ostringstream text;
     switch (effect) {
         case Effect::damping:
-            text << "to 1/e in " << value << " s";
+            text << "to 1/e in " << std::setprecision(3) << value << " s";
             break;
         case Effect::gravity:
-            text << value << " m/s²";
+            text << std::setprecision(3) << value << " m/s²";
             break;
         case Effect::drag:
             text << value << " per second";
             break;
         case Effect::wind:
-            text << value << " m/s";
+            text << std::setprecision(3) << value << " m/s";
             break;
         case Effect::angular:
-            text << "stiffness " << value;
+            text << "stiffness " << std::setprecision(4) << value;
             break;
         case Effect::length:
             text << value << (value == 1.0f ? " iteration" : " iterations");
             break;
         case Effect::pearls:
-            text << "up to " << value << " mm";
+            text << "up to " << std::setprecision(3) << value << " mm";
             break;
         case Effect::torsion:
         case Effect::coupling:
@@ -91,7 +91,7 @@ std::string words(Effect effect, const Decision& decision) {
         case Reason::undamped:
             return "bending is undamped";
         case Reason::uneven:
-            text << "masses or segments differ " << decision.value << " times along a strand";
+            text << "masses or segments differ " << std::setprecision(4) << decision.value << " times along a strand";
             return text.str();
         case Reason::tightCurls:
             text << "curls spring back " << std::setprecision(2) << decision.value << " times in a substep";
@@ -103,7 +103,7 @@ std::string words(Effect effect, const Decision& decision) {
         case Reason::slowEnough:
             return "nothing moves by a quarter of a sphere's radius in a substep";
         case Reason::fast:
-            text << "up to " << 1000.0f * decision.value << " mm in a substep";
+            text << "up to " << std::setprecision(3) << 1000.0f * decision.value << " mm in a substep";
             return text.str();
         case Reason::speedUnknown:
             return "speeds are not known beforehand";
@@ -117,7 +117,7 @@ std::string words(Effect effect, const Decision& decision) {
             text << decision.value << (decision.value == 1.0f ? " strand" : " strands") << " at rest";
             return text.str();
         case Reason::allAsleep:
-            text << "all strands at rest since " << decision.value << " s";
+            text << "all strands at rest since " << std::setprecision(3) << decision.value << " s";
             return text.str();
     }
     return {};

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // hairloom-hlslc SOURCE PROFILE TOP OUTPUT: compiles the function main of one HLSL file to DXBC with
-// Microsoft's compiler, twice, and refuses what does not come out alike or asks more of the hardware than
-// feature level 11_0 has. Shaders see the macro HAIRLOOM_DXBC. Includes are found from the folder TOP;
-// OUTPUT.d lists them for the build system. The environment variable HAIRLOOM_D3DCOMPILER names the DLL;
-// without it the system's is taken.
+// Microsoft's compiler, twice, and refuses what it warns of, what does not come out alike, and what asks more
+// of the hardware than feature level 11_0 has. Shaders see the macro HAIRLOOM_DXBC. Includes are found from
+// the folder TOP; OUTPUT.d lists them for the build system. The environment variable HAIRLOOM_D3DCOMPILER
+// names the DLL; without it the system's is taken.
 
 #include <windows.h>
 // windows.h first.
@@ -105,7 +105,8 @@ std::string compile(const Compiler& compiler, const std::string& path, const std
     ID3DBlob* messages = nullptr;
     // Kernels take sums in the order that is written, as their counterparts on the CPU do.
     const UINT order = std::string_view(profile) == "cs_5_0" ? D3DCOMPILE_IEEE_STRICTNESS : 0u;
-    const UINT flags = D3DCOMPILE_OPTIMIZATION_LEVEL3 | D3DCOMPILE_ENABLE_STRICTNESS | order;
+    const UINT flags = D3DCOMPILE_OPTIMIZATION_LEVEL3 | D3DCOMPILE_ENABLE_STRICTNESS |
+                       D3DCOMPILE_WARNINGS_ARE_ERRORS | order;
     const D3D_SHADER_MACRO macros[] = {{"HAIRLOOM_DXBC", "1"}, {nullptr, nullptr}};
     const HRESULT r = compiler.compile(source.data(), source.size(), path.c_str(), macros, &includes, "main",
                                        profile, flags, 0, &code, &messages);

@@ -101,7 +101,7 @@ void main(uint3 group : SV_GroupID, uint thread : SV_GroupIndex) {
     if (any(to < from)) return;
 
     Corners c;
-    c.origin = (from + to) / 2;
+    c.origin = (from + to) >> 1;
     float3 v[3];
     for (uint k = 0; k < 3u; ++k) {
         const float2 scaled = 0.5 * (clip[k].ww + float2(clip[k].x, -clip[k].y)) * gRaster.window.zw;

@@ -5,6 +5,7 @@
 struct RibbonCorner {
     float4 position;
     float coverage;  // of the ribbon by the hair
+    float depth;     // metres in front of the eye; clip space's, 0...1, where there is no perspective
 };
 
 RibbonCorner ribbonCorner(ViewConstants view, CurvePoint p, bool second) {
@@ -18,5 +19,6 @@ RibbonCorner ribbonCorner(ViewConstants view, CurvePoint p, bool second) {
     corner.position = mul(view.clipFromWorld, float4(centre_ws + side * (second ? radius : -radius), 1));
     // A hair thinner than the least width keeps its share of light by being as transparent as it is too wide.
     corner.coverage = radius > 0 ? p.opacity * p.position_ws.w / radius : 0;
+    corner.depth = view.eye_ws.w > 0 ? corner.position.w : corner.position.z;
     return corner;
 }

@@ -5,7 +5,7 @@
 #include "shaders/kajiya.hlsli"
 #include "shaders/shadows.hlsli"
 #ifdef HAIRLOOM_LOOK
-#include "shaders/look.hlsli"
+#include "shaders/point_dye.hlsli"
 #endif
 
 cbuffer Constants : register(b0) { ShadeConstants gShade; };
@@ -27,7 +27,7 @@ void main(uint3 id : SV_DispatchThreadID) {
     const CurvePoint p = gCurve[index];
     const StrandHeader strand = gStrands[p.strand];
     const float3 tangent = unpackUnit(p.tangentXy);
-    const float3 toView = normalize(gShade.eye_ws.xyz - p.position_ws.xyz);
+    const float3 toView = normalize(gShade.eye_ws.xyz - p.position_ws.xyz * gShade.eye_ws.w);
 
     const float vary = 1.0 + gShade.rootTip.z * (strand.random * 2.0 - 1.0);
 #ifdef HAIRLOOM_LOOK
@@ -49,7 +49,7 @@ void main(uint3 id : SV_DispatchThreadID) {
     for (uint i = 0; i < gShade.counts.y; ++i) {
         const LightConstants light = gShade.lights[i];
         const float3 toLight = directionToLight(light, p.position_ws.xyz);
-        const Occlusion o = occlusion(light, p.position_ws.xyz, 0.0007, 0.004);
+        const Occlusion o = occlusion(light, p.position_ws.xyz, 0.0007, 0.004, light.filtering.z);
         const float3 direct = pow(passed, o.fibres) * o.visibility;
         const float3 scattered = pow(passed, 0.5 * o.fibres) * lerp(0.15, 1.0, o.visibility);
         const float diffuse = kajiyaDiffuse(tangent, toLight);

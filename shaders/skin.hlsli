@@ -19,7 +19,7 @@ float3 throughHair(ShadeConstants shade, LightConstants light, float fibres, flo
 
 float3 skinLight(ShadeConstants shade, MeshConstants mesh, float3 position_ws, float3 normal_ws, float3 albedo) {
     const float kPi = 3.14159265;
-    const float3 toView = normalize(shade.eye_ws.xyz - position_ws);
+    const float3 toView = normalize(shade.eye_ws.xyz - position_ws * shade.eye_ws.w);
     float3 normal = normalize(normal_ws);
     if (dot(normal, toView) < 0) normal = -normal;
     float3 colour = 0;
@@ -30,7 +30,7 @@ float3 skinLight(ShadeConstants shade, MeshConstants mesh, float3 position_ws, f
         const float nl = dot(normal, toLight);
         // Lifted, so that the head does not shadow itself; hair counts down to the skin.
         const float lift = 0.002;
-        const Occlusion o = occlusion(light, position_ws + normal * lift, -lift * saturate(nl), 0.002);
+        const Occlusion o = occlusion(light, position_ws + normal * lift, -lift * saturate(nl), 0.002, 0.0);
         // Red light travels farther under the skin. The denominator keeps the energy of a Lambertian.
         const float3 wrap = mesh.skin.x * float3(1, 0.5, 0.35);
         const float3 diffuse = saturate((nl + wrap) / ((1 + wrap) * (1 + wrap)));

@@ -8,7 +8,7 @@ StructuredBuffer<float4> gColour : register(t1);
 struct Output {
     float4 position : SV_Position;
     float3 colour : COLOR;
-    float2 coverage : COVERAGE;  // x: of the ribbon by the hair, y: metres in front of the eye
+    float2 coverage : COVERAGE;  // x: of the ribbon by the hair, y: RibbonCorner::depth
 #ifndef HAIRLOOM_BLEND
     nointerpolation uint seed : SEED;
 #endif
@@ -20,7 +20,7 @@ Output main(uint vertex : SV_VertexID) {
     Output o;
     o.position = corner.position;
     o.colour = gColour[vertex >> 1u].rgb;
-    o.coverage = float2(corner.coverage, corner.position.w);
+    o.coverage = float2(corner.coverage, corner.depth);
 #ifndef HAIRLOOM_BLEND
     o.seed = p.strand;
 #endif

@@ -8,7 +8,7 @@ cbuffer Constants : register(b0) { ViewConstants gView; };
 struct Input {
     float4 position : SV_Position;
     float3 colour : COLOR;
-    float2 coverage : COVERAGE;  // x: of the ribbon by the hair, y: metres in front of the eye
+    float2 coverage : COVERAGE;  // x: of the ribbon by the hair, y: RibbonCorner::depth
 };
 
 struct Output {

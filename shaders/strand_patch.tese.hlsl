@@ -10,7 +10,7 @@ StructuredBuffer<float4> gColour : register(t1);
 struct Output {
     float4 position : SV_Position;
     float3 colour : COLOR;
-    float2 coverage : COVERAGE;  // x: of the ribbon by the hair, y: metres in front of the eye
+    float2 coverage : COVERAGE;  // x: of the ribbon by the hair, y: RibbonCorner::depth
 #ifndef HAIRLOOM_BLEND
     nointerpolation uint seed : SEED;
 #endif
@@ -48,7 +48,7 @@ Output main(PatchFactors factors, float2 place : SV_DomainLocation,
     Output o;
     o.position = corner.position;
     o.colour = lerp(gColour[patch.y + before].rgb, gColour[patch.y + before + 1u].rgb, at - float(before));
-    o.coverage = float2(corner.coverage, corner.position.w);
+    o.coverage = float2(corner.coverage, corner.depth);
 #ifndef HAIRLOOM_BLEND
     o.seed = patch.x;
 #endif

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <filesystem>
 
 #include "core/animation/root_motion.h"
 #include "core/base/file.h"
 #include "core/geometry/selection.h"
 #include "core/groom/json_reader.h"
+#include "core/groom/point_dye.h"
 #include "core/interpolation/follow_hairs.h"
 #include "core/render/exr.h"
 #include "core/render/png.h"
@@ -25,7 +27,12 @@ render::Camera readCamera(JsonReader reader) {
     camera.eye_ws = reader.vector("eye", -kAnyPlace, kAnyPlace, "m");
     camera.target_ws = reader.vector("target", -kAnyPlace, kAnyPlace, "m");
     if (reader.has("up")) camera.up_ws = reader.vector("up", -1, 1);
-    camera.verticalFov = static_cast<float>(reader.number("fov_y_deg", 1, 150, "degrees"));
+    if (reader.has("orthographic_height")) {
+        camera.orthographicHeight =
+            static_cast<float>(reader.number("orthographic_height", 1e-4, kAnyPlace, "m"));
+    } else {
+        camera.verticalFov = static_cast<float>(reader.number("fov_y_deg", 1, 150, "degrees"));
+    }
     reader.finish();
     return camera;
 }
@@ -192,6 +199,14 @@ Result<ViewFile> readViewFile(const std::string& path) {
     }
     if (reader.has("background")) view.background = reader.vector("background", 0, kAnyRadiance);
     if (reader.has("head_albedo")) view.headAlbedo = reader.vector("head_albedo", 0, 1);
+    if (reader.has("head_absorption_per_m")) {
+        view.headAbsorption = static_cast<float>(reader.number(
+            "head_absorption_per_m", 0, static_cast<double>(render::kMostHeadAbsorption), "1/m"));
+    }
+    if (reader.has("shadow_blur_px")) {
+        view.shadowBlur = static_cast<float>(
+            reader.number("shadow_blur_px", 0, static_cast<double>(render::kMostShadowBlur), "pixels"));
+    }
     if (reader.has("hair")) readHair(reader.object("hair"), view);
     reader.finish();
     if (auto status = reader.status(); !status) return tl::unexpected(status.error());
@@ -243,12 +258,31 @@ Status GroomScene::pose(std::span<const Vec3f> positions_ws, const HeadPose& pos
     return bindings_ ? makeFollowHairs() : Status();
 }
 
+void GroomScene::moveStrands(std::span<const std::uint32_t> strands, std::span<const Vec3f> points_ws) {
+    assert(!bindings_);
+    std::vector<Vec3f>& points = posed_.pointAttributes.edit<Vec3f>(attribute::kPosition);
+    auto from = points_ws.begin();
+    for (const std::uint32_t s : strands) {
+        const auto count = static_cast<std::ptrdiff_t>(posed_.strand(s).size());
+        std::copy_n(from, count, points.begin() + static_cast<std::ptrdiff_t>(posed_.offsets[s]));
+        from += count;
+    }
+}
+
 bool GroomScene::setMaterial(const HairMaterial& authored, const ViewFile& view) {
     const HairMaterial& before = rest_.material;
     if (authored.rootColour != before.rootColour || !hasSameShares(authored, before)) return false;
     if (!radii_.empty() && authored.rootRadius != before.rootRadius) return false;
     rest_.material = authored;
     material_ = renderMaterial(rest_, view);
+    return true;
+}
+
+bool GroomScene::setDye(const Groom& groom) {
+    if (shares_.pointDyes.empty() || !groom.pointAttributes.has(attribute::kPointDye)) return false;
+    rest_.pointAttributes.set(attribute::kPointDye,
+                              groom.pointAttributes.all().find(attribute::kPointDye)->second);
+    shares_.pointDyes = bindings_ ? pointDyesOfFollowHairs(rest_, *bindings_) : pointDyes(rest_);
     return true;
 }
 
@@ -284,6 +318,7 @@ render::RenderScene GroomScene::scene() const {
     }
     strands.streaks = shares_.streaks;
     strands.dyes = shares_.dyes;
+    strands.pointDyes = shares_.pointDyes;
     scene.strands.push_back(strands);
     return scene;
 }

@@ -93,8 +93,8 @@ void freeSwing(Trial& trial) {
     };
     const double start = meanEnergy();
     trial.frames(static_cast<int>(60.0 * (trial.options().freeSeconds - 2.0)));
-    trial.expect("drift of energy", "%",
-                 trial.over() ? std::nan("") : 100.0 * std::abs(meanEnergy() / start - 1.0), 1.0);
+    trial.expectEnergy("drift of energy", "%",
+                       trial.over() ? std::nan("") : 100.0 * std::abs(meanEnergy() / start - 1.0), 1.0);
 }
 
 void longRest(Trial& trial) {

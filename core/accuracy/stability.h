@@ -26,6 +26,10 @@ struct StabilityMark {
     std::string unit = {};  ///< "" for a pure number
     double worst = 0.0;     ///< greatest that was seen
     double mark = 0.0;      ///< greatest allowed
+    /// Whether the integrator promises to meet it. Those that hold lengths after bending has moved the points
+    /// (all but position Verlet) promise neither rest nor a bound of the energy: the two undo part of each
+    /// other's work, and hair may tremble.
+    bool claimed = true;
 
     /// What is no number does not meet any mark.
     bool met() const { return worst <= mark; }
@@ -37,10 +41,10 @@ struct StabilityResult {
     std::string family;
     std::string integrator;
     std::uint32_t substeps = 0;  ///< a frame
-    bool claimed = true;
-    bool pass = false;  ///< every mark is met
+    bool claimed = true;         ///< not where `limit` says why a mark may be missed
+    bool pass = false;           ///< every mark is met
     std::vector<StabilityMark> marks;
-    std::string limit;                      ///< why the case is not claimed; empty where it is
+    std::string limit;  ///< why the case, or what it misses of it, is not claimed; empty where it is
     std::optional<std::uint64_t> failedAt;  ///< substep in which a strand broke; absent where none did
 
     /// The mark that is missed farthest, or met by the least.

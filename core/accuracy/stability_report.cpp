@@ -77,15 +77,15 @@ std::string pageOf(const std::vector<StabilityResult>& results, const std::vecto
 
 }  // namespace
 
-std::string verdict(const StabilityResult& result) {
-    if (result.claimed) return result.pass ? "pass" : "FAIL";
-    if (result.failedAt) return fmt::format("limit, at substep {}", *result.failedAt);
-    return result.pass ? "held" : "limit";
-}
-
 std::string decidingMark(const StabilityResult& result) {
     const StabilityMark& m = result.closest();
     return fmt::format("{} {:.3g} of {:.3g}{}{}", m.what, m.worst, m.mark, m.unit.empty() ? "" : " ", m.unit);
+}
+
+std::string verdict(const StabilityResult& result) {
+    if (result.claimed) return result.pass ? "pass" : "FAIL";
+    if (result.failedAt) return fmt::format("limit, at substep {}", *result.failedAt);
+    return result.pass ? "held" : fmt::format("limit: {}", decidingMark(result));
 }
 
 std::string stabilityCsv(const std::vector<StabilityResult>& results) {
@@ -116,7 +116,7 @@ std::string stabilityMarkdown(const std::vector<StabilityResult>& results) {
         for (std::size_t k = 0; k < integrators.size(); ++k) {
             const StabilityResult& r = results[i + k];
             text += fmt::format(" {}", verdict(r));
-            if (r.claimed && r.substeps != runtime::SimulationSettings{}.substeps)
+            if (!r.failedAt && r.substeps != runtime::SimulationSettings{}.substeps)
                 text += fmt::format(" ({} substeps)", r.substeps);
             if (r.claimed && !r.pass) text += fmt::format(": {}", decidingMark(r));
             text += " |";

@@ -12,7 +12,7 @@
 
 namespace hairloom {
 
-/// "pass", "FAIL", or for what is not claimed "held" or "limit, at substep 64".
+/// "pass", "FAIL", or for what is not claimed "held", "limit, at substep 64" or "limit: " and decidingMark().
 std::string verdict(const StabilityResult& result);
 
 /// "time to rest 6 of 5 s": the mark that decides.

@@ -60,6 +60,8 @@ class Trial {
 
     /// Another mark.
     void expect(const std::string& what, const std::string& unit, double worst, double mark);
+    /// Another that is about energy: not claimed by every integrator (StabilityMark::claimed).
+    void expectEnergy(const std::string& what, const std::string& unit, double worst, double mark);
 
     std::vector<runtime::Float3> positions() const;
     /// Of all points, m/s.
@@ -72,7 +74,9 @@ class Trial {
 
   private:
     void inspect();
-    void raise(const std::string& what, const std::string& unit, double value, double mark);
+    void raise(const std::string& what, const std::string& unit, double value, double mark, bool claimed);
+    /// Whether the integrator promises rest and a bound of the energy with these settings.
+    bool holdsRest() const;
 
     runtime::Integrator integrator_;
     StabilityOptions options_;

@@ -15,25 +15,61 @@ constexpr std::size_t kGrain = 256;
 constexpr float kBehindHead = 0.002f;  ///< metres by which hair may lie behind the skin and still be seen
 
 /// All that the cursor's circle covers lies in this cone (or cylinder, for parallel views).
-struct PickCone {
-    Ray ray;
-    float radiusAtOrigin;
-    float radiusPerMetre;
-
-    PickCone(const View& view, const Vec2f& px, float radius_px) : ray(view.rayAt(px)) {
+class PickCone {
+  public:
+    PickCone(const View& view, const Vec2f& px, float radius_px) : ray_(view.rayAt(px)) {
         // The way along the ray is at least the depth, so the cone holds all of the circle.
-        radiusAtOrigin = view.metresPerPixel(0) * radius_px;
-        radiusPerMetre = (view.metresPerPixel(1) - view.metresPerPixel(0)) * radius_px;
+        radiusAtOrigin_ = view.metresPerPixel(0) * radius_px;
+        radiusPerMetre_ = (view.metresPerPixel(1) - view.metresPerPixel(0)) * radius_px;
+        for (Eigen::Index i = 0; i < 3; ++i) {
+            constexpr float kParallel = 1e-12f;
+            const float along = ray_.direction_ss[i];
+            perMetre_[i] = 1 / (std::abs(along) < kParallel ? std::copysign(kParallel, along) : along);
+        }
     }
+    /// The ray against the box grown by the cone's radius where it leaves the box.
     bool mayTouch(const StrandBounds::Box& box) const {
         const Vec3f half = 0.5f * (box.high - box.low);
-        const Vec3f toMiddle = box.low + half - ray.origin_ss;
-        const float reach = half.norm();
-        const float along = toMiddle.dot(ray.direction_ss);
-        if (along < -reach) return false;
-        const float radius = radiusAtOrigin + radiusPerMetre * (along + reach) + reach;
-        return toMiddle.squaredNorm() - along * along <= radius * radius;
+        const Vec3f toMiddle = box.low + half - ray_.origin_ss;
+        const float farthest =
+            toMiddle.dot(ray_.direction_ss) + half.dot(Vec3f(ray_.direction_ss.cwiseAbs()));
+        if (!(farthest > 0)) return false;
+        const Vec3f grown = half + Vec3f::Constant(radiusAtOrigin_ + radiusPerMetre_ * farthest);
+        float enter = 0;
+        float leave = farthest;
+        for (Eigen::Index i = 0; i < 3; ++i) {
+            const float a = (toMiddle[i] - grown[i]) * perMetre_[i];
+            const float b = (toMiddle[i] + grown[i]) * perMetre_[i];
+            enter = std::max(enter, std::min(a, b));
+            leave = std::min(leave, std::max(a, b));
+        }
+        return enter <= leave;
     }
+
+  private:
+    Ray ray_;
+    Vec3f perMetre_;  ///< one by the ray's direction
+    float radiusAtOrigin_;
+    float radiusPerMetre_;
+};
+
+/// Whether strands are there to be seen.
+class ShownTest {
+  public:
+    explicit ShownTest(const Groom& groom)
+        : hidden_(groom.strandAttributes.view<std::uint8_t>(attribute::kHidden)),
+          layerOf_(groom.strandAttributes.view<std::uint32_t>(attribute::kLayer)),
+          layers_(groom.layers) {}
+    bool operator()(std::size_t s) const {
+        const std::size_t layer = s < layerOf_.size() ? layerOf_[s] : 0;
+        const bool isHidden = s < hidden_.size() && hidden_[s] != 0;
+        return !isHidden && (layer >= layers_.size() || layers_[layer].visible);
+    }
+
+  private:
+    std::span<const std::uint8_t> hidden_;
+    std::span<const std::uint32_t> layerOf_;
+    std::span<const Layer> layers_;
 };
 
 /// Nearest place of a screen segment to a pixel.
@@ -69,7 +105,12 @@ class StrandProbe {
         } else if (options_.part == StrandPart::Tip) {
             offer(place(strand, points, points.size() - 2, 1));
         } else {
-            for (std::size_t i = 0; i + 1 < points.size(); ++i) offer(segment(strand, points, i));
+            auto from = view_.project(points[0]);
+            for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+                const auto to = view_.project(points[i + 1]);
+                if (from && to) offer(segment(strand, points, i, *from, *to));
+                from = to;
+            }
         }
         return best;
     }
@@ -81,13 +122,13 @@ class StrandProbe {
     }
 
   private:
-    std::optional<StrandPick> segment(std::uint32_t strand, std::span<const Vec3f> points,
-                                      std::size_t i) const {
-        const auto from = view_.project(points[i]);
-        const auto to = view_.project(points[i + 1]);
-        if (!from || !to) return std::nullopt;
-        const float t = nearestAlong(px_, from->px, to->px);
-        return place(strand, points, i, throughPerspective(t, from->depth, to->depth, isParallel_));
+    std::optional<StrandPick> segment(std::uint32_t strand, std::span<const Vec3f> points, std::size_t i,
+                                      const ScreenPoint& from, const ScreenPoint& to) const {
+        const float t = nearestAlong(px_, from.px, to.px);
+        constexpr float kRounding = 0.01f;  // pixels
+        const float distance = (from.px + t * (to.px - from.px) - px_).norm();
+        if (!(distance <= options_.radius_px + kRounding)) return std::nullopt;
+        return place(strand, points, i, throughPerspective(t, from.depth, to.depth, isParallel_));
     }
     std::optional<StrandPick> place(std::uint32_t strand, std::span<const Vec3f> points, std::size_t i,
                                     float along) const {
@@ -109,14 +150,9 @@ class StrandProbe {
 }  // namespace
 
 std::vector<std::uint8_t> shownStrands(const Groom& groom) {
-    const auto hidden = groom.strandAttributes.view<std::uint8_t>(attribute::kHidden);
-    const auto layers = groom.strandAttributes.view<std::uint32_t>(attribute::kLayer);
-    std::vector<std::uint8_t> shown(groom.strandCount(), 1);
-    for (std::size_t s = 0; s < shown.size(); ++s) {
-        const std::size_t layer = s < layers.size() ? layers[s] : 0;
-        const bool isHidden = s < hidden.size() && hidden[s] != 0;
-        if (isHidden || (layer < groom.layers.size() && !groom.layers[layer].visible)) shown[s] = 0;
-    }
+    const ShownTest isShown(groom);
+    std::vector<std::uint8_t> shown(groom.strandCount());
+    for (std::size_t s = 0; s < shown.size(); ++s) shown[s] = isShown(s) ? 1 : 0;
     return shown;
 }
 
@@ -138,14 +174,18 @@ std::optional<StrandPick> pickStrand(const Groom& groom, const StrandBounds& bou
     }
     const PickCone cone(view, px, options.radius_px);
     const StrandProbe probe(view, px, options, headDepth);
-    const std::vector<std::uint8_t> shown = shownStrands(groom);
-    std::vector<std::uint32_t> candidates =
+    const ShownTest isShown(groom);
+    const auto positions = groom.positions();
+    const auto offsets = groom.offsets.view();
+    const std::vector<std::uint32_t> candidates =
         bounds.find([&](const StrandBounds::Box& box) { return cone.mayTouch(box); });
-    std::erase_if(candidates, [&](std::uint32_t s) { return !shown[s] || groom.strand(s).size() < 2; });
     std::vector<std::optional<StrandPick>> picks(candidates.size());
     parallelFor(candidates.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k)
-            picks[k] = probe.look(candidates[k], groom.strand(candidates[k]));
+        for (std::size_t k = begin; k < end; ++k) {
+            const std::uint32_t s = candidates[k];
+            const std::size_t count = offsets[s + 1] - offsets[s];
+            if (count >= 2 && isShown(s)) picks[k] = probe.look(s, positions.subspan(offsets[s], count));
+        }
     });
     std::optional<StrandPick> best;
     for (const auto& pick : picks) {

@@ -33,11 +33,11 @@ void PointDelta::keep(const Groom& groom, std::span<const std::uint32_t> strands
         begins_.push_back(begins_.back() + (groom.offsets[s + 1] - groom.offsets[s]));
     }
     points_.resize(begins_.back());
+    const auto positions = groom.positions();
     parallelFor(strands_.size() - firstNew, kGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = firstNew + begin; k < firstNew + end; ++k) {
-            const auto points = groom.strand(strands_[k]);
-            std::copy(points.begin(), points.end(),
-                      points_.begin() + static_cast<std::ptrdiff_t>(begins_[k]));
+            std::copy_n(positions.begin() + groom.offsets[strands_[k]], begins_[k + 1] - begins_[k],
+                        points_.begin() + static_cast<std::ptrdiff_t>(begins_[k]));
         }
     });
 }

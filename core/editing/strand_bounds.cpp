@@ -23,8 +23,11 @@ StrandBounds::Box StrandBounds::boxOf(std::span<const Vec3f> points) {
 
 void StrandBounds::rebuild(const Groom& groom) {
     boxes_.resize(groom.strandCount());
+    const auto positions = groom.positions();
+    const auto offsets = groom.offsets.view();
     parallelFor(boxes_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t s = begin; s < end; ++s) boxes_[s] = boxOf(groom.strand(s));
+        for (std::size_t s = begin; s < end; ++s)
+            boxes_[s] = boxOf(positions.subspan(offsets[s], offsets[s + 1] - offsets[s]));
     });
 }
 
@@ -34,8 +37,13 @@ void StrandBounds::append(const Groom& groom) {
 }
 
 void StrandBounds::update(const Groom& groom, std::span<const std::uint32_t> strands) {
+    const auto positions = groom.positions();
+    const auto offsets = groom.offsets.view();
     parallelFor(strands.size(), kGrain / 8, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) boxes_[strands[k]] = boxOf(groom.strand(strands[k]));
+        for (std::size_t k = begin; k < end; ++k) {
+            const std::uint32_t s = strands[k];
+            boxes_[s] = boxOf(positions.subspan(offsets[s], offsets[s + 1] - offsets[s]));
+        }
     });
 }
 

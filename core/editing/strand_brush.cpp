@@ -36,59 +36,83 @@ std::size_t firstWeighted(std::span<const float> weights) {
     return first;
 }
 
+/// BrushVolume::squaredDistance of points that lie one after the other, written so that it compiles to
+/// vectors.
+void squaredDistances(const BrushVolume& volume, const float* xyz, std::span<float> squares) {
+    const float cx = volume.centre.x(), cy = volume.centre.y(), cz = volume.centre.z();
+    const float ax = volume.axis.x(), ay = volume.axis.y(), az = volume.axis.z();
+    const float most = volume.halfLength;
+    for (std::size_t i = 0; i < squares.size(); ++i) {
+        const float x = xyz[3 * i] - cx, y = xyz[3 * i + 1] - cy, z = xyz[3 * i + 2] - cz;
+        const float along = std::min(std::max(x * ax + y * ay + z * az, -most), most);
+        const float u = x - ax * along, v = y - ay * along, w = z - az * along;
+        squares[i] = u * u + v * v + w * w;
+    }
+}
+
 }  // namespace
 
 float StrandBrush::weigh(const DabContext& dab, const BrushSettings& settings, std::span<const Vec3f> points,
                          std::span<float> weights) const {
-    const float squaredRadius = dab.volume.radius * dab.volume.radius;
+    const BrushVolume& volume = dab.volume;
+    const std::size_t count = points.size();
+    thread_local std::vector<float> scratch;
+    scratch.resize(2 * count + 3 * count);
+    const std::span<float> ofPoints = std::span(scratch).first(count);
+    const std::span<float> ofMiddles = std::span(scratch).subspan(count, count - 1);
+    const std::span<float> middles = std::span(scratch).subspan(2 * count, 3 * (count - 1));
+    static_assert(sizeof(Vec3f) == 3 * sizeof(float));
+    const float* const xyz = points.data()->data();
+    for (std::size_t k = 0; k < middles.size(); ++k) middles[k] = 0.5f * (xyz[k] + xyz[k + 3]);
+    squaredDistances(volume, xyz, ofPoints);
+    squaredDistances(volume, middles.data(), ofMiddles);
+    const float squaredRadius = volume.radius * volume.radius;
+    const auto nearest = std::min(*std::min_element(ofPoints.begin() + 1, ofPoints.end()),
+                                  *std::min_element(ofMiddles.begin(), ofMiddles.end()));
+    if (!(nearest < squaredRadius)) return 0;
+
     const float strength = dab.dab.strength * dab.dab.pressure;
-    const float perPoint = 1.0f / static_cast<float>(points.size() - 1);
+    const float perPoint = 1.0f / static_cast<float>(count - 1);
     float strongest = 0;
     weights[0] = 0;
-    float before = dab.volume.squaredDistance(0.5f * (points[0] + points[1]));
-    for (std::size_t i = 1; i < points.size(); ++i) {
-        float nearest = std::min(before, dab.volume.squaredDistance(points[i]));
-        if (i + 1 < points.size()) {
-            before = dab.volume.squaredDistance(0.5f * (points[i] + points[i + 1]));
-            nearest = std::min(nearest, before);
-        }
+    for (std::size_t i = 1; i < count; ++i) {
+        float square = std::min(ofMiddles[i - 1], ofPoints[i]);
+        if (i + 1 < count) square = std::min(square, ofMiddles[i]);
         weights[i] = 0;
-        if (nearest >= squaredRadius) continue;
+        if (square >= squaredRadius) continue;
         const float along = static_cast<float>(i) * perPoint;
-        weights[i] = strength * settings.falloff.at(std::sqrt(nearest) / dab.volume.radius) *
-                     settings.profile.at(along);
+        weights[i] =
+            strength * settings.falloff.at(std::sqrt(square) / volume.radius) * settings.profile.at(along);
         strongest = std::max(strongest, weights[i]);
     }
     return strongest;
 }
 
 Reached StrandBrush::reach(const StrokeTarget& target, const DabContext& dab) const {
-    const Groom& groom = target.groom();
-    const std::vector<std::uint32_t> candidates =
-        target.bounds.find([&](const StrandBounds::Box& box) { return mayReach(dab, box); });
-    std::vector<std::uint32_t> begins;
-    begins.reserve(candidates.size());
-    std::uint32_t points = 0;
-    for (const std::uint32_t s : candidates) {
-        begins.push_back(points);
-        if (target.editable[s]) points += groom.offsets[s + 1] - groom.offsets[s];
-    }
-    Reached reached;
-    reached.weights.resize(points);
-    std::vector<std::uint8_t> isReached(candidates.size(), 0);
-    parallelFor(candidates.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) {
-            const std::uint32_t s = candidates[k];
-            const auto strand = groom.strand(s);
-            if (!target.editable[s] || strand.size() < 2) continue;
-            const auto weights = std::span(reached.weights).subspan(begins[k], strand.size());
-            isReached[k] = weigh(dab, target.settings, strand, weights) > 0 ? 1 : 0;
+    const auto positions = target.groom().positions();
+    const auto offsets = target.groom().offsets.view();
+    constexpr std::size_t kPiece = 4096;
+    std::vector<Reached> pieces((target.bounds.size() + kPiece - 1) / kPiece);
+    parallelFor(target.bounds.size(), kPiece, [&](std::size_t begin, std::size_t end) {
+        Reached& piece = pieces[begin / kPiece];
+        std::vector<float> weights;
+        for (std::size_t s = begin; s < end; ++s) {
+            if (!target.editable[s] || !mayReach(dab, target.bounds[s])) continue;
+            const auto strand = positions.subspan(offsets[s], offsets[s + 1] - offsets[s]);
+            if (strand.size() < 2) continue;
+            weights.resize(strand.size());
+            if (!(weigh(dab, target.settings, strand, weights) > 0)) continue;
+            piece.strands.push_back(static_cast<std::uint32_t>(s));
+            piece.begins.push_back(static_cast<std::uint32_t>(piece.weights.size()));
+            piece.weights.insert(piece.weights.end(), weights.begin(), weights.end());
         }
     });
-    for (std::size_t k = 0; k < candidates.size(); ++k) {
-        if (!isReached[k]) continue;
-        reached.strands.push_back(candidates[k]);
-        reached.begins.push_back(begins[k]);
+    Reached reached;
+    for (const Reached& piece : pieces) {
+        const auto before = static_cast<std::uint32_t>(reached.weights.size());
+        reached.strands.insert(reached.strands.end(), piece.strands.begin(), piece.strands.end());
+        for (const std::uint32_t first : piece.begins) reached.begins.push_back(before + first);
+        reached.weights.insert(reached.weights.end(), piece.weights.begin(), piece.weights.end());
     }
     return reached;
 }

@@ -153,10 +153,6 @@ tl::unexpected<Error> deviceLost(const DeviceInfo& info) {
     return fail("GPU '" + info.name + "' is lost", "a new device");
 }
 
-tl::unexpected<Error> anotherListIsOpen() {
-    return fail("another command list is open", "submit or destroy it first");
-}
-
 BufferDesc readBackDesc(std::uint64_t size) {
     BufferDesc desc;
     desc.name = "read back";

@@ -18,7 +18,6 @@ Status checkDesc(const ComputePipelineDesc& desc);
 Result<DeviceInfo> chooseDevice(const std::vector<DeviceInfo>& infos, const DeviceOptions& options);
 
 tl::unexpected<Error> deviceLost(const DeviceInfo& info);
-tl::unexpected<Error> anotherListIsOpen();
 
 /// A buffer that Device::readBuffer() and readTexture() copy to, and what reading may go wrong with.
 BufferDesc readBackDesc(std::uint64_t size);

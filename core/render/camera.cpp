@@ -72,6 +72,9 @@ Status check(const Camera& camera) {
     if (!(camera.verticalFov >= 1 && camera.verticalFov <= 150)) {
         return fail(fmt::format("a field of view of {} degrees", camera.verticalFov), "1 to 150");
     }
+    if (!(camera.orthographicHeight >= 0 && camera.orthographicHeight <= 1e6f)) {
+        return fail(fmt::format("an orthographic view {} m high", camera.orthographicHeight), "0 to 1e6");
+    }
     return {};
 }
 
@@ -95,6 +98,18 @@ Mat4f projectionMatrix(float verticalFovDegrees, float aspect, float nearPlane, 
     m(2, 2) = farPlane / (nearPlane - farPlane);
     m(2, 3) = nearPlane * farPlane / (nearPlane - farPlane);
     m(3, 2) = -1;
+    return m;
+}
+
+Mat4f projectionMatrix(const Camera& camera, float aspect, float nearPlane, float farPlane) {
+    if (!camera.isOrthographic()) {
+        return projectionMatrix(camera.verticalFov, aspect, nearPlane, farPlane);
+    }
+    Mat4f m = Mat4f::Identity();
+    m(0, 0) = 2 / (camera.orthographicHeight * aspect);
+    m(1, 1) = 2 / camera.orthographicHeight;
+    m(2, 2) = 1 / (nearPlane - farPlane);
+    m(2, 3) = nearPlane / (nearPlane - farPlane);
     return m;
 }
 

@@ -8,12 +8,17 @@
 
 namespace hairloom::render {
 
-/// A perspective camera; world space, metres.
+/// A perspective or orthographic camera; world space, metres.
 struct Camera {
     Vec3f eye_ws{0, 1.6f, 1};
     Vec3f target_ws{0, 1.6f, 0};
     Vec3f up_ws = Vec3f::UnitY();
     float verticalFov = 22;  ///< degrees, 1…150
+    /// Metres from the lower to the upper edge of the picture, without perspective; 0: as the field of view
+    /// has it.
+    float orthographicHeight = 0;
+
+    bool isOrthographic() const { return orthographicHeight > 0; }
 };
 
 enum class View { Front, Back, Left, Right, ThreeQuarter };
@@ -32,5 +37,7 @@ Status check(const Camera& camera);
 Mat4f viewMatrix(const Camera& camera);
 /// Clip space with depth 0 (near) … 1 (far).
 Mat4f projectionMatrix(float verticalFovDegrees, float aspect, float nearPlane, float farPlane);
+/// The same of the camera, which may be orthographic; the near plane may then lie behind the eye.
+Mat4f projectionMatrix(const Camera& camera, float aspect, float nearPlane, float farPlane);
 
 }  // namespace hairloom::render

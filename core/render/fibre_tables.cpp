@@ -18,7 +18,7 @@ constexpr std::uint32_t kAverages = 15;
 constexpr std::uint32_t kSpreadFactors = 16;
 constexpr std::uint32_t kSky = 17;
 
-Result<gpu::TexturePtr> upload(gpu::Device& device, const char* name, const shading::Table& table) {
+Result<gpu::TexturePtr> textureOf(gpu::Device& device, const char* name, const shading::Table& table) {
     std::vector<Eigen::half> halves;
     halves.reserve(table.rgba.size());
     for (const float value : table.rgba) halves.emplace_back(std::min(value, 65000.0f));
@@ -85,10 +85,10 @@ const shading::Table& spreadFactors() {
 
 }  // namespace
 
-/// Bakes what one material needs and remembers the first error.
+/// Bakes what one material needs.
 class FibreTables::Baker {
   public:
-    Baker(gpu::Device& device, FibreTables& result) : device_(device), result_(result) {}
+    explicit Baker(FibreTables& result) : result_(result) {}
 
     void even() {
         if (material().model == ShadingModel::marschner) {
@@ -123,18 +123,11 @@ class FibreTables::Baker {
         }
     }
 
-    const Status& status() const { return status_; }
-
   private:
     const FibreMaterial& material() const { return result_.material_; }
     bool isDual() const { return result_.material_.scattering == Scattering::dual; }
     void add(std::uint32_t slot, const char* name, const shading::Table& table) {
-        auto texture = upload(device_, name, table);
-        if (texture) {
-            result_.textures_.push_back({slot, std::move(*texture)});
-        } else if (status_) {
-            status_ = tl::unexpected(texture.error());
-        }
+        result_.waiting_.push_back({slot, name, table});
     }
     void evenDual(const shading::DualScattering& dual) {
         add(kSky, "light from around", shading::bakeSky(dual));
@@ -158,28 +151,47 @@ class FibreTables::Baker {
         result_.averages_ = std::move(layers.averages);
     }
 
-    gpu::Device& device_;
     FibreTables& result_;
-    Status status_;
 };
 
-Result<FibreTables> FibreTables::make(gpu::Device& device, const FibreMaterial& material, bool varies) {
+FibreTables FibreTables::bake(const FibreMaterial& material, bool varies) {
     FibreTables result;
     result.material_ = material;
     result.varies_ = varies;
     if (material.model == ShadingModel::kajiya) return result;
     result.constants_ = constantsOf(material, varies);
-    Baker baker(device, result);
+    Baker baker(result);
     if (varies) {
         baker.layers();
     } else {
         baker.even();
     }
-    if (!baker.status()) return tl::unexpected(baker.status().error());
+    return result;
+}
+
+Status FibreTables::upload(gpu::Device& device) {
+    if (waiting_.empty()) return {};
+    for (const Waiting& waiting : waiting_) {
+        auto texture = textureOf(device, waiting.name, waiting.table);
+        if (!texture) return tl::unexpected(texture.error());
+        textures_.push_back({waiting.slot, std::move(*texture)});
+    }
+    waiting_.clear();
     auto sampler = device.createSampler({});
     if (!sampler) return tl::unexpected(sampler.error());
-    result.sampler_ = std::move(*sampler);
+    sampler_ = std::move(*sampler);
+    return {};
+}
+
+Result<FibreTables> FibreTables::make(gpu::Device& device, const FibreMaterial& material, bool varies) {
+    FibreTables result = bake(material, varies);
+    if (auto status = result.upload(device); !status) return tl::unexpected(status.error());
     return result;
+}
+
+bool FibreTables::hasShaderFor(const HairMaterial& material) const {
+    return varies_ == material.look.has_value() && material_.model == material.fibre.model &&
+           material_.scattering == material.fibre.scattering;
 }
 
 HairFlux FibreTables::flux(std::span<const Vec3d> absorptions) const {

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "core/gpu/device.h"
-#include "core/render/fibre_material.h"
+#include "core/render/scene.h"
 #include "core/shading/tables.h"
 #include "shaders/shared/render_types.h"
 
@@ -28,10 +28,15 @@ class FibreTables {
   public:
     /// Bakes on all cores and leaves the upload to the device: nothing waits.
     static Result<FibreTables> make(gpu::Device& device, const FibreMaterial& material, bool varies = false);
+    /// The same in two steps, of which the first needs no device: on any thread.
+    static FibreTables bake(const FibreMaterial& material, bool varies);
+    Status upload(gpu::Device& device);
 
     bool isFor(const FibreMaterial& material, bool varies) const {
         return varies_ == varies && material_ == material;
     }
+    /// Of the same kinds of tables, though perhaps of other numbers.
+    bool hasShaderFor(const HairMaterial& material) const;
     /// The compute shader that shades with this material.
     const char* shader() const;
     /// Tables and constants, registers b1, s0 and from t11 on; nothing for Kajiya-Kay.
@@ -48,13 +53,19 @@ class FibreTables {
         std::uint32_t slot;
         gpu::TexturePtr texture;
     };
+    struct Waiting {
+        std::uint32_t slot;
+        const char* name;
+        shading::Table table;
+    };
     class Baker;
 
     FibreMaterial material_;
     bool varies_ = false;
     shaders::FibreConstants constants_;
     shading::AverageScattering across_;  ///< of the material's own absorption
-    shading::Table averages_;  ///< shading::DualLayers::averages, where tables hold several absorptions
+    shading::Table averages_;       ///< shading::DualLayers::averages, where tables hold several absorptions
+    std::vector<Waiting> waiting_;  ///< for their upload
     std::vector<Bound> textures_;
     gpu::SamplerPtr sampler_;
 };

@@ -77,7 +77,7 @@ shaders::LightConstants lightConstants(const RendererState& state, std::size_t i
     const float distance =
         light.kind == LightKind::point ? view.nearPlane + view.hairStart + 0.5f * view.hairRange : 1.0f;
     const float texel = view.spread * distance / size;
-    c.filtering = {resolvedClumps(texel), texel, 0, 0};
+    c.filtering = {resolvedClumps(texel), texel, state.options.headAbsorption, 0};
     return c;
 }
 
@@ -221,7 +221,7 @@ void setUpLights(RendererState& state) {
     for (const Light& light : state.lights) state.lightViews.push_back(fitLight(light, fitted, all));
 
     shaders::ShadeConstants& shade = state.shade;
-    shade.eye_ws = toShader(state.camera.eye_ws, 1);
+    shade.eye_ws = eyeOf(state.camera);
     for (std::size_t i = 0; i < state.environment.coefficients.size(); ++i) {
         shade.environment[i] =
             toShader(state.environment.coefficients[i], state.environment.dark() ? 0.0f : 1.0f);
@@ -236,8 +236,14 @@ void setUpLights(RendererState& state) {
     lookAround(state, shade);
 }
 
-shaders::ShadeConstants shadeConstants(const RendererState& state, const HairMaterial& m) {
+shaders::ShadeConstants lightsOfFrame(const RendererState& state) {
     shaders::ShadeConstants c = state.shade;
+    for (shaders::LightConstants& light : c.lights) light.filtering.w = state.lit ? 1.0f : 0.0f;
+    return c;
+}
+
+shaders::ShadeConstants shadeConstants(const RendererState& state, const HairMaterial& m) {
+    shaders::ShadeConstants c = lightsOfFrame(state);
     const auto normalisation = [](float exponent) {
         return static_cast<float>(1 / (static_cast<double>(kPi) * shading::kajiyaReflectance(exponent)));
     };
@@ -298,7 +304,10 @@ void recordShading(gpu::CommandList& list, RendererState& state) {
         const char* const tube = group.material.look ? "tube_albedo_look.comp" : "tube_albedo.comp";
         list.setPipeline(state.pipelines.compute(group.material.tubes ? tube : group.fibre.shader()));
         if (!group.material.tubes) group.fibre.bind(list);
-        if (group.material.look) list.setConstants(2, gpu::bytesOf(lookConstants(*group.material.look)));
+        if (group.material.look) {
+            list.setConstants(2, gpu::bytesOf(lookConstants(*group.material.look)));
+            bind(list, {Binding::read(2, batch.pointDyes)});
+        }
         auto constants = shadeConstants(state, group.material);
         const std::uint32_t points =
             batch.curvePoints(batch.strandCount(state.detail), state.detail.subdivisions);
@@ -306,7 +315,7 @@ void recordShading(gpu::CommandList& list, RendererState& state) {
         constants.counts = {points, constants.counts.y, rows.threads(), 0};
         list.setConstants(0, gpu::bytesOf(constants));
         bind(list, {Binding::read(0, batch.curve), Binding::read(1, batch.headers),
-                    Binding::write(0, batch.colour)});
+                    Binding::write(0, state.colourOf(batch))});
         list.dispatch(rows.groups, rows.rows);
     }
     list.endPass();

@@ -43,9 +43,23 @@ std::array<float, 2> distances(const Camera& camera, const Box3f& box) {
     return {nearest, farthest};
 }
 
-/// Metres that a pixel is wide at distance 1.
+/// Metres that a pixel is wide at distance 1, or anywhere without perspective.
 float pixelSpread(const RendererState& state) {
+    if (state.camera.isOrthographic()) {
+        return state.camera.orthographicHeight / static_cast<float>(state.options.height);
+    }
     return 2 * std::tan(radians(state.camera.verticalFov) / 2) / static_cast<float>(state.options.height);
+}
+
+/// Where hair begins in front of the camera and how deep it is: metres, or clip space's without perspective.
+std::array<float, 2> depthOfHair(const RendererState& state, const Mat4f& clipFromWorld) {
+    const auto [nearest, farthest] = distances(state.camera, state.scene.hairBounds());
+    if (!state.camera.isOrthographic()) return {std::max(nearest, 0.0f), farthest - std::max(nearest, 0.0f)};
+    const Vec3f forward = (state.camera.target_ws - state.camera.eye_ws).normalized();
+    const auto clipDepth = [&](float distance) {
+        return (clipFromWorld * (state.camera.eye_ws + distance * forward).homogeneous()).z();
+    };
+    return {clipDepth(nearest), clipDepth(farthest) - clipDepth(nearest)};
 }
 
 GraphicsNeeds strandPipeline(const RendererState& state) {
@@ -76,7 +90,7 @@ void drawPatches(gpu::CommandList& list, const RendererState& state) {
                       kPixelsPerPiece, 0};
     for (const StrandBatch& batch : state.scene.batches) {
         if (state.scene.groups[batch.group].material.tubes) continue;
-        bind(list, {Binding::read(0, batch.curve), Binding::read(1, batch.colour),
+        bind(list, {Binding::read(0, batch.curve), Binding::read(1, state.colourOf(batch)),
                     Binding::read(2, batch.headers), Binding::read(3, batch.patches)});
         const std::uint32_t count = batch.patchesBefore[batch.strandCount(state.detail)];
         const std::uint32_t step = state.onCpu ? kPatchesPerDrawOnCpu : count;
@@ -126,7 +140,7 @@ void drawHeads(gpu::CommandList& list, RendererState& state, const Mat4f& clipFr
                                                .depthWrite = true,
                                                .samples = state.samples}));
     bindShadows(list, state);
-    list.setConstants(0, gpu::bytesOf(state.shade));
+    list.setConstants(0, gpu::bytesOf(lightsOfFrame(state)));
     for (const bool matte : {false, true}) {
         list.setConstants(1, gpu::bytesOf(meshConstants(clipFromWorld, matte)));
         drawMeshes(list, state, matte);
@@ -162,13 +176,13 @@ void recordBlend(gpu::CommandList& list, RendererState& state, const Mat4f& clip
 
 shaders::ViewConstants viewConstants(const RendererState& state, const Mat4f& clipFromWorld,
                                      std::uint32_t number) {
-    const auto [nearest, farthest] = distances(state.camera, state.scene.hairBounds());
+    const auto [begin, depth] = depthOfHair(state, clipFromWorld);
     shaders::ViewConstants view;
     view.clipFromWorld = toShader(clipFromWorld);
-    view.eye_ws = toShader(state.camera.eye_ws, 1);
+    view.eye_ws = eyeOf(state.camera);
     view.pixel = {pixelSpread(state), 1, 0, 0};
     view.sampling = {state.samples, number, static_cast<std::uint32_t>(state.options.transparency), 0};
-    view.range = {std::max(nearest, 0.0f), farthest - std::max(nearest, 0.0f), 0, 0};
+    view.range = {begin, depth, 0, 0};
     return view;
 }
 
@@ -193,7 +207,7 @@ void drawStrips(gpu::CommandList& list, const RendererState& state, std::optiona
     const std::uint32_t subdivisions = state.detail.subdivisions;
     for (const StrandBatch& batch : state.scene.batches) {
         if (tubes && *tubes != state.scene.groups[batch.group].material.tubes) continue;
-        bind(list, {Binding::read(0, batch.curve), Binding::read(1, batch.colour)});
+        bind(list, {Binding::read(0, batch.curve), Binding::read(1, state.colourOf(batch))});
         list.setIndexBuffer(batch.indices.at(subdivisions));
         list.drawIndexed(batch.indexCount(batch.strandCount(state.detail), subdivisions));
     }
@@ -218,6 +232,11 @@ shaders::float4 toShader(const Vec3f& v, float w) {
     return {v.x(), v.y(), v.z(), w};
 }
 
+shaders::float4 eyeOf(const Camera& camera) {
+    if (!camera.isOrthographic()) return toShader(camera.eye_ws, 1);
+    return toShader((camera.eye_ws - camera.target_ws).normalized(), 0);
+}
+
 Box3f RendererState::bounds() const {
     Box3f box = scene.meshBounds();
     box.extend(scene.hairBounds());
@@ -233,7 +252,7 @@ HairDetail detailOf(const RendererState& state) {
     constexpr float kLeastShare = 1.0f / 64;
     const HairMeasure measure = state.scene.measure();
     const float distance = std::max(distances(state.camera, hair)[0], 1e-3f);
-    const float pixel = pixelSpread(state) * distance;
+    const float pixel = pixelSpread(state) * (state.camera.isOrthographic() ? 1.0f : distance);
     detail.share = std::clamp(measure.diameter / pixel / state.options.detail, kLeastShare, 2.0f);
     const float pieces = std::ceil(measure.segment / pixel / kPixelsPerSegment);
     detail.subdivisions =
@@ -246,8 +265,13 @@ Mat4f cameraMatrix(const RendererState& state, const Box3f& bounds_ws, float jit
     const auto height = static_cast<float>(state.options.height);
     const auto [nearest, farthest] = distances(state.camera, bounds_ws);
     const float farPlane = farthest * 1.01f;
-    const float nearPlane = std::clamp(nearest * 0.99f, farPlane * 1e-4f, farPlane * 0.9f);
-    Mat4f projection = projectionMatrix(state.camera.verticalFov, width / height, nearPlane, farPlane);
+    float nearPlane = std::clamp(nearest * 0.99f, farPlane * 1e-4f, farPlane * 0.9f);
+    // What is behind an eye without perspective is seen as well.
+    if (state.camera.isOrthographic()) {
+        const float first = std::min(nearest, farPlane);
+        nearPlane = first - 0.01f * (farPlane - first) - 1e-3f;
+    }
+    Mat4f projection = projectionMatrix(state.camera, width / height, nearPlane, farPlane);
     projection.row(0) += projection.row(3) * (2 * jitterX / width);
     projection.row(1) += projection.row(3) * (2 * jitterY / height);
     return projection * viewMatrix(state.camera);
@@ -284,7 +308,7 @@ void recordFrame(gpu::CommandList& list, RendererState& state, std::uint32_t num
     const std::uint32_t height = state.options.height;
     constants.size = {width * height, width, 1, number == 0 ? 1u : 0u};
     list.setConstants(0, gpu::bytesOf(constants));
-    bind(list, {Binding::read(0, t.frame()), Binding::write(0, t[BufferId::sum])});
+    bind(list, {Binding::read(0, t.frame()), Binding::write(0, state.frames())});
     list.dispatch((width + 7) / 8, (height + 7) / 8);
     list.endPass();
 }

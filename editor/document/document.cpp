@@ -13,7 +13,7 @@ namespace {
 
 using editing::Part;
 
-constexpr std::array<std::pair<Part, Change>, 13> kParts{{
+constexpr std::array<std::pair<Part, Change>, 14> kParts{{
     {Part::Points, Change::Strands},
     {Part::Strands, Change::Strands},
     {Part::StrandFlags, Change::Strands},
@@ -24,6 +24,7 @@ constexpr std::array<std::pair<Part, Change>, 13> kParts{{
     {Part::Density, Change::Scalp},
     {Part::Spheres, Change::Spheres},
     {Part::Material, Change::Look},
+    {Part::Dye, Change::Look},
     {Part::Physics, Change::Simulation},
     {Part::Interpolation, Change::FollowHairs},
     {Part::Placement, Change::Placement},
@@ -74,12 +75,16 @@ std::size_t Document::historyLimit() const {
 
 void Document::watch() {
     subscription_ = std::make_unique<editing::Subscription>(
-        editing_->observe([this](const editing::Change& change) { tell(change.parts); }));
+        editing_->observe([this](const editing::Change& change) { tell(change); }));
 }
 
-void Document::tell(Part parts) {
+void Document::tell(const editing::Change& change) {
     if (silent_) return;
-    if (const Changes changes = changesOf(parts)) Q_EMIT changed(changes);
+    const bool onlyMoved = change.parts == Part::Points || change.parts == (Part::Points | Part::History);
+    if (onlyMoved) moved_ = change.strands;
+    if (const Changes changes = changesOf(change.parts)) Q_EMIT changed(changes);
+    moved_ = {};
+    if (!editing::contains(change.parts, Part::History)) return;
     Q_EMIT historyChanged();
     Q_EMIT titleChanged();
 }

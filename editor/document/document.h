@@ -6,6 +6,7 @@
 #include <QObject>
 #include <QString>
 #include <memory>
+#include <span>
 
 #include "core/groom/groom.h"
 
@@ -13,7 +14,7 @@ namespace hairloom::editing {
 class Command;
 class Document;
 class Subscription;
-enum class Part : std::uint32_t;
+struct Change;
 }  // namespace hairloom::editing
 
 namespace hairloom::editor {
@@ -67,6 +68,9 @@ class Document : public QObject {
     /// Writes the project and takes `path` as its file.
     Status save(const QString& path);
 
+    /// While changed() is said: the strands that changed, where nothing but the places of their points did.
+    std::span<const std::uint32_t> movedStrands() const { return moved_; }
+
     // The history: steps done and, after them, steps undone.
     int stepCount() const;
     int doneSteps() const;
@@ -89,7 +93,7 @@ class Document : public QObject {
 
   private:
     void watch();
-    void tell(editing::Part parts);
+    void tell(const editing::Change& change);
 
     std::unique_ptr<editing::Document> editing_;
     std::unique_ptr<editing::Subscription> subscription_;
@@ -97,7 +101,8 @@ class Document : public QObject {
     QString name_;
     bool restored_ = false;
     quint64 lastMerge_ = 0;  ///< key of the newest step, while another change may join it
-    bool silent_ = false;    ///< between taking a step back and doing its successor
+    std::span<const std::uint32_t> moved_;
+    bool silent_ = false;  ///< between taking a step back and doing its successor
 };
 
 }  // namespace hairloom::editor

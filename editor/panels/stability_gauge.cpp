@@ -4,6 +4,7 @@
 #include <QPushButton>
 #include <cmath>
 
+#include "core/editing/document.h"
 #include "editor/session.h"
 #include "editor/shell/theme.h"
 
@@ -44,7 +45,10 @@ StabilityGauge::StabilityGauge(Session& session, QWidget* parent)
     layout->addLayout(offers_);
     soon_.setSingleShot(true);
     soon_.setInterval(80);
-    connect(&soon_, &QTimer::timeout, this, &StabilityGauge::update);
+    connect(&soon_, &QTimer::timeout, this, [this] {
+        // It looks at every strand: not while a hand rests amid a stroke.
+        session_.document.editing().stroke() ? soon_.start() : update();
+    });
     connect(&session_.document, &Document::changed, this, [this](Changes changes) {
         if (changes & (Changes(Change::Simulation) | Change::Strands)) soon_.start();
     });

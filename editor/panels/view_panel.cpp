@@ -7,6 +7,7 @@
 #include <QVBoxLayout>
 #include <memory>
 #include <set>
+#include <utility>
 
 #include "editor/fields/number_box.h"
 #include "editor/overlays/overlay_mode.h"
@@ -58,39 +59,31 @@ QWidget* makeLight(Session& session) {
     auto* layout = new QFormLayout(widget);
     layout->setContentsMargins(0, 0, 0, 0);
     layout->setVerticalSpacing(6);
-    auto* turn = new NumberBox(-180, 180, false);
-    turn->setObjectName("lightTurn");
-    turn->setShown(1, QStringLiteral("°"), 0);
-    turn->setValue(0);
-    turn->setToolTip(QObject::tr("Degrees by which the three lights are turned about the head"));
-    QObject::connect(turn, &NumberBox::edited, session.viewport, [&session](double degrees) {
-        session.viewport->setLightTurn(static_cast<float>(degrees));
-    });
-    layout->addRow(QObject::tr("Turn light"), turn);
-    auto* exposure = new NumberBox(0.2, 6, false);
-    exposure->setObjectName("exposure");
-    exposure->setValue(1.6);
-    exposure->setToolTip(QObject::tr("Factor on the brightness of the picture; 1.6 shows skin as it is"));
-    QObject::connect(exposure, &NumberBox::edited, session.viewport, [&session](double factor) {
-        session.viewport->setExposure(static_cast<float>(factor));
-    });
-    layout->addRow(QObject::tr("Exposure"), exposure);
-    const auto factor = [&](const char* name, const QString& label, const QString& tip, auto take) {
-        auto* box = new NumberBox(0, 3, false);
+    const auto number = [&](const char* name, const QString& label, const QString& tip,
+                            std::pair<double, double> range, double value, auto take) {
+        auto* box = new NumberBox(range.first, range.second, false);
         box->setObjectName(name);
-        box->setValue(1);
+        box->setValue(value);
         box->setToolTip(tip);
         QObject::connect(box, &NumberBox::edited, session.viewport,
-                         [take](double value) { take(static_cast<float>(value)); });
+                         [take](double edited) { take(static_cast<float>(edited)); });
         layout->addRow(label, box);
+        return box;
     };
     Viewport* const viewport = session.viewport;
-    factor("lightScale", QObject::tr("Lights"),
-           QObject::tr("Factor on the key, fill and rim light; 1 as they come"),
-           [viewport](float value) { viewport->setLight(value, viewport->surroundings()); });
-    factor("surroundings", QObject::tr("Surroundings"),
-           QObject::tr("Factor on the light from all around; 0 leaves the lights alone"),
-           [viewport](float value) { viewport->setLight(viewport->lightScale(), value); });
+    number("lightTurn", QObject::tr("Turn light"),
+           QObject::tr("Degrees by which the three lights are turned about the head"), {-180, 180}, 0,
+           [viewport](float degrees) { viewport->setLightTurn(degrees); })
+        ->setShown(1, QStringLiteral("°"), 0);
+    number("exposure", QObject::tr("Exposure"),
+           QObject::tr("Factor on the brightness of the picture; 1.6 shows skin as it is"), {0.2, 6}, 1.6,
+           [viewport](float factor) { viewport->setExposure(factor); });
+    number("lightScale", QObject::tr("Lights"),
+           QObject::tr("Factor on the key, fill and rim light; 1 as they come"), {0, 3}, 1,
+           [viewport](float factor) { viewport->setLight(factor, viewport->surroundings()); });
+    number("surroundings", QObject::tr("Surroundings"),
+           QObject::tr("Factor on the light from all around; 0 leaves the lights alone"), {0, 3}, 1,
+           [viewport](float factor) { viewport->setLight(viewport->lightScale(), factor); });
     return widget;
 }
 

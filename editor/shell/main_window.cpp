@@ -162,6 +162,8 @@ void MainWindow::showTitle() {
 
 void MainWindow::showPage() {
     const bool empty = session_.document.isEmpty();
+    if (shownEmpty_ == empty) return;
+    shownEmpty_ = empty;
     pages_->setCurrentWidget(empty ? static_cast<QWidget*>(start_) : session_.viewport);
     // Nothing to work on: what would do nothing looks so.
     for (const PanelInfo& info : panels()) panel(info.id)->widget()->setEnabled(!empty);

@@ -6,6 +6,7 @@
 #include <QDockWidget>
 #include <QMainWindow>
 #include <QStackedWidget>
+#include <optional>
 
 #include "editor/document/autosave.h"
 #include "editor/session.h"
@@ -78,6 +79,7 @@ class MainWindow : public QMainWindow {
     QActionGroup* toolGroup_;
     QByteArray firstLayout_;
     Unsaved unsaved_ = Unsaved::Ask;
+    std::optional<bool> shownEmpty_;  ///< what showPage() has made of the document
 };
 
 }  // namespace hairloom::editor

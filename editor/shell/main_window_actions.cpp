@@ -3,7 +3,9 @@
 #include <QApplication>
 #include <QMenuBar>
 #include <QMessageBox>
+#include <algorithm>
 
+#include "core/editing/selection_commands.h"
 #include "editor/dialogs/export_dialog.h"
 #include "editor/dialogs/preferences_dialog.h"
 #include "editor/dialogs/shortcut_dialog.h"
@@ -11,6 +13,36 @@
 #include "editor/shell/main_window.h"
 
 namespace hairloom::editor {
+namespace {
+
+Box3f boundsOfSelection(const Groom& groom) {
+    Box3f box;
+    for (const std::uint32_t s : editing::strandsWithFlag(groom, attribute::kSelected)) {
+        for (const Vec3f& point : groom.strand(s)) box.extend(point);
+    }
+    if (!box.isEmpty() || !groom.scalp) return box;
+    for (const std::uint32_t face : groom.scalpSelection) {
+        for (const std::uint32_t vertex : groom.scalp->triangles()[face]) {
+            box.extend(groom.scalp->positions()[vertex]);
+        }
+    }
+    return box;
+}
+
+void frameSelection(Session& session) {
+    const Box3f box = boundsOfSelection(session.document.groom());
+    if (box.isEmpty()) {
+        session.messages.say(QObject::tr("Nothing is selected"));
+        return;
+    }
+    Viewport& viewport = *session.viewport;
+    const float aspect =
+        static_cast<float>(viewport.width()) / static_cast<float>(std::max(viewport.height(), 1));
+    viewport.camera().frame(box, aspect);
+    viewport.redraw();
+}
+
+}  // namespace
 
 void MainWindow::addFileActions() {
     QMenu* menu = menuBar()->addMenu(tr("&File"));
@@ -99,6 +131,10 @@ void MainWindow::addViewActions() {
     };
     add({"view.frame", tr("&Frame all"), "frame", tr("Shows all of the hair"), QKeySequence("Home")},
         [this] { session_.viewport->frameAll(); });
+    add({"view.frameSelection", tr("Frame s&election"), "",
+         tr("Shows the selected strands; where none is, the selected part of the head"),
+         QKeySequence("Shift+Home")},
+        [this] { frameSelection(session_); });
     const struct {
         const char *id, *text, *key;
         render::View view;

@@ -96,6 +96,9 @@ void StatusLine::setHint(const QString& hint) {
 
 void StatusLine::showCounts() {
     const Groom& groom = session_.document.groom();
+    const std::pair counts(groom.strandCount(), groom.pointCount());
+    if (counts == counted_) return;
+    counted_ = counts;
     counts_->setText(tr("%L1 strands   %L2 points").arg(groom.strandCount()).arg(groom.pointCount()));
 }
 

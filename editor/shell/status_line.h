@@ -8,6 +8,8 @@
 #include <QStatusBar>
 #include <QTimer>
 #include <QToolButton>
+#include <optional>
+#include <utility>
 
 #include "editor/session.h"
 
@@ -37,6 +39,7 @@ class StatusLine : public QStatusBar {
     QTimer poll_;
     QTimer fade_;
     QString hint_;
+    std::optional<std::pair<std::size_t, std::size_t>> counted_;  ///< strands and points as shown
     bool warning_ = false;
 };
 

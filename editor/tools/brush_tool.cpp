@@ -2,6 +2,7 @@
 #include "editor/tools/brush_tool.h"
 
 #include <QComboBox>
+#include <algorithm>
 #include <cmath>
 
 #include "core/editing/document.h"
@@ -21,6 +22,17 @@ QString text(std::string_view words) {
 
 bool paintsTheHead(const std::string& brush) {
     return brush == "scalp_paint" || brush == "density_paint" || brush == "add";
+}
+
+/// And must keep it out of the head.
+bool movesHair(const std::string& brush) {
+    return !paintsTheHead(brush) && brush != "dye_paint";
+}
+
+/// The brush's own parameter makes it smooth what it does; others leave that to the brush `smooth`.
+bool smoothsItself(const std::string& brush) {
+    return std::ranges::any_of(editing::brushInfo(brush).parameters,
+                               [](const editing::BrushParameter& p) { return p.name == "smooth"; });
 }
 
 }  // namespace
@@ -75,9 +87,11 @@ bool BrushTool::begin(const Pointer& pointer) {
     place_ = underPointer(pointer);
     if (paintsTheHead(brush_) && !place_->skin) return false;
     editing::Stroke header;
-    header.tool = pointer.modifiers & Qt::ShiftModifier ? "smooth" : brush_;
+    const bool smooths = pointer.modifiers & Qt::ShiftModifier;
+    header.tool = smooths && !smoothsItself(brush_) ? "smooth" : brush_;
     header.settings = settings_;
     if (header.tool != brush_) header.settings.parameters.clear();
+    if (smooths && header.tool == brush_) header.settings.parameters["smooth"] = 1;
     if (pointer.modifiers & Qt::ControlModifier) header.settings.invert = !settings_.invert;
     if (auto begun = session_.document.editing().beginStroke(std::move(header)); !begun) {
         session_.messages.warn(QString::fromStdString(begun.error().message()));
@@ -135,16 +149,28 @@ void BrushTool::cancel() {
     last_.reset();
 }
 
+void BrushTool::setRadius(float metres) {
+    settings_.radius = std::clamp(metres, kSmallest, kLargest);
+    changed();
+}
+
+void BrushTool::setStrength(float strength) {
+    settings_.strength = std::clamp(strength, 0.0f, 1.0f);
+    changed();
+}
+
+void BrushTool::setParameter(const std::string& name, float value) {
+    const auto parameters = editing::brushInfo(brush_).parameters;
+    const auto known = std::ranges::find(parameters, name, &editing::BrushParameter::name);
+    if (known == parameters.end()) return;
+    settings_.parameters[name] = std::clamp(value, known->min, known->max);
+    changed();
+}
+
 bool BrushTool::key(int key, Qt::KeyboardModifiers modifiers) {
     const bool shift = modifiers & Qt::ShiftModifier;
-    const auto scaleRadius = [this](float factor) {
-        settings_.radius = std::clamp(settings_.radius * factor, kSmallest, kLargest);
-        changed();
-    };
-    const auto addStrength = [this](float by) {
-        settings_.strength = std::clamp(settings_.strength + by, 0.0f, 1.0f);
-        changed();
-    };
+    const auto scaleRadius = [this](float factor) { setRadius(settings_.radius * factor); };
+    const auto addStrength = [this](float by) { setStrength(settings_.strength + by); };
     switch (key) {
         case Qt::Key_F:
             resizing_ = shift ? Resizing::Strength : Resizing::Radius;
@@ -171,14 +197,13 @@ bool BrushTool::key(int key, Qt::KeyboardModifiers modifiers) {
 void BrushTool::resize(const QPointF& to_px) {
     const auto by_px = static_cast<float>(to_px.x() - resizeFrom_px_.x());
     if (resizing_ == Resizing::Strength) {
-        settings_.strength = std::clamp(resizeFrom_ + 0.005f * by_px, 0.0f, 1.0f);
+        setStrength(resizeFrom_ + 0.005f * by_px);
     } else {
         const Vec3f at = place_ ? place_->position_ss : session_.viewport->camera().target_ws();
         const float metres =
             session_.viewport->camera().metresPerPixel(at, session_.viewport->viewSize_px()) * by_px;
-        settings_.radius = std::clamp(resizeFrom_ + metres, kSmallest, kLargest);
+        setRadius(resizeFrom_ + metres);
     }
-    changed();
 }
 
 void BrushTool::changed() {
@@ -252,6 +277,8 @@ OptionForm* BrushTool::makeBasicOptions() {
             });
         number("brushDepth", tr("Depth"), tr("How far before and behind its place the brush reaches"), "m", 0,
                0.3f, &editing::BrushSettings::depth);
+    }
+    if (movesHair(brush_)) {
         number("brushClearance", tr("Clearance"), tr("Distance that hair keeps from the skin"), "m", 0, 0.01f,
                &editing::BrushSettings::clearance);
         form->addTruth(

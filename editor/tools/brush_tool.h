@@ -32,10 +32,15 @@ class BrushTool : public Tool {
     void draw(Marks& marks) const override;
     QWidget* makeOptions() override;
 
-    editing::BrushSettings& settings() { return settings_; }
+    const editing::BrushSettings& settings() const { return settings_; }
+    // The options show what these do. What is out of its range becomes the nearest that is in it.
+    void setRadius(float metres);
+    void setStrength(float strength);
+    /// `name` is one of the brush's own parameters.
+    void setParameter(const std::string& name, float value);
 
   Q_SIGNALS:
-    /// By keys; the options show it.
+    /// Other than by the options.
     void settingsChanged();
 
   private:

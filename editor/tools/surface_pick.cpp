@@ -11,8 +11,9 @@ editing::View viewOf(const Session& session) {
     const QSizeF size = session.viewport->viewSize_px();
     const float away = (camera.target_ws - camera.eye_ws).norm();
     const auto aspect = static_cast<float>(size.width() / std::max(size.height(), 1.0));
+    const float nearPlane = camera.isOrthographic() ? -20 * away : 0.05f * away;
     return {render::viewMatrix(camera),
-            render::projectionMatrix(camera.verticalFov, aspect, 0.05f * away, 20 * away),
+            render::projectionMatrix(camera, aspect, nearPlane, 20 * away),
             {static_cast<float>(size.width()), static_cast<float>(size.height())}};
 }
 

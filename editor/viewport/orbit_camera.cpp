@@ -7,8 +7,7 @@
 namespace hairloom::editor {
 namespace {
 
-constexpr float kFov = 28.0f;  // degrees
-constexpr float kOrthographicFov = 1.0f;
+constexpr float kFov = 28.0f;            // degrees
 constexpr float kTurnPerPixel = 0.008f;  // radians
 constexpr float kSteepest = 1.55f;
 
@@ -81,37 +80,42 @@ Vec3f OrbitCamera::up_ws() const {
 
 render::Camera OrbitCamera::camera() const {
     render::Camera camera;
-    camera.verticalFov = orthographic_ ? kOrthographicFov : kFov;
-    const float away = distance_ * halfTangent(kFov) / halfTangent(camera.verticalFov);
+    camera.verticalFov = kFov;
+    if (orthographic_) camera.orthographicHeight = heightAtTarget();
     camera.target_ws = target_ws_;
-    camera.eye_ws = target_ws_ - away * forward_ws();
+    camera.eye_ws = target_ws_ - distance_ * forward_ws();
     camera.up_ws = up_ws();
     return camera;
 }
 
+float OrbitCamera::heightAtTarget() const {
+    return 2 * distance_ * halfTangent(kFov);
+}
+
 Ray OrbitCamera::rayThrough(const QPointF& at_px, const QSizeF& view_px) const {
-    const render::Camera seen = camera();
-    const float half = halfTangent(seen.verticalFov);
+    const Vec3f eye = camera().eye_ws;
     const auto height = static_cast<float>(std::max(view_px.height(), 1.0));
-    const float x = (2 * static_cast<float>(at_px.x()) - static_cast<float>(view_px.width())) / height * half;
-    const float y = (height - 2 * static_cast<float>(at_px.y())) / height * half;
-    return {seen.eye_ws, (forward_ws() + x * right_ws() + y * up_ws()).normalized()};
+    // In halves of the picture's height.
+    const float x = (2 * static_cast<float>(at_px.x()) - static_cast<float>(view_px.width())) / height;
+    const float y = (height - 2 * static_cast<float>(at_px.y())) / height;
+    const Vec3f aside = x * right_ws() + y * up_ws();
+    if (orthographic_) return {eye + 0.5f * heightAtTarget() * aside, forward_ws()};
+    return {eye, (forward_ws() + halfTangent(kFov) * aside).normalized()};
 }
 
 std::optional<QPointF> OrbitCamera::project(const Vec3f& point_ws, const QSizeF& view_px) const {
-    const render::Camera seen = camera();
-    const Vec3f to = point_ws - seen.eye_ws;
-    const float depth = to.dot(forward_ws());
-    if (!(depth > 1e-4f)) return std::nullopt;
-    const double scale = view_px.height() / 2 / static_cast<double>(depth * halfTangent(seen.verticalFov));
+    const Vec3f to = point_ws - camera().eye_ws;
+    if (!orthographic_ && !(to.dot(forward_ws()) > 1e-4f)) return std::nullopt;
+    const double scale = 1 / static_cast<double>(metresPerPixel(point_ws, view_px));
     return QPointF(view_px.width() / 2 + scale * static_cast<double>(to.dot(right_ws())),
                    view_px.height() / 2 - scale * static_cast<double>(to.dot(up_ws())));
 }
 
 float OrbitCamera::metresPerPixel(const Vec3f& point_ws, const QSizeF& view_px) const {
-    const render::Camera seen = camera();
-    const float depth = std::max((point_ws - seen.eye_ws).dot(forward_ws()), 1e-4f);
-    return 2 * depth * halfTangent(seen.verticalFov) / static_cast<float>(std::max(view_px.height(), 1.0));
+    const auto height = static_cast<float>(std::max(view_px.height(), 1.0));
+    if (orthographic_) return heightAtTarget() / height;
+    const float depth = std::max((point_ws - camera().eye_ws).dot(forward_ws()), 1e-4f);
+    return 2 * depth * halfTangent(kFov) / height;
 }
 
 }  // namespace hairloom::editor

@@ -32,8 +32,6 @@ class OrbitCamera {
     void setOrthographic(bool on) { orthographic_ = on; }
     bool isOrthographic() const { return orthographic_; }
 
-    /// The renderer knows perspective only: an orthographic view is one from very far with a very narrow
-    /// angle.
     render::Camera camera() const;
     Ray rayThrough(const QPointF& at_px, const QSizeF& view_px) const;
     /// Nothing for points behind the eye.
@@ -47,6 +45,9 @@ class OrbitCamera {
     const Vec3f& target_ws() const { return target_ws_; }
 
   private:
+    /// Metres that the picture is high at the target.
+    float heightAtTarget() const;
+
     Vec3f target_ws_{0, 1.65f, 0};
     float distance_ = 1.0f;  ///< metres from the target, at kFov
     float yaw_ = 0.6f;       ///< radians about +Y; 0 looks from the front

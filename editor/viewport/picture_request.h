@@ -20,8 +20,17 @@ struct HairPose {
     HeadPose head;
 };
 
+/// Strands that have moved since a groom was handed over, so that a stroke hands over what it touches and no
+/// more.
+struct StrandMoves {
+    std::vector<std::uint32_t> strands;
+    std::vector<Vec3f> points_ws;  ///< of these, one strand after the other
+};
+
 struct PictureRequest {
-    std::shared_ptr<const Groom> groom;    ///< another pointer is another groom
+    std::shared_ptr<const Groom> groom;  ///< another pointer is another groom
+    /// Since the last request with this groom, in all that are drawn of it; null: none.
+    std::shared_ptr<const StrandMoves> moves;
     std::shared_ptr<const HairPose> pose;  ///< null: at rest
     render::Camera camera;
     render::Overlay marks;

@@ -86,6 +86,11 @@ void RenderThread::post(PictureRequest request) {
     wake_.notify_all();
 }
 
+std::shared_ptr<const StrandMoves> RenderThread::withdrawMoves() {
+    const std::lock_guard lock(mutex_);
+    return next_ ? std::exchange(next_->moves, nullptr) : nullptr;
+}
+
 void RenderThread::postSide(const QString& name, PictureRequest request) {
     {
         const std::lock_guard lock(mutex_);

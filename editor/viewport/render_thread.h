@@ -25,6 +25,8 @@ class RenderThread : public QObject {
     ~RenderThread() override;
 
     void post(PictureRequest request);
+    /// Takes the moves out of a request that still waits; null: none waits, or it has none.
+    std::shared_ptr<const StrandMoves> withdrawMoves();
     /// A small picture of something else, drawn when nothing waits; of two of one name the later counts.
     void postSide(const QString& name, PictureRequest request);
     /// Nothing is being drawn or waits to be, the average is complete.

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/groom/fields.h"
+#include "core/groom/point_dye.h"
 
 namespace hairloom::editor {
 namespace {
@@ -40,18 +41,20 @@ bool sameFields(const S& a, const S& b) {
     });
 }
 
-/// Same strands on the same head, of which at most points have moved and the material has changed.
+/// Same strands on the same head, of which at most points have moved, and dye and material have changed.
 bool sameStrands(const Groom& a, const Groom& b) {
-    const auto sameButPositions = [](const AttributeSet& x, const AttributeSet& y) {
+    const auto same = [](const AttributeSet& x, const AttributeSet& y,
+                         std::initializer_list<std::string_view> others) {
         if (x.all().size() != y.all().size()) return false;
-        return std::ranges::all_of(x.all(), [&y](const auto& entry) {
-            return entry.first == attribute::kPosition || versionOf(entry.second) == y.version(entry.first);
+        return std::ranges::all_of(x.all(), [&](const auto& entry) {
+            const bool mayDiffer = std::ranges::find(others, entry.first) != others.end();
+            return mayDiffer ? y.has(entry.first) : versionOf(entry.second) == y.version(entry.first);
         });
     };
     const auto sameLayer = [](const Layer& x, const Layer& y) { return x.visible == y.visible; };
     return a.offsets.version() == b.offsets.version() &&
-           sameButPositions(a.pointAttributes, b.pointAttributes) &&
-           sameButPositions(a.strandAttributes, b.strandAttributes) && a.scalp == b.scalp &&
+           same(a.pointAttributes, b.pointAttributes, {attribute::kPosition, attribute::kPointDye}) &&
+           same(a.strandAttributes, b.strandAttributes, {}) && a.scalp == b.scalp &&
            a.scalpSelection == b.scalpSelection && sameFields(a.interpolation, b.interpolation) &&
            std::ranges::equal(a.layers, b.layers, sameLayer);
 }
@@ -123,8 +126,28 @@ Status RenderWork::setWindow(const std::optional<gpu::NativeWindow>& window) {
     return {};
 }
 
+void RenderWork::takeMoves(PictureRequest& request) {
+    if (request.groom != handed_) {
+        handed_ = request.groom;
+        moved_.reset();
+    }
+    if (request.moves) {
+        if (!moved_) moved_ = std::make_shared<Groom>(*handed_);
+        // Parts from the array of whoever handed it over, once.
+        std::vector<Vec3f>& points = moved_->pointAttributes.edit<Vec3f>(attribute::kPosition);
+        auto from = request.moves->points_ws.begin();
+        for (const std::uint32_t s : request.moves->strands) {
+            const auto count = static_cast<std::ptrdiff_t>(moved_->strand(s).size());
+            std::copy_n(from, count, points.begin() + static_cast<std::ptrdiff_t>(moved_->offsets[s]));
+            from += count;
+        }
+    }
+    if (moved_) request.groom = moved_;
+}
+
 Status RenderWork::take(PictureRequest request) {
-    const bool draft = request.moving && needsDraft_;
+    takeMoves(request);
+    const bool draft = request.moving && needsDraft_ && request.groom->interpolation.followPerGuide > 0;
     if (auto taken = takeScene(request, draft); !taken) return taken;
     if (auto set = renderer_.setCamera(request.camera); !set) return set;
     if (auto set = renderer_.setLights(lightsOf(request)); !set) return set;
@@ -148,14 +171,22 @@ Status RenderWork::takeScene(const PictureRequest& request, bool draft) {
     if (!sameGroom && (!sameStrands(now, before) || (followed && !samePoints(now, before)))) {
         return replaceScene(request, draft);
     }
+    if (followed && request.moves) return replaceScene(request, draft);
     const bool sameModel = request.quality.model == last_->quality.model &&
                            request.quality.scattering == last_->quality.scattering;
     if (!sameGroom || !sameModel) {
         if (!scene_->setMaterial(now.material, viewOf(request))) return replaceScene(request, draft);
         if (auto set = showMaterial(request); !set) return set;
     }
+    const bool sameDye = now.pointAttributes.version(attribute::kPointDye) ==
+                         before.pointAttributes.version(attribute::kPointDye);
+    if (!sameDye) {
+        if (!scene_->setDye(now)) return replaceScene(request, draft);
+        if (auto set = showDye(request); !set) return set;
+    }
     const bool moved = request.pose != last_->pose || (!sameGroom && !samePoints(now, before));
-    return moved ? movePoints(request) : Status();
+    if (moved) return movePoints(request);
+    return request.moves && !request.pose ? moveStrands(request) : Status();
 }
 
 Status RenderWork::replaceScene(const PictureRequest& request, bool draft) {
@@ -193,10 +224,24 @@ Status RenderWork::movePoints(const PictureRequest& request) {
     return renderer_.setStrandPositions(0, shown.strands.front().positions_ws);
 }
 
+Status RenderWork::moveStrands(const PictureRequest& request) {
+    scene_->moveStrands(request.moves->strands, request.moves->points_ws);
+    const render::RenderScene shown = scene_->scene();
+    if (!request.showHair || shown.strands.empty()) return {};
+    // One copy of all is sooner on the device than thousands of small ones with a barrier between each.
+    return renderer_.setStrandPositions(0, shown.strands.front().positions_ws);
+}
+
 Status RenderWork::showMaterial(const PictureRequest& request) {
     const render::RenderScene shown = scene_->scene();
     if (!request.showHair || shown.strands.empty()) return {};
     return renderer_.setMaterial(0, shown.strands.front().material);
+}
+
+Status RenderWork::showDye(const PictureRequest& request) {
+    const render::RenderScene shown = scene_->scene();
+    if (!request.showHair || shown.strands.empty()) return {};
+    return renderer_.setPointDyes(0, shown.strands.front().pointDyes);
 }
 
 render::RenderOptions RenderWork::options() const {
@@ -214,6 +259,9 @@ render::RenderOptions RenderWork::options() const {
         options.ribbons = quality.ribbons;
     options.subdivisions = last_->moving ? 1 : quality.subdivisions;
     options.shadows = quality.shadows;
+    options.bakeBehind = true;
+    options.headAbsorption = quality.headAbsorption;
+    options.shadowBlur = last_->moving ? 0.0f : quality.shadowBlur;
     options.shadowResolution =
         last_->moving ? std::min(512u, quality.shadowResolution) : quality.shadowResolution;
     options.detail = last_->moving ? 0.5f : 0.0f;
@@ -291,7 +339,7 @@ Result<QImage> RenderWork::readBack() const {
 }
 
 bool RenderWork::isComplete() const {
-    return !last_ || renderer_.accumulated() >= options().frames;
+    return !last_ || (renderer_.isSettled() && renderer_.accumulated() >= options().frames);
 }
 
 void RenderWork::adapt(double milliseconds) {

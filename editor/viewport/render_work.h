@@ -27,15 +27,20 @@ class RenderWork {
     bool isComplete() const;
     /// Drops the last request: it could not be drawn.
     void forget() {
+        handed_.reset();
+        moved_.reset();
         last_.reset();
         scene_.reset();
     }
 
   private:
+    void takeMoves(PictureRequest& request);
     Status takeScene(const PictureRequest& request, bool draft);
     Status replaceScene(const PictureRequest& request, bool draft);
     Status movePoints(const PictureRequest& request);
+    Status moveStrands(const PictureRequest& request);
     Status showMaterial(const PictureRequest& request);
+    Status showDye(const PictureRequest& request);
     Status resize(std::uint32_t width, std::uint32_t height);
     void adapt(double milliseconds);
     render::RenderOptions options() const;
@@ -48,8 +53,10 @@ class RenderWork {
     gpu::TexturePtr target_;
     std::uint32_t width_ = 0, height_ = 0;  ///< of the target
 
-    std::optional<PictureRequest> last_;
-    std::optional<GroomScene> scene_;  ///< of last_
+    std::shared_ptr<const Groom> handed_;  ///< as the last request had it
+    std::shared_ptr<Groom> moved_;         ///< the same with all moves since then; null: none
+    std::optional<PictureRequest> last_;   ///< its groom is moved_ where there is one
+    std::optional<GroomScene> scene_;      ///< of last_
     bool hairShown_ = true, headShown_ = true;
     bool draft_ = false;       ///< scene_ is without follow hairs
     bool needsDraft_ = false;  ///< follow hairs are too slow to move

@@ -7,6 +7,7 @@
 #include <QPlatformSurfaceEvent>
 #include <QVBoxLayout>
 #include <cmath>
+#include <utility>
 
 #include "editor/fields/colour.h"
 #include "editor/shell/theme.h"
@@ -90,7 +91,10 @@ Viewport::Viewport(Document& document, const Preferences& preferences, QWidget* 
         redraw();
         Q_EMIT failed(problem);
     });
-    connect(&renderer_, &RenderThread::failed, this, &Viewport::failed);
+    connect(&renderer_, &RenderThread::failed, this, [this](const QString& problem) {
+        handOverAll();
+        Q_EMIT failed(problem);
+    });
     connect(&document_, &Document::changed, this, &Viewport::documentChanged);
     connect(&document_, &Document::replaced, this, [this] {
         pose_.reset();
@@ -109,6 +113,7 @@ Viewport::~Viewport() {
 }
 
 void Viewport::chooseSurface() {
+    handOverAll();
     const bool blends = comparison_ || !reference_.isNull();
     presentsByItself_ && !blends ? useWindow() : useCanvas();
 }
@@ -252,7 +257,6 @@ void Viewport::setQuality(const PictureQuality& quality) {
 
 void Viewport::setComparison(std::optional<Comparison> look) {
     comparison_ = std::move(look);
-    other_.reset();
     chooseSurface();
     showOnCanvas();
     redraw();
@@ -293,9 +297,12 @@ void Viewport::redraw(bool moving) {
 }
 
 void Viewport::documentChanged(Changes changes) {
-    // Copied when it is drawn next: a stroke parts from the copy once per picture, not once per dab.
-    groom_.reset();
-    other_.reset();
+    // While points move, the groom that the renderer has stays, and nobody parts from a copy of it.
+    if (document_.movedStrands().empty()) {
+        handOverAll();
+    } else {
+        noteMoved(document_.movedStrands());
+    }
     if (changes & Change::Strands && pose_ && pose_->positions_ws.size() != document_.groom().pointCount()) {
         pose_.reset();
     }
@@ -306,15 +313,46 @@ void Viewport::documentChanged(Changes changes) {
     redraw(toolPressed_);
 }
 
+void Viewport::handOverAll() {
+    groom_.reset();
+    other_.reset();
+    moved_.clear();
+    isMoved_.clear();
+}
+
+void Viewport::noteMoved(std::span<const std::uint32_t> strands) {
+    if (!groom_) return;
+    isMoved_.resize(groom_->strandCount(), 0);
+    for (const std::uint32_t s : strands) {
+        if (std::exchange(isMoved_[s], 1) == 0) moved_.push_back(s);
+    }
+}
+
+std::shared_ptr<const StrandMoves> Viewport::movesSinceHandedOver() {
+    // What was never taken goes along once more.
+    if (const auto waiting = renderer_.withdrawMoves()) noteMoved(waiting->strands);
+    if (moved_.empty()) return nullptr;
+    auto moves = std::make_shared<StrandMoves>();
+    for (const std::uint32_t s : moved_) {
+        const auto points = document_.groom().strand(s);
+        moves->points_ws.insert(moves->points_ws.end(), points.begin(), points.end());
+        isMoved_[s] = 0;
+    }
+    moves->strands = std::exchange(moved_, {});
+    return moves;
+}
+
 void Viewport::post() {
     if (document_.isEmpty() || wishedSurface() == "none") return;
+    const bool anew = !groom_;
     // The copy shares its arrays with the document.
-    if (!groom_) groom_ = std::make_shared<const Groom>(document_.groom());
+    if (anew) groom_ = std::make_shared<const Groom>(document_.groom());
     Marks marks;
     for (const auto& draw : marks_) draw(marks);
     if (tool_) tool_->draw(marks);
     PictureRequest request;
     request.groom = groom_;
+    if (!anew) request.moves = movesSinceHandedOver();
     request.pose = pose_;
     request.camera = camera_.camera();
     request.marks = marks.overlay();

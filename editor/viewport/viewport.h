@@ -10,6 +10,8 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "editor/document/document.h"
 #include "editor/document/preferences.h"
@@ -120,6 +122,10 @@ class Viewport : public QWidget {
     void showOnCanvas();
     void placeApart();
     void post();
+    /// The next picture takes all of the groom.
+    void handOverAll();
+    void noteMoved(std::span<const std::uint32_t> strands);
+    std::shared_ptr<const StrandMoves> movesSinceHandedOver();
     void dragView(const QPointF& to_px);
     Move viewMove(Qt::MouseButton button, Qt::KeyboardModifiers modifiers) const;
     bool mousePress(const QMouseEvent& event);
@@ -140,7 +146,9 @@ class Viewport : public QWidget {
     bool apart_ = false;        ///< the window lies over the viewport instead of within it
     QWidget* shown_ = nullptr;  ///< canvas or the window's container
     Tool* tool_ = nullptr;
-    std::shared_ptr<const Groom> groom_;
+    std::shared_ptr<const Groom> groom_;  ///< as the renderer was handed it; null: it shall be anew
+    std::vector<std::uint32_t> moved_;    ///< strands that have moved since and that it has not been told
+    std::vector<std::uint8_t> isMoved_;   ///< per strand, 1 for those
     std::shared_ptr<const HairPose> pose_;
     std::vector<std::function<void(Marks&)>> marks_;
     QImage picture_;

@@ -169,7 +169,7 @@ void limitExtension(const BlockView& given, LaneFrame& lanes, const SubstepConte
         for (std::uint32_t p = block.firstFree; p < block.points; ++p) {
             const std::size_t i = std::size_t{p} * kBlockLanes + lane;
             const V3 position = load3(block.position, i);
-            const V3 edge = position - parent;
+            const V3 from = parent, edge = position - from;
             const V rest = hn::Load(D(), block.length + (i - kBlockLanes));
             const V low = rest * shortest, high = rest * longest;
             const V squared = dot(edge, edge);
@@ -184,12 +184,13 @@ void limitExtension(const BlockView& given, LaneFrame& lanes, const SubstepConte
             const V3 fixed{hn::IfThenElse(collapsed, zero, edge.x * scale),
                            hn::IfThenElse(collapsed, zero - bounded, edge.y * scale),
                            hn::IfThenElse(collapsed, zero, edge.z * scale)};
+            // Not position + move: of a point that was far away only rounding would be left.
+            parent = select(wrong, from + fixed, position);
             const V3 move = select(wrong, fixed - edge, zero3());
             const V3 previous = load3(block.previous, i);
             const V3 moving = position - previous - step;
             const V braking = (zero - dot(moving, move)) / (dot(move, move) + all(1e-30f));
             const V counted = hn::Min(hn::Max(braking, zero), one);
-            parent = position + move;
             store3(parent, block.position, i);
             store3(previous + move * (one - counted), block.previous, i);
         }

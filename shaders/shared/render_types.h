@@ -33,7 +33,7 @@ struct StrandHeader {
     uint source;          // its place among the strands of its group
     float streak;         // 0...1, how much it is in a streak
     float dye;            // 0...1
-    uint unused;
+    uint hasPointDyes;    // 1 where its points have shares of that
 };
 
 // One point of the finer curve.
@@ -80,8 +80,8 @@ struct ViewConstants {
                      // pixels
     uint4 sampling;  // x: samples a pixel, y: frame number, z: HAIRLOOM_TRANSPARENCY_*, w: HAIRLOOM_SHADOWS_*
     float4 layers;   // of a light: see LightConstants
-    float4
-        range;  // of a light: see LightConstants; of the camera: x: where hair begins, y: its depth, metres
+    float4 range;    // of a light: see LightConstants; of the camera: x: where hair begins, y: its depth, in
+                     // metres or as RibbonCorner::depth has it
 };
 
 struct LightConstants {
@@ -94,14 +94,16 @@ struct LightConstants {
                     // perspective view, 0 for an orthographic one; w: where hair begins, metres behind it
     float4 layers;  // ends of the opacity layers in metres behind the first hair, or behind where hair
                     // begins; absorption: x: fibres a metre, y: most fibres
-    float4 filtering;  // x: by how much more fibres stop light than over a beam of 5 mm, y: metres of a texel
+    float4 filtering;  // x: by how much more fibres stop light than over a beam of 5 mm, y: metres of a
+                       // texel, z: absorption of hair behind the head, 1/m, 0: a test of depth; w: 1: shadows
+                       // are left out
     float4 around;  // xyz: what a change of light from around along the light's direction, against those of
                     // the other lights, is a change along; w: the light's weight in the mean of those that
                     // know the hair around a point, 0 where its map knows nothing
 };
 
 struct ShadeConstants {
-    float4 eye_ws;
+    float4 eye_ws;  // w = 1: position of a perspective eye; w = 0: direction towards an orthographic one
     float4 environment[9];  // radiance from around as real spherical harmonics, linear RGB; w of the first: 1
                             // when there is any
     float4 primary;         // RGB strength of the first highlight, w: exponent
@@ -183,6 +185,12 @@ struct ToneConstants {
                       // itself, w: pixels in a row
 };
 
+// Shadows blurred on the screen, along rows first.
+struct BlurConstants {
+    uint4 size;     // x, y: of the picture in pixels, z: 0 along rows, 1 along columns, w: reach in pixels
+    float4 kernel;  // x: -1 by twice the variance
+};
+
 struct FilterConstants {
     float4 size;    // x, y: of the picture in pixels, z, w: one by them
     float4 output;  // x: 1 when colours stay sRGB, y: 1 for the long search
@@ -259,6 +267,7 @@ static_assert(sizeof(FillConstants) == 16);
 static_assert(sizeof(ResolveConstants) == 32);
 static_assert(sizeof(PackConstants) == 32);
 static_assert(sizeof(ToneConstants) == 16);
+static_assert(sizeof(BlurConstants) == 32);
 static_assert(sizeof(FilterConstants) == 32);
 static_assert(sizeof(OverlayConstants) == 96);
 static_assert(sizeof(OverlayVertex) == 32);

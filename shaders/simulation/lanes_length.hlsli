@@ -58,22 +58,15 @@ void holdStrand(int holding) {
 
 /// See length.hlsli. From the first segment that is wrong on, each lane goes the way to its own point.
 void stageExtension() {
-    ONLY_POINT(0) gFirstWrong[gStrand] = 0xffffffffu;
     tell(float4(gPosition, gLength));
-    if (isFree()) {
-        const float4 parent = toldInner();
-        if (isWrong(gPosition - parent.xyz, parent.w)) InterlockedMin(gFirstWrong[gStrand], gPoint);
-    }
-    GroupMemoryBarrierWithGroupSync();
-    const uint begin = gFirstWrong[gStrand];
+    const float4 inner = toldInner();
+    const uint begin = firstOfStrand(isFree() && isWrong(gPosition - inner.xyz, inner.w));
     if (begin <= gPoint && gPoint < POINTS) {
         float4 parent = told(begin - 1);
-        float3 move = float3(0, 0, 0);
         [loop] for (uint p = begin; p <= gPoint; ++p) {
             const float4 own = told(p);
-            move = bringBack(own.xyz - parent.xyz, parent.w);
-            parent = float4(own.xyz + move, own.w);
+            parent = float4(withinExtension(parent.xyz, own.xyz, parent.w), own.w);
         }
-        takeMove(gPoint, move);
+        takePlace(gPoint, parent.xyz);
     }
 }

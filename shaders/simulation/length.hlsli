@@ -37,22 +37,24 @@ bool isWrong(float3 edge, float rest) {
     return squared > high * high || squared < low * low;
 }
 
-/// The way that brings the outer end of a segment back to between both (Provot 1995, both ways).
-float3 bringBack(float3 edge, float rest) {
-    if (!isWrong(edge, rest)) return float3(0, 0, 0);
+/// Where the outer end of a segment from `parent` to `here` is between both (Provot 1995, both ways). Not `here` and
+/// a move: of a point that was far away only rounding would be left.
+float3 withinExtension(float3 parent, float3 here, float rest) {
+    const float3 edge = here - parent;
+    if (!isWrong(edge, rest)) return here;
     const float size = sqrt(dot(edge, edge));
     const float bounded =
         min(max(size, rest * (1.0 - gFrame.maximalExtension)), rest * (1.0 + gFrame.maximalExtension));
     const bool flat = size < 1e-12;
-    return (flat ? float3(0, -bounded, 0) : edge * (bounded / (flat ? 1.0 : size))) - edge;
+    return parent + (flat ? float3(0, -bounded, 0) : edge * (bounded / (flat ? 1.0 : size)));
 }
 
 /// The move counts as velocity only where that slows the point relative to its root: it never adds energy.
-void takeMove(uint p, float3 move) {
+void takePlace(uint p, float3 place) {
     const float3 here = position(p), before = previous(p);
-    const float3 moving = here - before - gRootStep;
+    const float3 move = place - here, moving = here - before - gRootStep;
     const float braking = -dot(moving, move) / (dot(move, move) + 1e-30);
-    setPosition(p, here + move);
+    setPosition(p, place);
     setPrevious(p, before + move * (1.0 - min(max(braking, 0.0), 1.0)));
 }
 
@@ -121,13 +123,11 @@ void holdStrand(int holding) {
 void stageExtension() {
     float3 parent = position(FIRST_FREE - 1);
     EACH for (uint p = FIRST_FREE; p < POINTS; ++p) {
-        const float3 here = position(p), edge = here - parent;
-        parent = here;
-        if (isWrong(edge, segmentLength(p - 1))) {
-            const float3 move = bringBack(edge, segmentLength(p - 1));
-            takeMove(p, move);
-            parent = here + move;
-        }
+        const float rest = segmentLength(p - 1);
+        const float3 here = position(p);
+        const float3 place = withinExtension(parent, here, rest);
+        if (isWrong(here - parent, rest)) takePlace(p, place);
+        parent = place;
     }
 }
 #endif

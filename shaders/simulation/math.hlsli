@@ -1,6 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Rotations as quaternions x i + y j + z k + w.
 
+#ifdef HAIRLOOM_DXBC
+// Direct3D leaves open in which order dot() takes its sum, and drivers differ: here it is that of the CPU.
+float inOrder(float3 a, float3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+float inOrder(float4 a, float4 b) { return a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w; }
+#define dot(a, b) inOrder(a, b)
+#endif
+
 float3 rotate(float4 q, float3 v) {
     const float3 twice = 2.0 * cross(q.xyz, v);
     return v + twice * q.w + cross(q.xyz, twice);

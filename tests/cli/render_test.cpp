@@ -65,6 +65,9 @@ TEST_F(RenderJob, EachWayOfDrawingGivesItsOwnPicture) {
         "--detail 5",
         view("point.json",
              R"({"lights": [{"type": "point", "position": [0, 2.2, 1], "intensity": [3, 3, 3]}]})"),
+        view("flat.json",
+             R"({"camera": {"eye": [0, 1.6, 1], "target": [0, 1.6, 0], "orthographic_height": 0.5}})"),
+        view("deep.json", R"({"camera": {"eye": [0, 1.6, 1], "target": [0, 1.6, 0], "fov_y_deg": 28.07}})"),
         view("around.json", R"({"lights": [{"type": "environment", "radiance": [0.3, 0.3, 0.3]}]})"),
         view("sky.json", R"({"lights": [{"type": "environment", "sky": [0, 0, 1], "ground": [1, 0, 0]}]})")};
     for (const std::string& way : ways) {

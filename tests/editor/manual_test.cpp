@@ -67,7 +67,7 @@ TEST_F(ManualTest, ScalpAndRoots) {
     shootWindow("head");
     raise("tool");
     auto& paint = brush("scalp_paint");
-    paint.settings().radius = 0.035f;
+    paint.setRadius(0.035f);
     show("scalp", true);
     drag({onHead(-0.02f, 0.05f, 0.09f), onHead(0.03f, 0.03f, 0.07f), onHead(0.06f, 0.05f, 0.03f),
           onHead(0.07f, 0.08f, -0.02f)});
@@ -100,7 +100,7 @@ TEST_F(ManualTest, GroomingSpheresMotionAndLook) {
     trigger("tool.comb");
     raise("tool");
     raise("look");
-    brush("comb").settings().radius = 0.03f;
+    brush("comb").setRadius(0.03f);
     moveTo(onHead(0.08f, 0.10f, 0.05f));
     shootWindow("grooming");
     trigger("tool.view");

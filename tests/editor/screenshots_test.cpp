@@ -5,7 +5,8 @@
 #include <QComboBox>
 #include <QDir>
 #include <QLabel>
-#include <QRegularExpression>
+#include <QLineEdit>
+#include <QScrollArea>
 #include <QToolButton>
 
 #include "editor/dialogs/export_dialog.h"
@@ -37,23 +38,39 @@ class ScreenshotsTest : public WindowTest, public testing::WithParamInterface<Th
         EXPECT_TRUE(widget.grab().save(file)) << file.toStdString();
         expectNothingClipped(widget, name);
     }
-    /// Words on labels that do not wrap and on buttons have room.
+    /// Labels that do not wrap, words on buttons and in boxes, and what scrolls have room.
     static void expectNothingClipped(QWidget& widget, const QString& name) {
-        for (auto* label : widget.findChildren<QLabel*>()) {
-            if (!label->isVisibleTo(&widget) || label->wordWrap() || label->text().isEmpty()) continue;
-            if (label->objectName() == "message") continue;  // elides: the tooltip has it all
-            EXPECT_GE(label->width(), label->fontMetrics().horizontalAdvance(
-                                          label->text().remove(QRegularExpression("<[^>]*>"))) /
-                                          2)
-                << name.toStdString() << ": " << label->text().toStdString();
-        }
-        for (auto* button : widget.findChildren<QAbstractButton*>()) {
-            if (!button->isVisibleTo(&widget) || button->text().isEmpty()) continue;
-            const auto* tool = qobject_cast<QToolButton*>(button);
-            if (tool && tool->toolButtonStyle() == Qt::ToolButtonIconOnly) continue;
-            EXPECT_GE(button->width(), button->fontMetrics().horizontalAdvance(button->text()))
-                << name.toStdString() << ": " << button->text().toStdString();
-        }
+        const auto expectRoom = [&](int room, int needed, const QString& what) {
+            EXPECT_GE(room, needed) << name.toStdString() << ": " << what.toStdString();
+        };
+        const auto forAll = [&]<class Widget>(auto look) {
+            for (auto* child : widget.findChildren<Widget*>()) {
+                if (child->isVisibleTo(&widget)) look(*child);
+            }
+        };
+        forAll.operator()<QLabel>([&](const QLabel& label) {
+            if (label.wordWrap() || label.text().isEmpty()) return;
+            if (label.objectName() == "message") return;  // elides: the tooltip has it all
+            expectRoom(label.width(), label.sizeHint().width(), label.text());
+        });
+        forAll.operator()<QAbstractButton>([&](const QAbstractButton& button) {
+            const auto* tool = qobject_cast<const QToolButton*>(&button);
+            if (button.text().isEmpty() || (tool && tool->toolButtonStyle() == Qt::ToolButtonIconOnly))
+                return;
+            expectRoom(button.width(), button.fontMetrics().horizontalAdvance(button.text()), button.text());
+        });
+        forAll.operator()<QComboBox>([&](const QComboBox& box) {
+            constexpr int kArrow = 20;
+            expectRoom(box.width() - kArrow, box.fontMetrics().horizontalAdvance(box.currentText()),
+                       box.currentText());
+        });
+        forAll.operator()<QLineEdit>([&](const QLineEdit& edit) {
+            expectRoom(edit.width(), edit.fontMetrics().horizontalAdvance(edit.text()), edit.text());
+        });
+        forAll.operator()<QScrollArea>([&](const QScrollArea& area) {
+            if (area.horizontalScrollBarPolicy() != Qt::ScrollBarAlwaysOff) return;
+            expectRoom(area.viewport()->width(), area.widget()->width(), "what scrolls");
+        });
     }
 };
 

@@ -16,9 +16,7 @@ class SelectTest : public WindowTest {
   protected:
     void SetUp() override {
         WindowTest::SetUp();
-        openSampleHair("short");
-        viewport().look(render::View::Front);
-        viewport().frameAll();
+        openHairFromTheFront();
     }
     std::size_t count(std::string_view flag) { return editing::strandsWithFlag(groom(), flag).size(); }
     /// The step that an action makes, undone and done again.
@@ -43,6 +41,21 @@ class SelectTest : public WindowTest {
         return front;
     }
 };
+
+TEST_F(SelectTest, FrameSelectionShowsWhatIsSelected) {
+    const std::vector<std::uint32_t> few{3, 7, 8};
+    document().perform(editing::selectStrands(document().editing().model(), few, editing::Choice::Replace));
+    const float whole =
+        viewport().camera().metresPerPixel(groom().strand(3).front(), viewport().viewSize_px());
+    trigger("view.frameSelection");
+    for (const std::uint32_t s : few) {
+        for (const Vec3f& point : groom().strand(s)) {
+            EXPECT_TRUE(viewport().rect().contains(at(point))) << "strand " << s;
+        }
+    }
+    EXPECT_LT(viewport().camera().metresPerPixel(groom().strand(3).front(), viewport().viewSize_px()), whole)
+        << "nearer than all of the head";
+}
 
 TEST_F(SelectTest, TheMenuSelectsHidesShowsFreezesAndDeletes) {
     const std::size_t all = groom().strandCount();

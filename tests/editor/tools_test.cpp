@@ -11,6 +11,8 @@
 
 #include "core/base/random.h"
 #include "core/editing/document.h"
+#include "core/groom/point_dye.h"
+#include "editor/fields/number_box.h"
 #include "editor/tools/brush_tool.h"
 #include "tests/editor/window_fixture.h"
 
@@ -21,9 +23,7 @@ class ToolsTest : public WindowTest {
   protected:
     void SetUp() override {
         WindowTest::SetUp();
-        openSampleHair("short");
-        viewport().look(render::View::Front);
-        viewport().frameAll();
+        openHairFromTheFront();
         middle = QPoint(viewport().width() / 2, viewport().height() / 2);
         // Hair, not skin, is under the pointer in the upper part of the head.
         Box3f roots;
@@ -59,14 +59,14 @@ class BrushToolTest : public ToolsTest, public testing::WithParamInterface<const
 
 TEST_P(BrushToolTest, AStrokeChangesHairAndIsOneStep) {
     auto& tool = dynamic_cast<BrushTool&>(activate(GetParam()));
-    tool.settings().radius = 0.03f;
-    tool.settings().strength = 1;
+    tool.setRadius(0.03f);
+    tool.setStrength(1);
     strokeAndBack(GetParam());
 }
 
 TEST_P(BrushToolTest, EscapeLeavesNothing) {
     auto& tool = dynamic_cast<BrushTool&>(activate(GetParam()));
-    tool.settings().radius = 0.03f;
+    tool.setRadius(0.03f);
     const auto before = hash();
     press(crown);
     moveTo(crown + QPoint(30, 5));
@@ -80,7 +80,7 @@ TEST_P(BrushToolTest, EscapeLeavesNothing) {
 
 INSTANTIATE_TEST_SUITE_P(All, BrushToolTest,
                          testing::Values("comb", "brush", "grab", "smooth", "puff", "pinch", "length", "cut",
-                                         "cut_line", "delete", "freeze"),
+                                         "cut_line", "delete", "dye_paint", "freeze"),
                          [](const auto& brush) { return std::string(brush.param); });
 
 TEST_F(ToolsTest, KeysChangeSizeAndStrength) {
@@ -102,10 +102,35 @@ TEST_F(ToolsTest, KeysChangeSizeAndStrength) {
     EXPECT_EQ(document().stepCount(), 0) << "the click ends the resizing and combs nothing";
 }
 
+TEST_F(ToolsTest, ThePanelShowsSettingsThatComeFromElsewhere) {
+    auto& tool = dynamic_cast<BrushTool&>(activate("comb"));
+    const auto shown = [&](const char* name) {
+        const auto boxes = window->findChildren<NumberBox*>(name);
+        const auto box = std::ranges::find_if(boxes, [](const NumberBox* b) { return b->isVisible(); });
+        EXPECT_NE(box, boxes.end()) << name;
+        return box == boxes.end() ? 0.0 : (*box)->value();
+    };
+    const auto expectShown = [&] {
+        EXPECT_FLOAT_EQ(static_cast<float>(shown("brushRadius")), tool.settings().radius);
+        EXPECT_FLOAT_EQ(static_cast<float>(shown("brushStrength")), tool.settings().strength);
+    };
+    tool.setRadius(0.047f);
+    tool.setStrength(0.37f);
+    expectShown();
+    key(Qt::Key_BracketRight);
+    key(Qt::Key_BraceLeft);
+    expectShown();
+    moveTo(crown);
+    key(Qt::Key_F);
+    moveTo(crown + QPoint(-25, 0));
+    expectShown();
+    EXPECT_NE(tool.settings().radius, 0.047f);
+}
+
 TEST_F(ToolsTest, ControlInvertsAndShiftSmooths) {
     auto& tool = dynamic_cast<BrushTool&>(activate("length"));
-    tool.settings().radius = 0.03f;
-    tool.settings().strength = 1;
+    tool.setRadius(0.03f);
+    tool.setStrength(1);
     const auto lengthOfAll = [this] {
         double sum = 0;
         for (std::size_t s = 0; s < groom().strandCount(); ++s) {
@@ -129,7 +154,7 @@ TEST_F(ToolsTest, ControlInvertsAndShiftSmooths) {
 
 TEST_F(ToolsTest, CombingKeepsRootsAndLengths) {
     auto& tool = dynamic_cast<BrushTool&>(activate("comb"));
-    tool.settings().radius = 0.04f;
+    tool.setRadius(0.04f);
     const Groom before = groom();
     drag({crown, crown + QPoint(30, 8), crown + QPoint(60, 20)});
     std::size_t moved = 0;
@@ -148,8 +173,8 @@ TEST_F(ToolsTest, CombingKeepsRootsAndLengths) {
 
 TEST_F(ToolsTest, AddGrowsHairOnTheScalp) {
     auto& tool = dynamic_cast<BrushTool&>(activate("add"));
-    tool.settings().radius = 0.02f;
-    tool.settings().parameters["density"] = 40;
+    tool.setRadius(0.02f);
+    tool.setParameter("density", 40);
     // On the scalp: at the root nearest to the view.
     Vec3f front = groom().strand(0).front();
     for (std::size_t s = 1; s < groom().strandCount(); ++s) {
@@ -168,7 +193,7 @@ TEST_F(ToolsTest, ScalpIsPaintedBoxedAndLassoed) {
     const Box3f box = groom().scalp->bounds();
     const QPoint top = at(Vec3f(0, box.max().y() - 0.03f, 0.08f));
     for (const char* id : {"scalp_paint", "scalp_box", "scalp_lasso"}) {
-        if (auto* brush = dynamic_cast<BrushTool*>(&activate(id))) brush->settings().radius = 0.03f;
+        if (auto* brush = dynamic_cast<BrushTool*>(&activate(id))) brush->setRadius(0.03f);
         const auto before = hash();
         drag({top, top + QPoint(60, 0), top + QPoint(60, 50), top + QPoint(10, 60)});
         EXPECT_FALSE(groom().scalpSelection.empty()) << id;
@@ -184,8 +209,8 @@ TEST_F(ToolsTest, ScalpIsPaintedBoxedAndLassoed) {
 
 TEST_F(ToolsTest, DensityIsPaintedAndCtrlBringsItBack) {
     auto& tool = dynamic_cast<BrushTool&>(activate("density_paint"));
-    tool.settings().radius = 0.03f;
-    tool.settings().strength = 1;
+    tool.setRadius(0.03f);
+    tool.setStrength(1);
     // Where nothing is painted density is full, and the brush's value is 0.
     drag({crown, crown + QPoint(20, 4), crown + QPoint(40, 8)});
     ASSERT_EQ(groom().scalpDensity.size(), groom().scalp->vertexCount());
@@ -198,6 +223,36 @@ TEST_F(ToolsTest, DensityIsPaintedAndCtrlBringsItBack) {
     EXPECT_EQ(hash(), after);
     drag({crown, crown + QPoint(20, 4), crown + QPoint(40, 8)}, Qt::ControlModifier);
     EXPECT_GT(*std::ranges::min_element(groom().scalpDensity), thinned);
+}
+
+TEST_F(ToolsTest, DyeIsPaintedTakenOffAndSmoothed) {
+    activate("dye_paint");
+    const auto sum = [this] {
+        double all = 0;
+        for (const float value : groom().pointAttributes.view<float>(attribute::kPointDye))
+            all += static_cast<double>(value);
+        return all;
+    };
+    const Groom before = groom();
+    drag({crown, crown + QPoint(20, 4), crown + QPoint(40, 8)});
+    const double painted = sum();
+    EXPECT_GT(painted, 5);
+    EXPECT_EQ(groom().material.dyeStrength, 1) << "the material had no dye to show";
+    EXPECT_TRUE(std::ranges::equal(groom().positions(), before.positions())) << "hair stays where it is";
+    drag({crown, crown + QPoint(20, 4)}, Qt::ShiftModifier);
+    EXPECT_EQ(document().stepName(1), "Paint dye") << "Shift smooths the mask and not the hair";
+    EXPECT_TRUE(std::ranges::equal(groom().positions(), before.positions()));
+    EXPECT_NE(sum(), painted);
+    const double smoothed = sum();
+    drag({crown, crown + QPoint(20, 4), crown + QPoint(40, 8)}, Qt::ControlModifier);
+    EXPECT_LT(sum(), 0.8 * smoothed);
+    // A project keeps it.
+    const auto painting = hash();
+    const QString file = inFolder("dyed.hairloom");
+    ASSERT_TRUE(document().editing().save(file.toStdString()));
+    const auto saved = editing::Document::open(file.toStdString());
+    ASSERT_TRUE(saved);
+    EXPECT_EQ(contentHash((*saved)->groom()), painting);
 }
 
 TEST_F(ToolsTest, ThePressureOfAPenIsThatOfTheDabs) {
@@ -255,7 +310,7 @@ TEST_F(ToolsTest, StrandsAreSelectedAndBrushesKeepToThem) {
     ASSERT_LT(static_cast<std::size_t>(count), groom().strandCount());
     const Groom before = groom();
     auto& comb = dynamic_cast<BrushTool&>(activate("comb"));
-    comb.settings().radius = 0.05f;
+    comb.setRadius(0.05f);
     drag({crown + QPoint(-40, 0), crown + QPoint(0, 8), crown + QPoint(60, 20)});
     for (std::size_t s = 0; s < groom().strandCount(); ++s) {
         if (selected[s] != 0) continue;

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The camera, the pictures, the live simulation.
 #include <QCheckBox>
+#include <QDir>
 #include <QScreen>
 #include <array>
 #include <cstdlib>
 
+#include "editor/tools/brush_tool.h"
+#include "editor/tools/surface_pick.h"
 #include "tests/editor/window_fixture.h"
 
 namespace hairloom::editor {
@@ -24,6 +27,34 @@ TEST(OrbitCameraTest, RaysGoThroughThePointsThatProjectThere) {
             EXPECT_LT(off.norm(), 2e-4f) << "orthographic " << orthographic;
         }
     }
+}
+
+TEST(OrbitCameraTest, OrthographicViewsHaveNoPerspective) {
+    OrbitCamera camera;
+    const QSizeF view(800, 600);
+    camera.setOrthographic(true);
+    const Vec3f near = camera.target_ws() + 0.1f * camera.right_ws() - 0.3f * camera.forward_ws();
+    const Vec3f far = near + 0.8f * camera.forward_ws();
+    const Vec3f behindTheEye = near - 5 * camera.forward_ws();
+    ASSERT_TRUE(camera.project(behindTheEye, view));
+    for (const Vec3f& point : {far, behindTheEye}) {
+        const QPointF off = *camera.project(point, view) - *camera.project(near, view);
+        EXPECT_LT(off.manhattanLength(), 0.05);
+    }
+    const Ray a = camera.rayThrough({10, 20}, view), b = camera.rayThrough({700, 500}, view);
+    EXPECT_LT((a.direction_ws - b.direction_ws).norm(), 1e-6f);
+    // Lengths across the view are as long in pixels as in metres, wherever they are.
+    const auto length = [&](const Vec3f& from, float metres) {
+        const QPointF along =
+            *camera.project(from + metres * camera.right_ws(), view) - *camera.project(from, view);
+        return std::hypot(along.x(), along.y());
+    };
+    EXPECT_NEAR(length(far, 0.3f), 3 * length(near, 0.1f), 0.01);
+    EXPECT_NEAR(length(behindTheEye, 0.3f), 3 * length(near, 0.1f), 0.01);
+    // Turning perspective off keeps the size of what is in the middle.
+    const float flat = camera.metresPerPixel(camera.target_ws(), view);
+    camera.setOrthographic(false);
+    EXPECT_NEAR(camera.metresPerPixel(camera.target_ws(), view), flat, 1e-6f);
 }
 
 TEST(OrbitCameraTest, FramingShowsTheWholeBox) {
@@ -70,6 +101,17 @@ class PictureTest : public WindowTest {
         guides.interpolation.followPerGuide = 0;
         document().open(std::move(guides), {}, "guides");
     }
+    /// Each of the View panel's switches changes the picture.
+    void expectDrawn(std::initializer_list<const char*> overlays) {
+        ASSERT_TRUE(viewport().waitForPicture(60'000));
+        const QImage without = viewport().picture();
+        for (const char* name : overlays) {
+            find<QCheckBox>(name)->click();
+            ASSERT_TRUE(viewport().waitForPicture(60'000));
+            EXPECT_NE(viewport().picture(), without) << name;
+            find<QCheckBox>(name)->click();
+        }
+    }
 };
 
 TEST_F(PictureTest, ShowsHairAndHead) {
@@ -112,6 +154,65 @@ TEST_F(ViewportTest, BothOrbitStylesTurnMoveAndZoom) {
     }
 }
 
+/// A stroke hands the renderer what it moves; the groom is handed over whole when the comparison changes.
+TEST_F(PictureTest, HairThatABrushMovesLooksLikeHairHandedOverWhole) {
+    if (viewport().presents()) GTEST_SKIP() << "pictures are not read back";
+    window->resize(640, 400);
+    openGuides();
+    viewport().look(render::View::Front);
+    viewport().frameAll();
+    trigger("tool.comb");
+    auto& comb = dynamic_cast<BrushTool&>(*session().tools.find("comb"));
+    comb.setRadius(0.05f);
+    comb.setStrength(1);
+    Box3f roots;
+    for (std::size_t s = 0; s < groom().strandCount(); ++s) roots.extend(groom().strand(s).front());
+    const QPoint crown = at(Vec3f(0, roots.max().y() - 0.03f, roots.max().z()));
+    const QPoint end = crown + QPoint(90, 30);
+    const auto settled = [this] {
+        EXPECT_TRUE(viewport().waitForPicture(120'000));
+        return viewport().picture();
+    };
+    moveTo(end);
+    const QImage before = settled();
+    press(crown);
+    moveTo(crown + QPoint(50, 10));
+    moveTo(end);
+    EXPECT_NE(settled(), before) << "the stroke shows while it is drawn";
+    release(end);
+    const QImage combed = settled();
+    viewport().setComparison(std::nullopt);
+    EXPECT_EQ(settled(), combed);
+    // Several steps before the renderer is asked again.
+    trigger("edit.undo");
+    trigger("edit.redo");
+    trigger("edit.undo");
+    EXPECT_EQ(settled(), before);
+}
+
+/// However near the eye is: without perspective, what is behind it is seen, so the nose is hit first.
+TEST_F(ViewportTest, PicksHitWhatAnOrthographicViewShows) {
+    openBust();
+    viewport().look(render::View::Front);
+    viewport().frameAll();
+    Vec3f nose = groom().scalp->positions().front();
+    for (const Vec3f& at : groom().scalp->positions()) {
+        if (at.z() > nose.z() && at.y() > viewport().camera().target_ws().y()) nose = at;
+    }
+    for (const bool orthographic : {false, true}) {
+        viewport().setOrthographic(orthographic);
+        for (const float nearer : {1.0f, 3.0f, 12.0f}) {
+            viewport().camera().zoom(orthographic ? nearer : 1.0f);
+            const auto px = viewport().camera().project(nose, viewport().viewSize_px());
+            ASSERT_TRUE(px);
+            const BrushPlace place = skinUnder(session(), *px);
+            ASSERT_TRUE(place.skin) << orthographic << ", " << nearer;
+            EXPECT_LT((place.position_ss - nose).norm(), 2e-4f) << orthographic << ", " << nearer;
+        }
+    }
+    EXPECT_LT(viewport().camera().camera().eye_ws.z(), nose.z()) << "else it proves nothing";
+}
+
 /// The renderer's view and the pointer's are one.
 TEST_F(PictureTest, MarksStandWhereTheCameraProjectsThem) {
     if (viewport().presents()) GTEST_SKIP() << "pictures are not read back";
@@ -148,15 +249,7 @@ TEST_F(PictureTest, MarksStandWhereTheCameraProjectsThem) {
 TEST_F(PictureTest, OverlaysAreDrawn) {
     if (viewport().presents()) GTEST_SKIP() << "pictures are not read back";
     openGuides();
-    for (const char* name :
-         {"scalp", "roots", "guides", "triangulation", "spheres", "wireframe", "density", "wind"}) {
-        ASSERT_TRUE(viewport().waitForPicture(60'000));
-        const QImage without = viewport().picture();
-        find<QCheckBox>(name)->click();
-        ASSERT_TRUE(viewport().waitForPicture(60'000));
-        EXPECT_NE(viewport().picture(), without) << name;
-        find<QCheckBox>(name)->click();
-    }
+    expectDrawn({"scalp", "roots", "guides", "triangulation", "spheres", "wireframe", "density", "wind"});
 }
 
 TEST_F(PictureTest, OverlaysOfMotionAreDrawn) {
@@ -175,14 +268,50 @@ TEST_F(PictureTest, OverlaysOfMotionAreDrawn) {
             return frame && frame->time > 0.04;
         },
         20'000));
-    for (const char* name : {"strain", "penetration", "effectCost"}) {
-        ASSERT_TRUE(viewport().waitForPicture(60'000));
-        const QImage without = viewport().picture();
-        find<QCheckBox>(name)->click();
-        ASSERT_TRUE(viewport().waitForPicture(60'000));
-        EXPECT_NE(viewport().picture(), without) << name;
-        find<QCheckBox>(name)->click();
-    }
+    expectDrawn({"strain", "penetration", "effectCost"});
+}
+
+TEST_F(PictureTest, DyeShowsWhileItIsPainted) {
+    if (viewport().presents()) GTEST_SKIP() << "pictures are not read back";
+    openGuides();
+    Groom red = groom();
+    red.material.dyeColour = Vec3f(0.95f, 0.0f, 0.0f);
+    document().change("Dye", Change::Look, red);
+    viewport().look(render::View::Front);
+    viewport().frameAll();
+    trigger("tool.dye_paint");
+    // Fine pictures only: fast ones differ from them.
+    const auto settled = [this] {
+        EXPECT_TRUE(viewport().waitForPicture(60'000));
+        return viewport().picture();
+    };
+    const QImage before = settled();
+    const auto redder = [&before](const QImage& picture) {
+        int count = 0;
+        for (int y = 0; y < picture.height(); ++y) {
+            for (int x = 0; x < picture.width(); ++x) {
+                const QColor now = picture.pixelColor(x, y), then = before.pixelColor(x, y);
+                count += now.red() - now.green() > then.red() - then.green() + 12 ? 1 : 0;
+            }
+        }
+        return count;
+    };
+    Box3f roots;
+    for (std::size_t s = 0; s < groom().strandCount(); ++s) roots.extend(groom().strand(s).front());
+    const QPoint crown = at(Vec3f(0, roots.max().y() - 0.03f, roots.max().z()));
+    press(crown);
+    moveTo(crown + QPoint(20, 4));
+    const int during = redder(settled());
+    EXPECT_GT(during, 30) << "while the button is down";
+    moveTo(crown + QPoint(60, 10));
+    release(crown + QPoint(60, 10));
+    moveTo(QPoint(2, 2));
+    const QImage painted = settled();
+    EXPECT_GT(redder(painted), during);
+    QDir().mkpath(HAIRLOOM_SCREENSHOTS);
+    EXPECT_TRUE(painted.save(QStringLiteral(HAIRLOOM_SCREENSHOTS "/dye.png")));
+    trigger("edit.undo");
+    EXPECT_LT(redder(settled()), 5);
 }
 
 TEST_F(PictureTest, AWindowOfTheDeviceShowsTheHead) {

@@ -39,13 +39,13 @@ TEST_F(WalkTest, FromAnEmptyWindowToAnExportedMovingHairstyle) {
     // A scalp, painted from the front and from behind.
     trigger("tool.scalp_paint");
     auto& paint = dynamic_cast<BrushTool&>(*session().tools.find("scalp_paint"));
-    paint.settings().radius = 0.03f;
+    paint.setRadius(0.03f);
     const Box3f box = groom().scalp->bounds();
     const auto onHead = [&](float x, float down, float z) { return at(Vec3f(x, box.max().y() - down, z)); };
-    drag({onHead(-0.06f, 0.04f, 0.05f), onHead(-0.03f, 0.02f, 0.06f), onHead(0.03f, 0.02f, 0.06f),
-          onHead(0.06f, 0.04f, 0.05f)});
+    drag({onHead(-0.05f, 0.04f, 0.05f), onHead(-0.03f, 0.02f, 0.06f), onHead(0.03f, 0.02f, 0.06f),
+          onHead(0.05f, 0.04f, 0.05f)});
     viewport().look(render::View::Back);
-    drag({onHead(0.06f, 0.05f, -0.1f), onHead(0, 0.04f, -0.1f), onHead(-0.06f, 0.05f, -0.1f),
+    drag({onHead(0.05f, 0.05f, -0.1f), onHead(0, 0.04f, -0.1f), onHead(-0.05f, 0.05f, -0.1f),
           onHead(-0.05f, 0.10f, -0.1f), onHead(0.05f, 0.10f, -0.1f)});
     ASSERT_GT(groom().scalpSelection.size(), 50u);
     EXPECT_EQ(document().stepCount(), 2);
@@ -64,8 +64,8 @@ TEST_F(WalkTest, FromAnEmptyWindowToAnExportedMovingHairstyle) {
     // Grooming: comb down behind, cut the ends.
     trigger("tool.comb");
     auto& comb = dynamic_cast<BrushTool&>(*session().tools.find("comb"));
-    comb.settings().radius = 0.04f;
-    comb.settings().strength = 0.8f;
+    comb.setRadius(0.04f);
+    comb.setStrength(0.8f);
     const auto placed = hash();
     drag({onHead(0.02f, 0.06f, -0.15f), onHead(0.02f, 0.10f, -0.16f), onHead(0.02f, 0.16f, -0.16f)});
     const auto combed = hash();

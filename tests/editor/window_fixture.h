@@ -53,7 +53,6 @@ class WindowTest : public testing::Test {
     std::uint64_t hash() { return contentHash(groom()); }
 
     void trigger(const char* id) { window->actions().get(id).trigger(); }
-    /// Waits for work off the interface thread and what comes of it.
     /// Pictures that a software device makes in seconds.
     void drawQuickly() {
         PictureQuality quality = viewport().quality();
@@ -62,6 +61,7 @@ class WindowTest : public testing::Test {
         quality.shadowResolution = 256;
         viewport().setQuality(quality);
     }
+    /// Waits for work off the interface thread and what comes of it.
     void finishWork() {
         session().tasks.finish();
         QCoreApplication::processEvents();
@@ -78,6 +78,12 @@ class WindowTest : public testing::Test {
         }
         document().open(made[name].first, {}, name);
         session().player.setActor(made[name].second);
+    }
+    /// Short hair, all of it seen from the front.
+    void openHairFromTheFront() {
+        openSampleHair("short");
+        viewport().look(render::View::Front);
+        viewport().frameAll();
     }
     void openBust() {
         openSample(session(), {});

@@ -22,6 +22,9 @@ class TestWindow {
     virtual void resize(std::uint32_t width, std::uint32_t height) = 0;
     /// 0xRRGGBB of a pixel from the upper left corner; all bits set where it cannot be read.
     virtual std::uint32_t pixel(int x, int y) = 0;
+    /// Whether a picture is lost for good that is presented before the screen has the window, or its new
+    /// size.
+    virtual bool losesEarlyPictures() const { return false; }
 };
 
 }  // namespace hairloom::gpu

@@ -33,6 +33,12 @@ class Win32Window final : public TestWindow {
                GetBValue(colour);
     }
 
+    /// Under Wine, whose X server keeps nothing of a window that it does not show yet.
+    bool losesEarlyPictures() const override {
+        const HMODULE system = GetModuleHandleW(L"ntdll.dll");
+        return system != nullptr && GetProcAddress(system, "wine_get_version") != nullptr;
+    }
+
   private:
     static void handleMessages() {
         MSG message;

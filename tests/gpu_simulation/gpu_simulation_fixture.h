@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <filesystem>
+
 #include "core/gpu/device.h"
 #include "core/gpu_simulation/strand_engine.h"
 #include "tests/gpu/test_backend.h"
@@ -36,7 +39,7 @@ class GpuSimulationTest : public testing::Test {
         auto made = gpu::createDevice(gpu::testDevice());
         ASSERT_TRUE(made) << made.error().message();
         device() = std::move(*made);
-        library() = std::make_shared<KernelLibrary>(*device(), std::filesystem::path());
+        library() = std::make_shared<KernelLibrary>(*device(), keptKernels());
     }
     void SetUp() override {
         ASSERT_NE(device(), nullptr);
@@ -65,6 +68,12 @@ class GpuSimulationTest : public testing::Test {
     }
 
   private:
+    /// The folder HAIRLOOM_TEST_KERNELS keeps kernels for the next run, where one takes long to compile.
+    static std::filesystem::path keptKernels() {
+        const char* const folder = std::getenv("HAIRLOOM_TEST_KERNELS");  // NOLINT(concurrency-mt-unsafe)
+        return folder == nullptr ? "" : folder;
+    }
+
     std::size_t messages_ = 0;
 };
 

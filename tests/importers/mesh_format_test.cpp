@@ -40,13 +40,28 @@ TEST_F(SceneFile, OtherFormatsAreRefusedNamingThoseThatAreRead) {
     EXPECT_THAT(importScene(folder).error().message(), HasSubstr("is no regular file"));
 }
 
+constexpr std::string_view kStl =
+    "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+    "endloop\nendfacet\nendsolid a\n";
+
 TEST_F(SceneFile, TheNameOfTheFilePlaysNoPart) {
-    const auto stl = import("cube.glb",
-                            "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
-                            "vertex 0 1 0\nendloop\nendfacet\nendsolid a\n");
+    const auto stl = import("cube.glb", kStl);
     ASSERT_TRUE(stl) << stl.error().message();
     EXPECT_EQ(stl->format, "stl");
     EXPECT_EQ(stl->mesh.triangleCount(), 1u);
+}
+
+TEST_F(SceneFile, NamesInAnyScriptReachTheReader) {
+    const std::filesystem::path path = folder / u8"Haarschöpfe 髪.stl";
+    ASSERT_TRUE(writeFileAtomically(path, kStl));
+    const auto stl = importScene(path);
+    ASSERT_TRUE(stl) << stl.error().message();
+    EXPECT_EQ(stl->mesh.triangleCount(), 1u);
+    const std::filesystem::path damaged = folder / u8"Müll ü 髪.stl";
+    ASSERT_TRUE(writeFileAtomically(damaged, "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 zero"));
+    const auto refused = importScene(damaged);
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().message(), HasSubstr("Müll ü 髪.stl"));
 }
 
 RawScene everything() {

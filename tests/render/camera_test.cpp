@@ -6,6 +6,28 @@
 namespace hairloom::render {
 namespace {
 
+TEST(CameraTest, AnOrthographicViewIsAsHighAsItSaysAndHasNoPerspective) {
+    Camera camera;
+    camera.eye_ws = Vec3f(0.3f, 1.2f, 2);
+    camera.target_ws = Vec3f(0.1f, 1, -0.4f);
+    camera.orthographicHeight = 0.5f;
+    ASSERT_TRUE(check(camera));
+    const float aspect = 1.6f;
+    const Mat4f clip = projectionMatrix(camera, aspect, -1, 9) * viewMatrix(camera);
+    const Vec3f forward = (camera.target_ws - camera.eye_ws).normalized();
+    const Vec3f right = forward.cross(camera.up_ws).normalized(), up = right.cross(forward);
+    for (const float depth : {-0.9f, 0.0f, 3.0f, 8.5f}) {
+        const Vec3f at = camera.eye_ws + depth * forward + 0.25f * up - 0.4f * right;
+        const Vec4f seen = clip * at.homogeneous();
+        EXPECT_NEAR(seen.w(), 1, 1e-6f);
+        EXPECT_NEAR(seen.y(), 1, 1e-5f) << "upper edge, whatever the depth";
+        EXPECT_NEAR(seen.x(), -1, 1e-5f) << "left edge";
+        EXPECT_NEAR(seen.z(), (depth + 1) / 10, 1e-5f);
+    }
+    camera.orthographicHeight = -1;
+    EXPECT_FALSE(check(camera));
+}
+
 TEST(Camera, NamedViewsSeeAllCornersAndFillTheFrame) {
     const Box3f box(Vec3f(-0.1f, 1.3f, -0.12f), Vec3f(0.2f, 1.8f, 0.15f));
     for (const float aspect : {0.5f, 1.0f, 16.0f / 9.0f}) {

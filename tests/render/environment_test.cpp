@@ -61,7 +61,7 @@ TEST(Exr, DamagedFilesAreErrors) {
 
 TEST(Environment, AnEvenSkyFromAFileIsOneRadiance) {
     const Vec3f sky(12.5f, 3, 0.25f);
-    ASSERT_TRUE(writeExr(kFile, lit(128, 64, [&](auto, auto) { return sky; })));
+    ASSERT_TRUE(writeExr(kFile, lit(128, 64, [&](auto, auto) { return Vec3f(sky); })));
     const auto image = readExr(kFile);
     ASSERT_TRUE(image) << image.error().message();
     const auto environment = Environment::fromImage(*image);

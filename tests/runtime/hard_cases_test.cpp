@@ -32,6 +32,19 @@ TEST(HardCases, AHeadTurningAtTenTurnsASecondKeepsItsHairsLength) {
     }
 }
 
+TEST(HardCases, PointsLeftFarBehindComeBackToTheirLength) {
+    // The root goes 5 km in one substep: what is left of segments of 11 mm after single precision has been
+    // there is 0.2 mm.
+    const Strands strands = tuft(30);
+    SimulationSettings s = bare();
+    s.substeps = 1;
+    s.teleportDistance = 1e4f;
+    Engine engine = makeEngine(strands, s);
+    run(engine, strands, 2);
+    engine.step({1.0f / 60.0f, 0.1, strands.roots({5000.0f, 0.0f, 0.0f}), {}});
+    EXPECT_LT(engine.measure().maxStretch, 1.01f * s.maximalExtension);
+}
+
 TEST(HardCases, NoEnergyComesFromNowhere) {
     // Undamped, without gravity or air: a swinging chain may lose energy, never gain it.
     const Strands strands = tuft(10);

@@ -35,42 +35,20 @@ Result<std::unique_ptr<gpu::Device>> openDevice(std::uint32_t index, const Devic
     return std::unique_ptr<gpu::Device>(std::make_unique<DeviceImpl>(std::move(context)));
 }
 
-DeviceImpl::~DeviceImpl() {
-    for (const auto& submission : running_) static_cast<void>(submission->wait());
+Result<BufferPtr> DeviceImpl::makeBuffer(const BufferDesc& desc, std::span<const std::byte> content) {
+    return BufferImpl::create(context_, desc, content);
 }
 
-void DeviceImpl::retire() {
-    while (!running_.empty() && running_.front()->isDone()) running_.pop_front();
-}
-
-Result<BufferPtr> DeviceImpl::createBuffer(const BufferDesc& desc, std::span<const std::byte> content) {
-    if (auto status = context_->checkAlive(); !status) return tl::unexpected(status.error());
-    if (auto status = checkDesc(context_->info, desc, content.size()); !status)
-        return tl::unexpected(status.error());
-    auto buffer = BufferImpl::create(context_, desc, content);
-    if (!buffer) return tl::unexpected(buffer.error());
-    return BufferPtr(std::move(*buffer));
-}
-
-Result<TexturePtr> DeviceImpl::createTexture(const TextureDesc& desc, std::span<const std::byte> content) {
-    if (auto status = context_->checkAlive(); !status) return tl::unexpected(status.error());
-    if (auto status = checkDesc(context_->info, desc, content.size()); !status)
-        return tl::unexpected(status.error());
-    auto texture = TextureImpl::create(context_, desc, content);
-    if (!texture) return tl::unexpected(texture.error());
-    return TexturePtr(std::move(*texture));
+Result<TexturePtr> DeviceImpl::makeTexture(const TextureDesc& desc, std::span<const std::byte> content) {
+    return TextureImpl::create(context_, desc, content);
 }
 
 Result<SamplerPtr> DeviceImpl::createSampler(const SamplerDesc& desc) {
-    auto sampler = SamplerImpl::create(context_, desc);
-    if (!sampler) return tl::unexpected(sampler.error());
-    return SamplerPtr(std::move(*sampler));
+    return SamplerImpl::create(context_, desc);
 }
 
 Result<ShaderPtr> DeviceImpl::createShader(const ShaderDesc& desc) {
-    auto shader = ShaderImpl::create(context_, desc);
-    if (!shader) return tl::unexpected(shader.error());
-    return ShaderPtr(std::move(*shader));
+    return ShaderImpl::create(context_, desc);
 }
 
 Result<GraphicsPipelinePtr> DeviceImpl::createGraphicsPipeline(const GraphicsPipelineDesc& desc) {
@@ -81,35 +59,27 @@ Result<ComputePipelinePtr> DeviceImpl::createComputePipeline(const ComputePipeli
     return createPipeline(context_, desc);
 }
 
-Result<std::unique_ptr<SwapChain>> DeviceImpl::createSwapChain(const SwapChainDesc& desc) {
-    if (auto status = context_->checkAlive(); !status) return tl::unexpected(status.error());
+Result<std::unique_ptr<SwapChain>> DeviceImpl::makeSwapChain(const SwapChainDesc& desc) {
     return SwapChainImpl::create(context_, desc);
 }
 
-Result<std::unique_ptr<CommandList>> DeviceImpl::createCommandList() {
-    if (auto status = context_->checkAlive(); !status) return tl::unexpected(status.error());
-    if (*listOpen_) return anotherListIsOpen();
-    retire();
-    *listOpen_ = true;
-    return std::unique_ptr<CommandList>(
-        std::make_unique<CommandListImpl>(context_, [open = listOpen_] { *open = false; }));
+Result<std::unique_ptr<CommandList>> DeviceImpl::makeCommandList(std::function<void()> whenClosed) {
+    return std::make_unique<CommandListImpl>(context_, std::move(whenClosed));
 }
 
-Result<SubmissionPtr> DeviceImpl::submit(std::unique_ptr<CommandList> list) {
-    if (auto status = context_->checkAlive(); !status) return tl::unexpected(status.error());
-    if (list == nullptr) return fail("no command list to submit");
-    auto recording = static_cast<CommandListImpl&>(*list).finish();
+Result<SubmissionPtr> DeviceImpl::start(CommandList& list) {
+    auto recording = static_cast<CommandListImpl&>(list).finish();
     if (!recording) return tl::unexpected(recording.error());
     // The CPU moves the rows of textures into read-back buffers; nothing may overtake it.
-    for (const auto& earlier : running_) {
-        if (!recording->fillsReadBack || !earlier->fillsReadBack()) continue;
-        if (auto status = earlier->wait(); !status) return tl::unexpected(status.error());
+    const bool fillsReadBack = recording->fillsReadBack;
+    if (fillsReadBack && lastReadBack_ != nullptr) {
+        if (auto status = lastReadBack_->wait(); !status) return tl::unexpected(status.error());
     }
     auto submission = std::make_shared<SubmissionImpl>(context_);
     if (auto status = submission->start(std::move(*recording)); !status)
         return tl::unexpected(status.error());
-    running_.push_back(submission);
-    return SubmissionPtr(std::move(submission));
+    if (fillsReadBack) lastReadBack_ = submission;
+    return keep(std::move(submission));
 }
 
 std::vector<std::string> DeviceImpl::validationMessages() const {

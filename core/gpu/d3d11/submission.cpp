@@ -3,7 +3,6 @@
 #include <chrono>
 #include <cstring>
 
-#include "core/gpu/checks.h"
 #include "core/gpu/d3d11/device.h"
 
 namespace hairloom::gpu::d3d11 {
@@ -29,7 +28,6 @@ Status SubmissionImpl::start(Recording recording) {
     context.Flush();
     passes_ = std::move(recording.passes);
     rowCopies_ = std::move(recording.rowCopies);
-    fillsReadBack_ = recording.fillsReadBack;
     // Direct3D tells of a lost device at the next call that can fail.
     const HRESULT r = context_->device->GetDeviceRemovedReason();
     if (FAILED(r)) return context_->failed(r, "submitting work");
@@ -114,51 +112,14 @@ Result<std::vector<PassTime>> SubmissionImpl::passTimes() {
     return times_;
 }
 
-Result<BufferPtr> DeviceImpl::createReadBack(std::uint64_t size) {
-    // Only copies touch it, so the limit on what shaders see does not apply.
-    auto buffer = BufferImpl::create(context_, readBackDesc(size), {});
-    if (!buffer) return tl::unexpected(buffer.error());
-    return BufferPtr(std::move(*buffer));
-}
-
-Status DeviceImpl::readMapped(const BufferPtr& buffer, std::uint64_t offset, std::span<std::byte> target) {
-    if (auto status = checkReadMapped(buffer, offset, target.size()); !status) return status;
-    ID3D11Buffer* handle = static_cast<const BufferImpl&>(*buffer).handle.Get();
+Status DeviceImpl::copyMapped(const Buffer& buffer, std::uint64_t offset, std::span<std::byte> target) {
+    ID3D11Buffer* handle = static_cast<const BufferImpl&>(buffer).handle.Get();
     D3D11_MAPPED_SUBRESOURCE mapped{};
     const HRESULT r = context_->immediate->Map(handle, 0, D3D11_MAP_READ, 0, &mapped);
-    if (FAILED(r)) return context_->failed(r, "reading buffer '" + buffer->desc().name + "' back");
+    if (FAILED(r)) return context_->failed(r, "reading buffer '" + buffer.desc().name + "' back");
     std::memcpy(target.data(), static_cast<const std::byte*>(mapped.pData) + offset, target.size());
     context_->immediate->Unmap(handle, 0);
     return {};
-}
-
-Status DeviceImpl::runAndRead(const std::function<void(CommandList&, const BufferPtr&)>& record,
-                              std::span<std::byte> target) {
-    const auto readBack = createReadBack(target.size());
-    if (!readBack) return tl::unexpected(readBack.error());
-    auto list = createCommandList();
-    if (!list) return tl::unexpected(list.error());
-    record(**list, *readBack);
-    const auto submission = submit(std::move(*list));
-    if (!submission) return tl::unexpected(submission.error());
-    if (auto status = (*submission)->wait(); !status) return status;
-    return readMapped(*readBack, 0, target);
-}
-
-Status DeviceImpl::readBuffer(const BufferPtr& buffer, std::uint64_t offset, std::span<std::byte> target) {
-    if (target.empty()) return {};
-    return runAndRead(
-        [&](CommandList& list, const BufferPtr& readBack) {
-            list.copyBuffer(buffer, offset, readBack, 0, target.size());
-        },
-        target);
-}
-
-Status DeviceImpl::readTexture(const TexturePtr& texture, std::span<std::byte> target) {
-    if (auto status = checkReadTexture(texture, target.size()); !status) return status;
-    return runAndRead(
-        [&](CommandList& list, const BufferPtr& readBack) { list.copyTextureToBuffer(texture, readBack, 0); },
-        target);
 }
 
 }  // namespace hairloom::gpu::d3d11

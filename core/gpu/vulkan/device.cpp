@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/gpu/vulkan/device.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cctype>
 #include <utility>
 
 #include "core/gpu/checks.h"
@@ -98,11 +94,7 @@ Result<std::unique_ptr<gpu::Device>> openDevice(std::uint32_t index, const Devic
 
 DeviceImpl::~DeviceImpl() {
     uploads_.reset();
-    for (const auto& submission : running_) static_cast<void>(submission->wait());
-}
-
-void DeviceImpl::retire() {
-    while (!running_.empty() && running_.front()->isDone()) running_.pop_front();
+    waitForAll();
 }
 
 Status DeviceImpl::upload(const std::function<void(CommandListImpl&)>& record) {
@@ -128,11 +120,7 @@ Status DeviceImpl::flushUploads() {
     return {};
 }
 
-Result<BufferPtr> DeviceImpl::createBuffer(const BufferDesc& desc, std::span<const std::byte> content) {
-    if (auto status = context_->checkAlive(); !status) return tl::unexpected(status.error());
-    if (auto status = checkDesc(context_->info, desc, content.size()); !status) {
-        return tl::unexpected(status.error());
-    }
+Result<BufferPtr> DeviceImpl::makeBuffer(const BufferDesc& desc, std::span<const std::byte> content) {
     const MemoryUse use = desc.memory == MemoryKind::ReadBack ? MemoryUse::ReadBack : MemoryUse::DeviceLocal;
     auto buffer = BufferImpl::create(context_, desc, use);
     if (!buffer) return tl::unexpected(buffer.error());
@@ -143,11 +131,7 @@ Result<BufferPtr> DeviceImpl::createBuffer(const BufferDesc& desc, std::span<con
     return BufferPtr(std::move(*buffer));
 }
 
-Result<TexturePtr> DeviceImpl::createTexture(const TextureDesc& desc, std::span<const std::byte> content) {
-    if (auto status = context_->checkAlive(); !status) return tl::unexpected(status.error());
-    if (auto status = checkDesc(context_->info, desc, content.size()); !status) {
-        return tl::unexpected(status.error());
-    }
+Result<TexturePtr> DeviceImpl::makeTexture(const TextureDesc& desc, std::span<const std::byte> content) {
     auto texture = TextureImpl::create(context_, desc);
     if (!texture) return tl::unexpected(texture.error());
     if (!content.empty()) {
@@ -158,15 +142,11 @@ Result<TexturePtr> DeviceImpl::createTexture(const TextureDesc& desc, std::span<
 }
 
 Result<SamplerPtr> DeviceImpl::createSampler(const SamplerDesc& desc) {
-    auto sampler = SamplerImpl::create(context_, desc);
-    if (!sampler) return tl::unexpected(sampler.error());
-    return SamplerPtr(std::move(*sampler));
+    return SamplerImpl::create(context_, desc);
 }
 
 Result<ShaderPtr> DeviceImpl::createShader(const ShaderDesc& desc) {
-    auto shader = ShaderImpl::create(context_, desc);
-    if (!shader) return tl::unexpected(shader.error());
-    return ShaderPtr(std::move(*shader));
+    return ShaderImpl::create(context_, desc);
 }
 
 Result<GraphicsPipelinePtr> DeviceImpl::createGraphicsPipeline(const GraphicsPipelineDesc& desc) {
@@ -177,25 +157,16 @@ Result<ComputePipelinePtr> DeviceImpl::createComputePipeline(const ComputePipeli
     return createPipeline(context_, desc);
 }
 
-Result<std::unique_ptr<SwapChain>> DeviceImpl::createSwapChain(const SwapChainDesc& desc) {
-    if (auto status = context_->checkAlive(); !status) return tl::unexpected(status.error());
+Result<std::unique_ptr<SwapChain>> DeviceImpl::makeSwapChain(const SwapChainDesc& desc) {
     return SwapChainImpl::create(context_, desc);
 }
 
-Result<std::unique_ptr<CommandList>> DeviceImpl::createCommandList() {
-    if (auto status = context_->checkAlive(); !status) return tl::unexpected(status.error());
-    if (*listOpen_) return anotherListIsOpen();
-    retire();
-    auto list = CommandListImpl::create(*store_, [open = listOpen_] { *open = false; });
-    if (!list) return tl::unexpected(list.error());
-    *listOpen_ = true;
-    return std::unique_ptr<CommandList>(std::move(*list));
+Result<std::unique_ptr<CommandList>> DeviceImpl::makeCommandList(std::function<void()> whenClosed) {
+    return CommandListImpl::create(*store_, std::move(whenClosed));
 }
 
-Result<SubmissionPtr> DeviceImpl::submit(std::unique_ptr<CommandList> list) {
-    if (auto status = context_->checkAlive(); !status) return tl::unexpected(status.error());
-    if (list == nullptr) return fail("no command list to submit");
-    auto& impl = static_cast<CommandListImpl&>(*list);
+Result<SubmissionPtr> DeviceImpl::start(CommandList& list) {
+    auto& impl = static_cast<CommandListImpl&>(list);
     auto recording = impl.finish();
     if (!recording) return tl::unexpected(recording.error());
     std::vector<std::unique_ptr<Recording>> recordings;
@@ -213,8 +184,7 @@ Result<SubmissionPtr> DeviceImpl::submit(std::unique_ptr<CommandList> list) {
 Result<SubmissionPtr> DeviceImpl::run(std::vector<std::unique_ptr<Recording>> recordings) {
     auto submission = std::make_shared<SubmissionImpl>(context_, store_, std::move(recordings));
     if (auto status = submission->start(); !status) return tl::unexpected(status.error());
-    running_.push_back(submission);
-    return SubmissionPtr(std::move(submission));
+    return keep(std::move(submission));
 }
 
 }  // namespace hairloom::gpu::vulkan

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <deque>
-
+#include "core/gpu/backend_device.h"
 #include "core/gpu/vulkan/commands.h"
 
 namespace hairloom::gpu::vulkan {
@@ -28,7 +27,7 @@ class SubmissionImpl final : public Submission {
     bool done_ = false;
 };
 
-class DeviceImpl final : public gpu::Device {
+class DeviceImpl final : public BackendDevice {
   public:
     static Result<std::unique_ptr<gpu::Device>> create(std::uint32_t index, const DeviceInfo& info,
                                                        const DeviceOptions& options);
@@ -37,32 +36,27 @@ class DeviceImpl final : public gpu::Device {
     ~DeviceImpl() override;
 
     const DeviceInfo& info() const override { return context_->info; }
-    Result<BufferPtr> createBuffer(const BufferDesc& desc, std::span<const std::byte> content) override;
-    Result<TexturePtr> createTexture(const TextureDesc& desc, std::span<const std::byte> content) override;
     Result<SamplerPtr> createSampler(const SamplerDesc& desc) override;
     Result<ShaderPtr> createShader(const ShaderDesc& desc) override;
     Result<GraphicsPipelinePtr> createGraphicsPipeline(const GraphicsPipelineDesc& desc) override;
     Result<ComputePipelinePtr> createComputePipeline(const ComputePipelineDesc& desc) override;
-    Result<std::unique_ptr<SwapChain>> createSwapChain(const SwapChainDesc& desc) override;
-    Result<std::unique_ptr<CommandList>> createCommandList() override;
-    Result<SubmissionPtr> submit(std::unique_ptr<CommandList> list) override;
-    Status readMapped(const BufferPtr& buffer, std::uint64_t offset, std::span<std::byte> target) override;
-    Status readBuffer(const BufferPtr& buffer, std::uint64_t offset, std::span<std::byte> target) override;
-    Status readTexture(const TexturePtr& texture, std::span<std::byte> target) override;
     std::vector<std::string> validationMessages() const override { return context_->instance->messages(); }
 
   private:
+    Result<BufferPtr> makeBuffer(const BufferDesc& desc, std::span<const std::byte> content) override;
+    Result<TexturePtr> makeTexture(const TextureDesc& desc, std::span<const std::byte> content) override;
+    Result<std::unique_ptr<SwapChain>> makeSwapChain(const SwapChainDesc& desc) override;
+    Result<std::unique_ptr<CommandList>> makeCommandList(std::function<void()> whenClosed) override;
+    Result<SubmissionPtr> start(CommandList& list) override;
+    Status copyMapped(const Buffer& buffer, std::uint64_t offset, std::span<std::byte> target) override;
+    Status checkAlive() const override { return context_->checkAlive(); }
     Status upload(const std::function<void(CommandListImpl&)>& record);
     Status flushUploads();
     Result<SubmissionPtr> run(std::vector<std::unique_ptr<Recording>> recordings);
-    Result<BufferPtr> createReadBack(std::uint64_t size);
-    void retire();
 
     ContextPtr context_;
     std::shared_ptr<RecordingStore> store_;
     std::unique_ptr<CommandListImpl> uploads_;
-    std::shared_ptr<bool> listOpen_ = std::make_shared<bool>(false);
-    std::deque<std::shared_ptr<SubmissionImpl>> running_;
 };
 
 }  // namespace hairloom::gpu::vulkan

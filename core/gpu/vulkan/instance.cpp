@@ -45,8 +45,12 @@ bool hasLayer(const char* name) {
 
 /// The extensions that make surfaces of windows; empty where the loader lacks one.
 std::vector<const char*> surfaceExtensions() {
-#ifdef VK_USE_PLATFORM_XCB_KHR
-    std::vector<const char*> wanted = {VK_KHR_SURFACE_EXTENSION_NAME, VK_KHR_XCB_SURFACE_EXTENSION_NAME};
+#ifdef VK_USE_PLATFORM_WIN32_KHR
+    const char* const ofSystem = VK_KHR_WIN32_SURFACE_EXTENSION_NAME;
+#else
+    const char* const ofSystem = VK_KHR_XCB_SURFACE_EXTENSION_NAME;
+#endif
+    std::vector<const char*> wanted = {VK_KHR_SURFACE_EXTENSION_NAME, ofSystem};
     std::uint32_t count = 0;
     vkEnumerateInstanceExtensionProperties(nullptr, &count, nullptr);
     std::vector<VkExtensionProperties> offered(count);
@@ -56,7 +60,6 @@ std::vector<const char*> surfaceExtensions() {
                                    [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
     };
     if (std::ranges::all_of(wanted, isOffered)) return wanted;
-#endif
     return {};
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstring>
 
-#include "core/gpu/checks.h"
 #include "core/gpu/vulkan/device.h"
 
 namespace hairloom::gpu::vulkan {
@@ -66,44 +65,10 @@ Result<std::vector<PassTime>> SubmissionImpl::passTimes() {
     return times_;
 }
 
-Result<BufferPtr> DeviceImpl::createReadBack(std::uint64_t size) {
-    // Only copies touch it, so the limit on what shaders see does not apply.
-    auto buffer = BufferImpl::create(context_, readBackDesc(size), MemoryUse::ReadBack);
-    if (!buffer) return tl::unexpected(buffer.error());
-    return BufferPtr(std::move(*buffer));
-}
-
-Status DeviceImpl::readMapped(const BufferPtr& buffer, std::uint64_t offset, std::span<std::byte> target) {
-    if (auto status = checkReadMapped(buffer, offset, target.size()); !status) return status;
-    const auto& impl = static_cast<const BufferImpl&>(*buffer);
+Status DeviceImpl::copyMapped(const Buffer& buffer, std::uint64_t offset, std::span<std::byte> target) {
+    const auto& impl = static_cast<const BufferImpl&>(buffer);
     std::memcpy(target.data(), impl.memory.mapped() + offset, target.size());
     return {};
-}
-
-Status DeviceImpl::readBuffer(const BufferPtr& buffer, std::uint64_t offset, std::span<std::byte> target) {
-    if (target.empty()) return {};
-    const auto readBack = createReadBack(target.size());
-    if (!readBack) return tl::unexpected(readBack.error());
-    auto list = createCommandList();
-    if (!list) return tl::unexpected(list.error());
-    (*list)->copyBuffer(buffer, offset, *readBack, 0, target.size());
-    const auto submission = submit(std::move(*list));
-    if (!submission) return tl::unexpected(submission.error());
-    if (auto status = (*submission)->wait(); !status) return status;
-    return readMapped(*readBack, 0, target);
-}
-
-Status DeviceImpl::readTexture(const TexturePtr& texture, std::span<std::byte> target) {
-    if (auto status = checkReadTexture(texture, target.size()); !status) return status;
-    const auto readBack = createReadBack(target.size());
-    if (!readBack) return tl::unexpected(readBack.error());
-    auto list = createCommandList();
-    if (!list) return tl::unexpected(list.error());
-    (*list)->copyTextureToBuffer(texture, *readBack, 0);
-    const auto submission = submit(std::move(*list));
-    if (!submission) return tl::unexpected(submission.error());
-    if (auto status = (*submission)->wait(); !status) return status;
-    return readMapped(*readBack, 0, target);
 }
 
 }  // namespace hairloom::gpu::vulkan

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/gpu/vulkan/swap_chain.h"
 
+#ifdef _WIN32
+#include <windows.h>
+#endif
+
 #include <algorithm>
 
 #include "core/gpu/checks.h"
@@ -54,13 +58,28 @@ Result<std::unique_ptr<SwapChain>> SwapChainImpl::create(const ContextPtr& conte
     return std::unique_ptr<SwapChain>(std::move(result));
 }
 
-Status SwapChainImpl::openSurface() {
-#ifdef VK_USE_PLATFORM_XCB_KHR
-    if (desc_.window.connection == nullptr) return fail("no connection to an X server");
+VkResult SwapChainImpl::createSurface() {
+    VkInstance instance = context_->instance->handle();
+#ifdef VK_USE_PLATFORM_WIN32_KHR
+    auto info = make<VkWin32SurfaceCreateInfoKHR>(VK_STRUCTURE_TYPE_WIN32_SURFACE_CREATE_INFO_KHR);
+    info.hinstance = GetModuleHandleW(nullptr);
+    info.hwnd = reinterpret_cast<HWND>(desc_.window.window);
+    return vkCreateWin32SurfaceKHR(instance, &info, nullptr, &surface_);
+#else
     auto info = make<VkXcbSurfaceCreateInfoKHR>(VK_STRUCTURE_TYPE_XCB_SURFACE_CREATE_INFO_KHR);
     info.connection = static_cast<xcb_connection_t*>(desc_.window.connection);
     info.window = static_cast<xcb_window_t>(desc_.window.window);
-    VkResult r = vkCreateXcbSurfaceKHR(context_->instance->handle(), &info, nullptr, &surface_);
+    return vkCreateXcbSurfaceKHR(instance, &info, nullptr, &surface_);
+#endif
+}
+
+Status SwapChainImpl::openSurface() {
+#ifdef VK_USE_PLATFORM_WIN32_KHR
+    if (desc_.window.window == 0) return fail("no window");
+#else
+    if (desc_.window.connection == nullptr) return fail("no connection to an X server");
+#endif
+    VkResult r = createSurface();
     if (r != VK_SUCCESS) return context_->failed(r, "drawing to the window");
     VkBool32 supported = VK_FALSE;
     r = vkGetPhysicalDeviceSurfaceSupportKHR(context_->physical, context_->queueFamily, surface_, &supported);
@@ -75,9 +94,6 @@ Status SwapChainImpl::openSurface() {
     });
     if (!fits) return fail("the window has no 8-bit BGRA format");
     return {};
-#else
-    return fail("this backend draws only to windows of X11");
-#endif
 }
 
 Status SwapChainImpl::choosePresentMode() {

@@ -37,6 +37,7 @@ class SwapChainImpl final : public SwapChain {
 
     SwapChainImpl(ContextPtr context, const SwapChainDesc& desc)
         : context_(std::move(context)), desc_(desc) {}
+    VkResult createSurface();
     Status openSurface();
     Status choosePresentMode();
     Status createFlights();
