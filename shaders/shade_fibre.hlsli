@@ -75,7 +75,7 @@ void main(uint3 id : SV_DispatchThreadID) {
             sky.even = 1.0 / (1.0 - kMeetsAgain * min(tint * fibre.even, 1.0));
 #endif
         }
-        colour += tint * environmentOnFibre(gShade, fibre, sky, tangent, toView);
+        colour += tint * environmentOnFibre(gShade, fibre, agreed(sky), tangent, toView);
     }
 #ifdef HAIRLOOM_LOOK
     colour += emissionAt(p.along);

@@ -12,7 +12,7 @@
 Texture2D<float4> gSky : register(t17);  // moments of S cos theta_i by sin theta_o
 
 struct SkyMoments {
-    float3 even, along, across, alongAlong, alongAcross, acrossAcross;
+    float3 even, along, across, alongAlong, alongAcross, acrossAcross, third;
 };
 
 #ifdef HAIRLOOM_LOOK
@@ -25,14 +25,15 @@ SkyMoments skyMoments(float sinOut, float3 absorption) {
         const float4 high = sampleLayer(gSky, u, 0.0, place.low + 1.0, 0.0, 1.0, 2.0);
         const float even = betweenLayers(low, high, place.part).x;
         const float3 one = even * lerp(low.yzw, high.yzw, place.part);
-        const float2 two = even * lerp(sampleLayer(gSky, u, 0.0, place.low, 1.0, 1.0, 2.0).xy,
-                                       sampleLayer(gSky, u, 0.0, place.low + 1.0, 1.0, 1.0, 2.0).xy, place.part);
+        const float3 two = even * lerp(sampleLayer(gSky, u, 0.0, place.low, 1.0, 1.0, 2.0).xyz,
+                                       sampleLayer(gSky, u, 0.0, place.low + 1.0, 1.0, 1.0, 2.0).xyz, place.part);
         m.even[c] = even;
         m.along[c] = one.x;
         m.across[c] = one.y;
         m.alongAlong[c] = one.z;
         m.alongAcross[c] = two.x;
         m.acrossAcross[c] = two.y;
+        m.third[c] = two.z;
     }
     return m;
 }
@@ -41,11 +42,12 @@ SkyMoments skyMoments(float sinOut, float3 absorption) {
     SkyMoments m;
     const float u = 0.5 * sinOut + 0.5;
     m.even = lookUp(gSky, float2(u, 0.0)).rgb;
-    m.along = lookUp(gSky, float2(u, 0.2)).rgb;
-    m.across = lookUp(gSky, float2(u, 0.4)).rgb;
-    m.alongAlong = lookUp(gSky, float2(u, 0.6)).rgb;
-    m.alongAcross = lookUp(gSky, float2(u, 0.8)).rgb;
-    m.acrossAcross = lookUp(gSky, float2(u, 1.0)).rgb;
+    m.along = lookUp(gSky, float2(u, 1.0 / 6.0)).rgb;
+    m.across = lookUp(gSky, float2(u, 2.0 / 6.0)).rgb;
+    m.alongAlong = lookUp(gSky, float2(u, 3.0 / 6.0)).rgb;
+    m.alongAcross = lookUp(gSky, float2(u, 4.0 / 6.0)).rgb;
+    m.acrossAcross = lookUp(gSky, float2(u, 5.0 / 6.0)).rgb;
+    m.third = lookUp(gSky, float2(u, 1.0)).rgb;
     return m;
 }
 #endif
@@ -54,12 +56,13 @@ SkyMoments skyMoments(float sinOut, float3 absorption) {
 // map tells which fibres stand around, `known` is 0.
 struct SkyInHair {
     float3 even, x, y, z;
+    float3 steep;  // how much it changes as each map sees it, the mean
     float known;
 };
 
 SkyInHair noSky() {
     SkyInHair sky;
-    sky.even = sky.x = sky.y = sky.z = 0;
+    sky.even = sky.x = sky.y = sky.z = sky.steep = 0;
     sky.known = 0;
     return sky;
 }
@@ -76,7 +79,33 @@ void addSky(inout SkyInHair sky, FibreMoments fibre, LightConstants light, Occlu
     sky.x += light.around.x * slope;
     sky.y += light.around.y * slope;
     sky.z += light.around.z * slope;
+    sky.steep += light.around.w * abs(slope);
     sky.known += light.around.w;
+}
+
+// Each map takes the whole of the change to be along its light: together they have its direction and too much of it.
+SkyInHair agreed(SkyInHair sky) {
+    const float3 factor = min(sky.steep * rsqrt(max(sky.x * sky.x + sky.y * sky.y + sky.z * sky.z, 1e-12)), 1.0);
+    sky.x *= factor;
+    sky.y *= factor;
+    sky.z *= factor;
+    return sky;
+}
+
+// Light that is there mostly from one side has an edge that two harmonics do not show. From an even half of the circle the
+// slope is 4/pi of the mean, the second harmonic 0 and the third -1/3 of the slope; deeper in black hair it narrows to a
+// beam, where all are twice the mean. Between them both are taken to change with the slope.
+float3 edgeOfSky(SkyMoments m, SkyInHair sky, float3 t, float3 f) {
+    const float3 green = float3(sky.x.g, sky.y.g, sky.z.g);
+    const float slope = length(green);
+    const float3 axis = green / max(slope, 1e-6);
+    const float3 steep = sqrt(sky.x * sky.x + sky.y * sky.y + sky.z * sky.z);
+    const float even = 4.0 / 3.14159265;
+    const float3 narrow = saturate((steep / max(sky.even, 1e-6) - even) / (2.0 - even));
+    const float x = dot(axis, f);
+    const float p = saturate(1.0 - dot(axis, t) * dot(axis, t));
+    return m.acrossAcross * sky.even * (2.0 * narrow) * (2.0 * x * x - p) +
+           m.third * steep * ((4.0 * narrow - 1.0) / 3.0) * (4.0 * x * x * x - 3.0 * x * p);
 }
 
 // Light from around as it is inside hair, which leaves the fibre along `t` towards the view.
@@ -115,7 +144,7 @@ float3 environmentOnFibre(ShadeConstants shade, SkyMoments m, SkyInHair sky, flo
     const float3 ff = sky.even * (qfx * f.x + qfy * f.y + qfz * f.z) + bf * sf - mean;
     const float3 tf = sky.even * (qtx * f.x + qty * f.y + qtz * f.z) + 0.5 * (bt * sf + bf * st);
     return max(m.even * even + m.along * along + m.across * across + m.alongAlong * tt + m.acrossAcross * (ff + 0.5 * tt) +
-                   2.0 * m.alongAcross * tf,
+                   2.0 * m.alongAcross * tf + flat * edgeOfSky(m, sky, t, f),
                0.0);
 }
 #endif

@@ -51,7 +51,7 @@ DualLayers bakeDualOf(std::uint32_t azimuth, std::uint32_t inclination, const Mo
                 float* const low = layers.sky.texel(x, 2 * (first + c));
                 float* const high = layers.sky.texel(x, 2 * (first + c) + 1);
                 const float even = low[0] = sky.texel(x, 0)[c];
-                for (std::uint32_t row = 1; row < 6; ++row)
+                for (std::uint32_t row = 1; row < 7; ++row)
                     (row < 4 ? low[row] : high[row - 4]) = sky.texel(x, row)[c] / std::max(even, 1e-6f);
             }
         }

@@ -48,7 +48,7 @@ struct DualLayers {
     /// the albedo plus AverageScattering::first and plus second, which are never negative.
     Table averages;
     /// By (sin θ_o + 1)/2. Two rows a layer: SkyMoments::even, and along, across, alongAlong by it;
-    /// alongAcross and acrossAcross by it, 0, 0.
+    /// alongAcross, acrossAcross and third by it, 0.
     Table sky;
 };
 DualLayers bakeDualLayers(const MarschnerParameters& model, std::uint32_t azimuth = 64,

@@ -231,7 +231,7 @@ std::array<DualScattering::Moments, 3> DualScattering::moments(double thetaD) co
     const Lobes parts = lobes(thetaD);
     std::array<Moments, 3> result;
     for (const Lobe lobe : kLobes) {
-        for (int m = 0; m < 3; ++m)
+        for (int m = 0; m < 4; ++m)
             result[index(lobe)][static_cast<std::size_t>(m)] = momentOf(parts.rows[index(lobe)], m);
     }
     return result;

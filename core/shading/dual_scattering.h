@@ -67,8 +67,8 @@ class DualScattering {
     };
     Row at(double thetaD) const;
 
-    /// ∫ N cos mφ of one lobe around the fibre, m = 0, 1, 2.
-    using Moments = std::array<Vec3d, 3>;
+    /// ∫ N cos mφ of one lobe around the fibre, m = 0 … 3.
+    using Moments = std::array<Vec3d, 4>;
     std::array<Moments, 3> moments(double thetaD) const;
     /// M of a lobe, with which those N make S = Σ M N / cos²θ_d.
     double longitudinal(Lobe lobe, double thetaIn, double thetaOut) const;

@@ -54,6 +54,7 @@ SkyMoments momentsAt(const DualScattering& model, const AzimuthalMoments& azimut
             sum.alongAlong += 0.5 * (3 * sine * sine - 1) * zeroth;
             sum.alongAcross += sine * cosine * first;
             sum.acrossAcross += cosine * cosine * weight * azimuthal(lobe, 2, thetaD);
+            sum.third += cosine * cosine * cosine * weight * azimuthal(lobe, 3, thetaD);
         }
     }
     return sum;
@@ -77,14 +78,14 @@ Vec3d skyLight(const SkyMoments& moments, const std::array<SlowLight, 3>& light,
 
 Table bakeSky(const DualScattering& model, std::uint32_t size) {
     const AzimuthalMoments azimuthal(model);
-    Table table{size, 6, std::vector<float>(std::size_t{4} * size * 6)};
+    Table table{size, 7, std::vector<float>(std::size_t{4} * size * 7)};
     parallelFor(size, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t x = begin; x < end; ++x) {
             const double sine = 2 * static_cast<double>(x) / (size - 1) - 1;
             const SkyMoments m = momentsAt(model, azimuthal, std::clamp(std::asin(sine), -1.55, 1.55));
             std::uint32_t row = 0;
             for (const Vec3d* moment :
-                 {&m.even, &m.along, &m.across, &m.alongAlong, &m.alongAcross, &m.acrossAcross}) {
+                 {&m.even, &m.along, &m.across, &m.alongAlong, &m.alongAcross, &m.acrossAcross, &m.third}) {
                 float* texel = table.texel(static_cast<std::uint32_t>(x), row++);
                 for (int c = 0; c < 3; ++c) texel[c] = static_cast<float>((*moment)[c]);
                 texel[3] = 1;

@@ -17,6 +17,8 @@ struct SkyMoments {
     Vec3d alongAlong = Vec3d::Zero();    ///< (3(d·t)² − 1)/2
     Vec3d alongAcross = Vec3d::Zero();   ///< (d·t)(d·f)
     Vec3d acrossAcross = Vec3d::Zero();  ///< (d·f)² − (d·(t×f))²
+    /// cos³θ_i cos 3φ, for light from one side of hair, which has an edge.
+    Vec3d third = Vec3d::Zero();
 };
 
 /// Of light e + b·d + dᵀQd, one channel's.

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "core/render/renderer.h"
 #include "core/shading/melanin.h"
 #include "importers/scene.h"
 #include "importers/strands.h"
@@ -71,30 +72,51 @@ RenderOptions truthOptions() {
     return options;
 }
 
-LinearImage draw(gpu::Device& device, const RenderScene& scene, const RenderOptions& options) {
-    const auto picture = renderPicture(device, scene, options);
-    EXPECT_TRUE(picture) << picture.error().message();
-    return picture ? picture->linear : LinearImage();
-}
+/// Draws one scene again and again; its shadow maps stay.
+class Sitting {
+  public:
+    Sitting(gpu::Device& device, const RenderScene& scene) : device_(device), renderer_(device) {
+        const auto status = renderer_.setScene(scene);
+        EXPECT_TRUE(status) << (status ? "" : status.error().message());
+    }
+    /// Linear light, RGBA.
+    std::vector<float> draw() {
+        const RenderOptions options = truthOptions();
+        for (std::uint32_t i = 0; i < options.frames; ++i) {
+            auto list = device_.createCommandList().value();
+            const auto status = renderer_.record(*list, options, nullptr);
+            EXPECT_TRUE(status) << (status ? "" : status.error().message());
+            EXPECT_TRUE(device_.submit(std::move(list)).value()->wait());
+        }
+        std::vector<float> sum(std::size_t{4} * options.width * options.height);
+        EXPECT_TRUE(device_.readBuffer(renderer_.linearSum(), 0, std::as_writable_bytes(std::span(sum))));
+        for (float& value : sum) value /= static_cast<float>(options.frames);
+        return sum;
+    }
+
+    /// Sum over the pixels that hair covers by half or more, RGB.
+    Vec3d light(const HairMaterial& material, const std::vector<float>& covered) {
+        EXPECT_TRUE(renderer_.setMaterial(0, material));
+        const std::vector<float> all = draw();
+        Vec3d sum = Vec3d::Zero();
+        for (std::size_t i = 0; i < all.size(); i += 4) {
+            if (covered[i] >= 0.5f) sum += Eigen::Map<const Vec3f>(&all[i]).cast<double>();
+        }
+        return sum;
+    }
+
+  private:
+    gpu::Device& device_;
+    Renderer renderer_;
+};
 
 /// The hair's share of each pixel: white hair on a black head under white light from everywhere.
-LinearImage coverage(gpu::Device& device, RenderScene scene) {
-    scene.meshes[0].albedo = Vec3f::Zero();
+std::vector<float> coverage(gpu::Device& device, RenderScene scene) {
     scene.strands[0].material.albedo = Vec3f::Ones();
     scene.strands[0].material.fibre.model = ShadingModel::kajiya;
     scene.environment = Environment::gradient(Vec3f::Ones(), Vec3f::Ones());
     scene.lights.clear();
-    return draw(device, scene, truthOptions());
-}
-
-/// Linear light of the pixels that hair covers by half or more, RGB.
-Vec3d light(gpu::Device& device, const RenderScene& scene, const LinearImage& covered) {
-    const LinearImage all = draw(device, scene, truthOptions());
-    Vec3d sum = Vec3d::Zero();
-    for (std::size_t i = 0; i < all.rgba.size(); i += 4) {
-        if (covered.rgba[i] >= 0.5f) sum += Eigen::Map<const Vec3f>(&all.rgba[i]).cast<double>();
-    }
-    return sum;
+    return Sitting(device, scene).draw();
 }
 
 TEST_F(RenderTest, DualScatteringBrightensHairAsAPathTracerDoes) {
@@ -105,17 +127,22 @@ TEST_F(RenderTest, DualScatteringBrightensHairAsAPathTracerDoes) {
     ASSERT_TRUE(strands && head);
     const SintelHair hair(std::move(*strands), std::move(*head));
     const Vec3d luminance(0.2126, 0.7152, 0.0722);
-    const LinearImage covered = coverage(*device, hair.scene(1, Scattering::single, Vec3f::Zero()));
     const Vec3f black = Vec3f::Zero(), skin(0.5f, 0.35f, 0.27f);
+    const auto covered = coverage(*device, hair.scene(1, Scattering::single, black));
+    Sitting onBlack(*device, hair.scene(1, Scattering::single, black));
+    Sitting onSkin(*device, hair.scene(1, Scattering::single, skin));
     struct Truth {
         Vec3f skin;
         double eumelanin, ratio;
     };
     for (const Truth& truth : {Truth{black, 0.3, 2.679}, Truth{black, 1.3, 1.287}, Truth{black, 8, 1.054},
                                Truth{skin, 0.3, 3.496}, Truth{skin, 1.3, 1.449}, Truth{skin, 8, 1.094}}) {
-        const Vec3d single =
-            light(*device, hair.scene(truth.eumelanin, Scattering::single, truth.skin), covered);
-        const Vec3d all = light(*device, hair.scene(truth.eumelanin, Scattering::dual, truth.skin), covered);
+        Sitting& sitting = truth.skin.x() > 0 ? onSkin : onBlack;
+        const auto light = [&](Scattering scattering) {
+            return sitting.light(hair.scene(truth.eumelanin, scattering, truth.skin).strands[0].material,
+                                 covered);
+        };
+        const Vec3d single = light(Scattering::single), all = light(Scattering::dual);
         const double ratio = all.dot(luminance) / single.dot(luminance);
         const Vec3d channels = all.cwiseQuotient(single);
         EXPECT_NEAR(ratio, truth.ratio, 0.15 * truth.ratio)

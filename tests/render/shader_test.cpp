@@ -141,7 +141,7 @@ class RelativeError {
 };
 
 TEST_F(ShaderTest, FibreModelsAgreeWithTheReference) {
-    constexpr std::uint32_t kCases = 2048;
+    constexpr std::uint32_t kCases = 1024;
     const FibreCases given(kCases);
     for (const ShadingModel model : {ShadingModel::marschner, ShadingModel::sadeghi}) {
         const bool isMarschner = model == ShadingModel::marschner;
@@ -196,7 +196,7 @@ Vec3d absorptionOf(const shading::StrandLook& look, const shaders::FibreCase& c)
 }
 
 TEST_F(ShaderTest, HairThatVariesAgreesWithTheReference) {
-    constexpr std::uint32_t kCases = 1024;
+    constexpr std::uint32_t kCases = 512;
     const FibreCases given(kCases);
     const shading::StrandLook look = variedLook();
     for (const ShadingModel model : {ShadingModel::marschner, ShadingModel::sadeghi}) {
