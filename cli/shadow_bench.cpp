@@ -36,6 +36,40 @@ constexpr Kind kKinds[] = {
     {"absorption by depth", Shadows::absorption, {}},
 };
 
+struct HeadKind {
+    const char* name;
+    float absorption;  ///< 1/m
+};
+constexpr HeadKind kHeadKinds[] = {{"test of depth", 0},
+                                   {"absorption, 100 a metre", 100},
+                                   {"absorption, 300 a metre", 300},
+                                   {"absorption, 1000 a metre", 1000},
+                                   {"absorption, 3000 a metre", 3000}};
+
+/// The head under the hair.
+struct Ellipsoid {
+    std::vector<Vec3f> points;
+    std::vector<std::uint32_t> indices;
+
+    Ellipsoid() {
+        constexpr std::uint32_t kRings = 48, kSectors = 72;
+        for (std::uint32_t r = 0; r <= kRings; ++r) {
+            for (std::uint32_t s = 0; s < kSectors; ++s) {
+                const float down = kPi * static_cast<float>(r) / kRings;
+                const float around = 2 * kPi * static_cast<float>(s) / kSectors;
+                points.push_back(onBenchHead(1.0f, down, around));
+            }
+        }
+        for (std::uint32_t r = 0; r < kRings; ++r) {
+            for (std::uint32_t s = 0; s < kSectors; ++s) {
+                const std::uint32_t a = r * kSectors + s, b = r * kSectors + (s + 1) % kSectors;
+                for (const std::uint32_t i : {a, b, a + kSectors, b, b + kSectors, a + kSectors})
+                    indices.push_back(i);
+            }
+        }
+    }
+};
+
 /// Hair combed down around a head that is not there.
 struct BallOfHair {
     std::vector<std::uint32_t> offsets{0};
@@ -72,6 +106,47 @@ struct BallOfHair {
     }
 };
 
+Status measureHead(gpu::Device& device, render::RenderScene scene, ShadowBench& bench) {
+    const Ellipsoid head;
+    render::RenderMesh mesh;
+    mesh.positions_ws = head.points;
+    mesh.indices = head.indices;
+    scene.meshes = {mesh};
+    const render::HeadCases cases = castRays(scene, bench.points, 8);
+    bench.visible = std::accumulate(cases.visible.begin(), cases.visible.end(), 0.0) /
+                    static_cast<double>(cases.visible.size());
+    for (const HeadKind& kind : kHeadKinds) {
+        ShadowRow row{kind.name, {}};
+        for (const std::uint32_t resolution : bench.resolutions) {
+            const auto error = headShadowError(device, scene, cases, kind.absorption, resolution);
+            if (!error) return tl::unexpected(error.error());
+            row.errors.push_back(*error);
+        }
+        bench.headRows.push_back(std::move(row));
+    }
+    return {};
+}
+
+Report rowsOf(const std::vector<ShadowRow>& all) {
+    Report rows = Report::array();
+    for (const ShadowRow& row : all) rows.push_back(Report{{"name", row.name}, {"errors", row.errors}});
+    return rows;
+}
+
+std::string tableOf(const std::vector<std::uint32_t>& resolutions, const std::vector<ShadowRow>& rows) {
+    std::string text = "| map |";
+    for (const std::uint32_t resolution : resolutions) text += fmt::format(" {}² |", resolution);
+    text += "\n|---|";
+    for (std::size_t i = 0; i < resolutions.size(); ++i) text += "---|";
+    text += "\n";
+    for (const ShadowRow& row : rows) {
+        text += fmt::format("| {} |", row.name);
+        for (const double error : row.errors) text += fmt::format(" {:.3f} |", error);
+        text += "\n";
+    }
+    return text;
+}
+
 }  // namespace
 
 Result<ShadowBench> runShadowBench(const ShadowBenchOptions& options) {
@@ -102,16 +177,16 @@ Result<ShadowBench> runShadowBench(const ShadowBenchOptions& options) {
         bench.rows.push_back(std::move(row));
         progress.done(bench.rows.size());
     }
+    if (auto measured = measureHead(**device, scene, bench); !measured)
+        return tl::unexpected(measured.error());
     return bench;
 }
 
 Report reportOf(const ShadowBench& bench) {
-    Report rows = Report::array();
-    for (const ShadowRow& row : bench.rows)
-        rows.push_back(Report{{"name", row.name}, {"errors", row.errors}});
     return Report{{"device", bench.device},           {"hairs", bench.hairs},
                   {"points", bench.points},           {"fibres", bench.fibres},
-                  {"resolutions", bench.resolutions}, {"rows", std::move(rows)}};
+                  {"resolutions", bench.resolutions}, {"rows", rowsOf(bench.rows)},
+                  {"visible", bench.visible},         {"head_rows", rowsOf(bench.headRows)}};
 }
 
 std::string markdownOf(const ShadowBench& bench, const std::string& command) {
@@ -119,18 +194,15 @@ std::string markdownOf(const ShadowBench& bench, const std::string& command) {
         "Root mean square error of the transmittance exp(−n/2) of {} points in {} hairs, against n counted "
         "along beams of\n"
         "{:.0f} mm across (mean n {:.2f}); maps of one RGBA16 texture but absorption, which has none. {}. "
-        "`{}`\n\n| map |",
+        "`{}`\n\n",
         bench.points, bench.hairs, 2000 * render::kShadowFootprint, bench.fibres, bench.device, command);
-    for (const std::uint32_t resolution : bench.resolutions) text += fmt::format(" {}² |", resolution);
-    text += "\n|---|";
-    for (std::size_t i = 0; i < bench.resolutions.size(); ++i) text += "---|";
-    text += "\n";
-    for (const ShadowRow& row : bench.rows) {
-        text += fmt::format("| {} |", row.name);
-        for (const double error : row.errors) text += fmt::format(" {:.3f} |", error);
-        text += "\n";
-    }
-    return text;
+    text += tableOf(bench.resolutions, bench.rows);
+    text += fmt::format(
+        "\nThe head on hair: root mean square error of what it leaves of the light, against rays ({:.0f} % "
+        "of "
+        "the points see\nthe light).\n\n",
+        100 * bench.visible);
+    return text + tableOf(bench.resolutions, bench.headRows);
 }
 
 std::string figureOf(const ShadowBench& bench) {

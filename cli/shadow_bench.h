@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // `bench shadows`: how far shadow maps of hair are from fibres counted on the CPU, by kind, layers and
-// resolution.
+// resolution; and those of the head on hair from rays.
 
 #include <cstdint>
 #include <optional>
@@ -28,6 +28,8 @@ struct ShadowBench {
     double fibres = 0;  ///< mean of those counted
     std::vector<std::uint32_t> resolutions;
     std::vector<ShadowRow> rows;
+    double visible = 0;               ///< share of the points that the head does not shade
+    std::vector<ShadowRow> headRows;  ///< of the head's shadow on hair
 };
 
 Result<ShadowBench> runShadowBench(const ShadowBenchOptions& options);

@@ -29,11 +29,10 @@ LayerPlace layerPlace(float absorption) {
 
 // Rows `from` ... `from` + `rows` - 1 of a layer's own `stride` rows, whose ends are the ends of v.
 float4 sampleLayer(Texture2D<float4> table, float u, float v, float layer, float from, float rows, float stride) {
-    uint width, height;
-    table.GetDimensions(width, height);
-    const float2 at = float2(saturate(u) * (float(width) - 1.0) + 0.5,
+    const float2 size = sizeOf(table);
+    const float2 at = float2(saturate(u) * (size.x - 1.0) + 0.5,
                              layer * stride + from + saturate(v) * (rows - 1.0) + 0.5);
-    return table.SampleLevel(gLinear, at / float2(float(width), float(height)), 0);
+    return table.SampleLevel(gLinear, at / size, 0);
 }
 
 // Light that takes one path falls as exp(-sigma l), so logarithms are what changes evenly.
@@ -42,9 +41,7 @@ float4 betweenLayers(float4 low, float4 high, float part) {
 }
 
 float4 lookUpLayers(Texture2D<float4> table, float2 at, float absorption) {
-    uint width, height;
-    table.GetDimensions(width, height);
-    const float rows = float(height) / float(ABSORPTION_LAYERS);
+    const float rows = sizeOf(table).y / float(ABSORPTION_LAYERS);
     const LayerPlace place = layerPlace(absorption);
     return betweenLayers(sampleLayer(table, at.x, at.y, place.low, 0.0, rows, rows),
                          sampleLayer(table, at.x, at.y, place.low + 1.0, 0.0, rows, rows), place.part);

@@ -7,11 +7,16 @@
 SamplerState gLinear : register(s0);
 Texture2D<float4> gLongitudinal : register(t11);
 
+// As floats: Wine takes sizes that are asked for as integers for floats, where rounding is strict.
+float2 sizeOf(Texture2D<float4> table) {
+    float2 size;
+    table.GetDimensions(size.x, size.y);
+    return size;
+}
+
 // Texels stand for both ends of 0 to 1.
 float4 lookUp(Texture2D<float4> table, float2 at) {
-    uint width, height;
-    table.GetDimensions(width, height);
-    const float2 size = float2(float(width), float(height));
+    const float2 size = sizeOf(table);
     return table.SampleLevel(gLinear, (saturate(at) * (size - 1.0) + 0.5) / size, 0);
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a fibre of any absorption sends on and back (shading::DualLayers::averages), for dual scattering and for light from
-// everywhere.
+// What a fibre of any absorption sends on and back (shading::DualLayers::averages), for dual scattering.
 #ifndef HAIRLOOM_LAYER_AVERAGES_HLSLI
 #define HAIRLOOM_LAYER_AVERAGES_HLSLI
 #include "shaders/absorption_layers.hlsli"
@@ -9,7 +8,8 @@ Texture2D<float4> gAverages : register(t15);
 
 struct LayerAverages {
     float4 shares;  // sent on, sent back, and their variances times them
-    float3 tilts;   // of what is sent on and back, times them; z: share of light from everywhere that leaves
+    float2 tilts;   // of what is sent on and back, times them
+    float2 moments;  // first and second, of the angle by which light is turned
 };
 
 LayerAverages layerAverages(float thetaD, float absorption) {
@@ -17,13 +17,10 @@ LayerAverages layerAverages(float thetaD, float absorption) {
     LayerAverages a;
     a.shares = betweenLayers(sampleLayer(gAverages, thetaD, 0.0, place.low, 0.0, 1.0, 2.0),
                              sampleLayer(gAverages, thetaD, 0.0, place.low + 1.0, 0.0, 1.0, 2.0), place.part);
-    a.tilts = lerp(sampleLayer(gAverages, thetaD, 0.0, place.low, 1.0, 1.0, 2.0).xyz,
-                   sampleLayer(gAverages, thetaD, 0.0, place.low + 1.0, 1.0, 1.0, 2.0).xyz, place.part);
+    const float4 low = sampleLayer(gAverages, thetaD, 0.0, place.low, 1.0, 1.0, 2.0);
+    const float4 high = sampleLayer(gAverages, thetaD, 0.0, place.low + 1.0, 1.0, 1.0, 2.0);
+    a.tilts = lerp(low.xy, high.xy, place.part);
+    a.moments = betweenLayers(low, high, place.part).zw - (a.shares.x + a.shares.y);
     return a;
-}
-
-float3 ambientOf(float3 absorption) {
-    return float3(layerAverages(0.0, absorption.x).tilts.z, layerAverages(0.0, absorption.y).tilts.z,
-                  layerAverages(0.0, absorption.z).tilts.z);
 }
 #endif

@@ -13,7 +13,7 @@ void main(uint3 id : SV_DispatchThreadID) {
     gCases.GetDimensions(count, stride);
     if (id.x >= count) return;
     const LightCase c = gCases[id.x];
-    const Occlusion o = occlusion(gShade.lights[0], c.position_ws.xyz, c.position_ws.w, 0.002);
-    gResults[2 * id.x] = float4(environmentOnHair(gShade, c.direction.xyz, 0.0), o.fibres);
+    const Occlusion o = occlusion(gShade.lights[0], c.position_ws.xyz, c.position_ws.w, 0.002, gShade.lights[0].filtering.z);
+    gResults[2 * id.x] = float4(environmentOnHair(gShade, c.direction.xyz, 0), o.fibres);
     gResults[2 * id.x + 1] = float4(environmentOnSkin(gShade, c.direction.xyz), o.visibility);
 }

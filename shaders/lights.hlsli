@@ -31,15 +31,10 @@ float3 environmentOnSkin(ShadeConstants shade, float3 n) {
 }
 
 // Mean radiance around a fibre, weighted by the sine of the angle to its tangent: by Funk and Hecke the bands are scaled
-// by 1, 0 and -1/8. Fibres near the surface of hair see more of its brighter side: `openToIt` 0...1 adds that share of
-// band 1 in the direction across the fibre in which it is largest.
-float3 environmentOnHair(ShadeConstants shade, float3 t, float openToIt) {
+// by 1, 0 and -1/8. `open` 0...1 towards a direction: hair on the other side keeps its light away.
+float3 environmentOnHair(ShadeConstants shade, float3 t, float3 open) {
     const float3 flat = 0.28209479 * shade.environment[0].rgb;
-    const float3 luminance = float3(0.2126, 0.7152, 0.0722);
-    const float3 brighter = float3(dot(shade.environment[3].rgb, luminance), dot(shade.environment[1].rgb, luminance),
-                                   dot(shade.environment[2].rgb, luminance));
-    const float3 across = brighter - t * dot(brighter, t);
-    const float3 n = across * rsqrt(max(dot(across, across), 1e-12));
+    const float3 n = open - t * dot(open, t);
     const float3 band1 = 0.48860251 * (n.y * shade.environment[1].rgb + n.z * shade.environment[2].rgb +
                                        n.x * shade.environment[3].rgb);
     const float3 band2 =
@@ -47,6 +42,6 @@ float3 environmentOnHair(ShadeConstants shade, float3 t, float openToIt) {
                      t.z * t.x * shade.environment[7].rgb) +
         0.31539157 * (3.0 * t.z * t.z - 1.0) * shade.environment[6].rgb +
         0.54627422 * (t.x * t.x - t.y * t.y) * shade.environment[8].rgb;
-    return max(flat + openToIt * band1 - 0.125 * band2, 0.0);
+    return max(flat + band1 - 0.125 * band2, 0.0);
 }
 #endif

@@ -14,16 +14,6 @@ struct StrandPlace {
     float4 own;  // the strand's own colour; w: 1 where it has one
 };
 
-StrandPlace placeOf(StrandHeader strand, float along) {
-    StrandPlace p;
-    p.along = along;
-    p.random = hashUnit(strand.source * 2u + 9u);
-    p.streak = strand.streak;
-    p.dye = strand.dye;
-    p.own = strand.albedo;
-    return p;
-}
-
 float gradientAt(float along) { return saturate((along - gLook.root.w) * gLook.tip.w); }
 
 // Linear RGB, or absorption a fibre radius.

@@ -5,7 +5,7 @@
 #include "shaders/kajiya.hlsli"
 #include "shaders/shadows.hlsli"
 #ifdef HAIRLOOM_LOOK
-#include "shaders/look.hlsli"
+#include "shaders/point_dye.hlsli"
 #endif
 
 cbuffer Constants : register(b0) { ShadeConstants gShade; };
@@ -45,10 +45,11 @@ void main(uint3 id : SV_DispatchThreadID) {
 
     float3 colour = 0;
     float openness = 0;
+    float3 open = 0;
     for (uint i = 0; i < gShade.counts.y; ++i) {
         const LightConstants light = gShade.lights[i];
         const float3 toLight = directionToLight(light, p.position_ws.xyz);
-        const Occlusion o = occlusion(light, p.position_ws.xyz, 0.0007, 0.004);
+        const Occlusion o = occlusion(light, p.position_ws.xyz, 0.0007, 0.004, light.filtering.z);
         const float3 direct = pow(passed, o.fibres) * o.visibility;
         const float3 scattered = pow(passed, 0.5 * o.fibres) * lerp(0.15, 1.0, o.visibility);
         const float diffuse = kajiyaDiffuse(tangent, toLight);
@@ -61,10 +62,13 @@ void main(uint3 id : SV_DispatchThreadID) {
         const float3 multiple = gShade.shift.w * albedo * albedo * diffuse / kPi;
         colour += irradianceOf(light, p.position_ws.xyz) * (single * direct + multiple * scattered);
         openness += exp(-0.35 * o.fibres) * lerp(0.25, 1.0, o.visibility);
+        const float front = exp(-0.35 * o.fibres) * o.visibility;
+        const float behind = exp(-0.35 * (o.allFibres - o.fibres)) * (1.0 - o.ends);
+        open += light.around.xyz * ((front - behind) / max(front + behind, 1e-6));
     }
     openness = gShade.counts.y > 0 ? openness / float(gShade.counts.y) : 1.0;
     if (hasEnvironment(gShade)) {
-        colour += albedo * environmentOnHair(gShade, tangent, 1.0 - 0.5 * p.along) * openness;
+        colour += albedo * environmentOnHair(gShade, tangent, open) * openness;
     }
 #ifdef HAIRLOOM_LOOK
     colour += emissionAt(p.along);

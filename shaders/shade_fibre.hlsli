@@ -4,6 +4,7 @@
 // everywhere. shade.comp.hlsl does the same for Kajiya-Kay.
 #include "shaders/curve.hlsli"
 #include "shaders/shadows.hlsli"
+#include "shaders/sky.hlsli"
 #ifdef HAIRLOOM_SADEGHI
 #include "shaders/sadeghi.hlsli"
 #else
@@ -13,8 +14,7 @@
 #include "shaders/dual.hlsli"
 #endif
 #ifdef HAIRLOOM_LOOK
-#include "shaders/layer_averages.hlsli"
-#include "shaders/look.hlsli"
+#include "shaders/point_dye.hlsli"
 #endif
 
 cbuffer Constants : register(b0) { ShadeConstants gShade; };
@@ -36,21 +36,26 @@ void main(uint3 id : SV_DispatchThreadID) {
 #ifdef HAIRLOOM_LOOK
     const float3 tint = vary;
     const float3 absorption = lookAt(placeOf(strand, p.along));
-    const float3 ambient = ambientOf(absorption);
 #else
     // A strand's own colour is known against the material's, whose absorption the tables hold.
     const float3 own = strand.albedo.w > 0 ? strand.albedo.rgb / max(gShade.albedo.rgb, 1e-3) : 1.0;
     const float3 tint = own * (lerp(gShade.rootTip.x, gShade.rootTip.y, p.along) * vary);
     const float3 absorption = 0;
-    const float3 ambient = gFibre.ambient.rgb;
+#endif
+    FibreMoments moments;
+#ifdef HAIRLOOM_DUAL
+    const FibreAverages across = averagesAt(0.0, absorption);
+    moments = tinted(across.moments, shareOf(across.moments, tint));
+#else
+    moments.albedo = moments.first = moments.second = 0;  // what has met a fibre is lost
 #endif
 
     float3 colour = 0;
-    float openness = 0;
+    SkyInHair sky = noSky();
     for (uint i = 0; i < gShade.counts.y; ++i) {
         const LightConstants light = gShade.lights[i];
         const float3 toLight = directionToLight(light, p.position_ws.xyz);
-        const Occlusion o = occlusion(light, p.position_ws.xyz, 0.0007, 0.004);
+        const Occlusion o = occlusion(light, p.position_ws.xyz, 0.0007, 0.004, light.filtering.z);
         const FibreFrame f = fibreFrame(tangent, toLight, toView);
         float3 scattered = passedDirectly(light, o.fibres, gFibre.lobes.w) *
                            fibreScattering(gFibre, f, hashUnit(p.strand * 2u), tint, absorption);
@@ -59,11 +64,17 @@ void main(uint3 id : SV_DispatchThreadID) {
                                         absorption, gShade.ground.rgb * o.ground);
 #endif
         colour += irradianceOf(light, p.position_ws.xyz) * o.visibility * scattered;
-        openness += exp(-0.35 * o.fibres) * lerp(0.25, 1.0, o.visibility);
+        if (hasEnvironment(gShade)) addSky(sky, moments, light, o, gFibre.lobes.w, gShade.ground.rgb);
     }
-    openness = gShade.counts.y > 0 ? openness / float(gShade.counts.y) : 1.0;
     if (hasEnvironment(gShade)) {
-        colour += ambient * tint * environmentOnHair(gShade, tangent, 1.0 - 0.5 * p.along) * openness;
+        const SkyMoments fibre = skyMoments(dot(toView, tangent), absorption);
+        if (sky.known == 0) {
+            sky.even = 1;
+#ifdef HAIRLOOM_DUAL
+            sky.even = 1.0 / (1.0 - kMeetsAgain * min(tint * fibre.even, 1.0));
+#endif
+        }
+        colour += tint * environmentOnFibre(gShade, fibre, sky, tangent, toView);
     }
 #ifdef HAIRLOOM_LOOK
     colour += emissionAt(p.along);

@@ -15,6 +15,7 @@ struct Occlusion {
     float fibres;      // crossed on the way to the light
     float allFibres;   // from the hair's lit side to its other, or to the head
     float visibility;  // 0 behind the head ... 1
+    float ends;        // 1 where the light's way ends on the head
     float ground;      // share of the light that the head, where the light's way ends on it, can send back here
 };
 
@@ -45,12 +46,20 @@ float fibresAt(LightConstants light, uint texel, float depth, float bias) {
     return dot(layers.rgb, part) / OPACITY_UNIT;
 }
 
-// Biases: metres towards the light, so that a surface does not shadow itself.
-Occlusion occlusion(LightConstants light, float3 position_ws, float hairBias, float headBias) {
+// What the head leaves of the light at `behind` metres behind its first surface: all or nothing, or with `absorption` as
+// light fades in translucent stuff (Dachsbacher and Stamminger 2003; Rünz 2012, section 6.3).
+float throughHead(float behind, float absorption) {
+    if (absorption > 0.0) return exp(-absorption * max(behind, 0.0));
+    return behind < 0.0 ? 1.0 : 0.0;
+}
+
+// Biases: metres towards the light, so that a surface does not shadow itself. `headAbsorption`: see throughHead().
+Occlusion occlusion(LightConstants light, float3 position_ws, float hairBias, float headBias, float headAbsorption) {
     Occlusion result;
     result.fibres = 0;
     result.allFibres = 0;
     result.visibility = 1;
+    result.ends = 0;
     result.ground = 0;
     const float4 clip = mul(light.clipFromWorld, float4(position_ws, 1));
     const bool hair = light.range.y > 0;
@@ -84,19 +93,21 @@ Occlusion occlusion(LightConstants light, float3 position_ws, float hairBias, fl
                 all += w * fibresAt(light, texel, headDepth, 0);
             }
             if (head) {
-                visible += w * (depth - headDepth < headBias ? 1.0 : 0.0);
+                visible += w * throughHead(depth - headDepth - headBias, headAbsorption);
                 ends += w * (headDepth < light.range.x ? 1.0 : 0.0);
                 behind += w * max(headDepth - depth, 0.0);
                 rise += float2(x - 1, y - 1) * (headDepth / 6.0);
             }
         }
     }
-    result.fibres = fibres;
+    const bool shaded = light.filtering.w == 0.0;
+    result.fibres = shaded ? fibres : 0.0;
     result.allFibres = max(all, fibres);
-    result.visibility = head ? visible : 1.0;
+    result.visibility = head && shaded ? visible : 1.0;
     // A slope gets less light on its area; and from afar the lit skin is a smaller part of what lies around.
     const float texelSize = light.filtering.y;
     const float facing = texelSize * rsqrt(texelSize * texelSize + dot(rise, rise));
+    result.ends = ends;
     result.ground = ends * facing * kSkinPatch * kSkinPatch / (kSkinPatch * kSkinPatch + behind * behind);
     return result;
 }

@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Skin: diffuse light that wraps a little around the terminator, a soft highlight, shadows of head and hair.
+#include "shaders/layer_light.hlsli"
 #include "shaders/shadows.hlsli"
 
-// The share of light that reaches the skin through so many fibres: the two-flux equations (Kubelka and Munk 1931), with what
-// the skin sends back into the hair and the hair returns once more.
+// The share of light that reaches the skin through so many fibres, with what the skin sends back into the hair and the
+// hair returns once more.
 float3 throughHair(ShadeConstants shade, LightConstants light, float fibres, float3 albedo) {
     const float counted = shade.sinking.w * fibres;
-    const float3 falling = exp(-shade.sinking.rgb * counted);
-    const float3 r = shade.returning.rgb;
-    const float3 turns = 1.0 - r * r * falling * falling;
-    const float3 returned = r * (1.0 - falling * falling) / turns;
-    const float3 all = (1.0 - r * r) * falling / (turns * (1.0 - albedo * returned));
-    if (shade.returning.w == 0) return all;
+    if (shade.turning.w == 0) return exp(-shade.sinking.rgb * counted);
+    FibreMoments fibre;
+    fibre.albedo = shade.sinking.rgb;
+    fibre.first = shade.turning.rgb;
+    fibre.second = shade.straight.rgb;
+    const LayerLight below = lightInLayer(fibre, counted, counted, albedo, 1.0, 0.0);
+    const float3 all = below.onward + below.fluence / 3.14159265 + 0.5 * below.flux;
     return max(all - exp(-counted), 0.0) + passedDirectly(light, fibres, shade.sinking.w);
 }
 
@@ -25,8 +27,10 @@ float3 skinLight(ShadeConstants shade, MeshConstants mesh, float3 position_ws, f
     for (uint k = 0; k < shade.counts.y; ++k) {
         const LightConstants light = shade.lights[k];
         const float3 toLight = directionToLight(light, position_ws);
-        const Occlusion o = occlusion(light, position_ws + normal * 0.002, 0.0, 0.002);
         const float nl = dot(normal, toLight);
+        // Lifted, so that the head does not shadow itself; hair counts down to the skin.
+        const float lift = 0.002;
+        const Occlusion o = occlusion(light, position_ws + normal * lift, -lift * saturate(nl), 0.002, 0.0);
         // Red light travels farther under the skin. The denominator keeps the energy of a Lambertian.
         const float3 wrap = mesh.skin.x * float3(1, 0.5, 0.35);
         const float3 diffuse = saturate((nl + wrap) / ((1 + wrap) * (1 + wrap)));

@@ -3,7 +3,7 @@
 // place.
 #include "shaders/curve.hlsli"
 #ifdef HAIRLOOM_LOOK
-#include "shaders/look.hlsli"
+#include "shaders/point_dye.hlsli"
 #endif
 
 cbuffer Constants : register(b0) { ShadeConstants gShade; };

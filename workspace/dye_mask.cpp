@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/groom/point_dye.h"
 #include "core/render/png.h"
 #include "core/render/tone_map.h"
 
@@ -35,6 +36,12 @@ bool take(const AttributeSet& attributes, const std::string& name, std::vector<f
     return true;
 }
 
+/// In place of what was painted too.
+void setMask(Groom& groom, std::vector<float> mask) {
+    groom.strandAttributes.set(attribute::kDye, std::move(mask));
+    groom.pointAttributes.erase(attribute::kPointDye);
+}
+
 }  // namespace
 
 Status dyeFromImage(const std::string& path, Groom& groom) {
@@ -49,7 +56,7 @@ Status dyeFromImage(const std::string& path, Groom& groom) {
         if (!uvs[s].allFinite()) return fail(fmt::format("the root UV of strand {} is not finite", s));
         mask[s] = std::clamp(paintedValue(*image, uvs[s]), 0.0f, 1.0f);
     }
-    groom.strandAttributes.set(attribute::kDye, std::move(mask));
+    setMask(groom, std::move(mask));
     return {};
 }
 
@@ -62,7 +69,7 @@ Status dyeFromAttribute(const std::string& name, Groom& groom) {
     }
     if (std::ranges::any_of(mask, [](float value) { return std::isnan(value); }))
         return fail(fmt::format("strand attribute '{}' has a value that is no number", name));
-    groom.strandAttributes.set(attribute::kDye, std::move(mask));
+    setMask(groom, std::move(mask));
     return {};
 }
 

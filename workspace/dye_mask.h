@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Where the mask of the dye (strand attribute `dye`) comes from, beside the script operation.
+// Where the mask of the dye (strand attribute `dye`) comes from, beside the script operation and the brush,
+// whose mask it replaces.
 
 #include <string>
 

@@ -10,6 +10,7 @@
 #include "core/base/file.h"
 #include "core/geometry/selection.h"
 #include "core/groom/json_reader.h"
+#include "core/groom/point_dye.h"
 #include "core/interpolation/follow_hairs.h"
 #include "core/render/exr.h"
 #include "core/render/png.h"
@@ -198,6 +199,14 @@ Result<ViewFile> readViewFile(const std::string& path) {
     }
     if (reader.has("background")) view.background = reader.vector("background", 0, kAnyRadiance);
     if (reader.has("head_albedo")) view.headAlbedo = reader.vector("head_albedo", 0, 1);
+    if (reader.has("head_absorption_per_m")) {
+        view.headAbsorption = static_cast<float>(reader.number(
+            "head_absorption_per_m", 0, static_cast<double>(render::kMostHeadAbsorption), "1/m"));
+    }
+    if (reader.has("shadow_blur_px")) {
+        view.shadowBlur = static_cast<float>(
+            reader.number("shadow_blur_px", 0, static_cast<double>(render::kMostShadowBlur), "pixels"));
+    }
     if (reader.has("hair")) readHair(reader.object("hair"), view);
     reader.finish();
     if (auto status = reader.status(); !status) return tl::unexpected(status.error());
@@ -269,6 +278,14 @@ bool GroomScene::setMaterial(const HairMaterial& authored, const ViewFile& view)
     return true;
 }
 
+bool GroomScene::setDye(const Groom& groom) {
+    if (shares_.pointDyes.empty() || !groom.pointAttributes.has(attribute::kPointDye)) return false;
+    rest_.pointAttributes.set(attribute::kPointDye,
+                              groom.pointAttributes.all().find(attribute::kPointDye)->second);
+    shares_.pointDyes = bindings_ ? pointDyesOfFollowHairs(rest_, *bindings_) : pointDyes(rest_);
+    return true;
+}
+
 Status GroomScene::makeFollowHairs() {
     const std::vector<Vec3f> guides_ws = guidePositions(posed_, *bindings_);
     const std::vector<Quatf> rotations = rootRotations(rest_, posed_, *bindings_);
@@ -301,6 +318,7 @@ render::RenderScene GroomScene::scene() const {
     }
     strands.streaks = shares_.streaks;
     strands.dyes = shares_.dyes;
+    strands.pointDyes = shares_.pointDyes;
     scene.strands.push_back(strands);
     return scene;
 }

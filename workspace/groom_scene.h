@@ -42,6 +42,8 @@ struct ViewFile {
     std::optional<Vec3f> headAlbedo;
     std::optional<float> rootRadius;  ///< metres
     std::optional<float> tipScale;
+    std::optional<float> headAbsorption;  ///< 1/m, as render::RenderOptions
+    std::optional<float> shadowBlur;      ///< pixels, likewise
     FibreView fibre;
 };
 Result<ViewFile> readViewFile(const std::string& path);
@@ -50,6 +52,7 @@ Result<ViewFile> readViewFile(const std::string& path);
 struct StrandShares {
     std::vector<float> streaks;
     std::vector<float> dyes;
+    std::vector<float> pointDyes;  ///< one a point, shares of that; empty: nothing was painted
 };
 
 /// Owns the arrays that a RenderScene looks at.
@@ -71,6 +74,10 @@ class GroomScene {
     /// Another look of the same strands. False, and nothing changed, where it takes make() anew: colours that
     /// stand in the head, thickness that stands in points, the share of streaks and dye that each strand has.
     bool setMaterial(const HairMaterial& authored, const ViewFile& view);
+
+    /// The painted dye of another version of the same strands. False where it takes make() anew: nothing was
+    /// painted before or is now.
+    bool setDye(const Groom& groom);
 
     /// Meshes and strands; camera and lights are the caller's. Valid while this object lives and is not
     /// moved.

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "core/base/parallel.h"
+#include "core/groom/point_dye.h"
 #include "core/groom/streaks.h"
 
 namespace hairloom {
@@ -126,6 +128,18 @@ std::vector<Vec3f> rootsOf(const Groom& groom) {
     return roots;
 }
 
+bool isPainted(const Groom& groom) {
+    return groom.pointAttributes.has(attribute::kPointDye);
+}
+
+/// Of a strand's points, at a share of its length in points.
+float valueAt(std::span<const float> values, float share) {
+    const float place = share * static_cast<float>(values.size() - 1);
+    const std::size_t before = std::min(static_cast<std::size_t>(place), values.size() - 2);
+    const float t = place - static_cast<float>(before);
+    return values[before] + t * (values[before + 1] - values[before]);
+}
+
 float maskOf(std::span<const float> mask, std::size_t strand) {
     return mask.empty() ? 1.0f : mask[strand];
 }
@@ -205,6 +219,11 @@ StrandShares sharesOfStrands(const Groom& groom) {
     const HairMaterial& material = groom.material;
     if (material.streakShare > 0) shares.streaks = streakWeights(material, rootsOf(groom));
     if (material.dyeStrength <= 0) return shares;
+    if (isPainted(groom)) {
+        shares.pointDyes = pointDyes(groom);
+        shares.dyes.assign(groom.strandCount(), material.dyeStrength);
+        return shares;
+    }
     const auto mask = groom.strandAttributes.view<float>(attribute::kDye);
     shares.dyes.resize(groom.strandCount());
     for (std::size_t s = 0; s < shares.dyes.size(); ++s)
@@ -221,6 +240,11 @@ Result<StrandShares> sharesOfFollowHairs(const Groom& groom, const FollowBinding
         shares.streaks = streakWeights(material, rootsOf(*rest));
     }
     if (material.dyeStrength <= 0) return shares;
+    if (isPainted(groom)) {
+        shares.pointDyes = pointDyesOfFollowHairs(groom, bindings);
+        shares.dyes.assign(bindings.hairCount(), material.dyeStrength);
+        return shares;
+    }
     const auto mask = groom.strandAttributes.view<float>(attribute::kDye);
     shares.dyes.resize(bindings.hairCount());
     for (std::size_t hair = 0; hair < shares.dyes.size(); ++hair) {
@@ -232,6 +256,36 @@ Result<StrandShares> sharesOfFollowHairs(const Groom& groom, const FollowBinding
         shares.dyes[hair] = material.dyeStrength * std::clamp(sum, 0.0f, 1.0f);
     }
     return shares;
+}
+
+std::vector<float> pointDyesOfFollowHairs(const Groom& groom, const FollowBindings& bindings) {
+    if (!isPainted(groom)) return {};
+    const std::size_t perHair = bindings.pointsPerHair;
+    const auto mask = groom.pointAttributes.view<float>(attribute::kPointDye);
+    std::vector<float> guides(bindings.guideCount() * perHair);
+    for (std::size_t guide = 0; guide < bindings.guideCount(); ++guide) {
+        const std::size_t first = groom.offsets[bindings.guideStrands[guide]];
+        const std::size_t count = groom.offsets[bindings.guideStrands[guide] + 1] - first;
+        for (std::size_t i = 0; i < perHair; ++i) {
+            const float share = static_cast<float>(i) / static_cast<float>(perHair - 1);
+            guides[guide * perHair + i] = valueAt(mask.subspan(first, count), share);
+        }
+    }
+    constexpr std::size_t kGrain = 256;
+    std::vector<float> dyes(bindings.hairCount() * perHair);
+    parallelFor(bindings.hairCount(), kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t hair = begin; hair < end; ++hair) {
+            for (std::size_t i = 0; i < perHair; ++i) {
+                float sum = 0;
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const float weight = bindings.rootWeights[hair][static_cast<int>(k)];
+                    sum += weight * guides[bindings.guides[hair][k] * perHair + i];
+                }
+                dyes[hair * perHair + i] = std::clamp(sum, 0.0f, 1.0f);
+            }
+        }
+    });
+    return dyes;
 }
 
 }  // namespace hairloom

@@ -11,10 +11,12 @@ namespace hairloom {
 /// colour, random pigment or light of its own.
 render::HairMaterial renderMaterial(const Groom& groom, const ViewFile& view);
 
-/// Of the groom's own strands, by their roots at rest and the strand attribute `dye`.
+/// Of the groom's own strands, by their roots at rest and the attributes `dye`.
 StrandShares sharesOfStrands(const Groom& groom);
 /// Of follow hairs: by their own roots at rest, and the dye of the guides around them. Errors: hairs that
 /// cannot be evaluated.
 Result<StrandShares> sharesOfFollowHairs(const Groom& groom, const FollowBindings& bindings);
+/// The painted dye of the guides around each point of a follow hair; empty where none was painted.
+std::vector<float> pointDyesOfFollowHairs(const Groom& groom, const FollowBindings& bindings);
 
 }  // namespace hairloom

@@ -131,8 +131,8 @@ void addBenchJob(Jobs& jobs) {
                  "sim --quick --json", [options, &jobs] { return bench(*options, jobs.commandLine()); });
     job.add_option("name", options->name, "What to measure")
         ->required()
-        ->check(CLI::IsMember({"brush", "gpu-sim", "interpolate", "io", "place", "project", "render",
-                               "shadows", "sim", "window"}));
+        ->check(CLI::IsMember({"brush", "gpu-sim", "interpolate", "io", "material", "place", "project",
+                               "render", "shading", "shadows", "sim", "window"}));
     auto* const repetitions =
         job.add_option("--repeat,--repetitions", options->repetitions, "Runs of each measurement")
             ->check(CLI::Range(1, 1000));

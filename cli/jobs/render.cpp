@@ -36,6 +36,8 @@ struct RenderJobOptions {
     std::string ribbons = "auto";
     std::string transparency = "auto";
     float detail = 0;
+    std::optional<float> headAbsorption;
+    std::optional<float> shadowBlur;
     std::string record;
     std::vector<std::string> hiddenGroups;
     std::uint64_t frame = 0;
@@ -105,6 +107,8 @@ Result<render::RenderOptions> pictureOptions(const RenderJobOptions& options, co
     picture.filter = aa.filter;
     picture.frames = aa.once ? 1 : options.passes;
     picture.shadows = kShadows.at(options.shadow);
+    picture.headAbsorption = options.headAbsorption.value_or(view.headAbsorption.value_or(0));
+    picture.shadowBlur = options.shadowBlur.value_or(view.shadowBlur.value_or(0));
     picture.ribbons = kRibbons.at(options.ribbons);
     // One frame is least noisy when blended; the average of several has no bias when left to chance.
     const std::string transparency = options.transparency != "auto" ? options.transparency
@@ -361,6 +365,13 @@ void addRenderJob(Jobs& jobs) {
            "--shadow", options->shadow,
            "Shadows of hair: deep opacity maps, absorption by depth, opacity maps at fixed depths, none")
         ->check(CLI::IsMember(namesOf(kShadows)));
+    job.add_option(
+           "--head-absorption", options->headAbsorption,
+           "Light that hair behind the head gets fades with its depth there, per metre; 0: it gets none")
+        ->check(CLI::Range(0.0f, render::kMostHeadAbsorption));
+    job.add_option("--shadow-blur", options->shadowBlur,
+                   "Pixels by which shadows are blurred on the screen, which draws everything twice; 0: not")
+        ->check(CLI::Range(0.0f, render::kMostShadowBlur));
     job.add_option(
            "--aa", options->antiAliasing,
            "Samples a pixel and frame (auto: the most the device has, up to 8), or FXAA, which draws once")

@@ -59,6 +59,8 @@ std::vector<NamedLayout> measuredLayouts(gpu::DeviceType type) {
                                      {"lanes, 4 strands a group", {StrandStorage::lanes, true, 4}},
                                      {"lanes, 8 strands a group", {StrandStorage::lanes, true, 8}},
                                      {"lanes, loops", {StrandStorage::lanes, false}},
+                                     {"lanes, tables", {StrandStorage::lanes, true, {}, true}},
+                                     {"lanes, no tables", {StrandStorage::lanes, true, {}, false}},
                                      {"threads, unrolled", {StrandStorage::threads, true}},
                                      {"threads, loops", {StrandStorage::threads, false}},
                                      {"groups, unrolled", {StrandStorage::groups, true}},
@@ -209,7 +211,7 @@ Result<double> copyBandwidth(gpu::Device& device) {
     if (!copies) return tl::unexpected(copies.error());
     double best = 0.0;
     for (int run = 0; run < kRuns; ++run) {
-        const auto bandwidth = copies->run();
+        auto bandwidth = copies->run();
         if (!bandwidth) return bandwidth;
         best = std::max(best, *bandwidth);
     }

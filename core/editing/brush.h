@@ -134,9 +134,10 @@ struct Reached {
 /// A brush that moves points of strands: the loop over them, lengths, the skin and what undo needs are here.
 class StrandBrush : public Brush {
   public:
-    Change dab(StrokeTarget& target, const DabContext& dab) final;
+    Change dab(StrokeTarget& target, const DabContext& dab) override;
 
   protected:
+    Reached reach(const StrokeTarget& target, const DabContext& dab) const;
     /// Before the strands of a dab; not parallel.
     virtual void beginDab(const StrokeTarget&, const DabContext&) {}
     /// Moves points. Strands run in parallel, so nothing else may be written. False: left as it was.
@@ -155,7 +156,6 @@ class StrandBrush : public Brush {
                         std::span<float> weights) const;
 
   private:
-    Reached reach(const StrokeTarget& target, const DabContext& dab) const;
     void editReached(StrokeTarget& target, const DabContext& dab, const Reached& reached);
 
     Reached held_[2];  ///< of the first dab, and of its mirror image

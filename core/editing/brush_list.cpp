@@ -26,9 +26,9 @@ constexpr Field<S> kFields[] = {
 };
 
 using Make = std::unique_ptr<Brush> (*)();
-constexpr Make kMakers[] = {makeComb,   makeBrushAlong, makeGrab,       makeSmooth,      makePuff,
-                            makePinch,  makeLength,     makeCut,        makeCutLine,     makeAdd,
-                            makeDelete, makeFreeze,     makeScalpPaint, makeDensityPaint};
+constexpr Make kMakers[] = {makeComb,   makeBrushAlong, makeGrab,       makeSmooth,       makePuff,
+                            makePinch,  makeLength,     makeCut,        makeCutLine,      makeAdd,
+                            makeDelete, makeFreeze,     makeScalpPaint, makeDensityPaint, makeDyePaint};
 constexpr std::size_t kCount = std::size(kMakers);
 
 struct Entry {

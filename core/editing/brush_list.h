@@ -26,6 +26,7 @@ std::unique_ptr<Brush> makeFreeze();
 std::unique_ptr<Brush> makeAdd();
 std::unique_ptr<Brush> makeScalpPaint();
 std::unique_ptr<Brush> makeDensityPaint();
+std::unique_ptr<Brush> makeDyePaint();
 
 /// In the order of a toolbar.
 std::span<const std::string_view> brushNames();

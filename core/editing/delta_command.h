@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/editing/command.h"
+#include "core/editing/dye_delta.h"
 #include "core/editing/point_delta.h"
 #include "core/editing/scalp_delta.h"
 #include "core/editing/strand_delta.h"
@@ -20,10 +21,11 @@ struct Deltas {
     FlagDelta selected{attribute::kSelected};
     FaceDelta faces;
     DensityDelta density;
+    DyeDelta dye;
     StrandDelta strands;  ///< last in doing, first in undoing
     bool empty() const {
         return points.empty() && frozen.empty() && hidden.empty() && selected.empty() && faces.empty() &&
-               density.empty() && strands.empty();
+               density.empty() && dye.empty() && strands.empty();
     }
 };
 

@@ -28,6 +28,7 @@ enum class Part : std::uint32_t {
     Layers = 1u << 11u,         ///< layers and group names
     Triangulation = 1u << 12u,  ///< of the roots
     History = 1u << 13u,        ///< what can be undone
+    Dye = 1u << 14u,            ///< its mask, as it was painted
     Everything = 0xffffffffu,
 };
 constexpr Part operator|(Part a, Part b) {

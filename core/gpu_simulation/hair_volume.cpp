@@ -81,7 +81,6 @@ void HairVolume::record(gpu::CommandList& list, std::span<const StrandBatch> bat
     constants.dt = dt;
     constants.h = h;
     constants.clampedPoints = clampedPoints;
-    constants.unused = 0;
     list.updateBuffer(box_, 0, std::as_bytes(std::span(kEmptyBox)));
     gpu::PassDesc pass;
     pass.name = "hair against hair";
@@ -97,6 +96,7 @@ void HairVolume::record(gpu::CommandList& list, std::span<const StrandBatch> bat
         for (const StrandBatch& batch : batches) {
             constants.slots = batch.slots;
             constants.points = batch.shape.points;
+            constants.together = batch.shape.together ? 1 : 0;
             constants.sleeps = batch.rests != nullptr ? 1 : 0;
             list.setPipeline(pipeline);
             const std::array<Binding, 3> strands{Binding::read(0, batch.blockCounts),
@@ -113,7 +113,7 @@ void HairVolume::record(gpu::CommandList& list, std::span<const StrandBatch> bat
         const Binding state = Binding::read(3, batch.state);
         list.bind({&state, 1});
     };
-    constants.slots = constants.points = constants.sleeps = 0;
+    constants.slots = constants.points = constants.together = constants.sleeps = 0;
     const std::array<Binding, 1> measured{Binding::write(0, box_)};
     overPoints(measure_, measured, readState);
     const std::array<Binding, 2> cleared{Binding::read(0, box_), Binding::write(0, nodes_)};

@@ -27,15 +27,20 @@ constexpr std::uint32_t kLeastInLanes = 4;
 /// Blocks of strands from which on a thread for each strand is faster: docs/gpu-simulation.md, "What is
 /// measured".
 constexpr std::size_t kMostBlocksInLanes = 100'000 / kBlockLanes;
+/// Up to which the waves of all of them run side by side, as far as their registers go: as measured there.
+constexpr std::size_t kMostBlocksAtOnce = (3'000 + kBlockLanes - 1) / kBlockLanes;
+
+/// Of lanes: the memory of a group of more would be too much.
+constexpr std::uint32_t kMostThreads = 256;
 
 /// Fewest strands of a work group that leave the fewest threads of its waves of 32 idle.
 std::uint32_t strandsThatFill(std::uint32_t points) {
-    constexpr std::uint32_t kWave = 32, kMostThreads = 128;
+    constexpr std::uint32_t kWave = 32, kManyThreads = 128;
     std::uint32_t best = 1;
     double bestShare = 0.0;
     for (std::uint32_t strands = 1; strands <= kBlockLanes; strands *= 2) {
         const std::uint32_t threads = strands * points;
-        if (strands > 1 && threads > kMostThreads) break;
+        if (strands > 1 && threads > kManyThreads) break;
         const double share = static_cast<double>(threads) / ((threads + kWave - 1) / kWave * kWave);
         if (share > bestShare + 0.05) {
             best = strands;
@@ -45,7 +50,8 @@ std::uint32_t strandsThatFill(std::uint32_t points) {
     return best;
 }
 
-BatchShape shapeFor(std::uint32_t points, bool exact, StrandStorage storage, const LayoutOptions& options) {
+BatchShape shapeFor(std::uint32_t points, bool exact, StrandStorage storage, const LayoutOptions& options,
+                    bool few) {
     BatchShape shape;
     shape.points = points;
     shape.exact = exact;
@@ -56,8 +62,11 @@ BatchShape shapeFor(std::uint32_t points, bool exact, StrandStorage storage, con
         shape.storage = StrandStorage::threads;
     if (points > kMostInThreads) shape.storage = StrandStorage::buffers;
     shape.unrolled = options.unroll && exact && points <= kMostUnrolled;
-    if (shape.storage == StrandStorage::lanes)
-        shape.strands = options.groupStrands.value_or(strandsThatFill(points));
+    if (shape.storage != StrandStorage::lanes) return shape;
+    shape.together = true;
+    shape.tables = options.tables.value_or(few);
+    shape.strands = std::min(options.groupStrands.value_or(strandsThatFill(points)),
+                             std::max(std::bit_floor(kMostThreads / points), 1u));
     return shape;
 }
 
@@ -88,7 +97,7 @@ std::vector<StrandBatch> makeBatches(const runtime::RestShape& shape, const Layo
     std::vector<StrandBatch> batches;
     for (auto& [points, blocks] : blocksOf) {
         StrandBatch batch;
-        batch.shape = shapeFor(points, exact, storage, options);
+        batch.shape = shapeFor(points, exact, storage, options, shape.blocks.size() <= kMostBlocksAtOnce);
         batch.slots = static_cast<std::uint32_t>(blocks.size()) * kBlockLanes;
         batch.blocks = std::move(blocks);
         batches.push_back(std::move(batch));
@@ -102,7 +111,9 @@ void forEachRow(const runtime::RestShape& shape, const StrandBatch& batch,
     for (std::size_t n = 0; n < batch.blocks.size(); ++n) {
         const std::size_t block = batch.blocks[n];
         for (std::uint32_t p = 0; p < shape.blocks[block].points; ++p) {
-            visit(block, p, std::size_t{p} * kBlockLanes, std::size_t{p} * batch.slots + n * kBlockLanes);
+            const std::size_t first = n * kBlockLanes, points = batch.shape.points;
+            visit(block, p, std::size_t{p} * kBlockLanes,
+                  batch.shape.together ? first * points + p : std::size_t{p} * batch.slots + first);
         }
     }
 }
@@ -115,7 +126,8 @@ std::vector<float> planesOfBatch(const runtime::RestShape& shape, const StrandBa
         const float* const first = planes.data() + shape.blocks[block].firstPlane * count;
         for (std::size_t k = 0; k < count; ++k) {
             const float* const row = first + k * planeSize(shape.blocks[block]) + inBlock;
-            std::copy_n(row, kBlockLanes, values.data() + k * plane + inBatch);
+            float* const to = values.data() + k * plane + inBatch;
+            for (std::size_t lane = 0; lane < kBlockLanes; ++lane) to[lane * laneStride(batch)] = row[lane];
         }
     });
     return values;
@@ -128,7 +140,8 @@ void planesOfBlocks(const runtime::RestShape& shape, const StrandBatch& batch, s
         float* const first = planes.data() + shape.blocks[block].firstPlane * count;
         for (std::size_t k = 0; k < count; ++k) {
             float* const row = first + k * planeSize(shape.blocks[block]) + inBlock;
-            std::copy_n(values.data() + k * plane + inBatch, kBlockLanes, row);
+            const float* const from = values.data() + k * plane + inBatch;
+            for (std::size_t lane = 0; lane < kBlockLanes; ++lane) row[lane] = from[lane * laneStride(batch)];
         }
     });
 }
@@ -143,7 +156,7 @@ std::vector<shaders::float4> quadsOfBatch(const runtime::RestShape& shape, const
         for (std::size_t lane = 0; lane < kBlockLanes; ++lane) {
             std::array<float, 4> parts{};
             for (std::size_t k = 0; k < which.size(); ++k) parts[k] = first[which[k] * size + lane];
-            values[inBatch + lane] = {parts[0], parts[1], parts[2], parts[3]};
+            values[inBatch + lane * laneStride(batch)] = {parts[0], parts[1], parts[2], parts[3]};
         }
     });
     return values;

@@ -19,9 +19,12 @@ struct LayoutOptions {
     /// Absent: what was measured to be fastest for as many strands.
     std::optional<StrandStorage> storage = {};
     bool unroll = true;  ///< where all strands of a batch have as many points, up to 32
-    /// Strands of a work group of StrandStorage::lanes, a power of 2 up to 32; absent: those that fill its
+    /// Strands of a work group of StrandStorage::lanes, a power of 2 up to 32, as far as 256
+    /// threads hold them; absent: those that fill its
     /// waves.
     std::optional<std::uint32_t> groupStrands = {};
+    /// Of lanes: BatchShape::tables; absent: where all strands run at once.
+    std::optional<bool> tables = {};
 };
 
 /// For such a device.
@@ -46,10 +49,14 @@ struct StrandBatch {
 std::vector<StrandBatch> makeBatches(const runtime::RestShape& shape, const LayoutOptions& options);
 
 /// Calls visit(block, point, index of lane 0 in a plane of that block, index of its slot in a plane of the
-/// batch) for each row of kBlockLanes strands.
+/// batch) for each row of kBlockLanes strands. From lane to lane the latter grows by laneStride(batch).
 void forEachRow(const runtime::RestShape& shape, const StrandBatch& batch,
                 const std::function<void(std::size_t block, std::uint32_t point, std::size_t inBlock,
                                          std::size_t inBatch)>& visit);
+
+inline std::size_t laneStride(const StrandBatch& batch) {
+    return batch.shape.together ? batch.shape.points : 1;
+}
 
 /// Planes of blocks as those of a batch, plane after plane. `planes` holds `count` of them per block.
 std::vector<float> planesOfBatch(const runtime::RestShape& shape, const StrandBatch& batch,

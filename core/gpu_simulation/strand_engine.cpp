@@ -6,6 +6,7 @@
 #include <chrono>
 #include <limits>
 
+#include "core/gpu_simulation/bend_reduction.h"
 #include "core/gpu_simulation/strand_engine_impl.h"
 #include "runtime/checks.h"
 
@@ -21,6 +22,11 @@ constexpr std::size_t kMostUnderWay = 2;
 /// Floats a point that a kernel of StrandStorage::buffers works in: see storage.hlsli.
 constexpr std::array<std::size_t, 3> kScratchPlanes{5, 11, 20};
 constexpr std::size_t kCoupledPlanes = 29;
+/// Of angular springs, a point.
+std::size_t bendFloats(const KernelKey& key) {
+    if (key.bend < 2) return key.bend;
+    return key.shape.storage == StrandStorage::lanes ? 4 * (reductionSteps(key.shape.points) + 1) : 4;
+}
 constexpr Usage kReadWrite = Usage::ShaderRead | Usage::UnorderedAccess;
 
 }  // namespace
@@ -131,9 +137,7 @@ Status StrandEngine::Impl::allocate() {
     for (StrandBatch& batch : batches) {
         const KernelKey& key = batch.key;
         const std::size_t plane = std::size_t{batch.shape.points} * batch.slots;
-        constexpr std::array<std::size_t, 3> kBendFloats{0, 1, 4};
-        const std::size_t bendFloats = kBendFloats[key.bend];
-        bool fresh = have(batch.bend, "angular springs", plane * bendFloats, bendFloats * 4);
+        bool fresh = have(batch.bend, "angular springs", plane * bendFloats(key), key.bend == 1 ? 4 : 16);
         fresh |= have(batch.targets, "rest directions", key.targets ? plane * 4 : 0, 16);
         if (fresh) bendSubstep = 0.0f;
         have(batch.curves, "curves", key.curves ? plane * 3 : 0, 4);

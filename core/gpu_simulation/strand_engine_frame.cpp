@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
+#include "core/gpu_simulation/bend_reduction.h"
 #include "core/gpu_simulation/strand_engine_impl.h"
 #include "runtime/checks.h"
 
@@ -123,6 +124,9 @@ void StrandEngine::Impl::uploadBend(gpu::CommandList& list, float h) {
             std::vector<float> all = planesOfBatch(*shape, batch, bend.planes, planes);
             all.resize(std::size_t{batch.shape.points} * batch.slots);
             list.updateBuffer(batch.bend, 0, bytesOfVector(all));
+        } else if (batch.key.bend == 2 && batch.key.shape.storage == StrandStorage::lanes) {
+            list.updateBuffer(batch.bend, 0,
+                              bytesOfVector(reducedBend(*shape, batch, run.settings.clampedPoints, bend)));
         } else if (batch.key.bend == 2) {
             // Planes are stiffness, inverse diagonal, lower1, lower2; the kernel has the stiffness last.
             constexpr std::array<std::size_t, 4> kFactors{1, 2, 3, 0};

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "core/groom/findings.h"
+#include "core/groom/point_dye.h"
 
 namespace hairloom {
 namespace {
@@ -11,8 +12,9 @@ struct KnownAttribute {
     std::string_view name;
     std::string_view type;
 };
-constexpr std::array<KnownAttribute, 4> kPointTypes = {{{attribute::kPosition, "float3"},
+constexpr std::array<KnownAttribute, 5> kPointTypes = {{{attribute::kPosition, "float3"},
                                                         {attribute::kRadius, "float"},
+                                                        {attribute::kPointDye, "float"},
                                                         {attribute::kPointColour, "float3"},
                                                         {attribute::kTransparency, "float"}}};
 constexpr std::array<KnownAttribute, 12> kStrandTypes = {{{attribute::kRootTriangle, "uint32"},

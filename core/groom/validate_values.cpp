@@ -4,6 +4,7 @@
 
 #include "core/geometry/curve.h"
 #include "core/groom/findings.h"
+#include "core/groom/point_dye.h"
 
 namespace hairloom {
 namespace {
@@ -107,6 +108,12 @@ void findDye(const Groom& groom, std::vector<Finding>& findings) {
     Places places;
     for (std::size_t s = 0; s < mask.size(); ++s) {
         if (!(mask[s] >= 0 && mask[s] <= 1)) places.strand(s);
+    }
+    const auto points = groom.pointAttributes.view<float>(attribute::kPointDye);
+    const auto isShare = [](float value) { return value >= 0 && value <= 1; };
+    for (std::size_t s = 0; s < groom.strandCount() && !points.empty(); ++s) {
+        const std::size_t count = groom.offsets[s + 1] - groom.offsets[s];
+        if (!std::ranges::all_of(points.subspan(groom.offsets[s], count), isShare)) places.strand(s);
     }
     places.report(findings, Severity::Error, "the mask of the dye is not from 0 to 1",
                   "dye the strands again");

@@ -127,23 +127,30 @@ Status uploadBatch(gpu::Device& device, const RenderStrands& strands, std::size_
         header.source = static_cast<std::uint32_t>(i);
         header.streak = strands.streaks.empty() ? 0 : strands.streaks[i];
         header.dye = strands.dyes.empty() ? 0 : strands.dyes[i];
+        header.hasPointDyes = strands.pointDyes.empty() ? 0 : 1;
         headers.push_back(header);
         batch.segmentsBefore.push_back(header.segmentsBefore + header.pointCount - 1);
     }
     if (headers.empty()) return {};
     const std::size_t some = std::min(headers.size(), kSomeStrands);
     auto& someStrands = groups[group].someStrands;
-    someStrands.insert(someStrands.end(), headers.begin(),
-                       headers.begin() + static_cast<std::ptrdiff_t>(some));
+    for (std::size_t i = 0; i < some; ++i) {
+        someStrands.push_back(headers[i]);
+        someStrands.back().firstPoint += static_cast<std::uint32_t>(batch.firstPoint);
+    }
     const std::vector<float> none(1, 0.0f);
     const auto radii = strands.radii.empty() ? std::span<const float>(none)
                                              : strands.radii.subspan(batch.firstPoint, batch.pointCount);
+    const auto dyes = strands.pointDyes.empty()
+                          ? std::span<const float>(none)
+                          : strands.pointDyes.subspan(batch.firstPoint, batch.pointCount);
     Gather gather;
     gather(batch.headers, structured(device, "strands", sizeof(shaders::StrandHeader), bytes(headers)));
     gather(batch.positions,
            structured(device, "strand points", 4,
                       std::as_bytes(strands.positions_ws.subspan(batch.firstPoint, batch.pointCount))));
     gather(batch.radii, structured(device, "strand radii", 4, std::as_bytes(radii)));
+    gather(batch.pointDyes, structured(device, "strand dyes", 4, std::as_bytes(dyes)));
     if (!gather.status()) return gather.status();
     batches.push_back(std::move(batch));
     return {};
@@ -169,6 +176,16 @@ Status uploadStrands(gpu::Device& device, const RenderStrands& strands, std::siz
     return count > first ? uploadBatch(device, strands, group, first, count, groups, batches) : Status{};
 }
 
+void takeMeanDyes(StrandGroup& group, std::span<const float> pointDyes) {
+    group.someDyes.assign(group.someStrands.size(), 1.0f);
+    for (std::size_t i = 0; i < group.someStrands.size() && !pointDyes.empty(); ++i) {
+        const shaders::StrandHeader& strand = group.someStrands[i];
+        float sum = 0;
+        for (const float dye : pointDyes.subspan(strand.firstPoint, strand.pointCount)) sum += dye;
+        group.someDyes[i] = sum / static_cast<float>(strand.pointCount);
+    }
+}
+
 /// About kSampleSize points, spread over all strands.
 std::vector<std::uint32_t> samplePoints(std::size_t points) {
     constexpr std::size_t kSampleSize = 1u << 16u;
@@ -183,6 +200,11 @@ void takeSample(StrandGroup& group, std::span<const Vec3f> positions_ws) {
     group.sample_ws.resize(group.sampled.size());
     std::ranges::transform(group.sampled, group.sample_ws.begin(),
                            [&](std::uint32_t i) { return positions_ws[i]; });
+}
+
+bool needsFibre(const StrandGroup& group) {
+    return !group.material.tubes &&
+           !(group.hasFibre && group.fibre.isFor(group.material.fibre, group.material.look.has_value()));
 }
 
 }  // namespace
@@ -210,6 +232,7 @@ Result<DeviceScene> DeviceScene::upload(gpu::Device& device, const RenderScene& 
         group.strandCount = strands.offsets.empty() ? 0 : strands.offsets.size() - 1;
         group.pointCount = strands.positions_ws.size();
         group.hasRadii = !strands.radii.empty();
+        group.hasPointDyes = !strands.pointDyes.empty();
         for (const Vec3f& p : strands.positions_ws) group.bounds_ws.extend(p);
         group.sampled = samplePoints(group.pointCount);
         takeSample(group, strands.positions_ws);
@@ -217,6 +240,7 @@ Result<DeviceScene> DeviceScene::upload(gpu::Device& device, const RenderScene& 
         if (auto status = uploadStrands(device, strands, i, result.groups, result.batches); !status) {
             return tl::unexpected(status.error());
         }
+        takeMeanDyes(result.groups.back(), strands.pointDyes);
     }
     result.measureSpace(scene);
     return result;
@@ -260,6 +284,19 @@ Status DeviceScene::replaceStrands(std::size_t group, std::span<const Vec3f> pos
     return {};
 }
 
+Status DeviceScene::replacePointDyes(std::size_t group, std::span<const float> dyes) {
+    if (group >= groups.size()) return fail(fmt::format("group {} of {} of strands", group, groups.size()));
+    StrandGroup& g = groups[group];
+    if (!g.hasPointDyes || dyes.size() != g.pointCount) {
+        return fail(
+            fmt::format("{} shares of dye for strands", dyes.size()),
+            fmt::format("{}, as they have points with such shares", g.hasPointDyes ? g.pointCount : 0));
+    }
+    g.pointDyes.assign(dyes.begin(), dyes.end());
+    takeMeanDyes(g, dyes);
+    return {};
+}
+
 Status DeviceScene::replaceStrands(std::size_t group, gpu::BufferPtr positions_ws,
                                    std::uint32_t floatsPerPoint, const Box3f& bounds_ws) {
     if (group >= groups.size()) return fail(fmt::format("group {} of {} of strands", group, groups.size()));
@@ -286,16 +323,35 @@ Status DeviceScene::replaceStrands(std::size_t group, gpu::BufferPtr positions_w
     return {};
 }
 
-Status DeviceScene::prepareFibres(gpu::Device& device) {
+Result<bool> DeviceScene::prepareFibres(gpu::Device& device, bool behind) {
+    bool areNew = false;
+    const auto use = [&](StrandGroup& group, FibreTables tables) -> Status {
+        if (auto status = tables.upload(device); !status) return status;
+        group.fibre = std::move(tables);
+        group.hasFibre = areNew = true;
+        return {};
+    };
     for (StrandGroup& group : groups) {
-        if (group.material.tubes) continue;
-        const bool varies = group.material.look.has_value();
-        if (group.fibre.isFor(group.material.fibre, varies)) continue;
-        auto made = FibreTables::make(device, group.material.fibre, varies);
-        if (!made) return tl::unexpected(made.error());
-        group.fibre = std::move(*made);
+        auto baked = group.bake.take();
+        if (!needsFibre(group)) continue;
+        // While a control moves these are of a moment ago, and nearer to what is wished than older ones.
+        if (baked && baked->hasShaderFor(group.material)) {
+            if (auto status = use(group, std::move(*baked)); !status) return tl::unexpected(status.error());
+            if (!needsFibre(group)) continue;
+        }
+        if (behind && group.hasFibre && group.fibre.hasShaderFor(group.material)) {
+            if (!group.bake.isUnderWay())
+                group.bake.start(group.material.fibre, group.material.look.has_value());
+            continue;
+        }
+        auto status = use(group, FibreTables::bake(group.material.fibre, group.material.look.has_value()));
+        if (!status) return tl::unexpected(status.error());
     }
-    return {};
+    return areNew;
+}
+
+bool DeviceScene::awaitsFibres() const {
+    return std::ranges::any_of(groups, needsFibre);
 }
 
 void DeviceScene::recordUploads(gpu::CommandList& list) {
@@ -305,16 +361,18 @@ void DeviceScene::recordUploads(gpu::CommandList& list) {
         list.updateBuffer(mesh.normals, 0, bytes(mesh.normals_ws));
         mesh.positions_ws.clear();
     }
-    for (std::size_t i = 0; i < groups.size(); ++i) {
-        StrandGroup& group = groups[i];
-        if (group.positions_ws.empty()) continue;
-        const std::span<const Vec3f> all(group.positions_ws);
-        for (const StrandBatch& batch : batches) {
-            if (batch.group != i) continue;
-            list.updateBuffer(batch.positions, 0,
-                              std::as_bytes(all.subspan(batch.firstPoint, batch.pointCount)));
-        }
+    for (const StrandBatch& batch : batches) {
+        const StrandGroup& group = groups[batch.group];
+        const auto update = [&](const gpu::BufferPtr& buffer, auto all) {
+            if (all.empty()) return;
+            list.updateBuffer(buffer, 0, std::as_bytes(all.subspan(batch.firstPoint, batch.pointCount)));
+        };
+        update(batch.positions, std::span<const Vec3f>(group.positions_ws));
+        update(batch.pointDyes, std::span<const float>(group.pointDyes));
+    }
+    for (StrandGroup& group : groups) {
         group.positions_ws.clear();
+        group.pointDyes.clear();
     }
 }
 

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "core/gpu/device.h"
-#include "core/render/fibre_tables.h"
+#include "core/render/fibre_bake.h"
 #include "core/render/scene.h"
 #include "shaders/shared/render_types.h"
 
@@ -31,8 +31,9 @@ struct StrandBatch {
     std::size_t pointCount = 0;
     std::vector<std::uint32_t>
         segmentsBefore;  ///< each strand, as given, in the order of drawing; then of all
-    gpu::BufferPtr headers, positions, radii;
+    gpu::BufferPtr headers, positions, radii, pointDyes;
     gpu::BufferPtr curve, colour;                     ///< hold what `curveSubdivisions` calls for
+    gpu::BufferPtr litColour;                         ///< the same without shadows, once it was asked for
     std::map<std::uint32_t, gpu::BufferPtr> indices;  ///< of the ribbons, by subdivisions
     gpu::BufferPtr patches;                           ///< of tessellated ribbons, once these were asked for
     std::vector<std::uint32_t> patchesBefore;         ///< each strand; then of all
@@ -51,10 +52,14 @@ struct StrandBatch {
 /// Strands of one material.
 struct StrandGroup {
     HairMaterial material;
-    FibreTables fibre;            ///< of the material, once they were asked for
+    FibreTables fibre;  ///< of the material, once they were asked for
+    bool hasFibre = false;
+    FibreBake bake;               ///< of tables that shall take their place
     std::size_t strandCount = 0;  ///< also those too short to be drawn
     std::size_t pointCount = 0;
     bool hasRadii = false;
+    bool hasPointDyes = false;
+    std::vector<float> pointDyes;      ///< waiting for their upload
     std::vector<Vec3f> positions_ws;   ///< waiting for their upload
     gpu::BufferPtr devicePositions;    ///< in place of the batches' own: particle * strandCount + strand
     std::uint32_t floatsPerPoint = 3;  ///< of devicePositions: 3 or 4
@@ -64,7 +69,9 @@ struct StrandGroup {
     double ownRadius = 0;                ///< metres, mean along the strands, where points have their own
     std::vector<Vec3f> sample_ws;        ///< points that lights are fitted to
     std::vector<std::uint32_t> sampled;  ///< their places among the group's points
-    std::vector<shaders::StrandHeader> someStrands;  ///< by chance, for means of the look
+    std::vector<shaders::StrandHeader>
+        someStrands;              ///< by chance, for means of the look; points of the group
+    std::vector<float> someDyes;  ///< of these, mean of what their points have of the dye
 };
 
 /// How hair fills space, measured where the strands stood when they were set.
@@ -93,13 +100,18 @@ class DeviceScene {
     Status replaceMesh(std::size_t mesh, std::span<const Vec3f> positions_ws,
                        std::span<const Vec3f> normals_ws);
     Status replaceStrands(std::size_t group, std::span<const Vec3f> positions_ws);
+    Status replacePointDyes(std::size_t group, std::span<const float> dyes);
     Status replaceStrands(std::size_t group, gpu::BufferPtr positions_ws, std::uint32_t floatsPerPoint,
                           const Box3f& bounds_ws);
 
-    /// Makes room for curves of that fineness; nothing happens when there is.
-    Status prepareCurves(gpu::Device& device, std::uint32_t subdivisions);
-    /// Bakes the tables of materials that have changed.
-    Status prepareFibres(gpu::Device& device);
+    /// Makes room for curves of that fineness, `twice` for their light with shadows and without; nothing
+    /// happens when there is.
+    Status prepareCurves(gpu::Device& device, std::uint32_t subdivisions, bool twice = false);
+    /// Bakes the tables of materials that have changed. `behind`: on another thread, while those that are
+    /// there serve; only where there are some and hair varies in both or in neither. True: tables are new.
+    Result<bool> prepareFibres(gpu::Device& device, bool behind);
+    /// Tables of materials as they are now are still to come.
+    bool awaitsFibres() const;
     /// Makes the patches of tessellated ribbons; nothing happens when they are there.
     Status preparePatches(gpu::Device& device);
     /// Records the uploads that wait.

@@ -13,14 +13,12 @@ namespace {
 constexpr std::uint32_t kLongitudinal = 11;
 constexpr std::uint32_t kAzimuthal = 12;
 constexpr std::uint32_t kSecondAzimuthal = 13;
-constexpr std::uint32_t kSpread = 14;
+constexpr std::uint32_t kProfile = 14;
 constexpr std::uint32_t kAverages = 15;
 constexpr std::uint32_t kSpreadFactors = 16;
-/// Of light in evenly lit hair, the part that a fibre has scattered and that meets another: with it 1/(1 −
-/// 0.84 a) is within 4 % what a path tracer finds for blond, brown and black hair under a white sky.
-constexpr double kMeetsAgain = 0.84;
+constexpr std::uint32_t kSky = 17;
 
-Result<gpu::TexturePtr> upload(gpu::Device& device, const char* name, const shading::Table& table) {
+Result<gpu::TexturePtr> textureOf(gpu::Device& device, const char* name, const shading::Table& table) {
     std::vector<Eigen::half> halves;
     halves.reserve(table.rgba.size());
     for (const float value : table.rgba) halves.emplace_back(std::min(value, 65000.0f));
@@ -38,35 +36,28 @@ shaders::float4 toFloat4(const Vec3d& v) {
 }
 
 /// In single scattering what meets a fibre is lost.
-HairFlux fluxOf(const FibreMaterial& material, const AverageShares& shares) {
-    HairFlux flux{Vec3f::Ones(), Vec3f::Zero(), material.clumping, true};
+HairFlux fluxOf(const FibreMaterial& material, const shading::AverageScattering& across) {
+    HairFlux flux{Vec3f::Zero(), Vec3f::Zero(), Vec3f::Zero(), material.clumping, true};
     if (material.scattering == Scattering::single) return flux;
-    for (int c = 0; c < 3; ++c) {
-        const double lost = 1 - shares.forward[c];
-        const double rate = std::sqrt(std::max(lost * lost - shares.backward[c] * shares.backward[c], 1e-6));
-        flux.rate[c] = static_cast<float>(rate);
-        flux.returned[c] = static_cast<float>(shares.backward[c] / (lost + rate));
-    }
+    flux.scattered = (across.forward + across.backward).cast<float>();
+    flux.first = across.first.cast<float>();
+    flux.second = across.second.cast<float>();
     return flux;
 }
 
-/// The two-flux equations are linear in the shares: those of fibres that lie mixed are the mean.
-AverageShares meanShares(const shading::Table& averages, std::span<const Vec3d> absorptions) {
-    AverageShares sum;
+/// Fibres of several absorptions that lie mixed: light obeys the mean of what they do to it.
+shading::AverageScattering meanScattering(const shading::Table& averages,
+                                          std::span<const Vec3d> absorptions) {
+    shading::AverageScattering sum;
+    const double part = 1 / static_cast<double>(absorptions.size());
     for (const Vec3d& absorption : absorptions) {
-        for (int c = 0; c < 3; ++c) {
-            const shading::LayerShares one = shading::sharesAcross(averages, absorption[c]);
-            sum.forward[c] += one.forward;
-            sum.backward[c] += one.backward;
-        }
+        const shading::AverageScattering one = shading::scatteringAcross(averages, absorption);
+        sum.forward += part * one.forward;
+        sum.backward += part * one.backward;
+        sum.first += part * one.first;
+        sum.second += part * one.second;
     }
-    const auto count = static_cast<double>(absorptions.size());
-    return {sum.forward / count, sum.backward / count};
-}
-
-/// The share of light from everywhere that leaves, with what other fibres scatter again.
-double withMeetings(double albedo) {
-    return albedo / (1 - kMeetsAgain * std::min(albedo, 1.0));
+    return sum;
 }
 
 /// With `varies` absorption colours Sadeghi's TT and TRT.
@@ -94,10 +85,10 @@ const shading::Table& spreadFactors() {
 
 }  // namespace
 
-/// Bakes what one material needs and remembers the first error.
+/// Bakes what one material needs.
 class FibreTables::Baker {
   public:
-    Baker(gpu::Device& device, FibreTables& result) : device_(device), result_(result) {}
+    explicit Baker(FibreTables& result) : result_(result) {}
 
     void even() {
         if (material().model == ShadingModel::marschner) {
@@ -132,77 +123,81 @@ class FibreTables::Baker {
         }
     }
 
-    const Status& status() const { return status_; }
-
   private:
     const FibreMaterial& material() const { return result_.material_; }
     bool isDual() const { return result_.material_.scattering == Scattering::dual; }
     void add(std::uint32_t slot, const char* name, const shading::Table& table) {
-        auto texture = upload(device_, name, table);
-        if (texture) {
-            result_.textures_.push_back({slot, std::move(*texture)});
-        } else if (status_) {
-            status_ = tl::unexpected(texture.error());
-        }
+        result_.waiting_.push_back({slot, name, table});
     }
     void evenDual(const shading::DualScattering& dual) {
-        Vec3d ambient = dual.meanAlbedo();
+        add(kSky, "light from around", shading::bakeSky(dual));
         if (isDual()) {
             const shading::DualTables tables = shading::bakeDual(dual);
-            add(kSpread, "spread scattering", tables.spread);
+            add(kProfile, "azimuthal scattering of all lobes", tables.profile);
             add(kAverages, "average scattering", tables.averages);
             add(kSpreadFactors, "wide lobes", spreadFactors());
-            ambient = ambient.unaryExpr([](double albedo) { return withMeetings(albedo); });
         }
-        result_.constants_.ambient = toFloat4(ambient);
-        const shading::AverageScattering across = dual.at(0).average;
-        result_.shares_ = {across.forward, across.backward};
+        result_.across_ = dual.at(0).average;
     }
     void dualLayers(shading::DualLayers layers) {
+        add(kSky, "light from around by absorption", layers.sky);
         if (isDual()) {
-            add(kSpread, "spread scattering by absorption", layers.spread);
+            add(kProfile, "azimuthal scattering of all lobes by absorption", layers.profile);
+            add(kAverages, "average scattering by absorption", layers.averages);
             add(kSpreadFactors, "wide lobes", spreadFactors());
-            for (std::uint32_t layer = 0; layer < shading::kAbsorptionLayers; ++layer) {
-                for (std::uint32_t x = 0; x < layers.averages.width; ++x) {
-                    float& ambient = layers.averages.texel(x, 2 * layer + 1)[2];
-                    ambient = static_cast<float>(withMeetings(static_cast<double>(ambient)));
-                }
-            }
         }
-        add(kAverages, "average scattering by absorption", layers.averages);
         const Vec3d own = material().marschner.azimuthal.absorption;
-        result_.shares_ = meanShares(layers.averages, std::span(&own, 1));
+        result_.across_ = meanScattering(layers.averages, std::span(&own, 1));
         result_.averages_ = std::move(layers.averages);
     }
 
-    gpu::Device& device_;
     FibreTables& result_;
-    Status status_;
 };
 
-Result<FibreTables> FibreTables::make(gpu::Device& device, const FibreMaterial& material, bool varies) {
+FibreTables FibreTables::bake(const FibreMaterial& material, bool varies) {
     FibreTables result;
     result.material_ = material;
     result.varies_ = varies;
     if (material.model == ShadingModel::kajiya) return result;
     result.constants_ = constantsOf(material, varies);
-    Baker baker(device, result);
+    Baker baker(result);
     if (varies) {
         baker.layers();
     } else {
         baker.even();
     }
-    if (!baker.status()) return tl::unexpected(baker.status().error());
+    return result;
+}
+
+Status FibreTables::upload(gpu::Device& device) {
+    if (waiting_.empty()) return {};
+    for (const Waiting& waiting : waiting_) {
+        auto texture = textureOf(device, waiting.name, waiting.table);
+        if (!texture) return tl::unexpected(texture.error());
+        textures_.push_back({waiting.slot, std::move(*texture)});
+    }
+    waiting_.clear();
     auto sampler = device.createSampler({});
     if (!sampler) return tl::unexpected(sampler.error());
-    result.sampler_ = std::move(*sampler);
+    sampler_ = std::move(*sampler);
+    return {};
+}
+
+Result<FibreTables> FibreTables::make(gpu::Device& device, const FibreMaterial& material, bool varies) {
+    FibreTables result = bake(material, varies);
+    if (auto status = result.upload(device); !status) return tl::unexpected(status.error());
     return result;
+}
+
+bool FibreTables::hasShaderFor(const HairMaterial& material) const {
+    return varies_ == material.look.has_value() && material_.model == material.fibre.model &&
+           material_.scattering == material.fibre.scattering;
 }
 
 HairFlux FibreTables::flux(std::span<const Vec3d> absorptions) const {
     if (material_.model == ShadingModel::kajiya) return {};
     const bool own = absorptions.empty() || averages_.rgba.empty();
-    return fluxOf(material_, own ? shares_ : meanShares(averages_, absorptions));
+    return fluxOf(material_, own ? across_ : meanScattering(averages_, absorptions));
 }
 
 const char* FibreTables::shader() const {

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "core/gpu/device.h"
-#include "core/render/fibre_material.h"
+#include "core/render/scene.h"
 #include "core/shading/tables.h"
 #include "shaders/shared/render_types.h"
 
@@ -13,15 +13,13 @@ namespace hairloom::render {
 
 /// How light sinks through hair to the skin; that of Kajiya-Kay is an artist's.
 struct HairFlux {
-    Vec3f rate = Vec3f::Constant(0.5f);  ///< the logarithm of what a fibre takes, linear RGB
-    Vec3f returned = Vec3f::Zero();      ///< share that hair without end sends back
-    float clumping = 1;                  ///< see FibreMaterial
-    bool direct = false;  ///< what has met no fibre is known by itself, as shadow maps resolve it
-};
-
-/// Of light across the fibres that meets one, the shares that it sends on and back, RGB.
-struct AverageShares {
-    Vec3d forward = Vec3d::Zero(), backward = Vec3d::Zero();
+    /// What a fibre scatters, and the moments of it (AverageScattering); of Kajiya-Kay the logarithm of what
+    /// it takes. Linear RGB.
+    Vec3f scattered = Vec3f::Constant(0.5f);
+    Vec3f first = Vec3f::Zero(), second = Vec3f::Zero();
+    float clumping = 1;  ///< see FibreMaterial
+    /// False for Kajiya-Kay; else what has met no fibre is known by itself, as shadow maps resolve it.
+    bool ofFibres = false;
 };
 
 /// Only what the model needs is made: none for Kajiya-Kay, those of dual scattering where it is on, several
@@ -30,10 +28,15 @@ class FibreTables {
   public:
     /// Bakes on all cores and leaves the upload to the device: nothing waits.
     static Result<FibreTables> make(gpu::Device& device, const FibreMaterial& material, bool varies = false);
+    /// The same in two steps, of which the first needs no device: on any thread.
+    static FibreTables bake(const FibreMaterial& material, bool varies);
+    Status upload(gpu::Device& device);
 
     bool isFor(const FibreMaterial& material, bool varies) const {
         return varies_ == varies && material_ == material;
     }
+    /// Of the same kinds of tables, though perhaps of other numbers.
+    bool hasShaderFor(const HairMaterial& material) const;
     /// The compute shader that shades with this material.
     const char* shader() const;
     /// Tables and constants, registers b1, s0 and from t11 on; nothing for Kajiya-Kay.
@@ -50,13 +53,19 @@ class FibreTables {
         std::uint32_t slot;
         gpu::TexturePtr texture;
     };
+    struct Waiting {
+        std::uint32_t slot;
+        const char* name;
+        shading::Table table;
+    };
     class Baker;
 
     FibreMaterial material_;
     bool varies_ = false;
     shaders::FibreConstants constants_;
-    AverageShares shares_;     ///< of the material's own absorption
-    shading::Table averages_;  ///< shading::DualLayers::averages, where tables hold several absorptions
+    shading::AverageScattering across_;  ///< of the material's own absorption
+    shading::Table averages_;       ///< shading::DualLayers::averages, where tables hold several absorptions
+    std::vector<Waiting> waiting_;  ///< for their upload
     std::vector<Bound> textures_;
     gpu::SamplerPtr sampler_;
 };

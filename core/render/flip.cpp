@@ -172,12 +172,14 @@ struct FeatureFilter {
 
 Plane<double> filtered(const Plane<double>& image, const std::vector<double>& weights, int dx, int dy) {
     Plane<double> result(image.width, image.height, 0.0);
-    const int radius = static_cast<int>(weights.size() / 2);
+    const int count = static_cast<int>(weights.size()), radius = count / 2;
     forRows(image.height, [&](int y) {
         for (int x = 0; x < image.width; ++x) {
             double sum = 0;
-            for (int k = -radius; k <= radius; ++k)
-                sum += weights[static_cast<std::size_t>(k + radius)] * image.at(x + k * dx, y + k * dy);
+            for (int k = 0; k < count; ++k) {
+                const int off = k - radius;
+                sum += weights[static_cast<std::size_t>(k)] * image.at(x + off * dx, y + off * dy);
+            }
             result.values[image.place(x, y)] = sum;
         }
     });

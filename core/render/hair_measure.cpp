@@ -27,17 +27,18 @@ std::vector<Vec3d> absorptionsOf(const StrandGroup& group) {
     std::vector<Vec3d> absorptions;
     if (!group.material.look) return absorptions;
     const auto count = static_cast<double>(group.someStrands.size());
-    for (const shaders::StrandHeader& strand : group.someStrands) {
+    for (std::size_t s = 0; s < group.someStrands.size(); ++s) {
+        const shaders::StrandHeader& strand = group.someStrands[s];
         const Vec3d own = Vec3f(strand.albedo.x, strand.albedo.y, strand.albedo.z).cast<double>();
         for (int i = 0; i < kPlaces; ++i) {
             // Strands stand in an order of chance: even steps of the random number are its spread.
-            const double random = (static_cast<double>(absorptions.size() / kPlaces) + 0.5) / count;
-            absorptions.push_back(
-                shading::lookAt(*group.material.look, {.along = (i + 0.5) / kPlaces,
-                                                       .random = random,
-                                                       .streak = static_cast<double>(strand.streak),
-                                                       .dye = static_cast<double>(strand.dye),
-                                                       .ownColour = strand.albedo.w > 0 ? &own : nullptr}));
+            const double random = (static_cast<double>(s) + 0.5) / count;
+            absorptions.push_back(shading::lookAt(*group.material.look,
+                                                  {.along = (i + 0.5) / kPlaces,
+                                                   .random = random,
+                                                   .streak = static_cast<double>(strand.streak),
+                                                   .dye = static_cast<double>(strand.dye * group.someDyes[s]),
+                                                   .ownColour = strand.albedo.w > 0 ? &own : nullptr}));
         }
     }
     return absorptions;

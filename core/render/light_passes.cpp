@@ -77,7 +77,7 @@ shaders::LightConstants lightConstants(const RendererState& state, std::size_t i
     const float distance =
         light.kind == LightKind::point ? view.nearPlane + view.hairStart + 0.5f * view.hairRange : 1.0f;
     const float texel = view.spread * distance / size;
-    c.filtering = {resolvedClumps(texel), texel, 0, 0};
+    c.filtering = {resolvedClumps(texel), texel, state.options.headAbsorption, 0};
     return c;
 }
 
@@ -180,6 +180,34 @@ shaders::CurveConstants curveConstants(const RendererState& state, const StrandB
     return c;
 }
 
+/// A linear function of direction is known by its values along some: the least one that has them, damped
+/// where lights stand close together, is a sum of these vectors times the values.
+void lookAround(const RendererState& state, shaders::ShadeConstants& shade) {
+    constexpr float kDamping = 0.05f;
+    std::vector<std::size_t> known;
+    for (std::size_t i = 0; i < state.lights.size(); ++i) {
+        if (castsShadow(state, i) && !state.scene.batches.empty()) known.push_back(i);
+    }
+    if (known.empty()) return;
+    const auto count = static_cast<Eigen::Index>(known.size());
+    Eigen::MatrixXf directions(count, 3);
+    for (Eigen::Index i = 0; i < count; ++i) {
+        const Light& light = state.lights[known[static_cast<std::size_t>(i)]];
+        const Vec3f towards = light.kind == LightKind::point
+                                  ? Vec3f(light.position_ws - state.scene.hairBounds().center())
+                                  : light.toLight_ws;
+        directions.row(i) = towards.stableNormalized().transpose();
+    }
+    const Eigen::MatrixXf overlap =
+        directions * directions.transpose() + kDamping * Eigen::MatrixXf::Identity(count, count);
+    const Eigen::MatrixXf around = (1 + kDamping) * directions.transpose() * overlap.inverse();
+    for (Eigen::Index i = 0; i < count; ++i) {
+        const Vec3f vector = around.col(i);
+        shade.lights[known[static_cast<std::size_t>(i)]].around =
+            toShader(vector, 1 / static_cast<float>(count));
+    }
+}
+
 }  // namespace
 
 void setUpLights(RendererState& state) {
@@ -200,14 +228,22 @@ void setUpLights(RendererState& state) {
     }
     shade.ground = toShader(state.scene.groundAlbedo(), 0);
     const HairFlux flux = state.scene.flux();
-    shade.sinking = toShader(flux.rate, flux.clumping);
-    shade.returning = toShader(flux.returned, flux.direct ? 1.0f : 0.0f);
+    shade.sinking = toShader(flux.scattered, flux.clumping);
+    shade.turning = toShader(flux.first, flux.ofFibres ? 1.0f : 0.0f);
+    shade.straight = toShader(flux.second, 0);
     shade.counts.y = static_cast<std::uint32_t>(state.lights.size());
     for (std::size_t i = 0; i < state.lights.size(); ++i) shade.lights[i] = lightConstants(state, i);
+    lookAround(state, shade);
+}
+
+shaders::ShadeConstants lightsOfFrame(const RendererState& state) {
+    shaders::ShadeConstants c = state.shade;
+    for (shaders::LightConstants& light : c.lights) light.filtering.w = state.lit ? 1.0f : 0.0f;
+    return c;
 }
 
 shaders::ShadeConstants shadeConstants(const RendererState& state, const HairMaterial& m) {
-    shaders::ShadeConstants c = state.shade;
+    shaders::ShadeConstants c = lightsOfFrame(state);
     const auto normalisation = [](float exponent) {
         return static_cast<float>(1 / (static_cast<double>(kPi) * shading::kajiyaReflectance(exponent)));
     };
@@ -268,7 +304,10 @@ void recordShading(gpu::CommandList& list, RendererState& state) {
         const char* const tube = group.material.look ? "tube_albedo_look.comp" : "tube_albedo.comp";
         list.setPipeline(state.pipelines.compute(group.material.tubes ? tube : group.fibre.shader()));
         if (!group.material.tubes) group.fibre.bind(list);
-        if (group.material.look) list.setConstants(2, gpu::bytesOf(lookConstants(*group.material.look)));
+        if (group.material.look) {
+            list.setConstants(2, gpu::bytesOf(lookConstants(*group.material.look)));
+            bind(list, {Binding::read(2, batch.pointDyes)});
+        }
         auto constants = shadeConstants(state, group.material);
         const std::uint32_t points =
             batch.curvePoints(batch.strandCount(state.detail), state.detail.subdivisions);
@@ -276,7 +315,7 @@ void recordShading(gpu::CommandList& list, RendererState& state) {
         constants.counts = {points, constants.counts.y, rows.threads(), 0};
         list.setConstants(0, gpu::bytesOf(constants));
         bind(list, {Binding::read(0, batch.curve), Binding::read(1, batch.headers),
-                    Binding::write(0, batch.colour)});
+                    Binding::write(0, state.colourOf(batch))});
         list.dispatch(rows.groups, rows.rows);
     }
     list.endPass();

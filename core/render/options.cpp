@@ -23,6 +23,13 @@ Status check(const RenderOptions& o, const gpu::DeviceInfo& device) {
     if (o.shadowResolution < 64 || o.shadowResolution > 4096 || o.shadowResolution * kMaxLights > limit) {
         return fail(fmt::format("a shadow map of {} pixels", o.shadowResolution), "64 to 4096");
     }
+    if (!(o.headAbsorption >= 0 && o.headAbsorption <= kMostHeadAbsorption)) {
+        return fail(fmt::format("an absorption behind the head of {} per metre", o.headAbsorption),
+                    "0 to 10000");
+    }
+    if (!(o.shadowBlur >= 0 && o.shadowBlur <= kMostShadowBlur)) {
+        return fail(fmt::format("shadows blurred by {} pixels", o.shadowBlur), "0 to 32");
+    }
     if (!(o.detail >= 0 && o.detail <= 100)) return fail("a detail outside 0 to 100 pixels");
     if (o.ribbons == Ribbons::tessellated && !device.tessellation) {
         return fail("tessellated ribbons on " + device.name, "a device with tessellation");

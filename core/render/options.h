@@ -46,17 +46,28 @@ struct RenderOptions {
     std::uint32_t subdivisions = 2;  ///< curve segments per segment of a strand, 1…64
     std::uint32_t shadowResolution = 1024;  ///< pixels of a light's square shadow map, 64…4096
     Shadows shadows = Shadows::deepOpacity;
+    /// Hair behind the head's first surface gets exp(−this · metres) of the light (thesis, 6.3), 1/m,
+    /// 0…10,000; 0: a test of depth, all or nothing.
+    float headAbsorption = 0;
+    /// Pixels, standard deviation, 0…32, by which shadows are blurred on the screen (thesis, 6.3); 0: not.
+    /// Everything is then drawn twice, with shadows and without.
+    float shadowBlur = 0;
     Ribbons ribbons = Ribbons::automatic;
     Transparency transparency = Transparency::stochastic;
     PostFilter filter = PostFilter::none;
     /// Hairs are left out and curves made coarser where a hair of mean width is thinner than this part of a
     /// pixel; those that stay are the wider. 0: all are drawn.
     float detail = 0;
+    /// Look-up tables of a material that has changed are baked on another thread, and frames show the old
+    /// ones until then: for pictures that must come in time. Renderer::isSettled() says when they are there.
+    bool bakeBehind = false;
     float exposure = 2;                  ///< factor before the tone curve
     bool transparentBackground = false;  ///< alpha is coverage; else 1 everywhere
 
     bool operator==(const RenderOptions&) const = default;
 };
+inline constexpr float kMostHeadAbsorption = 10'000;  ///< 1/m
+inline constexpr float kMostShadowBlur = 32;          ///< pixels
 inline constexpr std::uint64_t kMaxPixels = std::uint64_t{64} << 20u;
 
 /// Errors: a size or number out of its range, or something that this device lacks.

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From light to a picture: exposure, tone curve, and marks over it.
 #include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 
 #include "core/render/passes.h"
 
@@ -11,6 +13,7 @@ namespace {
 using gpu::Binding;
 
 constexpr std::uint64_t kLeastOverlayVertices = 256;
+constexpr float kBlurReach = 3;  // standard deviations that a Gaussian is cut off at
 
 /// The device turns linear values into sRGB itself when it writes into this format.
 bool encodesItself(gpu::Format format) {
@@ -96,6 +99,27 @@ bool OverlayOnDevice::needsDepth() const {
     return std::ranges::any_of(overlay.batches, [](const OverlayBatch& b) { return !b.onTop; });
 }
 
+void recordShadowBlur(gpu::CommandList& list, RendererState& state) {
+    const Targets& t = state.targets;
+    const float deviation = state.options.shadowBlur;
+    shaders::BlurConstants constants;
+    constants.size = {state.options.width, state.options.height, 0,
+                      static_cast<std::uint32_t>(std::ceil(kBlurReach * deviation))};
+    constants.kernel = {-0.5f / (deviation * deviation), 0, 0, 0};
+    list.beginPass({passName(Pass::shadowBlur), {}, {}});
+    list.setPipeline(state.pipelines.compute("shadow_blur.comp"));
+    for (const std::uint32_t direction : {0u, 1u}) {
+        const bool alongRows = direction == 0;
+        constants.size.z = direction;
+        list.setConstants(0, gpu::bytesOf(constants));
+        bind(list, {Binding::read(0, t[BufferId::sum]), Binding::read(1, t[BufferId::litSum]),
+                    Binding::read(2, t[alongRows ? BufferId::litSum : BufferId::blurHalfway]),
+                    Binding::write(0, t[alongRows ? BufferId::blurHalfway : BufferId::blurred])});
+        list.dispatch((state.options.width + 7) / 8, (state.options.height + 7) / 8);
+    }
+    list.endPass();
+}
+
 void recordPresent(gpu::CommandList& list, RendererState& state, std::uint32_t frames,
                    const gpu::TexturePtr& target) {
     const bool filter = state.plan.runs(Pass::filter);
@@ -108,7 +132,7 @@ void recordPresent(gpu::CommandList& list, RendererState& state, std::uint32_t f
                           encodesItself(shown->desc().format) ? 0.0f : 1.0f,
                           static_cast<float>(state.options.width)};
     list.setConstants(0, gpu::bytesOf(constants));
-    bind(list, {Binding::read(0, state.targets[BufferId::sum])});
+    bind(list, {Binding::read(0, state.result())});
     list.draw(3);
     list.endPass();
     if (filter) recordFilter(list, state, target);

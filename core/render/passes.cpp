@@ -90,7 +90,7 @@ void drawPatches(gpu::CommandList& list, const RendererState& state) {
                       kPixelsPerPiece, 0};
     for (const StrandBatch& batch : state.scene.batches) {
         if (state.scene.groups[batch.group].material.tubes) continue;
-        bind(list, {Binding::read(0, batch.curve), Binding::read(1, batch.colour),
+        bind(list, {Binding::read(0, batch.curve), Binding::read(1, state.colourOf(batch)),
                     Binding::read(2, batch.headers), Binding::read(3, batch.patches)});
         const std::uint32_t count = batch.patchesBefore[batch.strandCount(state.detail)];
         const std::uint32_t step = state.onCpu ? kPatchesPerDrawOnCpu : count;
@@ -140,7 +140,7 @@ void drawHeads(gpu::CommandList& list, RendererState& state, const Mat4f& clipFr
                                                .depthWrite = true,
                                                .samples = state.samples}));
     bindShadows(list, state);
-    list.setConstants(0, gpu::bytesOf(state.shade));
+    list.setConstants(0, gpu::bytesOf(lightsOfFrame(state)));
     for (const bool matte : {false, true}) {
         list.setConstants(1, gpu::bytesOf(meshConstants(clipFromWorld, matte)));
         drawMeshes(list, state, matte);
@@ -207,7 +207,7 @@ void drawStrips(gpu::CommandList& list, const RendererState& state, std::optiona
     const std::uint32_t subdivisions = state.detail.subdivisions;
     for (const StrandBatch& batch : state.scene.batches) {
         if (tubes && *tubes != state.scene.groups[batch.group].material.tubes) continue;
-        bind(list, {Binding::read(0, batch.curve), Binding::read(1, batch.colour)});
+        bind(list, {Binding::read(0, batch.curve), Binding::read(1, state.colourOf(batch))});
         list.setIndexBuffer(batch.indices.at(subdivisions));
         list.drawIndexed(batch.indexCount(batch.strandCount(state.detail), subdivisions));
     }
@@ -308,7 +308,7 @@ void recordFrame(gpu::CommandList& list, RendererState& state, std::uint32_t num
     const std::uint32_t height = state.options.height;
     constants.size = {width * height, width, 1, number == 0 ? 1u : 0u};
     list.setConstants(0, gpu::bytesOf(constants));
-    bind(list, {Binding::read(0, t.frame()), Binding::write(0, t[BufferId::sum])});
+    bind(list, {Binding::read(0, t.frame()), Binding::write(0, state.frames())});
     list.dispatch((width + 7) / 8, (height + 7) / 8);
     list.endPass();
 }

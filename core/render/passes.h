@@ -44,6 +44,8 @@ struct RendererState {
     /// Ends of the deep opacity layers behind the first hair, as parts of the depth that hair takes up.
     std::array<float, 3> deepLayers{0.04f, 0.14f, 1.0f};
     RenderPlan plan;
+    /// What is recorded is without shadows, for Pass::shadowBlur.
+    bool lit = false;
     bool onCpu;  ///< the device is a software rasteriser
     Targets targets;
     gpu::TexturePtr nothing;       ///< one pixel, bound where a texture is not there
@@ -53,6 +55,16 @@ struct RendererState {
     shaders::ShadeConstants shade;  ///< all but the material
 
     Box3f bounds() const;  ///< of all meshes and strands
+    /// Where the light of a batch's curve points is, with shadows or without.
+    const gpu::BufferPtr& colourOf(const StrandBatch& batch) const {
+        return lit ? batch.litColour : batch.colour;
+    }
+    /// Where frames add up, with shadows or without.
+    const gpu::BufferPtr& frames() const { return targets[lit ? BufferId::litSum : BufferId::sum]; }
+    /// What is shown: the sum of frames, or that with blurred shadows.
+    const gpu::BufferPtr& result() const {
+        return targets[plan.runs(Pass::shadowBlur) ? BufferId::blurred : BufferId::sum];
+    }
     const gpu::TexturePtr& orNothing(TargetId id) const { return targets[id] ? targets[id] : nothing; }
     const gpu::BufferPtr& orNothing(BufferId id) const { return targets[id] ? targets[id] : noWords; }
 };
@@ -60,6 +72,8 @@ struct RendererState {
 /// Views from the lights, and the constants that follow from camera and lights.
 void setUpLights(RendererState& state);
 shaders::ShadeConstants shadeConstants(const RendererState& state, const HairMaterial& material);
+/// Those of RendererState::shade, without shadows where it says so.
+shaders::ShadeConstants lightsOfFrame(const RendererState& state);
 shaders::LookConstants lookConstants(const shading::StrandLook& look);
 
 void recordCurves(gpu::CommandList& list, RendererState& state);
@@ -70,6 +84,8 @@ void recordRasterised(gpu::CommandList& list, RendererState& state, const Mat4f&
                       std::uint32_t number);
 /// One frame, moved by a part of a pixel, added to the sum.
 void recordFrame(gpu::CommandList& list, RendererState& state, std::uint32_t number);
+/// The sum of frames with shadows that are blurred on the screen.
+void recordShadowBlur(gpu::CommandList& list, RendererState& state);
 /// The average of `frames` frames, with exposure and tone curve.
 void recordPresent(gpu::CommandList& list, RendererState& state, std::uint32_t frames,
                    const gpu::TexturePtr& target);

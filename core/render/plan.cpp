@@ -29,6 +29,7 @@ class Planner {
     void pass(Pass which, bool on, std::string why) {
         plan_.passes[static_cast<std::size_t>(which)] = {on, std::move(why)};
     }
+    bool runs(Pass which) const { return plan_.runs(which); }
     void atlas(TargetId which, Format format, bool wanted, std::string why) {
         if (!wanted) return;
         const std::uint32_t size = options_.shadowResolution;
@@ -127,6 +128,7 @@ class Planner {
              options_.frames > 1 ? fmt::format("{} frames are averaged", options_.frames)
                                  : "the frame is kept in single precision");
         buffer(BufferId::sum, pixels(), 16, true, "sum of the frames");
+        planBlur();
         const bool filter = facts_.presents && options_.filter != PostFilter::none;
         pass(Pass::toneMap, facts_.presents,
              facts_.presents ? "exposure and tone curve" : "no target to show the picture in");
@@ -136,6 +138,19 @@ class Planner {
              : facts_.presents ? "no filter is chosen"
                                : "no target to show the picture in");
         picture(TargetId::shown, Format::Rgba8Unorm, 1, filter, "what the filter reads");
+    }
+
+    void planBlur() {
+        const bool shadows = runs(Pass::headDepth) || runs(Pass::firstHair) || runs(Pass::opacity);
+        const bool on = shadows && options_.shadowBlur > 0;
+        pass(Pass::shadowBlur, on,
+             on ? fmt::format("shadows are blurred by {} pixels; all is drawn twice, with them and without",
+                              options_.shadowBlur)
+             : shadows ? "shadows stay as they are"
+                       : "no shadows to blur");
+        buffer(BufferId::litSum, pixels(), 16, on, "sum of the frames without shadows");
+        buffer(BufferId::blurHalfway, 2 * pixels(), 16, on, "both sums, blurred along rows");
+        buffer(BufferId::blurred, pixels(), 16, on, "the sum with blurred shadows");
     }
 
     void planOverlay() {
@@ -161,9 +176,9 @@ class Planner {
 
 const char* passName(Pass pass) {
     constexpr std::array<const char*, kPassCount> kNames{
-        "curves",   "head depth", "first hair",    "opacity layers", "shade",
-        "nearest",  "draw",       "blend",         "composite",      "accumulate",
-        "tone map", "filter",     "overlay depth", "overlay",        "overlay on top"};
+        "curves", "head depth",    "first hair", "opacity layers", "shade",       "nearest",
+        "draw",   "blend",         "composite",  "accumulate",     "shadow blur", "tone map",
+        "filter", "overlay depth", "overlay",    "overlay on top"};
     return kNames[static_cast<std::size_t>(pass)];
 }
 
@@ -176,8 +191,9 @@ const char* targetName(TargetId target) {
 }
 
 const char* bufferName(BufferId buffer) {
-    constexpr std::array<const char*, kBufferCount> kNames{"first hair", "layer counts", "opacity layers",
-                                                           "nearest",    "light",        "sum"};
+    constexpr std::array<const char*, kBufferCount> kNames{
+        "first hair", "layer counts",        "opacity layers", "nearest", "light",
+        "sum",        "sum without shadows", "blur halfway",   "blurred"};
     return kNames[static_cast<std::size_t>(buffer)];
 }
 

@@ -26,6 +26,7 @@ enum class Pass {
     blend,      ///< hair over head, in any order
     composite,  ///< of the blended hair
     accumulate,
+    shadowBlur,  ///< on the screen
     toneMap,
     filter,
     overlayDepth,
@@ -59,8 +60,11 @@ enum class BufferId {
     nearest,      ///< depths of all samples as bits
     light,        ///< of all samples
     sum,          ///< of frames
+    litSum,       ///< the same without shadows, where these are blurred
+    blurHalfway,  ///< both, blurred along rows
+    blurred,      ///< in place of the sum
 };
-inline constexpr std::size_t kBufferCount = static_cast<std::size_t>(BufferId::sum) + 1;
+inline constexpr std::size_t kBufferCount = static_cast<std::size_t>(BufferId::blurred) + 1;
 const char* bufferName(BufferId buffer);
 
 /// What the plan looks at.

@@ -58,7 +58,7 @@ void dispatchMeshes(gpu::CommandList& list, RendererState& state, const Mat4f& c
     constexpr std::uint32_t kMostSlices = 64;
     list.setPipeline(state.pipelines.compute("mesh_raster.comp"));
     bindShadows(list, state);
-    list.setConstants(0, gpu::bytesOf(state.shade));
+    list.setConstants(0, gpu::bytesOf(lightsOfFrame(state)));
     shaders::RasterConstants raster = frameConstants(state, phase);
     for (const MeshOnDevice& mesh : state.scene.meshes) {
         const auto triangles = static_cast<std::uint32_t>(mesh.indices.size() / 3);
@@ -99,7 +99,7 @@ void recordResolve(gpu::CommandList& list, RendererState& state, std::uint32_t n
     list.setPipeline(state.pipelines.compute("resolve.comp"));
     list.setConstants(0, gpu::bytesOf(constants));
     bind(list, {Binding::read(0, t[BufferId::nearest]), Binding::read(1, t[BufferId::light]),
-                Binding::write(0, t[BufferId::sum])});
+                Binding::write(0, state.frames())});
     list.dispatch(rows.groups, rows.rows);
     list.endPass();
 }
@@ -135,7 +135,7 @@ void dispatchStrands(gpu::CommandList& list, const RendererState& state, shaders
         raster.numbers.x = points;
         raster.numbers.y = rows.threads();
         list.setConstants(2, gpu::bytesOf(raster));
-        bind(list, {Binding::read(0, batch.curve), Binding::read(1, batch.colour)});
+        bind(list, {Binding::read(0, batch.curve), Binding::read(1, state.colourOf(batch))});
         list.dispatch(rows.groups, rows.rows);
     }
 }

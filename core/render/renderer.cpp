@@ -36,6 +36,9 @@ Changes compare(const RenderOptions& before, const RenderOptions& now) {
     if (now.shadowResolution != before.shadowResolution || now.shadows != before.shadows) {
         changes.add(Changes::lights());
     }
+    if ((now.shadowBlur > 0) != (before.shadowBlur > 0) || now.headAbsorption != before.headAbsorption) {
+        changes.add(Changes::looks());
+    }
     changes.picture |= now.frames != before.frames ||
                        now.transparentBackground != before.transparentBackground ||
                        now.ribbons != before.ribbons || now.transparency != before.transparency;
@@ -49,6 +52,7 @@ struct Renderer::Parts {
     RendererState state;
     Changes changes;
     std::uint32_t accumulated = 0;
+    float blurredBy = 0;  ///< what Pass::shadowBlur was last recorded for; 0: other frames
 
     // What the plan was made for.
     bool planned = false;
@@ -63,6 +67,12 @@ struct Renderer::Parts {
     Status prepareHelpers();
     Status prepare(const RenderOptions& options, bool presents);
     void recordChanges(gpu::CommandList& list);
+    template <class Record>
+    void withoutShadows(Record record) {
+        state.lit = true;
+        record();
+        state.lit = false;
+    }
 };
 
 Renderer::Renderer(gpu::Device& device) : parts_(std::make_unique<Parts>(device)) {}
@@ -104,6 +114,12 @@ Status Renderer::setStrandPositions(std::size_t group, gpu::BufferPtr positions_
         parts_->state.scene.replaceStrands(group, std::move(positions_ws), floatsPerPoint, bounds_ws);
     if (!status) return status;
     parts_->changes.add(Changes::geometry());
+    return {};
+}
+
+Status Renderer::setPointDyes(std::size_t group, std::span<const float> dyes) {
+    if (auto status = parts_->state.scene.replacePointDyes(group, dyes); !status) return status;
+    parts_->changes.add(Changes::looks());
     return {};
 }
 
@@ -239,13 +255,15 @@ Status Renderer::Parts::prepare(const RenderOptions& options, bool presents) {
     const HairDetail detail = detailOf(state);
     if (detail != state.detail) changes.add(Changes::geometry());
     state.detail = detail;
-    if (auto status = state.scene.prepareFibres(device); !status) return status;
+    const auto newTables = state.scene.prepareFibres(device, options.bakeBehind);
+    if (!newTables) return tl::unexpected(newTables.error());
+    if (*newTables) changes.add(Changes::looks());
     if (auto status = prepareTargets(presents); !status) return status;
     if (auto status = prepareHelpers(); !status) return status;
     if (resolved.ribbons == Ribbons::tessellated) {
         if (auto status = state.scene.preparePatches(device); !status) return status;
     }
-    return state.scene.prepareCurves(device, detail.subdivisions);
+    return state.scene.prepareCurves(device, detail.subdivisions, state.plan.runs(Pass::shadowBlur));
 }
 
 void Renderer::Parts::recordChanges(gpu::CommandList& list) {
@@ -253,7 +271,10 @@ void Renderer::Parts::recordChanges(gpu::CommandList& list) {
     if (changes.shading) setUpLights(state);
     if (changes.curves && state.plan.runs(Pass::curves)) recordCurves(list, state);
     if (changes.shadows) recordShadowMaps(list, state);
-    if (changes.shading && state.plan.runs(Pass::shade)) recordShading(list, state);
+    if (changes.shading && state.plan.runs(Pass::shade)) {
+        recordShading(list, state);
+        if (state.plan.runs(Pass::shadowBlur)) withoutShadows([&] { recordShading(list, state); });
+    }
     if (changes.picture) accumulated = 0;
     changes = Changes::nothing();
 }
@@ -270,10 +291,15 @@ Status Renderer::record(gpu::CommandList& list, const RenderOptions& options, co
     if (auto status = p.prepare(options, target != nullptr); !status) return status;
     if (auto status = prepareOverlay(p.device, list, p.state.overlay); !status) return status;
     p.recordChanges(list);
+    const bool blurs = p.state.plan.runs(Pass::shadowBlur);
     if (p.accumulated < options.frames) {
         recordFrame(list, p.state, p.accumulated);
+        if (blurs) p.withoutShadows([&] { recordFrame(list, p.state, p.accumulated); });
         ++p.accumulated;
+        p.blurredBy = 0;
     }
+    if (blurs && p.blurredBy != options.shadowBlur) recordShadowBlur(list, p.state);
+    p.blurredBy = options.shadowBlur;
     if (target != nullptr) {
         recordPresent(list, p.state, p.accumulated, target);
         recordOverlay(list, p.state, target);
@@ -285,8 +311,12 @@ std::uint32_t Renderer::accumulated() const {
     return parts_->changes.picture ? 0 : parts_->accumulated;
 }
 
+bool Renderer::isSettled() const {
+    return !parts_->state.scene.awaitsFibres();
+}
+
 const gpu::BufferPtr& Renderer::linearSum() const {
-    return parts_->state.targets[BufferId::sum];
+    return parts_->state.result();
 }
 
 Box3f Renderer::bounds() const {

@@ -48,6 +48,8 @@ class Renderer {
     /// holds all points: light and depth are fitted to it.
     Status setStrandPositions(std::size_t group, gpu::BufferPtr positions_ws, std::uint32_t floatsPerPoint,
                               const Box3f& bounds_ws);
+    /// One share of the dye a point, where RenderStrands::pointDyes had some.
+    Status setPointDyes(std::size_t group, std::span<const float> dyes);
     Status setMaterial(std::size_t group, const HairMaterial& material);
     Status setCamera(const Camera& camera);
     Status setLights(std::span<const Light> lights);
@@ -68,6 +70,8 @@ class Renderer {
     void restart();
     /// Frames in the average, 0 before the first.
     std::uint32_t accumulated() const;
+    /// False while tables are baked behind (RenderOptions::bakeBehind): a later frame restarts the average.
+    bool isSettled() const;
     /// Sum of accumulated() frames: linear RGB before exposure, and coverage; four floats a pixel, the upper
     /// row first.
     const gpu::BufferPtr& linearSum() const;

@@ -31,6 +31,9 @@ Status checkStrands(const RenderStrands& strands) {
     if (!strands.radii.empty() && strands.radii.size() != points) {
         return fail(fmt::format("{} strand points with {} radii", points, strands.radii.size()));
     }
+    if (!strands.pointDyes.empty() && strands.pointDyes.size() != points) {
+        return fail(fmt::format("{} strand points with {} shares of dye", points, strands.pointDyes.size()));
+    }
     const std::size_t count = strands.offsets.size() - 1;
     if (!strands.colours.empty() && strands.colours.size() != count) {
         return fail(fmt::format("{} strands with {} colours", count, strands.colours.size()));

@@ -60,10 +60,11 @@ struct RenderStrands {
     std::span<const std::uint32_t>
         offsets;  ///< strands + 1, ascending; strands of fewer than 2 points are left out
     std::span<const Vec3f> positions_ws;
-    std::span<const float> radii;    ///< metres, one a point; empty: from the material
-    std::span<const Vec3f> colours;  ///< albedo, one a strand; empty: from the material
-    std::span<const float> streaks;  ///< 0…1, one a strand, for the look; empty: none is in a streak
-    std::span<const float> dyes;     ///< 0…1, one a strand, for the look; empty: none is dyed
+    std::span<const float> radii;      ///< metres, one a point; empty: from the material
+    std::span<const Vec3f> colours;    ///< albedo, one a strand; empty: from the material
+    std::span<const float> streaks;    ///< 0…1, one a strand, for the look; empty: none is in a streak
+    std::span<const float> dyes;       ///< 0…1, one a strand, for the look; empty: none is dyed
+    std::span<const float> pointDyes;  ///< 0…1, one a point, shares of that; empty: 1 everywhere
     HairMaterial material;
 };
 

@@ -62,6 +62,33 @@ class Beam {
     Vec3d toLight_, right_, up_;
 };
 
+/// Whether a ray meets a triangle in front of its origin (Möller and Trumbore 1997).
+bool meets(const Vec3d& origin, const Vec3d& direction, const std::array<Vec3d, 3>& corners) {
+    const Vec3d ab = corners[1] - corners[0], ac = corners[2] - corners[0];
+    const Vec3d p = direction.cross(ac);
+    const double determinant = ab.dot(p);
+    if (std::abs(determinant) < 1e-18) return false;
+    const Vec3d to = origin - corners[0];
+    const double u = to.dot(p) / determinant;
+    const Vec3d q = to.cross(ab);
+    const double v = direction.dot(q) / determinant;
+    return u >= 0 && v >= 0 && u + v <= 1 && ac.dot(q) / determinant > 0;
+}
+
+bool isVisible(const RenderMesh& mesh, const Vec3d& from, const Vec3d& toLight) {
+    for (std::size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
+        std::array<Vec3d, 3> corners;
+        for (std::size_t k = 0; k < 3; ++k)
+            corners[k] = mesh.positions_ws[mesh.indices[t + k]].cast<double>();
+        if (meets(from, toLight, corners)) return false;
+    }
+    return true;
+}
+
+double rootMeanSquare(double sum, std::size_t count) {
+    return std::sqrt(sum / static_cast<double>(count));
+}
+
 }  // namespace
 
 ShadowCases countFibres(const RenderScene& scene, std::size_t count, std::uint64_t seed) {
@@ -97,7 +124,44 @@ Result<double> shadowError(gpu::Device& device, const RenderScene& scene, const 
         const double error = std::exp(-0.5 * found) - std::exp(-0.5 * cases.counted[i]);
         sum += error * error;
     }
-    return std::sqrt(sum / static_cast<double>(cases.counted.size()));
+    return rootMeanSquare(sum, cases.counted.size());
+}
+
+HeadCases castRays(const RenderScene& scene, std::size_t count, std::uint64_t seed) {
+    const std::span<const Vec3f> points = scene.strands.front().positions_ws;
+    const Vec3d toLight = scene.lights.front().toLight_ws.cast<double>().normalized();
+    HeadCases result;
+    Random random(seed);
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto at = random.below(static_cast<std::uint32_t>(points.size()));
+        result.cases.push_back({toShader(points[at], static_cast<float>(kBias)), {0, 1, 0, 0}});
+    }
+    result.visible.resize(count);
+    parallelFor(count, 8, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const shaders::float4& p = result.cases[i].position_ws;
+            const Vec3d from = Vec3f(p.x, p.y, p.z).cast<double>();
+            result.visible[i] = isVisible(scene.meshes.front(), from, toLight) ? 1 : 0;
+        }
+    });
+    return result;
+}
+
+Result<double> headShadowError(gpu::Device& device, const RenderScene& scene, const HeadCases& cases,
+                               float absorption, std::uint32_t resolution) {
+    RenderOptions options;
+    options.shadows = Shadows::absorption;
+    options.headAbsorption = absorption;
+    options.shadowResolution = resolution;
+    options.subdivisions = 1;
+    const auto results = probeLight(device, scene, options, cases.cases);
+    if (!results) return tl::unexpected(results.error());
+    double sum = 0;
+    for (std::size_t i = 0; i < cases.visible.size(); ++i) {
+        const double error = static_cast<double>((*results)[2 * i + 1].w) - cases.visible[i];
+        sum += error * error;
+    }
+    return rootMeanSquare(sum, cases.visible.size());
 }
 
 }  // namespace hairloom::render

@@ -22,4 +22,19 @@ ShadowCases countFibres(const RenderScene& scene, std::size_t count, std::uint64
 Result<double> shadowError(gpu::Device& device, const RenderScene& scene, const ShadowCases& cases,
                            Shadows kind, std::uint32_t resolution, const DeepLayers& layers = kDeepLayers);
 
+/// Shadows of the head on hair, found by rays.
+struct HeadCases {
+    std::vector<shaders::LightCase> cases;  ///< of probeLight()
+    std::vector<double> visible;            ///< 1 where nothing of the head is in the light's way, else 0
+};
+
+/// `count` points of the scene's hair, by chance. The scene has one mesh, one group of strands and one
+/// directional light.
+HeadCases castRays(const RenderScene& scene, std::size_t count, std::uint64_t seed);
+
+/// Root of the mean square error of what the head leaves of the light; `absorption` as
+/// RenderOptions::headAbsorption. Errors: as probeLight().
+Result<double> headShadowError(gpu::Device& device, const RenderScene& scene, const HeadCases& cases,
+                               float absorption, std::uint32_t resolution);
+
 }  // namespace hairloom::render

@@ -3,12 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace hairloom::shading {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 // σ = m u/(1 + m/σ_max − u): steps near 0 are an eleventh of even ones.
 constexpr double kBend = 0.7;
 static_assert(kAbsorptionLayers % 3 == 0);
@@ -23,32 +21,20 @@ Vec3d absorptionsOf(std::uint32_t firstLayer) {
             absorptionOfLayer(firstLayer + 2)};
 }
 
-/// Of the rows of `averages`, weighted as meanAlbedo() weighs inclinations.
-double meanAlbedoOf(const Table& averages, std::uint32_t layer) {
-    double sum = 0, weights = 0;
-    for (std::uint32_t x = 0; x < averages.width; ++x) {
-        const double cosine = std::cos(kPi / 2 * x / (averages.width - 1));
-        const double weight = (x == 0 ? 0.5 : 1.0) * cosine * cosine;
-        const float* texel = averages.texel(x, 2 * layer);
-        sum += weight * static_cast<double>(texel[0] + texel[1]);
-        weights += weight;
-    }
-    return sum / weights;
-}
-
 /// `at` gives the model of three layers.
 template <class ModelOf>
 DualLayers bakeDualOf(std::uint32_t azimuth, std::uint32_t inclination, const ModelOf& modelOf) {
     DualLayers layers{makeTable(azimuth, inclination * kAbsorptionLayers),
-                      makeTable(inclination, 2 * kAbsorptionLayers)};
+                      makeTable(inclination, 2 * kAbsorptionLayers), makeTable(32, 2 * kAbsorptionLayers)};
     for (std::uint32_t first = 0; first < kAbsorptionLayers; first += 3) {
         const auto model = modelOf(absorptionsOf(first));
         const DualScattering dual(model);
         const DualTables tables = bakeDual(dual, azimuth, inclination);
+        const Table sky = bakeSky(dual, layers.sky.width);
         for (std::uint32_t c = 0; c < 3; ++c) {
             for (std::uint32_t y = 0; y < inclination; ++y) {
                 for (std::uint32_t x = 0; x < azimuth; ++x) {
-                    layers.spread.texel(x, (first + c) * inclination + y)[0] = tables.spread.texel(x, y)[c];
+                    layers.profile.texel(x, (first + c) * inclination + y)[0] = tables.profile.texel(x, y)[c];
                 }
                 float* shares = layers.averages.texel(y, 2 * (first + c));
                 float* tilts = layers.averages.texel(y, 2 * (first + c) + 1);
@@ -58,12 +44,17 @@ DualLayers bakeDualOf(std::uint32_t azimuth, std::uint32_t inclination, const Mo
                 shares[3] = tables.variances.texel(y, 1)[c];
                 tilts[0] = tables.variances.texel(y, 2)[c];
                 tilts[1] = tables.variances.texel(y, 3)[c];
+                tilts[2] = std::max(shares[0] + shares[1] + tables.averages.texel(y, 3)[c], 0.0f);
+                tilts[3] = std::max(shares[0] + shares[1] + tables.averages.texel(y, 4)[c], 0.0f);
+            }
+            for (std::uint32_t x = 0; x < sky.width; ++x) {
+                float* const low = layers.sky.texel(x, 2 * (first + c));
+                float* const high = layers.sky.texel(x, 2 * (first + c) + 1);
+                const float even = low[0] = sky.texel(x, 0)[c];
+                for (std::uint32_t row = 1; row < 6; ++row)
+                    (row < 4 ? low[row] : high[row - 4]) = sky.texel(x, row)[c] / std::max(even, 1e-6f);
             }
         }
-    }
-    for (std::uint32_t layer = 0; layer < kAbsorptionLayers; ++layer) {
-        const auto mean = static_cast<float>(meanAlbedoOf(layers.averages, layer));
-        for (std::uint32_t x = 0; x < inclination; ++x) layers.averages.texel(x, 2 * layer + 1)[2] = mean;
     }
     return layers;
 }
@@ -145,17 +136,25 @@ DualLayers bakeDualLayers(const SadeghiParameters& model, const AzimuthalParamet
                       [&](const Vec3d& absorptions) { return withAbsorption(grey, fibre, absorptions); });
 }
 
-LayerShares sharesAcross(const Table& averages, double absorption) {
-    const LayerPlace place = layerPlace(absorption);
-    const auto between = [&](std::size_t share) {
-        const auto logarithm = [&](std::uint32_t layer) {
-            const auto value = static_cast<double>(averages.texel(0, 2 * layer)[share]);
-            return std::log(std::max(value, 1e-7));
+AverageScattering scatteringAcross(const Table& averages, const Vec3d& absorption) {
+    AverageScattering result;
+    for (int c = 0; c < 3; ++c) {
+        const LayerPlace place = layerPlace(absorption[c]);
+        const auto between = [&](std::uint32_t row, std::size_t component) {
+            const auto logarithm = [&](std::uint32_t layer) {
+                const auto value = static_cast<double>(averages.texel(0, 2 * layer + row)[component]);
+                return std::log(std::max(value, 1e-7));
+            };
+            const double low = logarithm(place.low);
+            return std::exp(low + place.part * (logarithm(place.low + 1) - low));
         };
-        const double low = logarithm(place.low);
-        return std::exp(low + place.part * (logarithm(place.low + 1) - low));
-    };
-    return {between(0), between(1)};
+        result.forward[c] = between(0, 0);
+        result.backward[c] = between(0, 1);
+        const double albedo = result.forward[c] + result.backward[c];
+        result.first[c] = between(1, 2) - albedo;
+        result.second[c] = between(1, 3) - albedo;
+    }
+    return result;
 }
 
 }  // namespace hairloom::shading

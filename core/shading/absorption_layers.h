@@ -5,7 +5,7 @@
 // one channel and each of red, green and blue finds its own place. Between two layers the shader interpolates
 // logarithms: light that takes one path of length l falls as exp(−σ l), for which that is exact.
 
-#include "core/shading/tables.h"
+#include "core/shading/sky_light.h"
 
 namespace hairloom::shading {
 
@@ -43,10 +43,13 @@ SadeghiLayers bakeSadeghiLayers(const SadeghiParameters& model, const AzimuthalP
                                 const TableSizes& sizes = {});
 
 struct DualLayers {
-    Table spread;  ///< red: DualScattering::Spread by (cos φ + 1)/2 and, in each layer, 2|θ_d|/π
-    /// By 2|θ_d|/π. Two rows a layer: ā_f, ā_b, and their variances times them; their tilts times them, the
-    /// mean albedo over all inclinations, and 0.
+    Table profile;  ///< red: DualScattering::Profile by (cos φ + 1)/2 and, in each layer, 2|θ_d|/π
+    /// By 2|θ_d|/π. Two rows a layer: ā_f, ā_b, and their variances times them; their tilts times them, and
+    /// the albedo plus AverageScattering::first and plus second, which are never negative.
     Table averages;
+    /// By (sin θ_o + 1)/2. Two rows a layer: SkyMoments::even, and along, across, alongAlong by it;
+    /// alongAcross and acrossAcross by it, 0, 0.
+    Table sky;
 };
 DualLayers bakeDualLayers(const MarschnerParameters& model, std::uint32_t azimuth = 64,
                           std::uint32_t inclination = 16);
@@ -54,10 +57,8 @@ DualLayers bakeDualLayers(const MarschnerParameters& model, std::uint32_t azimut
 DualLayers bakeDualLayers(const SadeghiParameters& model, const AzimuthalParameters& fibre,
                           std::uint32_t azimuth = 64, std::uint32_t inclination = 16);
 
-/// Of DualLayers::averages, as the shader finds them.
-struct LayerShares {
-    double forward = 0, backward = 0;  ///< ā_f and ā_b across the fibre (θ_d = 0) of one channel
-};
-LayerShares sharesAcross(const Table& averages, double absorption);
+/// ā_f, ā_b and the moments across the fibre (θ_d = 0) as the shader finds them in DualLayers::averages; each
+/// channel has its own absorption.
+AverageScattering scatteringAcross(const Table& averages, const Vec3d& absorption);
 
 }  // namespace hairloom::shading

@@ -11,10 +11,12 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr std::size_t kLast = AzimuthalProfile::kGridSize - 1;
 constexpr double kStep = kPi / static_cast<double>(kLast);
-constexpr double kMostAlbedo = 0.98;
+constexpr double kMostAlbedo = 0.995;
 
 using Channels = std::array<std::array<float, AzimuthalProfile::kGridSize>, 3>;
 using LobeRows = std::array<Channels, 3>;
+constexpr double kLeastLoss =
+    1e-3;  // of diffuse light at a fibre: what solves the equations in single precision
 
 struct LobeShape {
     double tilt, deviation;
@@ -59,25 +61,93 @@ AverageScattering averageOf(const LobeRows& rows, const std::array<LobeShape, 3>
     return a;
 }
 
-/// The mean over ± 90 degrees around each azimuth.
-DualScattering::Spread spreadOf(const LobeRows& rows) {
-    DualScattering::Spread spread{};
-    constexpr std::size_t kQuarter = kLast / 2;
-    static_assert(kLast % 2 == 0);
-    for (std::size_t c = 0; c < 3; ++c) {
-        std::array<double, 2 * kLast + 2>
-            sums{};  // sums[i]: of the first i steps' means, φ from −90 degrees on
-        const auto n = [&](std::size_t step) {  // `step` counts from φ = −90 degrees
-            const std::size_t from0 = step < kQuarter ? kQuarter - step : step - kQuarter;
-            const std::size_t i = from0 <= kLast ? from0 : 2 * kLast - from0;
-            return static_cast<double>(rows[0][c][i] + rows[1][c][i] + rows[2][c][i]);
-        };
-        for (std::size_t i = 0; i <= 2 * kLast; ++i) sums[i + 1] = sums[i] + 0.5 * (n(i) + n(i + 1));
-        for (std::size_t i = 0; i <= kLast; ++i) {
-            spread[c][i] = static_cast<float>((sums[i + kLast] - sums[i]) / static_cast<double>(kLast));
-        }
+/// ∫ N cos mφ over the whole circle.
+Vec3d momentOf(const Channels& n, int m) {
+    Vec3d sum = Vec3d::Zero();
+    for (std::size_t i = 0; i <= kLast; ++i) {
+        const double weight =
+            (i == 0 || i == kLast ? 1 : 2) * kStep * std::cos(m * static_cast<double>(i) * kStep);
+        for (std::size_t c = 0; c < 3; ++c) sum[static_cast<int>(c)] += weight * static_cast<double>(n[c][i]);
     }
-    return spread;
+    return sum;
+}
+
+DualScattering::Profile profileOf(const LobeRows& rows) {
+    DualScattering::Profile profile{};
+    for (std::size_t c = 0; c < 3; ++c) {
+        for (std::size_t i = 0; i <= kLast; ++i)
+            profile[c][i] = rows[0][c][i] + rows[1][c][i] + rows[2][c][i];
+    }
+    return profile;
+}
+
+/// Of one channel.
+struct Lit {
+    double fluence = 0, flux = 0, onward = 0;
+};
+
+/// P1 in the plane across the fibres. With τ the depth in scaled fibres, φ the fluence and J the flux of
+/// diffuse light, ω and g of what is not scattered straight on:
+///     J' = −(1 − ω) φ + ω b,  φ' = −2 (1 − ωg) J + 2 ωg b,  b = beam e^−τ,
+/// and no diffuse light but the sky's comes in from above: φ/π + J/2 = 2 sky.
+class Layer {
+  public:
+    Layer(double albedo, double first, double second, double before, double all, double ground)
+        : scale_(1 - std::max(second, 0.0)),
+          ground_(ground),
+          at_(scale_ * before),
+          depth_(scale_ * std::max(all, before)) {
+        const double omega = (albedo - std::max(second, 0.0)) / scale_;
+        asymmetric_ = (first - std::max(second, 0.0)) / scale_;
+        lost_ = std::max(1 - omega, kLeastLoss);
+        omega_ = 1 - lost_;
+        // The beam must not fade exactly as diffuse light does.
+        turned_ = 2 * (1 - asymmetric_);
+        if (std::abs(lost_ * turned_ - 1) < kResonance) turned_ = (1 + kResonance) / lost_;
+        rate_ = std::sqrt(lost_ * turned_);
+        slope_ = std::sqrt(lost_ / turned_);
+    }
+
+    Lit beam() const {
+        const double source = 2 * asymmetric_;
+        const double y = (turned_ * omega_ + source) / (rate_ * rate_ - 1), x = (source + y) / turned_;
+        const double end = std::exp(-depth_), here = std::exp(-at_);
+        const double in = y / kPi + x / 2, out = y / kPi - x / 2;
+        const Lit own = diffuse(-in, end * (ground_ * (1 + in) - out));
+        return {own.fluence + y * here, own.flux + x * here, here};
+    }
+    Lit sky() const { return diffuse(2, 0); }
+
+  private:
+    static constexpr double kResonance = 0.01;
+
+    /// `top`, `bottom`: what has to come in at the two sides.
+    Lit diffuse(double top, double bottom) const {
+        const double t = 1 / kPi + slope_ / 2, u = 1 / kPi - slope_ / 2;
+        const double deep = std::exp(-rate_ * depth_);
+        const double fromTop = deep * (u - ground_ * t), fromBottom = t - ground_ * u;
+        const double determinant = t * fromBottom - deep * u * fromTop;
+        const double falling = (top * fromBottom - deep * u * bottom) / determinant * std::exp(-rate_ * at_);
+        const double rising = (t * bottom - fromTop * top) / determinant * std::exp(-rate_ * (depth_ - at_));
+        return {falling + rising, slope_ * (falling - rising), 0};
+    }
+
+    double scale_, ground_, at_, depth_;
+    double omega_ = 0, asymmetric_ = 0, lost_ = 0, turned_ = 0, rate_ = 0, slope_ = 0;
+};
+
+template <class Solve>
+LayerLight inLayer(const AverageScattering& fibre, double before, double all, const Vec3d& ground,
+                   const Solve& solve) {
+    LayerLight light;
+    const Vec3d albedo = fibre.forward + fibre.backward;
+    for (int c = 0; c < 3; ++c) {
+        const Lit lit = solve(Layer(albedo[c], fibre.first[c], fibre.second[c], before, all, ground[c]));
+        light.fluence[c] = lit.fluence;
+        light.flux[c] = lit.flux;
+        light.onward[c] = lit.onward;
+    }
+    return light;
 }
 
 }  // namespace
@@ -92,88 +162,85 @@ double AverageScattering::variance() const {
     return (forth * forwardVariance + back * backwardVariance) / std::max(forth + back, 1e-12);
 }
 
-TwoFlux twoFlux(const Vec3d& forward, const Vec3d& backward, double before, double all, const Vec3d& ground) {
-    TwoFlux flux;
-    const double behind = std::max(all - before, 0.0);
-    for (int c = 0; c < 3; ++c) {
-        // d down/dn = −(1 − ā_f) down + ā_b up, and the reverse for up, which is 0 at the far side.
-        const double lost = 1 - forward[c];
-        const double rate = std::sqrt(std::max(lost * lost - backward[c] * backward[c], 1e-6));
-        const double returned = backward[c] / (lost + rate);  // of hair without end
-        const double falling = std::exp(-rate * before);
-        const double back = falling * std::exp(-2 * rate * behind);
-        const double turns = 1 - returned * returned * std::exp(-2 * rate * (before + behind));
-        flux.down[c] = (falling - returned * returned * back) / turns;
-        flux.up[c] = returned * (falling - back) / turns;
-        // What the ground gets and the hair above returns to it, again and again; then as if lit from there.
-        const double deep = std::exp(-rate * (before + behind));
-        const double reached = (1 - returned * returned) * deep / turns;
-        const double kept = returned * (1 - deep * deep) / turns;
-        const double sent = ground[c] * reached / (1 - ground[c] * kept);
-        const double rising = std::exp(-rate * behind);
-        flux.groundUp[c] = sent * (rising - returned * returned * deep * falling) / turns;
-        flux.groundDown[c] = sent * returned * (rising - deep * falling) / turns;
-    }
-    return flux;
+LayerLight beamInLayer(const AverageScattering& fibre, double before, double all, const Vec3d& ground) {
+    return inLayer(fibre, before, all, ground, [](const Layer& layer) { return layer.beam(); });
+}
+
+LayerLight skyInLayer(const AverageScattering& fibre, double before, double all, const Vec3d& ground) {
+    return inLayer(fibre, before, all, ground, [](const Layer& layer) { return layer.sky(); });
 }
 
 DualScattering::DualScattering(const Marschner& model) : marschner_(&model) {}
 DualScattering::DualScattering(const SadeghiParameters& model) : sadeghi_(model) {}
 
-DualScattering::Row DualScattering::at(double thetaD) const {
+struct DualScattering::Lobes {
     LobeRows rows{};
     std::array<LobeShape, 3> shapes{};
+};
+
+DualScattering::Lobes DualScattering::lobes(double thetaD) const {
+    Lobes lobes{};
     if (marschner_ != nullptr) {
         const AzimuthalProfile::Grid grid = marschner_->azimuthal(thetaD).grid();
         for (const Lobe lobe : kLobes) {
             const auto scale = static_cast<float>(marschner_->scale(lobe));
             const LongitudinalLobe& l = marschner_->longitudinalLobe(lobe);
-            shapes[index(lobe)] = {l.tilt(), l.width()};
+            lobes.shapes[index(lobe)] = {l.tilt(), l.width()};
             for (std::size_t c = 0; c < 3; ++c) {
                 const auto& from = lobe == Lobe::R ? grid.r : lobe == Lobe::TT ? grid.tt[c] : grid.trt[c];
-                for (std::size_t i = 0; i <= kLast; ++i) rows[index(lobe)][c][i] = scale * from[i];
+                for (std::size_t i = 0; i <= kLast; ++i) lobes.rows[index(lobe)][c][i] = scale * from[i];
             }
         }
-    } else {
-        for (const Lobe lobe : kLobes) {
-            const SadeghiLobe& l = sadeghi_.lobe(lobe);
-            shapes[index(lobe)] = {l.shift, l.width / std::sqrt(2 * kPi)};
-            for (std::size_t i = 0; i <= kLast; ++i) {
-                // The area of M' over θ_o is twice the width.
-                const double n =
-                    2 * l.width * sadeghiAzimuthal(sadeghi_, lobe, static_cast<double>(i) * kStep, 0.5);
-                const Vec3d light = l.light();
-                for (std::size_t c = 0; c < 3; ++c) {
-                    rows[index(lobe)][c][i] = static_cast<float>(n * light[static_cast<int>(c)]);
-                }
+        return lobes;
+    }
+    for (const Lobe lobe : kLobes) {
+        const SadeghiLobe& l = sadeghi_.lobe(lobe);
+        lobes.shapes[index(lobe)] = {l.shift, l.width / std::sqrt(2 * kPi)};
+        for (std::size_t i = 0; i <= kLast; ++i) {
+            // The area of M' over θ_o is twice the width.
+            const double n =
+                2 * l.width * sadeghiAzimuthal(sadeghi_, lobe, static_cast<double>(i) * kStep, 0.5);
+            const Vec3d light = l.light();
+            for (std::size_t c = 0; c < 3; ++c) {
+                lobes.rows[index(lobe)][c][i] = static_cast<float>(n * light[static_cast<int>(c)]);
             }
         }
     }
-    Row row{averageOf(rows, shapes), spreadOf(rows)};
+    return lobes;
+}
+
+DualScattering::Row DualScattering::at(double thetaD) const {
+    const Lobes parts = lobes(thetaD);
+    Row row{averageOf(parts.rows, parts.shapes), profileOf(parts.rows)};
+    row.average.first = -momentOf(row.profile, 1);
+    row.average.second = momentOf(row.profile, 2);
     for (int c = 0; c < 3; ++c) {
         const double albedo = row.average.forward[c] + row.average.backward[c];
         if (albedo <= kMostAlbedo) continue;
-        row.average.forward[c] *= kMostAlbedo / albedo;
-        row.average.backward[c] *= kMostAlbedo / albedo;
-        for (float& n : row.spread[static_cast<std::size_t>(c)])
-            n *= static_cast<float>(kMostAlbedo / albedo);
+        const double factor = kMostAlbedo / albedo;
+        for (Vec3d* share :
+             {&row.average.forward, &row.average.backward, &row.average.first, &row.average.second}) {
+            (*share)[c] *= factor;
+        }
+        for (float& n : row.profile[static_cast<std::size_t>(c)]) n *= static_cast<float>(factor);
     }
     return row;
 }
 
-Vec3d DualScattering::meanAlbedo() const {
-    constexpr int kSteps = 12;
-    Vec3d sum = Vec3d::Zero();
-    double weights = 0;
-    for (int i = 0; i < kSteps; ++i) {
-        const double theta = (i + 0.5) * kPi / 2 / kSteps;
-        const AverageScattering a = at(theta).average;
-        // Across the fibre's length, and the ring of directions at θ.
-        const double weight = std::cos(theta) * std::cos(theta);
-        sum += weight * (a.forward + a.backward);
-        weights += weight;
+std::array<DualScattering::Moments, 3> DualScattering::moments(double thetaD) const {
+    const Lobes parts = lobes(thetaD);
+    std::array<Moments, 3> result;
+    for (const Lobe lobe : kLobes) {
+        for (int m = 0; m < 3; ++m)
+            result[index(lobe)][static_cast<std::size_t>(m)] = momentOf(parts.rows[index(lobe)], m);
     }
-    return sum / weights;
+    return result;
+}
+
+double DualScattering::longitudinal(Lobe lobe, double thetaIn, double thetaOut) const {
+    if (marschner_ != nullptr) return marschner_->longitudinalLobe(lobe)(thetaIn, thetaOut);
+    const SadeghiLobe& l = sadeghi_.lobe(lobe);
+    return unitHeightGauss(0.5 * (thetaIn + thetaOut) - l.shift, l.width) / (2 * l.width);
 }
 
 double scatteringsOf(double x) {
@@ -188,34 +255,32 @@ double spreadLongitudinal(double tilt, double variance, double thetaIn, double t
 Vec3d multipleScattering(const DualScattering::Row& row, double thetaIn, double thetaOut, double phi,
                          double before, double all, const Vec3d& ground) {
     const AverageScattering& a = row.average;
-    const TwoFlux flux = twoFlux(a.forward, a.backward, before, all, ground);
-    const Vec3d down = (flux.down - Vec3d::Constant(std::exp(-before))).cwiseMax(0.0);
+    const LayerLight light = beamInLayer(a, before, all, ground);
+    const Vec3d onward = (light.onward - Vec3d::Constant(std::exp(-before))).cwiseMax(0.0);
     const double cosine = std::max(std::cos(0.5 * (thetaOut - thetaIn)), 1e-6);
     const double factor = std::cos(thetaIn) / (cosine * cosine);
-    const auto spread = [&](double azimuth) {
-        const double x = std::abs(wrapAngle(azimuth)) / kStep;
-        const auto i = std::min(static_cast<std::size_t>(x), kLast - 1);
-        const double t = x - static_cast<double>(i);
-        Vec3d n;
-        for (std::size_t c = 0; c < 3; ++c) {
-            n[static_cast<int>(c)] = (1 - t) * static_cast<double>(row.spread[c][i]) +
-                                     t * static_cast<double>(row.spread[c][i + 1]);
-        }
-        return n;
-    };
-    // Each scattering adds its variance and its tilt (Zinke et al. 2008). Light from behind has
-    // turned once more and, near the surface, passed two fibres more on its way.
+    const double x = std::abs(wrapAngle(phi)) / kStep;
+    const auto i = std::min(static_cast<std::size_t>(x), kLast - 1);
+    const double t = x - static_cast<double>(i);
+    Vec3d n;
+    for (std::size_t c = 0; c < 3; ++c) {
+        n[static_cast<int>(c)] =
+            (1 - t) * static_cast<double>(row.profile[c][i]) + t * static_cast<double>(row.profile[c][i + 1]);
+    }
+    // The radiance (φ + 2 J cos ψ)/2π around the fibre, scattered.
+    const Vec3d diffuse = ((a.forward + a.backward).cwiseProduct(light.fluence) -
+                           2 * std::cos(phi) * a.first.cwiseProduct(light.flux))
+                              .cwiseMax(0.0) /
+                          (2 * kPi);
+    // Each scattering adds its variance and its tilt (Zinke et al. 2008). Diffuse light has turned once more
+    // and, near the surface, passed two fibres more on its way.
     const double passed = scatteringsOf(before * a.forward.mean());
-    const double downM = spreadLongitudinal(a.tilt() + passed * a.forwardTilt,
-                                            a.variance() + passed * a.forwardVariance, thetaIn, thetaOut);
-    const double upM = spreadLongitudinal(
+    const double onwardM = spreadLongitudinal(a.tilt() + passed * a.forwardTilt,
+                                              a.variance() + passed * a.forwardVariance, thetaIn, thetaOut);
+    const double diffuseM = spreadLongitudinal(
         a.tilt() + (passed + 1) * a.forwardTilt + a.backwardTilt,
         a.variance() + (passed + 1) * a.forwardVariance + a.backwardVariance, thetaIn, thetaOut);
-    // Light from the ground has no memory of the light's inclination: 2 / π N towards all directions. Even
-    // light in a half space meets π / 2 times the fibres that light straight through does.
-    const double evenM = cosine * cosine;
-    return factor * ((downM * down + evenM * flux.groundDown).cwiseProduct(spread(phi)) +
-                     (upM * flux.up + evenM * flux.groundUp).cwiseProduct(spread(phi + kPi)));
+    return factor * (onwardM * onward.cwiseProduct(n) + diffuseM * diffuse);
 }
 
 }  // namespace hairloom::shading

@@ -6,10 +6,12 @@
 //
 // What is different here. Zinke et al. multiply the forward shares of the fibres before the point, and add
 // the light that turns back behind it, up to three turns, as of sheets that let no light pass between fibres.
-// Fibres here lie at random: both are solutions of the two-flux equations (Kubelka and Munk 1931) in the
-// number of fibres, all turns included, and hair of finite depth over black or a matte ground. Light that
-// arrives scattered comes evenly from half of the directions around the fibre, the side of the light or the
-// side behind, and is scattered by the fibre's own N, averaged over that half.
+// Fibres here lie at random: light among them obeys the equation of transfer, in the plane across them, which
+// is solved as far as the mean light and its direction (P1) over hair of finite depth on black or a matte
+// ground, all turns included. A fibre sends much light nearly straight on, which P1 cannot hold: as much as
+// the second moment of its N says counts as not scattered at all (delta-Eddington: Joseph, Wiscombe and
+// Weinman 1976, "The Delta-Eddington Approximation for Radiative Flux Transfer", with cosines of the circle
+// in place of Legendre's polynomials).
 //
 // Angles in radians, colours linear RGB, 0 the azimuth back towards the light, as in marschner.h.
 
@@ -29,43 +31,52 @@ struct AverageScattering {
     /// Of each channel, times its share: what adds up to those of all channels.
     Vec3d forwardVariances = Vec3d::Zero(), backwardVariances = Vec3d::Zero();
     Vec3d forwardTilts = Vec3d::Zero(), backwardTilts = Vec3d::Zero();
+    /// ∫ N cos ψ and ∫ N cos 2ψ over the angles ψ by which light is turned, of all lobes.
+    Vec3d first = Vec3d::Zero(), second = Vec3d::Zero();
 
     double tilt() const;      ///< of all light
     double variance() const;  ///< in θ_h, of all light
 };
 
-/// Light inside a layer of hair lit from one side with 1, by the number of fibres that a ray meets on
-/// average.
-struct TwoFlux {
-    Vec3d down = Vec3d::Zero();  ///< still away from the light; with what has met no fibre, exp(−before)
-    Vec3d up = Vec3d::Zero();    ///< back towards it
-    Vec3d groundDown = Vec3d::Zero();  ///< of what the ground has sent back
-    Vec3d groundUp = Vec3d::Zero();
+/// Light inside a layer of hair, by the number of fibres that a ray straight through meets on average.
+struct LayerLight {
+    Vec3d fluence = Vec3d::Zero();  ///< of diffuse light, the integral of its radiance around the fibre
+    Vec3d flux = Vec3d::Zero();     ///< the same, by the cosine of its angle to the light's way
+    Vec3d onward = Vec3d::Zero();   ///< of a beam, what goes its way still: exp(−before), and what is
+                                    ///< scattered straight on
 };
-/// `before` fibres between the point and the light, `all` >= before from one side of the hair to the other,
-/// where it lies on a ground of this albedo.
-TwoFlux twoFlux(const Vec3d& forward, const Vec3d& backward, double before, double all,
-                const Vec3d& ground = Vec3d::Zero());
+/// Lit with the irradiance 1 straight from one side. `before` fibres between the point and the light, `all`
+/// >= before from one side of the hair to the other, where it lies on a ground of this albedo.
+LayerLight beamInLayer(const AverageScattering& fibre, double before, double all,
+                       const Vec3d& ground = Vec3d::Zero());
+/// Lit with the radiance 1 from the half of all directions on one side.
+LayerLight skyInLayer(const AverageScattering& fibre, double before, double all,
+                      const Vec3d& ground = Vec3d::Zero());
 
 class DualScattering {
   public:
     explicit DualScattering(const Marschner& model);
-    /// Colours and intensities that would give more light than they get are taken as giving 0.98 of it.
+    /// Colours and intensities that would give more light than they get are taken as giving 0.995 of it.
     explicit DualScattering(const SadeghiParameters& model);
 
-    /// N of all lobes, averaged over light from the half of directions around `phi` = 0: by φ as
-    /// AzimuthalProfile::Grid.
-    using Spread = std::array<std::array<float, AzimuthalProfile::kGridSize>, 3>;
+    /// N of all lobes, by φ as AzimuthalProfile::Grid.
+    using Profile = std::array<std::array<float, AzimuthalProfile::kGridSize>, 3>;
     struct Row {
         AverageScattering average;
-        Spread spread;
+        Profile profile;
     };
     Row at(double thetaD) const;
 
-    /// Of uniform light from everywhere, the mean over the inclinations.
-    Vec3d meanAlbedo() const;
+    /// ∫ N cos mφ of one lobe around the fibre, m = 0, 1, 2.
+    using Moments = std::array<Vec3d, 3>;
+    std::array<Moments, 3> moments(double thetaD) const;
+    /// M of a lobe, with which those N make S = Σ M N / cos²θ_d.
+    double longitudinal(Lobe lobe, double thetaIn, double thetaOut) const;
 
   private:
+    struct Lobes;
+    Lobes lobes(double thetaD) const;
+
     const Marschner* marschner_ = nullptr;
     SadeghiParameters sadeghi_;
 };

@@ -174,14 +174,14 @@ SadeghiTables bakeSadeghi(const SadeghiParameters& model, const TableSizes& size
 }
 
 DualTables bakeDual(const DualScattering& model, std::uint32_t azimuth, std::uint32_t inclination) {
-    DualTables tables{makeTable(azimuth, inclination), makeTable(inclination, 3), makeTable(inclination, 4)};
+    DualTables tables{makeTable(azimuth, inclination), makeTable(inclination, 5), makeTable(inclination, 4)};
     const std::vector<GridPlace> places = gridPlaces(azimuth);
-    forRows(tables.spread, [&](std::uint32_t y) {
+    forRows(tables.profile, [&](std::uint32_t y) {
         const DualScattering::Row row =
             model.at(std::min(coordinate(y, inclination) * kPi / 2, kLargestTheta));
         for (std::uint32_t x = 0; x < azimuth; ++x) {
-            float* texel = tables.spread.texel(x, y);
-            for (std::size_t c = 0; c < 3; ++c) texel[c] = at(row.spread[c], places[x]);
+            float* texel = tables.profile.texel(x, y);
+            for (std::size_t c = 0; c < 3; ++c) texel[c] = at(row.profile[c], places[x]);
             texel[3] = 1;
         }
         const AverageScattering& a = row.average;
@@ -195,6 +195,8 @@ DualTables bakeDual(const DualScattering& model, std::uint32_t azimuth, std::uin
         set(0, a.forward.x(), a.forward.y(), a.forward.z(), a.forwardVariance);
         set(1, a.backward.x(), a.backward.y(), a.backward.z(), a.backwardVariance);
         set(2, a.forwardTilt, a.backwardTilt, a.tilt(), a.variance());
+        set(3, a.first.x(), a.first.y(), a.first.z(), 0);
+        set(4, a.second.x(), a.second.y(), a.second.z(), 0);
         std::uint32_t line = 0;
         for (const Vec3d* moment :
              {&a.forwardVariances, &a.backwardVariances, &a.forwardTilts, &a.backwardTilts}) {

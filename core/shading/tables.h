@@ -53,9 +53,9 @@ SadeghiTables bakeSadeghi(const SadeghiParameters& model, const TableSizes& size
 
 /// Tables of dual scattering.
 struct DualTables {
-    Table spread;  ///< RGB: DualScattering::Spread by (cos φ + 1)/2 and 2|θ_d|/π
+    Table profile;  ///< RGB: DualScattering::Profile by (cos φ + 1)/2 and 2|θ_d|/π
     /// By 2|θ_d|/π; its rows: ā_f and β̄_f²; ā_b and β̄_b²; tilt of ā_f, of ā_b, of all, and the variance of
-    /// all.
+    /// all; AverageScattering::first; second.
     Table averages;
     /// By the same, not for shaders: rows of AverageScattering's variances and tilts of each channel, forward
     /// before backward.

@@ -13,7 +13,7 @@ namespace {
 
 using editing::Part;
 
-constexpr std::array<std::pair<Part, Change>, 13> kParts{{
+constexpr std::array<std::pair<Part, Change>, 14> kParts{{
     {Part::Points, Change::Strands},
     {Part::Strands, Change::Strands},
     {Part::StrandFlags, Change::Strands},
@@ -24,6 +24,7 @@ constexpr std::array<std::pair<Part, Change>, 13> kParts{{
     {Part::Density, Change::Scalp},
     {Part::Spheres, Change::Spheres},
     {Part::Material, Change::Look},
+    {Part::Dye, Change::Look},
     {Part::Physics, Change::Simulation},
     {Part::Interpolation, Change::FollowHairs},
     {Part::Placement, Change::Placement},

@@ -48,6 +48,18 @@ class PictureForm : public OptionForm {
             });
     }
 
+    void addAmount(const char* name, const QString& label, const QString& tip, const char* unit, float most,
+                   float PictureQuality::*member) {
+        addNumber(
+            name, label, tip, unit, 0, static_cast<double>(most), false,
+            [this, member] { return static_cast<double>(viewport_.quality().*member); },
+            [this, member](double value) {
+                PictureQuality quality = viewport_.quality();
+                quality.*member = static_cast<float>(value);
+                viewport_.setQuality(quality);
+            });
+    }
+
     void addEdges() {
         addPower(
             "samples", tr("Samples"),
@@ -90,6 +102,15 @@ class PictureForm : public OptionForm {
         addPower("shadowResolution", tr("Shadow map"),
                  tr("Pixels along the side of each light's shadow map: more are sharper"), 256, 5,
                  tr("%1 px"), &PictureQuality::shadowResolution);
+        addAmount("headAbsorption", tr("Through the head"),
+                  tr("Hair behind the head gets light that fades with its depth there, by this much a metre: "
+                     "softer and without dots, but light comes through thin parts. 0: all or nothing"),
+                  "1/m", render::kMostHeadAbsorption, &PictureQuality::headAbsorption);
+        addAmount(
+            "shadowBlur", tr("Shadow blur"),
+            tr("Pixels by which shadows are blurred in the picture while nothing moves. Hair looks out of "
+               "focus, and shadows bleed over edges into what is lit"),
+            "px", render::kMostShadowBlur, &PictureQuality::shadowBlur);
         addEnum("scattering", tr("Scattered light"),
                 tr("Light that other hairs have scattered: lost, or passed on (dual scattering); Marschner "
                    "and Sadeghi"),

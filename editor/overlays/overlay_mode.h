@@ -41,6 +41,7 @@ void drawScalp(const Session& session, Marks& marks);
 void drawStrain(const Session& session, Marks& marks);
 void drawPenetration(const Session& session, Marks& marks);
 void drawDensity(const Session& session, Marks& marks);
+void drawDye(const Session& session, Marks& marks);
 void drawEffectCost(const Session& session, Marks& marks);
 /// An arrow from the middle of the view, kWindPixels long for each m/s.
 inline constexpr float kWindPixels = 18;

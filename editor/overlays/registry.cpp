@@ -23,6 +23,8 @@ std::span<const OverlayMode> overlayModes() {
         {"density", QT_TR_NOOP("Density"),
          QT_TR_NOOP("Roots by how many lie within 1 cm, and the density that was painted: red is dense"),
          drawDensity},
+        {"dye", QT_TR_NOOP("Dye"),
+         QT_TR_NOOP("Where hair is dyed, as painted: strands in pink by the mask's share"), drawDye},
         {"effectCost", QT_TR_NOOP("Effect cost"),
          QT_TR_NOOP("Strands by what the simulation spends on each while it plays: red is the dearest, grey "
                     "rests and costs nothing"),

@@ -2,6 +2,7 @@
 #include "editor/tools/brush_tool.h"
 
 #include <QComboBox>
+#include <algorithm>
 #include <cmath>
 
 #include "core/editing/document.h"
@@ -21,6 +22,17 @@ QString text(std::string_view words) {
 
 bool paintsTheHead(const std::string& brush) {
     return brush == "scalp_paint" || brush == "density_paint" || brush == "add";
+}
+
+/// And must keep it out of the head.
+bool movesHair(const std::string& brush) {
+    return !paintsTheHead(brush) && brush != "dye_paint";
+}
+
+/// The brush's own parameter makes it smooth what it does; others leave that to the brush `smooth`.
+bool smoothsItself(const std::string& brush) {
+    return std::ranges::any_of(editing::brushInfo(brush).parameters,
+                               [](const editing::BrushParameter& p) { return p.name == "smooth"; });
 }
 
 }  // namespace
@@ -75,9 +87,11 @@ bool BrushTool::begin(const Pointer& pointer) {
     place_ = underPointer(pointer);
     if (paintsTheHead(brush_) && !place_->skin) return false;
     editing::Stroke header;
-    header.tool = pointer.modifiers & Qt::ShiftModifier ? "smooth" : brush_;
+    const bool smooths = pointer.modifiers & Qt::ShiftModifier;
+    header.tool = smooths && !smoothsItself(brush_) ? "smooth" : brush_;
     header.settings = settings_;
     if (header.tool != brush_) header.settings.parameters.clear();
+    if (smooths && header.tool == brush_) header.settings.parameters["smooth"] = 1;
     if (pointer.modifiers & Qt::ControlModifier) header.settings.invert = !settings_.invert;
     if (auto begun = session_.document.editing().beginStroke(std::move(header)); !begun) {
         session_.messages.warn(QString::fromStdString(begun.error().message()));
@@ -263,6 +277,8 @@ OptionForm* BrushTool::makeBasicOptions() {
             });
         number("brushDepth", tr("Depth"), tr("How far before and behind its place the brush reaches"), "m", 0,
                0.3f, &editing::BrushSettings::depth);
+    }
+    if (movesHair(brush_)) {
         number("brushClearance", tr("Clearance"), tr("Distance that hair keeps from the skin"), "m", 0, 0.01f,
                &editing::BrushSettings::clearance);
         form->addTruth(

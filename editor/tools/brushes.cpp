@@ -31,6 +31,8 @@ constexpr Entry kHairBrushes[] = {
     {"add", QT_TR_NOOP("Add"), "add",
      QT_TR_NOOP("Drag over the scalp to grow hair between the hair that is there"), "A"},
     {"delete", QT_TR_NOOP("Delete"), "delete", QT_TR_NOOP("Drag to remove hair"), "D"},
+    {"dye_paint", QT_TR_NOOP("Paint dye"), "dye", QT_TR_NOOP("Drag to bring the material's dye onto hair"),
+     "Y"},
     {"freeze", QT_TR_NOOP("Freeze"), "freeze", QT_TR_NOOP("Drag to keep brushes from touching hair"), "Z"},
 };
 

@@ -19,6 +19,8 @@ struct PictureQuality {
     render::Ribbons ribbons = render::Ribbons::automatic;
     render::Shadows shadows = render::Shadows::deepOpacity;
     std::uint32_t shadowResolution = 1024;
+    float headAbsorption = 0;                                  ///< 1/m, as render::RenderOptions
+    float shadowBlur = 0;                                      ///< pixels, likewise; while nothing moves
     std::uint32_t subdivisions = 2;                            ///< curve segments per segment of a strand
     render::Scattering scattering = render::Scattering::dual;  ///< not of Kajiya-Kay
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/groom/fields.h"
+#include "core/groom/point_dye.h"
 
 namespace hairloom::editor {
 namespace {
@@ -40,18 +41,20 @@ bool sameFields(const S& a, const S& b) {
     });
 }
 
-/// Same strands on the same head, of which at most points have moved and the material has changed.
+/// Same strands on the same head, of which at most points have moved, and dye and material have changed.
 bool sameStrands(const Groom& a, const Groom& b) {
-    const auto sameButPositions = [](const AttributeSet& x, const AttributeSet& y) {
+    const auto same = [](const AttributeSet& x, const AttributeSet& y,
+                         std::initializer_list<std::string_view> others) {
         if (x.all().size() != y.all().size()) return false;
-        return std::ranges::all_of(x.all(), [&y](const auto& entry) {
-            return entry.first == attribute::kPosition || versionOf(entry.second) == y.version(entry.first);
+        return std::ranges::all_of(x.all(), [&](const auto& entry) {
+            const bool mayDiffer = std::ranges::find(others, entry.first) != others.end();
+            return mayDiffer ? y.has(entry.first) : versionOf(entry.second) == y.version(entry.first);
         });
     };
     const auto sameLayer = [](const Layer& x, const Layer& y) { return x.visible == y.visible; };
     return a.offsets.version() == b.offsets.version() &&
-           sameButPositions(a.pointAttributes, b.pointAttributes) &&
-           sameButPositions(a.strandAttributes, b.strandAttributes) && a.scalp == b.scalp &&
+           same(a.pointAttributes, b.pointAttributes, {attribute::kPosition, attribute::kPointDye}) &&
+           same(a.strandAttributes, b.strandAttributes, {}) && a.scalp == b.scalp &&
            a.scalpSelection == b.scalpSelection && sameFields(a.interpolation, b.interpolation) &&
            std::ranges::equal(a.layers, b.layers, sameLayer);
 }
@@ -175,6 +178,12 @@ Status RenderWork::takeScene(const PictureRequest& request, bool draft) {
         if (!scene_->setMaterial(now.material, viewOf(request))) return replaceScene(request, draft);
         if (auto set = showMaterial(request); !set) return set;
     }
+    const bool sameDye = now.pointAttributes.version(attribute::kPointDye) ==
+                         before.pointAttributes.version(attribute::kPointDye);
+    if (!sameDye) {
+        if (!scene_->setDye(now)) return replaceScene(request, draft);
+        if (auto set = showDye(request); !set) return set;
+    }
     const bool moved = request.pose != last_->pose || (!sameGroom && !samePoints(now, before));
     if (moved) return movePoints(request);
     return request.moves && !request.pose ? moveStrands(request) : Status();
@@ -229,6 +238,12 @@ Status RenderWork::showMaterial(const PictureRequest& request) {
     return renderer_.setMaterial(0, shown.strands.front().material);
 }
 
+Status RenderWork::showDye(const PictureRequest& request) {
+    const render::RenderScene shown = scene_->scene();
+    if (!request.showHair || shown.strands.empty()) return {};
+    return renderer_.setPointDyes(0, shown.strands.front().pointDyes);
+}
+
 render::RenderOptions RenderWork::options() const {
     const PictureQuality& quality = last_->quality;
     const gpu::DeviceInfo& device = device_.info();
@@ -244,6 +259,9 @@ render::RenderOptions RenderWork::options() const {
         options.ribbons = quality.ribbons;
     options.subdivisions = last_->moving ? 1 : quality.subdivisions;
     options.shadows = quality.shadows;
+    options.bakeBehind = true;
+    options.headAbsorption = quality.headAbsorption;
+    options.shadowBlur = last_->moving ? 0.0f : quality.shadowBlur;
     options.shadowResolution =
         last_->moving ? std::min(512u, quality.shadowResolution) : quality.shadowResolution;
     options.detail = last_->moving ? 0.5f : 0.0f;
@@ -321,7 +339,7 @@ Result<QImage> RenderWork::readBack() const {
 }
 
 bool RenderWork::isComplete() const {
-    return !last_ || renderer_.accumulated() >= options().frames;
+    return !last_ || (renderer_.isSettled() && renderer_.accumulated() >= options().frames);
 }
 
 void RenderWork::adapt(double milliseconds) {

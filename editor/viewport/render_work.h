@@ -40,6 +40,7 @@ class RenderWork {
     Status movePoints(const PictureRequest& request);
     Status moveStrands(const PictureRequest& request);
     Status showMaterial(const PictureRequest& request);
+    Status showDye(const PictureRequest& request);
     Status resize(std::uint32_t width, std::uint32_t height);
     void adapt(double milliseconds);
     render::RenderOptions options() const;

@@ -33,7 +33,7 @@ struct StrandHeader {
     uint source;          // its place among the strands of its group
     float streak;         // 0...1, how much it is in a streak
     float dye;            // 0...1
-    uint unused;
+    uint hasPointDyes;    // 1 where its points have shares of that
 };
 
 // One point of the finer curve.
@@ -80,9 +80,8 @@ struct ViewConstants {
                      // pixels
     uint4 sampling;  // x: samples a pixel, y: frame number, z: HAIRLOOM_TRANSPARENCY_*, w: HAIRLOOM_SHADOWS_*
     float4 layers;   // of a light: see LightConstants
-    float4
-        range;  // of a light: see LightConstants; of the camera: x: where hair begins, y: its depth, in metres or
-                // as RibbonCorner::depth has it
+    float4 range;    // of a light: see LightConstants; of the camera: x: where hair begins, y: its depth, in
+                     // metres or as RibbonCorner::depth has it
 };
 
 struct LightConstants {
@@ -95,11 +94,16 @@ struct LightConstants {
                     // perspective view, 0 for an orthographic one; w: where hair begins, metres behind it
     float4 layers;  // ends of the opacity layers in metres behind the first hair, or behind where hair
                     // begins; absorption: x: fibres a metre, y: most fibres
-    float4 filtering;  // x: by how much more fibres stop light than over a beam of 5 mm, y: metres of a texel
+    float4 filtering;  // x: by how much more fibres stop light than over a beam of 5 mm, y: metres of a
+                       // texel, z: absorption of hair behind the head, 1/m, 0: a test of depth; w: 1: shadows
+                       // are left out
+    float4 around;  // xyz: what a change of light from around along the light's direction, against those of
+                    // the other lights, is a change along; w: the light's weight in the mean of those that
+                    // know the hair around a point, 0 where its map knows nothing
 };
 
 struct ShadeConstants {
-    float4 eye_ws;          // w = 1: position of a perspective eye; w = 0: direction towards an orthographic one
+    float4 eye_ws;  // w = 1: position of a perspective eye; w = 0: direction towards an orthographic one
     float4 environment[9];  // radiance from around as real spherical harmonics, linear RGB; w of the first: 1
                             // when there is any
     float4 primary;         // RGB strength of the first highlight, w: exponent
@@ -109,11 +113,12 @@ struct ShadeConstants {
     float4 rootTip;        // x: brightness at the root, y: at the tip, z: random variation, w: fibre opacity
     float4 albedo;         // linear RGB of strands without a colour of their own
     float4 ground;         // linear RGB, albedo of what hair grows on
-    float4 sinking;        // of light on its way through hair to the skin: RGB, what a fibre takes, as the
-                           // logarithm; w: fibres in the way by those that are counted
-    float4
-        returning;  // RGB, share that hair without end sends back, w: 1 where direct light counts by itself
-    uint4 counts;   // x: curve points, y: lights, z: row length of the dispatch in points
+    float4 sinking;   // of light on its way through hair to the skin: RGB, the share that a fibre scatters;
+                      // of Kajiya-Kay, what it takes, as the logarithm; w: fibres in the way by those
+                      // that are counted
+    float4 turning;   // RGB, first moment of the angle by which they turn light; w: 0 for Kajiya-Kay
+    float4 straight;  // RGB, second
+    uint4 counts;     // x: curve points, y: lights, z: row length of the dispatch in points
     LightConstants lights[HAIRLOOM_MAX_LIGHTS];
 };
 
@@ -124,8 +129,7 @@ struct FibreConstants {
     float4 r;      // Sadeghi's: colour times intensity, linear RGB
     float4 tt;
     float4 trt;
-    float4 ambient;  // share of light from everywhere that leaves, linear RGB
-    float4 spread;   // x, y: least and largest width of the table of wide lobes, radians
+    float4 spread;  // x, y: least and largest width of the table of wide lobes, radians
 };
 
 // Colours (linear RGB) or absorption (RGB per fibre radius) from place to place, of hair that does not look
@@ -179,6 +183,12 @@ struct MeshConstants {
 struct ToneConstants {
     float4 exposure;  // x: factor on the light, y: on the sum of frames, z: 1 when the shader encodes sRGB
                       // itself, w: pixels in a row
+};
+
+// Shadows blurred on the screen, along rows first.
+struct BlurConstants {
+    uint4 size;     // x, y: of the picture in pixels, z: 0 along rows, 1 along columns, w: reach in pixels
+    float4 kernel;  // x: -1 by twice the variance
 };
 
 struct FilterConstants {
@@ -243,12 +253,12 @@ static_assert(sizeof(ViewConstants) == 144);
 HAIRLOOM_OFFSET(LightConstants, toLight_ws, 64);
 HAIRLOOM_OFFSET(LightConstants, range, 112);
 HAIRLOOM_OFFSET(LightConstants, layers, 128);
-static_assert(sizeof(LightConstants) == 160);
+static_assert(sizeof(LightConstants) == 176);
 HAIRLOOM_OFFSET(ShadeConstants, shift, 192);
 HAIRLOOM_OFFSET(ShadeConstants, albedo, 240);
-HAIRLOOM_OFFSET(ShadeConstants, counts, 304);
-HAIRLOOM_OFFSET(ShadeConstants, lights, 320);
-static_assert(sizeof(ShadeConstants) == 320 + 160 * HAIRLOOM_MAX_LIGHTS);
+HAIRLOOM_OFFSET(ShadeConstants, counts, 320);
+HAIRLOOM_OFFSET(ShadeConstants, lights, 336);
+static_assert(sizeof(ShadeConstants) == 336 + 176 * HAIRLOOM_MAX_LIGHTS);
 static_assert(sizeof(LookConstants) == 128);
 static_assert(sizeof(MeshConstants) == 80);
 HAIRLOOM_OFFSET(RasterConstants, places, 64);
@@ -257,12 +267,13 @@ static_assert(sizeof(FillConstants) == 16);
 static_assert(sizeof(ResolveConstants) == 32);
 static_assert(sizeof(PackConstants) == 32);
 static_assert(sizeof(ToneConstants) == 16);
+static_assert(sizeof(BlurConstants) == 32);
 static_assert(sizeof(FilterConstants) == 32);
 static_assert(sizeof(OverlayConstants) == 96);
 static_assert(sizeof(OverlayVertex) == 32);
 static_assert(sizeof(LightCase) == 32);
 static_assert(sizeof(KajiyaCase) == 48);
-static_assert(sizeof(FibreConstants) == 96);
+static_assert(sizeof(FibreConstants) == 80);
 static_assert(sizeof(FibreCase) == 96);
 }  // namespace hairloom::shaders
 #endif

@@ -8,13 +8,13 @@ void stageGravity() {
 /// Hair takes on the air's velocity at the rate airDrag · sin of its angle to the tangent (Rünz 2012, Section
 /// 3.3). `atRoot` and `atTip` are the air's way in one substep.
 void takeAir(float3 atRoot, float3 atTip) {
-    tellPositions();
+    INNER_POSITIONS
     FREE_POINTS(p) {
         const float3 here = position(p);
         const float3 before = previous(p);
         const float along = float(p) * (1.0 / float(POINTS - 1));
         const float3 flow = before - here + atRoot + (atTip - atRoot) * along;
-        const float3 tangent = here - toldPosition(p - 1);
+        const float3 tangent = here - INNER_POSITION(p);
         const float both = dot(flow, flow) * dot(tangent, tangent);
         const float parallel = dot(flow, tangent);
         const float sineSquared = max(both - parallel * parallel, 0.0) / (both + 1e-30);
@@ -27,7 +27,6 @@ void stageDrag() { takeAir(float3(0, 0, 0), float3(0, 0, 0)); }
 #if HAIR_WIND
 #define WIND_UNIFORM 0
 #define WIND_GUSTING 1
-static float3 gWindRoot[2], gWindTip[2];
 
 /// sin(2π · turns) to 0.1 %: a parabola, refined once by its own square.
 float sineOfTurns(float turns) {
@@ -39,10 +38,10 @@ float sineOfTurns(float turns) {
 /// Velocity of the air at one place at the start (0) or end (1) of the frame.
 float3 windAt(float3 place_ws, uint end) {
     const float3 mean = gFrame.wind.xyz;
-    if (gFrame.windKind == WIND_UNIFORM) return mean;
+    const uint modes = gFrame.windKind == WIND_UNIFORM ? 0 : HAIRLOOM_WIND_MODES;
     float waves = 0.0;
     float3 eddies = float3(0, 0, 0);
-    [loop] for (uint m = 0; m < HAIRLOOM_WIND_MODES; ++m) {
+    [loop] for (uint m = 0; m < modes; ++m) {
         const float4 amplitude = gFrame.windAmplitudes[m];
         const float4 waveVector = gFrame.windWaves[m];
         const float wave = sineOfTurns(dot(place_ws, waveVector.xyz) + (end == 0 ? amplitude.w : waveVector.w));
@@ -57,29 +56,34 @@ float3 windAt(float3 place_ws, uint end) {
 }
 
 #if HAIR_STORAGE == 3
+groupshared float4 gWinds[4 * HAIR_STRANDS];  // of each strand at root and tip, at the start and the end
+float3 windHere(uint tip, uint end) { return gWinds[4 * gStrand + 2 * end + tip].xyz; }
+
 /// A lane each for both places and both ends.
 void sampleWind() {
     tellPositions();
     const bool atTip = (gPoint & 1u) != 0u;
     const float3 place = atTip ? gRoot + told(POINTS - 1).xyz : gRoot;
-    tell(float4(windAt(place, (gPoint >> 1) & 1u) * gFrame.h, 0));
-    [unroll] for (uint end = 0; end < 2; ++end) {
-        gWindRoot[end] = told(2 * end).xyz;
-        gWindTip[end] = told(2 * end + 1).xyz;
-    }
+    const float3 way = windAt(place, (gPoint >> 1) & 1u) * gFrame.h;
+    if (gPoint < 4) gWinds[4 * gStrand + gPoint] = float4(way, 0);
+    GroupMemoryBarrierWithGroupSync();
 }
 #else
+static float3 gWinds[4];
+float3 windHere(uint tip, uint end) { return gWinds[2 * end + tip]; }
+
 void sampleWind() {
     const float3 tip = gRoot + position(POINTS - 1);
     [unroll] for (uint end = 0; end < 2; ++end) {
-        gWindRoot[end] = windAt(gRoot, end) * gFrame.h;
-        gWindTip[end] = windAt(tip, end) * gFrame.h;
+        gWinds[2 * end] = windAt(gRoot, end) * gFrame.h;
+        gWinds[2 * end + 1] = windAt(tip, end) * gFrame.h;
     }
 }
 #endif
 
 void stageWind() {
     const float t = float(gSubstep + 1) / float(gFrame.substeps);
-    takeAir(gWindRoot[0] + (gWindRoot[1] - gWindRoot[0]) * t, gWindTip[0] + (gWindTip[1] - gWindTip[0]) * t);
+    const float3 root = windHere(0, 0), tip = windHere(1, 0);
+    takeAir(root + (windHere(0, 1) - root) * t, tip + (windHere(1, 1) - tip) * t);
 }
 #endif

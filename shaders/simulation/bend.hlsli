@@ -25,12 +25,6 @@ float3 fromFrame(float3 tangent, float3 normal, float3 local) {
     return tangent * local.x + normal * local.y + cross(tangent, normal) * local.z;
 }
 
-/// The direction and the normal that the root carries, before the first segment.
-float3 rootTangent() { return rotate(gRotation, rootSegment() * rootInverseLength()); }
-#if HAIR_TARGETS
-float3 rootNormal() { return rotate(gRotation, normalAtRest()); }
-#endif
-
 #if HAIR_CURVES
 static float gTank, gMotion;
 
@@ -122,7 +116,7 @@ float followFrames() {
     EACH for (uint j = 0; j + 1 < POINTS; ++j) {
         const float3 tangent = (previous(j + 1) - previous(j)) * inverseLength(j);
         if (j + 1 >= FIRST_FREE) {
-            const float3 held = rotate(gTurn, curve(j));
+            const float3 held = rotate(turnNow(), curve(j));
             const float3 change = (fromFrame(before, normal, target(j)) - held) * known;
             const float stiff = stiffness(j);
             gain += dot((tangent - before - held) * stiff, change);

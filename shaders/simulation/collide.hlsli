@@ -17,7 +17,12 @@ float3 sphereCentre(uint k, float step) { return gSpheres[k].from.xyz + gSpheres
 
 // Spheres that are looked at together, so that they are fetched while others are worked on; the last stands for
 // those past the end.
+#if HAIR_STORAGE == 3 && !HAIR_TABLES
+// Where lanes read them from the constants: more would cost registers, and side by side run fewer groups.
+#define SPHERES_AT_ONCE 2
+#else
 #define SPHERES_AT_ONCE 5
+#endif
 #define EACH_SPHERE(first, end) \
     [loop] for (uint sphereRow = first; sphereRow < end; sphereRow += SPHERES_AT_ONCE) \
         [unroll] for (uint sphereAt = 0; sphereAt < SPHERES_AT_ONCE; ++sphereAt)
@@ -198,6 +203,7 @@ Touch touchSpheres(bool backward, uint p, float3 at, float3 before, float3 inner
 }
 
 #if HAIR_STORAGE == 3
+#if HAIR_TABLES
 groupshared float4 gSpheresNow[SPHERE_SET];  // centre, and square of the reach with the largest pearl
 
 /// The spheres of a set, a lane each, for the work group to read.
@@ -207,28 +213,36 @@ void gatherSpheres(uint first, uint end, float step) {
     GroupMemoryBarrierWithGroupSync();
     [loop] for (uint k = first + gLane; k < end; k += HAIR_THREADS) {
         const float reach = gSpheres[k].from.w + pearl;
-        gSpheresNow[k - first] = float4(sphereCentre(k, step), reach * reach * 1.0001);
+        gSpheresNow[k - first] = float4(sphereCentre(k, step), reach * reach);
     }
     GroupMemoryBarrierWithGroupSync();
 }
+float4 sphereNow(uint k, uint first, float step) { return gSpheresNow[k - first]; }
+#else
+void gatherSpheres(uint first, uint end, float step) {}
+float4 sphereNow(uint k, uint first, float step) {
+    const float reach = gSpheres[k].from.w + max(gFrame.pearlRoot, gFrame.pearlTip);
+    return float4(sphereCentre(k, step), reach * reach);
+}
+#endif
 
-/// Which of up to 32 spheres of the set a place may lie in, as bits. In the world, whose rounding the margin covers.
-uint spheresAround(float3 place_ws, uint first, uint end) {
+/// Which of up to 32 spheres from `from` on of the set a place may lie in, as bits. In the world, whose rounding the margin
+/// covers.
+uint spheresAround(float3 place_ws, uint from, uint first, uint end, float step) {
     uint near = 0u;
-    EACH_SPHERE(first, end) {
+    EACH_SPHERE(from, end) {
         const uint k = SPHERE_BEFORE(end);
-        const float4 sphere = gSpheresNow[k];
+        const float4 sphere = sphereNow(k, first, step);
         const float3 offset = place_ws - sphere.xyz;
-        near |= dot(offset, offset) <= sphere.w ? 1u << (k - first) : 0u;
+        near |= dot(offset, offset) <= sphere.w * 1.0001 ? 1u << (k - from) : 0u;
     }
     return near;
 }
 
 Touch touchNear(bool backward, uint p, float3 at, float3 before, float3 inner, bool knowsInner, uint first, uint end,
                 float3 root, float step) {
-    const uint count = end - first;
-    uint2 near = uint2(spheresAround(at + root, 0, min(count, 32u)), 0u);
-    if (count > 32u) near.y = spheresAround(at + root, 32, count);
+    uint2 near = uint2(spheresAround(at + root, first, first, min(first + 32, end), step), 0u);
+    if (end - first > 32u) near.y = spheresAround(at + root, first + 32, first, end, step);
     return touchSpheres(backward, p, at, before, inner, knowsInner, first, end, near, root, step);
 }
 

@@ -32,17 +32,15 @@ void loadState() {
     gInnerInverseLength = inverseOf(inner.x);
     gInverseMass = own.y;
     gOuterInverseMass = outer.y;
-    gRootSegment = restVector(0);
-    gRootInverseLength = inverseLength(0);
 #if HAIR_BEND
     gStiff = stiffness(gPoint);
 #endif
 #if HAIR_BEND == 2
-    gRows[gLane] = gFactors[slotOf(0, gPoint)];
+    [unroll] for (uint step = 0; step < BEND_STEPS; ++step) gReduction[step] = gFactors[slotOf(step, gPoint)];
+    gReduced = gFactors[slotOf(BEND_STEPS, gPoint)].xy;
 #endif
 #if HAIR_TARGETS
     gTarget = target(gPoint);
-    gNormalAtRest = target(POINTS - 1);
 #endif
 #if HAIR_CURVES
     gCurve = savedCurve(gPoint);
@@ -72,7 +70,7 @@ void saveState() {
 /// See frame_threads.hlsli.
 void placeAtRest() {
     float3 at = float3(0, 0, 0);
-    [loop] for (uint p = 0; p < gPoint; ++p) at += rotate(gRotationTo, restVector(p));
+    [loop] for (uint p = 0; p < gPoint; ++p) at += rotate(gRootsTo[2 * gSlot + 1], restVector(p));
     gPosition = gPrevious = at;
 #if HAIR_CURVES
     gCurve = float3(0, 0, 0);

@@ -45,7 +45,7 @@ void placeAtRest() {
     EACH for (uint p = 0; p < POINTS; ++p) {
         setPosition(p, at);
         setPrevious(p, at);
-        at += rotate(gRotationTo, restVector(p));
+        at += rotate(gRootsTo[2 * gSlot + 1], restVector(p));
 #if HAIR_CURVES
         setCurve(p, float3(0, 0, 0));
 #endif

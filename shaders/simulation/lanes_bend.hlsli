@@ -2,19 +2,37 @@
 // Angular springs of a strand whose points are lanes; bend.hlsli is the same, point after point.
 
 #if HAIR_TARGETS
-/// The normal that the segment before the lane's joint has, walked from the root, and 0 in `known` where the
-/// strand folds before it.
-float3 walkNormal(float3 inner, float3 tangent, out float known) {
+/// The normal that the segment before the lane's joint has, carried from the root; `known` is false where the strand
+/// folds before it. A step along the strand takes a normal n to n − a (t·n). Side by side, lanes put the steps of their
+/// four lanes together, up to their own; then the normal goes from four to four.
+float3 walkNormal(float3 inner, float3 tangent, out bool known) {
     const float cosine = dot(inner, tangent);
     const float flat = max(1.0 + cosine, 1e-6);
-    tell(float4(tangent, cosine < FOLD ? 0.0 : 1.0), float4((inner + tangent) * (1.0 / flat), 0));
-    float3 normal = rootNormal();
-    known = 1.0;
-    [loop] for (uint k = 0; k < gPoint; ++k) {
-        const float4 to = told(k);
-        normal -= toldToo(k).xyz * dot(to.xyz, normal);
-        known = min(known, to.w);
+    const float3 turn = (inner + tangent) * (1.0 / flat);
+    tell(float4(tangent, 0), float4(turn, 0));
+    const uint four = gPoint & ~3u;
+    // Rows of the map of the steps from the first of the four lanes to this one.
+    float3 x = float3(1, 0, 0), y = float3(0, 1, 0), z = float3(0, 0, 1);
+    [unroll] for (uint k = 0; k < 3; ++k) {
+        const uint step = min(four + k, uint(HAIR_POINTS) - 1);
+        const float3 to = told(step).xyz, by = toldToo(step).xyz;
+        if (four + k < gPoint) {
+            const float3 along = x * to.x + y * to.y + z * to.z;
+            x -= along * by.x;
+            y -= along * by.y;
+            z -= along * by.z;
+        }
     }
+    float3 start = rootNormal(), normal = start;
+    EACH for (uint first = 0; first < HAIR_POINTS; first += 4) {
+        const float3 here = float3(dot(x, start), dot(y, start), dot(z, start));
+        if (first == four) normal = here;
+        if (first + 4 < HAIR_POINTS) {
+            tell(float4(here - turn * dot(tangent, here), 0));
+            start = told(first + 3).xyz;
+        }
+    }
+    known = firstOfStrand(cosine < FOLD) >= gPoint;
     return normal;
 }
 #endif
@@ -32,7 +50,7 @@ float3 measurePull(bool frames, bool exact) {
         // Springs may stretch: a frame needs directions of unit length.
         float3 unit = unitOf(innerEdge);
         if (gPoint == 0) unit = inner;
-        float known;
+        bool known;
         const float3 normal = walkNormal(unit, unitOf(edge), known);
         off -= fromFrame(unit, normal, gTarget);
     }
@@ -54,7 +72,8 @@ void applyAngular(bool frames, bool exact) {
     }
     if (!hasSegment()) outer = float3(0, 0, 0);
     tell(float4(outer, 0));
-    if (isFree()) gPrevious += (toldInner().xyz - outer) * gInverseMass;
+    const float3 innerPull = toldInner().xyz;
+    if (isFree()) gPrevious += (innerPull - outer) * gInverseMass;
 }
 #if HAIR_TARGETS
 void stageAngularCheap() { applyAngular(true, false); }
@@ -64,56 +83,37 @@ void stageStraightCheap() { applyAngular(false, false); }
 void stageStraightExact() { applyAngular(false, true); }
 
 #if HAIR_BEND == 2
-/// Solves (M + (¼ + q) h² K) δ = side by the LDLᵀ factors of the strand: a lane each for x, y and z.
+/// Solves (M + (¼ + q) h² K) δ = side by cyclic reduction of pairs of points, all of them at a time (as Hockney and
+/// Jesshope 1981): each step frees a pair of its neighbours and couples it to those twice as far. Its factors are the
+/// strand's own, from the program (core/gpu_simulation/bend_reduction.h); those of points that do not move are 0.
 float3 solveBend(float3 side) {
-    const uint own = 3 * gLane;
-    gSolved[own] = side.x;
-    gSolved[own + 1] = side.y;
-    gSolved[own + 2] = side.z;
-    GroupMemoryBarrierWithGroupSync();
-    if (gPoint < 3) {
-        const uint first = 3 * gFirst + gPoint;
-        float one = 0.0, two = 0.0;
-        EACH for (uint p = FIRST_FREE; p < POINTS; ++p) {
-            const float4 row = gRows[gFirst + p];
-            const float here = gSolved[first + 3 * p] - one * row.y - two * row.z;
-            gSolved[first + 3 * p] = here;
-            two = one;
-            one = here;
-        }
-        float next = 0.0, second = 0.0, lower1 = 0.0, lower2 = 0.0, lower2Next = 0.0;
-        EACH for (int q = int(POINTS) - 1; q >= FIRST_FREE; --q) {
-            const float4 row = gRows[gFirst + q];
-            const float move = gSolved[first + 3 * q] * row.x - next * lower1 - second * lower2Next;
-            gSolved[first + 3 * q] = move;
-            second = next;
-            next = move;
-            lower1 = row.y;
-            lower2Next = lower2;
-            lower2 = row.z;
-        }
+    const uint pair = gPoint & ~1u, last = HAIR_POINTS - 1;
+    [unroll] for (uint step = 0; step < BEND_STEPS; ++step) {
+        const uint apart = 2u << step;
+        // Beyond the ends factors are 0, and the point that is read any.
+        const uint before = pair >= apart ? pair - apart : pair;
+        const uint after = pair + apart <= last ? pair + apart : pair;
+        const float4 by = gReduction[step];
+        tell(float4(side, 0));
+        side += told(before).xyz * by.x + told(min(before + 1, last)).xyz * by.y + told(after).xyz * by.z +
+                told(min(after + 1, last)).xyz * by.w;
     }
-    GroupMemoryBarrierWithGroupSync();
-    return float3(gSolved[own], gSolved[own + 1], gSolved[own + 2]);
+    tell(float4(side, 0));
+    return side * gReduced.x + told(min(gPoint ^ 1u, last)).xyz * gReduced.y;
 }
 
 #if HAIR_CURVES
 /// Turns the curve that the lane's joint holds towards that of its frame at `previous`, as far as the strand's tank
 /// lasts.
 void followFrames(float3 inner, float3 tangent) {
-    float known;
+    bool known;
     const float3 normal = walkNormal(inner, tangent, known);
-    const float3 held = rotate(gTurn, gCurve);
-    float3 change = (fromFrame(inner, normal, gTarget) - held) * known;
-    if (!hasJoint()) change = float3(0, 0, 0);
-    tell(float4(dot((tangent - inner - held) * gStiff, change), dot(change, change) * gStiff, 0, 0));
-    float gain = 0.0, size = 0.0;
-    EACH for (uint j = FIRST_FREE - 1; j + 1 < POINTS; ++j) {
-        const float2 joint = told(j).xy;
-        gain += joint.x;
-        size += joint.y;
-    }
-    const float share = takeShare(gain, size);
+    const float3 held = rotate(turnNow(), gCurve);
+    float3 change = fromFrame(inner, normal, gTarget) - held;
+    if (!known || !hasJoint()) change = float3(0, 0, 0);
+    const float2 joint = float2(dot((tangent - inner - held) * gStiff, change), dot(change, change) * gStiff);
+    const float2 sums = sumOfStrand(joint);
+    const float share = takeShare(sums.x, sums.y);
     if (hasJoint()) gCurve = held + change * share;
 }
 #endif
@@ -145,9 +145,9 @@ void bendBack() {
     float3 side = float3(0, 0, 0);
 #endif
     side -= (toldInner().xyz - pull) * gInnerInverseLength;
-    if (hasSegment()) side += (pull - toldOuter().xyz) * gInverseLength;
-    const float3 move = solveBend(side);
-    if (isFree()) gPosition += move;
+    const float3 outerPull = (pull - toldOuter().xyz) * gInverseLength;
+    if (hasSegment()) side += outerPull;
+    gPosition += solveBend(isFree() ? side : float3(0, 0, 0));
 }
 void stageAngular() { bendBack(); }
 void stageAngularStraight() { bendBack(); }

@@ -58,14 +58,9 @@ void holdStrand(int holding) {
 
 /// See length.hlsli. From the first segment that is wrong on, each lane goes the way to its own point.
 void stageExtension() {
-    ONLY_POINT(0) gFirstWrong[gStrand] = 0xffffffffu;
     tell(float4(gPosition, gLength));
-    if (isFree()) {
-        const float4 parent = toldInner();
-        if (isWrong(gPosition - parent.xyz, parent.w)) InterlockedMin(gFirstWrong[gStrand], gPoint);
-    }
-    GroupMemoryBarrierWithGroupSync();
-    const uint begin = gFirstWrong[gStrand];
+    const float4 inner = toldInner();
+    const uint begin = firstOfStrand(isFree() && isWrong(gPosition - inner.xyz, inner.w));
     if (begin <= gPoint && gPoint < POINTS) {
         float4 parent = told(begin - 1);
         [loop] for (uint p = begin; p <= gPoint; ++p) {

@@ -3,46 +3,52 @@
 
 void stageSprings() {
     tellPositions();
+    const float3 way = toldOuter().xyz - gPosition;
     float3 outer = float3(0, 0, 0);
     if (gPoint + 1 >= FIRST_FREE && hasSegment()) {
-        const Direction edge = edgeOf(toldOuter().xyz - gPosition);
+        const Direction edge = edgeOf(way);
         const float step = 2.0 * gFrame.springStep / (gInverseMass + gOuterInverseMass);
         outer = edge.unit * ((edge.size - gLength) * step);
     }
     tell(float4(outer, 0));
-    if (isFree()) gPrevious -= (outer - toldInner().xyz) * gInverseMass;
+    const float3 inner = toldInner().xyz;
+    if (isFree()) gPrevious -= (outer - inner) * gInverseMass;
 }
 
 #if HAIR_BEND
 void stageFlexion() {
     tell(float4(gPosition, 0));
+    const float3 way = toldOuter().xyz - toldInner().xyz;
     float3 pull = float3(0, 0, 0);
     if (gPoint >= 1 && hasSegment()) {
         const float3 span = restVector(gPoint - 1) + restVector(gPoint);
-        const Direction edge = edgeOf(toldOuter().xyz - toldInner().xyz);
+        const Direction edge = edgeOf(way);
         pull = edge.unit * ((edge.size - sqrt(dot(span, span))) * gStiff);
     }
     tell(float4(pull, 0));
+    const float3 inner = toldInner().xyz, outer = toldOuter().xyz;
     if (isFree()) {
-        gPrevious += toldInner().xyz * gInverseMass;
-        if (hasSegment()) gPrevious -= toldOuter().xyz * gInverseMass;
+        gPrevious += inner * gInverseMass;
+        if (hasSegment()) gPrevious -= outer * gInverseMass;
     }
 }
 #endif
 
-/// Each segment moves both its points, root to tip: each lane goes the way to the segment after its point.
+/// Each segment moves both its points, root to tip: each lane goes all the way and keeps its own.
 void stageSpringLimit() {
     [loop] for (uint n = 0; n < gFrame.lengthIterations; ++n) {
         tell(float4(gPosition, gLength), float4(gInverseMass, 0, 0, 0));
         float3 from = told(FIRST_FREE - 1).xyz, own = gPosition;
-        const uint last = min(gPoint + 1, uint(POINTS) - 1);
-        [loop] for (uint p = FIRST_FREE; p <= last; ++p) {
-            const float3 to = told(p).xyz;
-            const float outer = toldToo(p).x, inner = p > FIRST_FREE ? toldToo(p - 1).x : 0.0;
-            const float3 impulse = limitImpulse(to - from, told(p - 1).w, inner + outer);
+        float length = told(FIRST_FREE - 1).w, inner = 0.0;
+        [loop] for (uint p = FIRST_FREE; p < POINTS; ++p) {
+            const float4 to = told(p);
+            const float outer = toldToo(p).x;
+            const float3 impulse = limitImpulse(to.xyz - from, length, inner + outer);
             if (p == gPoint + 1) own = from + impulse * inner;
-            from = to - impulse * outer;
+            from = to.xyz - impulse * outer;
             if (p == gPoint) own = from;
+            length = to.w;
+            inner = outer;
         }
         if (isFree()) gPosition = own;
     }

@@ -3,6 +3,40 @@
 
 float rootRow(uint row) { return gRoots[row * gFrame.slots + gSlot]; }
 
+/// From one rotation to another by the share t of the way.
+float4 rotationBetween(float4 from, float4 to, float t) {
+    const float4 mixed = from + ((dot(from, to) < 0.0 ? -to : to) - from) * t;
+    return mixed * (1.0 / sqrt(dot(mixed, mixed)));
+}
+
+#if HAIR_STORAGE == 3
+#include "shaders/simulation/lanes_roots.hlsli"
+#else
+static float4 gRotationFrom;
+static float4 gRotationTo;
+static float4 gRotation;  // of now
+static float4 gTurn;      // from the rotation a substep ago to that of now
+
+void setRotations(float4 from, float4 to) {
+    gRotationFrom = gRotation = from;
+    gRotationTo = to;
+}
+
+void turnRoot() {
+    const float4 now = rotationBetween(gRotationFrom, gRotationTo, float(gSubstep + 1) / float(gFrame.substeps));
+    gTurn = multiply(now, conjugate(gRotation));
+    gRotation = now;
+}
+
+float4 turnNow() { return gTurn; }
+float3 firstSegment() { return rotate(gRotation, restVector(0)); }
+/// The direction and the normal that the root carries, before the first segment.
+float3 rootTangent() { return rotate(gRotation, restVector(0) * inverseLength(0)); }
+#if HAIR_TARGETS
+float3 rootNormal() { return rotate(gRotation, target(POINTS - 1)); }
+#endif
+#endif
+
 /// Takes the way of the root through the frame.
 void enterFrame() {
     float3 from = float3(rootRow(0), rootRow(1), rootRow(2));
@@ -25,29 +59,24 @@ void enterFrame() {
     }
     gRoot = from;
     gRootStep = (to - from) / float(gFrame.substeps);
-    gRotationFrom = gRotation = rotationFrom;
-    gRotationTo = rotationTo;
+    setRotations(rotationFrom, rotationTo);
 }
 
 void leaveFrame() {
     const float3 to = gRootsTo[2 * gSlot].xyz;
-    const float values[7] = {to.x, to.y, to.z, gRotationTo.x, gRotationTo.y, gRotationTo.z, gRotationTo.w};
+    const float4 turned = gRootsTo[2 * gSlot + 1];
+    const float values[7] = {to.x, to.y, to.z, turned.x, turned.y, turned.z, turned.w};
     [unroll] for (uint row = 0; row < 7; ++row) gRoots[row * gFrame.slots + gSlot] = values[row];
 }
 
 /// Turns the root to where it is at the end of the substep and takes the clamped points along.
 void stageRoots() {
-    const float t = float(gSubstep + 1) / float(gFrame.substeps);
-    const float4 to = dot(gRotationFrom, gRotationTo) < 0.0 ? -gRotationTo : gRotationTo;
-    const float4 mixed = gRotationFrom + (to - gRotationFrom) * t;
-    const float4 now = mixed * (1.0 / sqrt(dot(mixed, mixed)));
-    gTurn = multiply(now, conjugate(gRotation));
-    gRotation = now;
+    turnRoot();
     ONLY_POINT(0) setPrevious(0, -gRootStep);
 #if HAIR_CLAMPED > 1
     ONLY_POINT(1) {
         setPrevious(1, position(1) - gRootStep);
-        setPosition(1, rotate(now, rootSegment()));
+        setPosition(1, firstSegment());
     }
 #endif
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Where a strand's numbers are. Buffers are strand-major: index = (plane · HAIR_POINTS + point) · slots + slot,
-// so that neighbouring threads read neighbouring floats. Between the substeps of a frame a strand lives
+// Where a strand's numbers are. In buffers index = (plane · HAIR_POINTS + point) · slots + slot, or, with
+// HAIR_TOGETHER, (plane · slots + slot) · HAIR_POINTS + point, so that neighbouring threads, of strands or of points, read
+// neighbouring floats. Between the substeps of a frame a strand lives
 //   HAIR_STORAGE 0: in arrays of its thread (registers where HAIR_UNROLL makes all indices constant),
 //   HAIR_STORAGE 1: position and previous in the memory of the work group, the rest as 0,
 //   HAIR_STORAGE 2: in the buffers, for strands too long for either,
@@ -37,7 +38,23 @@ RWStructuredBuffer<float4> gPlaces : register(u4);   // world, in the caller's o
 #if HAIR_BEND == 1
 StructuredBuffer<float> gStiffness : register(t2);
 #elif HAIR_BEND == 2
-StructuredBuffer<float4> gFactors : register(t2);    // inverse diagonal, lower1, lower2, stiffness
+// Inverse diagonal, lower1, lower2, stiffness; for lanes a plane for each step of solveBend(), then one of what it ends
+// with and the stiffness.
+StructuredBuffer<float4> gFactors : register(t2);
+#if HAIR_STORAGE == 3
+// Steps in which pairs of points are told to all pairs.
+#if HAIR_POINTS <= 4
+#define BEND_STEPS 1
+#elif HAIR_POINTS <= 8
+#define BEND_STEPS 2
+#elif HAIR_POINTS <= 16
+#define BEND_STEPS 3
+#elif HAIR_POINTS <= 32
+#define BEND_STEPS 4
+#else
+#define BEND_STEPS 5
+#endif
+#endif
 #endif
 #if HAIR_TARGETS
 StructuredBuffer<float4> gTargets : register(t3);
@@ -80,14 +97,14 @@ static uint gPointCount;
 /// What the strand goes through in the frame.
 static float3 gRoot;        // at the start of the frame, world
 static float3 gRootStep;    // its way in one substep
-static float4 gRotationFrom;
-static float4 gRotationTo;
-static float4 gRotation;    // of now
-static float4 gTurn;        // from the rotation a substep ago to that of now
 static uint gSubstep;
 
 uint slotOf(uint plane, uint p) {
+#if HAIR_TOGETHER
+    return (plane * gFrame.slots + gSlot) * HAIR_POINTS + p;
+#else
     return (plane * HAIR_POINTS + p) * gFrame.slots + gSlot;
+#endif
 }
 
 #define BUFFER_ARRAY(type, get, put, buffer, plane) \
@@ -152,8 +169,8 @@ LOCAL_ARRAY(float, right, setRight, gRight)
 #if HAIR_STORAGE != 3
 /// Pulls of angular springs, and what holds segments: never both at once.
 SCRATCH_ARRAY(work, setWork, gWork, 0)
-void tellPositions() {}
-float3 toldPosition(uint p) { return position(p); }
+#define INNER_POSITIONS
+#define INNER_POSITION(p) position(p - 1)
 #endif
 // Of integrators that evaluate forces elsewhere than at the last place; displacements in one substep but for
 // `start`, a place.
@@ -175,26 +192,11 @@ float inverseOf(float size) { return size > 1e-9 ? 1.0 / size : 0.0; }
 float inverseLength(uint p) { return inverseOf(segmentLength(p)); }
 #if HAIR_BEND == 1
 float stiffness(uint p) { return gStiffness[slotOf(0, p)]; }
+#elif HAIR_BEND == 2 && HAIR_STORAGE == 3
+float stiffness(uint p) { return gFactors[slotOf(BEND_STEPS, p)].z; }
 #elif HAIR_BEND == 2
 float stiffness(uint p) { return gFactors[slotOf(0, p)].w; }
 #endif
 #if HAIR_TARGETS
 float3 target(uint p) { return gTargets[slotOf(0, p)].xyz; }
-#endif
-#if HAIR_STORAGE == 3
-float3 rootSegment() { return gRootSegment; }
-float rootInverseLength() { return gRootInverseLength; }
-#else
-float3 rootSegment() { return restVector(0); }
-float rootInverseLength() { return inverseLength(0); }
-#endif
-#if HAIR_TARGETS
-/// The normal that the root carries.
-float3 normalAtRest() {
-#if HAIR_STORAGE == 3
-    return gNormalAtRest;
-#else
-    return target(POINTS - 1);
-#endif
-}
 #endif

@@ -5,6 +5,8 @@
 #define HAIR_UNROLL 1
 #define HAIR_STORAGE 0
 #define HAIR_STRANDS 32
+#define HAIR_TOGETHER 0
+#define HAIR_TABLES 0
 #define HAIR_CLAMPED 2
 #define HAIR_EVALUATION 0
 #define HAIR_BEND 2

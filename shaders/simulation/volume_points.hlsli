@@ -14,13 +14,18 @@ struct Point {
 };
 Point pointOf(uint thread) {
     Point result;
-    result.p = thread / gVolume.slots;
-    result.slot = thread % gVolume.slots;
-    result.counts = result.p < gVolume.points && result.p < gBlocks[result.slot / 32].x &&
+    const uint side = gVolume.together != 0u ? max(gVolume.points, 1u) : gVolume.slots;
+    const uint outer = thread / side, inner = thread % side;
+    result.p = gVolume.together != 0u ? inner : outer;
+    result.slot = gVolume.together != 0u ? outer : inner;
+    result.counts = result.p < gVolume.points && result.slot < gVolume.slots && result.p < gBlocks[result.slot / 32].x &&
                     gFirstPoints[result.slot] != 0xffffffffu;
     return result;
 }
-uint planeSlot(uint plane, Point at) { return (plane * gVolume.points + at.p) * gVolume.slots + at.slot; }
+uint planeSlot(uint plane, Point at) {
+    return gVolume.together != 0u ? (plane * gVolume.slots + at.slot) * gVolume.points + at.p
+                                  : (plane * gVolume.points + at.p) * gVolume.slots + at.slot;
+}
 float3 rootOf(Point at) {
     return float3(gRoots[at.slot], gRoots[gVolume.slots + at.slot], gRoots[2 * gVolume.slots + at.slot]);
 }

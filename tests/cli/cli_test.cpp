@@ -238,6 +238,20 @@ TEST_F(Cli, ExportedAssetsComeBackTheSame) {
     }
 }
 
+TEST_F(Cli, AStrokeOfDyeIsReplayed) {
+    runJson(createArguments());
+    std::ofstream(folder / "dye.json") << R"({"hairloom_script": 1, "operations": [{"op": "stroke",
+        "tool": "dye_paint", "radius": 0.5, "profile": [0, 1], "falloff": [],
+        "dabs": [{"at": [0, 0.15, 0], "strength": 1}]}]})";
+    const auto first = runJson("groom hair.hairloom --script dye.json -o dyed.hairloom");
+    EXPECT_EQ(first["strokes"], 1);
+    EXPECT_EQ(first["touched_strands"], 0) << "none has moved";
+    runJson("groom hair.hairloom --script dye.json -o again.hairloom --threads 4");
+    EXPECT_EQ(readText(folder / "dyed.hairloom"), readText(folder / "again.hairloom"));
+    EXPECT_NE(readText(folder / "dyed.hairloom").find("\"point/dye\""), std::string::npos);
+    EXPECT_TRUE(runJson("validate dyed.hairloom")["valid"].get<bool>());
+}
+
 TEST_F(Cli, SettingsAreCheckedByNameAndRange) {
     runJson(createArguments());
     const auto set =

@@ -11,6 +11,7 @@
 
 #include "core/base/random.h"
 #include "core/editing/document.h"
+#include "core/groom/point_dye.h"
 #include "editor/fields/number_box.h"
 #include "editor/tools/brush_tool.h"
 #include "tests/editor/window_fixture.h"
@@ -79,7 +80,7 @@ TEST_P(BrushToolTest, EscapeLeavesNothing) {
 
 INSTANTIATE_TEST_SUITE_P(All, BrushToolTest,
                          testing::Values("comb", "brush", "grab", "smooth", "puff", "pinch", "length", "cut",
-                                         "cut_line", "delete", "freeze"),
+                                         "cut_line", "delete", "dye_paint", "freeze"),
                          [](const auto& brush) { return std::string(brush.param); });
 
 TEST_F(ToolsTest, KeysChangeSizeAndStrength) {
@@ -222,6 +223,36 @@ TEST_F(ToolsTest, DensityIsPaintedAndCtrlBringsItBack) {
     EXPECT_EQ(hash(), after);
     drag({crown, crown + QPoint(20, 4), crown + QPoint(40, 8)}, Qt::ControlModifier);
     EXPECT_GT(*std::ranges::min_element(groom().scalpDensity), thinned);
+}
+
+TEST_F(ToolsTest, DyeIsPaintedTakenOffAndSmoothed) {
+    activate("dye_paint");
+    const auto sum = [this] {
+        double all = 0;
+        for (const float value : groom().pointAttributes.view<float>(attribute::kPointDye))
+            all += static_cast<double>(value);
+        return all;
+    };
+    const Groom before = groom();
+    drag({crown, crown + QPoint(20, 4), crown + QPoint(40, 8)});
+    const double painted = sum();
+    EXPECT_GT(painted, 5);
+    EXPECT_EQ(groom().material.dyeStrength, 1) << "the material had no dye to show";
+    EXPECT_TRUE(std::ranges::equal(groom().positions(), before.positions())) << "hair stays where it is";
+    drag({crown, crown + QPoint(20, 4)}, Qt::ShiftModifier);
+    EXPECT_EQ(document().stepName(1), "Paint dye") << "Shift smooths the mask and not the hair";
+    EXPECT_TRUE(std::ranges::equal(groom().positions(), before.positions()));
+    EXPECT_NE(sum(), painted);
+    const double smoothed = sum();
+    drag({crown, crown + QPoint(20, 4), crown + QPoint(40, 8)}, Qt::ControlModifier);
+    EXPECT_LT(sum(), 0.8 * smoothed);
+    // A project keeps it.
+    const auto painting = hash();
+    const QString file = inFolder("dyed.hairloom");
+    ASSERT_TRUE(document().editing().save(file.toStdString()));
+    const auto saved = editing::Document::open(file.toStdString());
+    ASSERT_TRUE(saved);
+    EXPECT_EQ(contentHash((*saved)->groom()), painting);
 }
 
 TEST_F(ToolsTest, ThePressureOfAPenIsThatOfTheDabs) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The camera, the pictures, the live simulation.
 #include <QCheckBox>
+#include <QDir>
 #include <QScreen>
 #include <array>
 #include <cstdlib>
@@ -271,6 +272,49 @@ TEST_F(PictureTest, OverlaysOfMotionAreDrawn) {
         },
         20'000));
     expectDrawn({"strain", "penetration", "effectCost"});
+}
+
+TEST_F(PictureTest, DyeShowsWhileItIsPainted) {
+    if (viewport().presents()) GTEST_SKIP() << "pictures are not read back";
+    openGuides();
+    Groom red = groom();
+    red.material.dyeColour = Vec3f(0.95f, 0.0f, 0.0f);
+    document().change("Dye", Change::Look, red);
+    viewport().look(render::View::Front);
+    viewport().frameAll();
+    trigger("tool.dye_paint");
+    // Fine pictures only: fast ones differ from them.
+    const auto settled = [this] {
+        EXPECT_TRUE(viewport().waitForPicture(60'000));
+        return viewport().picture();
+    };
+    const QImage before = settled();
+    const auto redder = [&before](const QImage& picture) {
+        int count = 0;
+        for (int y = 0; y < picture.height(); ++y) {
+            for (int x = 0; x < picture.width(); ++x) {
+                const QColor now = picture.pixelColor(x, y), then = before.pixelColor(x, y);
+                count += now.red() - now.green() > then.red() - then.green() + 12 ? 1 : 0;
+            }
+        }
+        return count;
+    };
+    Box3f roots;
+    for (std::size_t s = 0; s < groom().strandCount(); ++s) roots.extend(groom().strand(s).front());
+    const QPoint crown = at(Vec3f(0, roots.max().y() - 0.03f, roots.max().z()));
+    press(crown);
+    moveTo(crown + QPoint(20, 4));
+    const int during = redder(settled());
+    EXPECT_GT(during, 30) << "while the button is down";
+    moveTo(crown + QPoint(60, 10));
+    release(crown + QPoint(60, 10));
+    moveTo(QPoint(2, 2));
+    const QImage painted = settled();
+    EXPECT_GT(redder(painted), during);
+    QDir().mkpath(HAIRLOOM_SCREENSHOTS);
+    EXPECT_TRUE(painted.save(QStringLiteral(HAIRLOOM_SCREENSHOTS "/dye.png")));
+    trigger("edit.undo");
+    EXPECT_LT(redder(settled()), 5);
 }
 
 TEST_F(PictureTest, AWindowOfTheDeviceShowsTheHead) {

@@ -26,8 +26,9 @@ class Volume : public GpuSimulationTest {
         return test::makeScene(calm(), test::Hair::curled, 5, kPoints);
     }
     static runtime::State after(const test::Scene& scene,
-                                const std::optional<runtime::HairVolumeSettings>& volume) {
-        EngineOptions with = options();
+                                const std::optional<runtime::HairVolumeSettings>& volume,
+                                StrandStorage storage = StrandStorage::threads) {
+        EngineOptions with = options(storage);
         with.hairHair = volume;
         StrandEngine engine = engineOf(scene.view(), scene.settings, with);
         EXPECT_TRUE(engine.writeState(scene.state));
@@ -44,9 +45,11 @@ TEST_F(Volume, ChangesVelocitiesAsTheRuntimesDoes) {
     settings.targetDensity = 1e4f;
     settings.repulsion = 2.0f;
     settings.friction = 40.0f;
-    for (const std::uint32_t nodes : {1u << 18u, 600u}) {  // the second doubles the cells
+    // The second doubles the cells; with lanes the points of a strand stand together.
+    for (const auto& [nodes, storage] :
+         {std::pair(1u << 18u, StrandStorage::threads), std::pair(600u, StrandStorage::lanes)}) {
         settings.maxNodes = nodes;
-        const runtime::State without = after(hair, {}), with = after(hair, settings);
+        const runtime::State without = after(hair, {}, storage), with = after(hair, settings, storage);
         std::vector<Float3> places(hair.positions.size()), before(places), wanted(places), found(places);
         runtime::readPositions(*hair.shape, without, places);
         runtime::readVelocities(*hair.shape, without, before);

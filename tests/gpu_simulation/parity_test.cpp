@@ -170,6 +170,10 @@ Allowance allowanceFor(const Case& what, const SimulationSettings& settings, Hai
     // Frames that are walked another way part behind folds.
     const bool folded = nasty && settings.angularStiffness > 0.0f;
     const bool held = settings.lengthIterations > 0 && settings.lengthMethod == LengthMethod::constraint;
+    // Nasty strands have springs of any stiffness beside each other, and solved for in any order they lose
+    // what digits they have (bend_reduction_test.cpp).
+    const bool sprung = settings.angularStiffness > 0.0f && settings.angularMethod == AngularMethod::implicit;
+    if (nasty && sprung) return {allowance.tolerance, 48};
     if (!held && !folded) return allowance;
     if (nasty) return {allowance.tolerance, 14};
     // Each Newton step goes on from what the last one left.
@@ -225,7 +229,7 @@ TEST_P(Parity, ThreeSubsteps) {
         Allowance allowance = allowanceFor(what, settings, Hair::curled, storage);
         allowance.tolerance *= 20.0;
         allowance.most *= 20.0;
-        if (what.spheres) allowance = {allowance.tolerance, std::max<std::ptrdiff_t>(allowance.mayDiffer, 1)};
+        if (what.spheres) allowance = {allowance.tolerance, std::max<std::ptrdiff_t>(allowance.mayDiffer, 2)};
         compare(engine, scene, allowance);
     }
 }

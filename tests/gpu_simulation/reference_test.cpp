@@ -8,108 +8,12 @@
 #include <cmath>
 #include <functional>
 
-#include "core/simulation/reference/forces.h"
-#include "core/simulation/reference/solver.h"
-#include "tests/gpu_simulation/cpu_frame.h"
-#include "tests/gpu_simulation/gpu_simulation_fixture.h"
+#include "tests/gpu_simulation/reference_fixture.h"
 
 namespace hairloom::gpu_simulation {
 namespace {
 
-using Eigen::Vector3d;
-using runtime::SimulationSettings;
-using test::Hair;
-using test::Scene;
-using Places = std::vector<Vector3d>;  // of one strand
-
-constexpr double kSubstep = static_cast<double>(test::kStep);
-constexpr StrandStorage kStorages[] = {StrandStorage::threads, StrandStorage::lanes};
-constexpr std::uint32_t kPoints[] = {12};
-
-/// Places relative to the root, and displacements in the last substep.
-struct Strand {
-    Places places, moved;
-};
-
-std::vector<Strand> strandsOf(const Scene& scene, const runtime::State& state) {
-    std::vector<Strand> strands(scene.offsets.size() - 1);
-    for (const runtime::Block& block : scene.shape->blocks) {
-        const float* const planes = state.planes.data() + block.firstPlane * runtime::kStatePlanes;
-        const std::size_t size = planeSize(block);
-        for (std::uint32_t lane = 0; lane < block.strands; ++lane) {
-            Strand& strand = strands[block.strandOfLane[lane]];
-            for (std::uint32_t p = 0; p < block.points; ++p) {
-                const std::size_t i = std::size_t{p} * runtime::kBlockLanes + lane;
-                const auto at = [&](std::size_t plane) {
-                    const float* const v = planes + plane * size + i;
-                    return Vector3d(v[0], v[size], v[2 * size]);
-                };
-                strand.places.push_back(at(0));
-                strand.moved.push_back(at(0) - at(3));
-            }
-        }
-    }
-    return strands;
-}
-
-/// Strands whose roots rest, in a state that is random, or nasty too.
-Scene sceneFor(const SimulationSettings& settings, Hair rest, bool nasty, std::size_t spheres) {
-    Scene scene = test::makeScene(settings, rest, 23, kPoints);
-    test::Dice dice(5);
-    if (nasty) test::disturb(scene, Hair::nasty, dice);
-    scene.roots = scene.shape->restRoots;
-    scene.spheres = {{{0.0f, -0.05f, 0.0f}, 0.06f}};
-    scene.spheres.resize(spheres);
-    scene.state.spheres = scene.spheres;
-    return scene;
-}
-
-SimulationSettings nothing() {
-    SimulationSettings s;
-    s.substeps = 1;
-    // Explicit springs bend without damping.
-    s.dampingTime = s.bendDampingTime = s.airDrag = s.angularStiffness = s.sleepSpeed = 0.0f;
-    s.gravity = {};
-    s.lengthIterations = 0;
-    return s;
-}
-
-double farthest(const Places& a, const Places& b, std::size_t first) {
-    double most = 0.0;
-    for (std::size_t p = first; p < a.size(); ++p) most = std::max(most, (a[p] - b[p]).norm());
-    return most;
-}
-
-class Reference : public GpuSimulationTest {
-  protected:
-    /// What the device and the CPU make of a substep, against `truth` of each strand before it; `of` picks
-    /// what is compared.
-    void hold(const Scene& scene, const std::function<Places(std::size_t, const Strand&)>& truth,
-              const std::function<Places(const Strand&, const Strand&)>& of, double share) {
-        const std::vector<Strand> before = strandsOf(scene, scene.state);
-        const std::vector<Strand> cpu = strandsOf(scene, test::runOnCpu(scene));
-        for (const StrandStorage storage : kStorages) {
-            SCOPED_TRACE(static_cast<int>(storage));
-            StrandEngine engine = engineOf(scene.view(), scene.settings, options(storage));
-            ASSERT_TRUE(engine.writeState(scene.state));
-            ASSERT_TRUE(engine.step(scene.input()));
-            const std::vector<Strand> gpu = strandsOf(scene, engine.readState().value());
-            const std::size_t first = scene.settings.clampedPoints;
-            for (std::size_t s = 0; s < before.size(); ++s) {
-                const Places exact = truth(s, before[s]);
-                const double off = farthest(of(before[s], gpu[s]), exact, first);
-                const double offOnCpu = farthest(of(before[s], cpu[s]), exact, first);
-                double size = 0.0;
-                for (const Vector3d& v : exact) size = std::max(size, v.norm());
-                // Places of a strand's size round to 2e-8 m.
-                EXPECT_LE(off, 4.0 * offOnCpu + 1e-7) << "strand " << s;
-                if (share > 0.0) {
-                    EXPECT_LE(off, share * size + 1e-7) << "strand " << s;
-                }
-            }
-        }
-    }
-};
+using namespace test;  // NOLINT(google-build-using-namespace): the fixture is made for these cases
 
 struct Force {
     const char* name;
@@ -161,30 +65,12 @@ TEST_P(ReferenceForces, AreThoseOfTheModel) {
         for (const Hair hair : {Hair::straight, Hair::curled}) {
             SCOPED_TRACE(static_cast<int>(hair) + 10 * nasty);
             const Scene scene = sceneFor(settings, hair, nasty, GetParam().spheres);
-            const auto solver = reference::Solver::make(reference::strandsOf(scene.view()), settings);
-            ASSERT_TRUE(solver);
+            const Bodies bodies(scene, settings);
             reference::Physics physics(settings);
             // Position Verlet lets the air's share decay exactly.
             physics.airDrag = -std::expm1(-static_cast<double>(settings.airDrag) * kSubstep) / kSubstep;
             const auto truth = [&](std::size_t s, const Strand& before) {
-                const runtime::Float3 place = scene.roots[s].position;
-                const Vector3d root(place.x, place.y, place.z);
-                Places x, v, force(before.places.size(), Vector3d::Zero());
-                for (std::size_t p = 0; p < before.places.size(); ++p) {
-                    x.push_back(root + before.places[p]);
-                    v.emplace_back(before.moved[p] / kSubstep);
-                }
-                std::vector<reference::SphereNow> spheres;
-                for (const runtime::Sphere& sphere : scene.spheres) {
-                    const runtime::Float3 c = sphere.center_ws;
-                    spheres.push_back({{c.x, c.y, c.z}, Vector3d::Zero(), sphere.radius});
-                }
-                const reference::StrandShape& shape = solver->shape(s);
-                reference::addForces(physics, shape, x, v,
-                                     {0.7, Eigen::Quaterniond::Identity(), Vector3d::Zero(), spheres}, force);
-                for (std::size_t p = 0; p < force.size(); ++p)
-                    force[p] *= kSubstep * kSubstep / shape.masses[p];
-                return force;
+                return bodies.added(s, before.places, before.moved, physics);
             };
             const auto added = [](const Strand& before, const Strand& after) {
                 Places result;
@@ -239,10 +125,6 @@ Places heldInDouble(const Scene& scene, std::size_t s, const Places& start, Plac
         x[p] += pull * weight(p);
     }
     return x;
-}
-
-Places placesOf(const Strand&, const Strand& after) {
-    return after.places;
 }
 
 TEST_F(Reference, LengthsInDoublePrecision) {

@@ -7,7 +7,9 @@
 
 #include "core/base/random.h"
 #include "core/groom/brushes/dye.h"
+#include "core/groom/point_dye.h"
 #include "core/groom/streaks.h"
+#include "core/groom/validate.h"
 #include "tests/groom/groom_samples.h"
 
 namespace hairloom {
@@ -107,6 +109,28 @@ TEST(Dye, MasksABallOfRoots) {
     EXPECT_EQ(groom.strandAttributes.version(attribute::kDye), before);
     settings.amount = 2;
     EXPECT_FALSE(dye(groom, settings));
+}
+
+TEST(Dye, ReachesPaintedPoints) {
+    Groom groom = straightHair(sphereScalp(), 50, 4, 0.1f);
+    EXPECT_EQ(pointDyes(groom), std::vector<float>(200, 0.0f));
+    groom.material.dyeStrength = 0.5f;
+    EXPECT_EQ(pointDyes(groom), std::vector<float>(200, 1.0f));
+    groom.strandAttributes.set(attribute::kDye, std::vector<float>(50, 0.25f));
+    EXPECT_EQ(pointDyes(groom), std::vector<float>(200, 0.25f));
+    std::vector<float> painted(200, 0.0f);
+    for (std::size_t p = 0; p < 200; p += 4) painted[p] = 1;
+    groom.pointAttributes.set(attribute::kPointDye, painted);
+    EXPECT_EQ(pointDyes(groom), painted);
+
+    DyeSettings settings;
+    settings.amount = 0.5f;
+    EXPECT_EQ(dye(groom, settings), 50u);
+    EXPECT_EQ(pointDyes(groom), std::vector<float>(200, 0.5f));
+    EXPECT_EQ(dye(groom, settings), 0u);
+    EXPECT_FALSE(hasErrors(validate(groom)));
+    groom.pointAttributes.edit<float>(attribute::kPointDye)[7] = 1.5f;
+    EXPECT_TRUE(hasErrors(validate(groom)));
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 #include "core/base/file.h"
 #include "core/render/exr.h"
-#include "core/shading/dual_scattering.h"
+#include "core/shading/marschner.h"
 #include "core/shading/melanin.h"
 #include "tests/render/render_fixture.h"
 
@@ -61,7 +61,7 @@ TEST(Exr, DamagedFilesAreErrors) {
 
 TEST(Environment, AnEvenSkyFromAFileIsOneRadiance) {
     const Vec3f sky(12.5f, 3, 0.25f);
-    ASSERT_TRUE(writeExr(kFile, lit(128, 64, [&](auto, auto) { return sky; })));
+    ASSERT_TRUE(writeExr(kFile, lit(128, 64, [&](auto, auto) { return Vec3f(sky); })));
     const auto image = readExr(kFile);
     ASSERT_TRUE(image) << image.error().message();
     const auto environment = Environment::fromImage(*image);
@@ -74,54 +74,96 @@ TEST(Environment, AnEvenSkyFromAFileIsOneRadiance) {
     std::filesystem::remove(kFile);
 }
 
-/// A fibre that fills the middle of a small picture, under light from around alone.
-class FibreUnderSky : public RenderTest {
+/// Skies as Environment::gradient() has them, brighter above.
+const Environment kEven = Environment::gradient(Vec3f::Constant(1), Vec3f::Constant(1));
+const Environment kSky = Environment::gradient(Vec3f(0.9f, 1, 1.2f), Vec3f(0.5f, 0.45f, 0.4f));
+
+using Sky = std::function<Vec3d(const Vec3d&)>;
+Sky radianceOf(const Environment& environment) {
+    return
+        [environment](const Vec3d& d) { return Vec3d(environment.radiance(d.cast<float>()).cast<double>()); };
+}
+
+/// A layer of parallel fibres across x, lit and seen from its normal, which is turned from straight up by
+/// `tilt`.
+struct Layer {
+    static constexpr double kFibres = 4;  ///< that a ray along the normal meets
+    Vec3f normal;
+    TestStrands strands;
+
+    explicit Layer(float tilt) : normal(0, std::cos(tilt), std::sin(tilt)) {
+        constexpr float kRadius = 0.0002f, kSide = 0.1f;
+        const Vec3f across(0, -std::sin(tilt), std::cos(tilt));
+        Random random(5);
+        for (int i = 0; i < static_cast<int>(kFibres * 2 * kSide / (2 * kRadius)); ++i) {
+            const Vec3f middle =
+                random.uniform(-0.03f, 0.03f) * normal + random.uniform(-kSide, kSide) * across;
+            const Vec3f half = kSide * Vec3f::UnitX();
+            strands.add({middle - half, middle, middle + half}, kRadius);
+        }
+    }
+
+    /// Light from d as fibres of a layer without end get it, the mean of those that are seen.
+    Vec3d seenBy(const Vec3d& d, const Sky& sky) const {
+        const double up = d.dot(normal.cast<double>());
+        const double path = std::hypot(up, d.dot(normal.cast<double>().cross(Vec3d::UnitX()))) /
+                            std::max(std::abs(up), 1e-6);  // fibres met by those across
+        const double shown = 1 - std::exp(-kFibres);
+        const double passed = up > 0 ? (1 - std::exp(-kFibres * (1 + path))) / (1 + path)
+                              : std::abs(path - 1) < 1e-6
+                                  ? kFibres * std::exp(-kFibres)
+                                  : (std::exp(-kFibres) - std::exp(-kFibres * path)) / (path - 1);
+        return passed / shown * sky(d);
+    }
+};
+
+/// Hair in the middle of a small picture, under light from around alone.
+class HairUnderSky : public RenderTest {
   protected:
-    FibreUnderSky() {
+    HairUnderSky() {
         marschner.azimuthal.width = shading::azimuthalWidth(0.3);
         marschner.azimuthal.causticWidth = 0;
         shading::setScales(marschner, 2 * shading::kDegree, shading::longitudinalWidth(0.3));
     }
 
-    /// Light towards the camera, which looks along -z, from a fibre in the plane of the picture turned by
-    /// `roll` and leaning towards the camera by `lean`, radians.
-    Vec3d pixel(const Environment& environment, float roll, float lean) {
-        const Vec3f along = alongOf(roll, lean);
-        TestStrands strands;
-        strands.add({-0.2f * along, -0.1f * along, Vec3f::Zero(), 0.1f * along, 0.2f * along}, 0.06f);
+    /// Mean of a picture of strands alone from `eye_ws`, without light of lamps.
+    Vec3d picture(const TestStrands& strands, const Environment& environment, const Vec3f& eye_ws,
+                  const std::vector<Light>& lights) {
         RenderScene scene;
         scene.strands = {strands.view()};
         HairMaterial& material = scene.strands[0].material;
         material.variation = 0;
         material.rootBrightness = material.tipBrightness = 1;
         material.fibre.model = ShadingModel::marschner;
-        material.fibre.scattering = Scattering::single;
+        material.fibre.scattering = scattering;
         material.fibre.marschner = marschner;
+        material.fibre.clumping = 1;
         scene.environment = environment;
+        scene.lights = lights;
         scene.background = Vec3f::Zero();
-        scene.camera.eye_ws = {0, 0, 4};
+        scene.camera.eye_ws = eye_ws;
         scene.camera.target_ws = Vec3f::Zero();
+        scene.camera.up_ws = Vec3f(0.1f, 1, 0.2f).normalized();
         scene.camera.verticalFov = 1;
         RenderOptions options;
         options.width = options.height = 8;
         options.samples = 1;
-        options.frames = 1;
-        const auto picture = renderPicture(*device, scene, options);
-        EXPECT_TRUE(picture) << (picture ? "" : picture.error().message());
-        if (!picture) return Vec3d::Zero();
-        const float* rgba = &picture->linear.rgba[4 * (8 * 4 + 4)];
-        return Vec3f(rgba[0], rgba[1], rgba[2]).cast<double>();
-    }
-    static Vec3f alongOf(float roll, float lean) {
-        return {std::cos(roll) * std::cos(lean), std::sin(roll) * std::cos(lean), std::sin(lean)};
+        options.frames = lights.empty() ? 1 : 24;
+        options.shadowResolution = 64;
+        const auto drawn = renderPicture(*device, scene, options);
+        EXPECT_TRUE(drawn) << (drawn ? "" : drawn.error().message());
+        Vec3d sum = Vec3d::Zero();
+        if (!drawn) return sum;
+        const auto& rgba = drawn->linear.rgba;
+        for (std::size_t i = 0; i < rgba.size(); i += 4)
+            sum += Vec3f(rgba[i], rgba[i + 1], rgba[i + 2]).cast<double>();
+        return sum / 64;
     }
 
     /// ∫ S cos θ_i L dω of the model itself: stratified Monte-Carlo, θ_i by strata, all azimuths.
-    Vec3d traced(const std::function<Vec3d(const Vec3d&)>& sky, float roll, float lean) const {
-        constexpr int kStrata = 240, kAzimuths = 96;
+    Vec3d traced(const Sky& sky, const Vec3d& along, const Vec3d& toView) const {
+        constexpr int kStrata = 120, kAzimuths = 96;
         const shading::Marschner model(marschner);
-        const Vec3d along = alongOf(roll, lean).cast<double>();
-        const Vec3d toView = Vec3d::UnitZ();
         const double thetaOut = std::asin(std::clamp(toView.dot(along), -1.0, 1.0));
         const Vec3d front = (toView - toView.dot(along) * along).normalized();
         const Vec3d side = along.cross(front);
@@ -157,58 +199,64 @@ class FibreUnderSky : public RenderTest {
         return sum * (2 * kCircle / (kStrata * kAzimuths));
     }
 
+    /// Seen along its normal, with a lamp that gives no light and tells where hair is.
+    Vec3d layerUnder(const Layer& layer, const Environment& environment) {
+        Light dark;
+        dark.toLight_ws = layer.normal;
+        dark.irradiance = Vec3f::Zero();
+        return picture(layer.strands, environment, 2 * layer.normal, {dark});
+    }
+
     shading::MarschnerParameters marschner;
+    Scattering scattering = Scattering::single;
 };
 
-TEST_F(FibreUnderSky, AnEvenSkyGivesTheClosedForm) {
-    const Environment even = Environment::gradient(Vec3f::Constant(2), Vec3f::Constant(2));
-    for (const double eumelanin : {0.0, 0.3, 1.3, 8.0}) {
+TEST_F(HairUnderSky, ALoneFibreShowsTheModelsIntegralOverTheSky) {
+    double worst = 0;
+    for (const double eumelanin : {0.0, 0.3, 1.3}) {
         marschner.azimuthal.absorption = shading::absorption({eumelanin, 0});
-        // What a fibre sends out of what it gets from everywhere, over all directions: closed over the
-        // sphere.
-        const Vec3d expected = 2 * shading::DualScattering(shading::Marschner(marschner)).meanAlbedo();
-        const Vec3d seen = pixel(even, 0.4f, 0.3f);
-        EXPECT_TRUE(seen.isApprox(expected, 0.004)) << eumelanin << ": " << seen.transpose();
-        if (eumelanin == 0) {
-            EXPECT_LT(seen.maxCoeff(), 2) << "no fibre shines";
-            EXPECT_GT(seen.minCoeff(), 2 * 0.94) << "without absorption nearly all comes back";
+        for (int view = 0; view < 6; ++view) {
+            const auto roll = static_cast<float>(view) * 1.1f, lean = 0.5f * static_cast<float>(view % 3 - 1);
+            const Vec3f along(std::cos(roll) * std::cos(lean), std::sin(roll) * std::cos(lean),
+                              std::sin(lean));
+            TestStrands strands;
+            strands.add({-0.2f * along, -0.1f * along, Vec3f::Zero(), 0.1f * along, 0.2f * along}, 0.06f);
+            for (const Environment& environment : {kEven, kSky}) {
+                const Vec3d ours = picture(strands, environment, {0, 0, 4}, {});
+                const Vec3d truth = traced(radianceOf(environment), along.cast<double>(), Vec3d::UnitZ());
+                const double ratio = ours.sum() / truth.sum();
+                worst = std::max(worst, std::abs(ratio - 1));
+                EXPECT_NEAR(ratio, 1, 0.04) << eumelanin << " roll " << roll << " lean " << lean;
+                EXPECT_LT(ours.maxCoeff(), 1.2) << "no fibre shines";
+            }
         }
+    }
+    RecordProperty("worst", std::to_string(worst));
+}
+
+TEST_F(HairUnderSky, DenseHairShowsItsOpenSide) {
+    // Black, for others show little of it that is not scattered more than once.
+    marschner.azimuthal.absorption = shading::absorption({8, 0});
+    for (const float tilt : {0.0f, 1.2f, 2.4f}) {
+        const Layer layer(tilt);
+        const Sky sky = radianceOf(kSky);
+        const Vec3d ours = layerUnder(layer, kSky) / (1 - std::exp(-Layer::kFibres));
+        const Vec3d truth = traced([&](const Vec3d& d) { return layer.seenBy(d, sky); }, Vec3d::UnitX(),
+                                   layer.normal.cast<double>());
+        std::printf("tilt %.1f: %.3f\n", static_cast<double>(tilt), ours.sum() / truth.sum());
+        // Measured: 1.12 to 1.14. P1 has 8 % too much at the surface of black hair; the map's bias the rest.
+        EXPECT_NEAR(ours.sum() / truth.sum(), 1, 0.16) << "tilt " << tilt;
     }
 }
 
-TEST_F(FibreUnderSky, RatioToBruteForceOnSomePixels) {
-    // Skies of one brighter side, seen from all around: what a pixel shows over what the model traces.
-    double worst = 0, sum = 0;
-    int count = 0;
-    for (const double eumelanin : {0.3, 1.3}) {
-        marschner.azimuthal.absorption = shading::absorption({eumelanin, 0});
-        for (int view = 0; view < 6; ++view) {
-            const auto roll = static_cast<float>(view) * 1.1f,
-                       lean = 0.25f * static_cast<float>(view % 3 - 1);
-            const Environment even = Environment::gradient(Vec3f::Constant(1), Vec3f::Constant(1));
-            const Environment sky = Environment::gradient(Vec3f(0.9f, 1, 1.2f), Vec3f(0.5f, 0.45f, 0.4f));
-            const auto radiance = [&](const Vec3d& d) {
-                return Vec3d(sky.radiance(d.cast<float>()).cast<double>());
-            };
-            const Vec3d ours = pixel(sky, roll, lean), truth = traced(radiance, roll, lean);
-            const double ratio = ours.sum() / truth.sum();
-            worst = std::max(worst, std::abs(ratio - 1));
-            sum += ratio;
-            ++count;
-            const auto flat = [](const Vec3d&) { return Vec3d(Vec3d::Ones()); };
-            const double evenRatio = pixel(even, roll, lean).sum() / traced(flat, roll, lean).sum();
-            std::printf("eumelanin %.1f, roll %.1f, lean %.2f: sky %.3f, even %.3f\n", eumelanin,
-                        static_cast<double>(roll), static_cast<double>(lean), ratio, evenRatio);
-            EXPECT_NEAR(evenRatio, 1, 0.04);
-        }
-    }
-    RecordProperty("mean_ratio", std::to_string(sum / count));
-    RecordProperty("worst", std::to_string(worst));
-    // Measured: 1.19 on average, 1.07 to 1.31. The shader adds to a fibre some of the brighter side, as
-    // fibres near the surface of much hair see it (lights.hlsli, openToIt); a fibre by itself gets too much
-    // of it.
-    EXPECT_NEAR(sum / count, 1.19, 0.04);
-    EXPECT_LT(worst, 0.35);
+TEST_F(HairUnderSky, WhiteHairIsAsBrightAsAnEvenSky) {
+    scattering = Scattering::dual;
+    marschner.azimuthal.absorption.setZero();
+    const Vec3d seen = layerUnder(Layer(0.4f), kEven) / (1 - std::exp(-Layer::kFibres));
+    std::printf("white hair: %.3f\n", seen.x());
+    // Orders that the model leaves out take 1 % at each scattering.
+    EXPECT_LT(seen.maxCoeff(), 1.02);
+    EXPECT_GT(seen.minCoeff(), 0.88);
 }
 
 }  // namespace

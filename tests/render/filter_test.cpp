@@ -64,5 +64,72 @@ TEST_F(FilterTest, EvenPicturesStayAsTheyAre) {
     EXPECT_EQ(plain->image.rgba, filtered->image.rgba);
 }
 
+/// Shadows blurred in double precision: light without shadows times the ratio of the two means.
+std::vector<double> blurredShadows(const LinearImage& shadowed, const LinearImage& lit, double deviation) {
+    const auto width = static_cast<int>(lit.width), height = static_cast<int>(lit.height);
+    const int reach = static_cast<int>(std::ceil(3 * deviation));
+    const auto at = [width](int x, int y) { return static_cast<std::size_t>(4 * (y * width + x)); };
+    std::vector<double> result;
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            for (std::size_t c = 0; c < 3; ++c) {
+                double a = 0, b = 0;
+                for (int v = std::max(y - reach, 0); v <= std::min(y + reach, height - 1); ++v) {
+                    for (int u = std::max(x - reach, 0); u <= std::min(x + reach, width - 1); ++u) {
+                        const double away = (u - x) * (u - x) + (v - y) * (v - y);
+                        const double weight = std::exp(-0.5 * away / (deviation * deviation));
+                        a += weight * static_cast<double>(shadowed.rgba[at(u, v) + c]);
+                        b += weight * static_cast<double>(lit.rgba[at(u, v) + c]);
+                    }
+                }
+                result.push_back(b > 0 ? static_cast<double>(lit.rgba[at(x, y) + c]) * a / b : 0.0);
+            }
+        }
+    }
+    return result;
+}
+
+TEST_F(FilterTest, ShadowsAreBlurredAsOnTheCpu) {
+    const TestHead head(200);
+    const RenderScene scene = head.scene();
+    RenderOptions options;
+    options.width = 40;
+    options.height = 32;
+    options.frames = 2;
+    options.samples = 1;
+    options.shadowResolution = 128;
+    for (const Ribbons ribbons : {Ribbons::strip, Ribbons::compute}) {
+        options.ribbons = ribbons;
+        const auto draw = [&](Shadows shadows, float blur) {
+            options.shadows = shadows;
+            options.shadowBlur = blur;
+            auto picture = renderPicture(*device, scene, options);
+            EXPECT_TRUE(picture) << (picture ? "" : picture.error().message());
+            return picture.value_or(Picture{});
+        };
+        const Picture shadowed = draw(Shadows::deepOpacity, 0);
+        const Picture lit = draw(Shadows::none, 0);
+        // Without shadows there are none to blur.
+        EXPECT_EQ(draw(Shadows::none, 4).linear.rgba, lit.linear.rgba);
+        for (const float blur : {0.7f, 3.0f}) {
+            const Picture blurred = draw(Shadows::deepOpacity, blur);
+            EXPECT_TRUE(blurred.plan.runs(Pass::shadowBlur));
+            const auto truth = blurredShadows(shadowed.linear, lit.linear, static_cast<double>(blur));
+            double change = 0;
+            for (std::size_t i = 0; i < truth.size() / 3; ++i) {
+                for (std::size_t c = 0; c < 3; ++c) {
+                    const double found = static_cast<double>(blurred.linear.rgba[4 * i + c]);
+                    ASSERT_NEAR(found, truth[3 * i + c], 1e-4 + 1e-3 * truth[3 * i + c])
+                        << blur << " px, " << i;
+                    change = std::max(change,
+                                      std::abs(found - static_cast<double>(shadowed.linear.rgba[4 * i + c])));
+                }
+                EXPECT_EQ(blurred.linear.rgba[4 * i + 3], shadowed.linear.rgba[4 * i + 3]);
+            }
+            EXPECT_GT(change, 0.02) << "it blurs something";
+        }
+    }
+}
+
 }  // namespace
 }  // namespace hairloom::render

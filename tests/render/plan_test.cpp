@@ -82,6 +82,19 @@ TEST(RenderPlan, BytesAreThoseOfItsTargets) {
     EXPECT_FALSE(planRender(facts, filtered, 1).has(TargetId::shown));
 }
 
+TEST(RenderPlan, BlurringShadowsHasAPassAndItsBytes) {
+    RenderOptions blurred = options();
+    const RenderPlan plain = planRender(wholeScene(), blurred, 1);
+    EXPECT_FALSE(plain.runs(Pass::shadowBlur));
+    blurred.shadowBlur = 2;
+    const RenderPlan plan = planRender(wholeScene(), blurred, 1);
+    EXPECT_TRUE(plan.runs(Pass::shadowBlur));
+    EXPECT_EQ(plan.bytes() - plain.bytes(), 100u * 50u * 4u * 16u);
+    blurred.shadows = Shadows::none;
+    EXPECT_FALSE(planRender(wholeScene(), blurred, 1).runs(Pass::shadowBlur));
+    EXPECT_FALSE(planRender(wholeScene(), blurred, 1).has(BufferId::blurred));
+}
+
 TEST(RenderPlan, MarksAndBlendingCostOnlyWhereTheyAre) {
     SceneFacts facts = wholeScene();
     EXPECT_FALSE(planRender(facts, options(), 4).has(TargetId::overlayDepth));

@@ -117,6 +117,17 @@ TEST_F(RendererTest, SequenceOfChangesEqualsFreshPictures) {
     compare("absorption by finer hair");
     options.shadows = Shadows::opacityMaps;
     compare("opacity maps");
+    options.shadowBlur = 3;
+    compare("blurred shadows");
+    options.shadowBlur = 1.5f;
+    compare("less blurred shadows");
+    scene.strands[0].material.albedo = {0.3f, 0.3f, 0.1f};
+    ASSERT_TRUE(renderer.setMaterial(0, scene.strands[0].material));
+    compare("another colour with blurred shadows");
+    options.shadowBlur = 0;
+    options.headAbsorption = 100;
+    compare("light through the head");
+    options.headAbsorption = 0;
     options.transparency = Transparency::weighted;
     compare("blended hair");
     options.transparency = Transparency::alphaToCoverage;
@@ -138,9 +149,101 @@ TEST_F(RendererTest, SequenceOfChangesEqualsFreshPictures) {
     compare("size");
 }
 
+TEST_F(RendererTest, PaintedDyeIsThatOfThePointsItLiesOn) {
+    // Four strands side by side, of one segment to be dyed in each.
+    TestStrands strands;
+    for (int i = 0; i < 4; ++i) {
+        const float x = -0.03f + 0.02f * static_cast<float>(i);
+        strands.add({{x, 0.04f, 0}, {x, 0.02f, 0}, {x, 0, 0}, {x, -0.02f, 0}, {x, -0.04f, 0}}, 0.004f);
+    }
+    RenderScene scene;
+    scene.strands.push_back(strands.view());
+    scene.camera.eye_ws = {0, 0, 0.4f};
+    scene.camera.target_ws = Vec3f::Zero();
+    scene.background = Vec3f::Zero();
+    shading::StrandLook look;
+    look.quantity = shading::LookQuantity::colour;
+    look.root = look.tip = {0.05, 0.8, 0.05};
+    look.dye = {0.6, 0.02, 0.02};
+    look.dyeAlong = shading::Ramp::between(0, 0);
+    scene.strands[0].material.look = look;
+    const std::vector<float> shares(4, 1.0f);
+    std::vector<float> painted(20, 0.0f);
+    for (std::size_t s = 0; s < 4; ++s) painted[5 * s + s] = painted[5 * s + s + 1] = 1;
+    scene.strands[0].dyes = shares;
+    scene.strands[0].pointDyes = painted;
+    RenderOptions options = smallOptions();
+    options.width = options.height = 96;
+    options.shadows = Shadows::none;
+    Renderer renderer(*device);
+    ASSERT_TRUE(renderer.setScene(scene));
+    // In the middle between two points of a strand.
+    const auto isRed = [&](const std::vector<std::uint8_t>& picture, std::size_t strand,
+                           std::size_t segment) {
+        const Mat4f clip = projectionMatrix(scene.camera.verticalFov, 1, 0.1f, 1) * viewMatrix(scene.camera);
+        const Vec3f middle =
+            0.5f * (strands.positions[5 * strand + segment] + strands.positions[5 * strand + segment + 1]);
+        const Vec4f at = clip * middle.homogeneous();
+        const auto x = static_cast<std::size_t>((0.5f + 0.5f * at.x() / at.w()) * 96);
+        const auto y = static_cast<std::size_t>((0.5f - 0.5f * at.y() / at.w()) * 96);
+        const std::size_t pixel = 4 * (96 * y + x);
+        return picture[pixel] > picture[pixel + 1] + 20;
+    };
+    const auto first = pixels(renderer, options);
+    for (std::size_t s = 0; s < 4; ++s) {
+        for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(isRed(first, s, k), s == k) << s << ' ' << k;
+    }
+    EXPECT_TRUE(first == fresh(scene, options));
+    std::ranges::fill(painted, 0.0f);
+    for (std::size_t s = 0; s < 4; ++s) painted[5 * s + 3 - s] = painted[5 * s + 4 - s] = 1;
+    ASSERT_TRUE(renderer.setPointDyes(0, painted));
+    const auto second = pixels(renderer, options);
+    for (std::size_t s = 0; s < 4; ++s) {
+        for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(isRed(second, s, k), s + k == 3) << s << ' ' << k;
+    }
+    painted.assign(20, 0.5f);
+    ASSERT_TRUE(renderer.setPointDyes(0, painted));
+    EXPECT_TRUE(pixels(renderer, options) == fresh(scene, options));
+    EXPECT_FALSE(renderer.setPointDyes(0, std::span(painted).first(3)));
+    EXPECT_FALSE(renderer.setPointDyes(1, painted));
+}
+
+TEST_F(RendererTest, TablesBakedBehindLetOldOnesServeAndEndInTheSamePicture) {
+    TestHead head(80);
+    RenderScene scene = head.scene();
+    FibreMaterial& fibre = scene.strands[0].material.fibre;
+    fibre.model = ShadingModel::marschner;
+    fibre.marschner.azimuthal.absorption = {0.2, 0.3, 0.5};
+    RenderOptions options = smallOptions();
+    options.bakeBehind = true;
+    Renderer renderer(*device);
+    ASSERT_TRUE(renderer.setScene(scene));
+    const auto before = pixels(renderer, options);
+    EXPECT_TRUE(renderer.isSettled()) << "there were no others to serve";
+    EXPECT_TRUE(before == fresh(scene, options));
+    // A control moves, and moves on.
+    const auto picture = target(options);
+    for (const double red : {0.5, 1.0, 2.0}) {
+        fibre.marschner.azimuthal.absorption.x() = red;
+        ASSERT_TRUE(renderer.setMaterial(0, scene.strands[0].material));
+        record(renderer, options, picture);
+        EXPECT_FALSE(renderer.isSettled());
+    }
+    while (!renderer.isSettled()) record(renderer, options, picture);
+    const auto after = pixels(renderer, options);
+    EXPECT_NE(after, before);
+    EXPECT_TRUE(after == fresh(scene, options));
+    // Another model has nothing to show before its tables are there.
+    fibre.scattering = Scattering::single;
+    ASSERT_TRUE(renderer.setMaterial(0, scene.strands[0].material));
+    record(renderer, options, picture);
+    EXPECT_TRUE(renderer.isSettled());
+}
+
 TEST_F(RendererTest, WhatRestsIsNotDoneAgain) {
     TestHead head(60);
-    const RenderOptions options = smallOptions();
+    RenderOptions options = smallOptions();
+    options.ribbons = Ribbons::strip;  // on a GPU, too
     Renderer renderer(*device);
     ASSERT_TRUE(renderer.setScene(head.scene()));
     const auto picture = target(options);

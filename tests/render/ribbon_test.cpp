@@ -282,6 +282,42 @@ TEST_F(RibbonTest, HairsDoNotPop) {
     }
 }
 
+// Fewer hairs far away: over all distances they cover as much and are as bright as all hairs, and from one
+// distance to the next neither jumps.
+TEST_F(RibbonTest, LightAndCoverAreSteadyOverDistance) {
+    TestHead head(400);
+    std::fill(head.strands.radii.begin(), head.strands.radii.end(), 0.00015f);
+    RenderScene scene = head.scene();
+    scene.meshes.clear();
+    scene.background = Vec3f::Zero();
+    const Vec3f towards = (scene.camera.eye_ws - scene.camera.target_ws).normalized();
+    RenderOptions how = options(48, 12);
+    double coverBefore = 0, lightBefore = 0;
+    std::uint64_t most = 0, least = 400;
+    for (int step = 0; step < 12; ++step) {
+        const float distance = 0.4f * std::pow(1.2f, static_cast<float>(step));
+        scene.camera.eye_ws = scene.camera.target_ws + distance * towards;
+        how.detail = 0;
+        const LinearImage all = draw(scene, how);
+        how.detail = 0.3f;
+        const LinearImage some = draw(scene, how);
+        most = std::max(most, strands);
+        least = std::min(least, strands);
+        const double cover = coverage(some) / coverage(all);
+        const double light = meanLuminance(some) / meanLuminance(all);
+        EXPECT_NEAR(cover, 1, 0.05) << distance << " m, " << strands << " hairs";
+        EXPECT_NEAR(light, 1, 0.07) << distance << " m, " << strands << " hairs";
+        if (step > 0) {
+            EXPECT_NEAR(cover, coverBefore, 0.04) << distance << " m";
+            EXPECT_NEAR(light, lightBefore, 0.05) << distance << " m";
+        }
+        coverBefore = cover;
+        lightBefore = light;
+    }
+    EXPECT_EQ(most, 400u);
+    EXPECT_LT(least, 120u);
+}
+
 // What hair covers falls with the square of the distance, and no pixel of thin hair stays bright.
 TEST_F(RibbonTest, HairThinsWithDistanceAndDoesNotSparkle) {
     Walk walk(*device, 150, 0.00004f);
@@ -300,6 +336,49 @@ TEST_F(RibbonTest, HairThinsWithDistanceAndDoesNotSparkle) {
         EXPECT_LE(most, brightest) << distance << " m";
         brightest = std::min(brightest, most + 0.2f);
     }
+}
+
+// Highlight and rim of a round strand of a few pixels are narrower than one: a row of pixels must not show by
+// chance whether its middle meets them.
+TEST_F(RibbonTest, TubesShowNoDots) {
+    TestStrands tube;
+    tube.add({{-0.02f, 0.07f, 0}, {-0.004f, 0.02f, 0}, {0.006f, -0.03f, 0}, {0.012f, -0.07f, 0}}, 0.003f);
+    RenderScene scene;
+    scene.strands = {tube.view()};
+    scene.strands[0].material.tubes = true;
+    scene.strands[0].material.primary = Vec3f::Constant(0.3f);
+    scene.strands[0].material.primaryExponent = 135;
+    scene.camera.eye_ws = {0, 0, 0.45f};
+    scene.camera.target_ws = Vec3f::Zero();
+    scene.background = Vec3f::Zero();
+    Light light;
+    light.toLight_ws = Vec3f(0.5f, 0.35f, 0.8f);
+    light.irradiance = Vec3f::Constant(2);
+    scene.lights = {light};
+    RenderOptions how = options(40, 1);
+    how.samples = 4;
+    how.shadows = Shadows::none;
+    how.subdivisions = 4;
+    const LinearImage small = draw(scene, how);
+    how.width = how.height = 40 * 8;
+    const LinearImage truth = draw(scene, how);
+    // Of some pixels, the light by what is covered.
+    const auto radiance = [](const LinearImage& image, std::size_t first, std::size_t count) {
+        double sum = 0, covered = 0;
+        for (std::size_t i = first; i < first + count; ++i) {
+            sum += static_cast<double>(image.rgba[4 * i]);
+            covered += static_cast<double>(image.rgba[4 * i + 3]);
+        }
+        return sum / covered;
+    };
+    double squares = 0, worst = 0;
+    for (std::size_t y = 8; y < 32; ++y) {
+        const double off = radiance(small, 40 * y, 40) / radiance(truth, 320 * 8 * y, 320 * 8) - 1;
+        squares += off * off / 24;
+        worst = std::max(worst, std::abs(off));
+    }
+    EXPECT_LT(worst, 0.3) << "of a row's light";
+    EXPECT_LT(std::sqrt(squares), 0.15);
 }
 
 TEST_F(RibbonTest, RadiiSpreadFromStrandToStrand) {

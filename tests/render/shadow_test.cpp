@@ -61,5 +61,105 @@ TEST_F(ShadowTest, TransmittanceAgreesWithCountedFibres) {
     EXPECT_LT(absorption, 0.3);
 }
 
+/// A sheet of hair across the light, and a point at each depth under it.
+struct Sheet {
+    TestStrands strands;
+    RenderScene scene;
+
+    Sheet() {
+        for (int i = 0; i < 100; ++i) {
+            const float z = 0.0005f + 0.001f * static_cast<float>(i);
+            strands.add({Vec3f(0.001f, 0.004f, z), Vec3f(0.099f, 0.004f, z)}, 0.0006f);
+        }
+        scene.strands = {strands.view()};
+        Light light;
+        light.toLight_ws = Vec3f::UnitY();
+        scene.lights = {light};
+    }
+    static std::vector<shaders::LightCase> under(const std::vector<float>& depths) {
+        std::vector<shaders::LightCase> cases;
+        for (const float depth : depths) cases.push_back({{0.05f, 0.004f - depth, 0.05f, 0}, {0, 1, 0, 0}});
+        return cases;
+    }
+};
+
+TEST_F(ShadowTest, AbsorptionByDepthIsThatOfEvenlySpreadHair) {
+    Sheet sheet;
+    RenderOptions options;
+    options.shadows = Shadows::absorption;
+    options.shadowResolution = 64;
+    options.subdivisions = 1;
+    const std::vector<float> depths{0.0f, 0.001f, 0.003f, 0.01f, 0.03f, 0.1f, 0.5f};
+    const auto found = probeLight(*device, sheet.scene, options, Sheet::under(depths));
+    ASSERT_TRUE(found) << found.error().message();
+    // 100 hairs of one segment, measured in cells of 1 cm: the middles of all lie in ten.
+    const double surface = 100 * 0.098 * 0.0012;
+    const double crossed = surface * 3.14159265358979 / 4;
+    const double perMetre = crossed / (10 * 1e-6);
+    const double through = crossed / ((10 + 10 + 1) * 1e-4 / 3);
+    for (std::size_t i = 0; i < depths.size(); ++i) {
+        const double expected =
+            through * (1 - std::exp(-static_cast<double>(depths[i]) * perMetre / through));
+        EXPECT_NEAR(static_cast<double>((*found)[2 * i].w), expected, 0.01 * through) << depths[i];
+    }
+}
+
+TEST_F(ShadowTest, LightBehindTheHeadFadesWithDepth) {
+    Sheet sheet;
+    // Level above one half of the hair, rising by a fifth above the other.
+    const std::vector<Vec3f> corners{{-0.1f, 0.02f, -0.1f}, {0.05f, 0.02f, -0.1f}, {0.05f, 0.02f, 0.2f},
+                                     {-0.1f, 0.02f, 0.2f},  {0.25f, 0.06f, -0.1f}, {0.25f, 0.06f, 0.2f}};
+    const std::vector<std::uint32_t> indices{0, 2, 1, 0, 3, 2, 1, 5, 4, 1, 2, 5};
+    RenderMesh mesh;
+    mesh.positions_ws = corners;
+    mesh.indices = indices;
+    sheet.scene.meshes = {mesh};
+    constexpr float kBias = 0.002f;  // of the shader, metres
+    for (const float absorption : {0.0f, 30.0f, 200.0f}) {
+        RenderOptions options;
+        options.shadows = Shadows::absorption;
+        options.shadowResolution = 128;
+        options.headAbsorption = absorption;
+        std::vector<shaders::LightCase> cases;
+        std::vector<float> behind;
+        for (const float x : {0.02f, 0.08f}) {
+            const float top = x < 0.05f ? 0.02f : 0.02f + 0.2f * (x - 0.05f);
+            for (const float depth : {-0.01f, 0.0f, 0.004f, 0.01f, 0.03f}) {
+                behind.push_back(depth - kBias);
+                cases.push_back({{x, top - depth, 0.05f, 0}, {0, 1, 0, 0}});
+            }
+        }
+        const auto found = probeLight(*device, sheet.scene, options, cases);
+        ASSERT_TRUE(found) << found.error().message();
+        for (std::size_t i = 0; i < cases.size(); ++i) {
+            const float expected = absorption > 0 ? std::exp(-absorption * std::max(behind[i], 0.0f))
+                                                  : (behind[i] < 0 ? 1.0f : 0.0f);
+            // A texel of 0.8 mm sees the slope 0.16 mm higher at one side than at the other.
+            EXPECT_NEAR((*found)[2 * i + 1].w, expected, 0.02f) << absorption << ", " << behind[i] << " m";
+        }
+    }
+}
+
+TEST_F(ShadowTest, RaysTellWhatTheHeadShades) {
+    const TestHead head(400);
+    RenderScene scene = head.scene();
+    Light light;
+    light.toLight_ws = Vec3f(1, 0.3f, 0.2f);
+    scene.lights = {light};
+    const HeadCases cases = castRays(scene, 300, 5);
+    const double visible = std::accumulate(cases.visible.begin(), cases.visible.end(), 0.0) / 300;
+    EXPECT_GT(visible, 0.2);
+    EXPECT_LT(visible, 0.9);
+    const auto error = [&](float absorption) {
+        const auto found = headShadowError(*device, scene, cases, absorption, 256);
+        EXPECT_TRUE(found) << (found ? "" : found.error().message());
+        return found.value_or(1);
+    };
+    const double faint = error(10);
+    EXPECT_GT(faint, 0.2) << "nearly no shadow";
+    EXPECT_LT(error(0), 0.7 * faint);
+    EXPECT_LT(error(1000), 0.7 * faint);
+}
+
 }  // namespace
 }  // namespace hairloom::render

@@ -44,60 +44,83 @@ TEST(DualScattering, HalvesTogetherAreTheAlbedo) {
     }
 }
 
-TEST(DualScattering, SpreadKeepsTheAlbedoToo) {
+TEST(DualScattering, MomentsAreThoseOfItsProfile) {
     const Marschner model = hair(0.3);
     const DualScattering::Row row = DualScattering(model).at(0.3);
+    const AverageScattering& a = row.average;
     for (int c = 0; c < 3; ++c) {
-        double around = 0;
+        double all = 0, first = 0, second = 0;
         for (int i = 0; i < 720; ++i) {
-            around += sample(row.spread[static_cast<std::size_t>(c)], (i + 0.5) * kPi / 360) * kPi / 360;
+            const double turned = (i + 0.5) * kPi / 360;
+            const double n = sample(row.profile[static_cast<std::size_t>(c)], turned + kPi) * kPi / 360;
+            all += n;
+            first += n * std::cos(turned);
+            second += n * std::cos(2 * turned);
         }
-        EXPECT_NEAR(around, row.average.forward[c] + row.average.backward[c], 2e-3);
+        EXPECT_NEAR(all, a.forward[c] + a.backward[c], 2e-3);
+        EXPECT_NEAR(first, a.first[c], 2e-3);
+        EXPECT_NEAR(second, a.second[c], 2e-3);
     }
+    EXPECT_GT(a.first.x(), a.second.x());  // TT goes on, not quite straight
+    EXPECT_GT(a.second.x(), a.second.z());
 }
 
-TEST(DualScattering, TwoFluxSolvesItsEquations) {
-    const Vec3d forward(0.6, 0.4, 0.78), backward(0.2, 0.05, 0.21);
+AverageScattering fibre() {
+    AverageScattering a;
+    a.forward = Vec3d(0.6, 0.4, 0.78);
+    a.backward = Vec3d(0.2, 0.05, 0.21);
+    a.first = Vec3d(0.35, 0.3, 0.5);
+    a.second = Vec3d(0.2, -0.1, 0.3);
+    return a;
+}
+
+/// The equations of P1 by finite differences, and what comes in at both sides.
+void expectSolved(bool beam, const Vec3d& ground) {
     constexpr double kAll = 4, kSmall = 1e-4;
-    for (const double before : {0.5, 2.0, 3.5}) {
-        const TwoFlux at = twoFlux(forward, backward, before, kAll);
-        const TwoFlux later = twoFlux(forward, backward, before + kSmall, kAll);
-        for (int c = 0; c < 3; ++c) {
-            EXPECT_NEAR((later.down[c] - at.down[c]) / kSmall,
-                        -(1 - forward[c]) * at.down[c] + backward[c] * at.up[c], 1e-3);
-            EXPECT_NEAR((later.up[c] - at.up[c]) / kSmall,
-                        (1 - forward[c]) * at.up[c] - backward[c] * at.down[c], 1e-3);
+    const AverageScattering a = fibre();
+    const auto at = [&](double before) {
+        return beam ? beamInLayer(a, before, kAll, ground) : skyInLayer(a, before, kAll, ground);
+    };
+    for (int c = 0; c < 3; ++c) {
+        const double peak = std::max(a.second[c], 0.0), albedo = a.forward[c] + a.backward[c];
+        const double lost = 1 - albedo, turned = 2 * (1 - a.first[c]);  // by fibre, not scaled
+        for (const double before : {0.5, 2.0, 3.5}) {
+            const LayerLight low = at(before - kSmall), here = at(before), high = at(before + kSmall);
+            const double flux = (high.flux[c] - low.flux[c]) / (2 * kSmall);
+            const double fluence = (high.fluence[c] - low.fluence[c]) / (2 * kSmall);
+            EXPECT_NEAR(flux, -lost * here.fluence[c] + (albedo - peak) * here.onward[c], 1e-4);
+            EXPECT_NEAR(fluence, -turned * here.flux[c] + 2 * (a.first[c] - peak) * here.onward[c], 1e-4);
+            EXPECT_NEAR(here.onward[c], beam ? std::exp(-(1 - peak) * before) : 0, 1e-12);
         }
+        const LayerLight top = at(0), bottom = at(kAll);
+        EXPECT_NEAR(top.fluence[c] / kPi + top.flux[c] / 2, beam ? 0 : 2, 1e-9);
+        const double down = bottom.onward[c] + bottom.fluence[c] / kPi + bottom.flux[c] / 2;
+        EXPECT_NEAR(bottom.fluence[c] / kPi - bottom.flux[c] / 2, ground[c] * down, 1e-9);
     }
-    EXPECT_TRUE(twoFlux(forward, backward, 0, kAll).down.isApprox(Vec3d::Ones(), 1e-12));
-    EXPECT_NEAR(twoFlux(forward, backward, kAll, kAll).up.norm(), 0, 1e-12);
-    // Fibres that absorb all leave what has met none.
-    EXPECT_NEAR(twoFlux(Vec3d::Zero(), Vec3d::Zero(), 2, 3).down.x(), std::exp(-2.0), 1e-3);
 }
 
-TEST(DualScattering, GroundSendsBackItsShare) {
-    const Vec3d forward(0.6, 0.4, 0.78), backward(0.2, 0.05, 0.21), ground(0.5, 0.35, 0.9);
-    constexpr double kAll = 3, kSmall = 1e-4;
-    const auto down = [&](double before) {
-        const TwoFlux f = twoFlux(forward, backward, before, kAll, ground);
-        return Vec3d(f.down + f.groundDown);
-    };
-    const auto up = [&](double before) {
-        const TwoFlux f = twoFlux(forward, backward, before, kAll, ground);
-        return Vec3d(f.up + f.groundUp);
-    };
-    EXPECT_TRUE(up(kAll).isApprox(ground.cwiseProduct(down(kAll)), 1e-9));
-    EXPECT_TRUE(down(0).isApprox(Vec3d::Ones(), 1e-9));
-    for (const double before : {0.3, 1.5, 2.5}) {
-        for (int c = 0; c < 3; ++c) {
-            EXPECT_NEAR((down(before + kSmall) - down(before))[c] / kSmall,
-                        -(1 - forward[c]) * down(before)[c] + backward[c] * up(before)[c], 1e-3);
-            EXPECT_NEAR((up(before + kSmall) - up(before))[c] / kSmall,
-                        (1 - forward[c]) * up(before)[c] - backward[c] * down(before)[c], 1e-3);
-        }
+TEST(DualScattering, LightInLayersSolvesItsEquations) {
+    for (const bool beam : {true, false}) {
+        expectSolved(beam, Vec3d::Zero());
+        expectSolved(beam, Vec3d(0.5, 0.35, 0.9));
     }
-    const TwoFlux black = twoFlux(forward, backward, 1, kAll);
-    EXPECT_EQ(black.groundUp.norm() + black.groundDown.norm(), 0);
+    // Fibres that absorb all leave what has met none; without fibres half of the sky is there.
+    const LayerLight black = beamInLayer({}, 2, 3);
+    EXPECT_NEAR(black.onward.x(), std::exp(-2.0), 1e-12);
+    EXPECT_NEAR(black.fluence.x(), 0, 2e-3);
+    EXPECT_NEAR(skyInLayer(fibre(), 0, 0).fluence.x(), kPi, 1e-9);
+}
+
+// Where the beam would fade exactly as diffuse light does, the solution has a pole, beside which it is taken.
+TEST(DualScattering, LightInLayersIsContinuous) {
+    for (double albedo = 0.3; albedo < 0.7; albedo += 0.001) {
+        const auto light = [](double share) {
+            AverageScattering a;
+            a.forward.setConstant(share);
+            return beamInLayer(a, 1, 3).fluence.x();
+        };
+        EXPECT_NEAR(light(albedo), light(albedo + 0.001), 0.02) << albedo;
+    }
 }
 
 /// Light that a slab of parallel fibres, lit across, sends back at an angle to its normal: all of it over
@@ -156,13 +179,13 @@ SlabRatio slab(double eumelanin, int channel, double depth, double cameraAngle, 
     for (int i = 0; i < kLayers; ++i) {
         const double before = (i + 0.5) * step;
         const double seen = std::exp(-before / cosine) / cosine * step;
-        const TwoFlux flux =
-            twoFlux(row.average.forward, row.average.backward, before, depth, Vec3d::Constant(ground));
-        const double down = flux.down[channel] + kPi / 2 * flux.groundDown[channel] - std::exp(-before);
+        const LayerLight light = beamInLayer(row.average, before, depth, Vec3d::Constant(ground));
+        const double scattered =
+            (row.average.forward + row.average.backward)[channel] * light.fluence[channel];
+        const double turned = 2 * cosine * row.average.first[channel] * light.flux[channel];
         single += seen * std::exp(-before) * sample(n, cameraAngle);
-        multiple +=
-            seen * (down * sample(row.spread[c], cameraAngle) +
-                    (flux.up + kPi / 2 * flux.groundUp)[channel] * sample(row.spread[c], cameraAngle + kPi));
+        multiple += seen * ((light.onward[channel] - std::exp(-before)) * sample(n, cameraAngle) +
+                            (scattered - turned) / (2 * kPi));
     }
     return {all / once, 1 + multiple / single};
 }
@@ -173,11 +196,20 @@ TEST(DualScattering, BrightensASlabAsTracedLightDoes) {
             for (const double depth : {2.0, 5.0, 100.0}) {
                 for (const double degrees : {0.0, 43.0, 70.0}) {
                     const SlabRatio ratio = slab(eumelanin, channel, depth, degrees * kDegree);
-                    EXPECT_NEAR(ratio.dual, ratio.traced, 0.13 * ratio.traced)
+                    EXPECT_NEAR(ratio.dual, ratio.traced, 0.12 * ratio.traced)
                         << "eumelanin " << eumelanin << " channel " << channel << " depth " << depth
                         << " camera " << degrees;
                 }
             }
+        }
+    }
+}
+
+TEST(DualScattering, WhiteHairIsWhite) {
+    for (const double depth : {2.0, 5.0, 100.0}) {
+        for (const double degrees : {0.0, 43.0, 70.0}) {
+            const SlabRatio ratio = slab(0, 0, depth, degrees * kDegree);
+            EXPECT_NEAR(ratio.dual, ratio.traced, 0.2 * ratio.traced) << depth << " camera " << degrees;
         }
     }
 }
@@ -208,7 +240,7 @@ TEST(DualScattering, SadeghiFollowsMarschner) {
     SadeghiParameters bright = sadeghiLike(model);
     bright.tt.intensity *= 10;
     const AverageScattering b = DualScattering(bright).at(0).average;
-    EXPECT_LE((b.forward + b.backward).maxCoeff(), 0.9801);
+    EXPECT_LE((b.forward + b.backward).maxCoeff(), 0.9951);
 }
 
 TEST(DualScattering, TablesHoldTheModel) {
@@ -217,12 +249,12 @@ TEST(DualScattering, TablesHoldTheModel) {
     const DualTables tables = bakeDual(dual, 64, 32);
     const DualScattering::Row row = dual.at(0.5 * kPi / 2 * 20 / 15.5);
     const auto forward = tables.averages.sample(20 / 31.0, 0);
-    const auto backward = tables.averages.sample(20 / 31.0, 0.5);
+    const auto backward = tables.averages.sample(20 / 31.0, 0.25);
     for (std::size_t c = 0; c < 3; ++c) {
         EXPECT_NEAR(forward[c], row.average.forward[static_cast<int>(c)], 1e-6);
         EXPECT_NEAR(backward[c], row.average.backward[static_cast<int>(c)], 1e-6);
-        EXPECT_NEAR(tables.spread.sample(0.8, 20 / 31.0)[c], sample(row.spread[c], std::acos(0.6)),
-                    0.01 * static_cast<double>(row.spread[c][90]));
+        EXPECT_NEAR(tables.profile.sample(0.8, 20 / 31.0)[c], sample(row.profile[c], std::acos(0.6)),
+                    0.01 * static_cast<double>(row.profile[c][90]));
     }
     const Table factors = bakeSpreadFactors();
     const double width = kLeastSpread + 0.31 * (kLargestSpread - kLeastSpread);

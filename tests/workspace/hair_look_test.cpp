@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 
+#include "core/groom/point_dye.h"
 #include "core/render/png.h"
 #include "workspace/dye_mask.h"
 #include "workspace/sample.h"
@@ -101,6 +102,35 @@ TEST(HairLook, DyeComesFromTheMaskAndFollowHairsShareIt) {
             EXPECT_NEAR(shares->dyes[h], x > 0 ? 0.5f : 0.0f, 1e-5f) << h;
         }
     }
+}
+
+TEST(HairLook, PaintedDyeIsThatOfThePointsAndAnotherMaskReplacesIt) {
+    auto groom = makeSample(kSamples, "short");
+    ASSERT_TRUE(groom) << groom.error().message();
+    groom->material.dyeStrength = 0.5f;
+    std::vector<float> painted(groom->pointCount());
+    for (std::size_t s = 0; s < groom->strandCount(); ++s) {
+        const std::uint32_t first = groom->offsets[s], last = groom->offsets[s + 1] - 1;
+        for (std::uint32_t p = first; p <= last; ++p)
+            painted[p] = static_cast<float>(p - first) / static_cast<float>(last - first);
+    }
+    groom->pointAttributes.set(attribute::kPointDye, painted);
+    const StrandShares own = sharesOfStrands(*groom);
+    EXPECT_EQ(own.pointDyes, painted);
+    EXPECT_EQ(own.dyes, std::vector<float>(groom->strandCount(), 0.5f));
+    groom->interpolation.followPerGuide = 2;
+    const auto bindings = bindFollowHairs(*groom, groom->interpolation);
+    ASSERT_TRUE(bindings);
+    const auto shares = sharesOfFollowHairs(*groom, *bindings);
+    ASSERT_TRUE(shares);
+    ASSERT_EQ(shares->pointDyes.size(), bindings->hairCount() * bindings->pointsPerHair);
+    for (std::size_t p = 0; p < shares->pointDyes.size(); ++p) {
+        const auto along = static_cast<float>(p % bindings->pointsPerHair);
+        ASSERT_NEAR(shares->pointDyes[p], along / static_cast<float>(bindings->pointsPerHair - 1), 1e-5f);
+    }
+    groom->strandAttributes.set("all", std::vector<float>(groom->strandCount(), 1.0f));
+    ASSERT_TRUE(dyeFromAttribute("all", *groom));
+    EXPECT_TRUE(sharesOfStrands(*groom).pointDyes.empty());
 }
 
 TEST(HairLook, AnImageOverTheRootUvsIsAMask) {

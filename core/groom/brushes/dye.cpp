@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "core/groom/point_dye.h"
+
 namespace hairloom {
 namespace {
 
@@ -33,21 +35,33 @@ std::span<const Field<S>> fieldsOf(const S&) {
 
 Result<std::size_t> dye(Groom& groom, const S& settings, const Region& region) {
     if (auto status = checkFields("dye", settings); !status) return tl::unexpected(status.error());
-    const auto before = groom.strandAttributes.view<float>(attribute::kDye);
+    const bool byPoints = groom.pointAttributes.has(attribute::kPointDye);
+    const auto before = byPoints ? groom.pointAttributes.view<float>(attribute::kPointDye)
+                                 : groom.strandAttributes.view<float>(attribute::kDye);
     std::vector<float> mask(before.begin(), before.end());
-    mask.resize(groom.strandCount(), 0.0f);
-    const std::vector<float> old = mask;
+    mask.resize(byPoints ? groom.pointCount() : groom.strandCount(), 0.0f);
+    std::vector<float> old = mask;
+    const auto valuesOf = [&groom, byPoints](std::vector<float>& values, std::size_t strand) {
+        const std::size_t first = byPoints ? groom.offsets[strand] : strand;
+        return std::span(values).subspan(first, byPoints ? groom.offsets[strand + 1] - first : 1);
+    };
     // The loop keeps frozen strands and those of locked layers out; no point moves.
     const auto reached = editStrands(groom, region, {}, [&](StrandEdit& strand) {
         const float reach = reachOf(settings, strand.points[0]);
         const float amount =
             settings.amount * (1 - settings.variation * strand.random(settings.seed).uniform());
-        mask[strand.index] += reach * (amount - mask[strand.index]);
+        for (float& value : valuesOf(mask, strand.index)) value += reach * (amount - value);
     });
     static_cast<void>(reached);
     std::size_t changed = 0;
-    for (std::size_t s = 0; s < mask.size(); ++s) changed += mask[s] != old[s] ? 1 : 0;
-    if (changed > 0) groom.strandAttributes.set(attribute::kDye, std::move(mask));
+    for (std::size_t s = 0; s < groom.strandCount(); ++s)
+        changed += std::ranges::equal(valuesOf(mask, s), valuesOf(old, s)) ? 0 : 1;
+    if (changed == 0) return changed;
+    if (byPoints) {
+        groom.pointAttributes.set(attribute::kPointDye, std::move(mask));
+    } else {
+        groom.strandAttributes.set(attribute::kDye, std::move(mask));
+    }
     return changed;
 }
 

@@ -16,8 +16,9 @@ struct DyeSettings {
 };
 std::span<const Field<DyeSettings>> fieldsOf(const DyeSettings&);
 
-/// Sets the strand attribute `dye`, which says how much of the material's dye a strand has. Strands that the
-/// region does not reach keep what they have, or 0. Returns the number of strands whose amount changed.
+/// Sets the strand attribute `dye`, which says how much of the material's dye a strand has, or the point
+/// attribute where hair was painted. Strands that the region does not reach keep what they have, or 0.
+/// Returns the number of strands whose amount changed.
 Result<std::size_t> dye(Groom& groom, const DyeSettings& settings, const Region& region = {});
 
 }  // namespace hairloom

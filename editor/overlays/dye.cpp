@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/groom/point_dye.h"
+#include "editor/overlays/overlay_mode.h"
+#include "editor/session.h"
+
+namespace hairloom::editor {
+
+void drawDye(const Session& session, Marks& marks) {
+    constexpr float kLeast = 0.02f;  // of the mask; less is not drawn
+    const Groom& groom = session.document.groom();
+    const std::vector<float> mask = pointDyes(groom);
+    const auto positions = shownPositions(session);
+    for (std::size_t s = 0; s < groom.strandCount(); ++s) {
+        for (std::uint32_t p = groom.offsets[s] + 1; p < groom.offsets[s + 1]; ++p) {
+            const float share = 0.5f * (mask[p - 1] + mask[p]);
+            if (share < kLeast) continue;
+            marks.line(positions[p - 1], positions[p], QColor::fromRgbF(0.95f, 0.25f, 0.75f, share), 1);
+        }
+    }
+}
+
+}  // namespace hairloom::editor

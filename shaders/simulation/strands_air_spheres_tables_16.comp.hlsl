@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+// Curved hair in still air, among spheres, 16 points each, and the engine's default settings; a lane for each point, and tables in the memory of the group.
+#define HAIR_POINTS 16
+#define HAIR_EXACT 1
+#define HAIR_UNROLL 1
+#define HAIR_STORAGE 3
+#define HAIR_STRANDS 2
+#define HAIR_TOGETHER 1
+#define HAIR_TABLES 1
+#define HAIR_CLAMPED 2
+#define HAIR_EVALUATION 0
+#define HAIR_BEND 2
+#define HAIR_TARGETS 1
+#define HAIR_CURVES 1
+#define HAIR_TENSIONS 1
+#define HAIR_COUPLED 0
+#define HAIR_SPHERES 1
+#define HAIR_WIND 0
+#define HAIR_SLEEP 1
+#define HAIR_VELOCITIES 0
+#define HAIR_STAGES stageRoots(); stageDamping(); stageDrag(); stageGravity(); stageVerlet(); stageAngular(); stageLength(); stageSweep(); stageCollision(); stageExtension();
+#include "shaders/simulation/strands.hlsli"

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Light from around on a fibre; core/shading/sky_light.h is the reference for a single one.
+#ifndef HAIRLOOM_SKY_HLSLI
+#define HAIRLOOM_SKY_HLSLI
+#include "shaders/fibre_tables.hlsli"
+#include "shaders/layer_light.hlsli"
+#include "shaders/shadows.hlsli"
+#ifdef HAIRLOOM_LOOK
+#include "shaders/absorption_layers.hlsli"
+#endif
+
+Texture2D<float4> gSky : register(t17);  // moments of S cos theta_i by sin theta_o
+
+struct SkyMoments {
+    float3 even, along, across, alongAlong, alongAcross, acrossAcross;
+};
+
+#ifdef HAIRLOOM_LOOK
+SkyMoments skyMoments(float sinOut, float3 absorption) {
+    SkyMoments m;
+    const float u = 0.5 * sinOut + 0.5;
+    [unroll] for (uint c = 0; c < 3u; ++c) {
+        const LayerPlace place = layerPlace(absorption[c]);
+        const float4 low = sampleLayer(gSky, u, 0.0, place.low, 0.0, 1.0, 2.0);
+        const float4 high = sampleLayer(gSky, u, 0.0, place.low + 1.0, 0.0, 1.0, 2.0);
+        const float even = betweenLayers(low, high, place.part).x;
+        const float3 one = even * lerp(low.yzw, high.yzw, place.part);
+        const float2 two = even * lerp(sampleLayer(gSky, u, 0.0, place.low, 1.0, 1.0, 2.0).xy,
+                                       sampleLayer(gSky, u, 0.0, place.low + 1.0, 1.0, 1.0, 2.0).xy, place.part);
+        m.even[c] = even;
+        m.along[c] = one.x;
+        m.across[c] = one.y;
+        m.alongAlong[c] = one.z;
+        m.alongAcross[c] = two.x;
+        m.acrossAcross[c] = two.y;
+    }
+    return m;
+}
+#else
+SkyMoments skyMoments(float sinOut, float3 absorption) {
+    SkyMoments m;
+    const float u = 0.5 * sinOut + 0.5;
+    m.even = lookUp(gSky, float2(u, 0.0)).rgb;
+    m.along = lookUp(gSky, float2(u, 0.2)).rgb;
+    m.across = lookUp(gSky, float2(u, 0.4)).rgb;
+    m.alongAlong = lookUp(gSky, float2(u, 0.6)).rgb;
+    m.alongAcross = lookUp(gSky, float2(u, 0.8)).rgb;
+    m.acrossAcross = lookUp(gSky, float2(u, 1.0)).rgb;
+    return m;
+}
+#endif
+
+// How much light from around there is inside hair, against that without: even + d . (x, y, z) in the direction d. Where no
+// map tells which fibres stand around, `known` is 0.
+struct SkyInHair {
+    float3 even, x, y, z;
+    float known;
+};
+
+SkyInHair noSky() {
+    SkyInHair sky;
+    sky.even = sky.x = sky.y = sky.z = 0;
+    sky.known = 0;
+    return sky;
+}
+
+// What the map of one light knows: the fibres on the light's side of the point and on the other, and where the head stands.
+void addSky(inout SkyInHair sky, FibreMoments fibre, LightConstants light, Occlusion o, float clumping, float3 ground) {
+    if (light.around.w == 0) return;
+    const float before = clumping * o.fibres;
+    const float all = clumping * o.allFibres;
+    const LayerLight front = lightInLayer(fibre, before, all, ground * o.ground, 0.0, o.visibility);
+    const LayerLight behind = lightInLayer(fibre, all - before, all, 0.0, 0.0, 1.0 - o.ends);
+    const float3 slope = (front.flux - behind.flux) / 3.14159265;
+    sky.even += light.around.w * (front.fluence + behind.fluence) / 6.2831853;
+    sky.x += light.around.x * slope;
+    sky.y += light.around.y * slope;
+    sky.z += light.around.z * slope;
+    sky.known += light.around.w;
+}
+
+// Light from around as it is inside hair, which leaves the fibre along `t` towards the view.
+float3 environmentOnFibre(ShadeConstants shade, SkyMoments m, SkyInHair sky, float3 t, float3 toView) {
+    const float3 side = toView - t * dot(toView, t);
+    const float3 f = side * rsqrt(max(dot(side, side), 1e-12));
+    const float3 flat = 0.28209479 * shade.environment[0].rgb;
+    const float3 bx = 0.48860251 * shade.environment[3].rgb;
+    const float3 by = 0.48860251 * shade.environment[1].rgb;
+    const float3 bz = 0.48860251 * shade.environment[2].rgb;
+    // Band 2 as a symmetric matrix.
+    const float3 xy = 0.54627422 * shade.environment[4].rgb;
+    const float3 yz = 0.54627422 * shade.environment[5].rgb;
+    const float3 zx = 0.54627422 * shade.environment[7].rgb;
+    const float3 zz = 0.63078313 * shade.environment[6].rgb;
+    const float3 difference = 0.54627422 * shade.environment[8].rgb;
+    const float3 xx = -0.5 * zz + difference;
+    const float3 yy = -0.5 * zz - difference;
+    const float3 qtx = xx * t.x + xy * t.y + zx * t.z;
+    const float3 qty = xy * t.x + yy * t.y + yz * t.z;
+    const float3 qtz = zx * t.x + yz * t.y + zz * t.z;
+    const float3 qfx = xx * f.x + xy * f.y + zx * f.z;
+    const float3 qfy = xy * f.x + yy * f.y + yz * f.z;
+    const float3 qfz = zx * f.x + yz * f.y + zz * f.z;
+
+    const float3 bt = bx * t.x + by * t.y + bz * t.z;
+    const float3 bf = bx * f.x + by * f.y + bz * f.z;
+    const float3 st = sky.x * t.x + sky.y * t.y + sky.z * t.z;
+    const float3 sf = sky.x * f.x + sky.y * f.y + sky.z * f.z;
+    // The product of both, up to the second order.
+    const float3 mean = (bx * sky.x + by * sky.y + bz * sky.z) / 3.0;
+    const float3 even = flat * sky.even + mean;
+    const float3 along = bt * sky.even + flat * st + 0.4 * (qtx * sky.x + qty * sky.y + qtz * sky.z);
+    const float3 across = bf * sky.even + flat * sf + 0.4 * (qfx * sky.x + qfy * sky.y + qfz * sky.z);
+    const float3 tt = sky.even * (qtx * t.x + qty * t.y + qtz * t.z) + bt * st - mean;
+    const float3 ff = sky.even * (qfx * f.x + qfy * f.y + qfz * f.z) + bf * sf - mean;
+    const float3 tf = sky.even * (qtx * f.x + qty * f.y + qtz * f.z) + 0.5 * (bt * sf + bf * st);
+    return max(m.even * even + m.along * along + m.across * across + m.alongAlong * tt + m.acrossAcross * (ff + 0.5 * tt) +
+                   2.0 * m.alongAcross * tf,
+               0.0);
+}
+#endif

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What the comparisons with double precision share: strands in a state, the forces of
+// core/simulation/reference on them, and one substep on the device and by the stages of the CPU beside what
+// it should be.
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <functional>
+#include <vector>
+
+#include "core/simulation/reference/forces.h"
+#include "core/simulation/reference/solver.h"
+#include "tests/gpu_simulation/cpu_frame.h"
+#include "tests/gpu_simulation/gpu_simulation_fixture.h"
+
+namespace hairloom::gpu_simulation::test {
+
+using Eigen::Vector3d;
+using runtime::SimulationSettings;
+using Places = std::vector<Vector3d>;  // of one strand
+
+inline constexpr double kSubstep = static_cast<double>(test::kStep);
+inline constexpr StrandStorage kStorages[] = {StrandStorage::threads, StrandStorage::lanes};
+inline constexpr std::uint32_t kReferencePoints[] = {12};
+
+/// Places relative to the root, and displacements in the last substep.
+struct Strand {
+    Places places, moved;
+};
+
+inline std::vector<Strand> strandsOf(const Scene& scene, const runtime::State& state) {
+    std::vector<Strand> strands(scene.offsets.size() - 1);
+    for (const runtime::Block& block : scene.shape->blocks) {
+        const float* const planes = state.planes.data() + block.firstPlane * runtime::kStatePlanes;
+        const std::size_t size = planeSize(block);
+        for (std::uint32_t lane = 0; lane < block.strands; ++lane) {
+            Strand& strand = strands[block.strandOfLane[lane]];
+            for (std::uint32_t p = 0; p < block.points; ++p) {
+                const std::size_t i = std::size_t{p} * runtime::kBlockLanes + lane;
+                const auto at = [&](std::size_t plane) {
+                    const float* const v = planes + plane * size + i;
+                    return Vector3d(v[0], v[size], v[2 * size]);
+                };
+                strand.places.push_back(at(0));
+                strand.moved.push_back(at(0) - at(3));
+            }
+        }
+    }
+    return strands;
+}
+
+/// Strands whose roots rest, in a state that is random, or nasty too.
+inline Scene sceneFor(const SimulationSettings& settings, Hair rest, bool nasty, std::size_t spheres,
+                      float shift = 0.002f) {
+    Scene scene = test::makeScene(settings, rest, 23, kReferencePoints, shift);
+    test::Dice dice(5);
+    if (nasty) test::disturb(scene, Hair::nasty, dice);
+    scene.roots = scene.shape->restRoots;
+    scene.spheres = {{{0.0f, -0.05f, 0.0f}, 0.06f}};
+    scene.spheres.resize(spheres);
+    scene.state.spheres = scene.spheres;
+    return scene;
+}
+
+inline SimulationSettings nothing() {
+    SimulationSettings s;
+    s.substeps = 1;
+    // Explicit springs bend without damping.
+    s.dampingTime = s.bendDampingTime = s.airDrag = s.angularStiffness = s.sleepSpeed = 0.0f;
+    s.gravity = {};
+    s.lengthIterations = 0;
+    return s;
+}
+
+/// The strands of a scene as the reference has them.
+class Bodies {
+  public:
+    Bodies(const Scene& scene, const SimulationSettings& settings)
+        : scene_(scene),
+          settings_(settings),
+          solver_(reference::Solver::make(reference::strandsOf(scene.view()), settings).value()) {}
+
+    const reference::StrandShape& shape(std::size_t s) const { return solver_.shape(s); }
+    /// Forces by the unit of mass at places relative to the root, for displacements in a substep, m/s².
+    Places forces(std::size_t s, const Places& places, const Places& moved,
+                  const reference::Physics& physics) const {
+        Places x, v, force(places.size(), Vector3d::Zero());
+        for (std::size_t p = 0; p < places.size(); ++p) {
+            x.push_back(root(s) + places[p]);
+            v.emplace_back(moved[p] / kSubstep);
+        }
+        const auto spheres = spheresNow();
+        reference::addForces(physics, shape(s), x, v, around(spheres), force);
+        return force;
+    }
+    /// And what they add to the displacement.
+    Places added(std::size_t s, const Places& places, const Places& moved,
+                 const reference::Physics& physics) const {
+        Places force = forces(s, places, moved, physics);
+        for (std::size_t p = 0; p < force.size(); ++p) force[p] *= kSubstep * kSubstep / shape(s).masses[p];
+        return force;
+    }
+    /// Minus the derivative of the forces by the places, rows and columns of x, y and z of all points.
+    Eigen::MatrixXd stiffness(std::size_t s, const Places& places) const;
+    const SimulationSettings& settings() const { return settings_; }
+
+  private:
+    Vector3d root(std::size_t s) const {
+        const runtime::Float3 place = scene_.roots[s].position;
+        return {place.x, place.y, place.z};
+    }
+    std::vector<reference::SphereNow> spheresNow() const {
+        std::vector<reference::SphereNow> spheres;
+        for (const runtime::Sphere& sphere : scene_.spheres) {
+            const runtime::Float3 c = sphere.center_ws;
+            spheres.push_back({{c.x, c.y, c.z}, Vector3d::Zero(), sphere.radius});
+        }
+        return spheres;
+    }
+    static reference::Surroundings around(std::span<const reference::SphereNow> spheres) {
+        return {0.7, Eigen::Quaterniond::Identity(), Vector3d::Zero(), spheres};
+    }
+
+    const Scene& scene_;
+    SimulationSettings settings_;
+    reference::Solver solver_;
+};
+
+inline Eigen::MatrixXd Bodies::stiffness(std::size_t s, const Places& places) const {
+    class Dense final : public reference::BlockSink {
+      public:
+        explicit Dense(Eigen::Index points) : matrix(Eigen::MatrixXd::Zero(3 * points, 3 * points)) {}
+        void add(std::size_t p, std::size_t q, const Eigen::Matrix3d& block) override {
+            matrix.block<3, 3>(3 * static_cast<Eigen::Index>(p), 3 * static_cast<Eigen::Index>(q)) += block;
+        }
+        Eigen::MatrixXd matrix;
+    };
+    Dense sink(static_cast<Eigen::Index>(places.size()));
+    reference::Physics physics(settings_);
+    physics.bendDampingTime = 0.0;
+    Places x;
+    for (const Vector3d& place : places) x.emplace_back(root(s) + place);
+    const Places rest(places.size(), Vector3d::Zero());
+    reference::addDerivatives(physics, shape(s), x, rest, around({}), 1.0, 0.0, sink);
+    return sink.matrix;
+}
+
+inline double farthest(const Places& a, const Places& b, std::size_t first) {
+    double most = 0.0;
+    for (std::size_t p = first; p < a.size(); ++p) most = std::max(most, (a[p] - b[p]).norm());
+    return most;
+}
+
+/// What hold() may compare.
+inline Places placesOf(const Strand&, const Strand& after) {
+    return after.places;
+}
+inline Places movesOf(const Strand&, const Strand& after) {
+    return after.moved;
+}
+
+class Reference : public GpuSimulationTest {
+  protected:
+    /// What the device and the CPU make of a substep, against `truth` of each strand before it; `of` picks
+    /// what is compared.
+    void hold(const Scene& scene, const std::function<Places(std::size_t, const Strand&)>& truth,
+              const std::function<Places(const Strand&, const Strand&)>& of, double share) {
+        const std::vector<Strand> before = strandsOf(scene, scene.state);
+        const std::vector<Strand> cpu = strandsOf(scene, test::runOnCpu(scene));
+        for (const StrandStorage storage : kStorages) {
+            SCOPED_TRACE(static_cast<int>(storage));
+            StrandEngine engine = engineOf(scene.view(), scene.settings, options(storage));
+            ASSERT_TRUE(engine.writeState(scene.state));
+            ASSERT_TRUE(engine.step(scene.input()));
+            const std::vector<Strand> gpu = strandsOf(scene, engine.readState().value());
+            const std::size_t first = scene.settings.clampedPoints;
+            for (std::size_t s = 0; s < before.size(); ++s) {
+                const Places exact = truth(s, before[s]);
+                const double off = farthest(of(before[s], gpu[s]), exact, first);
+                const double offOnCpu = farthest(of(before[s], cpu[s]), exact, first);
+                double size = 0.0;
+                for (const Vector3d& v : exact) size = std::max(size, v.norm());
+                // Places of a strand's size round to 2e-8 m.
+                EXPECT_LE(off, 4.0 * offOnCpu + 1e-7) << "strand " << s;
+                if (share > 0.0) {
+                    EXPECT_LE(off, share * size + 1e-7) << "strand " << s;
+                }
+            }
+        }
+    }
+};
+
+}  // namespace hairloom::gpu_simulation::test
