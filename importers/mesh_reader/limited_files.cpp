@@ -2,6 +2,7 @@
 #include "importers/mesh_reader/limited_files.h"
 
 #include <filesystem>
+#include <string>
 #include <system_error>
 
 namespace hairloom {
@@ -9,10 +10,12 @@ namespace {
 
 constexpr std::uintmax_t kLargestFile = std::uintmax_t{1} << 30u;
 
+/// `path` is UTF-8, which not every library takes char for.
 bool isSaneFile(const std::string& path) {
+    const std::filesystem::path file(std::u8string(path.begin(), path.end()));
     std::error_code code;
-    if (!std::filesystem::is_regular_file(path, code)) return false;
-    return std::filesystem::file_size(path, code) <= kLargestFile && !code;
+    if (!std::filesystem::is_regular_file(file, code)) return false;
+    return std::filesystem::file_size(file, code) <= kLargestFile && !code;
 }
 
 }  // namespace

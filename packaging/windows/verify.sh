@@ -25,7 +25,7 @@ all=no
 # Rooms whose tests count here: what asks the system, what the compiler makes other code of, and what draws. The others are
 # the same code as on Linux.
 on_cpu=(base runtime importers)
-on_gpu=(gpu gpu_window gpu_simulation render)
+on_gpu=(gpu gpu_window gpu_simulation render golden)
 
 say() { printf '\033[1m%s\033[0m\n' "$*" >&2; }
 
@@ -74,7 +74,7 @@ roomTests() {
     done < <(sed -n 's/^\[  FAILED  \] \([^ ,]*\).* ([0-9]* ms).*/\1/p' "$printed")
     measured "$(sed -n 's/^\[  PASSED  \] \([0-9]*\) test.*/\1 passed/p' "$printed")$(
         sed -n 's/^\[  SKIPPED \] \([0-9]*\) test.*/, \1 skipped/p' "$printed")$(
-        [ "$known" -eq 0 ] || echo ", $known fail by limits of Wine")$(
+        [ "$known" -eq 0 ] || echo ", $known fail as listed")$(
         [ "$unknown" -eq 0 ] || echo ", $unknown fail")"
     [ "$unknown" -eq 0 ] && grep -q '^\[  PASSED  \] [1-9]' "$printed"
 }
@@ -82,7 +82,8 @@ listsDirect3D() { cli devices --json | tee /dev/stderr | grep -q '"Direct3D 11"'
 
 # pictureOf BACKEND STYLE PICTURE
 pictureOf() {
-    cli render "$pictures/$2.hairloom" --size 320x320 --passes 4 --camera three-quarter --exposure 1.6 --backend "$1" -o "$3"
+    cli render "$pictures/$2.hairloom" --size 320x320 --passes 4 --camera three-quarter --exposure 1.6 \
+        --ribbons strip --backend "$1" -o "$3"
 }
 
 # likeVulkan STYLE PICTURE: draws it with Direct3D and compares. Root mean square of the differences, of 1; what the eye takes

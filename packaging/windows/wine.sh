@@ -7,8 +7,9 @@ set -euo pipefail
 cache=${HAIRLOOM_CACHE:-${XDG_CACHE_HOME:-$HOME/.cache}/hairloom}
 mkdir -p "$cache"
 export WINEPREFIX=$cache/wine WINEARCH=win64 WINEDEBUG=${WINEDEBUG:--all}
-# No .NET, no browser, no menu entries. Microsoft's shader compiler, loaded by its path, may replace Wine's.
-export WINEDLLOVERRIDES="mscoree,mshtml=;winemenubuilder.exe=d;d3dcompiler_47=n,b"
+# No .NET, no browser, no menu entries, no debugger that looks at crashes before their parent does. Microsoft's shader
+# compiler, loaded by its path, may replace Wine's.
+export WINEDLLOVERRIDES="mscoree,mshtml=;winemenubuilder.exe,winedbg.exe=d;d3dcompiler_47=n,b"
 if [ ! -f "$WINEPREFIX/.ready" ]; then
     (
         flock 9

@@ -38,10 +38,10 @@ float sineOfTurns(float turns) {
 /// Velocity of the air at one place at the start (0) or end (1) of the frame.
 float3 windAt(float3 place_ws, uint end) {
     const float3 mean = gFrame.wind.xyz;
-    const uint modes = gFrame.windKind == WIND_UNIFORM ? 0 : HAIRLOOM_WIND_MODES;
+    if (gFrame.windKind == WIND_UNIFORM) return mean;
     float waves = 0.0;
     float3 eddies = float3(0, 0, 0);
-    [loop] for (uint m = 0; m < modes; ++m) {
+    [loop] for (uint m = 0; m < HAIRLOOM_WIND_MODES; ++m) {
         const float4 amplitude = gFrame.windAmplitudes[m];
         const float4 waveVector = gFrame.windWaves[m];
         const float wave = sineOfTurns(dot(place_ws, waveVector.xyz) + (end == 0 ? amplitude.w : waveVector.w));

@@ -229,7 +229,10 @@ TEST_P(Parity, ThreeSubsteps) {
         Allowance allowance = allowanceFor(what, settings, Hair::curled, storage);
         allowance.tolerance *= 20.0;
         allowance.most *= 20.0;
-        if (what.spheres) allowance = {allowance.tolerance, std::max<std::ptrdiff_t>(allowance.mayDiffer, 2)};
+        // Through Direct3D under Wine a second strand of the 64 was seen to take another branch.
+        const bool direct3d = device()->info().backend == gpu::Backend::Direct3D11;
+        const std::ptrdiff_t other = direct3d ? 2 : 1;
+        if (what.spheres) allowance = {allowance.tolerance, std::max(allowance.mayDiffer, other)};
         compare(engine, scene, allowance);
     }
 }
