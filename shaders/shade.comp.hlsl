@@ -50,8 +50,9 @@ void main(uint3 id : SV_DispatchThreadID) {
         const LightConstants light = gShade.lights[i];
         const float3 toLight = directionToLight(light, p.position_ws.xyz);
         const Occlusion o = occlusion(light, p.position_ws.xyz, 0.0007, 0.004, light.filtering.z);
-        const float3 direct = pow(passed, o.fibres) * o.visibility;
-        const float3 scattered = pow(passed, 0.5 * o.fibres) * lerp(0.15, 1.0, o.visibility);
+        const Occlusion shadow = shadowOf(light, o);
+        const float3 direct = pow(passed, shadow.fibres) * shadow.visibility;
+        const float3 scattered = pow(passed, 0.5 * shadow.fibres) * lerp(0.15, 1.0, shadow.visibility);
         const float diffuse = kajiyaDiffuse(tangent, toLight);
         const float3 lobe1 = gShade.primary.rgb * (gShade.normalisation.y *
                              kajiyaSpecular(tangent1, toLight, toView, gShade.primary.w));

@@ -56,14 +56,15 @@ void main(uint3 id : SV_DispatchThreadID) {
         const LightConstants light = gShade.lights[i];
         const float3 toLight = directionToLight(light, p.position_ws.xyz);
         const Occlusion o = occlusion(light, p.position_ws.xyz, 0.0007, 0.004, light.filtering.z);
+        const Occlusion shadow = shadowOf(light, o);
         const FibreFrame f = fibreFrame(tangent, toLight, toView);
-        float3 scattered = passedDirectly(light, o.fibres, gFibre.lobes.w) *
+        float3 scattered = passedDirectly(light, shadow.fibres, gFibre.lobes.w) *
                            fibreScattering(gFibre, f, hashUnit(p.strand * 2u), tint, absorption);
 #ifdef HAIRLOOM_DUAL
-        scattered += multipleScattering(gFibre, f, gFibre.lobes.w * o.fibres, gFibre.lobes.w * o.allFibres, tint,
+        scattered += multipleScattering(gFibre, f, gFibre.lobes.w * shadow.fibres, gFibre.lobes.w * o.allFibres, tint,
                                         absorption, gShade.ground.rgb * o.ground);
 #endif
-        colour += irradianceOf(light, p.position_ws.xyz) * o.visibility * scattered;
+        colour += irradianceOf(light, p.position_ws.xyz) * shadow.visibility * scattered;
         if (hasEnvironment(gShade)) addSky(sky, moments, light, o, gFibre.lobes.w, gShade.ground.rgb);
     }
     if (hasEnvironment(gShade)) {

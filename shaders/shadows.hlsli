@@ -19,6 +19,14 @@ struct Occlusion {
     float ground;      // share of the light that the head, where the light's way ends on it, can send back here
 };
 
+// What a light of its own shadows: nothing where shadows are left out. Light from around is still kept off.
+Occlusion shadowOf(LightConstants light, Occlusion o) {
+    if (light.filtering.w == 0.0) return o;
+    o.fibres = 0.0;
+    o.visibility = 1.0;
+    return o;
+}
+
 // What is left of light after so many fibres that a map counts. A beam of 5 mm crosses numbers of them that vary more than
 // by chance, for hair grows in clumps, and more of it passes than of their mean: `clumping` of them count. The finer the
 // texels, the more of this the map resolves itself, down to single fibres, which let nothing through at all.
@@ -100,10 +108,9 @@ Occlusion occlusion(LightConstants light, float3 position_ws, float hairBias, fl
             }
         }
     }
-    const bool shaded = light.filtering.w == 0.0;
-    result.fibres = shaded ? fibres : 0.0;
+    result.fibres = fibres;
     result.allFibres = max(all, fibres);
-    result.visibility = head && shaded ? visible : 1.0;
+    result.visibility = head ? visible : 1.0;
     // A slope gets less light on its area; and from afar the lit skin is a smaller part of what lies around.
     const float texelSize = light.filtering.y;
     const float facing = texelSize * rsqrt(texelSize * texelSize + dot(rise, rise));

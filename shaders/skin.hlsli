@@ -39,9 +39,10 @@ float3 skinLight(ShadeConstants shade, MeshConstants mesh, float3 position_ws, f
         const float m = mesh.skin.z;
         const float specular = mesh.skin.y * fresnel * (m + 8.0) / (8.0 * kPi) *
                                pow(saturate(dot(normal, middle)), m) * saturate(nl);
-        const float lit = lerp(0.0, o.visibility, saturate(nl * 8.0 + 0.6));
+        const Occlusion shadow = shadowOf(light, o);
+        const float lit = lerp(0.0, shadow.visibility, saturate(nl * 8.0 + 0.6));
         colour += irradianceOf(light, position_ws) * (albedo / kPi * diffuse + specular) *
-                  (lit * throughHair(shade, light, o.fibres, albedo));
+                  (lit * throughHair(shade, light, shadow.fibres, albedo));
         openness += exp(-0.3 * o.fibres);
     }
     openness = shade.counts.y > 0 ? openness / float(shade.counts.y) : 1.0;

@@ -84,7 +84,8 @@ float4 main(Input i) : SV_Target0 {
         const Occlusion o = occlusion(light, position_ws, 0.3 * i.centre_ws.w, 0.002, light.filtering.z);
         toLight[k] = directionToLight(light, position_ws);
         irradiance[k] = irradianceOf(light, position_ws);
-        lit[k] = o.visibility * exp(-kOpacity * o.fibres);
+        const Occlusion shadow = shadowOf(light, o);
+        lit[k] = shadow.visibility * exp(-kOpacity * shadow.fibres);
         openness += exp(-kOpacity * 0.5 * o.fibres) * lerp(0.25, 1.0, o.visibility);
     }
     openness = gShade.counts.y > 0 ? openness / float(gShade.counts.y) : 1.0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/gpu_simulation/bend_reduction.h"
 
-#include <array>
+#include <utility>
 
 #include "core/base/parallel.h"
 
@@ -92,12 +92,12 @@ std::vector<shaders::float4> reduce(const BendFactors& factors, std::uint32_t po
         if (2 * pair + 1 < points)
             quads[(2 * pair + 1) * (steps + 1) + step] = quad(before.c, before.d, after.c, after.d);
     };
+    std::vector<Pair> next(pairs.size());
     for (std::uint32_t step = 0; step < steps; ++step) {
         const std::size_t apart = std::size_t{1} << step;
-        std::vector<Pair> next = pairs;
         for (std::size_t i = 0; i < pairs.size(); ++i) {
             Block before, after;
-            next[i].before = next[i].after = {};
+            next[i] = {{}, pairs[i].own, {}};
             if (i >= apart) {
                 const Pair& other = pairs[i - apart];
                 before = -(pairs[i].before * inverse(other.own));
@@ -112,7 +112,7 @@ std::vector<shaders::float4> reduce(const BendFactors& factors, std::uint32_t po
             }
             put(i, step, before, after);
         }
-        pairs = std::move(next);
+        std::swap(pairs, next);
     }
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         const Block own = inverse(pairs[i].own);
@@ -131,12 +131,16 @@ std::vector<shaders::float4> reducedBend(const runtime::RestShape& shape, const 
         const runtime::Block& block = shape.blocks[batch.blocks[n]];
         const std::size_t size = planeSize(block);
         const float* const planes = bend.planes.data() + block.firstPlane * bend.planeCount() + lane;
-        std::array<std::vector<double>, 3> factors;
-        for (std::size_t k = 0; k < factors.size(); ++k) {
+        std::vector<double> factors;
+        factors.reserve(std::size_t{3} * block.points);
+        for (std::size_t k = 1; k <= 3; ++k) {
             for (std::uint32_t p = 0; p < block.points; ++p)
-                factors[k].push_back(planes[(k + 1) * size + std::size_t{p} * kBlockLanes]);
+                factors.push_back(planes[k * size + std::size_t{p} * kBlockLanes]);
         }
-        const auto quads = reduce({clampedPoints, block.points, factors[0], factors[1], factors[2]}, points);
+        const std::span<const double> all = factors;
+        const auto quads = reduce({clampedPoints, block.points, all.first(block.points),
+                                   all.subspan(block.points, block.points), all.last(block.points)},
+                                  points);
         const std::size_t slot = n * kBlockLanes + lane;
         for (std::uint32_t p = 0; p < points; ++p) {
             shaders::float4* const to = values.data() + slot * points + p;

@@ -23,7 +23,7 @@ struct BatchShape {
     std::uint32_t strands = runtime::kBlockLanes;  ///< of a work group, a divisor of those of a block
     /// In buffers the points of a strand stand side by side, not those of neighbouring strands.
     bool together = false;
-    /// Of lanes: in the memory of the group stands what each would compute. Fewer groups run side by side.
+    /// Of lanes: groups make tables in their memory of what lanes would each compute. Fewer run at once.
     bool tables = false;
 
     friend bool operator==(const BatchShape&, const BatchShape&) = default;

@@ -27,7 +27,7 @@ constexpr std::uint32_t kLeastInLanes = 4;
 /// Blocks of strands from which on a thread for each strand is faster: docs/gpu-simulation.md, "What is
 /// measured".
 constexpr std::size_t kMostBlocksInLanes = 100'000 / kBlockLanes;
-/// Up to which the waves of all of them run side by side, as far as their registers go: as measured there.
+/// Blocks of strands up to which groups of lanes make tables: all of them run at once, as measured there.
 constexpr std::size_t kMostBlocksAtOnce = (3'000 + kBlockLanes - 1) / kBlockLanes;
 
 /// Of lanes: the memory of a group of more would be too much.

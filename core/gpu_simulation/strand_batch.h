@@ -19,11 +19,10 @@ struct LayoutOptions {
     /// Absent: what was measured to be fastest for as many strands.
     std::optional<StrandStorage> storage = {};
     bool unroll = true;  ///< where all strands of a batch have as many points, up to 32
-    /// Strands of a work group of StrandStorage::lanes, a power of 2 up to 32, as far as 256
-    /// threads hold them; absent: those that fill its
-    /// waves.
+    /// Strands of a work group of StrandStorage::lanes, a power of 2 up to 32, as far as 256 threads hold
+    /// them; absent: those that fill its waves.
     std::optional<std::uint32_t> groupStrands = {};
-    /// Of lanes: BatchShape::tables; absent: where all strands run at once.
+    /// Of lanes: see BatchShape; absent: where all strands run at once.
     std::optional<bool> tables = {};
 };
 

@@ -54,10 +54,9 @@ class PresetList : public QWidget {
         list_->setResizeMode(QListView::Adjust);
         list_->setMovement(QListView::Static);
         list_->setIconSize({kSide, kSide});
-        list_->setWordWrap(true);
-        list_->setGridSize({kSide + 18, kSide + 40});
+        list_->setGridSize({kSide + 18, kSide + 28});
         list_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-        list_->setFixedHeight(2 * (kSide + 40) + 8);
+        list_->setFixedHeight(2 * (kSide + 28) + 8);
         list_->setToolTip(tr("Click a look to give it to the hair"));
         layout->addWidget(list_);
         auto* row = new QHBoxLayout;

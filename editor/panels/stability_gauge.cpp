@@ -46,8 +46,9 @@ StabilityGauge::StabilityGauge(Session& session, QWidget* parent)
     soon_.setSingleShot(true);
     soon_.setInterval(80);
     connect(&soon_, &QTimer::timeout, this, [this] {
-        // It looks at every strand: not while a hand rests amid a stroke.
-        session_.document.editing().stroke() ? soon_.start() : update();
+        // It looks at every strand: not while a hand rests amid a stroke, nor for nobody.
+        const bool isSeen = parentWidget() && parentWidget()->isVisible();
+        session_.document.editing().stroke() || !isSeen ? soon_.start() : update();
     });
     connect(&session_.document, &Document::changed, this, [this](Changes changes) {
         if (changes & (Changes(Change::Simulation) | Change::Strands)) soon_.start();

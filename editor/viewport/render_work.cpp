@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "core/groom/fields.h"
 #include "core/groom/point_dye.h"
@@ -184,9 +186,17 @@ Status RenderWork::takeScene(const PictureRequest& request, bool draft) {
         if (!scene_->setDye(now)) return replaceScene(request, draft);
         if (auto set = showDye(request); !set) return set;
     }
-    const bool moved = request.pose != last_->pose || (!sameGroom && !samePoints(now, before));
-    if (moved) return movePoints(request);
-    return request.moves && !request.pose ? moveStrands(request) : Status();
+    if (request.pose || last_->pose) {
+        const bool moved = request.pose != last_->pose || (!sameGroom && !samePoints(now, before));
+        return moved ? movePoints(request) : Status();
+    }
+    // At rest the head stays as it is.
+    if (!sameGroom && !samePoints(now, before)) {
+        std::vector<std::uint32_t> all(now.strandCount());
+        std::iota(all.begin(), all.end(), 0u);
+        return moveStrands(request, {std::move(all), {now.positions().begin(), now.positions().end()}});
+    }
+    return request.moves ? moveStrands(request, *request.moves) : Status();
 }
 
 Status RenderWork::replaceScene(const PictureRequest& request, bool draft) {
@@ -224,8 +234,8 @@ Status RenderWork::movePoints(const PictureRequest& request) {
     return renderer_.setStrandPositions(0, shown.strands.front().positions_ws);
 }
 
-Status RenderWork::moveStrands(const PictureRequest& request) {
-    scene_->moveStrands(request.moves->strands, request.moves->points_ws);
+Status RenderWork::moveStrands(const PictureRequest& request, const StrandMoves& moves) {
+    scene_->moveStrands(moves.strands, moves.points_ws);
     const render::RenderScene shown = scene_->scene();
     if (!request.showHair || shown.strands.empty()) return {};
     // One copy of all is sooner on the device than thousands of small ones with a barrier between each.

@@ -38,7 +38,7 @@ class RenderWork {
     Status takeScene(const PictureRequest& request, bool draft);
     Status replaceScene(const PictureRequest& request, bool draft);
     Status movePoints(const PictureRequest& request);
-    Status moveStrands(const PictureRequest& request);
+    Status moveStrands(const PictureRequest& request, const StrandMoves& moves);
     Status showMaterial(const PictureRequest& request);
     Status showDye(const PictureRequest& request);
     Status resize(std::uint32_t width, std::uint32_t height);

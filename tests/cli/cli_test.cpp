@@ -242,7 +242,7 @@ TEST_F(Cli, AStrokeOfDyeIsReplayed) {
     runJson(createArguments());
     std::ofstream(folder / "dye.json") << R"({"hairloom_script": 1, "operations": [{"op": "stroke",
         "tool": "dye_paint", "radius": 0.5, "profile": [0, 1], "falloff": [],
-        "dabs": [{"at": [0, 0.15, 0], "strength": 1}]}]})";
+        "dabs": [{"at": [0, 1.7, 0], "strength": 1}]}]})";
     const auto first = runJson("groom hair.hairloom --script dye.json -o dyed.hairloom");
     EXPECT_EQ(first["strokes"], 1);
     EXPECT_EQ(first["touched_strands"], 0) << "none has moved";
