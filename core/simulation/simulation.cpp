@@ -117,7 +117,9 @@ Groom posedGroom(const Groom& groom, std::span<const Vec3f> positions_ws, const 
             for (const Vec3f& position : groom.scalp->positions())
                 vertices.push_back(pose.head_ws * position);
         }
-        posed.scalp = std::make_shared<const ScalpMesh>(groom.scalp->moved(std::move(vertices)));
+        // At rest it keeps the normals that it came with; moved() averages those of its faces.
+        if (!std::ranges::equal(vertices, groom.scalp->positions()))
+            posed.scalp = std::make_shared<const ScalpMesh>(groom.scalp->moved(std::move(vertices)));
     }
     for (std::size_t s = 0; s < posed.spheres.size(); ++s) {
         posed.spheres[s].centre = pose.sphereCentres_ws.empty()
