@@ -285,37 +285,36 @@ TEST_F(RibbonTest, HairsDoNotPop) {
 // Fewer hairs far away: over all distances they cover as much and are as bright as all hairs, and from one
 // distance to the next neither jumps.
 TEST_F(RibbonTest, LightAndCoverAreSteadyOverDistance) {
-    TestHead head(400);
-    std::fill(head.strands.radii.begin(), head.strands.radii.end(), 0.00015f);
+    TestHead head(1600);
+    std::fill(head.strands.radii.begin(), head.strands.radii.end(), 0.00005f);
     RenderScene scene = head.scene();
     scene.meshes.clear();
     scene.background = Vec3f::Zero();
     const Vec3f towards = (scene.camera.eye_ws - scene.camera.target_ws).normalized();
-    RenderOptions how = options(48, 12);
+    RenderOptions how = options(48, 4);
+    how.shadows = Shadows::none;
     double coverBefore = 0, lightBefore = 0;
-    std::uint64_t most = 0, least = 400;
-    for (int step = 0; step < 12; ++step) {
-        const float distance = 0.4f * std::pow(1.2f, static_cast<float>(step));
+    std::uint64_t least = 1600;
+    for (int step = 0; step < 6; ++step) {
+        const float distance = 0.5f * std::pow(1.35f, static_cast<float>(step));
         scene.camera.eye_ws = scene.camera.target_ws + distance * towards;
         how.detail = 0;
         const LinearImage all = draw(scene, how);
-        how.detail = 0.3f;
+        how.detail = 0.03f;
         const LinearImage some = draw(scene, how);
-        most = std::max(most, strands);
         least = std::min(least, strands);
         const double cover = coverage(some) / coverage(all);
         const double light = meanLuminance(some) / meanLuminance(all);
-        EXPECT_NEAR(cover, 1, 0.05) << distance << " m, " << strands << " hairs";
-        EXPECT_NEAR(light, 1, 0.07) << distance << " m, " << strands << " hairs";
+        EXPECT_NEAR(cover, 1, 0.06) << distance << " m, " << strands << " hairs";
+        EXPECT_NEAR(light, 1, 0.1) << distance << " m, " << strands << " hairs";
         if (step > 0) {
-            EXPECT_NEAR(cover, coverBefore, 0.04) << distance << " m";
-            EXPECT_NEAR(light, lightBefore, 0.05) << distance << " m";
+            EXPECT_NEAR(cover, coverBefore, 0.05) << distance << " m";
+            EXPECT_NEAR(light, lightBefore, 0.07) << distance << " m";
         }
         coverBefore = cover;
         lightBefore = light;
     }
-    EXPECT_EQ(most, 400u);
-    EXPECT_LT(least, 120u);
+    EXPECT_LT(least, 450u);
 }
 
 // What hair covers falls with the square of the distance, and no pixel of thin hair stays bright.
