@@ -91,7 +91,8 @@ std::string words(Effect effect, const Decision& decision) {
         case Reason::undamped:
             return "bending is undamped";
         case Reason::uneven:
-            text << "masses or segments differ " << std::setprecision(4) << decision.value << " times along a strand";
+            text << "masses or segments differ " << std::setprecision(4) << decision.value
+                 << " times along a strand";
             return text.str();
         case Reason::tightCurls:
             text << "curls spring back " << std::setprecision(2) << decision.value << " times in a substep";

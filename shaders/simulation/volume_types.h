@@ -21,7 +21,7 @@ struct VolumeConstants {
     uint slots;
     uint points;  ///< that a strand of the batch may have
     uint clampedPoints;
-    uint sleeps;  ///< not 0: strands that are pushed wake up
+    uint sleeps;    ///< not 0: strands that are pushed wake up
     uint together;  ///< not 0: the points of a strand stand side by side
 };
 
