@@ -76,11 +76,12 @@ Occlusion occlusion(LightConstants light, float3 position_ws, float hairBias, fl
     const float2 uv = float2(0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w);
     if (any(uv < 0.0) || any(uv > 1.0)) return result;
     const int size = int(light.tile.y);
-    const float2 place = uv * light.tile.y - 0.5;
+    // A quadratic B-spline over 3 x 3 texels of finished comparisons, from `base` on: its mean is half a texel further
+    // than base + f, and so are the middles of texels.
+    const float2 place = uv * light.tile.y - 1.0;
     const int2 base = int2(floor(place));
     const float2 f = place - float2(base);
     const float depth = metresBehindNear(light.range, clip.z / clip.w);
-    // A quadratic B-spline over 3 x 3 texels of finished comparisons.
     const float3 wx = float3(0.5 * (1 - f.x) * (1 - f.x), 0.5 + f.x * (1 - f.x), 0.5 * f.x * f.x);
     const float3 wy = float3(0.5 * (1 - f.y) * (1 - f.y), 0.5 + f.y * (1 - f.y), 0.5 * f.y * f.y);
     float fibres = 0;
