@@ -88,13 +88,13 @@ TEST_F(RibbonTest, KernelsGiveTheSamePicture) {
         TestStrands strands_ = head.strands;
         for (float& radius : strands_.radii) radius *= width;
         scene.strands = {strands_.view()};
-        RenderOptions how = options(48, 1);
+        RenderOptions how = options(64, 1);
         how.samples = samples;
         how.ribbons = Ribbons::strip;
         const LinearImage strip = draw(scene, how);
         how.ribbons = Ribbons::compute;
         const LinearImage kernels = draw(scene, how);
-        ASSERT_GT(coverage(strip), 280);
+        ASSERT_GT(coverage(strip), 500);
         EXPECT_NEAR(coverage(kernels), coverage(strip), 0.003 * coverage(strip));
         EXPECT_NEAR(meanLuminance(kernels), meanLuminance(strip), 0.006 * meanLuminance(strip));
         std::size_t far = 0;
