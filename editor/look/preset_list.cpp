@@ -56,7 +56,7 @@ class PresetList : public QWidget {
         list_->setIconSize({kSide, kSide});
         list_->setGridSize({kSide + 18, kSide + 28});
         list_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-        list_->setFixedHeight(2 * (kSide + 28) + 8);
+        list_->setFixedHeight(2 * (kSide + 28) + 16);
         list_->setToolTip(tr("Click a look to give it to the hair"));
         layout->addWidget(list_);
         auto* row = new QHBoxLayout;

@@ -49,7 +49,7 @@ class EffectsPanel : public QWidget {
         table_->setFocusPolicy(Qt::NoFocus);
         table_->setMinimumHeight(340);
         table_->header()->resizeSection(kName, 104);
-        table_->header()->resizeSection(kMs, 52);
+        table_->header()->resizeSection(kMs, 66);
         table_->header()->resizeSection(kMb, 44);
         table_->header()->setSectionResizeMode(kWhy, QHeaderView::Stretch);
         table_->setToolTip(

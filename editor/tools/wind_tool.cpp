@@ -13,7 +13,11 @@ constexpr float kFastest = 25;  // m/s that a drag reaches
 
 class WindTool : public Tool {
   public:
-    explicit WindTool(Session& session) : session_(session) {}
+    explicit WindTool(Session& session) : session_(session) {
+        connect(&session_.document, &Document::changed, this, [this](Changes changes) {
+            if (changes & Change::Simulation) Q_EMIT updated();
+        });
+    }
     const ToolInfo& info() const override { return info_; }
 
     QString hint() const override {
@@ -45,7 +49,6 @@ class WindTool : public Tool {
         Groom groom = session_.document.groom();
         groom.simulation = settings;
         session_.document.change(tr("Wind"), Change::Simulation, std::move(groom), mergeKey());
-        Q_EMIT updated();
     }
 
     void release(const Pointer&) override {
