@@ -220,7 +220,12 @@ Result<GroomScene> GroomScene::make(const Groom& groom, const std::vector<Vec3f>
     scene.rest_ = groom;
     scene.posed_ = pose ? posedGroom(groom, *positions_ws, *pose) : groom;
     scene.material_ = renderMaterial(groom, view);
-    scene.radii_ = radiiOfShown(groom, groom.material);
+    // The view's radius goes before the points' own.
+    if (view.rootRadius || view.tipScale) {
+        scene.rest_.pointAttributes.erase(attribute::kRadius);
+        scene.posed_.pointAttributes.erase(attribute::kRadius);
+    }
+    scene.radii_ = radiiOfShown(scene.rest_, groom.material);
     scene.matte_ = view.headAlbedo.has_value();
     if (!groom.scalp && !hiddenGroups.empty()) return fail("there is no head to hide groups of");
     if (groom.scalp) {

@@ -335,6 +335,10 @@ TEST_F(Cli, HairIsShadedByTheModelThatIsAskedFor) {
         pictures.insert(readText(folder / "hair.png"));
     }
     EXPECT_EQ(pictures.size(), 6u);
+    // Though grown strands have radii of their own.
+    std::ofstream(folder / "thin.json") << R"({"hair": {"radius_m": 0.00005, "eumelanin": 0.1}})";
+    runJson("render hair.hairloom -o hair.png --size 96x96 --passes 1 --shading kajiya --view thin.json");
+    EXPECT_FALSE(pictures.contains(readText(folder / "hair.png")));
     const Outcome wrong = run("render hair.hairloom -o none.png --shading marschner --view wrong.json");
     EXPECT_EQ(wrong.exitCode, 1);
     EXPECT_THAT(wrong.errors, HasSubstr("eumelanine"));

@@ -61,6 +61,23 @@ def view_of(strands: Strands, size: int) -> dict:
     }
 
 
+# What is path-traced are the strands themselves, alike and of one absorption.
+PLAIN = [
+    "interpolation.followPerGuide=0",
+    "material.radiusVariation=0",
+    "material.colourVariation=0",
+    "material.melaninVariation=0",
+    "material.tipMelanin=1",
+    "material.dyed=false",
+    "material.streakShare=0",
+    "material.dyeStrength=0",
+    "material.rootOpacity=1",
+    "material.tipOpacity=1",
+    "material.emission=0",
+    "material.tubes=false",
+]
+
+
 class Ours:
     def __init__(self, cli: Path, groom: Path, folder: Path, mi):
         self.cli, self.groom, self.folder, self.mi = cli, groom, folder, mi
@@ -86,12 +103,16 @@ def compare(args: argparse.Namespace) -> tuple[list[Verdict], dict]:
         stdout=subprocess.DEVNULL,
     )
     strands = read_hair(hair_file)
+    plain = args.out / "plain.hairloom"
+    subprocess.run(
+        [str(args.cli), "set", str(args.groom), *PLAIN, "-o", str(plain)], check=True, stdout=subprocess.DEVNULL
+    )
     view = json.loads(args.view.read_text()) if args.view else view_of(strands, args.size)
     if args.size:
         view["size"] = [args.size, args.size]
     hair = view["hair"]
     curves = path_trace.write_curves(strands, hair["radius_m"], hair["tip_scale"], args.out / "curves")
-    ours = Ours(args.cli, args.groom, args.out, mi)
+    ours = Ours(args.cli, plain, args.out, mi)
     verdicts, sheets = [], {}
     for head, albedo in HEADS.items():
         view["head_albedo"] = albedo
