@@ -54,17 +54,20 @@ const char* leftOutName(LeftOut effect) {
 
 std::vector<NamedLayout> measuredLayouts(gpu::DeviceType type) {
     std::vector<NamedLayout> layouts{{"chosen", {}},
-                                     {"lanes, 1 strand a group", {StrandStorage::lanes, true, 1}},
-                                     {"lanes, 2 strands a group", {StrandStorage::lanes, true, 2}},
-                                     {"lanes, 4 strands a group", {StrandStorage::lanes, true, 4}},
-                                     {"lanes, 8 strands a group", {StrandStorage::lanes, true, 8}},
-                                     {"lanes, loops", {StrandStorage::lanes, false}},
-                                     {"lanes, tables", {StrandStorage::lanes, true, {}, true}},
-                                     {"lanes, no tables", {StrandStorage::lanes, true, {}, false}},
+                                     {"lanes, 1 strand a group", {StrandStorage::lanes, true, 1, 1}},
+                                     {"lanes, 2 strands a group", {StrandStorage::lanes, true, 2, 1}},
+                                     {"lanes, 4 strands a group", {StrandStorage::lanes, true, 4, 1}},
+                                     {"lanes, loops", {StrandStorage::lanes, false, {}, 1}},
+                                     {"pairs, 2 strands a group", {StrandStorage::lanes, true, 2, 2}},
+                                     {"pairs, 4 strands a group", {StrandStorage::lanes, true, 4, 2}},
+                                     {"pairs, 8 strands a group", {StrandStorage::lanes, true, 8, 2}},
+                                     {"pairs, loops", {StrandStorage::lanes, false, {}, 2}},
                                      {"threads, unrolled", {StrandStorage::threads, true}},
                                      {"threads, loops", {StrandStorage::threads, false}},
                                      {"groups, unrolled", {StrandStorage::groups, true}},
                                      {"groups, loops", {StrandStorage::groups, false}},
+                                     {"wisps, unrolled", {StrandStorage::wisps, true}},
+                                     {"wisps, loops", {StrandStorage::wisps, false}},
                                      {"buffers", {StrandStorage::buffers, false}}};
     if (type == gpu::DeviceType::Cpu)
         std::erase_if(layouts, [](const NamedLayout& layout) { return layout.options.unroll; });

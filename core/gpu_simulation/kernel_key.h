@@ -11,8 +11,14 @@
 namespace hairloom::gpu_simulation {
 
 /// Where a strand is between the substeps of a frame (shaders/simulation/storage.hlsli).
-/// With `lanes` each point has a thread of its own; Direct3D 11 has `threads` in its place.
-enum class StrandStorage : std::uint32_t { threads, groups, buffers, lanes };
+/// With `lanes` a thread has one or two points, with `wisps` each strand a work group, whose first thread
+/// takes it (Rünz 2012, Section 6.1); Direct3D 11 has `threads` in the place of both.
+enum class StrandStorage : std::uint32_t { threads, groups, buffers, lanes, wisps };
+
+/// A block falls asleep as one: whether its strands are in several work groups.
+constexpr bool sharesBlocks(StrandStorage storage) {
+    return storage == StrandStorage::lanes || storage == StrandStorage::wisps;
+}
 
 /// How the strands of a batch are laid out and looped over.
 struct BatchShape {
@@ -23,8 +29,7 @@ struct BatchShape {
     std::uint32_t strands = runtime::kBlockLanes;  ///< of a work group, a divisor of those of a block
     /// In buffers the points of a strand stand side by side, not those of neighbouring strands.
     bool together = false;
-    /// Of lanes: groups make tables in their memory of what lanes would each compute. Fewer run at once.
-    bool tables = false;
+    std::uint32_t perThread = 1;  ///< of lanes: points of a thread, 1 or 2
 
     friend bool operator==(const BatchShape&, const BatchShape&) = default;
 };

@@ -22,24 +22,24 @@ constexpr std::uint32_t kMostInGroups = 32 * 1024 / (6 * sizeof(float) * kBlockL
 /// More different point counts than this share batches.
 constexpr std::size_t kMostExact = 3;
 constexpr std::uint32_t kLeastShared = 4;
-/// A lane each solves for x, y and z.
-constexpr std::uint32_t kLeastInLanes = 4;
+/// Four threads sample the wind.
+constexpr std::uint32_t kLeastInLanes = 4, kLeastInPairs = 2 * kLeastInLanes;
 /// Blocks of strands from which on a thread for each strand is faster: docs/gpu-simulation.md, "What is
 /// measured".
 constexpr std::size_t kMostBlocksInLanes = 100'000 / kBlockLanes;
-/// Blocks of strands up to which groups of lanes make tables: all of them run at once, as measured there.
-constexpr std::size_t kMostBlocksAtOnce = (3'000 + kBlockLanes - 1) / kBlockLanes;
+/// Blocks of strands up to which lanes have a point each, and not two: as measured there.
+constexpr std::size_t kMostBlocksOfOne = 5'000 / kBlockLanes;
 
 /// Of lanes: the memory of a group of more would be too much.
 constexpr std::uint32_t kMostThreads = 256;
 
 /// Fewest strands of a work group that leave the fewest threads of its waves of 32 idle.
-std::uint32_t strandsThatFill(std::uint32_t points) {
+std::uint32_t strandsThatFill(std::uint32_t threadsOfStrand) {
     constexpr std::uint32_t kWave = 32, kManyThreads = 128;
     std::uint32_t best = 1;
     double bestShare = 0.0;
     for (std::uint32_t strands = 1; strands <= kBlockLanes; strands *= 2) {
-        const std::uint32_t threads = strands * points;
+        const std::uint32_t threads = strands * threadsOfStrand;
         if (strands > 1 && threads > kManyThreads) break;
         const double share = static_cast<double>(threads) / ((threads + kWave - 1) / kWave * kWave);
         if (share > bestShare + 0.05) {
@@ -62,11 +62,15 @@ BatchShape shapeFor(std::uint32_t points, bool exact, StrandStorage storage, con
         shape.storage = StrandStorage::threads;
     if (points > kMostInThreads) shape.storage = StrandStorage::buffers;
     shape.unrolled = options.unroll && exact && points <= kMostUnrolled;
-    if (shape.storage != StrandStorage::lanes) return shape;
+    if (!sharesBlocks(shape.storage)) return shape;
     shape.together = true;
-    shape.tables = options.tables.value_or(few);
-    shape.strands = std::min(options.groupStrands.value_or(strandsThatFill(points)),
-                             std::max(std::bit_floor(kMostThreads / points), 1u));
+    shape.strands = 1;
+    if (shape.storage == StrandStorage::wisps) return shape;
+    const bool pairs = points % 2 == 0 && points >= kLeastInPairs;
+    shape.perThread = pairs ? options.perThread.value_or(few ? 1 : 2) : 1;
+    const std::uint32_t threads = points / shape.perThread;
+    shape.strands = std::min(options.groupStrands.value_or(strandsThatFill(threads)),
+                             std::max(std::bit_floor(kMostThreads / threads), 1u));
     return shape;
 }
 
@@ -97,7 +101,7 @@ std::vector<StrandBatch> makeBatches(const runtime::RestShape& shape, const Layo
     std::vector<StrandBatch> batches;
     for (auto& [points, blocks] : blocksOf) {
         StrandBatch batch;
-        batch.shape = shapeFor(points, exact, storage, options, shape.blocks.size() <= kMostBlocksAtOnce);
+        batch.shape = shapeFor(points, exact, storage, options, shape.blocks.size() <= kMostBlocksOfOne);
         batch.slots = static_cast<std::uint32_t>(blocks.size()) * kBlockLanes;
         batch.blocks = std::move(blocks);
         batches.push_back(std::move(batch));

@@ -22,8 +22,9 @@ struct LayoutOptions {
     /// Strands of a work group of StrandStorage::lanes, a power of 2 up to 32, as far as 256 threads hold
     /// them; absent: those that fill its waves.
     std::optional<std::uint32_t> groupStrands = {};
-    /// Of lanes: see BatchShape; absent: where all strands run at once.
-    std::optional<bool> tables = {};
+    /// Points of a thread of StrandStorage::lanes, 1 or 2, where a strand has an even number of them, 8 or
+    /// more; absent: what was measured to be fastest for as many strands.
+    std::optional<std::uint32_t> perThread = {};
 };
 
 /// For such a device.

@@ -45,8 +45,8 @@ Result<StrandEngine> StrandEngine::make(gpu::Device& device, std::shared_ptr<Ker
     impl->run.settings = settings;
     LayoutOptions layout = options.layout;
     const bool direct3d = device.info().backend == gpu::Backend::Direct3D11;
-    const bool lanes = layout.storage.value_or(StrandStorage::lanes) == StrandStorage::lanes;
-    if (direct3d && lanes) layout.storage = StrandStorage::threads;
+    if (direct3d && sharesBlocks(layout.storage.value_or(StrandStorage::lanes)))
+        layout.storage = StrandStorage::threads;
     impl->batches = makeBatches(*impl->shape, layout);
     if (const std::string why = impl->whyNoVelocities(); !why.empty()) return fail(why);
     impl->roots.resize(impl->shape->restRoots.size());
@@ -142,8 +142,8 @@ Status StrandEngine::Impl::allocate() {
         if (fresh) bendSubstep = 0.0f;
         have(batch.curves, "curves", key.curves ? plane * 3 : 0, 4);
         have(batch.tanks, "tanks", key.curves ? std::size_t{batch.slots} * 2 : 0, 4, batch.slots);
-        const bool gathers = key.sleep && key.shape.storage == StrandStorage::lanes;
-        have(batch.gathered, "gathered", gathers ? batch.blocks.size() * 4 : 0, 4);
+        const bool gathers = key.sleep && sharesBlocks(key.shape.storage);
+        have(batch.gathered, "gathered", gathers ? batch.blocks.size() : 0, 4);
         have(batch.rests, "rests", key.sleep ? batch.blocks.size() * 2 : 0, 4);
         const bool scratch = batch.shape.storage == StrandStorage::buffers && !key.stages.empty();
         const std::size_t planes = key.coupled ? kCoupledPlanes : kScratchPlanes[key.evaluation];

@@ -198,7 +198,9 @@ shaders::SimulationConstants StrandEngine::Impl::constants(const runtime::Subste
     c.slowSweep = runtime::slowestSwept(context);
     c.tensionShare = context.tensionShare;
     c.groups = batch.slots / batch.key.shape.strands;
-    c.unused0 = c.unused1 = 0.0f;
+    c.sphereWay = c.unused = 0.0f;
+    for (const runtime::MovingSphere& sphere : movingSpheres)
+        c.sphereWay = std::max(c.sphereWay, length(sphere.step));
     c.gravityStep = quad(context.gravityStep, 0.0f);
     const runtime::Wind& wind = run.wind.wind;
     c.windKind = static_cast<std::uint32_t>(wind.kind);

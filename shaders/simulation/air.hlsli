@@ -12,7 +12,7 @@ void takeAir(float3 atRoot, float3 atTip) {
     FREE_POINTS(p) {
         const float3 here = position(p);
         const float3 before = previous(p);
-        const float along = float(p) * (1.0 / float(POINTS - 1));
+        const float along = float(pointOf(p)) * (1.0 / float(POINTS - 1));
         const float3 flow = before - here + atRoot + (atTip - atRoot) * along;
         const float3 tangent = here - INNER_POSITION(p);
         const float both = dot(flow, flow) * dot(tangent, tangent);
@@ -59,13 +59,13 @@ float3 windAt(float3 place_ws, uint end) {
 groupshared float4 gWinds[4 * HAIR_STRANDS];  // of each strand at root and tip, at the start and the end
 float3 windHere(uint tip, uint end) { return gWinds[4 * gStrand + 2 * end + tip].xyz; }
 
-/// A lane each for both places and both ends.
+/// A thread each for both places and both ends.
 void sampleWind() {
     tellPositions();
-    const bool atTip = (gPoint & 1u) != 0u;
+    const bool atTip = (gThread & 1u) != 0u;
     const float3 place = atTip ? gRoot + told(POINTS - 1).xyz : gRoot;
-    const float3 way = windAt(place, (gPoint >> 1) & 1u) * gFrame.h;
-    if (gPoint < 4) gWinds[4 * gStrand + gPoint] = float4(way, 0);
+    const float3 way = windAt(place, (gThread >> 1) & 1u) * gFrame.h;
+    if (gThread < 4) gWinds[4 * gStrand + gThread] = float4(way, 0);
     GroupMemoryBarrierWithGroupSync();
 }
 #else

@@ -17,8 +17,8 @@ float3 sphereCentre(uint k, float step) { return gSpheres[k].from.xyz + gSpheres
 
 // Spheres that are looked at together, so that they are fetched while others are worked on; the last stands for
 // those past the end.
-#if HAIR_STORAGE == 3 && !HAIR_TABLES
-// Where lanes read them from the constants: more would cost registers, and side by side run fewer groups.
+#if HAIR_STORAGE == 3
+// More would cost registers, and side by side run fewer groups.
 #define SPHERES_AT_ONCE 2
 #else
 #define SPHERES_AT_ONCE 5
@@ -203,127 +203,9 @@ Touch touchSpheres(bool backward, uint p, float3 at, float3 before, float3 inner
 }
 
 #if HAIR_STORAGE == 3
-#if HAIR_TABLES
-groupshared float4 gSpheresNow[SPHERE_SET];  // centre, and square of the reach with the largest pearl
-
-/// The spheres of a set, a lane each, for the work group to read.
-void gatherSpheres(uint first, uint end, float step) {
-    const float pearl = max(gFrame.pearlRoot, gFrame.pearlTip);
-    // Lanes may still look at the last set.
-    GroupMemoryBarrierWithGroupSync();
-    [loop] for (uint k = first + gLane; k < end; k += HAIR_THREADS) {
-        const float reach = gSpheres[k].from.w + pearl;
-        gSpheresNow[k - first] = float4(sphereCentre(k, step), reach * reach);
-    }
-    GroupMemoryBarrierWithGroupSync();
-}
-float4 sphereNow(uint k, uint first, float step) { return gSpheresNow[k - first]; }
+#include "shaders/simulation/lanes_collide.hlsli"
 #else
-void gatherSpheres(uint first, uint end, float step) {}
-float4 sphereNow(uint k, uint first, float step) {
-    const float reach = gSpheres[k].from.w + max(gFrame.pearlRoot, gFrame.pearlTip);
-    return float4(sphereCentre(k, step), reach * reach);
-}
-#endif
-
-/// Which of up to 32 spheres from `from` on of the set a place may lie in, as bits. In the world, whose rounding the margin
-/// covers.
-uint spheresAround(float3 place_ws, uint from, uint first, uint end, float step) {
-    uint near = 0u;
-    EACH_SPHERE(from, end) {
-        const uint k = SPHERE_BEFORE(end);
-        const float4 sphere = sphereNow(k, first, step);
-        const float3 offset = place_ws - sphere.xyz;
-        near |= dot(offset, offset) <= sphere.w * 1.0001 ? 1u << (k - from) : 0u;
-    }
-    return near;
-}
-
-Touch touchNear(bool backward, uint p, float3 at, float3 before, float3 inner, bool knowsInner, uint first, uint end,
-                float3 root, float step) {
-    uint2 near = uint2(spheresAround(at + root, first, first, min(first + 32, end), step), 0u);
-    if (end - first > 32u) near.y = spheresAround(at + root, first + 32, first, end, step);
-    return touchSpheres(backward, p, at, before, inner, knowsInner, first, end, near, root, step);
-}
-
-/// Pushes points and their pearls out of spheres (Eq. 14).
-void collide(bool backward) {
-    const float step = float(gSubstep + 1);
-    const float3 root = gRoot + gRootStep * step;
-    [loop] for (uint first = 0; first < gFrame.sphereCount; first += SPHERE_SET) {
-        const uint end = min(first + SPHERE_SET, gFrame.sphereCount);
-        gatherSpheres(first, end, step);
-        Touch own;
-        own.at = gPosition;
-        own.before = gPrevious;
-        own.touched = own.asks = false;
-        if (isFree()) own = touchNear(backward, gPoint, gPosition, gPrevious, gPosition, false, first, end, root, step);
-        if (own.touched && !own.asks) {
-            gPosition = own.at;
-            gPrevious = own.before;
-        }
-        // Deep in a sphere a point asks where the one before it has gone: each lane that does goes the way from the root.
-        tell(float4(gPosition, own.asks ? 1.0 : 0.0), float4(gPrevious, 0));
-        if (own.asks) {
-            float3 inner = told(FIRST_FREE - 1).xyz;
-            [loop] for (uint p = FIRST_FREE; p <= gPoint; ++p) {
-                const float4 at = told(p);
-                if (at.w != 0.0) {
-                    own = touchNear(backward, p, at.xyz, toldToo(p).xyz, inner, true, first, end, root, step);
-                    inner = own.at;
-                } else {
-                    inner = at.xyz;
-                }
-            }
-            gPosition = own.at;
-            gPrevious = own.before;
-        }
-    }
-}
-#else
-/// Spheres of a set that, with the largest pearl, meet the box of a strand, as bits.
-uint2 nearSpheres(uint first, uint end, float3 low, float3 high, float3 root, float step) {
-    uint2 near = uint2(0, 0);
-    const float pearl = max(gFrame.pearlRoot, gFrame.pearlTip);
-    EACH_SPHERE(first, end) {
-        const uint k = SPHERE_BEFORE(end);
-        const float3 centre = sphereCentre(k, step) - root;
-        const float3 gap = max(max(low - centre, centre - high), 0.0);
-        const float reach = gSpheres[k].from.w + pearl;
-        const uint bit = dot(gap, gap) <= reach * reach * 1.0001 ? 1u : 0u;
-        if (k - first < 32u) {
-            near.x |= bit << (k - first);
-        } else {
-            near.y |= bit << (k - first - 32u);
-        }
-    }
-    return near;
-}
-
-/// Pushes points and their pearls out of spheres (Eq. 14).
-void collide(bool backward) {
-    const float step = float(gSubstep + 1);
-    const float3 root = gRoot + gRootStep * step;
-    [loop] for (uint first = 0; first < gFrame.sphereCount; first += SPHERE_SET) {
-        const uint end = min(first + SPHERE_SET, gFrame.sphereCount);
-        float3 low = position(FIRST_FREE), high = low;
-        EACH for (uint p = FIRST_FREE + 1; p < POINTS; ++p) {
-            low = min(low, position(p));
-            high = max(high, position(p));
-        }
-        const uint2 near = nearSpheres(first, end, low, high, root, step);
-        if ((near.x | near.y) != 0u) {
-            EACH for (uint q = FIRST_FREE; q < POINTS; ++q) {
-                const Touch touch = touchSpheres(backward, q, position(q), previous(q), position(q - 1), true, first, end,
-                                                 near, root, step);
-                if (touch.touched) {
-                    setPosition(q, touch.at);
-                    setPrevious(q, touch.before);
-                }
-            }
-        }
-    }
-}
+#include "shaders/simulation/threads_collide.hlsli"
 #endif
 void stageCollision() { collide(false); }
 void stageCollisionBack() { collide(true); }
@@ -334,17 +216,14 @@ void sweepPoint(uint p, float3 root, float step) {
     float3 at = position(p), before = previous(p);
     const float3 moved = at - before;
     if (dot(moved, moved) >= gFrame.slowSweep * gFrame.slowSweep) {
-        const float pearl = pearlAt(p);
+        const float pearl = pearlAt(pointOf(p));
         float earliest = 0.0;
-        Contact contact;
-        contact.centre = contact.step = contact.from = float3(0, 0, 0);
-        contact.reach = 0.0;
+        uint met = 0u;
         EACH_SPHERE(0, gFrame.sphereCount) {
             const uint k = SPHERE_BEFORE(gFrame.sphereCount);
-            const float3 centre = sphereCentre(k, step) - root;
             const float reach = gSpheres[k].from.w + pearl;
             const float3 relative = moved - gSpheres[k].step.xyz;
-            const float3 offset = at - centre;
+            const float3 offset = at - (sphereCentre(k, step) - root);
             const float a = dot(relative, relative), b = dot(relative, offset);
             const float discriminant = b * b - a * (dot(offset, offset) - reach * reach);
             const float fast = UNSWEPT_SHARE * reach;
@@ -352,14 +231,16 @@ void sweepPoint(uint p, float3 root, float step) {
                 const float s = -(b + sqrt(discriminant)) / a;
                 if (s >= -1.0 && s < earliest) {
                     earliest = s;
-                    contact.centre = centre;
-                    contact.step = gSpheres[k].step.xyz;
-                    contact.reach = reach;
-                    contact.from = offset + relative * s;
+                    met = k;
                 }
             }
         }
         if (earliest < 0.0) {
+            Contact contact;
+            contact.centre = sphereCentre(met, step) - root;
+            contact.step = gSpheres[met].step.xyz;
+            contact.reach = gSpheres[met].from.w + pearl;
+            contact.from = at - contact.centre + (moved - contact.step) * earliest;
             respond(contact, at, before);
             setPosition(p, at);
             setPrevious(p, before);
@@ -378,7 +259,7 @@ void stagePenalty() {
     const float step = float(gSubstep);
     const float3 root = gRoot + gRootStep * step;
     FREE_POINTS(p) {
-        const float pearl = pearlAt(p);
+        const float pearl = pearlAt(pointOf(p));
         const float3 at = position(p);
         float3 way = float3(0, 0, 0);
         [loop] for (uint k = 0; k < gFrame.sphereCount; ++k) {

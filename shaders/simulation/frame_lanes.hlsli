@@ -1,103 +1,114 @@
 // SPDX-License-Identifier: MIT
-// A frame of strands whose points are lanes. Several work groups are a block of the engine, which falls asleep as one:
-// each leaves what it has seen, and the last of them judges.
+// A frame of strands spread over the threads of a work group.
 
 groupshared uint gStrandFastest[HAIR_STRANDS];
 groupshared uint gStrandLost[HAIR_STRANDS];
 
-/// Who the lane is.
+/// Who the thread is.
 void enterLane(uint group, uint lane) {
     gLane = lane;
-    gStrand = lane / HAIR_POINTS;
-    gPoint = lane % HAIR_POINTS;
-    gFirst = lane - gPoint;
-    gSide = 0;
+    gStrand = lane / STRAND_THREADS;
+    gThread = lane % STRAND_THREADS;
+    gFirst = lane - gThread;
+    gSide = gAsked = 0u;
     gSlot = group * HAIR_STRANDS + gStrand;
 #if !HAIR_EXACT
     gPointCount = gBlocks[gSlot / HAIRLOOM_GROUP_STRANDS].x;
 #endif
-    gInner = gPoint > 0 ? lane - 1 : lane;
-    gOuter = gPoint + 1 < HAIR_POINTS ? lane + 1 : lane;
+    gInner = gThread > 0 ? lane - 1 : lane;
+    gOuter = gThread + 1 < STRAND_THREADS ? lane + 1 : lane;
 }
 
-/// What stays in the lane for the frame.
+/// What stays in the thread for the frame.
 void loadState() {
-    gPosition = savedPosition(gPoint);
-    gPrevious = savedPrevious(gPoint);
-    const float2 own = gSegments[slotOf(0, gPoint)];
-    const float2 inner = gSegments[slotOf(0, gPoint > 0 ? gPoint - 1 : 0)];
-    const float2 outer = gSegments[slotOf(0, min(gPoint + 1, uint(HAIR_POINTS) - 1))];
-    gLength = own.x;
-    gInverseLength = inverseOf(own.x);
-    gInnerInverseLength = inverseOf(inner.x);
-    gInverseMass = own.y;
-    gOuterInverseMass = outer.y;
+    gInverseLengthBefore = inverseLength(gThread > 0 ? pointOf(0) - 1 : 0);
+    gInverseMassAfter = inverseMass(min(pointOf(OWN), uint(HAIR_POINTS) - 1));
+    EACH_OWN(k) {
+        const uint p = pointOf(k);
+        gPosition[k] = savedPosition(p);
+        gPrevious[k] = savedPrevious(p);
+        gLength[k] = segmentLength(p);
+        gInverseLength[k] = inverseOf(gLength[k]);
+        gInverseMass[k] = inverseMass(p);
 #if HAIR_BEND
-    gStiff = stiffness(gPoint);
+        gStiff[k] = stiffness(p);
 #endif
 #if HAIR_BEND == 2
-    [unroll] for (uint step = 0; step < BEND_STEPS; ++step) gReduction[step] = gFactors[slotOf(step, gPoint)];
-    gReduced = gFactors[slotOf(BEND_STEPS, gPoint)].xy;
+        [unroll] for (uint step = 0; step < BEND_STEPS; ++step)
+            gReduction[k * BEND_STEPS + step] = gFactors[slotOf(step, p)];
+        gReduced[k] = gFactors[slotOf(BEND_STEPS, p)].xy;
 #endif
 #if HAIR_TARGETS
-    gTarget = target(gPoint);
+        gTarget[k] = target(p);
 #endif
 #if HAIR_CURVES
-    gCurve = savedCurve(gPoint);
-    gTank = gTanks[gSlot];
-    gMotion = gTanks[gFrame.slots + gSlot];
+        gCurve[k] = savedCurve(p);
 #endif
 #if HAIR_TENSIONS
-    gTension = savedTension(gPoint);
+        gTension[k] = savedTension(p);
+#endif
+    }
+#if HAIR_CURVES
+    gTank = gTanks[gSlot];
+    gMotion = gTanks[gFrame.slots + gSlot];
 #endif
 }
 
 void saveState() {
-    savePosition(gPoint, gPosition);
-    savePrevious(gPoint, gPrevious);
+    EACH_OWN(k) {
+        const uint p = pointOf(k);
+        savePosition(p, gPosition[k]);
+        savePrevious(p, gPrevious[k]);
 #if HAIR_CURVES
-    saveCurve(gPoint, gCurve);
+        saveCurve(p, gCurve[k]);
+#endif
+#if HAIR_TENSIONS
+        saveTension(p, gTension[k]);
+#endif
+    }
+#if HAIR_CURVES
     ONLY_POINT(0) {
         gTanks[gSlot] = gTank;
         gTanks[gFrame.slots + gSlot] = gMotion;
     }
 #endif
-#if HAIR_TENSIONS
-    saveTension(gPoint, gTension);
-#endif
 }
 
-/// See frame_threads.hlsli.
+/// See serial_strand.hlsli.
 void placeAtRest() {
     float3 at = float3(0, 0, 0);
-    [loop] for (uint p = 0; p < gPoint; ++p) at += rotate(gRootsTo[2 * gSlot + 1], restVector(p));
-    gPosition = gPrevious = at;
+    [loop] for (uint p = 0; p < pointOf(OWN); ++p) {
+        EACH_OWN(i) if (p == pointOf(i)) gPosition[i] = gPrevious[i] = at;
+        at += rotate(gRootsTo[2 * gSlot + 1], restVector(p));
+    }
 #if HAIR_CURVES
-    gCurve = float3(0, 0, 0);
+    EACH_OWN(c) gCurve[c] = float3(0, 0, 0);
     gTank = HAIRLOOM_NO_CURVE;
     gMotion = 0.0;
 #endif
 #if HAIR_TENSIONS
-    gTension = 0.0;
+    EACH_OWN(t) gTension[t] = 0.0;
 #endif
 }
 
 /// Takes stock after the last substep.
 void finishStrand(uint strands) {
-    const float3 moved = gPosition - gPrevious;
-    const float squared = dot(moved, moved);
-    const bool sound =
-        isSound(gPosition) && isSound(moved) && dot(gPosition, gPosition) < 1e12 && squared < 1e12;
-    OWN_POINT {
-        if (!sound) {
-            InterlockedOr(gStrandLost[gStrand], 1u);
-        } else if (gPoint >= FIRST_FREE) {
-            InterlockedMax(gStrandFastest[gStrand], asuint(squared));
-        }
+    bool sound = true;
+    uint most = 0u;
+    ALL_POINTS(k) {
+        const float3 here = gPosition[k], moved = here - gPrevious[k];
+        const float squared = dot(moved, moved);
+        sound = sound && isSound(here) && isSound(moved) && dot(here, here) < 1e12 && squared < 1e12;
+        if (pointOf(k) >= FIRST_FREE) most = max(most, asuint(squared));
+    }
+    if (!sound) {
+        InterlockedOr(gStrandLost[gStrand], 1u);
+    } else {
+        InterlockedMax(gStrandFastest[gStrand], most);
     }
     GroupMemoryBarrierWithGroupSync();
     const bool lost = gStrandLost[gStrand] != 0u;
-    const uint most = lost ? 0u : gStrandFastest[gStrand];
+    most = lost ? 0u : gStrandFastest[gStrand];
 #if HAIR_CURVES
     gMotion = asfloat(most) * (1.0 / (gFrame.h * gFrame.h));
 #endif
@@ -112,35 +123,17 @@ void finishStrand(uint strands) {
     GroupMemoryBarrierWithGroupSync();
 }
 
-void writePlace() {
+void writePlaces() {
     const uint first = gFirstPoints[gSlot];
-    if (first == 0xffffffffu || gPoint >= POINTS) return;
-    gPlaces[first + gPoint] = float4(gRootsTo[2 * gSlot].xyz + gPosition, 1.0);
+    if (first == 0xffffffffu) return;
+    const float3 root = gRootsTo[2 * gSlot].xyz;
+    ALL_POINTS(k) {
+        gPlaces[first + pointOf(k)] = float4(root + gPosition[k], 1.0);
 #if HAIR_VELOCITIES
-    gVelocities[first + gPoint] = float4((gPosition - gPrevious) * (1.0 / gFrame.h), 0.0);
+        gVelocities[first + pointOf(k)] = float4((gPosition[k] - gPrevious[k]) * (1.0 / gFrame.h), 0.0);
 #endif
+    }
 }
-
-#if HAIR_SLEEP
-/// What the first thread of each work group of a block leaves, and what the last of them makes of it.
-void judgeBlock(uint block, uint strands, float rested) {
-    uint ignored, done, fastest, restored;
-    InterlockedMax(gGathered[4 * block + 1], gGroupFastest, ignored);
-    InterlockedOr(gGathered[4 * block + 2], gGroupRestored, ignored);
-    DeviceMemoryBarrier();
-    InterlockedAdd(gGathered[4 * block], 1u, done);
-    if (done + 1 < HAIRLOOM_GROUP_STRANDS / HAIR_STRANDS) return;
-    InterlockedExchange(gGathered[4 * block], 0u, ignored);
-    InterlockedExchange(gGathered[4 * block + 1], 0u, fastest);
-    InterlockedExchange(gGathered[4 * block + 2], 0u, restored);
-    const bool slow = gGroupMoved == 0u && restored == 0u && asfloat(fastest) < gFrame.slowSquared;
-    rested = slow ? rested + gFrame.dt : 0.0;
-    const bool asleep = slow && rested >= gFrame.sleepDelay;
-    gRests[2 * block] = rested;
-    gRests[2 * block + 1] = asleep ? 1.0 : 0.0;
-    if (asleep) InterlockedAdd(gReport[REPORT_ASLEEP], strands);
-}
-#endif
 
 [numthreads(HAIR_THREADS, 1, 1)]
 void main(uint3 place : SV_GroupID, uint lane : SV_GroupIndex) {
@@ -148,41 +141,33 @@ void main(uint3 place : SV_GroupID, uint lane : SV_GroupIndex) {
     if (group >= gFrame.groups) return;
     enterLane(group, lane);
     const uint block = group * HAIR_STRANDS / HAIRLOOM_GROUP_STRANDS, strands = gBlocks[block].y;
-    if (lane == 0) gGroupMoved = gGroupFastest = gGroupRestored = gGroupNear = 0u;
+    if (lane == 0) gGroupMoved = gGroupFastest = gGroupRestored = gGroupNear = gLastAsked[0] = gLastAsked[1] = 0u;
     ONLY_POINT(0) gStrandFastest[gStrand] = gStrandLost[gStrand] = 0u;
-    GroupMemoryBarrierWithGroupSync();
     bool slept = false;
 #if HAIR_SLEEP
-    // The whole block's: each of its work groups comes to the same conclusion.
     float rested = gRests[2 * block];
     slept = gRests[2 * block + 1] != 0.0;
-    [loop] for (uint s = lane; s < HAIRLOOM_GROUP_STRANDS; s += HAIR_THREADS) {
-        const uint slot = block * HAIRLOOM_GROUP_STRANDS + s;
-        if (rootMoves(slot)) InterlockedOr(gGroupMoved, 1u);
-        if (slept && sphereNear(gRootsTo[2 * slot].xyz)) InterlockedOr(gGroupNear, 1u);
-    }
+#endif
     GroupMemoryBarrierWithGroupSync();
-    const bool woken = gGroupMoved != 0u || gGroupNear != 0u || gFrame.wakeAll != 0u;
-    if (slept && woken) rested = 0.0;
-    if (slept && !woken) {
-        // One work group of the block keeps the time.
-        if (lane == 0 && gSlot == block * HAIRLOOM_GROUP_STRANDS) {
-            gRests[2 * block] = rested + gFrame.dt;
-            InterlockedAdd(gReport[REPORT_ASLEEP], strands);
-        }
-        return;
-    }
+#if HAIR_SLEEP
+    if (slept && sleepsOn(block, lane, strands, rested)) return;
 #endif
     loadState();
+#if HAIR_SPHERES
+    startLists();
+#endif
     // What fell asleep has no speed.
     if (slept) gPrevious = gPosition;
     enterFrame();
     if (gFrame.rescale != 1.0) rescaleMotion();
+#if HAIR_SLEEP
+    lookAtRoots(block, lane);
+#endif
     GroupMemoryBarrierWithGroupSync();
     runSubsteps();
     finishStrand(strands);
     saveState();
-    writePlace();
+    writePlaces();
     ONLY_POINT(0) leaveFrame();
     if (lane == 0) {
         if (gGroupRestored == 0u) InterlockedMax(gReport[REPORT_FASTEST], gGroupFastest);

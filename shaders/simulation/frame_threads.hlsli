@@ -1,106 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A frame of a strand whose points follow each other in a thread; a work group is a block of the engine.
-
-void loadState() {
-#if HAIR_STORAGE != 2
-    EACH for (uint p = 0; p < POINTS; ++p) {
-        setPosition(p, savedPosition(p));
-        setPrevious(p, savedPrevious(p));
-#if HAIR_CURVES
-        setCurve(p, savedCurve(p));
-#endif
-#if HAIR_TENSIONS
-        setTension(p, savedTension(p));
-#endif
-    }
-#endif
-#if HAIR_CURVES
-    gTank = gTanks[gSlot];
-    gMotion = gTanks[gFrame.slots + gSlot];
-#endif
-}
-
-void saveState() {
-#if HAIR_STORAGE != 2
-    EACH for (uint p = 0; p < POINTS; ++p) {
-        savePosition(p, position(p));
-        savePrevious(p, previous(p));
-#if HAIR_CURVES
-        saveCurve(p, curve(p));
-#endif
-#if HAIR_TENSIONS
-        saveTension(p, tension(p));
-#endif
-    }
-#endif
-#if HAIR_CURVES
-    gTanks[gSlot] = gTank;
-    gTanks[gFrame.slots + gSlot] = gMotion;
-#endif
-}
-
-/// Puts the strand to its rest place on the root of the end of the frame, without speed.
-void placeAtRest() {
-    float3 at = float3(0, 0, 0);
-    EACH for (uint p = 0; p < POINTS; ++p) {
-        setPosition(p, at);
-        setPrevious(p, at);
-        at += rotate(gRootsTo[2 * gSlot + 1], restVector(p));
-#if HAIR_CURVES
-        setCurve(p, float3(0, 0, 0));
-#endif
-#if HAIR_TENSIONS
-        setTension(p, 0.0);
-#endif
-    }
-#if HAIR_CURVES
-    gTank = HAIRLOOM_NO_CURVE;
-    gMotion = 0.0;
-#endif
-}
-
-/// Greatest squared displacement of a free point in the last substep; `sound` is false where a point is no
-/// number or has left the range in which its square is one.
-float fastest(out bool sound) {
-    float most = 0.0;
-    sound = true;
-    EACH for (uint p = 0; p < POINTS; ++p) {
-        const float3 here = position(p);
-        const float3 moved = here - previous(p);
-        const float squared = dot(moved, moved);
-        sound = sound && isSound(here) && isSound(moved) && dot(here, here) < 1e12 && squared < 1e12;
-        if (p >= FIRST_FREE) most = max(most, squared);
-    }
-    return most;
-}
-
-void writePlaces() {
-    const uint first = gFirstPoints[gSlot];
-    if (first == 0xffffffffu) return;
-    const float3 root = gRootsTo[2 * gSlot].xyz;
-    EACH for (uint p = 0; p < POINTS; ++p) {
-        gPlaces[first + p] = float4(root + position(p), 1.0);
-#if HAIR_VELOCITIES
-        gVelocities[first + p] = float4((position(p) - previous(p)) * (1.0 / gFrame.h), 0.0);
-#endif
-    }
-}
-
-/// Takes stock after the last substep; the group's greatest displacement in gGroupFastest.
-void finishStrand(uint block, uint lane) {
-    bool sound;
-    float most = fastest(sound);
-#if HAIR_CURVES
-    gMotion = most * (1.0 / (gFrame.h * gFrame.h));
-#endif
-    if (!sound) {
-        placeAtRest();
-        most = 0.0;
-        if (lane < gBlocks[block].y) InterlockedAdd(gReport[REPORT_RESTORED], 1u);
-        InterlockedOr(gGroupRestored, 1u);
-    }
-    InterlockedMax(gGroupFastest, asuint(most));
-}
+#include "shaders/simulation/serial_strand.hlsli"
 
 [numthreads(HAIR_STRANDS, 1, 1)]
 void main(uint3 group : SV_GroupID, uint lane : SV_GroupIndex) {
@@ -108,7 +8,7 @@ void main(uint3 group : SV_GroupID, uint lane : SV_GroupIndex) {
     if (block >= gFrame.groups) return;
     gSlot = block * HAIR_STRANDS + lane;
 #if HAIR_STORAGE == 1
-    gLane = lane;
+    gStrand = lane;
 #endif
 #if !HAIR_EXACT
     gPointCount = gBlocks[block].x;
@@ -157,7 +57,7 @@ void main(uint3 group : SV_GroupID, uint lane : SV_GroupIndex) {
     if (runs) {
         saveState();
         leaveFrame();
-        writePlaces();
+        EACH for (uint q = 0; q < POINTS; ++q) writePlace(q);
         if (lane == 0 && gGroupRestored == 0u) InterlockedMax(gReport[REPORT_FASTEST], gGroupFastest);
     }
 }

@@ -27,7 +27,7 @@ void aim(uint p, float3 place, float3 moving) {
 
 /// What the forces have added since aim().
 float3 takeKick(uint p, float3 moving) {
-    return p < FIRST_FREE ? float3(0, 0, 0) : position(p) - previous(p) - moving;
+    return pointOf(p) < FIRST_FREE ? float3(0, 0, 0) : position(p) - previous(p) - moving;
 }
 
 /// Keeps where the substep starts, relative to the root at its end, and the displacement of the last one;
@@ -37,7 +37,7 @@ void open(float way) {
         const float3 here = position(p);
         const float3 before = previous(p);
         const float3 moving = here - before;
-        const float3 from = p < FIRST_FREE ? before : here - gRootStep;
+        const float3 from = pointOf(p) < FIRST_FREE ? before : here - gRootStep;
         setStart(p, from);
         setRate(p, moving);
         aim(p, from + moving * way, moving);

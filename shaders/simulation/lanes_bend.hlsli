@@ -1,79 +1,84 @@
 // SPDX-License-Identifier: MIT
-// Angular springs of a strand whose points are lanes; bend.hlsli is the same, point after point.
+// Angular springs of a strand spread over threads; bend.hlsli is the same, point after point.
 
 #if HAIR_TARGETS
-/// The normal that the segment before the lane's joint has, carried from the root; `known` is false where the strand
-/// folds before it. A step along the strand takes a normal n to n − a (t·n). Side by side, lanes put the steps of their
-/// four lanes together, up to their own; then the normal goes from four to four.
-float3 walkNormal(float3 inner, float3 tangent, out bool known) {
-    const float cosine = dot(inner, tangent);
-    const float flat = max(1.0 + cosine, 1e-6);
-    const float3 turn = (inner + tangent) * (1.0 / flat);
-    tell(float4(tangent, 0), float4(turn, 0));
-    const uint four = gPoint & ~3u;
-    // Rows of the map of the steps from the first of the four lanes to this one.
-    float3 x = float3(1, 0, 0), y = float3(0, 1, 0), z = float3(0, 0, 1);
-    [unroll] for (uint k = 0; k < 3; ++k) {
-        const uint step = min(four + k, uint(HAIR_POINTS) - 1);
-        const float3 to = told(step).xyz, by = toldToo(step).xyz;
-        if (four + k < gPoint) {
-            const float3 along = x * to.x + y * to.y + z * to.z;
-            x -= along * by.x;
-            y -= along * by.y;
-            z -= along * by.z;
-        }
+/// The normals that the segments before the thread's joints have, carried from the root; `known` is false where the strand
+/// folds before it. A step along the strand takes a normal n to n − a (t·n); each thread goes all the way. `inner` is the
+/// direction before the thread's first point, `tangents` are those after its points.
+void walkNormal(float3 inner, float3 tangents[OWN], out float3 normals[OWN], out bool known[OWN]) {
+    float3 turns[OWN];
+    Quads ways;  // w: 1 where the strand folds
+    EACH_OWN(i) {
+        const float3 before = INNER_OF(tangents, i, inner);
+        const float cosine = dot(before, tangents[i]);
+        turns[i] = (before + tangents[i]) * (1.0 / max(1.0 + cosine, 1e-6));
+        ways[i] = float4(tangents[i], cosine < FOLD ? 1.0 : 0.0);
     }
-    float3 start = rootNormal(), normal = start;
-    EACH for (uint first = 0; first < HAIR_POINTS; first += 4) {
-        const float3 here = float3(dot(x, start), dot(y, start), dot(z, start));
-        if (first == four) normal = here;
-        if (first + 4 < HAIR_POINTS) {
-            tell(float4(here - turn * dot(tangent, here), 0));
-            start = told(first + 3).xyz;
+    tell(ways, quadsOf(turns));
+    float4 start = float4(rootNormal(), 0), here = start;  // w: folds before it
+    EACH for (uint thread = 0; thread + 1 < STRAND_THREADS; ++thread) {
+        EACH_OWN(n) {
+            const float4 to = told(thread * OWN + n);
+            start.xyz -= toldToo(thread * OWN + n).xyz * dot(to.xyz, start.xyz);
+            start.w += to.w;
         }
+        if (thread + 1 == gThread) here = start;
     }
-    known = firstOfStrand(cosine < FOLD) >= gPoint;
-    return normal;
+    EACH_OWN(k) {
+        normals[k] = here.xyz;
+        known[k] = here.w == 0.0;
+        here -= float4(turns[k] * dot(tangents[k], here.xyz), -ways[k].w);
+    }
 }
 #endif
 
-/// The pull of the lane's joint at `position`.
-float3 measurePull(bool frames, bool exact) {
+/// The pulls of the thread's joints at `position`.
+void measurePulls(bool frames, bool exact, out float3 pulls[OWN]) {
     tellPositions();
-    const float3 edge = toldOuter().xyz - gPosition, innerEdge = gPosition - toldInner().xyz;
-    const float3 tangent = exact ? unitOf(edge) : edge * gInverseLength;
-    float3 inner = exact ? unitOf(innerEdge) : innerEdge * gInnerInverseLength;
-    if (gPoint == 0) inner = rootTangent();
-    float3 off = tangent - inner;
+    const float3 before = toldInner().xyz, after = toldOuter().xyz;
+    float3 tangents[OWN], units[OWN], inners[OWN];
+    float3 unitBefore = unitOf(gPosition[0] - before);
+    EACH_OWN(i) {
+        const float3 edge = OUTER_OF(gPosition, i, after) - gPosition[i];
+        const float3 innerEdge = gPosition[i] - INNER_OF(gPosition, i, before);
+        units[i] = unitOf(edge);
+        tangents[i] = exact ? units[i] : edge * gInverseLength[i];
+        inners[i] = exact ? unitOf(innerEdge) : innerEdge * innerInverseLength(i);
+    }
+    if (gThread == 0) unitBefore = inners[0] = rootTangent();
+    EACH_OWN(k) pulls[k] = tangents[k] - inners[k];
 #if HAIR_TARGETS
     if (frames) {
         // Springs may stretch: a frame needs directions of unit length.
-        float3 unit = unitOf(innerEdge);
-        if (gPoint == 0) unit = inner;
-        bool known;
-        const float3 normal = walkNormal(unit, unitOf(edge), known);
-        off -= fromFrame(unit, normal, gTarget);
+        float3 normals[OWN];
+        bool known[OWN];
+        walkNormal(unitBefore, units, normals, known);
+        EACH_OWN(f) pulls[f] -= fromFrame(INNER_OF(units, f, unitBefore), normals[f], gTarget[f]);
     }
 #endif
-    return hasJoint() ? off * gStiff : float3(0, 0, 0);
+    EACH_OWN(j) pulls[j] = hasJoint(j) ? pulls[j] * gStiff[j] : float3(0, 0, 0);
 }
 
 /// Angular springs as forces.
 void applyAngular(bool frames, bool exact) {
-    const float3 pull = measurePull(frames, exact);
-    tell(float4(gPosition, 0), float4(pull, 0));
-    const float3 difference = pull - toldTooOuter().xyz;
-    float3 outer = difference * gInverseLength;
-    if (exact) {
-        const float3 edge = toldOuter().xyz - gPosition;
-        const float3 tangent = unitOf(edge);
-        const float size = max(dot(edge, tangent), gLength * 0.1);
-        outer = (difference - tangent * dot(difference, tangent)) * (1.0 / max(size, 1e-9));
+    float3 pulls[OWN], outers[OWN];
+    measurePulls(frames, exact, pulls);
+    tell(quadsOf(gPosition), quadsOf(pulls));
+    const float3 after = toldOuter().xyz, pullAfter = toldTooOuter().xyz;
+    EACH_OWN(i) {
+        const float3 difference = pulls[i] - OUTER_OF(pulls, i, pullAfter);
+        outers[i] = difference * gInverseLength[i];
+        if (exact) {
+            const float3 edge = OUTER_OF(gPosition, i, after) - gPosition[i];
+            const float3 tangent = unitOf(edge);
+            const float size = max(dot(edge, tangent), gLength[i] * 0.1);
+            outers[i] = (difference - tangent * dot(difference, tangent)) * (1.0 / max(size, 1e-9));
+        }
+        if (!hasSegment(i)) outers[i] = float3(0, 0, 0);
     }
-    if (!hasSegment()) outer = float3(0, 0, 0);
-    tell(float4(outer, 0));
-    const float3 innerPull = toldInner().xyz;
-    if (isFree()) gPrevious += (innerPull - outer) * gInverseMass;
+    tell(quadsOf(outers));
+    const float3 before = toldInner().xyz;
+    FREE_POINTS(k) gPrevious[k] += (INNER_OF(outers, k, before) - outers[k]) * gInverseMass[k];
 }
 #if HAIR_TARGETS
 void stageAngularCheap() { applyAngular(true, false); }
@@ -86,68 +91,102 @@ void stageStraightExact() { applyAngular(false, true); }
 /// Solves (M + (¼ + q) h² K) δ = side by cyclic reduction of pairs of points, all of them at a time (as Hockney and
 /// Jesshope 1981): each step frees a pair of its neighbours and couples it to those twice as far. Its factors are the
 /// strand's own, from the program (core/gpu_simulation/bend_reduction.h); those of points that do not move are 0.
-float3 solveBend(float3 side) {
-    const uint pair = gPoint & ~1u, last = HAIR_POINTS - 1;
+void solveBend(inout float3 sides[OWN]) {
+    const uint pair = pointOf(0) & ~1u, last = HAIR_POINTS - 1;
     [unroll] for (uint step = 0; step < BEND_STEPS; ++step) {
         const uint apart = 2u << step;
         // Beyond the ends factors are 0, and the point that is read any.
         const uint before = pair >= apart ? pair - apart : pair;
         const uint after = pair + apart <= last ? pair + apart : pair;
-        const float4 by = gReduction[step];
-        tell(float4(side, 0));
-        side += told(before).xyz * by.x + told(min(before + 1, last)).xyz * by.y + told(after).xyz * by.z +
-                told(min(after + 1, last)).xyz * by.w;
+        tell(quadsOf(sides));
+        const float3 a = told(before).xyz, b = told(min(before + 1, last)).xyz;
+        const float3 c = told(after).xyz, d = told(min(after + 1, last)).xyz;
+        EACH_OWN(i) {
+            const float4 by = gReduction[i * BEND_STEPS + step];
+            sides[i] += a * by.x + b * by.y + c * by.z + d * by.w;
+        }
     }
-    tell(float4(side, 0));
-    return side * gReduced.x + told(min(gPoint ^ 1u, last)).xyz * gReduced.y;
+#if OWN == 1
+    tell(quadsOf(sides));
+    sides[0] = sides[0] * gReduced[0].x + told(min(pointOf(0) ^ 1u, last)).xyz * gReduced[0].y;
+#else
+    const float3 even = sides[0], odd = sides[1];
+    sides[0] = even * gReduced[0].x + odd * gReduced[0].y;
+    sides[1] = odd * gReduced[1].x + even * gReduced[1].y;
+#endif
 }
 
 #if HAIR_CURVES
-/// Turns the curve that the lane's joint holds towards that of its frame at `previous`, as far as the strand's tank
-/// lasts.
-void followFrames(float3 inner, float3 tangent) {
-    bool known;
-    const float3 normal = walkNormal(inner, tangent, known);
-    const float3 held = rotate(turnNow(), gCurve);
-    float3 change = fromFrame(inner, normal, gTarget) - held;
-    if (!known || !hasJoint()) change = float3(0, 0, 0);
-    const float2 joint = float2(dot((tangent - inner - held) * gStiff, change), dot(change, change) * gStiff);
-    const float2 sums = sumOfStrand(joint);
+/// Turns the curves that the thread's joints hold towards those of their frames at `previous`, as far as the strand's tank
+/// lasts. As walkNormal() has them: the directions.
+void followFrames(float3 inner, float3 tangents[OWN]) {
+    float3 normals[OWN], changes[OWN];
+    bool known[OWN];
+    walkNormal(inner, tangents, normals, known);
+    float2 joints = float2(0, 0);
+    const float4 turn = turnNow();
+    EACH_OWN(i) {
+        const float3 before = INNER_OF(tangents, i, inner);
+        const float3 held = rotate(turn, gCurve[i]);
+        changes[i] = fromFrame(before, normals[i], gTarget[i]) - held;
+        if (!known[i] || !hasJoint(i)) changes[i] = float3(0, 0, 0);
+        joints += float2(dot((tangents[i] - before - held) * gStiff[i], changes[i]),
+                         dot(changes[i], changes[i]) * gStiff[i]);
+        if (hasJoint(i)) gCurve[i] = held;
+    }
+    const float2 sums = sumOfStrand(joints);
     const float share = takeShare(sums.x, sums.y);
-    if (hasJoint()) gCurve = held + change * share;
+    EACH_OWN(k) gCurve[k] += changes[k] * share;
 }
 #endif
 
 /// Angular springs after position Verlet: see bend.hlsli.
 void bendBack() {
-    tell(float4(gPosition, 0), float4(gPrevious, 0));
-    const float3 edge = toldTooOuter().xyz - gPrevious, innerEdge = gPrevious - toldTooInner().xyz;
-    const float3 moved = gPosition - gPrevious;
-    const float3 turned = (toldOuter().xyz - toldTooOuter().xyz) - moved;
-    const float3 innerTurned = moved - (toldInner().xyz - toldTooInner().xyz);
-    const float3 ahead = (edge + turned * gFrame.bendRate) * gInverseLength;
-    float3 innerAhead = (innerEdge + innerTurned * gFrame.bendRate) * gInnerInverseLength;
-    if (gPoint == 0) innerAhead = rootTangent();
-    float3 off = ahead - innerAhead;
+    tell(quadsOf(gPosition), quadsOf(gPrevious));
+    const float3 before = toldInner().xyz, after = toldOuter().xyz;
+    const float3 beforeBefore = toldTooInner().xyz, afterBefore = toldTooOuter().xyz;
+    float3 tangents[OWN], aheads[OWN], pulls[OWN], sides[OWN];
+    EACH_OWN(i) {
+        const float3 edge = OUTER_OF(gPrevious, i, afterBefore) - gPrevious[i];
+        const float3 turned = (OUTER_OF(gPosition, i, after) - OUTER_OF(gPrevious, i, afterBefore)) -
+                              (gPosition[i] - gPrevious[i]);
+        tangents[i] = edge * gInverseLength[i];
+        aheads[i] = (edge + turned * gFrame.bendRate) * gInverseLength[i];
+    }
+    const float3 innerEdge = gPrevious[0] - beforeBefore;
+    const float3 innerTurned = (gPosition[0] - gPrevious[0]) - (before - beforeBefore);
+    float3 inner = innerEdge * gInverseLengthBefore;
+    float3 innerAhead = (innerEdge + innerTurned * gFrame.bendRate) * gInverseLengthBefore;
+    if (gThread == 0) inner = innerAhead = rootTangent();
 #if HAIR_CURVES
-    float3 inner = innerEdge * gInnerInverseLength;
-    if (gPoint == 0) inner = innerAhead;
-    followFrames(inner, edge * gInverseLength);
-    off -= gCurve;
+    followFrames(inner, tangents);
 #endif
-    const float3 pull = hasJoint() ? off * gStiff : float3(0, 0, 0);
+    EACH_OWN(j) {
+        pulls[j] = aheads[j] - INNER_OF(aheads, j, innerAhead);
+#if HAIR_CURVES
+        pulls[j] -= gCurve[j];
+#endif
+        pulls[j] = hasJoint(j) ? pulls[j] * gStiff[j] : float3(0, 0, 0);
+    }
+    Quads all = quadsOf(pulls);
 #if HAIR_TENSIONS
-    tell(float4(pull, gTension));
-    float3 side = innerEdge * (-gInnerInverseLength * toldInner().w);
-    if (hasSegment()) side += edge * (gInverseLength * gTension);
-#else
-    tell(float4(pull, 0));
-    float3 side = float3(0, 0, 0);
+    EACH_OWN(t) all[t].w = gTension[t];
 #endif
-    side -= (toldInner().xyz - pull) * gInnerInverseLength;
-    const float3 outerPull = (pull - toldOuter().xyz) * gInverseLength;
-    if (hasSegment()) side += outerPull;
-    gPosition += solveBend(isFree() ? side : float3(0, 0, 0));
+    tell(all);
+    const float4 allBefore = toldInner(), allAfter = toldOuter();
+    EACH_OWN(k) {
+        const float4 innerAll = INNER_OF(all, k, allBefore), outerAll = OUTER_OF(all, k, allAfter);
+        float3 outer = (pulls[k] - outerAll.xyz) * gInverseLength[k];
+        float3 side = (pulls[k] - innerAll.xyz) * innerInverseLength(k);
+#if HAIR_TENSIONS
+        outer += tangents[k] * all[k].w;
+        side -= INNER_OF(tangents, k, inner) * innerAll.w;
+#endif
+        if (hasSegment(k)) side += outer;
+        sides[k] = isFree(k) ? side : float3(0, 0, 0);
+    }
+    solveBend(sides);
+    EACH_OWN(m) gPosition[m] += sides[m];
 }
 void stageAngular() { bendBack(); }
 void stageAngularStraight() { bendBack(); }

@@ -1,72 +1,112 @@
 // SPDX-License-Identifier: MIT
-// Lengths of a strand whose points are lanes; length.hlsli is the same, point after point. A lane has the segment
-// after its point.
+// Lengths of a strand spread over threads; length.hlsli is the same, point after point. A thread has the segments after
+// its points.
 
-/// λ of the tridiagonal system λ = below · λ₋ + above · λ₊ + right, a row in each lane, by parallel cyclic
-/// reduction (Hockney and Jesshope 1981): each step couples rows twice as far apart.
-float solveLengths(float below, float above, float right) {
-    [unroll] for (uint stride = 1; stride < HAIR_POINTS - FIRST_FREE; stride *= 2) {
-        tell(float4(below, above, right, 0));
+/// A row of the tridiagonal system λ = below · λ₋ + above · λ₊ + right: x, y, z; w unused. By the rows before and after
+/// it, it is coupled to those twice as far.
+float4 reducedRow(float4 own, float4 before, float4 after) {
+    const float inverse = 1.0 / (1.0 - own.x * before.y - own.y * after.x);
+    return float4(own.x * before.x, own.y * after.y, own.z + own.x * before.z + own.y * after.z, 0) * inverse;
+}
+
+/// λ of the last of the thread's rows, by parallel cyclic reduction (Hockney and Jesshope 1981): each step couples rows twice
+/// as far apart.
+float solveLengths(float4 rows[OWN]) {
+    float4 row = rows[OWN - 1];
+#if OWN == 2
+    // The threads' first rows go out of the system.
+    tell(rows);
+    row = reducedRow(row, rows[0], toldOuter());
+#endif
+    [unroll] for (uint stride = 1; stride * OWN < HAIR_POINTS - FIRST_FREE; stride *= 2) {
+        tellLast(row);
         // Beyond the ends rows are not coupled: their factor is 0, and the row that is read any.
-        const float3 before = told(gPoint >= stride ? gPoint - stride : gPoint).xyz;
-        const float3 after = told(min(gPoint + stride, uint(HAIR_POINTS) - 1)).xyz;
-        const float inverse = 1.0 / (1.0 - below * before.y - above * after.x);
-        right = (right + below * before.z + above * after.z) * inverse;
-        below *= before.x * inverse;
-        above *= after.y * inverse;
+        const uint before = gThread >= stride ? gThread - stride : gThread;
+        const uint after = min(gThread + stride, uint(STRAND_THREADS) - 1);
+        row = reducedRow(row, told(before * OWN + OWN - 1), told(after * OWN + OWN - 1));
     }
-    return right;
+    return row.z;
 }
 
 /// See length.hlsli.
 void holdStrand(int holding) {
-    tell(float4(gPosition, 0), float4(holding == HOLD_RATES ? gPrevious : startOfSubstep(gPoint), 0));
-    const float3 edge = toldOuter().xyz - gPosition;
-    const float3 wanted = edge * gInverseLength;
-    float3 acting = wanted;
-    float error = 0.5 * (dot(edge, wanted) - gLength);
-    if (holding == HOLD_PLACES) {
-        const float3 before = (toldTooOuter().xyz - startOfSubstep(gPoint)) * gInverseLength;
-        if (dot(wanted, before) > 0.5 * dot(wanted, wanted)) acting = before;
-    } else if (holding == HOLD_RATES) {
-        error = dot(wanted, edge - (toldTooOuter().xyz - gPrevious));
-    }
-    const bool held = gPoint + 1 >= FIRST_FREE && hasSegment();
-    tell(float4(acting, 0));
-    const float inner = gPoint >= FIRST_FREE ? gInverseMass : 0.0, outer = gOuterInverseMass;
-    const float inverse = 1.0 / (max(dot(wanted, acting), 0.25) * (inner + outer));
-    // The rows of the first and the last segment have one neighbour.
-    float below = dot(wanted, toldInner().xyz) * inner * inverse;
-    float above = gPoint + 2 < POINTS ? dot(wanted, toldOuter().xyz) * outer * inverse : 0.0;
-    error *= inverse;
-    if (!held) below = above = error = 0.0;
-    const float lambda = solveLengths(below, above, error);
-    const float3 pull = held ? acting * lambda : float3(0, 0, 0);
-    tell(float4(pull, 0));
-    const float3 move = (pull - toldInner().xyz) * gInverseMass;
-    if (isFree()) {
-        if (holding == HOLD_RATES) {
-            gPrevious -= move;
-        } else {
-            gPosition += move;
+    float3 starts[OWN], wanted[OWN], acting[OWN];
+    float errors[OWN];
+    EACH_OWN(s) starts[s] = holding == HOLD_RATES ? gPrevious[s] : startOfSubstep(s);
+    tellFirst(float4(gPosition[0], 0));
+    const float3 after = toldOuter().xyz;
+    tellFirst(float4(starts[0], 0));
+    const float3 startAfter = toldOuter().xyz;
+    EACH_OWN(i) {
+        const float3 edge = OUTER_OF(gPosition, i, after) - gPosition[i];
+        const float3 edgeBefore = OUTER_OF(starts, i, startAfter) - starts[i];
+        wanted[i] = acting[i] = edge * gInverseLength[i];
+        errors[i] = 0.5 * (dot(edge, wanted[i]) - gLength[i]);
+        if (holding == HOLD_PLACES) {
+            const float3 was = edgeBefore * gInverseLength[i];
+            if (dot(wanted[i], was) > 0.5 * dot(wanted[i], wanted[i])) acting[i] = was;
+        } else if (holding == HOLD_RATES) {
+            errors[i] = dot(wanted[i], edge - edgeBefore);
         }
     }
-#if HAIR_TENSIONS
-    if (holding == HOLD_PLACES && held) keepTension(gPoint, lambda, gLength, gInverseMass + gOuterInverseMass);
+    tell(quadsOf(acting));
+    const float3 actingBefore = toldInner().xyz, actingAfter = toldOuter().xyz;
+    Quads rows;
+    EACH_OWN(j) {
+        const float inner = pointOf(j) >= FIRST_FREE ? gInverseMass[j] : 0.0, outer = outerInverseMass(j);
+        const float inverse = 1.0 / (max(dot(wanted[j], acting[j]), 0.25) * (inner + outer));
+        // The rows of the first and the last segment have one neighbour.
+        const float below = dot(wanted[j], INNER_OF(acting, j, actingBefore)) * inner * inverse;
+        const float above = pointOf(j) + 2 < POINTS ? dot(wanted[j], OUTER_OF(acting, j, actingAfter)) * outer * inverse : 0.0;
+        const bool held = pointOf(j) + 1 >= FIRST_FREE && hasSegment(j);
+        rows[j] = held ? float4(below, above, errors[j] * inverse, 0) : float4(0, 0, 0, 0);
+        if (!held) acting[j] = float3(0, 0, 0);
+    }
+    float lambdas[OWN];
+    lambdas[OWN - 1] = solveLengths(rows);
+    tellLast(float4(acting[OWN - 1], lambdas[OWN - 1]));
+    const float4 before = toldInner();
+#if OWN == 2
+    lambdas[0] = rows[0].x * before.w + rows[0].y * lambdas[1] + rows[0].z;
 #endif
+    EACH_OWN(k) {
+        const float3 pullBefore = INNER_OF(acting, k, before.xyz) * INNER_OF(lambdas, k, before.w);
+        const float3 move = (acting[k] * lambdas[k] - pullBefore) * gInverseMass[k];
+        if (isFree(k)) {
+            if (holding == HOLD_RATES) {
+                gPrevious[k] -= move;
+            } else {
+                gPosition[k] += move;
+            }
+        }
+#if HAIR_TENSIONS
+        if (holding == HOLD_PLACES && pointOf(k) + 1 >= FIRST_FREE && hasSegment(k))
+            keepTension(k, lambdas[k], gLength[k], gInverseMass[k] + outerInverseMass(k));
+#endif
+    }
 }
 
-/// See length.hlsli. From the first segment that is wrong on, each lane goes the way to its own point.
+/// See length.hlsli. From the first segment that is wrong on, each thread goes the way to its own points.
 void stageExtension() {
-    tell(float4(gPosition, gLength));
-    const float4 inner = toldInner();
-    const uint begin = firstOfStrand(isFree() && isWrong(gPosition - inner.xyz, inner.w));
-    if (begin <= gPoint && gPoint < POINTS) {
-        float4 parent = told(begin - 1);
-        [loop] for (uint p = begin; p <= gPoint; ++p) {
-            const float4 own = told(p);
-            parent = float4(withinExtension(parent.xyz, own.xyz, parent.w), own.w);
+    tellLast(float4(gPosition[OWN - 1], gLength[OWN - 1]));
+    const float4 before = toldInner();
+    bool wrong = false;
+    EACH_OWN(i) {
+        const float3 edge = gPosition[i] - INNER_OF(gPosition, i, before.xyz);
+        wrong = wrong || (isFree(i) && isWrong(edge, INNER_OF(gLength, i, before.w)));
+    }
+    if (!anyOfGroup(wrong)) return;
+    Quads places = quadsOf(gPosition);
+    EACH_OWN(l) places[l].w = gLength[l];
+    tell(places);
+    bool moves = false;
+    float4 parent = told(FIRST_FREE - 1);
+    [loop] for (uint p = FIRST_FREE; p < min(pointOf(OWN), POINTS); ++p) {
+        const float4 own = told(p);
+        moves = moves || isWrong(own.xyz - parent.xyz, parent.w);
+        parent = float4(withinExtension(parent.xyz, own.xyz, parent.w), own.w);
+        EACH_OWN(k) {
+            if (moves && p == pointOf(k)) takePlace(k, parent.xyz);
         }
-        takePlace(gPoint, parent.xyz);
     }
 }

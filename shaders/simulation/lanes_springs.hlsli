@@ -1,55 +1,67 @@
 // SPDX-License-Identifier: MIT
-// Springs of a strand whose points are lanes; springs.hlsli is the same, point after point.
+// Springs of a strand spread over threads; springs.hlsli is the same, point after point.
 
 void stageSprings() {
     tellPositions();
-    const float3 way = toldOuter().xyz - gPosition;
-    float3 outer = float3(0, 0, 0);
-    if (gPoint + 1 >= FIRST_FREE && hasSegment()) {
-        const Direction edge = edgeOf(way);
-        const float step = 2.0 * gFrame.springStep / (gInverseMass + gOuterInverseMass);
-        outer = edge.unit * ((edge.size - gLength) * step);
+    const float3 after = toldOuter().xyz;
+    float3 outers[OWN];
+    EACH_OWN(i) {
+        outers[i] = float3(0, 0, 0);
+        if (pointOf(i) + 1 >= FIRST_FREE && hasSegment(i)) {
+            const Direction edge = edgeOf(OUTER_OF(gPosition, i, after) - gPosition[i]);
+            const float step = 2.0 * gFrame.springStep / (gInverseMass[i] + outerInverseMass(i));
+            outers[i] = edge.unit * ((edge.size - gLength[i]) * step);
+        }
     }
-    tell(float4(outer, 0));
-    const float3 inner = toldInner().xyz;
-    if (isFree()) gPrevious -= (outer - inner) * gInverseMass;
+    tell(quadsOf(outers));
+    const float3 before = toldInner().xyz;
+    FREE_POINTS(k) gPrevious[k] -= (outers[k] - INNER_OF(outers, k, before)) * gInverseMass[k];
 }
 
 #if HAIR_BEND
 void stageFlexion() {
-    tell(float4(gPosition, 0));
-    const float3 way = toldOuter().xyz - toldInner().xyz;
-    float3 pull = float3(0, 0, 0);
-    if (gPoint >= 1 && hasSegment()) {
-        const float3 span = restVector(gPoint - 1) + restVector(gPoint);
-        const Direction edge = edgeOf(way);
-        pull = edge.unit * ((edge.size - sqrt(dot(span, span))) * gStiff);
+    tellPositions();
+    const float3 before = toldInner().xyz, after = toldOuter().xyz;
+    float3 pulls[OWN];
+    EACH_OWN(i) {
+        pulls[i] = float3(0, 0, 0);
+        if (pointOf(i) >= 1 && hasSegment(i)) {
+            const float3 span = restVector(pointOf(i) - 1) + restVector(pointOf(i));
+            const Direction edge = edgeOf(OUTER_OF(gPosition, i, after) - INNER_OF(gPosition, i, before));
+            pulls[i] = edge.unit * ((edge.size - sqrt(dot(span, span))) * gStiff[i]);
+        }
     }
-    tell(float4(pull, 0));
-    const float3 inner = toldInner().xyz, outer = toldOuter().xyz;
-    if (isFree()) {
-        gPrevious += inner * gInverseMass;
-        if (hasSegment()) gPrevious -= outer * gInverseMass;
+    tell(quadsOf(pulls));
+    const float3 pullBefore = toldInner().xyz, pullAfter = toldOuter().xyz;
+    FREE_POINTS(k) {
+        gPrevious[k] += INNER_OF(pulls, k, pullBefore) * gInverseMass[k];
+        if (hasSegment(k)) gPrevious[k] -= OUTER_OF(pulls, k, pullAfter) * gInverseMass[k];
     }
 }
 #endif
 
-/// Each segment moves both its points, root to tip: each lane goes all the way and keeps its own.
+/// Each segment moves both its points, root to tip: each thread goes all the way and keeps its own.
 void stageSpringLimit() {
     [loop] for (uint n = 0; n < gFrame.lengthIterations; ++n) {
-        tell(float4(gPosition, gLength), float4(gInverseMass, 0, 0, 0));
-        float3 from = told(FIRST_FREE - 1).xyz, own = gPosition;
+        Quads places = quadsOf(gPosition), masses;
+        EACH_OWN(i) {
+            places[i].w = gLength[i];
+            masses[i] = float4(gInverseMass[i], 0, 0, 0);
+        }
+        tell(places, masses);
+        float3 own[OWN] = gPosition;
+        float3 from = told(FIRST_FREE - 1).xyz;
         float length = told(FIRST_FREE - 1).w, inner = 0.0;
         [loop] for (uint p = FIRST_FREE; p < POINTS; ++p) {
             const float4 to = told(p);
             const float outer = toldToo(p).x;
             const float3 impulse = limitImpulse(to.xyz - from, length, inner + outer);
-            if (p == gPoint + 1) own = from + impulse * inner;
+            EACH_OWN(k) if (p == pointOf(k) + 1) own[k] = from + impulse * inner;
             from = to.xyz - impulse * outer;
-            if (p == gPoint) own = from;
+            EACH_OWN(j) if (p == pointOf(j)) own[j] = from;
             length = to.w;
             inner = outer;
         }
-        if (isFree()) gPosition = own;
+        FREE_POINTS(m) gPosition[m] = own[m];
     }
 }

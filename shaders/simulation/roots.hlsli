@@ -9,17 +9,21 @@ float4 rotationBetween(float4 from, float4 to, float t) {
     return mixed * (1.0 / sqrt(dot(mixed, mixed)));
 }
 
-#if HAIR_STORAGE == 3
-#include "shaders/simulation/lanes_roots.hlsli"
-#else
-static float4 gRotationFrom;
-static float4 gRotationTo;
-static float4 gRotation;  // of now
-static float4 gTurn;      // from the rotation a substep ago to that of now
+static float4 gRotationFrom, gRotationTo;
+static float4 gRotation;     // of now
+static float4 gTurn;         // from the rotation a substep ago to that of now
+static float4 gRootSegment;  // the first at rest; w: 1/length
+#if HAIR_TARGETS
+static float3 gNormalAtRest;
+#endif
 
 void setRotations(float4 from, float4 to) {
     gRotationFrom = gRotation = from;
     gRotationTo = to;
+    gRootSegment = float4(restVector(0), inverseLength(0));
+#if HAIR_TARGETS
+    gNormalAtRest = target(POINTS - 1);
+#endif
 }
 
 void turnRoot() {
@@ -29,12 +33,11 @@ void turnRoot() {
 }
 
 float4 turnNow() { return gTurn; }
-float3 firstSegment() { return rotate(gRotation, restVector(0)); }
+float3 firstSegment() { return rotate(gRotation, gRootSegment.xyz); }
 /// The direction and the normal that the root carries, before the first segment.
-float3 rootTangent() { return rotate(gRotation, restVector(0) * inverseLength(0)); }
+float3 rootTangent() { return rotate(gRotation, gRootSegment.xyz * gRootSegment.w); }
 #if HAIR_TARGETS
-float3 rootNormal() { return rotate(gRotation, target(POINTS - 1)); }
-#endif
+float3 rootNormal() { return rotate(gRotation, gNormalAtRest); }
 #endif
 
 /// Takes the way of the root through the frame.
@@ -75,8 +78,8 @@ void stageRoots() {
     ONLY_POINT(0) setPrevious(0, -gRootStep);
 #if HAIR_CLAMPED > 1
     ONLY_POINT(1) {
-        setPrevious(1, position(1) - gRootStep);
-        setPosition(1, firstSegment());
+        setPrevious(ownOf(1), position(ownOf(1)) - gRootStep);
+        setPosition(ownOf(1), firstSegment());
     }
 #endif
 }

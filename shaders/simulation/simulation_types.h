@@ -11,10 +11,12 @@ namespace hairloom::shaders {
 
 /// A float4 for each wave of the wind.
 #define HAIRLOOM_WIND_MODES 6
-/// Spheres that stand in a constant buffer; more stand in a buffer.
-#define HAIRLOOM_CONSTANT_SPHERES 64
+/// Spheres that stand in a constant buffer; more stand in a buffer. As many as a word has bits.
+#define HAIRLOOM_CONSTANT_SPHERES 32
 /// Strands of a work group: a block of the engine, which falls asleep as one.
 #define HAIRLOOM_GROUP_STRANDS 32
+/// Threads of a work group that has one strand: the first takes it, as in the thesis' listing, which has 30 others.
+#define HAIRLOOM_WISP_THREADS 32
 /// In a tank: the curves of the strand are void.
 #define HAIRLOOM_NO_CURVE (-1.0)
 
@@ -48,7 +50,8 @@ struct SimulationConstants {
     float slowSweep;         ///< metres in a substep; slower points cannot pass a sphere unseen
     float tensionShare;      ///< of a substep's change of tension that bending takes on
     uint groups;             ///< work groups of the batch, in rows of HAIRLOOM_GROUP_ROW
-    float unused0, unused1;
+    float sphereWay;         ///< metres; the longest way of a sphere in a substep
+    float unused;
     float4 gravityStep;                          ///< g h², w unused
     float4 wind;                                 ///< mean velocity, m/s; w: strength of gusts
     float4 windAmplitudes[HAIRLOOM_WIND_MODES];  ///< m/s; w: phase at the start of the frame, turns

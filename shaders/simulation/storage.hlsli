@@ -5,7 +5,8 @@
 //   HAIR_STORAGE 0: in arrays of its thread (registers where HAIR_UNROLL makes all indices constant),
 //   HAIR_STORAGE 1: position and previous in the memory of the work group, the rest as 0,
 //   HAIR_STORAGE 2: in the buffers, for strands too long for either,
-//   HAIR_STORAGE 3: each point in a thread of its own, see lanes.hlsli.
+//   HAIR_STORAGE 3: each point in a thread of its own, see lanes.hlsli,
+//   HAIR_STORAGE 4: as 1, but the work group has one strand, and its first thread takes it: see frame_wisps.hlsli.
 //
 // Positions are relative to the strand's root; `previous` is the position one substep ago relative to the root
 // of now, so position − previous is the displacement in the world. Forces add a·h² to it by taking it from
@@ -66,8 +67,8 @@ RWStructuredBuffer<float> gTanks : register(u6);     // tank, greatest squared s
 #if HAIR_SLEEP
 RWStructuredBuffer<float> gRests : register(u2);     // per work group: seconds at rest, 1 when asleep
 #endif
-#if HAIR_SLEEP && HAIR_STORAGE == 3
-RWStructuredBuffer<uint> gGathered : register(u8);   // per block: work groups done, fastest, restored, unused
+#if HAIR_SLEEP && HAIR_STORAGE >= 3
+RWStructuredBuffer<uint> gGathered : register(u8);   // per block: of its work groups, see shared_block.hlsli
 #endif
 #if HAIR_VELOCITIES
 RWStructuredBuffer<float4> gVelocities : register(HAIR_VELOCITIES_REGISTER);  // m/s, in the caller's order
@@ -88,10 +89,13 @@ static uint gPointCount;
 #endif
 #define FIRST_FREE HAIR_CLAMPED
 #if HAIR_STORAGE != 3
-// What concerns each point of a strand, whoever it is done by.
+// What concerns each point of a strand, whoever it is done by. Places and displacements go by the index of a point among
+// those of the thread, here all of its strand.
 #define ALL_POINTS(p) EACH for (uint p = 0; p < POINTS; ++p)
 #define FREE_POINTS(p) EACH for (uint p = FIRST_FREE; p < POINTS; ++p)
 #define ONLY_POINT(n)
+uint pointOf(uint k) { return k; }
+uint ownOf(uint p) { return p; }
 #endif
 
 /// What the strand goes through in the frame.
@@ -143,10 +147,13 @@ void setRight(uint p, float v) { gScratch[slotOf(4, p)] = v; }
 #elif HAIR_STORAGE == 3
 #include "shaders/simulation/lanes.hlsli"
 #else
-#if HAIR_STORAGE == 1
-groupshared float gShared[6 * HAIR_POINTS * HAIRLOOM_GROUP_STRANDS];
-static uint gLane;
-uint sharedSlot(uint plane, uint p) { return (plane * HAIR_POINTS + p) * HAIRLOOM_GROUP_STRANDS + gLane; }
+#if HAIR_STORAGE == 4
+#define HAIR_THREADS HAIRLOOM_WISP_THREADS
+#endif
+#if HAIR_STORAGE == 1 || HAIR_STORAGE == 4
+groupshared float gShared[6 * HAIR_POINTS * HAIR_STRANDS];
+static uint gStrand;  // in the work group
+uint sharedSlot(uint plane, uint p) { return (plane * HAIR_POINTS + p) * HAIR_STRANDS + gStrand; }
 float3 position(uint p) { return float3(gShared[sharedSlot(0, p)], gShared[sharedSlot(1, p)], gShared[sharedSlot(2, p)]); }
 void setPosition(uint p, float3 v) { gShared[sharedSlot(0, p)] = v.x; gShared[sharedSlot(1, p)] = v.y; gShared[sharedSlot(2, p)] = v.z; }
 float3 previous(uint p) { return float3(gShared[sharedSlot(3, p)], gShared[sharedSlot(4, p)], gShared[sharedSlot(5, p)]); }

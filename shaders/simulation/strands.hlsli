@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// A frame of strands in one dispatch: a thread, or a lane for each point, takes its strand through all substeps. What
-// it does in a substep is HAIR_STAGES, the list that the engine's plan makes (runtime/plan.h); the other macros that
+// A frame of strands in one dispatch: a thread, or several of a group, take their strand through all substeps. What
+// is done in a substep is HAIR_STAGES, the list that the engine's plan makes (runtime/plan.h); the other macros that
 // make a permutation follow from it. Whoever compiles this defines
 //   HAIR_POINTS      points that a strand may have; HAIR_EXACT 1: all have as many
 //   HAIR_UNROLL      1: loops along the strand are unrolled
-//   HAIR_STORAGE     0, 1, 2, 3: see storage.hlsli; HAIR_STRANDS: of a work group
-//   HAIR_TOGETHER, HAIR_TABLES: see storage.hlsli, lanes.hlsli
+//   HAIR_STORAGE     0 … 4: see storage.hlsli; HAIR_STRANDS: of a work group
+//   HAIR_TOGETHER, HAIR_PER_THREAD: see storage.hlsli, lanes.hlsli
 //   HAIR_CLAMPED     1, 2: clamped points
 //   HAIR_EVALUATION  0; 1: integrators that evaluate forces elsewhere; 2: RK4
 //   HAIR_BEND        0; 1: with stiffness; 2: with the factors of the strand's matrix
@@ -56,8 +56,13 @@ void runSubsteps() {
     }
 }
 
+#if HAIR_STORAGE >= 3
+#include "shaders/simulation/shared_block.hlsli"
+#endif
 #if HAIR_STORAGE == 3
 #include "shaders/simulation/frame_lanes.hlsli"
+#elif HAIR_STORAGE == 4
+#include "shaders/simulation/frame_wisps.hlsli"
 #else
 #include "shaders/simulation/frame_threads.hlsli"
 #endif

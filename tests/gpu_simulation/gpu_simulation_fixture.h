@@ -31,6 +31,17 @@ class SharedDevice : public testing::Environment {
 };
 inline testing::Environment* const kSharedDevice = testing::AddGlobalTestEnvironment(new SharedDevice);
 
+/// The layouts whose results are held against the CPU. Lavapipe takes long to compile unrolled loops.
+inline const LayoutOptions kHeldLayouts[] = {{StrandStorage::threads, false},
+                                             {StrandStorage::lanes, false, {}, 1},
+                                             {StrandStorage::lanes, false, {}, 2},
+                                             {StrandStorage::wisps, false}};
+inline std::string nameOf(const LayoutOptions& layout) {
+    constexpr const char* kNames[] = {"threads", "groups", "buffers", "lanes", "wisps"};
+    const bool pairs = layout.perThread == 2u;
+    return pairs ? "pairs" : kNames[static_cast<std::size_t>(*layout.storage)];
+}
+
 /// On the shared device; any message fails the case in which it came.
 class GpuSimulationTest : public testing::Test {
   protected:
@@ -54,10 +65,9 @@ class GpuSimulationTest : public testing::Test {
     static std::unique_ptr<gpu::Device>& device() { return SharedDevice::device(); }
     static std::shared_ptr<KernelLibrary>& library() { return SharedDevice::library(); }
 
-    /// Lavapipe takes long to compile unrolled loops.
-    static EngineOptions options(StrandStorage storage = StrandStorage::threads) {
+    static EngineOptions options(const LayoutOptions& layout = kHeldLayouts[0]) {
         EngineOptions options;
-        options.layout = {storage, false};
+        options.layout = layout;
         return options;
     }
     static StrandEngine engineOf(const runtime::StrandsView& strands,

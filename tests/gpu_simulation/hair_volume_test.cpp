@@ -28,7 +28,7 @@ class Volume : public GpuSimulationTest {
     static runtime::State after(const test::Scene& scene,
                                 const std::optional<runtime::HairVolumeSettings>& volume,
                                 StrandStorage storage = StrandStorage::threads) {
-        EngineOptions with = options(storage);
+        EngineOptions with = options({storage, false});
         with.hairHair = volume;
         StrandEngine engine = engineOf(scene.view(), scene.settings, with);
         EXPECT_TRUE(engine.writeState(scene.state));

@@ -150,8 +150,6 @@ const Case kCases[] = {
 /// They share a batch.
 constexpr std::array<std::uint32_t, 4> kPoints{16, 13, 10, 9};
 
-constexpr StrandStorage kStorages[] = {StrandStorage::threads, StrandStorage::lanes};
-
 /// How far strands may be off: `mayDiffer` of them farther than `tolerance`, none farther than `most`.
 struct Allowance {
     double tolerance = 0.0;
@@ -159,14 +157,14 @@ struct Allowance {
     double most = std::numeric_limits<double>::infinity();
 };
 
-/// With a lane for each point the system of the lengths is solved in another order (parallel cyclic
+/// With lanes the system of the lengths is solved in another order (parallel cyclic
 /// reduction, not elimination). Where a random state makes it all but singular either order loses digits, and
 /// as many (reference_test.cpp).
 Allowance allowanceFor(const Case& what, const SimulationSettings& settings, Hair hair,
-                       StrandStorage storage) {
+                       const LayoutOptions& layout) {
     const bool nasty = hair == Hair::nasty;
     Allowance allowance{nasty ? what.nastyTolerance : what.tolerance, nasty ? what.mayDiffer : 0};
-    if (storage != StrandStorage::lanes) return allowance;
+    if (layout.storage != StrandStorage::lanes) return allowance;
     // Frames that are walked another way part behind folds.
     const bool folded = nasty && settings.angularStiffness > 0.0f;
     const bool held = settings.lengthIterations > 0 && settings.lengthMethod == LengthMethod::constraint;
@@ -207,10 +205,10 @@ TEST_P(Parity, OneSubstep) {
         SCOPED_TRACE(static_cast<int>(hair));
         Scene scene = test::makeScene(settings, hair, 7, kPoints, what.shift);
         if (!what.spheres) scene.spheres = scene.state.spheres = {};
-        for (const StrandStorage storage : kStorages) {
-            SCOPED_TRACE(static_cast<int>(storage));
-            StrandEngine engine = engineOf(scene.view(), scene.settings, options(storage));
-            compare(engine, scene, allowanceFor(what, settings, hair, storage));
+        for (const LayoutOptions& layout : kHeldLayouts) {
+            SCOPED_TRACE(nameOf(layout));
+            StrandEngine engine = engineOf(scene.view(), scene.settings, options(layout));
+            compare(engine, scene, allowanceFor(what, settings, hair, layout));
         }
     }
 }
@@ -223,10 +221,10 @@ TEST_P(Parity, ThreeSubsteps) {
     settings.substeps = 3;
     Scene scene = test::makeScene(settings, Hair::curled, 11, kPoints, what.shift);
     if (!what.spheres) scene.spheres = scene.state.spheres = {};
-    for (const StrandStorage storage : kStorages) {
-        SCOPED_TRACE(static_cast<int>(storage));
-        StrandEngine engine = engineOf(scene.view(), scene.settings, options(storage));
-        Allowance allowance = allowanceFor(what, settings, Hair::curled, storage);
+    for (const LayoutOptions& layout : kHeldLayouts) {
+        SCOPED_TRACE(nameOf(layout));
+        StrandEngine engine = engineOf(scene.view(), scene.settings, options(layout));
+        Allowance allowance = allowanceFor(what, settings, Hair::curled, layout);
         allowance.tolerance *= 20.0;
         allowance.most *= 20.0;
         // Through Direct3D under Wine a second strand of the 64 was seen to take another branch.
@@ -236,6 +234,29 @@ TEST_P(Parity, ThreeSubsteps) {
         compare(engine, scene, allowance);
     }
 }
+
+class ManySpheres : public GpuSimulationTest, public testing::WithParamInterface<std::size_t> {};
+
+/// More spheres than a kernel has constants, and more than a set has; all of them move.
+TEST_P(ManySpheres, ThreeSubsteps) {
+    SimulationSettings settings = bare();
+    collide(settings, CollisionResponse::radial);
+    settings.substeps = 3;
+    Scene scene = test::makeScene(settings, Hair::curled, 13, kPoints);
+    test::Dice dice(17);
+    scene.spheres.clear();
+    for (std::size_t n = 0; n < GetParam(); ++n)
+        scene.spheres.push_back({dice.inside(0.2f), dice.between(0.01f, 0.03f)});
+    scene.state.spheres = scene.spheres;
+    for (runtime::Sphere& sphere : scene.state.spheres)
+        sphere.center_ws = sphere.center_ws + dice.inside(0.005f);
+    for (const LayoutOptions& layout : kHeldLayouts) {
+        SCOPED_TRACE(nameOf(layout));
+        StrandEngine engine = engineOf(scene.view(), scene.settings, options(layout));
+        compare(engine, scene, {4e-6, 4});
+    }
+}
+INSTANTIATE_TEST_SUITE_P(Spheres, ManySpheres, testing::Values(30u, 40u, 70u));
 
 INSTANTIATE_TEST_SUITE_P(Effects, Parity, testing::ValuesIn(kCases),
                          [](const auto& instance) { return std::string(instance.param.name); });

@@ -108,7 +108,8 @@ TEST_F(Permutation, ManySpheresStandInABuffer) {
     SimulationSettings s = withoutAll();
     s.lengthIterations = 1;
     StrandEngine engine = engineOf(strands.view(), s, options());
-    const std::vector<runtime::Sphere> few(64, {{0.0f, 0.05f, 0.0f}, 0.01f}), many(65, few.front());
+    const std::vector<runtime::Sphere> few(HAIRLOOM_CONSTANT_SPHERES, {{0.0f, 0.05f, 0.0f}, 0.01f}),
+        many(HAIRLOOM_CONSTANT_SPHERES + 1, few.front());
     EXPECT_THAT(usedBy(engine, few), Not(Contains("spheres")));
     EXPECT_THAT(usedBy(engine, many), Contains("spheres"));
     EXPECT_THAT(usedBy(engine), Not(Contains("spheres")));
@@ -133,8 +134,8 @@ TEST_F(Permutation, KernelsOfTheProgramAreThoseOfDefaultPlans) {
             const BatchShape threads{16, true, true, StrandStorage::threads};
             asked.push_back(keyFor(runtime::plan(scene), scene.settings, threads, spheres, false).defines());
             if (device()->info().backend == gpu::Backend::Direct3D11) continue;
-            for (const bool tables : {false, true}) {
-                const BatchShape lanes{16, true, true, StrandStorage::lanes, 2, true, tables};
+            for (const std::uint32_t perThread : {1u, 2u}) {
+                const BatchShape lanes{16, true, true, StrandStorage::lanes, 2 * perThread, true, perThread};
                 asked.push_back(
                     keyFor(runtime::plan(scene), scene.settings, lanes, spheres, false).defines());
             }

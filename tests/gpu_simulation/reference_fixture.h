@@ -21,7 +21,6 @@ using runtime::SimulationSettings;
 using Places = std::vector<Vector3d>;  // of one strand
 
 inline constexpr double kSubstep = static_cast<double>(test::kStep);
-inline constexpr StrandStorage kStorages[] = {StrandStorage::threads, StrandStorage::lanes};
 inline constexpr std::uint32_t kReferencePoints[] = {12};
 
 /// Places relative to the root, and displacements in the last substep.
@@ -168,9 +167,9 @@ class Reference : public GpuSimulationTest {
               const std::function<Places(const Strand&, const Strand&)>& of, double share) {
         const std::vector<Strand> before = strandsOf(scene, scene.state);
         const std::vector<Strand> cpu = strandsOf(scene, test::runOnCpu(scene));
-        for (const StrandStorage storage : kStorages) {
-            SCOPED_TRACE(static_cast<int>(storage));
-            StrandEngine engine = engineOf(scene.view(), scene.settings, options(storage));
+        for (const LayoutOptions& layout : kHeldLayouts) {
+            SCOPED_TRACE(nameOf(layout));
+            StrandEngine engine = engineOf(scene.view(), scene.settings, options(layout));
             ASSERT_TRUE(engine.writeState(scene.state));
             ASSERT_TRUE(engine.step(scene.input()));
             const std::vector<Strand> gpu = strandsOf(scene, engine.readState().value());

@@ -41,11 +41,9 @@ class WholeRun : public GpuSimulationTest {
     }
 };
 
-class EachLayout : public WholeRun, public testing::WithParamInterface<StrandStorage> {};
-INSTANTIATE_TEST_SUITE_P(Layouts, EachLayout, testing::Values(StrandStorage::threads, StrandStorage::lanes),
-                         [](const auto& instance) {
-                             return instance.param == StrandStorage::lanes ? "lanes" : "threads";
-                         });
+class EachLayout : public WholeRun, public testing::WithParamInterface<LayoutOptions> {};
+INSTANTIATE_TEST_SUITE_P(Layouts, EachLayout, testing::ValuesIn(kHeldLayouts),
+                         [](const auto& instance) { return nameOf(instance.param); });
 
 /// Every effect on a head of hair that turns. Contacts amplify rounding, so that single points part; the hair
 /// as a whole does not, and no bound is broken.
@@ -83,13 +81,14 @@ TEST_P(EachLayout, EveryEffectStaysWithTheCpu) {
 
 /// Where a strand is kept between substeps, and whether loops are unrolled, is nothing that the hair notices.
 TEST_F(WholeRun, LayoutsAgree) {
-    const scenes::HeadOfHair head(40, 5);
+    const scenes::HeadOfHair head(40, 8);
     const SimulationSettings settings = scenes::settingsFor(scenes::Acting::windAndSpheres);
     std::vector<Float3> first;
     for (const LayoutOptions layout :
          {LayoutOptions{StrandStorage::threads, false}, LayoutOptions{StrandStorage::threads, true},
           LayoutOptions{StrandStorage::groups, false}, LayoutOptions{StrandStorage::buffers, false},
-          LayoutOptions{StrandStorage::lanes, false, 4}}) {
+          LayoutOptions{StrandStorage::lanes, false, 4, 1}, LayoutOptions{StrandStorage::lanes, false, 2, 2},
+          LayoutOptions{StrandStorage::wisps, false}}) {
         EngineOptions options;
         options.layout = layout;
         options.velocities = layout.unroll;
@@ -176,7 +175,7 @@ TEST_P(EachLayout, SleepsAndWakes) {
     for (int s = 0; s < 64; ++s) {
         // Two blocks, a metre apart.
         const Float3 root{s < 32 ? 0.0f : 1.0f, 0.1f, 0.001f * static_cast<float>(s)};
-        strands.addStraight(root, {0.0f, -1.0f, 0.0f}, 0.02f, 5);
+        strands.addStraight(root, {0.0f, -1.0f, 0.0f}, 0.02f, 8);
     }
     SimulationSettings s;
     s.sleepDelay = 0.1f;

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: MIT
+// Points against spheres, of a strand spread over threads; threads_collide.hlsli is the same, point after point. Each point
+// keeps a list of the spheres that are near its way, and the points of a thread leave theirs side by side.
+
+// Spheres of a set, as bits.
+uint2 allOfSet(uint count) {
+    return uint2(count >= 32u ? 0xffffffffu : (1u << count) - 1u,
+                 count >= 64u ? 0xffffffffu : count > 32u ? (1u << (count - 32u)) - 1u : 0u);
+}
+#if HAIR_SPHERES == 1
+typedef uint SphereBits;
+#define NO_SPHERES 0u
+SphereBits firstSpheres(uint count) { return allOfSet(count).x; }
+SphereBits bitOfSphere(uint k) { return 1u << k; }
+bool hasSphere(SphereBits spheres) { return spheres != 0u; }
+/// Takes the first one away.
+uint takeSphere(inout SphereBits spheres) {
+    const uint k = firstbitlow(spheres);
+    spheres &= spheres - 1u;
+    return k;
+}
+#else
+typedef uint2 SphereBits;
+#define NO_SPHERES uint2(0u, 0u)
+SphereBits firstSpheres(uint count) { return allOfSet(count); }
+SphereBits bitOfSphere(uint k) { return k < 32u ? uint2(1u << k, 0u) : uint2(0u, 1u << (k - 32u)); }
+bool hasSphere(SphereBits spheres) { return (spheres.x | spheres.y) != 0u; }
+uint takeSphere(inout SphereBits spheres) {
+    const bool low = spheres.x != 0u;
+    const uint k = low ? firstbitlow(spheres.x) : 32u + firstbitlow(spheres.y);
+    spheres = low ? uint2(spheres.x & (spheres.x - 1u), spheres.y) : uint2(0u, spheres.y & (spheres.y - 1u));
+    return k;
+}
+#endif
+
+/// The spheres of a set that a place can lie in until it is farther than `slack` from where the list was made, less what
+/// spheres have gone since the start of the frame.
+struct NearList {
+    SphereBits spheres;
+    float3 from_ws;
+    float slack;  // metres
+};
+static NearList gNear[OWN];
+
+void startLists() {
+    EACH_OWN(k) {
+        gNear[k].spheres = NO_SPHERES;
+        gNear[k].from_ws = float3(0, 0, 0);
+        gNear[k].slack = -1.0;
+    }
+}
+
+/// A set of spheres, first … first + count − 1, at the end of a substep.
+struct SphereSet {
+    uint first, count;
+    float3 root;
+    float step;
+};
+float3 centreOf(SphereSet set, uint k) { return sphereCentre(set.first + k, set.step) - set.root; }
+float reachOf(SphereSet set, uint k, float pearl) { return gSpheres[set.first + k].from.w + pearl; }
+
+bool listHolds(SphereSet set, uint k, float3 place) {
+    const float3 way = place + set.root - gNear[k].from_ws;
+    const float left = gNear[k].slack - gFrame.sphereWay * set.step;
+    return left > 0.0 && dot(way, way) < left * left;
+}
+
+/// Makes the lists of the thread's points anew where one of them does not hold: for ways twice as long as at the speed of now
+/// to the end of the frame.
+void keepLists(SphereSet set) {
+    bool hold = gFrame.sphereCount <= SPHERE_SET;
+    EACH_OWN(i) hold = hold && listHolds(set, i, gPosition[i]);
+    if (hold) return;
+    const float left = float(gFrame.substeps) - set.step + 1.0;
+    const float pearl = max(gFrame.pearlRoot, gFrame.pearlTip);
+    float margins[OWN];
+    EACH_OWN(j) {
+        const float3 moved = gPosition[j] - gPrevious[j];
+        margins[j] = (2.0 * sqrt(dot(moved, moved)) + gFrame.sphereWay) * left + 1e-3;
+        gNear[j].spheres = NO_SPHERES;
+        gNear[j].from_ws = gPosition[j] + set.root;
+        gNear[j].slack = margins[j] + gFrame.sphereWay * set.step;
+    }
+    [loop] for (uint k = 0; k < set.count; ++k) {
+        const float3 centre = sphereCentre(set.first + k, set.step);
+        // In the world, whose rounding the factor covers.
+        const float reach = reachOf(set, k, pearl) * 1.0001;
+        EACH_OWN(n) {
+            const float3 offset = gNear[n].from_ws - centre;
+            const float far = reach + margins[n];
+            if (dot(offset, offset) <= far * far) gNear[n].spheres |= bitOfSphere(k);
+        }
+    }
+}
+
+/// Those in which each of the thread's points lies, whose lists hold.
+void spheresTouched(SphereSet set, out SphereBits touched[OWN]) {
+    SphereBits left = NO_SPHERES;
+    EACH_OWN(i) {
+        touched[i] = NO_SPHERES;
+        left |= gNear[i].spheres;
+    }
+    [loop] while (hasSphere(left)) {
+        const uint k = takeSphere(left);
+        const float3 centre = centreOf(set, k);
+        EACH_OWN(n) {
+            const float3 offset = gPosition[n] - centre;
+            const float reach = reachOf(set, k, pearlAt(pointOf(n)));
+            if (isFree(n) && dot(offset, offset) < reach * reach) touched[n] |= bitOfSphere(k);
+        }
+    }
+}
+
+Contact contactOf(SphereSet set, uint k, float pearl, float3 from) {
+    Contact contact;
+    contact.centre = centreOf(set, k);
+    contact.step = gSpheres[set.first + k].step.xyz;
+    contact.reach = reachOf(set, k, pearl);
+    contact.from = from;
+    return contact;
+}
+
+/// The way out of sphere `next` for a point that left sphere `last` into it, from the centre of `next`.
+float3 wayOut(SphereSet set, uint last, uint next, float pearl, float3 at) {
+    const Contact left = contactOf(set, last, pearl, float3(0, 0, 0));
+    const float3 centre = centreOf(set, next);
+    bool meet;
+    const float3 onCircle = nearestOfCircle(at, left, centre, reachOf(set, next, pearl), meet);
+    return meet ? onCircle : at - centre;
+}
+
+/// Points that left a sphere, `last`, into others of a union go to the circle that their last sphere and the one in
+/// which they are deepest have in common, until they are free. `settles`: those that left one.
+void settleOwn(SphereSet set, uint last[OWN], bool settles[OWN], inout float3 ats[OWN], inout float3 befores[OWN]) {
+    [loop] for (uint n = 0; n < 16; ++n) {
+        SphereBits near[OWN], left = NO_SPHERES;
+        float deepest[OWN];
+        uint next[OWN];
+        bool inside[OWN];
+        EACH_OWN(i) {
+            deepest[i] = 0.0;
+            next[i] = last[i];
+            inside[i] = n > 0u;
+            near[i] = NO_SPHERES;
+            if (settles[i]) near[i] = listHolds(set, i, ats[i]) ? gNear[i].spheres : firstSpheres(set.count);
+            // It was just placed on that one.
+            if (n == 0u) near[i] &= ~bitOfSphere(last[i]);
+            left |= near[i];
+        }
+        [loop] while (hasSphere(left)) {
+            const uint k = takeSphere(left);
+            const float3 centre = centreOf(set, k);
+            EACH_OWN(t) {
+                const float3 offset = ats[t] - centre;
+                const float reach = reachOf(set, k, pearlAt(pointOf(t))), squared = dot(offset, offset);
+                const bool counts = hasSphere(near[t] & bitOfSphere(k));
+                inside[t] = inside[t] || (counts && squared < reach * reach);
+                // About twice the reach times the depth, but for the depth that rounding leaves.
+                const float depth = reach * (reach - 4e-6) - squared;
+                if (counts && depth > deepest[t]) {
+                    deepest[t] = depth;
+                    next[t] = k;
+                }
+            }
+        }
+        bool any = false;
+        EACH_OWN(m) {
+            settles[m] = settles[m] && inside[m] && deepest[m] > 0.0;
+            any = any || settles[m];
+        }
+        if (!any) return;
+        EACH_OWN(o) {
+            const float pearl = pearlAt(pointOf(o));
+            float3 at = ats[o], before = befores[o];
+            respond(contactOf(set, next[o], pearl, wayOut(set, last[o], next[o], pearl, at)), at, before);
+            ats[o] = settles[o] ? at : ats[o];
+            befores[o] = settles[o] ? before : befores[o];
+            last[o] = next[o];
+        }
+    }
+}
+
+/// Pushes the thread's points out of their spheres, but those that ask where the point before them has gone, of which it
+/// returns bits: deep in a sphere. Only spheres in which they are at the start count: one that another pushes them into is
+/// settled. What a point does not need is worked out all the same, so that the points go side by side.
+uint leaveOwn(SphereSet set, bool backward, SphereBits touched[OWN]) {
+    float3 ats[OWN] = gPosition;
+    float3 befores[OWN] = gPrevious;
+    uint asking = 0u;
+    SphereBits all = touched[0] | touched[OWN - 1];
+    [loop] while (hasSphere(all)) {
+        uint last[OWN];
+        bool settles[OWN];
+        EACH_OWN(i) {
+            const bool touches = hasSphere(touched[i]);
+            last[i] = 0u;
+            if (touches) last[i] = takeSphere(touched[i]);
+            const float3 offset = ats[i] - centreOf(set, last[i]);
+            Contact contact = contactOf(set, last[i], pearlAt(pointOf(i)), offset);
+            const float squared = dot(offset, offset), reachSquared = contact.reach * contact.reach;
+            settles[i] = touches && squared < reachSquared;
+            if (settles[i] && gFrame.lengthIterations > 0u && squared < reachSquared * (DEEP * DEEP)) {
+                asking |= 1u << i;
+                settles[i] = false;
+                touched[i] = NO_SPHERES;
+            }
+            float3 at = ats[i], before = befores[i];
+            if (backward) contact.from = backAlong(offset, at - before - contact.step, squared, contact.reach);
+            respond(contact, at, before);
+            ats[i] = settles[i] ? at : ats[i];
+            befores[i] = settles[i] ? before : befores[i];
+        }
+        settleOwn(set, last, settles, ats, befores);
+        all = touched[0] | touched[OWN - 1];
+    }
+    EACH_OWN(o) {
+        if ((asking & 1u << o) == 0u) {
+            gPosition[o] = ats[o];
+            gPrevious[o] = befores[o];
+        }
+    }
+    return asking;
+}
+
+/// Each thread whose points ask goes the way from the root.
+void collideFromRoot(SphereSet set, bool backward, uint asking) {
+    Quads places = quadsOf(gPosition);
+    EACH_OWN(i) places[i].w = (asking & 1u << i) != 0u ? 1.0 : 0.0;
+    tell(places, quadsOf(gPrevious));
+    if (asking == 0u) return;
+    const uint last = pointOf(firstbithigh(asking));
+    float3 inner = told(FIRST_FREE - 1).xyz;
+    [loop] for (uint p = FIRST_FREE; p <= last; ++p) {
+        const float4 place = told(p);
+        if (place.w == 0.0) {
+            inner = place.xyz;
+        } else {
+            const Touch own = touchSpheres(backward, p, place.xyz, toldToo(p).xyz, inner, true, set.first,
+                                           set.first + set.count, allOfSet(set.count), set.root, set.step);
+            EACH_OWN(k) {
+                if (p == pointOf(k)) {
+                    gPosition[k] = own.at;
+                    gPrevious[k] = own.before;
+                }
+            }
+            inner = own.at;
+        }
+    }
+}
+
+/// Pushes points and their pearls out of spheres (Eq. 14).
+void collide(bool backward) {
+    SphereSet set;
+    set.step = float(gSubstep + 1);
+    set.root = gRoot + gRootStep * set.step;
+    [loop] for (set.first = 0; set.first < gFrame.sphereCount; set.first += SPHERE_SET) {
+        set.count = min(gFrame.sphereCount - set.first, uint(SPHERE_SET));
+        keepLists(set);
+        SphereBits touched[OWN];
+        spheresTouched(set, touched);
+        const uint asking = leaveOwn(set, backward, touched);
+        if (anyOfGroup(asking != 0u)) collideFromRoot(set, backward, asking);
+    }
+}

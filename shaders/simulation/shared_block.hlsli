@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// A block of the engine whose strands are in several work groups, and which falls asleep as one: each group leaves what
+// it has seen, and the last of them judges.
+#if HAIR_SLEEP
+
+/// Looks, with all threads of the group, whether a root of the block moves in this frame.
+void lookAtRoots(uint block, uint lane) {
+    [loop] for (uint s = lane; s < HAIRLOOM_GROUP_STRANDS; s += HAIR_THREADS) {
+        if (rootMoves(block * HAIRLOOM_GROUP_STRANDS + s)) InterlockedOr(gGroupMoved, 1u);
+    }
+}
+
+/// Whether a block that was asleep stays so in this frame, to which each of its work groups comes alike. All threads of the
+/// group come by. `rested`: seconds for which it has been slow.
+bool sleepsOn(uint block, uint lane, uint strands, inout float rested) {
+    lookAtRoots(block, lane);
+    [loop] for (uint s = lane; s < HAIRLOOM_GROUP_STRANDS; s += HAIR_THREADS) {
+        if (sphereNear(gRootsTo[2 * (block * HAIRLOOM_GROUP_STRANDS + s)].xyz)) InterlockedOr(gGroupNear, 1u);
+    }
+    GroupMemoryBarrierWithGroupSync();
+    if (gGroupMoved != 0u || gGroupNear != 0u || gFrame.wakeAll != 0u) {
+        rested = 0.0;
+        return false;
+    }
+    // One work group of the block keeps the time.
+    if (lane == 0 && gSlot == block * HAIRLOOM_GROUP_STRANDS) {
+        gRests[2 * block] = rested + gFrame.dt;
+        InterlockedAdd(gReport[REPORT_ASLEEP], strands);
+    }
+    return true;
+}
+
+// In what is gathered of a block: groups that are not slow count as so many.
+#define NOT_SLOW 0x10000u
+
+/// What the first thread of each work group of a block leaves, and what the last of them makes of it.
+void judgeBlock(uint block, uint strands, float rested) {
+    const bool slowHere = gGroupMoved == 0u && gGroupRestored == 0u && asfloat(gGroupFastest) < gFrame.slowSquared;
+    uint before;
+    InterlockedAdd(gGathered[block], slowHere ? 1u : NOT_SLOW + 1u, before);
+    if ((before & (NOT_SLOW - 1u)) + 1u < HAIRLOOM_GROUP_STRANDS / HAIR_STRANDS) return;
+    gGathered[block] = 0u;
+    const bool slow = slowHere && before < NOT_SLOW;
+    rested = slow ? rested + gFrame.dt : 0.0;
+    const bool asleep = slow && rested >= gFrame.sleepDelay;
+    gRests[2 * block] = rested;
+    gRests[2 * block + 1] = asleep ? 1.0 : 0.0;
+    if (asleep) InterlockedAdd(gReport[REPORT_ASLEEP], strands);
+}
+#endif
