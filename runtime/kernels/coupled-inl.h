@@ -193,10 +193,12 @@ void bendCoupled(const BlockView& given, LaneFrame& lanes, const SubstepContext&
     const BlockView block = localCopy(given);
     if (block.points <= block.firstFree) return;
     CoupledSystem system;
+    Strip strip;
     for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
-        SegmentPulls<kShape> pulls(block, lanes, context, lane);
+        const PlaneRows rows(block, lane);
+        SegmentPulls<kShape> pulls(block, rows, lanes, context, lane, strip);
         fillSystem(block, lane, system, [&](std::uint32_t s, std::size_t i) HWY_ATTR {
-            return openSegment(block, pulls.next(s), s, i, system.segments[s]);
+            return openSegment(block, pulls.next(rows.at(s), strip.points[s]), s, i, system.segments[s]);
         });
         factorSystem(block, context, lane, system);
         auto active = hn::Not(noLane());

@@ -82,6 +82,7 @@ void advanceFree(const BlockView& block, LaneFrame&, const SubstepContext&) {
 void advanceImplicitBend(const BlockView& block, LaneFrame&, const SubstepContext&) {
     const auto rateAt = [&](std::size_t i)
                             HWY_ATTR { return load3(block.position, i) - load3(block.previous, i); };
+    Strip strip;
     for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
         V3 behind = zero3(), from = rateAt(lane);
         const auto jointPull = [&](std::uint32_t j) HWY_ATTR {
@@ -95,13 +96,20 @@ void advanceImplicitBend(const BlockView& block, LaneFrame&, const SubstepContex
         };
         V3 pull = zero3();
         for (std::uint32_t j = 0; j < block.firstFree && j + 1 < block.points; ++j) pull = jointPull(j);
-        const auto forceOf = [&](std::uint32_t s) HWY_ATTR {
+        std::uint32_t s = block.firstFree - 1;
+        const auto forceOf = [&](const auto& row, const Strip::Point&) HWY_ATTR {
             const V3 inner = pull;
             pull = s + 2 < block.points ? jointPull(s + 1) : zero3();
-            return (inner - pull) * hn::Load(D(), block.inverseLength + std::size_t{s} * kBlockLanes + lane);
+            ++s;
+            return (inner - pull) * row.inverseLength();
         };
-        solveBend(block, lane, forceOf,
-                  [&](std::size_t i, V3 delta) HWY_ATTR { finishImplicit(block, i, rateAt(i) + delta); });
+        const PlaneRows rows(block, lane);
+        reduceBend(block, rows, strip, forceOf);
+        std::size_t i = std::size_t{block.points - 1} * kBlockLanes + lane;
+        finishBend(block, rows, strip, [&](const auto&, const Strip::Point&, V3 delta) HWY_ATTR {
+            finishImplicit(block, i, rateAt(i) + delta);
+            i -= kBlockLanes;
+        });
     }
     finishClamped(block);
 }
