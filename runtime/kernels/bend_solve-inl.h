@@ -101,31 +101,12 @@ template <bool kFolds, class Rows>
 HWY_INLINE Turning measureTurning(const BlockView& block, const Rows& rows, const LaneFrame& lanes,
                                   std::size_t lane, Strip& strip) {
     const V zero = hn::Zero(D()), one = all(1.0f);
-    const std::size_t first = block.firstFree - 1;
     const M3 turn = matrixOf(load4(lanes.turn, lane));
     V3 behind, normal;
     startFrames<true>(block, lanes, lane, behind, normal);
     Turning turning{zero, zero, one};
     auto known = hn::Not(noLane());
-    auto row = rows.at(0);
-    Strip::Point* at = strip.points;
-    for (std::size_t j = 0; j + 1 < block.points; ++j, ++at, row.advance()) {
-        Strip::Point& point = *at;
-        const V3 tangent = load3(point.direction);
-        store3(tangent, point.direction);
-        if (j >= first) {
-            const V3 held = turn * row.curve();
-            const V3 goal = fromFrame(behind, normal, row.target());
-            V3 change = goal - held;
-            if constexpr (kFolds) change = onlyWhere(known, change);
-            const V stiffness = row.stiffness();
-            const V3 off = tangent - behind - held;
-            turning.gain = hn::MulAdd(dot(off, change), stiffness, turning.gain);
-            turning.size = hn::MulAdd(dot(change, change), stiffness, turning.size);
-            store3(held, point.held);
-            store3(change, point.change);
-            store3(load3(point.turning) - off, point.ahead);
-        }
+    const auto carry = [&](V3 tangent) HWY_ATTR {
         const V along = dot(behind, tangent);
         if constexpr (kFolds) {
             normal = carryNormal(normal, behind, tangent, along);
@@ -135,6 +116,25 @@ HWY_INLINE Turning measureTurning(const BlockView& block, const Rows& rows, cons
             turning.sharpest = hn::Min(turning.sharpest, along);
         }
         behind = tangent;
+    };
+    Strip::Point* at = strip.points;
+    for (const Strip::Point* const first = at + (block.firstFree - 1); at < first; ++at)
+        carry(load3(at->direction));
+    auto row = rows.at(block.firstFree - 1);
+    for (const Strip::Point* const end = strip.points + (block.points - 1); at < end; ++at, row.advance()) {
+        const V3 tangent = load3(at->direction);
+        const V3 held = rotate(turn, row.curve());
+        const V3 goal = fromFrame(behind, normal, row.target());
+        V3 change = goal - held;
+        if constexpr (kFolds) change = onlyWhere(known, change);
+        const V stiffness = row.stiffness();
+        const V3 off = tangent - behind - held;
+        turning.gain = hn::MulAdd(dot(off, change), stiffness, turning.gain);
+        turning.size = hn::MulAdd(dot(change, change), stiffness, turning.size);
+        store3(held, at->held);
+        store3(change, at->change);
+        store3(load3(at->turning) - off, at->ahead);
+        carry(tangent);
     }
     return turning;
 }
@@ -181,8 +181,12 @@ class SegmentPulls {
         } else {
             measureBends(block, lanes, lane, strip);
         }
+        // Nothing bends at the tip.
+        Strip::Point& tip = strip.points[block.points - 1];
+        store3(zero3(), tip.held);
+        store3(zero3(), tip.change);
+        store3(zero3(), tip.ahead);
         const std::size_t first = block.firstFree - 1;
-        left_ = block.points - 1 - first;
         push_ = jointPush(rows.at(first), strip.points[first]);
     }
 
@@ -190,7 +194,7 @@ class SegmentPulls {
     template <class Row>
     HWY_INLINE V3 next(const Row& row, const Strip::Point& point) {
         const V3 inner = push_;
-        push_ = --left_ > 0 ? jointPush(row + 1, *(&point + 1)) : zero3();
+        push_ = jointPush(row + 1, *(&point + 1));
         return (push_ - inner) * row.inverseLength();
     }
 
@@ -209,7 +213,6 @@ class SegmentPulls {
 
     V share_;  // of curved hair
     V3 push_;
-    std::size_t left_;  // segments
 };
 
 /// Eliminates the points of a strip, root to tip, from (M + share·K) δ = −G with the factors of the block.
@@ -221,32 +224,40 @@ HWY_INLINE void reduceBend(const BlockView& block, const Rows& rows, Strip& stri
     auto row = rows.at(block.firstFree - 1);
     Strip::Point* at = strip.points + (block.firstFree - 1);
     V3 inner = forceOf(row, *at);
-    for (std::size_t left = block.points - block.firstFree; left > 0; --left) {
-        row.advance();
-        ++at;
-        const V3 outer = left > 1 ? forceOf(row, *at) : zero3();
+    const auto eliminate = [&](V3 outer) HWY_ATTR {
         const V3 near = negMulAdd(last, row.lower1(), outer - inner);
         const V3 right = negMulAdd(beforeLast, row.lower2(), near);
         store3(right, at->right);
         beforeLast = last;
         last = right;
         inner = outer;
+    };
+    for (std::size_t left = block.points - block.firstFree; left > 1; --left) {
+        row.advance();
+        ++at;
+        eliminate(forceOf(row, *at));
     }
+    row.advance();
+    ++at;
+    eliminate(zero3());
 }
 
-/// Calls take(row, point, δ) for each point, tip to root.
-template <class Rows, class Take>
-HWY_INLINE void finishBend(const BlockView& block, const Rows& rows, Strip& strip, Take&& take) {
-    V3 last = zero3(), beforeLast = zero3();
+/// Calls tip(row, point, δ) for the last point and take(row, point, δ) for each one before it, tip to root.
+template <class Rows, class Tip, class Take>
+HWY_INLINE void finishBend(const BlockView& block, const Rows& rows, Strip& strip, Tip&& tip, Take&& take) {
     auto row = rows.at(block.points - 1);
     Strip::Point* at = strip.points + (block.points - 1);
-    for (std::size_t after = 0; after < block.points - block.firstFree; ++after, --at, row.retreat()) {
-        V3 delta = load3(at->right) * row.inverseDiagonal();
-        if (after > 0) delta = negMulAdd(last, (row + 1).lower1(), delta);
-        if (after > 1) delta = negMulAdd(beforeLast, (row + 2).lower2(), delta);
+    V3 delta = load3(at->right) * row.inverseDiagonal();
+    // What the points solved so far take off the next one and the one after it.
+    V3 next = delta * row.lower1(), afterNext = delta * row.lower2();
+    tip(row, *at, delta);
+    for (std::size_t left = block.points - block.firstFree; left > 1; --left) {
+        row.retreat();
+        --at;
+        delta = mulSub(load3(at->right), row.inverseDiagonal(), next);
+        next = mulAdd(delta, row.lower1(), afterNext);
+        afterNext = delta * row.lower2();
         take(row, *at, delta);
-        beforeLast = last;
-        last = delta;
     }
 }
 
@@ -277,10 +288,11 @@ void bendBack(const BlockView& given, LaneFrame& lanes, const SubstepContext& co
             pullStrip<kShape, false>(block, rows, lanes, context, lane, strip);
         }
         float* place = block.position.x + (block.points - 1) * kBlockLanes + lane;
-        finishBend(block, rows, strip, [&](const auto&, const Strip::Point&, V3 delta) HWY_ATTR {
+        const auto move = [&](const auto&, const Strip::Point&, V3 delta) HWY_ATTR {
             store3(load3(place, block.pitch) + delta, place, block.pitch);
             place -= kBlockLanes;
-        });
+        };
+        finishBend(block, rows, strip, move, move);
     }
 }
 

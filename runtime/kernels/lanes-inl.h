@@ -101,6 +101,10 @@ HWY_INLINE BlockView localCopy(const BlockView& given) {
 HWY_INLINE V3 mulAdd(V3 a, V s, V3 b) {
     return {hn::MulAdd(a.x, s, b.x), hn::MulAdd(a.y, s, b.y), hn::MulAdd(a.z, s, b.z)};
 }
+/// a · s − b.
+HWY_INLINE V3 mulSub(V3 a, V s, V3 b) {
+    return {hn::MulSub(a.x, s, b.x), hn::MulSub(a.y, s, b.y), hn::MulSub(a.z, s, b.z)};
+}
 /// b − a · s.
 HWY_INLINE V3 negMulAdd(V3 a, V s, V3 b) {
     return {hn::NegMulAdd(a.x, s, b.x), hn::NegMulAdd(a.y, s, b.y), hn::NegMulAdd(a.z, s, b.z)};
@@ -110,6 +114,11 @@ HWY_INLINE V lerp(V a, V b, V t) {
 }
 HWY_INLINE V dot(V3 a, V3 b) {
     return hn::MulAdd(a.z, b.z, hn::MulAdd(a.y, b.y, a.x * b.x));
+}
+/// The same with each product and sum rounded, for systems whose forces and moves must match to the last
+/// digit.
+HWY_INLINE V dotRoundingEach(V3 a, V3 b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 HWY_INLINE V3 cross(V3 a, V3 b) {
     return {hn::NegMulAdd(a.z, b.y, a.y * b.z), hn::NegMulAdd(a.x, b.z, a.z * b.x),
@@ -150,7 +159,7 @@ struct StripRow3 {
 struct M3 {
     V3 x, y, z;
 };
-HWY_INLINE V3 operator*(const M3& m, V3 v) {
+HWY_INLINE V3 rotate(const M3& m, V3 v) {
     return {dot(m.x, v), dot(m.y, v), dot(m.z, v)};
 }
 /// Of a rotation of unit length.

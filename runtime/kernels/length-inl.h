@@ -120,22 +120,25 @@ HWY_INLINE void applyTension(const BlockView& block, const Rows& rows, const Sub
     const Strip::Point* point = strip.points + (block.firstFree - 1);
     V lambda = load(point->tension), innerMass = row.inverseMass();
     V3 inner = load3(point->direction) * lambda;
-    for (std::size_t left = block.points - block.firstFree; left > 0; --left, at += kBlockLanes) {
+    const auto move = [&](V3 force, V mass) HWY_ATTR {
+        const V3 before = load3(at, block.pitch);
+        store3(kHolding == Holding::rates ? negMulAdd(force, mass, before) : mulAdd(force, mass, before), at,
+               block.pitch);
+    };
+    for (std::size_t left = block.points - block.firstFree; left > 1; --left, at += kBlockLanes) {
         const V mass = (row + 1).inverseMass();
         if constexpr (kKept) keepTension(row, context, innerMass + mass, lambda);
         row.advance();
         ++point;
-        V3 outer = zero3();
-        if (left > 1) {
-            lambda = hn::MulAdd(load(point->upper), lambda, load(point->tension));
-            outer = load3(point->direction) * lambda;
-        }
-        const V3 before = load3(at, block.pitch), force = outer - inner;
-        store3(kHolding == Holding::rates ? negMulAdd(force, mass, before) : mulAdd(force, mass, before), at,
-               block.pitch);
+        lambda = hn::MulAdd(load(point->upper), lambda, load(point->tension));
+        const V3 outer = load3(point->direction) * lambda;
+        move(outer - inner, mass);
         inner = outer;
         innerMass = mass;
     }
+    const V mass = (row + 1).inverseMass();
+    if constexpr (kKept) keepTension(row, context, innerMass + mass, lambda);
+    move(zero3() - inner, mass);
 }
 
 /// Fills the directions at the start of the substep.
@@ -206,18 +209,18 @@ HWY_INLINE void bendAndHoldStrip(const BlockView& block, const Rows& rows, const
     pullStrip<kShape, true>(block, rows, lanes, context, lane, strip);
     LengthElimination<Holding::places> lengths;
     float* at = block.position.x + (block.points - 1) * kBlockLanes + lane;
-    bool tip = true;
-    finishBend(block, rows, strip, [&](const auto& row, Strip::Point& point, V3 delta) HWY_ATTR {
+    const auto move = [&](V3 delta) HWY_ATTR {
         const V3 place = load3(at, block.pitch) + delta;
         store3(place, at, block.pitch);
         at -= kBlockLanes;
-        if (tip) {
-            lengths.open(row, place, zero3());
-        } else {
-            lengths.template take<false>(row, point, place, zero3());
-        }
-        tip = false;
-    });
+        return place;
+    };
+    finishBend(
+        block, rows, strip,
+        [&](const auto& row, const Strip::Point&, V3 delta)
+            HWY_ATTR { lengths.open(row, move(delta), zero3()); },
+        [&](const auto& row, Strip::Point& point, V3 delta)
+            HWY_ATTR { lengths.template take<false>(row, point, move(delta), zero3()); });
     const std::size_t clamped = block.firstFree - 1;
     lengths.template take<true>(rows.at(clamped), strip.points[clamped], load3(at, block.pitch), zero3());
     applyTension<Holding::places, true>(block, rows, context, lane, strip);
