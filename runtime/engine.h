@@ -75,7 +75,8 @@ class Engine {
     std::size_t effectBytes(Effect effect) const;
     /// Memory of strands, roots and bookkeeping.
     std::size_t baseBytes() const;
-    /// Of all positions and speeds; equal for any number of threads and any instruction set.
+    /// Of all positions and speeds; equal for any number of threads, and for all instruction sets that have
+    /// fused multiply-add as for all that have not.
     std::uint64_t stateHash() const { return state_.hash(); }
     /// Name of the instruction set in use.
     static const char* instructionSet();

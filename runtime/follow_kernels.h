@@ -2,8 +2,8 @@
 #pragma once
 // The seam between FollowHairs and its inner loops. A row is one quantity along a strand, x y z x y z …,
 // which starts on a cache line and is padded to whole ones: a hair is a weighted sum of rows, and the sum
-// needs no shuffles. Like the engine's kernels, these use only exactly rounded operations without fused
-// multiply-add.
+// needs no shuffles. Like the engine's kernels, these use only exactly rounded operations, and
+// fused multiply-add where the instruction set has it and they say so.
 
 #include <array>
 #include <cstddef>

@@ -156,13 +156,13 @@ SubstepContext substepContext(const SimulationSettings& settings, const EffectPl
 }
 
 float slowestSwept(const SubstepContext& context) {
-    float smallest = 1e30f, fastest = 0.0f;
+    float smallest = 1e30f, fastestSquared = 0.0f;
     for (const MovingSphere& sphere : context.spheres) {
-        smallest = std::fmin(smallest, sphere.radius);
-        fastest = std::fmax(fastest, length(sphere.step));
+        smallest = std::min(smallest, sphere.radius);
+        fastestSquared = std::max(fastestSquared, dot(sphere.step, sphere.step));
     }
-    smallest += std::fmin(context.pearlRoot, context.pearlTip);
-    return std::fmax(0.999f * kUnsweptShare * smallest - 1.001f * fastest, 0.0f);
+    smallest += std::min(context.pearlRoot, context.pearlTip);
+    return std::max(0.999f * kUnsweptShare * smallest - 1.001f * std::sqrt(fastestSquared), 0.0f);
 }
 
 }  // namespace hairloom::runtime

@@ -3,7 +3,9 @@
 // The seam between the engine and its inner loops. A kernel is a stage over one block: kBlockLanes strands of
 // equal point count, stored so that neighbouring lanes are neighbouring strands (index = point · kBlockLanes
 // + lane). The block keeps this shape for every instruction set, and kernels use only exactly rounded
-// operations without fused multiply-add, so the results have the same bits on each of them.
+// operations. Where a product and a sum may be rounded once, kernels say so (MulAdd), and compilers fuse
+// nothing on their own: all instruction sets that have fused multiply-add (AVX2, AVX-512, NEON) give the same
+// bits, and so do all that have not (SSE4 and before, plain C++).
 //
 // Forces add a·h² to a point's displacement by taking it from `previous`; integrators that evaluate forces
 // elsewhere put that place into `position` and the displacement that counts as velocity there into `previous`
@@ -72,6 +74,34 @@ struct BlockView {
     Planes start, rate, kick, sum, sumRate;
 };
 
+/// Which points of a block a sphere can reach before they have moved by a margin, found once and used for as
+/// many substeps as it holds (Verlet 1967). Of blocks of few points and spheres only.
+struct NearPoints {
+    static constexpr std::uint32_t kMostPoints = 64;   ///< of a strand
+    static constexpr std::uint32_t kMostGroups = 512;  ///< with one more there is no list
+
+    /// Some of kNearPoints points on end, of a strip of lanes.
+    struct Group {
+        std::uint16_t sphere, lane, first;
+        std::uint16_t points;  ///< a bit for each, from `first` on
+    };
+    static constexpr std::uint32_t kGroupPoints = 16;
+
+    bool made = false;
+    std::uint32_t substep;  ///< in which the list was made
+    std::uint32_t groupCount;
+    float margin;               ///< metres that a point can move relative to its root
+    float step;                 ///< metres in a substep that a sphere moves relative to a root, at most
+    Group groups[kMostGroups];  ///< by `first`, then by strip, then by sphere
+    /// Where the points were when the list was made, relative to their roots.
+    alignas(64) float places[3 * (kMostPoints * kBlockLanes + 16)];
+    std::uint64_t overlaps[64];       ///< of each sphere: those that can overlap it in this frame, as bits
+    std::uint64_t overlapsKnown = 0;  ///< which of them are filled
+};
+
+inline constexpr std::size_t kCopiedRows = 14;
+inline constexpr std::size_t kMostCopied = 64;
+
 /// What the strands of a block go through in one frame; lives on the stack of the thread that runs the block.
 struct alignas(64) LaneFrame {
     float root[3][kBlockLanes];          ///< at the start of the frame, world
@@ -83,6 +113,10 @@ struct alignas(64) LaneFrame {
     float windRoot[2][3]
                   [kBlockLanes];  ///< the air's way in one substep at start and end of the frame, at the root
     float windTip[2][3][kBlockLanes];
+    NearPoints near;  ///< kept by the stage `collision`
+    /// Of strands of at most kMostCopied points: what the pass of bending and lengths reads of them, in its
+    /// own order.
+    alignas(64) float copied[kCopiedRows * kMostCopied * kBlockLanes];
 };
 
 struct MovingSphere {
@@ -139,6 +173,8 @@ struct Kernels {
     /// Stages that follow each other, in one pass and with the same bits: damping or none, by 0 and 1, then
     /// the air's stage, by Air, then gravity or none, then `verlet`.
     Stage moves[2][kAirCount][2];
+    /// Likewise `angularStraight` or `angular`, then `length`, where tension is kept.
+    Stage bendAndHold[2];
     /// Multiplies every displacement by `factor`: the speed stays when the length of the substep changes.
     void (*rescale)(const BlockView& block, float factor);
     /// Fills windRoot and windTip, for substeps of h seconds, for the frame that begins at the phases `from`
@@ -155,6 +191,7 @@ struct Kernels {
     /// changes.
     bool (*takeRoots)(const float* before, float* next, bool sound, float cut, RootBounds& bounds);
     const char* target;  ///< name of the instruction set
+    bool fuses;          ///< MulAdd rounds once
 };
 
 /// The stages of a plan as passes over a block, as few as there are kernels for.

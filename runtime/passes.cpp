@@ -29,6 +29,16 @@ class StageReader {
         return nullptr;
     }
 
+    /// The pass of Kernels::bendAndHold that comes next, or null and nothing is taken.
+    Stage takeBendAndHold(const Kernels& kernels) {
+        const std::size_t begin = next_;
+        const bool curved = takeIf(StageId::angular);
+        if ((curved || takeIf(StageId::angularStraight)) && takeIf(StageId::length))
+            return kernels.bendAndHold[curved ? 1 : 0];
+        next_ = begin;
+        return nullptr;
+    }
+
   private:
     std::span<const StageId> stages_;
     std::size_t next_ = 0;
@@ -40,6 +50,7 @@ Passes passesOf(std::span<const StageId> stages, const Kernels& kernels) {
     Passes passes;
     for (StageReader reader(stages); !reader.atEnd();) {
         Stage pass = reader.takeMove(kernels);
+        if (!pass) pass = reader.takeBendAndHold(kernels);
         if (!pass) pass = kernels.stages[static_cast<std::size_t>(reader.take())];
         passes.calls[passes.count++] = pass;
     }

@@ -45,12 +45,17 @@ HWY_INLINE V3 tangentOf(V3 edge, V inverseLength) {
 /// bounded at 180°. `along` is a·b.
 HWY_INLINE V3 carryNormal(V3 normal, V3 from, V3 to, V along) {
     const V flat = hn::Max(all(1.0f) + along, all(1e-6f));
-    return normal - (from + to) * (dot(to, normal) / flat);
+    return negMulAdd(from + to, dot(to, normal) / flat, normal);
+}
+
+/// The same where the turn is known not to be near 180°.
+HWY_INLINE V3 carryOpenNormal(V3 normal, V3 from, V3 to, V along) {
+    return negMulAdd(from + to, dot(to, normal) / (all(1.0f) + along), normal);
 }
 
 /// A vector given in a segment's frame.
 HWY_INLINE V3 fromFrame(V3 tangent, V3 normal, V3 local) {
-    return tangent * local.x + normal * local.y + cross(tangent, normal) * local.z;
+    return mulAdd(cross(tangent, normal), local.z, mulAdd(normal, local.y, tangent * local.x));
 }
 
 /// The directions and the normal that the root carries, before the first segment.

@@ -14,6 +14,7 @@
 #include "runtime/kernels.h"
 #include "runtime/kernels/bend-inl.h"
 #include "runtime/kernels/lanes-inl.h"
+#include "runtime/kernels/rows-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {
@@ -27,42 +28,47 @@ inline constexpr float kLeakSpeed = 0.0015f;
 /// curves.
 inline constexpr float kFold = -0.95f;
 
-/// What the joints of a strip do in a substep before it is known how far their curves turn.
-struct Turning {
-    StripRow3 ahead;   ///< how far the tangent ahead of the joint is from the one behind it, q·moved on
-    StripRow3 change;  ///< from the curve that it holds to that of today's frame
-    V share;           ///< of `change` that it takes
+/// What a strip of strands works with in a substep, point after point. A joint and the segment behind a point
+/// have the point's number.
+struct Strip {
+    struct alignas(64) Point {
+        Lanes3 direction;      ///< of the segment at the start of the substep, by its rest length
+        Lanes3 turning;        ///< how much less the joint bends q of the way on
+        Lanes3 held;           ///< the curve of the joint, turned with the root
+        Lanes3 change;         ///< from there to the curve of today's frame
+        Lanes3 ahead;          ///< what the joint pulls against, reversed, before its curve changes
+        Lanes3 right;          ///< right side of the system of bending
+        Lanes upper, tension;  ///< of the system of lengths, as it is eliminated
+    };
+    Point points[kMaxPoints];
 };
 
-/// A segment's directions at `previous`, and q of the way to `position` farther on; read root to tip.
-class Directions {
-  public:
-    HWY_INLINE Directions(const BlockView& block, const SubstepContext& context, std::size_t lane)
-        : block_(block), q_(all(context.bendRate)), from_(load3(block.previous, lane)) {
-        moved_ = load3(block.position, lane) - from_;
-        lane_ = lane;
+/// Fills the directions of segments at `previous`, and `turning`: how much less each changes than the one
+/// before it, q of the way to `position`.
+template <class Rows>
+HWY_INLINE void readDirections(const BlockView& block, const Rows& rows, const SubstepContext& context,
+                               std::size_t lane, Strip& strip) {
+    const float* previous = block.previous.x + lane;
+    const float* position = block.position.x + lane;
+    const std::size_t pitch = block.pitch;
+    const V q = all(context.bendRate);
+    V3 from = load3(previous, pitch), moved = load3(position, pitch) - from, changeBehind = zero3();
+    auto row = rows.at(0);
+    Strip::Point* at = strip.points;
+    for (std::size_t left = block.points - 1; left > 0; --left, ++at, row.advance()) {
+        previous += kBlockLanes;
+        position += kBlockLanes;
+        const V inverseLength = row.inverseLength();
+        const V3 to = load3(previous, pitch);
+        const V3 movedNext = load3(position, pitch) - to;
+        store3((to - from) * inverseLength, at->direction);
+        const V3 change = (movedNext - moved) * (inverseLength * q);
+        store3(changeBehind - change, at->turning);
+        changeBehind = change;
+        from = to;
+        moved = movedNext;
     }
-
-    V3 now, later;
-
-    HWY_INLINE void read(std::uint32_t s) {
-        const std::size_t i = std::size_t{s} * kBlockLanes + lane_;
-        const V inverseLength = hn::Load(D(), block_.inverseLength + i);
-        const V3 to = load3(block_.previous, i + kBlockLanes);
-        const V3 moved = load3(block_.position, i + kBlockLanes) - to;
-        const V3 edge = to - from_;
-        now = edge * inverseLength;
-        later = (edge + (moved - moved_) * q_) * inverseLength;
-        from_ = to;
-        moved_ = moved;
-    }
-
-  private:
-    const BlockView& block_;
-    const V q_;
-    V3 from_, moved_;
-    std::size_t lane_ = 0;
-};
+}
 
 /// Share of the change that the tank pays, and what that leaves in it. Turning by the share α changes the
 /// energy by ½ α² size − α gain.
@@ -84,45 +90,80 @@ HWY_INLINE V payFromTank(const BlockView& block, const SubstepContext& context, 
     return part;
 }
 
-/// Turns the curves that the joints hold with the root, and finds how far they go on towards those of the
-/// frames at `previous`. The pulls leave out what turning a curve does to the frame's own strand, so curves
-/// that simply followed would feed energy into curly hair without end. They follow as far as the strand's
-/// tank lasts: it holds what earlier turning took out of the springs, so that no energy comes from nowhere
-/// (passivity by energy tanks, as Duindam and Stramigioli 2004). While the strand rests, curves that lag
-/// creep home.
-HWY_INLINE void followFrames(const BlockView& block, const LaneFrame& lanes, const SubstepContext& context,
-                             std::size_t lane, Turning& turning) {
-    const V zero = hn::Zero(D());
-    const std::uint32_t first = block.firstFree - 1;
+/// Energy that the joints of a strip gain and pay where their curves change by the share 1.
+struct Turning {
+    V gain, size;
+    V sharpest;  ///< least cosine of a turn
+};
+
+/// The joints' changes and what they pull against. With `kFolds`, joints behind a fold keep their curves.
+template <bool kFolds, class Rows>
+HWY_INLINE Turning measureTurning(const BlockView& block, const Rows& rows, const LaneFrame& lanes,
+                                  std::size_t lane, Strip& strip) {
+    const V zero = hn::Zero(D()), one = all(1.0f);
     const M3 turn = matrixOf(load4(lanes.turn, lane));
     V3 behind, normal;
     startFrames<true>(block, lanes, lane, behind, normal);
-    V3 behindLater = behind;
-    V gain = zero, size = zero;
+    Turning turning{zero, zero, one};
     auto known = hn::Not(noLane());
-    Directions directions(block, context, lane);
-    for (std::uint32_t j = 0; j + 1 < block.points; ++j) {
-        const std::size_t i = std::size_t{j} * kBlockLanes + lane;
-        directions.read(j);
-        const V3 tangent = directions.now;
-        if (j >= first) {
-            const V3 held = turn * load3(block.curve, i);
-            const V3 goal = fromFrame(behind, normal, load3(block.target, i));
-            const V3 change = onlyWhere(known, goal - held);
-            const V stiffness = hn::Load(D(), block.stiffness + i);
-            gain = gain + dot(tangent - behind - held, change) * stiffness;
-            size = size + dot(change, change) * stiffness;
-            store3(held, block.curve, i);
-            turning.change.set(j, change);
-            turning.ahead.set(j, directions.later - behindLater);
-        }
+    const auto carry = [&](V3 tangent) HWY_ATTR {
         const V along = dot(behind, tangent);
-        normal = carryNormal(normal, behind, tangent, along);
-        known = hn::AndNot(along < all(kFold), known);
+        if constexpr (kFolds) {
+            normal = carryNormal(normal, behind, tangent, along);
+            known = hn::AndNot(along < all(kFold), known);
+        } else {
+            normal = carryOpenNormal(normal, behind, tangent, along);
+            turning.sharpest = hn::Min(turning.sharpest, along);
+        }
         behind = tangent;
-        behindLater = directions.later;
+    };
+    Strip::Point* at = strip.points;
+    for (const Strip::Point* const first = at + (block.firstFree - 1); at < first; ++at)
+        carry(load3(at->direction));
+    auto row = rows.at(block.firstFree - 1);
+    for (const Strip::Point* const end = strip.points + (block.points - 1); at < end; ++at, row.advance()) {
+        const V3 tangent = load3(at->direction);
+        const V3 held = rotate(turn, row.curve());
+        const V3 goal = fromFrame(behind, normal, row.target());
+        V3 change = goal - held;
+        if constexpr (kFolds) change = onlyWhere(known, change);
+        const V stiffness = row.stiffness();
+        const V3 off = tangent - behind - held;
+        turning.gain = hn::MulAdd(dot(off, change), stiffness, turning.gain);
+        turning.size = hn::MulAdd(dot(change, change), stiffness, turning.size);
+        store3(held, at->held);
+        store3(change, at->change);
+        store3(load3(at->turning) - off, at->ahead);
+        carry(tangent);
     }
-    turning.share = payFromTank(block, context, lane, gain, size);
+    return turning;
+}
+
+/// Turns the curves that the joints hold with the root, and finds how far they go on towards those of the
+/// frames at `previous`; the share of each joint's change. The pulls leave out what turning a curve does to
+/// the frame's own strand, so curves that simply followed would feed energy into curly hair without end. They
+/// follow as far as the strand's tank lasts: it holds what earlier turning took out of the springs, so that
+/// no energy comes from nowhere (passivity by energy tanks, as Duindam and Stramigioli 2004). While the
+/// strand rests, curves that lag creep home.
+template <class Rows>
+HWY_INLINE V followFrames(const BlockView& block, const Rows& rows, const LaneFrame& lanes,
+                          const SubstepContext& context, std::size_t lane, Strip& strip) {
+    Turning turning = measureTurning<false>(block, rows, lanes, lane, strip);
+    if (HWY_UNLIKELY(!hn::AllFalse(D(), turning.sharpest < all(kFold))))
+        turning = measureTurning<true>(block, rows, lanes, lane, strip);
+    return payFromTank(block, context, lane, turning.gain, turning.size);
+}
+
+/// What the joints of straight hair pull against.
+HWY_INLINE void measureBends(const BlockView& block, const LaneFrame& lanes, std::size_t lane, Strip& strip) {
+    V3 behind, normal;
+    startFrames<false>(block, lanes, lane, behind, normal);
+    Strip::Point* at = strip.points;
+    for (std::size_t left = block.points - 1; left > 0; --left, ++at) {
+        const V3 direction = load3(at->direction);
+        store3(load3(at->turning) - (direction - behind), at->ahead);
+        behind = direction;
+    }
 }
 
 /// What the segments pull with, read root to tip: the gradient of the bending energy by a segment's outer
@@ -130,104 +171,107 @@ HWY_INLINE void followFrames(const BlockView& block, const LaneFrame& lanes, con
 template <Shape kShape>
 class SegmentPulls {
   public:
-    HWY_INLINE SegmentPulls(const BlockView& block, const LaneFrame& lanes, const SubstepContext& context,
-                            std::size_t lane)
-        : block_(block), lane_(lane), directions_(block, context, lane) {
-        const std::uint32_t first = block.firstFree - 1;
+    template <class Rows>
+    HWY_INLINE SegmentPulls(const BlockView& block, const Rows& rows, const LaneFrame& lanes,
+                            const SubstepContext& context, std::size_t lane, Strip& strip)
+        : share_(hn::Zero(D())) {
+        readDirections(block, rows, context, lane, strip);
         if constexpr (kShape == Shape::curved) {
-            followFrames(block, lanes, context, lane, turning_);
+            share_ = followFrames(block, rows, lanes, context, lane, strip);
         } else {
-            V3 normal;
-            startFrames<false>(block, lanes, lane, behind_, normal);
-            for (std::uint32_t s = 0; s < first; ++s) {
-                directions_.read(s);
-                behind_ = directions_.later;
-            }
+            measureBends(block, lanes, lane, strip);
         }
-        pull_ = jointPull(first);
+        // Nothing bends at the tip.
+        Strip::Point& tip = strip.points[block.points - 1];
+        store3(zero3(), tip.held);
+        store3(zero3(), tip.change);
+        store3(zero3(), tip.ahead);
+        const std::size_t first = block.firstFree - 1;
+        push_ = jointPush(rows.at(first), strip.points[first]);
     }
 
-    /// Of segment s, each from firstFree − 1 on after the one before.
-    HWY_INLINE V3 next(std::uint32_t s) {
-        const V3 inner = pull_;
-        pull_ = s + 2 < block_.points ? jointPull(s + 1) : zero3();
-        return (inner - pull_) * hn::Load(D(), block_.inverseLength + std::size_t{s} * kBlockLanes + lane_);
+    /// Of a segment, from firstFree − 1 on each after the one before.
+    template <class Row>
+    HWY_INLINE V3 next(const Row& row, const Strip::Point& point) {
+        const V3 inner = push_;
+        push_ = jointPush(row + 1, *(&point + 1));
+        return (push_ - inner) * row.inverseLength();
     }
 
   private:
-    HWY_INLINE V3 jointPull(std::uint32_t j) {
-        const std::size_t i = std::size_t{j} * kBlockLanes + lane_;
-        V3 off;
+    /// A joint's pull, reversed.
+    template <class Row>
+    HWY_INLINE V3 jointPush(const Row& row, const Strip::Point& point) const {
+        V3 off = load3(point.ahead);
         if constexpr (kShape == Shape::curved) {
-            const V3 curve = load3(block_.curve, i) + turning_.change[j] * turning_.share;
-            store3(curve, block_.curve, i);
-            off = turning_.ahead[j] - curve;
-        } else {
-            directions_.read(j);
-            off = directions_.later - behind_;
-            behind_ = directions_.later;
+            const V3 change = load3(point.change);
+            row.setCurve(mulAdd(change, share_, load3(point.held)));
+            off = mulAdd(change, share_, off);
         }
-        return off * hn::Load(D(), block_.stiffness + i);
+        return off * row.stiffness();
     }
 
-    const BlockView& block_;
-    const std::size_t lane_;
-    Turning turning_;        // of curved hair
-    Directions directions_;  // of straight hair
-    V3 behind_;
-    V3 pull_;
+    V share_;  // of curved hair
+    V3 push_;
 };
 
-/// Solves (M + share·K) δ = −G along a strip of strands with the factors of the block, and calls take(index,
-/// δ), tip to root. forceOf(s) is the force G of segment s on its outer point, reversed on its inner one; it
-/// is asked for root to tip.
-template <class ForceOf, class Take>
-HWY_INLINE void solveBend(const BlockView& block, std::size_t lane, ForceOf&& forceOf, Take&& take) {
-    StripRow3 rights;
+/// Eliminates the points of a strip, root to tip, from (M + share·K) δ = −G with the factors of the block.
+/// forceOf(row, point) is the force G of a segment on its outer point, reversed on its inner one; it is asked
+/// for root to tip.
+template <class Rows, class ForceOf>
+HWY_INLINE void reduceBend(const BlockView& block, const Rows& rows, Strip& strip, ForceOf&& forceOf) {
     V3 last = zero3(), beforeLast = zero3();
-    V3 inner = forceOf(block.firstFree - 1);
-    for (std::uint32_t p = block.firstFree; p < block.points; ++p) {
-        const std::size_t i = std::size_t{p} * kBlockLanes + lane;
-        const V3 outer = p + 1 < block.points ? forceOf(p) : zero3();
-        const V3 right = outer - inner - last * hn::Load(D(), block.lower1 + i) -
-                         beforeLast * hn::Load(D(), block.lower2 + i);
-        rights.set(p, right);
+    auto row = rows.at(block.firstFree - 1);
+    Strip::Point* at = strip.points + (block.firstFree - 1);
+    V3 inner = forceOf(row, *at);
+    const auto eliminate = [&](V3 outer) HWY_ATTR {
+        const V3 near = negMulAdd(last, row.lower1(), outer - inner);
+        const V3 right = negMulAdd(beforeLast, row.lower2(), near);
+        store3(right, at->right);
         beforeLast = last;
         last = right;
         inner = outer;
+    };
+    for (std::size_t left = block.points - block.firstFree; left > 1; --left) {
+        row.advance();
+        ++at;
+        eliminate(forceOf(row, *at));
     }
-    last = beforeLast = zero3();
-    for (std::uint32_t p = block.points; p-- > block.firstFree;) {
-        const std::size_t i = std::size_t{p} * kBlockLanes + lane;
-        V3 delta = rights[p] * hn::Load(D(), block.inverseDiagonal + i);
-        if (p + 1 < block.points) delta = delta - last * hn::Load(D(), block.lower1 + i + kBlockLanes);
-        if (p + 2 < block.points)
-            delta = delta - beforeLast * hn::Load(D(), block.lower2 + i + 2 * kBlockLanes);
-        take(i, delta);
-        beforeLast = last;
-        last = delta;
+    row.advance();
+    ++at;
+    eliminate(zero3());
+}
+
+/// Calls tip(row, point, δ) for the last point and take(row, point, δ) for each one before it, tip to root.
+template <class Rows, class Tip, class Take>
+HWY_INLINE void finishBend(const BlockView& block, const Rows& rows, Strip& strip, Tip&& tip, Take&& take) {
+    auto row = rows.at(block.points - 1);
+    Strip::Point* at = strip.points + (block.points - 1);
+    V3 delta = load3(at->right) * row.inverseDiagonal();
+    // What the points solved so far take off the next one and the one after it.
+    V3 next = delta * row.lower1(), afterNext = delta * row.lower2();
+    tip(row, *at, delta);
+    for (std::size_t left = block.points - block.firstFree; left > 1; --left) {
+        row.retreat();
+        --at;
+        delta = mulSub(load3(at->right), row.inverseDiagonal(), next);
+        next = mulAdd(delta, row.lower1(), afterNext);
+        afterNext = delta * row.lower2();
+        take(row, *at, delta);
     }
 }
 
 /// Angular springs after position Verlet: the step of their force through (M + (¼ + q) h² K)⁻¹, stable for
 /// any stiffness (docs/engine.md). With `kTense`, the tension of the last substep along the segments at the
 /// start of this one joins the force.
-template <Shape kShape, bool kTense>
-HWY_INLINE void bendStrip(const BlockView& block, const LaneFrame& lanes, const SubstepContext& context,
-                          std::size_t lane) {
-    SegmentPulls<kShape> pulls(block, lanes, context, lane);
-    V3 from = load3(block.previous, std::size_t{block.firstFree - 1} * kBlockLanes + lane);
-    const auto forceOf = [&](std::uint32_t s) HWY_ATTR {
-        const V3 pull = pulls.next(s);
+template <Shape kShape, bool kTense, class Rows>
+HWY_INLINE void pullStrip(const BlockView& block, const Rows& rows, const LaneFrame& lanes,
+                          const SubstepContext& context, std::size_t lane, Strip& strip) {
+    SegmentPulls<kShape> pulls(block, rows, lanes, context, lane, strip);
+    reduceBend(block, rows, strip, [&](const auto& row, const Strip::Point& point) HWY_ATTR {
+        const V3 pull = pulls.next(row, point);
         if constexpr (!kTense) return pull;
-        const std::size_t i = std::size_t{s} * kBlockLanes + lane;
-        const V3 to = load3(block.previous, i + kBlockLanes);
-        const V3 edge = to - from;
-        from = to;
-        return pull + edge * (hn::Load(D(), block.inverseLength + i) * hn::Load(D(), block.tension + i));
-    };
-    solveBend(block, lane, forceOf, [&](std::size_t i, V3 delta) HWY_ATTR {
-        store3(load3(block.position, i) + delta, block.position, i);
+        return mulAdd(load3(point.direction), row.tension(), pull);
     });
 }
 
@@ -235,12 +279,20 @@ template <Shape kShape>
 void bendBack(const BlockView& given, LaneFrame& lanes, const SubstepContext& context) {
     const BlockView block = localCopy(given);
     if (block.points <= block.firstFree) return;
+    Strip strip;
     for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+        const PlaneRows rows(block, lane);
         if (block.tension) {
-            bendStrip<kShape, true>(block, lanes, context, lane);
+            pullStrip<kShape, true>(block, rows, lanes, context, lane, strip);
         } else {
-            bendStrip<kShape, false>(block, lanes, context, lane);
+            pullStrip<kShape, false>(block, rows, lanes, context, lane, strip);
         }
+        float* place = block.position.x + (block.points - 1) * kBlockLanes + lane;
+        const auto move = [&](const auto&, const Strip::Point&, V3 delta) HWY_ATTR {
+            store3(load3(place, block.pitch) + delta, place, block.pitch);
+            place -= kBlockLanes;
+        };
+        finishBend(block, rows, strip, move, move);
     }
 }
 

@@ -15,6 +15,7 @@
 #include "hwy/highway.h"
 #include "runtime/kernels.h"
 #include "runtime/kernels/lanes-inl.h"
+#include "runtime/kernels/near-inl.h"
 #include "runtime/kernels/spheres-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -41,7 +42,7 @@ HWY_INLINE V3 respond(const BlockView& block, const SubstepContext& context, std
     const V3 previous = load3(block.previous, i);
     const V3 relative = position - previous - contact.step;
     const V along = dot(relative, normal);
-    const V3 sliding = relative - normal * along;
+    const V3 sliding = negMulAdd(normal, along, relative);
     const V approach = hn::Max(zero - along, zero);
     const V bounce = all(1.0f + context.restitution);
     const V impulse = approach * bounce;
@@ -50,8 +51,8 @@ HWY_INLINE V3 respond(const BlockView& block, const SubstepContext& context, std
     // Friction also takes back what the point has slid while inside, or sticking hair would creep.
     const V depth = hn::Max(contact.reach - direction.length, zero);
     const V slid = hn::Min(rate * hn::Min(depth, approach), all(1.0f));
-    const V3 after = relative + normal * impulse - sliding * lost;
-    const V3 placed = contact.centre + normal * contact.reach - sliding * slid;
+    const V3 after = negMulAdd(sliding, lost, mulAdd(normal, impulse, relative));
+    const V3 placed = negMulAdd(sliding, slid, mulAdd(normal, contact.reach, contact.centre));
     const V3 before = placed - (after + contact.step);
     store3(select(contact.touching, placed, position), block.position, i);
     store3(select(contact.touching, before, previous), block.previous, i);
@@ -113,22 +114,57 @@ HWY_INLINE V3 nearestOfCircle(V3 at, const Contact& contact, V3 centre, V reach,
            across * (hn::Sqrt(hn::Max(circle, zero)) * inverseSqrt(acrossSquared + all(1e-30f)));
 }
 
-/// Points that left one sphere into others of a union: each goes to the circle that its last sphere and the
+/// Metres that rounding leaves of a point inside the sphere that it was placed on.
+inline constexpr float kLeft = 4e-6f;
+
+/// Spheres of a set that can overlap each other, in one frame.
+class Overlaps {
+  public:
+    HWY_INLINE Overlaps(const SubstepContext& context, const SphereSet& spheres, NearPoints& near)
+        : spheres_(spheres), near_(near) {
+        float fastest = 0.0f;
+        for (const MovingSphere& sphere : context.spheres) fastest = std::fmax(fastest, length(sphere.step));
+        margin_ = 2.0f * fastest * static_cast<float>(context.count);
+    }
+
+    /// Those that can overlap sphere k, as bits.
+    HWY_INLINE std::uint64_t of(std::size_t k) {
+        const std::uint64_t bit = std::uint64_t{1} << k;
+        if ((near_.overlapsKnown & bit) == 0) near_.overlaps[k] = spheres_.overlapping(k, margin_);
+        near_.overlapsKnown |= bit;
+        return near_.overlaps[k];
+    }
+    /// Those that can overlap one of `some`.
+    HWY_INLINE std::uint64_t ofAny(std::uint64_t some) {
+        std::uint64_t all = some;
+        for (; some != 0; some &= some - 1) all |= of(static_cast<std::size_t>(std::countr_zero(some)));
+        return all;
+    }
+
+  private:
+    const SphereSet& spheres_;
+    NearPoints& near_;
+    float margin_;
+};
+
+/// Points that left one sphere into `others` of a union: each goes to the circle that its last sphere and the
 /// one in which it is deepest have in common, until it is free. Places on the surfaces of two spheres follow
 /// in one step; towards a corner of three the rest shrinks from step to step.
 HWY_NOINLINE void settle(const BlockView& block, const SubstepContext& context, const SphereSet& spheres,
-                         std::size_t i, V3 root, V pearl, Contact contact) {
+                         Overlaps& overlaps, std::size_t i, V3 root, V pearl, Contact contact,
+                         std::uint64_t others) {
     constexpr int kSteps = 16;
     for (int k = 0; k < kSteps; ++k) {
         const V3 at = load3(block.position, i);
         V3 centre = contact.centre, step = contact.step;
         V reach = contact.reach, deepest = hn::Zero(D());
-        for (std::size_t j = 0; j < context.spheres.size(); ++j) {
+        for (std::uint64_t left = others; left != 0; left &= left - 1) {
+            const auto j = static_cast<std::size_t>(std::countr_zero(left));
             const V3 itsCentre = spheres.centre(j) - root;
             const V itsReach = all(spheres.radius[j]) + pearl;
             const V3 offset = at - itsCentre;
-            // About twice the reach times the depth, but for the depth that rounding leaves.
-            const V depth = itsReach * (itsReach - all(4e-6f)) - dot(offset, offset);
+            // About twice the reach times the depth.
+            const V depth = itsReach * (itsReach - all(kLeft)) - dot(offset, offset);
             const auto deeper = depth > deepest;
             deepest = hn::IfThenElse(deeper, depth, deepest);
             centre = select(deeper, itsCentre, centre);
@@ -141,6 +177,7 @@ HWY_NOINLINE void settle(const BlockView& block, const SubstepContext& context, 
         const V3 onCircle = nearestOfCircle(at, contact, centre, reach, meet);
         contact = {inside, centre, step, reach, select(meet, onCircle, at - centre)};
         respond(block, context, i, contact);
+        others = overlaps.ofAny(others);
     }
 }
 
@@ -150,78 +187,72 @@ template <bool kBackward>
 class Contacts {
   public:
     HWY_INLINE Contacts(const BlockView& block, const LaneFrame& lanes, const SubstepContext& context,
-                        const SphereSet& spheres, const float* pearls, float step)
+                        const SphereSet& spheres, const float* pearls, NearPoints& near)
         : block_(block),
           context_(context),
           spheres_(spheres),
           pearls_(pearls),
+          overlaps_(context, spheres, near),
+          near_(near),
+          in_{block, lanes, context, spheres, pearls, roots_},
           deepest_(context.lengthIterations > 0 ? kDeep * kDeep : 0.0f) {
-        for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
-            store3(load3(lanes.root, lane) + load3(lanes.rootStep, lane) * all(step), roots_, lane);
+        const V step = all(static_cast<float>(context.index + 1));
+        for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth)
+            store3(load3(lanes.root, lane) + load3(lanes.rootStep, lane) * step, roots_, lane);
+    }
+
+    /// With the list of the block, which it makes where there is none that holds.
+    HWY_INLINE void runListed() {
+        if (!near_.made || !isStillNear(in_, near_)) findNear(in_, near_);
+        if (!near_.made) return run();
+        std::uint32_t next = 0;
+        while (next < near_.groupCount) {
+            const std::uint32_t first = near_.groups[next].first;
+            touchCount_ = 0;
+            for (; next < near_.groupCount && near_.groups[next].first == first; ++next)
+                findTouches(near_.groups[next]);
+            touchAll();
         }
     }
 
-    /// At most PieceBoxes::kMostPoints points.
-    HWY_INLINE void run(std::uint32_t begin, std::uint32_t end) {
-        findPieces(begin, end);
-        if (pieceCount_ == 0) return;
-        findPoints(end);
-        touchAll();
-    }
-
-  private:
-    /// What is out of reach is left out in three steps: spheres that miss the box of a strip, then pieces of
-    /// strands whose own boxes all miss it, then points.
-    HWY_INLINE void findPieces(std::uint32_t begin, std::uint32_t end) {
-        pieceCount_ = touchCount_ = 0;
-        PieceBoxes boxes;
-        for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
-            const V3 root = load3(roots_, lane);
-            WideBox world = WideBox::empty();
-            world.add(boxes.take(block_, lane, begin, end), root);
-            spheres_.forEachMeeting(world.reduced(), [&](std::size_t k) HWY_ATTR {
-                const V widest = all(spheres_.widest[k] * spheres_.widest[k] * 1.0001f);
-                const V3 centre = spheres_.centre(k) - root;
-                for (std::uint32_t piece = 0; piece < boxes.count; ++piece) {
-                    const bool misses = hn::AllFalse(D(), boxes.squaredGap(piece, centre) <= widest);
-                    pieces_[pieceCount_] = pair(k, begin + piece * PieceBoxes::kPoints, lane);
-                    pieceCount_ += misses ? 0u : 1u;
-                }
-            });
-        }
-    }
-
-    HWY_INLINE void findPoints(std::uint32_t end) {
-        for (std::uint32_t n = 0; n < pieceCount_; ++n) {
-            const std::size_t k = pieces_[n].sphere;
-            const std::uint32_t lane = pieces_[n].index % kBlockLanes;
-            const std::uint32_t first = pieces_[n].index / kBlockLanes;
-            const V3 centre = spheres_.centre(k) - load3(roots_, lane);
-            const V radius = all(spheres_.radius[k]);
-            for (std::uint32_t p = first; p < std::min(first + PieceBoxes::kPoints, end); ++p) {
-                const V reach = radius + all(pearls_[p]);
-                const V3 offset = load3(block_.position, std::size_t{p} * kBlockLanes + lane) - centre;
-                const auto inside = dot(offset, offset) < reach * reach;
-                touches_[touchCount_] = pair(k, p, lane);
-                hn::StoreMaskBits(D(), inside, touching_[touchCount_]);
-                touchCount_ += hn::AllFalse(D(), inside) ? 0u : 1u;
+    /// Without a list, some points of a strip after the other.
+    HWY_INLINE void run() {
+        NearPoints::Group groups[SphereSet::kMost];
+        for (std::uint32_t p = block_.firstFree; p < block_.points; p += NearPoints::kGroupPoints) {
+            const std::uint32_t end = std::min(p + NearPoints::kGroupPoints, block_.points);
+            for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+                const std::uint32_t count = findGroups(in_, lane, p, end, 0.0f, groups);
+                touchCount_ = 0;
+                for (std::uint32_t n = 0; n < count; ++n) findTouches(groups[n]);
+                touchAll();
             }
         }
     }
 
+  private:
+    HWY_INLINE void findTouches(NearPoints::Group group) {
+        const V3 centre = spheres_.centre(group.sphere) - load3(roots_, group.lane);
+        const V radius = all(spheres_.radius[group.sphere]);
+        const float* const pearls = pearls_ + group.first;
+        const std::size_t first = group.first * kBlockLanes + group.lane;
+        std::size_t count = touchCount_;
+        for (std::uint64_t left = group.points; left != 0; left &= left - 1) {
+            const auto n = static_cast<std::size_t>(std::countr_zero(left));
+            const std::size_t i = first + n * kBlockLanes;
+            const V reach = radius + all(pearls[n]);
+            const V3 offset = load3(block_.position.x + i, block_.pitch) - centre;
+            const std::uint32_t inside = bitsOf(dot(offset, offset) < reach * reach);
+            touches_[count] = {group.sphere, static_cast<std::uint16_t>(i), inside};
+            count += inside != 0 ? 1u : 0u;
+        }
+        touchCount_ = count;
+    }
+
     HWY_INLINE void touchAll() {
-        for (std::uint32_t t = 0; t < touchCount_; ++t) touch(t, overlapsOf(touches_[t].sphere));
+        for (std::size_t t = 0; t < touchCount_; ++t) touch(t);
     }
 
-    /// The spheres that overlap sphere k, as bits.
-    HWY_INLINE std::uint64_t overlapsOf(std::size_t k) {
-        const std::uint64_t bit = std::uint64_t{1} << k;
-        if ((overlapsKnown_ & bit) == 0) overlaps_[k] = spheres_.overlapping(k);
-        overlapsKnown_ |= bit;
-        return overlaps_[k];
-    }
-
-    HWY_INLINE void touch(std::uint32_t t, std::uint64_t others) const {
+    HWY_INLINE void touch(std::size_t t) {
         const std::size_t k = touches_[t].sphere, i = touches_[t].index;
         const V3 root = load3(roots_, touches_[t].index % kBlockLanes);
         const V pearl = all(pearls_[i / kBlockLanes]);
@@ -240,47 +271,44 @@ class Contacts {
             from = select(deep, acrossStrand(offset, at - load3(block_.position, i - kBlockLanes)), from);
         }
         // A sphere before may have taken the point out of this one.
-        const auto inside = hn::And(hn::LoadMaskBits(D(), touching_[t]), squared < reach * reach);
+        const auto inside = hn::And(maskOf(touches_[t].inside), squared < reach * reach);
         const V3 placed = respond(block_, context_, i, {inside, centre, step, reach, from});
+        const std::uint64_t others = overlaps_.of(k);
         auto again = noLane();
-        for (; others != 0; others &= others - 1) {
-            const auto other = static_cast<std::size_t>(std::countr_zero(others));
+        for (std::uint64_t left = others; left != 0; left &= left - 1) {
+            const auto other = static_cast<std::size_t>(std::countr_zero(left));
             const V3 itsOffset = placed - (spheres_.centre(other) - root);
             const V itsReach = all(spheres_.radius[other]) + pearl;
-            again = hn::Or(again, dot(itsOffset, itsOffset) < itsReach * itsReach);
+            again = hn::Or(again, dot(itsOffset, itsOffset) < itsReach * (itsReach - all(kLeft)));
         }
         again = hn::And(again, inside);
         if (HWY_LIKELY(hn::AllFalse(D(), again))) return;
-        settle(block_, context_, spheres_, i, root, pearl, {again, centre, step, reach, zero3()});
+        settle(block_, context_, spheres_, overlaps_, i, root, pearl, {again, centre, step, reach, zero3()},
+               others | (std::uint64_t{1} << k));
     }
 
     static constexpr std::uint32_t kStrips = kBlockLanes / kWidth;
 
-    struct Pair {
+    struct Touch {
         std::uint16_t sphere;
-        std::uint16_t index;  ///< of the first lane of a vector of points
+        std::uint16_t index;   ///< of the first lane of a vector of points
+        std::uint32_t inside;  ///< which lanes are
     };
     static_assert(kMaxPoints * kBlockLanes <= 0x10000);
-    static HWY_INLINE Pair pair(std::size_t sphere, std::uint32_t point, std::uint32_t lane) {
-        return {static_cast<std::uint16_t>(sphere), static_cast<std::uint16_t>(point * kBlockLanes + lane)};
-    }
-    // One more than there can be: the lists are written before it is known whether an entry stays.
-    static constexpr std::size_t kMostPieces = SphereSet::kMost * PieceBoxes::kMost * kStrips + 1;
-    static constexpr std::size_t kMostTouches = SphereSet::kMost * PieceBoxes::kMostPoints * kStrips + 1;
+    // One more than there can be: the list is written before it is known whether an entry stays.
+    static constexpr std::size_t kMostTouches = SphereSet::kMost * NearPoints::kGroupPoints * kStrips + 1;
 
     const BlockView& block_;
     const SubstepContext& context_;
     const SphereSet& spheres_;
     const float* const pearls_;
+    Overlaps overlaps_;
+    NearPoints& near_;
+    const NearInput in_;
     const float deepest_;  ///< square of kDeep; 0 where no length holds a point back
     alignas(64) float roots_[3][kBlockLanes];
-    std::uint64_t overlaps_[SphereSet::kMost];
-    std::uint64_t overlapsKnown_ = 0;  ///< which of them are filled
-    std::uint32_t pieceCount_ = 0;
-    std::uint32_t touchCount_ = 0;
-    Pair pieces_[kMostPieces];
-    Pair touches_[kMostTouches];
-    std::uint8_t touching_[kMostTouches][(kWidth + 7) / 8];
+    std::size_t touchCount_ = 0;
+    Touch touches_[kMostTouches];
 };
 
 /// Pushes points and their pearls out of spheres (Eq. 14). Where spheres overlap, a point that one of them
@@ -290,18 +318,22 @@ template <bool kBackward>
 void collide(const BlockView& given, LaneFrame& lanes, const SubstepContext& context) {
     const BlockView block = localCopy(given);
     const float step = static_cast<float>(context.index + 1);
+    const float largestPearl = std::fmax(context.pearlRoot, context.pearlTip);
     alignas(64) float pearls[kMaxPoints];
     fillPearls(block, context, pearls);
+    SphereSet spheres;
+    if (context.spheres.size() <= SphereSet::kMost && block.points <= NearPoints::kMostPoints) {
+        spheres.take(context.spheres, step, largestPearl);
+        Contacts<kBackward>(block, lanes, context, spheres, pearls, lanes.near).runListed();
+        return;
+    }
     SubstepContext part = context;
     for (std::size_t first = 0; first < context.spheres.size(); first += SphereSet::kMost) {
         part.spheres = context.spheres.subspan(
             first, std::min<std::size_t>(SphereSet::kMost, context.spheres.size() - first));
-        SphereSet spheres;
-        spheres.take(part.spheres, step, std::fmax(context.pearlRoot, context.pearlTip));
-        Contacts<kBackward> contacts(block, lanes, part, spheres, pearls, step);
-        for (std::uint32_t p = block.firstFree; p < block.points; p += PieceBoxes::kMostPoints) {
-            contacts.run(p, std::min(p + PieceBoxes::kMostPoints, block.points));
-        }
+        spheres.take(part.spheres, step, largestPearl);
+        lanes.near.overlapsKnown = 0;
+        Contacts<kBackward>(block, lanes, part, spheres, pearls, lanes.near).run();
     }
 }
 
@@ -401,12 +433,11 @@ void applyPenalty(const BlockView& block, LaneFrame& lanes, const SubstepContext
                      step, std::fmax(context.pearlRoot, context.pearlTip));
         for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
             const V3 root = load3(lanes.root, lane) + load3(lanes.rootStep, lane) * all(step);
-            for (std::uint32_t p = block.firstFree; p < block.points; p += PieceBoxes::kMostPoints) {
-                const std::uint32_t end = std::min(p + PieceBoxes::kMostPoints, block.points);
-                PieceBoxes boxes;
+            for (std::uint32_t p = block.firstFree; p < block.points; p += NearPoints::kGroupPoints) {
+                const std::uint32_t end = std::min(p + NearPoints::kGroupPoints, block.points);
                 WideBox world = WideBox::empty();
-                world.add(boxes.take(block, lane, p, end), root);
-                spheres.forEachMeeting(world.reduced(), [&](std::size_t k) HWY_ATTR {
+                world.add(boxOf(block, lane, p, end), root);
+                spheres.forEachMeeting(world.reduced(), 0.0f, [&](std::size_t k) HWY_ATTR {
                     push(block, {p, end, lane}, spheres.centre(k) - root, spheres.radius[k], pearls,
                          stiffness);
                 });

@@ -80,14 +80,14 @@ HWY_INLINE V3 openSegment(const BlockView& block, V3 pull, std::uint32_t s, std:
     const auto flat = inverseLength <= zero;
     const V3 start = edgeAt(block.previous, i), free = edgeAt(block.position, i);
     // Segments that turn by more than 60° are held where they go.
-    const auto alike = dot(start, free) > half * dot(free, free);
+    const auto alike = dotRoundingEach(start, free) > half * dotRoundingEach(free, free);
     const V3 direction = select(alike, start, free) * inverseLength;
     const V mass = reducedMass(block, s, i);
     const V tension = hn::Load(D(), block.tension + i);
     const V load = hn::Abs(tension) * inverseLength * all(kLoadHardness);
     const V hardness = mass * all(kHardness) + hn::Min(load, mass * all(kMostHardness));
     const V across = acrossOf(tension, inverseLength, mass);
-    const V wrong = half * (dot(free, free) * inverseLength - hn::Load(D(), block.length + i));
+    const V wrong = half * (dotRoundingEach(free, free) * inverseLength - hn::Load(D(), block.length + i));
     // Points without a distance are held together.
     segment = {direction, hn::IfThenElse(flat, zero, hardness), hn::IfThenElse(flat, hardness, across),
                wrong};
@@ -146,7 +146,7 @@ HWY_INLINE CoupledRest reopenSystem(const BlockView& block, std::size_t lane, Co
         const V length = hn::Load(D(), block.length + i);
         const V inverseLength = hn::Load(D(), block.inverseLength + i);
         const auto flat = inverseLength <= zero;
-        segment.wrong = all(0.5f) * (dot(edge, edge) * inverseLength - length);
+        segment.wrong = all(0.5f) * (dotRoundingEach(edge, edge) * inverseLength - length);
         const V distance = hn::Abs(place.x) + hn::Abs(place.y) + hn::Abs(place.z);
         const V fine = all(kSolved) * length + all(kRounding) * distance;
         rest.wrong = hn::Or(rest.wrong, hn::AndNot(flat, hn::Abs(segment.wrong) > fine));
@@ -170,7 +170,7 @@ HWY_INLINE void moveSystem(const BlockView& block, std::size_t lane, CoupledSyst
         const CoupledSegment& segment = system.segments[s];
         const std::size_t i = s * kBlockLanes + lane;
         const V before = hn::Load(D(), block.tension + i);
-        const V added = segment.hardness * (segment.wrong + dot(segment.direction, turned));
+        const V added = segment.hardness * (segment.wrong + dotRoundingEach(segment.direction, turned));
         hn::Store(hn::IfThenElse(active, before + added, before), D(), block.tension + i);
     };
     V3 next = zero3();
@@ -193,10 +193,12 @@ void bendCoupled(const BlockView& given, LaneFrame& lanes, const SubstepContext&
     const BlockView block = localCopy(given);
     if (block.points <= block.firstFree) return;
     CoupledSystem system;
+    Strip strip;
     for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
-        SegmentPulls<kShape> pulls(block, lanes, context, lane);
+        const PlaneRows rows(block, lane);
+        SegmentPulls<kShape> pulls(block, rows, lanes, context, lane, strip);
         fillSystem(block, lane, system, [&](std::uint32_t s, std::size_t i) HWY_ATTR {
-            return openSegment(block, pulls.next(s), s, i, system.segments[s]);
+            return openSegment(block, pulls.next(rows.at(s), strip.points[s]), s, i, system.segments[s]);
         });
         factorSystem(block, context, lane, system);
         auto active = hn::Not(noLane());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Backward Euler: a direct solve along each strand.
+// Backward Euler: a direct solve along each strand. Nothing is fused: the energy of coupled strands, which
+// are solved with the same system, drifts where forces and moves round otherwise (docs/gpu-simulation.md).
 #if defined(HAIRLOOM_RUNTIME_IMPLICIT_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HAIRLOOM_RUNTIME_IMPLICIT_INL_H
 #undef HAIRLOOM_RUNTIME_IMPLICIT_INL_H
@@ -24,6 +25,9 @@ struct S3 {
 HWY_INLINE V3 operator*(const S3& s, V3 v) {
     return {s.xx * v.x + s.xy * v.y + s.xz * v.z, s.xy * v.x + s.yy * v.y + s.yz * v.z,
             s.xz * v.x + s.yz * v.y + s.zz * v.z};
+}
+HWY_INLINE V3 operator*(const M3& m, V3 v) {
+    return {dotRoundingEach(m.x, v), dotRoundingEach(m.y, v), dotRoundingEach(m.z, v)};
 }
 HWY_INLINE V3 transposedTimes(const M3& m, V3 v) {
     return m.x * v.x + m.y * v.y + m.z * v.z;
@@ -82,6 +86,7 @@ void advanceFree(const BlockView& block, LaneFrame&, const SubstepContext&) {
 void advanceImplicitBend(const BlockView& block, LaneFrame&, const SubstepContext&) {
     const auto rateAt = [&](std::size_t i)
                             HWY_ATTR { return load3(block.position, i) - load3(block.previous, i); };
+    Strip strip;
     for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
         V3 behind = zero3(), from = rateAt(lane);
         const auto jointPull = [&](std::uint32_t j) HWY_ATTR {
@@ -95,13 +100,21 @@ void advanceImplicitBend(const BlockView& block, LaneFrame&, const SubstepContex
         };
         V3 pull = zero3();
         for (std::uint32_t j = 0; j < block.firstFree && j + 1 < block.points; ++j) pull = jointPull(j);
-        const auto forceOf = [&](std::uint32_t s) HWY_ATTR {
+        std::uint32_t s = block.firstFree - 1;
+        const auto forceOf = [&](const auto& row, const Strip::Point&) HWY_ATTR {
             const V3 inner = pull;
             pull = s + 2 < block.points ? jointPull(s + 1) : zero3();
-            return (inner - pull) * hn::Load(D(), block.inverseLength + std::size_t{s} * kBlockLanes + lane);
+            ++s;
+            return (inner - pull) * row.inverseLength();
         };
-        solveBend(block, lane, forceOf,
-                  [&](std::size_t i, V3 delta) HWY_ATTR { finishImplicit(block, i, rateAt(i) + delta); });
+        const PlaneRows rows(block, lane);
+        reduceBend(block, rows, strip, forceOf);
+        std::size_t i = std::size_t{block.points - 1} * kBlockLanes + lane;
+        const auto finish = [&](const auto&, const Strip::Point&, V3 delta) HWY_ATTR {
+            finishImplicit(block, i, rateAt(i) + delta);
+            i -= kBlockLanes;
+        };
+        finishBend(block, rows, strip, finish, finish);
     }
     finishClamped(block);
 }
@@ -186,9 +199,12 @@ HWY_INLINE void factorPoint(StrandSystem& system, std::uint32_t first, std::uint
     M3 lower{zero3(), zero3(), zero3()};
     if (p > first) {
         lower = multiply(coupling, system.inverse[p - 1]);
-        diagonal = {diagonal.xx - dot(lower.x, coupling.x), diagonal.xy - dot(lower.x, coupling.y),
-                    diagonal.xz - dot(lower.x, coupling.z), diagonal.yy - dot(lower.y, coupling.y),
-                    diagonal.yz - dot(lower.y, coupling.z), diagonal.zz - dot(lower.z, coupling.z)};
+        diagonal = {diagonal.xx - dotRoundingEach(lower.x, coupling.x),
+                    diagonal.xy - dotRoundingEach(lower.x, coupling.y),
+                    diagonal.xz - dotRoundingEach(lower.x, coupling.z),
+                    diagonal.yy - dotRoundingEach(lower.y, coupling.y),
+                    diagonal.yz - dotRoundingEach(lower.y, coupling.z),
+                    diagonal.zz - dotRoundingEach(lower.z, coupling.z)};
     }
     system.inverse[p] = inverseOf(diagonal);
     system.lower[p] = lower;

@@ -50,6 +50,9 @@ HWY_INLINE V3 load3(const PlanesOf<Float>& p, std::size_t i) {
 HWY_INLINE V3 load3(const float (*p)[kBlockLanes], std::size_t i) {
     return {hn::Load(D(), p[0] + i), hn::Load(D(), p[1] + i), hn::Load(D(), p[2] + i)};
 }
+HWY_INLINE V3 load3(const float* at, std::size_t pitch) {
+    return {hn::Load(D(), at), hn::Load(D(), at + pitch), hn::Load(D(), at + 2 * pitch)};
+}
 HWY_INLINE V4 load4(const float (*p)[kBlockLanes], std::size_t i) {
     return {hn::Load(D(), p[0] + i), hn::Load(D(), p[1] + i), hn::Load(D(), p[2] + i),
             hn::Load(D(), p[3] + i)};
@@ -59,6 +62,11 @@ HWY_INLINE void store3(V3 v, const Planes& p, std::size_t i) {
     hn::Store(v.x, D(), at);
     hn::Store(v.y, D(), at + p.pitch);
     hn::Store(v.z, D(), at + 2 * p.pitch);
+}
+HWY_INLINE void store3(V3 v, float* at, std::size_t pitch) {
+    hn::Store(v.x, D(), at);
+    hn::Store(v.y, D(), at + pitch);
+    hn::Store(v.z, D(), at + 2 * pitch);
 }
 HWY_INLINE void store3(V3 v, float (*p)[kBlockLanes], std::size_t i) {
     hn::Store(v.x, D(), p[0] + i);
@@ -89,14 +97,32 @@ HWY_INLINE BlockView localCopy(const BlockView& given) {
     return block;
 }
 
+/// a · s + b.
+HWY_INLINE V3 mulAdd(V3 a, V s, V3 b) {
+    return {hn::MulAdd(a.x, s, b.x), hn::MulAdd(a.y, s, b.y), hn::MulAdd(a.z, s, b.z)};
+}
+/// a · s − b.
+HWY_INLINE V3 mulSub(V3 a, V s, V3 b) {
+    return {hn::MulSub(a.x, s, b.x), hn::MulSub(a.y, s, b.y), hn::MulSub(a.z, s, b.z)};
+}
+/// b − a · s.
+HWY_INLINE V3 negMulAdd(V3 a, V s, V3 b) {
+    return {hn::NegMulAdd(a.x, s, b.x), hn::NegMulAdd(a.y, s, b.y), hn::NegMulAdd(a.z, s, b.z)};
+}
 HWY_INLINE V lerp(V a, V b, V t) {
-    return a + (b - a) * t;
+    return hn::MulAdd(b - a, t, a);
 }
 HWY_INLINE V dot(V3 a, V3 b) {
+    return hn::MulAdd(a.z, b.z, hn::MulAdd(a.y, b.y, a.x * b.x));
+}
+/// The same with each product and sum rounded, for systems whose forces and moves must match to the last
+/// digit.
+HWY_INLINE V dotRoundingEach(V3 a, V3 b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 HWY_INLINE V3 cross(V3 a, V3 b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+    return {hn::NegMulAdd(a.z, b.y, a.y * b.z), hn::NegMulAdd(a.x, b.z, a.z * b.x),
+            hn::NegMulAdd(a.y, b.x, a.x * b.y)};
 }
 HWY_INLINE V3 select(hn::Mask<D> which, V3 yes, V3 no) {
     return {hn::IfThenElse(which, yes.x, no.x), hn::IfThenElse(which, yes.y, no.y),
@@ -107,7 +133,7 @@ HWY_INLINE V3 rotate(V4 q, V3 v) {
     const V3 axis{q.x, q.y, q.z};
     const V3 half = cross(axis, v);
     const V3 twice = half + half;
-    return v + twice * q.w + cross(axis, twice);
+    return mulAdd(twice, q.w, v) + cross(axis, twice);
 }
 /// A vector of lanes for each point of a strip. Compilers keep arrays of registers behind copies in memory;
 /// these are stored and loaded by name.
@@ -133,7 +159,7 @@ struct StripRow3 {
 struct M3 {
     V3 x, y, z;
 };
-HWY_INLINE V3 operator*(const M3& m, V3 v) {
+HWY_INLINE V3 rotate(const M3& m, V3 v) {
     return {dot(m.x, v), dot(m.y, v), dot(m.z, v)};
 }
 /// Of a rotation of unit length.
@@ -157,6 +183,17 @@ HWY_INLINE V3 onlyWhere(hn::Mask<D> which, V3 v) {
 }
 HWY_INLINE hn::Mask<D> noLane() {
     return hn::FirstN(D(), 0);
+}
+
+/// A bit for each lane.
+HWY_INLINE std::uint32_t bitsOf(hn::Mask<D> mask) {
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(D(), mask, bytes);
+    return (bytes[0] | (std::uint32_t{bytes[1]} << 8)) & ((1u << kWidth) - 1u);
+}
+HWY_INLINE hn::Mask<D> maskOf(std::uint32_t bits) {
+    const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(bits), static_cast<std::uint8_t>(bits >> 8)};
+    return hn::LoadMaskBits(D(), bytes);
 }
 
 /// sin(2π·turns) to 0.1 %: a parabola, refined once by its own square.

@@ -9,6 +9,7 @@
 
 #include "hwy/highway.h"
 #include "runtime/kernels.h"
+#include "runtime/kernels/bend_solve-inl.h"
 #include "runtime/kernels/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -22,122 +23,166 @@ enum class Holding {
     rates,      ///< the velocity's part that would change lengths is taken out
 };
 
-/// A segment's constraint gradient where the lengths are wanted, and the direction along which its tension
-/// acts. For places that is the gradient at the start of the substep (SHAKE, Ryckaert et al. 1977), which
-/// keeps the order and the energy of the integrator; only segments that turn by more than 60° in a substep
-/// take that of now.
-struct Gradients {
-    V3 wanted, acting;
-};
-template <Holding kHolding>
-HWY_INLINE Gradients gradientsOf(V3 edge, V3 edgeBefore, V inverseLength) {
-    const V3 wanted = edge * inverseLength;
-    if constexpr (kHolding != Holding::places) return {wanted, wanted};
-    const V3 before = edgeBefore * inverseLength;
-    const auto alike = dot(wanted, before) > all(0.5f) * dot(wanted, wanted);
-    return {wanted, select(alike, before, wanted)};
-}
-
 /// Keeps tension for the bending of the next substep. Slowly: what bending makes of it comes back a substep
 /// late. And no more than Verlet holds across a segment, by half of its limit; hardly a segment pulls as
 /// much.
-HWY_INLINE void keepTension(const BlockView& block, const SubstepContext& context, std::size_t i, V added) {
-    const V weight =
-        hn::Load(D(), block.inverseMass + i) + hn::Load(D(), block.inverseMass + i + kBlockLanes);
-    const V half = all(0.5f) * hn::Load(D(), block.length + i);
-    V kept = hn::Load(D(), block.tension + i) + added * all(context.tensionShare);
+template <class Row>
+HWY_INLINE void keepTension(const Row& row, const SubstepContext& context, V weight, V added) {
+    const V half = all(0.5f) * row.length();
+    V kept = hn::MulAdd(added, all(context.tensionShare), row.tension());
     const auto tooMuch = hn::Abs(kept) * weight > half;
     if (HWY_UNLIKELY(!hn::AllFalse(D(), tooMuch)))
         kept = hn::IfThenElse(tooMuch, hn::CopySign(half / weight, kept), kept);
-    hn::Store(kept, D(), block.tension + i);
+    row.setTension(kept);
 }
-
-/// The tridiagonal system of a strip of strands whose lengths are held; by segment.
-struct LengthSystem {
-    StripRow3 acting;  ///< Gradients::acting
-    StripRow upper, right;
-};
 
 /// One Newton step on all length constraints ½(|e|²/l − l) = 0 of a strand together, or on their rates
 /// e·ė/l = 0; clamped points have infinite mass. The system is tridiagonal and is solved directly (after
 /// Goldenthal et al. 2007; with rates, RATTLE, Andersen 1983), so momentum travels along the whole strand in
 /// one step. Collapsed segments keep a diagonal of at least ¼ of their masses': no overshoot.
+///
+/// Tension of places acts along the gradient at the start of the substep (SHAKE, Ryckaert et al. 1977), which
+/// keeps the order and the energy of the integrator; only that of segments that turn by more than 60° in a
+/// substep acts along the gradient of now.
+///
+/// This eliminates segments, tip to root: the points outer to a segment first.
 template <Holding kHolding>
-HWY_INLINE void reduceLengths(const BlockView& block, std::size_t lane, LengthSystem& system) {
-    const Planes& start = block.start.x ? block.start : block.previous;
-    const V half = all(0.5f), least = all(0.25f), zero = hn::Zero(D()), one = all(1.0f);
-    const std::uint32_t first = block.firstFree - 1;
-    const std::size_t begin = std::size_t{first} * kBlockLanes + lane;
-    const auto rateAt = [&](std::size_t i, V3 place) HWY_ATTR { return place - load3(block.previous, i); };
-    V3 at = load3(block.position, begin), before = zero3(), rate = zero3();
-    if constexpr (kHolding == Holding::places) before = load3(start, begin);
-    if constexpr (kHolding == Holding::rates) rate = rateAt(begin, at);
-    V3 lastWanted = zero3(), lastActing = zero3();
-    V inner = zero, lastInverse = zero, lastRight = zero;
-    for (std::uint32_t s = first; s + 1 < block.points; ++s) {
-        const std::size_t i = std::size_t{s} * kBlockLanes + lane, o = i + kBlockLanes;
-        const V3 to = load3(block.position, o);
-        V3 edgeBefore = zero3();
+class LengthElimination {
+  public:
+    HWY_INLINE LengthElimination() {
+        outer_ = outerRate_ = wanted_ = acting_ = zero3();
+        outerMass_ = right_ = inverse_ = hn::Zero(D());
+    }
+
+    /// The last point of the strands, before the first segment; `rate` is its way in the substep.
+    template <class Row>
+    HWY_INLINE void open(const Row& row, V3 place, V3 rate) {
+        outer_ = place;
+        outerRate_ = rate;
+        outerMass_ = row.inverseMass();
+    }
+
+    /// A segment from its inner point at `place`. Strip::Point::direction is the gradient at the start where
+    /// tension acts along that, and becomes the one along which it acts.
+    template <bool kClamped, class Row>
+    HWY_INLINE void take(const Row& row, Strip::Point& point, V3 place, V3 rate) {
+        const V one = all(1.0f);
+        const V3 wanted = (outer_ - place) * row.inverseLength();
+        const V squared = dot(wanted, wanted);
+        V3 acting = wanted;
+        V own = squared, error;
         if constexpr (kHolding == Holding::places) {
-            const V3 toBefore = load3(start, o);
-            edgeBefore = toBefore - before;
-            before = toBefore;
-        }
-        const auto [wanted, acting] =
-            gradientsOf<kHolding>(to - at, edgeBefore, hn::Load(D(), block.inverseLength + i));
-        V error;
-        if constexpr (kHolding == Holding::rates) {
-            const V3 toRate = rateAt(o, to);
-            error = dot(wanted, toRate - rate);
-            rate = toRate;
+            acting = load3(point.direction);
+            own = dot(wanted, acting);
+            const auto alike = own > all(0.5f) * squared;
+            if (HWY_UNLIKELY(!hn::AllTrue(D(), alike))) {
+                acting = select(alike, acting, wanted);
+                own = hn::IfThenElse(alike, own, squared);
+                store3(acting, point.direction);
+            }
         } else {
-            error = half * (dot(to - at, wanted) - hn::Load(D(), block.length + i));
+            store3(acting, point.direction);
         }
-        const V own = hn::Max(dot(wanted, acting), least);
-        const V outer = hn::Load(D(), block.inverseMass + o);
-        const V below = dot(wanted, lastActing) * inner;
-        const V up = dot(lastWanted, acting) * inner * lastInverse;
-        lastInverse = one / (own * (inner + outer) - below * up);
-        lastRight = (error + below * lastRight) * lastInverse;
-        system.acting.set(s, acting);
-        system.upper.set(s, up);
-        system.right.set(s, lastRight);
-        at = to;
+        if constexpr (kHolding == Holding::rates) {
+            error = dot(wanted, outerRate_ - rate);
+            outerRate_ = rate;
+        } else {
+            error = all(0.5f) * row.length() * (squared - one);
+        }
+        const V innerMass = kClamped ? hn::Zero(D()) : row.inverseMass();
+        const V above = dot(wanted, acting_) * outerMass_;
+        const V upper = dot(wanted_, acting) * outerMass_ * inverse_;
+        const V whole = hn::Max(own, all(0.25f)) * (innerMass + outerMass_);
+        inverse_ = one / hn::NegMulAdd(above, upper, whole);
+        right_ = hn::MulAdd(above, right_, error) * inverse_;
+        store(upper, (&point + 1)->upper);
+        store(right_, point.tension);
+        outer_ = place;
+        outerMass_ = innerMass;
+        wanted_ = wanted;
+        acting_ = acting;
+    }
+
+  private:
+    V3 outer_, outerRate_;  // of the outer point
+    V outerMass_;
+    V3 wanted_, acting_;  // of the outer segment
+    V right_, inverse_;
+};
+
+/// Moves the points by the tension that the system gives, root to tip.
+template <Holding kHolding, bool kKept, class Rows>
+HWY_INLINE void applyTension(const BlockView& block, const Rows& rows, const SubstepContext& context,
+                             std::size_t lane, const Strip& strip) {
+    const Planes& moving = kHolding == Holding::rates ? block.previous : block.position;
+    float* at = moving.x + block.firstFree * kBlockLanes + lane;
+    auto row = rows.at(block.firstFree - 1);
+    const Strip::Point* point = strip.points + (block.firstFree - 1);
+    V lambda = load(point->tension), innerMass = row.inverseMass();
+    V3 inner = load3(point->direction) * lambda;
+    const auto move = [&](V3 force, V mass) HWY_ATTR {
+        const V3 before = load3(at, block.pitch);
+        store3(kHolding == Holding::rates ? negMulAdd(force, mass, before) : mulAdd(force, mass, before), at,
+               block.pitch);
+    };
+    for (std::size_t left = block.points - block.firstFree; left > 1; --left, at += kBlockLanes) {
+        const V mass = (row + 1).inverseMass();
+        if constexpr (kKept) keepTension(row, context, innerMass + mass, lambda);
+        row.advance();
+        ++point;
+        lambda = hn::MulAdd(load(point->upper), lambda, load(point->tension));
+        const V3 outer = load3(point->direction) * lambda;
+        move(outer - inner, mass);
         inner = outer;
-        lastWanted = wanted;
-        lastActing = acting;
+        innerMass = mass;
+    }
+    const V mass = (row + 1).inverseMass();
+    if constexpr (kKept) keepTension(row, context, innerMass + mass, lambda);
+    move(zero3() - inner, mass);
+}
+
+/// Fills the directions at the start of the substep.
+template <class Rows>
+HWY_INLINE void readStart(const BlockView& block, const Rows& rows, std::size_t lane, Strip& strip) {
+    const Planes& start = block.start.x ? block.start : block.previous;
+    V3 from = load3(start, (block.firstFree - 1) * kBlockLanes + lane);
+    for (std::size_t s = block.firstFree - 1; s + 1 < block.points; ++s) {
+        const V3 to = load3(start, (s + 1) * kBlockLanes + lane);
+        store3((to - from) * rows.at(s).inverseLength(), strip.points[s].direction);
+        from = to;
     }
 }
 
-/// Moves the points by the tension that the system gives.
-template <Holding kHolding, bool kKept>
-HWY_INLINE void applyTension(const BlockView& block, const SubstepContext& context, std::size_t lane,
-                             const LengthSystem& system) {
-    V3 after = zero3();
-    V lambda = hn::Zero(D()), upper = lambda;
-    for (std::uint32_t s = block.points - 1; s-- > block.firstFree - 1;) {
-        const std::size_t i = std::size_t{s} * kBlockLanes + lane, o = i + kBlockLanes;
-        lambda = system.right[s] + upper * lambda;
-        upper = system.upper[s];
-        const V3 tension = system.acting[s] * lambda;
-        const V3 move = (after - tension) * hn::Load(D(), block.inverseMass + o);
-        if constexpr (kHolding != Holding::rates) {
-            store3(load3(block.position, o) + move, block.position, o);
-        } else {
-            store3(load3(block.previous, o) - move, block.previous, o);
-        }
-        if constexpr (kKept) keepTension(block, context, i, lambda);
-        after = tension;
+template <Holding kHolding, class Rows>
+HWY_INLINE void reduceLengths(const BlockView& block, const Rows& rows, std::size_t lane, Strip& strip) {
+    if constexpr (kHolding == Holding::places) readStart(block, rows, lane, strip);
+    LengthElimination<kHolding> lengths;
+    std::size_t i = (block.points - 1) * kBlockLanes + lane;
+    const auto rateAt = [&](V3 place) HWY_ATTR {
+        return kHolding == Holding::rates ? place - load3(block.previous, i) : zero3();
+    };
+    V3 place = load3(block.position, i);
+    lengths.open(rows.at(block.points - 1), place, rateAt(place));
+    for (std::size_t s = block.points - 1; s-- > block.firstFree;) {
+        i -= kBlockLanes;
+        place = load3(block.position, i);
+        lengths.template take<false>(rows.at(s), strip.points[s], place, rateAt(place));
     }
+    i -= kBlockLanes;
+    place = load3(block.position, i);
+    const std::size_t clamped = block.firstFree - 1;
+    lengths.template take<true>(rows.at(clamped), strip.points[clamped], place, rateAt(place));
 }
 
 template <Holding kHolding, bool kKept = false>
 void holdStrands(const BlockView& given, const SubstepContext& context) {
     const BlockView block = localCopy(given);
-    LengthSystem system;
-    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
-        reduceLengths<kHolding>(block, lane, system);
-        applyTension<kHolding, kKept>(block, context, lane, system);
+    if (block.points <= block.firstFree) return;
+    Strip strip;
+    for (std::size_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+        const PlaneRows rows(block, lane);
+        reduceLengths<kHolding>(block, rows, lane, strip);
+        applyTension<kHolding, kKept>(block, rows, context, lane, strip);
     }
 }
 
@@ -156,29 +201,85 @@ void holdRates(const BlockView& block, LaneFrame&, const SubstepContext& context
     holdStrands<Holding::rates>(block, context);
 }
 
+/// The stages of angular springs and lengths of a strip in one go, with the same bits: points stay at hand
+/// from the one to the other.
+template <Shape kShape, class Rows>
+HWY_INLINE void bendAndHoldStrip(const BlockView& block, const Rows& rows, const LaneFrame& lanes,
+                                 const SubstepContext& context, std::size_t lane, Strip& strip) {
+    pullStrip<kShape, true>(block, rows, lanes, context, lane, strip);
+    LengthElimination<Holding::places> lengths;
+    float* at = block.position.x + (block.points - 1) * kBlockLanes + lane;
+    const auto move = [&](V3 delta) HWY_ATTR {
+        const V3 place = load3(at, block.pitch) + delta;
+        store3(place, at, block.pitch);
+        at -= kBlockLanes;
+        return place;
+    };
+    finishBend(
+        block, rows, strip,
+        [&](const auto& row, const Strip::Point&, V3 delta)
+            HWY_ATTR { lengths.open(row, move(delta), zero3()); },
+        [&](const auto& row, Strip::Point& point, V3 delta)
+            HWY_ATTR { lengths.template take<false>(row, point, move(delta), zero3()); });
+    const std::size_t clamped = block.firstFree - 1;
+    lengths.template take<true>(rows.at(clamped), strip.points[clamped], load3(at, block.pitch), zero3());
+    applyTension<Holding::places, true>(block, rows, context, lane, strip);
+    for (std::uint32_t iteration = 1; iteration < context.lengthIterations; ++iteration) {
+        reduceLengths<Holding::places>(block, rows, lane, strip);
+        applyTension<Holding::places, true>(block, rows, context, lane, strip);
+    }
+}
+
+/// Between the substeps of a frame nothing else reads what CopiedRows copies.
+template <Shape kShape>
+void bendAndHold(const BlockView& given, LaneFrame& lanes, const SubstepContext& context) {
+    constexpr bool kCurved = kShape == Shape::curved;
+    const BlockView block = localCopy(given);
+    if (block.points <= block.firstFree) return;
+    Strip strip;
+    for (std::size_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+        const PlaneRows planes(block, lane);
+        if (block.points > kMostCopied) {
+            bendAndHoldStrip<kShape>(block, planes, lanes, context, lane, strip);
+            continue;
+        }
+        const CopiedRows rows(block, lanes, lane);
+        if (context.index == 0) {
+            for (std::size_t p = 0; p < block.points; ++p) rows.at(p).template fill<kCurved>(planes.at(p));
+        }
+        bendAndHoldStrip<kShape>(block, rows, lanes, context, lane, strip);
+        if (context.index + 1 < context.count) continue;
+        for (std::size_t p = 0; p + 1 < block.points; ++p) {
+            planes.at(p).setTension(rows.at(p).tension());
+            if constexpr (kCurved) planes.at(p).setCurve(rows.at(p).curve());
+        }
+    }
+}
+
 /// Root to tip, brings segments back to between (1 − ε) and (1 + ε) of their length (Provot 1995, both ways).
 /// The move counts as velocity only where that slows the point relative to its root: it never adds energy.
 void limitExtension(const BlockView& given, LaneFrame& lanes, const SubstepContext& context) {
     const BlockView block = localCopy(given);
     const V longest = all(1.0f + context.maximalExtension);
     const V shortest = all(1.0f - context.maximalExtension);
+    const V most = longest * longest, least = shortest * shortest;
     const V tiny = all(1e-12f), one = all(1.0f);
     for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
         const V3 step = load3(lanes.rootStep, lane);
-        V3 parent = load3(block.position, std::size_t{block.firstFree - 1} * kBlockLanes + lane);
-        for (std::uint32_t p = block.firstFree; p < block.points; ++p) {
-            const std::size_t i = std::size_t{p} * kBlockLanes + lane;
+        V3 parent = load3(block.position, (block.firstFree - 1) * kBlockLanes + lane);
+        for (std::size_t p = block.firstFree; p < block.points; ++p) {
+            const std::size_t i = p * kBlockLanes + lane;
             const V3 position = load3(block.position, i);
             const V3 from = parent, edge = position - from;
             const V rest = hn::Load(D(), block.length + (i - kBlockLanes));
-            const V low = rest * shortest, high = rest * longest;
+            const V whole = rest * rest;
             const V squared = dot(edge, edge);
-            const auto wrong = hn::Or(squared > high * high, squared < low * low);
+            const auto wrong = hn::Or(squared > whole * most, squared < whole * least);
             parent = position;
             if (HWY_LIKELY(hn::AllFalse(D(), wrong))) continue;
             const V size = hn::Sqrt(squared);
             const auto collapsed = size < tiny;
-            const V bounded = hn::Min(hn::Max(size, low), high);
+            const V bounded = hn::Min(hn::Max(size, rest * shortest), rest * longest);
             const V scale = bounded / hn::IfThenElse(collapsed, one, size);
             const V zero = hn::Zero(D());
             const V3 fixed{hn::IfThenElse(collapsed, zero, edge.x * scale),
@@ -192,7 +293,7 @@ void limitExtension(const BlockView& given, LaneFrame& lanes, const SubstepConte
             const V braking = (zero - dot(moving, move)) / (dot(move, move) + all(1e-30f));
             const V counted = hn::Min(hn::Max(braking, zero), one);
             store3(parent, block.position, i);
-            store3(previous + move * (one - counted), block.previous, i);
+            store3(mulAdd(move, one - counted, previous), block.previous, i);
         }
     }
 }

@@ -30,12 +30,13 @@ HWY_INLINE AirWay airWay(const LaneFrame& lanes, const SubstepContext& context, 
 }
 
 /// Hair takes on the air's velocity at the rate airDrag · sin of its angle to the tangent (Rünz 2012,
-/// Section 3.3). The displacement that a point gains; `flow` is the air's way past it.
-HWY_INLINE V3 blown(V3 flow, V3 tangent, V share) {
+/// Section 3.3). The share of `flow`, the air's way past a point, that it gains.
+HWY_INLINE V blownShare(V3 flow, V3 tangent, V share) {
     const V both = dot(flow, flow) * dot(tangent, tangent);
     const V parallel = dot(flow, tangent);
-    const V sineSquared = hn::Max(both - parallel * parallel, hn::Zero(D())) / (both + all(1e-30f));
-    return flow * (share * hn::Sqrt(hn::Min(sineSquared, all(1.0f))));
+    const V sineSquared =
+        hn::Max(hn::NegMulAdd(parallel, parallel, both), hn::Zero(D())) / (both + all(1e-30f));
+    return share * hn::Sqrt(hn::Min(sineSquared, all(1.0f)));
 }
 
 /// In this order: slows motion relative to the moving root, so that damping acts on velocity alone and leaves
@@ -56,12 +57,12 @@ void moveFree(const BlockView& given, LaneFrame& lanes, const SubstepContext& co
             const std::size_t i = std::size_t{p} * kBlockLanes + lane;
             const V3 position = load3(block.position, i);
             V3 previous = load3(block.previous, i);
-            if constexpr (kDamped) previous = previous + (position - previous - step) * lost;
+            if constexpr (kDamped) previous = mulAdd(position - previous - step, lost, previous);
             if constexpr (kAir != Air::none) {
                 V3 flow = previous - position;
                 if constexpr (kAir == Air::moving)
-                    flow = flow + air.atRoot + air.slope * all(static_cast<float>(p) * inverseLast);
-                previous = previous - blown(flow, position - parent, share);
+                    flow = mulAdd(air.slope, all(static_cast<float>(p) * inverseLast), flow + air.atRoot);
+                previous = negMulAdd(flow, blownShare(flow, position - parent, share), previous);
                 parent = position;
             }
             if constexpr (kHeavy) previous = previous - gravity;

@@ -28,8 +28,9 @@ HWY_INLINE V inverseSqrt(V x) {
     constexpr float kFirst = 1.0f + 8.756e-4f, kSecond = 1.0f + 5.75e-7f;
     const hn::RebindToSigned<D> di;
     V y = hn::BitCast(D(), hn::Set(di, 0x5f375a86) - hn::ShiftRight<1>(hn::BitCast(di, x)));
-    y = y * (all(1.5f * kFirst) - x * all(0.5f * kFirst) * y * y);
-    return y * (all(1.5f * kSecond) - x * all(0.5f * kSecond) * y * y);
+    const V half = x * all(0.5f);
+    y = y * hn::NegMulAdd(half * y, y * all(kFirst), all(1.5f * kFirst));
+    return y * hn::NegMulAdd(half * y, y * all(kSecond), all(1.5f * kSecond));
 }
 
 struct Direction {
@@ -84,25 +85,29 @@ class SphereSet {
     /// World.
     HWY_INLINE V3 centre(std::size_t k) const { return all3({x_[k], y_[k], z_[k]}); }
 
-    /// Calls visit(k) for each sphere that, with the largest pearl, meets the box; in ascending order.
+    /// Calls visit(k) for each sphere that, with the largest pearl and the margin around it, meets the box;
+    /// in ascending order.
     template <class Visit>
-    HWY_INLINE void forEachMeeting(const Box& box, Visit&& visit) const {
+    HWY_INLINE void forEachMeeting(const Box& box, float margin, Visit&& visit) const {
         const V zero = hn::Zero(D());
         for (std::size_t k = 0; k < count_; k += kWidth) {
             const V x = hn::Load(D(), x_ + k), y = hn::Load(D(), y_ + k), z = hn::Load(D(), z_ + k);
             const V3 gap{hn::Max(hn::Max(all(box.low.x) - x, x - all(box.high.x)), zero),
                          hn::Max(hn::Max(all(box.low.y) - y, y - all(box.high.y)), zero),
                          hn::Max(hn::Max(all(box.low.z) - z, z - all(box.high.z)), zero)};
-            const V reach = hn::Load(D(), widest + k);
+            const V reach = hn::Load(D(), widest + k) + all(margin);
             forEachSet(k, dot(gap, gap) <= reach * reach * all(1.0001f), visit);
         }
     }
 
-    /// The spheres in which a point on sphere k can be, as bits.
-    HWY_INLINE std::uint64_t overlapping(std::size_t k) const {
+    std::size_t count() const { return count_; }
+
+    /// The spheres in which a point on sphere k can be, as bits, until two of them have come nearer by
+    /// `margin`.
+    HWY_INLINE std::uint64_t overlapping(std::size_t k, float margin) const {
         static_assert(kMost <= 64);
         const V3 at = centre(k);
-        const V own = all(widest[k]);
+        const V own = all(widest[k] + margin);
         std::uint64_t others = 0;
         for (std::size_t j = 0; j < count_; j += kWidth) {
             const V3 gap = V3{hn::Load(D(), x_ + j), hn::Load(D(), y_ + j), hn::Load(D(), z_ + j)} - at;
@@ -117,11 +122,7 @@ class SphereSet {
   private:
     template <class Visit>
     HWY_INLINE void forEachSet(std::size_t first, hn::Mask<D> which, Visit&& visit) const {
-        std::uint8_t bytes[8] = {};
-        hn::StoreMaskBits(D(), which, bytes);
-        std::uint32_t bits = bytes[0] | (std::uint32_t{bytes[1]} << 8);
-        bits &= (1u << kWidth) - 1u;
-        for (; bits != 0; bits &= bits - 1) {
+        for (std::uint32_t bits = bitsOf(which); bits != 0; bits &= bits - 1) {
             const std::size_t k = first + static_cast<std::size_t>(std::countr_zero(bits));
             if (k < count_) visit(k);
         }
@@ -151,58 +152,25 @@ struct WideBox {
     }
 };
 
-/// Boxes of pieces of a few points, of each strand of a strip its own; relative to the roots.
-class PieceBoxes {
-  public:
-    static constexpr std::uint32_t kPoints = 5;
-    static constexpr std::uint32_t kMostPoints = 16;  ///< of one strand at a time
-    static constexpr std::uint32_t kMost = (kMostPoints + kPoints - 1) / kPoints;
-    std::uint32_t count = 0;
+/// Squares of the distances of the boxes' lanes from a place.
+HWY_INLINE V squaredGap(const WideBox& box, V3 at) {
+    const V zero = hn::Zero(D());
+    const V3 gap{hn::Max(hn::Max(box.low.x - at.x, at.x - box.high.x), zero),
+                 hn::Max(hn::Max(box.low.y - at.y, at.y - box.high.y), zero),
+                 hn::Max(hn::Max(box.low.z - at.z, at.z - box.high.z), zero)};
+    return dot(gap, gap);
+}
 
-    /// Fills the boxes of points first … last − 1; the boxes of all of them.
-    HWY_INLINE WideBox take(const BlockView& block, std::uint32_t lane, std::uint32_t first,
-                            std::uint32_t last) {
-        WideBox whole = WideBox::empty();
-        count = 0;
-        for (std::uint32_t begin = first; begin < last; begin += kPoints) {
-            const std::uint32_t end = std::min(begin + kPoints, last);
-            WideBox piece = WideBox::empty();
-            for (std::uint32_t p = begin; p < end; ++p) {
-                const V3 at = load3(block.position, std::size_t{p} * kBlockLanes + lane);
-                piece.add(at, at);
-            }
-            storePiece(piece.low, low_[count]);
-            storePiece(piece.high, high_[count]);
-            ++count;
-            whole.add(piece.low, piece.high);
-        }
-        return whole;
+/// Of points first … last − 1 of each strand of a strip, relative to the roots.
+HWY_INLINE WideBox boxOf(const BlockView& block, std::uint32_t lane, std::uint32_t first,
+                         std::uint32_t last) {
+    WideBox box = WideBox::empty();
+    for (std::uint32_t p = first; p < last; ++p) {
+        const V3 at = load3(block.position, std::size_t{p} * kBlockLanes + lane);
+        box.add(at, at);
     }
-
-    HWY_INLINE V squaredGap(std::uint32_t piece, V3 at) const {
-        const V zero = hn::Zero(D());
-        const V3 low = loadPiece(low_[piece]), high = loadPiece(high_[piece]);
-        const V3 gap{hn::Max(hn::Max(low.x - at.x, at.x - high.x), zero),
-                     hn::Max(hn::Max(low.y - at.y, at.y - high.y), zero),
-                     hn::Max(hn::Max(low.z - at.z, at.z - high.z), zero)};
-        return dot(gap, gap);
-    }
-
-  private:
-    using Piece = float[3][kWidth];
-
-    static HWY_INLINE V3 loadPiece(const Piece& piece) {
-        return {hn::Load(D(), piece[0]), hn::Load(D(), piece[1]), hn::Load(D(), piece[2])};
-    }
-    static HWY_INLINE void storePiece(V3 v, Piece& piece) {
-        hn::Store(v.x, D(), piece[0]);
-        hn::Store(v.y, D(), piece[1]);
-        hn::Store(v.z, D(), piece[2]);
-    }
-
-    alignas(64) Piece low_[kMost];
-    alignas(64) Piece high_[kMost];
-};
+    return box;
+}
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)
 }  // namespace HWY_NAMESPACE

@@ -127,11 +127,14 @@ Kernels makeTable() {
     fillMoves<true, Air::none>(table);
     fillMoves<true, Air::still>(table);
     fillMoves<true, Air::moving>(table);
+    table.bendAndHold[0] = bendAndHold<Shape::straight>;
+    table.bendAndHold[1] = bendAndHold<Shape::curved>;
     table.rescale = rescale;
     table.takeRoots = takeRoots;
     table.sampleWind = sampleWind;
     table.fastest = fastestOf;
     table.target = hwy::TargetName(HWY_TARGET);
+    table.fuses = HWY_NATIVE_FMA != 0;
     return table;
 }
 

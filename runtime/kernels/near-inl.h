@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: MIT
+// Which points of a block are near which spheres, found once for several substeps.
+#if defined(HAIRLOOM_RUNTIME_NEAR_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef HAIRLOOM_RUNTIME_NEAR_INL_H
+#undef HAIRLOOM_RUNTIME_NEAR_INL_H
+#else
+#define HAIRLOOM_RUNTIME_NEAR_INL_H
+#endif
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <span>
+
+#include "hwy/highway.h"
+#include "runtime/kernels.h"
+#include "runtime/kernels/lanes-inl.h"
+#include "runtime/kernels/spheres-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace hairloom::runtime {
+namespace HWY_NAMESPACE {
+
+/// What a list of near points is made from; `roots` are those of this substep.
+struct NearInput {
+    const BlockView& block;
+    const LaneFrame& lanes;
+    const SubstepContext& context;
+    const SphereSet& spheres;
+    const float* pearls;
+    const float (*roots)[kBlockLanes];
+};
+
+/// The points begin … end − 1 of a strip that come within `margin` of a sphere, those of each sphere a group.
+/// How many groups there are; writes no more than fit.
+HWY_INLINE std::uint32_t findGroups(const NearInput& in, std::uint32_t lane, std::uint32_t begin,
+                                    std::uint32_t end, float margin, std::span<NearPoints::Group> groups) {
+    // Pieces of few points, of each strand its own.
+    constexpr std::uint32_t kPiece = 4, kMostPieces = NearPoints::kGroupPoints / kPiece;
+    WideBox pieces[kMostPieces];
+    const V3 root = load3(in.roots, lane);
+    WideBox world = WideBox::empty();
+    for (std::uint32_t p = begin, n = 0; p < end; p += kPiece, ++n) {
+        pieces[n] = boxOf(in.block, lane, p, std::min(p + kPiece, end));
+        world.add(pieces[n], root);
+    }
+    std::uint32_t count = 0;
+    in.spheres.forEachMeeting(world.reduced(), margin, [&](std::size_t k) HWY_ATTR {
+        const V3 centre = in.spheres.centre(k) - root;
+        const V radius = all(in.spheres.radius[k] + margin);
+        const float widest = in.spheres.widest[k] + margin;
+        std::uint32_t points = 0;
+        for (std::uint32_t first = begin, n = 0; first < end; first += kPiece, ++n) {
+            if (hn::AllFalse(D(), squaredGap(pieces[n], centre) <= all(1.0001f * widest * widest))) continue;
+            for (std::uint32_t p = first; p < std::min(first + kPiece, end); ++p) {
+                const V reach = radius + all(in.pearls[p]);
+                const V3 offset = load3(in.block.position, std::size_t{p} * kBlockLanes + lane) - centre;
+                const auto inside = dot(offset, offset) < reach * reach * all(1.0001f);
+                points |= hn::AllFalse(D(), inside) ? 0u : 1u << (p - begin);
+            }
+        }
+        if (points == 0) return;
+        if (count < groups.size()) {
+            groups[count] = {static_cast<std::uint16_t>(k), static_cast<std::uint16_t>(lane),
+                             static_cast<std::uint16_t>(begin), static_cast<std::uint16_t>(points)};
+        }
+        ++count;
+    });
+    return count;
+}
+
+/// Metres in a substep that a sphere moves relative to a root of the block, at most.
+HWY_INLINE float fastestSphere(const NearInput& in) {
+    V most = hn::Zero(D());
+    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+        const V3 step = load3(in.lanes.rootStep, lane);
+        for (const MovingSphere& sphere : in.context.spheres) {
+            const V3 relative = all3(sphere.step) - step;
+            most = hn::Max(most, dot(relative, relative));
+        }
+    }
+    return std::sqrt(laneMost(most));
+}
+
+/// Metres by which rounding can move a sphere relative to a root.
+HWY_INLINE float roundingOfPlaces(const NearInput& in) {
+    V most = hn::Zero(D());
+    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+        const V3 root = load3(in.roots, lane);
+        most = hn::Max(most, hn::Max(hn::Abs(root.x), hn::Max(hn::Abs(root.y), hn::Abs(root.z))));
+    }
+    float farthest = laneMost(most);
+    for (const MovingSphere& sphere : in.context.spheres)
+        farthest = std::fmax(farthest, length(sphere.from_ws) + length(sphere.step));
+    return 2e-6f * farthest;
+}
+
+/// Metres that a point of the block moved relative to its root in this substep, at most.
+HWY_INLINE float farthestFromRoot(const NearInput& in) {
+    V most = hn::Zero(D());
+    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+        const V3 step = load3(in.lanes.rootStep, lane);
+        for (std::uint32_t p = in.block.firstFree; p < in.block.points; ++p) {
+            const std::size_t i = std::size_t{p} * kBlockLanes + lane;
+            const V3 moved = load3(in.block.position, i) - load3(in.block.previous, i) - step;
+            most = hn::Max(most, dot(moved, moved));
+        }
+    }
+    return std::sqrt(laneMost(most));
+}
+
+HWY_INLINE std::size_t nearPlane(const BlockView& block) {
+    return std::size_t{block.points} * kBlockLanes + 16;
+}
+
+/// For the rest of the frame, should the points go on as they do, but not with so wide a margin that all are
+/// near.
+HWY_INLINE float marginFor(const NearInput& in, float sphereStep) {
+    const auto left = static_cast<float>(in.context.count - in.context.index - 1);
+    float smallest = 1e30f;
+    for (const MovingSphere& sphere : in.context.spheres) smallest = std::fmin(smallest, sphere.radius);
+    const float wanted = left * (1.25f * farthestFromRoot(in) + sphereStep) + 5e-4f;
+    return std::fmin(wanted, 0.5f * smallest) + roundingOfPlaces(in);
+}
+
+/// Makes the list, where there is room for it.
+HWY_INLINE void findNear(const NearInput& in, NearPoints& near) {
+    near.substep = in.context.index;
+    near.step = fastestSphere(in);
+    near.margin = marginFor(in, near.step);
+    near.groupCount = 0;
+    near.made = true;
+    for (std::uint32_t p = in.block.firstFree; p < in.block.points; p += NearPoints::kGroupPoints) {
+        const std::uint32_t end = std::min(p + NearPoints::kGroupPoints, in.block.points);
+        for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+            near.groupCount +=
+                findGroups(in, lane, p, end, near.margin, std::span(near.groups).subspan(near.groupCount));
+            near.made = near.groupCount <= NearPoints::kMostGroups;
+            if (!near.made) return;
+        }
+    }
+    near.margin -= roundingOfPlaces(in);
+    const Planes places{near.places, nearPlane(in.block)};
+    const std::size_t end = std::size_t{in.block.points} * kBlockLanes;
+    for (std::size_t i = std::size_t{in.block.firstFree} * kBlockLanes; i < end; i += kWidth)
+        store3(load3(in.block.position, i), places, i);
+}
+
+/// Whether no point has left the margin since the list was made.
+HWY_INLINE bool isStillNear(const NearInput& in, const NearPoints& near) {
+    const float limit =
+        0.999f * near.margin - static_cast<float>(in.context.index - near.substep) * near.step;
+    if (!(limit > 0.0f)) return false;
+    constexpr std::size_t kStrips = kBlockLanes / kWidth;
+    const ConstPlanes places{near.places, nearPlane(in.block)};
+    // A maximum waits for the one before it: those of the strips run side by side.
+    V most[kStrips];
+    for (std::size_t n = 0; n < kStrips; ++n) most[n] = hn::Zero(D());
+    for (std::uint32_t p = in.block.firstFree; p < in.block.points; ++p) {
+        for (std::size_t n = 0; n < kStrips; ++n) {
+            const std::size_t i = std::size_t{p} * kBlockLanes + n * kWidth;
+            const V3 moved = load3(in.block.position, i) - load3(places, i);
+            most[n] = hn::Max(most[n], dot(moved, moved));
+        }
+    }
+    V ofAll = most[0];
+    for (std::size_t n = 1; n < kStrips; ++n) ofAll = hn::Max(ofAll, most[n]);
+    return laneMost(ofAll) < limit * limit;
+}
+
+// NOLINTNEXTLINE(google-readability-namespace-comments)
+}  // namespace HWY_NAMESPACE
+}  // namespace hairloom::runtime
+HWY_AFTER_NAMESPACE();
+#endif
