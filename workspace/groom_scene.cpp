@@ -265,13 +265,7 @@ Status GroomScene::pose(std::span<const Vec3f> positions_ws, const HeadPose& pos
 
 void GroomScene::moveStrands(std::span<const std::uint32_t> strands, std::span<const Vec3f> points_ws) {
     assert(!bindings_);
-    std::vector<Vec3f>& points = posed_.pointAttributes.edit<Vec3f>(attribute::kPosition);
-    auto from = points_ws.begin();
-    for (const std::uint32_t s : strands) {
-        const auto count = static_cast<std::ptrdiff_t>(posed_.strand(s).size());
-        std::copy_n(from, count, points.begin() + static_cast<std::ptrdiff_t>(posed_.offsets[s]));
-        from += count;
-    }
+    hairloom::moveStrands(posed_, strands, points_ws);
 }
 
 bool GroomScene::setMaterial(const HairMaterial& authored, const ViewFile& view) {

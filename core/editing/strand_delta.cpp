@@ -3,25 +3,15 @@
 
 #include <algorithm>
 #include <cassert>
+#include <numeric>
 #include <string>
 #include <utility>
 
+#include "core/editing/array_gaps.h"
 #include "core/editing/zero.h"
 
 namespace hairloom::editing {
 namespace {
-
-/// [begin, begin + count) of an array that holds everything.
-struct Range {
-    std::size_t begin;
-    std::size_t count;
-};
-
-std::size_t total(std::span<const Range> ranges) {
-    std::size_t sum = 0;
-    for (const Range& range : ranges) sum += range.count;
-    return sum;
-}
 
 std::ptrdiff_t at(std::size_t index) {
     return static_cast<std::ptrdiff_t>(index);
@@ -30,39 +20,32 @@ std::ptrdiff_t at(std::size_t index) {
 /// Moves the ranges out of the array and closes the gaps, in place.
 template <class T>
 std::vector<T> takeRanges(std::vector<T>& values, std::span<const Range> ranges) {
+    const std::size_t count = total(ranges);
     std::vector<T> taken;
-    taken.reserve(total(ranges));
-    std::size_t write = ranges.empty() ? values.size() : ranges.front().begin;
-    for (std::size_t k = 0; k < ranges.size(); ++k) {
-        const std::size_t end = ranges[k].begin + ranges[k].count;
-        taken.insert(taken.end(), values.begin() + at(ranges[k].begin), values.begin() + at(end));
-        const std::size_t next = k + 1 < ranges.size() ? ranges[k + 1].begin : values.size();
-        std::copy(values.begin() + at(end), values.begin() + at(next), values.begin() + at(write));
-        write += next - end;
+    taken.reserve(count);
+    for (const Range& range : ranges) {
+        const auto first = values.begin() + at(range.begin);
+        taken.insert(taken.end(), first, first + at(range.count));
     }
-    values.resize(write);
+    closeGaps(std::as_writable_bytes(std::span(values)), sizeof(T), ranges);
+    values.resize(values.size() - count);
     return taken;
 }
 
 /// The inverse; `ranges` as in the array that results.
 template <class T>
 void putRanges(std::vector<T>& values, std::span<const Range> ranges, std::span<const T> taken) {
-    std::size_t read = values.size();
     values.resize(values.size() + total(ranges), zero<T>());
-    std::size_t write = values.size();
-    std::size_t left = total(ranges);
-    for (std::size_t k = ranges.size(); k-- > 0;) {
-        const std::size_t behind = write - (ranges[k].begin + ranges[k].count);
-        std::copy_backward(values.begin() + at(read - behind), values.begin() + at(read),
-                           values.begin() + at(write));
-        read -= behind;
-        write = ranges[k].begin;
-        left -= ranges[k].count;
+    openGaps(std::as_writable_bytes(std::span(values)), sizeof(T), ranges);
+    std::size_t read = 0;
+    for (const Range& range : ranges) {
+        const auto gap = std::span(values).subspan(range.begin, range.count);
         if (taken.empty()) {
-            std::fill_n(values.begin() + at(write), ranges[k].count, zero<T>());
+            std::ranges::fill(gap, zero<T>());
         } else {
-            std::copy_n(taken.begin() + at(left), ranges[k].count, values.begin() + at(write));
+            std::ranges::copy(taken.subspan(read, range.count), gap.begin());
         }
+        read += range.count;
     }
 }
 
@@ -165,25 +148,33 @@ TakenStrands takeOut(Groom& groom, std::span<const std::uint32_t> strands) {
     return taken;
 }
 
+namespace {
+
+/// From the last strand on, so that each number is read before it is written over.
+void putOffsets(std::vector<std::uint32_t>& offsets, const TakenStrands& strands) {
+    std::size_t old = offsets.size() - 1;
+    offsets.resize(offsets.size() + strands.indices.size());
+    std::uint32_t added = std::accumulate(strands.counts.begin(), strands.counts.end(), 0u);
+    std::size_t next = strands.indices.size();
+    for (std::size_t s = offsets.size() - 1; next > 0; --s) {
+        offsets[s] = offsets[old] + added;
+        if (strands.indices[next - 1] + 1 == s) {
+            added -= strands.counts[--next];
+        } else {
+            --old;
+        }
+    }
+}
+
+}  // namespace
+
 void putBack(Groom& groom, const TakenStrands& strands) {
     if (strands.indices.empty()) return;
     if (groom.strandCount() == 0) {
         adoptNames(groom.strandAttributes, strands.strandData);
         adoptNames(groom.pointAttributes, strands.pointData);
     }
-    const auto before = groom.offsets.view();
-    const std::size_t after = groom.strandCount() + strands.indices.size();
-    std::vector<std::uint32_t> offsets{0};
-    offsets.reserve(after + 1);
-    std::size_t next = 0;
-    for (std::size_t s = 0, old = 0; s < after; ++s) {
-        const bool isPut = next < strands.indices.size() && strands.indices[next] == s;
-        const std::uint32_t count = isPut ? strands.counts[next] : before[old + 1] - before[old];
-        next += isPut ? 1 : 0;
-        old += isPut ? 0 : 1;
-        offsets.push_back(offsets.back() + count);
-    }
-    groom.offsets = CowArray<std::uint32_t>(std::move(offsets));
+    putOffsets(groom.offsets.edit(), strands);
     const std::vector<Range> ranges = strandRanges(strands.indices);
     putAttributes(groom.strandAttributes, ranges, strands.strandData);
     putAttributes(groom.pointAttributes, pointRanges(ranges, groom.offsets.view()), strands.pointData);
