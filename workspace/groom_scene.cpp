@@ -10,6 +10,7 @@
 #include "core/base/file.h"
 #include "core/geometry/selection.h"
 #include "core/groom/json_reader.h"
+#include "core/groom/move_strands.h"
 #include "core/groom/point_dye.h"
 #include "core/interpolation/follow_hairs.h"
 #include "core/render/exr.h"

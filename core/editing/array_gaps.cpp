@@ -31,13 +31,14 @@ struct Piece {
 constexpr std::size_t kLeastPiece = std::size_t{1} << 19u;  ///< bytes
 constexpr std::size_t kMostPieces = 16;
 
-/// Of about equal size, so large that little of each needs a copy.
+/// Of about equal size. Few threads gain nothing from pieces that need a copy of more than a part of them.
 std::vector<Piece> piecesOf(std::span<const Move> moves, std::size_t farthest) {
     std::size_t all = 0;
     for (const Move& move : moves) all += move.count;
-    constexpr std::size_t kShare = 4;  // of a piece that may need a copy is one part in this
+    constexpr std::size_t kFewThreads = 4;
+    const std::size_t share = threadCount() < kFewThreads ? 4 : 0;  // the part is one in this
     const std::size_t count =
-        std::clamp<std::size_t>(all / std::max(kLeastPiece, kShare * farthest), 1, kMostPieces);
+        std::clamp<std::size_t>(all / std::max(kLeastPiece, share * farthest), 1, kMostPieces);
     const std::size_t each = (all + count - 1) / count;
     std::vector<Piece> pieces(1);
     std::size_t room = each;

@@ -48,7 +48,7 @@ std::vector<RootGrid::Neighbour> RootGrid::nearest(const Vec3f& point_ss, std::s
                                                    float radius) const {
     std::vector<Neighbour> found;
     // No farther than needed: where roots are dense the whole radius would hold thousands.
-    for (float reach = std::min(cell_, radius);; reach = std::min(2 * reach, radius)) {
+    for (float reach = std::min(0.5f * cell_, radius);; reach = std::min(2 * reach, radius)) {
         found.clear();
         visit(point_ss, reach, [&](std::uint32_t strand, float distance) {
             found.push_back({strand, distance});

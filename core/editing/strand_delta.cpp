@@ -3,50 +3,59 @@
 
 #include <algorithm>
 #include <cassert>
+#include <functional>
 #include <numeric>
 #include <string>
 #include <utility>
 
+#include "core/base/parallel.h"
 #include "core/editing/array_gaps.h"
 #include "core/editing/zero.h"
 
 namespace hairloom::editing {
 namespace {
 
-std::ptrdiff_t at(std::size_t index) {
-    return static_cast<std::ptrdiff_t>(index);
+constexpr std::size_t kGrain = 512;
+
+/// Calls body(range, place of its first element where all ranges lie one after the other), on several
+/// threads.
+void forEachRange(std::span<const Range> ranges, const std::function<void(const Range&, std::size_t)>& body) {
+    std::vector<std::size_t> places;
+    places.reserve(ranges.size());
+    std::size_t place = 0;
+    for (const Range& range : ranges) {
+        places.push_back(place);
+        place += range.count;
+    }
+    parallelFor(ranges.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) body(ranges[k], places[k]);
+    });
 }
 
 /// Moves the ranges out of the array and closes the gaps, in place.
 template <class T>
 std::vector<T> takeRanges(std::vector<T>& values, std::span<const Range> ranges) {
-    const std::size_t count = total(ranges);
-    std::vector<T> taken;
-    taken.reserve(count);
-    for (const Range& range : ranges) {
-        const auto first = values.begin() + at(range.begin);
-        taken.insert(taken.end(), first, first + at(range.count));
-    }
+    std::vector<T> taken(total(ranges));
+    forEachRange(ranges, [&](const Range& range, std::size_t place) {
+        std::copy_n(values.data() + range.begin, range.count, taken.data() + place);
+    });
     closeGaps(std::as_writable_bytes(std::span(values)), sizeof(T), ranges);
-    values.resize(values.size() - count);
+    values.resize(values.size() - taken.size());
     return taken;
 }
 
 /// The inverse; `ranges` as in the array that results.
 template <class T>
 void putRanges(std::vector<T>& values, std::span<const Range> ranges, std::span<const T> taken) {
-    values.resize(values.size() + total(ranges), zero<T>());
+    values.resize(values.size() + total(ranges));
     openGaps(std::as_writable_bytes(std::span(values)), sizeof(T), ranges);
-    std::size_t read = 0;
-    for (const Range& range : ranges) {
-        const auto gap = std::span(values).subspan(range.begin, range.count);
+    forEachRange(ranges, [&](const Range& range, std::size_t place) {
         if (taken.empty()) {
-            std::ranges::fill(gap, zero<T>());
+            std::fill_n(values.data() + range.begin, range.count, zero<T>());
         } else {
-            std::ranges::copy(taken.subspan(read, range.count), gap.begin());
+            std::copy_n(taken.data() + place, range.count, values.data() + range.begin);
         }
-        read += range.count;
-    }
+    });
 }
 
 std::vector<std::string> namesOf(const AttributeSet& attributes) {

@@ -7,9 +7,9 @@
 #include <array>
 #include <cstdint>
 #include <string>
-#include <tuple>
 #include <vector>
 
+#include "core/base/parallel.h"
 #include "core/base/random.h"
 
 namespace hairloom::editing {
@@ -57,21 +57,26 @@ std::vector<Element> withoutGaps(const std::vector<Element>& values, std::span<c
     return kept;
 }
 
-/// Small ones are moved by one thread, large ones by many, where the gaps in all are a small part.
-TEST(ArrayGaps, CloseAndOpenAsIfOneElementWereMovedAfterTheOther) {
+class ArrayGaps : public testing::TestWithParam<std::size_t> {
+  protected:
+    void SetUp() override { setThreadCount(GetParam()); }
+    void TearDown() override { setThreadCount(0); }
+};
+
+struct Case {
+    std::size_t length;
+    std::size_t count;  ///< in gaps
+    std::uint32_t longest;
+};
+
+/// Large arrays are moved in pieces: by few threads where gaps are a small part, by many in any case.
+TEST_P(ArrayGaps, CloseAndOpenAsIfOneElementWereMovedAfterTheOther) {
     Random random(11);
     constexpr std::size_t kLarge = 600'000;  // 7.2 MB
     for (const auto& [length, count, longest] :
-         std::initializer_list<std::tuple<std::size_t, std::size_t, std::uint32_t>>{
-             {1, 1, 1},
-             {10, 4, 3},
-             {1000, 1, 1},
-             {1000, 999, 50},
-             {kLarge, 1, 1},
-             {kLarge, 3000, 16},
-             {kLarge, 30'000, 40},
-             {kLarge, 300'000, 400},
-             {kLarge, 590'000, 9000}}) {
+         {Case{1, 1, 1}, Case{10, 4, 3}, Case{1000, 1, 1}, Case{1000, 999, 50}, Case{kLarge, 1, 1},
+          Case{kLarge, 3000, 16}, Case{kLarge, 30'000, 40}, Case{kLarge, 300'000, 400},
+          Case{kLarge, 590'000, 9000}}) {
         SCOPED_TRACE(std::to_string(count) + " of " + std::to_string(length));
         const auto gaps = randomGaps(random, length, count, longest);
         ASSERT_EQ(total(gaps), count);
@@ -89,6 +94,8 @@ TEST(ArrayGaps, CloseAndOpenAsIfOneElementWereMovedAfterTheOther) {
         ASSERT_TRUE(moved == values);
     }
 }
+
+INSTANTIATE_TEST_SUITE_P(Threads, ArrayGaps, testing::Values(1, 3, 16));
 
 }  // namespace
 }  // namespace hairloom::editing

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "editor/fields/stiffness_curve.h"
+#include "editor/panels/stability_gauge.h"
 #include "tests/editor/window_fixture.h"
 
 namespace hairloom::editor {
@@ -20,6 +21,8 @@ class EffectsTest : public WindowTest {
         Groom windy = groom();
         windy.simulation.windSpeed = 6;
         document().change("Wind", Change::Simulation, windy);
+        window->panel("effects")->raise();
+        QCoreApplication::processEvents();
     }
     QTreeWidgetItem* row(const QString& effect) {
         auto* table = find<QTreeWidget>("effects");
@@ -93,6 +96,23 @@ TEST_F(EffectsTest, WhatWasTriedCanBeKept) {
     EXPECT_TRUE(session().player.leftOut().isEmpty());
     trigger("edit.undo");
     EXPECT_EQ(hash(), before);
+}
+
+TEST_F(EffectsTest, TheGaugeThatWasNotSeenLooksWhenItIsShown) {
+    auto* const gauge = window->findChild<StabilityGauge*>();
+    ASSERT_TRUE(gauge);
+    const auto factor = [&] { return gauge->advice().region.factor; };
+    window->panel("effects")->hide();
+    const double before = factor();
+    Groom explicitly = groom();
+    explicitly.simulation.integrator = runtime::Integrator::velocityVerlet;
+    explicitly.simulation.angularMethod = runtime::AngularMethod::cheap;
+    document().change("Integrator", Change::Simulation, explicitly);
+    QTest::qWait(300);
+    EXPECT_EQ(factor(), before);
+    window->panel("effects")->show();
+    window->panel("effects")->raise();
+    EXPECT_TRUE(QTest::qWaitFor([&] { return factor() > before; }, 20'000));
 }
 
 class StiffnessTest : public EffectsTest {
