@@ -67,8 +67,8 @@ class StrandBend {
         for (std::uint32_t j = 0; j < block_.points; ++j) kappa_[j] = 0.0;
         for (std::uint32_t j = first; j < segments; ++j) {
             const double along = static_cast<double>(j) / segments;
-            const double s = static_cast<double>(settings_.angularStiffness) *
-                             (1.0 + (static_cast<double>(settings_.angularTipShare) - 1.0) * along);
+            const double s =
+                static_cast<double>(settings_.angularStiffness) * settings_.angularCurve.at(along);
             const double stiffness = bendingStiffnessOf(s);
             const double outer = lengthOf(j);
             const double inner = j > 0 ? lengthOf(j - 1) : 0.0;

@@ -82,7 +82,7 @@ Decision decideCoupling(const SceneDescription& scene, bool possible) {
     if (!possible) return {false, Reason::lengthsFree, 0.0f};
     if (!(s.bendDampingTime > 0.0f)) return {true, Reason::undamped, 0.0f};
     if (scene.unevenness > kMostUneven) return {true, Reason::uneven, scene.unevenness};
-    const double stiffness = bendingStiffnessOf(static_cast<double>(s.angularStiffness));
+    const double stiffness = bendingStiffnessOf(static_cast<double>(greatestStiffness(s)));
     const double h = static_cast<double>(scene.substep);
     const double curl = stiffness * h * h * static_cast<double>(scene.sharpestCurl);
     if (curl > static_cast<double>(kTightestCurl))
@@ -154,9 +154,9 @@ class Planner {
         const bool wind = decide(Effect::wind, decideWind(s_));
         decide(Effect::drag, decideDrag(s_, wind));
         decide(Effect::length, decideLength(s_));
-        const bool stiff = s_.angularStiffness > 0.0f;
-        decide(Effect::angular,
-               {stiff, stiff ? Reason::authored : Reason::zeroStiffness, s_.angularStiffness});
+        const float stiffest = greatestStiffness(s_);
+        const bool stiff = stiffest > 0.0f;
+        decide(Effect::angular, {stiff, stiff ? Reason::authored : Reason::zeroStiffness, stiffest});
         const bool held = stiff && gravity > 0.0f && s_.restGravity > 0.0f;
         decide(Effect::torsion, decideTorsion(scene_, stiff, held));
         const bool coupled = stiff && implicitly() && !coils() && s_.lengthIterations > 0;

@@ -63,7 +63,7 @@ float angularStiffnessOf(double bendingStiffness) {
 
 void applyPreset(const HairPreset& preset, SimulationSettings& settings) {
     settings.angularStiffness = angularStiffnessOf(bendingStiffness(preset.diameter, preset.eccentricity));
-    settings.angularTipShare = 1.0f;
+    settings.angularCurve = Ramp();
 }
 
 }  // namespace hairloom::runtime

@@ -40,7 +40,7 @@ float angularStiffnessOf(double bendingStiffness);
 /// And the other way: the B that s, 0…1, stands for. Rigid hair counts as s = 1 − 10⁻⁹.
 double bendingStiffnessOf(double angularStiffness);
 
-/// Sets angularStiffness, and angularTipShare to 1: fibres are as thick at the tip. All else stays.
+/// Sets angularStiffness, and angularCurve to 1 everywhere: fibres are as thick at the tip. All else stays.
 void applyPreset(const HairPreset& preset, SimulationSettings& settings);
 
 }  // namespace hairloom::runtime

@@ -40,7 +40,7 @@ constexpr FieldInfo kFields[] = {
     {"springFrequency", "Hz", 1, 10000, "stiffness of coil springs: higher stretches less and needs shorter steps", &S::springFrequency, {}},
     choiceField("angularMethod", "how strands keep their shape", &S::angularMethod, kAngularMethods),
     {"angularStiffness", "", 0, 1, "how strongly hair returns to its shape: 0 is off, 0.5 real hair, 1 rigid", &S::angularStiffness, {}},
-    {"angularTipShare", "", 0, 1, "stiffness at the tip as a share of that at the root: lower is looser", &S::angularTipShare, {}},
+    {"angularCurve", "", 0, 1, "share of the stiffness from root to tip, by keys [place, share]: lower is looser there", &S::angularCurve, {}},
     {"bendDampingTime", "s", 0, 1, "waves faster than this fade: 0 rings on", &S::bendDampingTime, {}},
     {"restGravity", "", 0, 1, "share of gravity that the authored shape already carries: 0 sags from there", &S::restGravity, {}},
     {"gravity", "m/s²", -1000, 1000, "acceleration of everything", &S::gravity, {}},
@@ -79,6 +79,10 @@ bool storedInRange(const FieldInfo& field, double value) {
 
 }  // namespace
 
+float greatestStiffness(const S& settings) {
+    return settings.angularStiffness * settings.angularCurve.greatest();
+}
+
 std::span<const FieldInfo> fields() {
     return kFields;
 }
@@ -91,6 +95,7 @@ const FieldInfo* findField(std::string_view name) {
 }
 
 std::uint32_t componentCount(const FieldInfo& field) {
+    if (std::holds_alternative<Ramp S::*>(field.member)) return 0;
     return std::holds_alternative<Float3 S::*>(field.member) ? 3 : 1;
 }
 
@@ -101,6 +106,8 @@ double fieldValue(const S& settings, const FieldInfo& field, std::uint32_t compo
             auto value = settings.*member;
             if constexpr (std::is_same_v<decltype(value), Float3>) {
                 return static_cast<double>(*componentOf(value, component));
+            } else if constexpr (std::is_same_v<decltype(value), Ramp>) {
+                return 0.0;
             } else {
                 return static_cast<double>(value);
             }
@@ -113,6 +120,7 @@ double defaultValue(const FieldInfo& field, std::uint32_t component) {
 }
 
 bool setFieldValue(S& settings, const FieldInfo& field, double value, std::uint32_t component) {
+    if (std::holds_alternative<Ramp S::*>(field.member)) return false;
     assert(component < componentCount(field));
     if (!inRange(field, value)) return false;
     std::visit(
@@ -120,6 +128,8 @@ bool setFieldValue(S& settings, const FieldInfo& field, double value, std::uint3
             using Value = std::remove_cvref_t<decltype(settings.*member)>;
             if constexpr (std::is_same_v<Value, Float3>) {
                 *componentOf(settings.*member, component) = static_cast<float>(value);
+            } else if constexpr (std::is_same_v<Value, Ramp>) {
+                return;
             } else if constexpr (std::is_enum_v<Value>) {
                 settings.*member = static_cast<Value>(static_cast<std::uint32_t>(value));
             } else {
@@ -133,6 +143,10 @@ bool setFieldValue(S& settings, const FieldInfo& field, double value, std::uint3
 std::vector<FieldProblem> validate(const S& settings) {
     std::vector<FieldProblem> problems;
     for (const FieldInfo& field : kFields) {
+        if (const auto* ramp = std::get_if<Ramp S::*>(&field.member)) {
+            const std::string problem = problemOf(settings.**ramp);
+            if (!problem.empty()) problems.push_back({&field, 0, 0.0, field.name + (' ' + problem)});
+        }
         for (std::uint32_t c = 0; c < componentCount(field); ++c) {
             const double value = fieldValue(settings, field, c);
             if (storedInRange(field, value)) continue;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "runtime/math.h"
+#include "runtime/ramp.h"
 
 namespace hairloom::runtime {
 
@@ -89,8 +90,8 @@ struct SimulationSettings {
     /// kHairBendingStiffness · s/(1 − s). 0 is off, 0.5 real round hair of 80 µm, 1 rigid. The same at any
     /// number of segments.
     float angularStiffness = 0.3f;
-    /// 0…1. angularStiffness at the tip as a share of that at the root. Lower: looser tips.
-    float angularTipShare = 0.5f;
+    /// Share of angularStiffness along the strand, from the root at 0 to the tip at 1. Lower: looser there.
+    Ramp angularCurve = Ramp::straight(1.0f, 0.5f);
     /// Seconds, 0…1. Kelvin-Voigt time of bending: waves slower than it pass, faster ones fade. 0 rings on.
     float bendDampingTime = 0.03f;
     /// 0…1. Share of gravity in which the authored shape hangs already. 1: hair keeps its authored shape as
@@ -136,6 +137,9 @@ struct SimulationSettings {
     friend bool operator==(const SimulationSettings&, const SimulationSettings&) = default;
 };
 
+/// Of angularStiffness anywhere along a strand, 0…1.
+float greatestStiffness(const SimulationSettings& settings);
+
 /// Young's modulus of hair, Pa (Robbins 2002, as Rünz 2012, Section 2).
 inline constexpr double kYoungsModulus = 3.89e9;
 /// Of hair, kg/m³; a round number, since it varies with moisture.
@@ -143,13 +147,14 @@ inline constexpr double kHairDensity = 1300.0;
 /// EI/(ρA) of round hair of 80 µm, in m⁴/s²: E d²/(16 ρ).
 inline constexpr double kHairBendingStiffness = kYoungsModulus * 80e-6 * 80e-6 / (16.0 * kHairDensity);
 
-/// One authored field. For a Float3 the range holds for each component; for an enumeration it is that of the
-/// index.
+/// One authored field. For a Float3 the range holds for each component, for a Ramp for the value of each key;
+/// for an enumeration it is that of the index.
 struct FieldInfo {
     using Member = std::variant<float SimulationSettings::*, std::uint32_t SimulationSettings::*,
-                                Float3 SimulationSettings::*, Integrator SimulationSettings::*,
-                                LengthMethod SimulationSettings::*, AngularMethod SimulationSettings::*,
-                                WindKind SimulationSettings::*, CollisionResponse SimulationSettings::*>;
+                                Float3 SimulationSettings::*, Ramp SimulationSettings::*,
+                                Integrator SimulationSettings::*, LengthMethod SimulationSettings::*,
+                                AngularMethod SimulationSettings::*, WindKind SimulationSettings::*,
+                                CollisionResponse SimulationSettings::*>;
     const char* name;  ///< as in files and on the command line
     const char* unit;  ///< "" for a pure number
     double min;
@@ -164,20 +169,20 @@ std::span<const FieldInfo> fields();
 /// The field of that name, or null.
 const FieldInfo* findField(std::string_view name);
 
-/// 3 for a Float3, else 1.
+/// 3 for a Float3, 0 for a Ramp, which has keys instead, else 1.
 std::uint32_t componentCount(const FieldInfo& field);
 /// Value of component < componentCount(field); an enumeration as its index.
 double fieldValue(const SimulationSettings& settings, const FieldInfo& field, std::uint32_t component = 0);
 double defaultValue(const FieldInfo& field, std::uint32_t component = 0);
-/// Sets it when the value is finite, in range and, for counts and enumerations, whole; else false and no
-/// change.
+/// Sets it when the value is finite, in range and, for counts and enumerations, whole; else, and for a Ramp,
+/// false and no change.
 bool setFieldValue(SimulationSettings& settings, const FieldInfo& field, double value,
                    std::uint32_t component = 0);
 
 struct FieldProblem {
     const FieldInfo* field;
     std::uint32_t component;
-    double value;
+    double value;         ///< 0 for a Ramp
     std::string message;  ///< "airDrag is -1 1/s; expected 0 to 1000"
 };
 /// Every field that lies outside its range; empty when all is well.

@@ -23,7 +23,7 @@ bool coilSprings(const S& s) {
     return s.lengthMethod != LengthMethod::constraint;
 }
 bool angularForces(const S& s) {
-    if (!(s.angularStiffness > 0.0f)) return false;
+    if (!(greatestStiffness(s) > 0.0f)) return false;
     if (s.angularMethod == AngularMethod::flexion) return true;
     if (s.integrator == Integrator::implicitEuler) return false;
     return s.integrator != Integrator::verlet || s.angularMethod != AngularMethod::implicit;
@@ -262,7 +262,7 @@ FastestWaves fastestWaves(const StrandsView& strands, const SimulationSettings& 
     if (strands.offsets.size() < 2) return waves;
     const auto shape = makeRestShape(strands);
     Bend bend;
-    if (settings.angularStiffness > 0.0f) bend.planes = Floats(shape->planeFloats, 0.0f);
+    if (greatestStiffness(settings) > 0.0f) bend.planes = Floats(shape->planeFloats, 0.0f);
     // A strand hangs in gravity and in the pull of the wind.
     const double pull = static_cast<double>(length(settings.gravity)) +
                         static_cast<double>(settings.airDrag) * static_cast<double>(settings.windSpeed);

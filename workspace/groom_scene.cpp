@@ -10,6 +10,7 @@
 #include "core/base/file.h"
 #include "core/geometry/selection.h"
 #include "core/groom/json_reader.h"
+#include "core/groom/move_strands.h"
 #include "core/groom/point_dye.h"
 #include "core/interpolation/follow_hairs.h"
 #include "core/render/exr.h"
@@ -265,13 +266,7 @@ Status GroomScene::pose(std::span<const Vec3f> positions_ws, const HeadPose& pos
 
 void GroomScene::moveStrands(std::span<const std::uint32_t> strands, std::span<const Vec3f> points_ws) {
     assert(!bindings_);
-    std::vector<Vec3f>& points = posed_.pointAttributes.edit<Vec3f>(attribute::kPosition);
-    auto from = points_ws.begin();
-    for (const std::uint32_t s : strands) {
-        const auto count = static_cast<std::ptrdiff_t>(posed_.strand(s).size());
-        std::copy_n(from, count, points.begin() + static_cast<std::ptrdiff_t>(posed_.offsets[s]));
-        from += count;
-    }
+    hairloom::moveStrands(posed_, strands, points_ws);
 }
 
 bool GroomScene::setMaterial(const HairMaterial& authored, const ViewFile& view) {

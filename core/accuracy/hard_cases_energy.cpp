@@ -25,8 +25,8 @@ double bendingEnergy(const StrandSet& strands, const SimulationSettings& setting
         const std::uint32_t first = strands.offsets[s];
         for (std::uint32_t j = 1; j + 1 < kPoints; ++j) {
             const double share = static_cast<double>(j) / (kPoints - 1);
-            const double setting = static_cast<double>(settings.angularStiffness) *
-                                   (1.0 + (static_cast<double>(settings.angularTipShare) - 1.0) * share);
+            const double setting =
+                static_cast<double>(settings.angularStiffness) * settings.angularCurve.at(share);
             const double kappa = runtime::kHairBendingStiffness * setting / (1.0 - setting) * kMass / l /
                                  (j == 1 ? 0.5 * l : l);
             const Float3* p = positions.data() + first + j;

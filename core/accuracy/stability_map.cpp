@@ -51,7 +51,7 @@ SimulationSettings mappedSettings(Integrator integrator, MappedForce force, doub
     s.airDrag = 0.0f;
     s.sleepSpeed = 0.0f;
     s.restGravity = 0.0f;
-    s.angularTipShare = 1.0f;
+    s.angularCurve = {};
     s.lengthIterations = 0;
     s.gravity = {};
     if (force == MappedForce::coils) {

@@ -80,6 +80,10 @@ std::string otherSettings(const WorkPrecision& result) {
     for (const runtime::FieldInfo& field : runtime::fields()) {
         if (findAxis(result.options.axes, field.name)) continue;
         std::string text = field.name;
+        if (const auto* ramp = std::get_if<runtime::Ramp runtime::SimulationSettings::*>(&field.member)) {
+            for (const auto& [at, value] : (result.settings.**ramp).inUse())
+                text += fmt::format(" {:.6g}:{:.6g}", at, value);
+        }
         for (std::uint32_t c = 0; c < runtime::componentCount(field); ++c) {
             const double value = runtime::fieldValue(result.settings, field, c);
             // A float's digits, not those of the double it is converted to.

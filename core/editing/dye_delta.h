@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/editing/strand_values.h"
 #include "core/groom/groom.h"
 
 namespace hairloom::editing {
@@ -22,18 +23,15 @@ class DyeDelta {
     void finish(Groom& groom);
 
     void exchange(Groom& groom);
-    bool empty() const { return strands_.empty(); }
+    bool empty() const { return mask_.empty(); }
     /// The material's strength of the dye is another on the other side.
     bool changesStrength() const { return turnsOn_; }
-    std::span<const std::uint32_t> strands() const { return strands_; }  ///< ascending after finish()
-    std::size_t bytes() const;
+    std::span<const std::uint32_t> strands() const { return mask_.strands(); }  ///< ascending after finish()
+    std::size_t bytes() const { return sizeof(*this) + mask_.heapBytes(); }
 
   private:
-    std::vector<std::uint32_t> strands_;
-    std::vector<std::uint32_t> begins_{0};  ///< strand k owns values [begins_[k], begins_[k + 1])
-    std::vector<float> values_;
-    std::vector<std::uint8_t> isKept_;  ///< per strand; empty once finished
-    bool absent_ = false;               ///< the groom on the other side has no such mask
+    StrandValues<float> mask_;
+    bool absent_ = false;  ///< the groom on the other side has no such mask
     bool turnsOn_ = false;
     float strength_ = 0;  ///< of the material's dye on the other side, where it was turned on
 };

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/editing/strand_values.h"
 #include "core/groom/groom.h"
 
 namespace hairloom::editing {
@@ -15,23 +16,25 @@ namespace hairloom::editing {
 class PointDelta {
   public:
     /// Keeps the points of the strands that are not kept yet.
-    void keep(const Groom& groom, std::span<const std::uint32_t> strands);
+    void keep(const Groom& groom, std::span<const std::uint32_t> strands) {
+        points_.keep(groom.offsets.view(), groom.positions(), strands);
+    }
     /// As they were when kept; empty for a strand that is not kept.
-    std::span<const Vec3f> kept(std::uint32_t strand) const;
+    std::span<const Vec3f> kept(std::uint32_t strand) const { return points_.kept(strand); }
     /// No more keep() or kept(): sorts by strand, drops those whose points are as they were.
-    void finish(const Groom& groom);
+    void finish(const Groom& groom) { points_.finish(groom.offsets.view(), groom.positions()); }
 
-    void exchange(Groom& groom);
-    bool empty() const { return strands_.empty(); }
+    void exchange(Groom& groom) {
+        if (empty()) return;
+        points_.exchange(groom.offsets.view(), groom.pointAttributes.edit<Vec3f>(attribute::kPosition));
+    }
+    bool empty() const { return points_.empty(); }
     /// Ascending after finish().
-    std::span<const std::uint32_t> strands() const { return strands_; }
-    std::size_t bytes() const;
+    std::span<const std::uint32_t> strands() const { return points_.strands(); }
+    std::size_t bytes() const { return sizeof(*this) + points_.heapBytes(); }
 
   private:
-    std::vector<std::uint32_t> strands_;
-    std::vector<std::uint32_t> begins_{0};  ///< strand k owns points [begins_[k], begins_[k + 1])
-    std::vector<Vec3f> points_;
-    std::vector<std::uint32_t> slots_;  ///< per strand 1 + its place in strands_, or 0; empty once finished
+    StrandValues<Vec3f> points_;
 };
 
 /// One uint8 attribute of some strands (selected, hidden, frozen).

@@ -28,7 +28,7 @@ void RootGrid::add(std::uint32_t strand, const Vec3f& root_ss) {
 }
 
 template <class Visit>
-void RootGrid::visit(const Vec3f& point, float radius, Visit visit) const {
+bool RootGrid::visit(const Vec3f& point, float radius, Visit visit) const {
     const auto low = [&](Eigen::Index i) { return indexOf(point[i] - radius, cell_); };
     const auto high = [&](Eigen::Index i) { return indexOf(point[i] + radius, cell_); };
     for (std::int64_t z = low(2); z <= high(2); ++z)
@@ -38,38 +38,43 @@ void RootGrid::visit(const Vec3f& point, float radius, Visit visit) const {
                 if (found == cells_.end()) continue;
                 for (const Entry& entry : found->second) {
                     const float distance = (entry.root - point).norm();
-                    if (distance <= radius) visit(entry.strand, distance);
+                    if (distance <= radius && !visit(entry.strand, distance)) return false;
                 }
             }
+    return true;
 }
 
 std::vector<RootGrid::Neighbour> RootGrid::nearest(const Vec3f& point_ss, std::size_t count,
                                                    float radius) const {
     std::vector<Neighbour> found;
     // No farther than needed: where roots are dense the whole radius would hold thousands.
-    for (float reach = std::min(cell_, radius);; reach = std::min(2 * reach, radius)) {
+    for (float reach = std::min(0.5f * cell_, radius);; reach = std::min(2 * reach, radius)) {
         found.clear();
         visit(point_ss, reach, [&](std::uint32_t strand, float distance) {
             found.push_back({strand, distance});
+            return true;
         });
         if (found.size() >= count || reach >= radius) break;
     }
-    std::sort(found.begin(), found.end(), [](const Neighbour& a, const Neighbour& b) {
-        return std::tie(a.distance, a.strand) < std::tie(b.distance, b.strand);
-    });
-    if (found.size() > count) found.resize(count);
+    const std::size_t most = std::min(count, found.size());
+    std::partial_sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(most), found.end(),
+                      [](const Neighbour& a, const Neighbour& b) {
+                          return std::tie(a.distance, a.strand) < std::tie(b.distance, b.strand);
+                      });
+    found.resize(most);
     return found;
 }
 
 bool RootGrid::anyWithin(const Vec3f& point_ss, float radius) const {
-    bool any = false;
-    visit(point_ss, radius, [&](std::uint32_t, float) { any = true; });
-    return any;
+    return !visit(point_ss, radius, [](std::uint32_t, float) { return false; });
 }
 
 std::size_t RootGrid::countWithin(const Vec3f& point_ss, float radius) const {
     std::size_t count = 0;
-    visit(point_ss, radius, [&](std::uint32_t, float) { ++count; });
+    visit(point_ss, radius, [&](std::uint32_t, float) {
+        ++count;
+        return true;
+    });
     return count;
 }
 

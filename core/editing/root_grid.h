@@ -30,8 +30,9 @@ class RootGrid {
         std::uint32_t strand;
         Vec3f root;
     };
+    /// Until visit(strand, distance) says false, which is then what this says.
     template <class Visit>
-    void visit(const Vec3f& point, float radius, Visit visit) const;
+    bool visit(const Vec3f& point, float radius, Visit visit) const;
 
     float cell_;
     std::unordered_map<std::uint64_t, std::vector<Entry>> cells_;

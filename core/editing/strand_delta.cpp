@@ -3,67 +3,59 @@
 
 #include <algorithm>
 #include <cassert>
+#include <functional>
+#include <numeric>
 #include <string>
 #include <utility>
 
+#include "core/base/parallel.h"
+#include "core/editing/array_gaps.h"
 #include "core/editing/zero.h"
 
 namespace hairloom::editing {
 namespace {
 
-/// [begin, begin + count) of an array that holds everything.
-struct Range {
-    std::size_t begin;
-    std::size_t count;
-};
+constexpr std::size_t kGrain = 512;
 
-std::size_t total(std::span<const Range> ranges) {
-    std::size_t sum = 0;
-    for (const Range& range : ranges) sum += range.count;
-    return sum;
-}
-
-std::ptrdiff_t at(std::size_t index) {
-    return static_cast<std::ptrdiff_t>(index);
+/// Calls body(range, place of its first element where all ranges lie one after the other), on several
+/// threads.
+void forEachRange(std::span<const Range> ranges, const std::function<void(const Range&, std::size_t)>& body) {
+    std::vector<std::size_t> places;
+    places.reserve(ranges.size());
+    std::size_t place = 0;
+    for (const Range& range : ranges) {
+        places.push_back(place);
+        place += range.count;
+    }
+    parallelFor(ranges.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) body(ranges[k], places[k]);
+    });
 }
 
 /// Moves the ranges out of the array and closes the gaps, in place.
 template <class T>
 std::vector<T> takeRanges(std::vector<T>& values, std::span<const Range> ranges) {
-    std::vector<T> taken;
-    taken.reserve(total(ranges));
-    std::size_t write = ranges.empty() ? values.size() : ranges.front().begin;
-    for (std::size_t k = 0; k < ranges.size(); ++k) {
-        const std::size_t end = ranges[k].begin + ranges[k].count;
-        taken.insert(taken.end(), values.begin() + at(ranges[k].begin), values.begin() + at(end));
-        const std::size_t next = k + 1 < ranges.size() ? ranges[k + 1].begin : values.size();
-        std::copy(values.begin() + at(end), values.begin() + at(next), values.begin() + at(write));
-        write += next - end;
-    }
-    values.resize(write);
+    std::vector<T> taken(total(ranges));
+    forEachRange(ranges, [&](const Range& range, std::size_t place) {
+        std::copy_n(values.data() + range.begin, range.count, taken.data() + place);
+    });
+    closeGaps(std::as_writable_bytes(std::span(values)), sizeof(T), ranges);
+    values.resize(values.size() - taken.size());
     return taken;
 }
 
 /// The inverse; `ranges` as in the array that results.
 template <class T>
 void putRanges(std::vector<T>& values, std::span<const Range> ranges, std::span<const T> taken) {
-    std::size_t read = values.size();
-    values.resize(values.size() + total(ranges), zero<T>());
-    std::size_t write = values.size();
-    std::size_t left = total(ranges);
-    for (std::size_t k = ranges.size(); k-- > 0;) {
-        const std::size_t behind = write - (ranges[k].begin + ranges[k].count);
-        std::copy_backward(values.begin() + at(read - behind), values.begin() + at(read),
-                           values.begin() + at(write));
-        read -= behind;
-        write = ranges[k].begin;
-        left -= ranges[k].count;
+    values.resize(values.size() + total(ranges));
+    openGaps(std::as_writable_bytes(std::span(values)), sizeof(T), ranges);
+    forEachRange(ranges, [&](const Range& range, std::size_t place) {
         if (taken.empty()) {
-            std::fill_n(values.begin() + at(write), ranges[k].count, zero<T>());
+            std::fill_n(values.data() + range.begin, range.count, zero<T>());
         } else {
-            std::copy_n(taken.begin() + at(left), ranges[k].count, values.begin() + at(write));
+            std::copy_n(taken.data() + place, range.count, values.data() + range.begin);
         }
-    }
+    });
 }
 
 std::vector<std::string> namesOf(const AttributeSet& attributes) {
@@ -165,25 +157,33 @@ TakenStrands takeOut(Groom& groom, std::span<const std::uint32_t> strands) {
     return taken;
 }
 
+namespace {
+
+/// From the last strand on, so that each number is read before it is written over.
+void putOffsets(std::vector<std::uint32_t>& offsets, const TakenStrands& strands) {
+    std::size_t old = offsets.size() - 1;
+    offsets.resize(offsets.size() + strands.indices.size());
+    std::uint32_t added = std::accumulate(strands.counts.begin(), strands.counts.end(), 0u);
+    std::size_t next = strands.indices.size();
+    for (std::size_t s = offsets.size() - 1; next > 0; --s) {
+        offsets[s] = offsets[old] + added;
+        if (strands.indices[next - 1] + 1 == s) {
+            added -= strands.counts[--next];
+        } else {
+            --old;
+        }
+    }
+}
+
+}  // namespace
+
 void putBack(Groom& groom, const TakenStrands& strands) {
     if (strands.indices.empty()) return;
     if (groom.strandCount() == 0) {
         adoptNames(groom.strandAttributes, strands.strandData);
         adoptNames(groom.pointAttributes, strands.pointData);
     }
-    const auto before = groom.offsets.view();
-    const std::size_t after = groom.strandCount() + strands.indices.size();
-    std::vector<std::uint32_t> offsets{0};
-    offsets.reserve(after + 1);
-    std::size_t next = 0;
-    for (std::size_t s = 0, old = 0; s < after; ++s) {
-        const bool isPut = next < strands.indices.size() && strands.indices[next] == s;
-        const std::uint32_t count = isPut ? strands.counts[next] : before[old + 1] - before[old];
-        next += isPut ? 1 : 0;
-        old += isPut ? 0 : 1;
-        offsets.push_back(offsets.back() + count);
-    }
-    groom.offsets = CowArray<std::uint32_t>(std::move(offsets));
+    putOffsets(groom.offsets.edit(), strands);
     const std::vector<Range> ranges = strandRanges(strands.indices);
     putAttributes(groom.strandAttributes, ranges, strands.strandData);
     putAttributes(groom.pointAttributes, pointRanges(ranges, groom.offsets.view()), strands.pointData);

@@ -69,6 +69,8 @@ void hashSettings(Hasher& hasher, const Groom& groom) {
     hashFields(hasher, groom.interpolation);
     hashFields(hasher, groom.placement);
     for (const runtime::FieldInfo& field : runtime::fields()) {
+        if (const auto* ramp = std::get_if<runtime::Ramp runtime::SimulationSettings::*>(&field.member))
+            hasher.array((groom.simulation.**ramp).inUse());
         for (std::uint32_t c = 0; c < runtime::componentCount(field); ++c) {
             hasher.real(runtime::fieldValue(groom.simulation, field, c));
         }

@@ -208,6 +208,27 @@ std::vector<double> JsonReader::numbers(std::string_view key, double min, double
     return {};
 }
 
+std::vector<std::pair<double, double>> JsonReader::pairs(std::string_view key, double min, double max,
+                                                         std::size_t most) {
+    const json* value = member(key);
+    if (!value) return {};
+    const auto isNumber = [&](const json& entry) {
+        return entry.is_number() && withinRange(entry.get<double>(), min, max);
+    };
+    std::vector<std::pair<double, double>> result;
+    bool good = value->is_array() && value->size() <= most;
+    for (std::size_t i = 0; good && i < value->size(); ++i) {
+        const json& pair = (*value)[i];
+        good = pair.is_array() && pair.size() == 2 && isNumber(pair[0]) && isNumber(pair[1]);
+        if (good) result.emplace_back(pair[0].get<double>(), pair[1].get<double>());
+    }
+    if (good) return result;
+    complain(
+        key, "is no such list",
+        fmt::format("expected an array of up to {} pairs of numbers from {}", most, rangeText(min, max, {})));
+    return {};
+}
+
 std::size_t JsonReader::choice(std::string_view key, std::span<const std::string_view> choices) {
     const std::string name = string(key);
     if (!ok()) return 0;

@@ -42,6 +42,9 @@ class JsonReader {
     /// An array of at most `most` numbers.
     std::vector<double> numbers(std::string_view key, double min, double max, std::size_t most,
                                 std::string_view unit = {});
+    /// An array of at most `most` pairs of numbers, each an array.
+    std::vector<std::pair<double, double>> pairs(std::string_view key, double min, double max,
+                                                 std::size_t most);
     /// An index into `choices`.
     std::size_t choice(std::string_view key, std::span<const std::string_view> choices);
     JsonReader object(std::string_view key);

@@ -18,6 +18,36 @@ void readFields(JsonReader reader, S& settings) {
     reader.finish();
 }
 
+/// [[place, value], …]
+Json rampToJson(const runtime::Ramp& ramp) {
+    Json keys = Json::array();
+    for (const auto& [at, value] : ramp.inUse())
+        keys.push_back({readableDecimal(at), readableDecimal(value)});
+    return keys;
+}
+
+void readRamp(JsonReader& reader, const runtime::FieldInfo& field, runtime::Ramp& ramp) {
+    std::vector<runtime::Ramp::Key> keys;
+    for (const auto& [at, value] : reader.pairs(field.name, 0, 1, runtime::Ramp::kMostKeys))
+        keys.push_back({static_cast<float>(at), static_cast<float>(value)});
+    if (!reader.ok()) return;
+    const auto read = runtime::Ramp::of(keys);
+    const std::string problem = runtime::problemOf(read);
+    if (!problem.empty()) return reader.complain(field.name, problem);
+    ramp = read;
+}
+
+/// What the curve of stiffness was before it had keys: the value at the tip, that at the root being 1.
+constexpr const char* kTipShare = "angularTipShare";
+
+void readTipShare(JsonReader& reader, runtime::SimulationSettings& settings) {
+    if (!reader.has(kTipShare)) return;
+    const auto tip = static_cast<float>(reader.number(kTipShare, 0, 1));
+    if (reader.has("angularCurve"))
+        return reader.complain(kTipShare, "stands beside angularCurve", "expected one of the two");
+    settings.angularCurve = runtime::Ramp::straight(1, tip);
+}
+
 }  // namespace
 
 Json toJson(const HairMaterial& material) {
@@ -36,7 +66,9 @@ Json toJson(const runtime::SimulationSettings& settings) {
         const auto value = [&](std::uint32_t component) {
             return readableDecimal(static_cast<float>(runtime::fieldValue(settings, field, component)));
         };
-        if (!field.choices.empty()) {
+        if (const auto* ramp = std::get_if<runtime::Ramp runtime::SimulationSettings::*>(&field.member)) {
+            json[field.name] = rampToJson(settings.**ramp);
+        } else if (!field.choices.empty()) {
             json[field.name] = field.choices[static_cast<std::size_t>(runtime::fieldValue(settings, field))];
         } else if (runtime::componentCount(field) == 3) {
             json[field.name] = {value(0), value(1), value(2)};
@@ -71,6 +103,7 @@ void readSettings(JsonReader reader, PlacementSettings& settings) {
 }
 
 void readSettings(JsonReader reader, runtime::SimulationSettings& settings) {
+    readTipShare(reader, settings);
     for (const runtime::FieldInfo& field : runtime::fields()) {
         if (!reader.has(field.name)) continue;
         const auto set = [&](double value, std::uint32_t component = 0) {
@@ -78,7 +111,9 @@ void readSettings(JsonReader reader, runtime::SimulationSettings& settings) {
             reader.complain(field.name, fmt::format("is {}", value),
                             "expected " + rangeText(field.min, field.max, field.unit));
         };
-        if (!field.choices.empty()) {
+        if (const auto* ramp = std::get_if<runtime::Ramp runtime::SimulationSettings::*>(&field.member)) {
+            readRamp(reader, field, settings.**ramp);
+        } else if (!field.choices.empty()) {
             const std::vector<std::string_view> choices(field.choices.begin(), field.choices.end());
             set(static_cast<double>(reader.choice(field.name, choices)));
         } else if (runtime::componentCount(field) == 3) {

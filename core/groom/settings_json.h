@@ -14,7 +14,8 @@ nlohmann::ordered_json toJson(const runtime::SimulationSettings& settings);
 nlohmann::ordered_json toJson(const std::vector<CollisionSphere>& spheres);
 
 /// Members that are absent keep their value; unknown names and values out of range are complaints of the
-/// reader.
+/// reader. Of the simulation angularTipShare, which was there before angularCurve, is read as a straight
+/// curve.
 void readSettings(JsonReader reader, HairMaterial& material);
 void readSettings(JsonReader reader, InterpolationSettings& settings);
 void readSettings(JsonReader reader, PlacementSettings& settings);

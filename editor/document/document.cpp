@@ -137,6 +137,11 @@ void Document::change(const QString& text, Changes changes, Groom after, quint64
     lastMerge_ = mergeKey;
 }
 
+quint64 Document::nextMergeKey() {
+    static quint64 last = 0;
+    return ++last;
+}
+
 Status Document::save(const QString& path) {
     if (auto status = editing_->save(path.toStdString()); !status) return status;
     path_ = path;

@@ -64,6 +64,8 @@ class Document : public QObject {
     /// Makes `after` the groom, undoably. Changes that follow each other with the same `mergeKey` other than
     /// 0 become one step: a slider being dragged.
     void change(const QString& text, Changes changes, Groom after, quint64 mergeKey = 0);
+    /// One that was never used.
+    static quint64 nextMergeKey();
 
     /// Writes the project and takes `path` as its file.
     Status save(const QString& path);

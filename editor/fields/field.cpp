@@ -101,7 +101,9 @@ std::vector<Field> fromTable(S Groom::*section, Changes changes) {
 
 std::vector<Field> simulationFields() {
     std::vector<Field> fields;
-    for (const Table& info : runtime::fields()) fields.push_back(fromEngine(info));
+    for (const Table& info : runtime::fields()) {
+        if (runtime::componentCount(info) > 0) fields.push_back(fromEngine(info));
+    }
     return fields;
 }
 

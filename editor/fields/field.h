@@ -36,6 +36,7 @@ struct Field {
     }
 };
 
+/// All but curves, which have controls of their own.
 std::vector<Field> simulationFields();
 std::vector<Field> materialFields();
 std::vector<Field> followHairFields();

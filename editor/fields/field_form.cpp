@@ -14,14 +14,6 @@
 #include "editor/shell/icons.h"
 
 namespace hairloom::editor {
-namespace {
-
-quint64 nextInteraction() {
-    static quint64 last = 0;
-    return ++last;
-}
-
-}  // namespace
 
 FieldForm::FieldForm(Document& document, const Preferences& preferences, std::vector<Field> fields,
                      QWidget* parent)
@@ -183,7 +175,7 @@ QWidget* FieldForm::makeColour(const Field& field) {
 }
 
 void FieldForm::begin() {
-    interaction_ = nextInteraction();
+    interaction_ = Document::nextMergeKey();
 }
 
 void FieldForm::store(const Field& field, double value, std::uint32_t component) {

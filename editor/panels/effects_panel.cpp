@@ -33,11 +33,21 @@ class EffectsPanel : public QWidget {
         layout->addWidget(note_);
         layout->addWidget(trial_);
         makeTrial();
-        connect(&session_.player, &Player::frameReady, this, &EffectsPanel::refresh);
-        connect(&session_.player, &Player::outlookChanged, this, &EffectsPanel::refresh);
+        const auto refreshSeen = [this] {
+            if (isVisible()) refresh();
+        };
+        connect(&session_.player, &Player::frameReady, this, refreshSeen);
+        connect(&session_.player, &Player::outlookChanged, this, refreshSeen);
         connect(table_, &QTreeWidget::itemChanged, this, &EffectsPanel::takeCheck);
         refresh();
     }
+
+  protected:
+    void showEvent(QShowEvent*) override {
+        session_.player.setOutlookWatched(true);
+        refresh();
+    }
+    void hideEvent(QHideEvent*) override { session_.player.setOutlookWatched(false); }
 
   private:
     void makeTable() {

@@ -26,7 +26,7 @@ std::vector<Group> groups() {
          {"integrator", "substeps", "dampingTime", "teleportDistance", "sleepSpeed", "sleepDelay"},
          true},
         {QObject::tr("Shape"),
-         {"angularMethod", "angularStiffness", "angularTipShare", "bendDampingTime", "restGravity"},
+         {"angularMethod", "angularStiffness", "bendDampingTime", "restGravity"},
          true},
         {QObject::tr("Wind and gravity"),
          {"windSpeed", "windKind", "windDirection", "windGustiness", "windFrequency", "windGustSize",

@@ -46,15 +46,28 @@ StabilityGauge::StabilityGauge(Session& session, QWidget* parent)
     soon_.setSingleShot(true);
     soon_.setInterval(80);
     connect(&soon_, &QTimer::timeout, this, [this] {
-        // It looks at every strand: not while a hand rests amid a stroke, nor for nobody.
-        const bool isSeen = parentWidget() && parentWidget()->isVisible();
-        session_.document.editing().stroke() || !isSeen ? soon_.start() : update();
+        // It looks at every strand: not while a hand rests amid a stroke.
+        session_.document.editing().stroke() ? soon_.start() : update();
     });
     connect(&session_.document, &Document::changed, this, [this](Changes changes) {
-        if (changes & (Changes(Change::Simulation) | Change::Strands)) soon_.start();
+        if (changes & (Changes(Change::Simulation) | Change::Strands)) outdate();
     });
-    connect(&session_.preferences, &Preferences::changed, this, &StabilityGauge::update);
-    update();
+    connect(&session_.preferences, &Preferences::changed, this, &StabilityGauge::outdate);
+    outdate();
+}
+
+void StabilityGauge::outdate() {
+    isOutdated_ = true;
+    setVisible(session_.document.groom().strandCount() > 0);
+    if (isVisible()) soon_.start();
+}
+
+void StabilityGauge::showEvent(QShowEvent*) {
+    if (isOutdated_) soon_.start();
+}
+
+void StabilityGauge::hideEvent(QHideEvent*) {
+    soon_.stop();
 }
 
 void StabilityGauge::update() {
@@ -62,10 +75,8 @@ void StabilityGauge::update() {
         delete item->widget();
         delete item;
     }
-    advice_ = {};
+    isOutdated_ = false;
     const Groom& groom = session_.document.groom();
-    setVisible(groom.strandCount() > 0);
-    if (groom.strandCount() == 0) return;
     advice_ = adviceFor(groom);
     const double factor = advice_.region.factor;
     bar_->setValue(std::isfinite(factor) ? static_cast<int>(std::min(100.0, 100 * factor)) : 100);

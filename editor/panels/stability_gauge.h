@@ -21,7 +21,13 @@ class StabilityGauge : public QWidget {
     explicit StabilityGauge(Session& session, QWidget* parent = nullptr);
     const runtime::StableAdvice& advice() const { return advice_; }
 
+  protected:
+    void showEvent(QShowEvent* event) override;
+    void hideEvent(QHideEvent* event) override;
+
   private:
+    /// Looks at the settings anew soon, or when the panel is shown.
+    void outdate();
     void update();
 
     Session& session_;
@@ -29,6 +35,7 @@ class StabilityGauge : public QWidget {
     QLabel* words_;
     QVBoxLayout* offers_;
     QTimer soon_;
+    bool isOutdated_ = false;
     runtime::StableAdvice advice_;
 };
 

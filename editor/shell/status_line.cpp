@@ -88,7 +88,8 @@ void StatusLine::say(const QString& text, bool isWarning) {
 
 void StatusLine::setHint(const QString& hint) {
     hint_ = hint;
-    if (fade_.isActive()) return;
+    // Asked for at each move of the pointer.
+    if (fade_.isActive() || message_->text() == hint) return;
     message_->setStyleSheet({});
     message_->setText(hint);
     message_->setToolTip(hint);

@@ -145,6 +145,7 @@ void Player::reset() {
     });
     Q_EMIT frameReady();
     Q_EMIT stateChanged();
+    if (outlookOutdated_) outdateOutlook();
 }
 
 Status Player::setMotion(const QString& name) {
@@ -179,8 +180,19 @@ void Player::setLeftOut(const QStringList& effects) {
         orders.settings = groom.simulation;
         orders.spheres = groom.spheres;
     });
-    outlookSoon_.start();
+    outdateOutlook();
     Q_EMIT outlookChanged();
+}
+
+void Player::setOutlookWatched(bool watched) {
+    outlookWatched_ = watched;
+    if (watched && outlookOutdated_) outlookSoon_.start();
+    if (!watched) outlookSoon_.stop();
+}
+
+void Player::outdateOutlook() {
+    outlookOutdated_ = true;
+    if (outlookWatched_) outlookSoon_.start();
 }
 
 std::vector<EffectReport> Player::effects() const {
@@ -194,6 +206,7 @@ void Player::askForOutlook() {
         return;
     }
     if (frame_) return;
+    outlookOutdated_ = false;
     if (document_.groom().strandCount() == 0) {
         outlook_.clear();
         Q_EMIT outlookChanged();
@@ -222,7 +235,7 @@ void Player::setHeadOffset(const Eigen::Isometry3f& offset) {
 
 void Player::documentChanged(Changes changes) {
     const Groom& groom = document_.groom();
-    outlookSoon_.start();
+    if (changes & (Changes(Change::Simulation) | Change::Strands | Change::Spheres)) outdateOutlook();
     if (changes & (Changes(Change::Strands) | Change::Scalp)) {
         if (!captured_) return;
         const bool play = playing_ && groom.strandCount() > 0;

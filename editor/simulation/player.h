@@ -62,6 +62,8 @@ class Player : public QObject {
     /// What runs and what it costs: of the last frame, else what would run, without times. Empty without
     /// hair.
     std::vector<EffectReport> effects() const;
+    /// What would run is looked for, strand by strand, only while somebody watches.
+    void setOutlookWatched(bool watched);
 
     /// Moves the head on top of its motion: by the hand of a person.
     void setHeadOffset(const Eigen::Isometry3f& offset);
@@ -84,6 +86,7 @@ class Player : public QObject {
     void deliver(std::shared_ptr<const PlayedFrame> frame, quint64 epoch);
     void documentChanged(Changes changes);
     void askForOutlook();
+    void outdateOutlook();
     /// Makes the simulation to see its plan; on the thread.
     void findOutlook(const Groom& groom, const QStringList& leftOut);
     void order(const std::function<void(Orders&)>& change);
@@ -99,6 +102,8 @@ class Player : public QObject {
     QStringList leftOut_;
     std::vector<EffectReport> outlook_;
     QTimer outlookSoon_;
+    bool outlookWatched_ = false;
+    bool outlookOutdated_ = false;
 
     std::unique_ptr<Orders> orders_;
     std::mutex mutex_;

@@ -116,15 +116,12 @@ bool BrushTool::putDown(const BrushPlace& place, double pressure) {
 void BrushTool::drag(const Pointer& pointer) {
     pointer_px_ = pointer.at_px;
     if (!last_) return;
-    BrushPlace to = underPointer(pointer);
+    // On hair it stays at the depth where the stroke began, so that hair that moves does not pull it in and
+    // out.
+    const BrushPlace to = paintsTheHead(brush_) ? underPointer(pointer)
+                                                : placeAtDepthOf(session_, last_->position_ss, pointer.at_px);
     place_ = to;
     if (paintsTheHead(brush_) && !to.skin) return;
-    if (!paintsTheHead(brush_)) {
-        // Stays at the depth where the stroke began, so that hair that moves does not pull it in and out.
-        const Vec3f forward = session_.viewport->camera().forward_ws();
-        const float off = (last_->position_ss - to.position_ss).dot(forward);
-        to.position_ss += to.direction_ss * (off / to.direction_ss.dot(forward));
-    }
     const BrushPlace from = *last_;
     const float length = (to.position_ss - from.position_ss).norm();
     const int dabs = static_cast<int>(length / (kSpacing * settings_.radius));

@@ -66,4 +66,16 @@ BrushPlace skinUnder(const Session& session, const QPointF& at_px) {
     return placeAt(session, at_px, false);
 }
 
+BrushPlace placeAtDepthOf(const Session& session, const Vec3f& point_ws, const QPointF& at_px) {
+    const OrbitCamera& camera = session.viewport->camera();
+    const Ray ray = camera.rayThrough(at_px, session.viewport->viewSize_px());
+    const Vec3f forward = camera.forward_ws();
+    BrushPlace place;
+    place.direction_ss = ray.direction_ws;
+    place.normal_ss = -forward;
+    const float depth = (point_ws - ray.origin_ws).dot(forward);
+    place.position_ss = ray.origin_ws + ray.direction_ws * (depth / ray.direction_ws.dot(forward));
+    return place;
+}
+
 }  // namespace hairloom::editor

@@ -26,5 +26,7 @@ struct BrushPlace {
 BrushPlace placeUnder(const Session& session, const QPointF& at_px);
 /// The same for what works on the skin: hair before it does not count.
 BrushPlace skinUnder(const Session& session, const QPointF& at_px);
+/// Under the pointer as deep in the view as `point_ws`, whatever is there.
+BrushPlace placeAtDepthOf(const Session& session, const Vec3f& point_ws, const QPointF& at_px);
 
 }  // namespace hairloom::editor

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "core/groom/fields.h"
+#include "core/groom/move_strands.h"
 #include "core/groom/point_dye.h"
 
 namespace hairloom::editor {
@@ -136,13 +136,7 @@ void RenderWork::takeMoves(PictureRequest& request) {
     if (request.moves) {
         if (!moved_) moved_ = std::make_shared<Groom>(*handed_);
         // Parts from the array of whoever handed it over, once.
-        std::vector<Vec3f>& points = moved_->pointAttributes.edit<Vec3f>(attribute::kPosition);
-        auto from = request.moves->points_ws.begin();
-        for (const std::uint32_t s : request.moves->strands) {
-            const auto count = static_cast<std::ptrdiff_t>(moved_->strand(s).size());
-            std::copy_n(from, count, points.begin() + static_cast<std::ptrdiff_t>(moved_->offsets[s]));
-            from += count;
-        }
+        hairloom::moveStrands(*moved_, request.moves->strands, request.moves->points_ws);
     }
     if (moved_) request.groom = moved_;
 }
@@ -186,17 +180,12 @@ Status RenderWork::takeScene(const PictureRequest& request, bool draft) {
         if (!scene_->setDye(now)) return replaceScene(request, draft);
         if (auto set = showDye(request); !set) return set;
     }
-    if (request.pose || last_->pose) {
-        const bool moved = request.pose != last_->pose || (!sameGroom && !samePoints(now, before));
-        return moved ? movePoints(request) : Status();
+    const bool wasHanded = last_->groom == handed_ || last_->groom == moved_;
+    if (request.moves && wasHanded && !request.pose && !last_->pose) {
+        return moveStrands(request, *request.moves);
     }
-    // At rest the head stays as it is.
-    if (!sameGroom && !samePoints(now, before)) {
-        std::vector<std::uint32_t> all(now.strandCount());
-        std::iota(all.begin(), all.end(), 0u);
-        return moveStrands(request, {std::move(all), {now.positions().begin(), now.positions().end()}});
-    }
-    return request.moves ? moveStrands(request, *request.moves) : Status();
+    const bool moved = request.pose != last_->pose || (!sameGroom && !samePoints(now, before));
+    return moved ? movePoints(request) : Status();
 }
 
 Status RenderWork::replaceScene(const PictureRequest& request, bool draft) {

@@ -108,9 +108,8 @@ void ProjectiveEquations::fillSticks() {
         for (std::uint32_t j = 0; j < segments; ++j) {
             Stick& stick = sticks_[root + j + 1];
             const float l = stick.length;
-            const float tip = static_cast<float>(j) / static_cast<float>(segments);
-            const float authored =
-                settings_.angularStiffness * (1.0f + (settings_.angularTipShare - 1.0f) * tip);
+            const float along = static_cast<float>(j) / static_cast<float>(segments);
+            const float authored = settings_.angularStiffness * settings_.angularCurve.at(along);
             const float inner = j >= settings_.clampedPoints ? sticks_[root + j].length : 0.0f;
             const double rod =
                 kHairBendingStiffness * static_cast<double>(authored) / (1.0 - static_cast<double>(authored));

@@ -265,6 +265,27 @@ TEST_F(Cli, SettingsAreCheckedByNameAndRange) {
     EXPECT_THAT(name.errors, HasSubstr("friction")) << "the fields there are";
 }
 
+TEST_F(Cli, TheStiffnessFollowsACurveOfKeys) {
+    runJson(createArguments());
+    const auto hashWith = [&](const std::string& settings) {
+        runJson("set hair.hairloom simulation.angularStiffness=0.6 " + settings + " -o curved.hairloom");
+        return runJson("simulate curved.hairloom --frames 5 --motion nod")["state_hash"].get<std::string>();
+    };
+    const std::string straight = hashWith("simulation.angularCurve=[[0,1],[1,0.25]]");
+    EXPECT_EQ(hashWith("simulation.angularTipShare=0.25"), straight) << "as it was called before";
+    EXPECT_NE(hashWith("simulation.angularCurve=[[0,1],[0.5,0.05],[1,0.25]]"), straight);
+    const Outcome order =
+        run("set hair.hairloom simulation.angularCurve=[[0,1],[0.5,1],[0.4,1],[1,1]] -o x.hairloom");
+    EXPECT_EQ(order.exitCode, 1);
+    EXPECT_THAT(order.errors, HasSubstr("angularCurve has key 2 at 0.4"));
+    bool isListed = false;
+    for (const auto& field : runJson("set --list")["fields"]) {
+        isListed |= field["field"] == "simulation.angularCurve" &&
+                    field["default"] == nlohmann::json::parse("[[0,1],[1,0.5]]");
+    }
+    EXPECT_TRUE(isListed);
+}
+
 TEST_F(Cli, PresetsSetWhatAFibreIsMadeOf) {
     runJson(createArguments());
     std::map<std::string, std::string> hashes;

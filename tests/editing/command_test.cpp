@@ -84,6 +84,9 @@ std::vector<Action> actions() {
              [](const Model& m, Random& r) {
                  runtime::SimulationSettings settings = m.groom.simulation;
                  settings.substeps = 1 + r.below(16);
+                 const runtime::Ramp::Key keys[] = {
+                     {0, r.uniform(0, 1)}, {r.uniform(0.1f, 0.9f), r.uniform(0, 1)}, {1, r.uniform(0, 1)}};
+                 settings.angularCurve = runtime::Ramp::of(keys);
                  return setPhysics(m, settings);
              }},
             {"SetInterpolation",

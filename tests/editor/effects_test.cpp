@@ -4,8 +4,10 @@
 #include <QMouseEvent>
 #include <QPushButton>
 #include <QTreeWidget>
+#include <algorithm>
 
 #include "editor/fields/stiffness_curve.h"
+#include "editor/panels/stability_gauge.h"
 #include "tests/editor/window_fixture.h"
 
 namespace hairloom::editor {
@@ -19,6 +21,8 @@ class EffectsTest : public WindowTest {
         Groom windy = groom();
         windy.simulation.windSpeed = 6;
         document().change("Wind", Change::Simulation, windy);
+        window->panel("effects")->raise();
+        QCoreApplication::processEvents();
     }
     QTreeWidgetItem* row(const QString& effect) {
         auto* table = find<QTreeWidget>("effects");
@@ -94,34 +98,118 @@ TEST_F(EffectsTest, WhatWasTriedCanBeKept) {
     EXPECT_EQ(hash(), before);
 }
 
-TEST_F(EffectsTest, TheEndsOfTheStiffnessCurveAreDragged) {
-    window->panel("physics")->raise();
-    QCoreApplication::processEvents();
-    auto* curve = find<StiffnessCurve>("stiffnessCurve");
+TEST_F(EffectsTest, TheGaugeThatWasNotSeenLooksWhenItIsShown) {
+    auto* const gauge = window->findChild<StabilityGauge*>();
+    ASSERT_TRUE(gauge);
+    const auto factor = [&] { return gauge->advice().region.factor; };
+    window->panel("effects")->hide();
+    const double before = factor();
+    Groom explicitly = groom();
+    explicitly.simulation.integrator = runtime::Integrator::velocityVerlet;
+    explicitly.simulation.angularMethod = runtime::AngularMethod::cheap;
+    document().change("Integrator", Change::Simulation, explicitly);
+    QTest::qWait(300);
+    EXPECT_EQ(factor(), before);
+    window->panel("effects")->show();
+    window->panel("effects")->raise();
+    EXPECT_TRUE(QTest::qWaitFor([&] { return factor() > before; }, 20'000));
+}
+
+class StiffnessTest : public EffectsTest {
+  protected:
+    void SetUp() override {
+        EffectsTest::SetUp();
+        window->panel("physics")->raise();
+        QCoreApplication::processEvents();
+        curve = find<StiffnessCurve>("stiffnessCurve");
+        Groom straight = groom();
+        straight.simulation.angularStiffness = 0.9f;
+        straight.simulation.angularCurve = runtime::Ramp::straight(1, 0.8f);
+        document().change("Straight", Change::Simulation, straight);
+    }
+    const runtime::SimulationSettings& settings() { return groom().simulation; }
+    float levelOf(std::uint32_t key) {
+        return settings().angularStiffness * settings().angularCurve.keys[key].value;
+    }
+    void dragFrom(const QPoint& from, const QPoint& way) {
+        QTest::mousePress(curve, Qt::LeftButton, {}, from);
+        for (const QPoint& to : {from + way / 2, from + way}) {
+            QMouseEvent move(QEvent::MouseMove, QPointF(to), curve->mapToGlobal(QPointF(to)), Qt::NoButton,
+                             Qt::LeftButton, {});
+            QCoreApplication::sendEvent(curve, &move);
+        }
+        QTest::mouseRelease(curve, Qt::LeftButton, {}, from + way);
+    }
+    QPoint handle(std::uint32_t key) { return curve->handle_px(key).toPoint(); }
+
+    StiffnessCurve* curve = nullptr;
+};
+
+TEST_F(StiffnessTest, KeysAreDraggedAndOthersStay) {
     const auto before = hash();
     const int steps = document().stepCount();
-    const auto dragEnd = [&](int end, int down) {
-        const QPoint from = curve->handle_px(end).toPoint();
-        QTest::mousePress(curve, Qt::LeftButton, {}, from);
-        QMouseEvent move(QEvent::MouseMove, from + QPointF(0, down),
-                         curve->mapToGlobal(from + QPoint(0, down)), Qt::NoButton, Qt::LeftButton, {});
-        QCoreApplication::sendEvent(curve, &move);
-        QTest::mouseRelease(curve, Qt::LeftButton, {}, from + QPoint(0, down));
-    };
-    const auto was = groom().simulation;
-    const float tipWas = was.angularStiffness * was.angularTipShare;
-    dragEnd(1, 20);
-    EXPECT_EQ(groom().simulation.angularStiffness, was.angularStiffness);
-    EXPECT_LT(groom().simulation.angularTipShare, was.angularTipShare);
-    EXPECT_EQ(document().stepCount(), steps + 1);
-    const float tip = groom().simulation.angularStiffness * groom().simulation.angularTipShare;
-    EXPECT_LT(tip, tipWas);
-    dragEnd(0, 10);
-    EXPECT_LT(groom().simulation.angularStiffness, was.angularStiffness);
-    EXPECT_NEAR(groom().simulation.angularStiffness * groom().simulation.angularTipShare, tip, 1e-5f)
-        << "the tip stays";
+    dragFrom(handle(1), {0, 20});
+    EXPECT_EQ(settings().angularStiffness, 0.9f);
+    EXPECT_LT(levelOf(1), 0.7f);
+    EXPECT_EQ(document().stepCount(), steps + 1) << "one drag is one step";
+    const float tip = levelOf(1);
+    dragFrom(handle(0), {30, 10});
+    EXPECT_LT(settings().angularStiffness, 0.9f);
+    EXPECT_EQ(settings().angularCurve.keys[0], (runtime::Ramp::Key{0, 1})) << "ends stay at the ends";
+    EXPECT_NEAR(levelOf(1), tip, 1e-5f);
+    dragFrom(handle(1), {0, -200});
+    EXPECT_EQ(settings().angularStiffness, 1) << "the greatest along the strand";
+    EXPECT_LT(levelOf(0), 0.9f);
     document().goToStep(steps);
     EXPECT_EQ(hash(), before);
+}
+
+TEST_F(StiffnessTest, KeysComeAndGo) {
+    const auto before = hash();
+    const int steps = document().stepCount();
+    const QPoint middle = (handle(0) + handle(1)) / 2;
+    dragFrom(middle, {10, 25});
+    EXPECT_EQ(document().stepCount(), steps + 1);
+    ASSERT_EQ(settings().angularCurve.count, 3u);
+    EXPECT_GT(settings().angularCurve.keys[1].at, 0.5f);
+    EXPECT_LT(levelOf(1), 0.7f);
+    EXPECT_TRUE(runtime::validate(settings()).empty());
+    const auto three = hash();
+    dragFrom(handle(1), {4000, 0});
+    EXPECT_LT(settings().angularCurve.keys[1].at, 1) << "no key passes another";
+    EXPECT_TRUE(runtime::validate(settings()).empty());
+    trigger("edit.undo");
+    EXPECT_EQ(hash(), three);
+    QTest::mouseClick(curve, Qt::RightButton, {}, handle(0));
+    EXPECT_EQ(settings().angularCurve.count, 3u) << "ends are not removed";
+    QTest::mouseClick(curve, Qt::LeftButton, {}, handle(1));
+    curve->setFocus();
+    QTest::keyClick(curve, Qt::Key_Down);
+    EXPECT_NE(hash(), three);
+    QTest::keyClick(curve, Qt::Key_Delete);
+    EXPECT_EQ(settings().angularCurve, runtime::Ramp::straight(1, 0.8f));
+    trigger("edit.undo");
+    trigger("edit.undo");
+    EXPECT_EQ(hash(), three);
+    document().goToStep(steps);
+    EXPECT_EQ(hash(), before);
+    document().goToStep(steps + 1);
+    EXPECT_EQ(hash(), three);
+}
+
+TEST_F(StiffnessTest, TheHairMovesWhereItWasMadeSoft) {
+    const auto positions = [&] { return session().player.frame()->pose->positions_ws; };
+    ASSERT_TRUE(play(1));
+    trigger("play.toggle");
+    const auto stiff = positions();
+    dragFrom((handle(0) + handle(1)) / 2, {0, 200});
+    ASSERT_EQ(levelOf(1), 0);
+    ASSERT_TRUE(play(1));
+    trigger("play.toggle");
+    const auto soft = positions();
+    float farthest = 0;
+    for (std::size_t p = 0; p < soft.size(); ++p) farthest = std::max(farthest, (soft[p] - stiff[p]).norm());
+    EXPECT_GT(farthest, 0.01f) << "metres";
 }
 
 }  // namespace

@@ -151,5 +151,33 @@ TEST_F(ManualTest, GroomingSpheresMotionAndLook) {
     shoot(exporting, "export");
 }
 
+TEST_F(ManualTest, Dye) {
+    openSampleHair("shoulder");
+    Groom teal = groom();
+    teal.interpolation.followPerGuide = 5;
+    teal.material.dyeColour = Vec3f(0.01f, 0.3f, 0.4f);
+    document().open(teal, {}, "shoulder");
+    PictureQuality quality = viewport().quality();
+    quality.frames = 4;
+    viewport().setQuality(quality);
+    viewport().look(render::View::ThreeQuarter);
+    viewport().frameAll();
+    viewport().camera().zoom(1.35f);
+    viewport().redraw();
+    raise("tool");
+    brush("dye_paint").setRadius(0.045f);
+    auto* profile = find<QComboBox>("brushProfile");
+    profile->setCurrentIndex(1);
+    Q_EMIT profile->activated(1);
+    const Box3f hair = groom().bounds();
+    const auto nearTips = [&](float across) {
+        return at({hair.min().x() + across * hair.sizes().x(), hair.min().y() + 0.05f, 0.05f});
+    };
+    for (int stroke = 0; stroke < 3; ++stroke)
+        drag({nearTips(0.95f), nearTips(0.8f), nearTips(0.65f), nearTips(0.5f)});
+    moveTo(nearTips(0.55f));
+    shootWindow("dye");
+}
+
 }  // namespace
 }  // namespace hairloom::editor

@@ -189,6 +189,7 @@ TEST_F(PictureTest, HairThatABrushMovesLooksLikeHairHandedOverWhole) {
     trigger("edit.undo");
     const QImage undone = settled();
     EXPECT_NE(undone, combed);
+    EXPECT_EQ(undone, before);
     viewport().setComparison(std::nullopt);
     EXPECT_EQ(settled(), undone);
 }

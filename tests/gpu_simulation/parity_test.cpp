@@ -129,6 +129,12 @@ const Case kCases[] = {
      },
      // The system multiplies what rounding makes of lengths by 2,000 and more.
      false, 5e-6, 1e-3, 14, 5e-5f},
+    {"angularCurve",
+     [](SimulationSettings& s) {
+         bend(s, AngularMethod::implicit);
+         const runtime::Ramp::Key keys[] = {{0, 0.4f}, {0.3f, 1}, {0.5f, 0.1f}, {1, 0.7f}};
+         s.angularCurve = runtime::Ramp::of(keys);
+     }},
     {"angularCheap", [](SimulationSettings& s) { bend(s, AngularMethod::cheap); }},
     {"angularExact", [](SimulationSettings& s) { bend(s, AngularMethod::exact); }},
     {"flexion", [](SimulationSettings& s) { bend(s, AngularMethod::flexion); }},

@@ -112,6 +112,8 @@ inline Groom fullGroom() {
     groom.material.rootRadius = 0.00003f;
     groom.material.tipColour = Vec3f(0.1f, 0.7f, 0.3f);
     groom.simulation.substeps = 11;
+    const runtime::Ramp::Key keys[] = {{0, 0.7f}, {0.123f, 1}, {0.6f, 0.05f}, {1, 0.3f}};
+    groom.simulation.angularCurve = runtime::Ramp::of(keys);
     groom.simulation.gravity = {0.1f, -9.7f, 0.3f};
     groom.interpolation.followPerGuide = 12;
     groom.interpolation.seed = 0xfedcba9876543210ull;

@@ -87,6 +87,7 @@ TEST(GroomHash, SeesEveryPart) {
         [](Groom& g) { g.spheres[0].bone = "Neck"; },
         [](Groom& g) { g.material.scaleTiltDegrees += 1; },
         [](Groom& g) { g.simulation.windSpeed = 3; },
+        [](Groom& g) { g.simulation.angularCurve = {}; },
         [](Groom& g) { g.interpolation.seed ^= 1; },
         [](Groom& g) { g.scalp.reset(); },
         [](Groom& g) { g.scalpSelection.pop_back(); },

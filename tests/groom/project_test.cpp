@@ -87,6 +87,34 @@ TEST(Project, ReadsVersion1WithoutDensityAndPlacement) {
     EXPECT_TRUE(sameContent(*loaded, expected));
 }
 
+TEST(Project, ReadsTheStiffnessAtTheTipOfVersion3AsAStraightCurve) {
+    const TemporaryFolder folder;
+    const auto path = folder / "a.hairloom";
+    ASSERT_TRUE(saveProject(fullGroom(), path));
+    const auto now = ArchiveReader::open("a", readFile(path).value(), section::kKind, kProjectVersion);
+    ASSERT_TRUE(now);
+    nlohmann::ordered_json head = now->head();
+    for (const char* member : {"kind", "version", "arrays"}) head.erase(member);
+    std::deque<AttributeData> arrays;  // the writer looks at them until it finishes
+    const auto load = [&] {
+        ArchiveWriter writer{std::string(section::kKind), 3};
+        for (const std::string& name : now->names())
+            writer.add(name, arrays.emplace_back(now->readAny(name).value()));
+        EXPECT_TRUE(writeFileAtomically(path, writer.finish(head).value()));
+        return loadProject(path);
+    };
+    head["simulation"]["angularTipShare"] = 0.35;
+    const auto both = load();
+    ASSERT_FALSE(both);
+    EXPECT_THAT(both.error().message(), HasSubstr("/simulation/angularTipShare stands beside angularCurve"));
+    head["simulation"].erase("angularCurve");
+    const auto loaded = load();
+    ASSERT_TRUE(loaded) << loaded.error().message();
+    Groom expected = fullGroom();
+    expected.simulation.angularCurve = runtime::Ramp::straight(1, 0.35f);
+    EXPECT_TRUE(sameContent(*loaded, expected));
+}
+
 TEST(Project, TruncatedAnywhereIsRefused) {
     const TemporaryFolder folder;
     const auto path = folder / "a.hairloom";
@@ -178,7 +206,7 @@ TEST(HostileProject, VersionsAndKindsAreNamed) {
     const TemporaryFolder folder;
     Forger newer(folder);
     newer.version = 7;
-    EXPECT_THAT(newer.error(), HasSubstr("project is version 7; this program reads versions up to 3"));
+    EXPECT_THAT(newer.error(), HasSubstr("project is version 7; this program reads versions up to 4"));
     Forger other(folder);
     other.kind = "cache";
     EXPECT_THAT(other.error(), HasSubstr("/kind is 'cache'; expected 'project'"));
@@ -206,6 +234,16 @@ TEST(HostileProject, HeadsAreReadStrictly) {
         {[](Json& h) { h["simulation"]["integrator"] = "sideways"; },
          "/simulation/integrator is \"sideways\""},
         {[](Json& h) { h["simulation"]["substeps"] = 1.5; }, "/simulation/substeps is 1.5"},
+        {[](Json& h) {
+             h["simulation"]["angularCurve"] = {1, 2};
+         },
+         "/simulation/angularCurve is no such list"},
+        {[](Json& h) {
+             h["simulation"]["angularCurve"] = {{0, 1}, {0.5, 1}};
+         },
+         "/simulation/angularCurve has key 1 at 0.5"},
+        {[](Json& h) { h["simulation"]["angularCurve"] = Json::array(); },
+         "/simulation/angularCurve has 0 keys"},
         {[](Json& h) { h["spheres"][1]["radius"] = 0; }, "/spheres/1/radius is 0"},
         {[](Json& h) { h["spheres"][0]["centre"] = "here"; }, "/spheres/0/centre"},
         {[](Json& h) { h["interpolation"]["seed"] = -1; }, "/interpolation/seed is -1"},

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Hair held horizontally that bends under its own weight, against the heavy elastica.
+#include <algorithm>
 #include <cstdio>
 
 #include "tests/runtime/strand_fixture.h"
@@ -21,7 +22,7 @@ float settingOf(double B) {
 SimulationSettings cantilever(double B) {
     SimulationSettings s;
     s.angularStiffness = settingOf(B);
-    s.angularTipShare = 1.0f;
+    s.angularCurve = {};
     s.restGravity = 0.0f;
     s.sleepSpeed = 0.0f;
     s.gravity = {0.0f, -static_cast<float>(kGravity), 0.0f};
@@ -73,11 +74,45 @@ TEST(Cantilever, TheTipComesToRestWhereTheElasticaHasIt) {
     }
 }
 
+TEST(Cantilever, AStrandThatIsStiffInOnePartBendsAsTheElasticaOfThatStiffness) {
+    // Stiff for the first half and soft for the second, and the other way round, with a slope between.
+    constexpr double kLow = 0.3, kFrom = 0.4, kTo = 0.6, kStiffness = 0.85;
+    for (const bool stiffRoot : {true, false}) {
+        const double before = stiffRoot ? 1.0 : kLow, behind = stiffRoot ? kLow : 1.0;
+        SimulationSettings s = cantilever(0.0);
+        s.angularStiffness = static_cast<float>(kStiffness);
+        const Ramp::Key keys[] = {{0.0f, static_cast<float>(before)},
+                                  {static_cast<float>(kFrom), static_cast<float>(before)},
+                                  {static_cast<float>(kTo), static_cast<float>(behind)},
+                                  {1.0f, static_cast<float>(behind)}};
+        s.angularCurve = Ramp::of(keys);
+        for (const std::uint32_t segments : {16u, 32u}) {
+            // Shares count from the root, a segment before the end of the clamp.
+            const double segment = static_cast<double>(kLength) / segments;
+            const auto rod = [&](double from) {
+                const double along = (from + segment) / (static_cast<double>(kLength) + segment);
+                const double slope = std::clamp((along - kFrom) / (kTo - kFrom), 0.0, 1.0);
+                const double setting = kStiffness * (before * (1.0 - slope) + behind * slope);
+                return kHairBendingStiffness * setting / (1.0 - setting);
+            };
+            const auto exact = test::solveElastica(rod, kGravity, static_cast<double>(kLength));
+            const auto even = test::solveElastica(rod(0.0), kGravity, static_cast<double>(kLength));
+            ASSERT_GT(std::abs(exact.drop - even.drop), 0.05 * static_cast<double>(kLength))
+                << "tells them apart";
+            const double error = tipError(tipAtRest(s, segments), exact);
+            std::printf("%s, %u segments: the tip drops by %.1f %% of the length, error %.3f %%\n",
+                        stiffRoot ? "stiff root" : "stiff tip", segments,
+                        100 * exact.drop / static_cast<double>(kLength), 100 * error);
+            EXPECT_LT(error, segments == 16 ? 0.03 : 0.015);
+        }
+    }
+}
+
 TEST(Cantilever, APresetBehavesTheSameWithAnyNumberOfSegments) {
     for (const float stiffness : {0.3f, 0.6f, 0.9f}) {
         SimulationSettings s = cantilever(0.0);
         s.angularStiffness = stiffness;
-        s.angularTipShare = SimulationSettings{}.angularTipShare;
+        s.angularCurve = SimulationSettings{}.angularCurve;
         const Float3 fine = tipAtRest(s, 32);
         for (const std::uint32_t segments : {8u, 16u}) {
             const float apart = length(tipAtRest(s, segments) - fine) / kLength;

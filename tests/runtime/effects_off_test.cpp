@@ -47,7 +47,7 @@ std::vector<Case> cases() {
         s.windSeed = 77;
     };
     const Change bending = [](S& s) {
-        s.angularTipShare = 0.1f;
+        s.angularCurve = Ramp::straight(1.0f, 0.1f);
         s.bendDampingTime = 0.2f;
         s.restGravity = 0.3f;
         s.angularMethod = AngularMethod::exact;

@@ -75,7 +75,7 @@ Float3 tipAfterBeingPressedThrough(AngularMethod method) {
     s.clampedPoints = 2;
     s.angularMethod = method;
     s.angularStiffness = 0.2f;
-    s.angularTipShare = 1.0f;
+    s.angularCurve = {};
     s.restGravity = 0.0f;
     s.dampingTime = 0.05f;
     s.substeps = 64;
@@ -104,7 +104,7 @@ TEST(Integrators, AllComeToRestInTheSameShape) {
     SimulationSettings s = bare();
     s.clampedPoints = 2;
     s.angularStiffness = 0.5f;
-    s.angularTipShare = 1.0f;
+    s.angularCurve = {};
     s.restGravity = 0.0f;
     s.dampingTime = 0.1f;
     s.substeps = 32;

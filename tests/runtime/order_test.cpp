@@ -22,7 +22,7 @@ SimulationSettings smoothScene(Integrator integrator, AngularMethod method, floa
     s.integrator = integrator;
     s.angularMethod = method;
     s.angularStiffness = 0.6f;
-    s.angularTipShare = 1.0f;
+    s.angularCurve = {};
     s.bendDampingTime = 0.0f;
     s.restGravity = 0.0f;
     s.lengthMethod = LengthMethod::springs;

@@ -209,7 +209,7 @@ TEST(Physics, AStiffStrandFollowsItsRoot) {
     const Strands strands = tuft(3);
     SimulationSettings s;
     s.angularStiffness = 1.0f;
-    s.angularTipShare = 1.0f;
+    s.angularCurve = {};
     s.gravity = {};
     s.airDrag = 0.0f;
     Engine engine = makeEngine(strands, s);

@@ -63,7 +63,7 @@ TEST(Presets, SetTheStiffnessAndLeaveTheRest) {
         SimulationSettings expected;
         expected.windSpeed = 3.0f;
         expected.angularStiffness = settings.angularStiffness;
-        expected.angularTipShare = 1.0f;
+        expected.angularCurve = {};
         EXPECT_EQ(settings, expected);
     }
     EXPECT_EQ(angularStiffnessOf(0.0), 0.0f);

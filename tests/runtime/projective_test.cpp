@@ -198,7 +198,8 @@ TEST(Projective, WithoutTorqueAStickKeepsItsDirectionWhileItsRootTurns) {
 TEST(Projective, RigidHairMovesAsItsRootDoes) {
     const Strands strands = tuft(3);
     SimulationSettings s;
-    s.angularStiffness = s.angularTipShare = 1.0f;
+    s.angularStiffness = 1.0f;
+    s.angularCurve = {};
     ProjectiveEquations sticks = makeSticks(strands, s);
     for (int f = 1; f <= 5; ++f) {
         const float angle = 0.002f * static_cast<float>(f);
@@ -337,7 +338,7 @@ TEST(Projective, WhatIsNoNumberStaysOutside) {
     SimulationSettings s;
     s.windSpeed = 8.0f;
     s.angularStiffness = 1.0f;
-    s.angularTipShare = 0.0f;
+    s.angularCurve = Ramp::straight(1.0f, 0.0f);
     ProjectiveEquations sticks = makeSticks(strands, s);
     auto roots = strands.roots();
     roots[0].position.x = nan;

@@ -10,6 +10,10 @@
 namespace hairloom::runtime {
 namespace {
 
+bool isRamp(const FieldInfo& field) {
+    return std::holds_alternative<Ramp SimulationSettings::*>(field.member);
+}
+
 TEST(Settings, DefaultsAreInRangeAndEachFieldIsTold) {
     EXPECT_TRUE(validate({}).empty());
     std::set<std::string> names;
@@ -23,12 +27,13 @@ TEST(Settings, DefaultsAreInRangeAndEachFieldIsTold) {
 
 TEST(Settings, TheTableCoversEveryByteOfTheStruct) {
     std::size_t bytes = 0;
-    for (const FieldInfo& field : fields()) bytes += 4 * componentCount(field);
+    for (const FieldInfo& field : fields()) bytes += isRamp(field) ? sizeof(Ramp) : 4 * componentCount(field);
     EXPECT_EQ(bytes, sizeof(SimulationSettings));
 }
 
 TEST(Settings, EachFieldTakesItsBordersAndRefusesWhatLiesBeyond) {
     for (const FieldInfo& field : fields()) {
+        if (isRamp(field)) continue;
         SimulationSettings s;
         const std::uint32_t last = componentCount(field) - 1;
         for (const double border : {field.min, field.max}) {
@@ -51,6 +56,56 @@ TEST(Settings, ProblemsNameFieldValueAndRange) {
     EXPECT_EQ(problems[0].message, "gravity.y is inf m/s²; expected -1000 to 1000");
     EXPECT_EQ(problems[1].message, "airDrag is -1 1/s; expected 0 to 1000");
     EXPECT_FALSE(setFieldValue(s, *findField("substeps"), 2.5));
+    EXPECT_FALSE(setFieldValue(s, *findField("angularCurve"), 0.5)) << "is no single number";
+}
+
+Ramp rampOf(std::initializer_list<Ramp::Key> keys) {
+    return Ramp::of({keys.begin(), keys.size()});
+}
+
+TEST(Ramps, AreStraightBetweenTheirKeys) {
+    const Ramp ramp = rampOf({{0, 0.5f}, {0.25f, 1}, {0.75f, 0.2f}, {1, 0.4f}});
+    EXPECT_EQ(ramp.at(0.0), 0.5);
+    EXPECT_EQ(ramp.at(0.25), 1.0);
+    EXPECT_EQ(ramp.at(1.0f), 0.4f);
+    EXPECT_DOUBLE_EQ(ramp.at(0.125), 0.75);
+    EXPECT_NEAR(ramp.at(0.5), 0.6, 1e-7);
+    EXPECT_NEAR(ramp.at(0.875), 0.3, 1e-7);
+    EXPECT_EQ(ramp.greatest(), 1.0f);
+    EXPECT_EQ(Ramp(), Ramp::straight(1, 1));
+    EXPECT_FALSE(ramp == Ramp());
+    EXPECT_EQ(ramp, rampOf({{0, 0.5f}, {0.25f, 1}, {0.75f, 0.2f}, {1, 0.4f}}));
+}
+
+TEST(Ramps, OfTwoKeysHaveTheBitsOfALine) {
+    for (const float tip : {0.0f, 0.1f, 0.35f, 0.9f, 1.0f}) {
+        const Ramp ramp = Ramp::straight(1.0f, tip);
+        for (int i = 0; i <= 31; ++i) {
+            const double along = i / 31.0;
+            EXPECT_EQ(ramp.at(along), 1.0 + (static_cast<double>(tip) - 1.0) * along);
+            const auto coarse = static_cast<float>(along);
+            EXPECT_EQ(ramp.at(coarse), 1.0f + (tip - 1.0f) * coarse);
+        }
+    }
+}
+
+TEST(Ramps, ThatAreNotSoundAreRefused) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    Ramp none, many;
+    none.count = 1;
+    many.count = 4'000'000'000u;
+    for (const Ramp& bad :
+         {rampOf({{0.1f, 1}, {1, 1}}), rampOf({{0, 1}, {0.9f, 1}}), rampOf({{0, 1}, {0, 1}, {1, 1}}),
+          rampOf({{0, 1}, {0.6f, 1}, {0.5f, 1}, {1, 1}}), rampOf({{0, 1}, {1, 1}, {1, 1}}),
+          rampOf({{0, 1}, {nan, 1}, {1, 1}}), rampOf({{0, nan}, {1, 1}}), rampOf({{0, 1}, {1, -0.1f}}),
+          rampOf({{0, 1.1f}, {1, 1}}), none, many}) {
+        SimulationSettings s;
+        s.angularCurve = bad;
+        const auto problems = validate(s);
+        ASSERT_EQ(problems.size(), 1u);
+        EXPECT_EQ(problems[0].field, findField("angularCurve"));
+        EXPECT_NE(problems[0].message.find("angularCurve has "), std::string::npos) << problems[0].message;
+    }
 }
 
 }  // namespace

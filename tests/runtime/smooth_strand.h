@@ -19,7 +19,7 @@ class SmoothStrand {
         Eigen::Matrix3Xd positions, velocities;
     };
 
-    /// `settings`: clampedPoints 2, angularTipShare 1, restGravity 0, no damping, wind or collision.
+    /// `settings`: clampedPoints 2, angularCurve 1 everywhere, restGravity 0, no damping, wind or collision.
     SmoothStrand(const runtime::SimulationSettings& settings, const Eigen::Vector3d& direction,
                  double segment, int points)
         : exact_(settings.angularMethod == runtime::AngularMethod::exact),

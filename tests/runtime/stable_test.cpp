@@ -56,7 +56,7 @@ TEST(Stable, FindsTheFastestWaveOfAngularSprings) {
         SimulationSettings s = bare();
         s.clampedPoints = clamped;
         s.angularStiffness = 0.4f;
-        s.angularTipShare = 1.0f;
+        s.angularCurve = {};
         constexpr int kPoints = 14;
         constexpr double l = 0.01;
         const Eigen::VectorXd m = evenMasses(kPoints);

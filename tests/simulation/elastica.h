@@ -4,6 +4,7 @@
 // its own weight. Solved as a boundary-value problem, by shooting; shares nothing with the strand engine.
 
 #include <cmath>
+#include <type_traits>
 
 namespace hairloom::test {
 
@@ -14,36 +15,49 @@ struct ElasticaShape {
     double curvatureAtEnd;  ///< φ'(L), 1/m: 0 but for the error of the shooting
 };
 
+/// B at s metres from the held end, in m⁴/s²: a number or a function of s.
+template <class Stiffness>
+double stiffnessAt(const Stiffness& B, double s) {
+    if constexpr (std::is_arithmetic_v<Stiffness>) {
+        return B;
+    } else {
+        return B(s);
+    }
+}
+
 /// With the inner force n and moment m = B φ' per mass and length, and φ the angle of the tangent
 /// (cos φ, −sin φ) below the horizon: n' = −g and n(L) = 0 give a weight of g (L − s) beyond s, and m' = −t ×
 /// n
-///   B φ'' = −g (L − s) cos φ,   φ(0) = 0,   φ'(L) = 0
-/// (Bickley 1934). Integrates it from s = 0 with the curvature φ'(0), by RK4. B in m⁴/s², g in m/s², L in m.
-inline ElasticaShape shootElastica(double B, double g, double L, double curvature) {
+///   (B φ')' = −g (L − s) cos φ,   φ(0) = 0,   φ'(L) = 0
+/// (Bickley 1934). Integrates it from s = 0 with the moment m(0), by RK4. g in m/s², L in m.
+template <class Stiffness>
+ElasticaShape shootElastica(const Stiffness& B, double g, double L, double moment) {
     struct State {
-        double angle, curvature, x, y;
+        double angle, moment, x, y;
     };
     const auto rate = [&](const State& a, double s) {
-        return State{a.curvature, -g / B * (L - s) * std::cos(a.angle), std::cos(a.angle), std::sin(a.angle)};
+        return State{a.moment / stiffnessAt(B, s), -g * (L - s) * std::cos(a.angle), std::cos(a.angle),
+                     std::sin(a.angle)};
     };
     const auto moved = [](const State& a, const State& r, double h) {
-        return State{a.angle + h * r.angle, a.curvature + h * r.curvature, a.x + h * r.x, a.y + h * r.y};
+        return State{a.angle + h * r.angle, a.moment + h * r.moment, a.x + h * r.x, a.y + h * r.y};
     };
     constexpr int kSteps = 500;
     const double h = L / kSteps;
-    State a{0.0, curvature, 0.0, 0.0};
+    State a{0.0, moment, 0.0, 0.0};
     for (int i = 0; i < kSteps; ++i) {
         const double s = i * h;
         const State k1 = rate(a, s), k2 = rate(moved(a, k1, 0.5 * h), s + 0.5 * h);
         const State k3 = rate(moved(a, k2, 0.5 * h), s + 0.5 * h), k4 = rate(moved(a, k3, h), s + h);
         a = moved(moved(moved(moved(a, k1, h / 6), k2, h / 3), k3, h / 3), k4, h / 6);
     }
-    return {a.x, a.y, a.curvature};
+    return {a.x, a.y, a.moment / stiffnessAt(B, L)};
 }
 
-/// Bisects φ'(0) between 0, where φ'(L) < 0, and g L²/(2B), where φ'(L) ≥ 0 because cos φ ≤ 1.
-inline ElasticaShape solveElastica(double B, double g, double L) {
-    double low = 0.0, high = 0.5 * g * L * L / B;
+/// Bisects m(0) between 0, where φ'(L) < 0, and g L²/2, where φ'(L) ≥ 0 because cos φ ≤ 1.
+template <class Stiffness>
+ElasticaShape solveElastica(const Stiffness& B, double g, double L) {
+    double low = 0.0, high = 0.5 * g * L * L;
     for (int i = 0; i < 60; ++i) {
         const double middle = 0.5 * (low + high);
         (shootElastica(B, g, L, middle).curvatureAtEnd < 0.0 ? low : high) = middle;

@@ -165,6 +165,21 @@ TEST(EngineConverges, TheDefaultMethodWithBendDamping) {
     }
 }
 
+TEST(EngineConverges, HairWhoseStiffnessFollowsACurve) {
+    runtime::SimulationSettings s = uncarried();
+    s.angularStiffness = 0.6f;
+    const runtime::Ramp::Key keys[] = {{0, 0.3f}, {0.3f, 1}, {0.5f, 0.1f}, {1, 0.6f}};
+    s.angularCurve = runtime::Ramp::of(keys);
+    const Swing scene = swing(straight(), 60);
+    const auto errors = errorsOf(scene, s, Integrator::verlet, 64);
+    for (std::size_t i = 1; i < errors.size(); ++i) EXPECT_LT(errors[i], errors[i - 1]) << i;
+    EXPECT_LT(errors.back(), 0.35 * errors[1]);
+    // The truth of another curve is farther away than the error.
+    runtime::SimulationSettings even = s;
+    even.angularCurve = {};
+    EXPECT_GT(rmsMm(truthOf(scene, s), truthOf(scene, even)), 5 * errors.back());
+}
+
 TEST(EngineConverges, CurvesThatCarryWeightKeepADifference) {
     // The one part of the model that the reference has not: the tank that bounds how far curves turn.
     runtime::SimulationSettings s = uncarried();

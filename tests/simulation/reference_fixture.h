@@ -34,7 +34,7 @@ inline runtime::SimulationSettings bareSettings() {
     s.bendDampingTime = 0.0f;
     s.clampedPoints = 1;
     s.angularStiffness = 0.0f;
-    s.angularTipShare = 1.0f;
+    s.angularCurve = {};
     s.restGravity = 0.0f;
     s.airDrag = 0.0f;
     s.windSpeed = 0.0f;

@@ -47,10 +47,21 @@ TEST(ReferenceShape, MassesAndStiffnessAreThoseOfAUniformRod) {
     EXPECT_NEAR(shape.stiffness[2], B / mean / 0.15, 1e-12);
     EXPECT_NEAR(shape.stiffness[3], B / mean / 0.3, 1e-12);
 
-    s.angularTipShare = 0.5f;  // s = 0.5 · (1 − ½ · 3/4) at joint 3
+    s.angularCurve = runtime::Ramp::straight(1.0f, 0.5f);  // s = 0.5 · (1 − ½ · 3/4) at joint 3
     const double authored = 0.5 * (1.0 - 0.5 * 0.75);
     EXPECT_NEAR(reference::makeShape(edges, {}, s, Vec3d::Zero()).stiffness[3],
                 B * authored / (1.0 - authored) / mean / 0.3, 1e-12);
+
+    const runtime::Ramp::Key keys[] = {{0, 0.25f}, {0.375f, 1}, {0.875f, 0.5f}, {1, 0}};
+    s.angularCurve = runtime::Ramp::of(keys);
+    const auto curved = reference::makeShape(edges, {}, s, Vec3d::Zero());
+    const double shares[] = {0.25 + 0.75 * (0.25 / 0.375), 1.0 - 0.5 * (0.125 / 0.5),
+                             1.0 - 0.5 * (0.375 / 0.5)};
+    const double spans[] = {0.05, 0.15, 0.3};
+    for (std::size_t j = 1; j <= 3; ++j) {
+        const double there = 0.5 * shares[j - 1];
+        EXPECT_NEAR(curved.stiffness[j], B * there / (1.0 - there) / mean / spans[j - 1], 1e-12) << j;
+    }
 }
 
 TEST(ReferenceForces, AreReciprocal) {

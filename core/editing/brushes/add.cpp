@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
+#include "core/base/parallel.h"
 #include "core/editing/brush_list.h"
 #include "core/editing/strand_maker.h"
 #include "core/editing/surface_disc.h"
 
 namespace hairloom::editing {
 namespace {
+
+constexpr std::size_t kGrain = 256;
 
 constexpr BrushParameter kParameters[] = {
     {"density", "1/cm²", 0.01f, 1000, 5, false, "roots per area that are not exceeded"},
@@ -51,6 +55,13 @@ class Add final : public Brush {
     }
 
   private:
+    /// Where a dart meets the skin.
+    struct Dart {
+        SurfacePoint root;
+        Vec3f place;
+        bool isFree;  ///< within the dab, and no root that was there before is near
+    };
+
     std::vector<SurfacePoint> throwDarts(const StrokeTarget& target, const DabContext& dab) const {
         const ScalpMesh& mesh = *target.groom().scalp;
         FaceSet faces = faceDisc(mesh, *target.surface, dab.volume.centre, dab.volume.radius);
@@ -62,22 +73,36 @@ class Add final : public Brush {
         constexpr float kTriesPerPlace = 4;
         constexpr float kMostTries = 20000;
         const float weight = dab.dab.strength * dab.dab.pressure;
-        const auto tries = static_cast<int>(
+        const auto tries = static_cast<std::size_t>(
             std::min(kMostTries, std::ceil(weight * kTriesPerPlace * area / (distance_ * distance_))));
         Random random(target.settings.seed, 2 * dab.index + (dab.isMirror ? 1 : 0));
-        RootGrid fresh(distance_);
+        std::vector<std::array<float, 3>> numbers(tries);
+        for (auto& three : numbers)
+            for (float& number : three) number = random.uniform();
+        std::vector<Dart> darts(tries);
+        parallelFor(tries, kGrain, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const auto chosen = std::upper_bound(areas.begin(), areas.end(), numbers[i][0] * area);
+                const auto k = std::min(static_cast<std::size_t>(chosen - areas.begin()), faces.size() - 1);
+                const float u = std::sqrt(numbers[i][1]), v = numbers[i][2];
+                Dart& dart = darts[i];
+                dart.root = {faces[k], Vec3f(1 - u, u * (1 - v), u * v)};
+                dart.place = mesh.pointAt(dart.root.triangle, dart.root.barycentric);
+                dart.isFree = !((dart.place - dab.volume.centre).norm() > dab.volume.radius) &&
+                              !grid_->anyWithin(dart.place, distance_);
+            }
+        });
+        return apart(darts);
+    }
+
+    /// One dart after the other that is free and not near one before it.
+    std::vector<SurfacePoint> apart(std::span<const Dart> darts) const {
+        RootGrid fresh(2 * distance_);
         std::vector<SurfacePoint> roots;
-        for (int i = 0; i < tries; ++i) {
-            const auto chosen = std::upper_bound(areas.begin(), areas.end(), random.uniform() * area);
-            const auto k = std::min(static_cast<std::size_t>(chosen - areas.begin()), faces.size() - 1);
-            const float u = std::sqrt(random.uniform());
-            const float v = random.uniform();
-            const SurfacePoint root{faces[k], Vec3f(1 - u, u * (1 - v), u * v)};
-            const Vec3f place = mesh.pointAt(root.triangle, root.barycentric);
-            if ((place - dab.volume.centre).norm() > dab.volume.radius) continue;
-            if (grid_->anyWithin(place, distance_) || fresh.anyWithin(place, distance_)) continue;
-            fresh.add(0, place);
-            roots.push_back(root);
+        for (const Dart& dart : darts) {
+            if (!dart.isFree || fresh.anyWithin(dart.place, distance_)) continue;
+            fresh.add(0, dart.place);
+            roots.push_back(dart.root);
         }
         return roots;
     }

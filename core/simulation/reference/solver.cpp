@@ -43,7 +43,7 @@ bool leaps(const StrandShape& shape, const std::vector<Vec3d>& from, const std::
 
 Status check(const Strands& strands, const runtime::SimulationSettings& settings) {
     for (const runtime::FieldProblem& problem : runtime::validate(settings)) return fail(problem.message);
-    if (!(settings.angularStiffness < 1.0f))
+    if (!(greatestStiffness(settings) < 1.0f))
         return fail("angularStiffness 1 has no finite stiffness", "less than 1");
     const std::size_t points = strands.restPositions_ss.size();
     if (strands.offsets.empty() || strands.offsets.front() != 0 || strands.offsets.back() != points)

@@ -34,13 +34,29 @@ void divideByMean(std::vector<double>& values) {
     for (double& value : values) value /= mean;
 }
 
+/// The curve as a sum of hats, one on each key, that are 0 from the keys beside it on.
+double valueAt(const runtime::Ramp& curve, double along) {
+    const auto keys = curve.inUse();
+    const auto place = [&](std::size_t k) { return static_cast<double>(keys[k].at); };
+    double sum = 0.0;
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+        double hat = 1.0;
+        if (k > 0 && along < place(k)) hat = (along - place(k - 1)) / (place(k) - place(k - 1));
+        if (k + 1 < keys.size() && along > place(k)) hat = (place(k + 1) - along) / (place(k + 1) - place(k));
+        sum += std::max(0.0, hat) * static_cast<double>(keys[k].value);
+    }
+    return sum;
+}
+
 /// κ_j = B μ_j / l̄_j.
-void setStiffness(StrandShape& shape, const std::vector<double>& h, double atRoot, double tipShare) {
+void setStiffness(StrandShape& shape, const std::vector<double>& h,
+                  const runtime::SimulationSettings& settings) {
     const std::size_t n = shape.segments();
     const std::size_t first = shape.firstFree - 1;
     for (std::size_t j = first; j < n; ++j) {
         const double along = static_cast<double>(j) / static_cast<double>(n);
-        const double authored = atRoot * (1.0 + (tipShare - 1.0) * along);
+        const double authored =
+            static_cast<double>(settings.angularStiffness) * valueAt(settings.angularCurve, along);
         const double span =
             j == first ? 0.5 * shape.lengths[j] : 0.5 * (shape.lengths[j - 1] + shape.lengths[j]);
         shape.stiffness[j] = bendingStiffness(authored) * shape.masses[j] / h[j] / span;
@@ -131,8 +147,7 @@ StrandShape makeShape(std::vector<Vec3d> edges, std::span<const double> authored
     divideByMean(shape.masses);
 
     shape.stiffness.assign(n, 0.0);
-    setStiffness(shape, h, static_cast<double>(settings.angularStiffness),
-                 static_cast<double>(settings.angularTipShare));
+    setStiffness(shape, h, settings);
     shape.bend.assign(n, Vec3d::Zero());
     setBend(shape, gravityAtRest * static_cast<double>(settings.restGravity), bendingForce);
 
