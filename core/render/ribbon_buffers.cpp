@@ -58,7 +58,7 @@ std::vector<shaders::StrandPatch> strandPatches(StrandBatch& batch) {
 
 }  // namespace
 
-Status DeviceScene::prepareCurves(gpu::Device& device, std::uint32_t subdivisions, bool twice) {
+Status DeviceScene::prepareCurves(gpu::Device& device, std::uint32_t subdivisions, bool twice, bool sky) {
     Gather gather;
     for (StrandBatch& batch : batches) {
         const std::uint32_t count = batch.curvePoints(batch.strandCount(), subdivisions);
@@ -66,7 +66,7 @@ Status DeviceScene::prepareCurves(gpu::Device& device, std::uint32_t subdivision
             gather(batch.curve, written(device, "curve points", count, sizeof(shaders::CurvePoint)));
             gather(batch.colour, written(device, "curve colours", count, sizeof(shaders::float4)));
             batch.curveSubdivisions = subdivisions;
-            batch.litColour = nullptr;
+            batch.litColour = batch.seen = nullptr;
         }
         const std::uint32_t most = batch.curvePoints(batch.strandCount(), batch.curveSubdivisions);
         if (!twice) {
@@ -74,6 +74,11 @@ Status DeviceScene::prepareCurves(gpu::Device& device, std::uint32_t subdivision
         } else if (batch.litColour == nullptr) {
             gather(batch.litColour,
                    written(device, "curve colours without shadows", most, sizeof(shaders::float4)));
+        }
+        if (!sky) {
+            batch.seen = nullptr;
+        } else if (batch.seen == nullptr) {
+            gather(batch.seen, written(device, "sky seen", most, sizeof(shaders::SkyPoint)));
         }
         gpu::BufferPtr& indices = batch.indices[subdivisions];
         if (indices != nullptr) continue;
