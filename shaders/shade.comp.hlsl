@@ -66,10 +66,11 @@ void main(uint3 id : SV_DispatchThreadID) {
     if (hasEnvironment(gShade)) {
         SkyInHair sky = openSky();
         if (mapsTellTheSky(gShade)) {
+            const SkySeen seen = seenAt(gSeen, strand, p.strand, index, gShade.counts.w);
             FibreMoments fibre;
             fibre.albedo = albedo;
             fibre.first = fibre.second = 0;
-            sky = skyInHair(gSeen[index], fibre, gShade.ground.rgb);
+            sky = skyInHair(seen, fibre, gShade.ground.rgb);
         }
         colour += albedo * environmentOnHair(gShade, tangent, sky);
     }

@@ -62,13 +62,14 @@ void main(uint3 id : SV_DispatchThreadID) {
         const SkyMoments fibre = skyMoments(dot(toView, tangent), absorption);
         SkyInHair sky = openSky();
         if (mapsTellTheSky(gShade)) {
+            const SkySeen seen = seenAt(gSeen, strand, p.strand, index, gShade.counts.w);
 #ifdef HAIRLOOM_DUAL
             const FibreAverages across = averagesAt(0.0, absorption);
-            sky = skyInHair(gSeen[index], tinted(across.moments, shareOf(across.moments, tint)), gShade.ground.rgb);
+            sky = skyInHair(seen, tinted(across.moments, shareOf(across.moments, tint)), gShade.ground.rgb);
 #else
             FibreMoments nothing;  // what has met a fibre or the head is lost
             nothing.albedo = nothing.first = nothing.second = 0;
-            sky = skyInHair(gSeen[index], nothing, 0);
+            sky = skyInHair(seen, nothing, 0);
 #endif
         }
         colour += tint * environmentOnFibre(gShade, fibre, sky, tangent, toView);

@@ -38,9 +38,9 @@ float3 sentOnFrom(float3 lost, SkyShares whole, SkyShares halved) {
 // Light comes from the sky, from other fibres and from the head. What fibres send nearly straight on counts as not stopped
 // (as in lightInLayer); the rest they send on as the mean light in this place, and the head as what comes to it from the
 // other sides. With nothing absorbed all of it is as bright as the sky, with nothing sent on it is what is seen of that.
-SkyInHair skyInHair(SkyPoint seen, FibreMoments fibre, float3 ground) {
-    const SkyShares whole = unpackSky(seen.whole);
-    const SkyShares halved = unpackSky(seen.halved);
+SkyInHair skyInHair(SkySeen seen, FibreMoments fibre, float3 ground) {
+    const SkyShares whole = seen.whole;
+    const SkyShares halved = seen.halved;
     const float3 peak = max(fibre.second, 0.0);
     const float3 stopping = 1.0 - peak;
     const float3 sentOn = sentOnFrom(max(1.0 - (fibre.albedo - peak) / stopping, 0.001), whole, halved);

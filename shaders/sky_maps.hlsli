@@ -115,6 +115,32 @@ SkyShares unpackSky(uint4 packed) {
     return s;
 }
 
+struct SkySeen {
+    SkyShares whole, halved;
+};
+
+SkyShares between(SkyShares a, SkyShares b, float t) {
+    SkyShares s;
+    s.open = lerp(a.open, b.open, t);
+    s.from = lerp(a.from, b.from, t);
+    s.blocked = lerp(a.blocked, b.blocked, t);
+    s.towards = lerp(a.towards, b.towards, t);
+    return s;
+}
+
+// At a curve point, between the points that the strand was given with.
+SkySeen seenAt(StructuredBuffer<SkyPoint> points, StrandHeader strand, uint place, uint curvePoint, uint subdivisions) {
+    const uint along = curvePoint - strand.segmentsBefore * subdivisions - place;
+    const uint k = min(along / subdivisions, strand.pointCount - 2u);
+    const float t = float(along - k * subdivisions) / float(subdivisions);
+    const SkyPoint a = points[strand.segmentsBefore + place + k];
+    const SkyPoint b = points[strand.segmentsBefore + place + k + 1u];
+    SkySeen seen;
+    seen.whole = between(unpackSky(a.whole), unpackSky(b.whole), t);
+    seen.halved = between(unpackSky(a.halved), unpackSky(b.halved), t);
+    return seen;
+}
+
 // What a place in hair sees.
 SkyPoint skySeen(ShadeConstants shade, float3 position_ws) {
     SkyShares whole = noShares();

@@ -104,15 +104,15 @@ void recordSkySeen(gpu::CommandList& list, RendererState& state) {
     list.beginPass({passName(Pass::skySeen), {}, {}});
     list.setPipeline(state.pipelines.compute("sky_seen.comp"));
     bindShadows(list, state);
+    constexpr std::uint32_t kGroup = 64, kThreadsOfAStrand = 16;
     shaders::ShadeConstants constants = state.shade;
     for (const StrandBatch& batch : state.scene.batches) {
-        const std::uint32_t points =
-            batch.curvePoints(batch.strandCount(state.detail), state.detail.subdivisions);
-        const Rows rows(points);
-        constants.counts = {points, 0, rows.threads(), 0};
+        const std::uint32_t strands = batch.strandCount(state.detail);
+        constants.counts = {strands, 0, 0, state.detail.subdivisions};
         list.setConstants(0, gpu::bytesOf(constants));
-        bind(list, {Binding::read(0, batch.curve), Binding::write(0, batch.seen)});
-        list.dispatch(rows.groups, rows.rows);
+        bind(list, {Binding::read(0, batch.curve), Binding::read(1, batch.headers),
+                    Binding::write(0, batch.seen)});
+        list.dispatch((strands + kGroup - 1) / kGroup, kThreadsOfAStrand);
     }
     list.endPass();
 }
@@ -133,7 +133,7 @@ void recordShading(gpu::CommandList& list, RendererState& state) {
         const std::uint32_t points =
             batch.curvePoints(batch.strandCount(state.detail), state.detail.subdivisions);
         const Rows rows(points);
-        constants.counts = {points, constants.counts.y, rows.threads(), 0};
+        constants.counts = {points, constants.counts.y, rows.threads(), state.detail.subdivisions};
         list.setConstants(0, gpu::bytesOf(constants));
         bind(list, {Binding::read(0, batch.curve), Binding::read(1, batch.headers),
                     Binding::read(3, batch.seen ? batch.seen : state.noWords),

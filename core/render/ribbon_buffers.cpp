@@ -66,7 +66,7 @@ Status DeviceScene::prepareCurves(gpu::Device& device, std::uint32_t subdivision
             gather(batch.curve, written(device, "curve points", count, sizeof(shaders::CurvePoint)));
             gather(batch.colour, written(device, "curve colours", count, sizeof(shaders::float4)));
             batch.curveSubdivisions = subdivisions;
-            batch.litColour = batch.seen = nullptr;
+            batch.litColour = nullptr;
         }
         const std::uint32_t most = batch.curvePoints(batch.strandCount(), batch.curveSubdivisions);
         if (!twice) {
@@ -78,7 +78,8 @@ Status DeviceScene::prepareCurves(gpu::Device& device, std::uint32_t subdivision
         if (!sky) {
             batch.seen = nullptr;
         } else if (batch.seen == nullptr) {
-            gather(batch.seen, written(device, "sky seen", most, sizeof(shaders::SkyPoint)));
+            const std::uint32_t given = batch.curvePoints(batch.strandCount(), 1);
+            gather(batch.seen, written(device, "sky seen", given, sizeof(shaders::SkyPoint)));
         }
         gpu::BufferPtr& indices = batch.indices[subdivisions];
         if (indices != nullptr) continue;

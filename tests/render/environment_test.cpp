@@ -97,8 +97,8 @@ struct Layer {
         for (int i = 0; i < static_cast<int>(kFibres * 2 * kSide / (2 * kRadius)); ++i) {
             const Vec3f middle =
                 random.uniform(-0.03f, 0.03f) * normal + random.uniform(-kSide, kSide) * across;
-            const Vec3f half = kSide * Vec3f::UnitX();
-            strands.add({middle - half, middle, middle + half}, kRadius);
+            const Vec3f half = kSide * Vec3f::UnitX(), seen = 0.03f * Vec3f::UnitX();
+            strands.add({middle - half, middle - seen, middle, middle + seen, middle + half}, kRadius);
         }
     }
 

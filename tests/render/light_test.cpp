@@ -124,19 +124,23 @@ TEST_F(LightShaderTest, TheHeadHidesItsPartOfTheSky) {
     }
 }
 
-// Short fibres in all directions, evenly spread over a ball.
+// Straight fibres along random chords of a ball, which fill it evenly and in all directions.
 TEST_F(LightShaderTest, HairHidesTheSkyAsFarAsItReaches) {
     constexpr double kRadius = 0.1, kFibres = 3;  // along a radius
-    constexpr float kHalf = 0.004f, kThick = 0.0003f;
+    constexpr float kThick = 0.0001f;
     // Of cylinders in all directions a ray sees pi/4 of length times diameter.
-    const double each = 0.25 * static_cast<double>(kPi) * static_cast<double>(2 * kHalf * 2 * kThick);
     const double volume = 4.0 / 3 * static_cast<double>(kPi) * kRadius * kRadius * kRadius;
+    const double length =
+        kFibres / kRadius * volume / (0.25 * static_cast<double>(kPi) * static_cast<double>(2 * kThick));
     TestStrands strands;
     Random random(6);
-    for (int i = 0; i < static_cast<int>(kFibres / kRadius * volume / each); ++i) {
-        const Vec3f middle =
-            static_cast<float>(kRadius * std::cbrt(random.uniformDouble())) * randomUnit(random);
-        const Vec3f half = kHalf * randomUnit(random);
+    for (int i = 0; i < static_cast<int>(length / (4.0 / 3 * kRadius)); ++i) {
+        const Vec3f along = randomUnit(random);
+        Vec3f beside = randomUnit(random);
+        beside = (beside - beside.dot(along) * along).normalized();
+        const double off = kRadius * std::sqrt(random.uniformDouble());
+        const Vec3f middle = static_cast<float>(off) * beside;
+        const Vec3f half = static_cast<float>(std::sqrt(kRadius * kRadius - off * off)) * along;
         strands.add({middle - half, middle + half}, kThick);
     }
     RenderScene scene;
