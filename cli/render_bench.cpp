@@ -84,6 +84,7 @@ class RenderMeasuring {
         scene.lights = render::studioLights(scene.camera);
         // The thesis has one light, and so has the target.
         scene.lights.resize(1);
+        if (!which.sky) scene.environment = {};
         gpu::TextureDesc desc;
         desc.name = "bench";
         desc.width = which.options.width;
@@ -175,6 +176,10 @@ class CaseList {
              [](auto& o) { o.transparency = render::Transparency::alphaToCoverage; });
         vary("transparency: weighted", [](auto& o) { o.transparency = render::Transparency::weighted; });
         vary("detail: half a pixel", [](auto& o) { o.detail = 0.5f; });
+        for (const std::uint32_t hairs : counts_) {
+            add(fmt::format("{} hairs, light from around", hairs), hairs, size_, [](auto&) {});
+            bench_.cases.back().sky = true;
+        }
     }
 
   private:
