@@ -22,14 +22,12 @@ constexpr int kWarmUp = 3;
 
 /// An ellipsoid of the size of a head, and hair combed down from its crown.
 struct HeadOfHair {
-    std::vector<Vec3f> head;
-    std::vector<std::uint32_t> indices;
+    BenchHead head{96};
     std::vector<std::uint32_t> offsets{0};
     std::vector<Vec3f> hair;
     std::vector<Vec3f> moved;  ///< the same, blown aside
 
     explicit HeadOfHair(std::uint32_t hairs) {
-        makeHead();
         Random random(7);
         for (std::uint32_t i = 0; i < hairs; ++i) {
             const float around = random.uniform(0, 2 * kPi);
@@ -51,34 +49,14 @@ struct HeadOfHair {
     render::RenderScene scene() const {
         render::RenderScene scene;
         render::RenderMesh mesh;
-        mesh.positions_ws = head;
-        mesh.indices = indices;
+        mesh.positions_ws = head.points;
+        mesh.indices = head.indices;
         scene.meshes = {mesh};
         render::RenderStrands strands;
         strands.offsets = offsets;
         strands.positions_ws = hair;
         scene.strands = {strands};
         return scene;
-    }
-
-  private:
-    void makeHead() {
-        constexpr std::uint32_t kRings = 48, kSectors = 96;
-        for (std::uint32_t r = 0; r <= kRings; ++r) {
-            for (std::uint32_t s = 0; s < kSectors; ++s) {
-                head.push_back(onBenchHead(1, kPi * static_cast<float>(r) / kRings,
-                                           2 * kPi * static_cast<float>(s) / kSectors));
-            }
-        }
-        for (std::uint32_t r = 0; r < kRings; ++r) {
-            for (std::uint32_t s = 0; s < kSectors; ++s) {
-                const std::uint32_t a = r * kSectors + s;
-                const std::uint32_t b = r * kSectors + (s + 1) % kSectors;
-                for (const std::uint32_t i : {a, b, a + kSectors, b, b + kSectors, a + kSectors}) {
-                    indices.push_back(i);
-                }
-            }
-        }
     }
 };
 
@@ -106,6 +84,7 @@ class RenderMeasuring {
         scene.lights = render::studioLights(scene.camera);
         // The thesis has one light, and so has the target.
         scene.lights.resize(1);
+        if (!which.sky) scene.environment = {};
         gpu::TextureDesc desc;
         desc.name = "bench";
         desc.width = which.options.width;
@@ -197,6 +176,10 @@ class CaseList {
              [](auto& o) { o.transparency = render::Transparency::alphaToCoverage; });
         vary("transparency: weighted", [](auto& o) { o.transparency = render::Transparency::weighted; });
         vary("detail: half a pixel", [](auto& o) { o.detail = 0.5f; });
+        for (const std::uint32_t hairs : counts_) {
+            add(fmt::format("{} hairs, light from around", hairs), hairs, size_, [](auto&) {});
+            bench_.cases.back().sky = true;
+        }
     }
 
   private:

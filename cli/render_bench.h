@@ -30,6 +30,7 @@ struct RenderCase {
     std::uint32_t hairs = 0;
     render::FibreMaterial shading;  ///< that of Marschner, single scattering, unless the name says otherwise
     render::RenderOptions options;
+    bool sky = false;   ///< light from around as well
     Measurement frame;  ///< all passes on the device, ms; wall time where it has no clock
     Measurement wall;   ///< from recording to the end on the device, ms, with the upload of positions
     std::vector<Measurement> passes;  ///< ms

@@ -46,30 +46,6 @@ constexpr HeadKind kHeadKinds[] = {{"test of depth", 0},
                                    {"absorption, 1000 a metre", 1000},
                                    {"absorption, 3000 a metre", 3000}};
 
-/// The head under the hair.
-struct Ellipsoid {
-    std::vector<Vec3f> points;
-    std::vector<std::uint32_t> indices;
-
-    Ellipsoid() {
-        constexpr std::uint32_t kRings = 48, kSectors = 72;
-        for (std::uint32_t r = 0; r <= kRings; ++r) {
-            for (std::uint32_t s = 0; s < kSectors; ++s) {
-                const float down = kPi * static_cast<float>(r) / kRings;
-                const float around = 2 * kPi * static_cast<float>(s) / kSectors;
-                points.push_back(onBenchHead(1.0f, down, around));
-            }
-        }
-        for (std::uint32_t r = 0; r < kRings; ++r) {
-            for (std::uint32_t s = 0; s < kSectors; ++s) {
-                const std::uint32_t a = r * kSectors + s, b = r * kSectors + (s + 1) % kSectors;
-                for (const std::uint32_t i : {a, b, a + kSectors, b, b + kSectors, a + kSectors})
-                    indices.push_back(i);
-            }
-        }
-    }
-};
-
 /// Hair combed down around a head that is not there.
 struct BallOfHair {
     std::vector<std::uint32_t> offsets{0};
@@ -107,7 +83,7 @@ struct BallOfHair {
 };
 
 Status measureHead(gpu::Device& device, render::RenderScene scene, ShadowBench& bench) {
-    const Ellipsoid head;
+    const BenchHead head(72);
     render::RenderMesh mesh;
     mesh.positions_ws = head.points;
     mesh.indices = head.indices;

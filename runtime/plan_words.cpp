@@ -11,27 +11,28 @@ namespace {
 /// The decided number with what it counts: "9.81 m/s²", "stiffness 0.3".
 std::string quantity(Effect effect, float value) {
     std::ostringstream text;
+    text << std::setprecision(4);
     switch (effect) {
         case Effect::damping:
-            text << "to 1/e in " << std::setprecision(3) << value << " s";
+            text << "to 1/e in " << value << " s";
             break;
         case Effect::gravity:
-            text << std::setprecision(3) << value << " m/s²";
+            text << value << " m/s²";
             break;
         case Effect::drag:
             text << value << " per second";
             break;
         case Effect::wind:
-            text << std::setprecision(3) << value << " m/s";
+            text << value << " m/s";
             break;
         case Effect::angular:
-            text << "stiffness " << std::setprecision(4) << value;
+            text << "stiffness " << value;
             break;
         case Effect::length:
             text << value << (value == 1.0f ? " iteration" : " iterations");
             break;
         case Effect::pearls:
-            text << "up to " << std::setprecision(3) << value << " mm";
+            text << "up to " << value << " mm";
             break;
         case Effect::torsion:
         case Effect::coupling:
@@ -104,7 +105,7 @@ std::string words(Effect effect, const Decision& decision) {
         case Reason::slowEnough:
             return "nothing moves by a quarter of a sphere's radius in a substep";
         case Reason::fast:
-            text << "up to " << std::setprecision(3) << 1000.0f * decision.value << " mm in a substep";
+            text << "up to " << 1000.0f * decision.value << " mm in a substep";
             return text.str();
         case Reason::speedUnknown:
             return "speeds are not known beforehand";
@@ -118,7 +119,7 @@ std::string words(Effect effect, const Decision& decision) {
             text << decision.value << (decision.value == 1.0f ? " strand" : " strands") << " at rest";
             return text.str();
         case Reason::allAsleep:
-            text << "all strands at rest since " << std::setprecision(3) << decision.value << " s";
+            text << "all strands at rest since " << decision.value << " s";
             return text.str();
     }
     return {};

@@ -6,10 +6,6 @@
 Texture2D<float4> gProfile : register(t14);        // N of all lobes
 Texture2D<float4> gSpreadFactors : register(t16);  // what normalises a wide lobe
 
-// Of light in evenly lit hair whose depth no map knows, the part that a fibre has scattered and that meets another: with it
-// 1/(1 - 0.84 a) is within 4 % what a path tracer finds for blond, brown and black hair under a white sky.
-static const float kMeetsAgain = 0.84;
-
 // A fibre's shares of light sent on and back with their variances, and its tilts.
 struct FibreAverages {
     float4 forward, backward;

@@ -12,7 +12,7 @@ void visitPixel(RibbonPiece piece, int2 pixel) {
     const float t = placeOn(piece, fromOrigin(piece, pixel));
     const float z = lerp(piece.depth.x, piece.depth.y, t);
     if (t < 0.0 || z < 0.0 || z > 1.0) return;
-    const uint amount = uint(saturate(lerp(piece.coverage.x, piece.coverage.y, t)) * FIBRE_COUNT + 0.5);
+    const uint amount = uint(saturate(lerp(piece.coverage.x, piece.coverage.y, t)) * gView.pixel.z * FIBRE_COUNT + 0.5);
     const bool fixedLayers = gView.sampling.w == HAIRLOOM_SHADOWS_OPACITY_MAPS;
     const float begins =
         fixedLayers ? gView.range.w : metresBehindNear(gView.range, asfloat(gFirst[pixelIndex(pixel)]));

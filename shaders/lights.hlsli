@@ -29,19 +29,4 @@ float3 environmentOnSkin(ShadeConstants shade, float3 n) {
         0.54627422 * (n.x * n.x - n.y * n.y) * shade.environment[8].rgb;
     return max(flat + band1 * (2.0 / 3.0) + band2 * 0.25, 0.0);
 }
-
-// Mean radiance around a fibre, weighted by the sine of the angle to its tangent: by Funk and Hecke the bands are scaled
-// by 1, 0 and -1/8. `open` 0...1 towards a direction: hair on the other side keeps its light away.
-float3 environmentOnHair(ShadeConstants shade, float3 t, float3 open) {
-    const float3 flat = 0.28209479 * shade.environment[0].rgb;
-    const float3 n = open - t * dot(open, t);
-    const float3 band1 = 0.48860251 * (n.y * shade.environment[1].rgb + n.z * shade.environment[2].rgb +
-                                       n.x * shade.environment[3].rgb);
-    const float3 band2 =
-        1.0925484 * (t.x * t.y * shade.environment[4].rgb + t.y * t.z * shade.environment[5].rgb +
-                     t.z * t.x * shade.environment[7].rgb) +
-        0.31539157 * (3.0 * t.z * t.z - 1.0) * shade.environment[6].rgb +
-        0.54627422 * (t.x * t.x - t.y * t.y) * shade.environment[8].rgb;
-    return max(flat + band1 - 0.125 * band2, 0.0);
-}
 #endif

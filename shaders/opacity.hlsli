@@ -16,6 +16,12 @@ float4 unpackShares(uint2 packed) {
     return float4(packed.x & 0xffffu, packed.x >> 16u, packed.y & 0xffffu, packed.y >> 16u) / 65535.0;
 }
 
+// Fibres in front of what lies `behind` metres behind the first hair: the layers of a deep opacity map, which end at `ends`.
+float fibresInLayers(float4 layers, float3 ends, float behind) {
+    const float3 begins = float3(0, ends.xy);
+    return dot(layers.rgb, saturate((behind - begins) / (ends - begins))) / OPACITY_UNIT;
+}
+
 // Metres behind the near plane of a light's view; `range` as in LightConstants.
 float metresBehindNear(float4 range, float depth) {
     const float farPlane = range.z + range.x;

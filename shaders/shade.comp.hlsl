@@ -4,6 +4,7 @@
 #include "shaders/curve.hlsli"
 #include "shaders/kajiya.hlsli"
 #include "shaders/shadows.hlsli"
+#include "shaders/sky_in_hair.hlsli"
 #ifdef HAIRLOOM_LOOK
 #include "shaders/point_dye.hlsli"
 #endif
@@ -11,6 +12,7 @@
 cbuffer Constants : register(b0) { ShadeConstants gShade; };
 StructuredBuffer<CurvePoint> gCurve : register(t0);
 StructuredBuffer<StrandHeader> gStrands : register(t1);
+StructuredBuffer<SkyPoint> gSeen : register(t3);
 RWStructuredBuffer<float4> gColour : register(u0);
 
 static const float kPi = 3.14159265;
@@ -44,13 +46,11 @@ void main(uint3 id : SV_DispatchThreadID) {
     const float3 passed = saturate(1.0 - gShade.rootTip.w * (1.0 - 0.75 * sqrt(albedo)));
 
     float3 colour = 0;
-    float openness = 0;
-    float3 open = 0;
     for (uint i = 0; i < gShade.counts.y; ++i) {
         const LightConstants light = gShade.lights[i];
         const float3 toLight = directionToLight(light, p.position_ws.xyz);
-        const Occlusion o = occlusion(light, p.position_ws.xyz, 0.0007, 0.004, light.filtering.z);
-        const Occlusion shadow = shadowOf(light, o);
+        const Occlusion shadow =
+            shadowOf(light, occlusion(light, p.position_ws.xyz, 0.0007, 0.004, light.filtering.z));
         const float3 direct = pow(passed, shadow.fibres) * shadow.visibility;
         const float3 scattered = pow(passed, 0.5 * shadow.fibres) * lerp(0.15, 1.0, shadow.visibility);
         const float diffuse = kajiyaDiffuse(tangent, toLight);
@@ -62,14 +62,17 @@ void main(uint3 id : SV_DispatchThreadID) {
         // Light that has bounced between fibres before: an artist's term after Zinke et al. 2008, not derived.
         const float3 multiple = gShade.shift.w * albedo * albedo * diffuse / kPi;
         colour += irradianceOf(light, p.position_ws.xyz) * (single * direct + multiple * scattered);
-        openness += exp(-0.35 * o.fibres) * lerp(0.25, 1.0, o.visibility);
-        const float front = exp(-0.35 * o.fibres) * o.visibility;
-        const float behind = exp(-0.35 * (o.allFibres - o.fibres)) * (1.0 - o.ends);
-        open += light.around.xyz * ((front - behind) / max(front + behind, 1e-6));
     }
-    openness = gShade.counts.y > 0 ? openness / float(gShade.counts.y) : 1.0;
     if (hasEnvironment(gShade)) {
-        colour += albedo * environmentOnHair(gShade, tangent, open) * openness;
+        SkyInHair sky = openSky();
+        if (mapsTellTheSky(gShade)) {
+            const SkySeen seen = seenAt(gSeen, strand, p.strand, index, gShade.counts.w);
+            FibreMoments fibre;
+            fibre.albedo = albedo;
+            fibre.first = fibre.second = 0;
+            sky = skyInHair(seen, fibre, gShade.ground.rgb);
+        }
+        colour += albedo * environmentOnHair(gShade, tangent, sky);
     }
 #ifdef HAIRLOOM_LOOK
     colour += emissionAt(p.along);

@@ -21,6 +21,7 @@ cbuffer Constants : register(b0) { ShadeConstants gShade; };
 cbuffer Fibre : register(b1) { FibreConstants gFibre; };
 StructuredBuffer<CurvePoint> gCurve : register(t0);
 StructuredBuffer<StrandHeader> gStrands : register(t1);
+StructuredBuffer<SkyPoint> gSeen : register(t3);
 RWStructuredBuffer<float4> gColour : register(u0);
 
 [numthreads(64, 1, 1)]
@@ -42,16 +43,7 @@ void main(uint3 id : SV_DispatchThreadID) {
     const float3 tint = own * (lerp(gShade.rootTip.x, gShade.rootTip.y, p.along) * vary);
     const float3 absorption = 0;
 #endif
-    FibreMoments moments;
-#ifdef HAIRLOOM_DUAL
-    const FibreAverages across = averagesAt(0.0, absorption);
-    moments = tinted(across.moments, shareOf(across.moments, tint));
-#else
-    moments.albedo = moments.first = moments.second = 0;  // what has met a fibre is lost
-#endif
-
     float3 colour = 0;
-    SkyInHair sky = noSky();
     for (uint i = 0; i < gShade.counts.y; ++i) {
         const LightConstants light = gShade.lights[i];
         const float3 toLight = directionToLight(light, p.position_ws.xyz);
@@ -65,17 +57,22 @@ void main(uint3 id : SV_DispatchThreadID) {
                                         absorption, gShade.ground.rgb * o.ground);
 #endif
         colour += irradianceOf(light, p.position_ws.xyz) * shadow.visibility * scattered;
-        if (hasEnvironment(gShade)) addSky(sky, moments, light, o, gFibre.lobes.w, gShade.ground.rgb);
     }
     if (hasEnvironment(gShade)) {
         const SkyMoments fibre = skyMoments(dot(toView, tangent), absorption);
-        if (sky.known == 0) {
-            sky.even = 1;
+        SkyInHair sky = openSky();
+        if (mapsTellTheSky(gShade)) {
+            const SkySeen seen = seenAt(gSeen, strand, p.strand, index, gShade.counts.w);
 #ifdef HAIRLOOM_DUAL
-            sky.even = 1.0 / (1.0 - kMeetsAgain * min(tint * fibre.even, 1.0));
+            const FibreAverages across = averagesAt(0.0, absorption);
+            sky = skyInHair(seen, tinted(across.moments, shareOf(across.moments, tint)), gShade.ground.rgb);
+#else
+            FibreMoments nothing;  // what has met a fibre or the head is lost
+            nothing.albedo = nothing.first = nothing.second = 0;
+            sky = skyInHair(seen, nothing, 0);
 #endif
         }
-        colour += tint * environmentOnFibre(gShade, fibre, agreed(sky), tangent, toView);
+        colour += tint * environmentOnFibre(gShade, fibre, sky, tangent, toView);
     }
 #ifdef HAIRLOOM_LOOK
     colour += emissionAt(p.along);

@@ -48,10 +48,7 @@ float fibresAt(LightConstants light, uint texel, float depth, float bias) {
         const float4 part = saturate((depth - bias - light.range.w - begins) / (light.layers - begins));
         return dot(layers, part) / OPACITY_UNIT;
     }
-    const float behind = depth - bias - (1.0 - layers.a) * light.range.x;
-    const float3 begins = float3(0, light.layers.xy);
-    const float3 part = saturate((behind - begins) / (light.layers.xyz - begins));
-    return dot(layers.rgb, part) / OPACITY_UNIT;
+    return fibresInLayers(layers, light.layers.xyz, depth - bias - (1.0 - layers.a) * light.range.x);
 }
 
 // What the head leaves of the light at `behind` metres behind its first surface: all or nothing, or with `absorption` as

@@ -2,6 +2,7 @@
 // Skin: diffuse light that wraps a little around the terminator, a soft highlight, shadows of head and hair.
 #include "shaders/layer_light.hlsli"
 #include "shaders/shadows.hlsli"
+#include "shaders/sky_maps.hlsli"
 
 // The share of light that reaches the skin through so many fibres, with what the skin sends back into the hair and the
 // hair returns once more.
@@ -17,20 +18,62 @@ float3 throughHair(ShadeConstants shade, LightConstants light, float fibres, flo
     return max(all - exp(-counted), 0.0) + passedDirectly(light, fibres, shade.sinking.w);
 }
 
+// Radiance from a direction.
+float3 environmentFrom(ShadeConstants shade, float3 d) {
+    const float3 band1 = 0.48860251 * (d.y * shade.environment[1].rgb + d.z * shade.environment[2].rgb +
+                                       d.x * shade.environment[3].rgb);
+    const float3 band2 =
+        1.0925484 * (d.x * d.y * shade.environment[4].rgb + d.y * d.z * shade.environment[5].rgb +
+                     d.z * d.x * shade.environment[7].rgb) +
+        0.31539157 * (3.0 * d.z * d.z - 1.0) * shade.environment[6].rgb +
+        0.54627422 * (d.x * d.x - d.y * d.y) * shade.environment[8].rgb;
+    return max(0.28209479 * shade.environment[0].rgb + band1 + band2, 0.0);
+}
+
+// Light from around that hair and head let through, weighted by the cosine; with what hair over the skin sends back to it.
+float3 skyOnSkin(ShadeConstants shade, float3 position_ws, float3 normal, float3 albedo) {
+    const float3 plain = environmentOnSkin(shade, normal);
+    if (!mapsTellTheSky(shade)) return plain;
+    const bool fibres = shade.turning.w > 0.0;
+    const float3 peak = fibres ? max(shade.straight.rgb, 0.0) : 0.0;
+    const float3 stopping = fibres ? 1.0 - peak : shade.sinking.rgb;
+    const float3 sentOn = fibres ? min((shade.sinking.rgb - peak) / stopping, 0.999) : 0.0;
+    float3 all = 0;
+    float3 passed = 0;
+    float3 caught = 0;
+    float weight = 0;
+    for (uint i = 0; i < HAIRLOOM_SKY_MAPS; ++i) {
+        const LightConstants map = gSkyMaps.maps[i];
+        const float3 d = map.toLight_ws.xyz;
+        const float nl = dot(normal, d);
+        if (nl <= 0.0) continue;
+        const float lift = map.filtering.y;
+        const SkyRay ray = skyRay(map, position_ws + normal * lift, -lift * nl, lift);
+        const float3 through = exp(-(shade.sinking.w + map.filtering.x) * ray.before * stopping);
+        const float3 light = nl * environmentFrom(shade, d);
+        all += light;
+        passed += light * ray.open * through;
+        caught += nl * ray.open * (1.0 - through);
+        weight += nl;
+    }
+    caught /= max(weight, 1e-6);
+    return plain * (passed / max(all, 1e-6)) / (1.0 - 0.5 * caught * sentOn * (1.0 + albedo));
+}
+
 float3 skinLight(ShadeConstants shade, MeshConstants mesh, float3 position_ws, float3 normal_ws, float3 albedo) {
     const float kPi = 3.14159265;
     const float3 toView = normalize(shade.eye_ws.xyz - position_ws * shade.eye_ws.w);
     float3 normal = normalize(normal_ws);
     if (dot(normal, toView) < 0) normal = -normal;
     float3 colour = 0;
-    float openness = 0;
     for (uint k = 0; k < shade.counts.y; ++k) {
         const LightConstants light = shade.lights[k];
         const float3 toLight = directionToLight(light, position_ws);
         const float nl = dot(normal, toLight);
         // Lifted, so that the head does not shadow itself; hair counts down to the skin.
         const float lift = 0.002;
-        const Occlusion o = occlusion(light, position_ws + normal * lift, -lift * saturate(nl), 0.002, 0.0);
+        const Occlusion shadow =
+            shadowOf(light, occlusion(light, position_ws + normal * lift, -lift * saturate(nl), 0.002, 0.0));
         // Red light travels farther under the skin. The denominator keeps the energy of a Lambertian.
         const float3 wrap = mesh.skin.x * float3(1, 0.5, 0.35);
         const float3 diffuse = saturate((nl + wrap) / ((1 + wrap) * (1 + wrap)));
@@ -39,13 +82,10 @@ float3 skinLight(ShadeConstants shade, MeshConstants mesh, float3 position_ws, f
         const float m = mesh.skin.z;
         const float specular = mesh.skin.y * fresnel * (m + 8.0) / (8.0 * kPi) *
                                pow(saturate(dot(normal, middle)), m) * saturate(nl);
-        const Occlusion shadow = shadowOf(light, o);
         const float lit = lerp(0.0, shadow.visibility, saturate(nl * 8.0 + 0.6));
         colour += irradianceOf(light, position_ws) * (albedo / kPi * diffuse + specular) *
                   (lit * throughHair(shade, light, shadow.fibres, albedo));
-        openness += exp(-0.3 * o.fibres);
     }
-    openness = shade.counts.y > 0 ? openness / float(shade.counts.y) : 1.0;
-    if (hasEnvironment(shade)) colour += albedo * environmentOnSkin(shade, normal) * openness;
+    if (hasEnvironment(shade)) colour += albedo * skyOnSkin(shade, position_ws, normal, albedo);
     return colour;
 }

@@ -3,8 +3,7 @@
 #ifndef HAIRLOOM_SKY_HLSLI
 #define HAIRLOOM_SKY_HLSLI
 #include "shaders/fibre_tables.hlsli"
-#include "shaders/layer_light.hlsli"
-#include "shaders/shadows.hlsli"
+#include "shaders/sky_in_hair.hlsli"
 #ifdef HAIRLOOM_LOOK
 #include "shaders/absorption_layers.hlsli"
 #endif
@@ -52,60 +51,21 @@ SkyMoments skyMoments(float sinOut, float3 absorption) {
 }
 #endif
 
-// How much light from around there is inside hair, against that without: even + d . (x, y, z) in the direction d. Where no
-// map tells which fibres stand around, `known` is 0.
-struct SkyInHair {
-    float3 even, x, y, z;
-    float3 steep;  // how much it changes as each map sees it, the mean
-    float known;
-};
-
-SkyInHair noSky() {
-    SkyInHair sky;
-    sky.even = sky.x = sky.y = sky.z = sky.steep = 0;
-    sky.known = 0;
-    return sky;
-}
-
-// What the map of one light knows: the fibres on the light's side of the point and on the other, and where the head stands.
-void addSky(inout SkyInHair sky, FibreMoments fibre, LightConstants light, Occlusion o, float clumping, float3 ground) {
-    if (light.around.w == 0) return;
-    const float before = clumping * o.fibres;
-    const float all = clumping * o.allFibres;
-    const LayerLight front = lightInLayer(fibre, before, all, ground * o.ground, 0.0, o.visibility);
-    const LayerLight behind = lightInLayer(fibre, all - before, all, 0.0, 0.0, 1.0 - o.ends);
-    const float3 slope = (front.flux - behind.flux) / 3.14159265;
-    sky.even += light.around.w * (front.fluence + behind.fluence) / 6.2831853;
-    sky.x += light.around.x * slope;
-    sky.y += light.around.y * slope;
-    sky.z += light.around.z * slope;
-    sky.steep += light.around.w * abs(slope);
-    sky.known += light.around.w;
-}
-
-// Each map takes the whole of the change to be along its light: together they have its direction and too much of it.
-SkyInHair agreed(SkyInHair sky) {
-    const float3 factor = min(sky.steep * rsqrt(max(sky.x * sky.x + sky.y * sky.y + sky.z * sky.z, 1e-12)), 1.0);
-    sky.x *= factor;
-    sky.y *= factor;
-    sky.z *= factor;
-    return sky;
-}
-
-// Light that is there mostly from one side has an edge that two harmonics do not show. From an even half of the circle the
-// slope is 4/pi of the mean, the second harmonic 0 and the third -1/3 of the slope; deeper in black hair it narrows to a
-// beam, where all are twice the mean. Between them both are taken to change with the slope.
+// Light that is there mostly from one side has an edge that two harmonics do not show. From an even half of all directions
+// the slope is 3/2 of the mean; around the fibre the second harmonic is 0 and the third -1/3 of the first. Deeper in black
+// hair it narrows to a beam, where the slope is three times the mean, and around the fibre all are twice that. Between them
+// they are taken to change with the slope.
 float3 edgeOfSky(SkyMoments m, SkyInHair sky, float3 t, float3 f) {
     const float3 green = float3(sky.x.g, sky.y.g, sky.z.g);
     const float slope = length(green);
     const float3 axis = green / max(slope, 1e-6);
     const float3 steep = sqrt(sky.x * sky.x + sky.y * sky.y + sky.z * sky.z);
-    const float even = 4.0 / 3.14159265;
-    const float3 narrow = saturate((steep / max(sky.even, 1e-6) - even) / (2.0 - even));
+    const float3 narrow = saturate(steep / max(1.5 * sky.even, 1e-6) - 1.0);
+    const float3 around = steep * lerp(8.0 / (3.0 * 3.14159265), 2.0 / 3.0, narrow);
     const float x = dot(axis, f);
     const float p = saturate(1.0 - dot(axis, t) * dot(axis, t));
     return m.acrossAcross * sky.even * (2.0 * narrow) * (2.0 * x * x - p) +
-           m.third * steep * ((4.0 * narrow - 1.0) / 3.0) * (4.0 * x * x * x - 3.0 * x * p);
+           m.third * around * ((4.0 * narrow - 1.0) / 3.0) * (4.0 * x * x * x - 3.0 * x * p);
 }
 
 // Light from around as it is inside hair, which leaves the fibre along `t` towards the view.

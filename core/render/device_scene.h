@@ -34,6 +34,7 @@ struct StrandBatch {
     gpu::BufferPtr headers, positions, radii, pointDyes;
     gpu::BufferPtr curve, colour;                     ///< hold what `curveSubdivisions` calls for
     gpu::BufferPtr litColour;                         ///< the same without shadows, once it was asked for
+    gpu::BufferPtr seen;                              ///< of the sky, once it was asked for
     std::map<std::uint32_t, gpu::BufferPtr> indices;  ///< of the ribbons, by subdivisions
     gpu::BufferPtr patches;                           ///< of tessellated ribbons, once these were asked for
     std::vector<std::uint32_t> patchesBefore;         ///< each strand; then of all
@@ -104,9 +105,10 @@ class DeviceScene {
     Status replaceStrands(std::size_t group, gpu::BufferPtr positions_ws, std::uint32_t floatsPerPoint,
                           const Box3f& bounds_ws);
 
-    /// Makes room for curves of that fineness, `twice` for their light with shadows and without; nothing
-    /// happens when there is.
-    Status prepareCurves(gpu::Device& device, std::uint32_t subdivisions, bool twice = false);
+    /// Makes room for curves of that fineness, `twice` for their light with shadows and without, and for what
+    /// their points see of the `sky`; nothing happens when there is.
+    Status prepareCurves(gpu::Device& device, std::uint32_t subdivisions, bool twice = false,
+                         bool sky = false);
     /// Bakes the tables of materials that have changed. `behind`: on another thread, while those that are
     /// there serve; only where there are some and hair varies in both or in neither. True: tables are new.
     Result<bool> prepareFibres(gpu::Device& device, bool behind);

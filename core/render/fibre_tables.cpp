@@ -93,15 +93,15 @@ class FibreTables::Baker {
     void even() {
         if (material().model == ShadingModel::marschner) {
             const shading::Marschner model(material().marschner);
-            const shading::MarschnerTables tables = shading::bakeMarschner(model);
-            add(kLongitudinal, "longitudinal scattering", tables.longitudinal);
-            add(kAzimuthal, "azimuthal scattering, R and TT", tables.transmitted);
-            add(kSecondAzimuthal, "azimuthal scattering, TRT", tables.reflected);
+            shading::MarschnerTables tables = shading::bakeMarschner(model);
+            add(kLongitudinal, "longitudinal scattering", std::move(tables.longitudinal));
+            add(kAzimuthal, "azimuthal scattering, R and TT", std::move(tables.transmitted));
+            add(kSecondAzimuthal, "azimuthal scattering, TRT", std::move(tables.reflected));
             evenDual(shading::DualScattering(model));
         } else {
-            const shading::SadeghiTables tables = shading::bakeSadeghi(material().sadeghi);
-            add(kLongitudinal, "longitudinal scattering", tables.longitudinal);
-            add(kAzimuthal, "azimuthal scattering", tables.azimuthal);
+            shading::SadeghiTables tables = shading::bakeSadeghi(material().sadeghi);
+            add(kLongitudinal, "longitudinal scattering", std::move(tables.longitudinal));
+            add(kAzimuthal, "azimuthal scattering", std::move(tables.azimuthal));
             evenDual(shading::DualScattering(material().sadeghi));
         }
     }
@@ -109,16 +109,16 @@ class FibreTables::Baker {
     /// For absorption that changes from place to place.
     void layers() {
         if (material().model == ShadingModel::marschner) {
-            const shading::MarschnerLayers tables = shading::bakeMarschnerLayers(material().marschner);
-            add(kLongitudinal, "longitudinal scattering", tables.longitudinal);
-            add(kAzimuthal, "azimuthal scattering by absorption", tables.azimuthal);
+            shading::MarschnerLayers tables = shading::bakeMarschnerLayers(material().marschner);
+            add(kLongitudinal, "longitudinal scattering", std::move(tables.longitudinal));
+            add(kAzimuthal, "azimuthal scattering by absorption", std::move(tables.azimuthal));
             dualLayers(shading::bakeDualLayers(material().marschner));
         } else {
             const shading::AzimuthalParameters& fibre = material().marschner.azimuthal;
-            const shading::SadeghiLayers layers = shading::bakeSadeghiLayers(material().sadeghi, fibre);
-            add(kLongitudinal, "longitudinal scattering", layers.tables.longitudinal);
-            add(kAzimuthal, "azimuthal scattering", layers.tables.azimuthal);
-            add(kSecondAzimuthal, "energies by absorption", layers.energies);
+            shading::SadeghiLayers layers = shading::bakeSadeghiLayers(material().sadeghi, fibre);
+            add(kLongitudinal, "longitudinal scattering", std::move(layers.tables.longitudinal));
+            add(kAzimuthal, "azimuthal scattering", std::move(layers.tables.azimuthal));
+            add(kSecondAzimuthal, "energies by absorption", std::move(layers.energies));
             dualLayers(shading::bakeDualLayers(material().sadeghi, fibre));
         }
     }
@@ -126,23 +126,23 @@ class FibreTables::Baker {
   private:
     const FibreMaterial& material() const { return result_.material_; }
     bool isDual() const { return result_.material_.scattering == Scattering::dual; }
-    void add(std::uint32_t slot, const char* name, const shading::Table& table) {
-        result_.waiting_.push_back({slot, name, table});
+    void add(std::uint32_t slot, const char* name, shading::Table table) {
+        result_.waiting_.push_back({slot, name, std::move(table)});
     }
     void evenDual(const shading::DualScattering& dual) {
         add(kSky, "light from around", shading::bakeSky(dual));
         if (isDual()) {
-            const shading::DualTables tables = shading::bakeDual(dual);
-            add(kProfile, "azimuthal scattering of all lobes", tables.profile);
-            add(kAverages, "average scattering", tables.averages);
+            shading::DualTables tables = shading::bakeDual(dual);
+            add(kProfile, "azimuthal scattering of all lobes", std::move(tables.profile));
+            add(kAverages, "average scattering", std::move(tables.averages));
             add(kSpreadFactors, "wide lobes", spreadFactors());
         }
         result_.across_ = dual.at(0).average;
     }
     void dualLayers(shading::DualLayers layers) {
-        add(kSky, "light from around by absorption", layers.sky);
+        add(kSky, "light from around by absorption", std::move(layers.sky));
         if (isDual()) {
-            add(kProfile, "azimuthal scattering of all lobes by absorption", layers.profile);
+            add(kProfile, "azimuthal scattering of all lobes by absorption", std::move(layers.profile));
             add(kAverages, "average scattering by absorption", layers.averages);
             add(kSpreadFactors, "wide lobes", spreadFactors());
         }

@@ -58,7 +58,8 @@ Status check(std::span<const Light> lights) {
     return {};
 }
 
-LightView fitLight(const Light& light, std::span<const Vec3f> hair_ws, const Box3f& all_ws) {
+LightView fitLight(const Light& light, std::span<const Vec3f> hair_ws, const Box3f& all_ws,
+                   const Box3f& more_ws) {
     LightView view;
     const bool point = light.kind == LightKind::point;
     Box3f hair;
@@ -90,6 +91,10 @@ LightView fitLight(const Light& light, std::span<const Vec3f> hair_ws, const Box
     if (hair_ws.empty()) {
         for (Extent& extent : across) extent = {-kLeastHalf, kLeastHalf};
         hairAlong.add(0);
+    }
+    for (int i = 0; i < 8 && !point && !more_ws.isEmpty(); ++i) {
+        const Vec3f corner = inView(more_ws.corner(static_cast<Box3f::CornerType>(i)));
+        for (int axis = 0; axis < 2; ++axis) across[axis].add(corner[axis]);
     }
     along = hairAlong;
     for (int i = 0; i < 8 && !all_ws.isEmpty(); ++i) {

@@ -41,7 +41,9 @@ struct LightView {
 };
 
 /// Fitted to `hair_ws` across the light, and along it to what throws shadows on hair or gets its shadow as
-/// well. A point light amidst the hair sees only what lies within 75 degrees of the middle.
-LightView fitLight(const Light& light, std::span<const Vec3f> hair_ws, const Box3f& all_ws);
+/// well. A point light amidst the hair sees only what lies within 75 degrees of the middle. A directional one
+/// sees `more_ws` as well.
+LightView fitLight(const Light& light, std::span<const Vec3f> hair_ws, const Box3f& all_ws,
+                   const Box3f& more_ws = {});
 
 }  // namespace hairloom::render

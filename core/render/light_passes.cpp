@@ -1,168 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Curves, shadow maps and shading: what stays while the scene does.
-#include <algorithm>
-#include <bit>
+// Curves, what they see of the sky, and shading: what stays while the scene does.
 #include <cmath>
 
 #include "core/render/passes.h"
+#include "core/render/shadow_maps.h"
 #include "core/shading/kajiya_kay.h"
 
 namespace hairloom::render {
 namespace {
 
 using gpu::Binding;
-
-/// What FibreMaterial::clumping must grow by where the light's map has texels of so many metres. The Sintel
-/// strands let as much through as traced ones with 0.86 at 2.2 mm, 1.02 at 1.1 mm and about 1.45 at 0.28 mm;
-/// the 0.81 of a beam of 5 mm stands at two texels a beam.
-float resolvedClumps(float texel) {
-    constexpr float kBeam = 0.0025f, kEachHalving = 0.2f;
-    return std::clamp(kEachHalving * std::log2(kBeam / texel), -0.2f, 1.0f);
-}
-
-bool castsShadow(const RendererState& state, std::size_t light) {
-    return state.options.shadows != Shadows::none && state.lights[light].castsShadow;
-}
-
-/// Place of a light's square in the atlas.
-std::uint32_t tileOf(const RendererState& state, std::size_t light) {
-    std::uint32_t tile = 0;
-    for (std::size_t i = 0; i < light; ++i) tile += castsShadow(state, i) ? 1 : 0;
-    return tile;
-}
-
-/// Pixels in a row of the atlas.
-float atlasWidth(const RendererState& state) {
-    return static_cast<float>(state.options.shadowResolution * tileOf(state, state.lights.size()));
-}
-
-shaders::float4 layersOf(const RendererState& state, const LightView& view) {
-    const float range = view.hairRange;
-    switch (state.options.shadows) {
-        case Shadows::deepOpacity:
-            return {state.deepLayers[0] * range, state.deepLayers[1] * range, state.deepLayers[2] * range, 0};
-        case Shadows::opacityMaps:
-            return {0.25f * range, 0.5f * range, 0.75f * range, range};
-        case Shadows::absorption: {
-            const HairMeasure measure = state.scene.measure();
-            return {measure.fibresPerMetre, measure.fibresThrough, 0, 0};
-        }
-        case Shadows::none:
-            break;
-    }
-    return {};
-}
-
-std::uint32_t layerCount(Shadows shadows) {
-    return shadows == Shadows::deepOpacity ? 3 : 4;
-}
-
-shaders::float4 rangeOf(const LightView& view, std::uint32_t mode) {
-    return {view.depthRange, static_cast<float>(mode), view.nearPlane, view.hairStart};
-}
-
-shaders::LightConstants lightConstants(const RendererState& state, std::size_t i) {
-    const Light& light = state.lights[i];
-    const LightView& view = state.lightViews[i];
-    const bool hair = castsShadow(state, i) && !state.scene.batches.empty();
-    const bool head = castsShadow(state, i) && state.plan.runs(Pass::headDepth);
-    const auto size = static_cast<float>(state.options.shadowResolution);
-    shaders::LightConstants c;
-    c.clipFromWorld = toShader(view.clipFromWorld);
-    c.toLight_ws = {view.eye_ws.x(), view.eye_ws.y(), view.eye_ws.z(), view.eye_ws.w()};
-    c.irradiance = toShader(light.kind == LightKind::point ? light.intensity : light.irradiance, 0);
-    c.tile = {size * static_cast<float>(tileOf(state, i)), size, head ? 1.0f : 0.0f, atlasWidth(state)};
-    c.range = rangeOf(view, hair ? static_cast<std::uint32_t>(state.options.shadows) : 0u);
-    c.layers = layersOf(state, view);
-    const float distance =
-        light.kind == LightKind::point ? view.nearPlane + view.hairStart + 0.5f * view.hairRange : 1.0f;
-    const float texel = view.spread * distance / size;
-    c.filtering = {resolvedClumps(texel), texel, state.options.headAbsorption, 0};
-    return c;
-}
-
-/// For drawing strands into a light's square.
-shaders::ViewConstants lightViewConstants(const RendererState& state, std::size_t light) {
-    const LightView& view = state.lightViews[light];
-    const auto mode = static_cast<std::uint32_t>(state.options.shadows);
-    shaders::ViewConstants c;
-    c.clipFromWorld = toShader(view.clipFromWorld);
-    c.eye_ws = {view.eye_ws.x(), view.eye_ws.y(), view.eye_ws.z(), view.eye_ws.w()};
-    c.pixel = {view.spread / static_cast<float>(state.options.shadowResolution), 1, 0, 0};
-    c.sampling = {1, 0, 0, mode};
-    c.layers = layersOf(state, view);
-    c.range = rangeOf(view, mode);
-    return c;
-}
-
-void setTile(gpu::CommandList& list, const RendererState& state, std::size_t light) {
-    const std::uint32_t size = state.options.shadowResolution;
-    const std::uint32_t x = tileOf(state, light) * size;
-    list.setViewport({static_cast<float>(x), 0, static_cast<float>(size), static_cast<float>(size), 0, 1});
-    list.setScissor({x, 0, size, size});
-}
-
-/// Strands into a light's square, with the kernel that is set.
-void rasteriseFromLight(gpu::CommandList& list, const RendererState& state, std::size_t light) {
-    const std::uint32_t size = state.options.shadowResolution;
-    const auto side = static_cast<float>(size);
-    shaders::RasterConstants raster;
-    raster.window = {static_cast<float>(tileOf(state, light) * size), 0, side, side};
-    raster.numbers = {0, 0, static_cast<std::uint32_t>(atlasWidth(state)), 0};
-    raster.samples = {1, layerCount(state.options.shadows), 1, 0};
-    list.setConstants(0, gpu::bytesOf(lightViewConstants(state, light)));
-    dispatchStrands(list, state, raster);
-}
-
-void recordFirstHair(gpu::CommandList& list, RendererState& state) {
-    list.beginPass({passName(Pass::firstHair), {}, {}});
-    fill(list, state, BufferId::firstHair, std::bit_cast<std::uint32_t>(1.0f));
-    list.setPipeline(state.pipelines.compute("light_first.comp"));
-    bind(list, {Binding::write(0, state.targets[BufferId::firstHair])});
-    for (std::size_t i = 0; i < state.lights.size(); ++i) {
-        if (castsShadow(state, i)) rasteriseFromLight(list, state, i);
-    }
-    list.endPass();
-}
-
-void recordOpacity(gpu::CommandList& list, RendererState& state) {
-    const std::uint32_t size = state.options.shadowResolution;
-    list.beginPass({passName(Pass::opacity), {}, {}});
-    for (std::size_t i = 0; i < state.lights.size(); ++i) {
-        if (!castsShadow(state, i)) continue;
-        fill(list, state, BufferId::layerCounts, 0);
-        list.setPipeline(state.pipelines.compute("light_layers.comp"));
-        bind(list, {Binding::read(2, state.orNothing(BufferId::firstHair)),
-                    Binding::write(0, state.targets[BufferId::layerCounts])});
-        rasteriseFromLight(list, state, i);
-        list.setPipeline(state.pipelines.compute("light_pack.comp"));
-        shaders::PackConstants constants;
-        const auto mode = static_cast<std::uint32_t>(state.options.shadows);
-        constants.size = {size, tileOf(state, i) * size, static_cast<std::uint32_t>(atlasWidth(state)), mode};
-        constants.range = rangeOf(state.lightViews[i], mode);
-        list.setConstants(0, gpu::bytesOf(constants));
-        bind(list, {Binding::read(0, state.orNothing(BufferId::firstHair)),
-                    Binding::read(1, state.targets[BufferId::layerCounts]),
-                    Binding::write(0, state.targets[BufferId::opacity])});
-        list.dispatch((size + 7) / 8, (size + 7) / 8);
-    }
-    list.endPass();
-}
-
-void recordHeadDepth(gpu::CommandList& list, RendererState& state) {
-    list.beginPass(
-        {passName(Pass::headDepth), {}, {state.targets[TargetId::headDepth], gpu::LoadOp::Clear, 1}});
-    list.setPipeline(state.pipelines.graphics(kMeshDepth));
-    for (std::size_t i = 0; i < state.lights.size(); ++i) {
-        if (!castsShadow(state, i)) continue;
-        setTile(list, state, i);
-        shaders::MeshConstants constants;
-        constants.clipFromWorld = toShader(state.lightViews[i].clipFromWorld);
-        list.setConstants(1, gpu::bytesOf(constants));
-        drawMeshes(list, state);
-    }
-    list.endPass();
-}
 
 shaders::CurveConstants curveConstants(const RendererState& state, const StrandBatch& batch) {
     const StrandGroup& group = state.scene.groups[batch.group];
@@ -180,52 +27,16 @@ shaders::CurveConstants curveConstants(const RendererState& state, const StrandB
     return c;
 }
 
-/// A linear function of direction is known by its values along some: the least one that has them, damped
-/// where lights stand close together, is a sum of these vectors times the values.
-void lookAround(const RendererState& state, shaders::ShadeConstants& shade) {
-    constexpr float kDamping = 0.05f;
-    std::vector<std::size_t> known;
-    for (std::size_t i = 0; i < state.lights.size(); ++i) {
-        if (castsShadow(state, i) && !state.scene.batches.empty()) known.push_back(i);
-    }
-    if (known.empty()) return;
-    const auto count = static_cast<Eigen::Index>(known.size());
-    Eigen::MatrixXf directions(count, 3);
-    for (Eigen::Index i = 0; i < count; ++i) {
-        const Light& light = state.lights[known[static_cast<std::size_t>(i)]];
-        const Vec3f towards = light.kind == LightKind::point
-                                  ? Vec3f(light.position_ws - state.scene.hairBounds().center())
-                                  : light.toLight_ws;
-        directions.row(i) = towards.stableNormalized().transpose();
-    }
-    const Eigen::MatrixXf overlap =
-        directions * directions.transpose() + kDamping * Eigen::MatrixXf::Identity(count, count);
-    const Eigen::MatrixXf around = (1 + kDamping) * directions.transpose() * overlap.inverse();
-    for (Eigen::Index i = 0; i < count; ++i) {
-        const Vec3f vector = around.col(i);
-        shade.lights[known[static_cast<std::size_t>(i)]].around =
-            toShader(vector, 1 / static_cast<float>(count));
-    }
-}
-
 }  // namespace
 
 void setUpLights(RendererState& state) {
-    const std::vector<Vec3f> hair = state.scene.sample();
-    const Box3f all = state.bounds();
-    std::vector<Vec3f> fitted = hair;
-    for (int i = 0; i < 8 && hair.empty() && !all.isEmpty(); ++i) {
-        fitted.push_back(all.corner(static_cast<Box3f::CornerType>(i)));
-    }
-    state.lightViews.clear();
-    for (const Light& light : state.lights) state.lightViews.push_back(fitLight(light, fitted, all));
-
     shaders::ShadeConstants& shade = state.shade;
     shade.eye_ws = eyeOf(state.camera);
     for (std::size_t i = 0; i < state.environment.coefficients.size(); ++i) {
-        shade.environment[i] =
-            toShader(state.environment.coefficients[i], state.environment.dark() ? 0.0f : 1.0f);
+        shade.environment[i] = toShader(state.environment.coefficients[i], 0);
     }
+    shade.environment[0].w = state.environment.dark() ? 0.0f : 1.0f;
+    shade.environment[1].w = state.plan.runs(Pass::skyHead) || state.plan.runs(Pass::skyLayers) ? 1.0f : 0.0f;
     shade.ground = toShader(state.scene.groundAlbedo(), 0);
     const HairFlux flux = state.scene.flux();
     shade.sinking = toShader(flux.scattered, flux.clumping);
@@ -233,7 +44,6 @@ void setUpLights(RendererState& state) {
     shade.straight = toShader(flux.second, 0);
     shade.counts.y = static_cast<std::uint32_t>(state.lights.size());
     for (std::size_t i = 0; i < state.lights.size(); ++i) shade.lights[i] = lightConstants(state, i);
-    lookAround(state, shade);
 }
 
 shaders::ShadeConstants lightsOfFrame(const RendererState& state) {
@@ -290,10 +100,21 @@ void recordCurves(gpu::CommandList& list, RendererState& state) {
     list.endPass();
 }
 
-void recordShadowMaps(gpu::CommandList& list, RendererState& state) {
-    if (state.plan.runs(Pass::headDepth)) recordHeadDepth(list, state);
-    if (state.plan.runs(Pass::firstHair)) recordFirstHair(list, state);
-    if (state.plan.runs(Pass::opacity)) recordOpacity(list, state);
+void recordSkySeen(gpu::CommandList& list, RendererState& state) {
+    list.beginPass({passName(Pass::skySeen), {}, {}});
+    list.setPipeline(state.pipelines.compute("sky_seen.comp"));
+    bindShadows(list, state);
+    constexpr std::uint32_t kGroup = 64, kThreadsOfAStrand = 16;
+    shaders::ShadeConstants constants = state.shade;
+    for (const StrandBatch& batch : state.scene.batches) {
+        const std::uint32_t strands = batch.strandCount(state.detail);
+        constants.counts = {strands, 0, 0, state.detail.subdivisions};
+        list.setConstants(0, gpu::bytesOf(constants));
+        bind(list, {Binding::read(0, batch.curve), Binding::read(1, batch.headers),
+                    Binding::write(0, batch.seen)});
+        list.dispatch((strands + kGroup - 1) / kGroup, kThreadsOfAStrand);
+    }
+    list.endPass();
 }
 
 void recordShading(gpu::CommandList& list, RendererState& state) {
@@ -312,9 +133,10 @@ void recordShading(gpu::CommandList& list, RendererState& state) {
         const std::uint32_t points =
             batch.curvePoints(batch.strandCount(state.detail), state.detail.subdivisions);
         const Rows rows(points);
-        constants.counts = {points, constants.counts.y, rows.threads(), 0};
+        constants.counts = {points, constants.counts.y, rows.threads(), state.detail.subdivisions};
         list.setConstants(0, gpu::bytesOf(constants));
         bind(list, {Binding::read(0, batch.curve), Binding::read(1, batch.headers),
+                    Binding::read(3, batch.seen ? batch.seen : state.noWords),
                     Binding::write(0, state.colourOf(batch))});
         list.dispatch(rows.groups, rows.rows);
     }

@@ -2,6 +2,7 @@
 #include "core/render/light_probe.h"
 
 #include "core/render/passes.h"
+#include "core/render/shadow_maps.h"
 
 namespace hairloom::render {
 namespace {
@@ -32,6 +33,7 @@ Status prepare(gpu::Device& device, const RenderScene& scene, const RenderOption
     SceneFacts facts;
     facts.meshes = state.scene.triangles() > 0;
     facts.hair = !state.scene.batches.empty();
+    facts.environment = !state.environment.dark();
     facts.lights = facts.shadowLights = static_cast<std::uint32_t>(scene.lights.size());
     state.plan = planRender(facts, options, 1);
     if (const auto fitted = state.targets.fit(device, state.plan); !fitted)
@@ -51,26 +53,29 @@ Status prepare(gpu::Device& device, const RenderScene& scene, const RenderOption
 
 }  // namespace
 
-Result<std::vector<shaders::float4>> probeLight(gpu::Device& device, const RenderScene& scene,
-                                                const RenderOptions& options,
-                                                std::span<const shaders::LightCase> cases,
-                                                const DeepLayers& layers) {
+Result<std::vector<shaders::LightAnswer>> probeLight(gpu::Device& device, const RenderScene& scene,
+                                                     const RenderOptions& options,
+                                                     std::span<const shaders::LightCase> cases,
+                                                     const DeepLayers& layers) {
     const auto failed = [](const Error& error) { return tl::unexpected(error); };
     RendererState state(device);
     state.deepLayers = layers;
     if (auto status = prepare(device, scene, options, state); !status) return failed(status.error());
-    std::vector<shaders::float4> results(2 * cases.size());
+    std::vector<shaders::LightAnswer> results(cases.size());
     const auto in = makeBuffer(device, "cases", std::as_bytes(cases), sizeof(shaders::LightCase));
     if (!in) return failed(in.error());
     const auto out =
-        makeBuffer(device, "results", std::as_bytes(std::span(results)), sizeof(shaders::float4));
+        makeBuffer(device, "results", std::as_bytes(std::span(results)), sizeof(shaders::LightAnswer));
     if (!out) return failed(out.error());
     auto list = device.createCommandList();
     if (!list) return failed(list.error());
     gpu::CommandList& commands = **list;
+    fitLights(state);
+    fitSky(state);
     setUpLights(state);
     if (!state.scene.batches.empty()) recordCurves(commands, state);
-    recordShadowMaps(commands, state);
+    recordMaps(commands, state, lightAtlas(state));
+    recordMaps(commands, state, skyAtlas(state));
     commands.beginPass({"light", {}, {}});
     commands.setPipeline(state.pipelines.compute("light_echo.comp"));
     commands.setConstants(0, gpu::bytesOf(state.shade));

@@ -17,11 +17,10 @@ namespace hairloom::render {
 using DeepLayers = std::array<float, 3>;
 inline constexpr DeepLayers kDeepLayers{0.04f, 0.14f, 1.0f};
 
-/// Two results a case, as shaders/light_echo.comp.hlsl says; of the first light. Errors: what the device
-/// reports.
-Result<std::vector<shaders::float4>> probeLight(gpu::Device& device, const RenderScene& scene,
-                                                const RenderOptions& options,
-                                                std::span<const shaders::LightCase> cases,
-                                                const DeepLayers& layers = kDeepLayers);
+/// Of the first light, and of light from around. Errors: what the device reports.
+Result<std::vector<shaders::LightAnswer>> probeLight(gpu::Device& device, const RenderScene& scene,
+                                                     const RenderOptions& options,
+                                                     std::span<const shaders::LightCase> cases,
+                                                     const DeepLayers& layers = kDeepLayers);
 
 }  // namespace hairloom::render

@@ -200,7 +200,10 @@ void bind(gpu::CommandList& list, std::initializer_list<Binding> bindings) {
 void bindShadows(gpu::CommandList& list, const RendererState& state) {
     bind(list, {Binding::read(8, state.orNothing(TargetId::headDepth)),
                 Binding::read(9, state.orNothing(BufferId::firstHair)),
-                Binding::read(10, state.orNothing(BufferId::opacity))});
+                Binding::read(10, state.orNothing(BufferId::opacity)),
+                Binding::read(18, state.orNothing(TargetId::skyHead)),
+                Binding::read(19, state.orNothing(BufferId::skyLayers))});
+    list.setConstants(3, gpu::bytesOf(state.sky));
 }
 
 void drawStrips(gpu::CommandList& list, const RendererState& state, std::optional<bool> tubes) {

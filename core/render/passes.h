@@ -52,7 +52,9 @@ struct RendererState {
     gpu::BufferPtr noWords;        ///< bound where a buffer is not there
     gpu::SamplerPtr linearFilter;  ///< once a filter was asked for
     std::vector<LightView> lightViews;
-    shaders::ShadeConstants shade;  ///< all but the material
+    std::vector<LightView> skyViews;  ///< where the plan has maps of the sky
+    shaders::ShadeConstants shade;    ///< all but the material
+    shaders::SkyConstants sky;
 
     Box3f bounds() const;  ///< of all meshes and strands
     /// Where the light of a batch's curve points is, with shadows or without.
@@ -69,7 +71,7 @@ struct RendererState {
     const gpu::BufferPtr& orNothing(BufferId id) const { return targets[id] ? targets[id] : noWords; }
 };
 
-/// Views from the lights, and the constants that follow from camera and lights.
+/// The constants that follow from camera and lights.
 void setUpLights(RendererState& state);
 shaders::ShadeConstants shadeConstants(const RendererState& state, const HairMaterial& material);
 /// Those of RendererState::shade, without shadows where it says so.
@@ -77,7 +79,8 @@ shaders::ShadeConstants lightsOfFrame(const RendererState& state);
 shaders::LookConstants lookConstants(const shading::StrandLook& look);
 
 void recordCurves(gpu::CommandList& list, RendererState& state);
-void recordShadowMaps(gpu::CommandList& list, RendererState& state);
+/// What each curve point sees of light from around.
+void recordSkySeen(gpu::CommandList& list, RendererState& state);
 void recordShading(gpu::CommandList& list, RendererState& state);
 /// Head and hair in the samples of a frame, by kernels; then added to the sum.
 void recordRasterised(gpu::CommandList& list, RendererState& state, const Mat4f& clipFromWorld,
@@ -97,8 +100,10 @@ void recordOverlay(gpu::CommandList& list, RendererState& state, const gpu::Text
 void drawMeshes(gpu::CommandList& list, const RendererState& state, std::optional<bool> matte = {});
 /// All strands that are drawn, or only those of tubes or the others, as strips of the curves' points.
 void drawStrips(gpu::CommandList& list, const RendererState& state, std::optional<bool> tubes = {});
-/// All strands by the kernel that is set, whose other registers are bound: `raster` says where to.
-void dispatchStrands(gpu::CommandList& list, const RendererState& state, shaders::RasterConstants raster);
+/// All strands, or a share of them by chance, by the kernel that is set, whose other registers are bound:
+/// `raster` says where to.
+void dispatchStrands(gpu::CommandList& list, const RendererState& state, shaders::RasterConstants raster,
+                     float share = 1);
 void fill(gpu::CommandList& list, RendererState& state, BufferId buffer, std::uint32_t value);
 /// A thread for each of `count`, 64 in a group: devices take no more than 65,535 groups in a row.
 struct Rows {
@@ -112,6 +117,7 @@ shaders::ViewConstants viewConstants(const RendererState& state, const Mat4f& cl
 /// How the skin of a mesh looks.
 shaders::MeshConstants meshConstants(const Mat4f& clipFromWorld, bool matte);
 void bind(gpu::CommandList& list, std::initializer_list<gpu::Binding> bindings);
+/// Maps of the lights and of the sky.
 void bindShadows(gpu::CommandList& list, const RendererState& state);
 
 /// What the camera's distance and the options ask for.

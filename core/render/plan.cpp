@@ -5,6 +5,8 @@
 
 #include <numeric>
 
+#include "shaders/shared/render_types.h"
+
 namespace hairloom::render {
 namespace {
 
@@ -17,6 +19,7 @@ class Planner {
 
     RenderPlan plan() {
         planShadows();
+        planSky();
         planPicture();
         planOutput();
         planOverlay();
@@ -30,10 +33,9 @@ class Planner {
         plan_.passes[static_cast<std::size_t>(which)] = {on, std::move(why)};
     }
     bool runs(Pass which) const { return plan_.runs(which); }
-    void atlas(TargetId which, Format format, bool wanted, std::string why) {
+    void atlas(TargetId which, std::uint32_t size, std::uint32_t squares, bool wanted, std::string why) {
         if (!wanted) return;
-        const std::uint32_t size = options_.shadowResolution;
-        plan_.targets[static_cast<std::size_t>(which)] = {size * facts_.shadowLights, size, format, 1,
+        plan_.targets[static_cast<std::size_t>(which)] = {size * squares, size, Format::D32Float, 1,
                                                           std::move(why)};
     }
     void picture(TargetId which, Format format, std::uint32_t samples, bool wanted, std::string why) {
@@ -76,7 +78,7 @@ class Planner {
                            : "hair is counted in four layers at fixed depths")
              : hair ? "absorption takes hair to be spread evenly"
                     : noHair);
-        atlas(TargetId::headDepth, Format::D32Float, on && facts_.meshes,
+        atlas(TargetId::headDepth, options_.shadowResolution, facts_.shadowLights, on && facts_.meshes,
               "what the head hides from the lights");
         const std::uint64_t square = std::uint64_t{options_.shadowResolution} * options_.shadowResolution;
         const bool deep = options_.shadows == Shadows::deepOpacity;
@@ -86,6 +88,33 @@ class Planner {
                "fibres of one light's layers while they are counted");
         buffer(BufferId::opacity, 2 * square * facts_.shadowLights, 4, layers,
                deep ? "three layers and the depth they count from" : "four layers");
+    }
+
+    void planSky() {
+        constexpr std::uint64_t kSquare = std::uint64_t{kSkyResolution} * kSkyResolution;
+        constexpr std::uint64_t kMaps = HAIRLOOM_SKY_MAPS;
+        const bool receivers = facts_.hair || facts_.meshes;
+        const bool on = facts_.environment && receivers && options_.shadows != Shadows::none;
+        const std::string off = options_.shadows == Shadows::none ? "shadows are turned off"
+                                : !facts_.environment             ? "no light from around"
+                                                                  : "nothing would receive it";
+        const bool hair = on && facts_.hair;
+        const std::string noHair = on ? "no hair to keep light from around off" : off;
+        pass(Pass::skyHead, on && facts_.meshes,
+             !on             ? off
+             : facts_.meshes ? fmt::format("the head hides the sky, seen from {} sides", kMaps)
+                             : "no head to hide the sky");
+        pass(Pass::skyFirst, hair, hair ? "depths in hair count from the first one on each side" : noHair);
+        pass(Pass::skyLayers, hair,
+             hair ? fmt::format("hair is counted in three layers from {} sides", kMaps) : noHair);
+        pass(Pass::skySeen, hair, hair ? "each point of a curve sees its share of sky and head" : noHair);
+        atlas(TargetId::skyHead, kSkyResolution, HAIRLOOM_SKY_MAPS, on && facts_.meshes,
+              "what the head hides from the sky");
+        buffer(BufferId::skyFirst, kSquare * kMaps, 4, hair, "where hair begins as seen from around");
+        buffer(BufferId::skyCounts, kSquare * 3, 4, hair,
+               "fibres of one side's layers while they are counted");
+        buffer(BufferId::skyLayers, 2 * kSquare * kMaps, 4, hair,
+               "three layers and the depth they count from");
     }
 
     void planPicture() {
@@ -176,24 +205,41 @@ class Planner {
 
 const char* passName(Pass pass) {
     constexpr std::array<const char*, kPassCount> kNames{
-        "curves", "head depth",    "first hair", "opacity layers", "shade",       "nearest",
-        "draw",   "blend",         "composite",  "accumulate",     "shadow blur", "tone map",
-        "filter", "overlay depth", "overlay",    "overlay on top"};
+        "curves",         "head depth", "first hair",    "opacity layers", "sky head depth",
+        "sky first hair", "sky layers", "sky seen",      "shade",          "nearest",
+        "draw",           "blend",      "composite",     "accumulate",     "shadow blur",
+        "tone map",       "filter",     "overlay depth", "overlay",        "overlay on top"};
     return kNames[static_cast<std::size_t>(pass)];
 }
 
 const char* targetName(TargetId target) {
-    constexpr std::array<const char*, kTargetCount> kNames{
-        "head depth", "colour",       "resolved",           "depth",
-        "blend sum",  "blend rest",   "blend sum resolved", "blend rest resolved",
-        "shown",      "overlay depth"};
+    constexpr std::array<const char*, kTargetCount> kNames{"head depth",
+                                                           "sky head depth",
+                                                           "colour",
+                                                           "resolved",
+                                                           "depth",
+                                                           "blend sum",
+                                                           "blend rest",
+                                                           "blend sum resolved",
+                                                           "blend rest resolved",
+                                                           "shown",
+                                                           "overlay depth"};
     return kNames[static_cast<std::size_t>(target)];
 }
 
 const char* bufferName(BufferId buffer) {
-    constexpr std::array<const char*, kBufferCount> kNames{
-        "first hair", "layer counts",        "opacity layers", "nearest", "light",
-        "sum",        "sum without shadows", "blur halfway",   "blurred"};
+    constexpr std::array<const char*, kBufferCount> kNames{"first hair",
+                                                           "layer counts",
+                                                           "opacity layers",
+                                                           "sky first hair",
+                                                           "sky layer counts",
+                                                           "sky layers",
+                                                           "nearest",
+                                                           "light",
+                                                           "sum",
+                                                           "sum without shadows",
+                                                           "blur halfway",
+                                                           "blurred"};
     return kNames[static_cast<std::size_t>(buffer)];
 }
 

@@ -13,6 +13,8 @@
 namespace hairloom::render {
 
 inline constexpr gpu::Format kColourFormat = gpu::Format::Rgba16Float;
+/// Texels along a side of each map of the sky.
+inline constexpr std::uint32_t kSkyResolution = 256;
 
 /// In the order of a frame.
 enum class Pass {
@@ -20,6 +22,10 @@ enum class Pass {
     headDepth,
     firstHair,
     opacity,
+    skyHead,  ///< the same three for light from around
+    skyFirst,
+    skyLayers,
+    skySeen,  ///< from each curve point
     shade,
     nearest,  ///< where kernels rasterise: what is in front, before its light is drawn
     draw,
@@ -39,6 +45,7 @@ const char* passName(Pass pass);
 
 enum class TargetId {
     headDepth,  ///< shadow atlas: a square for each light that casts shadows, side by side
+    skyHead,    ///< the same for each side that the sky is seen from
     colour,
     resolved,
     depth,
@@ -57,6 +64,9 @@ enum class BufferId {
     firstHair,    ///< depths as bits; an atlas as TargetId::headDepth
     layerCounts,  ///< one light's fibres, before they become shares
     opacity,      ///< an atlas: four 16-bit shares of 1 a texel
+    skyFirst,     ///< the same three for light from around
+    skyCounts,
+    skyLayers,
     nearest,      ///< depths of all samples as bits
     light,        ///< of all samples
     sum,          ///< of frames
@@ -73,6 +83,7 @@ struct SceneFacts {
     bool hair = false;
     std::uint32_t lights = 0;
     std::uint32_t shadowLights = 0;  ///< of them
+    bool environment = false;        ///< light from around
     bool overlay = false;            ///< marks that meshes hide
     bool overlayOnTop = false;
     bool look = false;             ///< some hair does not look the same everywhere

@@ -2,6 +2,7 @@
 // Frames by kernels: what is in front in each sample, then its light, then their mean.
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "core/render/passes.h"
 
@@ -127,10 +128,12 @@ void fill(gpu::CommandList& list, RendererState& state, BufferId buffer, std::ui
     list.dispatch(rows.groups, rows.rows);
 }
 
-void dispatchStrands(gpu::CommandList& list, const RendererState& state, shaders::RasterConstants raster) {
+void dispatchStrands(gpu::CommandList& list, const RendererState& state, shaders::RasterConstants raster,
+                     float share) {
     for (const StrandBatch& batch : state.scene.batches) {
+        const float wanted = std::ceil(share * static_cast<float>(batch.strandCount(state.detail)));
         const std::uint32_t points =
-            batch.curvePoints(batch.strandCount(state.detail), state.detail.subdivisions);
+            batch.curvePoints(static_cast<std::uint32_t>(wanted), state.detail.subdivisions);
         const Rows rows(points);
         raster.numbers.x = points;
         raster.numbers.y = rows.threads();

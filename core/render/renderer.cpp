@@ -7,6 +7,7 @@
 
 #include "core/base/profiler.h"
 #include "core/render/passes.h"
+#include "core/render/shadow_maps.h"
 
 namespace hairloom::render {
 namespace {
@@ -14,16 +15,19 @@ namespace {
 /// What the next frame has to do again.
 struct Changes {
     bool curves = true;
+    bool sky = true;  ///< what of it is seen
     bool shadows = true;
     bool shading = true;
     bool picture = true;
 
     static Changes geometry() { return {}; }
-    static Changes lights() { return {false, true, true, true}; }
-    static Changes looks() { return {false, false, true, true}; }
-    static Changes nothing() { return {false, false, false, false}; }
+    static Changes head() { return {false, true, true, true, true}; }
+    static Changes lights() { return {false, false, true, true, true}; }
+    static Changes looks() { return {false, false, false, true, true}; }
+    static Changes nothing() { return {false, false, false, false, false}; }
     void add(const Changes& other) {
         curves |= other.curves;
+        sky |= other.sky;
         shadows |= other.shadows;
         shading |= other.shading;
         picture |= other.picture;
@@ -98,7 +102,7 @@ Status Renderer::setScene(const RenderScene& scene) {
 Status Renderer::setMeshPositions(std::size_t mesh, std::span<const Vec3f> positions_ws,
                                   std::span<const Vec3f> normals_ws) {
     if (auto status = parts_->state.scene.replaceMesh(mesh, positions_ws, normals_ws); !status) return status;
-    parts_->changes.add(Changes::lights());
+    parts_->changes.add(Changes::head());
     return {};
 }
 
@@ -184,6 +188,7 @@ SceneFacts Renderer::Parts::facts(bool presents) const {
     facts.lights = static_cast<std::uint32_t>(state.lights.size());
     facts.shadowLights =
         static_cast<std::uint32_t>(std::ranges::count(state.lights, true, &Light::castsShadow));
+    facts.environment = !state.environment.dark();
     facts.overlay = state.overlay.needsDepth();
     facts.overlayOnTop = std::ranges::any_of(state.overlay.overlay.batches, &OverlayBatch::onTop);
     facts.look = std::ranges::any_of(
@@ -207,6 +212,7 @@ Status Renderer::Parts::prepareTargets(bool presents) {
     if (isNew->has(TargetId::headDepth) || isNew->has(BufferId::firstHair) || isNew->has(BufferId::opacity)) {
         changes.add(Changes::lights());
     }
+    if (isNew->has(TargetId::skyHead) || isNew->has(BufferId::skyLayers)) changes.add(Changes::head());
     changes.picture |=
         isNew->has(TargetId::colour) || isNew->has(BufferId::nearest) || isNew->has(BufferId::sum);
     return {};
@@ -263,14 +269,21 @@ Status Renderer::Parts::prepare(const RenderOptions& options, bool presents) {
     if (resolved.ribbons == Ribbons::tessellated) {
         if (auto status = state.scene.preparePatches(device); !status) return status;
     }
-    return state.scene.prepareCurves(device, detail.subdivisions, state.plan.runs(Pass::shadowBlur));
+    return state.scene.prepareCurves(device, detail.subdivisions, state.plan.runs(Pass::shadowBlur),
+                                     state.plan.runs(Pass::skySeen));
 }
 
 void Renderer::Parts::recordChanges(gpu::CommandList& list) {
     state.scene.recordUploads(list);
+    if (changes.shadows) fitLights(state);
+    if (changes.sky) fitSky(state);
     if (changes.shading) setUpLights(state);
     if (changes.curves && state.plan.runs(Pass::curves)) recordCurves(list, state);
-    if (changes.shadows) recordShadowMaps(list, state);
+    if (changes.shadows) recordMaps(list, state, lightAtlas(state));
+    if (changes.sky) {
+        recordMaps(list, state, skyAtlas(state));
+        if (state.plan.runs(Pass::skySeen)) recordSkySeen(list, state);
+    }
     if (changes.shading && state.plan.runs(Pass::shade)) {
         recordShading(list, state);
         if (state.plan.runs(Pass::shadowBlur)) withoutShadows([&] { recordShading(list, state); });

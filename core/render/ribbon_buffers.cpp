@@ -58,7 +58,7 @@ std::vector<shaders::StrandPatch> strandPatches(StrandBatch& batch) {
 
 }  // namespace
 
-Status DeviceScene::prepareCurves(gpu::Device& device, std::uint32_t subdivisions, bool twice) {
+Status DeviceScene::prepareCurves(gpu::Device& device, std::uint32_t subdivisions, bool twice, bool sky) {
     Gather gather;
     for (StrandBatch& batch : batches) {
         const std::uint32_t count = batch.curvePoints(batch.strandCount(), subdivisions);
@@ -74,6 +74,12 @@ Status DeviceScene::prepareCurves(gpu::Device& device, std::uint32_t subdivision
         } else if (batch.litColour == nullptr) {
             gather(batch.litColour,
                    written(device, "curve colours without shadows", most, sizeof(shaders::float4)));
+        }
+        if (!sky) {
+            batch.seen = nullptr;
+        } else if (batch.seen == nullptr) {
+            const std::uint32_t given = batch.curvePoints(batch.strandCount(), 1);
+            gather(batch.seen, written(device, "sky seen", given, sizeof(shaders::SkyPoint)));
         }
         gpu::BufferPtr& indices = batch.indices[subdivisions];
         if (indices != nullptr) continue;

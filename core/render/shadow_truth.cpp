@@ -120,7 +120,7 @@ Result<double> shadowError(gpu::Device& device, const RenderScene& scene, const 
     if (!results) return tl::unexpected(results.error());
     double sum = 0;
     for (std::size_t i = 0; i < cases.counted.size(); ++i) {
-        const double found = static_cast<double>((*results)[2 * i].w);
+        const double found = static_cast<double>((*results)[i].onHair.w);
         const double error = std::exp(-0.5 * found) - std::exp(-0.5 * cases.counted[i]);
         sum += error * error;
     }
@@ -158,7 +158,7 @@ Result<double> headShadowError(gpu::Device& device, const RenderScene& scene, co
     if (!results) return tl::unexpected(results.error());
     double sum = 0;
     for (std::size_t i = 0; i < cases.visible.size(); ++i) {
-        const double error = static_cast<double>((*results)[2 * i + 1].w) - cases.visible[i];
+        const double error = static_cast<double>((*results)[i].onSkin.w) - cases.visible[i];
         sum += error * error;
     }
     return rootMeanSquare(sum, cases.visible.size());

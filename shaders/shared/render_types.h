@@ -11,6 +11,8 @@ namespace hairloom::shaders {
 #endif
 
 #define HAIRLOOM_MAX_LIGHTS 3
+// Directions that the sky is seen from: the corners of an icosahedron, each with the one across from it.
+#define HAIRLOOM_SKY_MAPS 12
 
 // render::Shadows
 #define HAIRLOOM_SHADOWS_NONE 0
@@ -77,7 +79,7 @@ struct ViewConstants {
     float4x4 clipFromWorld;
     float4 eye_ws;   // w = 1: position of a perspective eye; w = 0: direction towards an orthographic one
     float4 pixel;    // x: world size of a pixel at distance 1 (w = 1) or anywhere (w = 0); y: least width in
-                     // pixels
+                     // pixels; z, of a light: fibres that each of them stands for
     uint4 sampling;  // x: samples a pixel, y: frame number, z: HAIRLOOM_TRANSPARENCY_*, w: HAIRLOOM_SHADOWS_*
     float4 layers;   // of a light: see LightConstants
     float4 range;    // of a light: see LightConstants; of the camera: x: where hair begins, y: its depth, in
@@ -97,15 +99,24 @@ struct LightConstants {
     float4 filtering;  // x: by how much more fibres stop light than over a beam of 5 mm, y: metres of a
                        // texel, z: absorption of hair behind the head, 1/m, 0: a test of depth; w: 1: shadows
                        // are left out
-    float4 around;  // xyz: what a change of light from around along the light's direction, against those of
-                    // the other lights, is a change along; w: the light's weight in the mean of those that
-                    // know the hair around a point, 0 where its map knows nothing
+};
+
+// Deep opacity maps of hair and depth maps of the head, as the sky sees them.
+struct SkyConstants {
+    LightConstants maps[HAIRLOOM_SKY_MAPS];
+};
+
+// What surrounds a strand's point, as shares of all directions; fibres stop light as such, and half as well. Eight
+// 16-bit shares each: open to the sky; its mean direction, times 3, from -1 to 1; the head; its mean direction.
+struct SkyPoint {
+    uint4 whole;
+    uint4 halved;
 };
 
 struct ShadeConstants {
     float4 eye_ws;  // w = 1: position of a perspective eye; w = 0: direction towards an orthographic one
     float4 environment[9];  // radiance from around as real spherical harmonics, linear RGB; w of the first: 1
-                            // when there is any
+                            // when there is any, of the second: 1 when maps tell what of the sky is seen
     float4 primary;         // RGB strength of the first highlight, w: exponent
     float4 secondary;       // RGB strength of the second, multiplied by the albedo; w: exponent
     float4 shift;  // x, y: tilt of the two highlights (tangent of the angle), z: diffuse share, w: scattering
@@ -118,7 +129,8 @@ struct ShadeConstants {
                       // that are counted
     float4 turning;   // RGB, first moment of the angle by which they turn light; w: 0 for Kajiya-Kay
     float4 straight;  // RGB, second
-    uint4 counts;     // x: curve points, y: lights, z: row length of the dispatch in points
+    uint4 counts;     // x: curve points, y: lights, z: row length of the dispatch in points, w: curve segments per
+                      // given segment
     LightConstants lights[HAIRLOOM_MAX_LIGHTS];
 };
 
@@ -215,6 +227,12 @@ struct LightCase {
     float4 direction;    // unit
 };
 
+struct LightAnswer {
+    float4 onHair;  // light from around for a fibre; w: fibres in front of it
+    float4 onSkin;  // light from around for a surface; w: what the head lets through
+    float4 sky;     // x: share of all directions that sees the sky, y: that sees the head
+};
+
 // One case for the shader's Kajiya-Kay, as tests feed it.
 struct KajiyaCase {
     float4 tangent;
@@ -253,12 +271,14 @@ static_assert(sizeof(ViewConstants) == 144);
 HAIRLOOM_OFFSET(LightConstants, toLight_ws, 64);
 HAIRLOOM_OFFSET(LightConstants, range, 112);
 HAIRLOOM_OFFSET(LightConstants, layers, 128);
-static_assert(sizeof(LightConstants) == 176);
+static_assert(sizeof(LightConstants) == 160);
+static_assert(sizeof(SkyConstants) == 160 * HAIRLOOM_SKY_MAPS);
+HAIRLOOM_OFFSET(SkyPoint, halved, 16);
 HAIRLOOM_OFFSET(ShadeConstants, shift, 192);
 HAIRLOOM_OFFSET(ShadeConstants, albedo, 240);
 HAIRLOOM_OFFSET(ShadeConstants, counts, 320);
 HAIRLOOM_OFFSET(ShadeConstants, lights, 336);
-static_assert(sizeof(ShadeConstants) == 336 + 176 * HAIRLOOM_MAX_LIGHTS);
+static_assert(sizeof(ShadeConstants) == 336 + 160 * HAIRLOOM_MAX_LIGHTS);
 static_assert(sizeof(LookConstants) == 128);
 static_assert(sizeof(MeshConstants) == 80);
 HAIRLOOM_OFFSET(RasterConstants, places, 64);
@@ -272,6 +292,7 @@ static_assert(sizeof(FilterConstants) == 32);
 static_assert(sizeof(OverlayConstants) == 96);
 static_assert(sizeof(OverlayVertex) == 32);
 static_assert(sizeof(LightCase) == 32);
+static_assert(sizeof(LightAnswer) == 48);
 static_assert(sizeof(KajiyaCase) == 48);
 static_assert(sizeof(FibreConstants) == 80);
 static_assert(sizeof(FibreCase) == 96);

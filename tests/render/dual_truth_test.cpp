@@ -3,6 +3,7 @@
 // (../shared/reference/truth.md): how much brighter hair becomes by light that other hairs have scattered.
 #include <cstdlib>
 #include <filesystem>
+#include <sstream>
 
 #include "core/render/renderer.h"
 #include "core/shading/melanin.h"
@@ -144,14 +145,12 @@ TEST_F(RenderTest, DualScatteringBrightensHairAsAPathTracerDoes) {
         };
         const Vec3d single = light(Scattering::single), all = light(Scattering::dual);
         const double ratio = all.dot(luminance) / single.dot(luminance);
-        const Vec3d channels = all.cwiseQuotient(single);
         EXPECT_NEAR(ratio, truth.ratio, 0.15 * truth.ratio)
             << truth.eumelanin << " on " << truth.skin.transpose();
+        std::ostringstream measured;
+        measured << ratio << ", red, green, blue " << all.cwiseQuotient(single).transpose();
         RecordProperty("eumelanin_" + std::to_string(truth.eumelanin) + (truth.skin.x() > 0 ? "_skin" : ""),
-                       std::to_string(ratio));
-        std::printf("eumelanin %.1f, skin %.2f: %.3f, truth %.3f; red, green, blue %.2f %.2f %.2f\n",
-                    truth.eumelanin, static_cast<double>(truth.skin.x()), ratio, truth.ratio, channels.x(),
-                    channels.y(), channels.z());
+                       measured.str());
     }
 }
 

@@ -91,14 +91,14 @@ struct Layer {
     TestStrands strands;
 
     explicit Layer(float tilt) : normal(0, std::cos(tilt), std::sin(tilt)) {
-        constexpr float kRadius = 0.0002f, kSide = 0.1f;
+        constexpr float kRadius = 0.0002f, kSide = 0.15f;
         const Vec3f across(0, -std::sin(tilt), std::cos(tilt));
         Random random(5);
         for (int i = 0; i < static_cast<int>(kFibres * 2 * kSide / (2 * kRadius)); ++i) {
             const Vec3f middle =
                 random.uniform(-0.03f, 0.03f) * normal + random.uniform(-kSide, kSide) * across;
-            const Vec3f half = kSide * Vec3f::UnitX();
-            strands.add({middle - half, middle, middle + half}, kRadius);
+            const Vec3f half = kSide * Vec3f::UnitX(), seen = 0.03f * Vec3f::UnitX();
+            strands.add({middle - half, middle - seen, middle, middle + seen, middle + half}, kRadius);
         }
     }
 
@@ -125,9 +125,9 @@ class HairUnderSky : public RenderTest {
         shading::setScales(marschner, 2 * shading::kDegree, shading::longitudinalWidth(0.3));
     }
 
-    /// Mean of a picture of strands alone from `eye_ws`, without light of lamps.
+    /// Mean of a picture of strands alone from `eye_ws`.
     Vec3d picture(const TestStrands& strands, const Environment& environment, const Vec3f& eye_ws,
-                  const std::vector<Light>& lights) {
+                  std::uint32_t frames = 1, Shadows shadows = Shadows::deepOpacity) {
         RenderScene scene;
         scene.strands = {strands.view()};
         HairMaterial& material = scene.strands[0].material;
@@ -138,7 +138,6 @@ class HairUnderSky : public RenderTest {
         material.fibre.marschner = marschner;
         material.fibre.clumping = 1;
         scene.environment = environment;
-        scene.lights = lights;
         scene.background = Vec3f::Zero();
         scene.camera.eye_ws = eye_ws;
         scene.camera.target_ws = Vec3f::Zero();
@@ -147,16 +146,11 @@ class HairUnderSky : public RenderTest {
         RenderOptions options;
         options.width = options.height = 8;
         options.samples = 1;
-        options.frames = lights.empty() ? 1 : 24;
-        options.shadowResolution = 64;
+        options.frames = frames;
+        options.shadows = shadows;
         const auto drawn = renderPicture(*device, scene, options);
         EXPECT_TRUE(drawn) << (drawn ? "" : drawn.error().message());
-        Vec3d sum = Vec3d::Zero();
-        if (!drawn) return sum;
-        const auto& rgba = drawn->linear.rgba;
-        for (std::size_t i = 0; i < rgba.size(); i += 4)
-            sum += Vec3f(rgba[i], rgba[i + 1], rgba[i + 2]).cast<double>();
-        return sum / 64;
+        return drawn ? meanColour(drawn->linear) : Vec3d(Vec3d::Zero());
     }
 
     /// ∫ S cos θ_i L dω of the model itself: stratified Monte-Carlo, θ_i by strata, all azimuths.
@@ -198,12 +192,9 @@ class HairUnderSky : public RenderTest {
         return sum * (2 * kCircle / (kStrata * kAzimuths));
     }
 
-    /// Seen along its normal, with a lamp that gives no light and tells where hair is.
+    /// Seen along its normal.
     Vec3d layerUnder(const Layer& layer, const Environment& environment) {
-        Light dark;
-        dark.toLight_ws = layer.normal;
-        dark.irradiance = Vec3f::Zero();
-        return picture(layer.strands, environment, 2 * layer.normal, {dark});
+        return picture(layer.strands, environment, 2 * layer.normal, 24);
     }
 
     shading::MarschnerParameters marschner;
@@ -221,7 +212,7 @@ TEST_F(HairUnderSky, ALoneFibreShowsTheModelsIntegralOverTheSky) {
             TestStrands strands;
             strands.add({-0.2f * along, -0.1f * along, Vec3f::Zero(), 0.1f * along, 0.2f * along}, 0.06f);
             for (const Environment& environment : {kEven, kSky}) {
-                const Vec3d ours = picture(strands, environment, {0, 0, 4}, {});
+                const Vec3d ours = picture(strands, environment, {0, 0, 4}, 1, Shadows::none);
                 const Vec3d truth = traced(radianceOf(environment), along.cast<double>(), Vec3d::UnitZ());
                 const double ratio = ours.sum() / truth.sum();
                 worst = std::max(worst, std::abs(ratio - 1));
@@ -236,15 +227,22 @@ TEST_F(HairUnderSky, ALoneFibreShowsTheModelsIntegralOverTheSky) {
 TEST_F(HairUnderSky, DenseHairShowsItsOpenSide) {
     // Black, for others show little of it that is not scattered more than once.
     marschner.azimuthal.absorption = shading::absorption({8, 0});
-    for (const float tilt : {0.0f, 1.2f, 2.4f}) {
+    const std::vector<float> tilts{0.0f, 0.4f, 0.8f, 1.2f, 1.6f, 2.0f, 2.4f, 2.8f};
+    double mean = 0;
+    for (const float tilt : tilts) {
         const Layer layer(tilt);
         const Sky sky = radianceOf(kSky);
         const Vec3d ours = layerUnder(layer, kSky) / (1 - std::exp(-Layer::kFibres));
         const Vec3d truth = traced([&](const Vec3d& d) { return layer.seenBy(d, sky); }, Vec3d::UnitX(),
                                    layer.normal.cast<double>());
-        // Measured: 1.15 to 1.17. P1 has 8 % too much at the surface of black hair; the map's bias the rest.
-        EXPECT_NEAR(ours.sum() / truth.sum(), 1, 0.18) << "tilt " << tilt;
+        // Twelve directions see an edge without end differently as it turns.
+        const double ratio = ours.sum() / truth.sum();
+        EXPECT_NEAR(ratio, 1.08, 0.2) << "tilt " << tilt;
+        mean += ratio / static_cast<double>(tilts.size());
     }
+    // Fibres at random places leave more gaps than their mean.
+    EXPECT_NEAR(mean, 1.1, 0.08);
+    RecordProperty("mean", std::to_string(mean));
 }
 
 TEST_F(HairUnderSky, WhiteHairIsAsBrightAsAnEvenSky) {

@@ -10,12 +10,11 @@ namespace hairloom::render {
 /// Runs the passes up to the shadow maps and asks the shader what light does at given places.
 class LightTest : public RenderTest {
   protected:
-    /// Two results a case, as shaders/light_echo.comp.hlsl says.
-    std::vector<shaders::float4> light(const RenderScene& scene, const RenderOptions& options,
+    std::vector<shaders::LightAnswer> light(const RenderScene& scene, const RenderOptions& options,
                                        const std::vector<shaders::LightCase>& cases) {
         auto results = probeLight(*device, scene, options, cases);
         EXPECT_TRUE(results) << (results ? "" : results.error().message());
-        return results ? std::move(*results) : std::vector<shaders::float4>(2 * cases.size());
+        return results ? std::move(*results) : std::vector<shaders::LightAnswer>(cases.size());
     }
 };
 

@@ -86,8 +86,9 @@ TEST_F(RenderTest, SamePictureTwice) {
     EXPECT_EQ(first->triangles, head.indices.size() / 3);
     std::vector<std::string> names;
     for (const auto& pass : first->passes) names.push_back(pass.name);
-    EXPECT_THAT(names, testing::ElementsAre("curves", "head depth", "first hair", "opacity layers", "shade",
-                                            "draw", "accumulate", "tone map"));
+    EXPECT_THAT(names, testing::ElementsAre("curves", "head depth", "first hair", "opacity layers",
+                                            "sky head depth", "sky first hair", "sky layers", "sky seen",
+                                            "shade", "draw", "accumulate", "tone map"));
 }
 
 TEST_F(RenderTest, HairShadowsHairAndHead) {
@@ -107,8 +108,7 @@ TEST_F(RenderTest, HairShadowsHairAndHead) {
 
 // N layers of parallel hairs between the light and a plate: each lets exp(-0.5 * coverage) of the light pass.
 TEST_F(RenderTest, OpacityLayersCountFibres) {
-    const std::vector<Vec3f> plate = {{-1, 0, -1}, {-1, 0, 1}, {1, 0, 1}, {1, 0, -1}};
-    const std::vector<std::uint32_t> indices = {0, 1, 2, 0, 2, 3};
+    const TestPlate plate;
     const auto plateLuminance = [&](int layers) {
         TestStrands strands;
         for (int layer = 0; layer < layers; ++layer) {
@@ -119,9 +119,7 @@ TEST_F(RenderTest, OpacityLayersCountFibres) {
             }
         }
         RenderScene scene;
-        RenderMesh mesh;
-        mesh.positions_ws = plate;
-        mesh.indices = indices;
+        RenderMesh mesh = plate.mesh();
         scene.meshes = {mesh};
         scene.strands = {strands.view()};
         scene.camera.eye_ws = {0, 0.2f, 0};

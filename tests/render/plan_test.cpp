@@ -47,6 +47,29 @@ TEST(RenderPlan, ShadowsNeedALightThatCastsThemAndSomethingThatThrowsThem) {
     EXPECT_FALSE(bald.runs(Pass::shade));
 }
 
+TEST(RenderPlan, TheSkyIsMappedWhereItShinesOnSomething) {
+    const auto anySky = [](const RenderPlan& plan) {
+        return plan.runs(Pass::skyHead) || plan.runs(Pass::skyFirst) || plan.runs(Pass::skyLayers) ||
+               plan.runs(Pass::skySeen) || plan.has(TargetId::skyHead) || plan.has(BufferId::skyFirst) ||
+               plan.has(BufferId::skyCounts) || plan.has(BufferId::skyLayers);
+    };
+    SceneFacts facts = wholeScene();
+    EXPECT_FALSE(anySky(planRender(facts, options(), 1)));
+    facts.environment = true;
+    facts.shadowLights = 0;  // no matter
+    const RenderPlan plan = planRender(facts, options(Shadows::absorption), 1);
+    EXPECT_TRUE(plan.runs(Pass::skyHead) && plan.runs(Pass::skyFirst) && plan.runs(Pass::skyLayers) &&
+                plan.runs(Pass::skySeen));
+    EXPECT_EQ(plan.buffer(BufferId::skyLayers).bytes(), 12u * kSkyResolution * kSkyResolution * 8u);
+    EXPECT_FALSE(anySky(planRender(facts, options(Shadows::none), 1)));
+    facts.hair = false;
+    const RenderPlan bald = planRender(facts, options(), 1);
+    EXPECT_TRUE(bald.runs(Pass::skyHead));
+    EXPECT_FALSE(bald.runs(Pass::skyLayers) || bald.runs(Pass::skySeen) || bald.has(BufferId::skyLayers));
+    facts.meshes = false;
+    EXPECT_FALSE(anySky(planRender(facts, options(), 1)));
+}
+
 TEST(RenderPlan, EachKindOfShadowHasItsPasses) {
     const RenderPlan absorption = planRender(wholeScene(), options(Shadows::absorption), 1);
     EXPECT_TRUE(absorption.runs(Pass::firstHair));

@@ -98,13 +98,29 @@ struct TestHead {
     }
 };
 
-inline double meanLuminance(const LinearImage& image) {
-    double sum = 0;
-    for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
-        sum += 0.2126 * static_cast<double>(image.rgba[i]) + 0.7152 * static_cast<double>(image.rgba[i + 1]) +
-               0.0722 * static_cast<double>(image.rgba[i + 2]);
+/// A square of 2 m on the ground around the origin.
+struct TestPlate {
+    std::vector<Vec3f> corners{{-1, 0, -1}, {-1, 0, 1}, {1, 0, 1}, {1, 0, -1}};
+    std::vector<std::uint32_t> indices{0, 1, 2, 0, 2, 3};
+
+    RenderMesh mesh() const {
+        RenderMesh result;
+        result.positions_ws = corners;
+        result.indices = indices;
+        return result;
     }
+};
+
+/// Linear RGB.
+inline Vec3d meanColour(const LinearImage& image) {
+    Vec3d sum = Vec3d::Zero();
+    for (std::size_t i = 0; i < image.rgba.size(); i += 4)
+        sum += Vec3f(image.rgba[i], image.rgba[i + 1], image.rgba[i + 2]).cast<double>();
     return sum / (static_cast<double>(image.rgba.size()) / 4);
+}
+
+inline double meanLuminance(const LinearImage& image) {
+    return meanColour(image).dot(Vec3d(0.2126, 0.7152, 0.0722));
 }
 
 }  // namespace hairloom::render

@@ -248,12 +248,19 @@ TEST_F(RendererTest, WhatRestsIsNotDoneAgain) {
     ASSERT_TRUE(renderer.setScene(head.scene()));
     const auto picture = target(options);
     using testing::ElementsAre;
-    EXPECT_THAT(passes(record(renderer, options, picture)),
-                ElementsAre("curves", "head depth", "first hair", "opacity layers", "shade", "draw",
-                            "accumulate", "tone map"));
+    EXPECT_THAT(
+        passes(record(renderer, options, picture)),
+        ElementsAre("curves", "head depth", "first hair", "opacity layers", "sky head depth",
+                    "sky first hair", "sky layers", "sky seen", "shade", "draw", "accumulate", "tone map"));
     EXPECT_THAT(passes(record(renderer, options, picture)), ElementsAre("draw", "accumulate", "tone map"));
     EXPECT_EQ(renderer.accumulated(), 2u);
     EXPECT_THAT(passes(record(renderer, options, picture)), ElementsAre("tone map"));
+    // Lights do not change what is seen of the sky.
+    ASSERT_TRUE(renderer.setLights(std::vector<Light>(1)));
+    options.shadowResolution *= 2;
+    EXPECT_THAT(
+        passes(record(renderer, options, picture)),
+        ElementsAre("head depth", "first hair", "opacity layers", "shade", "draw", "accumulate", "tone map"));
     Camera camera = head.scene().camera;
     camera.eye_ws.y() += 0.1f;
     ASSERT_TRUE(renderer.setCamera(camera));

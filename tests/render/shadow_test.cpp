@@ -100,7 +100,7 @@ TEST_F(ShadowTest, AbsorptionByDepthIsThatOfEvenlySpreadHair) {
     for (std::size_t i = 0; i < depths.size(); ++i) {
         const double expected =
             through * (1 - std::exp(-static_cast<double>(depths[i]) * perMetre / through));
-        EXPECT_NEAR(static_cast<double>((*found)[2 * i].w), expected, 0.01 * through) << depths[i];
+        EXPECT_NEAR(static_cast<double>((*found)[i].onHair.w), expected, 0.01 * through) << depths[i];
     }
 }
 
@@ -135,7 +135,7 @@ TEST_F(ShadowTest, LightBehindTheHeadFadesWithDepth) {
             const float expected = absorption > 0 ? std::exp(-absorption * std::max(behind[i], 0.0f))
                                                   : (behind[i] < 0 ? 1.0f : 0.0f);
             // A texel of 0.8 mm sees the slope 0.16 mm higher at one side than at the other.
-            EXPECT_NEAR((*found)[2 * i + 1].w, expected, 0.02f) << absorption << ", " << behind[i] << " m";
+            EXPECT_NEAR((*found)[i].onSkin.w, expected, 0.02f) << absorption << ", " << behind[i] << " m";
         }
     }
 }

@@ -21,12 +21,9 @@ class SkinUnderHair : public RenderTest {
     }
 
     Vec3d plate() {
-        const std::vector<Vec3f> corners = {{-1, 0, -1}, {-1, 0, 1}, {1, 0, 1}, {1, 0, -1}};
-        const std::vector<std::uint32_t> indices = {0, 1, 2, 0, 2, 3};
+        const TestPlate ground;
         RenderScene scene;
-        RenderMesh mesh;
-        mesh.positions_ws = corners;
-        mesh.indices = indices;
+        RenderMesh mesh = ground.mesh();
         mesh.albedo = Vec3f::Constant(0.5f);
         mesh.matte = true;
         scene.meshes = {mesh};
@@ -46,12 +43,7 @@ class SkinUnderHair : public RenderTest {
         options.shadowResolution = 128;
         const auto picture = renderPicture(*device, scene, options);
         EXPECT_TRUE(picture) << (picture ? "" : picture.error().message());
-        Vec3d sum = Vec3d::Zero();
-        if (!picture) return sum;
-        const auto& rgba = picture->linear.rgba;
-        for (std::size_t i = 0; i < rgba.size(); i += 4)
-            sum += Vec3f(rgba[i], rgba[i + 1], rgba[i + 2]).cast<double>();
-        return sum / 64;
+        return picture ? meanColour(picture->linear) : Vec3d(Vec3d::Zero());
     }
 
     void wear(ShadingModel model, const Vec3d& absorption) {

@@ -73,7 +73,7 @@ def write_curves(strands: Strands, root_radius: float, tip_scale: float, folder:
 
 
 class TruthScene:
-    """`view` is the content of a view file; lights may be directional or constant."""
+    """`view` is the content of a view file; lights may be directional, or an environment of one radiance."""
 
     def __init__(self, mi, view: dict, eumelanin: float, head: Path, curves: list[Path]):
         self.mi = mi
@@ -138,7 +138,7 @@ class TruthScene:
                 "direction": [-v for v in light["to_light"]],
                 "irradiance": {"type": "rgb", "value": light["irradiance"]},
             }
-        if light["type"] == "constant":
+        if light["type"] == "environment" and "radiance" in light:
             return {"type": "constant", "radiance": {"type": "rgb", "value": light["radiance"]}}
         raise SystemExit(f"error: a light of type {light['type']!r} has no counterpart here")
 
