@@ -19,7 +19,6 @@ COLOURS = {"blond": 0.3, "brown": 1.3, "black": 8.0}
 ABSORPTION = np.array([0.419, 0.697, 1.37])
 HEADS = {"skin": [0.5, 0.35, 0.27], "black": [0.0, 0.0, 0.0]}
 ALL_ORDERS = 100
-EXPOSURE = 6.0
 
 
 @dataclass
@@ -137,13 +136,13 @@ def compare(args: argparse.Namespace) -> tuple[list[Verdict], dict]:
                     mean["os"] / mean["s"],
                     mean["od"] / mean["a"],
                     judge.blurred_relative_mse(dual, truth[ALL_ORDERS], covered),
-                    judge.flip(dual, truth[ALL_ORDERS], EXPOSURE),
+                    judge.flip(dual, truth[ALL_ORDERS], args.exposure),
                 )
             )
             for row, image in zip(rows, (truth[2], single, truth[ALL_ORDERS], dual)):
                 row.append(image)
         sheets[head] = rows
-        judge.save_sheet(mi, rows, EXPOSURE, args.out / f"sheet_{head}.png")
+        judge.save_sheet(mi, rows, args.exposure, args.out / f"sheet_{head}.png")
     return verdicts, sheets
 
 
@@ -169,6 +168,7 @@ def main() -> None:
     parser.add_argument("--view", type=Path, help="view file; else a camera that fits the hair, and a key light")
     parser.add_argument("--size", type=int, default=256, help="pixels along one side")
     parser.add_argument("--samples", type=int, default=128, help="paths a pixel, a multiple of 16")
+    parser.add_argument("--exposure", type=float, default=6.0, help="factor on the light that is shown and that FLIP sees")
     parser.add_argument("-o", "--out", type=Path, required=True, help="folder of results")
     args = parser.parse_args()
     verdicts, _ = compare(args)
