@@ -32,19 +32,23 @@ inline constexpr float kFold = -0.95f;
 /// have the point's number.
 struct Strip {
     struct alignas(64) Point {
-        Lanes3 direction;      ///< of the segment at the start of the substep, by its rest length
-        Lanes3 turning;        ///< how much less the joint bends q of the way on
-        Lanes3 held;           ///< the curve of the joint, turned with the root
-        Lanes3 change;         ///< from there to the curve of today's frame
-        Lanes3 ahead;          ///< what the joint pulls against, reversed, before its curve changes
-        Lanes3 right;          ///< right side of the system of bending
-        Lanes upper, tension;  ///< of the system of lengths, as it is eliminated
+        Lanes3 direction;  ///< of the segment at the start of the substep, by its rest length
+        Lanes3 held;       ///< the curve of the joint, turned with the root
+        Lanes3 change;     ///< from there to the curve of today's frame
+        /// First how much less the joint bends q of the way on, then what it pulls against, reversed, before
+        /// its curve changes.
+        Lanes3 ahead;
+
+        // Each takes the place of what is no longer needed by then: strips of long strands stay small.
+        Lanes3& right() { return change; }   ///< right side of the system of bending
+        Lanes& upper() { return held.x; }    ///< of the system of lengths, as it is eliminated
+        Lanes& tension() { return held.y; }  ///< likewise
     };
     Point points[kMaxPoints];
 };
 
-/// Fills the directions of segments at `previous`, and `turning`: how much less each changes than the one
-/// before it, q of the way to `position`.
+/// Fills the directions of segments at `previous`, and how much less each changes than the one before it, q
+/// of the way to `position`.
 template <class Rows>
 HWY_INLINE void readDirections(const BlockView& block, const Rows& rows, const SubstepContext& context,
                                std::size_t lane, Strip& strip) {
@@ -63,7 +67,7 @@ HWY_INLINE void readDirections(const BlockView& block, const Rows& rows, const S
         const V3 movedNext = load3(position, pitch) - to;
         store3((to - from) * inverseLength, at->direction);
         const V3 change = (movedNext - moved) * (inverseLength * q);
-        store3(changeBehind - change, at->turning);
+        store3(changeBehind - change, at->ahead);
         changeBehind = change;
         from = to;
         moved = movedNext;
@@ -133,7 +137,7 @@ HWY_INLINE Turning measureTurning(const BlockView& block, const Rows& rows, cons
         turning.size = hn::MulAdd(dot(change, change), stiffness, turning.size);
         store3(held, at->held);
         store3(change, at->change);
-        store3(load3(at->turning) - off, at->ahead);
+        store3(load3(at->ahead) - off, at->ahead);
         carry(tangent);
     }
     return turning;
@@ -149,8 +153,10 @@ template <class Rows>
 HWY_INLINE V followFrames(const BlockView& block, const Rows& rows, const LaneFrame& lanes,
                           const SubstepContext& context, std::size_t lane, Strip& strip) {
     Turning turning = measureTurning<false>(block, rows, lanes, lane, strip);
-    if (HWY_UNLIKELY(!hn::AllFalse(D(), turning.sharpest < all(kFold))))
+    if (HWY_UNLIKELY(!hn::AllFalse(D(), turning.sharpest < all(kFold)))) {
+        readDirections(block, rows, context, lane, strip);
         turning = measureTurning<true>(block, rows, lanes, lane, strip);
+    }
     return payFromTank(block, context, lane, turning.gain, turning.size);
 }
 
@@ -161,7 +167,7 @@ HWY_INLINE void measureBends(const BlockView& block, const LaneFrame& lanes, std
     Strip::Point* at = strip.points;
     for (std::size_t left = block.points - 1; left > 0; --left, ++at) {
         const V3 direction = load3(at->direction);
-        store3(load3(at->turning) - (direction - behind), at->ahead);
+        store3(load3(at->ahead) - (direction - behind), at->ahead);
         behind = direction;
     }
 }
@@ -227,7 +233,7 @@ HWY_INLINE void reduceBend(const BlockView& block, const Rows& rows, Strip& stri
     const auto eliminate = [&](V3 outer) HWY_ATTR {
         const V3 near = negMulAdd(last, row.lower1(), outer - inner);
         const V3 right = negMulAdd(beforeLast, row.lower2(), near);
-        store3(right, at->right);
+        store3(right, at->right());
         beforeLast = last;
         last = right;
         inner = outer;
@@ -247,14 +253,14 @@ template <class Rows, class Tip, class Take>
 HWY_INLINE void finishBend(const BlockView& block, const Rows& rows, Strip& strip, Tip&& tip, Take&& take) {
     auto row = rows.at(block.points - 1);
     Strip::Point* at = strip.points + (block.points - 1);
-    V3 delta = load3(at->right) * row.inverseDiagonal();
+    V3 delta = load3(at->right()) * row.inverseDiagonal();
     // What the points solved so far take off the next one and the one after it.
     V3 next = delta * row.lower1(), afterNext = delta * row.lower2();
     tip(row, *at, delta);
     for (std::size_t left = block.points - block.firstFree; left > 1; --left) {
         row.retreat();
         --at;
-        delta = mulSub(load3(at->right), row.inverseDiagonal(), next);
+        delta = mulSub(load3(at->right()), row.inverseDiagonal(), next);
         next = mulAdd(delta, row.lower1(), afterNext);
         afterNext = delta * row.lower2();
         take(row, *at, delta);

@@ -95,8 +95,8 @@ class LengthElimination {
         const V whole = hn::Max(own, all(0.25f)) * (innerMass + outerMass_);
         inverse_ = one / hn::NegMulAdd(above, upper, whole);
         right_ = hn::MulAdd(above, right_, error) * inverse_;
-        store(upper, (&point + 1)->upper);
-        store(right_, point.tension);
+        store(upper, (&point + 1)->upper());
+        store(right_, point.tension());
         outer_ = place;
         outerMass_ = innerMass;
         wanted_ = wanted;
@@ -113,12 +113,12 @@ class LengthElimination {
 /// Moves the points by the tension that the system gives, root to tip.
 template <Holding kHolding, bool kKept, class Rows>
 HWY_INLINE void applyTension(const BlockView& block, const Rows& rows, const SubstepContext& context,
-                             std::size_t lane, const Strip& strip) {
+                             std::size_t lane, Strip& strip) {
     const Planes& moving = kHolding == Holding::rates ? block.previous : block.position;
     float* at = moving.x + block.firstFree * kBlockLanes + lane;
     auto row = rows.at(block.firstFree - 1);
-    const Strip::Point* point = strip.points + (block.firstFree - 1);
-    V lambda = load(point->tension), innerMass = row.inverseMass();
+    Strip::Point* point = strip.points + (block.firstFree - 1);
+    V lambda = load(point->tension()), innerMass = row.inverseMass();
     V3 inner = load3(point->direction) * lambda;
     const auto move = [&](V3 force, V mass) HWY_ATTR {
         const V3 before = load3(at, block.pitch);
@@ -130,7 +130,7 @@ HWY_INLINE void applyTension(const BlockView& block, const Rows& rows, const Sub
         if constexpr (kKept) keepTension(row, context, innerMass + mass, lambda);
         row.advance();
         ++point;
-        lambda = hn::MulAdd(load(point->upper), lambda, load(point->tension));
+        lambda = hn::MulAdd(load(point->upper()), lambda, load(point->tension()));
         const V3 outer = load3(point->direction) * lambda;
         move(outer - inner, mass);
         inner = outer;
