@@ -31,11 +31,13 @@ class CurveView : public QWidget {
         const QRectF box = QRectF(rect()).adjusted(1, 1, -1, -1);
         painter.setPen(palette().color(QPalette::Mid));
         painter.drawRoundedRect(box, 4, 4);
+        // Clear of the frame and its round corners.
+        const QRectF plot = box.adjusted(4, 4, -4, -4);
         QPainterPath path;
         for (int i = 0; i <= 40; ++i) {
             const double pressure = i / 40.0;
-            const QPointF at(box.left() + pressure * box.width(),
-                             box.bottom() - std::pow(pressure, preferences_.tabletCurve()) * box.height());
+            const QPointF at(plot.left() + pressure * plot.width(),
+                             plot.bottom() - std::pow(pressure, preferences_.tabletCurve()) * plot.height());
             i == 0 ? path.moveTo(at) : path.lineTo(at);
         }
         painter.setPen(QPen(palette().color(QPalette::Highlight), 2));

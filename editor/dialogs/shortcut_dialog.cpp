@@ -37,10 +37,14 @@ ShortcutDialog::ShortcutDialog(Actions& actions, QWidget* parent)
     list_->setSelectionMode(QAbstractItemView::NoSelection);
     layout->addWidget(list_, 1);
     message_->setProperty("role", "dim");
+    message_->hide();
     layout->addWidget(message_);
     auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close);
     auto* reset = buttons->addButton(tr("Reset all"), QDialogButtonBox::ResetRole);
     reset->setToolTip(tr("Gives every action the shortcut that it came with"));
+    // Enter would press the first that may be pressed so.
+    reset->setAutoDefault(false);
+    buttons->button(QDialogButtonBox::Close)->setDefault(true);
     layout->addWidget(buttons);
     connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
     connect(reset, &QPushButton::clicked, this, [this] {
@@ -68,6 +72,7 @@ void ShortcutDialog::fill() {
             if (robbed.isEmpty()) return;
             message_->setText(
                 tr("%1 had these keys and has none now").arg(plainText(actions_.get(robbed).text())));
+            message_->show();
             if (auto* other = list_->findChild<QKeySequenceEdit*>(robbed)) other->clear();
         });
     }

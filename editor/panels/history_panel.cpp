@@ -36,7 +36,11 @@ class HistoryPanel : public QWidget {
         for (int step = 0; step < document_.stepCount(); ++step) {
             auto* item = new QListWidgetItem(document_.stepName(step));
             if (step >= document_.doneSteps()) {
-                item->setForeground(palette().color(QPalette::Disabled, QPalette::Text));
+                // Undone, and a click away.
+                item->setForeground(palette().color(QPalette::PlaceholderText));
+                QFont slanted = item->font();
+                slanted.setItalic(true);
+                item->setFont(slanted);
             }
             list_->addItem(item);
         }

@@ -76,11 +76,14 @@ class MotionPanel : public QWidget {
             return;
         }
         const auto row = [](const QString& what, const QString& value) {
-            return QStringLiteral("<tr><td style='padding-right:16px'>%1</td><td align='right'>%2</td></tr>")
+            return QStringLiteral(
+                       "<tr><td style='padding:1px 16px 1px 0px'>%1</td><td align='right' style='padding:1px "
+                       "0px'>%2</td></tr>")
                 .arg(what, value);
         };
         const SimulationStats& stats = frame->stats;
-        state_->setText("<table width='100%'>" + row(tr("Time"), tr("%1 s").arg(frame->time, 0, 'f', 2)) +
+        state_->setText("<table width='100%' cellspacing='0' cellpadding='0'>" +
+                        row(tr("Time"), tr("%1 s").arg(frame->time, 0, 'f', 2)) +
                         row(tr("Frame"), tr("%1 ms").arg(frame->milliseconds, 0, 'f', 2)) +
                         row(tr("Largest stretch"), tr("%1 %").arg(stats.maxStretch * 100, 0, 'f', 2)) +
                         row(tr("Deepest in a sphere"), tr("%1 mm").arg(stats.maxPenetrationMm, 0, 'f', 2)) +

@@ -165,17 +165,19 @@ TEST_F(ManualTest, Dye) {
     viewport().camera().zoom(1.35f);
     viewport().redraw();
     raise("tool");
-    brush("dye_paint").setRadius(0.045f);
-    auto* profile = find<QComboBox>("brushProfile");
-    profile->setCurrentIndex(1);
-    Q_EMIT profile->activated(1);
+    auto& dye = brush("dye_paint");
+    dye.setRadius(0.045f);
+    dye.setStrength(1);
+    for (auto* profile : window->findChildren<QComboBox*>("brushProfile")) {
+        if (!profile->isVisible()) continue;
+        profile->setCurrentIndex(1);
+        Q_EMIT profile->activated(1);
+    }
     const Box3f hair = groom().bounds();
-    const auto nearTips = [&](float across) {
-        return at({hair.min().x() + across * hair.sizes().x(), hair.min().y() + 0.05f, 0.05f});
-    };
-    for (int stroke = 0; stroke < 3; ++stroke)
-        drag({nearTips(0.95f), nearTips(0.8f), nearTips(0.65f), nearTips(0.5f)});
-    moveTo(nearTips(0.55f));
+    const auto nearTips = [&](float z) { return at({0.9f * hair.max().x(), hair.min().y() + 0.05f, z}); };
+    for (int stroke = 0; stroke < 2; ++stroke)
+        drag({nearTips(0.07f), nearTips(0.03f), nearTips(-0.01f), nearTips(-0.05f), nearTips(-0.09f)});
+    moveTo(nearTips(-0.02f));
     shootWindow("dye");
 }
 

@@ -6,6 +6,7 @@
 #include <QDir>
 #include <QLabel>
 #include <QLineEdit>
+#include <QPushButton>
 #include <QScrollArea>
 #include <QToolButton>
 
@@ -90,8 +91,12 @@ TEST_P(ScreenshotsTest, WindowAndPanels) {
     document().change("Wind speed", Change::Simulation, windy);
     ASSERT_TRUE(viewport().waitForPicture(120'000));
     shoot(*window, "window");
+    document().change("Wind direction", Change::Simulation, windy);
+    trigger("edit.undo");
     trigger("play.step");
     ASSERT_TRUE(QTest::qWaitFor([this] { return session().player.frame() != nullptr; }, 20'000));
+    window->panel("motion")->raise();
+    shoot(*window->panel("motion")->widget(), "panel-motion-under-way");
     trigger("tool.comb");
     for (const PanelInfo& info : panels()) {
         QDockWidget* const dock = window->panel(info.id);
@@ -111,6 +116,8 @@ TEST_P(ScreenshotsTest, Dialogs) {
     ShortcutDialog shortcuts(window->actions(), window.get());
     shortcuts.show();
     shoot(shortcuts, "shortcuts");
+    for (const auto* button : shortcuts.findChildren<QPushButton*>())
+        EXPECT_EQ(button->isDefault(), button->text() == "Close") << button->text().toStdString();
     shortcuts.hide();
     ExportDialog exporting(session(), window.get());
     exporting.show();
