@@ -1,11 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# usage: packaging/windows/sysroot.sh FOLDER [ARCHIVES]
+# usage: packaging/windows/sysroot.sh [--without-qt] FOLDER [ARCHIVES]
 # Fills FOLDER with the libraries that Hairloom links and Debian has no mingw-w64 build of: static ones, built from
 # Debian's own source packages, and links to headers that are the same on every system. What is there already stays.
 # Qt, assimp and OpenMesh, which take longest, are unpacked from the folder ARCHIVES where it has them.
 set -euo pipefail
 here=$(dirname "$(readlink -f "$0")")
+libraries=(headers fmtlib spdlog highway tbb png tinyexr googletest assimp openmesh)
+if [ "$1" = --without-qt ]; then shift; else libraries+=(qtbase); fi
 mkdir -p "$1"
 root=$(readlink -f "$1")
 archives=${2:-}
@@ -176,6 +178,6 @@ if [ -n "$archives" ] && [ -n "$qt" ] && [ ! -f "$root/done/qtbase" ]; then
     tar --zstd -xf "$qt" -C "$root"
     touch "$root/done/qtbase"
 fi
-for library in headers fmtlib spdlog highway tbb png tinyexr googletest assimp openmesh qtbase; do
+for library in "${libraries[@]}"; do
     once "$library"
 done

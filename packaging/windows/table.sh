@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # usage: packaging/windows/table.sh RESULTS.tsv [PAGE.md]
-# The results of verify.sh as a table in Markdown, a row for each feature and a column for each backend; with PAGE, in place of
-# the table that stands there between the lines "<!-- table -->" and "<!-- end of table -->".
+# The results of verify.sh as a table in Markdown, a row for each feature and a column for each backend, with the seconds that it
+# took; with PAGE, in place of the table that stands there between the lines "<!-- table -->" and "<!-- end of table -->".
 set -euo pipefail
 
 table() {
     awk -F '\t' '
         !($1 in seen) { seen[$1] = 1; features[++rows] = $1 }
-        { cell[$1, $2] = $3 ($4 == "" ? "" : ": " $4); if ($3 == "passed" && $4 != "") cell[$1, $2] = $4 }
+        { cell[$1, $2] = $3 ($4 == "" ? "" : ": " $4); if ($3 == "passed" && $4 != "") cell[$1, $2] = $4
+          cell[$1, $2] = cell[$1, $2] ", " $5 " s" }
         END {
             count = split("CPU|Vulkan|Direct3D 11 by OpenGL|Direct3D 11 by Vulkan", backends, "|")
             printf "| what |"; for (b = 1; b <= count; ++b) printf " %s |", backends[b]

@@ -114,10 +114,17 @@ uint slotOf(uint plane, uint p) {
 #define BUFFER_ARRAY(type, get, put, buffer, plane) \
     float3 get(uint p) { return float3(buffer[slotOf(plane, p)], buffer[slotOf(plane + 1, p)], buffer[slotOf(plane + 2, p)]); } \
     void put(uint p, float3 v) { buffer[slotOf(plane, p)] = v.x; buffer[slotOf(plane + 1, p)] = v.y; buffer[slotOf(plane + 2, p)] = v.z; }
+#ifdef HAIRLOOM_DXBC
+// Where a loop's counter is the index, and its next value is known before the store, as Microsoft's compiler has it, Mesa's
+// llvmpipe (22.3) stores at the next value. What is computed from the counter it keeps.
+#define INDEX(p) min(p, HAIR_POINTS - 1u)
+#else
+#define INDEX(p) p
+#endif
 #define LOCAL_ARRAY(type, get, put, name) \
     static type name[HAIR_POINTS]; \
-    type get(uint p) { return name[p]; } \
-    void put(uint p, type v) { name[p] = v; }
+    type get(uint p) { return name[INDEX(p)]; } \
+    void put(uint p, type v) { name[INDEX(p)] = v; }
 
 BUFFER_ARRAY(float3, savedPosition, savePosition, gState, 0)
 BUFFER_ARRAY(float3, savedPrevious, savePrevious, gState, 3)
