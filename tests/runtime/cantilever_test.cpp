@@ -96,14 +96,15 @@ TEST(Cantilever, AStrandThatIsStiffInOnePartBendsAsTheElasticaOfThatStiffness) {
                 return kHairBendingStiffness * setting / (1.0 - setting);
             };
             const auto exact = test::solveElastica(rod, kGravity, static_cast<double>(kLength));
-            const auto even = test::solveElastica(rod(0.0), kGravity, static_cast<double>(kLength));
+            const auto even = test::solveElastica(kHairBendingStiffness * kStiffness / (1.0 - kStiffness),
+                                                  kGravity, static_cast<double>(kLength));
             ASSERT_GT(std::abs(exact.drop - even.drop), 0.05 * static_cast<double>(kLength))
                 << "tells them apart";
             const double error = tipError(tipAtRest(s, segments), exact);
             std::printf("%s, %u segments: the tip drops by %.1f %% of the length, error %.3f %%\n",
                         stiffRoot ? "stiff root" : "stiff tip", segments,
                         100 * exact.drop / static_cast<double>(kLength), 100 * error);
-            EXPECT_LT(error, segments == 16 ? 0.03 : 0.015);
+            EXPECT_LT(error, segments == 16 ? 0.03 : 0.02);
         }
     }
 }
