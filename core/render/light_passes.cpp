@@ -110,8 +110,8 @@ void recordSkySeen(gpu::CommandList& list, RendererState& state) {
         const std::uint32_t strands = batch.strandCount(state.detail);
         constants.counts = {strands, 0, 0, state.detail.subdivisions};
         list.setConstants(0, gpu::bytesOf(constants));
-        bind(list, {Binding::read(0, batch.curve), Binding::read(1, batch.headers),
-                    Binding::write(0, batch.seen)});
+        bind(list,
+             {Binding::read(0, batch.curve), Binding::read(1, batch.headers), Binding::write(0, batch.seen)});
         list.dispatch((strands + kGroup - 1) / kGroup, kThreadsOfAStrand);
     }
     list.endPass();

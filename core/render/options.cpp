@@ -23,6 +23,8 @@ Status check(const RenderOptions& o, const gpu::DeviceInfo& device) {
     if (o.shadowResolution < 64 || o.shadowResolution > 4096 || o.shadowResolution * kMaxLights > limit) {
         return fail(fmt::format("a shadow map of {} pixels", o.shadowResolution), "64 to 4096");
     }
+    if (o.skyStrands < 64)
+        return fail(fmt::format("{} strands in maps of the sky", o.skyStrands), "at least 64");
     if (!(o.headAbsorption >= 0 && o.headAbsorption <= kMostHeadAbsorption)) {
         return fail(fmt::format("an absorption behind the head of {} per metre", o.headAbsorption),
                     "0 to 10000");

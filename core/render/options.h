@@ -46,6 +46,8 @@ struct RenderOptions {
     std::uint32_t subdivisions = 2;  ///< curve segments per segment of a strand, 1…64
     std::uint32_t shadowResolution = 1024;  ///< pixels of a light's square shadow map, 64…4096
     Shadows shadows = Shadows::deepOpacity;
+    std::uint32_t skyStrands =
+        8192;  ///< most strands that maps of the sky count, as so many more; at least 64
     /// Hair behind the head's first surface gets exp(−this · metres) of the light (thesis, 6.3), 1/m,
     /// 0…10,000; 0: a test of depth, all or nothing.
     float headAbsorption = 0;

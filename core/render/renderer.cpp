@@ -40,6 +40,7 @@ Changes compare(const RenderOptions& before, const RenderOptions& now) {
     if (now.shadowResolution != before.shadowResolution || now.shadows != before.shadows) {
         changes.add(Changes::lights());
     }
+    if (now.skyStrands != before.skyStrands) changes.add(Changes::head());
     if ((now.shadowBlur > 0) != (before.shadowBlur > 0) || now.headAbsorption != before.headAbsorption) {
         changes.add(Changes::looks());
     }

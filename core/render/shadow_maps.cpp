@@ -206,9 +206,8 @@ ShadowAtlas skyAtlas(const RendererState& state) {
     for (const LightView& view : state.skyViews) atlas.views.push_back(&view);
     std::uint32_t strands = 0;
     for (const StrandBatch& batch : state.scene.batches) strands += batch.strandCount(state.detail);
-    // So many tell how dense hair is in texels of some millimetres.
-    constexpr float kEnough = 8192;
-    atlas.share = std::min(1.0f, kEnough / static_cast<float>(std::max(strands, 1u)));
+    const auto most = static_cast<float>(state.options.skyStrands);
+    atlas.share = std::min(1.0f, most / static_cast<float>(std::max(strands, 1u)));
     return atlas;
 }
 

@@ -259,6 +259,7 @@ render::RenderOptions RenderWork::options() const {
     options.subdivisions = last_->moving ? 1 : quality.subdivisions;
     options.shadows = quality.shadows;
     options.bakeBehind = true;
+    if (last_->moving) options.skyStrands = 1024;
     options.headAbsorption = quality.headAbsorption;
     options.shadowBlur = last_->moving ? 0.0f : quality.shadowBlur;
     options.shadowResolution =

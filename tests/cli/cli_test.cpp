@@ -278,8 +278,9 @@ TEST_F(Cli, TheStiffnessFollowsACurveOfKeys) {
         run("set hair.hairloom simulation.angularCurve=[[0,1],[0.5,1],[0.4,1],[1,1]] -o x.hairloom");
     EXPECT_EQ(order.exitCode, 1);
     EXPECT_THAT(order.errors, HasSubstr("angularCurve has key 2 at 0.4"));
+    const nlohmann::json listed = runJson("set --list");
     bool isListed = false;
-    for (const auto& field : runJson("set --list")["fields"]) {
+    for (const auto& field : listed["fields"]) {
         isListed |= field["field"] == "simulation.angularCurve" &&
                     field["default"] == nlohmann::json::parse("[[0,1],[1,0.5]]");
     }

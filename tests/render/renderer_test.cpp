@@ -104,6 +104,8 @@ TEST_F(RendererTest, SequenceOfChangesEqualsFreshPictures) {
     compare("subdivisions");
     options.subdivisions = 1;
     compare("fewer subdivisions");
+    options.skyStrands = 64;
+    compare("fewer strands in maps of the sky");
     options.shadowResolution = 64;
     compare("shadow resolution");
     options.shadows = Shadows::none;
