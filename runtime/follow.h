@@ -65,7 +65,7 @@ struct GuideMotion {
 };
 
 /// Owns packed bindings and the memory of a frame. Evaluation allocates nothing and gives the same bits for
-/// any number of threads and any instruction set.
+/// any number of threads; of instruction sets, for all that have fused multiply-add and all that have not.
 class FollowHairs {
   public:
     struct Made;
