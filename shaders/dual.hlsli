@@ -97,7 +97,7 @@ float3 multipleScattering(FibreConstants fibre, FibreFrame f, float before, floa
     const float4 rest = averages.rest;
     const float3 share = shareOf(averages.moments, tint);
     const FibreMoments moments = tinted(averages.moments, share);
-    const LayerLight light = lightInLayer(moments, before, all, ground, 1.0, 0.0);
+    const LayerLight light = lightInLayer(moments, before, all, ground);
     const float3 onward = max(light.onward - exp(-before), 0.0);
     const float3 diffuse =
         max(moments.albedo * light.fluence - 2.0 * f.cosPhi * moments.first * light.flux, 0.0) / 6.2831853;

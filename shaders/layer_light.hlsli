@@ -8,6 +8,20 @@ struct FibreMoments {
     float3 albedo, first, second;
 };
 
+// What a fibre sends nearly straight on, as much as the second moment says, counts as not stopped.
+struct Stopped {
+    float3 share;  // of the light that meets the fibre
+    float3 lost;   // of that, never none
+};
+
+Stopped stoppedBy(FibreMoments m) {
+    const float3 peak = max(m.second, 0.0);
+    Stopped stopped;
+    stopped.share = 1.0 - peak;
+    stopped.lost = max(1.0 - (m.albedo - peak) / stopped.share, 1e-3);
+    return stopped;
+}
+
 struct LayerLight {
     float3 fluence;  // of diffuse light
     float3 flux;     // away from where the layer is lit
@@ -15,13 +29,13 @@ struct LayerLight {
 };
 
 // `before` fibres between the point and the lit side, `all` from side to side, on a ground of this albedo; lit straight with
-// the irradiance `beam` and from half of all directions with the radiance `sky`.
-LayerLight lightInLayer(FibreMoments m, float before, float all, float3 ground, float beam, float sky) {
+// the irradiance 1.
+LayerLight lightInLayer(FibreMoments m, float before, float all, float3 ground) {
     const float kPi = 3.14159265;
-    const float3 peak = max(m.second, 0.0);
-    const float3 scale = 1.0 - peak;
-    const float3 asymmetric = (m.first - peak) / scale;
-    const float3 lost = max(1.0 - (m.albedo - peak) / scale, 1e-3);
+    const Stopped stopped = stoppedBy(m);
+    const float3 scale = stopped.share;
+    const float3 lost = stopped.lost;
+    const float3 asymmetric = (m.first - max(m.second, 0.0)) / scale;
     const float3 omega = 1.0 - lost;
     // The beam must not fade exactly as diffuse light does.
     const float3 wanted = 2.0 * (1.0 - asymmetric);
@@ -33,10 +47,10 @@ LayerLight lightInLayer(FibreMoments m, float before, float all, float3 ground, 
 
     const float3 y = (turned * omega + 2.0 * asymmetric) / (rate * rate - 1.0);
     const float3 x = (2.0 * asymmetric + y) / turned;
-    const float3 here = beam * exp(-at);
+    const float3 here = exp(-at);
     const float3 into = y / kPi + 0.5 * x;
-    const float3 top = 2.0 * sky - beam * into;
-    const float3 bottom = beam * exp(-depth) * (ground * (1.0 + into) - (y / kPi - 0.5 * x));
+    const float3 top = -into;
+    const float3 bottom = exp(-depth) * (ground * (1.0 + into) - (y / kPi - 0.5 * x));
 
     const float3 t = 1.0 / kPi + 0.5 * slope;
     const float3 u = 1.0 / kPi - 0.5 * slope;

@@ -16,17 +16,34 @@ float3 irradianceOf(LightConstants light, float3 position_ws) {
 
 bool hasEnvironment(ShadeConstants shade) { return shade.environment[0].w > 0; }
 
+// Light from around in a direction, band by band.
+struct EnvironmentBands {
+    float3 flat, first, second;
+};
+
+EnvironmentBands environmentBands(ShadeConstants shade, float3 d) {
+    EnvironmentBands bands;
+    bands.flat = 0.28209479 * shade.environment[0].rgb;
+    bands.first = 0.48860251 * (d.y * shade.environment[1].rgb + d.z * shade.environment[2].rgb +
+                                d.x * shade.environment[3].rgb);
+    bands.second =
+        1.0925484 * (d.x * d.y * shade.environment[4].rgb + d.y * d.z * shade.environment[5].rgb +
+                     d.z * d.x * shade.environment[7].rgb) +
+        0.31539157 * (3.0 * d.z * d.z - 1.0) * shade.environment[6].rgb +
+        0.54627422 * (d.x * d.x - d.y * d.y) * shade.environment[8].rgb;
+    return bands;
+}
+
+// Radiance from a direction.
+float3 environmentFrom(ShadeConstants shade, float3 d) {
+    const EnvironmentBands bands = environmentBands(shade, d);
+    return max(bands.flat + bands.first + bands.second, 0.0);
+}
+
 // Mean radiance around a normal, weighted by the cosine (Ramamoorthi and Hanrahan 2001): the bands are scaled by 1, 2/3
 // and 1/4.
 float3 environmentOnSkin(ShadeConstants shade, float3 n) {
-    const float3 flat = 0.28209479 * shade.environment[0].rgb;
-    const float3 band1 = 0.48860251 * (n.y * shade.environment[1].rgb + n.z * shade.environment[2].rgb +
-                                       n.x * shade.environment[3].rgb);
-    const float3 band2 =
-        1.0925484 * (n.x * n.y * shade.environment[4].rgb + n.y * n.z * shade.environment[5].rgb +
-                     n.z * n.x * shade.environment[7].rgb) +
-        0.31539157 * (3.0 * n.z * n.z - 1.0) * shade.environment[6].rgb +
-        0.54627422 * (n.x * n.x - n.y * n.y) * shade.environment[8].rgb;
-    return max(flat + band1 * (2.0 / 3.0) + band2 * 0.25, 0.0);
+    const EnvironmentBands bands = environmentBands(shade, n);
+    return max(bands.flat + bands.first * (2.0 / 3.0) + bands.second * 0.25, 0.0);
 }
 #endif

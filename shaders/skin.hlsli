@@ -4,30 +4,23 @@
 #include "shaders/shadows.hlsli"
 #include "shaders/sky_maps.hlsli"
 
+// Of the hair over the skin, where it is of fibres and not Kajiya-Kay's.
+FibreMoments hairOverSkin(ShadeConstants shade) {
+    FibreMoments fibre;
+    fibre.albedo = shade.sinking.rgb;
+    fibre.first = shade.turning.rgb;
+    fibre.second = shade.straight.rgb;
+    return fibre;
+}
+
 // The share of light that reaches the skin through so many fibres, with what the skin sends back into the hair and the
 // hair returns once more.
 float3 throughHair(ShadeConstants shade, LightConstants light, float fibres, float3 albedo) {
     const float counted = shade.sinking.w * fibres;
     if (shade.turning.w == 0) return exp(-shade.sinking.rgb * counted);
-    FibreMoments fibre;
-    fibre.albedo = shade.sinking.rgb;
-    fibre.first = shade.turning.rgb;
-    fibre.second = shade.straight.rgb;
-    const LayerLight below = lightInLayer(fibre, counted, counted, albedo, 1.0, 0.0);
+    const LayerLight below = lightInLayer(hairOverSkin(shade), counted, counted, albedo);
     const float3 all = below.onward + below.fluence / 3.14159265 + 0.5 * below.flux;
     return max(all - exp(-counted), 0.0) + passedDirectly(light, fibres, shade.sinking.w);
-}
-
-// Radiance from a direction.
-float3 environmentFrom(ShadeConstants shade, float3 d) {
-    const float3 band1 = 0.48860251 * (d.y * shade.environment[1].rgb + d.z * shade.environment[2].rgb +
-                                       d.x * shade.environment[3].rgb);
-    const float3 band2 =
-        1.0925484 * (d.x * d.y * shade.environment[4].rgb + d.y * d.z * shade.environment[5].rgb +
-                     d.z * d.x * shade.environment[7].rgb) +
-        0.31539157 * (3.0 * d.z * d.z - 1.0) * shade.environment[6].rgb +
-        0.54627422 * (d.x * d.x - d.y * d.y) * shade.environment[8].rgb;
-    return max(0.28209479 * shade.environment[0].rgb + band1 + band2, 0.0);
 }
 
 // Light from around that hair and head let through, weighted by the cosine; with what hair over the skin sends back to it.
@@ -35,9 +28,9 @@ float3 skyOnSkin(ShadeConstants shade, float3 position_ws, float3 normal, float3
     const float3 plain = environmentOnSkin(shade, normal);
     if (!mapsTellTheSky(shade)) return plain;
     const bool fibres = shade.turning.w > 0.0;
-    const float3 peak = fibres ? max(shade.straight.rgb, 0.0) : 0.0;
-    const float3 stopping = fibres ? 1.0 - peak : shade.sinking.rgb;
-    const float3 sentOn = fibres ? min((shade.sinking.rgb - peak) / stopping, 0.999) : 0.0;
+    const Stopped stopped = stoppedBy(hairOverSkin(shade));
+    const float3 stopping = fibres ? stopped.share : shade.sinking.rgb;
+    const float3 sentOn = fibres ? 1.0 - stopped.lost : 0.0;
     float3 all = 0;
     float3 passed = 0;
     float3 caught = 0;

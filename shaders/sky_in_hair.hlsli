@@ -3,6 +3,7 @@
 #ifndef HAIRLOOM_SKY_IN_HAIR_HLSLI
 #define HAIRLOOM_SKY_IN_HAIR_HLSLI
 #include "shaders/layer_light.hlsli"
+#include "shaders/lights.hlsli"
 #include "shaders/sky_maps.hlsli"
 
 // How much light from around there is inside hair, against that without: even + d . (x, y, z) in the direction d.
@@ -41,10 +42,9 @@ float3 sentOnFrom(float3 lost, SkyShares whole, SkyShares halved) {
 SkyInHair skyInHair(SkySeen seen, FibreMoments fibre, float3 ground) {
     const SkyShares whole = seen.whole;
     const SkyShares halved = seen.halved;
-    const float3 peak = max(fibre.second, 0.0);
-    const float3 stopping = 1.0 - peak;
-    const float3 sentOn = sentOnFrom(max(1.0 - (fibre.albedo - peak) / stopping, 0.001), whole, halved);
-    const float3 part = 2.0 * stopping - 1.0;
+    const Stopped stopped = stoppedBy(fibre);
+    const float3 sentOn = sentOnFrom(stopped.lost, whole, halved);
+    const float3 part = 2.0 * stopped.share - 1.0;
     const float3 open = betweenShares(halved.open, whole.open, part);
     const float3 blocked = min(betweenShares(halved.blocked, whole.blocked, part), 1.0 - open);
     const float3 hair = 1.0 - open - blocked;
@@ -69,17 +69,12 @@ SkyInHair skyInHair(SkySeen seen, FibreMoments fibre, float3 ground) {
 // Mean radiance around a fibre, weighted by the sine of the angle to its tangent: by Funk and Hecke the bands are scaled
 // by 1, 0 and -1/8; of the product of two first bands a quarter is left along the fibre and 3/8 across it.
 float3 environmentOnHair(ShadeConstants shade, float3 t, SkyInHair sky) {
-    const float3 flat = 0.28209479 * shade.environment[0].rgb;
+    const EnvironmentBands bands = environmentBands(shade, t);
     const float3 bx = 0.48860251 * shade.environment[3].rgb;
     const float3 by = 0.48860251 * shade.environment[1].rgb;
     const float3 bz = 0.48860251 * shade.environment[2].rgb;
-    const float3 band2 =
-        1.0925484 * (t.x * t.y * shade.environment[4].rgb + t.y * t.z * shade.environment[5].rgb +
-                     t.z * t.x * shade.environment[7].rgb) +
-        0.31539157 * (3.0 * t.z * t.z - 1.0) * shade.environment[6].rgb +
-        0.54627422 * (t.x * t.x - t.y * t.y) * shade.environment[8].rgb;
-    const float3 along = (bx * t.x + by * t.y + bz * t.z) * (sky.x * t.x + sky.y * t.y + sky.z * t.z);
+    const float3 along = bands.first * (sky.x * t.x + sky.y * t.y + sky.z * t.z);
     const float3 all = bx * sky.x + by * sky.y + bz * sky.z;
-    return max((flat - 0.125 * band2) * sky.even + 0.375 * all - 0.125 * along, 0.0);
+    return max((bands.flat - 0.125 * bands.second) * sky.even + 0.375 * all - 0.125 * along, 0.0);
 }
 #endif

@@ -70,8 +70,7 @@ Result<std::vector<shaders::LightAnswer>> probeLight(gpu::Device& device, const 
     auto list = device.createCommandList();
     if (!list) return failed(list.error());
     gpu::CommandList& commands = **list;
-    fitLights(state);
-    fitSky(state);
+    fitViews(state, true);
     setUpLights(state);
     if (!state.scene.batches.empty()) recordCurves(commands, state);
     recordMaps(commands, state, lightAtlas(state));

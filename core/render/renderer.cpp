@@ -15,7 +15,7 @@ namespace {
 /// What the next frame has to do again.
 struct Changes {
     bool curves = true;
-    bool sky = true;  ///< what of it is seen
+    bool sky = true;  ///< what of it is seen; shadows then change as well
     bool shadows = true;
     bool shading = true;
     bool picture = true;
@@ -276,8 +276,7 @@ Status Renderer::Parts::prepare(const RenderOptions& options, bool presents) {
 
 void Renderer::Parts::recordChanges(gpu::CommandList& list) {
     state.scene.recordUploads(list);
-    if (changes.shadows) fitLights(state);
-    if (changes.sky) fitSky(state);
+    if (changes.shadows) fitViews(state, changes.sky);
     if (changes.shading) setUpLights(state);
     if (changes.curves && state.plan.runs(Pass::curves)) recordCurves(list, state);
     if (changes.shadows) recordMaps(list, state, lightAtlas(state));

@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 
+#include "core/base/parallel.h"
+
 namespace hairloom::render {
 namespace {
 
@@ -154,32 +156,40 @@ const std::array<Vec3f, HAIRLOOM_SKY_MAPS> kSkyDirections = [] {
     return directions;
 }();
 
-}  // namespace
-
-void fitLights(RendererState& state) {
-    const Box3f all = state.bounds();
-    const std::vector<Vec3f> fitted = pointsToFit(state, all);
-    state.lightViews.clear();
-    for (const Light& light : state.lights) state.lightViews.push_back(fitLight(light, fitted, all));
+/// What of everything lies near hair.
+Box3f aroundHair(const RendererState& state, const Box3f& all) {
+    const Box3f hair = state.scene.hairBounds();
+    if (hair.isEmpty()) return all;
+    const Vec3f around = Vec3f::Constant(0.5f * hair.diagonal().norm());
+    return Box3f(hair.min() - around, hair.max() + around).intersection(all);
 }
 
-void fitSky(RendererState& state) {
-    state.skyViews.clear();
-    if (!state.plan.runs(Pass::skyHead) && !state.plan.runs(Pass::skyLayers)) return;
-    const Box3f all = state.bounds();
-    const std::vector<Vec3f> fitted = pointsToFit(state, all);
-    Box3f near = all;
-    if (const Box3f hair = state.scene.hairBounds(); !hair.isEmpty()) {
-        const Vec3f around = Vec3f::Constant(0.5f * hair.diagonal().norm());
-        near = Box3f(hair.min() - around, hair.max() + around).intersection(all);
-    }
-    Light sky;
-    for (const Vec3f& direction : kSkyDirections) {
-        sky.toLight_ws = direction;
-        state.skyViews.push_back(fitLight(sky, fitted, all, near));
-    }
+void fitSky(RendererState& state, std::span<const Vec3f> fitted, const Box3f& all) {
+    const bool wanted = state.plan.runs(Pass::skyHead) || state.plan.runs(Pass::skyLayers);
+    state.skyViews.resize(wanted ? kSkyDirections.size() : 0);
+    const Box3f near = aroundHair(state, all);
+    parallelFor(state.skyViews.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            Light sky;
+            sky.toLight_ws = kSkyDirections[i];
+            state.skyViews[i] = fitLight(sky, fitted, all, near);
+        }
+    });
     const ShadowAtlas atlas = skyAtlas(state);
     for (std::size_t i = 0; i < atlas.views.size(); ++i) state.sky.maps[i] = mapConstants(state, atlas, i);
+}
+
+}  // namespace
+
+void fitViews(RendererState& state, bool sky) {
+    const Box3f all = state.bounds();
+    const std::vector<Vec3f> fitted = pointsToFit(state, all);
+    state.lightViews.resize(state.lights.size());
+    parallelFor(state.lights.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            state.lightViews[i] = fitLight(state.lights[i], fitted, all);
+    });
+    if (sky) fitSky(state, fitted, all);
 }
 
 ShadowAtlas lightAtlas(const RendererState& state) {

@@ -20,10 +20,8 @@ struct ShadowAtlas {
     std::uint32_t width() const { return left(views.size()); }
 };
 
-/// Views from the lights.
-void fitLights(RendererState& state);
-/// Views from around where the plan has maps of the sky, and their constants.
-void fitSky(RendererState& state);
+/// Views from the lights; of the `sky` too, with their constants, where the plan has maps of it.
+void fitViews(RendererState& state, bool sky);
 
 /// Of the lights that cast shadows, in their order.
 ShadowAtlas lightAtlas(const RendererState& state);
