@@ -48,5 +48,6 @@ endif()
 
 find_program(HAIRLOOM_CCACHE ccache)
 if(HAIRLOOM_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-    set(CMAKE_CXX_COMPILER_LAUNCHER "${HAIRLOOM_CCACHE}")
+    # Without this it keeps nothing that uses a precompiled header, whose content it compares anyway.
+    set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND}" -E env CCACHE_SLOPPINESS=pch_defines,time_macros "${HAIRLOOM_CCACHE}")
 endif()

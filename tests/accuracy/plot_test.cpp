@@ -213,7 +213,7 @@ TEST(Plots, HostileTextStaysText) {
 
 TEST(Plots, NothingIsPrintedOutsideTheDrawing) {
     Plot plot = logarithmicPlot();
-    plot.title = std::string(150, 'W') + " and more of it " + std::string(60, 'w');
+    plot.title = std::string(150, 'W').append(" and more of it ").append(60, 'w');
     plot.note =
         "A note that goes on for a while, so that it has to be broken into lines, one under the other, "
         "until all of it has been said, which may take more than two of them at this width.";

@@ -48,7 +48,7 @@ TEST(ChildProcess, ArgumentsAreNotInterpreted) {
 }
 
 TEST(ChildProcess, CrashStatusAndAbsenceAreErrors) {
-    EXPECT_THAT(failure("crash"), HasSubstr(std::string("the reader ") + kCrash));
+    EXPECT_THAT(failure("crash"), HasSubstr(std::string("the reader ").append(kCrash)));
     EXPECT_THAT(failure("half"), HasSubstr("status 3"));
     const auto absent = runChild("the reader", "/nonexistent/program", {}, {});
     ASSERT_FALSE(absent);
