@@ -88,8 +88,8 @@ struct Lit {
 
 /// P1 in the plane across the fibres. With τ the depth in scaled fibres, φ the fluence and J the flux of
 /// diffuse light, ω and g of what is not scattered straight on:
-///     J' = −(1 − ω) φ + ω b,  φ' = −2 (1 − ωg) J + 2 ωg b,  b = beam e^−τ,
-/// and no diffuse light but the sky's comes in from above: φ/π + J/2 = 2 sky.
+///     J' = −(1 − ω) φ + ω b,  φ' = −2 (1 − ωg) J + 2 ωg b,  b = e^−τ,
+/// and no diffuse light comes in from above: φ/π + J/2 = 0.
 class Layer {
   public:
     Layer(double albedo, double first, double second, double before, double all, double ground)
@@ -116,7 +116,6 @@ class Layer {
         const Lit own = diffuse(-in, end * (ground_ * (1 + in) - out));
         return {own.fluence + y * here, own.flux + x * here, here};
     }
-    Lit sky() const { return diffuse(2, 0); }
 
   private:
     static constexpr double kResonance = 0.01;
@@ -136,20 +135,6 @@ class Layer {
     double omega_ = 0, asymmetric_ = 0, lost_ = 0, turned_ = 0, rate_ = 0, slope_ = 0;
 };
 
-template <class Solve>
-LayerLight inLayer(const AverageScattering& fibre, double before, double all, const Vec3d& ground,
-                   const Solve& solve) {
-    LayerLight light;
-    const Vec3d albedo = fibre.forward + fibre.backward;
-    for (int c = 0; c < 3; ++c) {
-        const Lit lit = solve(Layer(albedo[c], fibre.first[c], fibre.second[c], before, all, ground[c]));
-        light.fluence[c] = lit.fluence;
-        light.flux[c] = lit.flux;
-        light.onward[c] = lit.onward;
-    }
-    return light;
-}
-
 }  // namespace
 
 double AverageScattering::tilt() const {
@@ -163,11 +148,15 @@ double AverageScattering::variance() const {
 }
 
 LayerLight beamInLayer(const AverageScattering& fibre, double before, double all, const Vec3d& ground) {
-    return inLayer(fibre, before, all, ground, [](const Layer& layer) { return layer.beam(); });
-}
-
-LayerLight skyInLayer(const AverageScattering& fibre, double before, double all, const Vec3d& ground) {
-    return inLayer(fibre, before, all, ground, [](const Layer& layer) { return layer.sky(); });
+    LayerLight light;
+    const Vec3d albedo = fibre.forward + fibre.backward;
+    for (int c = 0; c < 3; ++c) {
+        const Lit lit = Layer(albedo[c], fibre.first[c], fibre.second[c], before, all, ground[c]).beam();
+        light.fluence[c] = lit.fluence;
+        light.flux[c] = lit.flux;
+        light.onward[c] = lit.onward;
+    }
+    return light;
 }
 
 DualScattering::DualScattering(const Marschner& model) : marschner_(&model) {}

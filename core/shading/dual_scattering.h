@@ -49,9 +49,6 @@ struct LayerLight {
 /// >= before from one side of the hair to the other, where it lies on a ground of this albedo.
 LayerLight beamInLayer(const AverageScattering& fibre, double before, double all,
                        const Vec3d& ground = Vec3d::Zero());
-/// Lit with the radiance 1 from the half of all directions on one side.
-LayerLight skyInLayer(const AverageScattering& fibre, double before, double all,
-                      const Vec3d& ground = Vec3d::Zero());
 
 class DualScattering {
   public:
