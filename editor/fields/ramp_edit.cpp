@@ -43,6 +43,11 @@ QPointF RampEdit::toPlot_px(float at, float value) const {
             plot.bottom() - plot.height() * static_cast<double>(value)};
 }
 
+float RampEdit::along(const QPointF& place_px) const {
+    const QRectF plot = plot_px();
+    return static_cast<float>((place_px.x() - plot.left()) / plot.width());
+}
+
 QPointF RampEdit::handle_px(std::uint32_t key) const {
     return toPlot_px(ramp_.keys[key].at, ramp_.keys[key].value);
 }
@@ -61,8 +66,7 @@ std::optional<std::uint32_t> RampEdit::keyAt(const QPointF& place_px) const {
 }
 
 bool RampEdit::mayAddAt(const QPointF& place_px) const {
-    const QRectF plot = plot_px();
-    const auto at = static_cast<float>((place_px.x() - plot.left()) / plot.width());
+    const float at = along(place_px);
     if (ramp_.count == Ramp::kMostKeys || !(at > 0 && at < 1)) return false;
     if (std::abs(place_px.y() - toPlot_px(at, ramp_.at(at)).y()) > kReach_px) return false;
     return std::ranges::none_of(ramp_.inUse(),
@@ -70,8 +74,7 @@ bool RampEdit::mayAddAt(const QPointF& place_px) const {
 }
 
 void RampEdit::addKey(const QPointF& place_px) {
-    const QRectF plot = plot_px();
-    const auto at = static_cast<float>((place_px.x() - plot.left()) / plot.width());
+    const float at = along(place_px);
     std::vector<Ramp::Key> keys(ramp_.inUse().begin(), ramp_.inUse().end());
     const auto behind = std::ranges::find_if(keys, [&](const Ramp::Key& key) { return key.at > at; });
     chosen_ = static_cast<std::uint32_t>(behind - keys.begin());
@@ -166,8 +169,7 @@ void RampEdit::mouseMoveEvent(QMouseEvent* event) {
         return;
     }
     const QRectF plot = plot_px();
-    moveKey(chosen_, static_cast<float>((place.x() - plot.left()) / plot.width()),
-            static_cast<float>((plot.bottom() - place.y()) / plot.height()));
+    moveKey(chosen_, along(place), static_cast<float>((plot.bottom() - place.y()) / plot.height()));
 }
 
 void RampEdit::mouseReleaseEvent(QMouseEvent*) {
@@ -185,9 +187,9 @@ bool RampEdit::event(QEvent* event) {
 
 void RampEdit::keyPressEvent(QKeyEvent* event) {
     const auto [at, value] = ramp_.keys[chosen_];
-    const auto moveBy = [&](float along, float up) {
+    const auto moveBy = [&](float forth, float up) {
         Q_EMIT begun();
-        moveKey(chosen_, at + along, value + up);
+        moveKey(chosen_, at + forth, value + up);
     };
     switch (event->key()) {
         case Qt::Key_Up:

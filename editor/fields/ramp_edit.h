@@ -39,6 +39,8 @@ class RampEdit : public QWidget {
   private:
     QRectF plot_px() const;
     QPointF toPlot_px(float at, float value) const;
+    /// The place along the curve at a pixel, below 0 and above 1 beside the plot.
+    float along(const QPointF& place_px) const;
     std::optional<std::uint32_t> keyAt(const QPointF& place_px) const;
     /// Over the curve between two keys, where one more has room.
     bool mayAddAt(const QPointF& place_px) const;

@@ -23,36 +23,49 @@ Vec2f toPixels(const QPointF& at_px) {
 
 namespace {
 
+/// Places under the pointer, by how deep they are in the view.
+class UnderPointer {
+  public:
+    UnderPointer(const Session& session, const QPointF& at_px)
+        : ray_(session.viewport->camera().rayThrough(at_px, session.viewport->viewSize_px())),
+          forward_(session.viewport->camera().forward_ws()) {}
+
+    float depthOf(const Vec3f& point_ws) const { return (point_ws - ray_.origin_ws).dot(forward_); }
+    /// Facing the view.
+    BrushPlace at(float depth) const {
+        BrushPlace place;
+        place.direction_ss = ray_.direction_ws;
+        place.normal_ss = -forward_;
+        place.position_ss = ray_.origin_ws + ray_.direction_ws * (depth / ray_.direction_ws.dot(forward_));
+        return place;
+    }
+
+  private:
+    Ray ray_;
+    Vec3f forward_;
+};
+
 BrushPlace placeAt(const Session& session, const QPointF& at_px, bool onHair) {
     const editing::Document& document = session.document.editing();
     const editing::View view = viewOf(session);
-    const OrbitCamera& camera = session.viewport->camera();
-    const Ray ray = camera.rayThrough(at_px, session.viewport->viewSize_px());
-    const Vec3f forward = camera.forward_ws();
-    BrushPlace place;
-    place.direction_ss = ray.direction_ws;
-    place.normal_ss = -forward;
-    const float slant = ray.direction_ws.dot(forward);
-    float depth = (camera.target_ws() - ray.origin_ws).dot(forward);
+    const UnderPointer pointer(session, at_px);
+    BrushPlace place = pointer.at(pointer.depthOf(session.viewport->camera().target_ws()));
+    float skinDepth = 0;
     if (const auto hit = editing::pickHead(document.surface(), view, toPixels(at_px))) {
-        depth = (hit->position - ray.origin_ws).dot(forward);
+        place = pointer.at(pointer.depthOf(hit->position));
         place.skin = hit->surface;
         place.normal_ss = document.groom().scalp->normalAt(hit->surface.triangle, hit->surface.barycentric);
+        skinDepth = pointer.depthOf(hit->position);
     }
-    if (!onHair && place.skin) {
-        place.position_ss = ray.origin_ws + ray.direction_ws * (depth / slant);
-        return place;
-    }
+    if (!onHair && place.skin) return place;
     const auto strand =
         editing::pickStrand(document.groom(), document.bounds(), document.surface(), view, toPixels(at_px));
-    if (strand) {
-        const float strandDepth = (strand->position_ss - ray.origin_ws).dot(forward);
-        if (!place.skin || strandDepth < depth) {
-            depth = strandDepth;
-            place.normal_ss = -forward;
-        }
-    }
-    place.position_ss = ray.origin_ws + ray.direction_ws * (depth / slant);
+    if (!strand) return place;
+    const float depth = pointer.depthOf(strand->position_ss);
+    if (place.skin && depth >= skinDepth) return place;
+    const auto skin = place.skin;
+    place = pointer.at(depth);
+    place.skin = skin;
     return place;
 }
 
@@ -67,15 +80,8 @@ BrushPlace skinUnder(const Session& session, const QPointF& at_px) {
 }
 
 BrushPlace placeAtDepthOf(const Session& session, const Vec3f& point_ws, const QPointF& at_px) {
-    const OrbitCamera& camera = session.viewport->camera();
-    const Ray ray = camera.rayThrough(at_px, session.viewport->viewSize_px());
-    const Vec3f forward = camera.forward_ws();
-    BrushPlace place;
-    place.direction_ss = ray.direction_ws;
-    place.normal_ss = -forward;
-    const float depth = (point_ws - ray.origin_ws).dot(forward);
-    place.position_ss = ray.origin_ws + ray.direction_ws * (depth / ray.direction_ws.dot(forward));
-    return place;
+    const UnderPointer pointer(session, at_px);
+    return pointer.at(pointer.depthOf(point_ws));
 }
 
 }  // namespace hairloom::editor

@@ -42,6 +42,16 @@ class ManualTest : public WindowTest {
         EXPECT_TRUE(viewport().waitForPicture(kPatience)) << name.toStdString();
         shoot(*window, name);
     }
+    /// Head and hair, in as many frames as a software device draws in a minute.
+    void showFromThreeQuarters() {
+        PictureQuality quality = viewport().quality();
+        quality.frames = 4;
+        viewport().setQuality(quality);
+        viewport().look(render::View::ThreeQuarter);
+        viewport().frameAll();
+        viewport().camera().zoom(1.35f);
+        viewport().redraw();
+    }
     void raise(const char* panel) {
         window->panel(panel)->raise();
         QCoreApplication::processEvents();
@@ -90,13 +100,7 @@ TEST_F(ManualTest, GroomingSpheresMotionAndLook) {
     Groom fewer = groom();
     fewer.interpolation.followPerGuide = 5;
     document().change("Follow hairs", Change::FollowHairs, fewer);
-    PictureQuality quality = viewport().quality();
-    quality.frames = 4;
-    viewport().setQuality(quality);
-    viewport().look(render::View::ThreeQuarter);
-    viewport().frameAll();
-    viewport().camera().zoom(1.35f);
-    viewport().redraw();
+    showFromThreeQuarters();
     trigger("tool.comb");
     raise("tool");
     raise("look");
@@ -157,13 +161,7 @@ TEST_F(ManualTest, Dye) {
     teal.interpolation.followPerGuide = 5;
     teal.material.dyeColour = Vec3f(0.01f, 0.3f, 0.4f);
     document().open(teal, {}, "shoulder");
-    PictureQuality quality = viewport().quality();
-    quality.frames = 4;
-    viewport().setQuality(quality);
-    viewport().look(render::View::ThreeQuarter);
-    viewport().frameAll();
-    viewport().camera().zoom(1.35f);
-    viewport().redraw();
+    showFromThreeQuarters();
     raise("tool");
     auto& dye = brush("dye_paint");
     dye.setRadius(0.045f);

@@ -65,21 +65,38 @@ TEST(Project, SavesFlawedValuesButNoFileThatCouldNotBeLoaded) {
     EXPECT_EQ(readFile(folder / "a.hairloom").value(), before) << "the old file stands";
 }
 
-TEST(Project, ReadsVersion1WithoutDensityAndPlacement) {
-    const TemporaryFolder folder;
-    const auto path = folder / "a.hairloom";
-    ASSERT_TRUE(saveProject(fullGroom(), path));
-    const auto now = ArchiveReader::open("a", readFile(path).value(), section::kKind, kProjectVersion);
-    ASSERT_TRUE(now);
-    nlohmann::ordered_json head = now->head();
-    for (const char* member : {"kind", "version", "arrays", "placement"}) head.erase(member);
-    ArchiveWriter writer{std::string(section::kKind), 1};
-    std::deque<AttributeData> arrays;  // the writer looks at them until it finishes
-    for (const std::string& name : now->names()) {
-        if (name != section::kScalpDensity) writer.add(name, arrays.emplace_back(now->readAny(name).value()));
+/// A project as older versions wrote it: what is in `head` and the arrays of now.
+class OlderProject {
+  public:
+    OlderProject() {
+        EXPECT_TRUE(saveProject(fullGroom(), path_));
+        now_ = ArchiveReader::open("a", readFile(path_).value(), section::kKind, kProjectVersion);
+        EXPECT_TRUE(now_);
+        head = now_->head();
+        for (const char* member : {"kind", "version", "arrays"}) head.erase(member);
     }
-    ASSERT_TRUE(writeFileAtomically(path, writer.finish(head).value()));
-    const auto loaded = loadProject(path);
+    Result<Groom> load(std::uint32_t version, std::string_view without = {}) {
+        ArchiveWriter writer{std::string(section::kKind), version};
+        std::deque<AttributeData> arrays;  // the writer looks at them until it finishes
+        for (const std::string& name : now_->names()) {
+            if (name != without) writer.add(name, arrays.emplace_back(now_->readAny(name).value()));
+        }
+        EXPECT_TRUE(writeFileAtomically(path_, writer.finish(head).value()));
+        return loadProject(path_);
+    }
+
+    nlohmann::ordered_json head;
+
+  private:
+    const TemporaryFolder folder_;
+    const std::filesystem::path path_ = folder_ / "a.hairloom";
+    Result<ArchiveReader> now_ = fail("not opened yet");
+};
+
+TEST(Project, ReadsVersion1WithoutDensityAndPlacement) {
+    OlderProject project;
+    project.head.erase("placement");
+    const auto loaded = project.load(1, section::kScalpDensity);
     ASSERT_TRUE(loaded) << loaded.error().message();
     Groom expected = fullGroom();
     expected.placement = {};
@@ -88,27 +105,13 @@ TEST(Project, ReadsVersion1WithoutDensityAndPlacement) {
 }
 
 TEST(Project, ReadsTheStiffnessAtTheTipOfVersion3AsAStraightCurve) {
-    const TemporaryFolder folder;
-    const auto path = folder / "a.hairloom";
-    ASSERT_TRUE(saveProject(fullGroom(), path));
-    const auto now = ArchiveReader::open("a", readFile(path).value(), section::kKind, kProjectVersion);
-    ASSERT_TRUE(now);
-    nlohmann::ordered_json head = now->head();
-    for (const char* member : {"kind", "version", "arrays"}) head.erase(member);
-    std::deque<AttributeData> arrays;  // the writer looks at them until it finishes
-    const auto load = [&] {
-        ArchiveWriter writer{std::string(section::kKind), 3};
-        for (const std::string& name : now->names())
-            writer.add(name, arrays.emplace_back(now->readAny(name).value()));
-        EXPECT_TRUE(writeFileAtomically(path, writer.finish(head).value()));
-        return loadProject(path);
-    };
-    head["simulation"]["angularTipShare"] = 0.35;
-    const auto both = load();
+    OlderProject project;
+    project.head["simulation"]["angularTipShare"] = 0.35;
+    const auto both = project.load(3);
     ASSERT_FALSE(both);
     EXPECT_THAT(both.error().message(), HasSubstr("/simulation/angularTipShare stands beside angularCurve"));
-    head["simulation"].erase("angularCurve");
-    const auto loaded = load();
+    project.head["simulation"].erase("angularCurve");
+    const auto loaded = project.load(3);
     ASSERT_TRUE(loaded) << loaded.error().message();
     Groom expected = fullGroom();
     expected.simulation.angularCurve = runtime::Ramp::straight(1, 0.35f);
