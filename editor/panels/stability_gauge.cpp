@@ -2,6 +2,7 @@
 #include "editor/panels/stability_gauge.h"
 
 #include <QPushButton>
+#include <algorithm>
 #include <cmath>
 
 #include "core/editing/document.h"
@@ -12,6 +13,7 @@ namespace hairloom::editor {
 namespace {
 
 constexpr float kFrameTime = 1.0f / 60.0f;
+constexpr int kLeastShown = 3;  // of 100, so that the colour of a margin that is used up is seen
 
 runtime::StableAdvice adviceFor(const Groom& groom) {
     static_assert(sizeof(Vec3f) == sizeof(runtime::Float3));
@@ -37,7 +39,7 @@ StabilityGauge::StabilityGauge(Session& session, QWidget* parent)
     bar_->setRange(0, 100);
     bar_->setTextVisible(false);
     bar_->setFixedHeight(10);
-    bar_->setToolTip(tr("Step over the longest stable one: full is where the simulation would explode"));
+    bar_->setToolTip(tr("Margin to the longest stable step: empty is where the simulation would explode"));
     words_->setWordWrap(true);
     words_->setProperty("role", "dim");
     layout->addWidget(bar_);
@@ -79,7 +81,8 @@ void StabilityGauge::update() {
     const Groom& groom = session_.document.groom();
     advice_ = adviceFor(groom);
     const double factor = advice_.region.factor;
-    bar_->setValue(std::isfinite(factor) ? static_cast<int>(std::min(100.0, 100 * factor)) : 100);
+    const double margin = std::isfinite(factor) ? std::clamp(1 - factor, 0.0, 1.0) : 0;
+    bar_->setValue(std::max(kLeastShown, static_cast<int>(100 * margin)));
     const ThemeColours colours = themeColours(session_.preferences.theme());
     const QColor colour = factor > 1 ? colours.bad : factor > 0.8 ? colours.caution : colours.good;
     bar_->setStyleSheet(QStringLiteral("QProgressBar::chunk { background: %1; }").arg(colour.name()));

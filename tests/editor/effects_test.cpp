@@ -2,6 +2,7 @@
 // The panels about motion: what runs before and while it plays, effects left out for a try, the stiffness
 // curve.
 #include <QMouseEvent>
+#include <QProgressBar>
 #include <QPushButton>
 #include <QTreeWidget>
 #include <algorithm>
@@ -113,6 +114,9 @@ TEST_F(EffectsTest, TheGaugeThatWasNotSeenLooksWhenItIsShown) {
     window->panel("effects")->show();
     window->panel("effects")->raise();
     EXPECT_TRUE(QTest::qWaitFor([&] { return factor() > before; }, 20'000));
+    const int margin = find<QProgressBar>("stability")->value();
+    EXPECT_NEAR(margin, std::max(3.0, 100 * (1 - factor())), 1);
+    EXPECT_LT(margin, 100);
 }
 
 class StiffnessTest : public EffectsTest {
