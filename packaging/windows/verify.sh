@@ -123,6 +123,14 @@ nearTheCpu() {
                                        END { exit !(near && sound) }'
 }
 
+# findsAnyName STYLE: a hairstyle is exported to, and imported from, names outside ASCII, of two and of four bytes a letter.
+findsAnyName() {
+    local folder=$pictures/Zöpfe-💇
+    mkdir -p "$folder" && cp "$pictures/$1.hairloom" "$folder/Frisür.hairloom" || return
+    cli validate "$folder/Frisür.hairloom" && cli export "$folder/Frisür.hairloom" --format hair -o "$folder/髪.hair" &&
+        cli import "$folder/髪.hair" -o "$folder/zurück.hairloom" && [ -s "$folder/zurück.hairloom" ]
+}
+
 # walkThroughTheEditor: the viewport is a window of its own there, because Wine shows no device's picture within another.
 walkThroughTheEditor() {
     HAIRLOOM_VIEWPORT=apart roomTests editor none 'WalkTest.*:PictureTest.AWindow*'
@@ -147,6 +155,7 @@ for style in "${styles[@]}"; do
         --motion clip:nod_and_turn --record "$pictures/$style.frames"
     check "picture of '$style'" "Vulkan" pictureOf vulkan "$style" "$pictures/$style-vulkan.png"
 done
+check "files of any name" "CPU" findsAnyName short
 
 check "samples/window" "Vulkan" tests/samples/window_screenshot.sh "$screenshots/window-vulkan.png" \
     "$wine" "$out/bin/hairloom-window.exe" shoulder --guides --backend vulkan --width 480 --height 480

@@ -7,6 +7,8 @@ set -euo pipefail
 cache=${HAIRLOOM_CACHE:-${XDG_CACHE_HOME:-$HOME/.cache}/hairloom}
 mkdir -p "$cache"
 export WINEPREFIX=$cache/wine WINEARCH=win64 WINEDEBUG=${WINEDEBUG:--all}
+# Names of files are UTF-8 for Wine only where they are for the system.
+export LC_ALL=C.UTF-8
 # No .NET, no browser, no menu entries, no debugger that looks at crashes before their parent does. Microsoft's shader
 # compiler, loaded by its path, may replace Wine's.
 export WINEDLLOVERRIDES="mscoree,mshtml=;winemenubuilder.exe,winedbg.exe=d;d3dcompiler_47=n,b"

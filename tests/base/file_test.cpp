@@ -35,6 +35,19 @@ TEST_F(FileTest, WritesReplacesAndLeavesNoTemporaryFile) {
     EXPECT_EQ(filesInFolder(), 1u);
 }
 
+// Names are UTF-8 in `char` on every system; the last of these needs two units of UTF-16.
+TEST_F(FileTest, NamesOutsideAsciiNameTheSameFileAsTheirCharacters) {
+    for (const std::u8string& name :
+         {std::u8string(u8"Zöpfe.txt"), std::u8string(u8"髪.txt"), std::u8string(u8"💇.txt")}) {
+        const std::string inChar(name.begin(), name.end());
+        ASSERT_TRUE(writeFileAtomically(folder / inChar, std::string_view("hair")));
+        EXPECT_EQ(readTextFile(folder / fs::path(name)).value(), "hair") << inChar;
+        EXPECT_EQ((folder / inChar).filename().string(), inChar);
+    }
+    EXPECT_EQ(filesInFolder(), 3u);
+    EXPECT_FALSE(readFile(folder / "\xC3(\xF0\x9F\x92"));  // not UTF-8
+}
+
 TEST_F(FileTest, FailedWriteLeavesNothing) {
     const auto status = writeFileAtomically(folder / "missing" / "a.txt", std::string_view("x"));
     ASSERT_FALSE(status);
