@@ -41,6 +41,8 @@ struct BrushInfo {
     bool needsHead = false;
     /// Dabs take hair where the brush comes from, to carry it to where it is.
     bool drags = false;
+    /// The brush itself leaves segments at their lengths.
+    bool turnsSegments = false;
 };
 
 /// One dab as brushes see it.
@@ -145,10 +147,8 @@ class StrandBrush : public Brush {
 
     /// Whether the strands of the first dab, with their weights there, serve the whole stroke.
     virtual bool holdsOn() const { return false; }
-    /// Whether a strand within this box might be reached.
-    virtual bool mayReach(const DabContext& dab, const StrandBounds::Box& box) const {
-        return dab.volume.mayTouch(box.low, box.high);
-    }
+    /// Strands that might be reached by what their boxes tell; ascending.
+    virtual std::vector<std::uint32_t> mayReach(const DabContext& dab, const StrandBounds& bounds) const;
     /// Fills in the weights (as many as points, that of the root 0) and returns the greatest; 0 leaves the
     /// strand alone. Unless overridden, a point weighs by the distance of the nearest of itself and the
     /// middles of its segments, so that thin brushes find long segments.

@@ -28,9 +28,9 @@ class PickCone {
         }
     }
     /// The ray against the box grown by the cone's radius where it leaves the box.
-    bool mayTouch(const StrandBounds::Box& box) const {
-        const Vec3f half = 0.5f * (box.high - box.low);
-        const Vec3f toMiddle = box.low + half - ray_.origin_ss;
+    bool mayTouch(const Vec3f& low, const Vec3f& high) const {
+        const Vec3f half = 0.5f * (high - low);
+        const Vec3f toMiddle = low + half - ray_.origin_ss;
         const float farthest =
             toMiddle.dot(ray_.direction_ss) + half.dot(Vec3f(ray_.direction_ss.cwiseAbs()));
         if (!(farthest > 0)) return false;
@@ -178,7 +178,7 @@ std::optional<StrandPick> pickStrand(const Groom& groom, const StrandBounds& bou
     const auto positions = groom.positions();
     const auto offsets = groom.offsets.view();
     const std::vector<std::uint32_t> candidates =
-        bounds.find([&](const StrandBounds::Box& box) { return cone.mayTouch(box); });
+        bounds.find([&](const Vec3f& low, const Vec3f& high) { return cone.mayTouch(low, high); });
     std::vector<std::optional<StrandPick>> picks(candidates.size());
     parallelFor(candidates.size(), kGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {

@@ -2,6 +2,7 @@
 #include "core/editing/skin_field.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -13,6 +14,8 @@ namespace {
 constexpr int kCells = 4;  ///< of a block, along each axis
 constexpr int kCorners = kCells + 1;
 constexpr std::size_t kValues = std::size_t{kCorners} * kCorners * kCorners;
+constexpr float kSlopeless =
+    0.2f;  ///< on the ridge between two sides of the skin the interpolated slope vanishes
 constexpr double kMostBlocks = 2e6;
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
@@ -20,23 +23,47 @@ float halfDiagonal(float cell) {
     return 0.5f * std::sqrt(3.0f) * cell * kCells;
 }
 
-std::ptrdiff_t cornerIndex(const Eigen::Array3i& cell) {
-    return (cell.z() * kCorners + cell.y()) * kCorners + cell.x();
-}
+constexpr std::size_t kCellCorners = 8;
+/// Of the corners of a cell, from its first in the order of their coordinates: 000, 100, 010, 110, 001 …
+constexpr std::array<std::size_t, kCellCorners> kCornerOffsets = {
+    0,
+    1,
+    kCorners,
+    kCorners + 1,
+    kCorners* kCorners,
+    kCorners* kCorners + 1,
+    kCorners* kCorners + kCorners,
+    kCorners* kCorners + kCorners + 1,
+};
 
-/// Value and gradient (per cell) at `t` in [0, 1]³ of a cell whose first corner is given.
-Vec4f interpolate(const float* corner, const Vec3f& t) {
-    const auto at = [&](int x, int y, int z) { return corner[(z * kCorners + y) * kCorners + x]; };
-    const float x00 = at(0, 0, 0) + t.x() * (at(1, 0, 0) - at(0, 0, 0));
-    const float x10 = at(0, 1, 0) + t.x() * (at(1, 1, 0) - at(0, 1, 0));
-    const float x01 = at(0, 0, 1) + t.x() * (at(1, 0, 1) - at(0, 0, 1));
-    const float x11 = at(0, 1, 1) + t.x() * (at(1, 1, 1) - at(0, 1, 1));
-    const float y0 = x00 + t.y() * (x10 - x00);
-    const float y1 = x01 + t.y() * (x11 - x01);
-    const float dx0 = (at(1, 0, 0) - at(0, 0, 0)) * (1 - t.y()) + (at(1, 1, 0) - at(0, 1, 0)) * t.y();
-    const float dx1 = (at(1, 0, 1) - at(0, 0, 1)) * (1 - t.y()) + (at(1, 1, 1) - at(0, 1, 1)) * t.y();
-    return {y0 + t.z() * (y1 - y0), dx0 + t.z() * (dx1 - dx0),
-            (x10 - x00) + t.z() * ((x11 - x01) - (x10 - x00)), y1 - y0};
+/// Interpolates within a cell at (x, y, z) in [0, 1]³.
+struct Cell {
+    float c000, c100, c010, c110, c001, c101, c011, c111;
+    float x, y, z;
+
+    float value() const {
+        return mix(mix(mix(c000, c100, x), mix(c010, c110, x), y),
+                   mix(mix(c001, c101, x), mix(c011, c111, x), y), z);
+    }
+    // The gradient, per cell.
+    float alongX() const {
+        return mix(mix(c100 - c000, c110 - c010, y), mix(c101 - c001, c111 - c011, y), z);
+    }
+    float alongY() const {
+        return mix(mix(c010, c110, x) - mix(c000, c100, x), mix(c011, c111, x) - mix(c001, c101, x), z);
+    }
+    float alongZ() const {
+        return mix(mix(c001, c101, x), mix(c011, c111, x), y) -
+               mix(mix(c000, c100, x), mix(c010, c110, x), y);
+    }
+
+  private:
+    static float mix(float a, float b, float t) { return a + t * (b - a); }
+};
+
+Cell cellAt(const float* corner, const Vec3f& t) {
+    const auto at = [&](std::size_t i) { return corner[kCornerOffsets[i]]; };
+    return {at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7), t.x(), t.y(), t.z()};
 }
 
 }  // namespace
@@ -72,17 +99,14 @@ Vec3f SkinField::centreOf(std::size_t block) const {
     return low_ + (index + Vec3f::Constant(0.5f)) * (cell_ * kCells);
 }
 
-float SkinField::centreDistance(std::size_t block) const {
-    const float known = blocks_[block].centre.load(std::memory_order_relaxed);
-    if (!std::isnan(known)) return known;
+float SkinField::measureCentre(std::size_t block) const {
     const float measured = skin_->at(centreOf(block)).distance;
     blocks_[block].centre.store(measured, std::memory_order_relaxed);
     return measured;
 }
 
-const float* SkinField::corners(std::size_t block) const {
+const float* SkinField::measureCorners(std::size_t block) const {
     std::atomic<const float*>& place = blocks_[block].corners;
-    if (const float* known = place.load(std::memory_order_acquire)) return known;
     auto measured = std::make_unique<float[]>(kValues);
     const Vec3f first = centreOf(block) - Vec3f::Constant(0.5f * cell_ * kCells);
     for (int z = 0, i = 0; z < kCorners; ++z)
@@ -98,15 +122,17 @@ const float* SkinField::corners(std::size_t block) const {
     return measured.release();
 }
 
-SkinField::Place SkinField::locate(const Vec3f& point) const {
+inline SkinField::Place SkinField::locate(const Vec3f& point) const {
     const Vec3f cells = (point - low_) * perCell_;
     // What is no number is not inside either.
-    if (!(cells.array() >= 0).all() || !(cells.array() < extent_.array()).all()) return {};
-    const Eigen::Array3i whole(static_cast<int>(cells.x()), static_cast<int>(cells.y()),
-                               static_cast<int>(cells.z()));
-    const Eigen::Array3i block = whole / kCells;
-    return {static_cast<std::size_t>((block.z() * size_.y() + block.y()) * size_.x() + block.x()),
-            whole - block * kCells, cells - whole.cast<float>().matrix()};
+    const auto isInside = [&](Eigen::Index i) { return cells[i] >= 0 && cells[i] < extent_[i]; };
+    if (!isInside(0) || !isInside(1) || !isInside(2)) return {};
+    const auto x = static_cast<std::uint32_t>(cells.x()), y = static_cast<std::uint32_t>(cells.y()),
+               z = static_cast<std::uint32_t>(cells.z());
+    const auto sizeX = static_cast<std::size_t>(size_.x()), sizeY = static_cast<std::size_t>(size_.y());
+    return {(z / kCells * sizeY + y / kCells) * sizeX + x / kCells,
+            (z % kCells * kCorners + y % kCells) * kCorners + x % kCells,
+            cells - Vec3f(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z))};
 }
 
 SkinDistance SkinField::beyondTable(const Vec3f& point) const {
@@ -115,29 +141,35 @@ SkinDistance SkinField::beyondTable(const Vec3f& point) const {
     return {distance, distance > 0 ? Vec3f(away / distance) : Vec3f(Vec3f::UnitY())};
 }
 
-SkinDistance SkinField::distanceAt(const Vec3f& point) const {
-    const Place place = locate(point);
-    if (!place.block) return beyondTable(point);
-    const float centre = centreDistance(*place.block);
-    const float reach = halfDiagonal(cell_) + kReach;
-    if (centre > reach) return {centre - (point - centreOf(*place.block)).norm(), Vec3f::UnitY()};
-    if (centre < -reach) return skin_->distanceAt(point);
-    const Vec4f value = interpolate(corners(*place.block) + cornerIndex(place.cell), place.inCell);
-    const float slope = value.tail<3>().norm();
-    // On the ridge between two sides of the skin the interpolated slope vanishes.
-    constexpr float kSlopeless = 0.2f;
+SkinDistance SkinField::interpolated(const Place& place, const Vec3f& point, float enough) const {
+    const Cell cell = cellAt(corners(place.block) + place.corner, place.inCell);
+    const float distance = cell.value();
+    if (distance > enough) return {distance, Vec3f::UnitY()};
+    const Vec3f gradient(cell.alongX(), cell.alongY(), cell.alongZ());
+    const float slope = gradient.norm();
     if (slope < kSlopeless * cell_) return skin_->distanceAt(point);
-    return {value[0], value.tail<3>() / slope};
+    return {distance, gradient / slope};
 }
 
-float SkinField::distanceUpTo(const Vec3f& point, float enough) const {
+SkinDistance SkinField::distanceAt(const Vec3f& point) const {
     const Place place = locate(point);
-    if (!place.block) return beyondTable(point).distance;
+    if (place.block == kNoBlock) return beyondTable(point);
+    const float centre = centreDistance(place.block);
+    const float reach = halfDiagonal(cell_) + kReach;
+    if (centre > reach) return {centre - (point - centreOf(place.block)).norm(), Vec3f::UnitY()};
+    if (centre < -reach) return skin_->distanceAt(point);
+    return interpolated(place, point, std::numeric_limits<float>::infinity());
+}
+
+SkinDistance SkinField::distanceUpTo(const Vec3f& point, float enough) const {
+    const Place place = locate(point);
+    if (place.block == kNoBlock) return beyondTable(point);
     // From the middle of a block the distance falls by no more than the way to its corner.
-    const float least = centreDistance(*place.block) - halfDiagonal(cell_);
-    if (least > enough) return least;
-    if (least > kReach || least < -2 * halfDiagonal(cell_) - kReach) return distanceAt(point).distance;
-    return interpolate(corners(*place.block) + cornerIndex(place.cell), place.inCell)[0];
+    const float centre = centreDistance(place.block);
+    const float least = centre - halfDiagonal(cell_);
+    if (least > enough) return {least, Vec3f::UnitY()};
+    if (std::abs(centre) > halfDiagonal(cell_) + kReach) return distanceAt(point);
+    return interpolated(place, point, enough);
 }
 
 void SkinField::prepare(std::span<const std::uint32_t> faces) const {

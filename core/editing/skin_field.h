@@ -4,8 +4,8 @@
 // second.
 
 #include <atomic>
+#include <cmath>
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,28 +29,38 @@ class SkinField final : public SkinQuery {
     SkinField& operator=(const SkinField&) = delete;
 
     SkinDistance distanceAt(const Vec3f& point) const override;
-    float distanceUpTo(const Vec3f& point, float enough) const override;
+    SkinDistance distanceUpTo(const Vec3f& point, float enough) const override;
     /// Measures what lies near these faces ahead of time, in parallel.
     void prepare(std::span<const std::uint32_t> faces) const;
     float cell() const { return cell_; }
 
   private:
+    static constexpr std::size_t kNoBlock = ~std::size_t{0};
     struct Block {
         std::atomic<float> centre;          ///< signed distance there; not finite until measured
         std::atomic<const float*> corners;  ///< owned; null until measured
     };
     /// Where a point is: its block, or none outside the table, and its place there in cells.
     struct Place {
-        std::optional<std::size_t> block;
-        Eigen::Array3i cell;
+        std::size_t block = kNoBlock;
+        std::size_t corner = 0;  ///< of the block's, the first of the cell
         Vec3f inCell;
     };
     Place locate(const Vec3f& point) const;
+    SkinDistance interpolated(const Place& place, const Vec3f& point, float enough) const;
     SkinDistance beyondTable(const Vec3f& point) const;
     Vec3f centreOf(std::size_t block) const;
-    /// Measured if it was not.
-    float centreDistance(std::size_t block) const;
-    const float* corners(std::size_t block) const;
+    // Measured where they were not.
+    float centreDistance(std::size_t block) const {
+        const float known = blocks_[block].centre.load(std::memory_order_relaxed);
+        return std::isnan(known) ? measureCentre(block) : known;
+    }
+    const float* corners(std::size_t block) const {
+        const float* const known = blocks_[block].corners.load(std::memory_order_acquire);
+        return known ? known : measureCorners(block);
+    }
+    float measureCentre(std::size_t block) const;
+    const float* measureCorners(std::size_t block) const;
 
     std::shared_ptr<const Skin> skin_;
     Box3f meshBounds_;

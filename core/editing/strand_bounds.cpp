@@ -13,12 +13,17 @@ constexpr std::size_t kGrain = 4096;
 StrandBounds::Box StrandBounds::boxOf(std::span<const Vec3f> points) {
     // An empty box is beyond any test's reach.
     constexpr float kNowhere = 1e30f;
-    Box box{Vec3f::Constant(kNowhere), Vec3f::Constant(-kNowhere)};
-    for (const Vec3f& point : points) {
-        box.low = box.low.cwiseMin(point);
-        box.high = box.high.cwiseMax(point);
+    if (points.empty()) return {Vec3f::Constant(kNowhere), Vec3f::Constant(-kNowhere)};
+    // Four numbers at a time compile to vectors; the fourth is the next point's.
+    static_assert(sizeof(Vec3f) == 3 * sizeof(float));
+    const float* const xyz = points.data()->data();
+    Eigen::Array4f low = Eigen::Array4f::Constant(kNowhere), high = -low;
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+        const Eigen::Array4f wide = Eigen::Map<const Eigen::Array4f>(xyz + 3 * i);
+        low = low.min(wide);
+        high = high.max(wide);
     }
-    return box;
+    return {low.head<3>().matrix().cwiseMin(points.back()), high.head<3>().matrix().cwiseMax(points.back())};
 }
 
 void StrandBounds::rebuild(const Groom& groom) {

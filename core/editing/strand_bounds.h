@@ -26,12 +26,12 @@ class StrandBounds {
 
     std::size_t size() const { return boxes_.size(); }
     const Box& operator[](std::size_t strand) const { return boxes_[strand]; }
-    /// Ascending; those whose box `test` accepts, which runs on several threads.
+    /// Ascending; those whose box `test`(low, high) accepts, which runs on several threads.
     template <class Test>
     std::vector<std::uint32_t> find(Test test) const {
         return gather([&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& found) {
             for (std::size_t s = begin; s < end; ++s) {
-                if (test(boxes_[s])) found.push_back(static_cast<std::uint32_t>(s));
+                if (test(boxes_[s].low, boxes_[s].high)) found.push_back(static_cast<std::uint32_t>(s));
             }
         });
     }

@@ -50,6 +50,13 @@ void squaredDistances(const BrushVolume& volume, const float* xyz, std::span<flo
     }
 }
 
+/// Compiles to vectors, which a search that stops early does not.
+bool anyBelow(std::span<const float> values, float limit) {
+    int any = 0;
+    for (const float value : values) any |= static_cast<int>(value < limit);
+    return any != 0;
+}
+
 }  // namespace
 
 float StrandBrush::weigh(const DabContext& dab, const BrushSettings& settings, std::span<const Vec3f> points,
@@ -67,9 +74,7 @@ float StrandBrush::weigh(const DabContext& dab, const BrushSettings& settings, s
     squaredDistances(volume, xyz, ofPoints);
     squaredDistances(volume, middles.data(), ofMiddles);
     const float squaredRadius = volume.radius * volume.radius;
-    const auto nearest = std::min(*std::min_element(ofPoints.begin() + 1, ofPoints.end()),
-                                  *std::min_element(ofMiddles.begin(), ofMiddles.end()));
-    if (!(nearest < squaredRadius)) return 0;
+    if (!anyBelow(ofPoints.subspan(1), squaredRadius) && !anyBelow(ofMiddles, squaredRadius)) return 0;
 
     const float strength = dab.dab.strength * dab.dab.pressure;
     const float perPoint = 1.0f / static_cast<float>(count - 1);
@@ -88,21 +93,27 @@ float StrandBrush::weigh(const DabContext& dab, const BrushSettings& settings, s
     return strongest;
 }
 
+std::vector<std::uint32_t> StrandBrush::mayReach(const DabContext& dab, const StrandBounds& bounds) const {
+    return bounds.find(BoxTest(dab.volume));
+}
+
 Reached StrandBrush::reach(const StrokeTarget& target, const DabContext& dab) const {
     const auto positions = target.groom().positions();
     const auto offsets = target.groom().offsets.view();
-    constexpr std::size_t kPiece = 4096;
-    std::vector<Reached> pieces((target.bounds.size() + kPiece - 1) / kPiece);
-    parallelFor(target.bounds.size(), kPiece, [&](std::size_t begin, std::size_t end) {
+    const std::vector<std::uint32_t> candidates = mayReach(dab, target.bounds);
+    constexpr std::size_t kPiece = 512;
+    std::vector<Reached> pieces((candidates.size() + kPiece - 1) / kPiece);
+    parallelFor(candidates.size(), kPiece, [&](std::size_t begin, std::size_t end) {
         Reached& piece = pieces[begin / kPiece];
         std::vector<float> weights;
-        for (std::size_t s = begin; s < end; ++s) {
-            if (!target.editable[s] || !mayReach(dab, target.bounds[s])) continue;
+        for (std::size_t k = begin; k < end; ++k) {
+            const std::uint32_t s = candidates[k];
+            if (!target.editable[s]) continue;
             const auto strand = positions.subspan(offsets[s], offsets[s + 1] - offsets[s]);
             if (strand.size() < 2) continue;
             weights.resize(strand.size());
             if (!(weigh(dab, target.settings, strand, weights) > 0)) continue;
-            piece.strands.push_back(static_cast<std::uint32_t>(s));
+            piece.strands.push_back(s);
             piece.begins.push_back(static_cast<std::uint32_t>(piece.weights.size()));
             piece.weights.insert(piece.weights.end(), weights.begin(), weights.end());
         }
@@ -124,7 +135,7 @@ void StrandBrush::editReached(StrokeTarget& target, const DabContext& dab, const
     std::vector<Vec3f>& positions = target.groom().pointAttributes.edit<Vec3f>(attribute::kPosition);
     const Groom& groom = target.groom();
     const StrandFacts facts(groom);
-    const bool keepsLengths = info().keepsLengths;
+    const bool keepsLengths = info().keepsLengths, turnsSegments = info().turnsSegments;
     const SkinQuery* skin = target.settings.collide ? target.skin : nullptr;
     std::vector<std::uint8_t> changed(reached.strands.size(), 0);
     parallelFor(reached.strands.size(), kGrain, [&](std::size_t begin, std::size_t end) {
@@ -148,11 +159,11 @@ void StrandBrush::editReached(StrokeTarget& target, const DabContext& dab, const
                                     facts.isBound(s) ? facts.scalp : nullptr,
                                     skin};
             if (!edit(dab, strand)) continue;
-            if (keepsLengths) {
+            if (!keepsLengths) {
+                measureSegments(points, lengths);
+            } else if (!turnsSegments) {
                 restoreLengths(points.subspan(strand.first - 1),
                                std::span<const float>(lengths).subspan(strand.first - 1));
-            } else {
-                measureSegments(points, lengths);
             }
             if (skin) keepOutside(points, lengths, *skin, target.settings.clearance, strand.first);
             target.bounds.update(s, points);

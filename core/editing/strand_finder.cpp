@@ -35,8 +35,7 @@ bool strandTouches(const BrushVolume& volume, std::span<const Vec3f> points) {
 
 std::vector<std::uint32_t> strandsWithin(const Groom& groom, const StrandBounds& bounds,
                                          const BrushVolume& volume, bool byRoots) {
-    const std::vector<std::uint32_t> candidates =
-        bounds.find([&](const StrandBounds::Box& box) { return volume.mayTouch(box.low, box.high); });
+    const std::vector<std::uint32_t> candidates = bounds.find(BoxTest(volume));
     std::vector<std::uint8_t> inside(candidates.size(), 0);
     parallelFor(candidates.size(), kGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {

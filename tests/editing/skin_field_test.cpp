@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "core/base/parallel.h"
 #include "tests/geometry/test_meshes.h"
 #include "tests/groom/groom_samples.h"
@@ -24,11 +26,12 @@ TEST(SkinField, IsNearTheExactDistanceWhereItIsAskedFor) {
         const Vec3f point = randomPoint(random, 0.12f);
         const Skin::Sample exact = skin->at(point);
         const SkinDistance quick = field.distanceAt(point);
-        const float upTo = field.distanceUpTo(point, 0.001f);
-        if (upTo > 0.001f) {
-            EXPECT_LE(upTo, quick.distance + 1e-5f);
+        const SkinDistance upTo = field.distanceUpTo(point, 0.001f);
+        if (upTo.distance > 0.001f) {
+            EXPECT_LE(upTo.distance, quick.distance + 1e-5f);
         } else {
-            EXPECT_NEAR(upTo, quick.distance, 1e-6f);
+            EXPECT_EQ(upTo.distance, quick.distance);
+            EXPECT_EQ(upTo.outward, quick.outward);
         }
         if (std::abs(exact.distance) < SkinField::kReach) {
             ++near;
@@ -73,6 +76,40 @@ TEST(SkinField, MissesSharpEdgesByLessThanAThirdOfACell) {
     }
     EXPECT_LT(worst, SkinField::kCell / 3);
     EXPECT_GT(worst, 1e-6f);
+}
+
+/// The shortcut against the whole question: beside and within the table, deep inside, at the edges of cells,
+/// at what is no number.
+TEST(SkinField, AnswersUpToADistanceAsItAnswersAtAll) {
+    const auto skin = std::make_shared<const Skin>(sphereScalp(0.09f, 3, Vec3f::Zero()));
+    const SkinField field(skin);
+    Random random(7);
+    int near = 0, enoughs = 0;
+    for (int i = 0; i < 6000; ++i) {
+        Vec3f point = randomPoint(random, i % 5 == 0 ? 0.3f : 0.11f);
+        if (i % 7 == 0) point = 0.002f * (point / 0.002f).array().round().matrix();
+        const float enough = random.uniform(-0.03f, 0.03f);
+        const SkinDistance whole = field.distanceAt(point);
+        const SkinDistance upTo = field.distanceUpTo(point, enough);
+        if (upTo.distance > enough) {
+            ++enoughs;
+            ASSERT_GT(whole.distance, enough - 1e-6f);
+        } else {
+            ++near;
+            ASSERT_EQ(upTo.distance, whole.distance);
+            ASSERT_EQ(upTo.outward, whole.outward);
+        }
+    }
+    EXPECT_GT(near, 500);
+    EXPECT_GT(enoughs, 500);
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        Vec3f nowhere(0, 0.09f, 0);
+        nowhere[axis] = nan;
+        EXPECT_FALSE(field.distanceUpTo(nowhere, 0.001f).distance < 0.001f);
+        nowhere[axis] = 1e30f;
+        EXPECT_GT(field.distanceUpTo(nowhere, 0.001f).distance, 0.001f);
+    }
 }
 
 TEST(SkinField, AnswersAlikeForAnyNumberOfThreadsAndOrder) {

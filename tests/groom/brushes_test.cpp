@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <functional>
+#include <limits>
 
 #include "core/base/parallel.h"
 #include "core/geometry/curve.h"
@@ -193,6 +194,90 @@ TEST(LengthConstraint, RestoresLengthsTowardsThePoints) {
     restoreLengths(collapsed, lengths);
     EXPECT_NEAR((collapsed[1] - collapsed[0]).norm(), 1, 1e-6f);
     EXPECT_NEAR((collapsed[2] - collapsed[1]).norm(), 2, 1e-6f);
+}
+
+/// Answers as little as a query up to a distance may.
+class LazySkin final : public SkinQuery {
+  public:
+    explicit LazySkin(const Skin& skin) : skin_(skin) {}
+    SkinDistance distanceAt(const Vec3f& point) const override { return skin_.distanceAt(point); }
+    SkinDistance distanceUpTo(const Vec3f& point, float enough) const override {
+        const SkinDistance whole = skin_.distanceAt(point);
+        if (!(whole.distance > enough)) return whole;
+        return {0.5f * (enough + whole.distance), Vec3f::Constant(std::numeric_limits<float>::quiet_NaN())};
+    }
+
+  private:
+    const Skin& skin_;
+};
+
+/// From a root on a head of radius kHeadRadius: a tangle that runs through it, with segments of many lengths,
+/// some of none and some that turn back.
+std::vector<Vec3f> tangle(Random& random) {
+    const auto vector = [&] {
+        const float x = random.uniform(-1, 1), y = random.uniform(-1, 1);
+        return Vec3f(x, y, random.uniform(-1, 1));
+    };
+    std::vector<Vec3f> points{kHeadCentre + vector().normalized() * kHeadRadius};
+    const float longest = random.uniform(0.002f, 0.05f);
+    for (int i = 0; i < 20; ++i) {
+        Vec3f step = vector() * longest;
+        if (random.below(8) == 0) step.setZero();
+        if (random.below(8) == 0) step = 0.3f * (kHeadCentre - points.back());
+        if (random.below(8) == 0 && i > 0) step = points[points.size() - 2] - points.back();
+        points.push_back(points.back() + step);
+    }
+    return points;
+}
+
+TEST(LengthConstraint, KeepsTanglesOutsideAndAtTheirLengths) {
+    const Skin skin(sphereScalp(kHeadRadius, 4, kHeadCentre));
+    const LazySkin lazy(skin);
+    constexpr float kClearance = 0.0015f;
+    Random random(3);
+    std::size_t moved = 0;
+    for (int i = 0; i < 300; ++i) {
+        const std::vector<Vec3f> before = tangle(random);
+        const std::size_t first = 1 + random.below(4);
+        std::vector<float> lengths;
+        measureSegments(before, lengths);
+        std::vector<Vec3f> whole = before, shortcut = before;
+        moved += keepOutside(whole, lengths, skin, kClearance, first) ? 1 : 0;
+        keepOutside(shortcut, lengths, lazy, kClearance, first);
+        ASSERT_EQ(whole, shortcut) << "what a query leaves out makes no difference";
+        float arc = 0;
+        bool isFree = true;  // what lies before `first` is outside as well
+        for (std::size_t p = 1; p < whole.size(); ++p) {
+            arc += lengths[p - 1];
+            if (p < first) {
+                ASSERT_EQ(whole[p], before[p]);
+                isFree = isFree && skin.distanceAt(whole[p]).distance >= std::min(kClearance, 0.5f * arc);
+                continue;
+            }
+            ASSERT_NEAR((whole[p] - whole[p - 1]).norm(), lengths[p - 1], 1e-6f + 1e-5f * lengths[p - 1]);
+            if (isFree) {
+                ASSERT_GT(skin.distanceAt(whole[p]).distance, std::min(kClearance, 0.5f * arc) - 1.1e-4f)
+                    << "tangle " << i << ", point " << p;
+            }
+        }
+    }
+    EXPECT_GT(moved, 200u);
+}
+
+/// A plane is reached by turning once, by no more than has to be.
+TEST(LengthConstraint, TurnsASegmentOutByTheLeastAngle) {
+    struct Floor final : SkinQuery {
+        SkinDistance distanceAt(const Vec3f& point) const override { return {point.y(), Vec3f::UnitY()}; }
+    };
+    const Vec3f from(0, 0.002f, 0);
+    const Vec3f down = Vec3f(0.6f, -0.8f, 0);
+    const Vec3f end = placeOutside(Floor(), from, down, 0.01f, 0.001f);
+    EXPECT_NEAR(end.y(), 0.001f, 1.01e-5f);
+    EXPECT_NEAR((end - from).norm(), 0.01f, 1e-7f);
+    EXPECT_NEAR(end.z(), 0, 1e-9f);
+    EXPECT_GT(end.x(), 0.0099f);
+    const Vec3f free = placeOutside(Floor(), from, Vec3f::UnitX(), 0.01f, 0.001f);
+    EXPECT_EQ(free, Vec3f(0.01f, 0.002f, 0));
 }
 
 TEST(SetLength, GivesTheLengthWithVariationAndGradient) {

@@ -11,6 +11,7 @@ constexpr BrushInfo kInfo{"brush",
                           {},
                           true,
                           false,
+                          true,
                           true};
 
 class BrushAlong final : public StrandBrush {
@@ -26,7 +27,7 @@ class BrushAlong final : public StrandBrush {
         for (std::size_t i = strand.first; i < strand.points.size(); ++i) {
             const Vec3f segment = strand.points[i] - before;
             before = strand.points[i];
-            const float length = segment.norm();
+            const float length = strand.lengths[i - 1];
             Vec3f direction = length > 0 ? Vec3f(segment / length) : wanted;
             if (strand.weights[i] > 0) {
                 const Vec3f mixed = direction + strand.weights[i] * (wanted - direction);

@@ -61,11 +61,13 @@ class CutLine final : public StrandBrush {
         sheet_ = Sheet::of(dab);
     }
     /// The box is cut by the sheet's plane.
-    bool mayReach(const DabContext&, const StrandBounds::Box& box) const override {
-        if (sheet_.normal.isZero(0)) return false;
-        const Vec3f half = 0.5f * (box.high - box.low);
-        const float reach = half.dot(sheet_.normal.cwiseAbs());
-        return std::abs((box.low + half - sheet_.from).dot(sheet_.normal)) <= reach;
+    std::vector<std::uint32_t> mayReach(const DabContext&, const StrandBounds& bounds) const override {
+        if (sheet_.normal.isZero(0)) return {};
+        return bounds.find([&](const Vec3f& low, const Vec3f& high) {
+            const Vec3f half = 0.5f * (high - low);
+            const float reach = half.dot(sheet_.normal.cwiseAbs());
+            return std::abs((low + half - sheet_.from).dot(sheet_.normal)) <= reach;
+        });
     }
     /// All weigh 1 where any segment crosses.
     float weigh(const DabContext&, const BrushSettings&, std::span<const Vec3f> points,

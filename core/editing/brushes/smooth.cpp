@@ -8,7 +8,8 @@ namespace {
 constexpr BrushParameter kParameters[] = {
     {"passes", "", 1, 20, 2, false, "more is smoother over longer stretches with each dab"},
 };
-constexpr BrushInfo kInfo{"smooth", "Smooth", "takes bends out of hair", "", kParameters};
+constexpr BrushInfo kInfo{"smooth", "Smooth", "takes bends out of hair", "", kParameters, true, false,
+                          false,    true};
 
 class Smooth final : public StrandBrush {
   public:

@@ -20,9 +20,10 @@ class SkinQuery {
   public:
     virtual ~SkinQuery() = default;
     virtual SkinDistance distanceAt(const Vec3f& point) const = 0;
-    /// The distance, or where it is more than `enough` perhaps a smaller number that is so too; metres.
-    virtual float distanceUpTo(const Vec3f& point, float /*enough*/) const {
-        return distanceAt(point).distance;
+    /// The same where the distance is at most `enough` (metres). Where it is more, perhaps a smaller distance
+    /// that is so too, and the direction says nothing.
+    virtual SkinDistance distanceUpTo(const Vec3f& point, float /*enough*/) const {
+        return distanceAt(point);
     }
 };
 
