@@ -226,8 +226,9 @@ Result<std::vector<double>> GpuStepRun::wallOf(std::uint32_t frames, std::vector
 /// By the device's clock, of frames that find it at work on copies. `wall`: of a frame that does not,
 /// milliseconds.
 Result<std::vector<double>> GpuStepRun::deviceOf(std::uint32_t frames, double wall) {
-    // Until the device is at speed; its clock takes some time to rise.
-    constexpr double kToSpeed = 0.15;
+    // Until the device is at speed: an H200 that has rested takes more than a tenth of that for its clock to
+    // rise.
+    constexpr double kToSpeed = 1.0;
     const auto begin = Clock::now();
     std::vector<double> device;
     while (device.size() < frames) {

@@ -41,7 +41,7 @@ inline const LayoutOptions kHeldLayouts[] = {{StrandStorage::threads, false},
 inline std::string nameOf(const LayoutOptions& layout) {
     constexpr const char* kNames[] = {"threads", "groups", "buffers", "lanes", "wisps"};
     const bool pairs = layout.perThread == 2u;
-    if (pairs) return layout.waves ? "pairs" : "pairs without waves";
+    if (pairs) return layout.waves ? "pairs" : "pairsWithoutWaves";
     return kNames[static_cast<std::size_t>(*layout.storage)];
 }
 
