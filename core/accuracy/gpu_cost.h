@@ -3,6 +3,7 @@
 // What a frame of the strand engine costs on a GPU, on the scenes of benchmark_scenes.h, and which share of
 // it falls to each effect. Roots and spheres are made before the clock starts, as in step_cost.h.
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,10 +39,12 @@ struct GpuStepScene {
 
 /// Milliseconds a frame, medians.
 struct GpuFrameCost {
-    double device = 0.0;    ///< the dispatches, by the device's timestamps
+    double device = 0.0;    ///< the dispatches, by the device's timestamps, while it is kept busy
     double wall = 0.0;      ///< from recording to the device being done, one frame at a time
     double together = 0.0;  ///< wall clock of frames that do not wait for each other, divided by their number
 };
+
+class KeptBusy;
 
 /// A scene that runs on from measurement to measurement.
 class GpuStepRun {
@@ -51,7 +54,8 @@ class GpuStepRun {
                                    std::shared_ptr<gpu_simulation::KernelLibrary> kernels,
                                    const GpuStepScene& scene);
 
-    /// Of `frames` ≥ 1 frames of 1/60 s.
+    /// Of `frames` ≥ 1 frames of 1/60 s. For its own clock a GPU copies memory while a frame is recorded: one
+    /// that is left without work for most of the time clocks itself down.
     Result<GpuFrameCost> cost(std::uint32_t frames);
     /// As many frames as take about `seconds`, 4 to 240; runs some to find out, in which the hair comes into
     /// motion and the device to speed.
@@ -61,12 +65,17 @@ class GpuStepRun {
     double work() const;
 
   private:
-    GpuStepRun(const GpuStepScene& scene, scenes::HeadOfHair head, gpu_simulation::StrandEngine engine);
+    GpuStepRun(const GpuStepScene& scene, scenes::HeadOfHair head, gpu_simulation::StrandEngine engine,
+               std::shared_ptr<const KeptBusy> busy);
     void nextFrame();
+    Result<std::vector<double>> wallOf(std::uint32_t frames, std::vector<double>* device);
+    Result<std::vector<double>> deviceOf(std::uint32_t frames, double wall);
+    Result<std::vector<double>> togetherOf(std::uint32_t frames);
 
     GpuStepScene scene_;
     scenes::HeadOfHair head_;
     gpu_simulation::StrandEngine engine_;
+    std::shared_ptr<const KeptBusy> busy_;  // null where the device is the CPU
     std::vector<runtime::RootFrame> roots_;
     runtime::FrameInput input_;
     double time_ = 0.0;

@@ -94,9 +94,13 @@ Status checkDesc(const DeviceInfo& info, const TextureDesc& desc, std::size_t co
     return {};
 }
 
-Status checkDesc(const ComputePipelineDesc& desc) {
+Status checkDesc(const DeviceInfo& info, const ComputePipelineDesc& desc) {
     if (desc.shader == nullptr || !isStage(desc.shader, ShaderStage::Compute)) {
         return fail("pipeline '" + desc.name + "': no compute shader");
+    }
+    if (desc.wave != 0 && !info.waves.has(desc.wave)) {
+        return fail("pipeline '" + desc.name + "': the device has no waves of " + std::to_string(desc.wave) +
+                    " threads");
     }
     return {};
 }

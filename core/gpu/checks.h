@@ -11,7 +11,7 @@ namespace hairloom::gpu {
 Status checkDesc(const DeviceInfo& info, const BufferDesc& desc, std::size_t content);
 Status checkDesc(const DeviceInfo& info, const TextureDesc& desc, std::size_t content);
 Status checkDesc(const DeviceInfo& info, const GraphicsPipelineDesc& desc);
-Status checkDesc(const ComputePipelineDesc& desc);
+Status checkDesc(const DeviceInfo& info, const ComputePipelineDesc& desc);
 
 /// The usable device that fits the options; a GPU before a software rasteriser, then list order. Errors: none
 /// fits, or what the one that fits lacks.

@@ -4,6 +4,7 @@
 // to a backend. Sizes are bytes and pixels; a field left alone has the value that is right most often.
 
 #include <array>
+#include <bit>
 #include <compare>
 #include <cstddef>
 #include <cstdint>
@@ -185,6 +186,8 @@ struct GraphicsPipelineDesc {
 struct ComputePipelineDesc {
     std::string name;
     ShaderPtr shader;
+    /// Not 0: a work group is made of full waves of so many threads, one of DeviceInfo::waves.
+    std::uint32_t wave = 0;
 };
 
 struct Viewport {
@@ -277,6 +280,16 @@ std::string_view toString(DeviceType type);
 enum class Backend { Vulkan, Direct3D11 };
 std::string_view toString(Backend backend);
 
+/// Threads that a wave may have where a compute pipeline asks for it; such waves have votes, ballots and
+/// shuffles.
+struct WaveSizes {
+    std::uint32_t least = 0, most = 0;  ///< 0: none can be asked for
+
+    bool has(std::uint32_t threads) const {
+        return std::has_single_bit(threads) && threads >= least && threads <= most;
+    }
+};
+
 struct DeviceInfo {
     std::uint32_t index = 0;  ///< place in listDevices()
     std::string name;
@@ -297,6 +310,7 @@ struct DeviceInfo {
     std::uint64_t maxBufferBytes = 0;  ///< of one storage buffer as a shader sees it
     std::uint32_t maxTextureSize = 0;  ///< pixels along one side
     std::uint64_t memoryBytes = 0;     ///< of the largest device-local heap
+    WaveSizes waves;
 
     std::uint32_t maxSamples() const { return sampleCounts.empty() ? 1 : sampleCounts.back(); }
 };

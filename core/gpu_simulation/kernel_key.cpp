@@ -34,15 +34,15 @@ std::string KernelKey::defines() const {
     return fmt::format(
         "#define HAIR_POINTS {}\n#define HAIR_EXACT {}\n#define HAIR_UNROLL {}\n#define HAIR_STORAGE {}\n"
         "#define HAIR_STRANDS {}\n#define HAIR_TOGETHER {}\n"
-        "#define HAIR_PER_THREAD {}\n"
+        "#define HAIR_PER_THREAD {}\n#define HAIR_WAVE {}\n"
         "#define HAIR_CLAMPED {}\n#define HAIR_EVALUATION {}\n#define HAIR_BEND {}\n#define HAIR_TARGETS {}\n"
         "#define HAIR_CURVES {}\n#define HAIR_TENSIONS {}\n#define HAIR_COUPLED {}\n#define HAIR_SPHERES "
         "{}\n#define HAIR_WIND {}\n#define HAIR_SLEEP {}\n"
         "#define HAIR_VELOCITIES {}\n#define HAIR_STAGES {}\n{}",
         shape.points, flag(shape.exact), flag(shape.unrolled), static_cast<std::uint32_t>(shape.storage),
-        shape.strands, flag(shape.together), shape.perThread, clampedPoints, evaluation, bend, flag(targets),
-        flag(curves), flag(tensions), flag(coupled), static_cast<std::uint32_t>(spheres), flag(wind),
-        flag(sleep), flag(velocities), stages,
+        shape.strands, flag(shape.together), shape.perThread, shape.wave, clampedPoints, evaluation, bend,
+        flag(targets), flag(curves), flag(tensions), flag(coupled), static_cast<std::uint32_t>(spheres),
+        flag(wind), flag(sleep), flag(velocities), stages,
         // Without damping that system keeps the energy but for rounding, and fused it rounds forces apart
         // from what they do.
         coupled ? kRoundsEach : "");
@@ -71,6 +71,7 @@ KernelKey keyFor(const runtime::EffectPlan& plan, const runtime::SimulationSetti
         key.shape.storage = StrandStorage::threads;
         key.shape.strands = runtime::kBlockLanes;
         key.shape.perThread = 1;
+        key.shape.wave = 0;
     }
     if (plan.on(Effect::collision)) {
         key.spheres = spheres > HAIRLOOM_CONSTANT_SPHERES ? SphereSource::buffer : SphereSource::constants;

@@ -30,6 +30,8 @@ struct BatchShape {
     /// In buffers the points of a strand stand side by side, not those of neighbouring strands.
     bool together = false;
     std::uint32_t perThread = 1;  ///< of lanes: points of a thread, 1 or 2
+    /// Of lanes: threads of a wave that read each other's registers; 0: they use the memory of the group.
+    std::uint32_t wave = 0;
 
     friend bool operator==(const BatchShape&, const BatchShape&) = default;
 };

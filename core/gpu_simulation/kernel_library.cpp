@@ -111,7 +111,7 @@ struct KernelLibrary::Impl {
     mutable std::mutex mutex;
     std::condition_variable changed;
     std::map<std::string, Entry> entries;  // by defines
-    std::deque<std::string> waiting;
+    std::deque<KernelKey> waiting;
     Sources sources;
     bool stop = false;
     std::thread worker;
@@ -119,9 +119,9 @@ struct KernelLibrary::Impl {
     Impl(gpu::Device& d, std::filesystem::path f) : device(d), folder(std::move(f)) {}
 
     void work();
-    Entry& entryOf(const std::string& defines);
+    Entry& entryOf(const KernelKey& key);
     Result<Words> wordsOf(const std::string& defines);
-    Result<gpu::ComputePipelinePtr> make(const std::string& defines);
+    Result<gpu::ComputePipelinePtr> make(const KernelKey& key, const std::string& defines);
     void count(std::uint32_t Sources::*source) {
         const std::lock_guard lock(mutex);
         ++(sources.*source);
@@ -151,7 +151,7 @@ Result<Words> KernelLibrary::Impl::wordsOf(const std::string& defines) {
     return words;
 }
 
-Result<gpu::ComputePipelinePtr> KernelLibrary::Impl::make(const std::string& defines) {
+Result<gpu::ComputePipelinePtr> KernelLibrary::Impl::make(const KernelKey& key, const std::string& defines) {
     const auto words = wordsOf(defines);
     if (!words) return tl::unexpected(words.error());
     gpu::ShaderDesc desc{"strands", gpu::ShaderStage::Compute};
@@ -159,7 +159,7 @@ Result<gpu::ComputePipelinePtr> KernelLibrary::Impl::make(const std::string& def
     (direct3d ? desc.dxbc : desc.spirv) = std::as_bytes(std::span(*words));
     const auto shader = device.createShader(desc);
     if (!shader) return tl::unexpected(shader.error());
-    return device.createComputePipeline({"strands", *shader});
+    return device.createComputePipeline({"strands", *shader, key.shape.wave});
 }
 
 void KernelLibrary::Impl::work() {
@@ -167,10 +167,11 @@ void KernelLibrary::Impl::work() {
     while (true) {
         changed.wait(lock, [&] { return stop || !waiting.empty(); });
         if (stop) return;
-        const std::string defines = std::move(waiting.front());
+        const KernelKey key = std::move(waiting.front());
         waiting.pop_front();
         lock.unlock();
-        auto pipeline = make(defines);
+        const std::string defines = key.defines();
+        auto pipeline = make(key, defines);
         lock.lock();
         Entry& entry = entries[defines];
         entry.pipeline = std::move(pipeline);
@@ -180,11 +181,11 @@ void KernelLibrary::Impl::work() {
 }
 
 /// Asks for it where nobody has. The mutex is held.
-Entry& KernelLibrary::Impl::entryOf(const std::string& defines) {
-    const auto [place, isNew] = entries.try_emplace(defines);
+Entry& KernelLibrary::Impl::entryOf(const KernelKey& key) {
+    const auto [place, isNew] = entries.try_emplace(key.defines());
     if (isNew) {
         if (!worker.joinable()) worker = std::thread([this] { work(); });
-        waiting.push_back(defines);
+        waiting.push_back(key);
         changed.notify_all();
     }
     return place->second;
@@ -203,17 +204,15 @@ KernelLibrary::~KernelLibrary() {
 }
 
 Result<gpu::ComputePipelinePtr> KernelLibrary::poll(const KernelKey& key) {
-    const std::string defines = key.defines();
     const std::lock_guard lock(impl_->mutex);
-    const Entry& entry = impl_->entryOf(defines);
+    const Entry& entry = impl_->entryOf(key);
     if (!entry.done) return gpu::ComputePipelinePtr{};
     return entry.pipeline;
 }
 
 Result<gpu::ComputePipelinePtr> KernelLibrary::get(const KernelKey& key) {
-    const std::string defines = key.defines();
     std::unique_lock lock(impl_->mutex);
-    const Entry& entry = impl_->entryOf(defines);
+    const Entry& entry = impl_->entryOf(key);
     impl_->changed.wait(lock, [&] { return entry.done; });
     return entry.pipeline;
 }

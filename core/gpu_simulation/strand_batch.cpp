@@ -28,14 +28,17 @@ constexpr std::uint32_t kLeastInLanes = 4, kLeastInPairs = 2 * kLeastInLanes;
 /// measured".
 constexpr std::size_t kMostBlocksInLanes = 100'000 / kBlockLanes;
 /// Blocks of strands up to which lanes have a point each, and not two: as measured there.
-constexpr std::size_t kMostBlocksOfOne = 5'000 / kBlockLanes;
+constexpr std::size_t kMostBlocksOfOne = 4'000 / kBlockLanes;
 
 /// Of lanes: the memory of a group of more would be too much.
 constexpr std::uint32_t kMostThreads = 256;
 
+/// As many threads are a group of several waves.
+constexpr std::uint32_t kManyThreads = 128;
+
 /// Fewest strands of a work group that leave the fewest threads of its waves of 32 idle.
 std::uint32_t strandsThatFill(std::uint32_t threadsOfStrand) {
-    constexpr std::uint32_t kWave = 32, kManyThreads = 128;
+    constexpr std::uint32_t kWave = 32;
     std::uint32_t best = 1;
     double bestShare = 0.0;
     for (std::uint32_t strands = 1; strands <= kBlockLanes; strands *= 2) {
@@ -50,8 +53,20 @@ std::uint32_t strandsThatFill(std::uint32_t threadsOfStrand) {
     return best;
 }
 
+/// A ballot of a larger wave is more than a word.
+constexpr std::uint32_t kMostInWave = 32;
+
+/// The largest that holds whole strands and of which a group is made; 0: none does.
+std::uint32_t waveFor(std::uint32_t threadsOfStrand, std::uint32_t threadsOfGroup,
+                      const gpu::WaveSizes& waves) {
+    for (std::uint32_t wave = kMostInWave; wave >= threadsOfStrand; wave /= 2) {
+        if (waves.has(wave) && wave % threadsOfStrand == 0 && threadsOfGroup % wave == 0) return wave;
+    }
+    return 0;
+}
+
 BatchShape shapeFor(std::uint32_t points, bool exact, StrandStorage storage, const LayoutOptions& options,
-                    bool few) {
+                    bool few, const gpu::WaveSizes& waves) {
     BatchShape shape;
     shape.points = points;
     shape.exact = exact;
@@ -69,8 +84,13 @@ BatchShape shapeFor(std::uint32_t points, bool exact, StrandStorage storage, con
     const bool pairs = points % 2 == 0 && points >= kLeastInPairs;
     shape.perThread = pairs ? options.perThread.value_or(few ? 1 : 2) : 1;
     const std::uint32_t threads = points / shape.perThread;
-    shape.strands = std::min(options.groupStrands.value_or(strandsThatFill(threads)),
-                             std::max(std::bit_floor(kMostThreads / threads), 1u));
+    // Of many strands groups of several waves are faster, as those do not wait for each other.
+    const bool several = options.waves && !few && waveFor(threads, kManyThreads, waves) != 0;
+    const std::uint32_t chosen =
+        several ? std::min(kManyThreads / threads, kBlockLanes) : strandsThatFill(threads);
+    shape.strands =
+        std::min(options.groupStrands.value_or(chosen), std::max(std::bit_floor(kMostThreads / threads), 1u));
+    if (options.waves) shape.wave = waveFor(threads, threads * shape.strands, waves);
     return shape;
 }
 
@@ -83,7 +103,8 @@ LayoutOptions layoutFor(gpu::DeviceType type) {
     return {};
 }
 
-std::vector<StrandBatch> makeBatches(const runtime::RestShape& shape, const LayoutOptions& options) {
+std::vector<StrandBatch> makeBatches(const runtime::RestShape& shape, const LayoutOptions& options,
+                                     const gpu::WaveSizes& waves) {
     std::map<std::uint32_t, std::vector<std::uint32_t>> blocksOf;
     for (std::uint32_t b = 0; b < shape.blocks.size(); ++b) blocksOf[shape.blocks[b].points].push_back(b);
     const bool exact = blocksOf.size() <= kMostExact;
@@ -101,7 +122,8 @@ std::vector<StrandBatch> makeBatches(const runtime::RestShape& shape, const Layo
     std::vector<StrandBatch> batches;
     for (auto& [points, blocks] : blocksOf) {
         StrandBatch batch;
-        batch.shape = shapeFor(points, exact, storage, options, shape.blocks.size() <= kMostBlocksOfOne);
+        batch.shape =
+            shapeFor(points, exact, storage, options, shape.blocks.size() <= kMostBlocksOfOne, waves);
         batch.slots = static_cast<std::uint32_t>(blocks.size()) * kBlockLanes;
         batch.blocks = std::move(blocks);
         batches.push_back(std::move(batch));

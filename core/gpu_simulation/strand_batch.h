@@ -25,6 +25,9 @@ struct LayoutOptions {
     /// Points of a thread of StrandStorage::lanes, 1 or 2, where a strand has an even number of them, 8 or
     /// more; absent: what was measured to be fastest for as many strands.
     std::optional<std::uint32_t> perThread = {};
+    /// Threads of StrandStorage::lanes read each other's registers, where a work group is made of waves that
+    /// the device has and each holds whole strands; else they use the memory of the group.
+    bool waves = true;
 };
 
 /// For such a device.
@@ -46,7 +49,8 @@ struct StrandBatch {
 };
 
 /// Without buffers. Few point counts have a batch each; many share batches of 4, 8, … points.
-std::vector<StrandBatch> makeBatches(const runtime::RestShape& shape, const LayoutOptions& options);
+std::vector<StrandBatch> makeBatches(const runtime::RestShape& shape, const LayoutOptions& options,
+                                     const gpu::WaveSizes& waves);
 
 /// Calls visit(block, point, index of lane 0 in a plane of that block, index of its slot in a plane of the
 /// batch) for each row of kBlockLanes strands. From lane to lane the latter grows by laneStride(batch).

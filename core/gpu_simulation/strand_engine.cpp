@@ -47,7 +47,7 @@ Result<StrandEngine> StrandEngine::make(gpu::Device& device, std::shared_ptr<Ker
     const bool direct3d = device.info().backend == gpu::Backend::Direct3D11;
     if (direct3d && sharesBlocks(layout.storage.value_or(StrandStorage::lanes)))
         layout.storage = StrandStorage::threads;
-    impl->batches = makeBatches(*impl->shape, layout);
+    impl->batches = makeBatches(*impl->shape, layout, device.info().waves);
     if (const std::string why = impl->whyNoVelocities(); !why.empty()) return fail(why);
     impl->roots.resize(impl->shape->restRoots.size());
     if (auto made = impl->makeBuffers(); !made) return tl::unexpected(made.error());

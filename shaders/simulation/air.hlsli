@@ -2,14 +2,14 @@
 // External forces: gravity, drag of still air, wind.
 
 void stageGravity() {
-    FREE_POINTS(p) setPrevious(p, previous(p) - gFrame.gravityStep.xyz);
+    MOVED_POINTS(p) setPrevious(p, previous(p) - gFrame.gravityStep.xyz * freedom(p));
 }
 
 /// Hair takes on the air's velocity at the rate airDrag · sin of its angle to the tangent (Rünz 2012, Section
 /// 3.3). `atRoot` and `atTip` are the air's way in one substep.
 void takeAir(float3 atRoot, float3 atTip) {
     INNER_POSITIONS
-    FREE_POINTS(p) {
+    MOVED_POINTS(p) {
         const float3 here = position(p);
         const float3 before = previous(p);
         const float along = float(pointOf(p)) * (1.0 / float(POINTS - 1));
@@ -18,7 +18,7 @@ void takeAir(float3 atRoot, float3 atTip) {
         const float both = dot(flow, flow) * dot(tangent, tangent);
         const float parallel = dot(flow, tangent);
         const float sineSquared = max(both - parallel * parallel, 0.0) / (both + 1e-30);
-        setPrevious(p, before - flow * (gFrame.dragShare * sqrt(min(sineSquared, 1.0))));
+        setPrevious(p, before - flow * (gFrame.dragShare * freedom(p) * sqrt(min(sineSquared, 1.0))));
     }
 }
 

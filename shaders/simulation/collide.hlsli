@@ -250,6 +250,15 @@ void sweepPoint(uint p, float3 root, float step) {
 void stageSweep() {
     const float step = float(gSubstep + 1);
     const float3 root = gRoot + gRootStep * step;
+#if HAIR_STORAGE == 3
+    // Mostly none of the thread's points is fast.
+    float fastest = 0.0;
+    EACH_OWN(k) {
+        const float3 moved = gPosition[k] - gPrevious[k];
+        fastest = max(fastest, dot(moved, moved));
+    }
+    if (fastest < gFrame.slowSweep * gFrame.slowSweep) return;
+#endif
     FREE_POINTS(p) sweepPoint(p, root, step);
 }
 

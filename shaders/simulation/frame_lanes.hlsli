@@ -1,22 +1,43 @@
 // SPDX-License-Identifier: MIT
 // A frame of strands spread over the threads of a work group.
 
+groupshared uint gGroup;
+#if HAIR_WAVE && HAIR_THREADS > HAIR_WAVE
+groupshared uint gWaves;  // that have come
+#endif
 groupshared uint gStrandFastest[HAIR_STRANDS];
 groupshared uint gStrandLost[HAIR_STRANDS];
 
+/// Gives the thread its place in the group. Which threads a wave has is the device's own business, so that with HAIR_WAVE waves
+/// take places as they come.
+void takePlaceInGroup(uint index) {
+    gPlace = gLane = index;
+#if HAIR_WAVE
+    gPlace = gLane = WaveGetLaneIndex();
+#if HAIR_THREADS > HAIR_WAVE
+    if (index == 0) gWaves = 0u;
+    GroupMemoryBarrierWithGroupSync();
+    uint wave = 0u;
+    if (gLane == 0) InterlockedAdd(gWaves, 1u, wave);
+    gPlace += WaveReadLaneFirst(wave) * HAIR_WAVE;
+#endif
+#endif
+}
+
 /// Who the thread is.
-void enterLane(uint group, uint lane) {
-    gLane = lane;
-    gStrand = lane / STRAND_THREADS;
-    gThread = lane % STRAND_THREADS;
-    gFirst = lane - gThread;
+void enterLane(uint group) {
+    gStrand = gPlace / STRAND_THREADS;
+    gThread = gLane % STRAND_THREADS;
+    gFirst = gLane - gThread;
+#if !HAIR_WAVE
     gSide = gAsked = 0u;
+#endif
     gSlot = group * HAIR_STRANDS + gStrand;
 #if !HAIR_EXACT
     gPointCount = gBlocks[gSlot / HAIRLOOM_GROUP_STRANDS].x;
 #endif
-    gInner = gThread > 0 ? lane - 1 : lane;
-    gOuter = gThread + 1 < STRAND_THREADS ? lane + 1 : lane;
+    gInner = laneAway(-1);
+    gOuter = laneAway(1);
 }
 
 /// What stays in the thread for the frame.
@@ -32,14 +53,6 @@ void loadState() {
         gInverseMass[k] = inverseMass(p);
 #if HAIR_BEND
         gStiff[k] = stiffness(p);
-#endif
-#if HAIR_BEND == 2
-        [unroll] for (uint step = 0; step < BEND_STEPS; ++step)
-            gReduction[k * BEND_STEPS + step] = gFactors[slotOf(step, p)];
-        gReduced[k] = gFactors[slotOf(BEND_STEPS, p)].xy;
-#endif
-#if HAIR_TARGETS
-        gTarget[k] = target(p);
 #endif
 #if HAIR_CURVES
         gCurve[k] = savedCurve(p);
@@ -136,12 +149,19 @@ void writePlaces() {
 }
 
 [numthreads(HAIR_THREADS, 1, 1)]
-void main(uint3 place : SV_GroupID, uint lane : SV_GroupIndex) {
+void main(uint3 place : SV_GroupID, uint index : SV_GroupIndex) {
     const uint group = place.y * HAIRLOOM_GROUP_ROW + place.x;
     if (group >= gFrame.groups) return;
-    enterLane(group, lane);
+    takePlaceInGroup(index);
+    enterLane(group);
     const uint block = group * HAIR_STRANDS / HAIRLOOM_GROUP_STRANDS, strands = gBlocks[block].y;
-    if (lane == 0) gGroupMoved = gGroupFastest = gGroupRestored = gGroupNear = gLastAsked[0] = gLastAsked[1] = 0u;
+    if (gPlace == 0) {
+        gGroup = group;
+        gGroupMoved = gGroupFastest = gGroupRestored = gGroupNear = 0u;
+#if !HAIR_WAVE
+        gLastAsked[0] = gLastAsked[1] = 0u;
+#endif
+    }
     ONLY_POINT(0) gStrandFastest[gStrand] = gStrandLost[gStrand] = 0u;
     bool slept = false;
 #if HAIR_SLEEP
@@ -150,26 +170,28 @@ void main(uint3 place : SV_GroupID, uint lane : SV_GroupIndex) {
 #endif
     GroupMemoryBarrierWithGroupSync();
 #if HAIR_SLEEP
-    if (slept && sleepsOn(block, lane, strands, rested)) return;
+    if (slept && sleepsOn(block, gPlace, strands, rested)) return;
 #endif
     loadState();
 #if HAIR_SPHERES
-    startLists();
+    startList();
 #endif
     // What fell asleep has no speed.
     if (slept) gPrevious = gPosition;
     enterFrame();
     if (gFrame.rescale != 1.0) rescaleMotion();
 #if HAIR_SLEEP
-    lookAtRoots(block, lane);
+    lookAtRoots(block, gPlace);
 #endif
     GroupMemoryBarrierWithGroupSync();
     runSubsteps();
     finishStrand(strands);
+    // From the memory of the group, so that nothing that was worked out for loadState() is kept in registers through the substeps.
+    enterLane(gGroup);
     saveState();
     writePlaces();
     ONLY_POINT(0) leaveFrame();
-    if (lane == 0) {
+    if (gPlace == 0) {
         if (gGroupRestored == 0u) InterlockedMax(gReport[REPORT_FASTEST], gGroupFastest);
 #if HAIR_SLEEP
         judgeBlock(block, strands, rested);

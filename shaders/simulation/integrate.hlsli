@@ -4,17 +4,17 @@
 /// Slows motion relative to the moving root. First in a substep, so that it acts on velocity alone.
 void stageDamping() {
     const float lost = 1.0 - gFrame.velocityShare;
-    FREE_POINTS(p)
-        setPrevious(p, previous(p) + (position(p) - previous(p) - gRootStep) * lost);
+    MOVED_POINTS(p)
+        setPrevious(p, previous(p) + (position(p) - previous(p) - gRootStep) * (lost * freedom(p)));
 }
 
 /// Position Verlet (Rünz 2012, Eq. 10).
 void stageVerlet() {
-    FREE_POINTS(p) {
+    MOVED_POINTS(p) {
         const float3 here = position(p);
         const float3 from = here - gRootStep;
-        setPosition(p, from + (here - previous(p)));
-        setPrevious(p, from);
+        setFreePosition(p, from + (here - previous(p)));
+        setFreePrevious(p, from);
     }
 }
 

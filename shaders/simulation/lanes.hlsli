@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
 // HAIR_STORAGE 3: a strand spread over the threads of a work group, HAIR_PER_THREAD points in each. What a point has stays
-// in the registers of its thread; what others want to know of it the thread tells through the memory of the group. Barriers
-// stand where all threads come by alike, whatever their strand does: one that sleeps has left before. They are told no more
-// often, and no more is kept there, than has to be: the less memory groups have, the more of them run side by side.
+// in the registers of its thread; what others want to know of it the thread tells. Threads tell, and barriers stand, where all
+// come by alike, whatever their strand does: one that sleeps has left before. They tell no more often, and no more is kept in
+// registers and in the memory of the group, than has to be: the less of either, the more groups run side by side.
 
 #define OWN HAIR_PER_THREAD
 #define STRAND_THREADS (HAIR_POINTS / OWN)
 #define HAIR_THREADS (STRAND_THREADS * HAIR_STRANDS)
 
 static uint gThread;    // of the strand's; its points may lie past the strand's last one where strands share a batch
-static uint gLane;      // in the work group
+static uint gPlace;     // in the work group
+static uint gLane;      // in the wave, with HAIR_WAVE, else in the work group
 static uint gFirst;     // lane of the strand's first point
 static uint gInner;     // lane of the points before, or this one's own
 static uint gOuter;     // lane of the points after, or this one's own
@@ -21,8 +22,45 @@ uint pointOf(uint k) { return gThread * OWN + k; }
 uint ownOf(uint p) { return p % OWN; }
 #define ALL_POINTS(k) EACH_OWN(k) if (pointOf(k) < POINTS)
 #define FREE_POINTS(k) EACH_OWN(k) if (isFree(k))
+// The others too, without branches, so that points go side by side; storage.hlsli has the same.
+#define MOVED_POINTS(k) EACH_OWN(k)
 #define ONLY_POINT(n) if (gThread == (n) / OWN)
 
+typedef float4 Quads[OWN];
+/// The lane of the strand's thread so many after this one; this one's own beyond the ends.
+uint laneAway(int away) {
+    const int thread = int(gThread) + away;
+    return thread < 0 || thread >= int(STRAND_THREADS) ? gLane : uint(int(gLane) + away);
+}
+/// The thread, counted from a point's own, in which the point `away` from the thread's first is, and which of its own it is.
+int threadsAway(int away) { return (away + 64 * OWN) / OWN - 64; }
+uint ownAway(int away) { return uint(away + 64 * OWN) % OWN; }
+
+// What threads tell each other. With HAIR_WAVE a strand is in one wave of so many threads, which read each other's registers,
+// all of them at a time; else it goes through the memory of the group.
+#if HAIR_WAVE
+static Quads gTold, gToldToo;
+
+void tell(float4 what[OWN]) { gTold = what; }
+void tell(float4 what[OWN], float4 too[OWN]) {
+    gTold = what;
+    gToldToo = too;
+}
+void tellFirst(float4 what) { gTold[0] = what; }
+void tellLast(float4 what) { gTold[OWN - 1] = what; }
+float4 ofOwn(float4 what[OWN], uint k) { return k == 0 ? what[0] : what[OWN - 1]; }
+float4 told(uint p) { return WaveReadLaneAt(ofOwn(gTold, p % OWN), gFirst + p / OWN); }
+float4 toldToo(uint p) { return WaveReadLaneAt(ofOwn(gToldToo, p % OWN), gFirst + p / OWN); }
+float4 toldFrom(int away) { return WaveReadLaneAt(gTold[ownAway(away)], laneAway(threadsAway(away))); }
+float4 toldInner() { return WaveReadLaneAt(gTold[OWN - 1], gInner); }
+float4 toldOuter() { return WaveReadLaneAt(gTold[0], gOuter); }
+float4 toldTooInner() { return WaveReadLaneAt(gToldToo[OWN - 1], gInner); }
+float4 toldTooOuter() { return WaveReadLaneAt(gToldToo[0], gOuter); }
+float4 toldLast(int threads) { return WaveReadLaneAt(gTold[OWN - 1], laneAway(threads)); }
+
+/// Whether it holds in any thread of those that wait for each other; mostly in none.
+bool anyOfThem(bool own) { return WaveActiveAnyTrue(own); }
+#else
 // The two sides take turns, so that a thread may tell anew while others still read what it told last; what is seldom told
 // too has one side, and a barrier before it.
 groupshared float4 gTold[2 * OWN * HAIR_THREADS];
@@ -56,33 +94,45 @@ void tellLast(float4 what) {
     GroupMemoryBarrierWithGroupSync();
 }
 uint laneOf(uint p) { return (p % OWN) * HAIR_THREADS + gFirst + p / OWN; }
-/// What point p of the strand told.
+/// What point p of the strand told, the same for all threads of the strand.
 float4 told(uint p) { return gTold[gSide + laneOf(p)]; }
 float4 toldToo(uint p) { return gToldToo[laneOf(p)]; }
+/// What the point `away` from the thread's first told, or, beyond the ends, any.
+float4 toldFrom(int away) { return gTold[gSide + ownAway(away) * HAIR_THREADS + laneAway(threadsAway(away))]; }
 /// What the point before the thread's first told, and that after its last.
 float4 toldInner() { return gTold[gSide + (OWN - 1) * HAIR_THREADS + gInner]; }
 float4 toldOuter() { return gTold[gSide + gOuter]; }
 float4 toldTooInner() { return gToldToo[(OWN - 1) * HAIR_THREADS + gInner]; }
 float4 toldTooOuter() { return gToldToo[gOuter]; }
-#define INNER_OF(own, k, before) ((k) == 0 ? (before) : (own)[(k) == 0 ? 0 : (k) - 1])
-#define OUTER_OF(own, k, after) ((k) + 1 == OWN ? (after) : (own)[(k) + 1 == OWN ? 0 : (k) + 1])
+/// What the last point of the thread so many after this one told; this one's own beyond the ends.
+float4 toldLast(int threads) { return gTold[gSide + (OWN - 1) * HAIR_THREADS + laneAway(threads)]; }
 
 groupshared uint gLastAsked[2];  // when one of the group's threads last said yes; the two take turns
 static uint gAsked;
-/// Whether it holds in any thread of the work group; mostly in none.
-bool anyOfGroup(bool own) {
+/// Whether it holds in any thread of those that wait for each other; mostly in none.
+bool anyOfThem(bool own) {
     ++gAsked;
     if (own) gLastAsked[gAsked & 1u] = gAsked;
     GroupMemoryBarrierWithGroupSync();
     return gLastAsked[gAsked & 1u] == gAsked;
 }
+#endif
+#define INNER_OF(own, k, before) ((k) == 0 ? (before) : (own)[(k) == 0 ? 0 : (k) - 1])
+#define OUTER_OF(own, k, after) ((k) + 1 == OWN ? (after) : (own)[(k) + 1 == OWN ? 0 : (k) + 1])
 
 /// Sums over the threads of the strand.
 float2 sumOfStrand(float2 own) {
+#if HAIR_WAVE
+    [unroll] for (uint bit = 0; bit < 6; ++bit) {
+        if (STRAND_THREADS >> bit > 1) own += WaveReadLaneAt(own, gLane ^ (1u << bit));
+    }
+    return own;
+#else
     tellLast(float4(own, 0, 0));
     float2 sum = float2(0, 0);
     EACH for (uint t = 0; t < STRAND_THREADS; ++t) sum += told(t * OWN + OWN - 1).xy;
     return sum;
+#endif
 }
 
 #define LANE_VALUE(type, get, put, name) \
@@ -100,7 +150,6 @@ LANE_VALUE(float, tension, setTension, gTension)
 #endif
 #define SCRATCH_ARRAY(get, put, name, plane) LANE_VALUE(float3, get, put, name)
 
-typedef float4 Quads[OWN];
 /// Of vectors of the thread's points.
 Quads quadsOf(float3 v[OWN]) {
     Quads quads;
@@ -121,17 +170,13 @@ static float gInverseLengthBefore, gInverseMassAfter;
 #if HAIR_BEND
 static float gStiff[OWN];
 #endif
-#if HAIR_TARGETS
-static float3 gTarget[OWN];
-#endif
-#if HAIR_BEND == 2
-static float4 gReduction[OWN * BEND_STEPS];  // see solveBend()
-static float2 gReduced[OWN];
-#endif
 float innerInverseLength(uint k) { return INNER_OF(gInverseLength, k, gInverseLengthBefore); }
 float outerInverseMass(uint k) { return OUTER_OF(gInverseMass, k, gInverseMassAfter); }
 
 bool hasSegment(uint k) { return pointOf(k) + 1 < POINTS; }
 bool isFree(uint k) { return pointOf(k) >= FIRST_FREE && pointOf(k) < POINTS; }
+float freedom(uint k) { return isFree(k) ? 1.0 : 0.0; }
+void setFreePosition(uint k, float3 v) { gPosition[k] = isFree(k) ? v : gPosition[k]; }
+void setFreePrevious(uint k, float3 v) { gPrevious[k] = isFree(k) ? v : gPrevious[k]; }
 /// A joint stands between the segments before and after each point but the clamped ones' inner.
 bool hasJoint(uint k) { return pointOf(k) + 1 >= FIRST_FREE && pointOf(k) + 1 < POINTS; }

@@ -3,8 +3,8 @@
 
 #if HAIR_TARGETS
 /// The normals that the segments before the thread's joints have, carried from the root; `known` is false where the strand
-/// folds before it. A step along the strand takes a normal n to n − a (t·n); each thread goes all the way. `inner` is the
-/// direction before the thread's first point, `tangents` are those after its points.
+/// folds before it. A step along the strand takes a normal n to n − a (t·n); in a wave threads hand normals on, else each goes
+/// all the way. `inner` is the direction before the thread's first point, `tangents` are those after its points.
 void walkNormal(float3 inner, float3 tangents[OWN], out float3 normals[OWN], out bool known[OWN]) {
     float3 turns[OWN];
     Quads ways;  // w: 1 where the strand folds
@@ -14,6 +14,23 @@ void walkNormal(float3 inner, float3 tangents[OWN], out float3 normals[OWN], out
         turns[i] = (before + tangents[i]) * (1.0 / max(1.0 + cosine, 1e-6));
         ways[i] = float4(tangents[i], cosine < FOLD ? 1.0 : 0.0);
     }
+#if HAIR_WAVE
+    bool folds = false;
+    float3 end = rootNormal(), further[OWN];  // behind the thread's points; how it goes on from one before them
+    EACH_OWN(n) {
+        folds = folds || ways[n].w != 0.0;
+        end -= turns[n] * dot(tangents[n], end);
+        further[n] = gThread == 0 ? float3(0, 0, 0) : turns[n];
+    }
+    // The first thread's is right, and stays; after each turn another one's is.
+    [unroll] for (uint turn = 2; turn < STRAND_THREADS; ++turn) {
+        end = WaveReadLaneAt(end, gInner);
+        EACH_OWN(m) end -= further[m] * dot(tangents[m], end);
+    }
+    const float3 before = WaveReadLaneAt(end, gInner);
+    const uint foldsBefore = WaveActiveBallot(folds).x & ((1u << gLane) - (1u << gFirst));
+    float4 here = float4(gThread == 0 ? rootNormal() : before, foldsBefore != 0u ? 1.0 : 0.0);
+#else
     tell(ways, quadsOf(turns));
     float4 start = float4(rootNormal(), 0), here = start;  // w: folds before it
     EACH for (uint thread = 0; thread + 1 < STRAND_THREADS; ++thread) {
@@ -24,6 +41,7 @@ void walkNormal(float3 inner, float3 tangents[OWN], out float3 normals[OWN], out
         }
         if (thread + 1 == gThread) here = start;
     }
+#endif
     EACH_OWN(k) {
         normals[k] = here.xyz;
         known[k] = here.w == 0.0;
@@ -53,7 +71,7 @@ void measurePulls(bool frames, bool exact, out float3 pulls[OWN]) {
         float3 normals[OWN];
         bool known[OWN];
         walkNormal(unitBefore, units, normals, known);
-        EACH_OWN(f) pulls[f] -= fromFrame(INNER_OF(units, f, unitBefore), normals[f], gTarget[f]);
+        EACH_OWN(f) pulls[f] -= fromFrame(INNER_OF(units, f, unitBefore), normals[f], target(pointOf(f)));
     }
 #endif
     EACH_OWN(j) pulls[j] = hasJoint(j) ? pulls[j] * gStiff[j] : float3(0, 0, 0);
@@ -90,29 +108,30 @@ void stageStraightExact() { applyAngular(false, true); }
 #if HAIR_BEND == 2
 /// Solves (M + (¼ + q) h² K) δ = side by cyclic reduction of pairs of points, all of them at a time (as Hockney and
 /// Jesshope 1981): each step frees a pair of its neighbours and couples it to those twice as far. Its factors are the
-/// strand's own, from the program (core/gpu_simulation/bend_reduction.h); those of points that do not move are 0.
+/// strand's own, from the program (core/gpu_simulation/bend_reduction.h); those of points that do not move are 0. They are read
+/// in every substep: kept, they cost registers, and fewer groups run side by side.
 void solveBend(inout float3 sides[OWN]) {
-    const uint pair = pointOf(0) & ~1u, last = HAIR_POINTS - 1;
+    const int first = OWN == 1 ? -int(gThread & 1u) : 0;  // of the pair, from the thread's own
     [unroll] for (uint step = 0; step < BEND_STEPS; ++step) {
-        const uint apart = 2u << step;
-        // Beyond the ends factors are 0, and the point that is read any.
-        const uint before = pair >= apart ? pair - apart : pair;
-        const uint after = pair + apart <= last ? pair + apart : pair;
+        const int apart = int(2u << step);
         tell(quadsOf(sides));
-        const float3 a = told(before).xyz, b = told(min(before + 1, last)).xyz;
-        const float3 c = told(after).xyz, d = told(min(after + 1, last)).xyz;
+        // Beyond the ends factors are 0, and the point that is read any.
+        const float3 a = toldFrom(first - apart).xyz, b = toldFrom(first - apart + 1).xyz;
+        const float3 c = toldFrom(first + apart).xyz, d = toldFrom(first + apart + 1).xyz;
         EACH_OWN(i) {
-            const float4 by = gReduction[i * BEND_STEPS + step];
+            const float4 by = gFactors[slotOf(step, pointOf(i))];
             sides[i] += a * by.x + b * by.y + c * by.z + d * by.w;
         }
     }
+    float2 reduced[OWN];
+    EACH_OWN(r) reduced[r] = gFactors[slotOf(BEND_STEPS, pointOf(r))].xy;
 #if OWN == 1
     tell(quadsOf(sides));
-    sides[0] = sides[0] * gReduced[0].x + told(min(pointOf(0) ^ 1u, last)).xyz * gReduced[0].y;
+    sides[0] = sides[0] * reduced[0].x + toldFrom(first == 0 ? 1 : -1).xyz * reduced[0].y;
 #else
     const float3 even = sides[0], odd = sides[1];
-    sides[0] = even * gReduced[0].x + odd * gReduced[0].y;
-    sides[1] = odd * gReduced[1].x + even * gReduced[1].y;
+    sides[0] = even * reduced[0].x + odd * reduced[0].y;
+    sides[1] = odd * reduced[1].x + even * reduced[1].y;
 #endif
 }
 
@@ -128,7 +147,7 @@ void followFrames(float3 inner, float3 tangents[OWN]) {
     EACH_OWN(i) {
         const float3 before = INNER_OF(tangents, i, inner);
         const float3 held = rotate(turn, gCurve[i]);
-        changes[i] = fromFrame(before, normals[i], gTarget[i]) - held;
+        changes[i] = fromFrame(before, normals[i], target(pointOf(i))) - held;
         if (!known[i] || !hasJoint(i)) changes[i] = float3(0, 0, 0);
         joints += float2(dot((tangents[i] - before - held) * gStiff[i], changes[i]),
                          dot(changes[i], changes[i]) * gStiff[i]);

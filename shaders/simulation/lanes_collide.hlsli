@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Points against spheres, of a strand spread over threads; threads_collide.hlsli is the same, point after point. Each point
-// keeps a list of the spheres that are near its way, and the points of a thread leave theirs side by side.
+// Points against spheres, of a strand spread over threads; threads_collide.hlsli is the same, point after point. Each thread
+// keeps a list of the spheres that are near its points' ways, and the points leave theirs side by side.
 
 // Spheres of a set, as bits.
 uint2 allOfSet(uint count) {
@@ -33,21 +33,19 @@ uint takeSphere(inout SphereBits spheres) {
 }
 #endif
 
-/// The spheres of a set that a place can lie in until it is farther than `slack` from where the list was made, less what
-/// spheres have gone since the start of the frame.
+/// The spheres of a set that a place can lie in while it is nearer than `slack` to where the thread's first point was when the
+/// list was made, less what spheres have gone since the start of the frame.
 struct NearList {
     SphereBits spheres;
     float3 from_ws;
     float slack;  // metres
 };
-static NearList gNear[OWN];
+static NearList gNear;
 
-void startLists() {
-    EACH_OWN(k) {
-        gNear[k].spheres = NO_SPHERES;
-        gNear[k].from_ws = float3(0, 0, 0);
-        gNear[k].slack = -1.0;
-    }
+void startList() {
+    gNear.spheres = NO_SPHERES;
+    gNear.from_ws = float3(0, 0, 0);
+    gNear.slack = -1.0;
 }
 
 /// A set of spheres, first … first + count − 1, at the end of a substep.
@@ -59,47 +57,41 @@ struct SphereSet {
 float3 centreOf(SphereSet set, uint k) { return sphereCentre(set.first + k, set.step) - set.root; }
 float reachOf(SphereSet set, uint k, float pearl) { return gSpheres[set.first + k].from.w + pearl; }
 
-bool listHolds(SphereSet set, uint k, float3 place) {
-    const float3 way = place + set.root - gNear[k].from_ws;
-    const float left = gNear[k].slack - gFrame.sphereWay * set.step;
+bool listHolds(SphereSet set, float3 place) {
+    const float3 way = place + set.root - gNear.from_ws;
+    const float left = gNear.slack - gFrame.sphereWay * set.step;
     return left > 0.0 && dot(way, way) < left * left;
 }
 
-/// Makes the lists of the thread's points anew where one of them does not hold: for ways twice as long as at the speed of now
-/// to the end of the frame.
-void keepLists(SphereSet set) {
+/// Makes the thread's list anew where it does not hold for one of its points: for ways twice as long as at the speed of now to the
+/// end of the frame.
+void keepList(SphereSet set) {
     bool hold = gFrame.sphereCount <= SPHERE_SET;
-    EACH_OWN(i) hold = hold && listHolds(set, i, gPosition[i]);
+    EACH_OWN(i) hold = hold && listHolds(set, gPosition[i]);
     if (hold) return;
     const float left = float(gFrame.substeps) - set.step + 1.0;
     const float pearl = max(gFrame.pearlRoot, gFrame.pearlTip);
-    float margins[OWN];
+    float margin = 0.0;
     EACH_OWN(j) {
-        const float3 moved = gPosition[j] - gPrevious[j];
-        margins[j] = (2.0 * sqrt(dot(moved, moved)) + gFrame.sphereWay) * left + 1e-3;
-        gNear[j].spheres = NO_SPHERES;
-        gNear[j].from_ws = gPosition[j] + set.root;
-        gNear[j].slack = margins[j] + gFrame.sphereWay * set.step;
+        const float3 moved = gPosition[j] - gPrevious[j], apart = gPosition[j] - gPosition[0];
+        margin = max(margin, 2.0 * sqrt(dot(moved, moved)) * left + sqrt(dot(apart, apart)));
     }
+    margin += gFrame.sphereWay * left + 1e-3;
+    gNear.spheres = NO_SPHERES;
+    gNear.from_ws = gPosition[0] + set.root;
+    gNear.slack = margin + gFrame.sphereWay * set.step;
     [loop] for (uint k = 0; k < set.count; ++k) {
-        const float3 centre = sphereCentre(set.first + k, set.step);
         // In the world, whose rounding the factor covers.
-        const float reach = reachOf(set, k, pearl) * 1.0001;
-        EACH_OWN(n) {
-            const float3 offset = gNear[n].from_ws - centre;
-            const float far = reach + margins[n];
-            if (dot(offset, offset) <= far * far) gNear[n].spheres |= bitOfSphere(k);
-        }
+        const float3 offset = gNear.from_ws - sphereCentre(set.first + k, set.step);
+        const float far = reachOf(set, k, pearl) * 1.0001 + margin;
+        if (dot(offset, offset) <= far * far) gNear.spheres |= bitOfSphere(k);
     }
 }
 
-/// Those in which each of the thread's points lies, whose lists hold.
+/// Those in which each of the thread's points lies, whose list holds.
 void spheresTouched(SphereSet set, out SphereBits touched[OWN]) {
-    SphereBits left = NO_SPHERES;
-    EACH_OWN(i) {
-        touched[i] = NO_SPHERES;
-        left |= gNear[i].spheres;
-    }
+    SphereBits left = gNear.spheres;
+    EACH_OWN(i) touched[i] = NO_SPHERES;
     [loop] while (hasSphere(left)) {
         const uint k = takeSphere(left);
         const float3 centre = centreOf(set, k);
@@ -142,7 +134,7 @@ void settleOwn(SphereSet set, uint last[OWN], bool settles[OWN], inout float3 at
             next[i] = last[i];
             inside[i] = n > 0u;
             near[i] = NO_SPHERES;
-            if (settles[i]) near[i] = listHolds(set, i, ats[i]) ? gNear[i].spheres : firstSpheres(set.count);
+            if (settles[i]) near[i] = listHolds(set, ats[i]) ? gNear.spheres : firstSpheres(set.count);
             // It was just placed on that one.
             if (n == 0u) near[i] &= ~bitOfSphere(last[i]);
             left |= near[i];
@@ -180,14 +172,20 @@ void settleOwn(SphereSet set, uint last[OWN], bool settles[OWN], inout float3 at
     }
 }
 
-/// Pushes the thread's points out of their spheres, but those that ask where the point before them has gone, of which it
-/// returns bits: deep in a sphere. Only spheres in which they are at the start count: one that another pushes them into is
-/// settled. What a point does not need is worked out all the same, so that the points go side by side.
-uint leaveOwn(SphereSet set, bool backward, SphereBits touched[OWN]) {
+/// Pushes the thread's points of `ready` out of their spheres, but those that are deep in one, of which it returns bits: they
+/// ask where the point before them has gone. With `inners` they know. Only spheres in which they are at the start count: one that
+/// another pushes them into is settled. What a point does not need is worked out all the same, so that the points go side by side.
+uint leaveOwn(SphereSet set, bool backward, uint ready, bool knowsInner, float3 inners[OWN]) {
+    SphereBits touched[OWN], all = NO_SPHERES;
+    spheresTouched(set, touched);
+    EACH_OWN(c) {
+        if ((ready & 1u << c) == 0u) touched[c] = NO_SPHERES;
+        all |= touched[c];
+    }
+    if (!hasSphere(all)) return 0u;
     float3 ats[OWN] = gPosition;
     float3 befores[OWN] = gPrevious;
     uint asking = 0u;
-    SphereBits all = touched[0] | touched[OWN - 1];
     [loop] while (hasSphere(all)) {
         uint last[OWN];
         bool settles[OWN];
@@ -199,22 +197,27 @@ uint leaveOwn(SphereSet set, bool backward, SphereBits touched[OWN]) {
             Contact contact = contactOf(set, last[i], pearlAt(pointOf(i)), offset);
             const float squared = dot(offset, offset), reachSquared = contact.reach * contact.reach;
             settles[i] = touches && squared < reachSquared;
-            if (settles[i] && gFrame.lengthIterations > 0u && squared < reachSquared * (DEEP * DEEP)) {
-                asking |= 1u << i;
-                settles[i] = false;
-                touched[i] = NO_SPHERES;
-            }
             float3 at = ats[i], before = befores[i];
             if (backward) contact.from = backAlong(offset, at - before - contact.step, squared, contact.reach);
+            if (settles[i] && gFrame.lengthIterations > 0u && squared < reachSquared * (DEEP * DEEP)) {
+                if (knowsInner) {
+                    contact.from = acrossStrand(offset, at - inners[i]);
+                } else {
+                    asking |= 1u << i;
+                    settles[i] = false;
+                    touched[i] = NO_SPHERES;
+                }
+            }
             respond(contact, at, before);
             ats[i] = settles[i] ? at : ats[i];
             befores[i] = settles[i] ? before : befores[i];
         }
         settleOwn(set, last, settles, ats, befores);
-        all = touched[0] | touched[OWN - 1];
+        all = NO_SPHERES;
+        EACH_OWN(b) all |= touched[b];
     }
     EACH_OWN(o) {
-        if ((asking & 1u << o) == 0u) {
+        if ((ready & ~asking & 1u << o) != 0u) {
             gPosition[o] = ats[o];
             gPrevious[o] = befores[o];
         }
@@ -222,43 +225,40 @@ uint leaveOwn(SphereSet set, bool backward, SphereBits touched[OWN]) {
     return asking;
 }
 
-/// Each thread whose points ask goes the way from the root.
-void collideFromRoot(SphereSet set, bool backward, uint asking) {
-    Quads places = quadsOf(gPosition);
-    EACH_OWN(i) places[i].w = (asking & 1u << i) != 0u ? 1.0 : 0.0;
-    tell(places, quadsOf(gPrevious));
-    if (asking == 0u) return;
-    const uint last = pointOf(firstbithigh(asking));
-    float3 inner = told(FIRST_FREE - 1).xyz;
-    [loop] for (uint p = FIRST_FREE; p <= last; ++p) {
-        const float4 place = told(p);
-        if (place.w == 0.0) {
-            inner = place.xyz;
-        } else {
-            const Touch own = touchSpheres(backward, p, place.xyz, toldToo(p).xyz, inner, true, set.first,
-                                           set.first + set.count, allOfSet(set.count), set.root, set.step);
-            EACH_OWN(k) {
-                if (p == pointOf(k)) {
-                    gPosition[k] = own.at;
-                    gPrevious[k] = own.before;
-                }
-            }
-            inner = own.at;
+/// Pushes points and their pearls out of the spheres of a set (Eq. 14).
+void collideWith(SphereSet set, bool backward) {
+    keepList(set);
+    float3 inners[OWN] = gPosition;
+    uint asking = leaveOwn(set, backward, (1u << OWN) - 1u, false, inners);
+    // Round by round those go whose inner point has gone.
+    [loop] while (anyOfThem(asking != 0u)) {
+        Quads places = quadsOf(gPosition);
+        EACH_OWN(i) places[i].w = (asking & 1u << i) != 0u ? 1.0 : 0.0;
+        tellLast(places[OWN - 1]);
+        const float4 before = toldInner();
+        uint ready = 0u;
+        EACH_OWN(k) {
+            const float4 inner = INNER_OF(places, k, before);
+            inners[k] = inner.xyz;
+            if ((asking & 1u << k) != 0u && inner.w == 0.0) ready |= 1u << k;
         }
+        leaveOwn(set, backward, ready, true, inners);
+        asking &= ~ready;
     }
 }
 
-/// Pushes points and their pearls out of spheres (Eq. 14).
 void collide(bool backward) {
     SphereSet set;
     set.step = float(gSubstep + 1);
     set.root = gRoot + gRootStep * set.step;
-    [loop] for (set.first = 0; set.first < gFrame.sphereCount; set.first += SPHERE_SET) {
+    set.first = 0;
+#if HAIR_SPHERES == 1
+    set.count = gFrame.sphereCount;
+    collideWith(set, backward);
+#else
+    [loop] for (; set.first < gFrame.sphereCount; set.first += SPHERE_SET) {
         set.count = min(gFrame.sphereCount - set.first, uint(SPHERE_SET));
-        keepLists(set);
-        SphereBits touched[OWN];
-        spheresTouched(set, touched);
-        const uint asking = leaveOwn(set, backward, touched);
-        if (anyOfGroup(asking != 0u)) collideFromRoot(set, backward, asking);
+        collideWith(set, backward);
     }
+#endif
 }

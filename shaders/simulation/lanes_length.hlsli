@@ -15,15 +15,13 @@ float solveLengths(float4 rows[OWN]) {
     float4 row = rows[OWN - 1];
 #if OWN == 2
     // The threads' first rows go out of the system.
-    tell(rows);
+    tellFirst(rows[0]);
     row = reducedRow(row, rows[0], toldOuter());
 #endif
     [unroll] for (uint stride = 1; stride * OWN < HAIR_POINTS - FIRST_FREE; stride *= 2) {
         tellLast(row);
         // Beyond the ends rows are not coupled: their factor is 0, and the row that is read any.
-        const uint before = gThread >= stride ? gThread - stride : gThread;
-        const uint after = min(gThread + stride, uint(STRAND_THREADS) - 1);
-        row = reducedRow(row, told(before * OWN + OWN - 1), told(after * OWN + OWN - 1));
+        row = reducedRow(row, toldLast(-int(stride)), toldLast(int(stride)));
     }
     return row.z;
 }
@@ -60,17 +58,16 @@ void holdStrand(int holding) {
         const float above = pointOf(j) + 2 < POINTS ? dot(wanted[j], OUTER_OF(acting, j, actingAfter)) * outer * inverse : 0.0;
         const bool held = pointOf(j) + 1 >= FIRST_FREE && hasSegment(j);
         rows[j] = held ? float4(below, above, errors[j] * inverse, 0) : float4(0, 0, 0, 0);
-        if (!held) acting[j] = float3(0, 0, 0);
     }
     float lambdas[OWN];
     lambdas[OWN - 1] = solveLengths(rows);
-    tellLast(float4(acting[OWN - 1], lambdas[OWN - 1]));
-    const float4 before = toldInner();
+    tellLast(float4(lambdas[OWN - 1], 0, 0, 0));
+    const float lambdaBefore = toldInner().x;
 #if OWN == 2
-    lambdas[0] = rows[0].x * before.w + rows[0].y * lambdas[1] + rows[0].z;
+    lambdas[0] = rows[0].x * lambdaBefore + rows[0].y * lambdas[1] + rows[0].z;
 #endif
     EACH_OWN(k) {
-        const float3 pullBefore = INNER_OF(acting, k, before.xyz) * INNER_OF(lambdas, k, before.w);
+        const float3 pullBefore = INNER_OF(acting, k, actingBefore) * INNER_OF(lambdas, k, lambdaBefore);
         const float3 move = (acting[k] * lambdas[k] - pullBefore) * gInverseMass[k];
         if (isFree(k)) {
             if (holding == HOLD_RATES) {
@@ -95,13 +92,13 @@ void stageExtension() {
         const float3 edge = gPosition[i] - INNER_OF(gPosition, i, before.xyz);
         wrong = wrong || (isFree(i) && isWrong(edge, INNER_OF(gLength, i, before.w)));
     }
-    if (!anyOfGroup(wrong)) return;
+    if (!anyOfThem(wrong)) return;
     Quads places = quadsOf(gPosition);
     EACH_OWN(l) places[l].w = gLength[l];
     tell(places);
     bool moves = false;
     float4 parent = told(FIRST_FREE - 1);
-    [loop] for (uint p = FIRST_FREE; p < min(pointOf(OWN), POINTS); ++p) {
+    [loop] for (uint p = FIRST_FREE; p < POINTS; ++p) {
         const float4 own = told(p);
         moves = moves || isWrong(own.xyz - parent.xyz, parent.w);
         parent = float4(withinExtension(parent.xyz, own.xyz, parent.w), own.w);

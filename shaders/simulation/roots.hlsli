@@ -9,6 +9,46 @@ float4 rotationBetween(float4 from, float4 to, float t) {
     return mixed * (1.0 / sqrt(dot(mixed, mixed)));
 }
 
+#if HAIR_STORAGE == 3
+// What the root carries in each of as many substeps as the strand has threads, of which each makes one.
+groupshared float4 gTurns[HAIR_THREADS], gTangents[HAIR_THREADS];
+#if HAIR_TARGETS
+groupshared float4 gNormals[HAIR_THREADS];
+#endif
+static float gRootLength;
+static bool gCut;  // the root has jumped, and does not turn in this frame
+
+/// Of this substep and the next ones, as many as the strand has threads.
+void carryRoot() {
+    const float4 to = gRootsTo[2 * gSlot + 1];
+    float4 from = to;
+    if (!gCut) from = float4(rootRow(3), rootRow(4), rootRow(5), rootRow(6));
+    const uint substep = gSubstep + gThread;
+    const float share = 1.0 / float(gFrame.substeps);
+    const float4 now = rotationBetween(from, to, float(substep + 1) * share);
+    float4 before = from;
+    if (substep > 0) before = rotationBetween(from, to, float(substep) * share);
+    GroupMemoryBarrierWithGroupSync();
+    gTurns[gPlace] = multiply(now, conjugate(before));
+    gTangents[gPlace] = float4(rotate(now, restVector(0) * inverseLength(0)), 0);
+#if HAIR_TARGETS
+    gNormals[gPlace] = float4(rotate(now, target(POINTS - 1)), 0);
+#endif
+    GroupMemoryBarrierWithGroupSync();
+}
+uint placeOfSubstep() { return gPlace - gThread + gSubstep % STRAND_THREADS; }
+void turnRoot() {
+    if (gSubstep % STRAND_THREADS == 0) carryRoot();
+}
+/// From the rotation a substep ago to that of now.
+float4 turnNow() { return gTurns[placeOfSubstep()]; }
+/// The direction and the normal that the root carries, before the first segment.
+float3 rootTangent() { return gTangents[placeOfSubstep()].xyz; }
+float3 firstSegment() { return rootTangent() * gRootLength; }
+#if HAIR_TARGETS
+float3 rootNormal() { return gNormals[placeOfSubstep()].xyz; }
+#endif
+#else
 static float4 gRotationFrom, gRotationTo;
 static float4 gRotation;     // of now
 static float4 gTurn;         // from the rotation a substep ago to that of now
@@ -39,6 +79,7 @@ float3 rootTangent() { return rotate(gRotation, gRootSegment.xyz * gRootSegment.
 #if HAIR_TARGETS
 float3 rootNormal() { return rotate(gRotation, gNormalAtRest); }
 #endif
+#endif
 
 /// Takes the way of the root through the frame.
 void enterFrame() {
@@ -48,7 +89,8 @@ void enterFrame() {
     const float4 rotationTo = gRootsTo[2 * gSlot + 1];
     const float3 way = to - from;
     // A cut carries the strand along rigidly.
-    if (!(dot(way, way) <= gFrame.teleportDistance * gFrame.teleportDistance)) {
+    const bool cut = !(dot(way, way) <= gFrame.teleportDistance * gFrame.teleportDistance);
+    if (cut) {
         const float4 turn = multiply(rotationTo, conjugate(rotationFrom));
         ALL_POINTS(p) {
             setPosition(p, rotate(turn, position(p)));
@@ -62,7 +104,12 @@ void enterFrame() {
     }
     gRoot = from;
     gRootStep = (to - from) / float(gFrame.substeps);
+#if HAIR_STORAGE == 3
+    gCut = cut;
+    gRootLength = segmentLength(0);
+#else
     setRotations(rotationFrom, rotationTo);
+#endif
 }
 
 void leaveFrame() {

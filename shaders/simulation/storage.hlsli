@@ -93,6 +93,11 @@ static uint gPointCount;
 // those of the thread, here all of its strand.
 #define ALL_POINTS(p) EACH for (uint p = 0; p < POINTS; ++p)
 #define FREE_POINTS(p) EACH for (uint p = FIRST_FREE; p < POINTS; ++p)
+// Likewise, with others among them: those have no freedom(), and setFreePosition() and setFreePrevious() leave them.
+#define MOVED_POINTS(p) FREE_POINTS(p)
+#define freedom(p) 1.0
+#define setFreePosition setPosition
+#define setFreePrevious setPrevious
 #define ONLY_POINT(n)
 uint pointOf(uint k) { return k; }
 uint ownOf(uint p) { return p; }

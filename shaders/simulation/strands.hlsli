@@ -5,7 +5,7 @@
 //   HAIR_POINTS      points that a strand may have; HAIR_EXACT 1: all have as many
 //   HAIR_UNROLL      1: loops along the strand are unrolled
 //   HAIR_STORAGE     0 … 4: see storage.hlsli; HAIR_STRANDS: of a work group
-//   HAIR_TOGETHER, HAIR_PER_THREAD: see storage.hlsli, lanes.hlsli
+//   HAIR_TOGETHER, HAIR_PER_THREAD, HAIR_WAVE: see storage.hlsli, lanes.hlsli
 //   HAIR_CLAMPED     1, 2: clamped points
 //   HAIR_EVALUATION  0; 1: integrators that evaluate forces elsewhere; 2: RK4
 //   HAIR_BEND        0; 1: with stiffness; 2: with the factors of the strand's matrix

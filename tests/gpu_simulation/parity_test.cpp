@@ -241,6 +241,23 @@ TEST_P(Parity, ThreeSubsteps) {
     }
 }
 
+/// A thread for each point, and strands short enough for waves of 8 threads.
+TEST_F(GpuSimulationTest, ShortStrandsInWaves) {
+    SimulationSettings settings = bare();
+    collide(settings, CollisionResponse::radial);
+    bend(settings, AngularMethod::implicit);
+    blow(settings, WindKind::turbulent);
+    settings.substeps = 3;
+    constexpr std::array<std::uint32_t, 4> kShort{8, 7, 6, 5};
+    const Scene scene = test::makeScene(settings, Hair::curled, 19, kShort);
+    for (const bool waves : {true, false}) {
+        SCOPED_TRACE(waves);
+        const LayoutOptions layout{StrandStorage::lanes, false, {}, 1, waves};
+        StrandEngine engine = engineOf(scene.view(), scene.settings, options(layout));
+        compare(engine, scene, {4e-6, 4});
+    }
+}
+
 class ManySpheres : public GpuSimulationTest, public testing::WithParamInterface<std::size_t> {};
 
 /// More spheres than a kernel has constants, and more than a set has; all of them move.

@@ -170,8 +170,8 @@ Result<std::shared_ptr<ShaderImpl>> ShaderImpl::create(const ContextPtr& context
     return result;
 }
 
-Result<ComputePipelinePtr> createPipeline(const ContextPtr&, const ComputePipelineDesc& desc) {
-    if (auto status = checkDesc(desc); !status) return tl::unexpected(status.error());
+Result<ComputePipelinePtr> createPipeline(const ContextPtr& context, const ComputePipelineDesc& desc) {
+    if (auto status = checkDesc(context->info, desc); !status) return tl::unexpected(status.error());
     auto result = std::make_shared<ComputePipelineImpl>();
     result->desc = desc;
     result->shader = std::static_pointer_cast<const ShaderImpl>(desc.shader);

@@ -175,6 +175,25 @@ int findQueueFamily(VkPhysicalDevice physical) {
     return -1;
 }
 
+/// Where the device lets compute pipelines choose, and has what waves tell each other with.
+WaveSizes wavesOf(VkPhysicalDevice physical, const VkPhysicalDeviceVulkan13Features& features) {
+    if (features.subgroupSizeControl == VK_FALSE || features.computeFullSubgroups == VK_FALSE) return {};
+    auto p13 =
+        make<VkPhysicalDeviceVulkan13Properties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_PROPERTIES);
+    auto p11 =
+        make<VkPhysicalDeviceVulkan11Properties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES);
+    auto p2 = make<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2);
+    p2.pNext = &p13;
+    p13.pNext = &p11;
+    vkGetPhysicalDeviceProperties2(physical, &p2);
+    constexpr VkSubgroupFeatureFlags kNeeded = VK_SUBGROUP_FEATURE_BASIC_BIT | VK_SUBGROUP_FEATURE_VOTE_BIT |
+                                               VK_SUBGROUP_FEATURE_BALLOT_BIT |
+                                               VK_SUBGROUP_FEATURE_SHUFFLE_BIT;
+    if ((p11.subgroupSupportedOperations & kNeeded) != kNeeded) return {};
+    if ((p13.requiredSubgroupSizeStages & VK_SHADER_STAGE_COMPUTE_BIT) == 0) return {};
+    return {p13.minSubgroupSize, p13.maxSubgroupSize};
+}
+
 DeviceInfo describe(VkPhysicalDevice physical, std::uint32_t index, bool surfaces) {
     auto driver = make<VkPhysicalDeviceDriverProperties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES);
     auto p2 = make<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2);
@@ -223,6 +242,7 @@ DeviceInfo describe(VkPhysicalDevice physical, std::uint32_t index, bool surface
     if (f13.dynamicRendering == VK_FALSE) info.whyUnusable = "no dynamic rendering";
     if (f13.synchronization2 == VK_FALSE) info.whyUnusable = "no synchronization2";
     info.usable = info.whyUnusable.empty();
+    info.waves = wavesOf(physical, f13);
 
     const VkSampleCountFlags samples =
         limits.framebufferColorSampleCounts & limits.framebufferDepthSampleCounts;

@@ -185,7 +185,7 @@ Status PipelineCore::createLayout(std::span<const ShaderImpl* const> shaders) {
 }
 
 Result<ComputePipelinePtr> createPipeline(const ContextPtr& context, const ComputePipelineDesc& desc) {
-    if (auto status = checkDesc(desc); !status) return tl::unexpected(status.error());
+    if (auto status = checkDesc(context->info, desc); !status) return tl::unexpected(status.error());
     const auto* shader = static_cast<const ShaderImpl*>(desc.shader.get());
     auto result = std::make_shared<ComputePipelineImpl>(context);
     result->core.name = desc.name;
@@ -197,6 +197,13 @@ Result<ComputePipelinePtr> createPipeline(const ContextPtr& context, const Compu
     auto info = make<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
     info.layout = result->core.layout;
     info.stage = stageInfo(*shader);
+    auto wave = make<VkPipelineShaderStageRequiredSubgroupSizeCreateInfo>(
+        VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_REQUIRED_SUBGROUP_SIZE_CREATE_INFO);
+    wave.requiredSubgroupSize = desc.wave;
+    if (desc.wave != 0) {
+        info.stage.pNext = &wave;
+        info.stage.flags = VK_PIPELINE_SHADER_STAGE_CREATE_REQUIRE_FULL_SUBGROUPS_BIT;
+    }
     const VkResult r =
         vkCreateComputePipelines(context->device, VK_NULL_HANDLE, 1, &info, nullptr, &result->core.handle);
     if (r != VK_SUCCESS) return context->failed(r, "creating pipeline '" + desc.name + "'");
