@@ -134,8 +134,10 @@ TEST_F(Permutation, KernelsOfTheProgramAreThoseOfDefaultPlans) {
             const BatchShape threads{16, true, true, StrandStorage::threads};
             asked.push_back(keyFor(runtime::plan(scene), scene.settings, threads, spheres, false).defines());
             if (device()->info().backend == gpu::Backend::Direct3D11) continue;
+            // In waves of 32; few strands with a point a thread, many with two.
             for (const std::uint32_t perThread : {1u, 2u}) {
-                const BatchShape lanes{16, true, true, StrandStorage::lanes, 2 * perThread, true, perThread};
+                const std::uint32_t ofGroup = perThread == 1 ? 2 : 16;
+                const BatchShape lanes{16, true, true, StrandStorage::lanes, ofGroup, true, perThread, 32};
                 asked.push_back(
                     keyFor(runtime::plan(scene), scene.settings, lanes, spheres, false).defines());
             }
