@@ -3,19 +3,14 @@
 
 #include <gtest/gtest.h>
 
-#include "core/base/random.h"
+#include "tests/geometry/test_meshes.h"
 
 namespace hairloom::editing {
 namespace {
 
-Vec3f randomVector(Random& random, float extent) {
-    const float x = random.uniform(-extent, extent), y = random.uniform(-extent, extent);
-    return {x, y, random.uniform(-extent, extent)};
-}
-
 /// Along an axis, in a plane of two, nearly along one, or anyhow.
 Vec3f randomAxis(Random& random) {
-    Vec3f axis = randomVector(random, 1) + Vec3f(0, 0, 1e-3f);
+    Vec3f axis = test::randomPoint(random, 1) + Vec3f(0, 0, 1e-3f);
     const std::uint32_t kind = random.below(4);
     if (kind < 3) axis[random.below(3)] = kind == 2 ? 1e-20f : 0.0f;
     if (kind == 1) axis = Vec3f::Unit(random.below(3)) * (random.below(2) == 0 ? 1.0f : -1.0f);
@@ -27,17 +22,17 @@ TEST(BoxTest, MissesNoBoxWithAPointInside) {
     Random random(1);
     std::size_t touched = 0, passed = 0;
     for (int i = 0; i < 20000; ++i) {
-        const BrushVolume volume{randomVector(random, 0.1f), randomAxis(random),
+        const BrushVolume volume{test::randomPoint(random, 0.1f), randomAxis(random),
                                  i % 3 == 0 ? 0.0f : random.uniform(0, 0.1f), random.uniform(0.001f, 0.05f)};
         const BoxTest test(volume);
-        const Vec3f corner = randomVector(random, 0.15f);
-        Vec3f size = randomVector(random, 0.1f).cwiseAbs();
+        const Vec3f corner = test::randomPoint(random, 0.15f);
+        Vec3f size = test::randomPoint(random, 0.1f).cwiseAbs();
         for (Eigen::Index axis = 0; axis < 3; ++axis) {
             if (random.below(4) == 0) size[axis] = 0;
         }
         bool isTouched = false;
         for (int k = 0; k < 64; ++k) {
-            const Vec3f share = randomVector(random, 0.5f) + Vec3f::Constant(0.5f);
+            const Vec3f share = test::randomPoint(random, 0.5f) + Vec3f::Constant(0.5f);
             const Vec3f point = corner + size.cwiseProduct(share);
             isTouched = isTouched || volume.squaredDistance(point) < volume.radius * volume.radius;
         }

@@ -12,18 +12,13 @@
 namespace hairloom::editing {
 namespace {
 
-Vec3f randomPoint(Random& random, float extent) {
-    return {random.uniform(-extent, extent), random.uniform(-extent, extent),
-            random.uniform(-extent, extent)};
-}
-
 TEST(SkinField, IsNearTheExactDistanceWhereItIsAskedFor) {
     const auto skin = std::make_shared<const Skin>(sphereScalp(0.09f, 4, Vec3f::Zero()));
     const SkinField field(skin);
     Random random(1);
     int near = 0;
     for (int i = 0; i < 4000; ++i) {
-        const Vec3f point = randomPoint(random, 0.12f);
+        const Vec3f point = test::randomPoint(random, 0.12f);
         const Skin::Sample exact = skin->at(point);
         const SkinDistance quick = field.distanceAt(point);
         const SkinDistance upTo = field.distanceUpTo(point, 0.001f);
@@ -69,7 +64,7 @@ TEST(SkinField, MissesSharpEdgesByLessThanAThirdOfACell) {
     Random random(2);
     float worst = 0;
     for (int i = 0; i < 6000; ++i) {
-        const Vec3f point = randomPoint(random, 0.058f);
+        const Vec3f point = test::randomPoint(random, 0.058f);
         const float exact = skin->at(point).distance;
         if (std::abs(exact) < 0.5f * SkinField::kReach)
             worst = std::max(worst, std::abs(field.distanceAt(point).distance - exact));
@@ -86,7 +81,7 @@ TEST(SkinField, AnswersUpToADistanceAsItAnswersAtAll) {
     Random random(7);
     int near = 0, enoughs = 0;
     for (int i = 0; i < 6000; ++i) {
-        Vec3f point = randomPoint(random, i % 5 == 0 ? 0.3f : 0.11f);
+        Vec3f point = test::randomPoint(random, i % 5 == 0 ? 0.3f : 0.11f);
         if (i % 7 == 0) point = 0.002f * (point / 0.002f).array().round().matrix();
         const float enough = random.uniform(-0.03f, 0.03f);
         const SkinDistance whole = field.distanceAt(point);
@@ -121,7 +116,7 @@ TEST(SkinField, AnswersAlikeForAnyNumberOfThreadsAndOrder) {
             for (std::size_t i = begin; i < end; ++i) {
                 const std::size_t k = backwards ? kPoints - 1 - i : i;
                 Random random(3, k);
-                answers[k] = field.distanceAt(randomPoint(random, 0.11f)).distance;
+                answers[k] = field.distanceAt(test::randomPoint(random, 0.11f)).distance;
             }
         });
     };

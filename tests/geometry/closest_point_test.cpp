@@ -6,16 +6,10 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/base/random.h"
 #include "tests/geometry/test_meshes.h"
 
 namespace hairloom {
 namespace {
-
-Vec3f randomPoint(Random& random, float extent) {
-    return {random.uniform(-extent, extent), random.uniform(-extent, extent),
-            random.uniform(-extent, extent)};
-}
 
 double distanceToSegment(const Vec3d& p, const Vec3d& a, const Vec3d& b) {
     const double t = std::clamp((p - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
@@ -48,7 +42,7 @@ TEST(SurfaceTree, ClosestAgreesWithAllTriangles) {
         const SurfaceTree tree(mesh, faces);
         Random random(3);
         for (int i = 0; i < 500; ++i) {
-            const Vec3f point = randomPoint(random, 2);
+            const Vec3f point = test::randomPoint(random, 2);
             const SurfaceTree::Hit hit = tree.closest(point);
             EXPECT_NEAR(hit.distance, bruteForce(mesh, faces, point), 1e-5);
             EXPECT_TRUE(std::binary_search(faces.begin(), faces.end(), hit.surface.triangle));
@@ -72,7 +66,7 @@ TEST(SurfaceTree, SignTellsInsideOfASharpSolid) {
     const SurfaceTree tree(mesh);
     Random random(4);
     for (int i = 0; i < 3000; ++i) {
-        const Vec3f point = randomPoint(random, 1.5f);
+        const Vec3f point = test::randomPoint(random, 1.5f);
         bool inside = true;
         for (std::uint32_t t = 0; t < 4; ++t)
             inside =
@@ -87,7 +81,7 @@ TEST(SurfaceTree, RaysHitTheNearSideOfASphere) {
     const SurfaceTree tree(mesh);
     Random random(5);
     for (int i = 0; i < 200; ++i) {
-        const Vec3f direction = randomPoint(random, 1).normalized();
+        const Vec3f direction = test::randomPoint(random, 1).normalized();
         const auto hit = tree.firstHit(-3 * direction, 7 * direction);
         ASSERT_TRUE(hit);
         EXPECT_NEAR(hit->distance, 2, 5e-3);

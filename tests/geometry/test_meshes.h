@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Small meshes made in code, for the tests of any room.
+// Small meshes made in code, and random points, for the tests of any room.
 
 #include <cmath>
 #include <cstdint>
@@ -12,9 +12,16 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/random.h"
 #include "core/geometry/scalp_mesh.h"
 
 namespace hairloom::test {
+
+/// In a cube around the origin, half of whose side is `extent`.
+inline Vec3f randomPoint(Random& random, float extent) {
+    return {random.uniform(-extent, extent), random.uniform(-extent, extent),
+            random.uniform(-extent, extent)};
+}
 
 inline void addFace(PolygonSoup& soup, std::initializer_list<std::uint32_t> corners) {
     soup.corners.insert(soup.corners.end(), corners);
