@@ -36,9 +36,11 @@ constexpr std::uint32_t kMostThreads = 256;
 /// As many threads are a group of several waves.
 constexpr std::uint32_t kManyThreads = 128;
 
-/// Fewest strands of a work group that leave the fewest threads of its waves of 32 idle.
+/// The largest wave that is asked for, as a ballot of more is more than a word; and what most devices have.
+constexpr std::uint32_t kWave = 32;
+
+/// Fewest strands of a work group that leave the fewest threads of its waves idle.
 std::uint32_t strandsThatFill(std::uint32_t threadsOfStrand) {
-    constexpr std::uint32_t kWave = 32;
     std::uint32_t best = 1;
     double bestShare = 0.0;
     for (std::uint32_t strands = 1; strands <= kBlockLanes; strands *= 2) {
@@ -53,13 +55,10 @@ std::uint32_t strandsThatFill(std::uint32_t threadsOfStrand) {
     return best;
 }
 
-/// A ballot of a larger wave is more than a word.
-constexpr std::uint32_t kMostInWave = 32;
-
 /// The largest that holds whole strands and of which a group is made; 0: none does.
 std::uint32_t waveFor(std::uint32_t threadsOfStrand, std::uint32_t threadsOfGroup,
                       const gpu::WaveSizes& waves) {
-    for (std::uint32_t wave = kMostInWave; wave >= threadsOfStrand; wave /= 2) {
+    for (std::uint32_t wave = kWave; wave >= threadsOfStrand; wave /= 2) {
         if (waves.has(wave) && wave % threadsOfStrand == 0 && threadsOfGroup % wave == 0) return wave;
     }
     return 0;
