@@ -18,10 +18,10 @@ function(hairloom_qt_beside_programs target)
     add_dependencies(${target} hairloom_qt)
 endfunction()
 
-# Qt's plugin for SVG is a package of its own, which is not built there: icons are drawn into PNG files. ImageMagick makes 96
-# pixels of the 24 units of an icon, so that they stay sharp on any display.
+# Qt's plugin for SVG is a package of its own, which is not built there: icons are drawn into PNG files, with 96 pixels for the
+# 24 units of an icon, so that they stay sharp on any display.
 function(hairloom_icons_as_png target icons)
-    find_program(HAIRLOOM_CONVERT convert REQUIRED DOC "ImageMagick's program (Debian: imagemagick)")
+    find_program(HAIRLOOM_RSVG_CONVERT rsvg-convert REQUIRED DOC "librsvg's program (Debian: librsvg2-bin)")
     set(folder "${CMAKE_CURRENT_BINARY_DIR}/png")
     set(outputs)
     set(entries "")
@@ -30,7 +30,7 @@ function(hairloom_icons_as_png target icons)
         set(output "${folder}/icons/${name}.png")
         add_custom_command(OUTPUT "${output}"
             COMMAND "${CMAKE_COMMAND}" -E make_directory "${folder}/icons"
-            COMMAND "${HAIRLOOM_CONVERT}" -background none -density 288 "MSVG:${icon}" -resize 96x96 -strip "PNG32:${output}"
+            COMMAND "${HAIRLOOM_RSVG_CONVERT}" --width 96 --height 96 --output "${output}" "${icon}"
             DEPENDS "${icon}" COMMENT "Drawing icon ${name}" VERBATIM)
         list(APPEND outputs "${output}")
         string(APPEND entries "<file>icons/${name}.png</file>")
