@@ -410,10 +410,13 @@ HWY_INLINE void push(const BlockView& block, Points points, V3 centre, float rad
         const V reach = all(radius) + all(pearls[p]);
         const V3 offset = load3(block.position, i) - centre;
         const V squared = dot(offset, offset);
-        if (HWY_LIKELY(hn::AllFalse(D(), squared < reach * reach))) continue;
+        const auto inside = squared < reach * reach;
+        if (HWY_LIKELY(hn::AllFalse(D(), inside))) continue;
         const Direction direction = directionOf(offset);
         const V3 way = direction.unit * (hn::Max(reach - direction.length, hn::Zero(D())) * stiffness);
-        store3(load3(block.previous, i) - way, block.previous, i);
+        // A point just outside keeps its place whatever its neighbours do: rounding makes of its length less
+        // than the reach.
+        store3(load3(block.previous, i) - select(inside, way, zero3()), block.previous, i);
     }
 }
 

@@ -425,6 +425,29 @@ TEST(Collision, ThePenaltyForceOfACentreActsUpwards) {
     EXPECT_NEAR(moved.x, 0.0f, 1e-9f);
 }
 
+TEST(Collision, ThePenaltyForceLeavesPointsJustOutsideAlone) {
+    const std::vector<Sphere> sphere{{{0.0f, 0.0f, 0.0f}, 0.08f}};
+    FreePoints points;
+    points.settings.collisionResponse = CollisionResponse::penalty;
+    // Every other one pulls the rest of its vector into the computation.
+    for (int k = 0; k < 400; ++k) {
+        const float angle = 0.37f * static_cast<float>(k), height = std::cos(0.11f * static_cast<float>(k));
+        const float across = std::sqrt(1.0f - height * height);
+        const float distance = 0.08f * (k % 2 == 0 ? 0.99f : 1.0f + 1.5e-7f * static_cast<float>(k % 5));
+        points.add(Float3{across * std::cos(angle), height, across * std::sin(angle)} * distance);
+    }
+    Engine engine = points.engine();
+    run(engine, points.strands, 1, 1.0f / 600.0f, sphere);
+    std::size_t outside = 0;
+    for (std::size_t k = 0; k < points.strands.count(); ++k) {
+        const Float3 before = points.strands.points[2 * k + 1];
+        if (length(before) < 0.08f * (1.0f + 1.2e-7f)) continue;
+        ++outside;
+        EXPECT_EQ(FreePoints::place(engine, k), before) << k;
+    }
+    EXPECT_GT(outside, 100u);
+}
+
 /// Hair and spheres that move through it, slowly and fast; the strands all in one engine or each in its own.
 std::vector<Float3> swept(const Strands& strands, CollisionResponse response) {
     SimulationSettings s;
