@@ -136,7 +136,7 @@ void recordShading(gpu::CommandList& list, RendererState& state) {
         constants.counts = {points, constants.counts.y, rows.threads(), state.detail.subdivisions};
         list.setConstants(0, gpu::bytesOf(constants));
         bind(list, {Binding::read(0, batch.curve), Binding::read(1, batch.headers),
-                    Binding::read(3, batch.seen ? batch.seen : state.noWords),
+                    Binding::read(3, batch.seen ? batch.seen : state.noSky),
                     Binding::write(0, state.colourOf(batch))});
         list.dispatch(rows.groups, rows.rows);
     }

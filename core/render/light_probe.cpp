@@ -39,16 +39,7 @@ Status prepare(gpu::Device& device, const RenderScene& scene, const RenderOption
     if (const auto fitted = state.targets.fit(device, state.plan); !fitted)
         return tl::unexpected(fitted.error());
     if (auto status = state.scene.prepareCurves(device, options.subdivisions); !status) return status;
-    gpu::TextureDesc desc;
-    desc.name = "nothing";
-    const std::array<std::byte, 4> black{};
-    auto nothing = device.createTexture(desc, black);
-    if (!nothing) return tl::unexpected(nothing.error());
-    state.nothing = std::move(*nothing);
-    auto noWords = makeBuffer(device, "no words", black, 4);
-    if (!noWords) return tl::unexpected(noWords.error());
-    state.noWords = std::move(*noWords);
-    return {};
+    return prepareStandIns(device, state);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <vector>
 
 namespace hairloom::render {
 namespace {
@@ -17,6 +18,18 @@ constexpr std::uint32_t kPatchesPerDrawOnCpu = 32;
 constexpr float kPixelsPerPiece = 2;  // of a tessellated ribbon
 constexpr shaders::float4 kSkin{0.35f, 0.6f, 28, 0};
 constexpr shaders::float4 kMatte{0, 0, 1, 0};
+
+Status prepareBuffer(gpu::Device& device, const char* name, std::uint32_t elementBytes,
+                     gpu::BufferPtr& buffer) {
+    if (buffer != nullptr) return {};
+    gpu::BufferDesc desc;
+    desc.name = name;
+    desc.size = desc.elementBytes = elementBytes;
+    auto made = device.createBuffer(desc, std::vector<std::byte>(elementBytes));
+    if (!made) return tl::unexpected(made.error());
+    buffer = std::move(*made);
+    return {};
+}
 
 /// Offsets of a frame in pixels: Gaussian (sigma 0.45), which makes the average a Gaussian filter.
 std::array<float, 2> jitter(std::uint32_t number, std::uint32_t frames) {
@@ -173,6 +186,19 @@ void recordBlend(gpu::CommandList& list, RendererState& state, const Mat4f& clip
 }
 
 }  // namespace
+
+Status prepareStandIns(gpu::Device& device, RendererState& state) {
+    if (state.nothing == nullptr) {
+        gpu::TextureDesc desc;
+        desc.name = "nothing";
+        auto made = device.createTexture(desc, std::array<std::byte, 4>{});
+        if (!made) return tl::unexpected(made.error());
+        state.nothing = std::move(*made);
+    }
+    if (auto status = prepareBuffer(device, "no words", sizeof(std::uint32_t), state.noWords); !status)
+        return status;
+    return prepareBuffer(device, "no sky", sizeof(shaders::SkyPoint), state.noSky);
+}
 
 shaders::ViewConstants viewConstants(const RendererState& state, const Mat4f& clipFromWorld,
                                      std::uint32_t number) {

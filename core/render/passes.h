@@ -49,7 +49,8 @@ struct RendererState {
     bool onCpu;  ///< the device is a software rasteriser
     Targets targets;
     gpu::TexturePtr nothing;       ///< one pixel, bound where a texture is not there
-    gpu::BufferPtr noWords;        ///< bound where a buffer is not there
+    gpu::BufferPtr noWords;        ///< bound where a buffer of words is not there
+    gpu::BufferPtr noSky;          ///< bound where no point has seen the sky
     gpu::SamplerPtr linearFilter;  ///< once a filter was asked for
     std::vector<LightView> lightViews;
     std::vector<LightView> skyViews;  ///< where the plan has maps of the sky
@@ -71,6 +72,8 @@ struct RendererState {
     const gpu::BufferPtr& orNothing(BufferId id) const { return targets[id] ? targets[id] : noWords; }
 };
 
+/// What is bound where a scene has nothing of the kind; made once.
+Status prepareStandIns(gpu::Device& device, RendererState& state);
 /// The constants that follow from camera and lights.
 void setUpLights(RendererState& state);
 shaders::ShadeConstants shadeConstants(const RendererState& state, const HairMaterial& material);

@@ -221,23 +221,7 @@ Status Renderer::Parts::prepareTargets(bool presents) {
 
 /// What is needed once and not by every scene.
 Status Renderer::Parts::prepareHelpers() {
-    if (state.nothing == nullptr) {
-        gpu::TextureDesc desc;
-        desc.name = "nothing";
-        const std::array<std::byte, 4> black{};
-        auto made = device.createTexture(desc, black);
-        if (!made) return tl::unexpected(made.error());
-        state.nothing = std::move(*made);
-    }
-    if (state.noWords == nullptr) {
-        gpu::BufferDesc desc;
-        desc.name = "no words";
-        desc.size = 4;
-        desc.elementBytes = 4;
-        auto made = device.createBuffer(desc, std::array<std::byte, 4>{});
-        if (!made) return tl::unexpected(made.error());
-        state.noWords = std::move(*made);
-    }
+    if (auto status = prepareStandIns(device, state); !status) return status;
     if (state.plan.runs(Pass::filter) && state.linearFilter == nullptr) {
         auto made = device.createSampler({});
         if (!made) return tl::unexpected(made.error());
