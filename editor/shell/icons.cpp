@@ -56,10 +56,13 @@ class TintedEngine : public QIconEngine {
 
 }  // namespace
 
+const QString& iconEnding() {
+    static const QString ending = QFile::exists(":/icons/open.png") ? "png" : "svg";
+    return ending;
+}
+
 QIcon icon(const QString& name) {
-    // Builds for systems without Qt's SVG plugin carry the icons as PNG too.
-    static const QString kEnding = QFile::exists(":/icons/open.png") ? "png" : "svg";
-    return QIcon(new TintedEngine(QStringLiteral(":/icons/%1.%2").arg(name, kEnding)));
+    return QIcon(new TintedEngine(QStringLiteral(":/icons/%1.%2").arg(name, iconEnding())));
 }
 
 }  // namespace hairloom::editor

@@ -7,6 +7,8 @@
 
 namespace hairloom::editor {
 
+/// Of the files of icons: svg, or png in builds for systems without Qt's SVG plugin.
+const QString& iconEnding();
 /// The drawing editor/resources/icons/NAME.svg, sharp at any size; follows the palette of the application.
 QIcon icon(const QString& name);
 

@@ -7,6 +7,8 @@
 #include <QStyleFactory>
 #include <map>
 
+#include "editor/shell/icons.h"
+
 /// Icons and style sheet lie in a static library, whose resources nobody else asks for.
 static void takeResources() {
     Q_INIT_RESOURCE(resources);
@@ -65,6 +67,7 @@ QString styleSheetOf(const Tones& t) {
         {"@accent", t.accent}, {"@on-accent", t.onAccent}};
     for (const auto& [name, tone] : names) sheet.replace(name, tone);
     sheet.replace("@theme", &t == &kDark ? "dark" : "light");
+    sheet.replace("@icon", iconEnding());
     return sheet;
 }
 

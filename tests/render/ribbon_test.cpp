@@ -291,7 +291,7 @@ TEST_F(RibbonTest, LightAndCoverAreSteadyOverDistance) {
     scene.meshes.clear();
     scene.background = Vec3f::Zero();
     const Vec3f towards = (scene.camera.eye_ws - scene.camera.target_ws).normalized();
-    RenderOptions how = options(48, 4);
+    RenderOptions how = options(48, 16);
     how.shadows = Shadows::none;
     double coverBefore = 0, lightBefore = 0;
     std::uint64_t least = 1600;
