@@ -19,6 +19,7 @@ constexpr float kPixelsPerPiece = 2;  // of a tessellated ribbon
 constexpr shaders::float4 kSkin{0.35f, 0.6f, 28, 0};
 constexpr shaders::float4 kMatte{0, 0, 1, 0};
 
+/// One element of zeros, where there is none yet.
 Status prepareBuffer(gpu::Device& device, const char* name, std::uint32_t elementBytes,
                      gpu::BufferPtr& buffer) {
     if (buffer != nullptr) return {};
