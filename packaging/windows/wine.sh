@@ -15,7 +15,13 @@ export WINEDLLOVERRIDES="mscoree,mshtml=;winemenubuilder.exe,winedbg.exe=d;d3dco
 if [ ! -f "$WINEPREFIX/.ready" ]; then
     (
         flock 9
-        [ -f "$WINEPREFIX/.ready" ] || { wine wineboot --init > /dev/null 2>&1 && wineserver -w && touch "$WINEPREFIX/.ready"; }
+        [ -f "$WINEPREFIX/.ready" ] && exit
+        wine wineboot --init > /dev/null 2>&1
+        wineserver -w
+        # Windows' dialogs are set in Tahoma, which Wine finds only here. Whatever font stands in for it may have
+        # metrics of another kind: with those of a font of formulas, text leaves its field.
+        ln -sf /usr/share/wine/fonts/tahoma*.ttf "$WINEPREFIX/drive_c/windows/Fonts/"
+        touch "$WINEPREFIX/.ready"
     ) 9> "$cache/wine.lock"
 fi
 exec wine "$@"
