@@ -11,9 +11,18 @@ function(hairloom_room name)
     target_link_libraries(hairloom_${name} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} hairloom_warnings)
 endfunction()
 
-# hairloom_precompile(TARGET HEADER...): for where most of a file's time goes into what these include.
+# hairloom_precompile(TARGET HEADER...): for where most of a file's time goes into what these include. Our own are named from the
+# top of the repository, as everywhere: a compiler's cache then knows them again in another checkout.
 function(hairloom_precompile target)
-    target_precompile_headers(${target} PRIVATE ${ARGN})
+    set(headers)
+    foreach(header IN LISTS ARGN)
+        if(NOT header MATCHES "^<")
+            file(RELATIVE_PATH header "${PROJECT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}/${header}")
+            set(header "\"${header}\"")
+        endif()
+        list(APPEND headers "${header}")
+    endforeach()
+    target_precompile_headers(${target} PRIVATE ${headers})
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
         target_compile_options(${target} PRIVATE -fpch-preprocess)  # which ccache asks for
     endif()
@@ -39,15 +48,14 @@ endfunction()
 
 # hairloom_test(NAME SOURCES file... LINK target... [PRECOMPILE header...] [TIMEOUT seconds])
 # Each gtest case becomes a ctest entry NAME.Suite.Case; where programs run under Wine, whose start takes longer than most
-# cases, all cases together become the entry NAME. Tests find the repository through HAIRLOOM_SOURCE_DIR.
+# cases, all cases together become the entry NAME. Tests find the repository through tests/support/source_dir.h.
 # Tests are compiled once and run for moments: what they include is precompiled, and they are optimised little.
 function(hairloom_test name)
     cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LINK;PRECOMPILE" ${ARGN})
     if(NOT ARG_TIMEOUT)
         set(ARG_TIMEOUT 120)
     endif()
-    hairloom_program(test_${name} SOURCES ${ARG_SOURCES} LINK ${ARG_LINK} GTest::gtest_main GTest::gmock)
-    target_compile_definitions(test_${name} PRIVATE HAIRLOOM_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+    hairloom_program(test_${name} SOURCES ${ARG_SOURCES} LINK ${ARG_LINK} hairloom_test_support GTest::gtest_main GTest::gmock)
     hairloom_precompile(test_${name} <gtest/gtest.h> <gmock/gmock.h> ${ARG_PRECOMPILE})
     if(NOT MSVC AND CMAKE_BUILD_TYPE STREQUAL "Release")
         target_compile_options(test_${name} PRIVATE -O1)

@@ -48,6 +48,8 @@ endif()
 
 find_program(HAIRLOOM_CCACHE ccache)
 if(HAIRLOOM_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-    # Without this it keeps nothing that uses a precompiled header, whose content it compares anyway.
-    set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND}" -E env CCACHE_SLOPPINESS=pch_defines,time_macros "${HAIRLOOM_CCACHE}")
+    # Without the first it keeps nothing that uses a precompiled header, whose content it compares anyway; with the others it finds
+    # what another checkout has compiled.
+    set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND}" -E env CCACHE_SLOPPINESS=pch_defines,time_macros
+        "CCACHE_BASEDIR=${CMAKE_SOURCE_DIR}" CCACHE_NOHASHDIR=1 "${HAIRLOOM_CCACHE}")
 endif()

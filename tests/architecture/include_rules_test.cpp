@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/source_dir.h"
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -97,7 +99,7 @@ std::vector<Include> includesOf(const fs::path& top) {
 }
 
 const std::vector<Include>& allIncludes() {
-    static const std::vector<Include> includes = includesOf(HAIRLOOM_SOURCE_DIR);
+    static const std::vector<Include> includes = includesOf(hairloom::sourceDir());
     return includes;
 }
 
@@ -175,7 +177,7 @@ TEST(Licences, EverySourceFileNamesItsLicence) {
     std::set<std::string> seen;
     for (const Include& include : allIncludes()) {
         if (!seen.insert(include.file).second) continue;
-        std::ifstream file(fs::path(HAIRLOOM_SOURCE_DIR) / include.file);
+        std::ifstream file(hairloom::sourceDir() / include.file);
         std::string first;
         std::getline(file, first);
         const bool mit = roomOf(include.file) == "runtime";

@@ -10,6 +10,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "tests/support/source_dir.h"
+
 namespace hairloom::test {
 
 namespace fs = std::filesystem;
@@ -56,11 +58,11 @@ nlohmann::json CommandLineTest::runJson(const std::string& arguments) const {
 }
 
 std::string bustFile() {
-    return std::string(HAIRLOOM_SOURCE_DIR) + "/samples/bust/bust.glb";
+    return (sourceDir() / "samples/bust/bust.glb").string();
 }
 
 std::string dataFile(const std::string& name) {
-    const fs::path path = fs::path(HAIRLOOM_SOURCE_DIR) / ".." / "shared" / "data" / name;
+    const fs::path path = sourceDir() / ".." / "shared" / "data" / name;
     return fs::exists(path) ? path.string() : std::string();
 }
 

@@ -10,6 +10,7 @@
 
 #include "core/base/file.h"
 #include "exporters/strands.h"
+#include "tests/support/source_dir.h"
 
 namespace hairloom {
 namespace {
@@ -233,7 +234,7 @@ TEST_F(StrandWriters, ReportAsJson) {
 }
 
 TEST_F(StrandWriters, RealHairSurvivesBothFormats) {
-    const auto path = fs::path(HAIRLOOM_SOURCE_DIR) / "../shared/data/strands/sintel_16pt.tfx";
+    const auto path = sourceDir() / "../shared/data/strands/sintel_16pt.tfx";
     if (!fs::exists(path)) GTEST_SKIP() << path << " is not there";
     const auto original = importStrands(path);
     ASSERT_TRUE(original);

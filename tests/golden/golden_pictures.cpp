@@ -6,6 +6,7 @@
 
 #include "core/render/png.h"
 #include "core/render/tone_map.h"
+#include "tests/support/source_dir.h"
 #include "workspace/sample.h"
 #include "workspace/sample_material.h"
 
@@ -17,7 +18,7 @@ using render::ShadingModel;
 using render::Shadows;
 
 std::filesystem::path repository() {
-    return HAIRLOOM_SOURCE_DIR;
+    return sourceDir();
 }
 
 /// Quick to draw: few hairs, one frame, and without chance, which other devices may throw otherwise.

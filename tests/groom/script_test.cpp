@@ -8,6 +8,7 @@
 #include "core/groom/brushes/noise.h"
 #include "core/groom/groom_hash.h"
 #include "tests/groom/groom_samples.h"
+#include "tests/support/source_dir.h"
 
 namespace hairloom {
 namespace {
@@ -84,7 +85,7 @@ TEST(Script, AnErrorLeavesTheGroomAsItWas) {
 }
 
 TEST(Script, IsDocumentedFieldByField) {
-    const auto text = readTextFile(HAIRLOOM_SOURCE_DIR "/docs/formats/script.md");
+    const auto text = readTextFile(sourceDir() / "docs/formats/script.md");
     ASSERT_TRUE(text);
     for (const OperationInfo& operation : scriptOperations()) {
         const std::size_t section = text->find("## `" + operation.name + "`");

@@ -9,11 +9,12 @@
 
 #include "core/animation/actor.h"
 #include "importers/scene.h"
+#include "tests/support/source_dir.h"
 
 namespace hairloom {
 namespace {
 
-const std::filesystem::path kAnimated = HAIRLOOM_SOURCE_DIR "/../shared/data/animated";
+const std::filesystem::path kAnimated = sourceDir() / "../shared/data/animated";
 
 Actor actorOf(ImportedScene scene) {
     auto mesh = std::make_shared<const ScalpMesh>(std::move(scene.mesh));

@@ -12,13 +12,14 @@
 #include <filesystem>
 
 #include "importers/scene.h"
+#include "tests/support/source_dir.h"
 
 namespace hairloom {
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kData = HAIRLOOM_SOURCE_DIR "/../shared/data";
+const fs::path kData = sourceDir() / "../shared/data";
 
 std::vector<fs::path> filesUnder(const fs::path& folder) {
     std::vector<fs::path> files;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/importers/strands_files.h"
+#include "tests/support/source_dir.h"
 
 namespace hairloom {
 namespace {
@@ -11,7 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path dataFile(const char* name) {
-    return fs::path(HAIRLOOM_SOURCE_DIR) / "../shared/data/strands" / name;
+    return sourceDir() / "../shared/data/strands" / name;
 }
 
 #define NEED_DATA(path) \

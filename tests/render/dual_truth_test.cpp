@@ -10,13 +10,14 @@
 #include "importers/scene.h"
 #include "importers/strands.h"
 #include "tests/render/render_fixture.h"
+#include "tests/support/source_dir.h"
 
 namespace hairloom::render {
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kData = fs::path(HAIRLOOM_SOURCE_DIR) / "../shared/data";
+const fs::path kData = sourceDir() / "../shared/data";
 
 /// The view of truth.md: the strands on a matte head.
 class SintelHair {

@@ -13,11 +13,12 @@
 #include <vector>
 
 #include "core/base/math.h"
+#include "tests/support/source_dir.h"
 
 namespace hairloom::bust {
 
 inline std::filesystem::path bustFolder() {
-    return std::filesystem::path(HAIRLOOM_SOURCE_DIR) / "samples" / "bust";
+    return sourceDir() / "samples" / "bust";
 }
 
 struct BustFile {

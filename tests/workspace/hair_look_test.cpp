@@ -9,13 +9,14 @@
 
 #include "core/groom/point_dye.h"
 #include "core/render/png.h"
+#include "tests/support/source_dir.h"
 #include "workspace/dye_mask.h"
 #include "workspace/sample.h"
 
 namespace hairloom {
 namespace {
 
-const std::filesystem::path kSamples = std::filesystem::path(HAIRLOOM_SOURCE_DIR) / "samples";
+const std::filesystem::path kSamples = sourceDir() / "samples";
 
 ViewFile viewOf(render::ShadingModel model) {
     ViewFile view;

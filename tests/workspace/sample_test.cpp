@@ -6,13 +6,14 @@
 
 #include "core/groom/groom_hash.h"
 #include "core/groom/validate.h"
+#include "tests/support/source_dir.h"
 #include "workspace/groom_scene.h"
 #include "workspace/motions.h"
 
 namespace hairloom {
 namespace {
 
-const std::filesystem::path kSamples = std::filesystem::path(HAIRLOOM_SOURCE_DIR) / "samples";
+const std::filesystem::path kSamples = sourceDir() / "samples";
 
 TEST(SampleTest, TheFolderIsFoundFromBelowAndNotElsewhere) {
     EXPECT_EQ(findSamples(kSamples.parent_path() / "no/such/folder/bin"), kSamples);
