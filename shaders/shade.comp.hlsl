@@ -38,10 +38,10 @@ void main(uint3 id : SV_DispatchThreadID) {
     const float3 own = strand.albedo.w > 0 ? strand.albedo.rgb : gShade.albedo.rgb;
     const float3 albedo = saturate(own * lerp(gShade.rootTip.x, gShade.rootTip.y, p.along) * vary);
 #endif
-    const float jitter = (hashUnit(strand.source * 2u + 1u) - 0.5) * 0.06;
+    const float jitter = (hashUnit(p.strand * 2u + 1u) - 0.5) * 0.06;
     const float3 tangent1 = tilt(tangent, toView, gShade.shift.x + jitter);
     const float3 tangent2 = tilt(tangent, toView, gShade.shift.y + jitter);
-    const float sparkle = 0.6 + 0.8 * hashUnit(strand.source * 2u);
+    const float sparkle = 0.6 + 0.8 * hashUnit(p.strand * 2u);
     // A fibre dims what passes it the more, the darker it is.
     const float3 passed = saturate(1.0 - gShade.rootTip.w * (1.0 - 0.75 * sqrt(albedo)));
 

@@ -51,7 +51,7 @@ void main(uint3 id : SV_DispatchThreadID) {
         const Occlusion shadow = shadowOf(light, o);
         const FibreFrame f = fibreFrame(tangent, toLight, toView);
         float3 scattered = passedDirectly(light, shadow.fibres, gFibre.lobes.w) *
-                           fibreScattering(gFibre, f, hashUnit(strand.source * 2u), tint, absorption);
+                           fibreScattering(gFibre, f, hashUnit(p.strand * 2u), tint, absorption);
 #ifdef HAIRLOOM_DUAL
         scattered += multipleScattering(gFibre, f, gFibre.lobes.w * shadow.fibres, gFibre.lobes.w * o.allFibres, tint,
                                         absorption, gShade.ground.rgb * o.ground);
