@@ -17,10 +17,6 @@ using render::PostFilter;
 using render::ShadingModel;
 using render::Shadows;
 
-std::filesystem::path repository() {
-    return sourceDir();
-}
-
 /// Quick to draw: few hairs, one frame, and without chance, which other devices may throw otherwise.
 render::RenderOptions quick() {
     render::RenderOptions options;
@@ -119,7 +115,7 @@ std::vector<Case> cases() {
 }
 
 Result<render::Image> Painter::draw(const Case& which) {
-    const std::filesystem::path samples = repository() / "samples";
+    const std::filesystem::path samples = sourceDir() / "samples";
     if (sample_ != which.sample) {
         auto made = makeSample(samples, which.sample);
         if (!made) return tl::unexpected(made.error());
@@ -151,7 +147,7 @@ Result<render::Image> Painter::draw(const Case& which) {
 }
 
 std::filesystem::path pathOf(const Case& which) {
-    return repository() / "tests/golden/pictures" / (which.name + ".png");
+    return sourceDir() / "tests/golden/pictures" / (which.name + ".png");
 }
 
 Result<render::Image> acceptedPicture(const Case& which) {
