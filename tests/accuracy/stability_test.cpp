@@ -104,6 +104,10 @@ struct BorderCase {
     MappedForce force;
 };
 
+void PrintTo(const BorderCase& printed, std::ostream* out) {
+    *out << integratorName(printed.integrator) << " " << forceName(printed.force);
+}
+
 class Border : public testing::TestWithParam<BorderCase> {};
 
 /// On both sides of ω h = 2 and 2√2, for soft and stiff springs.

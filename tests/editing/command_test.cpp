@@ -24,6 +24,10 @@ struct Action {
     std::function<std::unique_ptr<Command>(const Model&, Random&)> make;
 };
 
+void PrintTo(const Action& printed, std::ostream* out) {
+    *out << printed.name;
+}
+
 /// Strands, about every fourth.
 Strands someStrands(const Model& model, Random& random) {
     Strands strands;

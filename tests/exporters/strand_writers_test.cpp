@@ -234,7 +234,7 @@ TEST_F(StrandWriters, ReportAsJson) {
 }
 
 TEST_F(StrandWriters, RealHairSurvivesBothFormats) {
-    const auto path = sourceDir() / "../shared/data/strands/sintel_16pt.tfx";
+    const auto path = outsideData() / "strands/sintel_16pt.tfx";
     if (!fs::exists(path)) GTEST_SKIP() << path << " is not there";
     const auto original = importStrands(path);
     ASSERT_TRUE(original);

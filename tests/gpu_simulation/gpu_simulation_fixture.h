@@ -44,6 +44,9 @@ inline std::string nameOf(const LayoutOptions& layout) {
     if (pairs) return layout.waves ? "pairs" : "pairsWithoutWaves";
     return kNames[static_cast<std::size_t>(*layout.storage)];
 }
+inline void PrintTo(const LayoutOptions& layout, std::ostream* out) {
+    *out << nameOf(layout);
+}
 
 /// On the shared device; any message fails the case in which it came.
 class GpuSimulationTest : public testing::Test {

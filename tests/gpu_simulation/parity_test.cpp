@@ -48,6 +48,10 @@ struct Case {
     float shift = 0.002f;
 };
 
+void PrintTo(const Case& printed, std::ostream* out) {
+    *out << printed.name;
+}
+
 void hold(SimulationSettings& s) {
     s.gravity = {0.0f, -9.81f, 0.0f};
     s.lengthIterations = 1;

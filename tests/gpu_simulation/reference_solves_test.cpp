@@ -197,6 +197,10 @@ struct Rule {
     runtime::Integrator integrator;
     Ended (*step)(const Kick& kick, const Places& x, const Places& u);
 };
+
+void PrintTo(const Rule& printed, std::ostream* out) {
+    *out << printed.name;
+}
 constexpr Rule kRules[] = {{"explicitEuler", runtime::Integrator::explicitEuler, explicitEuler},
                            {"leapfrog", runtime::Integrator::leapfrog, leapfrog},
                            {"velocityVerlet", runtime::Integrator::velocityVerlet, velocityVerlet},

@@ -20,6 +20,10 @@ struct Force {
     std::function<void(SimulationSettings&)> change;
     std::size_t spheres = 0;
 };
+
+void PrintTo(const Force& printed, std::ostream* out) {
+    *out << printed.name;
+}
 const Force kForces[] = {
     {"gravity",
      [](SimulationSettings& s) {

@@ -54,6 +54,10 @@ struct Brush {
     bool keepsLengths = true;
 };
 
+void PrintTo(const Brush& printed, std::ostream* out) {
+    *out << printed.name;
+}
+
 template <class S>
 Brush brush(const char* name, Result<std::size_t> (*apply)(Groom&, const S&, const Region&), S settings = {},
             bool keepsLengths = true) {

@@ -21,6 +21,10 @@ struct Broken {
     const char* where;  ///< part of the place
 };
 
+void PrintTo(const Broken& printed, std::ostream* out) {
+    *out << printed.name;
+}
+
 std::vector<Vec3f>& positions(Groom& g) {
     return g.pointAttributes.edit<Vec3f>(attribute::kPosition);
 }

@@ -14,7 +14,7 @@
 namespace hairloom {
 namespace {
 
-const std::filesystem::path kAnimated = sourceDir() / "../shared/data/animated";
+const std::filesystem::path kAnimated = outsideData() / "animated";
 
 Actor actorOf(ImportedScene scene) {
     auto mesh = std::make_shared<const ScalpMesh>(std::move(scene.mesh));
@@ -58,6 +58,10 @@ struct Character {
     std::size_t clips;
     const char* bone;
 };
+
+void PrintTo(const Character& printed, std::ostream* out) {
+    *out << printed.file;
+}
 
 class MeshCharacter : public testing::TestWithParam<Character> {};
 

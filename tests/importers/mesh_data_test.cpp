@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kData = sourceDir() / "../shared/data";
+const fs::path kData = outsideData();
 
 std::vector<fs::path> filesUnder(const fs::path& folder) {
     std::vector<fs::path> files;

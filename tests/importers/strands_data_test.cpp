@@ -12,7 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path dataFile(const char* name) {
-    return sourceDir() / "../shared/data/strands" / name;
+    return outsideData() / "strands" / name;
 }
 
 #define NEED_DATA(path) \

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kData = sourceDir() / "../shared/data";
+const fs::path kData = outsideData();
 
 /// The view of truth.md: the strands on a matte head.
 class SintelHair {

@@ -7,4 +7,8 @@ std::filesystem::path sourceDir() {
     return HAIRLOOM_SOURCE_DIR;
 }
 
+std::filesystem::path outsideData() {
+    return sourceDir() / "../shared/data";
+}
+
 }  // namespace hairloom
