@@ -55,7 +55,7 @@ void loadState() {
         gStiff[k] = stiffness(p);
 #endif
 #if HAIR_CURVES
-        gCurve[k] = savedCurve(p);
+        setCurve(k, savedCurve(p));
 #endif
 #if HAIR_TENSIONS
         gTension[k] = savedTension(p);
@@ -73,7 +73,7 @@ void saveState() {
         savePosition(p, gPosition[k]);
         savePrevious(p, gPrevious[k]);
 #if HAIR_CURVES
-        saveCurve(p, gCurve[k]);
+        saveCurve(p, curve(k));
 #endif
 #if HAIR_TENSIONS
         saveTension(p, gTension[k]);
@@ -95,7 +95,7 @@ void placeAtRest() {
         at += rotate(gRootsTo[2 * gSlot + 1], restVector(p));
     }
 #if HAIR_CURVES
-    EACH_OWN(c) gCurve[c] = float3(0, 0, 0);
+    EACH_OWN(c) setCurve(c, float3(0, 0, 0));
     gTank = HAIRLOOM_NO_CURVE;
     gMotion = 0.0;
 #endif

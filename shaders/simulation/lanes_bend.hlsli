@@ -138,7 +138,7 @@ void solveBend(inout float3 sides[OWN]) {
 #if HAIR_CURVES
 /// Turns the curves that the thread's joints hold towards those of their frames at `previous`, as far as the strand's tank
 /// lasts. As walkNormal() has them: the directions.
-void followFrames(float3 inner, float3 tangents[OWN]) {
+void followFrames(float3 inner, float3 tangents[OWN], out float3 curves[OWN]) {
     float3 normals[OWN], changes[OWN];
     bool known[OWN];
     walkNormal(inner, tangents, normals, known);
@@ -146,44 +146,48 @@ void followFrames(float3 inner, float3 tangents[OWN]) {
     const float4 turn = turnNow();
     EACH_OWN(i) {
         const float3 before = INNER_OF(tangents, i, inner);
-        const float3 held = rotate(turn, gCurve[i]);
+        const float3 was = curve(i), held = rotate(turn, was);
         changes[i] = fromFrame(before, normals[i], target(pointOf(i))) - held;
         if (!known[i] || !hasJoint(i)) changes[i] = float3(0, 0, 0);
         joints += float2(dot((tangents[i] - before - held) * gStiff[i], changes[i]),
                          dot(changes[i], changes[i]) * gStiff[i]);
-        if (hasJoint(i)) gCurve[i] = held;
+        curves[i] = hasJoint(i) ? held : was;
     }
     const float2 sums = sumOfStrand(joints);
     const float share = takeShare(sums.x, sums.y);
-    EACH_OWN(k) gCurve[k] += changes[k] * share;
+    EACH_OWN(k) {
+        curves[k] += changes[k] * share;
+        setCurve(k, curves[k]);
+    }
 }
 #endif
 
 /// Angular springs after position Verlet: see bend.hlsli.
 void bendBack() {
-    tell(quadsOf(gPosition), quadsOf(gPrevious));
+    tell(quadsOf(gPrevious));
     const float3 before = toldInner().xyz, after = toldOuter().xyz;
-    const float3 beforeBefore = toldTooInner().xyz, afterBefore = toldTooOuter().xyz;
-    float3 tangents[OWN], aheads[OWN], pulls[OWN], sides[OWN];
-    EACH_OWN(i) {
-        const float3 edge = OUTER_OF(gPrevious, i, afterBefore) - gPrevious[i];
-        const float3 turned = (OUTER_OF(gPosition, i, after) - OUTER_OF(gPrevious, i, afterBefore)) -
-                              (gPosition[i] - gPrevious[i]);
-        tangents[i] = edge * gInverseLength[i];
-        aheads[i] = (edge + turned * gFrame.bendRate) * gInverseLength[i];
-    }
-    const float3 innerEdge = gPrevious[0] - beforeBefore;
-    const float3 innerTurned = (gPosition[0] - gPrevious[0]) - (before - beforeBefore);
-    float3 inner = innerEdge * gInverseLengthBefore;
-    float3 innerAhead = (innerEdge + innerTurned * gFrame.bendRate) * gInverseLengthBefore;
-    if (gThread == 0) inner = innerAhead = rootTangent();
+    float3 tangents[OWN], moved[OWN], aheads[OWN], pulls[OWN], sides[OWN];
+    EACH_OWN(i) tangents[i] = (OUTER_OF(gPrevious, i, after) - gPrevious[i]) * gInverseLength[i];
+    float3 inner = (gPrevious[0] - before) * gInverseLengthBefore;
+    if (gThread == 0) inner = rootTangent();
 #if HAIR_CURVES
-    followFrames(inner, tangents);
+    float3 curves[OWN];
+    followFrames(inner, tangents, curves);
 #endif
+    // Where the segments will point. Told after the frames, for which the registers are wanted.
+    EACH_OWN(d) moved[d] = gPosition[d] - gPrevious[d];
+    tell(quadsOf(moved));
+    const float3 movedBefore = toldInner().xyz, movedAfter = toldOuter().xyz;
+    EACH_OWN(a) {
+        const float3 turned = OUTER_OF(moved, a, movedAfter) - moved[a];
+        aheads[a] = tangents[a] + turned * (gInverseLength[a] * gFrame.bendRate);
+    }
+    float3 innerAhead = inner;
+    if (gThread != 0) innerAhead += (moved[0] - movedBefore) * (gInverseLengthBefore * gFrame.bendRate);
     EACH_OWN(j) {
         pulls[j] = aheads[j] - INNER_OF(aheads, j, innerAhead);
 #if HAIR_CURVES
-        pulls[j] -= gCurve[j];
+        pulls[j] -= curves[j];
 #endif
         pulls[j] = hasJoint(j) ? pulls[j] * gStiff[j] : float3(0, 0, 0);
     }

@@ -11,9 +11,10 @@ float4 rotationBetween(float4 from, float4 to, float t) {
 
 #if HAIR_STORAGE == 3
 // What the root carries in each of as many substeps as the strand has threads, of which each makes one.
-groupshared float4 gTurns[HAIR_THREADS], gTangents[HAIR_THREADS];
+groupshared float4 gTurns[HAIR_THREADS];
+groupshared float3 gTangents[HAIR_THREADS];
 #if HAIR_TARGETS
-groupshared float4 gNormals[HAIR_THREADS];
+groupshared float3 gNormals[HAIR_THREADS];
 #endif
 static float gRootLength;
 static bool gCut;  // the root has jumped, and does not turn in this frame
@@ -30,9 +31,9 @@ void carryRoot() {
     if (substep > 0) before = rotationBetween(from, to, float(substep) * share);
     GroupMemoryBarrierWithGroupSync();
     gTurns[gPlace] = multiply(now, conjugate(before));
-    gTangents[gPlace] = float4(rotate(now, restVector(0) * inverseLength(0)), 0);
+    gTangents[gPlace] = rotate(now, restVector(0) * inverseLength(0));
 #if HAIR_TARGETS
-    gNormals[gPlace] = float4(rotate(now, target(POINTS - 1)), 0);
+    gNormals[gPlace] = rotate(now, target(POINTS - 1));
 #endif
     GroupMemoryBarrierWithGroupSync();
 }
@@ -43,10 +44,10 @@ void turnRoot() {
 /// From the rotation a substep ago to that of now.
 float4 turnNow() { return gTurns[placeOfSubstep()]; }
 /// The direction and the normal that the root carries, before the first segment.
-float3 rootTangent() { return gTangents[placeOfSubstep()].xyz; }
+float3 rootTangent() { return gTangents[placeOfSubstep()]; }
 float3 firstSegment() { return rootTangent() * gRootLength; }
 #if HAIR_TARGETS
-float3 rootNormal() { return gNormals[placeOfSubstep()].xyz; }
+float3 rootNormal() { return gNormals[placeOfSubstep()]; }
 #endif
 #else
 static float4 gRotationFrom, gRotationTo;
