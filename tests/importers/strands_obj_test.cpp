@@ -7,6 +7,21 @@
 #include "tests/importers/strands_files.h"
 
 namespace hairloom {
+
+void PrintTo(RibbonOrder order, std::ostream* out) {
+    constexpr const char* kNames[] = {"detect", "interleaved", "edge after edge", "around"};
+    *out << kNames[static_cast<std::size_t>(order)];
+}
+
+namespace strand_files {
+
+void PrintTo(RibbonFaces faces, std::ostream* out) {
+    constexpr const char* kNames[] = {"no faces", "quads", "triangles"};
+    *out << kNames[static_cast<std::size_t>(faces)];
+}
+
+}  // namespace strand_files
+
 namespace {
 
 using namespace strand_files;

@@ -8,6 +8,18 @@
 namespace hairloom::runtime {
 namespace {
 
+std::string nameOf(Integrator integrator) {
+    return findField("integrator")->choices[static_cast<std::size_t>(integrator)];
+}
+
+}  // namespace
+
+void PrintTo(Integrator integrator, std::ostream* out) {
+    *out << nameOf(integrator);
+}
+
+namespace {
+
 using Change = std::function<void(SimulationSettings&)>;
 using Spheres = std::vector<Sphere>;
 
@@ -219,10 +231,7 @@ TEST_P(EffectsOff, TurningItOffInMotionTakesItsStagesAndItsMemory) {
 INSTANTIATE_TEST_SUITE_P(Integrators, EffectsOff,
                          testing::Values(Integrator::verlet, Integrator::velocityVerlet, Integrator::leapfrog,
                                          Integrator::implicitEuler, Integrator::rk4),
-                         [](const auto& tested) {
-                             return std::string(
-                                 findField("integrator")->choices[static_cast<std::size_t>(tested.param)]);
-                         });
+                         [](const auto& tested) { return nameOf(tested.param); });
 
 /// All effects at once off: what is left is the integrator, and the roots that move it.
 TEST(EffectsOff, AllOffLeavesRootsAndIntegrator) {
