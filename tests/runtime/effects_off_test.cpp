@@ -8,18 +8,6 @@
 namespace hairloom::runtime {
 namespace {
 
-std::string nameOf(Integrator integrator) {
-    return findField("integrator")->choices[static_cast<std::size_t>(integrator)];
-}
-
-}  // namespace
-
-void PrintTo(Integrator integrator, std::ostream* out) {
-    *out << nameOf(integrator);
-}
-
-namespace {
-
 using Change = std::function<void(SimulationSettings&)>;
 using Spheres = std::vector<Sphere>;
 

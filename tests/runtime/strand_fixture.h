@@ -6,11 +6,19 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include "runtime/engine.h"
 
 namespace hairloom::runtime {
+
+inline std::string nameOf(Integrator integrator) {
+    return findField("integrator")->choices[static_cast<std::size_t>(integrator)];
+}
+inline void PrintTo(Integrator integrator, std::ostream* out) {
+    *out << nameOf(integrator);
+}
 
 inline Float3 polar(float angle) {
     return {std::sin(angle), -std::cos(angle), 0.0f};
