@@ -62,7 +62,7 @@ std::string bustFile() {
 }
 
 std::string dataFile(const std::string& name) {
-    const fs::path path = sourceDir() / ".." / "shared" / "data" / name;
+    const fs::path path = outsideData() / name;
     return fs::exists(path) ? path.string() : std::string();
 }
 
