@@ -25,6 +25,8 @@ else()
         -Woverloaded-virtual -Wold-style-cast)
     # Contracting a*b+c differently in two places would break the promise of equal bits for any thread count.
     add_compile_options(-ffp-contract=off)
+    # Nothing asks errno after a square root; without this a loop that takes one is not vectorised.
+    add_compile_options(-fno-math-errno)
 endif()
 if(WIN32)
     add_compile_definitions(NOMINMAX WIN32_LEAN_AND_MEAN _USE_MATH_DEFINES)

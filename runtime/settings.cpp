@@ -94,6 +94,15 @@ const FieldInfo* findField(std::string_view name) {
     return nullptr;
 }
 
+std::vector<std::string> integratorNames() {
+    const auto names = findField("integrator")->choices;
+    return {names.begin(), names.end()};
+}
+
+const char* nameOf(Integrator integrator) {
+    return findField("integrator")->choices[static_cast<std::size_t>(integrator)];
+}
+
 std::uint32_t componentCount(const FieldInfo& field) {
     if (std::holds_alternative<Ramp S::*>(field.member)) return 0;
     return std::holds_alternative<Float3 S::*>(field.member) ? 3 : 1;

@@ -168,6 +168,9 @@ struct FieldInfo {
 std::span<const FieldInfo> fields();
 /// The field of that name, or null.
 const FieldInfo* findField(std::string_view name);
+/// Names of integrators in the order of their values, as in files and on the command line.
+std::vector<std::string> integratorNames();
+const char* nameOf(Integrator integrator);
 
 /// 3 for a Float3, 0 for a Ramp, which has keys instead, else 1.
 std::uint32_t componentCount(const FieldInfo& field);

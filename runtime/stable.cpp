@@ -226,10 +226,6 @@ const char* nameOf(Stiff cause) {
     return "nothing";
 }
 
-std::string integratorName(const S& s) {
-    return findField("integrator")->choices[static_cast<std::size_t>(s.integrator)];
-}
-
 template <class... Values>
 std::string text(const char* format, Values... values) {
     std::array<char, 256> buffer{};
@@ -238,15 +234,15 @@ std::string text(const char* format, Values... values) {
 }
 
 std::string wordsFor(const StableRegion& region, const S& s) {
-    const std::string who = integratorName(s);
+    const char* const who = nameOf(s.integrator);
     if (region.cause == Stiff::air) {
         return text(
             "%s is unstable: air drag of %.3g 1/s takes %.3g of a speed in a substep of %.3g ms, "
             "at most %.3g are stable",
-            who.c_str(), region.frequency, region.frequency * region.step, 1e3 * region.step, region.limit);
+            who, region.frequency, region.frequency * region.step, 1e3 * region.step, region.limit);
     }
     const double hertz = region.frequency / (2.0 * std::numbers::pi);
-    std::string words = text("%s is unstable: the fastest wave of the %s swings at %.4g Hz, ", who.c_str(),
+    std::string words = text("%s is unstable: the fastest wave of the %s swings at %.4g Hz, ", who,
                              nameOf(region.cause), hertz) +
                         text("which in substeps of %.3g ms is ω·h = %.3g; ", 1e3 * region.step,
                              region.frequency * region.step);

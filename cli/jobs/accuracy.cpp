@@ -55,8 +55,7 @@ Result<GridAxis> parseVariation(const std::string& text) {
 }
 
 Result<std::vector<GridAxis>> axesOf(const AccuracyOptions& options, const Groom& groom) {
-    const runtime::FieldInfo* integrator = runtime::findField("integrator");
-    const std::string own = integrator->choices[static_cast<std::size_t>(groom.simulation.integrator)];
+    const std::string own = nameOf(groom.simulation.integrator);
     const auto orElse = [](const std::vector<std::string>& given, const std::vector<std::string>& otherwise) {
         return given.empty() ? otherwise : given;
     };

@@ -73,16 +73,10 @@ class RecordComparison {
     std::size_t count_ = 0;
 };
 
-/// As the engine's own table of settings lists them.
-std::vector<std::string> integratorNames() {
-    const auto choices = runtime::findField("integrator")->choices;
-    return {choices.begin(), choices.end()};
-}
-
 /// The settings of the groom with what the command line says instead.
 Status overrideSettings(Groom& groom, const SimulateOptions& options) {
     if (options.substeps > 0) groom.simulation.substeps = options.substeps;
-    const auto names = integratorNames();
+    const auto names = runtime::integratorNames();
     if (const auto chosen = std::ranges::find(names, options.integrator); chosen != names.end()) {
         groom.simulation.integrator = static_cast<runtime::Integrator>(chosen - names.begin());
     }
@@ -218,7 +212,7 @@ void addSimulateJob(Jobs& jobs) {
         ->check(CLI::IsMember({"cpu", "vulkan", "d3d11"}));
     job.add_option("--device", options->device, "GPU to use, by its index in `devices`");
     job.add_option("--integrator", options->integrator, "How motion is advanced")
-        ->check(CLI::IsMember(integratorNames()));
+        ->check(CLI::IsMember(runtime::integratorNames()));
     job.add_option("--substeps", options->substeps, "Steps per frame, instead of the groom's own")
         ->check(CLI::Range(1, 64));
     job.add_option("--wind", options->wind, "Velocity of the air X,Y,Z in m/s, instead of the groom's own");

@@ -23,15 +23,10 @@ struct StabilityJobOptions {
     std::optional<std::uint32_t> device;
 };
 
-std::vector<std::string> integratorNames() {
-    const auto choices = runtime::findField("integrator")->choices;
-    return {choices.begin(), choices.end()};
-}
-
 std::vector<runtime::Integrator> chosenIntegrators(const std::vector<std::string>& names) {
     std::vector<runtime::Integrator> chosen;
     for (const runtime::Integrator integrator : allIntegrators()) {
-        if (names.empty() || std::ranges::find(names, integratorName(integrator)) != names.end())
+        if (names.empty() || std::ranges::find(names, nameOf(integrator)) != names.end())
             chosen.push_back(integrator);
     }
     return chosen;
@@ -61,7 +56,7 @@ Report caseReport(const StabilityResult& result) {
 
 Report mapReport(const StabilityMap& map) {
     Report row;
-    row["integrator"] = integratorName(map.integrator);
+    row["integrator"] = nameOf(map.integrator);
     row["force"] = forceName(map.force);
     row["stable"] = std::ranges::count_if(map.probes, &StabilityProbe::stable);
     row["cells"] = map.probes.size();
@@ -124,7 +119,7 @@ void addStabilityJob(Jobs& jobs) {
         ->required();
     job.add_option("--integrators", options->integrators, "Integrators to run, instead of all")
         ->delimiter(',')
-        ->check(CLI::IsMember(integratorNames()));
+        ->check(CLI::IsMember(runtime::integratorNames()));
     job.add_option("--backend", options->backend, "What runs the cases; maps are made on the CPU only")
         ->check(CLI::IsMember({"cpu", "vulkan"}));
     job.add_option("--device", options->device, "GPU to use, by its index in `devices`");

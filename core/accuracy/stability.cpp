@@ -90,13 +90,9 @@ std::vector<StabilityResult> runHardCases(std::span<const runtime::Integrator> i
     return results;
 }
 
-std::string integratorName(runtime::Integrator integrator) {
-    return runtime::findField("integrator")->choices[static_cast<std::size_t>(integrator)];
-}
-
 std::vector<runtime::Integrator> allIntegrators() {
     std::vector<runtime::Integrator> all;
-    for (std::size_t i = 0; i < runtime::findField("integrator")->choices.size(); ++i)
+    for (std::size_t i = 0; i < runtime::integratorNames().size(); ++i)
         all.push_back(static_cast<runtime::Integrator>(i));
     return all;
 }

@@ -51,8 +51,6 @@ struct StabilityResult {
     const StabilityMark& closest() const;
 };
 
-/// The integrators' names as in settings.
-std::string integratorName(runtime::Integrator integrator);
 /// All, as settings list them.
 std::vector<runtime::Integrator> allIntegrators();
 

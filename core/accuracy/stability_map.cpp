@@ -186,8 +186,8 @@ StabilityMap mapStability(Integrator integrator, MappedForce force, std::uint32_
 Plot stabilityPlot(const StabilityMap& map) {
     Plot plot;
     const bool coils = map.force == MappedForce::coils;
-    plot.title = fmt::format("{}, {} springs: stable steps", integratorName(map.integrator),
-                             coils ? "coil" : "angular");
+    plot.title =
+        fmt::format("{}, {} springs: stable steps", nameOf(map.integrator), coils ? "coil" : "angular");
     plot.note = fmt::format(
         "A strand of 8 segments, undamped, pushed once, {} steps a cell. Stable: its swing "
         "does not grow thrice. The line is the theory: {}.",

@@ -133,9 +133,8 @@ Result<std::vector<std::string>> writeStability(const std::vector<StabilityResul
     std::vector<std::pair<std::string, std::string>> files{{"cases.csv", stabilityCsv(results)},
                                                            {"cases.md", stabilityMarkdown(results)}};
     for (const StabilityMap& map : maps) {
-        files.emplace_back(
-            fmt::format("stability-{}-{}.svg", integratorName(map.integrator), forceName(map.force)),
-            svg(stabilityPlot(map)));
+        files.emplace_back(fmt::format("stability-{}-{}.svg", nameOf(map.integrator), forceName(map.force)),
+                           svg(stabilityPlot(map)));
     }
     files.emplace_back("report.html", pageOf(results, maps, commandLine));
     return writeFiles(folder, files);

@@ -154,7 +154,7 @@ double Trial::greatestSpeed() const {
 
 StabilityResult Trial::result() const {
     StabilityResult result;
-    result.integrator = integratorName(integrator_);
+    result.integrator = nameOf(integrator_);
     result.substeps = engine_ ? settings().substeps : 0;
     result.claimed = limit_.empty();
     result.marks = marks_;

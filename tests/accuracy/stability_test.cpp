@@ -105,7 +105,7 @@ struct BorderCase {
 };
 
 void PrintTo(const BorderCase& printed, std::ostream* out) {
-    *out << integratorName(printed.integrator) << " " << forceName(printed.force);
+    *out << nameOf(printed.integrator) << " " << forceName(printed.force);
 }
 
 class Border : public testing::TestWithParam<BorderCase> {};
@@ -128,17 +128,18 @@ TEST_P(Border, IsWhereTheoryHasIt) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Measured, Border,
-                         testing::Values(BorderCase{Integrator::verlet, MappedForce::coils},
-                                         BorderCase{Integrator::velocityVerlet, MappedForce::coils},
-                                         BorderCase{Integrator::velocityVerlet, MappedForce::angular},
-                                         BorderCase{Integrator::leapfrog, MappedForce::coils},
-                                         BorderCase{Integrator::leapfrog, MappedForce::angular},
-                                         BorderCase{Integrator::rk4, MappedForce::coils},
-                                         BorderCase{Integrator::rk4, MappedForce::angular}),
-                         [](const auto& tested) {
-                             return integratorName(tested.param.integrator) + forceName(tested.param.force);
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Measured, Border,
+    testing::Values(BorderCase{Integrator::verlet, MappedForce::coils},
+                    BorderCase{Integrator::velocityVerlet, MappedForce::coils},
+                    BorderCase{Integrator::velocityVerlet, MappedForce::angular},
+                    BorderCase{Integrator::leapfrog, MappedForce::coils},
+                    BorderCase{Integrator::leapfrog, MappedForce::angular},
+                    BorderCase{Integrator::rk4, MappedForce::coils},
+                    BorderCase{Integrator::rk4, MappedForce::angular}),
+    [](const auto& tested) {
+        return std::string(nameOf(tested.param.integrator)).append(forceName(tested.param.force));
+    });
 
 TEST(StabilityMaps, ExplicitEulerAmplifiesAtAnyStep) {
     constexpr std::uint32_t kSteps = 8000;

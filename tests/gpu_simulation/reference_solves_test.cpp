@@ -201,6 +201,7 @@ struct Rule {
 void PrintTo(const Rule& printed, std::ostream* out) {
     *out << printed.name;
 }
+
 constexpr Rule kRules[] = {{"explicitEuler", runtime::Integrator::explicitEuler, explicitEuler},
                            {"leapfrog", runtime::Integrator::leapfrog, leapfrog},
                            {"velocityVerlet", runtime::Integrator::velocityVerlet, velocityVerlet},

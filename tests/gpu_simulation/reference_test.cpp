@@ -24,6 +24,7 @@ struct Force {
 void PrintTo(const Force& printed, std::ostream* out) {
     *out << printed.name;
 }
+
 const Force kForces[] = {
     {"gravity",
      [](SimulationSettings& s) {

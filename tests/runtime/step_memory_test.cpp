@@ -49,9 +49,10 @@ SimulationSettings settingsOf(Integrator integrator) {
 
 TEST(StepMemory, NoStepOfAnyIntegratorAsksForAny) {
     const Strands strands = tuft(100, true);
-    for (std::size_t i = 0; i < findField("integrator")->choices.size(); ++i) {
-        SCOPED_TRACE(findField("integrator")->choices[i]);
-        Engine engine = makeEngine(strands, settingsOf(static_cast<Integrator>(i)));
+    for (std::size_t i = 0; i < integratorNames().size(); ++i) {
+        const auto integrator = static_cast<Integrator>(i);
+        SCOPED_TRACE(nameOf(integrator));
+        Engine engine = makeEngine(strands, settingsOf(integrator));
         Counted counted(strands);
         counted.steps(engine, 1, kNear);
         EXPECT_EQ(counted.steps(engine, 20, kNear), 0u);

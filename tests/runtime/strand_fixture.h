@@ -13,9 +13,6 @@
 
 namespace hairloom::runtime {
 
-inline std::string nameOf(Integrator integrator) {
-    return findField("integrator")->choices[static_cast<std::size_t>(integrator)];
-}
 inline void PrintTo(Integrator integrator, std::ostream* out) {
     *out << nameOf(integrator);
 }

@@ -93,8 +93,7 @@ std::vector<double> errorsOf(const Swing& swing, const runtime::SimulationSettin
     std::vector<double> errors;
     for (std::uint32_t substeps = 2; substeps <= most; substeps *= 2)
         errors.push_back(rmsMm(engineRun(swing, s, integrator, substeps), truth));
-    const char* const name = runtime::findField("integrator")->choices[static_cast<std::size_t>(integrator)];
-    std::printf("%s, substeps 2 to %u:", name, most);
+    std::printf("%s, substeps 2 to %u:", nameOf(integrator), most);
     for (const double error : errors) std::printf(" %.3g", error);
     std::printf(" mm\n");
     return errors;
