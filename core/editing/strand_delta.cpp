@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <functional>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -19,7 +18,8 @@ constexpr std::size_t kGrain = 512;
 
 /// Calls body(range, place of its first element where all ranges lie one after the other), on several
 /// threads.
-void forEachRange(std::span<const Range> ranges, const std::function<void(const Range&, std::size_t)>& body) {
+template <class Body>
+void forEachRange(std::span<const Range> ranges, const Body& body) {
     std::vector<std::size_t> places;
     places.reserve(ranges.size());
     std::size_t place = 0;

@@ -42,15 +42,16 @@ HWY_INLINE V3 tangentOf(V3 edge, V inverseLength) {
 /// The frame of a segment, carried root to tip: that of the one before, turned by the shortest arc (Melax
 /// 2000) that takes one direction to the other (Eq. 4). Its tangent is the segment's, so one normal is all
 /// there is to carry: the arc from a to b takes a normal u of a to u − (b·u)/(1 + a·b) · (a + b), which stays
-/// bounded at 180°. `along` is a·b.
+/// bounded at 180°. `along` is a·b. Each normal waits for the one before; the division, which need not,
+/// stands outside of that chain.
 HWY_INLINE V3 carryNormal(V3 normal, V3 from, V3 to, V along) {
     const V flat = hn::Max(all(1.0f) + along, all(1e-6f));
-    return negMulAdd(from + to, dot(to, normal) / flat, normal);
+    return negMulAdd((from + to) * (all(1.0f) / flat), dot(to, normal), normal);
 }
 
-/// The same where the turn is known not to be near 180°.
+/// The same, bit for bit, where the turn is known not to be near 180°.
 HWY_INLINE V3 carryOpenNormal(V3 normal, V3 from, V3 to, V along) {
-    return negMulAdd(from + to, dot(to, normal) / (all(1.0f) + along), normal);
+    return negMulAdd((from + to) * (all(1.0f) / (all(1.0f) + along)), dot(to, normal), normal);
 }
 
 /// A vector given in a segment's frame.

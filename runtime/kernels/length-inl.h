@@ -91,9 +91,11 @@ class LengthElimination {
         }
         const V innerMass = kClamped ? hn::Zero(D()) : row.inverseMass();
         const V above = dot(wanted, acting_) * outerMass_;
-        const V upper = dot(wanted_, acting) * outerMass_ * inverse_;
+        // One segment waits for the last one's division: as little as can be stands between the two.
+        const V uncut = dot(wanted_, acting) * outerMass_;
+        const V upper = uncut * inverse_;
         const V whole = hn::Max(own, all(0.25f)) * (innerMass + outerMass_);
-        inverse_ = one / hn::NegMulAdd(above, upper, whole);
+        inverse_ = one / hn::NegMulAdd(above * uncut, inverse_, whole);
         right_ = hn::MulAdd(above, right_, error) * inverse_;
         store(upper, (&point + 1)->upper());
         store(right_, point.tension());
