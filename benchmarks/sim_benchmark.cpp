@@ -23,13 +23,13 @@ std::uint64_t nanosecondsNow() {
 /// The roots of a frame are made before its clock runs.
 void runFrames(benchmark::State& state, Host host, bool perStage) {
     const auto acting = static_cast<Acting>(state.range(1));
-    const HeadOfHair head(static_cast<std::uint32_t>(state.range(0)), kPoints);
+    const HeadOfHair head(static_cast<std::uint32_t>(state.range(0)), kPoints, isStraight(acting));
     const SimulationSettings settings = settingsFor(acting);
     auto made = Engine::make(head.view(), settings, std::move(host));
     Engine& engine = *made.engine;
     std::vector<RootFrame> roots;
     FrameInput input;
-    if (acting == Acting::windAndSpheres) input.spheres = head.spheres;
+    if (hasSpheres(acting)) input.spheres = head.spheres;
     std::array<double, kStageCount> sums{};
     std::uint64_t spent = 0;
     for (auto _ : state) {
@@ -62,7 +62,7 @@ void simulate(benchmark::State& state) {
 }
 BENCHMARK(simulate)
     ->ArgNames({"strands", "acting"})
-    ->ArgsProduct({{300, 2000, 11400}, {0, 1, 2}})
+    ->ArgsProduct({{300, 2000, 11400}, {0, 1, 2, 3}})
     ->Unit(benchmark::kMillisecond)
     ->UseManualTime();
 

@@ -28,10 +28,10 @@ class Bench {
         bench_.machine = thisMachine();
         std::vector<std::size_t> threads{1};
         if (threadCount() > 1) threads.push_back(threadCount());
-        Progress progress("measuring", 2 * options_.strands.size() * threads.size() + 4);
+        Progress progress("measuring", 3 * options_.strands.size() * threads.size() + 4);
         std::size_t done = 0;
         for (const std::uint32_t strands : options_.strands) {
-            for (const Acting acting : {Acting::gravity, Acting::windAndSpheres}) {
+            for (const Acting acting : {Acting::gravity, Acting::noTorsion, Acting::windAndSpheres}) {
                 for (const std::size_t count : threads) {
                     bench_.steps.push_back(stepCosts({strands, kPoints, acting}, count));
                     progress.done(++done);
@@ -142,8 +142,6 @@ class Bench {
     }
 
     void measureInstructionSets() {
-        // Few strands: scalar frames that are longer than a time slice would measure other programs as well.
-        const StepScene scene{.strands = kGuides};
         const std::vector<std::int64_t> targets = InstructionSetLimit::available();
         std::vector<std::string> seen;
         std::int64_t scalar = 0;
@@ -153,12 +151,19 @@ class Bench {
             // A set that this machine has and the engine was not built for runs as the next one.
             if (std::ranges::find(seen, name) != seen.end()) continue;
             seen.push_back(name);
-            bench_.instructionSets.push_back(
-                wholeStep(scene, fmt::format("step, {}, {}", told(scene, 1), name)));
+            for (const Acting acting : {Acting::noTorsion, Acting::windAndSpheres}) {
+                for (const std::uint32_t strands : {kGuides, kMoreStrands}) {
+                    const StepScene scene{.strands = strands, .acting = acting};
+                    bench_.instructionSets.push_back(
+                        wholeStep(scene, fmt::format("step, {}, {}", told(scene, 1), name)));
+                }
+            }
             if (name == "SCALAR" || name == "EMU128") scalar = target;
         }
         if (scalar != 0) {
-            compareWithScalar(scene, targets.front(), scalar);
+            // Few strands: scalar frames that are longer than a time slice would measure other programs as
+            // well.
+            compareWithScalar({.strands = kGuides}, targets.front(), scalar);
         } else {
             bench_.notes.push_back("this build of the engine has no scalar code to compare with");
         }

@@ -73,7 +73,7 @@ void writeSteps(const SimulationBench& bench, Out out) {
 
 /// One table per scene on one thread: stages down, strands across.
 void writeStages(const SimulationBench& bench, Out out) {
-    for (const scenes::Acting acting : {scenes::Acting::gravity, scenes::Acting::windAndSpheres}) {
+    for (const scenes::Acting acting : scenes::kActing) {
         std::vector<const StepCosts*> columns;
         for (const StepCosts& costs : bench.steps) {
             if (costs.scene.acting == acting && costs.threads == 1) columns.push_back(&costs);

@@ -202,9 +202,8 @@ void Engine::wakeBlocks() {
 Engine::Frame Engine::makeFrame(const FrameInput& input) {
     Frame frame{};
     frame.input = &input;
-    frame.context = substepContext(settings_, plan_, input.dt);
+    frame.context = substepContext(settings_, plan_, input.dt, movingSpheres_);
     const float h = frame.context.h;
-    frame.context.spheres = movingSpheres_;
     frame.windy = plan_.on(Effect::wind);
     if (frame.windy) {
         const double time = std::isfinite(input.time) ? input.time : 0.0;

@@ -40,6 +40,17 @@ void findWaking(float hair, std::span<const Sphere> before, FrameSpheres& sphere
     }
 }
 
+/// SubstepContext::slowestSwept for the spheres and pearls of the context.
+float slowestSwept(const SubstepContext& context) {
+    float smallest = 1e30f, fastestSquared = 0.0f;
+    for (const MovingSphere& sphere : context.spheres) {
+        smallest = std::min(smallest, sphere.radius);
+        fastestSquared = std::max(fastestSquared, dot(sphere.step, sphere.step));
+    }
+    smallest += std::min(context.pearlRoot, context.pearlTip);
+    return std::max(0.999f * kUnsweptShare * smallest - 1.001f * std::sqrt(fastestSquared), 0.0f);
+}
+
 }  // namespace
 
 void takeSpheres(const SimulationSettings& settings, float longestStrand, std::span<const Sphere> before,
@@ -126,7 +137,8 @@ EffectPlan planFrame(const SimulationSettings& settings, const FrameOutlook& out
     return plan(scene);
 }
 
-SubstepContext substepContext(const SimulationSettings& settings, const EffectPlan& plan, float dt) {
+SubstepContext substepContext(const SimulationSettings& settings, const EffectPlan& plan, float dt,
+                              std::span<const MovingSphere> spheres) {
     const float h = dt / static_cast<float>(settings.substeps);
     const auto oscillation = [&](float hertz) {
         const float turns = 2.0f * std::numbers::pi_v<float> * hertz * h;
@@ -152,17 +164,9 @@ SubstepContext substepContext(const SimulationSettings& settings, const EffectPl
     }
     context.friction = settings.friction;
     context.restitution = settings.restitution;
+    context.spheres = spheres;
+    context.slowestSwept = slowestSwept(context);
     return context;
-}
-
-float slowestSwept(const SubstepContext& context) {
-    float smallest = 1e30f, fastestSquared = 0.0f;
-    for (const MovingSphere& sphere : context.spheres) {
-        smallest = std::min(smallest, sphere.radius);
-        fastestSquared = std::max(fastestSquared, dot(sphere.step, sphere.step));
-    }
-    smallest += std::min(context.pearlRoot, context.pearlTip);
-    return std::max(0.999f * kUnsweptShare * smallest - 1.001f * std::sqrt(fastestSquared), 0.0f);
 }
 
 }  // namespace hairloom::runtime

@@ -57,7 +57,8 @@ struct FrameOutlook {
 EffectPlan planFrame(const SimulationSettings& settings, const FrameOutlook& outlook, const FrameWind& wind,
                      std::span<const Sphere> spheres, std::span<const Float3> sphereMotion, float frameTime);
 
-/// Of the first substep of a frame of `dt` seconds; without spheres.
-SubstepContext substepContext(const SimulationSettings& settings, const EffectPlan& plan, float dt);
+/// Of the first substep of a frame of `dt` seconds.
+SubstepContext substepContext(const SimulationSettings& settings, const EffectPlan& plan, float dt,
+                              std::span<const MovingSphere> spheres);
 
 }  // namespace hairloom::runtime

@@ -146,13 +146,12 @@ struct SubstepContext {
     float friction = 0.0f;
     float restitution = 0.0f;
     std::span<const MovingSphere> spheres;
+    float slowestSwept = 0.0f;  ///< metres in a substep below which no point passes a sphere unseen
 };
 
 /// Share of a sphere's radius that a point may move in one substep without the swept test looking at it: it
 /// can then cut no deeper than 0.8 % of the radius into it unseen.
 inline constexpr float kUnsweptShare = 0.25f;
-/// Metres in a substep below which no point passes a sphere of the context unseen.
-float slowestSwept(const SubstepContext& context);
 
 using Stage = void (*)(const BlockView& block, LaneFrame& lanes, const SubstepContext& context);
 

@@ -18,8 +18,9 @@ namespace hairloom::scenes {
 using runtime::Float3;
 using runtime::Quat;
 
-/// Roots spread evenly over the upper three quarters of a sphere, strands of 0.3 m that curve down, and ten
-/// spheres: the head and nine around the shoulders. The head turns to and fro once a second.
+/// Roots spread evenly over the upper three quarters of a sphere, strands of 0.3 m that curve down or stand
+/// straight out, and ten spheres: the head and nine around the shoulders. The head turns to and fro once a
+/// second.
 struct HeadOfHair {
     static constexpr float kHeadRadius = 0.09f;        ///< metres
     static constexpr float kStrandLength = 0.3f;       ///< metres
@@ -30,13 +31,13 @@ struct HeadOfHair {
     std::vector<Float3> roots;
     std::vector<runtime::Sphere> spheres;
 
-    HeadOfHair(std::uint32_t strands, std::uint32_t points) {
+    HeadOfHair(std::uint32_t strands, std::uint32_t points, bool straight = false) {
         positions.reserve(std::size_t{strands} * points);
         for (std::uint32_t s = 0; s < strands; ++s) {
             const float y = 1.0f - 1.5f * (static_cast<float>(s) + 0.5f) / static_cast<float>(strands);
             const float turn = static_cast<float>(s) * kGoldenTurn;
             const float ring = std::sqrt(1.0f - y * y);
-            addStrand({ring * std::cos(turn), y, ring * std::sin(turn)}, points);
+            addStrand({ring * std::cos(turn), y, ring * std::sin(turn)}, points, straight);
         }
         spheres.push_back({{0.0f, 0.0f, 0.0f}, 0.088f});
         for (int i = 0; i < 9; ++i) {
@@ -58,15 +59,17 @@ struct HeadOfHair {
     }
 
   private:
-    void addStrand(Float3 direction, std::uint32_t points) {
+    void addStrand(Float3 direction, std::uint32_t points, bool straight) {
         // Strands of more points have about the shape of those of 16.
-        const float bend = 0.25f * 15.0f / static_cast<float>(points - 1);
+        const float bend = straight ? 0.0f : 0.25f * 15.0f / static_cast<float>(points - 1);
         Float3 at = direction * kHeadRadius;
         roots.push_back(at);
         for (std::uint32_t p = 0; p < points; ++p) {
             positions.push_back(at);
-            direction = direction + Float3{0.0f, -bend, 0.0f};
-            direction = direction * (1.0f / length(direction));
+            if (!straight) {
+                direction = direction + Float3{0.0f, -bend, 0.0f};
+                direction = direction * (1.0f / length(direction));
+            }
             at = at + direction * (kStrandLength / static_cast<float>(points - 1));
         }
         offsets.push_back(static_cast<std::uint32_t>(positions.size()));
@@ -78,8 +81,17 @@ enum class Acting : std::uint32_t {
     nothing,         ///< every effect is off: roots and integrator
     gravity,         ///< the engine's defaults without air, no spheres
     windAndSpheres,  ///< the engine's defaults in a turbulent wind of 4 m/s, and the ten spheres
+    noTorsion,       ///< the same on straight hair, which needs no frames along its strands
 };
-inline constexpr Acting kActing[] = {Acting::nothing, Acting::gravity, Acting::windAndSpheres};
+inline constexpr Acting kActing[] = {Acting::nothing, Acting::gravity, Acting::windAndSpheres,
+                                     Acting::noTorsion};
+
+constexpr bool hasSpheres(Acting acting) {
+    return acting == Acting::windAndSpheres || acting == Acting::noTorsion;
+}
+constexpr bool isStraight(Acting acting) {
+    return acting == Acting::noTorsion;
+}
 
 constexpr std::string_view nameOf(Acting acting) {
     switch (acting) {
@@ -88,16 +100,23 @@ constexpr std::string_view nameOf(Acting acting) {
         case Acting::gravity:
             return "no air, no spheres";
         case Acting::windAndSpheres:
+            return "wind and ten spheres";
+        case Acting::noTorsion:
             break;
     }
-    return "wind and ten spheres";
+    return "straight hair, wind and ten spheres";
 }
 
 inline runtime::SimulationSettings settingsFor(Acting acting) {
     runtime::SimulationSettings s;
     s.sleepSpeed = 0.0f;
-    if (acting != Acting::windAndSpheres) s.airDrag = 0.0f;
-    if (acting == Acting::windAndSpheres) s.windSpeed = 4.0f;
+    if (hasSpheres(acting)) {
+        s.windSpeed = 4.0f;
+    } else {
+        s.airDrag = 0.0f;
+    }
+    // What stands straight under gravity would be curved without it.
+    if (isStraight(acting)) s.restGravity = 0.0f;
     if (acting == Acting::nothing) {
         s.angularStiffness = 0.0f;
         s.lengthIterations = 0;

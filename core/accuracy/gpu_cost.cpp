@@ -179,7 +179,7 @@ GpuStepRun::GpuStepRun(const GpuStepScene& scene, scenes::HeadOfHair head,
 Result<GpuStepRun> GpuStepRun::make(gpu::Device& device,
                                     std::shared_ptr<gpu_simulation::KernelLibrary> kernels,
                                     const GpuStepScene& scene) {
-    scenes::HeadOfHair head(scene.strands, scene.points);
+    scenes::HeadOfHair head(scene.strands, scene.points, isStraight(scene.acting));
     gpu_simulation::EngineOptions options;
     options.layout = scene.layout;
     auto engine = gpu_simulation::StrandEngine::make(device, std::move(kernels), head.view(),
@@ -203,9 +203,7 @@ void GpuStepRun::nextFrame() {
     input_.dt = kFrame;
     input_.time = time_;
     input_.roots_ws = roots_;
-    const bool spheres =
-        scene_.acting == scenes::Acting::windAndSpheres && scene_.leftOut != LeftOut::collision;
-    if (spheres) input_.spheres = head_.spheres;
+    if (hasSpheres(scene_.acting) && scene_.leftOut != LeftOut::collision) input_.spheres = head_.spheres;
 }
 
 /// One frame at a time. `device` takes what the device's clock says, where it is asked for.

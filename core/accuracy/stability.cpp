@@ -92,8 +92,8 @@ std::vector<StabilityResult> runHardCases(std::span<const runtime::Integrator> i
 
 std::vector<runtime::Integrator> allIntegrators() {
     std::vector<runtime::Integrator> all;
-    for (std::size_t i = 0; i < runtime::integratorNames().size(); ++i)
-        all.push_back(static_cast<runtime::Integrator>(i));
+    const std::size_t count = runtime::integratorNames().size();
+    for (std::size_t i = 0; i < count; ++i) all.push_back(static_cast<runtime::Integrator>(i));
     return all;
 }
 

@@ -40,7 +40,8 @@ double milliseconds(std::uint64_t nanoseconds) {
 
 }  // namespace
 
-StepRun::StepRun(const StepScene& scene) : scene_(scene), head_(scene.strands, scene.points) {
+StepRun::StepRun(const StepScene& scene)
+    : scene_(scene), head_(scene.strands, scene.points, isStraight(scene.acting)) {
     runtime::SimulationSettings settings = scenes::settingsFor(scene.acting);
     settings.substeps = scene.substeps;
     runtime::Host host;
@@ -58,7 +59,7 @@ double StepRun::milliseconds(std::uint32_t frames) {
     std::array<std::vector<double>, runtime::kStageCount> stages;
     runtime::FrameInput input;
     input.dt = kFrame;
-    if (scene_.acting == scenes::Acting::windAndSpheres) input.spheres = head_.spheres;
+    if (hasSpheres(scene_.acting)) input.spheres = head_.spheres;
     const bool onWall = scene_.allThreads || scene_.byStage;
     for (std::uint32_t f = 0; f < frames; ++f) {
         time_ += static_cast<double>(kFrame);

@@ -195,7 +195,7 @@ shaders::SimulationConstants StrandEngine::Impl::constants(const runtime::Subste
     const float slow = s.sleepSpeed * context.h;
     c.slowSquared = slow * slow;
     c.sleepDelay = s.sleepDelay;
-    c.slowSweep = runtime::slowestSwept(context);
+    c.slowSweep = context.slowestSwept;
     c.tensionShare = context.tensionShare;
     c.groups = batch.slots / batch.key.shape.strands;
     c.sphereWay = c.unused = 0.0f;
@@ -270,8 +270,8 @@ Status StrandEngine::Impl::record(gpu::CommandList& list, const runtime::FrameIn
     if (auto chosen = choose(input, low, high); !chosen) return chosen;
     movingSpheres.clear();
     if (run.plan.on(Effect::collision)) moveSpheres(frameSpheres, run.settings.substeps, movingSpheres);
-    runtime::SubstepContext context = runtime::substepContext(run.settings, run.plan, input.dt);
-    context.spheres = movingSpheres;
+    const runtime::SubstepContext context =
+        runtime::substepContext(run.settings, run.plan, input.dt, movingSpheres);
 
     constexpr std::array<std::uint32_t, 4> kNothing{};
     list.updateBuffer(reportBuffer, 0, std::as_bytes(std::span(kNothing)));

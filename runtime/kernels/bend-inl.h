@@ -44,14 +44,15 @@ HWY_INLINE V3 tangentOf(V3 edge, V inverseLength) {
 /// there is to carry: the arc from a to b takes a normal u of a to u − (b·u)/(1 + a·b) · (a + b), which stays
 /// bounded at 180°. `along` is a·b. Each normal waits for the one before; the division, which need not,
 /// stands outside of that chain.
-HWY_INLINE V3 carryNormal(V3 normal, V3 from, V3 to, V along) {
-    const V flat = hn::Max(all(1.0f) + along, all(1e-6f));
-    return negMulAdd((from + to) * (all(1.0f) / flat), dot(to, normal), normal);
+HWY_INLINE V3 carryNormalBy(V3 normal, V3 from, V3 to, V onePlusAlong) {
+    return negMulAdd((from + to) * (all(1.0f) / onePlusAlong), dot(to, normal), normal);
 }
-
-/// The same, bit for bit, where the turn is known not to be near 180°.
+HWY_INLINE V3 carryNormal(V3 normal, V3 from, V3 to, V along) {
+    return carryNormalBy(normal, from, to, hn::Max(all(1.0f) + along, all(1e-6f)));
+}
+/// Where the turn is known not to be near 180°.
 HWY_INLINE V3 carryOpenNormal(V3 normal, V3 from, V3 to, V along) {
-    return negMulAdd((from + to) * (all(1.0f) / (all(1.0f) + along)), dot(to, normal), normal);
+    return carryNormalBy(normal, from, to, all(1.0f) + along);
 }
 
 /// A vector given in a segment's frame.

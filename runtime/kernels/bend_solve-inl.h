@@ -231,8 +231,9 @@ HWY_INLINE void reduceBend(const BlockView& block, const Rows& rows, Strip& stri
     Strip::Point* at = strip.points + (block.firstFree - 1);
     V3 inner = forceOf(row, *at);
     const auto eliminate = [&](V3 outer) HWY_ATTR {
-        const V3 near = negMulAdd(last, row.lower1(), outer - inner);
-        const V3 right = negMulAdd(beforeLast, row.lower2(), near);
+        // The last row takes part last: that is all that a row waits for.
+        const V3 far = negMulAdd(beforeLast, row.lower2(), outer - inner);
+        const V3 right = negMulAdd(last, row.lower1(), far);
         store3(right, at->right());
         beforeLast = last;
         last = right;

@@ -54,8 +54,8 @@ HWY_INLINE V3 respond(const BlockView& block, const SubstepContext& context, std
     const V3 after = negMulAdd(sliding, lost, mulAdd(normal, impulse, relative));
     const V3 placed = negMulAdd(sliding, slid, mulAdd(normal, contact.reach, contact.centre));
     const V3 before = placed - (after + contact.step);
-    store3(select(contact.touching, placed, position), block.position, i);
-    store3(select(contact.touching, before, previous), block.previous, i);
+    storeWhere(contact.touching, placed, block.position, i);
+    storeWhere(contact.touching, before, block.previous, i);
     return placed;
 }
 
@@ -121,16 +121,12 @@ inline constexpr float kLeft = 4e-6f;
 class Overlaps {
   public:
     HWY_INLINE Overlaps(const SubstepContext& context, const SphereSet& spheres, NearPoints& near)
-        : spheres_(spheres), near_(near) {
-        float fastest = 0.0f;
-        for (const MovingSphere& sphere : context.spheres) fastest = std::fmax(fastest, length(sphere.step));
-        margin_ = 2.0f * fastest * static_cast<float>(context.count);
-    }
+        : context_(context), spheres_(spheres), near_(near) {}
 
     /// Those that can overlap sphere k, as bits.
     HWY_INLINE std::uint64_t of(std::size_t k) {
         const std::uint64_t bit = std::uint64_t{1} << k;
-        if ((near_.overlapsKnown & bit) == 0) near_.overlaps[k] = spheres_.overlapping(k, margin_);
+        if ((near_.overlapsKnown & bit) == 0) near_.overlaps[k] = spheres_.overlapping(k, margin());
         near_.overlapsKnown |= bit;
         return near_.overlaps[k];
     }
@@ -142,10 +138,22 @@ class Overlaps {
     }
 
   private:
+    /// Metres that two spheres can come nearer in the frame.
+    HWY_NOINLINE float margin() const {
+        float fastest = 0.0f;
+        for (const MovingSphere& sphere : context_.spheres) fastest = std::fmax(fastest, length(sphere.step));
+        return 2.0f * fastest * static_cast<float>(context_.count);
+    }
+
+    const SubstepContext& context_;
     const SphereSet& spheres_;
     NearPoints& near_;
-    float margin_;
 };
+
+/// About twice the reach times the depth of a point in a sphere, from its offset from the centre.
+HWY_INLINE V depthIn(V3 offset, V reach) {
+    return reach * (reach - all(kLeft)) - dot(offset, offset);
+}
 
 /// Points that left one sphere into `others` of a union: each goes to the circle that its last sphere and the
 /// one in which it is deepest have in common, until it is free. Places on the surfaces of two spheres follow
@@ -154,25 +162,31 @@ HWY_NOINLINE void settle(const BlockView& block, const SubstepContext& context, 
                          Overlaps& overlaps, std::size_t i, V3 root, V pearl, Contact contact,
                          std::uint64_t others) {
     constexpr int kSteps = 16;
+    const auto forEach = [&](std::uint64_t some, auto&& visit) HWY_ATTR {
+        for (; some != 0; some &= some - 1) {
+            const auto j = static_cast<std::size_t>(std::countr_zero(some));
+            visit(j, spheres.centre(j) - root, all(spheres.radius[j]) + pearl);
+        }
+    };
     for (int k = 0; k < kSteps; ++k) {
         const V3 at = load3(block.position, i);
-        V3 centre = contact.centre, step = contact.step;
-        V reach = contact.reach, deepest = hn::Zero(D());
-        for (std::uint64_t left = others; left != 0; left &= left - 1) {
-            const auto j = static_cast<std::size_t>(std::countr_zero(left));
-            const V3 itsCentre = spheres.centre(j) - root;
-            const V itsReach = all(spheres.radius[j]) + pearl;
-            const V3 offset = at - itsCentre;
-            // About twice the reach times the depth.
-            const V depth = itsReach * (itsReach - all(kLeft)) - dot(offset, offset);
-            const auto deeper = depth > deepest;
-            deepest = hn::IfThenElse(deeper, depth, deepest);
-            centre = select(deeper, itsCentre, centre);
-            step = select(deeper, all3(context.spheres[j].step), step);
-            reach = hn::IfThenElse(deeper, itsReach, reach);
-        }
+        V deepest = hn::Zero(D());
+        forEach(others, [&](std::size_t, V3 centre, V reach)
+                            HWY_ATTR { deepest = hn::Max(deepest, depthIn(at - centre, reach)); });
         const auto inside = hn::And(contact.touching, deepest > hn::Zero(D()));
         if (hn::AllFalse(D(), inside)) return;
+        V3 centre = contact.centre, step = contact.step;
+        V reach = contact.reach;
+        auto open = inside;
+        forEach(others, [&](std::size_t j, V3 itsCentre, V itsReach) HWY_ATTR {
+            // Of spheres that are equally deep the first counts.
+            const auto chosen = hn::And(open, depthIn(at - itsCentre, itsReach) == deepest);
+            if (HWY_LIKELY(hn::AllFalse(D(), chosen))) return;
+            open = hn::AndNot(chosen, open);
+            centre = select(chosen, itsCentre, centre);
+            step = select(chosen, all3(context.spheres[j].step), step);
+            reach = hn::IfThenElse(chosen, itsReach, reach);
+        });
         auto meet = inside;
         const V3 onCircle = nearestOfCircle(at, contact, centre, reach, meet);
         contact = {inside, centre, step, reach, select(meet, onCircle, at - centre)};
@@ -339,13 +353,10 @@ void collide(const BlockView& given, LaneFrame& lanes, const SubstepContext& con
 
 /// Square of the farthest that any free point moved in this substep.
 HWY_INLINE float farthestSquared(const BlockView& block) {
-    V most = hn::Zero(D());
-    const std::size_t end = std::size_t{block.points} * kBlockLanes;
-    for (std::size_t i = std::size_t{block.firstFree} * kBlockLanes; i < end; i += kWidth) {
+    return mostOfBlock(block, [&](std::size_t i) HWY_ATTR {
         const V3 moved = load3(block.position, i) - load3(block.previous, i);
-        most = hn::Max(most, dot(moved, moved));
-    }
-    return laneMost(most);
+        return dot(moved, moved);
+    });
 }
 
 /// The first sphere that a point enters and passes the middle of on its way relative to it, as a contact.
@@ -379,7 +390,7 @@ HWY_INLINE Contact firstEntered(const SubstepContext& context, V3 at, V3 moved, 
 /// Catches fast points where they first enter a sphere that they have passed, or passed the middle of, by the
 /// end of the substep. Runs before `collide` and leaves slow blocks at once.
 void collideSwept(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
-    const float slow = slowestSwept(context);
+    const float slow = context.slowestSwept;
     if (farthestSquared(block) < slow * slow) return;
     const float step = static_cast<float>(context.index + 1);
     alignas(64) float pearls[kMaxPoints];

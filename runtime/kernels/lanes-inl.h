@@ -78,6 +78,14 @@ HWY_INLINE void store4(V4 v, float (*p)[kBlockLanes], std::size_t i) {
     hn::Store(v.w, D(), p[3] + i);
 }
 
+/// Leaves what the other lanes have in memory.
+HWY_INLINE void storeWhere(hn::Mask<D> which, V3 v, const Planes& p, std::size_t i) {
+    float* const at = p.x + i;
+    hn::BlendedStore(v.x, which, D(), at);
+    hn::BlendedStore(v.y, which, D(), at + p.pitch);
+    hn::BlendedStore(v.z, which, D(), at + 2 * p.pitch);
+}
+
 HWY_INLINE V3 operator+(V3 a, V3 b) {
     return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
@@ -208,6 +216,22 @@ HWY_INLINE float laneLeast(V v) {
 }
 HWY_INLINE float laneMost(V v) {
     return hn::GetLane(hn::MaxOfLanes(D(), v));
+}
+
+/// The most of valueAt(i), 0 or more, of all lanes of all free points.
+template <class ValueAt>
+HWY_INLINE float mostOfBlock(const BlockView& block, ValueAt&& valueAt) {
+    constexpr std::size_t kStrips = kBlockLanes / kWidth;
+    // A maximum waits for the one before it: those of the strips run side by side.
+    V most[kStrips];
+    for (std::size_t n = 0; n < kStrips; ++n) most[n] = hn::Zero(D());
+    for (std::uint32_t p = block.firstFree; p < block.points; ++p) {
+        for (std::size_t n = 0; n < kStrips; ++n)
+            most[n] = hn::Max(most[n], valueAt(std::size_t{p} * kBlockLanes + n * kWidth));
+    }
+    V ofAll = most[0];
+    for (std::size_t n = 1; n < kStrips; ++n) ofAll = hn::Max(ofAll, most[n]);
+    return laneMost(ofAll);
 }
 
 struct Box {

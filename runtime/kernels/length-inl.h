@@ -87,7 +87,8 @@ class LengthElimination {
             error = dot(wanted, outerRate_ - rate);
             outerRate_ = rate;
         } else {
-            error = all(0.5f) * row.length() * (squared - one);
+            const V half = all(0.5f) * row.length();
+            error = hn::MulSub(squared, half, half);
         }
         const V innerMass = kClamped ? hn::Zero(D()) : row.inverseMass();
         const V above = dot(wanted, acting_) * outerMass_;

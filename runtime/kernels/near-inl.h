@@ -35,29 +35,21 @@ struct NearInput {
 /// How many groups there are; writes no more than fit.
 HWY_INLINE std::uint32_t findGroups(const NearInput& in, std::uint32_t lane, std::uint32_t begin,
                                     std::uint32_t end, float margin, std::span<NearPoints::Group> groups) {
-    // Pieces of few points, of each strand its own.
-    constexpr std::uint32_t kPiece = 4, kMostPieces = NearPoints::kGroupPoints / kPiece;
-    WideBox pieces[kMostPieces];
     const V3 root = load3(in.roots, lane);
     WideBox world = WideBox::empty();
-    for (std::uint32_t p = begin, n = 0; p < end; p += kPiece, ++n) {
-        pieces[n] = boxOf(in.block, lane, p, std::min(p + kPiece, end));
-        world.add(pieces[n], root);
-    }
+    world.add(boxOf(in.block, lane, begin, end), root);
+    const float* const first = in.block.position.x + std::size_t{begin} * kBlockLanes + lane;
     std::uint32_t count = 0;
     in.spheres.forEachMeeting(world.reduced(), margin, [&](std::size_t k) HWY_ATTR {
         const V3 centre = in.spheres.centre(k) - root;
-        const V radius = all(in.spheres.radius[k] + margin);
-        const float widest = in.spheres.widest[k] + margin;
+        const float radius = in.spheres.radius[k] + margin;
+        const float* at = first;
         std::uint32_t points = 0;
-        for (std::uint32_t first = begin, n = 0; first < end; first += kPiece, ++n) {
-            if (hn::AllFalse(D(), squaredGap(pieces[n], centre) <= all(1.0001f * widest * widest))) continue;
-            for (std::uint32_t p = first; p < std::min(first + kPiece, end); ++p) {
-                const V reach = radius + all(in.pearls[p]);
-                const V3 offset = load3(in.block.position, std::size_t{p} * kBlockLanes + lane) - centre;
-                const auto inside = dot(offset, offset) < reach * reach * all(1.0001f);
-                points |= hn::AllFalse(D(), inside) ? 0u : 1u << (p - begin);
-            }
+        for (std::uint32_t p = begin; p < end; ++p, at += kBlockLanes) {
+            const float reach = radius + in.pearls[p];
+            const V3 offset = load3(at, in.block.pitch) - centre;
+            const auto inside = dot(offset, offset) < all(reach * reach * 1.0001f);
+            points |= hn::AllFalse(D(), inside) ? 0u : 1u << (p - begin);
         }
         if (points == 0) return;
         if (count < groups.size()) {
@@ -97,16 +89,11 @@ HWY_INLINE float roundingOfPlaces(const NearInput& in) {
 
 /// Metres that a point of the block moved relative to its root in this substep, at most.
 HWY_INLINE float farthestFromRoot(const NearInput& in) {
-    V most = hn::Zero(D());
-    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
-        const V3 step = load3(in.lanes.rootStep, lane);
-        for (std::uint32_t p = in.block.firstFree; p < in.block.points; ++p) {
-            const std::size_t i = std::size_t{p} * kBlockLanes + lane;
-            const V3 moved = load3(in.block.position, i) - load3(in.block.previous, i) - step;
-            most = hn::Max(most, dot(moved, moved));
-        }
-    }
-    return std::sqrt(laneMost(most));
+    return std::sqrt(mostOfBlock(in.block, [&](std::size_t i) HWY_ATTR {
+        const V3 step = load3(in.lanes.rootStep, i % kBlockLanes);
+        const V3 moved = load3(in.block.position, i) - load3(in.block.previous, i) - step;
+        return dot(moved, moved);
+    }));
 }
 
 HWY_INLINE std::size_t nearPlane(const BlockView& block) {
@@ -151,21 +138,12 @@ HWY_INLINE bool isStillNear(const NearInput& in, const NearPoints& near) {
     const float limit =
         0.999f * near.margin - static_cast<float>(in.context.index - near.substep) * near.step;
     if (!(limit > 0.0f)) return false;
-    constexpr std::size_t kStrips = kBlockLanes / kWidth;
     const ConstPlanes places{near.places, nearPlane(in.block)};
-    // A maximum waits for the one before it: those of the strips run side by side.
-    V most[kStrips];
-    for (std::size_t n = 0; n < kStrips; ++n) most[n] = hn::Zero(D());
-    for (std::uint32_t p = in.block.firstFree; p < in.block.points; ++p) {
-        for (std::size_t n = 0; n < kStrips; ++n) {
-            const std::size_t i = std::size_t{p} * kBlockLanes + n * kWidth;
-            const V3 moved = load3(in.block.position, i) - load3(places, i);
-            most[n] = hn::Max(most[n], dot(moved, moved));
-        }
-    }
-    V ofAll = most[0];
-    for (std::size_t n = 1; n < kStrips; ++n) ofAll = hn::Max(ofAll, most[n]);
-    return laneMost(ofAll) < limit * limit;
+    const float farthest = mostOfBlock(in.block, [&](std::size_t i) HWY_ATTR {
+        const V3 moved = load3(in.block.position, i) - load3(places, i);
+        return dot(moved, moved);
+    });
+    return farthest < limit * limit;
 }
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)

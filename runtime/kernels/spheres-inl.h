@@ -21,16 +21,9 @@ HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {
 namespace HWY_NAMESPACE {
 
-/// 1/√x to 6e-7 of it, for x of 1e-37 and more: a first guess from the bits (Lomont 2003) and two Newton
-/// steps. A step leaves its error on one side, so each is scaled to leave half of it on both. Dividers are
-/// many times slower, and this rounds the same on all instruction sets.
+/// Of a positive x.
 HWY_INLINE V inverseSqrt(V x) {
-    constexpr float kFirst = 1.0f + 8.756e-4f, kSecond = 1.0f + 5.75e-7f;
-    const hn::RebindToSigned<D> di;
-    V y = hn::BitCast(D(), hn::Set(di, 0x5f375a86) - hn::ShiftRight<1>(hn::BitCast(di, x)));
-    const V half = x * all(0.5f);
-    y = y * hn::NegMulAdd(half * y, y * all(kFirst), all(1.5f * kFirst));
-    return y * hn::NegMulAdd(half * y, y * all(kSecond), all(1.5f * kSecond));
+    return all(1.0f) / hn::Sqrt(x);
 }
 
 struct Direction {
@@ -40,14 +33,12 @@ struct Direction {
 
 /// Of an offset from a sphere's centre; at the very centre it points up.
 HWY_INLINE Direction directionOf(V3 offset) {
-    const V zero = hn::Zero(D()), one = all(1.0f);
     const V squared = dot(offset, offset);
     const auto centred = squared < all(1e-18f);
-    const V inverse = inverseSqrt(hn::IfThenElse(centred, one, squared));
-    return {
-        {hn::IfThenElse(centred, zero, offset.x * inverse), hn::IfThenElse(centred, one, offset.y * inverse),
-         hn::IfThenElse(centred, zero, offset.z * inverse)},
-        squared * inverse};
+    // Selecting each part costs three times as much.
+    const V3 at{offset.x, offset.y + hn::IfThenElseZero(centred, all(1.0f)), offset.z};
+    const V inverse = inverseSqrt(squared + hn::IfThenElseZero(centred, all(1.0f)));
+    return {at * inverse, squared * inverse};
 }
 
 /// Pearl radius at each point, growing linearly to the tip.
@@ -151,15 +142,6 @@ struct WideBox {
                 {laneMost(high.x), laneMost(high.y), laneMost(high.z)}};
     }
 };
-
-/// Squares of the distances of the boxes' lanes from a place.
-HWY_INLINE V squaredGap(const WideBox& box, V3 at) {
-    const V zero = hn::Zero(D());
-    const V3 gap{hn::Max(hn::Max(box.low.x - at.x, at.x - box.high.x), zero),
-                 hn::Max(hn::Max(box.low.y - at.y, at.y - box.high.y), zero),
-                 hn::Max(hn::Max(box.low.z - at.z, at.z - box.high.z), zero)};
-    return dot(gap, gap);
-}
 
 /// Of points first … last − 1 of each strand of a strip, relative to the roots.
 HWY_INLINE WideBox boxOf(const BlockView& block, std::uint32_t lane, std::uint32_t first,

@@ -177,10 +177,9 @@ struct CpuFrame {
         outlook.rootsMax_ws = {1.0f, 1.0f, 1.0f};
         outlook.fastest = std::numeric_limits<float>::infinity();
         plan = runtime::planFrame(scene.settings, outlook, wind, spheres.usable, spheres.motion, dt);
-        context = runtime::substepContext(scene.settings, plan, dt);
         if (plan.on(runtime::Effect::collision))
             runtime::moveSpheres(spheres, scene.settings.substeps, moving);
-        context.spheres = moving;
+        context = runtime::substepContext(scene.settings, plan, dt, moving);
     }
 };
 
