@@ -26,6 +26,7 @@
 namespace hairloom::runtime {
 
 inline constexpr std::uint32_t kBlockLanes = 32;
+inline constexpr std::uint32_t kWidestVector = 16;  ///< lanes
 
 /// x, y and z of one quantity: three arrays, `pitch` floats apart.
 template <class Float>
@@ -40,6 +41,7 @@ using Planes = PlanesOf<float>;
 using ConstPlanes = PlanesOf<const float>;
 
 struct BlockView {
+    std::uint32_t lanes;      ///< from the first on; those with strands, in whole vectors of any width
     std::uint32_t points;     ///< per strand
     std::uint32_t firstFree;  ///< points before it are clamped
     std::size_t pitch;        ///< of all planes below

@@ -38,7 +38,7 @@ HWY_INLINE V3 windAt(const Wind& wind, const float* phases, V3 place_ws) {
 void sampleWind(const BlockView& block, LaneFrame& lanes, float h, const Wind& wind, const float* from,
                 const float* to) {
     const std::size_t tip = std::size_t{block.points - 1} * kBlockLanes;
-    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+    for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
         const V3 root = load3(lanes.root, lane);
         const V3 end = root + load3(block.position, tip + lane);
         const V substep = all(h);

@@ -76,7 +76,7 @@ void measurePulls(const BlockView& block, const LaneFrame& lanes, Pulls& pulls) 
     constexpr bool kFrames = kShape == Shape::curved;
     alignas(64) float inner[3][kBlockLanes], units[3][kBlockLanes], normals[3][kBlockLanes];
     const std::uint32_t first = block.firstFree - 1;
-    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+    for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
         V3 tangent, normal = zero3();
         startFrames<kFrames>(block, lanes, lane, tangent, normal);
         store3(tangent, inner, lane);
@@ -85,7 +85,7 @@ void measurePulls(const BlockView& block, const LaneFrame& lanes, Pulls& pulls) 
         store3(zero3(), pulls.planes(), std::size_t{block.points - 1} * kBlockLanes + lane);
     }
     for (std::uint32_t j = 0; j + 1 < block.points; ++j) {
-        for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+        for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
             const std::size_t i = std::size_t{j} * kBlockLanes + lane;
             const V3 edge = load3(block.position, i + kBlockLanes) - load3(block.position, i);
             const V3 tangent = tangentOf<kExact>(edge, hn::Load(D(), block.inverseLength + i));
@@ -126,7 +126,7 @@ template <Shape kShape, bool kExact>
 void applyAngular(const BlockView& block, LaneFrame& lanes, const SubstepContext&) {
     Pulls pulls;
     measurePulls<kShape, kExact>(block, lanes, pulls);
-    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+    for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
         const std::size_t before = std::size_t{block.firstFree - 1} * kBlockLanes + lane;
         V3 inner = segmentPull<kExact>(block, pulls, before);
         for (std::uint32_t p = block.firstFree; p < block.points; ++p) {

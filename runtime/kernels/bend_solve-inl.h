@@ -287,7 +287,7 @@ void bendBack(const BlockView& given, LaneFrame& lanes, const SubstepContext& co
     const BlockView block = localCopy(given);
     if (block.points <= block.firstFree) return;
     Strip strip;
-    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+    for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
         const PlaneRows rows(block, lane);
         if (block.tension) {
             pullStrip<kShape, true>(block, rows, lanes, context, lane, strip);

@@ -211,7 +211,7 @@ class Contacts {
           in_{block, lanes, context, spheres, pearls, roots_},
           deepest_(context.lengthIterations > 0 ? kDeep * kDeep : 0.0f) {
         const V step = all(static_cast<float>(context.index + 1));
-        for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth)
+        for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth)
             store3(load3(lanes.root, lane) + load3(lanes.rootStep, lane) * step, roots_, lane);
     }
 
@@ -234,7 +234,7 @@ class Contacts {
         NearPoints::Group groups[SphereSet::kMost];
         for (std::uint32_t p = block_.firstFree; p < block_.points; p += NearPoints::kGroupPoints) {
             const std::uint32_t end = std::min(p + NearPoints::kGroupPoints, block_.points);
-            for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+            for (std::uint32_t lane = 0; lane < block_.lanes; lane += kWidth) {
                 const std::uint32_t count = findGroups(in_, lane, p, end, 0.0f, groups);
                 touchCount_ = 0;
                 for (std::uint32_t n = 0; n < count; ++n) findTouches(groups[n]);
@@ -395,7 +395,7 @@ void collideSwept(const BlockView& block, LaneFrame& lanes, const SubstepContext
     const float step = static_cast<float>(context.index + 1);
     alignas(64) float pearls[kMaxPoints];
     fillPearls(block, context, pearls);
-    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+    for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
         const V3 root = load3(lanes.root, lane) + load3(lanes.rootStep, lane) * all(step);
         for (std::uint32_t p = block.firstFree; p < block.points; ++p) {
             const std::size_t i = std::size_t{p} * kBlockLanes + lane;
@@ -445,7 +445,7 @@ void applyPenalty(const BlockView& block, LaneFrame& lanes, const SubstepContext
         spheres.take(context.spheres.subspan(
                          first, std::min<std::size_t>(SphereSet::kMost, context.spheres.size() - first)),
                      step, std::fmax(context.pearlRoot, context.pearlTip));
-        for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+        for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
             const V3 root = load3(lanes.root, lane) + load3(lanes.rootStep, lane) * all(step);
             for (std::uint32_t p = block.firstFree; p < block.points; p += NearPoints::kGroupPoints) {
                 const std::uint32_t end = std::min(p + NearPoints::kGroupPoints, block.points);

@@ -194,7 +194,7 @@ void bendCoupled(const BlockView& given, LaneFrame& lanes, const SubstepContext&
     if (block.points <= block.firstFree) return;
     CoupledSystem system;
     Strip strip;
-    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+    for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
         const PlaneRows rows(block, lane);
         SegmentPulls<kShape> pulls(block, rows, lanes, context, lane, strip);
         fillSystem(block, lane, system, [&](std::uint32_t s, std::size_t i) HWY_ATTR {

@@ -87,7 +87,7 @@ void advanceImplicitBend(const BlockView& block, LaneFrame&, const SubstepContex
     const auto rateAt = [&](std::size_t i)
                             HWY_ATTR { return load3(block.position, i) - load3(block.previous, i); };
     Strip strip;
-    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+    for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
         V3 behind = zero3(), from = rateAt(lane);
         const auto jointPull = [&](std::uint32_t j) HWY_ATTR {
             const std::size_t i = std::size_t{j} * kBlockLanes + lane;
@@ -235,7 +235,7 @@ template <bool kAngular>
 void advanceImplicitSpring(const BlockView& block, LaneFrame&, const SubstepContext& context) {
     const V zero = hn::Zero(D());
     StrandSystem system;
-    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+    for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
         const std::uint32_t first = block.firstFree;
         S3 inner = coilJacobian(block, context, std::size_t{first - 1} * kBlockLanes + lane);
         for (std::uint32_t p = first; p < block.points; ++p) {

@@ -21,7 +21,7 @@ namespace HWY_NAMESPACE {
 template <class Visit>
 HWY_INLINE void forEachPoint(const BlockView& block, Visit&& visit) {
     for (std::uint32_t p = 0; p < block.points; ++p) {
-        for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth)
+        for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth)
             visit(std::size_t{p} * kBlockLanes + lane, p);
     }
 }

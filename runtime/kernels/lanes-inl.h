@@ -16,10 +16,10 @@ namespace hairloom::runtime {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using D = hn::CappedTag<float, 16>;
+using D = hn::CappedTag<float, kWidestVector>;
 using V = hn::Vec<D>;
 inline constexpr std::size_t kWidth = hn::MaxLanes(D());
-static_assert(kBlockLanes % kWidth == 0);
+static_assert(kBlockLanes % kWidestVector == 0 && kWidestVector % kWidth == 0);
 
 /// Floats of a scratch plane: a slot for each point of a block, and a cache line that keeps planes off each
 /// other's 4 KiB aliases.

@@ -182,7 +182,7 @@ void holdStrands(const BlockView& given, const SubstepContext& context) {
     const BlockView block = localCopy(given);
     if (block.points <= block.firstFree) return;
     Strip strip;
-    for (std::size_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+    for (std::size_t lane = 0; lane < block.lanes; lane += kWidth) {
         const PlaneRows rows(block, lane);
         reduceLengths<kHolding>(block, rows, lane, strip);
         applyTension<kHolding, kKept>(block, rows, context, lane, strip);
@@ -240,7 +240,7 @@ void bendAndHold(const BlockView& given, LaneFrame& lanes, const SubstepContext&
     const BlockView block = localCopy(given);
     if (block.points <= block.firstFree) return;
     Strip strip;
-    for (std::size_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+    for (std::size_t lane = 0; lane < block.lanes; lane += kWidth) {
         const PlaneRows planes(block, lane);
         if (block.points > kMostCopied) {
             bendAndHoldStrip<kShape>(block, planes, lanes, context, lane, strip);
@@ -267,7 +267,7 @@ void limitExtension(const BlockView& given, LaneFrame& lanes, const SubstepConte
     const V shortest = all(1.0f - context.maximalExtension);
     const V most = longest * longest, least = shortest * shortest;
     const V tiny = all(1e-12f), one = all(1.0f);
-    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+    for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
         const V3 step = load3(lanes.rootStep, lane);
         V3 parent = load3(block.position, (block.firstFree - 1) * kBlockLanes + lane);
         for (std::size_t p = block.firstFree; p < block.points; ++p) {

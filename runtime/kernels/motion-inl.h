@@ -48,7 +48,7 @@ void moveFree(const BlockView& given, LaneFrame& lanes, const SubstepContext& co
     const V lost = all(1.0f - context.velocityShare), share = all(context.dragShare);
     const V3 gravity = all3(context.gravityStep);
     const float inverseLast = 1.0f / static_cast<float>(block.points - 1);
-    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+    for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
         const V3 step = load3(lanes.rootStep, lane);
         AirWay air{};
         if constexpr (kAir == Air::moving) air = airWay(lanes, context, lane);

@@ -64,7 +64,7 @@ HWY_INLINE std::uint32_t findGroups(const NearInput& in, std::uint32_t lane, std
 /// Metres in a substep that a sphere moves relative to a root of the block, at most.
 HWY_INLINE float fastestSphere(const NearInput& in) {
     V most = hn::Zero(D());
-    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+    for (std::uint32_t lane = 0; lane < in.block.lanes; lane += kWidth) {
         const V3 step = load3(in.lanes.rootStep, lane);
         for (const MovingSphere& sphere : in.context.spheres) {
             const V3 relative = all3(sphere.step) - step;
@@ -77,7 +77,7 @@ HWY_INLINE float fastestSphere(const NearInput& in) {
 /// Metres by which rounding can move a sphere relative to a root.
 HWY_INLINE float roundingOfPlaces(const NearInput& in) {
     V most = hn::Zero(D());
-    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+    for (std::uint32_t lane = 0; lane < in.block.lanes; lane += kWidth) {
         const V3 root = load3(in.roots, lane);
         most = hn::Max(most, hn::Max(hn::Abs(root.x), hn::Max(hn::Abs(root.y), hn::Abs(root.z))));
     }
@@ -119,7 +119,7 @@ HWY_INLINE void findNear(const NearInput& in, NearPoints& near) {
     near.made = true;
     for (std::uint32_t p = in.block.firstFree; p < in.block.points; p += NearPoints::kGroupPoints) {
         const std::uint32_t end = std::min(p + NearPoints::kGroupPoints, in.block.points);
-        for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+        for (std::uint32_t lane = 0; lane < in.block.lanes; lane += kWidth) {
             near.groupCount +=
                 findGroups(in, lane, p, end, near.margin, std::span(near.groups).subspan(near.groupCount));
             near.made = near.groupCount <= NearPoints::kMostGroups;

@@ -21,7 +21,7 @@ namespace HWY_NAMESPACE {
 /// Turns the roots to where they are at the end of the substep and takes the clamped points along.
 void moveRoots(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
     const V t = all(static_cast<float>(context.index + 1) / static_cast<float>(context.count));
-    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+    for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
         const V4 from = load4(lanes.rotationFrom, lane);
         V4 to = load4(lanes.rotationTo, lane);
         const V side = from.x * to.x + from.y * to.y + from.z * to.z + from.w * to.w;

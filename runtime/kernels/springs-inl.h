@@ -36,7 +36,7 @@ HWY_INLINE V coilStep(const SubstepContext& context, V inverseMassFrom, V invers
 
 /// Coil springs (Rünz 2012, Eq. 3; the whole force on each end).
 void applySprings(const BlockView& block, LaneFrame&, const SubstepContext& context) {
-    for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+    for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
         V3 inner = zero3();
         for (std::uint32_t p = block.firstFree - 1; p < block.points; ++p) {
             const std::size_t i = std::size_t{p} * kBlockLanes + lane;
@@ -58,7 +58,7 @@ void applySprings(const BlockView& block, LaneFrame&, const SubstepContext& cont
 /// Flexion springs between every second point (Selle et al. 2008 call them bending springs).
 void applyFlexion(const BlockView& block, LaneFrame&, const SubstepContext&) {
     for (std::uint32_t p = 1; p + 1 < block.points; ++p) {
-        for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+        for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
             const std::size_t i = std::size_t{p} * kBlockLanes + lane;
             const std::size_t before = i - kBlockLanes, after = i + kBlockLanes;
             const V3 span = load3(block.rest, before) + load3(block.rest, i);
@@ -82,7 +82,7 @@ void limitBySpeed(const BlockView& block, LaneFrame&, const SubstepContext& cont
     const V zero = hn::Zero(D());
     for (std::uint32_t pass = 0; pass < context.lengthIterations; ++pass) {
         for (std::uint32_t p = block.firstFree; p < block.points; ++p) {
-            for (std::uint32_t lane = 0; lane < kBlockLanes; lane += kWidth) {
+            for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
                 const std::size_t i = std::size_t{p} * kBlockLanes + lane, parent = i - kBlockLanes;
                 const V rest = hn::Load(D(), block.length + parent);
                 const V3 from = load3(block.position, parent), to = load3(block.position, i);
