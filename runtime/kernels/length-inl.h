@@ -24,16 +24,23 @@ enum class Holding {
 };
 
 /// Keeps tension for the bending of the next substep. Slowly: what bending makes of it comes back a substep
-/// late. And no more than Verlet holds across a segment, by half of its limit; hardly a segment pulls as
-/// much.
+/// late. Returns by how much it is more than Verlet holds across the segment, half of its limit, in a measure
+/// of its own; `weight` is the sum of its points' inverse masses.
 template <class Row>
-HWY_INLINE void keepTension(const Row& row, const SubstepContext& context, V weight, V added) {
-    const V half = all(0.5f) * row.length();
-    V kept = hn::MulAdd(added, all(context.tensionShare), row.tension());
-    const auto tooMuch = hn::Abs(kept) * weight > half;
-    if (HWY_UNLIKELY(!hn::AllFalse(D(), tooMuch)))
-        kept = hn::IfThenElse(tooMuch, hn::CopySign(half / weight, kept), kept);
+HWY_INLINE V keepTension(const Row& row, const SubstepContext& context, V weight, V added) {
+    const V kept = hn::MulAdd(added, all(context.tensionShare), row.tension());
     row.setTension(kept);
+    return hn::MulSub(hn::Abs(kept), weight, row.halfLength());
+}
+
+/// Brings tensions that are too much back to what Verlet holds; hardly a segment pulls as much.
+template <class Rows>
+HWY_NOINLINE void cutTensions(const BlockView& block, const Rows& rows) {
+    auto row = rows.at(block.firstFree - 1);
+    for (std::size_t left = block.points - block.firstFree; left > 0; --left, row.advance()) {
+        const V most = row.halfLength() / (row.inverseMass() + (row + 1).inverseMass());
+        row.setTension(hn::Max(hn::Min(row.tension(), most), hn::Neg(most)));
+    }
 }
 
 /// One Newton step on all length constraints ½(|e|²/l − l) = 0 of a strand together, or on their rates
@@ -87,8 +94,7 @@ class LengthElimination {
             error = dot(wanted, outerRate_ - rate);
             outerRate_ = rate;
         } else {
-            const V half = all(0.5f) * row.length();
-            error = hn::MulSub(squared, half, half);
+            error = hn::MulSub(squared, row.halfLength(), row.halfLength());
         }
         const V innerMass = kClamped ? hn::Zero(D()) : row.inverseMass();
         const V above = dot(wanted, acting_) * outerMass_;
@@ -123,6 +129,10 @@ HWY_INLINE void applyTension(const BlockView& block, const Rows& rows, const Sub
     Strip::Point* point = strip.points + (block.firstFree - 1);
     V lambda = load(point->tension()), innerMass = row.inverseMass();
     V3 inner = load3(point->direction) * lambda;
+    V excess = hn::Zero(D());
+    const auto keep = [&](V mass) HWY_ATTR {
+        excess = hn::Max(excess, keepTension(row, context, innerMass + mass, lambda));
+    };
     const auto move = [&](V3 force, V mass) HWY_ATTR {
         const V3 before = load3(at, block.pitch);
         store3(kHolding == Holding::rates ? negMulAdd(force, mass, before) : mulAdd(force, mass, before), at,
@@ -130,7 +140,7 @@ HWY_INLINE void applyTension(const BlockView& block, const Rows& rows, const Sub
     };
     for (std::size_t left = block.points - block.firstFree; left > 1; --left, at += kBlockLanes) {
         const V mass = (row + 1).inverseMass();
-        if constexpr (kKept) keepTension(row, context, innerMass + mass, lambda);
+        if constexpr (kKept) keep(mass);
         row.advance();
         ++point;
         lambda = hn::MulAdd(load(point->upper()), lambda, load(point->tension()));
@@ -140,8 +150,9 @@ HWY_INLINE void applyTension(const BlockView& block, const Rows& rows, const Sub
         innerMass = mass;
     }
     const V mass = (row + 1).inverseMass();
-    if constexpr (kKept) keepTension(row, context, innerMass + mass, lambda);
+    if constexpr (kKept) keep(mass);
     move(zero3() - inner, mass);
+    if (kKept && HWY_UNLIKELY(!hn::AllFalse(D(), excess > hn::Zero(D())))) cutTensions(block, rows);
 }
 
 /// Fills the directions at the start of the substep.

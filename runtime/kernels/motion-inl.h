@@ -47,7 +47,11 @@ void moveFree(const BlockView& given, LaneFrame& lanes, const SubstepContext& co
     const BlockView block = localCopy(given);
     const V lost = all(1.0f - context.velocityShare), share = all(context.dragShare);
     const V3 gravity = all3(context.gravityStep);
-    const float inverseLast = 1.0f / static_cast<float>(block.points - 1);
+    float shareOfWay[kMaxPoints];  // of each point, from root to tip
+    if constexpr (kAir == Air::moving) {
+        const float inverseLast = 1.0f / static_cast<float>(block.points - 1);
+        for (std::uint32_t p = 0; p < block.points; ++p) shareOfWay[p] = static_cast<float>(p) * inverseLast;
+    }
     for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
         const V3 step = load3(lanes.rootStep, lane);
         AirWay air{};
@@ -61,7 +65,7 @@ void moveFree(const BlockView& given, LaneFrame& lanes, const SubstepContext& co
             if constexpr (kAir != Air::none) {
                 V3 flow = previous - position;
                 if constexpr (kAir == Air::moving)
-                    flow = mulAdd(air.slope, all(static_cast<float>(p) * inverseLast), flow + air.atRoot);
+                    flow = mulAdd(air.slope, all(shareOfWay[p]), flow + air.atRoot);
                 previous = negMulAdd(flow, blownShare(flow, position - parent, share), previous);
                 parent = position;
             }

@@ -45,7 +45,7 @@ class PlaneRows {
       public:
         HWY_INLINE Row(const BlockView& block, std::size_t at) : block_(&block), at_(at) {}
 
-        HWY_INLINE V length() const { return one(block_->length); }
+        HWY_INLINE V halfLength() const { return all(0.5f) * one(block_->length); }
         HWY_INLINE V inverseLength() const { return one(block_->inverseLength); }
         HWY_INLINE V inverseMass() const { return one(block_->inverseMass); }
         HWY_INLINE V stiffness() const { return one(block_->stiffness); }
@@ -86,14 +86,14 @@ class CopiedRows {
       public:
         /// As in memory.
         struct Point {
-            Lanes length, inverseLength, inverseMass, stiffness, inverseDiagonal, lower1, lower2, tension;
+            Lanes halfLength, inverseLength, inverseMass, stiffness, inverseDiagonal, lower1, lower2, tension;
             Lanes3 target, curve;
         };
         static_assert(sizeof(Point) == kCopiedRows * kWidth * sizeof(float));
 
         HWY_INLINE explicit Row(Point* point) : point_(point) {}
 
-        HWY_INLINE V length() const { return load(point_->length); }
+        HWY_INLINE V halfLength() const { return load(point_->halfLength); }
         HWY_INLINE V inverseLength() const { return load(point_->inverseLength); }
         HWY_INLINE V inverseMass() const { return load(point_->inverseMass); }
         HWY_INLINE V stiffness() const { return load(point_->stiffness); }
@@ -113,7 +113,7 @@ class CopiedRows {
         /// Takes in what the block has; `kCurved` with targets and curves.
         template <bool kCurved>
         HWY_INLINE void fill(const PlaneRows::Row& from) const {
-            store(from.length(), point_->length);
+            store(from.halfLength(), point_->halfLength);
             store(from.inverseLength(), point_->inverseLength);
             store(from.inverseMass(), point_->inverseMass);
             store(from.stiffness(), point_->stiffness);
