@@ -26,6 +26,7 @@ class Bench {
 
     SimulationBench run() {
         bench_.machine = thisMachine();
+        bench_.strands = options_.strands;
         std::vector<std::size_t> threads{1};
         if (threadCount() > 1) threads.push_back(threadCount());
         Progress progress("measuring", 3 * options_.strands.size() * threads.size() + 4);
@@ -141,6 +142,16 @@ class Bench {
         }
     }
 
+    /// With the instruction set in use, of that name.
+    InstructionSetCosts setCosts(const std::string& set, Acting acting) const {
+        InstructionSetCosts costs{set, acting, {}};
+        for (const std::uint32_t strands : options_.strands) {
+            const StepScene scene{.strands = strands, .acting = acting};
+            costs.steps.push_back(wholeStep(scene, fmt::format("step, {}, {}", told(scene, 1), set)));
+        }
+        return costs;
+    }
+
     void measureInstructionSets() {
         const std::vector<std::int64_t> targets = InstructionSetLimit::available();
         std::vector<std::string> seen;
@@ -151,13 +162,8 @@ class Bench {
             // A set that this machine has and the engine was not built for runs as the next one.
             if (std::ranges::find(seen, name) != seen.end()) continue;
             seen.push_back(name);
-            for (const Acting acting : {Acting::noTorsion, Acting::windAndSpheres}) {
-                for (const std::uint32_t strands : {kGuides, kMoreStrands}) {
-                    const StepScene scene{.strands = strands, .acting = acting};
-                    bench_.instructionSets.push_back(
-                        wholeStep(scene, fmt::format("step, {}, {}", told(scene, 1), name)));
-                }
-            }
+            for (const Acting acting : {Acting::noTorsion, Acting::windAndSpheres})
+                bench_.instructionSets.push_back(setCosts(name, acting));
             if (name == "SCALAR" || name == "EMU128") scalar = target;
         }
         if (scalar != 0) {
@@ -259,7 +265,9 @@ Report reportOf(const SimulationBench& bench) {
         }
         rows.push_back(rowOf(column.whole));
     }
-    for (const Measurement& set : bench.instructionSets) rows.push_back(rowOf(set));
+    for (const InstructionSetCosts& set : bench.instructionSets) {
+        for (const Measurement& step : set.steps) rows.push_back(rowOf(step));
+    }
     for (const Wanted& other : bench.others) {
         Report row = rowOf(other.cost);
         if (other.limit) {

@@ -33,6 +33,14 @@ struct StepCosts {
     std::vector<Stage> stages;  ///< in the plan's order, each once
 };
 
+/// A scene on one thread with one of this machine's instruction sets, in nanoseconds per particle and
+/// substep.
+struct InstructionSetCosts {
+    std::string set;
+    scenes::Acting acting;
+    std::vector<Measurement> steps;  ///< by SimulationBench::strands
+};
+
 /// The rows of the thesis' Table 3 (Rünz 2012, Section 7.2) but for the whole frame, in its order; the names
 /// are those of runtime::stageFamily, and "interpolation" is runtime/follow.h.
 inline constexpr std::array<std::string_view, 8> kFamilies{
@@ -59,9 +67,10 @@ struct Wanted {
 
 struct SimulationBench {
     Machine machine;
+    std::vector<std::uint32_t> strands;  ///< as asked for
     std::vector<StepCosts> steps;
     std::vector<ThesisCosts> thesis;
-    std::vector<Measurement> instructionSets;  ///< 300 × 16, wind and ten spheres; the best first
+    std::vector<InstructionSetCosts> instructionSets;  ///< the best first
     std::vector<Wanted> others;
     std::vector<std::string> notes;  ///< what could not be measured, and why
 };

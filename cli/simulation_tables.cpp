@@ -135,10 +135,23 @@ void writeThesis(const SimulationBench& bench, Out out) {
     fmt::format_to(out, "\n");
 }
 
+void writeInstructionSets(const SimulationBench& bench, Out out) {
+    fmt::format_to(
+        out, "\n## Instruction sets\n\nNanoseconds per particle and substep, one thread.\n\n| set | scene |");
+    std::string rule = "|---|---|";
+    for (const std::uint32_t strands : bench.strands) {
+        fmt::format_to(out, " {} strands |", strands);
+        rule += "---|";
+    }
+    fmt::format_to(out, "\n{}\n", rule);
+    for (const InstructionSetCosts& set : bench.instructionSets) {
+        fmt::format_to(out, "| {} | {} |", set.set, nameOf(set.acting));
+        for (const Measurement& step : set.steps) fmt::format_to(out, " {} |", spread(step));
+        fmt::format_to(out, "\n");
+    }
+}
+
 void writeOthers(const SimulationBench& bench, Out out) {
-    fmt::format_to(out, "\n## Instruction sets\n\n| what | {} |\n|---|---|\n", "ns per particle and substep");
-    for (const Measurement& set : bench.instructionSets)
-        fmt::format_to(out, "| {} | {} |\n", set.name, spread(set));
     fmt::format_to(out, "\n## A whole frame\n\n| what | ms |\n|---|---|\n");
     for (const Wanted& other : bench.others) {
         if (other.cost.unit == "ms")
@@ -156,6 +169,7 @@ std::string markdownOf(const SimulationBench& bench, const std::string& command)
     writeSteps(bench, out);
     writeStages(bench, out);
     writeThesis(bench, out);
+    writeInstructionSets(bench, out);
     writeOthers(bench, out);
     return text;
 }
