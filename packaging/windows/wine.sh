@@ -24,4 +24,7 @@ if [ ! -f "$WINEPREFIX/.ready" ]; then
         touch "$WINEPREFIX/.ready"
     ) 9> "$cache/wine.lock"
 fi
+# A server that goes as soon as nobody needs it may be on its way out when the next program looks for it: that program
+# fails. One that waits is there for all programs of a build. Of one that runs already this says nothing.
+(flock 9 && wineserver -p60 < /dev/null > /dev/null 2>&1 9>&-) 9> "$cache/wine.lock" || true
 exec wine "$@"
