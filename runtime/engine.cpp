@@ -149,10 +149,12 @@ void Engine::takeRoots(const FrameInput& input) {
                                              root.rotation.w};
             for (std::size_t r = 0; r < kRootRows; ++r) next[r * kBlockLanes + lane] = values[r];
         }
+        bounds.anyCut = false;
         if (!table.takeRoots(rows, next, false, cut, bounds)) {
             repairRoots(b);
             table.takeRoots(rows, next, true, cut, bounds);
         }
+        blockReports_[b].rootsCut = bounds.anyCut;
         blockReports_[b].rootsMoved = std::memcmp(rows, next, kRootRows * kBlockLanes * sizeof(float)) != 0;
     }
     rootMotion_ = std::sqrt(most(bounds.longest));

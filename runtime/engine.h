@@ -88,6 +88,7 @@ class Engine {
         float fastest = 0.0f;  ///< square metres, as Kernels::fastest
         std::uint32_t restored = 0;
         bool rootsMoved = false;
+        bool rootsCut = false;  ///< some are carried along rigidly
     };
     Engine() = default;
 
@@ -102,6 +103,7 @@ class Engine {
     BlockView view(std::size_t block);
     void runBlock(std::size_t block, const Frame& frame);
     static void turnAlong(const BlockView& view, std::uint32_t lane, Quat turn);
+    void cutLanes(const BlockView& view, float* rows, const float* next) const;
     void enterFrame(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame);
     void runStages(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame);
     void restoreStrands(std::size_t block, const BlockView& view);

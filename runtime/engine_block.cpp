@@ -88,6 +88,25 @@ void Engine::turnAlong(const BlockView& view, std::uint32_t lane, Quat turn) {
     }
 }
 
+/// Lanes whose roots go farther in the frame than teleportDistance start where they end.
+void Engine::cutLanes(const BlockView& view, float* rows, const float* next) const {
+    const float cut = settings_.teleportDistance * settings_.teleportDistance;
+    for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+        const auto place = [&](const float* from) {
+            return Float3{from[lane], from[kBlockLanes + lane], from[2 * kBlockLanes + lane]};
+        };
+        const auto rotation = [&](const float* from) {
+            const float* const at = from + 3 * kBlockLanes + lane;
+            return Quat{at[0], at[kBlockLanes], at[2 * kBlockLanes], at[3 * kBlockLanes]};
+        };
+        const Float3 way = place(next) - place(rows);
+        if (dot(way, way) <= cut) continue;
+        turnAlong(view, lane, rotation(next) * conjugate(rotation(rows)));
+        for (std::size_t r = 0; r < kRootRows; ++r)
+            rows[r * kBlockLanes + lane] = next[r * kBlockLanes + lane];
+    }
+}
+
 /// Fills the lanes' way through the frame and keeps its end for the next.
 void Engine::enterFrame(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame) {
     float* const rows = state_.roots.data() + block * kRootRows * kBlockLanes;
@@ -95,22 +114,7 @@ void Engine::enterFrame(std::size_t block, const BlockView& view, LaneFrame& lan
     const auto at = [](const float* from, std::size_t r, std::uint32_t lane) {
         return from[r * kBlockLanes + lane];
     };
-    const float cut = settings_.teleportDistance * settings_.teleportDistance;
-    float ways[kBlockLanes] = {};
-    for (std::size_t r = 0; r < 3; ++r) {
-        for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
-            const float way = at(next, r, lane) - at(rows, r, lane);
-            ways[lane] += way * way;
-        }
-    }
-    for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
-        if (ways[lane] <= cut) continue;
-        const auto rotation = [&](const float* from) {
-            return Quat{at(from, 3, lane), at(from, 4, lane), at(from, 5, lane), at(from, 6, lane)};
-        };
-        turnAlong(view, lane, rotation(next) * conjugate(rotation(rows)));
-        for (std::size_t r = 0; r < kRootRows; ++r) rows[r * kBlockLanes + lane] = at(next, r, lane);
-    }
+    if (blockReports_[block].rootsCut) cutLanes(view, rows, next);
     const float share = 1.0f / static_cast<float>(frame.context.count);
     for (std::size_t r = 0; r < 3; ++r) {
         for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {

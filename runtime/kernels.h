@@ -163,6 +163,7 @@ inline constexpr std::size_t kRootRows = 7;  ///< of a block's roots: place x, y
 struct alignas(64) RootBounds {
     float low[3][kBlockLanes], high[3][kBlockLanes];  ///< world
     float longest[kBlockLanes];                       ///< square metres, of those that are no cuts
+    bool anyCut = false;                              ///< set by a way that is one
 };
 
 /// What the strands move through.

@@ -83,7 +83,9 @@ bool takeRoots(const float* before, float* next, bool sound, float cut, RootBoun
         store3({hn::Max(high.x, place.x), hn::Max(high.y, place.y), hn::Max(high.z, place.z)}, bounds.high,
                lane);
         const V squared = dot(way, way);
-        const V counted = hn::IfThenElseZero(squared <= all(cut), squared);
+        const auto noCut = squared <= all(cut);
+        bounds.anyCut = bounds.anyCut || !hn::AllTrue(D(), noCut);
+        const V counted = hn::IfThenElseZero(noCut, squared);
         hn::Store(hn::Max(hn::Load(D(), bounds.longest + lane), counted), D(), bounds.longest + lane);
     }
     return true;
