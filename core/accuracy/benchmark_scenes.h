@@ -61,7 +61,7 @@ struct HeadOfHair {
   private:
     void addStrand(Float3 direction, std::uint32_t points, bool straight) {
         // Strands of more points have about the shape of those of 16.
-        const float bend = straight ? 0.0f : 0.25f * 15.0f / static_cast<float>(points - 1);
+        const float bend = 0.25f * 15.0f / static_cast<float>(points - 1);
         Float3 at = direction * kHeadRadius;
         roots.push_back(at);
         for (std::uint32_t p = 0; p < points; ++p) {

@@ -293,7 +293,7 @@ class Contacts {
             const auto other = static_cast<std::size_t>(std::countr_zero(left));
             const V3 itsOffset = placed - (spheres_.centre(other) - root);
             const V itsReach = all(spheres_.radius[other]) + pearl;
-            again = hn::Or(again, dot(itsOffset, itsOffset) < itsReach * (itsReach - all(kLeft)));
+            again = hn::Or(again, depthIn(itsOffset, itsReach) > hn::Zero(D()));
         }
         again = hn::And(again, inside);
         if (HWY_LIKELY(hn::AllFalse(D(), again))) return;

@@ -138,29 +138,24 @@ void takeSlope(const BlockView& block, LaneFrame&, const SubstepContext&) {
 }
 
 float fastestOf(const BlockView& block, float h) {
-    constexpr std::size_t kStrips = kBlockLanes / kWidth;
     // Bits of numbers that are not negative have the order of the numbers; what is no number comes after.
     using Bits = hn::RebindToUnsigned<D>;
     const auto bitsOfSquare = [](V3 v) HWY_ATTR { return hn::BitCast(Bits(), dot(v, v)); };
-    // A maximum waits for the one before it: those of the strips run side by side.
-    hn::Vec<Bits> fastest[kStrips], farthest[kStrips];
-    for (std::size_t n = 0; n < kStrips; ++n) fastest[n] = farthest[n] = hn::Zero(Bits());
-    for (std::uint32_t p = block.firstFree; p < block.points; ++p) {
-        for (std::size_t n = 0; n < kStrips; ++n) {
-            const std::size_t i = std::size_t{p} * kBlockLanes + n * kWidth;
-            const V3 position = load3(block.position, i);
-            fastest[n] = hn::Max(fastest[n], bitsOfSquare(position - load3(block.previous, i)));
-            farthest[n] = hn::Max(farthest[n], bitsOfSquare(position));
-        }
-    }
     // Squares of places farther than this from their root leave single precision.
     const V most = all(1e12f), rate = all(1.0f / (h * h));
     V ofAll = hn::Zero(D());
-    for (std::size_t n = 0; n < kStrips; ++n) {
-        const V squared = hn::BitCast(D(), fastest[n]);
-        const auto sound = hn::And(squared < most, hn::BitCast(D(), farthest[n]) < most);
+    for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
+        auto fastest = hn::Zero(Bits()), farthest = hn::Zero(Bits());
+        for (std::uint32_t p = block.firstFree; p < block.points; ++p) {
+            const std::size_t i = std::size_t{p} * kBlockLanes + lane;
+            const V3 position = load3(block.position, i);
+            fastest = hn::Max(fastest, bitsOfSquare(position - load3(block.previous, i)));
+            farthest = hn::Max(farthest, bitsOfSquare(position));
+        }
+        const V squared = hn::BitCast(D(), fastest);
+        const auto sound = hn::And(squared < most, hn::BitCast(D(), farthest) < most);
         const V counted = hn::IfThenElse(sound, squared, all(HUGE_VALF));
-        if (block.motion) hn::Store(counted * rate, D(), block.motion + n * kWidth);
+        if (block.motion) hn::Store(counted * rate, D(), block.motion + lane);
         ofAll = hn::Max(ofAll, counted);
     }
     return laneMost(ofAll);

@@ -218,19 +218,17 @@ HWY_INLINE float laneMost(V v) {
     return hn::GetLane(hn::MaxOfLanes(D(), v));
 }
 
-/// The most of valueAt(i), 0 or more, of all lanes of all free points.
+/// The most of valueAt(i), 0 or more, of all free points.
 template <class ValueAt>
 HWY_INLINE float mostOfBlock(const BlockView& block, ValueAt&& valueAt) {
-    constexpr std::size_t kStrips = kBlockLanes / kWidth;
-    // A maximum waits for the one before it: those of the strips run side by side.
-    V most[kStrips];
-    for (std::size_t n = 0; n < kStrips; ++n) most[n] = hn::Zero(D());
-    for (std::uint32_t p = block.firstFree; p < block.points; ++p) {
-        for (std::size_t n = 0; n < kStrips; ++n)
-            most[n] = hn::Max(most[n], valueAt(std::size_t{p} * kBlockLanes + n * kWidth));
+    V ofAll = hn::Zero(D());
+    for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
+        // A maximum waits for the one before it: those of the strips need not.
+        V most = hn::Zero(D());
+        for (std::uint32_t p = block.firstFree; p < block.points; ++p)
+            most = hn::Max(most, valueAt(std::size_t{p} * kBlockLanes + lane));
+        ofAll = hn::Max(ofAll, most);
     }
-    V ofAll = most[0];
-    for (std::size_t n = 1; n < kStrips; ++n) ofAll = hn::Max(ofAll, most[n]);
     return laneMost(ofAll);
 }
 

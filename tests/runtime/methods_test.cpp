@@ -190,6 +190,16 @@ TEST(Sleep, LeavesStrandsAtRestAloneUntilSomethingMovesThem) {
     }
 }
 
+TEST(Sleep, ComesBackAfterAPush) {
+    Sleeping hair;
+    const std::vector<Float3> push(hair.engine.pointCount(), Float3{0.1f, 0.0f, 0.0f});
+    hair.engine.addVelocities(push);
+    run(hair.engine, hair.strands, 1);
+    EXPECT_EQ(hair.engine.measure().asleep, 0u);
+    run(hair.engine, hair.strands, 900);
+    EXPECT_EQ(hair.engine.measure().asleep, 40u) << "the last block is not full";
+}
+
 TEST(Sleep, CanBeTurnedOff) {
     const Strands strands = tuft(5);
     SimulationSettings s;
