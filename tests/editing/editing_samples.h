@@ -4,6 +4,7 @@
 
 #include "core/editing/brush_list.h"
 #include "core/editing/document.h"
+#include "core/geometry/curve.h"
 #include "core/groom/groom_hash.h"
 #include "core/groom/validate.h"
 #include "tests/groom/groom_samples.h"
@@ -64,5 +65,27 @@ inline float nearestToSkin(const Groom& groom) {
     }
     return nearest;
 }
+
+/// The middle of the strand whose root is nearest to the top, and the document.
+struct TopStrand {
+    Document document{hairOnHead()};
+    std::uint32_t strand = 0;
+
+    TopStrand() {
+        for (std::uint32_t s = 0; s < document.groom().strandCount(); ++s) {
+            if (document.groom().strand(s)[0].y() > document.groom().strand(strand)[0].y()) strand = s;
+        }
+    }
+    std::span<const Vec3f> points() const { return document.groom().strand(strand); }
+    float length() const { return polylineLength(points()); }
+    Stroke at(std::string_view tool, std::initializer_list<Vec3f> places, float radius = 0.015f) const {
+        Stroke stroke;
+        stroke.tool = tool;
+        stroke.settings.radius = radius;
+        stroke.settings.strength = 1;
+        for (const Vec3f& place : places) stroke.dabs.push_back(dabAt(stroke.settings, place));
+        return stroke;
+    }
+};
 
 }  // namespace hairloom::editing
