@@ -66,7 +66,7 @@ inline float nearestToSkin(const Groom& groom) {
     return nearest;
 }
 
-/// The middle of the strand whose root is nearest to the top, and the document.
+/// The strand whose root is nearest to the top, in a document of its own.
 struct TopStrand {
     Document document{hairOnHead()};
     std::uint32_t strand = 0;
