@@ -80,21 +80,20 @@ struct BlockView {
 /// many substeps as it holds (Verlet 1967). Of blocks of few points and spheres only.
 struct NearPoints {
     static constexpr std::uint32_t kMostPoints = 64;   ///< of a strand
-    static constexpr std::uint32_t kMostGroups = 512;  ///< with one more there is no list
+    static constexpr std::uint32_t kMostPairs = 4096;  ///< where there can be more there is no list
 
-    /// Some of kNearPoints points on end, of a strip of lanes.
-    struct Group {
-        std::uint16_t sphere, lane, first;
-        std::uint16_t points;  ///< a bit for each, from `first` on
+    /// A vector of points, and a sphere that can reach one of them.
+    struct Pair {
+        std::uint16_t sphere;
+        std::uint16_t index;  ///< of the first lane
     };
-    static constexpr std::uint32_t kGroupPoints = 16;
 
     bool made = false;
     std::uint32_t substep;  ///< in which the list was made
-    std::uint32_t groupCount;
-    float margin;               ///< metres that a point can move relative to its root
-    float step;                 ///< metres in a substep that a sphere moves relative to a root, at most
-    Group groups[kMostGroups];  ///< by `first`, then by strip, then by sphere
+    std::uint32_t pairCount;
+    float margin;                ///< metres that a point can move relative to its root
+    float step;                  ///< metres in a substep that a sphere moves relative to a root, at most
+    Pair pairs[kMostPairs + 1];  ///< those of a point in the order of spheres
     /// Where the points were when the list was made, relative to their roots.
     alignas(64) float places[3 * (kMostPoints * kBlockLanes + 16)];
     std::uint64_t overlaps[64];       ///< of each sphere: those that can overlap it in this frame, as bits

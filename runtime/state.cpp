@@ -5,49 +5,63 @@
 #include <cmath>
 #include <cstring>
 #include <numeric>
+#include <span>
 
 namespace hairloom::runtime {
 namespace {
 
-/// Bits of 10-bit x, two apart.
-std::uint32_t spread(std::uint32_t x) {
-    x = (x | (x << 16)) & 0x030000ffu;
-    x = (x | (x << 8)) & 0x0300f00fu;
-    x = (x | (x << 4)) & 0x030c30c3u;
-    return (x | (x << 2)) & 0x09249249u;
+/// The most lanes of a vector or block that a part of `count` strands can fill.
+std::size_t unitOf(std::size_t count) {
+    for (const std::size_t lanes : {kBlockLanes, kWidestVector, kWidestVector / 2}) {
+        if (count > lanes) return lanes;
+    }
+    return kWidestVector / 4;
 }
 
-/// Place along a Morton curve through the roots' box: strands that follow each other lie close.
-std::vector<std::uint32_t> mortonCodes(const StrandsView& strands) {
-    const std::size_t count = strands.offsets.size() - 1;
-    Float3 low = strands.restPositions_ss[0], high = low;
-    for (std::size_t s = 0; s < count; ++s) {
-        const Float3 p = strands.restPositions_ss[strands.offsets[s]];
+/// Orders strands so that those of a block lie close, and those of each of its vectors closer still: what
+/// acts on a few strands at one place then stops few vectors. Halves them across the longest side of their
+/// box, again and again.
+void orderByPlace(std::span<std::uint32_t> strands, std::span<const Float3> places) {
+    const std::size_t unit = unitOf(strands.size());
+    if (strands.size() <= unit) {
+        std::sort(strands.begin(), strands.end());
+        return;
+    }
+    Float3 low = places[strands[0]], high = low;
+    for (const std::uint32_t s : strands) {
+        const Float3 p = places[s];
         low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
         high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
     }
-    const float size = std::max({high.x - low.x, high.y - low.y, high.z - low.z, 1e-20f});
-    const auto cell = [&](float offset) {
-        return std::min(static_cast<std::uint32_t>(offset / size * 1023.0f), 1023u);
-    };
-    std::vector<std::uint32_t> codes(count);
-    for (std::size_t s = 0; s < count; ++s) {
-        const Float3 p = strands.restPositions_ss[strands.offsets[s]] - low;
-        codes[s] = spread(cell(p.x)) | (spread(cell(p.y)) << 1) | (spread(cell(p.z)) << 2);
-    }
-    return codes;
+    const Float3 size = high - low;
+    const auto longest = size.x >= size.y && size.x >= size.z ? &Float3::x
+                         : size.y >= size.z                   ? &Float3::y
+                                                              : &Float3::z;
+    const std::size_t half = std::max((strands.size() + unit) / (2 * unit), std::size_t{1}) * unit;
+    std::nth_element(strands.begin(), strands.begin() + static_cast<std::ptrdiff_t>(half), strands.end(),
+                     [&](std::uint32_t a, std::uint32_t b) {
+                         const float atA = places[a].*longest, atB = places[b].*longest;
+                         return atA != atB ? atA < atB : a < b;
+                     });
+    orderByPlace(strands.first(half), places);
+    orderByPlace(strands.subspan(half), places);
 }
 
 std::vector<Block> groupStrands(const StrandsView& strands) {
     const std::size_t count = strands.offsets.size() - 1;
     const auto pointsOf = [&](std::uint32_t s) { return strands.offsets[s + 1] - strands.offsets[s]; };
-    const std::vector<std::uint32_t> codes = mortonCodes(strands);
     std::vector<std::uint32_t> order(count);
     std::iota(order.begin(), order.end(), 0u);
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-        if (pointsOf(a) != pointsOf(b)) return pointsOf(a) < pointsOf(b);
-        return codes[a] != codes[b] ? codes[a] < codes[b] : a < b;
-    });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return pointsOf(a) < pointsOf(b); });
+    // Where strands touch things, rather than where they grow.
+    std::vector<Float3> places(count);
+    for (std::uint32_t s = 0; s < count; ++s)
+        places[s] = strands.restPositions_ss[strands.offsets[s] + pointsOf(s) / 4];
+    for (std::size_t first = 0, end = 0; first < count; first = end) {
+        while (end < count && pointsOf(order[end]) == pointsOf(order[first])) ++end;
+        orderByPlace(std::span(order).subspan(first, end - first), places);
+    }
     std::vector<Block> blocks;
     std::size_t plane = 0;
     for (std::size_t i = 0; i < count;) {

@@ -219,98 +219,93 @@ class Contacts {
     HWY_INLINE void runListed() {
         if (!near_.made || !isStillNear(in_, near_)) findNear(in_, near_);
         if (!near_.made) return run();
-        std::uint32_t next = 0;
-        while (next < near_.groupCount) {
-            const std::uint32_t first = near_.groups[next].first;
-            touchCount_ = 0;
-            for (; next < near_.groupCount && near_.groups[next].first == first; ++next)
-                findTouches(near_.groups[next]);
-            touchAll();
-        }
+        findTouches({near_.pairs, near_.pairCount});
+        touchAll();
     }
 
     /// Without a list, some points of a strip after the other.
     HWY_INLINE void run() {
-        NearPoints::Group groups[SphereSet::kMost];
-        for (std::uint32_t p = block_.firstFree; p < block_.points; p += NearPoints::kGroupPoints) {
-            const std::uint32_t end = std::min(p + NearPoints::kGroupPoints, block_.points);
-            for (std::uint32_t lane = 0; lane < block_.lanes; lane += kWidth) {
-                const std::uint32_t count = findGroups(in_, lane, p, end, 0.0f, groups);
-                touchCount_ = 0;
-                for (std::uint32_t n = 0; n < count; ++n) findTouches(groups[n]);
-                touchAll();
-            }
-        }
+        NearPoints::Pair pairs[SphereSet::kMost * kPartPoints + 1];
+        forEachPart(block_, [&](std::uint32_t lane, std::uint32_t begin, std::uint32_t end) HWY_ATTR {
+            findTouches({pairs, findPairs(in_, lane, begin, end, 0.0f, pairs)});
+            touchAll();
+            return true;
+        });
     }
 
   private:
-    HWY_INLINE void findTouches(NearPoints::Group group) {
-        const V3 centre = spheres_.centre(group.sphere) - load3(roots_, group.lane);
-        const V radius = all(spheres_.radius[group.sphere]);
-        const float* const pearls = pearls_ + group.first;
-        const std::size_t first = group.first * kBlockLanes + group.lane;
-        std::size_t count = touchCount_;
-        for (std::uint64_t left = group.points; left != 0; left &= left - 1) {
-            const auto n = static_cast<std::size_t>(std::countr_zero(left));
-            const std::size_t i = first + n * kBlockLanes;
-            const V reach = radius + all(pearls[n]);
-            const V3 offset = load3(block_.position.x + i, block_.pitch) - centre;
-            const std::uint32_t inside = bitsOf(dot(offset, offset) < reach * reach);
-            touches_[count] = {group.sphere, static_cast<std::uint16_t>(i), inside};
-            count += inside != 0 ? 1u : 0u;
-        }
-        touchCount_ = count;
-    }
-
-    HWY_INLINE void touchAll() {
-        for (std::size_t t = 0; t < touchCount_; ++t) touch(t);
-    }
-
-    HWY_INLINE void touch(std::size_t t) {
-        const std::size_t k = touches_[t].sphere, i = touches_[t].index;
-        const V3 root = load3(roots_, touches_[t].index % kBlockLanes);
-        const V pearl = all(pearls_[i / kBlockLanes]);
-        const V3 centre = spheres_.centre(k) - root;
-        const V reach = all(spheres_.radius[k]) + pearl;
-        const V3 at = load3(block_.position, i);
-        const V3 step = all3(context_.spheres[k].step);
-        const V3 offset = at - centre;
-        const V squared = dot(offset, offset);
-        V3 from = offset;
-        if constexpr (kBackward) {
-            from = backAlong(offset, at - load3(block_.previous, i) - step, squared, reach);
-        }
-        const auto deep = squared < reach * reach * all(deepest_);
-        if (HWY_UNLIKELY(!hn::AllFalse(D(), deep))) {
-            from = select(deep, acrossStrand(offset, at - load3(block_.position, i - kBlockLanes)), from);
-        }
-        // A sphere before may have taken the point out of this one.
-        const auto inside = hn::And(maskOf(touches_[t].inside), squared < reach * reach);
-        const V3 placed = respond(block_, context_, i, {inside, centre, step, reach, from});
-        const std::uint64_t others = overlaps_.of(k);
-        auto again = noLane();
-        for (std::uint64_t left = others; left != 0; left &= left - 1) {
-            const auto other = static_cast<std::size_t>(std::countr_zero(left));
-            const V3 itsOffset = placed - (spheres_.centre(other) - root);
-            const V itsReach = all(spheres_.radius[other]) + pearl;
-            again = hn::Or(again, depthIn(itsOffset, itsReach) > hn::Zero(D()));
-        }
-        again = hn::And(again, inside);
-        if (HWY_LIKELY(hn::AllFalse(D(), again))) return;
-        settle(block_, context_, spheres_, overlaps_, i, root, pearl, {again, centre, step, reach, zero3()},
-               others | (std::uint64_t{1} << k));
-    }
-
-    static constexpr std::uint32_t kStrips = kBlockLanes / kWidth;
-
     struct Touch {
         std::uint16_t sphere;
         std::uint16_t index;   ///< of the first lane of a vector of points
         std::uint32_t inside;  ///< which lanes are
     };
     static_assert(kMaxPoints * kBlockLanes <= 0x10000);
-    // One more than there can be: the list is written before it is known whether an entry stays.
-    static constexpr std::size_t kMostTouches = SphereSet::kMost * NearPoints::kGroupPoints * kStrips + 1;
+
+    HWY_INLINE V3 rootAt(std::size_t i) const { return load3(roots_, i % kBlockLanes); }
+    HWY_INLINE float pearlAt(std::size_t i) const { return pearls_[i / kBlockLanes]; }
+    /// Of points with a sphere; of no lanes.
+    HWY_INLINE Contact contactOf(std::size_t i, std::size_t sphere) const {
+        return {noLane(), spheres_.centre(sphere) - rootAt(i), all3(context_.spheres[sphere].step),
+                all(spheres_.radius[sphere] + pearlAt(i)), zero3()};
+    }
+
+    HWY_INLINE void findTouches(std::span<const NearPoints::Pair> pairs) {
+        Touch* last = touches_;
+        for (const NearPoints::Pair pair : pairs) {
+            const V3 centre = spheres_.centre(pair.sphere) - rootAt(pair.index);
+            const float reach = spheres_.radius[pair.sphere] + pearlAt(pair.index);
+            const V3 offset = load3(block_.position, pair.index) - centre;
+            const std::uint32_t inside = bitsOf(dot(offset, offset) < all(reach * reach));
+            *last = {pair.sphere, pair.index, inside};
+            last += inside != 0 ? 1 : 0;
+        }
+        touchCount_ = static_cast<std::size_t>(last - touches_);
+    }
+
+    HWY_INLINE void touchAll() {
+        for (std::size_t t = 0; t < touchCount_; ++t) touch(touches_[t]);
+    }
+
+    HWY_INLINE void touch(Touch found) {
+        const std::size_t i = found.index;
+        Contact contact = contactOf(i, found.sphere);
+        const V3 at = load3(block_.position, i);
+        const V3 offset = at - contact.centre;
+        const V squared = dot(offset, offset), reachSquared = contact.reach * contact.reach;
+        contact.from = offset;
+        if constexpr (kBackward) {
+            contact.from =
+                backAlong(offset, at - load3(block_.previous, i) - contact.step, squared, contact.reach);
+        }
+        const auto deep = squared < reachSquared * all(deepest_);
+        if (HWY_UNLIKELY(!hn::AllFalse(D(), deep))) {
+            const V3 edge = at - load3(block_.position, i - kBlockLanes);
+            contact.from = select(deep, acrossStrand(offset, edge), contact.from);
+        }
+        // A sphere before may have taken the point out of this one.
+        contact.touching = hn::And(maskOf(found.inside), squared < reachSquared);
+        const V3 placed = respond(block_, context_, i, contact);
+        const V3 root = rootAt(i);
+        const float pearl = pearlAt(i);
+        auto again = noLane();
+        for (std::uint64_t left = overlaps_.of(found.sphere); left != 0; left &= left - 1) {
+            const auto other = static_cast<std::size_t>(std::countr_zero(left));
+            const V3 itsOffset = placed - (spheres_.centre(other) - root);
+            const V itsReach = all(spheres_.radius[other] + pearl);
+            again = hn::Or(again, depthIn(itsOffset, itsReach) > hn::Zero(D()));
+        }
+        again = hn::And(again, contact.touching);
+        if (HWY_UNLIKELY(!hn::AllFalse(D(), again))) settleFrom(found, bitsOf(again));
+    }
+
+    /// Points that left a sphere into others. Makes the contact anew: touch() need not keep it.
+    HWY_NOINLINE void settleFrom(Touch left, std::uint32_t lanes) {
+        Contact contact = contactOf(left.index, left.sphere);
+        contact.touching = maskOf(lanes);
+        settle(block_, context_, spheres_, overlaps_, left.index, rootAt(left.index),
+               all(pearlAt(left.index)), contact,
+               overlaps_.of(left.sphere) | (std::uint64_t{1} << left.sphere));
+    }
 
     const BlockView& block_;
     const SubstepContext& context_;
@@ -322,7 +317,7 @@ class Contacts {
     const float deepest_;  ///< square of kDeep; 0 where no length holds a point back
     alignas(64) float roots_[3][kBlockLanes];
     std::size_t touchCount_ = 0;
-    Touch touches_[kMostTouches];
+    Touch touches_[NearPoints::kMostPairs + 1];  // written before it is known whether it stays
 };
 
 /// Pushes points and their pearls out of spheres (Eq. 14). Where spheres overlap, a point that one of them
@@ -445,18 +440,16 @@ void applyPenalty(const BlockView& block, LaneFrame& lanes, const SubstepContext
         spheres.take(context.spheres.subspan(
                          first, std::min<std::size_t>(SphereSet::kMost, context.spheres.size() - first)),
                      step, std::fmax(context.pearlRoot, context.pearlTip));
-        for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
+        forEachPart(block, [&](std::uint32_t lane, std::uint32_t begin, std::uint32_t end) HWY_ATTR {
             const V3 root = load3(lanes.root, lane) + load3(lanes.rootStep, lane) * all(step);
-            for (std::uint32_t p = block.firstFree; p < block.points; p += NearPoints::kGroupPoints) {
-                const std::uint32_t end = std::min(p + NearPoints::kGroupPoints, block.points);
-                WideBox world = WideBox::empty();
-                world.add(boxOf(block, lane, p, end), root);
-                spheres.forEachMeeting(world.reduced(), 0.0f, [&](std::size_t k) HWY_ATTR {
-                    push(block, {p, end, lane}, spheres.centre(k) - root, spheres.radius[k], pearls,
-                         stiffness);
-                });
-            }
-        }
+            WideBox world = WideBox::empty();
+            world.add(boxOf(block, lane, begin, end), root);
+            spheres.forEachMeeting(world.reduced(), 0.0f, [&](std::size_t k) HWY_ATTR {
+                push(block, {begin, end, lane}, spheres.centre(k) - root, spheres.radius[k], pearls,
+                     stiffness);
+            });
+            return true;
+        });
     }
 }
 

@@ -31,34 +31,43 @@ struct NearInput {
     const float (*roots)[kBlockLanes];
 };
 
-/// The points begin … end − 1 of a strip that come within `margin` of a sphere, those of each sphere a group.
-/// How many groups there are; writes no more than fit.
-HWY_INLINE std::uint32_t findGroups(const NearInput& in, std::uint32_t lane, std::uint32_t begin,
-                                    std::uint32_t end, float margin, std::span<NearPoints::Group> groups) {
+/// Points of a strand whose box is tested against spheres.
+inline constexpr std::uint32_t kPartPoints = 8;
+
+/// Calls visit(lane, begin, end) for the parts of each strip, kPartPoints free points each, until it is
+/// false.
+template <class Visit>
+HWY_INLINE bool forEachPart(const BlockView& block, Visit&& visit) {
+    for (std::uint32_t p = block.firstFree; p < block.points; p += kPartPoints) {
+        const std::uint32_t end = std::min(p + kPartPoints, block.points);
+        for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
+            if (!visit(lane, p, end)) return false;
+        }
+    }
+    return true;
+}
+
+/// Writes points begin … end − 1 of a strip, each with the spheres that come within `margin` of it,
+/// from `list` on, where there is room for all there can be and one more. Returns their end.
+HWY_INLINE NearPoints::Pair* findPairs(const NearInput& in, std::uint32_t lane, std::uint32_t begin,
+                                       std::uint32_t end, float margin, NearPoints::Pair* list) {
     const V3 root = load3(in.roots, lane);
     WideBox world = WideBox::empty();
     world.add(boxOf(in.block, lane, begin, end), root);
-    const float* const first = in.block.position.x + std::size_t{begin} * kBlockLanes + lane;
-    std::uint32_t count = 0;
     in.spheres.forEachMeeting(world.reduced(), margin, [&](std::size_t k) HWY_ATTR {
         const V3 centre = in.spheres.centre(k) - root;
         const float radius = in.spheres.radius[k] + margin;
-        const float* at = first;
-        std::uint32_t points = 0;
-        for (std::uint32_t p = begin; p < end; ++p, at += kBlockLanes) {
+        std::size_t i = std::size_t{begin} * kBlockLanes + lane;
+        for (std::uint32_t p = begin; p < end; ++p, i += kBlockLanes) {
             const float reach = radius + in.pearls[p];
-            const V3 offset = load3(at, in.block.pitch) - centre;
+            const V3 offset = load3(in.block.position, i) - centre;
             const auto inside = dot(offset, offset) < all(reach * reach * 1.0001f);
-            points |= hn::AllFalse(D(), inside) ? 0u : 1u << (p - begin);
+            // Written first: a branch on what is as good as random costs more.
+            *list = {static_cast<std::uint16_t>(k), static_cast<std::uint16_t>(i)};
+            list += hn::AllFalse(D(), inside) ? 0 : 1;
         }
-        if (points == 0) return;
-        if (count < groups.size()) {
-            groups[count] = {static_cast<std::uint16_t>(k), static_cast<std::uint16_t>(lane),
-                             static_cast<std::uint16_t>(begin), static_cast<std::uint16_t>(points)};
-        }
-        ++count;
     });
-    return count;
+    return list;
 }
 
 /// Metres in a substep that a sphere moves relative to a root of the block, at most.
@@ -115,17 +124,16 @@ HWY_INLINE void findNear(const NearInput& in, NearPoints& near) {
     near.substep = in.context.index;
     near.step = fastestSphere(in);
     near.margin = marginFor(in, near.step);
-    near.groupCount = 0;
-    near.made = true;
-    for (std::uint32_t p = in.block.firstFree; p < in.block.points; p += NearPoints::kGroupPoints) {
-        const std::uint32_t end = std::min(p + NearPoints::kGroupPoints, in.block.points);
-        for (std::uint32_t lane = 0; lane < in.block.lanes; lane += kWidth) {
-            near.groupCount +=
-                findGroups(in, lane, p, end, near.margin, std::span(near.groups).subspan(near.groupCount));
-            near.made = near.groupCount <= NearPoints::kMostGroups;
-            if (!near.made) return;
-        }
-    }
+    NearPoints::Pair* last = near.pairs;
+    near.made =
+        forEachPart(in.block, [&](std::uint32_t lane, std::uint32_t begin, std::uint32_t end) HWY_ATTR {
+            const std::size_t room = NearPoints::kMostPairs - static_cast<std::size_t>(last - near.pairs);
+            if (room < in.spheres.count() * (end - begin)) return false;
+            last = findPairs(in, lane, begin, end, near.margin, last);
+            return true;
+        });
+    if (!near.made) return;
+    near.pairCount = static_cast<std::uint32_t>(last - near.pairs);
     near.margin -= roundingOfPlaces(in);
     const Planes places{near.places, nearPlane(in.block)};
     const std::size_t end = std::size_t{in.block.points} * kBlockLanes;
