@@ -3,6 +3,7 @@
 // A few substeps of any plan from any state, by the stages of the engine on the CPU: what the kernels on the
 // device are held against.
 
+#include <algorithm>
 #include <random>
 #include <vector>
 
@@ -80,40 +81,63 @@ inline void addStrands(Scene& scene, Hair hair, std::uint32_t count, std::span<c
     }
 }
 
+/// Where a strand stands among the blocks.
+struct Seat {
+    std::size_t block = 0;
+    std::uint32_t lane = 0;
+};
+/// Of each strand: random numbers are drawn in the order of the strands, so that a state does not depend on
+/// how they are dealt to blocks.
+inline std::vector<Seat> seatsOf(const runtime::RestShape& shape) {
+    std::vector<Seat> seats(shape.restRoots.size());
+    for (std::size_t b = 0; b < shape.blocks.size(); ++b) {
+        const runtime::Block& block = shape.blocks[b];
+        for (std::uint32_t lane = 0; lane < block.strands; ++lane)
+            seats[block.strandOfLane[lane]] = {b, lane};
+    }
+    return seats;
+}
+
+/// Lanes without a strand are like the block's last strand.
+inline void fillSpareLanes(const runtime::RestShape& shape, runtime::State& state) {
+    for (const runtime::Block& block : shape.blocks) {
+        float* const planes = state.planes.data() + block.firstPlane * runtime::kStatePlanes;
+        for (std::size_t plane = 0; plane < runtime::kStatePlanes; ++plane) {
+            for (std::uint32_t p = 0; p < block.points; ++p) {
+                float* const lanes =
+                    planes + plane * planeSize(block) + std::size_t{p} * runtime::kBlockLanes;
+                std::fill(lanes + block.strands, lanes + runtime::kBlockLanes, lanes[block.strands - 1]);
+            }
+        }
+    }
+}
+
 /// Moves every point of the state off its rest place and gives it a speed. Nasty states have points in one
 /// place, folds by 180° and a point that flies at 500 m/s.
 /// Others are off by up to `most` metres along each axis, and move in proportion, at 3 m/s for 2 mm.
 inline void disturb(Scene& scene, Hair hair, Dice& dice, float most = 0.002f) {
-    runtime::State& state = scene.state;
-    for (const runtime::Block& block : scene.shape->blocks) {
+    const std::vector<Seat> seats = seatsOf(*scene.shape);
+    for (std::uint32_t strand = 0; strand < seats.size(); ++strand) {
+        const runtime::Block& block = scene.shape->blocks[seats[strand].block];
         const std::size_t size = planeSize(block);
-        float* const planes = state.planes.data() + block.firstPlane * runtime::kStatePlanes;
+        float* const planes = scene.state.planes.data() + block.firstPlane * runtime::kStatePlanes;
         for (std::uint32_t p = scene.settings.clampedPoints; p < block.points; ++p) {
-            for (std::uint32_t lane = 0; lane < runtime::kBlockLanes; ++lane) {
-                const std::size_t i = std::size_t{p} * runtime::kBlockLanes + lane;
-                const std::size_t source = lane < block.strands ? lane : block.strands - 1;
-                const std::size_t from = std::size_t{p} * runtime::kBlockLanes + source;
-                Float3 shift = dice.inside(hair == Hair::nasty ? 0.01f : most);
-                Float3 moved = dice.inside(3.0f * kStep * most / 0.002f);
-                const bool odd = hair == Hair::nasty && p > 2;
-                for (std::size_t k = 0; k < 3; ++k) {
-                    float& place = planes[k * size + i];
-                    if (lane >= block.strands) {
-                        place = planes[k * size + from];
-                        planes[(3 + k) * size + i] = planes[(3 + k) * size + from];
-                        continue;
-                    }
-                    const float add = k == 0 ? shift.x : k == 1 ? shift.y : shift.z;
-                    const float way = k == 0 ? moved.x : k == 1 ? moved.y : moved.z;
-                    place += add;
-                    const std::size_t before = i - runtime::kBlockLanes;
-                    if (odd && (p + lane) % 7 == 0) place = planes[k * size + before];
-                    if (odd && (p + lane) % 7 == 3) place = planes[k * size + before - runtime::kBlockLanes];
-                    planes[(3 + k) * size + i] = place - (odd && (p + lane) % 11 == 0 ? 500.0f * kStep : way);
-                }
+            const std::size_t i = std::size_t{p} * runtime::kBlockLanes + seats[strand].lane;
+            const std::size_t before = i - runtime::kBlockLanes;
+            const Float3 shift = dice.inside(hair == Hair::nasty ? 0.01f : most);
+            const Float3 moved = dice.inside(3.0f * kStep * most / 0.002f);
+            const bool odd = hair == Hair::nasty && p > 2;
+            for (std::size_t k = 0; k < 3; ++k) {
+                float& place = planes[k * size + i];
+                place += k == 0 ? shift.x : k == 1 ? shift.y : shift.z;
+                if (odd && (p + strand) % 7 == 0) place = planes[k * size + before];
+                if (odd && (p + strand) % 7 == 3) place = planes[k * size + before - runtime::kBlockLanes];
+                const float way = k == 0 ? moved.x : k == 1 ? moved.y : moved.z;
+                planes[(3 + k) * size + i] = place - (odd && (p + strand) % 11 == 0 ? 500.0f * kStep : way);
             }
         }
     }
+    fillSpareLanes(*scene.shape, scene.state);
 }
 
 /// A scene of 64 strands whose roots move and turn, about three spheres of which one moves.
@@ -130,13 +154,11 @@ inline Scene makeScene(const runtime::SimulationSettings& settings, Hair hair, s
     state.roots.assign(shape.blocks.size() * runtime::kRootRows * runtime::kBlockLanes, 0.0f);
     state.rests.resize(shape.blocks.size());
     state.substep = kStep;
-    scene.roots.resize(shape.restRoots.size());
+    for (const runtime::RootFrame& root : shape.restRoots)
+        scene.roots.push_back({root.position + dice.inside(0.002f), dice.turn(0.02f)});
     for (std::size_t b = 0; b < shape.blocks.size(); ++b) {
         for (std::uint32_t lane = 0; lane < runtime::kBlockLanes; ++lane) {
-            const std::uint32_t strand = shape.blocks[b].strandOfLane[lane];
-            const Float3 place = shape.restRoots[strand].position;
-            if (lane < shape.blocks[b].strands)
-                scene.roots[strand] = {place + dice.inside(0.002f), dice.turn(0.02f)};
+            const Float3 place = shape.restRoots[shape.blocks[b].strandOfLane[lane]].position;
             const float rows[] = {place.x, place.y, place.z, 0.0f, 0.0f, 0.0f, 1.0f};
             for (std::size_t r = 0; r < runtime::kRootRows; ++r)
                 state.roots[(b * runtime::kRootRows + r) * runtime::kBlockLanes + lane] = rows[r];

@@ -44,8 +44,10 @@ struct Case {
     /// Strands of a nasty state in which rounding may decide a branch: whether a way enters a sphere steeply,
     /// a place on a sphere lies in it, or a segment has turned by more than 60°.
     std::ptrdiff_t mayDiffer = 3;
-    /// Metres that points of random states are off along each axis.
-    float shift = 0.002f;
+    /// Metres that points of random states are off along each axis. At four times that the system of the
+    /// lengths is all but singular for a strand in a few hundred, and its result is what rounding makes of
+    /// it.
+    float shift = 0.0005f;
 };
 
 void PrintTo(const Case& printed, std::ostream* out) {
@@ -100,12 +102,15 @@ const Case kCases[] = {
          hold(s);
          s.lengthIterations = 4;
          s.clampedPoints = 1;
-     }},
+     },
+     // Each iteration meets such systems anew.
+     false, 2e-7, 2e-5, 3, 2e-4f},
     {"springs",
      [](SimulationSettings& s) {
          s.lengthMethod = LengthMethod::springs;
          s.lengthIterations = 1;
-     }},
+     },
+     false, 5e-7},
     {"springVelocities",
      [](SimulationSettings& s) {
          s.lengthMethod = LengthMethod::springVelocities;

@@ -180,8 +180,8 @@ class Reference : public GpuSimulationTest {
                 const double offOnCpu = farthest(of(before[s], cpu[s]), exact, first);
                 double size = 0.0;
                 for (const Vector3d& v : exact) size = std::max(size, v.norm());
-                // Places of a strand's size round to 2e-8 m.
-                EXPECT_LE(off, 4.0 * offOnCpu + 1e-7) << "strand " << s;
+                // Places of a strand's size round to 2e-8 m, a few times.
+                EXPECT_LE(off, 4.0 * offOnCpu + 2e-7) << "strand " << s;
                 if (share > 0.0) {
                     EXPECT_LE(off, share * size + 1e-7) << "strand " << s;
                 }

@@ -141,7 +141,7 @@ TEST_F(Reference, LengthsInDoublePrecision) {
         for (const Hair hair : {Hair::straight, Hair::curled}) {
             SCOPED_TRACE(clamped);
             settings.clampedPoints = clamped;
-            const Scene scene = sceneFor(settings, hair, false, 0);
+            const Scene scene = sceneFor(settings, hair, false, 0, 0.0005f);
             const auto truth = [&](std::size_t s, const Strand& before) {
                 Places x = before.places;
                 for (std::size_t p = clamped; p < x.size(); ++p) x[p] += before.moved[p];
