@@ -9,8 +9,9 @@
 # most of the time to build.
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")/../.."
+# -noreset: else the server turns clients away while it begins anew after its last one left.
 [ -n "${HAIRLOOM_ON_XVFB:-}" ] ||
-    HAIRLOOM_ON_XVFB=1 exec xvfb-run -a -s "-screen 0 1600x1000x24" packaging/windows/verify.sh "$@"
+    HAIRLOOM_ON_XVFB=1 exec xvfb-run -a -s "-screen 0 1600x1000x24 -noreset" packaging/windows/verify.sh "$@"
 export HAIRLOOM_CACHE=${HAIRLOOM_CACHE:-${XDG_CACHE_HOME:-$HOME/.cache}/hairloom}
 export HAIRLOOM_WINDOWS_SYSROOT=$HAIRLOOM_CACHE/windows
 out=$PWD/build/windows

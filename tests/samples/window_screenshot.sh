@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# usage: xvfb-run -a -s "-screen 0 640x640x24" tests/samples/window_screenshot.sh PICTURE.png PROGRAM [ARGUMENT…]
+# usage: xvfb-run -a -s "-screen 0 640x640x24 -noreset" tests/samples/window_screenshot.sh PICTURE.png PROGRAM [ARGUMENT…]
 # Runs hairloom-window on a display of its own and photographs the screen after ten pictures and after twenty. The first
 # photograph stays as PICTURE.png.
 # Fails unless the program ends well, the screen shows a shaded picture, and that picture moves.
