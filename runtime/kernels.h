@@ -108,9 +108,10 @@ struct alignas(64) LaneFrame {
     float root[3][kBlockLanes];          ///< at the start of the frame, world
     float rootStep[3][kBlockLanes];      ///< the root's way in one substep
     float rotationFrom[4][kBlockLanes];  ///< x, y, z, w
-    float rotationTo[4][kBlockLanes];
-    float rotation[4][kBlockLanes];  ///< of now; kept by the stage `roots`
-    float turn[4][kBlockLanes];      ///< from the rotation of a substep ago to that of now; likewise
+    float rotationTo[4][kBlockLanes];    ///< by the first substep on the side of rotationFrom
+    float rotation[4][kBlockLanes];      ///< of now; kept by the stage `roots`
+    /// From the rotation of a substep ago to that of now; likewise, where there is BlockView::curve.
+    float turn[4][kBlockLanes];
     float windRoot[2][3]
                   [kBlockLanes];  ///< the air's way in one substep at start and end of the frame, at the root
     float windTip[2][3][kBlockLanes];

@@ -60,14 +60,15 @@ HWY_INLINE V3 fromFrame(V3 tangent, V3 normal, V3 local) {
     return mulAdd(cross(tangent, normal), local.z, mulAdd(normal, local.y, tangent * local.x));
 }
 
-/// The directions and the normal that the root carries, before the first segment.
-template <bool kFrames>
-HWY_INLINE void startFrames(const BlockView& block, const LaneFrame& lanes, std::size_t lane, V3& tangent,
-                            V3& normal) {
-    const V4 root = load4(lanes.rotation, lane);
-    tangent = rotate(root, load3(block.rest, lane) * hn::Load(D(), block.inverseLength + lane));
-    if constexpr (kFrames)
-        normal = rotate(root, load3(block.target, std::size_t{block.points - 1} * kBlockLanes + lane));
+/// The direction that the root carries, before the first segment.
+HWY_INLINE V3 rootDirection(const BlockView& block, const LaneFrame& lanes, std::size_t lane) {
+    return rotate(load4(lanes.rotation, lane),
+                  load3(block.rest, lane) * hn::Load(D(), block.inverseLength + lane));
+}
+/// The normal that it carries; of curved hair.
+HWY_INLINE V3 rootNormal(const BlockView& block, const LaneFrame& lanes, std::size_t lane) {
+    return rotate(load4(lanes.rotation, lane),
+                  load3(block.target, std::size_t{block.points - 1} * kBlockLanes + lane));
 }
 
 /// Pulls of angular springs at `position`.
@@ -77,8 +78,9 @@ void measurePulls(const BlockView& block, const LaneFrame& lanes, Pulls& pulls) 
     alignas(64) float inner[3][kBlockLanes], units[3][kBlockLanes], normals[3][kBlockLanes];
     const std::uint32_t first = block.firstFree - 1;
     for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
-        V3 tangent, normal = zero3();
-        startFrames<kFrames>(block, lanes, lane, tangent, normal);
+        const V3 tangent = rootDirection(block, lanes, lane);
+        V3 normal = zero3();
+        if constexpr (kFrames) normal = rootNormal(block, lanes, lane);
         store3(tangent, inner, lane);
         store3(tangent, units, lane);
         store3(normal, normals, lane);

@@ -9,6 +9,7 @@
 #endif
 
 #include <cmath>
+#include <type_traits>
 
 #include "hwy/highway.h"
 #include "runtime/kernels.h"
@@ -35,9 +36,7 @@ struct Strip {
         Lanes3 direction;  ///< of the segment at the start of the substep, by its rest length
         Lanes3 held;       ///< the curve of the joint, turned with the root
         Lanes3 change;     ///< from there to the curve of today's frame
-        /// First how much less the joint bends q of the way on, then what it pulls against, reversed, before
-        /// its curve changes.
-        Lanes3 ahead;
+        Lanes3 ahead;  ///< what the joint pulls against q of the way on, reversed, before its curve changes
 
         // Each takes the place of what is no longer needed by then: strips of long strands stay small.
         Lanes3& right() { return change; }   ///< right side of the system of bending
@@ -47,16 +46,17 @@ struct Strip {
     Point points[kMaxPoints];
 };
 
-/// Fills the directions of segments at `previous`, and how much less each changes than the one before it, q
+/// Fills the directions of segments at `previous`, and by how much less each turns than the one before it, q
 /// of the way to `position`.
 template <class Rows>
-HWY_INLINE void readDirections(const BlockView& block, const Rows& rows, const SubstepContext& context,
-                               std::size_t lane, Strip& strip) {
+HWY_INLINE void readSegments(const BlockView& block, const Rows& rows, const LaneFrame& lanes,
+                             const SubstepContext& context, std::size_t lane, Strip& strip) {
     const float* previous = block.previous.x + lane;
     const float* position = block.position.x + lane;
     const std::size_t pitch = block.pitch;
     const V q = all(context.bendRate);
-    V3 from = load3(previous, pitch), moved = load3(position, pitch) - from, changeBehind = zero3();
+    V3 from = load3(previous, pitch), moved = load3(position, pitch) - from;
+    V3 aim = rootDirection(block, lanes, lane);
     auto row = rows.at(0);
     Strip::Point* at = strip.points;
     for (std::size_t left = block.points - 1; left > 0; --left, ++at, row.advance()) {
@@ -65,10 +65,11 @@ HWY_INLINE void readDirections(const BlockView& block, const Rows& rows, const S
         const V inverseLength = row.inverseLength();
         const V3 to = load3(previous, pitch);
         const V3 movedNext = load3(position, pitch) - to;
-        store3((to - from) * inverseLength, at->direction);
-        const V3 change = (movedNext - moved) * (inverseLength * q);
-        store3(changeBehind - change, at->ahead);
-        changeBehind = change;
+        const V3 edge = to - from;
+        store3(edge * inverseLength, at->direction);
+        const V3 aimNext = mulAdd(movedNext - moved, q, edge) * inverseLength;
+        store3(aim - aimNext, at->ahead);
+        aim = aimNext;
         from = to;
         moved = movedNext;
     }
@@ -106,8 +107,7 @@ HWY_INLINE Turning measureTurning(const BlockView& block, const Rows& rows, cons
                                   std::size_t lane, Strip& strip) {
     const V zero = hn::Zero(D()), one = all(1.0f);
     const M3 turn = matrixOf(load4(lanes.turn, lane));
-    V3 behind, normal;
-    startFrames<true>(block, lanes, lane, behind, normal);
+    V3 behind = rootDirection(block, lanes, lane), normal = rootNormal(block, lanes, lane);
     Turning turning{zero, zero, one};
     auto known = hn::Not(noLane());
     const auto carry = [&](V3 tangent) HWY_ATTR {
@@ -137,7 +137,7 @@ HWY_INLINE Turning measureTurning(const BlockView& block, const Rows& rows, cons
         turning.size = hn::MulAdd(dot(change, change), stiffness, turning.size);
         store3(held, at->held);
         store3(change, at->change);
-        store3(load3(at->ahead) - off, at->ahead);
+        store3(load3(at->ahead) + held, at->ahead);
         carry(tangent);
     }
     return turning;
@@ -154,26 +154,15 @@ HWY_INLINE V followFrames(const BlockView& block, const Rows& rows, const LaneFr
                           const SubstepContext& context, std::size_t lane, Strip& strip) {
     Turning turning = measureTurning<false>(block, rows, lanes, lane, strip);
     if (HWY_UNLIKELY(!hn::AllFalse(D(), turning.sharpest < all(kFold)))) {
-        readDirections(block, rows, context, lane, strip);
+        readSegments(block, rows, lanes, context, lane, strip);
         turning = measureTurning<true>(block, rows, lanes, lane, strip);
     }
     return payFromTank(block, context, lane, turning.gain, turning.size);
 }
 
-/// What the joints of straight hair pull against.
-HWY_INLINE void measureBends(const BlockView& block, const LaneFrame& lanes, std::size_t lane, Strip& strip) {
-    V3 behind, normal;
-    startFrames<false>(block, lanes, lane, behind, normal);
-    Strip::Point* at = strip.points;
-    for (std::size_t left = block.points - 1; left > 0; --left, ++at) {
-        const V3 direction = load3(at->direction);
-        store3(load3(at->ahead) - (direction - behind), at->ahead);
-        behind = direction;
-    }
-}
-
 /// What the segments pull with, read root to tip: the gradient of the bending energy by a segment's outer
-/// point, (s_s − s_{s+1})/l times h², q of the way to `position` farther on than `previous`.
+/// point, (s_s − s_{s+1})/l times h², q of the way to `position` farther on than `previous`. Nothing bends at
+/// the tip. Fills the segments' directions.
 template <Shape kShape>
 class SegmentPulls {
   public:
@@ -181,27 +170,23 @@ class SegmentPulls {
     HWY_INLINE SegmentPulls(const BlockView& block, const Rows& rows, const LaneFrame& lanes,
                             const SubstepContext& context, std::size_t lane, Strip& strip)
         : share_(hn::Zero(D())) {
-        readDirections(block, rows, context, lane, strip);
-        if constexpr (kShape == Shape::curved) {
+        readSegments(block, rows, lanes, context, lane, strip);
+        if constexpr (kShape == Shape::curved)
             share_ = followFrames(block, rows, lanes, context, lane, strip);
-        } else {
-            measureBends(block, lanes, lane, strip);
-        }
-        // Nothing bends at the tip.
-        Strip::Point& tip = strip.points[block.points - 1];
-        store3(zero3(), tip.held);
-        store3(zero3(), tip.change);
-        store3(zero3(), tip.ahead);
         const std::size_t first = block.firstFree - 1;
         push_ = jointPush(rows.at(first), strip.points[first]);
     }
 
-    /// Of a segment, from firstFree − 1 on each after the one before.
+    /// Of a segment, from firstFree − 1 on each after the one before, but the last.
     template <class Row>
     HWY_INLINE V3 next(const Row& row, const Strip::Point& point) {
         const V3 inner = push_;
         push_ = jointPush(row + 1, *(&point + 1));
         return (push_ - inner) * row.inverseLength();
+    }
+    template <class Row>
+    HWY_INLINE V3 last(const Row& row) const {
+        return (zero3() - push_) * row.inverseLength();
     }
 
   private:
@@ -222,14 +207,15 @@ class SegmentPulls {
 };
 
 /// Eliminates the points of a strip, root to tip, from (M + share·K) δ = −G with the factors of the block.
-/// forceOf(row, point) is the force G of a segment on its outer point, reversed on its inner one; it is asked
-/// for root to tip.
+/// forceOf(row, point, isLast) is the force G of a segment on its outer point, reversed on its inner one; it
+/// is asked for root to tip, with std::true_type for the last one.
 template <class Rows, class ForceOf>
 HWY_INLINE void reduceBend(const BlockView& block, const Rows& rows, Strip& strip, ForceOf&& forceOf) {
-    V3 last = zero3(), beforeLast = zero3();
+    constexpr std::false_type kGoesOn;
+    constexpr std::true_type kLast;
+    V3 last = zero3(), beforeLast = zero3(), inner = zero3();
     auto row = rows.at(block.firstFree - 1);
     Strip::Point* at = strip.points + (block.firstFree - 1);
-    V3 inner = forceOf(row, *at);
     const auto eliminate = [&](V3 outer) HWY_ATTR {
         // The last row takes part last: that is all that a row waits for.
         const V3 far = negMulAdd(beforeLast, row.lower2(), outer - inner);
@@ -239,10 +225,20 @@ HWY_INLINE void reduceBend(const BlockView& block, const Rows& rows, Strip& stri
         last = right;
         inner = outer;
     };
-    for (std::size_t left = block.points - block.firstFree; left > 1; --left) {
+    // The system begins with the outer point of the first segment.
+    const std::size_t segments = block.points - block.firstFree;
+    if (segments == 1) {
+        inner = forceOf(row, *at, kLast);
+    } else {
+        inner = forceOf(row, *at, kGoesOn);
+        for (std::size_t left = segments - 1; left > 1; --left) {
+            row.advance();
+            ++at;
+            eliminate(forceOf(row, *at, kGoesOn));
+        }
         row.advance();
         ++at;
-        eliminate(forceOf(row, *at));
+        eliminate(forceOf(row, *at, kLast));
     }
     row.advance();
     ++at;
@@ -275,8 +271,13 @@ template <Shape kShape, bool kTense, class Rows>
 HWY_INLINE void pullStrip(const BlockView& block, const Rows& rows, const LaneFrame& lanes,
                           const SubstepContext& context, std::size_t lane, Strip& strip) {
     SegmentPulls<kShape> pulls(block, rows, lanes, context, lane, strip);
-    reduceBend(block, rows, strip, [&](const auto& row, const Strip::Point& point) HWY_ATTR {
-        const V3 pull = pulls.next(row, point);
+    reduceBend(block, rows, strip, [&](const auto& row, const Strip::Point& point, auto isLast) HWY_ATTR {
+        V3 pull;
+        if constexpr (isLast) {
+            pull = pulls.last(row);
+        } else {
+            pull = pulls.next(row, point);
+        }
         if constexpr (!kTense) return pull;
         return mulAdd(load3(point.direction), row.tension(), pull);
     });

@@ -198,7 +198,9 @@ void bendCoupled(const BlockView& given, LaneFrame& lanes, const SubstepContext&
         const PlaneRows rows(block, lane);
         SegmentPulls<kShape> pulls(block, rows, lanes, context, lane, strip);
         fillSystem(block, lane, system, [&](std::uint32_t s, std::size_t i) HWY_ATTR {
-            return openSegment(block, pulls.next(rows.at(s), strip.points[s]), s, i, system.segments[s]);
+            const auto row = rows.at(s);
+            const V3 pull = s + 2 < block.points ? pulls.next(row, strip.points[s]) : pulls.last(row);
+            return openSegment(block, pull, s, i, system.segments[s]);
         });
         factorSystem(block, context, lane, system);
         auto active = hn::Not(noLane());

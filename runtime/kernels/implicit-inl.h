@@ -84,6 +84,7 @@ void advanceFree(const BlockView& block, LaneFrame&, const SubstepContext&) {
 /// Backward Euler (Eq. 9) with angular springs: (M + h² K) d = M u + h² f, where u + h² f/M is the
 /// displacement that the forces left, so that d = u + h² f/M + δ with (M + h² K) δ = −h² K of it.
 void advanceImplicitBend(const BlockView& block, LaneFrame&, const SubstepContext&) {
+    if (block.points <= block.firstFree) return finishClamped(block);
     const auto rateAt = [&](std::size_t i)
                             HWY_ATTR { return load3(block.position, i) - load3(block.previous, i); };
     Strip strip;
@@ -101,10 +102,9 @@ void advanceImplicitBend(const BlockView& block, LaneFrame&, const SubstepContex
         V3 pull = zero3();
         for (std::uint32_t j = 0; j < block.firstFree && j + 1 < block.points; ++j) pull = jointPull(j);
         std::uint32_t s = block.firstFree - 1;
-        const auto forceOf = [&](const auto& row, const Strip::Point&) HWY_ATTR {
+        const auto forceOf = [&](const auto& row, const Strip::Point&, auto isLast) HWY_ATTR {
             const V3 inner = pull;
-            pull = s + 2 < block.points ? jointPull(s + 1) : zero3();
-            ++s;
+            pull = isLast ? zero3() : jointPull(++s);
             return (inner - pull) * row.inverseLength();
         };
         const PlaneRows rows(block, lane);

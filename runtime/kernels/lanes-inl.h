@@ -78,14 +78,6 @@ HWY_INLINE void store4(V4 v, float (*p)[kBlockLanes], std::size_t i) {
     hn::Store(v.w, D(), p[3] + i);
 }
 
-/// Leaves what the other lanes have in memory.
-HWY_INLINE void storeWhere(hn::Mask<D> which, V3 v, const Planes& p, std::size_t i) {
-    float* const at = p.x + i;
-    hn::BlendedStore(v.x, which, D(), at);
-    hn::BlendedStore(v.y, which, D(), at + p.pitch);
-    hn::BlendedStore(v.z, which, D(), at + 2 * p.pitch);
-}
-
 HWY_INLINE V3 operator+(V3 a, V3 b) {
     return {a.x + b.x, a.y + b.y, a.z + b.z};
 }

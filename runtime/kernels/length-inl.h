@@ -57,13 +57,14 @@ template <Holding kHolding>
 class LengthElimination {
   public:
     HWY_INLINE LengthElimination() {
-        outer_ = outerRate_ = wanted_ = acting_ = zero3();
+        outer_ = outerRate_ = wanted_ = zero3();
         outerMass_ = right_ = inverse_ = hn::Zero(D());
     }
 
     /// The last point of the strands, before the first segment; `rate` is its way in the substep.
     template <class Row>
-    HWY_INLINE void open(const Row& row, V3 place, V3 rate) {
+    HWY_INLINE void open(const Row& row, Strip::Point& point, V3 place, V3 rate) {
+        store3(zero3(), point.direction);
         outer_ = place;
         outerRate_ = rate;
         outerMass_ = row.inverseMass();
@@ -76,12 +77,14 @@ class LengthElimination {
         const V one = all(1.0f);
         const V3 wanted = (outer_ - place) * row.inverseLength();
         const V squared = dot(wanted, wanted);
+        // Of the outer segment; few registers are left for it.
+        const V above = dot(wanted, load3((&point + 1)->direction)) * outerMass_;
         V3 acting = wanted;
         V own = squared, error;
         if constexpr (kHolding == Holding::places) {
             acting = load3(point.direction);
             own = dot(wanted, acting);
-            const auto alike = own > all(0.5f) * squared;
+            const auto alike = own + own > squared;
             if (HWY_UNLIKELY(!hn::AllTrue(D(), alike))) {
                 acting = select(alike, acting, wanted);
                 own = hn::IfThenElse(alike, own, squared);
@@ -97,7 +100,6 @@ class LengthElimination {
             error = hn::MulSub(squared, row.halfLength(), row.halfLength());
         }
         const V innerMass = kClamped ? hn::Zero(D()) : row.inverseMass();
-        const V above = dot(wanted, acting_) * outerMass_;
         // One segment waits for the last one's division: as little as can be stands between the two.
         const V uncut = dot(wanted_, acting) * outerMass_;
         const V upper = uncut * inverse_;
@@ -109,13 +111,12 @@ class LengthElimination {
         outer_ = place;
         outerMass_ = innerMass;
         wanted_ = wanted;
-        acting_ = acting;
     }
 
   private:
     V3 outer_, outerRate_;  // of the outer point
     V outerMass_;
-    V3 wanted_, acting_;  // of the outer segment
+    V3 wanted_;  // of the outer segment
     V right_, inverse_;
 };
 
@@ -176,7 +177,7 @@ HWY_INLINE void reduceLengths(const BlockView& block, const Rows& rows, std::siz
         return kHolding == Holding::rates ? place - load3(block.previous, i) : zero3();
     };
     V3 place = load3(block.position, i);
-    lengths.open(rows.at(block.points - 1), place, rateAt(place));
+    lengths.open(rows.at(block.points - 1), strip.points[block.points - 1], place, rateAt(place));
     for (std::size_t s = block.points - 1; s-- > block.firstFree;) {
         i -= kBlockLanes;
         place = load3(block.position, i);
@@ -231,8 +232,8 @@ HWY_INLINE void bendAndHoldStrip(const BlockView& block, const Rows& rows, const
     };
     finishBend(
         block, rows, strip,
-        [&](const auto& row, const Strip::Point&, V3 delta)
-            HWY_ATTR { lengths.open(row, move(delta), zero3()); },
+        [&](const auto& row, Strip::Point& point, V3 delta)
+            HWY_ATTR { lengths.open(row, point, move(delta), zero3()); },
         [&](const auto& row, Strip::Point& point, V3 delta)
             HWY_ATTR { lengths.template take<false>(row, point, move(delta), zero3()); });
     const std::size_t clamped = block.firstFree - 1;
@@ -270,15 +271,33 @@ void bendAndHold(const BlockView& given, LaneFrame& lanes, const SubstepContext&
     }
 }
 
+/// Whether a segment of a strip may be longer or shorter than the maximal extension allows. Looks at all of
+/// them before it asks, and with room for rounding.
+HWY_INLINE bool mayExceed(const BlockView& block, float most, float least, std::size_t lane) {
+    const V middle = all(0.5f * (most + least)), half = all(0.5f * (most - least) - 1e-6f);
+    V3 parent = load3(block.position, (block.firstFree - 1) * kBlockLanes + lane);
+    V excess = hn::Zero(D());
+    for (std::size_t p = block.firstFree; p < block.points; ++p) {
+        const std::size_t i = p * kBlockLanes + lane;
+        const V3 position = load3(block.position, i), edge = position - parent;
+        const V rest = hn::Load(D(), block.length + (i - kBlockLanes));
+        const V whole = rest * rest;
+        const V off = hn::Abs(hn::NegMulAdd(whole, middle, dot(edge, edge)));
+        excess = hn::Max(excess, hn::NegMulAdd(whole, half, off));
+        parent = position;
+    }
+    return !hn::AllFalse(D(), excess > hn::Zero(D()));
+}
+
 /// Root to tip, brings segments back to between (1 − ε) and (1 + ε) of their length (Provot 1995, both ways).
 /// The move counts as velocity only where that slows the point relative to its root: it never adds energy.
 void limitExtension(const BlockView& given, LaneFrame& lanes, const SubstepContext& context) {
     const BlockView block = localCopy(given);
-    const V longest = all(1.0f + context.maximalExtension);
-    const V shortest = all(1.0f - context.maximalExtension);
-    const V most = longest * longest, least = shortest * shortest;
-    const V tiny = all(1e-12f), one = all(1.0f);
+    const float longest = 1.0f + context.maximalExtension, shortest = 1.0f - context.maximalExtension;
+    const float most = longest * longest, least = shortest * shortest;
+    const V tiny = all(1e-12f), one = all(1.0f), zero = hn::Zero(D());
     for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
+        if (HWY_LIKELY(!mayExceed(block, most, least, lane))) continue;
         const V3 step = load3(lanes.rootStep, lane);
         V3 parent = load3(block.position, (block.firstFree - 1) * kBlockLanes + lane);
         for (std::size_t p = block.firstFree; p < block.points; ++p) {
@@ -288,14 +307,13 @@ void limitExtension(const BlockView& given, LaneFrame& lanes, const SubstepConte
             const V rest = hn::Load(D(), block.length + (i - kBlockLanes));
             const V whole = rest * rest;
             const V squared = dot(edge, edge);
-            const auto wrong = hn::Or(squared > whole * most, squared < whole * least);
+            const auto wrong = hn::Or(squared > whole * all(most), squared < whole * all(least));
             parent = position;
-            if (HWY_LIKELY(hn::AllFalse(D(), wrong))) continue;
+            if (hn::AllFalse(D(), wrong)) continue;
             const V size = hn::Sqrt(squared);
             const auto collapsed = size < tiny;
-            const V bounded = hn::Min(hn::Max(size, rest * shortest), rest * longest);
+            const V bounded = hn::Min(hn::Max(size, rest * all(shortest)), rest * all(longest));
             const V scale = bounded / hn::IfThenElse(collapsed, one, size);
-            const V zero = hn::Zero(D());
             const V3 fixed{hn::IfThenElse(collapsed, zero, edge.x * scale),
                            hn::IfThenElse(collapsed, zero - bounded, edge.y * scale),
                            hn::IfThenElse(collapsed, zero, edge.z * scale)};

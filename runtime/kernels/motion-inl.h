@@ -65,7 +65,7 @@ void moveFree(const BlockView& given, LaneFrame& lanes, const SubstepContext& co
             if constexpr (kAir != Air::none) {
                 V3 flow = previous - position;
                 if constexpr (kAir == Air::moving)
-                    flow = mulAdd(air.slope, all(shareOfWay[p]), flow + air.atRoot);
+                    flow = flow + mulAdd(air.slope, all(shareOfWay[p]), air.atRoot);
                 previous = negMulAdd(flow, blownShare(flow, position - parent, share), previous);
                 parent = position;
             }

@@ -18,24 +18,31 @@ HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {
 namespace HWY_NAMESPACE {
 
+/// Of the two quaternions of a rotation the one on the side of another: between these a root turns.
+HWY_INLINE V4 onSideOf(V4 other, V4 q) {
+    const V side = other.x * q.x + other.y * q.y + other.z * q.z + other.w * q.w;
+    const V sign = hn::IfThenElse(side < hn::Zero(D()), all(-1.0f), all(1.0f));
+    return {q.x * sign, q.y * sign, q.z * sign, q.w * sign};
+}
+
 /// Turns the roots to where they are at the end of the substep and takes the clamped points along.
 void moveRoots(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
     const V t = all(static_cast<float>(context.index + 1) / static_cast<float>(context.count));
     for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
         const V4 from = load4(lanes.rotationFrom, lane);
-        V4 to = load4(lanes.rotationTo, lane);
-        const V side = from.x * to.x + from.y * to.y + from.z * to.z + from.w * to.w;
-        const auto otherHalf = side < all(0.0f);
-        to = {hn::IfThenElse(otherHalf, hn::Neg(to.x), to.x), hn::IfThenElse(otherHalf, hn::Neg(to.y), to.y),
-              hn::IfThenElse(otherHalf, hn::Neg(to.z), to.z), hn::IfThenElse(otherHalf, hn::Neg(to.w), to.w)};
+        if (context.index == 0) store4(onSideOf(from, load4(lanes.rotationTo, lane)), lanes.rotationTo, lane);
+        const V4 to = load4(lanes.rotationTo, lane);
         const V4 mixed{lerp(from.x, to.x, t), lerp(from.y, to.y, t), lerp(from.z, to.z, t),
                        lerp(from.w, to.w, t)};
         const V norm =
             hn::Sqrt(mixed.x * mixed.x + mixed.y * mixed.y + mixed.z * mixed.z + mixed.w * mixed.w);
         const V inverse = all(1.0f) / norm;
         const V4 now{mixed.x * inverse, mixed.y * inverse, mixed.z * inverse, mixed.w * inverse};
-        const V4 last = context.index == 0 ? from : load4(lanes.rotation, lane);
-        store4(multiply(now, {hn::Neg(last.x), hn::Neg(last.y), hn::Neg(last.z), last.w}), lanes.turn, lane);
+        if (block.curve.x) {
+            const V4 last = context.index == 0 ? from : load4(lanes.rotation, lane);
+            store4(multiply(now, {hn::Neg(last.x), hn::Neg(last.y), hn::Neg(last.z), last.w}), lanes.turn,
+                   lane);
+        }
         store4(now, lanes.rotation, lane);
 
         const V3 step = load3(lanes.rootStep, lane);

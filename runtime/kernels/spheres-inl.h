@@ -26,19 +26,19 @@ HWY_INLINE V inverseSqrt(V x) {
     return all(1.0f) / hn::Sqrt(x);
 }
 
+/// Where a vector points: from · inverse has unit length.
 struct Direction {
-    V3 unit;
-    V length;
+    V3 from;
+    V inverse, length;
 };
 
 /// Of an offset from a sphere's centre; at the very centre it points up.
 HWY_INLINE Direction directionOf(V3 offset) {
     const V squared = dot(offset, offset);
-    const auto centred = squared < all(1e-18f);
     // Selecting each part costs three times as much.
-    const V3 at{offset.x, offset.y + hn::IfThenElseZero(centred, all(1.0f)), offset.z};
-    const V inverse = inverseSqrt(squared + hn::IfThenElseZero(centred, all(1.0f)));
-    return {at * inverse, squared * inverse};
+    const V centred = hn::IfThenElseZero(squared < all(1e-18f), all(1.0f));
+    const V inverse = inverseSqrt(squared + centred);
+    return {{offset.x, offset.y + centred, offset.z}, inverse, squared * inverse};
 }
 
 /// Pearl radius at each point, growing linearly to the tip.
