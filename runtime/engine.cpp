@@ -17,9 +17,10 @@ constexpr std::size_t kBlocksPerJob = 4;
 constexpr float kUsualFrame = 1.0f / 60.0f;
 
 RootBounds noRoots() {
-    RootBounds bounds{};
+    RootBounds bounds;
     std::fill_n(bounds.low[0], 3 * kBlockLanes, 1e30f);
     std::fill_n(bounds.high[0], 3 * kBlockLanes, -1e30f);
+    std::fill_n(bounds.longest, kBlockLanes, 0.0f);
     return bounds;
 }
 float least(const float* row) {

@@ -218,7 +218,7 @@ BlockView viewOf(const Arrays& arrays, std::size_t index, std::uint32_t clampedP
     const float* rest = arrays.shape.planes.data() + block.firstPlane * kRestPlanes;
     const auto three = [&](float* first) { return Planes{first, size}; };
     float* moving = arrays.state.planes.data() + block.firstPlane * kStatePlanes;
-    BlockView view{};
+    BlockView view;
     view.lanes = (block.strands + kWidestVector - 1) / kWidestVector * kWidestVector;
     view.points = block.points;
     view.firstFree = clampedPoints;
