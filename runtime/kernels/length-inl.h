@@ -61,7 +61,7 @@ class LengthElimination {
         outerMass_ = right_ = inverse_ = hn::Zero(D());
     }
 
-    /// The last point of the strands, before the first segment; `rate` is its way in the substep.
+    /// The last point of the strands, behind which nothing pulls; `rate` is its way in the substep.
     template <class Row>
     HWY_INLINE void open(const Row& row, Strip::Point& point, V3 place, V3 rate) {
         store3(zero3(), point.direction);

@@ -106,8 +106,8 @@ struct SkyConstants {
     LightConstants maps[HAIRLOOM_SKY_MAPS];
 };
 
-// What surrounds a strand's point, as shares of all directions; fibres stop light as such, and half as well. Eight
-// 16-bit shares each: open to the sky; its mean direction, times 3, from -1 to 1; the head; its mean direction.
+// What surrounds a strand's point, as shares of all directions; fibres stop light as such, and half as well.
+// Eight 16-bit shares: open to the sky; its mean direction, times 3, from -1 to 1; the head; its direction.
 struct SkyPoint {
     uint4 whole;
     uint4 halved;
@@ -129,8 +129,8 @@ struct ShadeConstants {
                       // that are counted
     float4 turning;   // RGB, first moment of the angle by which they turn light; w: 0 for Kajiya-Kay
     float4 straight;  // RGB, second
-    uint4 counts;     // x: curve points, y: lights, z: row length of the dispatch in points, w: curve segments per
-                      // given segment
+    uint4 counts;  // x: curve points, y: lights, z: row length of the dispatch in points, w: curve segments
+                   // per given segment
     LightConstants lights[HAIRLOOM_MAX_LIGHTS];
 };
 

@@ -15,7 +15,7 @@ namespace hairloom::shaders {
 #define HAIRLOOM_CONSTANT_SPHERES 32
 /// Strands of a work group: a block of the engine, which falls asleep as one.
 #define HAIRLOOM_GROUP_STRANDS 32
-/// Threads of a work group that has one strand: the first takes it, as in the thesis' listing, which has 30 others.
+/// Threads of a work group of one strand: the first takes it, as in the thesis' listing, which has 30 others.
 #define HAIRLOOM_WISP_THREADS 32
 /// In a tank: the curves of the strand are void.
 #define HAIRLOOM_NO_CURVE (-1.0)

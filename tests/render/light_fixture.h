@@ -11,7 +11,7 @@ namespace hairloom::render {
 class LightTest : public RenderTest {
   protected:
     std::vector<shaders::LightAnswer> light(const RenderScene& scene, const RenderOptions& options,
-                                       const std::vector<shaders::LightCase>& cases) {
+                                            const std::vector<shaders::LightCase>& cases) {
         auto results = probeLight(*device, scene, options, cases);
         EXPECT_TRUE(results) << (results ? "" : results.error().message());
         return results ? std::move(*results) : std::vector<shaders::LightAnswer>(cases.size());
