@@ -111,31 +111,30 @@ HWY_INLINE std::size_t nearPlane(const BlockView& block) {
 
 /// For the rest of the frame, should the points go on as they do, but not with so wide a margin that all are
 /// near.
-HWY_INLINE float marginFor(const NearInput& in, float sphereStep, float rounding) {
+HWY_INLINE float marginFor(const NearInput& in, float sphereStep) {
     const auto left = static_cast<float>(in.context.count - in.context.index - 1);
     float smallest = 1e30f;
     for (const MovingSphere& sphere : in.context.spheres) smallest = std::fmin(smallest, sphere.radius);
     const float wanted = left * (1.25f * farthestFromRoot(in) + sphereStep) + 5e-4f;
-    return std::fmin(wanted, 0.5f * smallest) + rounding;
+    return std::fmin(wanted, 0.5f * smallest);
 }
 
 /// Makes the list, where there is room for it.
 HWY_INLINE void findNear(const NearInput& in, NearPoints& near) {
     near.substep = in.context.index;
     near.step = fastestSphere(in);
-    const float rounding = roundingOfPlaces(in);
-    near.margin = marginFor(in, near.step, rounding);
+    near.margin = marginFor(in, near.step);
+    const float wider = near.margin + roundingOfPlaces(in);
     NearPoints::Pair* last = near.pairs;
     near.made =
         forEachPart(in.block, [&](std::uint32_t lane, std::uint32_t begin, std::uint32_t end) HWY_ATTR {
             const std::size_t room = NearPoints::kMostPairs - static_cast<std::size_t>(last - near.pairs);
             if (room < in.spheres.count() * (end - begin)) return false;
-            last = findPairs(in, lane, begin, end, near.margin, last);
+            last = findPairs(in, lane, begin, end, wider, last);
             return true;
         });
     if (!near.made) return;
     near.pairCount = static_cast<std::uint32_t>(last - near.pairs);
-    near.margin -= rounding;
     const Planes places{near.places, nearPlane(in.block)};
     const std::size_t end = std::size_t{in.block.points} * kBlockLanes;
     for (std::size_t i = std::size_t{in.block.firstFree} * kBlockLanes; i < end; i += kWidth)
