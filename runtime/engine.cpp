@@ -216,7 +216,8 @@ Engine::Frame Engine::makeFrame(const FrameInput& input) {
     frame.rescale = state_.substep > 0.0f ? h / state_.substep : 1.0f;
     frame.newBend = plan_.on(Effect::angular) && bend_.substep != h;
     frame.kernels = &kernels();
-    if (!host_.nanoseconds) frame.passes = passesOf(plan_.stages(), *frame.kernels);
+    frame.passes = host_.nanoseconds ? singlePassesOf(plan_.stages(), *frame.kernels)
+                                     : passesOf(plan_.stages(), *frame.kernels);
     return frame;
 }
 

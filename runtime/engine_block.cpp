@@ -138,10 +138,10 @@ void Engine::runStages(std::size_t block, const BlockView& view, LaneFrame& lane
     auto& times = blockReports_[block].nanoseconds;
     std::uint64_t before = host_.nanoseconds();
     for (context.index = 0; context.index < context.count; ++context.index) {
-        for (const StageId id : plan_.stages()) {
-            frame.kernels->stages[static_cast<std::size_t>(id)](view, lanes, context);
+        for (std::size_t i = 0; i < frame.passes.count; ++i) {
+            frame.passes.calls[i](view, lanes, context);
             const std::uint64_t after = host_.nanoseconds();
-            times[static_cast<std::size_t>(id)] += after - before;
+            times[static_cast<std::size_t>(plan_.stages()[i])] += after - before;
             before = after;
         }
     }

@@ -17,7 +17,7 @@ struct Engine::Frame {
     float rescale;  ///< new substep over old, 1 when equal
     bool newBend;
     const Kernels* kernels;
-    Passes passes;  ///< of the plan, where no clock stands between its stages
+    Passes passes;  ///< of the plan; single ones where there is a clock between its stages
 };
 
 }  // namespace hairloom::runtime

@@ -84,8 +84,14 @@ struct NearPoints {
 
     /// A vector of points, and a sphere that can reach one of them.
     struct Pair {
-        std::uint16_t sphere;
-        std::uint16_t index;  ///< of the first lane
+        std::uint32_t which;  ///< the sphere, and from bit 16 on the index of the first lane
+        float reachSquared;   ///< of the sphere's radius and the point's pearl, square metres
+
+        static std::uint32_t join(std::size_t sphere, std::size_t index) {
+            return static_cast<std::uint32_t>(sphere | (index << 16));
+        }
+        std::size_t sphere() const { return which & 0xffffu; }
+        std::size_t index() const { return which >> 16; }
     };
 
     bool made = false;
@@ -175,8 +181,13 @@ struct Kernels {
     /// Stages that follow each other, in one pass and with the same bits: damping or none, by 0 and 1, then
     /// the air's stage, by Air, then gravity or none, then `verlet`.
     Stage moves[2][kAirCount][2];
-    /// Likewise `angularStraight` or `angular`, then `length`, where tension is kept.
+    /// The stages of such a pass one by one, with the same bits: between them `previous` holds the way of the
+    /// substep. First what opens it, then what follows another one, by StageId; null for other stages.
+    Stage partsOfMove[2][kStageCount];
+    /// As `moves`: `angularStraight` or `angular`, then `length`, where tension is kept.
     Stage bendAndHold[2];
+    /// As `moves`: `sweep`, then `collision` or `collisionBack`.
+    Stage sweepAndCollide[2];
     /// Multiplies every displacement by `factor`: the speed stays when the length of the substep changes.
     void (*rescale)(const BlockView& block, float factor);
     /// Fills windRoot and windTip, for substeps of h seconds, for the frame that begins at the phases `from`
@@ -196,12 +207,15 @@ struct Kernels {
     bool fuses;          ///< MulAdd rounds once
 };
 
-/// The stages of a plan as passes over a block, as few as there are kernels for.
+/// What a plan makes of a block in a substep, call after call.
 struct Passes {
     std::array<Stage, kMostStages> calls;
     std::size_t count = 0;
 };
+/// As few passes over the block as there are kernels for.
 Passes passesOf(std::span<const StageId> stages, const Kernels& kernels);
+/// A call for each stage, with the same bits.
+Passes singlePassesOf(std::span<const StageId> stages, const Kernels& kernels);
 
 /// The kernels for the best instruction set of this machine.
 const Kernels& kernels();

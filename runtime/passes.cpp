@@ -10,6 +10,7 @@ class StageReader {
     explicit StageReader(std::span<const StageId> stages) : stages_(stages) {}
 
     bool atEnd() const { return next_ == stages_.size(); }
+    std::size_t next() const { return next_; }
     StageId take() { return stages_[next_++]; }
     /// Whether this stage comes next; then it is taken.
     bool takeIf(StageId stage) {
@@ -39,6 +40,17 @@ class StageReader {
         return nullptr;
     }
 
+    /// The pass of Kernels::sweepAndCollide that comes next, or null and nothing is taken.
+    Stage takeSweepAndCollide(const Kernels& kernels) {
+        const std::size_t begin = next_;
+        if (takeIf(StageId::sweep)) {
+            if (takeIf(StageId::collision)) return kernels.sweepAndCollide[0];
+            if (takeIf(StageId::collisionBack)) return kernels.sweepAndCollide[1];
+        }
+        next_ = begin;
+        return nullptr;
+    }
+
   private:
     std::span<const StageId> stages_;
     std::size_t next_ = 0;
@@ -51,8 +63,24 @@ Passes passesOf(std::span<const StageId> stages, const Kernels& kernels) {
     for (StageReader reader(stages); !reader.atEnd();) {
         Stage pass = reader.takeMove(kernels);
         if (!pass) pass = reader.takeBendAndHold(kernels);
+        if (!pass) pass = reader.takeSweepAndCollide(kernels);
         if (!pass) pass = kernels.stages[static_cast<std::size_t>(reader.take())];
         passes.calls[passes.count++] = pass;
+    }
+    return passes;
+}
+
+Passes singlePassesOf(std::span<const StageId> stages, const Kernels& kernels) {
+    Passes passes;
+    for (StageReader reader(stages); !reader.atEnd();) {
+        const std::size_t first = reader.next();
+        const bool move = reader.takeMove(kernels) != nullptr;
+        if (!move) reader.take();
+        for (std::size_t i = first; i < reader.next(); ++i) {
+            const auto id = static_cast<std::size_t>(stages[i]);
+            passes.calls[passes.count++] =
+                move ? kernels.partsOfMove[i > first ? 1 : 0][id] : kernels.stages[id];
+        }
     }
     return passes;
 }

@@ -158,46 +158,6 @@ HWY_INLINE V depthIn(V3 offset, V reach) {
     return reach * (reach - all(kLeft)) - dot(offset, offset);
 }
 
-/// Points that left one sphere into `others` of a union: each goes to the circle that its last sphere and the
-/// one in which it is deepest have in common, until it is free. Places on the surfaces of two spheres follow
-/// in one step; towards a corner of three the rest shrinks from step to step.
-HWY_NOINLINE void settle(const BlockView& block, const SubstepContext& context, const SphereSet& spheres,
-                         Overlaps& overlaps, std::size_t i, V3 root, V pearl, Contact contact,
-                         std::uint64_t others) {
-    constexpr int kSteps = 16;
-    const auto forEach = [&](std::uint64_t some, auto&& visit) HWY_ATTR {
-        for (; some != 0; some &= some - 1) {
-            const auto j = static_cast<std::size_t>(std::countr_zero(some));
-            visit(j, spheres.centre(j) - root, all(spheres.radius[j]) + pearl);
-        }
-    };
-    for (int k = 0; k < kSteps; ++k) {
-        const V3 at = load3(block.position, i);
-        V deepest = hn::Zero(D());
-        forEach(others, [&](std::size_t, V3 centre, V reach)
-                            HWY_ATTR { deepest = hn::Max(deepest, depthIn(at - centre, reach)); });
-        const auto inside = hn::And(contact.touching, deepest > hn::Zero(D()));
-        if (hn::AllFalse(D(), inside)) return;
-        V3 centre = contact.centre, step = contact.step;
-        V reach = contact.reach;
-        auto open = inside;
-        forEach(others, [&](std::size_t j, V3 itsCentre, V itsReach) HWY_ATTR {
-            // Of spheres that are equally deep the first counts.
-            const auto chosen = hn::And(open, depthIn(at - itsCentre, itsReach) == deepest);
-            if (HWY_LIKELY(hn::AllFalse(D(), chosen))) return;
-            open = hn::AndNot(chosen, open);
-            centre = select(chosen, itsCentre, centre);
-            step = select(chosen, all3(context.spheres[j].step), step);
-            reach = hn::IfThenElse(chosen, itsReach, reach);
-        });
-        auto meet = inside;
-        const V3 onCircle = nearestOfCircle(at, contact, centre, reach, meet);
-        contact = {inside, centre, step, reach, select(meet, onCircle, at - centre)};
-        respond(block, context, i, contact);
-        others = overlaps.ofAny(others);
-    }
-}
-
 /// A few points of each strand of a block against the spheres of one set. Works in passes over lists, which
 /// are filled without branches: whether a point touches is as good as random to a processor.
 template <bool kBackward>
@@ -218,9 +178,10 @@ class Contacts {
             store3(load3(lanes.root, lane) + load3(lanes.rootStep, lane) * step, roots_, lane);
     }
 
-    /// With the list of the block, which it makes where there is none that holds.
-    HWY_INLINE void runListed() {
-        if (!near_.made || !isStillNear(in_, near_)) findNear(in_, near_);
+    /// With the list of the block, which it makes where there is none that holds; `fromList` is for
+    /// isStillNear().
+    HWY_INLINE void runListed(float fromList) {
+        if (!near_.made || !isStillNear(context_, near_, fromList)) findNear(in_, near_);
         if (!near_.made) return run();
         findTouches({near_.pairs, near_.pairCount});
         touchAll();
@@ -238,8 +199,7 @@ class Contacts {
 
   private:
     struct Touch {
-        std::uint16_t sphere;
-        std::uint16_t index;   ///< of the first lane of a vector of points
+        NearPoints::Pair pair;
         std::uint32_t inside;  ///< which lanes are
     };
     static_assert(kMaxPoints * kBlockLanes <= 0x10000);
@@ -254,12 +214,12 @@ class Contacts {
 
     HWY_INLINE void findTouches(std::span<const NearPoints::Pair> pairs) {
         Touch* last = touches_;
-        for (const NearPoints::Pair pair : pairs) {
-            const V3 centre = spheres_.centre(pair.sphere) - rootAt(pair.index);
-            const float reach = spheres_.radius[pair.sphere] + pearlAt(pair.index);
-            const V3 offset = load3(block_.position, pair.index) - centre;
-            const std::uint32_t inside = bitsOf(dot(offset, offset) < all(reach * reach));
-            *last = {pair.sphere, pair.index, inside};
+        for (const NearPoints::Pair& pair : pairs) {
+            const std::size_t index = pair.index();
+            const V3 centre = spheres_.centre(pair.sphere()) - rootAt(index);
+            const V3 back = centre - load3(block_.position, index);
+            const std::uint32_t inside = bitsOf(dot(back, back) < all(pair.reachSquared));
+            *last = {{pair.which, pair.reachSquared}, inside};
             last += inside != 0 ? 1 : 0;
         }
         touchCount_ = static_cast<std::size_t>(last - touches_);
@@ -270,11 +230,11 @@ class Contacts {
     }
 
     HWY_INLINE void touch(Touch found) {
-        const std::size_t i = found.index;
-        Contact contact = contactOf(i, found.sphere);
+        const std::size_t i = found.pair.index(), sphere = found.pair.sphere();
+        Contact contact = contactOf(i, sphere);
         const V3 at = load3(block_.position, i);
         const V3 offset = at - contact.centre;
-        const V squared = dot(offset, offset), reachSquared = contact.reach * contact.reach;
+        const V squared = dot(offset, offset), reachSquared = all(found.pair.reachSquared);
         contact.from = offset;
         if constexpr (kBackward) {
             contact.from =
@@ -291,23 +251,53 @@ class Contacts {
         const V3 root = rootAt(i);
         const float pearl = pearlAt(i);
         auto again = noLane();
-        for (std::uint64_t left = overlaps_.of(found.sphere); left != 0; left &= left - 1) {
+        for (std::uint64_t left = overlaps_.of(sphere); left != 0; left &= left - 1) {
             const auto other = static_cast<std::size_t>(std::countr_zero(left));
             const V3 itsOffset = placed - (spheres_.centre(other) - root);
             const V itsReach = all(spheres_.radius[other] + pearl);
             again = hn::Or(again, depthIn(itsOffset, itsReach) > hn::Zero(D()));
         }
         again = hn::And(again, contact.touching);
-        if (HWY_UNLIKELY(!hn::AllFalse(D(), again))) settleFrom(found, bitsOf(again));
+        if (HWY_UNLIKELY(!hn::AllFalse(D(), again))) settle(found, bitsOf(again));
     }
 
-    /// Points that left a sphere into others. Makes the contact anew: touch() need not keep it.
-    HWY_NOINLINE void settleFrom(Touch left, std::uint32_t lanes) {
-        Contact contact = contactOf(left.index, left.sphere);
+    /// Lanes of points that left a sphere into others of a union: each goes to the circle that its last
+    /// sphere and the one in which it is deepest have in common, until it is free. Places on the surfaces of
+    /// two spheres follow in one step; towards a corner of three the rest shrinks from step to step. Makes
+    /// the contact anew: touch() need not keep it.
+    HWY_NOINLINE void settle(Touch left, std::uint32_t lanes) {
+        constexpr int kSteps = 16;
+        const std::size_t i = left.pair.index(), sphere = left.pair.sphere();
+        const V3 root = rootAt(i);
+        const V pearl = all(pearlAt(i));
+        Contact contact = contactOf(i, sphere);
         contact.touching = maskOf(lanes);
-        settle(block_, context_, spheres_, overlaps_, left.index, rootAt(left.index),
-               all(pearlAt(left.index)), contact,
-               overlaps_.of(left.sphere) | (std::uint64_t{1} << left.sphere));
+        std::uint64_t others = overlaps_.of(sphere) | (std::uint64_t{1} << sphere);
+        for (int k = 0; k < kSteps; ++k) {
+            const V3 at = load3(block_.position, i);
+            V deepest = hn::Zero(D());
+            Contact next = contact;
+            for (std::uint64_t some = others; some != 0; some &= some - 1) {
+                const auto j = static_cast<std::size_t>(std::countr_zero(some));
+                const V3 centre = spheres_.centre(j) - root;
+                const V reach = all(spheres_.radius[j]) + pearl;
+                const V depth = depthIn(at - centre, reach);
+                // Of spheres that are equally deep the first counts.
+                const auto deeper = depth > deepest;
+                deepest = hn::Max(deepest, depth);
+                next.centre = select(deeper, centre, next.centre);
+                next.step = select(deeper, all3(context_.spheres[j].step), next.step);
+                next.reach = hn::IfThenElse(deeper, reach, next.reach);
+            }
+            next.touching = hn::And(contact.touching, deepest > hn::Zero(D()));
+            if (hn::AllFalse(D(), next.touching)) return;
+            auto meet = next.touching;
+            const V3 onCircle = nearestOfCircle(at, contact, next.centre, next.reach, meet);
+            next.from = select(meet, onCircle, at - next.centre);
+            contact = next;
+            respond(block_, context_, i, contact);
+            others = overlaps_.ofAny(others);
+        }
     }
 
     const BlockView& block_;
@@ -325,18 +315,18 @@ class Contacts {
 
 /// Pushes points and their pearls out of spheres (Eq. 14). Where spheres overlap, a point that one of them
 /// pushes into others goes to their common edge. Of more than SphereSet::kMost spheres this holds within each
-/// kMost of them.
+/// kMost of them. `fromList` is what farthestFromList() says where there is a list.
 template <bool kBackward>
-void collide(const BlockView& given, LaneFrame& lanes, const SubstepContext& context) {
-    const BlockView block = localCopy(given);
+HWY_INLINE void collideWith(const BlockView& block, LaneFrame& lanes, const SubstepContext& context,
+                            float fromList) {
     const float step = static_cast<float>(context.index + 1);
-    const float largestPearl = std::fmax(context.pearlRoot, context.pearlTip);
+    const float largestPearl = std::max(context.pearlRoot, context.pearlTip);
     alignas(64) float pearls[kMaxPoints];
     fillPearls(block, context, pearls);
     SphereSet spheres;
     if (context.spheres.size() <= SphereSet::kMost && block.points <= NearPoints::kMostPoints) {
         spheres.take(context.spheres, step, largestPearl);
-        Contacts<kBackward>(block, lanes, context, spheres, pearls, lanes.near).runListed();
+        Contacts<kBackward>(block, lanes, context, spheres, pearls, lanes.near).runListed(fromList);
         return;
     }
     SubstepContext part = context;
@@ -349,61 +339,11 @@ void collide(const BlockView& given, LaneFrame& lanes, const SubstepContext& con
     }
 }
 
-/// Square of the farthest that any free point moved in this substep.
-HWY_INLINE float farthestSquared(const BlockView& block) {
-    return mostOfBlock(block, [&](std::size_t i) HWY_ATTR {
-        const V3 moved = load3(block.position, i) - load3(block.previous, i);
-        return dot(moved, moved);
-    });
-}
-
-/// The first sphere that a point enters and passes the middle of on its way relative to it, as a contact.
-HWY_INLINE Contact firstEntered(const SubstepContext& context, V3 at, V3 moved, V3 root, V pearl,
-                                float step) {
-    const V zero = hn::Zero(D()), one = all(1.0f);
-    Contact first{noLane(), zero3(), zero3(), zero, zero3()};
-    V earliest = zero;
-    for (const MovingSphere& sphere : context.spheres) {
-        const V3 centre = all3(sphere.from_ws + sphere.step * step) - root;
-        const V reach = all(sphere.radius) + pearl;
-        const V3 relative = moved - all3(sphere.step);
-        const V3 offset = at - centre;
-        const V a = dot(relative, relative), b = dot(relative, offset);
-        const V discriminant = b * b - a * (dot(offset, offset) - reach * reach);
-        const V fast = all(kUnsweptShare) * reach;
-        const auto passes = hn::And(a > fast * fast, hn::And(b > zero, discriminant > zero));
-        if (HWY_LIKELY(hn::AllFalse(D(), passes))) continue;
-        const V s = zero - (b + hn::Sqrt(hn::Max(discriminant, zero))) / hn::IfThenElse(passes, a, one);
-        const auto sooner = hn::And(passes, hn::And(s >= all(-1.0f), s < earliest));
-        earliest = hn::IfThenElse(sooner, s, earliest);
-        first.touching = hn::Or(first.touching, sooner);
-        first.centre = select(sooner, centre, first.centre);
-        first.step = select(sooner, all3(sphere.step), first.step);
-        first.reach = hn::IfThenElse(sooner, reach, first.reach);
-        first.from = select(sooner, offset + relative * s, first.from);
-    }
-    return first;
-}
-
-/// Catches fast points where they first enter a sphere that they have passed, or passed the middle of, by the
-/// end of the substep. Runs before `collide` and leaves slow blocks at once.
-void collideSwept(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
-    const float slow = context.slowestSwept;
-    if (farthestSquared(block) < slow * slow) return;
-    const float step = static_cast<float>(context.index + 1);
-    alignas(64) float pearls[kMaxPoints];
-    fillPearls(block, context, pearls);
-    for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
-        const V3 root = load3(lanes.root, lane) + load3(lanes.rootStep, lane) * all(step);
-        for (std::uint32_t p = block.firstFree; p < block.points; ++p) {
-            const std::size_t i = std::size_t{p} * kBlockLanes + lane;
-            const V3 at = load3(block.position, i);
-            const V3 moved = at - load3(block.previous, i);
-            if (hn::AllFalse(D(), dot(moved, moved) >= all(slow * slow))) continue;
-            const Contact first = firstEntered(context, at, moved, root, all(pearls[p]), step);
-            if (!hn::AllFalse(D(), first.touching)) respond(block, context, i, first);
-        }
-    }
+template <bool kBackward>
+void collide(const BlockView& given, LaneFrame& lanes, const SubstepContext& context) {
+    const BlockView block = localCopy(given);
+    const float fromList = lanes.near.made ? farthestFromList(block, lanes.near) : 0.0f;
+    collideWith<kBackward>(block, lanes, context, fromList);
 }
 
 /// Points of a strip of lanes.

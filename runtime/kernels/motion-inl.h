@@ -8,6 +8,8 @@
 #define HAIRLOOM_RUNTIME_MOTION_INL_H
 #endif
 
+#include <algorithm>
+
 #include "hwy/highway.h"
 #include "runtime/kernels.h"
 #include "runtime/kernels/lanes-inl.h"
@@ -30,22 +32,27 @@ HWY_INLINE AirWay airWay(const LaneFrame& lanes, const SubstepContext& context, 
 }
 
 /// Hair takes on the air's velocity at the rate airDrag · sin of its angle to the tangent (Rünz 2012,
-/// Section 3.3). The share of `flow`, the air's way past a point, that it gains.
-HWY_INLINE V blownShare(V3 flow, V3 tangent, V share) {
+/// Section 3.3). The share of `flow`, the air's way past a point, that it gains: the root of
+/// share² · sin². The square of the share divides what stands below, which is known before what stands above.
+HWY_INLINE V blownShare(V3 flow, V3 tangent, V inverseShareSquared) {
     const V both = dot(flow, flow) * dot(tangent, tangent);
     const V parallel = dot(flow, tangent);
-    const V sineSquared =
-        hn::Max(hn::NegMulAdd(parallel, parallel, both), hn::Zero(D())) / (both + all(1e-30f));
-    return share * hn::Sqrt(hn::Min(sineSquared, all(1.0f)));
+    const V across = hn::Max(hn::NegMulAdd(parallel, parallel, both), hn::Zero(D()));
+    return hn::Sqrt(across / hn::MulAdd(both, inverseShareSquared, all(1e-30f)));
 }
+
+/// What moveFree() finds and leaves in `previous`: the place of a substep ago or the way since; or it makes
+/// the move.
+enum class Motion { place, way, made };
 
 /// In this order: slows motion relative to the moving root, so that damping acts on velocity alone and leaves
 /// what holds the hair at rest untouched; then the forces of air and gravity; then position Verlet (Rünz
 /// 2012, Eq. 10).
-template <bool kDamped, Air kAir, bool kHeavy, bool kAdvances>
+template <bool kDamped, Air kAir, bool kHeavy, Motion kFrom, Motion kTo>
 void moveFree(const BlockView& given, LaneFrame& lanes, const SubstepContext& context) {
     const BlockView block = localCopy(given);
-    const V lost = all(1.0f - context.velocityShare), share = all(context.dragShare);
+    const V kept = all(context.velocityShare), lost = all(1.0f - context.velocityShare);
+    const V inverseShareSquared = all(1.0f / std::max(context.dragShare * context.dragShare, 1e-30f));
     const V3 gravity = all3(context.gravityStep);
     float shareOfWay[kMaxPoints];  // of each point, from root to tip
     if constexpr (kAir == Air::moving) {
@@ -53,29 +60,31 @@ void moveFree(const BlockView& given, LaneFrame& lanes, const SubstepContext& co
         for (std::uint32_t p = 0; p < block.points; ++p) shareOfWay[p] = static_cast<float>(p) * inverseLast;
     }
     for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
-        const V3 step = load3(lanes.rootStep, lane);
+        const V3 step = load3(lanes.rootStep, lane), lostStep = step * lost;
         AirWay air{};
         if constexpr (kAir == Air::moving) air = airWay(lanes, context, lane);
         V3 parent = load3(block.position, std::size_t{block.firstFree - 1} * kBlockLanes + lane);
         for (std::uint32_t p = block.firstFree; p < block.points; ++p) {
             const std::size_t i = std::size_t{p} * kBlockLanes + lane;
             const V3 position = load3(block.position, i);
-            V3 previous = load3(block.previous, i);
-            if constexpr (kDamped) previous = mulAdd(position - previous - step, lost, previous);
+            V3 way = load3(block.previous, i);
+            if constexpr (kFrom == Motion::place) way = position - way;
+            if constexpr (kDamped) way = mulAdd(way, kept, lostStep);
             if constexpr (kAir != Air::none) {
-                V3 flow = previous - position;
-                if constexpr (kAir == Air::moving)
-                    flow = flow + mulAdd(air.slope, all(shareOfWay[p]), air.atRoot);
-                previous = negMulAdd(flow, blownShare(flow, position - parent, share), previous);
+                V3 flow = zero3();
+                if constexpr (kAir == Air::moving) flow = mulAdd(air.slope, all(shareOfWay[p]), air.atRoot);
+                flow = flow - way;
+                way = mulAdd(flow, blownShare(flow, position - parent, inverseShareSquared), way);
                 parent = position;
             }
-            if constexpr (kHeavy) previous = previous - gravity;
-            if constexpr (kAdvances) {
+            if constexpr (kHeavy) way = way + gravity;
+            if constexpr (kTo == Motion::way) store3(way, block.previous, i);
+            if constexpr (kTo == Motion::place) store3(position - way, block.previous, i);
+            if constexpr (kTo == Motion::made) {
                 const V3 start = position - step;
-                store3(start + (position - previous), block.position, i);
-                previous = start;
+                store3(start + way, block.position, i);
+                store3(start, block.previous, i);
             }
-            store3(previous, block.previous, i);
         }
     }
 }

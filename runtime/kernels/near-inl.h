@@ -56,14 +56,13 @@ HWY_INLINE NearPoints::Pair* findPairs(const NearInput& in, std::uint32_t lane, 
     world.add(boxOf(in.block, lane, begin, end), root);
     in.spheres.forEachMeeting(world.reduced(), margin, [&](std::size_t k) HWY_ATTR {
         const V3 centre = in.spheres.centre(k) - root;
-        const float radius = in.spheres.radius[k] + margin;
         std::size_t i = std::size_t{begin} * kBlockLanes + lane;
         for (std::uint32_t p = begin; p < end; ++p, i += kBlockLanes) {
-            const float reach = radius + in.pearls[p];
+            const float reach = in.spheres.radius[k] + in.pearls[p], wider = reach + margin;
             const V3 offset = load3(in.block.position, i) - centre;
-            const auto inside = dot(offset, offset) < all(reach * reach * 1.0001f);
+            const auto inside = dot(offset, offset) < all(wider * wider * 1.0001f);
             // Written first: a branch on what is as good as random costs more.
-            *list = {static_cast<std::uint16_t>(k), static_cast<std::uint16_t>(i)};
+            *list = {NearPoints::Pair::join(k, i), reach * reach};
             list += hn::AllFalse(D(), inside) ? 0 : 1;
         }
     });
@@ -141,17 +140,20 @@ HWY_INLINE void findNear(const NearInput& in, NearPoints& near) {
         store3(load3(in.block.position, i), places, i);
 }
 
-/// Whether no point has left the margin since the list was made.
-HWY_INLINE bool isStillNear(const NearInput& in, const NearPoints& near) {
-    const float limit =
-        0.999f * near.margin - static_cast<float>(in.context.index - near.substep) * near.step;
-    if (!(limit > 0.0f)) return false;
-    const ConstPlanes places{near.places, nearPlane(in.block)};
-    const float farthest = mostOfBlock(in.block, [&](std::size_t i) HWY_ATTR {
-        const V3 moved = load3(in.block.position, i) - load3(places, i);
+/// Square of the farthest that a free point is from where it was when the list was made, square metres.
+HWY_INLINE float farthestFromList(const BlockView& block, const NearPoints& near) {
+    const ConstPlanes places{near.places, nearPlane(block)};
+    return mostOfBlock(block, [&](std::size_t i) HWY_ATTR {
+        const V3 moved = load3(block.position, i) - load3(places, i);
         return dot(moved, moved);
     });
-    return farthest < limit * limit;
+}
+
+/// Whether points that are no farther than this from where they were when the list was made, in square
+/// metres, have not left the margin.
+HWY_INLINE bool isStillNear(const SubstepContext& context, const NearPoints& near, float fromList) {
+    const float limit = 0.999f * near.margin - static_cast<float>(context.index - near.substep) * near.step;
+    return limit > 0.0f && fromList < limit * limit;
 }
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)

@@ -20,23 +20,33 @@
 #include "runtime/kernels/motion-inl.h"
 #include "runtime/kernels/roots-inl.h"
 #include "runtime/kernels/springs-inl.h"
+#include "runtime/kernels/sweep-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {
 namespace HWY_NAMESPACE {
+
+/// One of the stages that Kernels::moves makes one pass of.
+template <StageId kPart, Motion kFrom, Motion kTo>
+constexpr Stage partOfMove() {
+    constexpr Air kAir = kPart == StageId::drag   ? Air::still
+                         : kPart == StageId::wind ? Air::moving
+                                                  : Air::none;
+    return moveFree<kPart == StageId::damping, kAir, kPart == StageId::gravity, kFrom, kTo>;
+}
 
 Stage stageOf(StageId id) {
     switch (id) {
         case StageId::roots:
             return moveRoots;
         case StageId::damping:
-            return moveFree<true, Air::none, false, false>;
+            return partOfMove<StageId::damping, Motion::place, Motion::place>();
         case StageId::drag:
-            return moveFree<false, Air::still, false, false>;
+            return partOfMove<StageId::drag, Motion::place, Motion::place>();
         case StageId::wind:
-            return moveFree<false, Air::moving, false, false>;
+            return partOfMove<StageId::wind, Motion::place, Motion::place>();
         case StageId::gravity:
-            return moveFree<false, Air::none, true, false>;
+            return partOfMove<StageId::gravity, Motion::place, Motion::place>();
         case StageId::springs:
             return applySprings;
         case StageId::angularCheap:
@@ -52,7 +62,7 @@ Stage stageOf(StageId id) {
         case StageId::penalty:
             return applyPenalty;
         case StageId::verlet:
-            return moveFree<false, Air::none, false, true>;
+            return partOfMove<StageId::verlet, Motion::place, Motion::made>();
         case StageId::open:
             return openStep<0>;
         case StageId::openHalfway:
@@ -102,7 +112,7 @@ Stage stageOf(StageId id) {
         case StageId::collisionBack:
             return collide<true>;
         case StageId::sweep:
-            return collideSwept;
+            return sweep;
         case StageId::extension:
             return limitExtension;
         case StageId::lengthRate:
@@ -114,8 +124,15 @@ Stage stageOf(StageId id) {
 template <bool kDamped, Air kAir>
 void fillMoves(Kernels& table) {
     auto& moves = table.moves[kDamped ? 1 : 0][static_cast<std::size_t>(kAir)];
-    moves[0] = moveFree<kDamped, kAir, false, true>;
-    moves[1] = moveFree<kDamped, kAir, true, true>;
+    moves[0] = moveFree<kDamped, kAir, false, Motion::place, Motion::made>;
+    moves[1] = moveFree<kDamped, kAir, true, Motion::place, Motion::made>;
+}
+
+template <StageId kPart>
+void fillPart(Kernels& table) {
+    constexpr Motion kTo = kPart == StageId::verlet ? Motion::made : Motion::way;
+    table.partsOfMove[0][static_cast<std::size_t>(kPart)] = partOfMove<kPart, Motion::place, kTo>();
+    table.partsOfMove[1][static_cast<std::size_t>(kPart)] = partOfMove<kPart, Motion::way, kTo>();
 }
 
 Kernels makeTable() {
@@ -127,8 +144,15 @@ Kernels makeTable() {
     fillMoves<true, Air::none>(table);
     fillMoves<true, Air::still>(table);
     fillMoves<true, Air::moving>(table);
+    fillPart<StageId::damping>(table);
+    fillPart<StageId::drag>(table);
+    fillPart<StageId::wind>(table);
+    fillPart<StageId::gravity>(table);
+    fillPart<StageId::verlet>(table);
     table.bendAndHold[0] = bendAndHold<Shape::straight>;
     table.bendAndHold[1] = bendAndHold<Shape::curved>;
+    table.sweepAndCollide[0] = sweepAndCollide<false>;
+    table.sweepAndCollide[1] = sweepAndCollide<true>;
     table.rescale = rescale;
     table.takeRoots = takeRoots;
     table.sampleWind = sampleWind;

@@ -268,9 +268,9 @@ inline runtime::State runOnCpu(const Scene& scene) {
             table.sampleWind(view, lanes, kStep, frame.wind.wind, from.data(), to.data());
         }
         runtime::SubstepContext context = frame.context;
+        const runtime::Passes passes = runtime::passesOf(frame.plan.stages(), table);
         for (context.index = 0; context.index < context.count; ++context.index) {
-            for (const runtime::StageId stage : frame.plan.stages())
-                table.stages[static_cast<std::size_t>(stage)](view, lanes, context);
+            for (std::size_t i = 0; i < passes.count; ++i) passes.calls[i](view, lanes, context);
         }
         for (std::uint32_t lane = 0; lane < runtime::kBlockLanes; ++lane) {
             for (std::size_t k = 0; k < 3; ++k) {

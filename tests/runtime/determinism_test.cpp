@@ -112,11 +112,34 @@ TEST(Determinism, StagesThatFollowEachOtherAreOnePass) {
               (std::vector<Stage>{alone(roots), table.moves[0][0][0], table.bendAndHold[1], alone(sweep)}));
     EXPECT_EQ(passes({angularStraight, length}), (std::vector<Stage>{table.bendAndHold[0]}));
     EXPECT_EQ(passes({angular, collision}), (std::vector<Stage>{alone(angular), alone(collision)}));
+    EXPECT_EQ(passes({sweep, collision, extension}),
+              (std::vector<Stage>{table.sweepAndCollide[0], alone(extension)}));
+    EXPECT_EQ(passes({sweep, collisionBack}), (std::vector<Stage>{table.sweepAndCollide[1]}));
     // Another force between them, or another integrator after them: each by itself.
     EXPECT_EQ(passes({damping, gravity, springs, verlet}),
               (std::vector<Stage>{alone(damping), alone(gravity), alone(springs), table.moves[0][0][0]}));
     EXPECT_EQ(passes({open, drag, gravity, explicitEuler}),
               (std::vector<Stage>{alone(open), alone(drag), alone(gravity), alone(explicitEuler)}));
+}
+
+TEST(Determinism, StagesByThemselvesHandTheWayOn) {
+    using enum StageId;
+    const Kernels& table = kernels();
+    const auto singles = [&](std::initializer_list<StageId> stages) {
+        const Passes made = singlePassesOf({stages.begin(), stages.size()}, table);
+        return std::vector<Stage>(made.calls.begin(), made.calls.begin() + made.count);
+    };
+    const auto alone = [&](StageId id) { return table.stages[static_cast<std::size_t>(id)]; };
+    const auto opens = [&](StageId id) { return table.partsOfMove[0][static_cast<std::size_t>(id)]; };
+    const auto follows = [&](StageId id) { return table.partsOfMove[1][static_cast<std::size_t>(id)]; };
+    EXPECT_EQ(singles({roots, damping, wind, gravity, verlet, angular, length}),
+              (std::vector<Stage>{alone(roots), opens(damping), follows(wind), follows(gravity),
+                                  follows(verlet), alone(angular), alone(length)}));
+    EXPECT_EQ(singles({roots, verlet, sweep, collision}),
+              (std::vector<Stage>{alone(roots), opens(verlet), alone(sweep), alone(collision)}));
+    // What stands between them reads places.
+    EXPECT_EQ(singles({damping, gravity, springs, verlet}),
+              (std::vector<Stage>{alone(damping), alone(gravity), alone(springs), opens(verlet)}));
 }
 
 /// Few spheres are looked up in a list of the points near them that holds for several substeps, more than 64
