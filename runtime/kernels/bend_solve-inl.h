@@ -34,12 +34,12 @@ inline constexpr float kFold = -0.95f;
 struct Strip {
     struct alignas(64) Point {
         Lanes3 direction;  ///< of the segment at the start of the substep, by its rest length
-        Lanes3 held;       ///< the curve of the joint, turned with the root
-        Lanes3 change;     ///< from there to the curve of today's frame
-        Lanes3 ahead;  ///< what the joint pulls against q of the way on, reversed, before its curve changes
+        Lanes3 ahead;   ///< what the joint pulls against q of the way on, reversed, before its curve changes
+        Lanes3 held;    ///< the curve of the joint, turned with the root
+        Lanes3 change;  ///< from there to the curve of today's frame; of curved hair
 
         // Each takes the place of what is no longer needed by then: strips of long strands stay small.
-        Lanes3& right() { return change; }   ///< right side of the system of bending
+        Lanes3& right() { return ahead; }    ///< right side of the system of bending
         Lanes& upper() { return held.x; }    ///< of the system of lengths, as it is eliminated
         Lanes& tension() { return held.y; }  ///< likewise
     };

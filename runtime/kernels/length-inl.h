@@ -258,9 +258,9 @@ void bendAndHold(const BlockView& given, LaneFrame& lanes, const SubstepContext&
             bendAndHoldStrip<kShape>(block, planes, lanes, context, lane, strip);
             continue;
         }
-        const CopiedRows rows(block, lanes, lane);
+        const CopiedRows<kCurved> rows(block, lanes, lane);
         if (context.index == 0) {
-            for (std::size_t p = 0; p < block.points; ++p) rows.at(p).template fill<kCurved>(planes.at(p));
+            for (std::size_t p = 0; p < block.points; ++p) rows.at(p).fill(planes.at(p));
         }
         bendAndHoldStrip<kShape>(block, rows, lanes, context, lane, strip);
         if (context.index + 1 < context.count) continue;

@@ -7,6 +7,8 @@
 #define HAIRLOOM_RUNTIME_ROWS_INL_H
 #endif
 
+#include <type_traits>
+
 #include "hwy/highway.h"
 #include "runtime/kernels.h"
 #include "runtime/kernels/lanes-inl.h"
@@ -78,19 +80,25 @@ class PlaneRows {
     const std::size_t lane_;
 };
 
+/// What CopiedRows has of a point, as in memory.
+struct CopiedPoint {
+    Lanes halfLength, inverseLength, inverseMass, stiffness, inverseDiagonal, lower1, lower2, tension;
+};
+struct CopiedCurvedPoint : CopiedPoint {
+    Lanes3 target, curve;
+};
+static_assert(sizeof(CopiedCurvedPoint) == kCopiedRows * kWidth * sizeof(float));
+
 /// The same in a copy for the time of a frame, in which all that belongs to a point lies side by side: one
-/// address serves for all of it.
+/// address serves for all of it. With `kCurved` targets and curves as well; straight hair keeps less of the
+/// first-level cache busy without.
+template <bool kCurved>
 class CopiedRows {
   public:
+    using Point = std::conditional_t<kCurved, CopiedCurvedPoint, CopiedPoint>;
+
     class Row {
       public:
-        /// As in memory.
-        struct Point {
-            Lanes halfLength, inverseLength, inverseMass, stiffness, inverseDiagonal, lower1, lower2, tension;
-            Lanes3 target, curve;
-        };
-        static_assert(sizeof(Point) == kCopiedRows * kWidth * sizeof(float));
-
         HWY_INLINE explicit Row(Point* point) : point_(point) {}
 
         HWY_INLINE V halfLength() const { return load(point_->halfLength); }
@@ -110,8 +118,7 @@ class CopiedRows {
         HWY_INLINE void advance() { ++point_; }
         HWY_INLINE void retreat() { --point_; }
 
-        /// Takes in what the block has; `kCurved` with targets and curves.
-        template <bool kCurved>
+        /// Takes in what the block has.
         HWY_INLINE void fill(const PlaneRows::Row& from) const {
             store(from.halfLength(), point_->halfLength);
             store(from.inverseLength(), point_->inverseLength);
@@ -132,12 +139,12 @@ class CopiedRows {
     };
 
     HWY_INLINE CopiedRows(const BlockView& block, LaneFrame& lanes, std::size_t lane)
-        : points_(reinterpret_cast<Row::Point*>(lanes.copied + lane * kCopiedRows * block.points)) {}
+        : points_(reinterpret_cast<Point*>(lanes.copied) + lane / kWidth * block.points) {}
 
     HWY_INLINE Row at(std::size_t p) const { return Row(points_ + p); }
 
   private:
-    Row::Point* points_;
+    Point* points_;
 };
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)
