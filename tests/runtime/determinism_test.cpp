@@ -97,14 +97,20 @@ TEST(Determinism, SameBitsWhetherStagesAreTimedOrNot) {
     }
 }
 
+/// What is called for stages, by passesOf or singlePassesOf.
+std::vector<Stage> callsFor(std::initializer_list<StageId> stages, decltype(passesOf) makePasses) {
+    const Passes made = makePasses({stages.begin(), stages.size()}, kernels());
+    return {made.calls.begin(), made.calls.begin() + made.count};
+}
+
+Stage alone(StageId id) {
+    return kernels().stages[static_cast<std::size_t>(id)];
+}
+
 TEST(Determinism, StagesThatFollowEachOtherAreOnePass) {
     using enum StageId;
     const Kernels& table = kernels();
-    const auto passes = [&](std::initializer_list<StageId> stages) {
-        const Passes made = passesOf({stages.begin(), stages.size()}, table);
-        return std::vector<Stage>(made.calls.begin(), made.calls.begin() + made.count);
-    };
-    const auto alone = [&](StageId id) { return table.stages[static_cast<std::size_t>(id)]; };
+    const auto passes = [](std::initializer_list<StageId> stages) { return callsFor(stages, passesOf); };
     EXPECT_EQ(passes({roots, damping, wind, gravity, verlet, length}),
               (std::vector<Stage>{alone(roots), table.moves[1][2][1], alone(length)}));
     EXPECT_EQ(passes({roots, verlet}), (std::vector<Stage>{alone(roots), table.moves[0][0][0]}));
@@ -124,14 +130,11 @@ TEST(Determinism, StagesThatFollowEachOtherAreOnePass) {
 
 TEST(Determinism, StagesByThemselvesHandTheWayOn) {
     using enum StageId;
-    const Kernels& table = kernels();
-    const auto singles = [&](std::initializer_list<StageId> stages) {
-        const Passes made = singlePassesOf({stages.begin(), stages.size()}, table);
-        return std::vector<Stage>(made.calls.begin(), made.calls.begin() + made.count);
+    const auto singles = [](std::initializer_list<StageId> stages) {
+        return callsFor(stages, singlePassesOf);
     };
-    const auto alone = [&](StageId id) { return table.stages[static_cast<std::size_t>(id)]; };
-    const auto opens = [&](StageId id) { return table.partsOfMove[0][static_cast<std::size_t>(id)]; };
-    const auto follows = [&](StageId id) { return table.partsOfMove[1][static_cast<std::size_t>(id)]; };
+    const auto opens = [](StageId id) { return kernels().partsOfMove[0][static_cast<std::size_t>(id)]; };
+    const auto follows = [](StageId id) { return kernels().partsOfMove[1][static_cast<std::size_t>(id)]; };
     EXPECT_EQ(singles({roots, damping, wind, gravity, verlet, angular, length}),
               (std::vector<Stage>{alone(roots), opens(damping), follows(wind), follows(gravity),
                                   follows(verlet), alone(angular), alone(length)}));
