@@ -6,7 +6,7 @@
 
 #include "core/geometry/placement.h"
 #include "core/geometry/selection.h"
-#include "core/groom/brushes/flow.h"
+#include "core/operations/flow.h"
 #include "tests/geometry/test_meshes.h"
 
 namespace hairloom {

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "core/base/file.h"
-#include "core/groom/project_file.h"
+#include "core/groom/file/project_file.h"
 
 namespace {
 

@@ -8,7 +8,7 @@
 
 #include "cli/job.h"
 #include "core/groom/validate.h"
-#include "workspace/open.h"
+#include "core/scene/open.h"
 
 namespace hairloom::cli {
 

@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
+#include "core/scene/motions.h"
 #include "core/simulation/motion.h"
-#include "workspace/motions.h"
 
 namespace hairloom::cli {
 

@@ -20,7 +20,7 @@ std::span<const Shader> all();
 
 /// A file of the strand kernels, of which programs compile what they need when they run.
 struct Source {
-    std::string_view path;  ///< from the top of the repository
+    std::string_view path;  ///< name of its file
     std::string_view text;
 };
 std::span<const Source> sources();

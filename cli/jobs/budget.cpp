@@ -10,8 +10,8 @@
 #include "cli/motions.h"
 #include "cli/progress.h"
 #include "core/accuracy/budget.h"
-#include "core/groom/project_file.h"
-#include "core/groom/settings_json.h"
+#include "core/groom/file/project_file.h"
+#include "core/groom/file/settings_json.h"
 
 namespace hairloom::cli {
 namespace {

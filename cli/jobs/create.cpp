@@ -7,8 +7,8 @@
 #include "core/base/log.h"
 #include "core/geometry/placement.h"
 #include "core/geometry/selection.h"
+#include "core/groom/file/project_file.h"
 #include "core/groom/groom.h"
-#include "core/groom/project_file.h"
 #include "importers/scene.h"
 
 namespace hairloom::cli {

@@ -6,8 +6,8 @@
 #include "cli/stopwatch.h"
 #include "core/base/file.h"
 #include "core/editing/replay.h"
-#include "core/groom/brushes/script.h"
-#include "core/groom/project_file.h"
+#include "core/groom/file/project_file.h"
+#include "core/operations/script.h"
 
 namespace hairloom::cli {
 namespace {

@@ -7,7 +7,7 @@
 #include "cli/job.h"
 #include "core/base/log.h"
 #include "core/geometry/selection.h"
-#include "core/groom/project_file.h"
+#include "core/groom/file/project_file.h"
 #include "importers/strands.h"
 
 namespace hairloom::cli {

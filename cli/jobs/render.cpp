@@ -14,11 +14,11 @@
 #include "core/render/exr.h"
 #include "core/render/png.h"
 #include "core/render/webp.h"
+#include "core/scene/groom_scene.h"
+#include "core/scene/sample.h"
+#include "core/scene/sample_material.h"
 #include "core/simulation/frame_record.h"
 #include "importers/child_process.h"
-#include "workspace/groom_scene.h"
-#include "workspace/sample.h"
-#include "workspace/sample_material.h"
 
 namespace hairloom::cli {
 namespace {

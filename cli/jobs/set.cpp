@@ -6,11 +6,11 @@
 #include "cli/documents.h"
 #include "cli/job.h"
 #include "core/base/file.h"
-#include "core/groom/project_file.h"
-#include "core/groom/settings_json.h"
-#include "runtime/presets.h"
-#include "workspace/dye_mask.h"
-#include "workspace/hair_preset.h"
+#include "core/groom/file/project_file.h"
+#include "core/groom/file/settings_json.h"
+#include "core/scene/dye_mask.h"
+#include "core/scene/hair_preset.h"
+#include "hairloom/presets.h"
 
 namespace hairloom::cli {
 namespace {

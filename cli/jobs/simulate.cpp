@@ -12,10 +12,10 @@
 #include "cli/motions.h"
 #include "cli/progress.h"
 #include "core/base/log.h"
-#include "core/groom/project_file.h"
+#include "core/groom/file/project_file.h"
 #include "core/simulation/frame_record.h"
 #include "core/simulation/simulation.h"
-#include "runtime/stable.h"
+#include "hairloom/stable.h"
 
 namespace hairloom::cli {
 namespace {

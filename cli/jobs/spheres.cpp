@@ -4,7 +4,7 @@
 #include "cli/documents.h"
 #include "cli/job.h"
 #include "core/editing/sphere_fit.h"
-#include "core/groom/project_file.h"
+#include "core/groom/file/project_file.h"
 
 namespace hairloom::cli {
 namespace {

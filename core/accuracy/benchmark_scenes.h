@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "runtime/engine.h"
-#include "runtime/follow.h"
+#include "hairloom/engine.h"
+#include "hairloom/follow.h"
 
 namespace hairloom::scenes {
 

@@ -7,7 +7,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "runtime/strands.h"
+#include "hairloom/strands.h"
 
 namespace hairloom {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/result.h"
-#include "runtime/settings.h"
+#include "hairloom/settings.h"
 
 namespace hairloom {
 

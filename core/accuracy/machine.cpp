@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "core/base/parallel.h"
-#include "runtime/engine.h"
+#include "hairloom/engine.h"
 
 namespace hairloom {
 namespace {

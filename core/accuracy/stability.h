@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "core/accuracy/trial_engine.h"
-#include "runtime/settings.h"
+#include "hairloom/settings.h"
 
 namespace hairloom {
 

@@ -11,8 +11,8 @@
 #include "core/accuracy/stability.h"
 #include "core/accuracy/strand_set.h"
 #include "core/base/parallel.h"
-#include "runtime/engine.h"
-#include "runtime/stable.h"
+#include "hairloom/engine.h"
+#include "hairloom/stable.h"
 
 namespace hairloom {
 namespace {

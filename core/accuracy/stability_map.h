@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/accuracy/plot.h"
-#include "runtime/settings.h"
+#include "hairloom/settings.h"
 
 namespace hairloom {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "runtime/strands.h"
+#include "hairloom/strands.h"
 
 namespace hairloom {
 

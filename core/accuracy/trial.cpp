@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "runtime/stable.h"
+#include "hairloom/stable.h"
 
 namespace hairloom {
 namespace {

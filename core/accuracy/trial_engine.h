@@ -9,7 +9,7 @@
 #include <string>
 
 #include "core/gpu_simulation/strand_engine.h"
-#include "runtime/engine.h"
+#include "hairloom/engine.h"
 
 namespace hairloom {
 

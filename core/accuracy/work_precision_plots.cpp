@@ -6,7 +6,7 @@
 #include <map>
 
 #include "core/accuracy/work_precision_report.h"
-#include "runtime/settings.h"
+#include "hairloom/settings.h"
 
 namespace hairloom {
 namespace {

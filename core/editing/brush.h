@@ -15,7 +15,7 @@
 #include "core/editing/strand_bounds.h"
 #include "core/editing/stroke.h"
 #include "core/geometry/scalp_mesh.h"
-#include "core/groom/brushes/skin.h"
+#include "core/operations/skin.h"
 
 namespace hairloom::editing {
 

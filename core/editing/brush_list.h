@@ -7,8 +7,8 @@
 #include <string_view>
 
 #include "core/editing/brush.h"
-#include "core/groom/brushes/strand_edit.h"
-#include "core/groom/fields.h"
+#include "core/groom/file/fields.h"
+#include "core/operations/strand_edit.h"
 
 namespace hairloom::editing {
 

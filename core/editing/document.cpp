@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "core/groom/brushes/script.h"
-#include "core/groom/project_file.h"
+#include "core/groom/file/project_file.h"
+#include "core/operations/script.h"
 
 namespace hairloom::editing {
 

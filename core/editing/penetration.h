@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "core/groom/brushes/skin.h"
 #include "core/groom/groom.h"
+#include "core/operations/skin.h"
 
 namespace hairloom::editing {
 

@@ -9,7 +9,7 @@
 #include "core/editing/place.h"
 #include "core/editing/selection_commands.h"
 #include "core/editing/settings_commands.h"
-#include "core/groom/settings_json.h"
+#include "core/groom/file/settings_json.h"
 
 namespace hairloom::editing {
 namespace {

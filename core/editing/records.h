@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/editing/command.h"
-#include "core/groom/json_reader.h"
+#include "core/groom/file/json_reader.h"
 
 namespace hairloom::editing {
 

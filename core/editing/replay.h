@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/groom/brushes/script.h"
+#include "core/operations/script.h"
 
 namespace hairloom::editing {
 

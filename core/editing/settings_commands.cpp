@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "core/editing/records.h"
+#include "core/groom/file/settings_json.h"
 #include "core/groom/groom_hash.h"
-#include "core/groom/settings_json.h"
 
 namespace hairloom::editing {
 namespace {

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "core/groom/brushes/skin.h"
+#include "core/operations/skin.h"
 
 namespace hairloom::editing {
 

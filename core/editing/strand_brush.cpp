@@ -7,7 +7,7 @@
 #include "core/base/parallel.h"
 #include "core/base/profiler.h"
 #include "core/editing/brush.h"
-#include "core/groom/brushes/length_constraint.h"
+#include "core/operations/length_constraint.h"
 
 namespace hairloom::editing {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "core/editing/root_grid.h"
 #include "core/editing/strand_delta.h"
-#include "core/groom/brushes/skin.h"
+#include "core/operations/skin.h"
 
 namespace hairloom::editing {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/editing/brush_curve.h"
-#include "core/groom/json_reader.h"
+#include "core/groom/file/json_reader.h"
 
 namespace hairloom::editing {
 

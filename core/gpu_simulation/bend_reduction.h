@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // The factors by which the lanes of a strand solve their angular springs together (solveBend() of
-// shaders/simulation/lanes_bend.hlsli): cyclic reduction of the pentadiagonal matrix, whose rows are taken in
+// runtime/shaders/lanes_bend.hlsli): cyclic reduction of the pentadiagonal matrix, whose rows are taken in
 // pairs, so that it is tridiagonal in 2×2 blocks. They are of the matrix alone, and made once.
 
 #include <span>

@@ -9,7 +9,7 @@
 
 #include "core/gpu_simulation/compiled_kernel.h"
 #include "core/gpu_simulation/strand_batch.h"
-#include "shaders/simulation/follow_types.h"
+#include "runtime/shaders/follow_types.h"
 
 namespace hairloom::gpu_simulation {
 namespace {

@@ -7,7 +7,7 @@
 #include <span>
 
 #include "core/gpu/device.h"
-#include "runtime/follow.h"
+#include "hairloom/follow.h"
 
 namespace hairloom::gpu_simulation {
 

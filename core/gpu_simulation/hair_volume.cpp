@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/gpu_simulation/compiled_kernel.h"
-#include "shaders/simulation/volume_types.h"
+#include "runtime/shaders/volume_types.h"
 
 namespace hairloom::gpu_simulation {
 namespace {

@@ -9,7 +9,7 @@
 #include <span>
 
 #include "core/gpu_simulation/strand_batch.h"
-#include "runtime/alternatives/hair_volume.h"
+#include "hairloom/alternatives/hair_volume.h"
 
 namespace hairloom::gpu_simulation {
 

@@ -16,7 +16,7 @@ namespace {
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wnon-virtual-dtor"
 #endif
-/// Includes are written from the top of the repository.
+/// Sources are known by their file's name.
 class Includer final : public ID3DInclude {
   public:
     HRESULT STDMETHODCALLTYPE Open(D3D_INCLUDE_TYPE, LPCSTR name, LPCVOID, LPCVOID* data,

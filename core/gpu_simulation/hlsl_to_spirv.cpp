@@ -13,7 +13,7 @@
 namespace hairloom::gpu_simulation {
 namespace {
 
-/// Includes are written from the top of the repository.
+/// Sources are known by their file's name.
 class Includer final : public glslang::TShader::Includer {
   public:
     IncludeResult* includeLocal(const char* name, const char*, std::size_t) override {

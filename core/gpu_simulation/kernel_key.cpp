@@ -6,7 +6,7 @@
 #include <cctype>
 
 #include "core/gpu_simulation/hlsl_compiler.h"
-#include "shaders/simulation/simulation_types.h"
+#include "runtime/shaders/simulation_types.h"
 
 namespace hairloom::gpu_simulation {
 namespace {

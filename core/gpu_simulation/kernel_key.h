@@ -5,12 +5,12 @@
 #include <cstdint>
 #include <string>
 
-#include "runtime/kernels.h"
-#include "runtime/plan.h"
+#include "hairloom/plan.h"
+#include "runtime/src/kernels.h"
 
 namespace hairloom::gpu_simulation {
 
-/// Where a strand is between the substeps of a frame (shaders/simulation/storage.hlsli).
+/// Where a strand is between the substeps of a frame (runtime/shaders/storage.hlsli).
 /// With `lanes` a thread has one or two points, with `wisps` each strand a work group, whose first thread
 /// takes it (Rünz 2012, Section 6.1); Direct3D 11 has `threads` in the place of both.
 enum class StrandStorage : std::uint32_t { threads, groups, buffers, lanes, wisps };

@@ -23,7 +23,7 @@
 namespace hairloom::gpu_simulation {
 namespace {
 
-constexpr const char* kSource = "shaders/simulation/strands.hlsli";
+constexpr const char* kSource = "strands.hlsli";
 constexpr std::uint32_t kSpirvMagic = 0x07230203;
 constexpr std::uint32_t kDxbcMagic = 0x43425844;  // "DXBC"
 

@@ -5,7 +5,7 @@
 #include <bit>
 #include <map>
 
-#include "shaders/simulation/simulation_types.h"
+#include "runtime/shaders/simulation_types.h"
 
 namespace hairloom::gpu_simulation {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "core/gpu/device.h"
 #include "core/gpu_simulation/kernel_key.h"
-#include "runtime/state.h"
-#include "shaders/shared/types.h"
+#include "hairloom/state.h"
+#include "runtime/shaders/types.h"
 
 namespace hairloom::gpu_simulation {
 
@@ -40,7 +40,7 @@ struct StrandBatch {
     BatchShape shape;
     std::vector<std::uint32_t> blocks;  ///< of the rest shape
     std::uint32_t slots = 0;
-    // Made with the batch; names as in shaders/simulation/storage.hlsli.
+    // Made with the batch; names as in runtime/shaders/storage.hlsli.
     gpu::BufferPtr rest, segments, blockCounts, firstPoints, rootsTo, state, roots;
     // Null while what needs them is off.
     gpu::BufferPtr bend, targets, curves, tanks, rests, gathered, scratch;

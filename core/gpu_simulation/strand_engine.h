@@ -17,8 +17,8 @@
 #include "core/gpu_simulation/hair_volume.h"
 #include "core/gpu_simulation/kernel_library.h"
 #include "core/gpu_simulation/strand_batch.h"
-#include "runtime/frame_setup.h"
-#include "runtime/state_read.h"
+#include "hairloom/frame_setup.h"
+#include "hairloom/state_read.h"
 
 namespace hairloom::gpu_simulation {
 

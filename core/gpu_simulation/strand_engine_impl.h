@@ -5,7 +5,7 @@
 #include <deque>
 
 #include "core/gpu_simulation/strand_engine.h"
-#include "shaders/simulation/simulation_types.h"
+#include "runtime/shaders/simulation_types.h"
 
 namespace hairloom::gpu_simulation {
 

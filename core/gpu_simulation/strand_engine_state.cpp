@@ -8,7 +8,7 @@
 #include <cstring>
 
 #include "core/gpu_simulation/strand_engine_impl.h"
-#include "runtime/checks.h"
+#include "hairloom/checks.h"
 
 namespace hairloom::gpu_simulation {
 namespace {

@@ -13,7 +13,7 @@
 #include "core/geometry/scalp_mesh.h"
 #include "core/groom/attributes.h"
 #include "core/groom/material.h"
-#include "runtime/settings.h"
+#include "hairloom/settings.h"
 
 namespace hairloom {
 

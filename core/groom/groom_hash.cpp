@@ -4,7 +4,7 @@
 #include <bit>
 
 #include "core/base/hash.h"
-#include "core/groom/fields.h"
+#include "core/groom/file/fields.h"
 
 namespace hairloom {
 namespace {

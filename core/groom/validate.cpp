@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/groom/fields.h"
+#include "core/groom/file/fields.h"
 #include "core/groom/findings.h"
 
 namespace hairloom {

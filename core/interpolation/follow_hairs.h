@@ -10,7 +10,7 @@
 
 #include "core/base/result.h"
 #include "core/groom/groom.h"
-#include "runtime/follow.h"
+#include "hairloom/follow.h"
 
 namespace hairloom {
 

@@ -67,7 +67,7 @@ Result<std::vector<shaders::LightAnswer>> probeLight(gpu::Device& device, const 
     recordMaps(commands, state, lightAtlas(state));
     recordMaps(commands, state, skyAtlas(state));
     commands.beginPass({"light", {}, {}});
-    commands.setPipeline(state.pipelines.compute("light_echo.comp"));
+    commands.setPipeline(state.pipelines.compute("light_probe.comp"));
     commands.setConstants(0, gpu::bytesOf(state.shade));
     bindShadows(commands, state);
     bind(commands, {gpu::Binding::read(0, *in), gpu::Binding::write(0, *out)});

@@ -8,8 +8,8 @@
 
 #include "core/base/hash.h"
 #include "core/simulation/strand_method.h"
-#include "runtime/alternatives/projective_equations.h"
-#include "runtime/wind.h"
+#include "hairloom/alternatives/projective_equations.h"
+#include "hairloom/wind.h"
 
 namespace hairloom {
 namespace {

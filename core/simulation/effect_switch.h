@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "runtime/settings.h"
+#include "hairloom/settings.h"
 
 namespace hairloom {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/simulation/motion.h"
-#include "runtime/strands.h"
+#include "hairloom/strands.h"
 
 namespace hairloom {
 

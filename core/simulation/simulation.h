@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/simulation/motion.h"
-#include "runtime/alternatives/hair_volume.h"
+#include "hairloom/alternatives/hair_volume.h"
 
 namespace hairloom {
 

@@ -9,9 +9,9 @@
 
 #include "core/simulation/scene_input.h"
 #include "core/simulation/simulation.h"
-#include "runtime/alternatives/hair_volume.h"
-#include "runtime/alternatives/lattice.h"
-#include "runtime/engine.h"
+#include "hairloom/alternatives/hair_volume.h"
+#include "hairloom/alternatives/lattice.h"
+#include "hairloom/engine.h"
 
 namespace hairloom {
 

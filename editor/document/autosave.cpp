@@ -9,7 +9,7 @@
 #include <QStandardPaths>
 #include <QUuid>
 
-#include "core/groom/project_file.h"
+#include "core/groom/file/project_file.h"
 
 namespace hairloom::editor {
 namespace {

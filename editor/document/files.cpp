@@ -5,10 +5,10 @@
 #include <QFileInfo>
 
 #include "core/base/file.h"
-#include "core/groom/project_file.h"
-#include "workspace/motions.h"
-#include "workspace/open.h"
-#include "workspace/sample.h"
+#include "core/groom/file/project_file.h"
+#include "core/scene/motions.h"
+#include "core/scene/open.h"
+#include "core/scene/sample.h"
 
 namespace hairloom::editor {
 namespace {

@@ -6,8 +6,8 @@
 #include <cassert>
 #include <cmath>
 
-#include "core/groom/fields.h"
-#include "runtime/settings.h"
+#include "core/groom/file/fields.h"
+#include "hairloom/settings.h"
 
 namespace hairloom::editor {
 namespace {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// One authored number, choice or colour of a groom as a panel shows it. The tables of core/groom/fields.h and
-// runtime/settings.h describe the fields; this is the one form that panels take them in.
+// One authored number, choice or colour of a groom as a panel shows it. The tables of
+// core/groom/file/fields.h and runtime/settings.h describe the fields; this is the one form that panels take
+// them in.
 
 #include <QString>
 #include <QStringList>

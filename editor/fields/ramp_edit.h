@@ -5,7 +5,7 @@
 #include <QWidget>
 #include <optional>
 
-#include "runtime/ramp.h"
+#include "hairloom/ramp.h"
 
 namespace hairloom::editor {
 

@@ -9,13 +9,13 @@
 #include <QStandardPaths>
 #include <QVBoxLayout>
 
-#include "core/groom/settings_json.h"
+#include "core/groom/file/settings_json.h"
+#include "core/scene/look_presets.h"
 #include "editor/fields/colour.h"
 #include "editor/look/parts.h"
 #include "editor/look/tress.h"
 #include "editor/session.h"
 #include "editor/shell/theme.h"
-#include "workspace/look_presets.h"
 
 namespace hairloom::editor {
 namespace {

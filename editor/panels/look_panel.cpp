@@ -7,12 +7,12 @@
 #include <QVBoxLayout>
 #include <algorithm>
 
+#include "core/scene/look_presets.h"
 #include "editor/fields/field_form.h"
 #include "editor/look/parts.h"
 #include "editor/panels/list.h"
 #include "editor/panels/panel.h"
 #include "editor/session.h"
-#include "workspace/look_presets.h"
 
 namespace hairloom::editor {
 namespace {

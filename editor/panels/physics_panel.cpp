@@ -4,12 +4,12 @@
 #include <QComboBox>
 #include <QVBoxLayout>
 
+#include "core/scene/hair_preset.h"
 #include "editor/fields/field_form.h"
 #include "editor/fields/stiffness_curve.h"
 #include "editor/panels/list.h"
 #include "editor/panels/panel.h"
 #include "editor/session.h"
-#include "workspace/hair_preset.h"
 
 namespace hairloom::editor {
 namespace {

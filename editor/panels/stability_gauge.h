@@ -8,7 +8,7 @@
 #include <QVBoxLayout>
 #include <QWidget>
 
-#include "runtime/stable.h"
+#include "hairloom/stable.h"
 
 namespace hairloom::editor {
 

@@ -6,11 +6,11 @@
 #include <QLocale>
 #include <QPushButton>
 
+#include "core/scene/sample.h"
 #include "editor/document/files.h"
 #include "editor/fields/field.h"
 #include "editor/panels/panel.h"
 #include "editor/shell/icons.h"
-#include "workspace/sample.h"
 
 namespace hairloom::editor {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/groom/fields.h"
+#include "core/groom/file/fields.h"
 #include "core/groom/move_strands.h"
 #include "core/groom/point_dye.h"
 

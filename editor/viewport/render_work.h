@@ -8,8 +8,8 @@
 
 #include "core/gpu/device.h"
 #include "core/render/renderer.h"
+#include "core/scene/groom_scene.h"
 #include "editor/viewport/picture_request.h"
-#include "workspace/groom_scene.h"
 
 namespace hairloom::editor {
 

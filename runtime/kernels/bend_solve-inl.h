@@ -12,10 +12,10 @@
 #include <type_traits>
 
 #include "hwy/highway.h"
-#include "runtime/kernels.h"
-#include "runtime/kernels/bend-inl.h"
-#include "runtime/kernels/lanes-inl.h"
-#include "runtime/kernels/rows-inl.h"
+#include "kernels/bend-inl.h"
+#include "kernels/lanes-inl.h"
+#include "kernels/rows-inl.h"
+#include "src/kernels.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {

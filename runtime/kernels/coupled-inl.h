@@ -10,11 +10,11 @@
 #include <cmath>
 
 #include "hwy/highway.h"
-#include "runtime/kernels.h"
-#include "runtime/kernels/bend_solve-inl.h"
-#include "runtime/kernels/implicit-inl.h"
-#include "runtime/kernels/lanes-inl.h"
-#include "runtime/kernels/spheres-inl.h"
+#include "kernels/bend_solve-inl.h"
+#include "kernels/implicit-inl.h"
+#include "kernels/lanes-inl.h"
+#include "kernels/spheres-inl.h"
+#include "src/kernels.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {

@@ -11,8 +11,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include "runtime/follow_kernels.h"
-#include "runtime/kernels/lanes-inl.h"
+#include "kernels/lanes-inl.h"
+#include "src/follow_kernels.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 // The kernels of follow hairs, compiled once for each instruction set.
-#include "runtime/follow_kernels.h"
+#include "src/follow_kernels.h"
 
 // Vector types stand in structs of lanes-inl.h, which scalable vectors cannot.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_SSSE3)
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "runtime/kernels/follow.cpp"
+#define HWY_TARGET_INCLUDE "kernels/follow.cpp"
 #include "hwy/foreach_target.h"
 // After foreach_target.h, as Highway asks.
 #include "hwy/highway.h"
-#include "runtime/kernels/follow-inl.h"
+#include "kernels/follow-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {

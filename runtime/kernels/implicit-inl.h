@@ -9,10 +9,10 @@
 #endif
 
 #include "hwy/highway.h"
-#include "runtime/kernels.h"
-#include "runtime/kernels/bend_solve-inl.h"
-#include "runtime/kernels/lanes-inl.h"
-#include "runtime/kernels/springs-inl.h"
+#include "kernels/bend_solve-inl.h"
+#include "kernels/lanes-inl.h"
+#include "kernels/springs-inl.h"
+#include "src/kernels.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {

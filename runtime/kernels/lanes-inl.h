@@ -9,7 +9,7 @@
 #endif
 
 #include "hwy/highway.h"
-#include "runtime/kernels.h"
+#include "src/kernels.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {

@@ -11,8 +11,8 @@
 #include <algorithm>
 
 #include "hwy/highway.h"
-#include "runtime/kernels.h"
-#include "runtime/kernels/lanes-inl.h"
+#include "kernels/lanes-inl.h"
+#include "src/kernels.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {

@@ -9,10 +9,10 @@
 
 #include <cfloat>
 
+#include "hairloom/checks.h"
 #include "hwy/highway.h"
-#include "runtime/checks.h"
-#include "runtime/kernels.h"
-#include "runtime/kernels/lanes-inl.h"
+#include "kernels/lanes-inl.h"
+#include "src/kernels.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {

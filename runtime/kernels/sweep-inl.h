@@ -8,11 +8,11 @@
 #endif
 
 #include "hwy/highway.h"
-#include "runtime/kernels.h"
-#include "runtime/kernels/collide-inl.h"
-#include "runtime/kernels/lanes-inl.h"
-#include "runtime/kernels/near-inl.h"
-#include "runtime/kernels/spheres-inl.h"
+#include "kernels/collide-inl.h"
+#include "kernels/lanes-inl.h"
+#include "kernels/near-inl.h"
+#include "kernels/spheres-inl.h"
+#include "src/kernels.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {

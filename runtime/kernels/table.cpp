@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: MIT
 // The table of stages, compiled once for each instruction set. Each stage walks a block from root to tip and,
 // at every point, over the block's lanes: neighbouring vectors are independent and hide each other's latency.
-#include "runtime/kernels.h"
+#include "src/kernels.h"
 
 // Vector types stand in structs below, which scalable vectors cannot.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_SSSE3)
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "runtime/kernels/table.cpp"
+#define HWY_TARGET_INCLUDE "kernels/table.cpp"
 #include "hwy/foreach_target.h"
 // After foreach_target.h, as Highway asks.
 #include "hwy/highway.h"
-#include "runtime/kernels/air-inl.h"
-#include "runtime/kernels/bend-inl.h"
-#include "runtime/kernels/collide-inl.h"
-#include "runtime/kernels/coupled-inl.h"
-#include "runtime/kernels/implicit-inl.h"
-#include "runtime/kernels/integrate-inl.h"
-#include "runtime/kernels/length-inl.h"
-#include "runtime/kernels/motion-inl.h"
-#include "runtime/kernels/roots-inl.h"
-#include "runtime/kernels/springs-inl.h"
-#include "runtime/kernels/sweep-inl.h"
+#include "kernels/air-inl.h"
+#include "kernels/bend-inl.h"
+#include "kernels/collide-inl.h"
+#include "kernels/coupled-inl.h"
+#include "kernels/implicit-inl.h"
+#include "kernels/integrate-inl.h"
+#include "kernels/length-inl.h"
+#include "kernels/motion-inl.h"
+#include "kernels/roots-inl.h"
+#include "kernels/springs-inl.h"
+#include "kernels/sweep-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {

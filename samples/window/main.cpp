@@ -8,8 +8,8 @@
 #include <map>
 #include <thread>
 
+#include "core/scene/sample.h"
 #include "samples/window/show.h"
-#include "workspace/sample.h"
 
 namespace hairloom::window {
 namespace {

@@ -7,9 +7,9 @@
 
 #include "core/gpu/device.h"
 #include "core/render/renderer.h"
+#include "core/scene/groom_scene.h"
 #include "core/simulation/simulation.h"
 #include "samples/window/window.h"
-#include "workspace/groom_scene.h"
 
 namespace hairloom::window {
 

@@ -2,7 +2,7 @@
 // What core/render and its shaders exchange. Lengths in metres, world space (_ws), Y up.
 #ifndef HAIRLOOM_SHARED_RENDER_TYPES_H
 #define HAIRLOOM_SHARED_RENDER_TYPES_H
-#include "shaders/shared/types.h"
+#include "runtime/shaders/types.h"
 #ifdef __cplusplus
 namespace hairloom::shaders {
 #define HAIRLOOM_OFFSET(type, member, offset) static_assert(offsetof(type, member) == (offset))

@@ -10,7 +10,7 @@
 
 #include "core/accuracy/stability_map.h"
 #include "core/accuracy/stability_report.h"
-#include "runtime/stable.h"
+#include "hairloom/stable.h"
 #include "tests/accuracy/xml_check.h"
 
 namespace hairloom {

@@ -33,16 +33,18 @@ const std::map<std::string, Rooms>& allowed() {
         };
         const Rooms simulation = with(groom, {"core/animation"});
         const Rooms gpu{"core/base", "core/gpu"};
-        const Rooms all = with(simulation, {"core/editing", "core/interpolation", "core/simulation",
-                                            "core/shading", "core/gpu", "core/gpu_simulation", "core/render",
-                                            "core/accuracy", "importers", "exporters", "shaders"});
+        const Rooms all =
+            with(simulation, {"core/editing", "core/interpolation", "core/simulation", "core/shading",
+                              "core/gpu", "core/gpu_simulation", "core/render", "core/accuracy",
+                              "core/operations", "importers", "exporters", "shaders"});
         return std::map<std::string, Rooms>{
             {"runtime", {}},
             {"core/base", {}},
             {"core/geometry", base},
             {"core/groom", with(geometry, {"runtime"})},
             {"core/interpolation", groom},
-            {"core/editing", groom},
+            {"core/operations", groom},
+            {"core/editing", with(groom, {"core/operations"})},
             {"core/animation", groom},
             {"core/simulation", simulation},
             {"core/shading", base},
@@ -54,12 +56,12 @@ const std::map<std::string, Rooms>& allowed() {
             {"importers", with(groom, {"core/animation"})},
             {"exporters", with(groom, {"core/animation", "importers"})},
             {"shaders", {}},
-            {"workspace", all},
-            {"cli", with(all, {"workspace"})},
-            {"editor", with(all, {"workspace"})},
-            {"samples", with(all, {"workspace"})},
-            {"benchmarks", with(all, {"workspace", "editor", "tests"})},  // scenes are shared with the tests
-            {"tests", with(all, {"workspace", "cli", "editor", "samples", "tests"})},
+            {"core/scene", all},
+            {"cli", with(all, {"core/scene"})},
+            {"editor", with(all, {"core/scene"})},
+            {"samples", with(all, {"core/scene"})},
+            {"benchmarks", with(all, {"core/scene", "editor", "tests"})},  // scenes are shared with the tests
+            {"tests", with(all, {"core/scene", "cli", "editor", "samples", "tests"})},
         };
     }();
     return rules;
@@ -81,8 +83,8 @@ std::vector<Include> includesOf(const fs::path& top) {
     static const std::regex pattern(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");
     static const std::set<std::string> extensions{".h", ".hpp", ".cpp", ".hlsl", ".hlsli"};
     std::vector<Include> found;
-    for (const char* folder : {"core", "runtime", "importers", "exporters", "shaders", "workspace", "editor",
-                               "cli", "samples", "benchmarks", "tests"}) {
+    for (const char* folder : {"core", "runtime", "importers", "exporters", "shaders", "editor", "cli",
+                               "samples", "benchmarks", "tests"}) {
         if (!fs::exists(top / folder)) continue;
         for (const auto& entry : fs::recursive_directory_iterator(top / folder)) {
             if (!extensions.contains(entry.path().extension().string())) continue;
@@ -137,7 +139,7 @@ TEST(IncludeRules, GraphicsApisStayInTheirBackends) {
     // From text to bytes, without a device, as glslang does it for Vulkan.
     static const std::set<std::string> compilers{
         "core/gpu_simulation/hlsl_to_dxbc.cpp includes d3dcompiler.h",
-        "shaders/hlslc.cpp includes d3dcompiler.h"};
+        "packaging/windows/hlslc.cpp includes d3dcompiler.h"};
     std::vector<std::string> broken;
     for (const Include& include : allIncludes()) {
         if (std::regex_match(include.target, vulkan) && include.file.rfind("core/gpu/vulkan/", 0) != 0) {

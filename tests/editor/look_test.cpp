@@ -6,11 +6,11 @@
 #include <QPushButton>
 #include <cstdlib>
 
+#include "core/scene/look_presets.h"
 #include "editor/fields/field_form.h"
 #include "editor/fields/number_box.h"
 #include "editor/look/tress.h"
 #include "tests/editor/window_fixture.h"
-#include "workspace/look_presets.h"
 
 namespace hairloom::editor {
 namespace {

@@ -8,11 +8,11 @@
 #include <QPushButton>
 
 #include "core/editing/document.h"
+#include "core/scene/look_presets.h"
 #include "editor/dialogs/export_dialog.h"
 #include "editor/fields/number_box.h"
 #include "editor/tools/brush_tool.h"
 #include "tests/editor/window_fixture.h"
-#include "workspace/look_presets.h"
 
 namespace hairloom::editor {
 namespace {

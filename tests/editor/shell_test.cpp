@@ -8,7 +8,7 @@
 #include <QPushButton>
 #include <QStandardPaths>
 
-#include "core/groom/project_file.h"
+#include "core/groom/file/project_file.h"
 #include "editor/dialogs/export_dialog.h"
 #include "editor/dialogs/import_dialog.h"
 #include "editor/dialogs/preferences_dialog.h"

@@ -6,9 +6,9 @@
 
 #include "core/render/png.h"
 #include "core/render/tone_map.h"
+#include "core/scene/sample.h"
+#include "core/scene/sample_material.h"
 #include "tests/support/source_dir.h"
-#include "workspace/sample.h"
-#include "workspace/sample_material.h"
 
 namespace hairloom::golden {
 namespace {

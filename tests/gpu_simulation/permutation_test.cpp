@@ -11,8 +11,8 @@
 #include "core/accuracy/strand_set.h"
 #include "core/base/file.h"
 #include "core/gpu/validation.h"
+#include "runtime/shaders/simulation_types.h"
 #include "shaders/shaders.h"
-#include "shaders/simulation/simulation_types.h"
 #include "tests/gpu_simulation/gpu_simulation_fixture.h"
 
 namespace hairloom::shaders {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Writes back what the strand kernels are told, so that a test sees where the shader finds it.
-#include "shaders/simulation/simulation_types.h"
+#include "runtime/shaders/simulation_types.h"
 
 cbuffer Frame : register(b0) { SimulationConstants gFrame; };
 StructuredBuffer<SphereConstants> gSpheres : register(t0);

@@ -7,7 +7,7 @@
 #include "core/accuracy/benchmark_scenes.h"
 #include "core/accuracy/strand_set.h"
 #include "core/simulation/reference/solver.h"
-#include "runtime/engine.h"
+#include "hairloom/engine.h"
 #include "tests/gpu_simulation/cpu_frame.h"
 #include "tests/gpu_simulation/gpu_simulation_fixture.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/groom/archive.h"
+#include "core/groom/file/archive.h"
 
 #include <gmock/gmock.h>
 
@@ -8,7 +8,7 @@
 #include "core/base/file.h"
 #include "core/base/hash.h"
 #include "core/base/random.h"
-#include "core/groom/json_reader.h"
+#include "core/groom/file/json_reader.h"
 
 namespace hairloom {
 namespace {

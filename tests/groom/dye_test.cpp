@@ -6,10 +6,10 @@
 #include <numeric>
 
 #include "core/base/random.h"
-#include "core/groom/brushes/dye.h"
 #include "core/groom/point_dye.h"
 #include "core/groom/streaks.h"
 #include "core/groom/validate.h"
+#include "core/operations/dye.h"
 #include "tests/groom/groom_samples.h"
 
 namespace hairloom {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gmock/gmock.h>
 
-#include "core/groom/fields.h"
+#include "core/groom/file/fields.h"
 #include "core/groom/groom_hash.h"
 #include "core/groom/validate.h"
 #include "tests/groom/groom_samples.h"

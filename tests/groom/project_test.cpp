@@ -6,10 +6,10 @@
 #include <deque>
 
 #include "core/base/file.h"
-#include "core/groom/archive.h"
+#include "core/groom/file/archive.h"
+#include "core/groom/file/project_file.h"
+#include "core/groom/file/project_sections.h"
 #include "core/groom/groom_hash.h"
-#include "core/groom/project_file.h"
-#include "core/groom/project_sections.h"
 #include "core/groom/validate.h"
 #include "tests/groom/groom_samples.h"
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/groom/brushes/script.h"
+#include "core/operations/script.h"
 
 #include <gmock/gmock.h>
 
 #include "core/base/file.h"
-#include "core/groom/brushes/flow.h"
-#include "core/groom/brushes/noise.h"
 #include "core/groom/groom_hash.h"
+#include "core/operations/flow.h"
+#include "core/operations/noise.h"
 #include "tests/groom/groom_samples.h"
 #include "tests/support/source_dir.h"
 

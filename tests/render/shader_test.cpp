@@ -9,6 +9,10 @@
 #include "shaders/shared/render_types.h"
 #include "tests/render/render_fixture.h"
 
+namespace hairloom::shaders {
+std::span<const Shader> table_test_render();  // NOLINT(readability-identifier-naming)
+}
+
 namespace hairloom::render {
 namespace {
 
@@ -27,7 +31,8 @@ class ShaderTest : public RenderTest {
                                      std::vector<gpu::Binding> bindings, std::span<const std::byte> constants,
                                      const FibreTables* fibre = nullptr,
                                      std::span<const std::byte> look = {}) {
-        const shaders::Shader* shader = shaders::find(name);
+        const auto table = shaders::table_test_render();
+        const auto shader = std::ranges::find(table, name, &shaders::Shader::name);
         auto module =
             device
                 ->createShader({name, gpu::ShaderStage::Compute, std::as_bytes(shader->spirv), shader->dxbc})

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "runtime/follow.h"
+#include "hairloom/follow.h"
 #include "tests/runtime/strand_fixture.h"
 
 namespace hairloom::runtime {

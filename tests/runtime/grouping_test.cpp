@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "runtime/state.h"
+#include "hairloom/state.h"
 
 namespace hairloom::runtime {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "runtime/alternatives/hair_volume.h"
+#include "hairloom/alternatives/hair_volume.h"
 
 #include <algorithm>
 #include <cstring>

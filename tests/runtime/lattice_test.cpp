@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "runtime/alternatives/lattice.h"
+#include "hairloom/alternatives/lattice.h"
 
 #include <limits>
 

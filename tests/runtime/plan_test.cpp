@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "runtime/plan.h"
+#include "hairloom/plan.h"
 
 #include <gmock/gmock.h>
 
-#include "runtime/presets.h"
+#include "hairloom/presets.h"
 #include "tests/runtime/strand_fixture.h"
 
 namespace hairloom::runtime {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "runtime/presets.h"
+#include "hairloom/presets.h"
 
 #include <set>
 #include <string>

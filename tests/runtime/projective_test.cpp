@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <limits>
 
-#include "runtime/alternatives/projective_equations.h"
+#include "hairloom/alternatives/projective_equations.h"
 #include "tests/runtime/allocations.h"
 #include "tests/runtime/strand_fixture.h"
 #include "tests/runtime/threads.h"

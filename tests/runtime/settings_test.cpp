@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "runtime/settings.h"
+#include "hairloom/settings.h"
 
 #include <gtest/gtest.h>
 

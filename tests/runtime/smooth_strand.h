@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-#include "runtime/settings.h"
+#include "hairloom/settings.h"
 
 namespace hairloom::test {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The advice on stable steps: its frequencies against dense eigenvalues and closed forms, its words and
 // offers.
-#include "runtime/stable.h"
+#include "hairloom/stable.h"
 
 #include <Eigen/Eigenvalues>
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/engine.h"
+#include "hairloom/engine.h"
 
 namespace hairloom::runtime {
 

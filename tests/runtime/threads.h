@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-#include "runtime/host.h"
+#include "hairloom/host.h"
 
 namespace hairloom::runtime {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "runtime/wind.h"
+#include "hairloom/wind.h"
 
 #include <limits>
 

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "core/simulation/reference/converge.h"
-#include "runtime/engine.h"
+#include "hairloom/engine.h"
 #include "tests/simulation/reference_fixture.h"
 
 namespace hairloom {

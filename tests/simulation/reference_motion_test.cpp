@@ -8,7 +8,7 @@
 
 #include "core/simulation/reference/converge.h"
 #include "core/simulation/reference/forces.h"
-#include "runtime/engine.h"
+#include "hairloom/engine.h"
 #include "tests/simulation/reference_fixture.h"
 
 namespace hairloom {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/editing/brush_list.h"
-#include "core/groom/brushes/reshape.h"
+#include "core/operations/reshape.h"
 
 namespace hairloom::editing {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/editing/brush_list.h"
-#include "core/groom/brushes/length_constraint.h"
+#include "core/operations/length_constraint.h"
 
 namespace hairloom::editing {
 namespace {

@@ -19,8 +19,8 @@
 #include "core/base/result.h"
 #include "core/simulation/reference/strand.h"
 #include "core/simulation/reference/substep.h"
-#include "runtime/settings.h"
-#include "runtime/strands.h"
+#include "hairloom/settings.h"
+#include "hairloom/strands.h"
 
 namespace hairloom::reference {
 

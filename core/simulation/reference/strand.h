@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/base/math.h"
-#include "runtime/settings.h"
-#include "runtime/wind.h"
+#include "hairloom/settings.h"
+#include "hairloom/wind.h"
 
 namespace hairloom::reference {
 

@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/groom/file/json_reader.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <charconv>
+#include <cmath>
+
+namespace hairloom {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kQuotedBytes = 60;  ///< of a wrong value, in a message
+
+/// Carries a complaint out of the parser's callback; caught in parseJson.
+struct Refused {
+    std::string problem;
+};
+
+std::optional<std::uint64_t> tooDeepAt(std::string_view text) {
+    std::size_t depth = 0;
+    bool quoted = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (quoted) {
+            if (c == '\\') ++i;
+            if (c == '"') quoted = false;
+        } else if (c == '"') {
+            quoted = true;
+        } else if (c == '{' || c == '[') {
+            if (++depth > kMaxJsonDepth) return i;
+        } else if ((c == '}' || c == ']') && depth > 0) {
+            --depth;
+        }
+    }
+    return std::nullopt;
+}
+
+std::string quoted(const json& value) {
+    if (value.is_structured()) return value.is_array() ? "an array" : "an object";
+    std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);
+    if (text.size() > kQuotedBytes) text = text.substr(0, kQuotedBytes) + "…";
+    return text;
+}
+
+/// "~" and "/" as RFC 6901 writes them; over-long names are cut.
+std::string pathPart(std::string_view key) {
+    std::string part = "/";
+    for (const char c : key.substr(0, kQuotedBytes))
+        part += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
+    return part;
+}
+
+}  // namespace
+
+Result<json> parseJson(const std::string& file, std::string_view text, std::uint64_t firstByte) {
+    if (text.size() > kMaxJsonBytes) {
+        return failIn(file, {}, fmt::format("holds {} bytes of JSON", text.size()),
+                      fmt::format("expected at most {}", kMaxJsonBytes));
+    }
+    if (const auto deep = tooDeepAt(text)) {
+        return failIn(file, Byte{firstByte + *deep}, "JSON is nested too deeply",
+                      fmt::format("expected at most {} levels", kMaxJsonDepth));
+    }
+    std::vector<std::set<std::string>> open;
+    const auto refuseRepeats = [&](int, json::parse_event_t event, json& parsed) {
+        if (event == json::parse_event_t::object_start) open.emplace_back();
+        if (event == json::parse_event_t::object_end) open.pop_back();
+        if (event == json::parse_event_t::key && !open.back().insert(parsed.get<std::string>()).second) {
+            throw Refused{fmt::format("JSON names {} twice in one object", quoted(parsed))};
+        }
+        return true;
+    };
+    try {
+        return json::parse(text, refuseRepeats);
+    } catch (const json::parse_error& error) {
+        return failIn(file, Byte{firstByte + (error.byte > 0 ? error.byte - 1 : 0)}, "JSON is damaged",
+                      "expected valid JSON");
+    } catch (const json::exception& error) {
+        return failIn(file, {}, fmt::format("JSON cannot be read: {}", error.what()), "expected valid JSON");
+    } catch (const Refused& refused) {
+        return failIn(file, {}, refused.problem, "expected each name once");
+    }
+}
+
+JsonReader::JsonReader(const json& value, const std::string& file)
+    : JsonReader(value, {}, std::make_shared<Context>(Context{file, std::nullopt})) {}
+
+JsonReader::JsonReader(const json& value, std::string path, std::shared_ptr<Context> context)
+    : value_(&value), path_(std::move(path)), context_(std::move(context)) {
+    if (!value.is_object()) complain({}, "is " + quoted(value), "expected an object");
+}
+
+bool JsonReader::has(std::string_view key) {
+    asked_.emplace(key);
+    return value_->is_object() && value_->contains(key);
+}
+
+std::vector<std::string> JsonReader::keys() const {
+    std::vector<std::string> names;
+    if (!value_->is_object()) return names;
+    for (const auto& item : value_->items()) names.push_back(item.key());
+    return names;
+}
+
+const json* JsonReader::member(std::string_view key) {
+    asked_.emplace(key);
+    if (value_->is_object()) {
+        const auto found = value_->find(key);
+        if (found != value_->end()) return &*found;
+    }
+    complain(key, "is missing");
+    return nullptr;
+}
+
+void JsonReader::complain(std::string_view key, const std::string& problem, const std::string& expected) {
+    if (context_->error) return;
+    std::string where = key.empty() ? path_ : path_ + pathPart(key);
+    if (where.empty()) where = "/";
+    context_->error = Error{context_->file, {}, where + " " + problem, expected};
+}
+
+Status JsonReader::status() const {
+    if (context_->error) return tl::unexpected(*context_->error);
+    return {};
+}
+
+std::string JsonReader::string(std::string_view key) {
+    const json* value = member(key);
+    if (!value) return {};
+    if (value->is_string()) return value->get<std::string>();
+    complain(key, "is " + quoted(*value), "expected text in quotes");
+    return {};
+}
+
+bool JsonReader::boolean(std::string_view key) {
+    const json* value = member(key);
+    if (!value) return false;
+    if (value->is_boolean()) return value->get<bool>();
+    complain(key, "is " + quoted(*value), "expected true or false");
+    return false;
+}
+
+double JsonReader::number(std::string_view key, double min, double max, std::string_view unit) {
+    const json* value = member(key);
+    if (!value) return 0;
+    if (value->is_number() && withinRange(value->get<double>(), min, max)) return value->get<double>();
+    complain(key, "is " + quoted(*value), "expected a number from " + rangeText(min, max, unit));
+    return 0;
+}
+
+std::uint64_t JsonReader::count(std::string_view key, std::uint64_t min, std::uint64_t max) {
+    const json* value = member(key);
+    if (!value) return 0;
+    if (value->is_number_unsigned()) {
+        const auto number = value->get<std::uint64_t>();
+        if (number >= min && number <= max) return number;
+    }
+    complain(key, "is " + quoted(*value), fmt::format("expected a whole number from {} to {}", min, max));
+    return 0;
+}
+
+Vec3f JsonReader::vector(std::string_view key, double min, double max, std::string_view unit) {
+    const json* value = member(key);
+    if (!value) return Vec3f::Zero();
+    Vec3f result = Vec3f::Zero();
+    bool good = value->is_array() && value->size() == 3;
+    for (std::size_t i = 0; good && i < 3; ++i) {
+        const json& part = (*value)[i];
+        good = part.is_number() && withinRange(part.get<double>(), min, max);
+        if (good) result[static_cast<Eigen::Index>(i)] = part.get<float>();
+    }
+    if (good) return result;
+    complain(key, "is no such vector",
+             "expected an array of three numbers from " + rangeText(min, max, unit));
+    return Vec3f::Zero();
+}
+
+std::vector<std::string> JsonReader::strings(std::string_view key) {
+    const json* value = member(key);
+    if (!value) return {};
+    std::vector<std::string> result;
+    bool good = value->is_array();
+    for (std::size_t i = 0; good && i < value->size(); ++i) {
+        good = (*value)[i].is_string();
+        if (good) result.push_back((*value)[i].get<std::string>());
+    }
+    if (good) return result;
+    complain(key, "is no list of names", "expected an array of texts");
+    return {};
+}
+
+std::vector<double> JsonReader::numbers(std::string_view key, double min, double max, std::size_t most,
+                                        std::string_view unit) {
+    const json* value = member(key);
+    if (!value) return {};
+    std::vector<double> result;
+    bool good = value->is_array() && value->size() <= most;
+    for (std::size_t i = 0; good && i < value->size(); ++i) {
+        good = (*value)[i].is_number() && withinRange((*value)[i].get<double>(), min, max);
+        if (good) result.push_back((*value)[i].get<double>());
+    }
+    if (good) return result;
+    complain(key, "is no such list",
+             fmt::format("expected an array of up to {} numbers from {}", most, rangeText(min, max, unit)));
+    return {};
+}
+
+std::vector<std::pair<double, double>> JsonReader::pairs(std::string_view key, double min, double max,
+                                                         std::size_t most) {
+    const json* value = member(key);
+    if (!value) return {};
+    const auto isNumber = [&](const json& entry) {
+        return entry.is_number() && withinRange(entry.get<double>(), min, max);
+    };
+    std::vector<std::pair<double, double>> result;
+    bool good = value->is_array() && value->size() <= most;
+    for (std::size_t i = 0; good && i < value->size(); ++i) {
+        const json& pair = (*value)[i];
+        good = pair.is_array() && pair.size() == 2 && isNumber(pair[0]) && isNumber(pair[1]);
+        if (good) result.emplace_back(pair[0].get<double>(), pair[1].get<double>());
+    }
+    if (good) return result;
+    complain(
+        key, "is no such list",
+        fmt::format("expected an array of up to {} pairs of numbers from {}", most, rangeText(min, max, {})));
+    return {};
+}
+
+std::size_t JsonReader::choice(std::string_view key, std::span<const std::string_view> choices) {
+    const std::string name = string(key);
+    if (!ok()) return 0;
+    for (std::size_t i = 0; i < choices.size(); ++i) {
+        if (choices[i] == name) return i;
+    }
+    complain(key, "is " + quoted(json(name)), fmt::format("expected one of {}", fmt::join(choices, ", ")));
+    return 0;
+}
+
+JsonReader JsonReader::object(std::string_view key) {
+    static const json nothing = json::object();
+    const json* value = member(key);
+    return JsonReader(value ? *value : nothing, path_ + pathPart(key), context_);
+}
+
+std::vector<JsonReader> JsonReader::objects(std::string_view key) {
+    const json* value = member(key);
+    std::vector<JsonReader> result;
+    if (!value) return result;
+    if (!value->is_array()) complain(key, "is " + quoted(*value), "expected an array of objects");
+    for (std::size_t i = 0; value->is_array() && i < value->size() && ok(); ++i) {
+        result.push_back(JsonReader((*value)[i], fmt::format("{}{}/{}", path_, pathPart(key), i), context_));
+    }
+    return result;
+}
+
+void JsonReader::finish() {
+    if (!value_->is_object()) return;
+    for (const auto& item : value_->items()) {
+        if (asked_.contains(item.key())) continue;
+        return complain(item.key(), "is not known to this program",
+                        fmt::format("expected only {}", fmt::join(asked_, ", ")));
+    }
+}
+
+double readableDecimal(float value) {
+    char text[32];
+    const auto end = std::to_chars(text, text + sizeof(text), value).ptr;
+    double decimal = 0;
+    std::from_chars(text, end, decimal);
+    return static_cast<float>(decimal) == value ? decimal : static_cast<double>(value);
+}
+
+}  // namespace hairloom

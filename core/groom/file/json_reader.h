@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Strict reading of JSON that may be damaged or hostile. Every complaint names its JSON path
+// ("/layers/0/name").
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/math.h"
+#include "core/base/result.h"
+#include "core/groom/file/fields.h"
+
+namespace hairloom {
+
+/// Parses UTF-8 text of at most kMaxJsonBytes. Errors: syntax (with the byte, `firstByte` counted in),
+/// nesting beyond kMaxJsonDepth, a member that stands twice in one object.
+inline constexpr std::size_t kMaxJsonBytes = std::size_t{8} << 20u;
+inline constexpr std::size_t kMaxJsonDepth = 32;
+Result<nlohmann::json> parseJson(const std::string& file, std::string_view text, std::uint64_t firstByte = 0);
+
+/// Reads the members of one object. The first complaint sticks and later reads give defaults, so that a
+/// caller reads all it wants and asks status() once. The JSON value must outlive the reader.
+class JsonReader {
+  public:
+    /// `file` is named in errors.
+    JsonReader(const nlohmann::json& value, const std::string& file);
+
+    /// Counts as asking for the member.
+    bool has(std::string_view key);
+    /// Absent members, other types and values out of range are complaints.
+    std::string string(std::string_view key);
+    bool boolean(std::string_view key);
+    double number(std::string_view key, double min, double max, std::string_view unit = {});
+    std::uint64_t count(std::string_view key, std::uint64_t min, std::uint64_t max);
+    Vec3f vector(std::string_view key, double min, double max, std::string_view unit = {});
+    std::vector<std::string> strings(std::string_view key);
+    /// An array of at most `most` numbers.
+    std::vector<double> numbers(std::string_view key, double min, double max, std::size_t most,
+                                std::string_view unit = {});
+    /// An array of at most `most` pairs of numbers, each an array.
+    std::vector<std::pair<double, double>> pairs(std::string_view key, double min, double max,
+                                                 std::size_t most);
+    /// An index into `choices`.
+    std::size_t choice(std::string_view key, std::span<const std::string_view> choices);
+    JsonReader object(std::string_view key);
+    std::vector<JsonReader> objects(std::string_view key);
+    /// The names of all members, in order of name.
+    std::vector<std::string> keys() const;
+
+    /// Every member of the object that stands in the table; absent ones keep their value.
+    template <class S>
+    void fields(S& settings) {
+        for (const Field<S>& field : fieldsOf(S())) {
+            if (has(field.name))
+                std::visit(
+                    [&](auto member) {
+                        if constexpr (mayHold<S, decltype(member)>()) read(field, settings.*member);
+                    },
+                    field.member);
+        }
+    }
+
+    /// Complains about the first member that nobody asked for, naming those that were.
+    void finish();
+    void complain(std::string_view key, const std::string& problem, const std::string& expected = {});
+    bool ok() const { return !context_->error; }
+    Status status() const;
+    const std::string& path() const { return path_; }
+
+  private:
+    struct Context {
+        std::string file;
+        std::optional<Error> error;
+    };
+    JsonReader(const nlohmann::json& value, std::string path, std::shared_ptr<Context> context);
+    const nlohmann::json* member(std::string_view key);
+
+    template <class F>
+    void read(const F& field, float& value) {
+        value = static_cast<float>(number(field.name, field.min, field.max, field.unit));
+    }
+    template <class F>
+    void read(const F& field, std::uint32_t& value) {
+        value = static_cast<std::uint32_t>(
+            count(field.name, static_cast<std::uint64_t>(field.min), static_cast<std::uint64_t>(field.max)));
+    }
+    template <class F>
+    void read(const F& field, std::uint64_t& value) {
+        value = count(field.name, static_cast<std::uint64_t>(field.min), ~std::uint64_t{0});
+    }
+    template <class F>
+    void read(const F& field, Vec3f& value) {
+        value = vector(field.name, field.min, field.max, field.unit);
+    }
+    template <class F>
+    void read(const F& field, bool& value) {
+        value = boolean(field.name);
+    }
+
+    const nlohmann::json* value_;
+    std::string path_;
+    std::shared_ptr<Context> context_;
+    std::set<std::string, std::less<>> asked_;
+};
+
+/// The shortest decimal number that gives the same float again.
+double readableDecimal(float value);
+
+inline nlohmann::ordered_json valueToJson(float value) {
+    return readableDecimal(value);
+}
+inline nlohmann::ordered_json valueToJson(const Vec3f& v) {
+    return {readableDecimal(v.x()), readableDecimal(v.y()), readableDecimal(v.z())};
+}
+template <class T>
+nlohmann::ordered_json valueToJson(T value) {
+    static_assert(std::is_integral_v<T>);
+    return value;
+}
+
+/// All fields of the table as an object, in its order.
+template <class S>
+nlohmann::ordered_json fieldsToJson(const S& settings) {
+    auto json = nlohmann::ordered_json::object();
+    for (const Field<S>& field : fieldsOf(settings)) {
+        std::visit(
+            [&](auto member) {
+                if constexpr (mayHold<S, decltype(member)>())
+                    json[field.name] = valueToJson(settings.*member);
+            },
+            field.member);
+    }
+    return json;
+}
+
+}  // namespace hairloom

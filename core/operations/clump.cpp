@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/operations/clump.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/operations/clump_centres.h"
+#include "core/operations/length_constraint.h"
+
+namespace hairloom {
+namespace {
+
+using S = ClumpSettings;
+
+constexpr Field<S> kFields[] = {
+    {"spacing", "m", 0.0005, 1, "distance that chosen roots keep; larger locks are fewer", &S::spacing},
+    {"strength", "", 0, 1, "share of the way to the chosen strand at the tip", &S::strength},
+    {"profile", "", 0.1, 10, "how the pull grows from the root: 1 evenly, above 1 nearer to the tip",
+     &S::profile},
+    {"variation", "", 0, 1, "random share by which the pull of a strand may be weaker", &S::variation},
+    clearanceField<S>(),
+    seedField<S>("another seed chooses other strands"),
+};
+
+/// Position at a share of the points from the root.
+Vec3f pointAlong(std::span<const Vec3f> points, float t) {
+    const float x = t * static_cast<float>(points.size() - 1);
+    const auto i = std::min(static_cast<std::size_t>(x), points.size() - 2);
+    const float local = x - static_cast<float>(i);
+    return points[i] * (1 - local) + points[i + 1] * local;
+}
+
+}  // namespace
+
+std::span<const Field<S>> fieldsOf(const S&) {
+    return kFields;
+}
+
+Result<std::size_t> clump(Groom& groom, const S& settings, const Region& region) {
+    if (auto status = checkFields("clump", settings); !status) return tl::unexpected(status.error());
+    const std::vector<std::uint32_t> centres = chooseCentres(groom, settings.spacing, settings.seed);
+    const Groom before = groom;
+    return editStrands(groom, region, {settings.clearance}, [&](StrandEdit& strand) {
+        if (centres[strand.index] == strand.index) return;
+        const auto centre = before.strand(centres[strand.index]);
+        const float pull =
+            settings.strength * (1 - settings.variation * strand.random(settings.seed).uniform());
+        for (std::size_t i = 1; i < strand.points.size(); ++i) {
+            const float t = static_cast<float>(i) / static_cast<float>(strand.points.size() - 1);
+            strand.points[i] +=
+                pull * std::pow(t, settings.profile) * (pointAlong(centre, t) - strand.points[i]);
+        }
+        restoreLengths(strand.points, strand.lengths);
+    });
+}
+
+}  // namespace hairloom

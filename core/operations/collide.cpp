@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/operations/collide.h"
+
+namespace hairloom {
+namespace {
+
+using S = CollideSettings;
+
+constexpr Field<S> kFields[] = {
+    {"distance", "m", 0, 0.1, "distance that points keep from the skin; near the root half the arc length",
+     &S::distance},
+};
+
+}  // namespace
+
+std::span<const Field<S>> fieldsOf(const S&) {
+    return kFields;
+}
+
+Result<std::size_t> collide(Groom& groom, const S& settings, const Region& region) {
+    if (auto status = checkFields("collide", settings); !status) return tl::unexpected(status.error());
+    if (!groom.scalp) return fail("collide: the groom has no scalp", "bind it to one first");
+    return editStrands(groom, region, {settings.distance}, [](StrandEdit&) {});
+}
+
+}  // namespace hairloom

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/operations/curl.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/geometry/curve.h"
+#include "core/operations/length_constraint.h"
+
+namespace hairloom {
+namespace {
+
+using S = CurlSettings;
+
+constexpr Field<S> kFields[] = {
+    {"radius", "m", 0, 0.1, "of the helix", &S::radius},
+    {"frequency", "1/m", 0, 500, "turns for each metre of hair; segments limit it to one turn for four",
+     &S::frequency},
+    {"start", "m", 0, 5, "way from the root over which the radius grows to its full size", &S::start},
+    {"phaseVariation", "", 0, 1, "1 starts each strand at any angle, 0 all at the same", &S::phaseVariation},
+    clearanceField<S>(),
+    seedField<S>("another seed gives other angles"),
+};
+
+constexpr float kSegmentsPerTurn = 4;
+
+}  // namespace
+
+std::span<const Field<S>> fieldsOf(const S&) {
+    return kFields;
+}
+
+Result<std::size_t> curl(Groom& groom, const S& settings, const Region& region) {
+    if (auto status = checkFields("curl", settings); !status) return tl::unexpected(status.error());
+    return editStrands(groom, region, {settings.clearance}, [&](StrandEdit& strand) {
+        const float total = strand.totalLength();
+        if (!(total > 0)) return;
+        const float finest = static_cast<float>(strand.lengths.size()) / (kSegmentsPerTurn * total);
+        const float rate = 2 * kPi * std::min(settings.frequency, finest);
+        const float phase = 2 * kPi * settings.phaseVariation * strand.random(settings.seed).uniform();
+        const auto frames = parallelTransportFrames(strand.points, Vec3f::UnitX());
+        float arc = 0;
+        for (std::size_t i = 1; i < strand.points.size(); ++i) {
+            arc += strand.lengths[i - 1];
+            const float grown = settings.start > 0 ? std::min(arc / settings.start, 1.0f) : 1.0f;
+            const float angle = phase + rate * arc;
+            strand.points[i] += settings.radius * grown *
+                                (std::cos(angle) * frames[i].col(0) + std::sin(angle) * frames[i].col(1));
+        }
+        restoreLengthsByDirection(strand.points, strand.lengths);
+    });
+}
+
+}  // namespace hairloom

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/operations/drape.h"
+
+#include "core/geometry/curve.h"
+
+namespace hairloom {
+namespace {
+
+using S = DrapeSettings;
+
+constexpr Field<S> kFields[] = {
+    {"amount", "", 0, 1, "share of the turn towards straight down at the tip", &S::amount},
+    {"rootAmount", "", 0, 1, "share of the turn at the root; between, it changes evenly", &S::rootAmount},
+    clearanceField<S>(),
+};
+
+/// Turns a unit vector by a share of its angle to straight down.
+Vec3f turnDown(const Vec3f& direction, float share) {
+    const Quatf whole = shortestArc(direction, -Vec3f::UnitY());
+    return (Quatf::Identity().slerp(share, whole) * direction).normalized();
+}
+
+}  // namespace
+
+std::span<const Field<S>> fieldsOf(const S&) {
+    return kFields;
+}
+
+Result<std::size_t> drape(Groom& groom, const S& settings, const Region& region) {
+    if (auto status = checkFields("drape", settings); !status) return tl::unexpected(status.error());
+    return editStrands(groom, region, {settings.clearance}, [&](StrandEdit& strand) {
+        const std::size_t segments = strand.lengths.size();
+        Vec3f before = strand.points[0];
+        for (std::size_t i = 1; i <= segments; ++i) {
+            const float t = static_cast<float>(i) / static_cast<float>(segments);
+            const float share = settings.rootAmount + t * (settings.amount - settings.rootAmount);
+            const Vec3f along = strand.points[i] - before;
+            before = strand.points[i];
+            if (!(along.norm() > 0)) continue;
+            const Vec3f turned = turnDown(along.normalized(), share);
+            strand.points[i] = strand.points[i - 1] + turned * strand.lengths[i - 1];
+        }
+    });
+}
+
+}  // namespace hairloom

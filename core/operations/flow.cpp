@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/operations/flow.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/operations/length_constraint.h"
+
+namespace hairloom {
+namespace {
+
+using S = FlowSettings;
+
+constexpr Field<S> kFields[] = {
+    {"crown", "m", -kAnywhere, kAnywhere, "point of the head that hair flows away from", &S::crown},
+    {"whorlDegrees", "°", -180, 180, "turn of the flow near the crown", &S::whorlDegrees},
+    {"parting", "", 0, 1, "share of the flow that leads away from the parting plane", &S::parting},
+    {"partingPoint", "m", -kAnywhere, kAnywhere, "the middle of the parting", &S::partingPoint},
+    {"partingNormal", "", -kAnywhere, kAnywhere,
+     "of the parting plane; strands flow to the side of their root", &S::partingNormal},
+    {"partingReach", "m", 0.001, kAnywhere,
+     "distance from the middle at which the parting's share is down to 1/e", &S::partingReach},
+    {"sweep", "", -10, 10, "direction that is added to the flow; its length is its weight", &S::sweep},
+    {"gravity", "", 0, 1, "share of straight down at the tip", &S::gravity},
+    {"fall", "", 0, 1, "share of straight down where the skin is steep", &S::fall},
+    {"liftRoot", "m", 0, 0.3, "height over the skin that hair near its root rises to: volume", &S::liftRoot},
+    {"liftTip", "m", 0, 0.3, "height over the skin at the tip", &S::liftTip},
+    {"rise", "m", 0.001, 1, "way along the hair over which it rises", &S::rise},
+    {"bend", "m", 0, 1, "way along the hair over which it turns into the flow: larger is rounder", &S::bend},
+    {"variation", "", 0, 1, "random share by which the lift of a strand may be lower", &S::variation},
+    clearanceField<S>(),
+    seedField<S>("another seed varies the strands differently"),
+};
+
+constexpr float kWhorlReach = 0.04f;    ///< metres from the crown at which the turn is down to 1/e
+constexpr float kCrownBlur = 0.004f;    ///< metres; at the crown itself the direction is random
+constexpr float kHugReach = 0.02f;      ///< metres above its lift over which hair lets go of the skin
+constexpr float kSteepestClimb = 0.7f;  ///< sine of the angle at which hair seeks its height
+constexpr float kSteepestSink = 0.4f;
+constexpr float kTiny = 1e-6f;
+
+float smoothStep(float low, float high, float x) {
+    const float t = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
+    return t * t * (3 - 2 * t);
+}
+
+Vec3f unitOr(const Vec3f& v, const Vec3f& fallback) {
+    const float norm = v.norm();
+    return norm > kTiny ? Vec3f(v / norm) : fallback;
+}
+
+/// What a strand draws once.
+struct Character {
+    Vec3f blur;  ///< metres, added to the way from the crown
+    float liftScale;
+    float side;     ///< of the parting, ±1
+    float parting;  ///< share of the parting at the root
+};
+
+Character characterOf(const StrandEdit& strand, const S& settings) {
+    Random random = strand.random(settings.seed);
+    const float x = random.uniform(-1, 1);
+    const float z = random.uniform(-1, 1);
+    Character character;
+    character.blur = kCrownBlur * Vec3f(x, 0, z);
+    character.liftScale = 1 - settings.variation * random.uniform();
+    const Vec3f fromParting = strand.points[0] - settings.partingPoint;
+    character.side = fromParting.dot(settings.partingNormal) < 0 ? -1.0f : 1.0f;
+    const float reach = fromParting.norm() / settings.partingReach;
+    character.parting = settings.parting * std::exp(-reach * reach);
+    return character;
+}
+
+/// The flow before gravity; not of unit length.
+Vec3f flowAt(const Vec3f& point, const Vec3f& outward, const Character& character, const S& settings) {
+    const Vec3f way = point - settings.crown + character.blur;
+    const float turn = radians(settings.whorlDegrees) * std::exp(-way.norm() / kWhorlReach);
+    const Vec3f fromCrown =
+        Eigen::AngleAxisf(turn, outward) * unitOr(way - outward * way.dot(outward), Vec3f::UnitX());
+    const Vec3f fromParting = unitOr(settings.partingNormal, Vec3f::Zero()) * character.side;
+    return fromCrown * (1 - character.parting) + fromParting * character.parting + settings.sweep;
+}
+
+struct Step {
+    float arc;     ///< metres of hair at the segment's end
+    float total;   ///< metres of hair
+    float length;  ///< of the segment
+};
+
+/// Direction in which the next segment should lead.
+Vec3f nextDirection(const Vec3f& point, const Vec3f& before, const Skin::Sample& skin, const Step& step,
+                    const Character& character, const S& settings) {
+    const Vec3f& n = skin.outward;
+    const float t = step.arc / step.total;
+    const float lift = character.liftScale *
+                       (settings.liftRoot + t * (settings.liftTip - settings.liftRoot)) *
+                       smoothStep(0, settings.rise, step.arc);
+    const float steep = std::clamp(1 - n.y(), 0.0f, 1.0f);
+    const float down = std::clamp(settings.gravity * t + settings.fall * steep, 0.0f, 1.0f);
+    const Vec3f wanted =
+        unitOr(flowAt(point, n, character, settings) * (1 - down) - Vec3f::UnitY() * down, before);
+
+    // Hair hugs the skin at its height; it lets go where it is far away or where the skin overhangs.
+    const float overhang = smoothStep(0.0f, -0.4f, n.y());
+    const float hug = std::exp(-std::max(0.0f, skin.distance - lift) / kHugReach) * (1 - overhang);
+    const float climb = std::clamp((lift - skin.distance) / step.length, -kSteepestSink, kSteepestClimb);
+    float along = wanted.dot(n);
+    along += hug * (climb - along);
+    if (skin.distance < lift) along = std::max(along, climb);
+    along = std::clamp(along, -1.0f, 1.0f);
+    const Vec3f tangent =
+        unitOr(wanted - n * wanted.dot(n), unitOr(before - n * before.dot(n), Vec3f::Zero()));
+    return unitOr(tangent * std::sqrt(1 - along * along) + n * along, before);
+}
+
+void layStrand(StrandEdit& strand, const S& settings) {
+    const Character character = characterOf(strand, settings);
+    const Skin& skin = *strand.skin;
+    Step step{0, strand.totalLength(), 0};
+    if (!(step.total > 0)) return;
+    Skin::Sample sample = skin.at(strand.points[0]);
+    Vec3f direction = sample.outward;
+    for (std::size_t i = 1; i < strand.points.size(); ++i) {
+        step.length = strand.lengths[i - 1];
+        step.arc += step.length;
+        if (step.length > 0) {
+            const Vec3f& from = strand.points[i - 1];
+            const Vec3f next = nextDirection(from, direction, sample, step, character, settings);
+            const float turn = settings.bend > 0 ? 1 - std::exp(-step.length / settings.bend) : 1.0f;
+            direction = unitOr(direction * (1 - turn) + next * turn, next);
+            const float clearance = std::min(settings.clearance, 0.5f * step.arc);
+            strand.points[i] = placeOutside(skin, from, direction, step.length, clearance);
+            direction = unitOr(strand.points[i] - from, direction);
+            sample = skin.at(strand.points[i]);
+        } else {
+            strand.points[i] = strand.points[i - 1];
+        }
+    }
+}
+
+}  // namespace
+
+std::span<const Field<S>> fieldsOf(const S&) {
+    return kFields;
+}
+
+Result<std::size_t> flow(Groom& groom, const S& settings, const Region& region) {
+    if (auto status = checkFields("flow", settings); !status) return tl::unexpected(status.error());
+    if (!groom.scalp) return fail("flow: the groom has no scalp", "bind it to one first");
+    return editStrands(groom, region, {-1.0f, true},
+                       [&](StrandEdit& strand) { layStrand(strand, settings); });
+}
+
+}  // namespace hairloom

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/operations/length_constraint.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numeric>
+
+namespace hairloom {
+namespace {
+
+constexpr float kNoDirection = 1e-9f;  ///< metres; shorter differences point nowhere
+constexpr int kTurns = 6;              ///< towards the offset surface, which one reaches where it is flat
+constexpr int kHalvings = 10;          ///< of the turn towards the normal
+constexpr float kSlack = 1e-5f;        ///< metres by which a clearance may be missed
+
+Vec3f directionOr(const Vec3f& difference, const Vec3f& fallback) {
+    const float norm = difference.norm();
+    return norm > kNoDirection ? Vec3f(difference / norm) : fallback;
+}
+
+/// The way that segments lead: where one is too short to point anywhere, that of the last which did.
+class Lead {
+  public:
+    explicit Lead(std::span<const Vec3f> points) { follow(points[1] - points[0]); }
+    void follow(const Vec3f& segment) {
+        const float norm = segment.norm();
+        if (!(norm > kNoDirection)) return;
+        segment_ = segment;
+        norm_ = norm;
+    }
+    Vec3f direction() const { return segment_ / norm_; }
+    Vec3f over(float length) const { return segment_ * (length / norm_); }
+
+  private:
+    Vec3f segment_ = Vec3f::UnitY();
+    float norm_ = 1;
+};
+
+float clearanceAt(float arcLength, float clearance) {
+    return std::min(clearance, 0.5f * arcLength);
+}
+
+/// The unit vector `direction` turned towards `outward` by the least angle after which a segment ends `rise`
+/// of its lengths farther along the latter; `outward` where it is too short for that.
+Vec3f turnedOut(const Vec3f& direction, const Vec3f& outward, float rise) {
+    const float along = direction.dot(outward);
+    const float wanted = along + rise;
+    const Vec3f across = direction - outward * along;
+    const float norm = across.norm();
+    if (!(wanted < 1) || !(norm > kNoDirection)) return outward.normalized();
+    // Close to the skin the way out is rounded to a length that is not quite 1.
+    return (outward * wanted + across * (std::sqrt(std::max(0.0f, 1 - wanted * wanted)) / norm)).normalized();
+}
+
+/// The end of a segment that turning has not led out of the skin: halfway between `turned` (unit vector) and
+/// the normal at `from`, which leads out most directly, as near to the former as keeps the clearance.
+Vec3f placeTowardsNormal(const SkinQuery& skin, const Vec3f& from, const Vec3f& turned, float length,
+                         float clearance) {
+    const Vec3f outward = skin.distanceAt(from).outward;
+    float inside = 0;
+    float outside = 1;
+    const auto endAt = [&](float t) -> Vec3f {
+        return from + directionOr(turned * (1 - t) + outward * t, outward) * length;
+    };
+    for (int i = 0; i < kHalvings; ++i) {
+        const float t = 0.5f * (inside + outside);
+        (skin.distanceUpTo(endAt(t), clearance - kSlack).distance < clearance - kSlack ? inside : outside) =
+            t;
+    }
+    return endAt(outside);
+}
+
+/// placeOutside() for a segment whose end has been measured: too near.
+Vec3f placeOutsideFrom(SkinDistance sample, const SkinQuery& skin, const Vec3f& from, const Vec3f& direction,
+                       float length, float clearance) {
+    Vec3f turned = direction;
+    for (int i = 0; i < kTurns; ++i) {
+        turned = turnedOut(turned, sample.outward, (clearance - sample.distance) / length);
+        const Vec3f end = from + turned * length;
+        sample = skin.distanceUpTo(end, clearance - kSlack);
+        if (!(sample.distance < clearance - kSlack)) return end;
+    }
+    return placeTowardsNormal(skin, from, turned, length, clearance);
+}
+
+}  // namespace
+
+void measureSegments(std::span<const Vec3f> points, std::vector<float>& lengths) {
+    lengths.resize(points.empty() ? 0 : points.size() - 1);
+    for (std::size_t i = 0; i < lengths.size(); ++i) lengths[i] = (points[i + 1] - points[i]).norm();
+}
+
+void restoreLengths(std::span<Vec3f> points, std::span<const float> lengths, bool keepFirst) {
+    assert(points.size() >= 2 && lengths.size() + 1 == points.size());
+    Lead lead(points);
+    for (std::size_t i = keepFirst ? 2 : 1; i < points.size(); ++i) {
+        lead.follow(points[i] - points[i - 1]);
+        points[i] = points[i - 1] + lead.over(lengths[i - 1]);
+    }
+}
+
+void restoreLengthsByDirection(std::span<Vec3f> points, std::span<const float> lengths) {
+    assert(points.size() >= 2 && lengths.size() + 1 == points.size());
+    Lead lead(points);
+    Vec3f before = points[0];
+    for (std::size_t i = 1; i < points.size(); ++i) {
+        lead.follow(points[i] - before);
+        before = points[i];
+        points[i] = points[i - 1] + lead.over(lengths[i - 1]);
+    }
+}
+
+Vec3f placeOutside(const SkinQuery& skin, const Vec3f& from, const Vec3f& direction, float length,
+                   float clearance) {
+    const Vec3f end = from + direction * length;
+    const SkinDistance sample = skin.distanceUpTo(end, clearance - kSlack);
+    if (!(sample.distance < clearance - kSlack)) return end;
+    return placeOutsideFrom(sample, skin, from, direction, length, clearance);
+}
+
+bool keepOutside(std::span<Vec3f> points, std::span<const float> lengths, const SkinQuery& skin,
+                 float clearance, std::size_t first) {
+    assert(points.size() >= 2 && lengths.size() + 1 == points.size() && first >= 1);
+    Lead lead(points);
+    float arc =
+        std::accumulate(lengths.begin(), lengths.begin() + static_cast<std::ptrdiff_t>(first - 1), 0.0f);
+    float known = 0;  // distance from the skin, at least
+    bool moved = false;
+    for (std::size_t i = first; i < points.size(); ++i) {
+        const float length = lengths[i - 1];
+        arc += length;
+        if (moved) {
+            lead.follow(points[i] - points[i - 1]);
+            points[i] = points[i - 1] + lead.over(length);
+        }
+        // Over a way of length w the distance changes by w at most.
+        known -= length;
+        const float wanted = clearanceAt(arc, clearance);
+        if (known > wanted) continue;
+        const SkinDistance sample = skin.distanceUpTo(points[i], wanted);
+        known = sample.distance;
+        if (!(known < wanted - kSlack)) continue;
+        if (!moved) lead.follow(points[i] - points[i - 1]);
+        points[i] = placeOutsideFrom(sample, skin, points[i - 1], lead.direction(), length, wanted);
+        known = 0;
+        moved = true;
+    }
+    return moved;
+}
+
+}  // namespace hairloom

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/operations/noise.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/operations/length_constraint.h"
+
+namespace hairloom {
+namespace {
+
+using S = NoiseSettings;
+
+constexpr Field<S> kFields[] = {
+    {"amplitude", "m", 0, 0.1, "how far waves lead aside at the tip", &S::amplitude},
+    {"frequency", "1/m", 0, 1000, "waves for each metre of hair; segments limit it to one wave for four",
+     &S::frequency},
+    {"rootShare", "", 0, 1, "amplitude at the root as a share of that at the tip", &S::rootShare},
+    clearanceField<S>(),
+    seedField<S>("another seed gives other waves"),
+};
+
+constexpr float kSegmentsPerWave = 4;
+
+/// Value noise with a smooth step between the integers; each component in [−1, 1].
+Vec3f waveAt(std::uint64_t stream, float x) {
+    const float cell = std::floor(x);
+    const auto corner = [&](float whole) {
+        Random random(stream, static_cast<std::uint64_t>(whole));
+        const float a = random.uniform(-1, 1);
+        const float b = random.uniform(-1, 1);
+        return Vec3f(a, b, random.uniform(-1, 1));
+    };
+    const float t = x - cell;
+    const float smooth = t * t * (3 - 2 * t);
+    return corner(cell) * (1 - smooth) + corner(cell + 1) * smooth;
+}
+
+}  // namespace
+
+std::span<const Field<S>> fieldsOf(const S&) {
+    return kFields;
+}
+
+Result<std::size_t> noise(Groom& groom, const S& settings, const Region& region) {
+    if (auto status = checkFields("noise", settings); !status) return tl::unexpected(status.error());
+    return editStrands(groom, region, {settings.clearance}, [&](StrandEdit& strand) {
+        const float total = strand.totalLength();
+        if (!(total > 0)) return;
+        const float finest = static_cast<float>(strand.lengths.size()) / (kSegmentsPerWave * total);
+        const float frequency = std::min(settings.frequency, finest);
+        Random random = strand.random(settings.seed);
+        const std::uint64_t stream = random.next();
+        const Vec3f start = waveAt(stream, 0);
+        float arc = 0;
+        for (std::size_t i = 1; i < strand.points.size(); ++i) {
+            arc += strand.lengths[i - 1];
+            const float share = settings.rootShare + (1 - settings.rootShare) * arc / total;
+            strand.points[i] += settings.amplitude * share * (waveAt(stream, arc * frequency) - start);
+        }
+        restoreLengthsByDirection(strand.points, strand.lengths);
+    });
+}
+
+}  // namespace hairloom

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/operations/set_length.h"
+
+#include <algorithm>
+
+#include "core/operations/reshape.h"
+
+namespace hairloom {
+namespace {
+
+using S = SetLengthSettings;
+
+constexpr Field<S> kFields[] = {
+    {"length", "m", 0.001, 5, "length of strands before variation and gradient", &S::length},
+    {"variation", "", 0, 1, "each strand is shortened by a random share of up to this", &S::variation},
+    {"rescale", "", 0, 1, "true scales the shape; false cuts strands or lets them go on straight",
+     &S::rescale},
+    {"gradientPoint", "m", -kAnywhere, kAnywhere, "where the gradient begins", &S::gradientPoint},
+    {"gradientAxis", "", -kAnywhere, kAnywhere, "direction in which lengths change", &S::gradientAxis},
+    {"gradientDistance", "m", 0, kAnywhere, "way along the axis until farScale is reached; 0: no gradient",
+     &S::gradientDistance},
+    {"farScale", "", 0.01, 100, "length at the gradient's end over that at its beginning", &S::farScale},
+    clearanceField<S>(),
+    seedField<S>("another seed varies the strands differently"),
+};
+
+float gradientAt(const S& settings, const Vec3f& root) {
+    if (settings.gradientDistance <= 0 || settings.gradientAxis.isZero(0.0f)) return 1;
+    const float along = (root - settings.gradientPoint).dot(settings.gradientAxis.normalized());
+    return 1 + (settings.farScale - 1) * std::clamp(along / settings.gradientDistance, 0.0f, 1.0f);
+}
+
+constexpr float kShortest = 0.001f;  ///< metres; strands are never made shorter
+
+}  // namespace
+
+std::span<const Field<S>> fieldsOf(const S&) {
+    return kFields;
+}
+
+Result<std::size_t> setLength(Groom& groom, const S& settings, const Region& region) {
+    if (auto status = checkFields("set_length", settings); !status) return tl::unexpected(status.error());
+    return editStrands(groom, region, {settings.clearance}, [&](StrandEdit& strand) {
+        const float share = 1 - settings.variation * strand.random(settings.seed).uniform();
+        const float length =
+            std::max(kShortest, settings.length * share * gradientAt(settings, strand.points[0]));
+        if (settings.rescale) {
+            scaleToLength(strand.points, length);
+        } else {
+            cutOrExtend(strand.points, length);
+        }
+    });
+}
+
+}  // namespace hairloom

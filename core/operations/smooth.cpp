@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/operations/smooth.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "core/operations/length_constraint.h"
+
+namespace hairloom {
+namespace {
+
+using S = SmoothSettings;
+
+constexpr Field<S> kFields[] = {
+    {"amount", "", 0, 1, "share of the way to the middle of the neighbours in each pass", &S::amount},
+    {"passes", "", 1, 100, "more is smoother over longer stretches", &S::passes},
+    clearanceField<S>(),
+};
+
+}  // namespace
+
+std::span<const Field<S>> fieldsOf(const S&) {
+    return kFields;
+}
+
+Result<std::size_t> smooth(Groom& groom, const S& settings, const Region& region) {
+    if (auto status = checkFields("smooth", settings); !status) return tl::unexpected(status.error());
+    return editStrands(groom, region, {settings.clearance}, [&](StrandEdit& strand) {
+        std::vector<Vec3f> before(strand.points.begin(), strand.points.end());
+        for (std::uint32_t pass = 0; pass < settings.passes; ++pass) {
+            for (std::size_t i = 1; i + 1 < before.size(); ++i) {
+                const Vec3f middle = 0.5f * (before[i - 1] + before[i + 1]);
+                strand.points[i] = before[i] + settings.amount * (middle - before[i]);
+            }
+            std::copy(strand.points.begin(), strand.points.end(), before.begin());
+        }
+        restoreLengthsByDirection(strand.points, strand.lengths);
+    });
+}
+
+}  // namespace hairloom

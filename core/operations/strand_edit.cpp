@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/operations/strand_edit.h"
+
+#include <algorithm>
+#include <atomic>
+#include <numeric>
+#include <optional>
+
+#include "core/base/parallel.h"
+#include "core/operations/length_constraint.h"
+
+namespace hairloom {
+namespace {
+
+constexpr std::size_t kGrain = 64;
+constexpr Field<Region> kRegionFields[] = {
+    {"point", "m", -kAnywhere, kAnywhere, "a point of the plane that bounds the region", &Region::point},
+    {"normal", "", -kAnywhere, kAnywhere, "side of the plane that is reached; zero reaches all strands",
+     &Region::normal},
+    {"fade", "m", 0, 1, "width of the seam in which strands are reached at random", &Region::fade},
+    seedField<Region>("another seed reaches other strands of the seam"),
+};
+
+std::uint32_t idOf(const Groom& groom, std::size_t strand) {
+    const auto ids = groom.strandAttributes.view<std::uint32_t>(attribute::kStrandId);
+    return strand < ids.size() ? ids[strand] : static_cast<std::uint32_t>(strand);
+}
+
+bool reaches(const Region& region, const Groom& groom, std::size_t strand) {
+    if (region.normal.isZero(0.0f)) return true;
+    const float distance = (groom.strand(strand)[0] - region.point).dot(region.normal.normalized());
+    Random random(region.seed, idOf(groom, strand));
+    return distance >= region.fade * (random.uniform() - 0.5f);
+}
+
+bool editable(const Groom& groom, std::size_t strand) {
+    if (groom.offsets[strand + 1] - groom.offsets[strand] < 2) return false;
+    const auto frozen = groom.strandAttributes.view<std::uint8_t>(attribute::kFrozen);
+    if (strand < frozen.size() && frozen[strand] != 0) return false;
+    const auto layers = groom.strandAttributes.view<std::uint32_t>(attribute::kLayer);
+    const std::size_t layer = strand < layers.size() ? layers[strand] : 0;
+    return layer >= groom.layers.size() || !groom.layers[layer].locked;
+}
+
+std::vector<std::uint32_t> strandsToEdit(const Groom& groom, const Region& region) {
+    std::vector<std::uint32_t> strands;
+    for (std::size_t s = 0; s < groom.strandCount(); ++s) {
+        if (editable(groom, s) && reaches(region, groom, s)) strands.push_back(static_cast<std::uint32_t>(s));
+    }
+    return strands;
+}
+
+}  // namespace
+
+std::span<const Field<Region>> fieldsOf(const Region&) {
+    return kRegionFields;
+}
+
+float StrandEdit::totalLength() const {
+    return std::accumulate(lengths.begin(), lengths.end(), 0.0f);
+}
+
+std::size_t editStrands(Groom& groom, const Region& region, const EditOptions& options,
+                        const std::function<void(StrandEdit&)>& edit) {
+    const std::vector<std::uint32_t> strands = strandsToEdit(groom, region);
+    if (strands.empty()) return 0;
+    std::optional<Skin> skin;
+    if (groom.scalp && (options.needsSkin || options.clearance >= 0)) skin.emplace(groom.scalp);
+    const auto before = groom.positions();
+    std::vector<Vec3f> after(before.begin(), before.end());
+    std::atomic<std::size_t> changed{0};
+    parallelFor(strands.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        std::vector<float> lengths;
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::size_t s = strands[i];
+            const std::size_t first = groom.offsets[s];
+            const std::span<Vec3f> points = std::span(after).subspan(first, groom.offsets[s + 1] - first);
+            measureSegments(points, lengths);
+            StrandEdit strand{points, lengths, s, idOf(groom, s), skin ? &*skin : nullptr};
+            edit(strand);
+            if (skin && options.clearance >= 0) {
+                measureSegments(points, lengths);
+                keepOutside(points, lengths, *skin, options.clearance);
+            }
+            changed += !std::equal(points.begin(), points.end(),
+                                   before.begin() + static_cast<std::ptrdiff_t>(first));
+        }
+    });
+    if (changed > 0) groom.pointAttributes.set(attribute::kPosition, std::move(after));
+    return changed;
+}
+
+}  // namespace hairloom

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The loop that every brush runs: over the strands it may touch, in parallel, with a random sequence of its
+// own for each strand.
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "core/base/random.h"
+#include "core/groom/file/fields.h"
+#include "core/operations/skin.h"
+
+namespace hairloom {
+
+inline constexpr double kAnywhere = 1000;  ///< metres; largest coordinate that a setting may name
+
+/// Which strands a brush reaches: those whose root lies on the side of a plane that `normal` points to. A
+/// normal of zero reaches all.
+struct Region {
+    Vec3f point = Vec3f::Zero();   ///< metres; a point of the plane
+    Vec3f normal = Vec3f::Zero();  ///< any length
+    float fade = 0;          ///< metres, 0 … 1; width of the seam in which strands are reached at random
+    std::uint64_t seed = 1;  ///< of the strands in the seam
+};
+std::span<const Field<Region>> fieldsOf(const Region&);
+
+/// One strand while it is edited.
+struct StrandEdit {
+    std::span<Vec3f> points;         ///< ≥ 2, root first
+    std::span<const float> lengths;  ///< of the segments before the edit, metres
+    std::size_t index;
+    std::uint32_t id;  ///< the strand's id attribute, else its index
+    const Skin* skin;  ///< null without a scalp
+
+    /// Its own random sequence; strands draw alike whatever their order.
+    Random random(std::uint64_t seed) const { return Random(seed, id); }
+    float totalLength() const;
+};
+
+struct EditOptions {
+    /// Metres; strands nearer to the skin are pushed out after the edit, lengths kept. Negative: no such
+    /// push.
+    float clearance = -1.0f;
+    bool needsSkin = false;  ///< edits use StrandEdit::skin; it is there also without a clearance
+};
+
+/// Runs the edit over every strand of the region that is neither frozen nor on a locked layer, then keeps it
+/// out of the head. Returns the number of strands that changed; the positions keep their version when none
+/// did.
+std::size_t editStrands(Groom& groom, const Region& region, const EditOptions& options,
+                        const std::function<void(StrandEdit&)>& edit);
+
+/// Settings that brushes have in common.
+template <class S>
+constexpr Field<S> clearanceField() {
+    return {"clearance", "m", 0, 0.1, "distance kept from the skin", &S::clearance};
+}
+template <class S>
+constexpr Field<S> seedField(const char* meaning) {
+    return {"seed", "", 0, kLargestSeed, meaning, &S::seed};
+}
+
+/// Fails with the first setting that lies outside its range.
+template <class S>
+Status checkFields(std::string_view operation, const S& settings) {
+    const auto problems = fieldsOutOfRange(settings);
+    if (problems.empty()) return {};
+    return fail(std::string(operation) + ": " + problems.front());
+}
+
+}  // namespace hairloom

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/operations/trim.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/operations/reshape.h"
+
+namespace hairloom {
+namespace {
+
+using S = TrimSettings;
+
+constexpr Field<S> kFields[] = {
+    {"planePoint", "m", -kAnywhere, kAnywhere, "a point of the cutting plane", &S::planePoint},
+    {"planeNormal", "", -kAnywhere, kAnywhere, "side that is cut away; zero: no plane", &S::planeNormal},
+    {"maxLength", "m", 0.001, 5, "what is longer is cut", &S::maxLength},
+    {"raggedness", "m", 0, 1, "each strand is cut shorter by a random length of up to this; 0 is blunt",
+     &S::raggedness},
+    {"minLength", "m", 0.001, 1, "length that a cut always leaves", &S::minLength},
+    seedField<S>("another seed gives other ragged ends"),
+};
+
+/// Arc length at which the strand first crosses the plane; infinite when it does not.
+float lengthToPlane(const StrandEdit& strand, const S& settings) {
+    constexpr float kNever = std::numeric_limits<float>::infinity();
+    if (settings.planeNormal.isZero(0.0f)) return kNever;
+    const Vec3f normal = settings.planeNormal.normalized();
+    const auto beyond = [&](std::size_t i) { return (strand.points[i] - settings.planePoint).dot(normal); };
+    if (beyond(0) > 0) return 0;
+    float length = 0;
+    for (std::size_t i = 1; i < strand.points.size(); ++i) {
+        const float from = beyond(i - 1);
+        const float to = beyond(i);
+        if (to > 0) return length + strand.lengths[i - 1] * (-from / (to - from));
+        length += strand.lengths[i - 1];
+    }
+    return kNever;
+}
+
+}  // namespace
+
+std::span<const Field<S>> fieldsOf(const S&) {
+    return kFields;
+}
+
+Result<std::size_t> trim(Groom& groom, const S& settings, const Region& region) {
+    if (auto status = checkFields("trim", settings); !status) return tl::unexpected(status.error());
+    return editStrands(groom, region, {}, [&](StrandEdit& strand) {
+        const float now = strand.totalLength();
+        const float ragged = settings.raggedness * strand.random(settings.seed).uniform();
+        const float cut = std::min(lengthToPlane(strand, settings), settings.maxLength);
+        if (cut >= now) return;
+        const float length = std::max(settings.minLength, cut - ragged);
+        if (length < now) cutOrExtend(strand.points, length);
+    });
+}
+
+}  // namespace hairloom

@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/scene/groom_scene.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <filesystem>
+
+#include "core/animation/root_motion.h"
+#include "core/base/file.h"
+#include "core/geometry/selection.h"
+#include "core/groom/file/json_reader.h"
+#include "core/groom/move_strands.h"
+#include "core/groom/point_dye.h"
+#include "core/interpolation/follow_hairs.h"
+#include "core/render/exr.h"
+#include "core/render/png.h"
+#include "core/scene/hair_look.h"
+#include "core/simulation/simulation.h"
+
+namespace hairloom {
+namespace {
+
+constexpr double kAnyPlace = 1e6;  // metres
+
+render::Camera readCamera(JsonReader reader) {
+    render::Camera camera;
+    camera.eye_ws = reader.vector("eye", -kAnyPlace, kAnyPlace, "m");
+    camera.target_ws = reader.vector("target", -kAnyPlace, kAnyPlace, "m");
+    if (reader.has("up")) camera.up_ws = reader.vector("up", -1, 1);
+    if (reader.has("orthographic_height")) {
+        camera.orthographicHeight =
+            static_cast<float>(reader.number("orthographic_height", 1e-4, kAnyPlace, "m"));
+    } else {
+        camera.verticalFov = static_cast<float>(reader.number("fov_y_deg", 1, 150, "degrees"));
+    }
+    reader.finish();
+    return camera;
+}
+
+constexpr double kAnyRadiance = 1e6;
+
+Result<render::Environment> readEnvironment(JsonReader& reader, const std::filesystem::path& folder) {
+    if (reader.has("radiance")) {
+        const Vec3f radiance = reader.vector("radiance", 0, kAnyRadiance);
+        return render::Environment::gradient(radiance, radiance);
+    }
+    if (reader.has("image")) {
+        const std::filesystem::path image = folder / reader.string("image");
+        const double scale = reader.has("scale") ? reader.number("scale", 0, kAnyRadiance) : 1;
+        if (!reader.ok()) return render::Environment();
+        const auto pixels = image.extension() == ".exr" ? render::readExr(image) : render::readPng(image);
+        if (!pixels) return tl::unexpected(pixels.error());
+        return render::Environment::fromImage(*pixels, static_cast<float>(scale));
+    }
+    const Vec3f sky = reader.vector("sky", 0, kAnyRadiance);
+    return render::Environment::gradient(sky, reader.vector("ground", 0, kAnyRadiance));
+}
+
+Status readLight(JsonReader& reader, const std::filesystem::path& folder, ViewFile& view) {
+    static constexpr std::array<std::string_view, 3> kKinds{"directional", "point", "environment"};
+    render::Light light;
+    const std::size_t kind = reader.choice("type", kKinds);
+    if (kind == 2) {
+        const auto environment = readEnvironment(reader, folder);
+        if (!environment) return tl::unexpected(environment.error());
+        for (std::size_t i = 0; i < environment->coefficients.size(); ++i) {
+            view.environment.coefficients[i] += environment->coefficients[i];
+        }
+        reader.finish();
+        return {};
+    }
+    if (kind == 1) {
+        light.kind = render::LightKind::point;
+        light.position_ws = reader.vector("position", -kAnyPlace, kAnyPlace, "m");
+        light.intensity = reader.vector("intensity", 0, kAnyRadiance);
+    } else {
+        light.toLight_ws = reader.vector("to_light", -kAnyPlace, kAnyPlace);
+        light.irradiance = reader.vector("irradiance", 0, kAnyRadiance);
+    }
+    if (reader.has("shadow")) light.castsShadow = reader.boolean("shadow");
+    reader.finish();
+    view.lights.push_back(light);
+    return {};
+}
+
+std::array<double, 3> readAngles(JsonReader& reader, const char* name, double least, double most) {
+    const Vec3f degrees = reader.vector(name, least, most, "degrees");
+    std::array<double, 3> angles{};
+    for (int i = 0; i < 3; ++i) {
+        angles[static_cast<std::size_t>(i)] = static_cast<double>(degrees[i]) * shading::kDegree;
+    }
+    return angles;
+}
+
+void readHair(JsonReader reader, ViewFile& view) {
+    if (reader.has("radius_m")) {
+        view.rootRadius = static_cast<float>(reader.number("radius_m", 1e-6, 0.01, "m"));
+    }
+    if (reader.has("tip_scale")) view.tipScale = static_cast<float>(reader.number("tip_scale", 0, 1));
+    FibreView& fibre = view.fibre;
+    if (reader.has("ior")) fibre.ior = reader.number("ior", 1, 2.5);
+    if (reader.has("sigma_a_per_radius")) {
+        fibre.absorption = reader.vector("sigma_a_per_radius", 0, 1000).cast<double>();
+    }
+    if (reader.has("eumelanin") || reader.has("pheomelanin")) {
+        fibre.melanin = shading::Melanin{0, 0};
+        if (reader.has("eumelanin")) fibre.melanin->eumelanin = reader.number("eumelanin", 0, 8);
+        if (reader.has("pheomelanin")) fibre.melanin->pheomelanin = reader.number("pheomelanin", 0, 8);
+    }
+    if (reader.has("colour")) fibre.colour = reader.vector("colour", 0, 1).cast<double>();
+    if (reader.has("beta_deg")) fibre.width = readAngles(reader, "beta_deg", 0.5, 60);
+    if (reader.has("alpha_deg")) fibre.tilt = readAngles(reader, "alpha_deg", -30, 30);
+    if (reader.has("azimuthal_roughness")) {
+        fibre.azimuthalRoughness = reader.number("azimuthal_roughness", 0, 1);
+    }
+    if (reader.has("axis_ratio")) fibre.axisRatio = reader.number("axis_ratio", 0.5, 2);
+    reader.finish();
+}
+
+/// Skin, and where hair grows half its colour: roots too fine to be drawn one by one shade the skin between
+/// them. A view's albedo is that of the whole head.
+std::vector<Vec3f> headColours(const Groom& groom, const std::optional<Vec3f>& asked) {
+    const Vec3f skin = asked.value_or(render::RenderMesh().albedo);
+    std::vector<Vec3f> albedo(groom.scalp->triangleCount(), skin);
+    if (groom.strandCount() == 0 || asked) return albedo;
+    for (const std::uint32_t triangle : groom.scalpSelection) {
+        albedo[triangle] = 0.5f * skin + 0.5f * groom.material.rootColour;
+    }
+    return albedo;
+}
+
+/// Radii with none for strands that are hidden or on a layer that is; empty where all strands are shown.
+std::vector<float> radiiOfShown(const Groom& groom, const HairMaterial& material) {
+    const auto hidden = groom.strandAttributes.view<std::uint8_t>(attribute::kHidden);
+    const auto layers = groom.strandAttributes.view<std::uint32_t>(attribute::kLayer);
+    const auto isHidden = [&](std::size_t strand) {
+        if (strand < hidden.size() && hidden[strand] != 0) return true;
+        const std::uint32_t layer = strand < layers.size() ? layers[strand] : 0;
+        return layer < groom.layers.size() && !groom.layers[layer].visible;
+    };
+    const auto authored = groom.pointAttributes.view<float>(attribute::kRadius);
+    std::vector<float> radii;
+    for (std::size_t s = 0; s < groom.strandCount(); ++s) {
+        if (!isHidden(s)) continue;
+        if (radii.empty()) {
+            radii.assign(authored.begin(), authored.end());
+            radii.resize(groom.pointCount(), material.rootRadius);
+        }
+        std::fill(radii.begin() + groom.offsets[s], radii.begin() + groom.offsets[s + 1], 0.0f);
+    }
+    return radii;
+}
+
+std::vector<Quatf> rootRotations(const Groom& rest, const Groom& posed, const FollowBindings& bindings) {
+    const std::vector<SurfacePoint> all = rest.rootBindings();
+    if (!rest.scalp || all.empty()) return {};
+    std::vector<SurfacePoint> roots;
+    for (const std::uint32_t strand : bindings.guideStrands) roots.push_back(all[strand]);
+    std::vector<Quatf> rotations;
+    for (const auto& transform : rootTransforms(*rest.scalp, posed.scalp->positions(), roots)) {
+        rotations.emplace_back(transform.linear());
+    }
+    return rotations;
+}
+
+/// The same strands are in streaks and dyed, as strands and not the material say.
+bool hasSameShares(const HairMaterial& a, const HairMaterial& b) {
+    return a.streakShare == b.streakShare && a.streakWidth == b.streakWidth &&
+           a.streakSoftness == b.streakSoftness && a.streakSeed == b.streakSeed &&
+           a.dyeStrength == b.dyeStrength;
+}
+
+}  // namespace
+
+Result<ViewFile> readViewFile(const std::string& path) {
+    const auto text = readTextFile(path, kMaxJsonBytes);
+    if (!text) return tl::unexpected(text.error());
+    const auto document = parseJson(path, *text);
+    if (!document) return tl::unexpected(document.error());
+    JsonReader reader(*document, path);
+    ViewFile view;
+    if (reader.has("camera")) view.camera = readCamera(reader.object("camera"));
+    if (reader.has("size")) {
+        const auto& size = (*document)["size"];
+        const bool pair = size.is_array() && size.size() == 2 && size[0].is_number_unsigned() &&
+                          size[1].is_number_unsigned();
+        if (!pair) {
+            reader.complain("size", "is no size", "expected [width, height] in pixels");
+        } else {
+            view.size = {size[0].get<std::uint32_t>(), size[1].get<std::uint32_t>()};
+        }
+    }
+    if (reader.has("lights")) {
+        view.hasLights = true;
+        const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+        for (JsonReader& light : reader.objects("lights")) {
+            if (auto status = readLight(light, folder, view); !status) return tl::unexpected(status.error());
+        }
+    }
+    if (reader.has("background")) view.background = reader.vector("background", 0, kAnyRadiance);
+    if (reader.has("head_albedo")) view.headAlbedo = reader.vector("head_albedo", 0, 1);
+    if (reader.has("head_absorption_per_m")) {
+        view.headAbsorption = static_cast<float>(reader.number(
+            "head_absorption_per_m", 0, static_cast<double>(render::kMostHeadAbsorption), "1/m"));
+    }
+    if (reader.has("shadow_blur_px")) {
+        view.shadowBlur = static_cast<float>(
+            reader.number("shadow_blur_px", 0, static_cast<double>(render::kMostShadowBlur), "pixels"));
+    }
+    if (reader.has("hair")) readHair(reader.object("hair"), view);
+    reader.finish();
+    if (auto status = reader.status(); !status) return tl::unexpected(status.error());
+    return view;
+}
+
+Result<GroomScene> GroomScene::make(const Groom& groom, const std::vector<Vec3f>* positions_ws,
+                                    const HeadPose* pose, const ViewFile& view,
+                                    const std::vector<std::string>& hiddenGroups) {
+    GroomScene scene;
+    scene.rest_ = groom;
+    scene.posed_ = pose ? posedGroom(groom, *positions_ws, *pose) : groom;
+    scene.material_ = renderMaterial(groom, view);
+    // The view's radius goes before the points' own.
+    if (view.rootRadius || view.tipScale) {
+        scene.rest_.pointAttributes.erase(attribute::kRadius);
+        scene.posed_.pointAttributes.erase(attribute::kRadius);
+    }
+    scene.radii_ = radiiOfShown(scene.rest_, groom.material);
+    scene.matte_ = view.headAlbedo.has_value();
+    if (!groom.scalp && !hiddenGroups.empty()) return fail("there is no head to hide groups of");
+    if (groom.scalp) {
+        const auto hidden = facesOfGroups(*groom.scalp, hiddenGroups);
+        if (!hidden) return tl::unexpected(hidden.error());
+        const auto colours = headColours(groom, view.headAlbedo);
+        for (const std::uint32_t face : invertSelection(*groom.scalp, *hidden)) {
+            const Triangle& triangle = groom.scalp->triangles()[face];
+            scene.indices_.insert(scene.indices_.end(), triangle.begin(), triangle.end());
+            scene.triangleAlbedo_.push_back(colours[face]);
+        }
+    }
+    if (groom.interpolation.followPerGuide == 0 || groom.strandCount() == 0) {
+        if (scene.material_.look) scene.shares_ = sharesOfStrands(groom);
+        return scene;
+    }
+
+    auto bindings = bindFollowHairs(groom, groom.interpolation);
+    if (!bindings) return tl::unexpected(bindings.error());
+    for (std::size_t hair = 0; hair <= bindings->hairCount(); ++hair) {
+        scene.hairOffsets_.push_back(static_cast<std::uint32_t>(hair * bindings->pointsPerHair));
+    }
+    scene.bindings_ = std::move(*bindings);
+    if (scene.material_.look) {
+        auto shares = sharesOfFollowHairs(groom, *scene.bindings_);
+        if (!shares) return tl::unexpected(shares.error());
+        scene.shares_ = std::move(*shares);
+    }
+    if (auto status = scene.makeFollowHairs(); !status) return tl::unexpected(status.error());
+    return scene;
+}
+
+Status GroomScene::pose(std::span<const Vec3f> positions_ws, const HeadPose& pose) {
+    posed_ = posedGroom(rest_, positions_ws, pose);
+    return bindings_ ? makeFollowHairs() : Status();
+}
+
+void GroomScene::moveStrands(std::span<const std::uint32_t> strands, std::span<const Vec3f> points_ws) {
+    assert(!bindings_);
+    hairloom::moveStrands(posed_, strands, points_ws);
+}
+
+bool GroomScene::setMaterial(const HairMaterial& authored, const ViewFile& view) {
+    const HairMaterial& before = rest_.material;
+    if (authored.rootColour != before.rootColour || !hasSameShares(authored, before)) return false;
+    if (!radii_.empty() && authored.rootRadius != before.rootRadius) return false;
+    rest_.material = authored;
+    material_ = renderMaterial(rest_, view);
+    return true;
+}
+
+bool GroomScene::setDye(const Groom& groom) {
+    if (shares_.pointDyes.empty() || !groom.pointAttributes.has(attribute::kPointDye)) return false;
+    rest_.pointAttributes.set(attribute::kPointDye,
+                              groom.pointAttributes.all().find(attribute::kPointDye)->second);
+    shares_.pointDyes = bindings_ ? pointDyesOfFollowHairs(rest_, *bindings_) : pointDyes(rest_);
+    return true;
+}
+
+Status GroomScene::makeFollowHairs() {
+    const std::vector<Vec3f> guides_ws = guidePositions(posed_, *bindings_);
+    const std::vector<Quatf> rotations = rootRotations(rest_, posed_, *bindings_);
+    hairPositions_ws_.resize(bindings_->hairCount() * bindings_->pointsPerHair);
+    return evaluateFollowHairs(*bindings_, {guides_ws, {}, rotations}, {}, hairPositions_ws_);
+}
+
+render::RenderScene GroomScene::scene() const {
+    render::RenderScene scene;
+    if (!indices_.empty()) {
+        render::RenderMesh mesh;
+        mesh.positions_ws = posed_.scalp->positions();
+        mesh.normals_ws = posed_.scalp->normals();
+        mesh.indices = indices_;
+        mesh.triangleAlbedo = triangleAlbedo_;
+        mesh.matte = matte_;
+        scene.meshes.push_back(mesh);
+    }
+    if (posed_.strandCount() == 0) return scene;
+    render::RenderStrands strands;
+    strands.material = material_;
+    if (hairOffsets_.empty()) {
+        strands.offsets = posed_.offsets.view();
+        strands.positions_ws = posed_.positions();
+        strands.radii = radii_.empty() ? posed_.pointAttributes.view<float>(attribute::kRadius) : radii_;
+        strands.colours = posed_.strandAttributes.view<Vec3f>(attribute::kStrandColour);
+    } else {
+        strands.offsets = hairOffsets_;
+        strands.positions_ws = hairPositions_ws_;
+    }
+    strands.streaks = shares_.streaks;
+    strands.dyes = shares_.dyes;
+    strands.pointDyes = shares_.pointDyes;
+    scene.strands.push_back(strands);
+    return scene;
+}
+
+Box3f GroomScene::subject() const {
+    render::RenderScene hair = scene();
+    hair.meshes.clear();
+    Box3f box = render::boundsOf(hair);
+    Box3f all = box;
+    for (const std::uint32_t vertex : indices_) all.extend(posed_.scalp->positions()[vertex]);
+    if (box.isEmpty() || !posed_.scalp) return all;
+    for (const std::uint32_t triangle : posed_.scalpSelection) {
+        for (const std::uint32_t vertex : posed_.scalp->triangles()[triangle]) {
+            box.extend(posed_.scalp->positions()[vertex]);
+        }
+    }
+    // Short hair covers the upper half of a head; a picture of it shows the face too.
+    constexpr float kHeadHeight = 0.27f;
+    box.min().y() = std::min(box.min().y(), box.max().y() - kHeadHeight);
+    return box.intersection(all);
+}
+
+}  // namespace hairloom

@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/scene/hair_look.h"
+
+#include <algorithm>
+#include <array>
+
+#include "core/base/parallel.h"
+#include "core/groom/point_dye.h"
+#include "core/groom/streaks.h"
+
+namespace hairloom {
+namespace {
+
+using shading::LookQuantity;
+
+constexpr double kLeastLobeWidth = 0.5 * shading::kDegree;  // in θ_h
+constexpr double kLargestLobeWidth = 60 * shading::kDegree;
+
+double asDouble(float value) {
+    return static_cast<double>(value);
+}
+
+double roughnessOf(const HairMaterial& authored, const FibreView& view) {
+    return view.azimuthalRoughness.value_or(asDouble(authored.azimuthalRoughness));
+}
+
+Vec3d melaninAbsorption(const HairMaterial& authored, double factor) {
+    return factor * shading::absorption({asDouble(authored.eumelanin), asDouble(authored.pheomelanin)});
+}
+
+/// The colours of Kajiya-Kay.
+shading::StrandLook colourLook(const HairMaterial& authored) {
+    shading::StrandLook look;
+    look.quantity = LookQuantity::colour;
+    look.root = authored.rootColour.cast<double>();
+    look.tip = authored.tipColour.cast<double>();
+    if (authored.streakDyed) {
+        look.streakRoot = look.streakTip = authored.streakColour.cast<double>();
+    } else {
+        const double factor = asDouble(authored.streakMelanin);
+        look.streakRoot = shading::colourOfMoreAbsorption(look.root, factor);
+        look.streakTip = shading::colourOfMoreAbsorption(look.tip, factor);
+    }
+    look.dye = authored.dyeColour.cast<double>();
+    return look;
+}
+
+/// What fibres absorb.
+shading::StrandLook absorptionLook(const HairMaterial& authored, double roughness) {
+    shading::StrandLook look;
+    look.quantity = LookQuantity::absorption;
+    look.ownScale = shading::absorptionScale(roughness);
+    const auto ofColour = [&](const Vec3f& colour) {
+        return shading::absorptionOfColour(colour.cast<double>(), roughness);
+    };
+    look.root = authored.dyed ? ofColour(authored.rootColour) : melaninAbsorption(authored, 1);
+    look.tip = authored.dyed ? ofColour(authored.tipColour)
+                             : melaninAbsorption(authored, asDouble(authored.tipMelanin));
+    if (authored.streakDyed) {
+        look.streakRoot = look.streakTip = ofColour(authored.streakColour);
+    } else {
+        look.streakRoot = asDouble(authored.streakMelanin) * look.root;
+        look.streakTip = asDouble(authored.streakMelanin) * look.tip;
+    }
+    look.dye = ofColour(authored.dyeColour);
+    return look;
+}
+
+/// The highlights of an authored material against those of its fibre: R, TT, TRT.
+struct LobeControls {
+    std::array<double, 3> intensity, width, shift;
+
+    explicit LobeControls(const HairMaterial& m)
+        : intensity{asDouble(m.rIntensity), asDouble(m.ttIntensity), asDouble(m.trtIntensity)},
+          width{asDouble(m.rWidth), asDouble(m.ttWidth), asDouble(m.trtWidth)},
+          shift{asDouble(m.rShiftDegrees) * shading::kDegree, asDouble(m.ttShiftDegrees) * shading::kDegree,
+                asDouble(m.trtShiftDegrees) * shading::kDegree} {}
+
+    void applyTo(shading::MarschnerParameters& m) const {
+        for (std::size_t p = 0; p < 3; ++p) {
+            m.intensity[p] *= intensity[p];
+            m.width[p] = std::clamp(m.width[p] * width[p], kLeastLobeWidth, kLargestLobeWidth);
+            m.tilt[p] += shift[p];
+        }
+    }
+    /// Lobes keep their height when they get wider: that is the model's intention.
+    void applyTo(shading::SadeghiParameters& s) const {
+        std::size_t p = 0;
+        for (shading::SadeghiLobe* lobe : {&s.r, &s.tt, &s.trt}) {
+            lobe->intensity *= intensity[p];
+            lobe->width *= width[p];
+            lobe->shift += shift[p];
+            ++p;
+        }
+    }
+};
+
+/// What Sadeghi's lobes have that Marschner's have not.
+void paintLobes(const HairMaterial& authored, shading::SadeghiParameters& s) {
+    s.r.tint = authored.rColour.cast<double>();
+    s.tt.tint = authored.ttColour.cast<double>();
+    s.trt.tint = authored.trtColour.cast<double>();
+    s.ttAzimuthalWidth *= asDouble(authored.ttAzimuthalWidth);
+    s.glintIntensity *= asDouble(authored.glintIntensity);
+    s.glintWidth = asDouble(authored.glintWidthDegrees) * shading::kDegree;
+    s.glintNear = asDouble(authored.glintNearDegrees) * shading::kDegree;
+    s.glintFar = asDouble(authored.glintFarDegrees) * shading::kDegree;
+}
+
+bool isEven(const HairMaterial& authored, const shading::StrandLook& look, bool ownColours) {
+    const bool sameEnds = look.root == look.tip;
+    const bool ownMatter = ownColours && look.quantity == LookQuantity::absorption;
+    return sameEnds && !ownMatter && authored.streakShare <= 0 && authored.dyeStrength <= 0 &&
+           authored.melaninVariation <= 0 && authored.emission <= 0;
+}
+
+void finishLook(const HairMaterial& authored, shading::StrandLook& look) {
+    look.gradient = shading::Ramp::between(asDouble(authored.gradientStart), asDouble(authored.gradientEnd));
+    look.dyeAlong = shading::Ramp::between(asDouble(authored.dyeStart), asDouble(authored.dyeEnd));
+    look.spread = asDouble(authored.melaninVariation);
+    look.emissionRoot = asDouble(authored.emission) * authored.emissionRootColour.cast<double>();
+    look.emissionTip = asDouble(authored.emission) * authored.emissionTipColour.cast<double>();
+}
+
+std::vector<Vec3f> rootsOf(const Groom& groom) {
+    std::vector<Vec3f> roots(groom.strandCount());
+    for (std::size_t s = 0; s < roots.size(); ++s) roots[s] = groom.strand(s)[0];
+    return roots;
+}
+
+bool isPainted(const Groom& groom) {
+    return groom.pointAttributes.has(attribute::kPointDye);
+}
+
+/// Of a strand's points, at a share of its length in points.
+float valueAt(std::span<const float> values, float share) {
+    const float place = share * static_cast<float>(values.size() - 1);
+    const std::size_t before = std::min(static_cast<std::size_t>(place), values.size() - 2);
+    const float t = place - static_cast<float>(before);
+    return values[before] + t * (values[before + 1] - values[before]);
+}
+
+float maskOf(std::span<const float> mask, std::size_t strand) {
+    return mask.empty() ? 1.0f : mask[strand];
+}
+
+}  // namespace
+
+render::FibreMaterial fibreMaterial(const HairMaterial& authored, const FibreView& view) {
+    const double roughness = roughnessOf(authored, view);
+    shading::MarschnerParameters m;
+    m.azimuthal.ior = view.ior.value_or(asDouble(authored.indexOfRefraction));
+    m.azimuthal.absorption = view.absorption ? *view.absorption
+                             : view.colour   ? shading::absorptionOfColour(*view.colour, roughness)
+                             : view.melanin  ? shading::absorption(*view.melanin)
+                                             : absorptionLook(authored, roughness).root;
+    m.azimuthal.width = shading::azimuthalWidth(roughness);
+    if (m.azimuthal.width >= shading::kLeastAzimuthalWidth) m.azimuthal.causticWidth = 0;
+    m.azimuthal.axisRatio = view.axisRatio.value_or(shading::axisRatio(asDouble(authored.eccentricity)));
+    shading::setScales(m, asDouble(authored.scaleTiltDegrees) * shading::kDegree,
+                       shading::longitudinalWidth(asDouble(authored.longitudinalRoughness)));
+    const LobeControls controls(authored);
+    if (view.model == render::ShadingModel::marschner) controls.applyTo(m);
+    if (view.width) m.width = *view.width;
+    if (view.tilt) m.tilt = *view.tilt;
+
+    render::FibreMaterial fibre;
+    fibre.model = view.model;
+    fibre.scattering = view.scattering;
+    if (view.model == render::ShadingModel::marschner) fibre.marschner = m;
+    if (view.model == render::ShadingModel::sadeghi) {
+        fibre.sadeghi = sadeghiLike(shading::Marschner(m));
+        controls.applyTo(fibre.sadeghi);
+        paintLobes(authored, fibre.sadeghi);
+        fibre.marschner = m;
+    }
+    return fibre;
+}
+
+render::HairMaterial renderMaterial(const Groom& groom, const ViewFile& view) {
+    const HairMaterial& authored = groom.material;
+    render::HairMaterial material;
+    material.albedo = authored.tipColour;
+    material.rootBrightness = material.tipBrightness = 1;
+    material.variation = authored.colourVariation;
+    material.radius = view.rootRadius.value_or(authored.rootRadius);
+    material.tipScale = view.tipScale.value_or(authored.tipScale);
+    material.radiusVariation = authored.radiusVariation;
+    material.rootOpacity = authored.rootOpacity;
+    material.tipOpacity = authored.tipOpacity;
+    // One authored highlight drives both of the shader's: the light's own colour, narrow, and the fibre's,
+    // wide.
+    material.primary = Vec3f::Constant(0.32f * authored.specular);
+    material.primaryExponent = 1.5f * authored.shininess;
+    material.secondary = Vec3f::Constant(1.1f * authored.specular);
+    material.secondaryExponent = 0.4f * authored.shininess;
+    material.primaryShift = 2 * authored.scaleTiltDegrees;
+    material.secondaryShift = -3 * authored.scaleTiltDegrees;
+    material.fibre = fibreMaterial(authored, view.fibre);
+    material.tubes = authored.tubes;
+    const bool isKajiya = view.fibre.model == render::ShadingModel::kajiya || authored.tubes;
+    if (!isKajiya && view.fibre.saysColour()) {
+        material.variation = 0;
+        return material;
+    }
+    shading::StrandLook look =
+        isKajiya ? colourLook(authored) : absorptionLook(authored, roughnessOf(authored, view.fibre));
+    if (isEven(authored, look, groom.strandAttributes.has(attribute::kStrandColour))) return material;
+    finishLook(authored, look);
+    material.look = look;
+    // The tables hold all absorptions: none has to be baked again when a colour moves.
+    if (view.fibre.model == render::ShadingModel::marschner)
+        material.fibre.marschner.azimuthal.absorption.setZero();
+    return material;
+}
+
+StrandShares sharesOfStrands(const Groom& groom) {
+    StrandShares shares;
+    const HairMaterial& material = groom.material;
+    if (material.streakShare > 0) shares.streaks = streakWeights(material, rootsOf(groom));
+    if (material.dyeStrength <= 0) return shares;
+    if (isPainted(groom)) {
+        shares.pointDyes = pointDyes(groom);
+        shares.dyes.assign(groom.strandCount(), material.dyeStrength);
+        return shares;
+    }
+    const auto mask = groom.strandAttributes.view<float>(attribute::kDye);
+    shares.dyes.resize(groom.strandCount());
+    for (std::size_t s = 0; s < shares.dyes.size(); ++s)
+        shares.dyes[s] = material.dyeStrength * maskOf(mask, s);
+    return shares;
+}
+
+Result<StrandShares> sharesOfFollowHairs(const Groom& groom, const FollowBindings& bindings) {
+    StrandShares shares;
+    const HairMaterial& material = groom.material;
+    if (material.streakShare > 0) {
+        const auto rest = bakeFollowHairs(groom, bindings);
+        if (!rest) return tl::unexpected(rest.error());
+        shares.streaks = streakWeights(material, rootsOf(*rest));
+    }
+    if (material.dyeStrength <= 0) return shares;
+    if (isPainted(groom)) {
+        shares.pointDyes = pointDyesOfFollowHairs(groom, bindings);
+        shares.dyes.assign(bindings.hairCount(), material.dyeStrength);
+        return shares;
+    }
+    const auto mask = groom.strandAttributes.view<float>(attribute::kDye);
+    shares.dyes.resize(bindings.hairCount());
+    for (std::size_t hair = 0; hair < shares.dyes.size(); ++hair) {
+        float sum = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t strand = bindings.guideStrands[bindings.guides[hair][k]];
+            sum += bindings.rootWeights[hair][static_cast<int>(k)] * maskOf(mask, strand);
+        }
+        shares.dyes[hair] = material.dyeStrength * std::clamp(sum, 0.0f, 1.0f);
+    }
+    return shares;
+}
+
+std::vector<float> pointDyesOfFollowHairs(const Groom& groom, const FollowBindings& bindings) {
+    if (!isPainted(groom)) return {};
+    const std::size_t perHair = bindings.pointsPerHair;
+    const auto mask = groom.pointAttributes.view<float>(attribute::kPointDye);
+    std::vector<float> guides(bindings.guideCount() * perHair);
+    for (std::size_t guide = 0; guide < bindings.guideCount(); ++guide) {
+        const std::size_t first = groom.offsets[bindings.guideStrands[guide]];
+        const std::size_t count = groom.offsets[bindings.guideStrands[guide] + 1] - first;
+        for (std::size_t i = 0; i < perHair; ++i) {
+            const float share = static_cast<float>(i) / static_cast<float>(perHair - 1);
+            guides[guide * perHair + i] = valueAt(mask.subspan(first, count), share);
+        }
+    }
+    constexpr std::size_t kGrain = 256;
+    std::vector<float> dyes(bindings.hairCount() * perHair);
+    parallelFor(bindings.hairCount(), kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t hair = begin; hair < end; ++hair) {
+            for (std::size_t i = 0; i < perHair; ++i) {
+                float sum = 0;
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const float weight = bindings.rootWeights[hair][static_cast<int>(k)];
+                    sum += weight * guides[bindings.guides[hair][k] * perHair + i];
+                }
+                dyes[hair * perHair + i] = std::clamp(sum, 0.0f, 1.0f);
+            }
+        }
+    });
+    return dyes;
+}
+
+}  // namespace hairloom

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Follow hairs: many hairs from few simulated guides (Rünz 2012, §4.2). A hair is a blend of two ways to
+// follow:
+//  - a wisp: the hair's own guide, moved within the cross-section of a wisp around it. The cross-section lies
+//  in
+//    the scalp at the root and is carried along the guide without twist. Wisps widen with speed (Eqs. 22,
+//    23).
+//  - a root triangle: the weighted mean of three guides.
+// Bindings (which guides, which weights) come from outside; this evaluates them every frame.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "hairloom/host.h"
+#include "hairloom/math.h"
+
+namespace hairloom::runtime {
+
+/// The plane of the scalp at a root: an orthonormal frame, right-handed.
+struct RootPlane {
+    Float3 x, y;    ///< span the plane
+    Float3 normal;  ///< out of the scalp
+};
+static_assert(sizeof(RootPlane) == 3 * sizeof(Float3));
+
+/// Guide strands and how hairs are bound to them. Arrays per hair are in the order of the hairs. With b the
+/// blend, o the wisp offset, w the weights, u the root weights, d the root shift, p_k[i] point i of guide k
+/// and X, Y the axes of guide 0's cross-section, point i of a hair lies at
+///     (1 − b) (c[i] + ξ r[i] (o.x X[i] + o.y Y[i])) + b Σ w_k p_k[i] + b Σ (u_k − w_k) p_k[0] + R d,
+/// where Eq. 22 gives ξ, Eq. 23 c, and R is the root plane turned with the scalp.
+struct FollowView {
+    std::span<const std::uint32_t> guideOffsets;  ///< guide count + 1, ascending from 0; guide g owns points
+                                                  ///< [offsets[g], offsets[g + 1]), two or more of them
+    /// Guides at rest, metres: read only for guides whose point count is not `pointsPerHair`, which are
+    /// resampled at even shares of their length at rest. May be empty where there is no such guide.
+    std::span<const Float3> guideRestPositions_ss;
+    std::span<const RootPlane> rootPlanes_ss;  ///< per guide, at rest
+
+    std::uint32_t pointsPerHair = 0;                       ///< 2 … 2²⁰
+    std::span<const float> radii;                          ///< per point of a hair: r, metres, ≥ 0
+    std::span<const std::array<std::uint32_t, 3>> guides;  ///< per hair, its own guide first
+    std::span<const Float3> weights;                       ///< ≥ 0, sum 1
+    std::span<const Float3> rootWeights;                   ///< ≥ 0, sum 1: the same for the root alone
+    std::span<const std::array<float, 2>> wispOffsets;     ///< in units of the radius
+    std::span<const float> blends;                         ///< 0 wisp … 1 root triangle
+    std::span<const Float3> rootShifts;                    ///< metres, in the own guide's root plane
+};
+
+/// The guides at one moment, guide after guide in the order of the offsets.
+struct GuideMotion {
+    std::span<const Float3> positions_ws;   ///< metres
+    std::span<const Float3> velocities_ws;  ///< m/s; empty for guides at rest
+    /// Per guide: turn of the scalp at its root since rest (a RootFrame's rotation divided by that at rest);
+    /// need not be of unit length. Empty, or what is no rotation, stands for none.
+    std::span<const Quat> rootRotations_ws;
+    /// σ of Eq. 22 at the tip, s/m, ≥ 0: share by which a wisp's radius grows per m/s. Falls linearly to 0 at
+    /// the root.
+    float wispSpread = 0.15f;
+};
+
+/// Owns packed bindings and the memory of a frame. Evaluation allocates nothing and gives the same bits for
+/// any number of threads; of instruction sets, for all that have fused multiply-add and all that have not.
+class FollowHairs {
+  public:
+    struct Made;
+    /// Errors, in words: arrays whose sizes do not match, a guide that is not there, point counts out of
+    /// range, weights that do not sum to 1, anything that is not finite.
+    static Made make(const FollowView& view);
+
+    FollowHairs(FollowHairs&&) noexcept;
+    FollowHairs& operator=(FollowHairs&&) noexcept;
+    ~FollowHairs();
+
+    std::uint32_t hairCount() const;
+    std::uint32_t pointsPerHair() const;
+
+    /// Fills `hairs_ws` (hair after hair, pointsPerHair() each; metres). Sizes must match what make() was
+    /// given. A point of a guide that is not finite makes that point of the hairs that take part of the guide
+    /// not finite, and no other; a root that is not finite, the hairs that take part of the root. Not to be
+    /// called on one object from two threads at a time.
+    void evaluate(const GuideMotion& guides, std::span<Float3> hairs_ws, const Host& host = {});
+
+  private:
+    struct Impl;
+    explicit FollowHairs(std::unique_ptr<Impl> impl);
+    std::unique_ptr<Impl> impl_;
+};
+
+/// A place along a guide: between point `segment` and the next.
+struct GuideSample {
+    std::uint32_t segment;
+    float share;
+};
+/// Appends `count` ≥ 2 samples at even shares of the length of a guide of two points or more.
+void sampleEvenly(std::span<const Float3> guide, std::uint32_t count, std::vector<GuideSample>& samples);
+
+struct FollowHairs::Made {
+    std::optional<FollowHairs> hairs;
+    std::string error;  ///< empty when there are hairs
+};
+
+}  // namespace hairloom::runtime

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Whether settings are stable before they are run: the fastest wave of the hair against the step that its
+// integrator can take, and what would help. docs/stability.md has the limits and how they were measured.
+//
+// Linear theory around the rest shape. Does not know: motion of roots, collisions other than penalty springs,
+// that angular springs as forces feed energy into curled hair at any step (docs/engine.md).
+
+#include <string>
+#include <vector>
+
+#include "hairloom/settings.h"
+#include "hairloom/strands.h"
+
+namespace hairloom::runtime {
+
+/// What a step can be too long for.
+enum class Stiff : std::uint32_t {
+    nothing,  ///< no force that is not solved implicitly
+    coils,    ///< coil springs, along the strand
+    bending,  ///< angular or flexion springs, with the tension under gravity and wind
+    penalty,  ///< penalty springs
+    air,      ///< drag
+};
+
+/// Angular frequencies of the fastest waves, rad/s; the greatest of all strands, 0 where a force is off. They
+/// are those of the forces themselves, however an integrator takes them.
+struct FastestWaves {
+    double coils = 0.0;
+    double bending = 0.0;
+    double tension = 0.0;  ///< of hair without stiffness under its weight and the wind
+    double penalty = 0.0;
+};
+FastestWaves fastestWaves(const StrandsView& strands, const SimulationSettings& settings);
+
+/// Greatest ω·h at which an integrator does not amplify a wave of ω: 2 for position Verlet, velocity Verlet,
+/// leapfrog and for what implicit Euler leaves explicit, 2√2 for RK4, and for explicit Euler what the damping
+/// of `dampingTime` outweighs, 0 without. `h` in seconds.
+double stableLimit(const SimulationSettings& settings, double h);
+
+struct StableRegion {
+    Stiff cause = Stiff::nothing;
+    double frequency = 0.0;  ///< rad/s, or 1/s for air
+    double step = 0.0;       ///< h, seconds of a substep
+    double limit = 0.0;      ///< of frequency · step
+    double factor = 0.0;     ///< frequency · step / limit; above 1 is unstable, infinite where nothing helps
+
+    bool stable() const { return factor <= 1.0; }
+};
+
+/// Of substeps of frames of `frameTime` seconds, above 0. The forces that the integrator solves implicitly do
+/// not count.
+StableRegion stableRegion(const StrandsView& strands, const SimulationSettings& settings, float frameTime);
+
+/// Settings that are stable, and what is different about them.
+struct StableOffer {
+    std::string words;
+    SimulationSettings settings;
+};
+
+struct StableAdvice {
+    StableRegion region;
+    std::string words;  ///< what is the matter; empty where all is well
+    /// Best first: more substeps, where 64 suffice, then methods without a limit. Each is a tenth inside its
+    /// own stable region; empty where all is well.
+    std::vector<StableOffer> offers;
+};
+StableAdvice adviseStability(const StrandsView& strands, const SimulationSettings& settings, float frameTime);
+
+}  // namespace hairloom::runtime

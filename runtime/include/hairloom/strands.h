@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What the engine is given: strands at rest once, poses of their roots and spheres each frame. Views only;
+// the caller owns the arrays and the engine keeps none of them.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "hairloom/math.h"
+
+namespace hairloom::runtime {
+
+/// A place and an orientation.
+struct RootFrame {
+    Float3 position;
+    Quat rotation;  ///< need not be exactly of unit length
+};
+
+/// Strands as authored, root to tip. Strand s owns points offsets[s] up to offsets[s + 1], 2 to kMaxPoints of
+/// them.
+struct StrandsView {
+    std::span<const std::uint32_t>
+        offsets;  ///< strand count + 1, ascending, from 0 to restPositions_ss.size()
+    std::span<const Float3> restPositions_ss;  ///< metres, in the scalp's rest space
+    /// Orientation of the scalp at each root in the rest pose; empty stands for the identity. A frame's root
+    /// rotation divided by it is what turns the rest shape.
+    std::span<const Quat> rootRotations_ss{};
+    /// Mass of each point, above 0, in any unit: only the ratios within a strand count. Empty: even rods.
+    std::span<const float> masses{};
+};
+
+inline constexpr std::uint32_t kMaxPoints = 512;
+
+/// A collision sphere. A radius that is not above 0, or anything not finite, takes it out of the frame.
+struct Sphere {
+    Float3 center_ws;
+    float radius = 0.0f;  ///< metres
+};
+
+/// Everything that changes from frame to frame.
+struct FrameInput {
+    float dt = 1.0f / 60.0f;              ///< frame time in seconds, above 0
+    double time = 0.0;                    ///< seconds at the end of the frame; drives gusts only
+    std::span<const RootFrame> roots_ws;  ///< one per strand, at the end of the frame
+    /// At the end of the frame; sphere i is the sphere i of the frame before, and its speed follows from
+    /// that.
+    std::span<const Sphere> spheres = {};
+    std::optional<Float3> wind_ws = {};  ///< m/s, a script's mean wind of this frame, in place of the
+                                         ///< authored one; ignored unless finite and within 1000 m/s
+    /// m/s, of an actor that the caller does not move in world space; WindKind::vehicle blows against it.
+    /// Ignored unless finite and within 1000 m/s.
+    Float3 actorVelocity_ws{};
+};
+
+}  // namespace hairloom::runtime

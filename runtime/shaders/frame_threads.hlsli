@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// A frame of a strand whose points follow each other in a thread; a work group is a block of the engine.
+#include "serial_strand.hlsli"
+
+[numthreads(HAIR_STRANDS, 1, 1)]
+void main(uint3 group : SV_GroupID, uint lane : SV_GroupIndex) {
+    const uint block = group.y * HAIRLOOM_GROUP_ROW + group.x;
+    if (block >= gFrame.groups) return;
+    gSlot = block * HAIR_STRANDS + lane;
+#if HAIR_STORAGE == 1
+    gStrand = lane;
+#endif
+#if !HAIR_EXACT
+    gPointCount = gBlocks[block].x;
+#endif
+    if (lane == 0) gGroupMoved = gGroupFastest = gGroupRestored = gGroupNear = 0u;
+    GroupMemoryBarrierWithGroupSync();
+    if (rootMoves(gSlot)) InterlockedOr(gGroupMoved, 1u);
+    bool runs = true;
+#if HAIR_SLEEP
+    // Read by all before the last barrier, written by one after it.
+    float rested = gRests[2 * block];
+    bool asleep = gRests[2 * block + 1] != 0.0;
+    if (asleep && sphereNear(gRootsTo[2 * gSlot].xyz)) InterlockedOr(gGroupNear, 1u);
+    GroupMemoryBarrierWithGroupSync();
+    if (asleep && (gGroupMoved != 0u || gGroupNear != 0u || gFrame.wakeAll != 0u)) {
+        asleep = false;
+        rested = 0.0;
+    }
+    runs = !asleep;
+#endif
+    if (runs) {
+        loadState();
+        enterFrame();
+        if (gFrame.rescale != 1.0) rescaleMotion();
+        runSubsteps();
+        finishStrand(block, lane);
+    }
+    GroupMemoryBarrierWithGroupSync();
+#if HAIR_SLEEP
+    if (runs) {
+        const bool slow = gGroupMoved == 0u && gGroupRestored == 0u && asfloat(gGroupFastest) < gFrame.slowSquared;
+        rested = slow ? rested + gFrame.dt : 0.0;
+        asleep = slow && rested >= gFrame.sleepDelay;
+        if (asleep) {
+            EACH for (uint p = 0; p < POINTS; ++p) setPrevious(p, position(p));
+        }
+    } else {
+        rested += gFrame.dt;
+    }
+    if (lane == 0) {
+        gRests[2 * block] = rested;
+        gRests[2 * block + 1] = asleep ? 1.0 : 0.0;
+        if (asleep) InterlockedAdd(gReport[REPORT_ASLEEP], gBlocks[block].y);
+    }
+#endif
+    if (runs) {
+        saveState();
+        leaveFrame();
+        EACH for (uint q = 0; q < POINTS; ++q) writePlace(q);
+        if (lane == 0 && gGroupRestored == 0u) InterlockedMax(gReport[REPORT_FASTEST], gGroupFastest);
+    }
+}

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// A work group for each wisp (Rünz 2012, Section 6.1): its first thread takes the strand, which stays in the memory of
+// the group, through the frame; the others wait for it, then write its places.
+
+#include "serial_strand.hlsli"
+
+[numthreads(1, HAIR_THREADS, 1)]
+void main(uint3 place : SV_GroupID, uint lane : SV_GroupIndex) {
+    const uint group = place.y * HAIRLOOM_GROUP_ROW + place.x;
+    if (group >= gFrame.groups) return;
+    gSlot = group;
+    gStrand = 0;
+    const uint block = group / HAIRLOOM_GROUP_STRANDS, strands = gBlocks[block].y;
+#if !HAIR_EXACT
+    gPointCount = gBlocks[block].x;
+#endif
+    if (lane == 0) gGroupMoved = gGroupFastest = gGroupRestored = gGroupNear = 0u;
+    bool slept = false;
+#if HAIR_SLEEP
+    float rested = gRests[2 * block];
+    slept = gRests[2 * block + 1] != 0.0;
+#endif
+    GroupMemoryBarrierWithGroupSync();
+#if HAIR_SLEEP
+    if (slept && sleepsOn(block, lane, strands, rested)) return;
+    lookAtRoots(block, lane);
+    GroupMemoryBarrierWithGroupSync();
+#endif
+    if (lane == 0) {
+        loadState();
+        // What fell asleep has no speed.
+        if (slept) {
+            EACH for (uint p = 0; p < POINTS; ++p) setPrevious(p, position(p));
+        }
+        enterFrame();
+        if (gFrame.rescale != 1.0) rescaleMotion();
+        runSubsteps();
+        finishStrand(block, group % HAIRLOOM_GROUP_STRANDS);
+        saveState();
+        leaveFrame();
+        if (gGroupRestored == 0u) InterlockedMax(gReport[REPORT_FASTEST], gGroupFastest);
+#if HAIR_SLEEP
+        judgeBlock(block, strands, rested);
+#endif
+    }
+    GroupMemoryBarrierWithGroupSync();
+    [loop] for (uint q = lane; q < POINTS; q += HAIR_THREADS) writePlace(q);
+}

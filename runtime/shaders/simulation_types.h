@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+// What the strand kernels are told each frame, written once for HLSL and C++. Metres, seconds, world space.
+#ifndef HAIRLOOM_SIMULATION_TYPES_H
+#define HAIRLOOM_SIMULATION_TYPES_H
+#include "types.h"
+
+#ifdef __cplusplus
+#include <cstddef>
+namespace hairloom::shaders {
+#endif
+
+/// A float4 for each wave of the wind.
+#define HAIRLOOM_WIND_MODES 6
+/// Spheres that stand in a constant buffer; more stand in a buffer. As many as a word has bits.
+#define HAIRLOOM_CONSTANT_SPHERES 32
+/// Strands of a work group: a block of the engine, which falls asleep as one.
+#define HAIRLOOM_GROUP_STRANDS 32
+/// Threads of a work group of one strand: the first takes it, as in the thesis' listing, which has 30 others.
+#define HAIRLOOM_WISP_THREADS 32
+/// In a tank: the curves of the strand are void.
+#define HAIRLOOM_NO_CURVE (-1.0)
+
+/// As many work groups as a dispatch has along one axis.
+#define HAIRLOOM_GROUP_ROW 65535
+
+struct SimulationConstants {
+    uint slots;     ///< strands of the batch, with those that fill the last block
+    uint substeps;  ///< per frame
+    uint sphereCount;
+    uint lengthIterations;
+    uint wakingCount;        ///< spheres that have changed since the last frame
+    uint windKind;           ///< runtime::WindKind
+    uint wakeAll;            ///< not 0: nothing sleeps, as wind blows or velocities were changed
+    float h;                 ///< seconds of a substep
+    float dt;                ///< seconds of the frame
+    float rescale;           ///< this substep over the last frame's
+    float velocityShare;     ///< exp(−h/dampingTime)
+    float dragShare;         ///< share of the air's speed taken on in a substep
+    float springStep;        ///< (ω h)² of coil springs
+    float penaltyStep;       ///< (ω h)² of penalty springs
+    float bendRate;          ///< q of docs/engine.md
+    float maximalExtension;  ///< share of a segment's length
+    float pearlRoot;         ///< metres
+    float pearlTip;          ///< metres
+    float friction;
+    float restitution;
+    float teleportDistance;  ///< metres
+    float slowSquared;       ///< square metres in a substep; slower strands rest
+    float sleepDelay;        ///< seconds
+    float slowSweep;         ///< metres in a substep; slower points cannot pass a sphere unseen
+    float tensionShare;      ///< of a substep's change of tension that bending takes on
+    uint groups;             ///< work groups of the batch, in rows of HAIRLOOM_GROUP_ROW
+    float sphereWay;         ///< metres; the longest way of a sphere in a substep
+    float unused;
+    float4 gravityStep;                          ///< g h², w unused
+    float4 wind;                                 ///< mean velocity, m/s; w: strength of gusts
+    float4 windAmplitudes[HAIRLOOM_WIND_MODES];  ///< m/s; w: phase at the start of the frame, turns
+    float4 windWaves[HAIRLOOM_WIND_MODES];       ///< turns per metre; w: phase at the end of the frame
+};
+
+/// A collision sphere in one frame.
+struct SphereConstants {
+    float4 from;  ///< centre at the start of the frame; w: radius
+    float4 step;  ///< the centre's way in one substep; w unused
+};
+
+#ifdef __cplusplus
+static_assert(offsetof(SimulationConstants, h) == 28 && offsetof(SimulationConstants, gravityStep) == 112);
+static_assert(offsetof(SimulationConstants, windWaves) == 144 + 16 * HAIRLOOM_WIND_MODES);
+static_assert(sizeof(SimulationConstants) == 144 + 32 * HAIRLOOM_WIND_MODES);
+static_assert(sizeof(SphereConstants) == 32);
+}  // namespace hairloom::shaders
+#endif
+#endif

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// A frame of strands in one dispatch: a thread, or several of a group, take their strand through all substeps. What
+// is done in a substep is HAIR_STAGES, the list that the engine's plan makes (runtime/plan.h); the other macros that
+// make a permutation follow from it. Whoever compiles this defines
+//   HAIR_POINTS      points that a strand may have; HAIR_EXACT 1: all have as many
+//   HAIR_UNROLL      1: loops along the strand are unrolled
+//   HAIR_STORAGE     0 … 4: see storage.hlsli; HAIR_STRANDS: of a work group
+//   HAIR_TOGETHER, HAIR_PER_THREAD, HAIR_WAVE: see storage.hlsli, lanes.hlsli
+//   HAIR_CLAMPED     1, 2: clamped points
+//   HAIR_EVALUATION  0; 1: integrators that evaluate forces elsewhere; 2: RK4
+//   HAIR_BEND        0; 1: with stiffness; 2: with the factors of the strand's matrix
+//   HAIR_TARGETS     1: rest directions; HAIR_CURVES 1: kept from substep to substep; HAIR_TENSIONS likewise
+//   HAIR_COUPLED     1: bending and lengths are one system; not with HAIR_STORAGE 3
+//   HAIR_SPHERES     0; 1: in a constant buffer; 2: in a buffer
+//   HAIR_WIND, HAIR_SLEEP, HAIR_VELOCITIES
+#include "simulation_types.h"
+#include "math.hlsli"
+#include "storage.hlsli"
+#include "roots.hlsli"
+#include "air.hlsli"
+#include "integrate.hlsli"
+#include "springs.hlsli"
+#include "bend.hlsli"
+#include "length.hlsli"
+#include "coupled.hlsli"
+#include "collide.hlsli"
+
+groupshared uint gGroupMoved;
+groupshared uint gGroupFastest;
+groupshared uint gGroupRestored;
+groupshared uint gGroupNear;
+
+/// Whether the root of a slot moves in this frame.
+bool rootMoves(uint slot) { return gRootsTo[2 * slot].w != 0.0; }
+
+#if HAIR_SLEEP
+StructuredBuffer<float4> gWaking : register(t8);  // centre and reach of spheres that have changed
+
+/// Whether a sphere that has changed since the last frame comes within reach of a strand whose root rests there.
+bool sphereNear(float3 root) {
+    bool near = false;
+    [loop] for (uint i = 0; i < gFrame.wakingCount; ++i) {
+        const float3 gap = root - gWaking[i].xyz;
+        near = near || dot(gap, gap) < gWaking[i].w * gWaking[i].w;
+    }
+    return near;
+}
+#endif
+
+void runSubsteps() {
+#if HAIR_WIND
+    sampleWind();
+#endif
+    [loop] for (gSubstep = 0; gSubstep < gFrame.substeps; ++gSubstep) {
+        HAIR_STAGES
+    }
+}
+
+#if HAIR_STORAGE >= 3
+#include "shared_block.hlsli"
+#endif
+#if HAIR_STORAGE == 3
+#include "frame_lanes.hlsli"
+#elif HAIR_STORAGE == 4
+#include "frame_wisps.hlsli"
+#else
+#include "frame_threads.hlsli"
+#endif

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The seam between FollowHairs and its inner loops. A row is one quantity along a strand, x y z x y z …,
+// which starts on a cache line and is padded to whole ones: a hair is a weighted sum of rows, and the sum
+// needs no shuffles. Like the engine's kernels, these use only exactly rounded operations, and
+// fused multiply-add where the instruction set has it and they say so.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "hairloom/math.h"
+
+namespace hairloom::runtime {
+
+inline constexpr std::size_t kRowFloats = 16;    ///< rows are a multiple of it
+inline constexpr std::size_t kWispRows = 3;      ///< centre, x axis, y axis
+inline constexpr std::size_t kFrameFloats = 16;  ///< x, y, normal as x y z 0 each, and four unused
+
+/// All that is one hair's, a cache line.
+struct alignas(64) HairBinding {
+    std::array<std::uint32_t, 3> guides;
+    float single;                      ///< share of the wisp, 1 − blend
+    std::array<float, 2> wispOffset;   ///< times `single`
+    std::array<float, 3> weights;      ///< times the blend
+    std::array<float, 3> rootWeights;  ///< (root weights − weights) times the blend
+    std::array<float, 3> rootShift;
+};
+static_assert(sizeof(HairBinding) == 64);
+
+struct GuideRows {
+    std::uint32_t points;    ///< of every guide and hair, at most 2²⁰
+    std::size_t rowFloats;   ///< from row to row
+    const float* radii;      ///< per point
+    float wispSpread;        ///< s/m
+    const float* positions;  ///< one row per guide
+    float* wisps;            ///< kWispRows rows per guide
+    const float* frames;     ///< kFrameFloats per guide: the root plane of now
+};
+
+struct FollowKernels {
+    /// For guides [begin, end): takes their velocities from the first wisp row and fills the wisp rows: the
+    /// centre, and the axes of the cross-section scaled by its radius.
+    void (*fillWisps)(const GuideRows& guides, std::size_t begin, std::size_t end);
+    /// Writes hairs.size() hairs to `positions`.
+    void (*sumRows)(const GuideRows& guides, std::span<const HairBinding> hairs, float* positions);
+};
+
+/// The kernels for the best instruction set of this machine.
+const FollowKernels& followKernels();
+
+}  // namespace hairloom::runtime

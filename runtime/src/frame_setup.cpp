@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+#include "hairloom/frame_setup.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "hairloom/state.h"
+
+namespace hairloom::runtime {
+namespace {
+
+/// Seconds in which the tension that bending knows of follows that of the segments.
+constexpr float kTensionTime = 0.2f;
+
+float shareLeft(float h, float timeConstant) {
+    return timeConstant > 0.0f ? std::exp(-h / timeConstant) : 1.0f;
+}
+
+/// Faster air is a mistake, and its squares would leave the range of single precision.
+bool isWind(Float3 velocity) {
+    constexpr float kMost = 1000.0f;  // m/s
+    return isFinite(velocity) && length(velocity) <= kMost;
+}
+
+void findWaking(float hair, std::span<const Sphere> before, FrameSpheres& spheres) {
+    const std::size_t count = std::max(spheres.usable.size(), before.size());
+    spheres.waking.clear();
+    spheres.waking.reserve(2 * count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const Sphere then = i < before.size() ? before[i] : Sphere{};
+        const Sphere now = i < spheres.usable.size() ? spheres.usable[i] : Sphere{};
+        if (then.center_ws == now.center_ws && then.radius == now.radius) continue;
+        const bool moved = then.radius > 0.0f && now.radius > 0.0f;
+        const float way = moved ? length(now.center_ws - then.center_ws) : 0.0f;
+        for (const Sphere& sphere : {then, now}) {
+            if (sphere.radius > 0.0f)
+                spheres.waking.push_back({sphere.center_ws, hair + sphere.radius + way});
+        }
+    }
+}
+
+/// SubstepContext::slowestSwept for the spheres and pearls of the context.
+float slowestSwept(const SubstepContext& context) {
+    float smallest = 1e30f, fastestSquared = 0.0f;
+    for (const MovingSphere& sphere : context.spheres) {
+        smallest = std::min(smallest, sphere.radius);
+        fastestSquared = std::max(fastestSquared, dot(sphere.step, sphere.step));
+    }
+    smallest += std::min(context.pearlRoot, context.pearlTip);
+    return std::max(0.999f * kUnsweptShare * smallest - 1.001f * std::sqrt(fastestSquared), 0.0f);
+}
+
+}  // namespace
+
+void takeSpheres(const SimulationSettings& settings, float longestStrand, std::span<const Sphere> before,
+                 std::span<const Sphere> given, FrameSpheres& spheres) {
+    spheres.usable.assign(given.begin(), given.end());
+    spheres.motion.assign(given.size(), Float3{});
+    spheres.rejected = 0;
+    for (std::size_t i = 0; i < given.size(); ++i) {
+        Sphere& sphere = spheres.usable[i];
+        if (!isFinite(sphere.center_ws) || !std::isfinite(sphere.radius) || !(sphere.radius > 0.0f)) {
+            sphere = {};
+            ++spheres.rejected;
+            continue;
+        }
+        if (i < before.size() && before[i].radius > 0.0f) {
+            const Float3 motion = sphere.center_ws - before[i].center_ws;
+            if (length(motion) <= settings.teleportDistance) spheres.motion[i] = motion;
+        }
+    }
+    findWaking(hairReach(settings, longestStrand), before, spheres);
+}
+
+void moveSpheres(const FrameSpheres& spheres, std::uint32_t substeps, std::vector<MovingSphere>& moving) {
+    moving.clear();
+    const float share = 1.0f / static_cast<float>(substeps);
+    for (std::size_t i = 0; i < spheres.usable.size(); ++i) {
+        const Sphere& sphere = spheres.usable[i];
+        if (!(sphere.radius > 0.0f)) continue;
+        moving.push_back({sphere.center_ws - spheres.motion[i], spheres.motion[i] * share, sphere.radius});
+    }
+}
+
+std::uint32_t takeWind(const SimulationSettings& settings, const FrameInput& input, FrameWind& wind) {
+    WindInput given;
+    std::uint32_t rejected = 0;
+    if (input.wind_ws) {
+        if (isWind(*input.wind_ws)) {
+            given.mean_ws = input.wind_ws;
+        } else {
+            ++rejected;
+        }
+    }
+    if (isWind(input.actorVelocity_ws)) {
+        given.actorVelocity_ws = input.actorVelocity_ws;
+    } else {
+        ++rejected;
+    }
+    const bool before = wind.given;
+    wind.given =
+        given.mean_ws || (settings.windKind == WindKind::vehicle && given.actorVelocity_ws != Float3{});
+    if (wind.given || before) wind.wind = makeWind(settings, given);
+    return rejected;
+}
+
+EffectPlan planFrame(const SimulationSettings& settings, const FrameOutlook& outlook, const FrameWind& wind,
+                     std::span<const Sphere> spheres, std::span<const Float3> sphereMotion, float frameTime) {
+    SceneDescription scene;
+    scene.settings = settings;
+    scene.strandCount = outlook.strandCount;
+    scene.longestPointCount = outlook.longestPointCount;
+    scene.longestStrand = outlook.longestStrand;
+    scene.straight = outlook.straight;
+    scene.sharpestCurl = outlook.sharpestCurl;
+    scene.unevenness = outlook.unevenness;
+    scene.substep = outlook.substep;
+    scene.rootsMin_ws = outlook.rootsMin_ws;
+    scene.rootsMax_ws = outlook.rootsMax_ws;
+    scene.spheres = spheres;
+    scene.sphereMotion = sphereMotion;
+    SimulationSettings& planned = scene.settings;
+    if (wind.given) {
+        planned.windSpeed = length(wind.wind.mean);
+        if (planned.windSpeed > 0.0f) planned.windDirection = wind.wind.mean * (1.0f / planned.windSpeed);
+    }
+    float sphereWay = 0.0f;
+    for (const Float3& motion : sphereMotion) sphereWay = std::max(sphereWay, length(motion));
+    // Within a frame hair may gain what gravity and air give, and a whip of its own.
+    const float h = frameTime / static_cast<float>(settings.substeps);
+    const float pushed = (length(settings.gravity) + settings.airDrag * length(wind.wind.mean)) * frameTime;
+    scene.fastest = 16.0f * outlook.fastest * h + pushed * h +
+                    (outlook.rootMotion + sphereWay) / static_cast<float>(settings.substeps);
+    scene.asleep = outlook.asleep;
+    scene.restTime = outlook.restTime;
+    return plan(scene);
+}
+
+SubstepContext substepContext(const SimulationSettings& settings, const EffectPlan& plan, float dt,
+                              std::span<const MovingSphere> spheres) {
+    const float h = dt / static_cast<float>(settings.substeps);
+    const auto oscillation = [&](float hertz) {
+        const float turns = 2.0f * std::numbers::pi_v<float> * hertz * h;
+        return turns * turns;
+    };
+    SubstepContext context;
+    context.count = settings.substeps;
+    context.h = h;
+    context.velocityShare = shareLeft(h, settings.dampingTime);
+    context.gravityStep = settings.gravity * (h * h);
+    const bool decays =
+        settings.integrator == Integrator::verlet || settings.integrator == Integrator::implicitEuler;
+    context.dragShare = decays ? 1.0f - std::exp(-settings.airDrag * h) : settings.airDrag * h;
+    context.springStep = oscillation(settings.springFrequency);
+    context.penaltyStep = oscillation(settings.penaltyFrequency);
+    context.bendRate = bendRate(settings, h, plan.on(Effect::torsion), plan.on(Effect::coupling));
+    context.tensionShare = 1.0f - shareLeft(h, kTensionTime);
+    context.lengthIterations = settings.lengthIterations;
+    context.maximalExtension = settings.maximalExtension;
+    if (plan.on(Effect::pearls)) {
+        context.pearlRoot = settings.pearlRadiusRoot;
+        context.pearlTip = settings.pearlRadiusTip;
+    }
+    context.friction = settings.friction;
+    context.restitution = settings.restitution;
+    context.spheres = spheres;
+    context.slowestSwept = slowestSwept(context);
+    return context;
+}
+
+}  // namespace hairloom::runtime

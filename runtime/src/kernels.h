@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The seam between the engine and its inner loops. A kernel is a stage over one block: kBlockLanes strands of
+// equal point count, stored so that neighbouring lanes are neighbouring strands (index = point · kBlockLanes
+// + lane). The block keeps this shape for every instruction set, and kernels use only exactly rounded
+// operations. Where a product and a sum may be rounded once, kernels say so (MulAdd), and compilers fuse
+// nothing on their own: all instruction sets that have fused multiply-add (AVX2, AVX-512, NEON) give the same
+// bits, and so do all that have not (SSE4 and before, plain C++).
+//
+// Forces add a·h² to a point's displacement by taking it from `previous`; integrators that evaluate forces
+// elsewhere put that place into `position` and the displacement that counts as velocity there into `previous`
+// first.
+//
+// Positions are relative to the strand's own root, which keeps single precision where hair needs it;
+// `previous` is the position one substep ago relative to the root of now, so position − previous is the world
+// displacement.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "hairloom/plan.h"
+#include "hairloom/wind.h"
+
+namespace hairloom::runtime {
+
+inline constexpr std::uint32_t kBlockLanes = 32;
+inline constexpr std::uint32_t kWidestVector = 16;  ///< lanes
+
+/// x, y and z of one quantity: three arrays, `pitch` floats apart.
+template <class Float>
+struct PlanesOf {
+    Float* x = nullptr;
+    std::size_t pitch = 0;
+
+    Float* y() const { return x + pitch; }
+    Float* z() const { return x + 2 * pitch; }
+};
+using Planes = PlanesOf<float>;
+using ConstPlanes = PlanesOf<const float>;
+
+struct BlockView {
+    std::uint32_t lanes;      ///< from the first on; those with strands, in whole vectors of any width
+    std::uint32_t points;     ///< per strand
+    std::uint32_t firstFree;  ///< points before it are clamped
+    std::size_t pitch;        ///< of all planes below
+    Planes position;
+    Planes previous;
+    ConstPlanes rest;            ///< vector of segment s, from point s to s + 1, in the root's frame, at
+                                 ///< [s · kBlockLanes + lane]; metres
+    const float* length;         ///< of each segment, likewise
+    const float* inverseLength;  ///< 0 for a segment without length
+    const float* inverseMass;    ///< of each point; the masses of a strand have the mean 1
+    // Of angular and flexion springs, null while they are off. The joint at point j stands at
+    // [j · kBlockLanes + lane].
+    const float* stiffness = nullptr;  ///< κ·h² of a joint, square metres
+    /// What a joint adds to its inner segment's direction, in the frame carried there (x along the segment);
+    /// at the tip's slot the normal carried by the root, in the root's frame. Null for straight hair.
+    ConstPlanes target;
+    // Of implicit angular springs of curved hair, null otherwise.
+    Planes curve;  ///< what each joint adds to its inner segment's direction now, world
+    float* tank =
+        nullptr;  ///< of each lane: energy that turning curves have saved; below 0 when `curve` is void
+    float* motion =
+        nullptr;  ///< of each lane: greatest squared speed of a point at the end of the last frame
+    /// Of implicit angular springs beside the length constraint, null otherwise: the tension of each segment
+    /// in the last substep, times h²; in metres, for masses of mean 1.
+    float* tension = nullptr;
+    // Where the system of a strand is solved: LDLᵀ of its matrix, rows of points. Null otherwise.
+    const float* inverseDiagonal = nullptr;
+    const float* lower1 = nullptr;  ///< to the point before
+    const float* lower2 = nullptr;  ///< to the one before that
+    // Of integrators that evaluate forces elsewhere than at the last place, null otherwise; each is a
+    // displacement in one substep but for `start`, a place.
+    Planes start, rate, kick, sum, sumRate;
+};
+
+/// Which points of a block a sphere can reach before they have moved by a margin, found once and used for as
+/// many substeps as it holds (Verlet 1967). Of blocks of few points and spheres only.
+struct NearPoints {
+    static constexpr std::uint32_t kMostPoints = 64;   ///< of a strand
+    static constexpr std::uint32_t kMostPairs = 4096;  ///< where there can be more there is no list
+
+    /// A vector of points, and a sphere that can reach one of them.
+    struct Pair {
+        std::uint32_t which;  ///< the sphere, and from bit 16 on the index of the first lane
+        float reachSquared;   ///< of the sphere's radius and the point's pearl, square metres
+
+        static std::uint32_t join(std::size_t sphere, std::size_t index) {
+            return static_cast<std::uint32_t>(sphere | (index << 16));
+        }
+        std::size_t sphere() const { return which & 0xffffu; }
+        std::size_t index() const { return which >> 16; }
+    };
+
+    bool made = false;
+    std::uint32_t substep;  ///< in which the list was made
+    std::uint32_t pairCount;
+    float margin;                ///< metres that a point can move relative to its root
+    float step;                  ///< metres in a substep that a sphere moves relative to a root, at most
+    Pair pairs[kMostPairs + 1];  ///< those of a point in the order of spheres
+    /// Where the points were when the list was made, relative to their roots.
+    alignas(64) float places[3 * (kMostPoints * kBlockLanes + 16)];
+    std::uint64_t overlaps[64];       ///< of each sphere: those that can overlap it in this frame, as bits
+    std::uint64_t overlapsKnown = 0;  ///< which of them are filled
+};
+
+inline constexpr std::size_t kCopiedRows = 14;
+inline constexpr std::size_t kMostCopied = 64;
+
+/// What the strands of a block go through in one frame; lives on the stack of the thread that runs the block.
+struct alignas(64) LaneFrame {
+    float root[3][kBlockLanes];          ///< at the start of the frame, world
+    float rootStep[3][kBlockLanes];      ///< the root's way in one substep
+    float rotationFrom[4][kBlockLanes];  ///< x, y, z, w
+    float rotationTo[4][kBlockLanes];    ///< by the first substep on the side of rotationFrom
+    float rotation[4][kBlockLanes];      ///< of now; kept by the stage `roots`
+    /// From the rotation of a substep ago to that of now; likewise, where there is BlockView::curve.
+    float turn[4][kBlockLanes];
+    float windRoot[2][3]
+                  [kBlockLanes];  ///< the air's way in one substep at start and end of the frame, at the root
+    float windTip[2][3][kBlockLanes];
+    NearPoints near;  ///< kept by the stage `collision`
+    /// Of strands of at most kMostCopied points: what the pass of bending and lengths reads of them, in its
+    /// own order.
+    alignas(64) float copied[kCopiedRows * kMostCopied * kBlockLanes];
+};
+
+struct MovingSphere {
+    Float3 from_ws;  ///< centre at the start of the frame
+    Float3 step;     ///< the centre's way in one substep
+    float radius;
+};
+
+/// What all blocks share in one substep.
+struct SubstepContext {
+    std::uint32_t index = 0;  ///< substep of the frame, from 0
+    std::uint32_t count = 1;
+    float h = 0.0f;              ///< seconds
+    float velocityShare = 1.0f;  ///< exp(−h/τ)
+    Float3 gravityStep;          ///< g·h²
+    /// Share of the air's speed taken on in a substep: 1 − exp(−airDrag·h), or airDrag·h where an integrator
+    /// evaluates forces.
+    float dragShare = 0.0f;
+    float springStep = 0.0f;    ///< (2π · springFrequency · h)²
+    float penaltyStep = 0.0f;   ///< (2π · penaltyFrequency · h)²
+    float bendRate = 0.0f;      ///< q = bendDampingTime/h + (1 − velocityShare)/4 (docs/engine.md)
+    float tensionShare = 0.0f;  ///< of a substep's change of tension that BlockView::tension takes on
+    std::uint32_t lengthIterations = 0;
+    float maximalExtension = 0.0f;
+    float pearlRoot = 0.0f;
+    float pearlTip = 0.0f;
+    float friction = 0.0f;
+    float restitution = 0.0f;
+    std::span<const MovingSphere> spheres;
+    float slowestSwept = 0.0f;  ///< metres in a substep below which no point passes a sphere unseen
+};
+
+/// Share of a sphere's radius that a point may move in one substep without the swept test looking at it: it
+/// can then cut no deeper than 0.8 % of the radius into it unseen.
+inline constexpr float kUnsweptShare = 0.25f;
+
+using Stage = void (*)(const BlockView& block, LaneFrame& lanes, const SubstepContext& context);
+
+inline constexpr std::size_t kRootRows = 7;  ///< of a block's roots: place x, y, z, rotation x, y, z, w
+
+/// Box and longest way of many roots, lane by lane.
+struct alignas(64) RootBounds {
+    float low[3][kBlockLanes], high[3][kBlockLanes];  ///< world
+    float longest[kBlockLanes];                       ///< square metres, of those that are no cuts
+    bool anyCut = false;                              ///< set by a way that is one
+};
+
+/// What the strands move through.
+enum class Air : std::uint32_t { none, still, moving };
+inline constexpr std::size_t kAirCount = 3;
+
+struct Kernels {
+    Stage stages[kStageCount];  ///< by StageId
+    /// Stages that follow each other, in one pass and with the same bits: damping or none, by 0 and 1, then
+    /// the air's stage, by Air, then gravity or none, then `verlet`.
+    Stage moves[2][kAirCount][2];
+    /// The stages of such a pass one by one, with the same bits: between them `previous` holds the way of the
+    /// substep. First what opens it, then what follows another one, by StageId; null for other stages.
+    Stage partsOfMove[2][kStageCount];
+    /// As `moves`: `angularStraight` or `angular`, then `length`, where tension is kept.
+    Stage bendAndHold[2];
+    /// As `moves`: `sweep`, then `collision` or `collisionBack`.
+    Stage sweepAndCollide[2];
+    /// Multiplies every displacement by `factor`: the speed stays when the length of the substep changes.
+    void (*rescale)(const BlockView& block, float factor);
+    /// Fills windRoot and windTip, for substeps of h seconds, for the frame that begins at the phases `from`
+    /// and ends at `to`.
+    void (*sampleWind)(const BlockView& block, LaneFrame& lanes, float h, const Wind& wind, const float* from,
+                       const float* to);
+    /// Greatest squared displacement of a free point in the last substep, square metres; infinite where a
+    /// point is no number or has left the range of sound places.
+    /// Keeps each lane's in `motion`.
+    float (*fastest)(const BlockView& block, float h);
+    /// Makes the rotations in a block's rows of roots `next` unit length, and adds the roots to `bounds`;
+    /// `before` are those of the last frame. False, and nothing else, where a root is no place: not finite,
+    /// or too far away. A way whose square is above `cut` is none. With `sound` roots it neither looks nor
+    /// changes.
+    bool (*takeRoots)(const float* before, float* next, bool sound, float cut, RootBounds& bounds);
+    const char* target;  ///< name of the instruction set
+    bool fuses;          ///< MulAdd rounds once
+};
+
+/// What a plan makes of a block in a substep, call after call.
+struct Passes {
+    std::array<Stage, kMostStages> calls;
+    std::size_t count = 0;
+};
+/// As few passes over the block as there are kernels for.
+Passes passesOf(std::span<const StageId> stages, const Kernels& kernels);
+/// A call for each stage, with the same bits.
+Passes singlePassesOf(std::span<const StageId> stages, const Kernels& kernels);
+
+/// The kernels for the best instruction set of this machine.
+const Kernels& kernels();
+
+}  // namespace hairloom::runtime

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Colour or absorption from place to place; core/shading/strand_look.h is its reference.
+#ifndef HAIRLOOM_LOOK_HLSLI
+#define HAIRLOOM_LOOK_HLSLI
+#include "shaders/render/curve.hlsli"
+
+cbuffer Look : register(b2) { LookConstants gLook; };
+
+struct StrandPlace {
+    float along;   // 0 root ... 1 tip
+    float random;  // 0 ... 1
+    float streak;
+    float dye;
+    float4 own;  // the strand's own colour; w: 1 where it has one
+};
+
+float gradientAt(float along) { return saturate((along - gLook.root.w) * gLook.tip.w); }
+
+// Linear RGB, or absorption a fibre radius.
+float3 lookAt(StrandPlace p) {
+    const bool absorbs = gLook.streakTip.w > 0.0;
+    const float t = gradientAt(p.along);
+    float3 own = p.own.rgb;
+    if (absorbs) {
+        const float3 depth = gLook.dye.w * log(clamp(own, 0.001, 1.0));
+        own = depth * depth;
+    }
+    const float3 plain = p.own.w > 0.0 ? own : lerp(gLook.root.rgb, gLook.tip.rgb, t);
+    const float3 streaked = lerp(plain, lerp(gLook.streakRoot.rgb, gLook.streakTip.rgb, t), p.streak);
+    const float3 dyed = lerp(streaked, gLook.dye.rgb, p.dye * saturate((p.along - gLook.along.x) * gLook.along.y));
+    const float factor = 1.0 + gLook.streakRoot.w * (2.0 * p.random - 1.0);
+    // Chiang et al. 2016: the logarithm of a colour goes with the root of the absorption.
+    return absorbs ? factor * dyed : pow(max(dyed, 1e-6), sqrt(factor));
+}
+
+// Radiance that strands give off.
+float3 emissionAt(float along) { return lerp(gLook.emissionRoot.rgb, gLook.emissionTip.rgb, gradientAt(along)); }
+#endif

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shaders/render/skin.hlsli"
+
+cbuffer Constants : register(b0) { ShadeConstants gShade; };
+cbuffer Mesh : register(b1) { MeshConstants gMesh; };
+
+struct Input {
+    float4 position : SV_Position;
+    float3 position_ws : POSITION;
+    float3 normal_ws : NORMAL;
+    nointerpolation float3 albedo : ALBEDO;
+};
+
+float4 main(Input i) : SV_Target0 {
+    return float4(skinLight(gShade, gMesh, i.position_ws, i.normal_ws, i.albedo), 1);
+}

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What stands between a point and a light: the head (a depth map) and fibres (one of three kinds of maps).
+#ifndef HAIRLOOM_SHADOWS_HLSLI
+#define HAIRLOOM_SHADOWS_HLSLI
+#include "shaders/render/lights.hlsli"
+#include "shaders/render/opacity.hlsli"
+
+Texture2D<float> gHeadDepth : register(t8);
+StructuredBuffer<uint> gFirstHair : register(t9);  // depths as bits
+StructuredBuffer<uint> gOpacity : register(t10);    // two words a texel
+
+static const float kSkinPatch = 0.05;  // metres: radius of skin that is lit alike
+
+struct Occlusion {
+    float fibres;      // crossed on the way to the light
+    float allFibres;   // from the hair's lit side to its other, or to the head
+    float visibility;  // 0 behind the head ... 1
+    float ends;        // 1 where the light's way ends on the head
+    float ground;      // share of the light that the head, where the light's way ends on it, can send back here
+};
+
+// What a light of its own shadows: nothing where shadows are left out. Light from around is still kept off.
+Occlusion shadowOf(LightConstants light, Occlusion o) {
+    if (light.filtering.w == 0.0) return o;
+    o.fibres = 0.0;
+    o.visibility = 1.0;
+    return o;
+}
+
+// What is left of light after so many fibres that a map counts. A beam of 5 mm crosses numbers of them that vary more than
+// by chance, for hair grows in clumps, and more of it passes than of their mean: `clumping` of them count. The finer the
+// texels, the more of this the map resolves itself, down to single fibres, which let nothing through at all.
+float passedDirectly(LightConstants light, float fibres, float clumping) {
+    return exp(-(clumping + light.filtering.x) * fibres);
+}
+
+// Fibres in front of a depth, as one texel of a map tells; `bias` metres of them are left out.
+float fibresAt(LightConstants light, uint texel, float depth, float bias) {
+    const uint mode = uint(light.range.y);
+    if (mode == HAIRLOOM_SHADOWS_ABSORPTION) {
+        // Dachsbacher and Stamminger 2003 for hair: evenly spread, up to as many as there are from side to side.
+        const float behind = depth - metresBehindNear(light.range, asfloat(gFirstHair[texel])) - bias;
+        return light.layers.y * (1.0 - exp(-max(behind, 0.0) * light.layers.x / max(light.layers.y, 1e-6)));
+    }
+    const float4 layers = unpackShares(uint2(gOpacity[2u * texel], gOpacity[2u * texel + 1u]));
+    if (mode == HAIRLOOM_SHADOWS_OPACITY_MAPS) {
+        const float4 begins = float4(0, light.layers.xyz);
+        const float4 part = saturate((depth - bias - light.range.w - begins) / (light.layers - begins));
+        return dot(layers, part) / OPACITY_UNIT;
+    }
+    return fibresInLayers(layers, light.layers.xyz, depth - bias - (1.0 - layers.a) * light.range.x);
+}
+
+// What the head leaves of the light at `behind` metres behind its first surface: all or nothing, or with `absorption` as
+// light fades in translucent stuff (Dachsbacher and Stamminger 2003; Rünz 2012, section 6.3).
+float throughHead(float behind, float absorption) {
+    if (absorption > 0.0) return exp(-absorption * max(behind, 0.0));
+    return behind < 0.0 ? 1.0 : 0.0;
+}
+
+// Biases: metres towards the light, so that a surface does not shadow itself. `headAbsorption`: see throughHead().
+Occlusion occlusion(LightConstants light, float3 position_ws, float hairBias, float headBias, float headAbsorption) {
+    Occlusion result;
+    result.fibres = 0;
+    result.allFibres = 0;
+    result.visibility = 1;
+    result.ends = 0;
+    result.ground = 0;
+    const float4 clip = mul(light.clipFromWorld, float4(position_ws, 1));
+    const bool hair = light.range.y > 0;
+    const bool head = light.tile.z > 0;
+    if (!(hair || head) || clip.w <= 0) return result;
+    const float2 uv = float2(0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w);
+    if (any(uv < 0.0) || any(uv > 1.0)) return result;
+    const int size = int(light.tile.y);
+    // A quadratic B-spline over 3 x 3 texels of finished comparisons, from `base` on: its mean is half a texel further
+    // than base + f, and so are the middles of texels.
+    const float2 place = uv * light.tile.y - 1.0;
+    const int2 base = int2(floor(place));
+    const float2 f = place - float2(base);
+    const float depth = metresBehindNear(light.range, clip.z / clip.w);
+    const float3 wx = float3(0.5 * (1 - f.x) * (1 - f.x), 0.5 + f.x * (1 - f.x), 0.5 * f.x * f.x);
+    const float3 wy = float3(0.5 * (1 - f.y) * (1 - f.y), 0.5 + f.y * (1 - f.y), 0.5 * f.y * f.y);
+    float fibres = 0;
+    float visible = 0;
+    float all = 0;
+    float ends = 0;
+    float behind = 0;   // metres of the head behind the point
+    float2 rise = 0;    // of the head's depth from texel to texel
+    for (int y = 0; y < 3; ++y) {
+        for (int x = 0; x < 3; ++x) {
+            const int2 at = clamp(base + int2(x, y), int2(0, 0), int2(size - 1, size - 1));
+            const int3 where = int3(at.x + int(light.tile.x), at.y, 0);
+            const uint texel = uint(at.y) * uint(light.tile.w) + uint(where.x);
+            const float w = wx[x] * wy[y];
+            const float headDepth = metresBehindNear(light.range, head ? gHeadDepth.Load(where) : 1.0);
+            if (hair) {
+                fibres += w * fibresAt(light, texel, depth, hairBias);
+                all += w * fibresAt(light, texel, headDepth, 0);
+            }
+            if (head) {
+                visible += w * throughHead(depth - headDepth - headBias, headAbsorption);
+                ends += w * (headDepth < light.range.x ? 1.0 : 0.0);
+                behind += w * max(headDepth - depth, 0.0);
+                rise += float2(x - 1, y - 1) * (headDepth / 6.0);
+            }
+        }
+    }
+    result.fibres = fibres;
+    result.allFibres = max(all, fibres);
+    result.visibility = head ? visible : 1.0;
+    // A slope gets less light on its area; and from afar the lit skin is a smaller part of what lies around.
+    const float texelSize = light.filtering.y;
+    const float facing = texelSize * rsqrt(texelSize * texelSize + dot(rise, rise));
+    result.ends = ends;
+    result.ground = ends * facing * kSkinPatch * kSkinPatch / (kSkinPatch * kSkinPatch + behind * behind);
+    return result;
+}
+#endif

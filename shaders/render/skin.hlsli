@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Skin: diffuse light that wraps a little around the terminator, a soft highlight, shadows of head and hair.
+#include "shaders/render/layer_light.hlsli"
+#include "shaders/render/shadows.hlsli"
+#include "shaders/render/sky_maps.hlsli"
+
+// Of the hair over the skin, where it is of fibres and not Kajiya-Kay's.
+FibreMoments hairOverSkin(ShadeConstants shade) {
+    FibreMoments fibre;
+    fibre.albedo = shade.sinking.rgb;
+    fibre.first = shade.turning.rgb;
+    fibre.second = shade.straight.rgb;
+    return fibre;
+}
+
+// The share of light that reaches the skin through so many fibres, with what the skin sends back into the hair and the
+// hair returns once more.
+float3 throughHair(ShadeConstants shade, LightConstants light, float fibres, float3 albedo) {
+    const float counted = shade.sinking.w * fibres;
+    if (shade.turning.w == 0) return exp(-shade.sinking.rgb * counted);
+    const LayerLight below = lightInLayer(hairOverSkin(shade), counted, counted, albedo);
+    const float3 all = below.onward + below.fluence / 3.14159265 + 0.5 * below.flux;
+    return max(all - exp(-counted), 0.0) + passedDirectly(light, fibres, shade.sinking.w);
+}
+
+// Light from around that hair and head let through, weighted by the cosine; with what hair over the skin sends back to it.
+float3 skyOnSkin(ShadeConstants shade, float3 position_ws, float3 normal, float3 albedo) {
+    const float3 plain = environmentOnSkin(shade, normal);
+    if (!mapsTellTheSky(shade)) return plain;
+    const bool fibres = shade.turning.w > 0.0;
+    const Stopped stopped = stoppedBy(hairOverSkin(shade));
+    const float3 stopping = fibres ? stopped.share : shade.sinking.rgb;
+    const float3 sentOn = fibres ? 1.0 - stopped.lost : 0.0;
+    float3 all = 0;
+    float3 passed = 0;
+    float3 caught = 0;
+    float weight = 0;
+    for (uint i = 0; i < HAIRLOOM_SKY_MAPS; ++i) {
+        const LightConstants map = gSkyMaps.maps[i];
+        const float3 d = map.toLight_ws.xyz;
+        const float nl = dot(normal, d);
+        if (nl <= 0.0) continue;
+        const float lift = map.filtering.y;
+        const SkyRay ray = skyRay(map, position_ws + normal * lift, -lift * nl, lift);
+        const float3 through = exp(-(shade.sinking.w + map.filtering.x) * ray.before * stopping);
+        const float3 light = nl * environmentFrom(shade, d);
+        all += light;
+        passed += light * ray.open * through;
+        caught += nl * ray.open * (1.0 - through);
+        weight += nl;
+    }
+    caught /= max(weight, 1e-6);
+    return plain * (passed / max(all, 1e-6)) / (1.0 - 0.5 * caught * sentOn * (1.0 + albedo));
+}
+
+float3 skinLight(ShadeConstants shade, MeshConstants mesh, float3 position_ws, float3 normal_ws, float3 albedo) {
+    const float kPi = 3.14159265;
+    const float3 toView = normalize(shade.eye_ws.xyz - position_ws * shade.eye_ws.w);
+    float3 normal = normalize(normal_ws);
+    if (dot(normal, toView) < 0) normal = -normal;
+    float3 colour = 0;
+    for (uint k = 0; k < shade.counts.y; ++k) {
+        const LightConstants light = shade.lights[k];
+        const float3 toLight = directionToLight(light, position_ws);
+        const float nl = dot(normal, toLight);
+        // Lifted, so that the head does not shadow itself; hair counts down to the skin.
+        const float lift = 0.002;
+        const Occlusion shadow =
+            shadowOf(light, occlusion(light, position_ws + normal * lift, -lift * saturate(nl), 0.002, 0.0));
+        // Red light travels farther under the skin. The denominator keeps the energy of a Lambertian.
+        const float3 wrap = mesh.skin.x * float3(1, 0.5, 0.35);
+        const float3 diffuse = saturate((nl + wrap) / ((1 + wrap) * (1 + wrap)));
+        const float3 middle = normalize(toLight + toView);
+        const float fresnel = 0.04 + 0.96 * pow(1.0 - saturate(dot(toView, middle)), 5.0);
+        const float m = mesh.skin.z;
+        const float specular = mesh.skin.y * fresnel * (m + 8.0) / (8.0 * kPi) *
+                               pow(saturate(dot(normal, middle)), m) * saturate(nl);
+        const float lit = lerp(0.0, shadow.visibility, saturate(nl * 8.0 + 0.6));
+        colour += irradianceOf(light, position_ws) * (albedo / kPi * diffuse + specular) *
+                  (lit * throughHair(shade, light, shadow.fibres, albedo));
+    }
+    if (hasEnvironment(shade)) colour += albedo * skyOnSkin(shade, position_ws, normal, albedo);
+    return colour;
+}

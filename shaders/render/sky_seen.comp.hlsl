@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How much of the sky and of the head the points of strands see. Neither lights nor the camera change it.
+#include "shaders/render/sky_maps.hlsli"
+
+#define EACH 16u  // so many threads share a strand
+
+cbuffer Constants : register(b0) { ShadeConstants gShade; };
+StructuredBuffer<CurvePoint> gCurve : register(t0);
+StructuredBuffer<StrandHeader> gStrands : register(t1);
+RWStructuredBuffer<SkyPoint> gSeen : register(u0);
+
+[numthreads(64, 1, 1)]
+void main(uint3 id : SV_DispatchThreadID) {
+    if (id.x >= gShade.counts.x) return;
+    const StrandHeader strand = gStrands[id.x];
+    const uint curve = strand.segmentsBefore * gShade.counts.w + id.x;
+    for (uint i = id.y; i < strand.pointCount; i += EACH) {
+        const float3 position_ws = gCurve[curve + i * gShade.counts.w].position_ws.xyz;
+        gSeen[strand.segmentsBefore + id.x + i] = skySeen(gShade, position_ws);
+    }
+}

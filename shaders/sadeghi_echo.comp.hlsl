@@ -1,3 +1,0 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "shaders/sadeghi.hlsli"
-#include "shaders/fibre_echo.hlsli"

@@ -1,3 +1,0 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#define HAIRLOOM_LOOK
-#include "shaders/shade_fibre.hlsli"

@@ -1,4 +1,0 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#define HAIRLOOM_SADEGHI
-#define HAIRLOOM_DUAL
-#include "shaders/shade_fibre.hlsli"

@@ -1,9 +1,0 @@
-// SPDX-License-Identifier: MIT
-#include "shaders/simulation/follow_types.h"
-#include "shaders/simulation/math.hlsli"
-
-cbuffer Follow : register(b0) { FollowConstants gFollow; };
-
-// Of each guide four rows of `points`: places, and of its wisp the centres and both axes.
-#define FOLLOW_ROWS 4
-uint rowOf(uint guide, uint row, uint p) { return (guide * FOLLOW_ROWS + row) * gFollow.points + p; }

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/scene/sample.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/groom/groom_hash.h"
+#include "core/groom/validate.h"
+#include "core/scene/groom_scene.h"
+#include "core/scene/motions.h"
+#include "tests/support/source_dir.h"
+
+namespace hairloom {
+namespace {
+
+const std::filesystem::path kSamples = sourceDir() / "samples";
+
+TEST(SampleTest, TheFolderIsFoundFromBelowAndNotElsewhere) {
+    EXPECT_EQ(findSamples(kSamples.parent_path() / "no/such/folder/bin"), kSamples);
+    EXPECT_EQ(findSamples("/"), std::filesystem::path());
+}
+
+TEST(SampleTest, ASampleIsWholeAndTheSameEachTime) {
+    EXPECT_THAT(sampleNames(kSamples), testing::ElementsAre("long", "short", "shoulder"));
+    const auto made = makeSample(kSamples, "short");
+    ASSERT_TRUE(made) << made.error().message();
+    EXPECT_EQ(made->strandCount(), 4000u);
+    EXPECT_EQ(made->pointCount(), 4000u * 24);
+    EXPECT_FALSE(made->spheres.empty());
+    EXPECT_FALSE(hasErrors(validate(*made)));
+    const auto again = makeSample(kSamples, "short");
+    ASSERT_TRUE(again);
+    EXPECT_EQ(contentHash(*again), contentHash(*made));
+    EXPECT_FALSE(makeSample(kSamples, "no such style"));
+}
+
+TEST(GroomSceneTest, PosingMovesHeadAndHairAndBackAgain) {
+    auto groom = makeSample(kSamples, "short");
+    ASSERT_TRUE(groom);
+    groom->interpolation.followPerGuide = 2;
+    auto scene = GroomScene::make(*groom, nullptr, nullptr, {}, {});
+    ASSERT_TRUE(scene) << scene.error().message();
+    const auto points = [&] {
+        const auto view = scene->scene().strands.front().positions_ws;
+        return std::vector<Vec3f>(view.begin(), view.end());
+    };
+    const std::vector<Vec3f> rest = points();
+    EXPECT_EQ(rest.size(), groom->pointCount() * groom->interpolation.followPerGuide);
+    HeadPose pose;
+    pose.head_ws = Eigen::Translation3f(0, 0, 1) * Eigen::Isometry3f::Identity();
+    std::vector<Vec3f> moved(groom->positions().begin(), groom->positions().end());
+    for (Vec3f& point : moved) point = pose.head_ws * point;
+    ASSERT_TRUE(scene->pose(moved, pose));
+    const std::vector<Vec3f> posed = points();
+    for (std::size_t p = 0; p < rest.size(); p += 97) {
+        EXPECT_LT((posed[p] - rest[p] - Vec3f(0, 0, 1)).norm(), 1e-4f) << p;
+    }
+    EXPECT_LT((scene->scene().meshes.front().positions_ws[0] - groom->scalp->positions()[0] - Vec3f(0, 0, 1))
+                  .norm(),
+              1e-5f);
+    ASSERT_TRUE(scene->pose(groom->positions(), {}));
+    EXPECT_EQ(points(), rest);
+}
+
+TEST(MotionsTest, ClipsComeFromTheGroomsOwnFile) {
+    const auto groom = makeSample(kSamples, "short");
+    ASSERT_TRUE(groom);
+    const auto actor = loadActor({}, *groom);
+    ASSERT_TRUE(actor) << actor.error().message();
+    EXPECT_FALSE((*actor)->clips().empty());
+    EXPECT_TRUE(makeMotion("nod", {}, *groom));
+    EXPECT_TRUE(makeMotion("clip:nod_and_turn", {}, *groom));
+    EXPECT_FALSE(makeMotion("clip:no_such", {}, *groom));
+    EXPECT_FALSE(makeMotion("clip:nod_and_turn", {}, Groom()));
+}
+
+}  // namespace
+}  // namespace hairloom

@@ -1,0 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#define HAIRLOOM_LOOK
+#include "shaders/render/marschner.hlsli"
+#include "tests/shaders/fibre_echo.hlsli"
