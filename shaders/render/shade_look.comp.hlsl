@@ -1,3 +1,3 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #define HAIRLOOM_LOOK
-#include "shaders/shade.comp.hlsl"
+#include "shaders/render/shade.comp.hlsl"
