@@ -3,16 +3,12 @@
 
 namespace hairloom::cli {
 
-CLI::App& Jobs::add(const std::string& name, const std::string& does, const std::string& example,
-                    std::function<Result<Report>()> run) {
-    CLI::App* job = app_.add_subcommand(name, does);
-    job->footer("Example:\n  hairloom-cli " + name + " " + example);
-    job->parse_complete_callback([this, run = std::move(run)] { chosen_ = run; });
-    return *job;
-}
-
-Result<Report> Jobs::run() const {
-    return chosen_();
+Jobs::Jobs(CLI::App& app) {
+    for (const Job& job : jobs()) {
+        CLI::App* const command = app.add_subcommand(job.name, job.does);
+        command->footer("Example:\n  hairloom-cli " + job.name + " " + job.example);
+        command->parse_complete_callback([this, run = job.declare(*command)] { chosen_ = run; });
+    }
 }
 
 }  // namespace hairloom::cli

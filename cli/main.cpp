@@ -39,8 +39,8 @@ std::string joined(int argc, char** argv) {
     return text;
 }
 
-int runChosenJob(const hairloom::cli::Jobs& jobs, bool json) {
-    const auto report = jobs.run();
+int runChosenJob(const hairloom::cli::Jobs& jobs, const std::string& commandLine, bool json) {
+    const auto report = jobs.run(commandLine);
     if (!report) {
         fmt::print(stderr, "error: {}\n", report.error().message());
         return kFailed;
@@ -71,24 +71,7 @@ int main(int argc, char** argv) {
         ->check(CLI::Range(0, 1024));
     app.add_flag("--quiet", quiet, "No warnings on standard error");
 
-    hairloom::cli::Jobs jobs(app);
-    hairloom::cli::addCreateJob(jobs);
-    hairloom::cli::addInfoJob(jobs);
-    hairloom::cli::addImportJob(jobs);
-    hairloom::cli::addExportJob(jobs);
-    hairloom::cli::addValidateJob(jobs);
-    hairloom::cli::addGroomJob(jobs);
-    hairloom::cli::addSpheresJob(jobs);
-    hairloom::cli::addSetJob(jobs);
-    hairloom::cli::addSimulateJob(jobs);
-    hairloom::cli::addRenderJob(jobs);
-    hairloom::cli::addDevicesJob(jobs);
-    hairloom::cli::addBenchJob(jobs);
-    hairloom::cli::addAccuracyJob(jobs);
-    hairloom::cli::addEffectsJob(jobs);
-    hairloom::cli::addBudgetJob(jobs);
-    hairloom::cli::addStabilityJob(jobs);
-    jobs.setCommandLine(joined(argc, argv));
+    const hairloom::cli::Jobs jobs(app);
 
     try {
         app.parse(argc, argv);
@@ -98,7 +81,7 @@ int main(int argc, char** argv) {
     if (quiet) hairloom::log::setThreshold(hairloom::log::Level::Error);
     try {
         hairloom::setThreadCount(threads);
-        return runChosenJob(jobs, json);
+        return runChosenJob(jobs, joined(argc, argv), json);
     } catch (const std::bad_alloc&) {
         fmt::print(stderr, "error: out of memory\n");
     } catch (const std::exception& error) {

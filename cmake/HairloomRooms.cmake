@@ -46,6 +46,58 @@ function(hairloom_precompiled_for_ccache target)
     endif()
 endfunction()
 
+# hairloom_registry(TARGET LIST HEADER header ENTRY type FUNCTION pattern FILES glob... [NAMESPACE namespace] [EXCEPT file...])
+# Adds the files to the target and writes `const std::vector<ENTRY>& LIST()`, which the header declares: what each file's function
+# returns, in order of file name. The function is named by the file: with @name@Job, jobs/load_test.cpp defines `Job loadTestJob()`
+# (@Name@ gives LoadTest). A new file is found by itself; EXCEPT names those that make no entry. Nothing relies on static objects.
+function(hairloom_registry target list)
+    cmake_parse_arguments(ARG "" "HEADER;ENTRY;FUNCTION;NAMESPACE" "FILES;EXCEPT" ${ARGN})
+    if(NOT ARG_NAMESPACE)
+        set(ARG_NAMESPACE hairloom)
+    endif()
+    file(GLOB files RELATIVE "${CMAKE_CURRENT_SOURCE_DIR}" CONFIGURE_DEPENDS ${ARG_FILES})
+    list(REMOVE_ITEM files ${ARG_EXCEPT})
+    set(declared)
+    set(added)
+    foreach(file IN LISTS files)
+        get_filename_component(stem "${file}" NAME_WE)
+        string(REPLACE "_" ";" words "${stem}")
+        set(Name)
+        foreach(word IN LISTS words)
+            string(SUBSTRING "${word}" 0 1 first)
+            string(SUBSTRING "${word}" 1 -1 rest)
+            string(TOUPPER "${first}" first)
+            string(APPEND Name "${first}${rest}")
+        endforeach()
+        string(SUBSTRING "${Name}" 0 1 first)
+        string(SUBSTRING "${Name}" 1 -1 rest)
+        string(TOLOWER "${first}" first)
+        string(REPLACE "@name@" "${first}${rest}" function "${ARG_FUNCTION}")
+        string(REPLACE "@Name@" "${Name}" function "${function}")
+        string(APPEND declared "${ARG_ENTRY} ${function}();  // ${file}\n")
+        string(APPEND added "        all.push_back(${function}());\n")
+    endforeach()
+    set(generated "${CMAKE_CURRENT_BINARY_DIR}/${list}_registry.cpp")
+    file(CONFIGURE OUTPUT "${generated}" @ONLY CONTENT [[
+// Written by hairloom_registry (cmake/HairloomRooms.cmake) from the names of files.
+#include "@ARG_HEADER@"
+
+namespace @ARG_NAMESPACE@ {
+
+@declared@
+const std::vector<@ARG_ENTRY@>& @list@() {
+    static const std::vector<@ARG_ENTRY@> entries = [] {
+        std::vector<@ARG_ENTRY@> all;
+@added@        return all;
+    }();
+    return entries;
+}
+
+}  // namespace @ARG_NAMESPACE@
+]])
+    target_sources(${target} PRIVATE ${files} "${generated}")
+endfunction()
+
 # hairloom_program(NAME SOURCES file... LINK target...)
 # On Windows all text of a program is UTF-8, by its manifest.
 function(hairloom_program name)

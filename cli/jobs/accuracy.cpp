@@ -154,13 +154,8 @@ Result<Report> accuracy(const AccuracyOptions& options, const std::string& comma
     return report;
 }
 
-}  // namespace
-
-void addAccuracyJob(Jobs& jobs) {
+JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<AccuracyOptions>();
-    CLI::App& job = jobs.add("accuracy", "Measure what accuracy costs: time and error for a grid of settings",
-                             "hair.hairloom -o accuracy --motion nod --wind 3,0,1 --substeps 1,2,4,8,16",
-                             [options, &jobs] { return accuracy(*options, jobs.commandLine()); });
     addMotionOptions(job, options->motion);
     job.add_option("-o,--output", options->output, "Folder for report.html, data.csv and the drawings")
         ->required();
@@ -179,6 +174,14 @@ void addAccuracyJob(Jobs& jobs) {
     job.add_option("--repeat", options->repeats, "Timed runs of each setting")->check(CLI::Range(1, 1000));
     addTruthOptions(job, options->truth);
     job.add_option("--seed", options->seed, "Another seed draws other strands");
+    return [options](const std::string& commandLine) { return accuracy(*options, commandLine); };
+}
+
+}  // namespace
+
+Job accuracyJob() {
+    return {"accuracy", "Measure what accuracy costs: time and error for a grid of settings",
+            "hair.hairloom -o accuracy --motion nod --wind 3,0,1 --substeps 1,2,4,8,16", declare};
 }
 
 }  // namespace hairloom::cli

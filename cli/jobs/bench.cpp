@@ -122,13 +122,8 @@ Result<Report> bench(const BenchOptions& options, const std::string& command) {
     return Report{{"name", options.name}, {"rows", std::move(rows)}};
 }
 
-}  // namespace
-
-void addBenchJob(Jobs& jobs) {
+JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<BenchOptions>();
-    CLI::App& job =
-        jobs.add("bench", "Measure a part of Hairloom on this machine; medians of repeated runs",
-                 "sim --quick --json", [options, &jobs] { return bench(*options, jobs.commandLine()); });
     job.add_option("name", options->name, "What to measure")
         ->required()
         ->check(CLI::IsMember({"brush", "gpu-sim", "interpolate", "io", "material", "place", "project",
@@ -157,6 +152,14 @@ void addBenchJob(Jobs& jobs) {
         options->deviceGiven = device->count() > 0;
         if (options->deviceGiven) options->render.device = options->device;
     });
+    return [options](const std::string& commandLine) { return bench(*options, commandLine); };
+}
+
+}  // namespace
+
+Job benchJob() {
+    return {"bench", "Measure a part of Hairloom on this machine; medians of repeated runs",
+            "sim --quick --json", declare};
 }
 
 }  // namespace hairloom::cli

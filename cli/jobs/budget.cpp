@@ -86,14 +86,8 @@ Result<Report> budget(const BudgetJobOptions& options) {
     return report;
 }
 
-}  // namespace
-
-void addBudgetJob(Jobs& jobs) {
+JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<BudgetJobOptions>();
-    CLI::App& job =
-        jobs.add("budget", "Find the most exact settings that cost at most so many milliseconds a frame here",
-                 "hair.hairloom --ms 0.5 --motion nod --wind 3,0,1 -o fast.hairloom",
-                 [options] { return budget(*options); });
     addMotionOptions(job, options->motion);
     job.add_option("--ms", options->milliseconds, "Milliseconds a frame for the engine and all strands")
         ->required()
@@ -105,6 +99,14 @@ void addBudgetJob(Jobs& jobs) {
     job.add_option("--repeat", options->repeats, "Timed runs of each candidate")->check(CLI::Range(1, 1000));
     addTruthOptions(job, options->truth);
     job.add_option("--seed", options->seed, "Another seed draws other strands");
+    return [options](const std::string&) { return budget(*options); };
+}
+
+}  // namespace
+
+Job budgetJob() {
+    return {"budget", "Find the most exact settings that cost at most so many milliseconds a frame here",
+            "hair.hairloom --ms 0.5 --motion nod --wind 3,0,1 -o fast.hairloom", declare};
 }
 
 }  // namespace hairloom::cli

@@ -93,14 +93,8 @@ Result<Report> create(const CreateOptions& options) {
     return report;
 }
 
-}  // namespace
-
-void addCreateJob(Jobs& jobs) {
+JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<CreateOptions>();
-    CLI::App& job = jobs.add(
-        "create", "Select a scalp on a head mesh, place roots and grow strands along its normals",
-        "--mesh head.obj --scalp group:scalp --count 3000 --placement dart --length 0.25 -o hair.hairloom",
-        [options] { return create(*options); });
     job.add_option("--mesh", options->mesh, "Head mesh: OBJ, PLY, STL, FBX, glTF or GLB")->required();
     job.add_option(
         "--scalp", options->scalp,
@@ -122,6 +116,16 @@ void addCreateJob(Jobs& jobs) {
     job.final_callback([count, density] {
         if (count->count() + density->count() == 0) throw CLI::RequiredError("--count or --density");
     });
+    return [options](const std::string&) { return create(*options); };
+}
+
+}  // namespace
+
+Job createJob() {
+    return {
+        "create", "Select a scalp on a head mesh, place roots and grow strands along its normals",
+        "--mesh head.obj --scalp group:scalp --count 3000 --placement dart --length 0.25 -o hair.hairloom",
+        declare};
 }
 
 }  // namespace hairloom::cli

@@ -28,10 +28,14 @@ Result<Report> devices() {
     return Report{{"devices", std::move(rows)}};
 }
 
+JobRun declare(CLI::App&) {
+    return [](const std::string&) { return devices(); };
+}
+
 }  // namespace
 
-void addDevicesJob(Jobs& jobs) {
-    jobs.add("devices", "List the GPUs and what each supports", "--json", devices);
+Job devicesJob() {
+    return {"devices", "List the GPUs and what each supports", "--json", declare};
 }
 
 }  // namespace hairloom::cli

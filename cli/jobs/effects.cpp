@@ -65,16 +65,19 @@ Result<Report> effects(const EffectsOptions& options) {
     return report;
 }
 
-}  // namespace
-
-void addEffectsJob(Jobs& jobs) {
+JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<EffectsOptions>();
-    CLI::App& job =
-        jobs.add("effects", "Say which effects the scene calls for, why, and what each costs on and off",
-                 "hair.hairloom --motion nod --wind 3,0,1", [options] { return effects(*options); });
     addMotionOptions(job, options->motion);
     job.add_option("--repeat", options->repeats, "Timed runs with and without each effect")
         ->check(CLI::Range(1, 1000));
+    return [options](const std::string&) { return effects(*options); };
+}
+
+}  // namespace
+
+Job effectsJob() {
+    return {"effects", "Say which effects the scene calls for, why, and what each costs on and off",
+            "hair.hairloom --motion nod --wind 3,0,1", declare};
 }
 
 }  // namespace hairloom::cli

@@ -37,13 +37,8 @@ Result<Report> exportAsset(const ExportOptions& options) {
     return report;
 }
 
-}  // namespace
-
-void addExportJob(Jobs& jobs) {
+JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<ExportOptions>();
-    CLI::App& job =
-        jobs.add("export", "Write an asset for another program, read it back and compare",
-                 "hair.hairloom --format tfx -o hair.tfx", [options] { return exportAsset(*options); });
     job.add_option("groom", options->input, "Groom to export")->required();
     job.add_option("--format", options->format, "Yuksel .hair or TressFX .tfx")
         ->required()
@@ -53,6 +48,14 @@ void addExportJob(Jobs& jobs) {
     job.add_option("--points", options->points, "Resample every strand to so many points; 0 keeps them")
         ->check(CLI::Range(0, 1024));
     job.add_option("-o,--output", options->output, "File to write; the report goes beside it")->required();
+    return [options](const std::string&) { return exportAsset(*options); };
+}
+
+}  // namespace
+
+Job exportJob() {
+    return {"export", "Write an asset for another program, read it back and compare",
+            "hair.hairloom --format tfx -o hair.tfx", declare};
 }
 
 }  // namespace hairloom::cli

@@ -35,16 +35,19 @@ Result<Report> replay(const GroomOptions& options) {
                   {"output", options.output}};
 }
 
-}  // namespace
-
-void addGroomJob(Jobs& jobs) {
+JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<GroomOptions>();
-    CLI::App& job =
-        jobs.add("groom", "Replay a list of grooming operations on a groom",
-                 "hair.hairloom --script bob.json -o bob.hairloom", [options] { return replay(*options); });
     job.add_option("groom", options->input, "Groom to work on")->required();
     job.add_option("--script", options->script, "Operations (docs/formats/script.md)")->required();
     job.add_option("-o,--output", options->output, "Project to write")->required();
+    return [options](const std::string&) { return replay(*options); };
+}
+
+}  // namespace
+
+Job groomJob() {
+    return {"groom", "Replay a list of grooming operations on a groom",
+            "hair.hairloom --script bob.json -o bob.hairloom", declare};
 }
 
 }  // namespace hairloom::cli

@@ -95,13 +95,8 @@ Result<Report> import(const ImportOptions& options) {
     return report;
 }
 
-}  // namespace
-
-void addImportJob(Jobs& jobs) {
+JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<ImportOptions>();
-    CLI::App& job =
-        jobs.add("import", "Bring in strands from another program; the format is found from the content",
-                 "hair.tfx --mesh head.obj -o hair.hairloom", [options] { return import(*options); });
     job.add_option("file", options->file, "Cinema 4D hair OBJ, OBJ lines, TressFX .tfx or Yuksel .hair")
         ->required();
     job.add_option("--mesh", options->mesh, "Head mesh to bind the roots to");
@@ -118,6 +113,14 @@ void addImportJob(Jobs& jobs) {
     job.add_option("--particle", options->particle, "Where a Cinema 4D ribbon's particles are")
         ->check(CLI::IsMember({"edge", "centre"}));
     job.add_option("-o,--output", options->output, "Project to write")->required();
+    return [options](const std::string&) { return import(*options); };
+}
+
+}  // namespace
+
+Job importJob() {
+    return {"import", "Bring in strands from another program; the format is found from the content",
+            "hair.tfx --mesh head.obj -o hair.hairloom", declare};
 }
 
 }  // namespace hairloom::cli

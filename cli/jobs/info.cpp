@@ -47,17 +47,20 @@ Result<Report> info(const std::string& path, const std::string& unit) {
     return report;
 }
 
-}  // namespace
-
-void addInfoJob(Jobs& jobs) {
+JobRun declare(CLI::App& job) {
     struct Options {
         std::string file, unit;
     };
     const auto options = std::make_shared<Options>();
-    CLI::App& job = jobs.add("info", "Say what is in a project, hair file or mesh", "hair.hairloom --json",
-                             [options] { return info(options->file, options->unit); });
     job.add_option("file", options->file, "Project, hair file or mesh")->required();
     addUnitOption(job, options->unit);
+    return [options](const std::string&) { return info(options->file, options->unit); };
+}
+
+}  // namespace
+
+Job infoJob() {
+    return {"info", "Say what is in a project, hair file or mesh", "hair.hairloom --json", declare};
 }
 
 }  // namespace hairloom::cli

@@ -336,13 +336,8 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
     return report;
 }
 
-}  // namespace
-
-void addRenderJob(Jobs& jobs) {
+JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<RenderJobOptions>();
-    CLI::App& job = jobs.add("render", "Make a picture without a window",
-                             "hair.hairloom -o hair.png --size 1024x1024 --camera three-quarter",
-                             [options] { return renderToFile(*options); });
     job.add_option("groom", options->input, "Project or hair file")->required();
     job.add_option("--size", options->size, "Pixels WxH; 1024x1024 where neither this nor the view says");
     job.add_option("--camera", options->camera, "From where")
@@ -416,6 +411,14 @@ void addRenderJob(Jobs& jobs) {
     job.add_option("-o,--output", options->output, "PNG to write; of several pictures each gets its number")
         ->required();
     job.final_callback([options, device] { options->chooseDevice = device->count() > 0; });
+    return [options](const std::string&) { return renderToFile(*options); };
+}
+
+}  // namespace
+
+Job renderJob() {
+    return {"render", "Make a picture without a window",
+            "hair.hairloom -o hair.png --size 1024x1024 --camera three-quarter", declare};
 }
 
 }  // namespace hairloom::cli

@@ -134,13 +134,8 @@ Result<Report> list() {
     return Report{{"fields", std::move(rows)}, {"presets", presetRows()}};
 }
 
-}  // namespace
-
-void addSetJob(Jobs& jobs) {
+JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<SetOptions>();
-    CLI::App& job = jobs.add("set", "Change settings of a groom by name",
-                             "hair.hairloom simulation.windSpeed=4 -o hair.hairloom",
-                             [options] { return options->list ? list() : set(*options); });
     auto* listing = job.add_flag("--list", options->list,
                                  "Show every field with unit, range, default and meaning, and the presets");
     auto* input = job.add_option("groom", options->input, "Groom to change")->excludes(listing);
@@ -161,6 +156,14 @@ void addSetJob(Jobs& jobs) {
         if (listing->count() == 0 && input->count() * output->count() == 0)
             throw CLI::RequiredError("groom and -o");
     });
+    return [options](const std::string&) { return options->list ? list() : set(*options); };
+}
+
+}  // namespace
+
+Job setJob() {
+    return {"set", "Change settings of a groom by name",
+            "hair.hairloom simulation.windSpeed=4 -o hair.hairloom", declare};
 }
 
 }  // namespace hairloom::cli

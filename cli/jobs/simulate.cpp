@@ -197,14 +197,8 @@ Result<Report> simulate(const SimulateOptions& options) {
     return report;
 }
 
-}  // namespace
-
-void addSimulateJob(Jobs& jobs) {
+JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<SimulateOptions>();
-    CLI::App& job =
-        jobs.add("simulate", "Run the simulation and say how it went",
-                 "hair.hairloom --frames 120 --fps 60 --wind 3,0,1 --motion nod --record hair.frames",
-                 [options] { return simulate(*options); });
     job.add_option("groom", options->input, "Project or hair file")->required();
     job.add_option("--frames", options->frames, "Frames to simulate")->check(CLI::Range(1, 1'000'000));
     job.add_option("--fps", options->framesPerSecond, "Frames per second")->check(CLI::Range(10.0, 1000.0));
@@ -227,6 +221,14 @@ void addSimulateJob(Jobs& jobs) {
     job.add_option("--against", options->against,
                    "Record of the same groom and frames to tell the distance from");
     job.add_option("-o,--output", options->output, "Project to write with the hair as it ends");
+    return [options](const std::string&) { return simulate(*options); };
+}
+
+}  // namespace
+
+Job simulateJob() {
+    return {"simulate", "Run the simulation and say how it went",
+            "hair.hairloom --frames 120 --fps 60 --wind 3,0,1 --motion nod --record hair.frames", declare};
 }
 
 }  // namespace hairloom::cli

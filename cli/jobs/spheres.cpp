@@ -50,13 +50,8 @@ Result<Report> placeSpheres(const SpheresOptions& options) {
     return report;
 }
 
-}  // namespace
-
-void addSpheresJob(Jobs& jobs) {
+JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<SpheresOptions>();
-    CLI::App& job =
-        jobs.add("spheres", "Place collision spheres", "hair.hairloom --from spheres.json -o hair.hairloom",
-                 [options] { return placeSpheres(*options); });
     job.add_option("groom", options->input, "Groom to add them to")->required();
     CLI::App& source = *job.add_option_group("source");
     source.add_option("--from", options->from,
@@ -69,6 +64,14 @@ void addSpheresJob(Jobs& jobs) {
     job.add_option("--seed", options->seed, "fit: of the places where the skin is looked at");
     job.add_flag("--replace", options->replace, "Remove the spheres that are there");
     job.add_option("-o,--output", options->output, "Project to write")->required();
+    return [options](const std::string&) { return placeSpheres(*options); };
+}
+
+}  // namespace
+
+Job spheresJob() {
+    return {"spheres", "Place collision spheres", "hair.hairloom --from spheres.json -o hair.hairloom",
+            declare};
 }
 
 }  // namespace hairloom::cli

@@ -106,14 +106,8 @@ Result<Report> stability(const StabilityJobOptions& options, const std::string& 
     return report;
 }
 
-}  // namespace
-
-void addStabilityJob(Jobs& jobs) {
+JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<StabilityJobOptions>();
-    CLI::App& job = jobs.add(
-        "stability", "Run the hard cases of the strand engine and map where each integrator is stable",
-        "-o stability --integrators verlet,rk4",
-        [options, &jobs] { return stability(*options, jobs.commandLine()); });
     job.add_option("-o,--output", options->output,
                    "Folder for report.html, cases.json, cases.csv, cases.md and the maps")
         ->required();
@@ -127,6 +121,14 @@ void addStabilityJob(Jobs& jobs) {
     job.add_option("--steps", options->steps, "Steps of a cell")->check(CLI::Range(40, 100'000));
     job.add_option("--steps-at-rest", options->stepsAtRest, "Substeps of the case at rest")
         ->check(CLI::Range(8, 100'000'000));
+    return [options](const std::string& commandLine) { return stability(*options, commandLine); };
+}
+
+}  // namespace
+
+Job stabilityJob() {
+    return {"stability", "Run the hard cases of the strand engine and map where each integrator is stable",
+            "-o stability --integrators verlet,rk4", declare};
 }
 
 }  // namespace hairloom::cli

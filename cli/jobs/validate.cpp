@@ -18,17 +18,20 @@ Result<Report> validateFile(const std::string& path, const std::string& unit) {
                   {"findings", toReport(opened->findings)}};
 }
 
-}  // namespace
-
-void addValidateJob(Jobs& jobs) {
+JobRun declare(CLI::App& job) {
     struct Options {
         std::string file, unit;
     };
     const auto options = std::make_shared<Options>();
-    CLI::App& job = jobs.add("validate", "Say what a consumer of a file would trip over", "hair.tfx --json",
-                             [options] { return validateFile(options->file, options->unit); });
     job.add_option("file", options->file, "Project, hair file or mesh")->required();
     addUnitOption(job, options->unit);
+    return [options](const std::string&) { return validateFile(options->file, options->unit); };
+}
+
+}  // namespace
+
+Job validateJob() {
+    return {"validate", "Say what a consumer of a file would trip over", "hair.tfx --json", declare};
 }
 
 }  // namespace hairloom::cli
