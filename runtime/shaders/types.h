@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: MIT
 // HLSL's names for plain types, so that a struct can be written once for shaders and C++. Only float4,
 // float4x4, uint4, float and uint: three-component vectors are laid out differently in the two shader
 // formats.

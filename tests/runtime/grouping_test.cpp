@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: MIT
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How strands are dealt to blocks and vectors.
 #include <gtest/gtest.h>
 
