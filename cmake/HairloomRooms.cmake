@@ -116,19 +116,29 @@ function(hairloom_program name)
     endif()
 endfunction()
 
+function(hairloom_optimise_little target)
+    if(NOT MSVC AND CMAKE_BUILD_TYPE STREQUAL "Release")
+        target_compile_options(${target} PRIVATE -O1)
+    endif()
+endfunction()
+
 # hairloom_test(NAME SOURCES file... LINK target... [PRECOMPILE header...] [TIMEOUT seconds])
 # Each gtest case becomes a ctest entry NAME.Suite.Case; where programs run under Wine, whose start takes longer than most
 # cases, all cases together become the entry NAME. Tests find the repository through tests/support/source_dir.h.
-# Tests are compiled once and run for moments: what they include is precompiled, and they are optimised little.
+# Tests are compiled once and run for moments: what they include is precompiled, once for all or with PRECOMPILE's together for
+# this one, and they are optimised little.
 function(hairloom_test name)
     cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LINK;PRECOMPILE" ${ARGN})
     if(NOT ARG_TIMEOUT)
         set(ARG_TIMEOUT 120)
     endif()
     hairloom_program(test_${name} SOURCES ${ARG_SOURCES} LINK ${ARG_LINK} hairloom_test_support GTest::gtest_main GTest::gmock)
-    hairloom_precompile(test_${name} <gtest/gtest.h> <gmock/gmock.h> ${ARG_PRECOMPILE})
-    if(NOT MSVC AND CMAKE_BUILD_TYPE STREQUAL "Release")
-        target_compile_options(test_${name} PRIVATE -O1)
+    hairloom_optimise_little(test_${name})
+    if(ARG_PRECOMPILE)
+        hairloom_precompile(test_${name} <gtest/gtest.h> <gmock/gmock.h> ${ARG_PRECOMPILE})
+    else()
+        target_precompile_headers(test_${name} REUSE_FROM hairloom_test_headers)
+        hairloom_precompiled_for_ccache(test_${name})
     endif()
     if(CMAKE_CROSSCOMPILING)
         add_test(NAME ${name} COMMAND test_${name} --gtest_brief=1)
