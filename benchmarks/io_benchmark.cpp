@@ -76,20 +76,17 @@ struct TemporaryFile {
     }
 };
 
-using Writer = Result<ExportReport> (*)(const Groom&, const std::filesystem::path&,
-                                        const StrandExportOptions&);
-
-void writeStrands(benchmark::State& state, Writer writer) {
+void writeStrands(benchmark::State& state, const char* format) {
     const Groom groom = head();
     const TemporaryFile file("hairloom-io-benchmark");
     for (auto step : state) {
-        if (!writer(groom, file.path, {})) state.SkipWithError("cannot write");
+        if (!strandWriter(format).write(groom, file.path, {})) state.SkipWithError("cannot write");
     }
 }
 
-void readStrands(benchmark::State& state, Writer writer) {
+void readStrands(benchmark::State& state, const char* format) {
     const TemporaryFile file("hairloom-io-benchmark");
-    if (!writer(head(), file.path, {})) state.SkipWithError("cannot write");
+    if (!strandWriter(format).write(head(), file.path, {})) state.SkipWithError("cannot write");
     for (auto step : state) {
         auto imported = importStrands(file.path);
         if (!imported) state.SkipWithError("cannot read");
@@ -109,11 +106,11 @@ void readText(benchmark::State& state, std::string (*make)(const Groom&)) {
                             static_cast<std::int64_t>(text.size()));
 }
 
-BENCHMARK_CAPTURE(readStrands, hair, writeHair)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK_CAPTURE(readStrands, tfx, writeTfx)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(readStrands, hair, "hair")->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(readStrands, tfx, "tfx")->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(readText, objLines, objLines)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(readText, objRibbons, objRibbons)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK_CAPTURE(writeStrands, hair, writeHair)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK_CAPTURE(writeStrands, tfx, writeTfx)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(writeStrands, hair, "hair")->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(writeStrands, tfx, "tfx")->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace

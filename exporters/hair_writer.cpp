@@ -61,8 +61,6 @@ void addLimits(PreparedStrands& strands) {
     }
 }
 
-}  // namespace
-
 Result<ExportReport> writeHair(const Groom& groom, const std::filesystem::path& path,
                                const StrandExportOptions& options) {
     auto strands = prepareStrands(groom, options, options.pointsPerStrand);
@@ -80,6 +78,24 @@ Result<ExportReport> writeHair(const Groom& groom, const std::filesystem::path& 
     writer.writeArray(std::span<const float>(strands->transparency));
     writeVectors(writer, strands->colours);
     return writeAndCompare(groom, std::move(*strands), options, path, writer.bytes());
+}
+
+}  // namespace
+
+StrandWriter hairWriter() {
+    const auto points = [](std::uint32_t count) {
+        StrandExportOptions options;
+        options.pointsPerStrand = count;
+        return options;
+    };
+    return {"hair",
+            "Yuksel .hair",
+            "width, transparency and colour of each point",
+            "at most 65,535 segments a strand",
+            {{"Yuksel .hair", ".hair in metres, Y up; strands keep their points", points(0)},
+             {"Jolt Physics", ".hair in metres, Y up; 32 points a strand, as Jolt advises", points(32)},
+             {"Unity hair", ".hair in metres, Y up; at most 128 points and 64k strands", points(0)}},
+            writeHair};
 }
 
 }  // namespace hairloom

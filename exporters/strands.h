@@ -2,9 +2,11 @@
 #pragma once
 // Grooms into strand files. What each format carries and loses stands in docs/formats/strands.md.
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "core/base/result.h"
 #include "core/groom/groom.h"
@@ -20,22 +22,29 @@ struct StrandExportOptions {
         0;  ///< resamples every strand evenly to so many; 0 keeps what the format allows
 };
 
-/// Points per strand that TressFX can have.
-inline constexpr std::array<std::uint32_t, 5> kTfxPointCounts{4, 8, 16, 32, 64};
+/// A program that reads a format, and what it wants of a file.
+struct ExportTarget {
+    std::string name;
+    std::string note;
+    StrandExportOptions options;
+};
 
-/// Both replace `path` atomically, read the file back and compare. Strands that no consumer could use (fewer
-/// than two points, not finite, of no length) are left out and reported. Errors: nothing left to write, a
-/// limit of the format that options cannot mend, a file that cannot be written or does not read back.
-
-/// Yuksel .hair: segments, points, thickness (diameter), and transparency and colours where the groom has
-/// them.
-Result<ExportReport> writeHair(const Groom& groom, const std::filesystem::path& path,
-                               const StrandExportOptions& options = {});
-
-/// TressFX .tfx version 4. Strands are resampled to `pointsPerStrand`, or to the allowed count nearest to
-/// most strands. Inverse mass is 0 for the first two vertices and 1 for the others. Root UVs are always
-/// written.
-Result<ExportReport> writeTfx(const Groom& groom, const std::filesystem::path& path,
-                              const StrandExportOptions& options = {});
+/// A format that hair is written in. One file NAME_writer.cpp of this folder: nameWriter() says what it is.
+struct StrandWriter {
+    std::string name;                   ///< as `--format` has it; the suffix of its files, too
+    std::string label;                  ///< "TressFX .tfx"
+    std::string carries;                ///< in words: what else than positions
+    std::string limits;                 ///< in words
+    std::vector<ExportTarget> targets;  ///< at least one
+    /// Replaces `path` atomically, reads the file back and compares. Strands that no consumer could use
+    /// (fewer than two points, not finite, of no length) are left out and reported. Errors: nothing left to
+    /// write, a limit of the format that options cannot mend, a file that cannot be written or does not read
+    /// back.
+    Result<ExportReport> (*write)(const Groom& groom, const std::filesystem::path& path,
+                                  const StrandExportOptions& options);
+};
+const std::vector<StrandWriter>& strandWriters();
+/// The writer of that name; there must be one.
+const StrandWriter& strandWriter(std::string_view name);
 
 }  // namespace hairloom

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -14,6 +15,8 @@ namespace hairloom {
 namespace {
 
 constexpr std::size_t kHeaderBytes = 160;
+/// Points that TressFX can have on a strand.
+constexpr std::array<std::uint32_t, 5> kTfxPointCounts{4, 8, 16, 32, 64};
 /// A compute dispatch has at most 65,535 groups in each direction, and TressFX's have 64 threads, one per
 /// vertex.
 constexpr std::size_t kMostVertices = std::size_t{65535} * 64;
@@ -118,8 +121,6 @@ void addLimits(PreparedStrands& strands) {
     }
 }
 
-}  // namespace
-
 Result<ExportReport> writeTfx(const Groom& groom, const std::filesystem::path& path,
                               const StrandExportOptions& options) {
     const auto points = choosePoints(groom, options);
@@ -148,6 +149,22 @@ Result<ExportReport> writeTfx(const Groom& groom, const std::filesystem::path& p
     writer.writeArray(std::span<const float>(sections.thicknessScale));
     writeColours(writer, *strands);
     return writeAndCompare(groom, std::move(*strands), options, path, writer.bytes());
+}
+
+}  // namespace
+
+StrandWriter tfxWriter() {
+    StrandExportOptions unreal;
+    unreal.metresPerUnit = 0.01f;
+    unreal.up = UpAxis::Z;
+    unreal.pointsPerStrand = 16;
+    return {"tfx",
+            "TressFX .tfx",
+            "root UV and thickness factor of each strand, colour and transparency of each point",
+            "4, 8, 16, 32 or 64 points on every strand",
+            {{"TressFX", ".tfx version 4, metres, Y up; strands resampled to 4, 8, 16, 32 or 64", {}},
+             {"TressFX for Unreal", ".tfx in centimetres, Z up, 16 points a strand", unreal}},
+            writeTfx};
 }
 
 }  // namespace hairloom

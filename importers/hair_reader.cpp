@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cstring>
 
 #include "core/base/file.h"
 #include "importers/raw_strands.h"
@@ -113,9 +114,12 @@ void takeDefaults(const Header& header, RawStrands& raw) {
     if (inRange && colour != Vec3f::Ones()) raw.defaultColour = colour;
 }
 
-}  // namespace
+bool isHair(std::span<const std::byte> bytes) {
+    return bytes.size() >= 4 && std::memcmp(bytes.data(), "HAIR", 4) == 0;
+}
 
-Result<RawStrands> readHair(const std::string& file, std::span<const std::byte> bytes) {
+Result<RawStrands> readHair(const std::string& file, std::span<const std::byte> bytes,
+                            const StrandImportOptions&) {
     ByteReader reader(file, bytes);
     const auto header = reader.read<Header>("the header");
     if (!header) return tl::unexpected(header.error());
@@ -149,6 +153,12 @@ Result<RawStrands> readHair(const std::string& file, std::span<const std::byte> 
                                            "end of file", "they were left out"));
     }
     return raw;
+}
+
+}  // namespace
+
+StrandReader hairReader() {
+    return {{"Yuksel .hair", {"hair"}}, Recognition::Signature, isHair, readHair};
 }
 
 }  // namespace hairloom

@@ -5,17 +5,21 @@
 #include <array>
 #include <cstring>
 #include <string>
-#include <utility>
 
 namespace hairloom {
 namespace {
 
-constexpr std::array<std::pair<MeshFormat, std::string_view>, 6> kNames{{{MeshFormat::Obj, "obj"},
-                                                                         {MeshFormat::Ply, "ply"},
-                                                                         {MeshFormat::Stl, "stl"},
-                                                                         {MeshFormat::Fbx, "fbx"},
-                                                                         {MeshFormat::Gltf, "gltf"},
-                                                                         {MeshFormat::Glb, "glb"}}};
+struct Row {
+    MeshFormat format;
+    std::string_view name;  ///< the suffix of its files, too
+    std::string_view label;
+};
+constexpr std::array<Row, 6> kFormats{{{MeshFormat::Obj, "obj", "OBJ"},
+                                       {MeshFormat::Ply, "ply", "PLY"},
+                                       {MeshFormat::Stl, "stl", "STL"},
+                                       {MeshFormat::Fbx, "fbx", "FBX"},
+                                       {MeshFormat::Gltf, "gltf", "glTF"},
+                                       {MeshFormat::Glb, "glb", "GLB"}}};
 
 constexpr std::string_view kBlank = " \t\r\n\f\v";
 
@@ -72,13 +76,19 @@ bool looksLikeAsciiFbx(std::string_view text) {
 }  // namespace
 
 std::string_view name(MeshFormat format) {
-    return std::ranges::find(kNames, format, &std::pair<MeshFormat, std::string_view>::first)->second;
+    return std::ranges::find(kFormats, format, &Row::format)->name;
 }
 
 std::optional<MeshFormat> meshFormatNamed(std::string_view name) {
-    const auto found = std::ranges::find(kNames, name, &std::pair<MeshFormat, std::string_view>::second);
-    if (found == kNames.end()) return std::nullopt;
-    return found->first;
+    const auto found = std::ranges::find(kFormats, name, &Row::name);
+    if (found == kFormats.end()) return std::nullopt;
+    return found->format;
+}
+
+std::vector<FileFormat> meshFormats() {
+    std::vector<FileFormat> formats;
+    for (const Row& row : kFormats) formats.push_back({std::string(row.label), {std::string(row.name)}});
+    return formats;
 }
 
 std::optional<MeshFormat> meshFormatOf(std::span<const std::byte> head, std::uint64_t fileSize) {

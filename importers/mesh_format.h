@@ -6,7 +6,11 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
+
+#include "importers/file_format.h"
 
 namespace hairloom {
 
@@ -23,8 +27,7 @@ inline constexpr std::size_t kMeshFormatHead = 64 * 1024;
 /// plays no part. Empty for what is none of the formats.
 std::optional<MeshFormat> meshFormatOf(std::span<const std::byte> head, std::uint64_t fileSize);
 
-/// For messages.
-inline constexpr std::string_view kMeshFormatsRead =
-    "expected a mesh in OBJ, PLY, STL, FBX, glTF or GLB format";
+/// What importScene() reads.
+std::vector<FileFormat> meshFormats();
 
 }  // namespace hairloom

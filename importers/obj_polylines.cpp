@@ -168,18 +168,4 @@ Result<RawStrands> strandsFromLines(const std::string& file, const ObjStrandText
     return raw;
 }
 
-Result<RawStrands> readObjStrands(const std::string& file, std::string_view text,
-                                  const StrandImportOptions& options) {
-    auto obj = parseObjStrands(file, text);
-    if (!obj) return tl::unexpected(obj.error());
-    if (obj->vertices.empty()) {
-        return failIn(file, {}, "is text without a vertex",
-                      "expected an OBJ file with lines or hair ribbons");
-    }
-    const bool hasLines = obj->lineOffsets.size() > 1;
-    auto raw = hasLines ? strandsFromLines(file, *obj) : strandsFromRibbons(file, *obj, options);
-    if (raw) raw->warnings.insert(raw->warnings.begin(), obj->warnings.begin(), obj->warnings.end());
-    return raw;
-}
-
 }  // namespace hairloom

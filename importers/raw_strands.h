@@ -35,13 +35,21 @@ inline Finding fileNote(std::string what, std::string where, std::string fix = {
     return {Severity::Info, std::move(what), std::move(where), std::move(fix)};
 }
 
-/// Yuksel .hair.
-Result<RawStrands> readHair(const std::string& file, std::span<const std::byte> bytes);
-/// TressFX .tfx, versions 3.x and 4.x.
-Result<RawStrands> readTfx(const std::string& file, std::span<const std::byte> bytes);
-/// Wavefront OBJ: lines where there are any, otherwise faces as Cinema 4D ribbons.
-Result<RawStrands> readObjStrands(const std::string& file, std::string_view text,
-                                  const StrandImportOptions& options);
+enum class Recognition : std::uint8_t {
+    Signature,  ///< the file begins as no other format does, and holds strands alone
+    Guess,      ///< may be anything; asked after those with a signature
+};
+
+/// A format that is read. One file NAME_reader.cpp of this folder: nameReader() says what it is.
+struct StrandReader {
+    FileFormat format;
+    Recognition recognition;
+    bool (*recognise)(std::span<const std::byte> bytes);  ///< from the first 256 bytes or more
+    /// `file` is named in errors.
+    Result<RawStrands> (*read)(const std::string& file, std::span<const std::byte> bytes,
+                               const StrandImportOptions& options);
+};
+const std::vector<StrandReader>& strandReaders();
 
 /// What of an OBJ concerns strands. Indices are checked and count from 0.
 struct ObjStrandText {

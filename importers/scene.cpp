@@ -25,6 +25,10 @@ namespace {
 
 constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 30u;
 
+std::string expectedFormats() {
+    return fmt::format("expected a mesh in {} format", labelsOf(meshFormats()));
+}
+
 struct FileHead {
     std::vector<std::byte> bytes;
     std::uint64_t fileSize;
@@ -40,7 +44,7 @@ Result<FileHead> readHead(const std::filesystem::path& path) {
     FileHead head;
     head.fileSize = std::filesystem::file_size(path, code);
     if (code) return failIn(file, {}, fmt::format("cannot be read: {}", code.message()));
-    if (head.fileSize == 0) return failIn(file, {}, "is empty", std::string(kMeshFormatsRead));
+    if (head.fileSize == 0) return failIn(file, {}, "is empty", expectedFormats());
     if (head.fileSize > kLargestFile) {
         return failIn(file, {}, fmt::format("is {} bytes long", head.fileSize),
                       fmt::format("expected at most {}", kLargestFile));
@@ -156,8 +160,7 @@ Result<ImportedScene> importScene(const std::filesystem::path& path, const MeshI
     if (!head) return tl::unexpected(head.error());
     if (startsWithUtf16Mark(head->bytes)) return failIn(file, {}, "is UTF-16 text", "expected UTF-8");
     const auto format = meshFormatOf(head->bytes, head->fileSize);
-    if (!format)
-        return failIn(file, {}, "is in no mesh format that can be read", std::string(kMeshFormatsRead));
+    if (!format) return failIn(file, {}, "is in no mesh format that can be read", expectedFormats());
     auto raw = readRaw(path, *format);
     if (!raw) return tl::unexpected(inFile(raw.error(), file));
     auto scene = finishScene(std::move(*raw), *format, options);

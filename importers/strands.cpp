@@ -17,33 +17,24 @@
 namespace hairloom {
 namespace {
 
-bool isTfx(std::span<const std::byte> bytes) {
-    float version = 0;
-    if (bytes.size() < sizeof version) return false;
-    std::memcpy(&version, bytes.data(), sizeof version);
-    return version >= 1.0f && version < 8.0f && std::to_integer<int>(bytes[0]) == 0;
-}
-
-bool isHair(std::span<const std::byte> bytes) {
-    return bytes.size() >= 4 && std::memcmp(bytes.data(), "HAIR", 4) == 0;
-}
-
-bool isText(std::span<const std::byte> bytes) {
-    const auto start = bytes.first(std::min<std::size_t>(bytes.size(), 4096));
-    return std::none_of(start.begin(), start.end(), [](std::byte b) { return b == std::byte{0}; });
+/// Those with a signature first.
+std::vector<const StrandReader*> readersInOrder() {
+    std::vector<const StrandReader*> readers;
+    for (const Recognition recognition : {Recognition::Signature, Recognition::Guess}) {
+        for (const StrandReader& reader : strandReaders()) {
+            if (reader.recognition == recognition) readers.push_back(&reader);
+        }
+    }
+    return readers;
 }
 
 Result<RawStrands> readRaw(const std::string& file, std::span<const std::byte> bytes,
                            const StrandImportOptions& options) {
     if (bytes.empty()) return failIn(file, {}, "is empty", "expected a strand file");
-    if (isHair(bytes)) return readHair(file, bytes);
-    if (isTfx(bytes)) return readTfx(file, bytes);
-    if (isText(bytes)) {
-        const void* characters = bytes.data();
-        return readObjStrands(file, {static_cast<const char*>(characters), bytes.size()}, options);
+    for (const StrandReader* reader : readersInOrder()) {
+        if (reader->recognise(bytes)) return reader->read(file, bytes, options);
     }
-    return failIn(file, Byte{0}, "is in no known strand format",
-                  "expected Yuksel .hair, TressFX .tfx (version 3 or 4) or Wavefront OBJ");
+    return failIn(file, Byte{0}, "is in no known strand format", "expected " + labelsOf(strandFormats()));
 }
 
 Vec3f toMetresYUp(const Vec3f& position, const StrandImportOptions& options, bool mirrorZ) {
@@ -245,8 +236,16 @@ std::string_view dropReasonName(DropReason reason) {
     return names[static_cast<std::size_t>(reason)];
 }
 
+std::vector<FileFormat> strandFormats() {
+    std::vector<FileFormat> formats;
+    for (const StrandReader* reader : readersInOrder()) formats.push_back(reader->format);
+    return formats;
+}
+
 bool looksLikeStrandFile(std::span<const std::byte> bytes) {
-    return isHair(bytes) || isTfx(bytes);
+    return std::ranges::any_of(strandReaders(), [&](const StrandReader& reader) {
+        return reader.recognition == Recognition::Signature && reader.recognise(bytes);
+    });
 }
 
 Result<ImportedStrands> importStrandsFromMemory(const std::string& file, std::span<const std::byte> bytes,

@@ -13,6 +13,7 @@
 #include "core/base/result.h"
 #include "core/groom/groom.h"
 #include "core/groom/validate.h"
+#include "importers/file_format.h"
 
 namespace hairloom {
 
@@ -79,7 +80,10 @@ Result<ImportedStrands> importStrands(const std::filesystem::path& path,
 Result<ImportedStrands> importStrandsFromMemory(const std::string& file, std::span<const std::byte> bytes,
                                                 const StrandImportOptions& options = {});
 
-/// Whether the content starts like one of the formats above that hold nothing but strands (.hair, .tfx).
+/// What importStrands() reads.
+std::vector<FileFormat> strandFormats();
+
+/// Whether the content starts like one of the formats that hold nothing but strands (.hair, .tfx).
 bool looksLikeStrandFile(std::span<const std::byte> bytes);
 
 }  // namespace hairloom

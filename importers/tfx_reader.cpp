@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstring>
 
 #include "core/base/file.h"
 #include "importers/raw_strands.h"
@@ -214,15 +215,28 @@ Result<RawStrands> readVersion(const std::string& file, std::span<const std::byt
     return raw;
 }
 
-}  // namespace
+/// The version is a small whole number, whose last byte in memory, the first of the file, is 0.
+bool isTfx(std::span<const std::byte> bytes) {
+    float version = 0;
+    if (bytes.size() < sizeof version) return false;
+    std::memcpy(&version, bytes.data(), sizeof version);
+    return version >= 1.0f && version < 8.0f && std::to_integer<int>(bytes[0]) == 0;
+}
 
-Result<RawStrands> readTfx(const std::string& file, std::span<const std::byte> bytes) {
+Result<RawStrands> readTfx(const std::string& file, std::span<const std::byte> bytes,
+                           const StrandImportOptions&) {
     ByteReader reader(file, bytes);
     const auto version = reader.read<float>("the version");
     if (!version) return tl::unexpected(version.error());
     if (*version >= 4.0f && *version < 5.0f) return readVersion<HeaderV4>(file, bytes);
     if (*version >= 3.0f && *version < 4.0f) return readVersion<HeaderV3>(file, bytes);
     return failIn(file, Byte{0}, fmt::format("is TressFX version {}", *version), "expected version 3 or 4");
+}
+
+}  // namespace
+
+StrandReader tfxReader() {
+    return {{"TressFX .tfx (version 3 or 4)", {"tfx"}}, Recognition::Signature, isTfx, readTfx};
 }
 
 }  // namespace hairloom

@@ -9,6 +9,7 @@
 #include "core/geometry/selection.h"
 #include "core/groom/file/project_file.h"
 #include "core/groom/groom.h"
+#include "importers/mesh_format.h"
 #include "importers/scene.h"
 
 namespace hairloom::cli {
@@ -95,7 +96,7 @@ Result<Report> create(const CreateOptions& options) {
 
 JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<CreateOptions>();
-    job.add_option("--mesh", options->mesh, "Head mesh: OBJ, PLY, STL, FBX, glTF or GLB")->required();
+    job.add_option("--mesh", options->mesh, "Head mesh: " + labelsOf(meshFormats()))->required();
     job.add_option(
         "--scalp", options->scalp,
         "Faces that carry hair: all, group:NAME, material:NAME, cap:DEGREES, above:F, faces:FILE, grow:N, "

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
 #include <memory>
 
 #include "cli/documents.h"
@@ -25,8 +27,7 @@ Result<Report> exportAsset(const ExportOptions& options) {
     exporting.metresPerUnit = metresPerUnit(options.unit);
     exporting.up = options.up == "z" ? UpAxis::Z : UpAxis::Y;
     exporting.pointsPerStrand = options.points;
-    const auto written = options.format == "tfx" ? writeTfx(*groom, options.output, exporting)
-                                                 : writeHair(*groom, options.output, exporting);
+    const auto written = strandWriter(options.format).write(*groom, options.output, exporting);
     if (!written) return tl::unexpected(written.error());
     const Report report = toJson(*written);
     if (auto saved =
@@ -37,12 +38,28 @@ Result<Report> exportAsset(const ExportOptions& options) {
     return report;
 }
 
+std::vector<std::string> formatNames() {
+    std::vector<std::string> names;
+    for (const StrandWriter& writer : strandWriters()) names.push_back(writer.name);
+    return names;
+}
+
+/// What each carries beside the points, and its limits.
+std::string formatsInWords() {
+    std::string text;
+    for (const StrandWriter& writer : strandWriters()) {
+        text += fmt::format("{}{}: {}, with {}; {}.", text.empty() ? "" : " ", writer.name, writer.label,
+                            writer.carries, writer.limits);
+    }
+    return text;
+}
+
 JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<ExportOptions>();
     job.add_option("groom", options->input, "Groom to export")->required();
-    job.add_option("--format", options->format, "Yuksel .hair or TressFX .tfx")
+    job.add_option("--format", options->format, "What to write. " + formatsInWords())
         ->required()
-        ->check(CLI::IsMember({"hair", "tfx"}));
+        ->check(CLI::IsMember(formatNames()));
     addUnitOption(job, options->unit);
     job.add_option("--up", options->up, "Axis that points up in the file")->check(CLI::IsMember({"y", "z"}));
     job.add_option("--points", options->points, "Resample every strand to so many points; 0 keeps them")

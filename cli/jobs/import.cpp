@@ -97,7 +97,8 @@ Result<Report> import(const ImportOptions& options) {
 
 JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<ImportOptions>();
-    job.add_option("file", options->file, "Cinema 4D hair OBJ, OBJ lines, TressFX .tfx or Yuksel .hair")
+    job.add_option("file", options->file,
+                   labelsOf(strandFormats()) + "; an OBJ of lines or of Cinema 4D ribbons")
         ->required();
     job.add_option("--mesh", options->mesh, "Head mesh to bind the roots to");
     job.add_option("--scalp", options->scalp, "Faces of the mesh that carry hair, as for create");

@@ -8,6 +8,7 @@
 #include <QHeaderView>
 #include <QPointer>
 #include <QVBoxLayout>
+#include <algorithm>
 
 #include "editor/panels/panel.h"
 #include "exporters/strands.h"
@@ -15,22 +16,28 @@
 
 namespace hairloom::editor {
 
-const std::vector<ExportTarget>& exportTargets() {
-    static const std::vector<ExportTarget> targets{
-        {QObject::tr("TressFX"),
-         QObject::tr(".tfx version 4, metres, Y up; strands resampled to 4, 8, 16, 32 or 64"), "tfx", 1.0f,
-         false, 0},
-        {QObject::tr("TressFX for Unreal"), QObject::tr(".tfx in centimetres, Z up, 16 points a strand"),
-         "tfx", 0.01f, true, 16},
-        {QObject::tr("Yuksel .hair"), QObject::tr(".hair in metres, Y up; strands keep their points"), "hair",
-         1.0f, false, 0},
-        {QObject::tr("Jolt Physics"),
-         QObject::tr(".hair in metres, Y up; 32 points a strand, as Jolt advises"), "hair", 1.0f, false, 32},
-        {QObject::tr("Unity hair"), QObject::tr(".hair in metres, Y up; at most 128 points and 64k strands"),
-         "hair", 1.0f, false, 0},
-    };
-    return targets;
+namespace {
+
+/// A program, and the writer of the format that it reads.
+struct Choice {
+    const StrandWriter* writer;
+    const ExportTarget* target;
+};
+
+/// By the names of the formats.
+const std::vector<Choice>& choices() {
+    static const std::vector<Choice> all = [] {
+        std::vector<Choice> list;
+        for (const StrandWriter& writer : strandWriters()) {
+            for (const ExportTarget& target : writer.targets) list.push_back({&writer, &target});
+        }
+        std::ranges::stable_sort(list, {}, [](const Choice& choice) { return choice.writer->label; });
+        return list;
+    }();
+    return all;
 }
+
+}  // namespace
 
 ExportDialog::ExportDialog(Session& session, QWidget* parent)
     : QDialog(parent),
@@ -52,7 +59,7 @@ ExportDialog::ExportDialog(Session& session, QWidget* parent)
     form->setVerticalSpacing(8);
     form->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
     layout->addLayout(form);
-    for (const ExportTarget& target : exportTargets()) target_->addItem(target.name);
+    for (const Choice& choice : choices()) target_->addItem(QString::fromStdString(choice.target->name));
     target_->setObjectName("target");
     target_->setToolTip(tr("Sets unit, axis and points as this program expects them"));
     note_->setProperty("role", "dim");
@@ -93,25 +100,26 @@ ExportDialog::ExportDialog(Session& session, QWidget* parent)
 }
 
 void ExportDialog::takeTarget(int index) {
-    const ExportTarget& target = exportTargets()[static_cast<std::size_t>(index)];
-    note_->setText(target.note);
+    const ExportTarget& target = *choices()[static_cast<std::size_t>(index)].target;
+    note_->setText(QString::fromStdString(target.note));
     for (int i = 0; i < unit_->count(); ++i) {
-        if (static_cast<float>(unit_->itemData(i).toDouble()) == target.metresPerUnit)
+        if (static_cast<float>(unit_->itemData(i).toDouble()) == target.options.metresPerUnit)
             unit_->setCurrentIndex(i);
     }
-    up_->setCurrentIndex(target.zUp ? 1 : 0);
-    points_->setValue(target.points);
+    up_->setCurrentIndex(target.options.up == UpAxis::Z ? 1 : 0);
+    points_->setValue(static_cast<int>(target.options.pointsPerStrand));
 }
 
 void ExportDialog::choosePath() {
-    const ExportTarget& target = exportTargets()[static_cast<std::size_t>(target_->currentIndex())];
-    const QString name = QFileInfo(session_.document.title()).completeBaseName() + "." + target.suffix;
-    const QString path = QFileDialog::getSaveFileName(this, windowTitle(), name, "*." + target.suffix);
+    const StrandWriter& writer = *choices()[static_cast<std::size_t>(target_->currentIndex())].writer;
+    const QString suffix = "." + QString::fromStdString(writer.name);
+    const QString name = QFileInfo(session_.document.title()).completeBaseName() + suffix;
+    const QString path = QFileDialog::getSaveFileName(this, windowTitle(), name, "*" + suffix);
     if (!path.isEmpty()) exportTo(path);
 }
 
 void ExportDialog::exportTo(const QString& path) {
-    const ExportTarget& target = exportTargets()[static_cast<std::size_t>(target_->currentIndex())];
+    const StrandWriter& writer = *choices()[static_cast<std::size_t>(target_->currentIndex())].writer;
     StrandExportOptions options;
     options.metresPerUnit = static_cast<float>(unit_->currentData().toDouble());
     options.up = up_->currentIndex() == 1 ? UpAxis::Z : UpAxis::Y;
@@ -119,9 +127,8 @@ void ExportDialog::exportTo(const QString& path) {
     write_->setEnabled(false);
     const bool started = session_.tasks.run<ExportReport>(
         tr("Exporting %1").arg(QFileInfo(path).fileName()),
-        [groom = session_.document.groom(), path, options, tfx = target.suffix == "tfx"](TaskControl&) {
-            return tfx ? writeTfx(groom, path.toStdString(), options)
-                       : writeHair(groom, path.toStdString(), options);
+        [groom = session_.document.groom(), path, options, &writer](TaskControl&) {
+            return writer.write(groom, path.toStdString(), options);
         },
         [self = QPointer(this), &session = session_, path](ExportReport report) {
             session.messages.say(tr("%1 written and read back").arg(QFileInfo(path).fileName()));

@@ -14,17 +14,6 @@
 
 namespace hairloom::editor {
 
-/// A consumer and what it wants of a file.
-struct ExportTarget {
-    QString name;
-    QString note;
-    QString suffix;  ///< "tfx" or "hair"
-    float metresPerUnit;
-    bool zUp;
-    int points;  ///< per strand; 0 keeps what the format allows
-};
-const std::vector<ExportTarget>& exportTargets();
-
 class ExportDialog : public QDialog {
     Q_OBJECT
 

@@ -9,6 +9,7 @@
 #include "core/scene/motions.h"
 #include "core/scene/open.h"
 #include "core/scene/sample.h"
+#include "importers/mesh_format.h"
 
 namespace hairloom::editor {
 namespace {
@@ -73,6 +74,15 @@ void show(Session& session, OpenedFile opened, const QString& path, const QStrin
                                                : QObject::tr("%1: %2. %3").arg(name, what, opened.note));
 }
 
+/// "*.hair *.tfx"
+QString patternsOf(const std::vector<FileFormat>& formats) {
+    QStringList patterns;
+    for (const FileFormat& format : formats) {
+        for (const std::string& suffix : format.suffixes) patterns += "*." + QString::fromStdString(suffix);
+    }
+    return patterns.join(' ');
+}
+
 }  // namespace
 
 FileKind kindOf(const QString& path) {
@@ -84,10 +94,15 @@ FileKind kindOf(const QString& path) {
 }
 
 QString openFilter() {
-    return QObject::tr(
-        "Everything that opens (*.hairloom *.obj *.ply *.stl *.fbx *.gltf *.glb *.hair *.tfx);;"
-        "Hairloom projects (*.hairloom);;"
-        "Heads (*.obj *.ply *.stl *.fbx *.gltf *.glb);;Hair (*.hair *.tfx *.obj);;All files (*)");
+    const QString project = "*.hairloom", heads = patternsOf(meshFormats()),
+                  hair = patternsOf(strandFormats());
+    return QObject::
+        tr("Everything that opens (%1 %2 %3);;Hairloom projects (%1);;Heads (%2);;Hair (%3);;All files (*)")
+            .arg(project, heads, hair);
+}
+
+QString strandFilter() {
+    return QObject::tr("Hair (%1);;All files (*)").arg(patternsOf(strandFormats()));
 }
 
 std::filesystem::path samplesFolder() {

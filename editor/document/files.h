@@ -20,8 +20,9 @@ enum class FileKind {
 /// where it has faces that are no ribbons of hair.
 FileKind kindOf(const QString& path);
 
-/// For file dialogs: all that opens.
+/// For file dialogs: all that opens, and hair of other programs alone.
 QString openFilter();
+QString strandFilter();
 
 /// Project or head, opened as the document; hair as it is, without a head. `done` is called when it is there.
 void openFile(Session& session, const QString& path, std::function<void()> done = {});

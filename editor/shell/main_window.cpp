@@ -210,8 +210,7 @@ void MainWindow::chooseAndOpen() {
 }
 
 void MainWindow::chooseAndImport() {
-    const QString path = QFileDialog::getOpenFileName(this, tr("Import hair"), {},
-                                                      tr("Hair (*.hair *.tfx *.obj);;All files (*)"));
+    const QString path = QFileDialog::getOpenFileName(this, tr("Import hair"), {}, strandFilter());
     if (path.isEmpty()) return;
     ImportDialog dialog(session_, path, this);
     if (dialog.exec() == QDialog::Accepted) importStrandsInto(session_, path, dialog.options());

@@ -31,6 +31,15 @@ class StrandWriters : public testing::Test {
     fs::path folder;
 };
 
+Result<ExportReport> writeHair(const Groom& groom, const fs::path& path,
+                               const StrandExportOptions& options = {}) {
+    return strandWriter("hair").write(groom, path, options);
+}
+Result<ExportReport> writeTfx(const Groom& groom, const fs::path& path,
+                              const StrandExportOptions& options = {}) {
+    return strandWriter("tfx").write(groom, path, options);
+}
+
 /// Strand s has counts[s] points on a helix.
 Groom helices(const std::vector<std::uint32_t>& counts) {
     std::vector<std::uint32_t> offsets{0};
@@ -218,6 +227,19 @@ TEST_F(StrandWriters, FailuresLeaveTheOldFile) {
     EXPECT_FALSE(writeTfx(helices({8}), path, options));
     EXPECT_FALSE(writeHair(helices({8}), folder / "missing" / "a.hair"));
     EXPECT_EQ(readFile(path).value(), before);
+}
+
+TEST_F(StrandWriters, EveryTargetOfEveryFormatIsWrittenAndReadBackByContent) {
+    const Groom groom = decorated({17, 17});
+    for (const StrandWriter& writer : strandWriters()) {
+        ASSERT_FALSE(writer.targets.empty()) << writer.name;
+        for (const ExportTarget& target : writer.targets) {
+            const auto report = writer.write(groom, folder / "any.name", target.options);
+            ASSERT_TRUE(report) << target.name << ": " << report.error().message();
+            EXPECT_EQ(report->strands, 2u) << target.name;
+            EXPECT_LT(report->maxErrorMm, 2.0) << target.name;
+        }
+    }
 }
 
 TEST_F(StrandWriters, ReportAsJson) {

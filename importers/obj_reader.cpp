@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Strands of a Wavefront OBJ: lines where there are any, otherwise faces as Cinema 4D ribbons.
+
+#include <algorithm>
+
+#include "importers/raw_strands.h"
+
+namespace hairloom {
+namespace {
+
+/// Text of any kind. Anything but white space and comments may stand before the first vertex.
+bool isText(std::span<const std::byte> bytes) {
+    const auto start = bytes.first(std::min<std::size_t>(bytes.size(), 4096));
+    return std::none_of(start.begin(), start.end(), [](std::byte b) { return b == std::byte{0}; });
+}
+
+Result<RawStrands> readObj(const std::string& file, std::span<const std::byte> bytes,
+                           const StrandImportOptions& options) {
+    const void* const characters = bytes.data();
+    const auto obj = parseObjStrands(file, {static_cast<const char*>(characters), bytes.size()});
+    if (!obj) return tl::unexpected(obj.error());
+    if (obj->vertices.empty()) {
+        return failIn(file, {}, "is text without a vertex",
+                      "expected an OBJ file with lines or hair ribbons");
+    }
+    const bool hasLines = obj->lineOffsets.size() > 1;
+    auto raw = hasLines ? strandsFromLines(file, *obj) : strandsFromRibbons(file, *obj, options);
+    if (raw) raw->warnings.insert(raw->warnings.begin(), obj->warnings.begin(), obj->warnings.end());
+    return raw;
+}
+
+}  // namespace
+
+StrandReader objReader() {
+    return {{"Wavefront OBJ", {"obj"}}, Recognition::Guess, isText, readObj};
+}
+
+}  // namespace hairloom
