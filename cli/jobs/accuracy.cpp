@@ -83,7 +83,7 @@ Report settingReport(const WorkPrecision& result, const WorkPrecisionRun& run) {
     Report setting = Report::object();
     for (std::size_t a = 0; a < run.values.size(); ++a) {
         const GridAxis& axis = result.options.axes[a];
-        const runtime::FieldInfo* field = runtime::findField(axis.field);
+        const auto* field = runtime::findField<runtime::SimulationSettings>(axis.field);
         const double value = run.values[a];
         if (field && !field->choices.empty()) {
             setting[axis.field] = axisValueText(axis, value);

@@ -95,20 +95,16 @@ Result<Report> set(const SetOptions& options) {
     return Report{{"changed", changed}, {"output", options.output}};
 }
 
-template <class Field>
-Report fieldRow(const std::string& section, const Field& field, Report standard) {
-    return Report{{"field", section + "." + field.name},
-                  {"unit", field.unit},
-                  {"min", field.min},
-                  {"max", field.max},
-                  {"default", std::move(standard)},
-                  {"meaning", field.meaning}};
-}
-
-template <class Settings, class Fields>
-void addRows(const std::string& section, const Fields& fields, Report& rows) {
-    const Report standard = toJson(Settings());
-    for (const auto& field : fields) rows.push_back(fieldRow(section, field, standard.at(field.name)));
+template <class Settings>
+void addRows(const std::string& section, Report& rows) {
+    for (const auto& [info, standard] : fieldRows<Settings>()) {
+        rows.push_back(Report{{"field", section + "." + info.name},
+                              {"unit", info.unit},
+                              {"min", info.min},
+                              {"max", info.max},
+                              {"default", standard},
+                              {"meaning", info.meaning}});
+    }
 }
 
 Report presetRows() {
@@ -128,9 +124,9 @@ Report presetRows() {
 
 Result<Report> list() {
     Report rows = Report::array();
-    addRows<runtime::SimulationSettings>("simulation", runtime::fields(), rows);
-    addRows<HairMaterial>("material", fieldsOf(HairMaterial()), rows);
-    addRows<InterpolationSettings>("interpolation", fieldsOf(InterpolationSettings()), rows);
+    addRows<runtime::SimulationSettings>("simulation", rows);
+    addRows<HairMaterial>("material", rows);
+    addRows<InterpolationSettings>("interpolation", rows);
     return Report{{"fields", std::move(rows)}, {"presets", presetRows()}};
 }
 

@@ -36,8 +36,8 @@ Status checkValue(const GridAxis& axis, double value) {
         return fail(fmt::format("{} is {}", axis.field, value),
                     fmt::format("expected a whole number from {} to {}", bounds.min, bounds.max));
     }
-    const runtime::FieldInfo* field = runtime::findField(axis.field);
-    if (!field || runtime::componentCount(*field) != 1) {
+    const auto* field = runtime::findField<runtime::SimulationSettings>(axis.field);
+    if (!field || field->components() != 1) {
         return fail(fmt::format("there is no setting '{}' of one number", axis.field),
                     fmt::format("expected {}, {} or a field of the simulation", kPointsAxis, kThreadsAxis));
     }
@@ -49,7 +49,8 @@ Status checkValue(const GridAxis& axis, double value) {
 }
 
 Result<double> parseValue(const std::string& field, const std::string& text) {
-    if (const runtime::FieldInfo* info = runtime::findField(field); info && !info->choices.empty()) {
+    if (const auto* info = runtime::findField<runtime::SimulationSettings>(field);
+        info && !info->choices.empty()) {
         const auto chosen =
             std::ranges::find(info->choices, text, [](const char* name) { return std::string(name); });
         if (chosen != info->choices.end()) return static_cast<double>(chosen - info->choices.begin());
@@ -67,7 +68,7 @@ Result<double> parseValue(const std::string& field, const std::string& text) {
 }  // namespace
 
 std::string axisValueText(const GridAxis& axis, double value) {
-    const runtime::FieldInfo* field = runtime::findField(axis.field);
+    const auto* field = runtime::findField<runtime::SimulationSettings>(axis.field);
     if (field && !field->choices.empty()) return field->choices[static_cast<std::size_t>(value)];
     return fmt::format("{:.9g}", value);
 }
@@ -115,7 +116,7 @@ std::optional<std::size_t> findAxis(const std::vector<GridAxis>& axes, std::stri
 void applyValues(const std::vector<GridAxis>& axes, const std::vector<double>& values,
                  runtime::SimulationSettings& settings) {
     for (std::size_t a = 0; a < axes.size(); ++a) {
-        if (const auto* field = runtime::findField(axes[a].field)) {
+        if (const auto* field = runtime::findField<runtime::SimulationSettings>(axes[a].field)) {
             runtime::setFieldValue(settings, *field, values[a]);
         }
     }

@@ -111,7 +111,7 @@ void addUncertainty(double uncertaintyMm, double from, double to, Plot& plot) {
 
 /// The value of an axis that error plots of another one hold: its largest, the first of choices.
 double heldValue(const GridAxis& axis) {
-    const runtime::FieldInfo* field = runtime::findField(axis.field);
+    const auto* field = runtime::findField<runtime::SimulationSettings>(axis.field);
     if (field && !field->choices.empty()) return axis.values.front();
     return *std::ranges::max_element(axis.values);
 }
@@ -174,7 +174,7 @@ Plot workPrecisionPlot(const WorkPrecision& result, const ReportContext& context
 std::optional<Plot> errorPlot(const WorkPrecision& result, std::size_t axisIndex) {
     const std::vector<GridAxis>& axes = result.options.axes;
     const GridAxis& axis = axes[axisIndex];
-    const runtime::FieldInfo* field = runtime::findField(axis.field);
+    const auto* field = runtime::findField<runtime::SimulationSettings>(axis.field);
     const bool ofNumbers = axis.field == kPointsAxis || (field && field->choices.empty());
     if (!ofNumbers || !varies(axes, axisIndex)) return std::nullopt;
 

@@ -77,14 +77,14 @@ void addFront(const WorkPrecision& result, HtmlReport& page) {
 /// "dampingTime 0.5 s, gravity 0 -9.81 0 m/s²": every setting that no axis varies.
 std::string otherSettings(const WorkPrecision& result) {
     Cells settings;
-    for (const runtime::FieldInfo& field : runtime::fields()) {
+    for (const auto& field : fieldsOf(result.settings)) {
         if (findAxis(result.options.axes, field.name)) continue;
         std::string text = field.name;
-        if (const auto* ramp = std::get_if<runtime::Ramp runtime::SimulationSettings::*>(&field.member)) {
-            for (const auto& [at, value] : (result.settings.**ramp).inUse())
+        if (field.kind == runtime::FieldKind::Ramp) {
+            for (const auto& [at, value] : runtime::member<runtime::Ramp>(result.settings, field).inUse())
                 text += fmt::format(" {:.6g}:{:.6g}", at, value);
         }
-        for (std::uint32_t c = 0; c < runtime::componentCount(field); ++c) {
+        for (std::uint32_t c = 0; c < field.components(); ++c) {
             const double value = runtime::fieldValue(result.settings, field, c);
             // A float's digits, not those of the double it is converted to.
             text += field.choices.empty()

@@ -19,16 +19,17 @@
 
 namespace hairloom::editing {
 
-/// A number of one brush, for panels, scripts and documentation.
-struct BrushParameter {
-    std::string_view name;
-    std::string_view unit;  ///< "" for a pure number
-    float min;
-    float max;
+/// A number of one brush, Float or Bool, that BrushSettings::parameters has by its name.
+struct BrushParameter : FieldInfo {
     float defaultValue;
-    bool isFlag;  ///< 0 or 1, shown as a check box
-    std::string_view meaning;
 };
+constexpr BrushParameter parameter(const char* name, const char* unit, double min, double max,
+                                   float defaultValue, const char* meaning) {
+    return {{name, unit, min, max, meaning, FieldKind::Float}, defaultValue};
+}
+constexpr BrushParameter boolParameter(const char* name, bool defaultValue, const char* meaning) {
+    return {{name, "", 0, 1, meaning, FieldKind::Bool}, defaultValue ? 1.0f : 0.0f};
+}
 
 struct BrushInfo {
     std::string_view name;     ///< in records: "comb"

@@ -13,16 +13,16 @@ namespace {
 using S = BrushSettings;
 
 constexpr Field<S> kFields[] = {
-    {"radius", "m", 0.0001, 1, "reach of the brush", &S::radius},
-    {"strength", "", 0, 1, "share of the full effect that one dab has", &S::strength},
-    {"depth", "m", 0, 10, "how far a dab made in a view reaches before and behind its place", &S::depth},
-    {"clearance", "m", 0, 0.01, "distance kept from the skin", &S::clearance},
-    {"collide", "", 0, 1, "whether hair is kept out of the head", &S::collide},
-    {"invert", "", 0, 1, "the brush's opposite", &S::invert},
-    {"symmetric", "", 0, 1, "each dab again at its mirror image", &S::symmetric},
-    {"mirrorPoint", "m", -kAnywhere, kAnywhere, "a point of the mirror plane", &S::mirrorPoint},
-    {"mirrorNormal", "", -kAnywhere, kAnywhere, "direction across the mirror plane", &S::mirrorNormal},
-    seedField<S>("another seed draws other random numbers"),
+    field<&S::radius>("radius", "m", 0.0001, 1, "reach of the brush"),
+    field<&S::strength>("strength", "", 0, 1, "share of the full effect that one dab has"),
+    field<&S::depth>("depth", "m", 0, 10, "how far a dab made in a view reaches before and behind its place"),
+    field<&S::clearance>("clearance", "m", 0, 0.01, "distance kept from the skin"),
+    boolField<&S::collide>("collide", "whether hair is kept out of the head"),
+    boolField<&S::invert>("invert", "the brush's opposite"),
+    boolField<&S::symmetric>("symmetric", "each dab again at its mirror image"),
+    field<&S::mirrorPoint>("mirrorPoint", "m", -kAnywhere, kAnywhere, "a point of the mirror plane"),
+    field<&S::mirrorNormal>("mirrorNormal", "", -kAnywhere, kAnywhere, "direction across the mirror plane"),
+    seedField<&S::seed>("seed", "another seed draws other random numbers"),
 };
 
 using Make = std::unique_ptr<Brush> (*)();
@@ -59,10 +59,9 @@ Status checkParameters(const BrushInfo& info, const BrushSettings& settings) {
                                         [&key = name](const BrushParameter& p) { return p.name == key; });
         if (known == info.parameters.end())
             return fail(fmt::format("{} has no parameter '{}'", info.name, name));
-        if (!(value >= known->min && value <= known->max))
-            return fail(fmt::format("{} {}", name,
-                                    outOfRangeText(readableDecimal(value), readableDecimal(known->min),
-                                                   readableDecimal(known->max), known->unit)));
+        if (!withinRange(static_cast<double>(value), known->min, known->max))
+            return fail(fmt::format(
+                "{} {}", name, outOfRangeText(readableDecimal(value), known->min, known->max, known->unit)));
     }
     return {};
 }

@@ -32,23 +32,22 @@ struct Layer {
     bool locked = false;
 };
 
-/// How follow hairs come from guides (thesis §4.2).
+/// How follow hairs come from guides (thesis §4.2). fieldsOf() describes the members.
 struct InterpolationSettings {
-    std::uint32_t followPerGuide =
-        0;  ///< follow hairs for each guide, 0 … 4096; 0 shows the strands themselves
-    float wispRadiusRoot = 0.002f;  ///< metres, 0 … 0.1; radius of a wisp's cross-section at the root
-    float wispRadiusTip = 0.004f;   ///< metres, 0 … 0.1; at the tip
-    float blend = 0.5f;             ///< 0 … 1; 0 follows one strand (wisps), 1 the three of a root triangle
+    std::uint32_t followPerGuide = 0;
+    float wispRadiusRoot = 0.002f;
+    float wispRadiusTip = 0.004f;
+    float blend = 0.5f;
     std::uint64_t seed = 1;
 };
 
-/// How roots are placed on the scalp selection and what grows from them.
+/// How roots are placed on the scalp selection and what grows from them. fieldsOf() describes the members.
 struct PlacementSettings {
-    bool darts = true;           ///< true: at even distances (Poisson disk); false: at random
-    std::uint32_t count = 3000;  ///< roots, 1 … 5,000,000; used while densityPerCm2 is 0
-    float densityPerCm2 = 0;     ///< roots per cm², 0 … 10,000, where the density map is 1
-    float length = 0.15f;        ///< metres, 0.0001 … 10
-    std::uint32_t points = 16;   ///< of a strand, 2 … 1024
+    bool darts = true;  ///< Poisson disk
+    std::uint32_t count = 3000;
+    float densityPerCm2 = 0;
+    float length = 0.15f;
+    std::uint32_t points = 16;
     std::uint64_t seed = 1;
 };
 

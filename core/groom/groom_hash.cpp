@@ -43,11 +43,13 @@ void hashAttributes(Hasher& hasher, const AttributeSet& attributes) {
 template <class S>
 void hashFields(Hasher& hasher, const S& settings) {
     for (const Field<S>& field : fieldsOf(settings)) {
-        if (const auto* seed = std::get_if<std::uint64_t S::*>(&field.member)) {
-            hasher.number(settings.*(*seed));
+        if (field.kind == FieldKind::Seed) {
+            hasher.number(runtime::member<std::uint64_t>(settings, field));
             continue;
         }
-        for (std::uint32_t c = 0; c < componentCount(field); ++c) hasher.real(fieldValue(settings, field, c));
+        if (field.kind == FieldKind::Ramp)
+            hasher.array(runtime::member<runtime::Ramp>(settings, field).inUse());
+        for (std::uint32_t c = 0; c < field.components(); ++c) hasher.real(field.get(settings, c));
     }
 }
 
@@ -68,13 +70,7 @@ void hashSettings(Hasher& hasher, const Groom& groom) {
     hashFields(hasher, groom.material);
     hashFields(hasher, groom.interpolation);
     hashFields(hasher, groom.placement);
-    for (const runtime::FieldInfo& field : runtime::fields()) {
-        if (const auto* ramp = std::get_if<runtime::Ramp runtime::SimulationSettings::*>(&field.member))
-            hasher.array((groom.simulation.**ramp).inUse());
-        for (std::uint32_t c = 0; c < runtime::componentCount(field); ++c) {
-            hasher.real(runtime::fieldValue(groom.simulation, field, c));
-        }
-    }
+    hashFields(hasher, groom.simulation);
     hasher.text(groom.scalpExpression);
     hasher.text(groom.characterFile);
     hasher.real(static_cast<double>(groom.characterMetresPerUnit));

@@ -35,9 +35,7 @@ void findSettings(const Groom& groom, std::vector<Finding>& findings) {
     report("material", fieldsOutOfRange(groom.material));
     report("interpolation", fieldsOutOfRange(groom.interpolation));
     report("placement", fieldsOutOfRange(groom.placement));
-    std::vector<std::string> simulation;
-    for (const auto& problem : runtime::validate(groom.simulation)) simulation.push_back(problem.message);
-    report("simulation", simulation);
+    report("simulation", runtime::validate(groom.simulation));
 }
 
 }  // namespace

@@ -13,13 +13,13 @@ namespace {
 using S = ClumpSettings;
 
 constexpr Field<S> kFields[] = {
-    {"spacing", "m", 0.0005, 1, "distance that chosen roots keep; larger locks are fewer", &S::spacing},
-    {"strength", "", 0, 1, "share of the way to the chosen strand at the tip", &S::strength},
-    {"profile", "", 0.1, 10, "how the pull grows from the root: 1 evenly, above 1 nearer to the tip",
-     &S::profile},
-    {"variation", "", 0, 1, "random share by which the pull of a strand may be weaker", &S::variation},
-    clearanceField<S>(),
-    seedField<S>("another seed chooses other strands"),
+    field<&S::spacing>("spacing", "m", 0.0005, 1, "distance that chosen roots keep; larger locks are fewer"),
+    field<&S::strength>("strength", "", 0, 1, "share of the way to the chosen strand at the tip"),
+    field<&S::profile>("profile", "", 0.1, 10,
+                       "how the pull grows from the root: 1 evenly, above 1 nearer to the tip"),
+    field<&S::variation>("variation", "", 0, 1, "random share by which the pull of a strand may be weaker"),
+    clearanceField<&S::clearance>(),
+    seedField<&S::seed>("seed", "another seed chooses other strands"),
 };
 
 /// Position at a share of the points from the root.

@@ -7,8 +7,8 @@ namespace {
 using S = CollideSettings;
 
 constexpr Field<S> kFields[] = {
-    {"distance", "m", 0, 0.1, "distance that points keep from the skin; near the root half the arc length",
-     &S::distance},
+    field<&S::distance>("distance", "m", 0, 0.1,
+                        "distance that points keep from the skin; near the root half the arc length"),
 };
 
 }  // namespace

@@ -13,13 +13,14 @@ namespace {
 using S = CurlSettings;
 
 constexpr Field<S> kFields[] = {
-    {"radius", "m", 0, 0.1, "of the helix", &S::radius},
-    {"frequency", "1/m", 0, 500, "turns for each metre of hair; segments limit it to one turn for four",
-     &S::frequency},
-    {"start", "m", 0, 5, "way from the root over which the radius grows to its full size", &S::start},
-    {"phaseVariation", "", 0, 1, "1 starts each strand at any angle, 0 all at the same", &S::phaseVariation},
-    clearanceField<S>(),
-    seedField<S>("another seed gives other angles"),
+    field<&S::radius>("radius", "m", 0, 0.1, "of the helix"),
+    field<&S::frequency>("frequency", "1/m", 0, 500,
+                         "turns for each metre of hair; segments limit it to one turn for four"),
+    field<&S::start>("start", "m", 0, 5, "way from the root over which the radius grows to its full size"),
+    field<&S::phaseVariation>("phaseVariation", "", 0, 1,
+                              "1 starts each strand at any angle, 0 all at the same"),
+    clearanceField<&S::clearance>(),
+    seedField<&S::seed>("seed", "another seed gives other angles"),
 };
 
 constexpr float kSegmentsPerTurn = 4;

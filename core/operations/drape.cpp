@@ -9,9 +9,10 @@ namespace {
 using S = DrapeSettings;
 
 constexpr Field<S> kFields[] = {
-    {"amount", "", 0, 1, "share of the turn towards straight down at the tip", &S::amount},
-    {"rootAmount", "", 0, 1, "share of the turn at the root; between, it changes evenly", &S::rootAmount},
-    clearanceField<S>(),
+    field<&S::amount>("amount", "", 0, 1, "share of the turn towards straight down at the tip"),
+    field<&S::rootAmount>("rootAmount", "", 0, 1,
+                          "share of the turn at the root; between, it changes evenly"),
+    clearanceField<&S::clearance>(),
 };
 
 /// Turns a unit vector by a share of its angle to straight down.

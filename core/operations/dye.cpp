@@ -11,12 +11,12 @@ namespace {
 using S = DyeSettings;
 
 constexpr Field<S> kFields[] = {
-    {"amount", "", 0, 1, "what the mask becomes: 1 is all of the material's dye", &S::amount},
-    {"centre", "m", -kAnywhere, kAnywhere, "middle of the ball in which roots are reached", &S::centre},
-    {"radius", "m", 0, kAnywhere, "of that ball; 0 reaches all roots", &S::radius},
-    {"softness", "m", 0, 1, "way over which the reach fades at the ball's rim", &S::softness},
-    {"variation", "", 0, 1, "random share by which a strand's amount may be lower", &S::variation},
-    seedField<S>("another seed varies the strands differently"),
+    field<&S::amount>("amount", "", 0, 1, "what the mask becomes: 1 is all of the material's dye"),
+    field<&S::centre>("centre", "m", -kAnywhere, kAnywhere, "middle of the ball in which roots are reached"),
+    field<&S::radius>("radius", "m", 0, kAnywhere, "of that ball; 0 reaches all roots"),
+    field<&S::softness>("softness", "m", 0, 1, "way over which the reach fades at the ball's rim"),
+    field<&S::variation>("variation", "", 0, 1, "random share by which a strand's amount may be lower"),
+    seedField<&S::seed>("seed", "another seed varies the strands differently"),
 };
 
 /// 0 outside of the ball … 1 well inside.

@@ -12,12 +12,12 @@ namespace {
 using S = NoiseSettings;
 
 constexpr Field<S> kFields[] = {
-    {"amplitude", "m", 0, 0.1, "how far waves lead aside at the tip", &S::amplitude},
-    {"frequency", "1/m", 0, 1000, "waves for each metre of hair; segments limit it to one wave for four",
-     &S::frequency},
-    {"rootShare", "", 0, 1, "amplitude at the root as a share of that at the tip", &S::rootShare},
-    clearanceField<S>(),
-    seedField<S>("another seed gives other waves"),
+    field<&S::amplitude>("amplitude", "m", 0, 0.1, "how far waves lead aside at the tip"),
+    field<&S::frequency>("frequency", "1/m", 0, 1000,
+                         "waves for each metre of hair; segments limit it to one wave for four"),
+    field<&S::rootShare>("rootShare", "", 0, 1, "amplitude at the root as a share of that at the tip"),
+    clearanceField<&S::clearance>(),
+    seedField<&S::seed>("seed", "another seed gives other waves"),
 };
 
 constexpr float kSegmentsPerWave = 4;

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <map>
 
-#include "core/groom/file/json_reader.h"
 #include "core/operations/clump.h"
 #include "core/operations/collide.h"
 #include "core/operations/curl.h"
@@ -28,7 +27,7 @@ struct Operation {
     std::string_view name;
     std::string_view meaning;
     Run (*read)(JsonReader&);
-    std::vector<OperationField> (*fields)();
+    std::vector<FieldRow> (*fields)();
 };
 
 template <class S, Result<std::size_t> (*Apply)(Groom&, const S&, const Region&)>
@@ -44,20 +43,9 @@ Run readOperation(JsonReader& reader) {
     return [settings, region](Groom& groom) { return Apply(groom, settings, region); };
 }
 
-template <class S>
-std::vector<OperationField> describe() {
-    const auto defaults = fieldsToJson(S());
-    std::vector<OperationField> fields;
-    for (const Field<S>& field : fieldsOf(S())) {
-        fields.push_back(
-            {field.name, field.unit, field.min, field.max, field.meaning, defaults[field.name].dump()});
-    }
-    return fields;
-}
-
 template <class S, Result<std::size_t> (*Apply)(Groom&, const S&, const Region&)>
 constexpr Operation operation(std::string_view name, std::string_view meaning) {
-    return {name, meaning, &readOperation<S, Apply>, &describe<S>};
+    return {name, meaning, &readOperation<S, Apply>, &fieldRows<S>};
 }
 
 constexpr Operation kOperations[] = {
@@ -164,8 +152,8 @@ const std::vector<OperationInfo>& scriptOperations() {
     return infos;
 }
 
-const std::vector<OperationField>& scriptRegionFields() {
-    static const std::vector<OperationField> fields = describe<Region>();
+const std::vector<FieldRow>& scriptRegionFields() {
+    static const std::vector<FieldRow> fields = fieldRows<Region>();
     return fields;
 }
 

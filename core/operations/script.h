@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/groom/file/json_reader.h"
 #include "core/groom/groom.h"
 
 namespace hairloom {
@@ -23,8 +24,6 @@ struct ScriptStep {
 struct Script {
     std::vector<ScriptStep> steps;
 };
-
-class JsonReader;
 
 /// An operation of another room: reads its members (complaints are the reader's) and gives what runs it.
 struct ScriptExtension {
@@ -48,21 +47,13 @@ struct ScriptReport {
 Result<ScriptReport> runScript(const Script& script, Groom& groom);
 
 /// What a script may say, for help texts and documentation.
-struct OperationField {
-    std::string name;
-    std::string unit;
-    double min;
-    double max;
-    std::string meaning;
-    std::string defaultValue;  ///< as it would stand in JSON
-};
 struct OperationInfo {
     std::string name;
     std::string meaning;
-    std::vector<OperationField> fields;
+    std::vector<FieldRow> fields;
 };
 const std::vector<OperationInfo>& scriptOperations();
 /// The fields of the "region" that every operation takes.
-const std::vector<OperationField>& scriptRegionFields();
+const std::vector<FieldRow>& scriptRegionFields();
 
 }  // namespace hairloom

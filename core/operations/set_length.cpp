@@ -11,17 +11,17 @@ namespace {
 using S = SetLengthSettings;
 
 constexpr Field<S> kFields[] = {
-    {"length", "m", 0.001, 5, "length of strands before variation and gradient", &S::length},
-    {"variation", "", 0, 1, "each strand is shortened by a random share of up to this", &S::variation},
-    {"rescale", "", 0, 1, "true scales the shape; false cuts strands or lets them go on straight",
-     &S::rescale},
-    {"gradientPoint", "m", -kAnywhere, kAnywhere, "where the gradient begins", &S::gradientPoint},
-    {"gradientAxis", "", -kAnywhere, kAnywhere, "direction in which lengths change", &S::gradientAxis},
-    {"gradientDistance", "m", 0, kAnywhere, "way along the axis until farScale is reached; 0: no gradient",
-     &S::gradientDistance},
-    {"farScale", "", 0.01, 100, "length at the gradient's end over that at its beginning", &S::farScale},
-    clearanceField<S>(),
-    seedField<S>("another seed varies the strands differently"),
+    field<&S::length>("length", "m", 0.001, 5, "length of strands before variation and gradient"),
+    field<&S::variation>("variation", "", 0, 1, "each strand is shortened by a random share of up to this"),
+    boolField<&S::rescale>("rescale",
+                           "true scales the shape; false cuts strands or lets them go on straight"),
+    field<&S::gradientPoint>("gradientPoint", "m", -kAnywhere, kAnywhere, "where the gradient begins"),
+    field<&S::gradientAxis>("gradientAxis", "", -kAnywhere, kAnywhere, "direction in which lengths change"),
+    field<&S::gradientDistance>("gradientDistance", "m", 0, kAnywhere,
+                                "way along the axis until farScale is reached; 0: no gradient"),
+    field<&S::farScale>("farScale", "", 0.01, 100, "length at the gradient's end over that at its beginning"),
+    clearanceField<&S::clearance>(),
+    seedField<&S::seed>("seed", "another seed varies the strands differently"),
 };
 
 float gradientAt(const S& settings, const Vec3f& root) {

@@ -12,9 +12,9 @@ namespace {
 using S = SmoothSettings;
 
 constexpr Field<S> kFields[] = {
-    {"amount", "", 0, 1, "share of the way to the middle of the neighbours in each pass", &S::amount},
-    {"passes", "", 1, 100, "more is smoother over longer stretches", &S::passes},
-    clearanceField<S>(),
+    field<&S::amount>("amount", "", 0, 1, "share of the way to the middle of the neighbours in each pass"),
+    field<&S::passes>("passes", "", 1, 100, "more is smoother over longer stretches"),
+    clearanceField<&S::clearance>(),
 };
 
 }  // namespace

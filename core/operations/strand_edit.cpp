@@ -14,11 +14,11 @@ namespace {
 
 constexpr std::size_t kGrain = 64;
 constexpr Field<Region> kRegionFields[] = {
-    {"point", "m", -kAnywhere, kAnywhere, "a point of the plane that bounds the region", &Region::point},
-    {"normal", "", -kAnywhere, kAnywhere, "side of the plane that is reached; zero reaches all strands",
-     &Region::normal},
-    {"fade", "m", 0, 1, "width of the seam in which strands are reached at random", &Region::fade},
-    seedField<Region>("another seed reaches other strands of the seam"),
+    field<&Region::point>("point", "m", -kAnywhere, kAnywhere, "a point of the plane that bounds the region"),
+    field<&Region::normal>("normal", "", -kAnywhere, kAnywhere,
+                           "side of the plane that is reached; zero reaches all strands"),
+    field<&Region::fade>("fade", "m", 0, 1, "width of the seam in which strands are reached at random"),
+    seedField<&Region::seed>("seed", "another seed reaches other strands of the seam"),
 };
 
 std::uint32_t idOf(const Groom& groom, std::size_t strand) {

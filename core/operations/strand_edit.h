@@ -51,14 +51,10 @@ struct EditOptions {
 std::size_t editStrands(Groom& groom, const Region& region, const EditOptions& options,
                         const std::function<void(StrandEdit&)>& edit);
 
-/// Settings that brushes have in common.
-template <class S>
-constexpr Field<S> clearanceField() {
-    return {"clearance", "m", 0, 0.1, "distance kept from the skin", &S::clearance};
-}
-template <class S>
-constexpr Field<S> seedField(const char* meaning) {
-    return {"seed", "", 0, kLargestSeed, meaning, &S::seed};
+/// A setting that operations have in common.
+template <auto M>
+constexpr auto clearanceField() {
+    return field<M>("clearance", "m", 0, 0.1, "distance kept from the skin");
 }
 
 /// Fails with the first setting that lies outside its range.

@@ -12,13 +12,13 @@ namespace {
 using S = TrimSettings;
 
 constexpr Field<S> kFields[] = {
-    {"planePoint", "m", -kAnywhere, kAnywhere, "a point of the cutting plane", &S::planePoint},
-    {"planeNormal", "", -kAnywhere, kAnywhere, "side that is cut away; zero: no plane", &S::planeNormal},
-    {"maxLength", "m", 0.001, 5, "what is longer is cut", &S::maxLength},
-    {"raggedness", "m", 0, 1, "each strand is cut shorter by a random length of up to this; 0 is blunt",
-     &S::raggedness},
-    {"minLength", "m", 0.001, 1, "length that a cut always leaves", &S::minLength},
-    seedField<S>("another seed gives other ragged ends"),
+    field<&S::planePoint>("planePoint", "m", -kAnywhere, kAnywhere, "a point of the cutting plane"),
+    field<&S::planeNormal>("planeNormal", "", -kAnywhere, kAnywhere, "side that is cut away; zero: no plane"),
+    field<&S::maxLength>("maxLength", "m", 0.001, 5, "what is longer is cut"),
+    field<&S::raggedness>("raggedness", "m", 0, 1,
+                          "each strand is cut shorter by a random length of up to this; 0 is blunt"),
+    field<&S::minLength>("minLength", "m", 0.001, 1, "length that a cut always leaves"),
+    seedField<&S::seed>("seed", "another seed gives other ragged ends"),
 };
 
 /// Arc length at which the strand first crosses the plane; infinite when it does not.

@@ -178,7 +178,7 @@ Result<std::unique_ptr<StrandMethod>> makeProjectiveMethod(const SceneInput& sce
 
 Result<std::unique_ptr<StrandMethod>> makeLatticeMethod(const SceneInput& scene) {
     const runtime::SimulationSettings& settings = scene.groom().simulation;
-    for (const runtime::FieldProblem& problem : runtime::validate(settings)) return fail(problem.message);
+    for (const std::string& problem : runtime::validate(settings)) return fail(problem);
     auto made = runtime::Lattice::make(scene.strands(), latticeSettings(settings), applicationHost());
     if (!made.lattice) return fail(made.error);
     return std::make_unique<LatticeMethod>(scene, std::move(*made.lattice));

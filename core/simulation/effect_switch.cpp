@@ -25,9 +25,9 @@ std::string turnEffectOff(runtime::SimulationSettings& settings, std::string_vie
     std::string how;
     for (const Switch& entry : kSwitches) {
         if (effect != entry.effect) continue;
-        const runtime::FieldInfo* field = runtime::findField(entry.field);
+        const auto* field = runtime::findField<runtime::SimulationSettings>(entry.field);
         assert(field);
-        for (std::uint32_t c = 0; c < runtime::componentCount(*field); ++c) {
+        for (std::uint32_t c = 0; c < field->components(); ++c) {
             if (!runtime::setFieldValue(changed, *field, 0, c)) return {};
         }
         how += fmt::format("{}simulation.{}=0", how.empty() ? "" : ", ", field->name);

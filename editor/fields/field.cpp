@@ -6,123 +6,56 @@
 #include <cassert>
 #include <cmath>
 
-#include "core/groom/file/fields.h"
-#include "hairloom/settings.h"
-
 namespace hairloom::editor {
 namespace {
 
-using Table = runtime::FieldInfo;
-
-Field fromEngine(const Table& info) {
-    Field field;
-    field.name = info.name;
-    field.label = labelOf(field.name);
-    field.unit = QString::fromUtf8(info.unit);
-    field.meaning = QString::fromUtf8(info.meaning);
-    field.min = info.min;
-    field.max = info.max;
-    for (const char* choice : info.choices) field.choices.append(labelOf(choice));
-    for (std::uint32_t c = 0; c < runtime::componentCount(info); ++c) {
-        field.standard[c] = runtime::defaultValue(info, c);
-    }
-    if (!field.choices.isEmpty()) {
-        field.kind = FieldKind::Choice;
-    } else if (runtime::componentCount(info) == 3) {
-        field.kind = FieldKind::Vector;
-    } else if (std::holds_alternative<std::uint32_t runtime::SimulationSettings::*>(info.member)) {
-        field.kind = FieldKind::Whole;
-    }
-    field.changes = Change::Simulation;
-    field.value = [&info](const Groom& groom, std::uint32_t component) {
-        return runtime::fieldValue(groom.simulation, info, component);
-    };
-    field.set = [&info](Groom& groom, double value, std::uint32_t component) {
-        return runtime::setFieldValue(groom.simulation, info, value, component);
-    };
-    return field;
-}
-
 template <class S>
-void store(S& settings, const hairloom::Field<S>& info, double value, std::uint32_t component) {
-    std::visit(
-        [&](auto member) {
-            using Member = decltype(member);
-            if constexpr (!mayHold<S, Member>()) {
-                return;
-            } else if constexpr (std::is_same_v<Member, Vec3f S::*>) {
-                (settings.*member)[component] = static_cast<float>(value);
-            } else {
-                using Value = std::remove_reference_t<decltype(settings.*member)>;
-                settings.*member = static_cast<Value>(value);
-            }
-        },
-        info.member);
-}
-
-template <class S>
-FieldKind kindOf(const hairloom::Field<S>& info) {
-    if (std::holds_alternative<Vec3f S::*>(info.member)) return FieldKind::Colour;
-    if (std::holds_alternative<bool S::*>(info.member)) return FieldKind::Truth;
-    return std::holds_alternative<float S::*>(info.member) ? FieldKind::Number : FieldKind::Whole;
-}
-
-template <class S>
-Field fromTable(const hairloom::Field<S>& info, S Groom::*section, Changes changes) {
-    Field field;
-    field.name = info.name;
-    field.label = labelOf(field.name);
-    field.unit = QString::fromUtf8(info.unit);
-    field.meaning = QString::fromUtf8(info.meaning);
-    field.kind = kindOf(info);
-    field.min = info.min;
-    field.max = info.max;
-    field.changes = changes;
-    for (std::uint32_t c = 0; c < componentCount(info); ++c) field.standard[c] = fieldValue(S{}, info, c);
-    field.value = [&info, section](const Groom& groom, std::uint32_t component) {
-        return fieldValue(groom.*section, info, component);
-    };
-    field.set = [&info, section](Groom& groom, double value, std::uint32_t component) {
-        if (!withinRange(value, info.min, info.max)) return false;
-        store(groom.*section, info, value, component);
-        return true;
-    };
-    return field;
-}
-
-template <class S>
-std::vector<Field> fromTable(S Groom::*section, Changes changes) {
+std::vector<Field> fieldsIn(S Groom::*section, Changes changes) {
     std::vector<Field> fields;
-    for (const hairloom::Field<S>& info : fieldsOf(S{})) fields.push_back(fromTable(info, section, changes));
+    for (const runtime::Field<S>& described : fieldsOf(S{})) {
+        if (described.components() == 0) continue;
+        Field field{described, labelOf(described.name), {}, changes, {}, {}};
+        for (std::uint32_t c = 0; c < field.components(); ++c) field.standard[c] = defaultValue(described, c);
+        field.value = [&described, section](const Groom& groom, std::uint32_t component) {
+            return fieldValue(groom.*section, described, component);
+        };
+        field.set = [&described, section](Groom& groom, double value, std::uint32_t component) {
+            return setFieldValue(groom.*section, described, value, component);
+        };
+        fields.push_back(std::move(field));
+    }
     return fields;
 }
 
 }  // namespace
 
+QStringList Field::choiceLabels() const {
+    QStringList labels;
+    for (const char* choice : choices) labels.append(labelOf(choice));
+    return labels;
+}
+
 std::vector<Field> simulationFields() {
-    std::vector<Field> fields;
-    for (const Table& info : runtime::fields()) {
-        if (runtime::componentCount(info) > 0) fields.push_back(fromEngine(info));
-    }
-    return fields;
+    return fieldsIn(&Groom::simulation, Change::Simulation);
 }
 
 std::vector<Field> materialFields() {
-    return fromTable(&Groom::material, Change::Look);
+    return fieldsIn(&Groom::material, Change::Look);
 }
 
 std::vector<Field> followHairFields() {
-    return fromTable(&Groom::interpolation, Change::FollowHairs);
+    return fieldsIn(&Groom::interpolation, Change::FollowHairs);
 }
 
 std::vector<Field> placementFields() {
-    return fromTable(&Groom::placement, Change::Placement);
+    return fieldsIn(&Groom::placement, Change::Placement);
 }
 
 std::vector<Field> pick(const std::vector<Field>& all, const QStringList& names) {
     std::vector<Field> picked;
     for (const QString& name : names) {
-        const auto found = std::ranges::find(all, name, &Field::name);
+        const auto found =
+            std::ranges::find_if(all, [&](const Field& field) { return name == QLatin1String(field.name); });
         assert(found != all.end());
         picked.push_back(*found);
     }
@@ -183,13 +116,14 @@ QString tooltipOf(const Field& field, DisplayUnit lengths) {
         if (!text.isEmpty()) text[0] = text[0].toUpper();
         return text.toHtmlEscaped();
     };
-    QString text = QStringLiteral("<p><b>%1</b></p><p>%2</p>").arg(field.label, sentence(field.meaning));
+    QString text = QStringLiteral("<p><b>%1</b></p><p>%2</p>")
+                       .arg(field.label, sentence(QString::fromUtf8(field.meaning)));
     if (field.kind == FieldKind::Choice) {
         return text + QObject::tr("<p>Standard: %1</p>")
-                          .arg(field.choices.value(static_cast<int>(field.standard[0])));
+                          .arg(field.choiceLabels().value(static_cast<int>(field.standard[0])));
     }
-    if (field.kind == FieldKind::Truth || field.kind == FieldKind::Colour) return text;
-    const Shown shown = shownAs(field.unit, field.min, field.max, lengths);
+    if (field.kind == FieldKind::Bool || field.kind == FieldKind::Colour) return text;
+    const Shown shown = shownAs(QString::fromUtf8(field.unit), field.min, field.max, lengths);
     const auto number = [&](double value) { return QString::number(value * shown.factor, 'g', 6); };
     text +=
         QObject::tr("<p>%1 to %2 %3; standard %4</p>")

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// One authored number, choice or colour of a groom as a panel shows it. The tables of
-// core/groom/file/fields.h and runtime/settings.h describe the fields; this is the one form that panels take
-// them in.
+// A described field of a groom (hairloom/field.h) as a panel shows it.
 
 #include <QString>
 #include <QStringList>
@@ -10,31 +8,21 @@
 #include <functional>
 #include <vector>
 
+#include "core/groom/file/fields.h"
 #include "editor/document/document.h"
 #include "editor/document/preferences.h"
 
 namespace hairloom::editor {
 
-enum class FieldKind { Number, Whole, Truth, Choice, Vector, Colour };
-
-struct Field {
-    QString name;   ///< as in files: "windSpeed"
-    QString label;  ///< "Wind speed"
-    QString unit;   ///< of the value; "" for a pure number
-    QString meaning;
-    FieldKind kind = FieldKind::Number;
-    double min = 0;
-    double max = 1;
+struct Field : FieldInfo {
+    QString label;                     ///< "Wind speed"
     std::array<double, 3> standard{};  ///< the default of each component
-    QStringList choices;
     Changes changes;
     std::function<double(const Groom&, std::uint32_t component)> value;
     /// False, and no change, where the value is not allowed.
     std::function<bool(Groom&, double value, std::uint32_t component)> set;
 
-    std::uint32_t components() const {
-        return kind == FieldKind::Vector || kind == FieldKind::Colour ? 3 : 1;
-    }
+    QStringList choiceLabels() const;
 };
 
 /// All but curves, which have controls of their own.

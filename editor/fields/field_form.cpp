@@ -39,7 +39,7 @@ FieldForm::FieldForm(Document& document, const Preferences& preferences, std::ve
 void FieldForm::addRow(const Field& field) {
     QWidget* control = nullptr;
     switch (field.kind) {
-        case FieldKind::Truth:
+        case FieldKind::Bool:
             control = makeTruth(field);
             break;
         case FieldKind::Choice:
@@ -51,8 +51,10 @@ void FieldForm::addRow(const Field& field) {
         case FieldKind::Colour:
             control = makeColour(field);
             break;
-        case FieldKind::Number:
-        case FieldKind::Whole:
+        case FieldKind::Float:
+        case FieldKind::Int:
+        case FieldKind::Seed:
+        case FieldKind::Ramp:
             control = makeNumber(field);
             break;
     }
@@ -87,11 +89,11 @@ void FieldForm::addRow(const Field& field) {
 }
 
 QWidget* FieldForm::makeNumber(const Field& field) {
-    auto* box = new NumberBox(field.min, field.max, field.kind == FieldKind::Whole);
+    auto* box = new NumberBox(field.min, field.max, field.isWhole());
     connect(box, &NumberBox::begun, this, &FieldForm::begin);
     connect(box, &NumberBox::edited, this, [this, &field](double value) { store(field, value); });
     refreshers_.push_back([this, &field, box] {
-        const Shown shown = shownAs(field.unit, field.min, field.max, preferences_.unit());
+        const Shown shown = shownAs(QString::fromUtf8(field.unit), field.min, field.max, preferences_.unit());
         box->setShown(shown.factor, shown.unit, shown.decimals);
         box->setValue(field.value(document_.groom(), 0));
     });
@@ -110,7 +112,7 @@ QWidget* FieldForm::makeTruth(const Field& field) {
 
 QWidget* FieldForm::makeChoice(const Field& field) {
     auto* box = new QComboBox;
-    box->addItems(field.choices);
+    box->addItems(field.choiceLabels());
     connect(box, &QComboBox::activated, this, [this, &field](int index) {
         begin();
         store(field, index);

@@ -31,8 +31,9 @@ bool movesHair(const std::string& brush) {
 
 /// The brush's own parameter makes it smooth what it does; others leave that to the brush `smooth`.
 bool smoothsItself(const std::string& brush) {
-    return std::ranges::any_of(editing::brushInfo(brush).parameters,
-                               [](const editing::BrushParameter& p) { return p.name == "smooth"; });
+    return std::ranges::any_of(editing::brushInfo(brush).parameters, [](const editing::BrushParameter& p) {
+        return std::string_view(p.name) == "smooth";
+    });
 }
 
 }  // namespace
@@ -158,9 +159,11 @@ void BrushTool::setStrength(float strength) {
 
 void BrushTool::setParameter(const std::string& name, float value) {
     const auto parameters = editing::brushInfo(brush_).parameters;
-    const auto known = std::ranges::find(parameters, name, &editing::BrushParameter::name);
+    const auto known =
+        std::ranges::find_if(parameters, [&](const editing::BrushParameter& p) { return p.name == name; });
     if (known == parameters.end()) return;
-    settings_.parameters[name] = std::clamp(value, known->min, known->max);
+    settings_.parameters[name] =
+        std::clamp(value, static_cast<float>(known->min), static_cast<float>(known->max));
     changed();
 }
 
@@ -305,15 +308,15 @@ QWidget* BrushTool::makeOptions() {
     for (const editing::BrushParameter& parameter : editing::brushInfo(brush_).parameters) {
         const std::string name(parameter.name);
         const QString label = labelOf(text(parameter.name));
-        if (parameter.isFlag) {
+        if (parameter.kind == FieldKind::Bool) {
             form->addTruth(
                 "brush:" + text(name), label, text(parameter.meaning),
                 [this, name] { return settings_.parameters[name] != 0; },
                 [this, name](bool on) { settings_.parameters[name] = on ? 1.0f : 0.0f; });
         } else {
             form->addNumber(
-                "brush:" + text(name), label, text(parameter.meaning), text(parameter.unit),
-                static_cast<double>(parameter.min), static_cast<double>(parameter.max), false,
+                "brush:" + text(name), label, text(parameter.meaning), text(parameter.unit), parameter.min,
+                parameter.max, false,
                 [this, name] { return static_cast<double>(settings_.parameters[name]); },
                 [this, name](double value) { settings_.parameters[name] = static_cast<float>(value); });
         }

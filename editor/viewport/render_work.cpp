@@ -36,8 +36,8 @@ render::Environment environmentOf(const PictureRequest& request) {
 template <class S>
 bool sameFields(const S& a, const S& b) {
     return std::ranges::all_of(fieldsOf(S()), [&](const hairloom::Field<S>& field) {
-        for (std::uint32_t c = 0; c < componentCount(field); ++c) {
-            if (fieldValue(a, field, c) != fieldValue(b, field, c)) return false;
+        for (std::uint32_t c = 0; c < field.components(); ++c) {
+            if (field.get(a, c) != field.get(b, c)) return false;
         }
         return true;
     });

@@ -9,9 +9,8 @@
 namespace hairloom::runtime {
 
 std::string whyRefused(const SimulationSettings& settings) {
-    const std::vector<FieldProblem> problems = validate(settings);
     std::string text;
-    for (const FieldProblem& problem : problems) text += (text.empty() ? "" : "\n") + problem.message;
+    for (const std::string& problem : validate(settings)) text += (text.empty() ? "" : "\n") + problem;
     return text;
 }
 

@@ -92,13 +92,14 @@ TEST(Script, IsDocumentedFieldByField) {
         ASSERT_NE(section, std::string::npos) << operation.name;
         const std::string_view body =
             std::string_view(*text).substr(section, text->find("\n## ", section + 1) - section);
-        for (const OperationField& field : operation.fields) {
-            const std::string row = "| `" + field.name + "` | " + field.defaultValue + " |";
+        for (const FieldRow& field : operation.fields) {
+            const std::string row =
+                "| `" + std::string(field.info.name) + "` | " + field.standard.dump() + " |";
             EXPECT_NE(body.find(row), std::string_view::npos) << operation.name << ": " << row;
         }
     }
-    for (const OperationField& field : scriptRegionFields())
-        EXPECT_THAT(*text, HasSubstr("| `" + field.name + "` |"));
+    for (const FieldRow& field : scriptRegionFields())
+        EXPECT_THAT(*text, HasSubstr("| `" + std::string(field.info.name) + "` |"));
 }
 
 }  // namespace

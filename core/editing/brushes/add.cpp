@@ -15,8 +15,9 @@ namespace {
 constexpr std::size_t kGrain = 256;
 
 constexpr BrushParameter kParameters[] = {
-    {"density", "1/cm²", 0.01f, 1000, 5, false, "roots per area that are not exceeded"},
-    {"reach", "m", 0, 0.2f, 0.03f, false, "how far away hair may be whose shape new hair takes; 0: straight"},
+    parameter("density", "1/cm²", 0.01, 1000, 5, "roots per area that are not exceeded"),
+    parameter("reach", "m", 0, 0.2, 0.03f,
+              "how far away hair may be whose shape new hair takes; 0: straight"),
 };
 constexpr BrushInfo kInfo{"add", "Add", "grows hair between the hair that is there", "", kParameters,
                           true,  true};

@@ -9,7 +9,7 @@ namespace hairloom::editing {
 namespace {
 
 constexpr BrushParameter kParameters[] = {
-    {"shortest", "m", 0.001f, 1, 0.005f, false, "length that a cut always leaves"},
+    parameter("shortest", "m", 0.001, 1, 0.005f, "length that a cut always leaves"),
 };
 constexpr BrushInfo kInfo{"cut_line", "Cut along line", "cuts hair where it crosses the line that is drawn",
                           "",         kParameters,      false};

@@ -6,7 +6,7 @@ namespace hairloom::editing {
 namespace {
 
 constexpr BrushParameter kParameters[] = {
-    {"roots", "", 0, 1, 1, true, "takes strands by their roots alone; without, by any part of them"},
+    boolParameter("roots", true, "takes strands by their roots alone; without, by any part of them"),
 };
 constexpr BrushInfo kInfo{"delete", "Delete", "removes hair", "", kParameters};
 

@@ -8,7 +8,7 @@ namespace hairloom::editing {
 namespace {
 
 constexpr BrushParameter kParameters[] = {
-    {"density", "", 0, 1, 0, false, "density of roots that is painted; inverted, what is left to 1"},
+    parameter("density", "", 0, 1, 0, "density of roots that is painted; inverted, what is left to 1"),
 };
 constexpr BrushInfo kInfo{"density_paint",
                           "Paint density",

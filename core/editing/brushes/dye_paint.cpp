@@ -8,8 +8,8 @@ namespace hairloom::editing {
 namespace {
 
 constexpr BrushParameter kParameters[] = {
-    {"amount", "", 0, 1, 1, false, "what the mask becomes; 1 is all of the material's dye"},
-    {"smooth", "", 0, 1, 0, true, "brings the mask nearer to its mean under the brush instead"},
+    parameter("amount", "", 0, 1, 1, "what the mask becomes; 1 is all of the material's dye"),
+    boolParameter("smooth", false, "brings the mask nearer to its mean under the brush instead"),
 };
 constexpr BrushInfo kInfo{"dye_paint", "Paint dye", "brings the material's dye onto hair", "takes dye off",
                           kParameters};

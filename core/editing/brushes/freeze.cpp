@@ -8,7 +8,7 @@ namespace hairloom::editing {
 namespace {
 
 constexpr BrushParameter kParameters[] = {
-    {"roots", "", 0, 1, 0, true, "takes strands by their roots alone"},
+    boolParameter("roots", false, "takes strands by their roots alone"),
 };
 constexpr BrushInfo kInfo{"freeze", "Freeze", "keeps brushes from touching hair", "thaws hair", kParameters};
 

@@ -9,10 +9,10 @@ namespace hairloom::editing {
 namespace {
 
 constexpr BrushParameter kParameters[] = {
-    {"rate", "", 0, 1, 0.1f, false, "share of its length that a dab of full strength adds or takes"},
-    {"rescale", "", 0, 1, 1, true, "scales the shape; without, hair goes on straight or is cut"},
-    {"shortest", "m", 0.001f, 1, 0.005f, false, "length below which no hair is shortened"},
-    {"longest", "m", 0.001f, 5, 2, false, "length above which no hair grows"},
+    parameter("rate", "", 0, 1, 0.1f, "share of its length that a dab of full strength adds or takes"),
+    boolParameter("rescale", true, "scales the shape; without, hair goes on straight or is cut"),
+    parameter("shortest", "m", 0.001, 1, 0.005f, "length below which no hair is shortened"),
+    parameter("longest", "m", 0.001, 5, 2, "length above which no hair grows"),
 };
 constexpr BrushInfo kInfo{"length", "Length", "makes hair longer", "makes hair shorter", kParameters, false};
 

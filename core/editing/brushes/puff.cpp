@@ -5,7 +5,7 @@ namespace hairloom::editing {
 namespace {
 
 constexpr BrushParameter kParameters[] = {
-    {"height", "m", 0, 0.1f, 0.01f, false, "how far a dab of full strength lifts"},
+    parameter("height", "m", 0, 0.1, 0.01f, "how far a dab of full strength lifts"),
 };
 constexpr BrushInfo kInfo{"puff", "Puff", "lifts hair away from the skin", "presses hair onto the skin",
                           kParameters};

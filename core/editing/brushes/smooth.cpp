@@ -6,7 +6,7 @@ namespace hairloom::editing {
 namespace {
 
 constexpr BrushParameter kParameters[] = {
-    {"passes", "", 1, 20, 2, false, "more is smoother over longer stretches with each dab"},
+    parameter("passes", "", 1, 20, 2, "more is smoother over longer stretches with each dab"),
 };
 constexpr BrushInfo kInfo{"smooth", "Smooth", "takes bends out of hair", "", kParameters, true, false,
                           false,    true};

@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 namespace hairloom {
 namespace {
 
@@ -12,107 +10,82 @@ using M = HairMaterial;
 using I = InterpolationSettings;
 using P = PlacementSettings;
 
+// clang-format off
 constexpr Field<M> kMaterialFields[] = {
-    {"rootRadius", "m", 5e-6, 0.05, "half the fibre's diameter at the root; a hair has 25e-6 to 60e-6",
-     &M::rootRadius},
-    {"tipScale", "", 0, 1, "radius at the tip over radius at the root: lower is more pointed", &M::tipScale},
-    {"rootColour", "", 0, 1, "linear red, green and blue at the root", &M::rootColour},
-    {"tipColour", "", 0, 1, "linear red, green and blue at the tip", &M::tipColour},
-    {"colourVariation", "", 0, 1, "random spread of brightness from strand to strand", &M::colourVariation},
-    {"specular", "", 0, 2, "weight of the highlight (Kajiya-Kay)", &M::specular},
-    {"shininess", "", 1, 1000, "Kajiya-Kay exponent: higher is a narrower highlight", &M::shininess},
-    {"eumelanin", "", 0, 8, "concentration of the brown-black pigment", &M::eumelanin},
-    {"pheomelanin", "", 0, 8, "concentration of the red-yellow pigment", &M::pheomelanin},
-    {"indexOfRefraction", "", 1, 2.5, "how strongly the fibre bends light; hair has 1.55",
-     &M::indexOfRefraction},
-    {"longitudinalRoughness", "", 0.01, 1, "width of the highlights along the fibre",
-     &M::longitudinalRoughness},
-    {"azimuthalRoughness", "", 0.01, 1, "width of the highlights around the fibre", &M::azimuthalRoughness},
-    {"scaleTiltDegrees", "°", -10, 10, "tilt of the cuticle's scales towards the root; moves the highlights",
-     &M::scaleTiltDegrees},
-    {"radiusVariation", "", 0, 1, "random spread of the thickness from strand to strand",
-     &M::radiusVariation},
-    {"gradientStart", "", 0, 1, "share of the length over which hair has the colour of the root",
-     &M::gradientStart},
-    {"gradientEnd", "", 0, 1, "share of the length from which on it has the colour of the tip",
-     &M::gradientEnd},
-    {"tipMelanin", "", 0, 8, "pigment at the tip over that at the root: below 1 is bleached", &M::tipMelanin},
-    {"melaninVariation", "", 0, 1, "random spread of the pigment, or of the depth of the colour",
-     &M::melaninVariation},
-    {"dyed", "", 0, 1, "true: Marschner and Sadeghi take the colours too; false: they take the melanin",
-     &M::dyed},
-    {"streakShare", "", 0, 1, "share of the strands that are in streaks; 0 turns streaks off",
-     &M::streakShare},
-    {"streakWidth", "m", 0.0005, 0.2, "width of a streak on the scalp", &M::streakWidth},
-    {"streakSoftness", "", 0, 1, "0 bounds streaks sharply, 1 lets them fade over their width",
-     &M::streakSoftness},
-    {"streakDyed", "", 0, 1, "true: streaks have the streak colour; false: they differ in pigment",
-     &M::streakDyed},
-    {"streakColour", "", 0, 1, "linear red, green and blue of dyed streaks", &M::streakColour},
-    {"streakMelanin", "", 0, 8, "pigment in streaks over that beside them: below 1 is bleached",
-     &M::streakMelanin},
-    {"streakSeed", "", 0, kLargestSeed, "another seed puts streaks in other places", &M::streakSeed},
-    {"dyeStrength", "", 0, 1, "share of the dye's colour where the mask is 1; 0 turns dye off",
-     &M::dyeStrength},
-    {"dyeColour", "", 0, 1, "linear red, green and blue of the dye", &M::dyeColour},
-    {"dyeStart", "", 0, 1, "share of the length at which dye begins: dipped tips have 0.6", &M::dyeStart},
-    {"dyeEnd", "", 0, 1, "share of the length from which on dye has its full strength", &M::dyeEnd},
-    {"eccentricity", "", 0, 0.95, "of the fibre's cross-section: 0 is round (Marschner)", &M::eccentricity},
-    {"rIntensity", "", 0, 10, "factor on the first highlight (R)", &M::rIntensity},
-    {"ttIntensity", "", 0, 10, "factor on light that shines through (TT)", &M::ttIntensity},
-    {"trtIntensity", "", 0, 10, "factor on the second highlight (TRT)", &M::trtIntensity},
-    {"rWidth", "", 0.1, 10, "factor on the width along the hair of the first highlight (R)", &M::rWidth},
-    {"ttWidth", "", 0.1, 10, "factor on the width along the hair of light that shines through (TT)",
-     &M::ttWidth},
-    {"trtWidth", "", 0.1, 10, "factor on the width along the hair of the second highlight (TRT)",
-     &M::trtWidth},
-    {"rShiftDegrees", "°", -30, 30, "moves the first highlight (R) along the hair, towards the tip",
-     &M::rShiftDegrees},
-    {"ttShiftDegrees", "°", -30, 30, "moves light that shines through (TT) along the hair, towards the tip",
-     &M::ttShiftDegrees},
-    {"trtShiftDegrees", "°", -30, 30, "moves the second highlight (TRT) along the hair, towards the tip",
-     &M::trtShiftDegrees},
-    {"rColour", "", 0, 1, "linear factor on the colour of the first highlight (R) (Sadeghi)", &M::rColour},
-    {"ttColour", "", 0, 1, "linear factor on the colour of light that shines through (TT) (Sadeghi)",
-     &M::ttColour},
-    {"trtColour", "", 0, 1, "linear factor on the colour of the second highlight (TRT) (Sadeghi)",
-     &M::trtColour},
-    {"ttAzimuthalWidth", "", 0.1, 10, "factor on the width around the hair of TT (Sadeghi)",
-     &M::ttAzimuthalWidth},
-    {"glintIntensity", "", 0, 20, "factor on the glints beside the second highlight (Sadeghi)",
-     &M::glintIntensity},
-    {"glintWidthDegrees", "°", 1, 90, "width of glints around the hair (Sadeghi)", &M::glintWidthDegrees},
-    {"glintNearDegrees", "°", 0, 180, "least angle of a strand's glints, which is random (Sadeghi)",
-     &M::glintNearDegrees},
-    {"glintFarDegrees", "°", 0, 180, "largest angle of a strand's glints (Sadeghi)", &M::glintFarDegrees},
-    {"tubes", "", 0, 1, "true draws strands as round tubes with skin, as tentacles have", &M::tubes},
-    {"rootOpacity", "", 0, 1, "how opaque hair is at the root", &M::rootOpacity},
-    {"tipOpacity", "", 0, 1, "how opaque hair is at the tip: lower fades out", &M::tipOpacity},
-    {"emission", "", 0, 1000, "light that hair gives off by itself, as fire does; 0 is none", &M::emission},
-    {"emissionRootColour", "", 0, 1, "linear red, green and blue of that light at the root",
-     &M::emissionRootColour},
-    {"emissionTipColour", "", 0, 1, "linear red, green and blue of that light at the tip",
-     &M::emissionTipColour},
+    field<&M::rootRadius>("rootRadius", "m", 5e-6, 0.05, "half the fibre's diameter at the root; a hair has 25e-6 to 60e-6"),
+    field<&M::tipScale>("tipScale", "", 0, 1, "radius at the tip over radius at the root: lower is more pointed"),
+    colourField<&M::rootColour>("rootColour", "linear red, green and blue at the root"),
+    colourField<&M::tipColour>("tipColour", "linear red, green and blue at the tip"),
+    field<&M::colourVariation>("colourVariation", "", 0, 1, "random spread of brightness from strand to strand"),
+    field<&M::specular>("specular", "", 0, 2, "weight of the highlight (Kajiya-Kay)"),
+    field<&M::shininess>("shininess", "", 1, 1000, "Kajiya-Kay exponent: higher is a narrower highlight"),
+    field<&M::eumelanin>("eumelanin", "", 0, 8, "concentration of the brown-black pigment"),
+    field<&M::pheomelanin>("pheomelanin", "", 0, 8, "concentration of the red-yellow pigment"),
+    field<&M::indexOfRefraction>("indexOfRefraction", "", 1, 2.5, "how strongly the fibre bends light; hair has 1.55"),
+    field<&M::longitudinalRoughness>("longitudinalRoughness", "", 0.01, 1, "width of the highlights along the fibre"),
+    field<&M::azimuthalRoughness>("azimuthalRoughness", "", 0.01, 1, "width of the highlights around the fibre"),
+    field<&M::scaleTiltDegrees>("scaleTiltDegrees", "°", -10, 10, "tilt of the cuticle's scales towards the root; moves the highlights"),
+    field<&M::radiusVariation>("radiusVariation", "", 0, 1, "random spread of the thickness from strand to strand"),
+    field<&M::gradientStart>("gradientStart", "", 0, 1, "share of the length over which hair has the colour of the root"),
+    field<&M::gradientEnd>("gradientEnd", "", 0, 1, "share of the length from which on it has the colour of the tip"),
+    field<&M::tipMelanin>("tipMelanin", "", 0, 8, "pigment at the tip over that at the root: below 1 is bleached"),
+    field<&M::melaninVariation>("melaninVariation", "", 0, 1, "random spread of the pigment, or of the depth of the colour"),
+    boolField<&M::dyed>("dyed", "true: Marschner and Sadeghi take the colours too; false: they take the melanin"),
+    field<&M::streakShare>("streakShare", "", 0, 1, "share of the strands that are in streaks; 0 turns streaks off"),
+    field<&M::streakWidth>("streakWidth", "m", 0.0005, 0.2, "width of a streak on the scalp"),
+    field<&M::streakSoftness>("streakSoftness", "", 0, 1, "0 bounds streaks sharply, 1 lets them fade over their width"),
+    boolField<&M::streakDyed>("streakDyed", "true: streaks have the streak colour; false: they differ in pigment"),
+    colourField<&M::streakColour>("streakColour", "linear red, green and blue of dyed streaks"),
+    field<&M::streakMelanin>("streakMelanin", "", 0, 8, "pigment in streaks over that beside them: below 1 is bleached"),
+    seedField<&M::streakSeed>("streakSeed", "another seed puts streaks in other places"),
+    field<&M::dyeStrength>("dyeStrength", "", 0, 1, "share of the dye's colour where the mask is 1; 0 turns dye off"),
+    colourField<&M::dyeColour>("dyeColour", "linear red, green and blue of the dye"),
+    field<&M::dyeStart>("dyeStart", "", 0, 1, "share of the length at which dye begins: dipped tips have 0.6"),
+    field<&M::dyeEnd>("dyeEnd", "", 0, 1, "share of the length from which on dye has its full strength"),
+    field<&M::eccentricity>("eccentricity", "", 0, 0.95, "of the fibre's cross-section: 0 is round (Marschner)"),
+    field<&M::rIntensity>("rIntensity", "", 0, 10, "factor on the first highlight (R)"),
+    field<&M::ttIntensity>("ttIntensity", "", 0, 10, "factor on light that shines through (TT)"),
+    field<&M::trtIntensity>("trtIntensity", "", 0, 10, "factor on the second highlight (TRT)"),
+    field<&M::rWidth>("rWidth", "", 0.1, 10, "factor on the width along the hair of the first highlight (R)"),
+    field<&M::ttWidth>("ttWidth", "", 0.1, 10, "factor on the width along the hair of light that shines through (TT)"),
+    field<&M::trtWidth>("trtWidth", "", 0.1, 10, "factor on the width along the hair of the second highlight (TRT)"),
+    field<&M::rShiftDegrees>("rShiftDegrees", "°", -30, 30, "moves the first highlight (R) along the hair, towards the tip"),
+    field<&M::ttShiftDegrees>("ttShiftDegrees", "°", -30, 30, "moves light that shines through (TT) along the hair, towards the tip"),
+    field<&M::trtShiftDegrees>("trtShiftDegrees", "°", -30, 30, "moves the second highlight (TRT) along the hair, towards the tip"),
+    colourField<&M::rColour>("rColour", "linear factor on the colour of the first highlight (R) (Sadeghi)"),
+    colourField<&M::ttColour>("ttColour", "linear factor on the colour of light that shines through (TT) (Sadeghi)"),
+    colourField<&M::trtColour>("trtColour", "linear factor on the colour of the second highlight (TRT) (Sadeghi)"),
+    field<&M::ttAzimuthalWidth>("ttAzimuthalWidth", "", 0.1, 10, "factor on the width around the hair of TT (Sadeghi)"),
+    field<&M::glintIntensity>("glintIntensity", "", 0, 20, "factor on the glints beside the second highlight (Sadeghi)"),
+    field<&M::glintWidthDegrees>("glintWidthDegrees", "°", 1, 90, "width of glints around the hair (Sadeghi)"),
+    field<&M::glintNearDegrees>("glintNearDegrees", "°", 0, 180, "least angle of a strand's glints, which is random (Sadeghi)"),
+    field<&M::glintFarDegrees>("glintFarDegrees", "°", 0, 180, "largest angle of a strand's glints (Sadeghi)"),
+    boolField<&M::tubes>("tubes", "true draws strands as round tubes with skin, as tentacles have"),
+    field<&M::rootOpacity>("rootOpacity", "", 0, 1, "how opaque hair is at the root"),
+    field<&M::tipOpacity>("tipOpacity", "", 0, 1, "how opaque hair is at the tip: lower fades out"),
+    field<&M::emission>("emission", "", 0, 1000, "light that hair gives off by itself, as fire does; 0 is none"),
+    colourField<&M::emissionRootColour>("emissionRootColour", "linear red, green and blue of that light at the root"),
+    colourField<&M::emissionTipColour>("emissionTipColour", "linear red, green and blue of that light at the tip"),
 };
 
 constexpr Field<I> kInterpolationFields[] = {
-    {"followPerGuide", "", 0, 4096, "follow hairs for each guide; 0 shows the strands themselves",
-     &I::followPerGuide},
-    {"wispRadiusRoot", "m", 0, 0.1, "radius of a wisp's cross-section at the root", &I::wispRadiusRoot},
-    {"wispRadiusTip", "m", 0, 0.1, "radius of a wisp's cross-section at the tip", &I::wispRadiusTip},
-    {"blend", "", 0, 1, "0 follows one strand in wisps, 1 the three strands of a root triangle", &I::blend},
-    {"seed", "", 0, kLargestSeed, "another seed gives other follow hairs", &I::seed},
+    field<&I::followPerGuide>("followPerGuide", "", 0, 4096, "follow hairs for each guide; 0 shows the strands themselves"),
+    field<&I::wispRadiusRoot>("wispRadiusRoot", "m", 0, 0.1, "radius of a wisp's cross-section at the root"),
+    field<&I::wispRadiusTip>("wispRadiusTip", "m", 0, 0.1, "radius of a wisp's cross-section at the tip"),
+    field<&I::blend>("blend", "", 0, 1, "0 follows one strand in wisps, 1 the three strands of a root triangle"),
+    seedField<&I::seed>("seed", "another seed gives other follow hairs"),
 };
 
 constexpr Field<P> kPlacementFields[] = {
-    {"darts", "", 0, 1, "true places roots at even distances, false at random", &P::darts},
-    {"count", "", 1, 5e6, "number of roots; used while densityPerCm2 is 0", &P::count},
-    {"densityPerCm2", "1/cm²", 0, 10000, "roots per area where the density map is 1; 0 uses the count",
-     &P::densityPerCm2},
-    {"length", "m", 0.0001, 10, "length of the strands that grow", &P::length},
-    {"points", "", 2, 1024, "points of a strand: more bend more finely and cost more", &P::points},
-    {"seed", "", 0, kLargestSeed, "another seed places other roots", &P::seed},
+    boolField<&P::darts>("darts", "true places roots at even distances, false at random"),
+    field<&P::count>("count", "", 1, 5e6, "number of roots; used while densityPerCm2 is 0"),
+    field<&P::densityPerCm2>("densityPerCm2", "1/cm²", 0, 10000, "roots per area where the density map is 1; 0 uses the count"),
+    field<&P::length>("length", "m", 0.0001, 10, "length of the strands that grow"),
+    field<&P::points>("points", "", 2, 1024, "points of a strand: more bend more finely and cost more"),
+    seedField<&P::seed>("seed", "another seed places other roots"),
 };
+
+// clang-format on
 
 }  // namespace
 
@@ -135,8 +108,19 @@ std::string outOfRangeText(double value, double min, double max, std::string_vie
 }
 
 bool withinRange(double value, double min, double max) {
-    return value >= std::min(min, static_cast<double>(static_cast<float>(min))) &&
-           value <= std::max(max, static_cast<double>(static_cast<float>(max)));
+    return FieldInfo{"", "", min, max, "", FieldKind::Float}.holds(value);
+}
+
+std::vector<std::string> sentences(const std::vector<runtime::FieldProblem>& problems) {
+    std::vector<std::string> sentences;
+    for (const runtime::FieldProblem& problem : problems) {
+        const FieldInfo& field = *problem.field;
+        sentences.push_back(fmt::format("{} {}", problem.where(),
+                                        problem.ramp.empty()
+                                            ? outOfRangeText(problem.value, field.min, field.max, field.unit)
+                                            : problem.ramp));
+    }
+    return sentences;
 }
 
 }  // namespace hairloom

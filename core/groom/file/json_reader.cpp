@@ -265,6 +265,73 @@ void JsonReader::finish() {
     }
 }
 
+double JsonReader::wholeNumber(const FieldInfo& field) {
+    const json* value = member(field.name);
+    if (!value) return 0;
+    if (value->is_number() && field.holds(value->get<double>())) return value->get<double>();
+    complain(field.name, "is " + quoted(*value),
+             "expected a whole number from " + rangeText(field.min, field.max, {}));
+    return 0;
+}
+
+Vec3d JsonReader::components(const FieldInfo& field) {
+    switch (field.kind) {
+        case FieldKind::Int:
+            return {wholeNumber(field), 0, 0};
+        case FieldKind::Bool:
+            return {boolean(field.name) ? 1.0 : 0.0, 0, 0};
+        case FieldKind::Choice: {
+            const std::vector<std::string_view> choices(field.choices.begin(), field.choices.end());
+            return {static_cast<double>(choice(field.name, choices)), 0, 0};
+        }
+        case FieldKind::Vector:
+        case FieldKind::Colour:
+            return vector(field.name, field.min, field.max, field.unit).cast<double>();
+        case FieldKind::Float:
+        case FieldKind::Seed:
+        case FieldKind::Ramp:
+            break;
+    }
+    return {number(field.name, field.min, field.max, field.unit), 0, 0};
+}
+
+void JsonReader::ramp(std::string_view key, runtime::Ramp& ramp) {
+    std::vector<runtime::Ramp::Key> keys;
+    for (const auto& [at, value] : pairs(key, 0, 1, runtime::Ramp::kMostKeys))
+        keys.push_back({static_cast<float>(at), static_cast<float>(value)});
+    if (!ok()) return;
+    const auto read = runtime::Ramp::of(keys);
+    const std::string problem = runtime::problemOf(read);
+    if (!problem.empty()) return complain(key, problem);
+    ramp = read;
+}
+
+nlohmann::ordered_json valueToJson(const runtime::Ramp& ramp) {
+    auto keys = nlohmann::ordered_json::array();
+    for (const auto& [at, value] : ramp.inUse())
+        keys.push_back({readableDecimal(at), readableDecimal(value)});
+    return keys;
+}
+
+nlohmann::ordered_json valueToJson(const FieldInfo& field, const Vec3d& components) {
+    switch (field.kind) {
+        case FieldKind::Int:
+            return static_cast<std::uint32_t>(components[0]);
+        case FieldKind::Bool:
+            return components[0] != 0;
+        case FieldKind::Choice:
+            return field.choices[static_cast<std::size_t>(components[0])];
+        case FieldKind::Vector:
+        case FieldKind::Colour:
+            return valueToJson(Vec3f(components.cast<float>()));
+        case FieldKind::Float:
+        case FieldKind::Seed:
+        case FieldKind::Ramp:
+            break;
+    }
+    return valueToJson(static_cast<float>(components[0]));
+}
+
 double readableDecimal(float value) {
     char text[32];
     const auto end = std::to_chars(text, text + sizeof(text), value).ptr;

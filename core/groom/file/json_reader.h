@@ -52,16 +52,11 @@ class JsonReader {
     /// The names of all members, in order of name.
     std::vector<std::string> keys() const;
 
-    /// Every member of the object that stands in the table; absent ones keep their value.
+    /// Every member of the object that fieldsOf(S) describes; absent ones keep their value.
     template <class S>
     void fields(S& settings) {
-        for (const Field<S>& field : fieldsOf(S())) {
-            if (has(field.name))
-                std::visit(
-                    [&](auto member) {
-                        if constexpr (mayHold<S, decltype(member)>()) read(field, settings.*member);
-                    },
-                    field.member);
+        for (const Field<S>& field : fieldsOf(settings)) {
+            if (has(field.name)) read(field, settings);
         }
     }
 
@@ -80,27 +75,22 @@ class JsonReader {
     JsonReader(const nlohmann::json& value, std::string path, std::shared_ptr<Context> context);
     const nlohmann::json* member(std::string_view key);
 
-    template <class F>
-    void read(const F& field, float& value) {
-        value = static_cast<float>(number(field.name, field.min, field.max, field.unit));
+    template <class S>
+    void read(const Field<S>& field, S& settings) {
+        if (field.kind == FieldKind::Seed) {
+            runtime::member<std::uint64_t>(settings, field) = count(field.name, 0, ~std::uint64_t{0});
+        } else if (field.kind == FieldKind::Ramp) {
+            ramp(field.name, runtime::member<runtime::Ramp>(settings, field));
+        } else {
+            const Vec3d values = components(field);
+            for (std::uint32_t c = 0; ok() && c < field.components(); ++c) field.set(settings, values[c], c);
+        }
     }
-    template <class F>
-    void read(const F& field, std::uint32_t& value) {
-        value = static_cast<std::uint32_t>(
-            count(field.name, static_cast<std::uint64_t>(field.min), static_cast<std::uint64_t>(field.max)));
-    }
-    template <class F>
-    void read(const F& field, std::uint64_t& value) {
-        value = count(field.name, static_cast<std::uint64_t>(field.min), ~std::uint64_t{0});
-    }
-    template <class F>
-    void read(const F& field, Vec3f& value) {
-        value = vector(field.name, field.min, field.max, field.unit);
-    }
-    template <class F>
-    void read(const F& field, bool& value) {
-        value = boolean(field.name);
-    }
+    /// Zeros behind a complaint.
+    Vec3d components(const FieldInfo& field);
+    double wholeNumber(const FieldInfo& field);
+    /// [[at, value], …]; stays as it was where the keys are not sound.
+    void ramp(std::string_view key, runtime::Ramp& ramp);
 
     const nlohmann::json* value_;
     std::string path_;
@@ -117,25 +107,40 @@ inline nlohmann::ordered_json valueToJson(float value) {
 inline nlohmann::ordered_json valueToJson(const Vec3f& v) {
     return {readableDecimal(v.x()), readableDecimal(v.y()), readableDecimal(v.z())};
 }
-template <class T>
-nlohmann::ordered_json valueToJson(T value) {
-    static_assert(std::is_integral_v<T>);
-    return value;
-}
+nlohmann::ordered_json valueToJson(const runtime::Ramp& ramp);
+/// Of a field whose components these are.
+nlohmann::ordered_json valueToJson(const FieldInfo& field, const Vec3d& components);
 
 /// All fields of the table as an object, in its order.
 template <class S>
 nlohmann::ordered_json fieldsToJson(const S& settings) {
     auto json = nlohmann::ordered_json::object();
     for (const Field<S>& field : fieldsOf(settings)) {
-        std::visit(
-            [&](auto member) {
-                if constexpr (mayHold<S, decltype(member)>())
-                    json[field.name] = valueToJson(settings.*member);
-            },
-            field.member);
+        if (field.kind == FieldKind::Seed) {
+            json[field.name] = runtime::member<std::uint64_t>(settings, field);
+        } else if (field.kind == FieldKind::Ramp) {
+            json[field.name] = valueToJson(runtime::member<runtime::Ramp>(settings, field));
+        } else {
+            Vec3d values = Vec3d::Zero();
+            for (std::uint32_t c = 0; c < field.components(); ++c) values[c] = field.get(settings, c);
+            json[field.name] = valueToJson(field, values);
+        }
     }
     return json;
+}
+
+/// What stands in lists and on the reference page: a description and the default as it stands in JSON.
+struct FieldRow {
+    FieldInfo info;
+    nlohmann::ordered_json standard;
+};
+template <class S>
+std::vector<FieldRow> fieldRows() {
+    const S settings{};
+    const auto defaults = fieldsToJson(settings);
+    std::vector<FieldRow> rows;
+    for (const Field<S>& field : fieldsOf(settings)) rows.push_back({field, defaults.at(field.name)});
+    return rows;
 }
 
 }  // namespace hairloom

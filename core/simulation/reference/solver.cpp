@@ -42,7 +42,7 @@ bool leaps(const StrandShape& shape, const std::vector<Vec3d>& from, const std::
 }
 
 Status check(const Strands& strands, const runtime::SimulationSettings& settings) {
-    for (const runtime::FieldProblem& problem : runtime::validate(settings)) return fail(problem.message);
+    for (const std::string& problem : runtime::validate(settings)) return fail(problem);
     if (!(greatestStiffness(settings) < 1.0f))
         return fail("angularStiffness 1 has no finite stiffness", "less than 1");
     const std::size_t points = strands.restPositions_ss.size();
