@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "core/gpu_simulation/engine_method.h"
+#include "core/gpu_simulation/gpu_engine_method.h"
 
 namespace hairloom::cli {
 

@@ -6,7 +6,7 @@
 #include <cassert>
 #include <set>
 
-#include "core/accuracy/effect_switch.h"
+#include "core/accuracy/without_effect.h"
 #include "core/accuracy/work_precision.h"
 
 namespace hairloom {

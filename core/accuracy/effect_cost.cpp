@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "core/accuracy/effect_switch.h"
+#include "core/accuracy/without_effect.h"
 
 namespace hairloom {
 namespace {

@@ -47,7 +47,7 @@ bool allWithin(const std::array<Vec3f, 3>& places, const Vec3f& center, float re
 
 }  // namespace
 
-std::uint32_t RootGrid::blockIndex(const Cell& cell) const {
+std::uint32_t DartGrid::blockIndex(const Cell& cell) const {
     const std::uint64_t key = keyOf({cell.x() >> kBits, cell.y() >> kBits, cell.z() >> kBits});
     if (key != lastKey_) {
         const auto found = blockOf_.find(key);
@@ -57,7 +57,7 @@ std::uint32_t RootGrid::blockIndex(const Cell& cell) const {
     return lastBlock_;
 }
 
-void RootGrid::add(const Entry& entry) {
+void DartGrid::add(const Entry& entry) {
     const Cell cell = cellOf(entry.position);
     if (blockIndex(cell) == kNone) {
         lastBlock_ = blockOf_[lastKey_] = static_cast<std::uint32_t>(blocks_.size());
@@ -73,7 +73,7 @@ void RootGrid::add(const Entry& entry) {
 }
 
 template <class Visit>
-bool RootGrid::visitCell(std::uint32_t firstChunk, Visit visit) const {
+bool DartGrid::visitCell(std::uint32_t firstChunk, Visit visit) const {
     for (std::uint32_t c = firstChunk; c != kNone; c = chunks_[c].next)
         for (std::uint32_t i = 0; i < chunks_[c].count; ++i)
             if (visit(chunks_[c].entries[i])) return true;
@@ -81,7 +81,7 @@ bool RootGrid::visitCell(std::uint32_t firstChunk, Visit visit) const {
 }
 
 template <class Visit>
-bool RootGrid::search(const Vec3f& center, float range, Visit visit) const {
+bool DartGrid::search(const Vec3f& center, float range, Visit visit) const {
     const Cell low = cellOf(center - Vec3f::Constant(range)), high = cellOf(center + Vec3f::Constant(range));
     const auto sameBlock = [&](int axis) { return low[axis] >> kBits == high[axis] >> kBits; };
     const bool oneBlock = sameBlock(0) && sameBlock(1) && sameBlock(2);
@@ -132,7 +132,7 @@ DartThrower::Fragment DartThrower::wholeFace(std::uint32_t face) const {
 
 void DartThrower::gatherNear(const Vec3f& center, float range) {
     near_.clear();
-    grid_.search(center, range, [&](const RootGrid::Entry& entry) {
+    grid_.search(center, range, [&](const DartGrid::Entry& entry) {
         if ((entry.position - center).squaredNorm() < range * range) near_.push_back(entry);
         return false;
     });
@@ -154,7 +154,7 @@ bool DartThrower::coveredByNear(Part& part) const {
         return (part.reached[0] & part.reached[1] & part.reached[2]) != 0;
     }
     const float radius = spacingOf(part).radius;
-    return std::any_of(near_.begin(), near_.end(), [&](const RootGrid::Entry& root) {
+    return std::any_of(near_.begin(), near_.end(), [&](const DartGrid::Entry& root) {
         return allWithin(part.places, root.position, std::min(root.radius, radius));
     });
 }
@@ -173,7 +173,7 @@ void DartThrower::throwDart(const Fragment& fragment, bool gather) {
     const float radius = localRadius(density);
     if (density < kLeastDensity && !mask_.empty()) return;
     if (gather) gatherNear(place, radius);
-    for (const RootGrid::Entry& root : near_) {
+    for (const DartGrid::Entry& root : near_) {
         const float apart = std::min(root.radius, radius);
         if ((root.position - place).squaredNorm() < apart * apart) return;
     }
@@ -264,7 +264,7 @@ bool DartThrower::gapWithin(const Fragment& fragment, float factor, int depth) c
     if (spacing.bare) return true;
     const Vec3f middle = (fragment.places[0] + fragment.places[1] + fragment.places[2]) / 3;
     const float reach = factor * spacing.radius;
-    const auto reached = [&](const RootGrid::Entry& root) {
+    const auto reached = [&](const DartGrid::Entry& root) {
         return allWithin(fragment.places, root.position, reach);
     };
     if (grid_.search(middle, reach, reached)) return true;

@@ -17,13 +17,13 @@ namespace hairloom {
 
 /// Roots by place, in cells two radii wide, so that a search of one radius reads at most eight. Cells lie in
 /// blocks that exist only where the surface goes.
-class RootGrid {
+class DartGrid {
   public:
     struct Entry {
         Vec3f position;
         float radius;  ///< local radius, metres
     };
-    RootGrid(const Vec3f& origin, float cell) : origin_(origin), perCell_(1 / cell) {}
+    DartGrid(const Vec3f& origin, float cell) : origin_(origin), perCell_(1 / cell) {}
 
     void add(const Entry& entry);
     /// Calls visit(entry) for at least all entries within `range` of `center`, until it returns true.
@@ -124,12 +124,12 @@ class DartThrower {
     float radius_;
     float apart_;  ///< the radius plus what rounding of a measured distance may take away
     Random random_;
-    RootGrid grid_;
+    DartGrid grid_;
     FaceSet faces_;
     std::vector<Fragment> left_;  ///< parts of the surface not yet known to be covered
     std::vector<Part> small_;     ///< parts of the fragment in work
     std::vector<SurfacePoint> roots_;
-    std::vector<RootGrid::Entry> near_;
+    std::vector<DartGrid::Entry> near_;
 };
 
 }  // namespace hairloom

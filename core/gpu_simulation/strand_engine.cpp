@@ -52,7 +52,7 @@ Result<StrandEngine> StrandEngine::make(gpu::Device& device, std::shared_ptr<Ker
     impl->roots.resize(impl->shape->restRoots.size());
     if (auto made = impl->makeBuffers(); !made) return tl::unexpected(made.error());
     if (options.hairHair) {
-        auto volume = HairVolume::make(device, *options.hairHair);
+        auto volume = GpuHairVolume::make(device, *options.hairHair);
         if (!volume) return tl::unexpected(volume.error());
         impl->volume.emplace(std::move(*volume));
     }

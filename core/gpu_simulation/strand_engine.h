@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "core/gpu_simulation/hair_volume.h"
+#include "core/gpu_simulation/gpu_hair_volume.h"
 #include "core/gpu_simulation/kernel_library.h"
 #include "core/gpu_simulation/strand_batch.h"
 #include "hairloom/frame_setup.h"

@@ -22,7 +22,7 @@ struct StrandEngine::Impl {
     EngineOptions options;
     std::shared_ptr<const runtime::RestShape> shape;
     std::vector<StrandBatch> batches;
-    std::optional<HairVolume> volume;
+    std::optional<GpuHairVolume> volume;
     gpu::BufferPtr reportBuffer, places, velocities;
     gpu::BufferPtr waking, spheres;  // null while sleep, or many spheres, are off
 

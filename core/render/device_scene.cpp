@@ -110,8 +110,8 @@ constexpr std::size_t kSomeStrands = 64;  // a batch
 
 /// Strands first…last - 1 of a group.
 Status uploadBatch(gpu::Device& device, const RenderStrands& strands, std::size_t group, std::size_t first,
-                   std::size_t last, std::vector<StrandGroup>& groups, std::vector<StrandBatch>& batches) {
-    StrandBatch batch;
+                   std::size_t last, std::vector<StrandGroup>& groups, std::vector<DrawBatch>& batches) {
+    DrawBatch batch;
     batch.group = group;
     batch.firstPoint = strands.offsets[first];
     batch.pointCount = strands.offsets[last] - strands.offsets[first];
@@ -157,7 +157,7 @@ Status uploadBatch(gpu::Device& device, const RenderStrands& strands, std::size_
 }
 
 Status uploadStrands(gpu::Device& device, const RenderStrands& strands, std::size_t group,
-                     std::vector<StrandGroup>& groups, std::vector<StrandBatch>& batches) {
+                     std::vector<StrandGroup>& groups, std::vector<DrawBatch>& batches) {
     const std::size_t count = strands.offsets.empty() ? 0 : strands.offsets.size() - 1;
     const std::uint32_t most = maxPointsPerBatch(device.info());
     std::size_t first = 0;
@@ -209,7 +209,7 @@ bool needsFibre(const StrandGroup& group) {
 
 }  // namespace
 
-std::uint32_t StrandBatch::strandCount(const HairDetail& detail) const {
+std::uint32_t DrawBatch::strandCount(const HairDetail& detail) const {
     const float wanted = std::ceil(std::min(1.1f * detail.share, 1.0f) * static_cast<float>(strandCount()));
     return std::clamp(static_cast<std::uint32_t>(wanted), 1u, strandCount());
 }
@@ -302,7 +302,7 @@ Status DeviceScene::replaceStrands(std::size_t group, gpu::BufferPtr positions_w
     if (group >= groups.size()) return fail(fmt::format("group {} of {} of strands", group, groups.size()));
     StrandGroup& g = groups[group];
     std::uint32_t longest = 0;
-    for (const StrandBatch& batch : batches) {
+    for (const DrawBatch& batch : batches) {
         if (batch.group != group) continue;
         for (std::uint32_t i = 0; i < batch.strandCount(); ++i) {
             longest = std::max(longest, batch.segmentsBefore[i + 1] - batch.segmentsBefore[i] + 1);
@@ -361,7 +361,7 @@ void DeviceScene::recordUploads(gpu::CommandList& list) {
         list.updateBuffer(mesh.normals, 0, bytes(mesh.normals_ws));
         mesh.positions_ws.clear();
     }
-    for (const StrandBatch& batch : batches) {
+    for (const DrawBatch& batch : batches) {
         const StrandGroup& group = groups[batch.group];
         const auto update = [&](const gpu::BufferPtr& buffer, auto all) {
             if (all.empty()) return;

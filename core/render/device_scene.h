@@ -25,7 +25,7 @@ struct HairDetail {
 };
 
 /// A part of a group of strands that fits the device's buffers.
-struct StrandBatch {
+struct DrawBatch {
     std::size_t group = 0;       ///< of RenderScene::strands
     std::size_t firstPoint = 0;  ///< in the group's arrays
     std::size_t pointCount = 0;
@@ -129,7 +129,7 @@ class DeviceScene {
 
     std::vector<MeshOnDevice> meshes;
     std::vector<StrandGroup> groups;
-    std::vector<StrandBatch> batches;
+    std::vector<DrawBatch> batches;
     /// With the radii of now.
     HairMeasure measure() const;
     /// What the hair of the first group lets through to the skin; prepareFibres() comes before.

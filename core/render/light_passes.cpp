@@ -11,7 +11,7 @@ namespace {
 
 using gpu::Binding;
 
-shaders::CurveConstants curveConstants(const RendererState& state, const StrandBatch& batch) {
+shaders::CurveConstants curveConstants(const RendererState& state, const DrawBatch& batch) {
     const StrandGroup& group = state.scene.groups[batch.group];
     const bool own = group.devicePositions == nullptr;
     const HairMaterial& material = group.material;
@@ -88,7 +88,7 @@ shaders::LookConstants lookConstants(const shading::StrandLook& look) {
 void recordCurves(gpu::CommandList& list, RendererState& state) {
     list.beginPass({passName(Pass::curves), {}, {}});
     list.setPipeline(state.pipelines.compute("curve.comp"));
-    for (const StrandBatch& batch : state.scene.batches) {
+    for (const DrawBatch& batch : state.scene.batches) {
         const StrandGroup& group = state.scene.groups[batch.group];
         const shaders::CurveConstants constants = curveConstants(state, batch);
         list.setConstants(0, gpu::bytesOf(constants));
@@ -106,7 +106,7 @@ void recordSkySeen(gpu::CommandList& list, RendererState& state) {
     bindShadows(list, state);
     constexpr std::uint32_t kGroup = 64, kThreadsOfAStrand = 16;
     shaders::ShadeConstants constants = state.shade;
-    for (const StrandBatch& batch : state.scene.batches) {
+    for (const DrawBatch& batch : state.scene.batches) {
         const std::uint32_t strands = batch.strandCount(state.detail);
         constants.counts = {strands, 0, 0, state.detail.subdivisions};
         list.setConstants(0, gpu::bytesOf(constants));
@@ -120,7 +120,7 @@ void recordSkySeen(gpu::CommandList& list, RendererState& state) {
 void recordShading(gpu::CommandList& list, RendererState& state) {
     list.beginPass({passName(Pass::shade), {}, {}});
     bindShadows(list, state);
-    for (const StrandBatch& batch : state.scene.batches) {
+    for (const DrawBatch& batch : state.scene.batches) {
         const StrandGroup& group = state.scene.groups[batch.group];
         const char* const tube = group.material.look ? "tube_albedo_look.comp" : "tube_albedo.comp";
         list.setPipeline(state.pipelines.compute(group.material.tubes ? tube : group.fibre.shader()));

@@ -102,7 +102,7 @@ void drawPatches(gpu::CommandList& list, const RendererState& state) {
     shaders::PatchConstants constants;
     constants.view = {static_cast<float>(state.options.width), static_cast<float>(state.options.height),
                       kPixelsPerPiece, 0};
-    for (const StrandBatch& batch : state.scene.batches) {
+    for (const DrawBatch& batch : state.scene.batches) {
         if (state.scene.groups[batch.group].material.tubes) continue;
         bind(list, {Binding::read(0, batch.curve), Binding::read(1, state.colourOf(batch)),
                     Binding::read(2, batch.headers), Binding::read(3, batch.patches)});
@@ -235,7 +235,7 @@ void bindShadows(gpu::CommandList& list, const RendererState& state) {
 
 void drawStrips(gpu::CommandList& list, const RendererState& state, std::optional<bool> tubes) {
     const std::uint32_t subdivisions = state.detail.subdivisions;
-    for (const StrandBatch& batch : state.scene.batches) {
+    for (const DrawBatch& batch : state.scene.batches) {
         if (tubes && *tubes != state.scene.groups[batch.group].material.tubes) continue;
         bind(list, {Binding::read(0, batch.curve), Binding::read(1, state.colourOf(batch))});
         list.setIndexBuffer(batch.indices.at(subdivisions));

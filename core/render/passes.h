@@ -59,7 +59,7 @@ struct RendererState {
 
     Box3f bounds() const;  ///< of all meshes and strands
     /// Where the light of a batch's curve points is, with shadows or without.
-    const gpu::BufferPtr& colourOf(const StrandBatch& batch) const {
+    const gpu::BufferPtr& colourOf(const DrawBatch& batch) const {
         return lit ? batch.litColour : batch.colour;
     }
     /// Where frames add up, with shadows or without.

@@ -130,7 +130,7 @@ void fill(gpu::CommandList& list, RendererState& state, BufferId buffer, std::ui
 
 void dispatchStrands(gpu::CommandList& list, const RendererState& state, shaders::RasterConstants raster,
                      float share) {
-    for (const StrandBatch& batch : state.scene.batches) {
+    for (const DrawBatch& batch : state.scene.batches) {
         const float wanted = std::ceil(share * static_cast<float>(batch.strandCount(state.detail)));
         const std::uint32_t points =
             batch.curvePoints(static_cast<std::uint32_t>(wanted), state.detail.subdivisions);

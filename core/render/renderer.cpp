@@ -326,7 +326,7 @@ std::uint64_t Renderer::triangles() const {
 
 std::uint64_t Renderer::strands() const {
     std::uint64_t count = 0;
-    for (const StrandBatch& batch : parts_->state.scene.batches)
+    for (const DrawBatch& batch : parts_->state.scene.batches)
         count += batch.strandCount(parts_->state.detail);
     return count;
 }
@@ -334,7 +334,7 @@ std::uint64_t Renderer::strands() const {
 std::uint64_t Renderer::curvePoints() const {
     const HairDetail& detail = parts_->state.detail;
     std::uint64_t count = 0;
-    for (const StrandBatch& batch : parts_->state.scene.batches) {
+    for (const DrawBatch& batch : parts_->state.scene.batches) {
         count += batch.curvePoints(batch.strandCount(detail), detail.subdivisions);
     }
     return count;

@@ -20,7 +20,7 @@ Result<gpu::BufferPtr> written(gpu::Device& device, const char* name, std::uint6
     return device.createBuffer(desc);
 }
 
-std::vector<std::uint32_t> ribbonIndices(const StrandBatch& batch, std::uint32_t subdivisions) {
+std::vector<std::uint32_t> ribbonIndices(const DrawBatch& batch, std::uint32_t subdivisions) {
     std::vector<std::uint32_t> indices;
     indices.reserve(batch.indexCount(batch.strandCount(), subdivisions));
     std::uint32_t next = 0;
@@ -34,7 +34,7 @@ std::vector<std::uint32_t> ribbonIndices(const StrandBatch& batch, std::uint32_t
 
 /// Strands of more than 32 points become several patches that overlap, so that each knows its neighbours'
 /// tangents.
-std::vector<shaders::StrandPatch> strandPatches(StrandBatch& batch) {
+std::vector<shaders::StrandPatch> strandPatches(DrawBatch& batch) {
     constexpr std::uint32_t kControlPoints = HAIRLOOM_PATCH_POINTS;
     std::vector<shaders::StrandPatch> patches;
     batch.patchesBefore = {0};
@@ -60,7 +60,7 @@ std::vector<shaders::StrandPatch> strandPatches(StrandBatch& batch) {
 
 Status DeviceScene::prepareCurves(gpu::Device& device, std::uint32_t subdivisions, bool twice, bool sky) {
     Gather gather;
-    for (StrandBatch& batch : batches) {
+    for (DrawBatch& batch : batches) {
         const std::uint32_t count = batch.curvePoints(batch.strandCount(), subdivisions);
         if (subdivisions > batch.curveSubdivisions) {
             gather(batch.curve, written(device, "curve points", count, sizeof(shaders::CurvePoint)));
@@ -95,7 +95,7 @@ Status DeviceScene::prepareCurves(gpu::Device& device, std::uint32_t subdivision
 
 Status DeviceScene::preparePatches(gpu::Device& device) {
     Gather gather;
-    for (StrandBatch& batch : batches) {
+    for (DrawBatch& batch : batches) {
         if (batch.patches != nullptr) continue;
         const auto patches = strandPatches(batch);
         gather(batch.patches,

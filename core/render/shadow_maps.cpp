@@ -215,7 +215,7 @@ ShadowAtlas skyAtlas(const RendererState& state) {
     atlas.layersPass = Pass::skyLayers;
     for (const LightView& view : state.skyViews) atlas.views.push_back(&view);
     std::uint32_t strands = 0;
-    for (const StrandBatch& batch : state.scene.batches) strands += batch.strandCount(state.detail);
+    for (const DrawBatch& batch : state.scene.batches) strands += batch.strandCount(state.detail);
     const auto most = static_cast<float>(state.options.skyStrands);
     atlas.share = std::min(1.0f, most / static_cast<float>(std::max(strands, 1u)));
     return atlas;

@@ -115,8 +115,9 @@ bool isEven(const HairMaterial& authored, const shading::StrandLook& look, bool 
 }
 
 void finishLook(const HairMaterial& authored, shading::StrandLook& look) {
-    look.gradient = shading::Ramp::between(asDouble(authored.gradientStart), asDouble(authored.gradientEnd));
-    look.dyeAlong = shading::Ramp::between(asDouble(authored.dyeStart), asDouble(authored.dyeEnd));
+    look.gradient =
+        shading::LinearStep::between(asDouble(authored.gradientStart), asDouble(authored.gradientEnd));
+    look.dyeAlong = shading::LinearStep::between(asDouble(authored.dyeStart), asDouble(authored.dyeEnd));
     look.spread = asDouble(authored.melaninVariation);
     look.emissionRoot = asDouble(authored.emission) * authored.emissionRootColour.cast<double>();
     look.emissionTip = asDouble(authored.emission) * authored.emissionTipColour.cast<double>();

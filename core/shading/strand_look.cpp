@@ -21,12 +21,12 @@ Vec3d ofOwnColour(const StrandLook& look, const Vec3d& colour) {
 
 }  // namespace
 
-Ramp Ramp::between(double start, double end) {
+LinearStep LinearStep::between(double start, double end) {
     if (end > start) return {start, 1 / (end - start)};
     return {start - 10 / kStep, kStep};
 }
 
-double Ramp::operator()(double x) const {
+double LinearStep::operator()(double x) const {
     return std::clamp((x - start) * scale, 0.0, 1.0);
 }
 

@@ -10,14 +10,14 @@
 namespace hairloom::shading {
 
 /// 0 up to a place, then rising evenly to 1.
-struct Ramp {
+struct LinearStep {
     double start = 0;
     double scale = 1;  ///< one by the way from 0 to 1
 
     /// `end` <= `start`: a step that is 1 at `start` already.
-    static Ramp between(double start, double end);
+    static LinearStep between(double start, double end);
     double operator()(double x) const;
-    bool operator==(const Ramp&) const = default;
+    bool operator==(const LinearStep&) const = default;
 };
 
 enum class LookQuantity { colour, absorption };
@@ -25,10 +25,10 @@ enum class LookQuantity { colour, absorption };
 struct StrandLook {
     LookQuantity quantity = LookQuantity::colour;
     Vec3d root = Vec3d::Zero(), tip = Vec3d::Zero();
-    Ramp gradient;  ///< from root to tip, by the share of the length
+    LinearStep gradient;  ///< from root to tip, by the share of the length
     Vec3d streakRoot = Vec3d::Zero(), streakTip = Vec3d::Zero();
     Vec3d dye = Vec3d::Zero();
-    Ramp dyeAlong;
+    LinearStep dyeAlong;
     double spread = 0;  ///< 0…1, random, of absorption
     /// Absorption of a strand's own colour c is (ownScale ln c)² (Chiang et al. 2016, as
     /// absorptionOfColour()).

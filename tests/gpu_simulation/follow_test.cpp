@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/accuracy/benchmark_scenes.h"
-#include "core/gpu_simulation/follow_hairs.h"
+#include "core/gpu_simulation/gpu_follow_hairs.h"
 #include "tests/gpu_simulation/gpu_simulation_fixture.h"
 
 namespace hairloom::gpu_simulation {
@@ -21,7 +21,7 @@ class Follow : public GpuSimulationTest {
     }
     /// Greatest distance to the runtime's hairs, metres.
     static double distance(const runtime::FollowView& view, const runtime::GuideMotion& motion) {
-        auto gpuHairs = FollowHairs::make(*device(), view);
+        auto gpuHairs = GpuFollowHairs::make(*device(), view);
         if (!gpuHairs) throw std::runtime_error(gpuHairs.error().message());
         FollowInput input{quadsOf(motion.positions_ws), nullptr, motion.rootRotations_ws, motion.wispSpread};
         if (!motion.velocities_ws.empty()) input.velocities_ws = quadsOf(motion.velocities_ws);
@@ -83,7 +83,7 @@ TEST_F(Follow, TheEnginesPlacesAreTaken) {
     std::vector<runtime::RootFrame> roots;
     for (std::size_t g = 0; g < lawn.rotations.size(); ++g) roots.push_back({lawn.positions[6 * g], {}});
     for (int f = 0; f < 3; ++f) ASSERT_TRUE(engine.step({1.0f / 60.0f, 0.0, roots, {}}));
-    auto hairs = FollowHairs::make(*device(), lawn.view());
+    auto hairs = GpuFollowHairs::make(*device(), lawn.view());
     ASSERT_TRUE(hairs);
     auto list = device()->createCommandList().value();
     hairs->record(*list, {engine.positions_ws(), engine.velocities_ws(), {}});

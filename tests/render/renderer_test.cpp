@@ -167,7 +167,7 @@ TEST_F(RendererTest, PaintedDyeIsThatOfThePointsItLiesOn) {
     look.quantity = shading::LookQuantity::colour;
     look.root = look.tip = {0.05, 0.8, 0.05};
     look.dye = {0.6, 0.02, 0.02};
-    look.dyeAlong = shading::Ramp::between(0, 0);
+    look.dyeAlong = shading::LinearStep::between(0, 0);
     scene.strands[0].material.look = look;
     const std::vector<float> shares(4, 1.0f);
     std::vector<float> painted(20, 0.0f);

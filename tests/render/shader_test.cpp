@@ -182,10 +182,10 @@ shading::StrandLook variedLook() {
     look.quantity = shading::LookQuantity::absorption;
     look.root = shading::absorption({1.3, 0.2});
     look.tip = shading::absorption({0.2, 0});
-    look.gradient = shading::Ramp::between(0.2, 0.9);
+    look.gradient = shading::LinearStep::between(0.2, 0.9);
     look.streakRoot = look.streakTip = shading::absorption({3, 0});
     look.dye = shading::absorptionOfColour(Vec3d(0.5, 0.02, 0.05), 0.3);
-    look.dyeAlong = shading::Ramp::between(0, 0.5);
+    look.dyeAlong = shading::LinearStep::between(0, 0.5);
     look.spread = 0.4;
     look.ownScale = shading::absorptionScale(0.3);
     return look;

@@ -17,11 +17,11 @@ StrandLook someLook(LookQuantity quantity) {
     look.quantity = quantity;
     look.root = Vec3d(0.2, 0.4, 0.8);
     look.tip = Vec3d(0.6, 0.2, 0.1);
-    look.gradient = Ramp::between(0.25, 0.75);
+    look.gradient = LinearStep::between(0.25, 0.75);
     look.streakRoot = Vec3d(0.05, 0.1, 0.2);
     look.streakTip = Vec3d(0.01, 0.02, 0.9);
     look.dye = Vec3d(0.9, 0.05, 0.5);
-    look.dyeAlong = Ramp::between(0.5, 1);
+    look.dyeAlong = LinearStep::between(0.5, 1);
     look.ownScale = absorptionScale(0.3);
     return look;
 }
@@ -39,9 +39,9 @@ TEST(StrandLook, GradientsStreaksAndDyeMixEvenly) {
 }
 
 TEST(StrandLook, ARampWithoutLengthIsAStep) {
-    const Ramp everywhere = Ramp::between(0, 0);
+    const LinearStep everywhere = LinearStep::between(0, 0);
     EXPECT_EQ(everywhere(0), 1);
-    const Ramp tips = Ramp::between(0.6, 0.2);
+    const LinearStep tips = LinearStep::between(0.6, 0.2);
     EXPECT_EQ(tips(0.59), 0);
     EXPECT_EQ(tips(0.6), 1);
 }

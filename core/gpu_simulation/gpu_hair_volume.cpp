@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/gpu_simulation/hair_volume.h"
+#include "core/gpu_simulation/gpu_hair_volume.h"
 
 #include <array>
 #include <cmath>
@@ -24,19 +24,19 @@ std::uint32_t groupsFor(std::size_t threads) {
 
 }  // namespace
 
-Result<HairVolume> HairVolume::make(gpu::Device& device, const runtime::HairVolumeSettings& settings) {
+Result<GpuHairVolume> GpuHairVolume::make(gpu::Device& device, const runtime::HairVolumeSettings& settings) {
     runtime::HairVolumeSettings checked = settings;
     // Its memory is not needed, only its judgement of the rest.
     checked.maxNodes = std::min(settings.maxNodes, 125u);
     const auto made = runtime::HairVolume::make(settings.maxNodes < 125 ? settings : checked);
     if (!made.volume) return fail(made.error);
-    HairVolume volume(settings);
+    GpuHairVolume volume(settings);
     if (auto status = volume.makeBuffers(device); !status) return tl::unexpected(status.error());
     if (auto status = volume.makeKernels(device); !status) return tl::unexpected(status.error());
     return volume;
 }
 
-Status HairVolume::makeBuffers(gpu::Device& device) {
+Status GpuHairVolume::makeBuffers(gpu::Device& device) {
     const Usage both = Usage::ShaderRead | Usage::UnorderedAccess;
     const std::size_t nodes = settings_.maxNodes;
     auto box = makeBuffer<std::uint32_t>(device, "box of the hair", both, kEmptyBox.size(), kEmptyBox);
@@ -55,7 +55,7 @@ Status HairVolume::makeBuffers(gpu::Device& device) {
     return {};
 }
 
-Status HairVolume::makeKernels(gpu::Device& device) {
+Status GpuHairVolume::makeKernels(gpu::Device& device) {
     const std::array<std::pair<const char*, gpu::ComputePipelinePtr*>, 5> kernels{
         {{"volume_measure", &measure_},
          {"volume_clear", &clear_},
@@ -70,8 +70,8 @@ Status HairVolume::makeKernels(gpu::Device& device) {
     return {};
 }
 
-void HairVolume::record(gpu::CommandList& list, std::span<const StrandBatch> batches,
-                        std::uint32_t clampedPoints, float dt, float h) const {
+void GpuHairVolume::record(gpu::CommandList& list, std::span<const StrandBatch> batches,
+                           std::uint32_t clampedPoints, float dt, float h) const {
     shaders::VolumeConstants constants;
     constants.cellSize = settings_.cellSize;
     constants.mostNodes = static_cast<float>(settings_.maxNodes);
@@ -133,7 +133,7 @@ void HairVolume::record(gpu::CommandList& list, std::span<const StrandBatch> bat
     list.endPass();
 }
 
-std::size_t HairVolume::bytes() const {
+std::size_t GpuHairVolume::bytes() const {
     std::size_t bytes = 0;
     for (const auto& buffer : {box_, nodes_, fields_, noRests_})
         bytes += static_cast<std::size_t>(buffer->desc().size);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/accuracy/effect_switch.h"
+#include "core/accuracy/without_effect.h"
 
 #include "core/simulation/effect_switch.h"
 

@@ -13,10 +13,10 @@
 
 namespace hairloom::gpu_simulation {
 
-class HairVolume {
+class GpuHairVolume {
   public:
     /// Errors: a setting outside its range, what the device says.
-    static Result<HairVolume> make(gpu::Device& device, const runtime::HairVolumeSettings& settings);
+    static Result<GpuHairVolume> make(gpu::Device& device, const runtime::HairVolumeSettings& settings);
 
     /// Records the change of velocities that a frame of `dt` seconds, whose substeps took `h`, gives the
     /// strands.
@@ -25,7 +25,7 @@ class HairVolume {
     std::size_t bytes() const;
 
   private:
-    explicit HairVolume(const runtime::HairVolumeSettings& settings) : settings_(settings) {}
+    explicit GpuHairVolume(const runtime::HairVolumeSettings& settings) : settings_(settings) {}
     Status makeBuffers(gpu::Device& device);
     Status makeKernels(gpu::Device& device);
 

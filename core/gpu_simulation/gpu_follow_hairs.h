@@ -20,13 +20,13 @@ struct FollowInput {
     float wispSpread = 0.15f;  ///< s/m
 };
 
-class FollowHairs {
+class GpuFollowHairs {
   public:
     /// Errors: those of runtime::FollowHairs::make, what the device says, a device without these kernels.
-    static Result<FollowHairs> make(gpu::Device& device, const runtime::FollowView& view);
-    FollowHairs(FollowHairs&&) noexcept;
-    FollowHairs& operator=(FollowHairs&&) noexcept;
-    ~FollowHairs();
+    static Result<GpuFollowHairs> make(gpu::Device& device, const runtime::FollowView& view);
+    GpuFollowHairs(GpuFollowHairs&&) noexcept;
+    GpuFollowHairs& operator=(GpuFollowHairs&&) noexcept;
+    ~GpuFollowHairs();
 
     std::uint32_t hairCount() const;
     std::uint32_t pointsPerHair() const;
@@ -38,7 +38,7 @@ class FollowHairs {
 
   private:
     struct Impl;
-    explicit FollowHairs(std::unique_ptr<Impl> impl);
+    explicit GpuFollowHairs(std::unique_ptr<Impl> impl);
     std::unique_ptr<Impl> impl_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/gpu_simulation/engine_method.h"
+#include "core/gpu_simulation/gpu_engine_method.h"
 
 #include "core/gpu_simulation/strand_engine.h"
 #include "core/simulation/strand_method.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/gpu_simulation/follow_hairs.h"
+#include "core/gpu_simulation/gpu_follow_hairs.h"
 
 #include <algorithm>
 #include <array>
@@ -65,7 +65,7 @@ std::vector<std::array<float, 2>> samplesOf(const runtime::FollowView& view) {
 
 }  // namespace
 
-struct FollowHairs::Impl {
+struct GpuFollowHairs::Impl {
     shaders::FollowConstants constants;
     std::vector<shaders::FollowPlane> planes;  // with the turns of the last frame
     gpu::BufferPtr samples, radii, bindings, planeBuffer, rows, hairs;
@@ -74,7 +74,7 @@ struct FollowHairs::Impl {
     Status makeBuffers(gpu::Device& device, const runtime::FollowView& view);
 };
 
-Status FollowHairs::Impl::makeBuffers(gpu::Device& device, const runtime::FollowView& view) {
+Status GpuFollowHairs::Impl::makeBuffers(gpu::Device& device, const runtime::FollowView& view) {
     Status status;
     const auto keep = [&](gpu::BufferPtr& buffer, Result<gpu::BufferPtr> made) {
         if (!status) return;
@@ -101,7 +101,7 @@ Status FollowHairs::Impl::makeBuffers(gpu::Device& device, const runtime::Follow
     return status;
 }
 
-Result<FollowHairs> FollowHairs::make(gpu::Device& device, const runtime::FollowView& view) {
+Result<GpuFollowHairs> GpuFollowHairs::make(gpu::Device& device, const runtime::FollowView& view) {
     if (const auto checked = runtime::FollowHairs::make(view); !checked.hairs) return fail(checked.error);
     if (view.guides.empty()) return fail("there are no hairs to follow", "expected bindings");
     auto impl = std::make_unique<Impl>();
@@ -117,25 +117,25 @@ Result<FollowHairs> FollowHairs::make(gpu::Device& device, const runtime::Follow
     if (!sums) return tl::unexpected(sums.error());
     impl->wisps = std::move(*wisps);
     impl->sums = std::move(*sums);
-    return FollowHairs(std::move(impl));
+    return GpuFollowHairs(std::move(impl));
 }
 
-FollowHairs::FollowHairs(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
-FollowHairs::FollowHairs(FollowHairs&&) noexcept = default;
-FollowHairs& FollowHairs::operator=(FollowHairs&&) noexcept = default;
-FollowHairs::~FollowHairs() = default;
+GpuFollowHairs::GpuFollowHairs(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+GpuFollowHairs::GpuFollowHairs(GpuFollowHairs&&) noexcept = default;
+GpuFollowHairs& GpuFollowHairs::operator=(GpuFollowHairs&&) noexcept = default;
+GpuFollowHairs::~GpuFollowHairs() = default;
 
-std::uint32_t FollowHairs::hairCount() const {
+std::uint32_t GpuFollowHairs::hairCount() const {
     return impl_->constants.hairs;
 }
-std::uint32_t FollowHairs::pointsPerHair() const {
+std::uint32_t GpuFollowHairs::pointsPerHair() const {
     return impl_->constants.points;
 }
-gpu::BufferPtr FollowHairs::positions_ws() const {
+gpu::BufferPtr GpuFollowHairs::positions_ws() const {
     return impl_->hairs;
 }
 
-void FollowHairs::record(gpu::CommandList& list, const FollowInput& input) {
+void GpuFollowHairs::record(gpu::CommandList& list, const FollowInput& input) {
     Impl& impl = *impl_;
     assert(input.rootRotations_ws.empty() || input.rootRotations_ws.size() == impl.planes.size());
     bool turned = false;
