@@ -122,17 +122,20 @@ function(hairloom_optimise_little target)
     endif()
 endfunction()
 
-# hairloom_test(NAME SOURCES file... LINK target... [PRECOMPILE header...] [TIMEOUT seconds])
+# hairloom_test(NAME [SOURCES file...] LINK target... [PRECOMPILE header...] [TIMEOUT seconds] [SLOW filter])
+# Every *_test.cpp of the folder is part of it; SOURCES are what else is.
 # Each gtest case becomes a ctest entry NAME.Suite.Case; where programs run under Wine, whose start takes longer than most
 # cases, all cases together become the entry NAME. Tests find the repository through tests/support/source_dir.h.
 # Tests are compiled once and run for moments: what they include is precompiled, once for all or with PRECOMPILE's together for
-# this one, and they are optimised little.
+# this one, and they are optimised little. SLOW is a filter of GoogleTest for cases that take seconds: they have the label
+# NAME-slow, which ./dev test --quick leaves out, and begin before others, so that no core waits for the last.
 function(hairloom_test name)
-    cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LINK;PRECOMPILE" ${ARGN})
+    cmake_parse_arguments(ARG "" "TIMEOUT;SLOW" "SOURCES;LINK;PRECOMPILE" ${ARGN})
     if(NOT ARG_TIMEOUT)
         set(ARG_TIMEOUT 120)
     endif()
-    hairloom_program(test_${name} SOURCES ${ARG_SOURCES} LINK ${ARG_LINK} hairloom_test_support GTest::gtest_main GTest::gmock)
+    file(GLOB tests CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*_test.cpp")
+    hairloom_program(test_${name} SOURCES ${tests} ${ARG_SOURCES} LINK ${ARG_LINK} hairloom_test_support GTest::gtest_main GTest::gmock)
     hairloom_optimise_little(test_${name})
     if(ARG_PRECOMPILE)
         hairloom_precompile(test_${name} <gtest/gtest.h> <gmock/gmock.h> ${ARG_PRECOMPILE})
@@ -145,6 +148,11 @@ function(hairloom_test name)
         set_tests_properties(${name} PROPERTIES TIMEOUT 900 LABELS ${name})
         return()
     endif()
-    gtest_discover_tests(test_${name} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60
+    if(ARG_SLOW)
+        gtest_discover_tests(test_${name} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60 TEST_FILTER "${ARG_SLOW}"
+            TEST_LIST test_${name}_slow PROPERTIES TIMEOUT ${ARG_TIMEOUT} COST 10 LABELS ${name}-slow)
+        set(quick TEST_FILTER "-${ARG_SLOW}")
+    endif()
+    gtest_discover_tests(test_${name} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60 ${quick}
         PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS ${name})
 endfunction()

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdlib>
 
-#include "tests/gpu/test_window.h"
+#include "tests/gpu_window/test_window.h"
 
 namespace hairloom::gpu {
 namespace {

@@ -4,7 +4,7 @@
 #include <thread>
 
 #include "tests/gpu/gpu_fixture.h"
-#include "tests/gpu/test_window.h"
+#include "tests/gpu_window/test_window.h"
 
 namespace hairloom::gpu {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <windows.h>
 
-#include "tests/gpu/test_window.h"
+#include "tests/gpu_window/test_window.h"
 
 namespace hairloom::gpu {
 namespace {
