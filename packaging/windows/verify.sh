@@ -5,7 +5,7 @@
 # packages are installed. Each step adds a line to build/windows/results.tsv: what, backend, result, measured, seconds; the
 # table made of them is printed last and stays in build/windows/verified.md. What a step said is in build/windows/verify/.
 # --all adds the samples of medium and long hair and the hard cases through both of Wine's renderers, and writes the table into
-# docs/windows.md when all of it passed. --core leaves out the editor and the tests of whole pictures and of importers, which take
+# packaging/windows/verified.md when all of it passed. --core leaves out the editor and the tests of whole pictures and of importers, which take
 # most of the time to build.
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")/../.."
@@ -197,4 +197,4 @@ done
 packaging/windows/table.sh "$results" | tee "$out/verified.md"
 say "done in $SECONDS s"
 [ "$failures" -eq 0 ] || { say "$failures of $steps failed"; exit 1; }
-[ "$extent" != --all ] || packaging/windows/table.sh "$results" docs/windows.md
+[ "$extent" != --all ] || packaging/windows/table.sh "$results" packaging/windows/verified.md
