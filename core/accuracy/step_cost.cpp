@@ -9,6 +9,7 @@
 #include "core/accuracy/thread_clock.h"
 #include "core/base/parallel.h"
 #include "core/base/profiler.h"
+#include "runtime/src/kernels.h"
 
 namespace hairloom {
 namespace {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/accuracy/benchmark_scenes.h"
+#include "runtime/src/state.h"
 
 namespace hairloom {
 

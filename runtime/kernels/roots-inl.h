@@ -9,7 +9,7 @@
 
 #include <cfloat>
 
-#include "hairloom/checks.h"
+#include "src/checks.h"
 #include "hwy/highway.h"
 #include "kernels/lanes-inl.h"
 #include "src/kernels.h"

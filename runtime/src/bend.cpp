@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "hairloom/presets.h"
-#include "hairloom/state.h"
+#include "src/state.h"
 
 namespace hairloom::runtime {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "hairloom/checks.h"
+#include "src/checks.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,308 +1,98 @@
 // SPDX-License-Identifier: MIT
+// The public face: sizes are checked here, and nowhere behind it.
 #include "hairloom/engine.h"
 
-#include <algorithm>
-#include <cassert>
-#include <cmath>
-#include <cstring>
+#include <utility>
 
-#include "hairloom/checks.h"
-#include "src/engine_frame.h"
+#include "src/checks.h"
+#include "src/engine_impl.h"
 
 namespace hairloom::runtime {
-namespace {
 
-constexpr std::size_t kBlocksPerJob = 4;
-/// Seconds; what the plan assumes before the first frame.
-constexpr float kUsualFrame = 1.0f / 60.0f;
+Engine::Engine(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Engine::Engine(const Engine& other) : impl_(std::make_unique<Impl>(*other.impl_)) {}
+Engine::Engine(Engine&& other) noexcept = default;
+Engine::~Engine() = default;
 
-RootBounds noRoots() {
-    RootBounds bounds;
-    std::fill_n(bounds.low[0], 3 * kBlockLanes, 1e30f);
-    std::fill_n(bounds.high[0], 3 * kBlockLanes, -1e30f);
-    std::fill_n(bounds.longest, kBlockLanes, 0.0f);
-    return bounds;
+Engine& Engine::operator=(Engine other) noexcept {
+    impl_ = std::move(other.impl_);
+    return *this;
 }
-float least(const float* row) {
-    return *std::min_element(row, row + kBlockLanes);
-}
-float most(const float* row) {
-    return *std::max_element(row, row + kBlockLanes);
-}
-
-}  // namespace
 
 Engine::Made Engine::make(const StrandsView& strands, const SimulationSettings& settings, Host host) {
     if (std::string error = whyRefused(settings); !error.empty()) return {std::nullopt, std::move(error)};
     if (std::string error = whyRefused(strands); !error.empty()) return {std::nullopt, std::move(error)};
-    Engine engine;
-    engine.host_ = std::move(host);
-    engine.shape_ = makeRestShape(strands);
-    const RestShape& shape = *engine.shape_;
-    engine.state_.planes.assign(shape.planeFloats * kStatePlanes, 0.0f);
-    engine.state_.roots.assign(shape.blocks.size() * kRootRows * kBlockLanes, 0.0f);
-    engine.blockReports_.resize(shape.blocks.size());
-    engine.nextRoots_.assign(engine.state_.roots.size(), 0.0f);
-    engine.settings_ = settings;
-    engine.wind_.wind = makeWind(settings);
-    engine.reset(shape.restRoots);
-    return {std::move(engine), {}};
+    return {Engine(std::make_unique<Impl>(strands, settings, std::move(host))), {}};
 }
 
-void Engine::reset(std::span<const RootFrame> roots_ws) {
-    assert(roots_ws.size() == strandCount());
-    report_ = {};
-    state_.rests.assign(shape_->blocks.size(), {});
-    for (std::size_t b = 0; b < shape_->blocks.size(); ++b) {
-        float* rows = state_.roots.data() + b * kRootRows * kBlockLanes;
-        for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
-            const std::uint32_t strand = shape_->blocks[b].strandOfLane[lane];
-            RootFrame root = roots_ws[strand];
-            if (!usableWithin(root, kFarthest)) root = shape_->restRoots[strand];
-            const float values[kRootRows] = {root.position.x, root.position.y, root.position.z,
-                                             root.rotation.x, root.rotation.y, root.rotation.z,
-                                             root.rotation.w};
-            for (std::size_t r = 0; r < kRootRows; ++r) rows[r * kBlockLanes + lane] = values[r];
-            placeAtRest(*shape_, state_, b, lane);
-        }
-    }
-    state_.spheres.clear();
-    state_.substep = 0.0f;
-    state_.fastest = 0.0f;
-    FrameInput here;
-    here.roots_ws = roots_ws;
-    takeRoots(here);
-    replan({}, {}, state_.rootsMin_ws, state_.rootsMax_ws, 0.0f);
+bool Engine::reset(std::span<const RootFrame> roots_ws) {
+    if (roots_ws.size() != strandCount()) return false;
+    impl_->reset(roots_ws);
+    return true;
 }
 
 std::string Engine::setSettings(const SimulationSettings& settings) {
-    if (std::string error = whyRefused(settings); !error.empty()) return error;
-    settings_ = settings;
-    wind_ = {makeWind(settings), false};
-    bend_.substep = 0.0f;
-    std::fill(state_.tanks.begin(), state_.tanks.end(), kNoCurve);
-    state_.rests.assign(shape_->blocks.size(), {});
-    replan({}, {}, state_.rootsMin_ws, state_.rootsMax_ws, 0.0f);
-    return {};
+    return impl_->setSettings(settings);
 }
 
-void Engine::replan(std::span<const Sphere> spheres, std::span<const Float3> sphereMotion, Float3 rootsMin_ws,
-                    Float3 rootsMax_ws, float frameTime) {
-    const float h = frameTime > 0.0f ? frameTime / static_cast<float>(settings_.substeps) : state_.substep;
-    FrameOutlook outlook{strandCount(),         shape_->longestPointCount,
-                         shape_->longestStrand, shape_->straight,
-                         rootsMin_ws,           rootsMax_ws,
-                         rootMotion_,           state_.fastest};
-    outlook.sharpestCurl = shape_->sharpestCurl;
-    outlook.unevenness = shape_->unevenness;
-    outlook.substep = h > 0.0f ? h : kUsualFrame / static_cast<float>(settings_.substeps);
-    outlook.restTime = 1e30f;
-    for (std::size_t b = 0; b < state_.rests.size(); ++b) {
-        if (state_.rests[b].asleep) outlook.asleep += shape_->blocks[b].strands;
-        outlook.restTime = std::min(outlook.restTime, state_.rests[b].time);
-    }
-    plan_ = planFrame(settings_, outlook, wind_, spheres, sphereMotion, frameTime);
-    allocateForPlan();
+const SimulationSettings& Engine::settings() const {
+    return impl_->settings_;
 }
 
-void Engine::allocateForPlan() {
-    const bool angular = plan_.on(Effect::angular);
-    const bool factored = angular && plan_.factored();
-    const bool targets = plan_.on(Effect::torsion);
-    if (angular == bend_.planes.empty() || factored != bend_.factored || targets != bend_.targets) {
-        bend_.factored = factored;
-        bend_.targets = targets;
-        bend_.planes = Floats(angular ? shape_->planeFloats * bend_.planeCount() : 0, 0.0f);
-        bend_.substep = 0.0f;
-    }
-    if (plan_.on(Effect::coupling) != bend_.coupled) {
-        bend_.coupled = plan_.on(Effect::coupling);
-        bend_.substep = 0.0f;
-    }
-    const bool curves = plan_.keepsCurves();
-    if (curves == state_.curves.empty()) {
-        state_.curves = Floats(curves ? shape_->planeFloats * 3 : 0, 0.0f);
-        state_.tanks = Floats(curves ? shape_->blocks.size() * kBlockLanes : 0, kNoCurve);
-        state_.motions = Floats(curves ? shape_->blocks.size() * kBlockLanes : 0, 0.0f);
-    }
-    if (plan_.keepsTensions() == state_.tensions.empty())
-        state_.tensions = Floats(plan_.keepsTensions() ? shape_->planeFloats : 0, 0.0f);
-    evaluationPlanes_ = settings_.integrator == Integrator::verlet ? 0
-                        : settings_.integrator == Integrator::rk4  ? kRungeKuttaPlanes
-                                                                   : kEvaluationPlanes;
-    if (evaluation_.size() != shape_->planeFloats * evaluationPlanes_)
-        evaluation_ = Floats(shape_->planeFloats * evaluationPlanes_, 0.0f);
+bool Engine::step(const FrameInput& input) {
+    if (input.roots_ws.size() != strandCount()) return false;
+    impl_->step(input);
+    return true;
 }
 
-/// Keeps the roots that the frame ends on, their box and how far they go. What is no root stays where it was.
-void Engine::takeRoots(const FrameInput& input) {
-    RootBounds bounds = noRoots();
-    const float cut = settings_.teleportDistance * settings_.teleportDistance;
-    const Kernels& table = kernels();
-    for (std::size_t b = 0; b < shape_->blocks.size(); ++b) {
-        const Block& block = shape_->blocks[b];
-        const float* rows = state_.roots.data() + b * kRootRows * kBlockLanes;
-        float* const next = nextRoots_.data() + b * kRootRows * kBlockLanes;
-        for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
-            const RootFrame& root = input.roots_ws[block.strandOfLane[lane]];
-            const float values[kRootRows] = {root.position.x, root.position.y, root.position.z,
-                                             root.rotation.x, root.rotation.y, root.rotation.z,
-                                             root.rotation.w};
-            for (std::size_t r = 0; r < kRootRows; ++r) next[r * kBlockLanes + lane] = values[r];
-        }
-        bounds.anyCut = false;
-        if (!table.takeRoots(rows, next, false, cut, bounds)) {
-            repairRoots(b);
-            table.takeRoots(rows, next, true, cut, bounds);
-        }
-        blockReports_[b].rootsCut = bounds.anyCut;
-        blockReports_[b].rootsMoved = std::memcmp(rows, next, kRootRows * kBlockLanes * sizeof(float)) != 0;
-    }
-    rootMotion_ = std::sqrt(most(bounds.longest));
-    state_.rootsMin_ws = {least(bounds.low[0]), least(bounds.low[1]), least(bounds.low[2])};
-    state_.rootsMax_ws = {most(bounds.high[0]), most(bounds.high[1]), most(bounds.high[2])};
+bool Engine::addVelocities(std::span<const Float3> changes_ws) {
+    if (changes_ws.size() != pointCount()) return false;
+    impl_->addVelocities(changes_ws);
+    return true;
 }
 
-/// Puts the block's roots that are no places back to those of the last frame.
-void Engine::repairRoots(std::size_t block) {
-    const float* const rows = state_.roots.data() + block * kRootRows * kBlockLanes;
-    float* const next = nextRoots_.data() + block * kRootRows * kBlockLanes;
-    for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
-        const auto given = [&](std::size_t r) -> float& { return next[r * kBlockLanes + lane]; };
-        RootFrame root{{given(0), given(1), given(2)}, {given(3), given(4), given(5), given(6)}};
-        if (usableWithin(root, kFarthest)) {
-            given(3) = root.rotation.x;
-            given(4) = root.rotation.y;
-            given(5) = root.rotation.z;
-            given(6) = root.rotation.w;
-            continue;
-        }
-        for (std::size_t r = 0; r < kRootRows; ++r) given(r) = rows[r * kBlockLanes + lane];
-        if (lane < shape_->blocks[block].strands) ++report_.rejectedRoots;
-    }
+std::uint32_t Engine::strandCount() const {
+    return impl_->strandCount();
 }
 
-/// Whether a sphere that has changed since the last frame comes within reach of the block's strands.
-bool Engine::sphereNear(std::size_t block) const {
-    const float* rows = state_.roots.data() + block * kRootRows * kBlockLanes;
-    for (const Sphere& waking : spheres_.waking) {
-        for (std::uint32_t lane = 0; lane < shape_->blocks[block].strands; ++lane) {
-            const Float3 root{rows[lane], rows[kBlockLanes + lane], rows[2 * kBlockLanes + lane]};
-            if (length(root - waking.center_ws) < waking.radius) return true;
-        }
-    }
-    return false;
+std::uint32_t Engine::pointCount() const {
+    return impl_->pointCount();
 }
 
-void Engine::wakeBlocks() {
-    const bool windy = length(wind_.wind.mean) > 0.0f && settings_.airDrag > 0.0f;
-    for (std::size_t b = 0; b < state_.rests.size(); ++b) {
-        Rest& rest = state_.rests[b];
-        if (rest.asleep && (windy || blockReports_[b].rootsMoved || sphereNear(b))) rest = {};
-    }
+bool Engine::readPositions(std::span<Float3> positions_ws) const {
+    if (positions_ws.size() != pointCount()) return false;
+    runtime::readPositions(*impl_->shape_, impl_->state_, positions_ws);
+    return true;
 }
 
-Engine::Frame Engine::makeFrame(const FrameInput& input) {
-    Frame frame{};
-    frame.input = &input;
-    frame.context = substepContext(settings_, plan_, input.dt, movingSpheres_);
-    const float h = frame.context.h;
-    frame.windy = plan_.on(Effect::wind);
-    if (frame.windy) {
-        const double time = std::isfinite(input.time) ? input.time : 0.0;
-        frame.windFrom = windPhases(wind_.wind, time - static_cast<double>(input.dt));
-        frame.windTo = windPhases(wind_.wind, time);
-    }
-    frame.rescale = state_.substep > 0.0f ? h / state_.substep : 1.0f;
-    frame.newBend = plan_.on(Effect::angular) && bend_.substep != h;
-    frame.kernels = &kernels();
-    frame.passes = host_.nanoseconds ? singlePassesOf(plan_.stages(), *frame.kernels)
-                                     : passesOf(plan_.stages(), *frame.kernels);
-    return frame;
+bool Engine::readVelocities(std::span<Float3> velocities_ws) const {
+    if (velocities_ws.size() != pointCount()) return false;
+    runtime::readVelocities(*impl_->shape_, impl_->state_, velocities_ws);
+    return true;
 }
 
-void Engine::step(const FrameInput& input) {
-    assert(input.roots_ws.size() == strandCount());
-    if (!(input.dt > 0.0f) || !std::isfinite(input.dt)) return;
-    const std::uint64_t begin = host_.nanoseconds ? host_.nanoseconds() : 0;
-    report_ = {};
-
-    const Float3 lowBefore = state_.rootsMin_ws, highBefore = state_.rootsMax_ws;
-    takeRoots(input);
-    const Float3 low = state_.rootsMin_ws, high = state_.rootsMax_ws;
-    takeSpheres(settings_, shape_->longestStrand, state_.spheres, input.spheres, spheres_);
-    report_.rejectedSpheres = spheres_.rejected;
-    report_.rejectedWinds = takeWind(settings_, input, wind_);
-    wakeBlocks();
-    replan(spheres_.usable, spheres_.motion,
-           {std::min(low.x, lowBefore.x), std::min(low.y, lowBefore.y), std::min(low.z, lowBefore.z)},
-           {std::max(high.x, highBefore.x), std::max(high.y, highBefore.y), std::max(high.z, highBefore.z)},
-           input.dt);
-    if (plan_.on(Effect::collision)) {
-        moveSpheres(spheres_, settings_.substeps, movingSpheres_);
-    } else {
-        movingSpheres_ = {};
-    }
-
-    const Frame frame = makeFrame(input);
-    const std::size_t blocks = shape_->blocks.size();
-    const Host::Body body = [&](std::size_t first, std::size_t end) {
-        for (std::size_t b = first; b < end; ++b) runBlock(b, frame);
-    };
-    if (host_.parallelFor) {
-        host_.parallelFor(blocks, kBlocksPerJob, body);
-    } else {
-        body(0, blocks);
-    }
-
-    state_.spheres.assign(spheres_.usable.begin(), spheres_.usable.end());
-    state_.substep = frame.context.h;
-    if (frame.newBend) bend_.substep = frame.context.h;
-    sumReports();
-    if (host_.nanoseconds) report_.milliseconds = static_cast<double>(host_.nanoseconds() - begin) * 1e-6;
+const EffectPlan& Engine::plan() const {
+    return impl_->plan_;
 }
 
-void Engine::sumReports() {
-    float fastest = 0.0f;
-    for (const BlockReport& block : blockReports_) {
-        for (std::size_t i = 0; host_.nanoseconds && i < kStageCount; ++i)
-            report_.stageMilliseconds[i] += static_cast<double>(block.nanoseconds[i]) * 1e-6;
-        report_.restoredStrands += block.restored;
-        fastest = std::max(fastest, block.fastest);
-    }
-    state_.fastest = std::sqrt(fastest) / state_.substep;
-    if (report_.restoredStrands > 0 && host_.log) {
-        host_.log(std::to_string(report_.restoredStrands) +
-                  " strands had left the range of sound places and were put back to rest");
-    }
+const StepReport& Engine::lastStep() const {
+    return impl_->report_;
 }
 
-BlockView Engine::view(std::size_t block) {
-    return viewOf({*shape_, state_, bend_, evaluation_, evaluationPlanes_}, block, settings_.clampedPoints);
+Measurements Engine::measure() const {
+    return measureState(*impl_->shape_, impl_->state_, impl_->settings_);
 }
 
-void Engine::addVelocities(std::span<const Float3> changes_ws) {
-    assert(changes_ws.size() == pointCount());
-    const float h = state_.substep;
-    for (std::size_t b = 0; b < shape_->blocks.size(); ++b) {
-        const Block& block = shape_->blocks[b];
-        const Planes previous = view(b).previous;
-        bool changed = false;
-        for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
-            // Lanes past the last strand repeat it.
-            const std::uint32_t first = shape_->offsets[block.strandOfLane[lane]];
-            for (std::uint32_t p = settings_.clampedPoints; p < block.points; ++p) {
-                const Float3 change = changes_ws[first + p];
-                if (!isFinite(change) || change == Float3{}) continue;
-                const std::size_t i = std::size_t{p} * kBlockLanes + lane;
-                previous.x[i] -= change.x * h;
-                previous.y()[i] -= change.y * h;
-                previous.z()[i] -= change.z * h;
-                changed = true;
-            }
-        }
-        if (changed) state_.rests[b] = {};
-    }
+std::size_t Engine::effectBytes(Effect effect) const {
+    return impl_->effectBytes(effect);
+}
+
+std::size_t Engine::baseBytes() const {
+    return impl_->baseBytes();
+}
+
+std::uint64_t Engine::stateHash() const {
+    return impl_->state_.hash();
 }
 
 const char* Engine::instructionSet() {

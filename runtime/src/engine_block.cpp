@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hairloom/checks.h"
-#include "src/engine_frame.h"
+#include "src/checks.h"
+#include "src/engine_impl.h"
 
 namespace hairloom::runtime {
 
-void Engine::runBlock(std::size_t block, const Frame& frame) {
+void Engine::Impl::runBlock(std::size_t block, const Frame& frame) {
     BlockReport& report = blockReports_[block];
     if (host_.nanoseconds) report.nanoseconds.fill(0);
     report.restored = 0;
@@ -35,7 +35,7 @@ void Engine::runBlock(std::size_t block, const Frame& frame) {
 }
 
 /// Puts lanes that are no longer sound back to rest.
-void Engine::restoreStrands(std::size_t block, const BlockView& blockView) {
+void Engine::Impl::restoreStrands(std::size_t block, const BlockView& blockView) {
     BlockReport& report = blockReports_[block];
     for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
         bool sound = true;
@@ -57,7 +57,7 @@ void Engine::restoreStrands(std::size_t block, const BlockView& blockView) {
 }
 
 /// Counts how long the block has been at rest, and puts it to sleep.
-void Engine::rest(std::size_t block, const BlockView& blockView, const Frame& frame) {
+void Engine::Impl::rest(std::size_t block, const BlockView& blockView, const Frame& frame) {
     Rest& rest = state_.rests[block];
     const BlockReport& report = blockReports_[block];
     const float slow = settings_.sleepSpeed * frame.context.h;
@@ -75,7 +75,7 @@ void Engine::rest(std::size_t block, const BlockView& blockView, const Frame& fr
 }
 
 /// A cut turns the strand along rigidly: places, velocities and curves.
-void Engine::turnAlong(const BlockView& view, std::uint32_t lane, Quat turn) {
+void Engine::Impl::turnAlong(const BlockView& view, std::uint32_t lane, Quat turn) {
     for (std::uint32_t p = 0; p < view.points; ++p) {
         const std::size_t i = std::size_t{p} * kBlockLanes + lane;
         for (const Planes& planes : {view.position, view.previous, view.curve}) {
@@ -89,7 +89,7 @@ void Engine::turnAlong(const BlockView& view, std::uint32_t lane, Quat turn) {
 }
 
 /// Lanes whose roots go farther in the frame than teleportDistance start where they end.
-void Engine::cutLanes(const BlockView& view, float* rows, const float* next) const {
+void Engine::Impl::cutLanes(const BlockView& view, float* rows, const float* next) const {
     const float cut = settings_.teleportDistance * settings_.teleportDistance;
     for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
         const auto place = [&](const float* from) {
@@ -108,7 +108,8 @@ void Engine::cutLanes(const BlockView& view, float* rows, const float* next) con
 }
 
 /// Fills the lanes' way through the frame and keeps its end for the next.
-void Engine::enterFrame(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame) {
+void Engine::Impl::enterFrame(std::size_t block, const BlockView& view, LaneFrame& lanes,
+                              const Frame& frame) {
     float* const rows = state_.roots.data() + block * kRootRows * kBlockLanes;
     const float* const next = nextRoots_.data() + block * kRootRows * kBlockLanes;
     const auto at = [](const float* from, std::size_t r, std::uint32_t lane) {
@@ -127,7 +128,7 @@ void Engine::enterFrame(std::size_t block, const BlockView& view, LaneFrame& lan
     std::copy_n(next, kRootRows * kBlockLanes, rows);
 }
 
-void Engine::runStages(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame) {
+void Engine::Impl::runStages(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame) {
     SubstepContext context = frame.context;
     if (!host_.nanoseconds) {
         for (context.index = 0; context.index < context.count; ++context.index) {

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What an Engine tells about its state.
+// What a state looks like from outside, and what an engine takes of memory.
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
-#include "hairloom/engine.h"
-#include "hairloom/state_read.h"
+#include "src/engine_impl.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -58,14 +56,12 @@ double lengthOf(Float3 v) {
 }  // namespace
 
 void readPositions(const RestShape& shape, const State& state, std::span<Float3> positions_ws) {
-    assert(positions_ws.size() == shape.offsets.back());
     forEachPoint(shape, state,
                  [&](const ConstBlock& view, std::uint32_t lane, std::uint32_t, std::size_t i,
                      std::size_t at) { positions_ws[at] = view.root(lane) + view.position(i); });
 }
 
 void readVelocities(const RestShape& shape, const State& state, std::span<Float3> velocities_ws) {
-    assert(velocities_ws.size() == shape.offsets.back());
     const float rate = state.substep > 0.0f ? 1.0f / state.substep : 0.0f;
     forEachPoint(shape, state,
                  [&](const ConstBlock& view, std::uint32_t, std::uint32_t, std::size_t i, std::size_t at) {
@@ -112,19 +108,7 @@ Measurements measureState(const RestShape& shape, const State& state, const Simu
     return result;
 }
 
-void Engine::readPositions(std::span<Float3> positions_ws) const {
-    runtime::readPositions(*shape_, state_, positions_ws);
-}
-
-void Engine::readVelocities(std::span<Float3> velocities_ws) const {
-    runtime::readVelocities(*shape_, state_, velocities_ws);
-}
-
-Measurements Engine::measure() const {
-    return measureState(*shape_, state_, settings_);
-}
-
-std::size_t Engine::effectBytes(Effect effect) const {
+std::size_t Engine::Impl::effectBytes(Effect effect) const {
     const std::size_t plane = shape_->planeFloats * sizeof(float);
     const std::size_t targets = bend_.targets ? 3 * plane : 0;
     switch (effect) {
@@ -150,7 +134,7 @@ std::size_t Engine::effectBytes(Effect effect) const {
     return 0;
 }
 
-std::size_t Engine::baseBytes() const {
+std::size_t Engine::Impl::baseBytes() const {
     return shape_->bytes() +
            (state_.planes.size() + state_.roots.size() + evaluation_.size()) * sizeof(float) +
            (state_.spheres.size() + spheres_.usable.size()) * sizeof(Sphere) +

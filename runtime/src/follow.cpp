@@ -2,15 +2,14 @@
 #include "hairloom/follow.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <cstring>
 #include <functional>
 #include <utility>
 #include <vector>
 
-#include "hairloom/state.h"
 #include "src/follow_kernels.h"
+#include "src/state.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -268,12 +267,14 @@ std::uint32_t FollowHairs::pointsPerHair() const {
     return impl_->points;
 }
 
-void FollowHairs::evaluate(const GuideMotion& guides, std::span<Float3> hairs_ws, const Host& host) {
+bool FollowHairs::evaluate(const GuideMotion& guides, std::span<Float3> hairs_ws, const Host& host) {
     Impl& impl = *impl_;
-    assert(guides.positions_ws.size() == impl.guideOffsets.back());
-    assert(guides.velocities_ws.empty() || guides.velocities_ws.size() == guides.positions_ws.size());
-    assert(guides.rootRotations_ws.empty() || guides.rootRotations_ws.size() == impl.guideCount());
-    assert(hairs_ws.size() == impl.hairs.size() * impl.points);
+    const auto fits = [](std::size_t size, std::size_t wanted) { return size == 0 || size == wanted; };
+    if (guides.positions_ws.size() != impl.guideOffsets.back() ||
+        !fits(guides.velocities_ws.size(), guides.positions_ws.size()) ||
+        !fits(guides.rootRotations_ws.size(), impl.guideCount()) ||
+        hairs_ws.size() != impl.hairs.size() * impl.points)
+        return false;
     const GuideRows rows{impl.points,           impl.rowFloats,    impl.radii.data(), guides.wispSpread,
                          impl.positions.data(), impl.wisps.data(), impl.frames.data()};
     forPieces(host, impl.guideCount(), kGuidesPerJob,
@@ -284,6 +285,7 @@ void FollowHairs::evaluate(const GuideMotion& guides, std::span<Float3> hairs_ws
     forPieces(host, hairs.size(), kHairsPerJob, [&](std::size_t begin, std::size_t end) {
         followKernels().sumRows(rows, hairs.subspan(begin, end - begin), out + begin * impl.points * 3);
     });
+    return true;
 }
 
 }  // namespace hairloom::runtime

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "hairloom/frame_setup.h"
+#include "src/frame_setup.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "hairloom/state.h"
+#include "src/state.h"
 
 namespace hairloom::runtime {
 namespace {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "hairloom/state.h"
+#include "src/state.h"
 
 namespace hairloom::runtime {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "hairloom/state.h"
+#include "src/state.h"
 
 #include <algorithm>
 #include <cmath>

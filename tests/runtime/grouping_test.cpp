@@ -7,7 +7,8 @@
 #include <cmath>
 #include <vector>
 
-#include "hairloom/state.h"
+#include "runtime/src/kernels.h"
+#include "runtime/src/state.h"
 
 namespace hairloom::runtime {
 namespace {

@@ -80,11 +80,11 @@ class FollowHairs {
     std::uint32_t hairCount() const;
     std::uint32_t pointsPerHair() const;
 
-    /// Fills `hairs_ws` (hair after hair, pointsPerHair() each; metres). Sizes must match what make() was
-    /// given. A point of a guide that is not finite makes that point of the hairs that take part of the guide
-    /// not finite, and no other; a root that is not finite, the hairs that take part of the root. Not to be
-    /// called on one object from two threads at a time.
-    void evaluate(const GuideMotion& guides, std::span<Float3> hairs_ws, const Host& host = {});
+    /// Fills `hairs_ws` (hair after hair, pointsPerHair() each; metres). False, and nothing is written, where
+    /// a size is not that of what make() was given. A point of a guide that is not finite makes that point of
+    /// the hairs that take part of the guide not finite, and no other; a root that is not finite, the hairs
+    /// that take part of the root. Not to be called on one object from two threads at a time.
+    bool evaluate(const GuideMotion& guides, std::span<Float3> hairs_ws, const Host& host = {});
 
   private:
     struct Impl;

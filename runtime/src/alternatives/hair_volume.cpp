@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
-#include <cassert>
 #include <cmath>
 #include <functional>
 
-#include "hairloom/checks.h"
+#include "src/checks.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -87,9 +86,8 @@ void HairVolume::forChunks(std::size_t count, const Body& body) {
 
 HairVolume::Report HairVolume::apply(std::span<const Float3> positions_ws, std::span<Float3> velocities_ws,
                                      float dt) {
-    assert(positions_ws.size() == velocities_ws.size());
     size_ = {};
-    if (!(dt > 0.0f) || !std::isfinite(dt)) return {};
+    if (!(dt > 0.0f) || !std::isfinite(dt) || positions_ws.size() != velocities_ws.size()) return {};
     const Box box = measure(positions_ws, velocities_ws);
     Report report{0.0f, 0, positions_ws.size() - box.points};
     if (box.points == 0) return report;

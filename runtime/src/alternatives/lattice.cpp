@@ -3,12 +3,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 #include <functional>
 #include <numbers>
 
-#include "hairloom/checks.h"
+#include "src/checks.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -247,8 +246,8 @@ Float3 Lattice::displacementAt(const Point& point) const {
     return sum;
 }
 
-void Lattice::evaluate(std::span<Float3> positions_ws) const {
-    assert(positions_ws.size() == points_.size());
+bool Lattice::evaluate(std::span<Float3> positions_ws) const {
+    if (positions_ws.size() != points_.size()) return false;
     const auto move = [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p < end; ++p) {
             positions_ws[p] =
@@ -262,24 +261,27 @@ void Lattice::evaluate(std::span<Float3> positions_ws) const {
     } else {
         body(0, points_.size());
     }
+    return true;
 }
 
-void Lattice::readControlPoints(std::span<Float3> controlPoints_ws) const {
-    assert(controlPoints_ws.size() == nodes_.size());
+bool Lattice::readControlPoints(std::span<Float3> controlPoints_ws) const {
+    if (controlPoints_ws.size() != nodes_.size()) return false;
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
         controlPoints_ws[i] =
             head_.position + (rotate(head_.rotation, nodes_[i].rest_ss) + nodes_[i].displacement);
     }
+    return true;
 }
 
-void Lattice::setControlPoints(std::span<const Float3> controlPoints_ws) {
-    assert(controlPoints_ws.size() == nodes_.size());
+bool Lattice::setControlPoints(std::span<const Float3> controlPoints_ws) {
+    if (controlPoints_ws.size() != nodes_.size()) return false;
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
         const Float3 offset =
             controlPoints_ws[i] - head_.position - rotate(head_.rotation, nodes_[i].rest_ss);
         nodes_[i].displacement = length(offset) <= kFarthest ? offset : Float3{};
         nodes_[i].velocity = {};
     }
+    return true;
 }
 
 }  // namespace hairloom::runtime

@@ -3,12 +3,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 #include <functional>
 #include <numbers>
 
-#include "hairloom/checks.h"
+#include "src/checks.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -121,8 +120,8 @@ void ProjectiveEquations::fillSticks() {
     }
 }
 
-void ProjectiveEquations::reset(std::span<const RootFrame> roots_ws) {
-    assert(roots_ws.size() == strandCount());
+bool ProjectiveEquations::reset(std::span<const RootFrame> roots_ws) {
+    if (roots_ws.size() != strandCount()) return false;
     lastSpheres_.clear();
     for (std::uint32_t s = 0; s < strandCount(); ++s) {
         Root& root = roots_[s];
@@ -138,6 +137,7 @@ void ProjectiveEquations::reset(std::span<const RootFrame> roots_ws) {
                 positions_[p - 1] + rotate(root.now.rotation, sticks_[p].along) * sticks_[p].length;
         }
     }
+    return true;
 }
 
 void ProjectiveEquations::takeSpheres(const FrameInput& input) {
@@ -155,9 +155,9 @@ void ProjectiveEquations::takeSpheres(const FrameInput& input) {
     lastSpheres_.assign(input.spheres.begin(), input.spheres.end());
 }
 
-void ProjectiveEquations::step(const FrameInput& input) {
-    assert(input.roots_ws.size() == strandCount());
-    if (!(input.dt > 0.0f) || !std::isfinite(input.dt)) return;
+bool ProjectiveEquations::step(const FrameInput& input) {
+    if (input.roots_ws.size() != strandCount()) return false;
+    if (!(input.dt > 0.0f) || !std::isfinite(input.dt)) return true;
     takeSpheres(input);
     const double time = std::abs(input.time) <= kLongestTime ? input.time : 0.0;
     const Frame frame{&input, windPhases(wind_, time - static_cast<double>(input.dt)),
@@ -172,6 +172,7 @@ void ProjectiveEquations::step(const FrameInput& input) {
     } else {
         body(0, strandCount());
     }
+    return true;
 }
 
 void ProjectiveEquations::runStrand(std::uint32_t strand, const Frame& frame) {
@@ -269,18 +270,20 @@ void ProjectiveEquations::collide(std::uint32_t point, Quat frame, float along, 
     }
 }
 
-void ProjectiveEquations::readPositions(std::span<Float3> positions_ws) const {
-    assert(positions_ws.size() == pointCount());
+bool ProjectiveEquations::readPositions(std::span<Float3> positions_ws) const {
+    if (positions_ws.size() != pointCount()) return false;
     for (std::uint32_t s = 0; s < strandCount(); ++s) {
         for (std::uint32_t p = offsets_[s]; p < offsets_[s + 1]; ++p) {
             positions_ws[p] = roots_[s].now.position + positions_[p];
         }
     }
+    return true;
 }
 
-void ProjectiveEquations::readVelocities(std::span<Float3> velocities_ws) const {
-    assert(velocities_ws.size() == pointCount());
+bool ProjectiveEquations::readVelocities(std::span<Float3> velocities_ws) const {
+    if (velocities_ws.size() != pointCount()) return false;
     std::copy(velocities_.begin(), velocities_.end(), velocities_ws.begin());
+    return true;
 }
 
 }  // namespace hairloom::runtime

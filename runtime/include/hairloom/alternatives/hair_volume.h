@@ -55,8 +55,8 @@ class HairVolume {
         std::uint64_t leftOut =
             0;  ///< points that are no numbers or lie beyond 1e6 m; they keep their velocity
     };
-    /// Metres and metres per second of the same points; dt in seconds. A dt that is not above 0 changes
-    /// nothing.
+    /// Metres and metres per second of the same points; dt in seconds. A dt that is not above 0, or
+    /// arrays of different sizes, change nothing.
     Report apply(std::span<const Float3> positions_ws, std::span<Float3> velocities_ws, float dt);
 
     /// What the grid of the last apply() holds, before it changed anything.

@@ -63,15 +63,17 @@ class Lattice {
     /// not above 0 changes nothing, others count as 10⁻⁶…1000 s; a head that is no place within 1e6 m stays
     /// where it was.
     void step(const RootFrame& head_ws, float dt);
+    // Calls that are given arrays return false, and do nothing, where one has the wrong size.
+
     /// Where the hair is: metres, world, in the order given to make(), pointCount() of them.
-    void evaluate(std::span<Float3> positions_ws) const;
+    bool evaluate(std::span<Float3> positions_ws) const;
 
     std::uint32_t pointCount() const { return static_cast<std::uint32_t>(points_.size()); }
     std::uint32_t controlPointCount() const { return static_cast<std::uint32_t>(nodes_.size()); }
     /// Metres, world; x runs fastest, then y.
-    void readControlPoints(std::span<Float3> controlPoints_ws) const;
+    bool readControlPoints(std::span<Float3> controlPoints_ws) const;
     /// Puts the control points there, without speed against the head. Those that are no numbers go to rest.
-    void setControlPoints(std::span<const Float3> controlPoints_ws);
+    bool setControlPoints(std::span<const Float3> controlPoints_ws);
 
     struct StepReport {
         std::uint64_t nodeUpdates = 0;  ///< control points times iterations over all substeps

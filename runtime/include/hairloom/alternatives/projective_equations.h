@@ -45,21 +45,23 @@ class ProjectiveEquations {
     /// Strands at rest in their rest places. Errors, in words, as Engine::make.
     static Made make(const StrandsView& strands, const SimulationSettings& settings, Host host = {});
 
+    // Calls that are given arrays return false, and do nothing, where one has the wrong size.
+
     /// Places all strands in their rest shape on these roots, without speed. One root per strand.
-    void reset(std::span<const RootFrame> roots_ws);
+    bool reset(std::span<const RootFrame> roots_ws);
     /// From the next step on; empty, or why they are refused.
     std::string setSettings(const SimulationSettings& settings);
     /// Advances by input.dt. A dt that is not above 0 changes nothing, one above 1000 s counts as 1000 s;
     /// roots that are no place within 1e6 m stay where they were; spheres that are none are left out.
     /// Allocates only for more spheres than ever before.
-    void step(const FrameInput& input);
+    bool step(const FrameInput& input);
 
     std::uint32_t strandCount() const { return static_cast<std::uint32_t>(roots_.size()); }
     std::uint32_t pointCount() const { return offsets_.back(); }
     /// In the order given to make(); metres, world. Size pointCount().
-    void readPositions(std::span<Float3> positions_ws) const;
+    bool readPositions(std::span<Float3> positions_ws) const;
     /// In the same order; metres per second over the last substep.
-    void readVelocities(std::span<Float3> velocities_ws) const;
+    bool readVelocities(std::span<Float3> velocities_ws) const;
 
   private:
     struct Root {

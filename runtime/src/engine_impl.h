@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What is behind Engine, for its own sources.
+
+#include <array>
+
+#include "hairloom/engine.h"
+#include "src/frame_setup.h"
+#include "src/state.h"
+#include "src/state_read.h"
+
+namespace hairloom::runtime {
+
+/// Trusts the sizes of what it is given.
+struct Engine::Impl {
+    struct Frame;
+    struct BlockReport {
+        std::array<std::uint64_t, kStageCount> nanoseconds{};
+        float fastest = 0.0f;  ///< square metres, as Kernels::fastest
+        std::uint32_t restored = 0;
+        bool rootsMoved = false;
+        bool rootsCut = false;  ///< some are carried along rigidly
+    };
+    Impl(const StrandsView& strands, const SimulationSettings& settings, Host host);
+
+    void reset(std::span<const RootFrame> roots_ws);
+    std::string setSettings(const SimulationSettings& settings);
+    void step(const FrameInput& input);
+    void addVelocities(std::span<const Float3> changes_ws);
+    std::size_t effectBytes(Effect effect) const;
+    std::size_t baseBytes() const;
+    std::uint32_t strandCount() const { return static_cast<std::uint32_t>(shape_->offsets.size() - 1); }
+    std::uint32_t pointCount() const { return shape_->offsets.back(); }
+
+    void replan(std::span<const Sphere> spheres, std::span<const Float3> sphereMotion, Float3 rootsMin_ws,
+                Float3 rootsMax_ws, float frameTime);
+    void allocateForPlan();
+    void takeRoots(const FrameInput& input);
+    void repairRoots(std::size_t block);
+    void wakeBlocks();
+    bool sphereNear(std::size_t block) const;
+    Frame makeFrame(const FrameInput& input);
+    BlockView view(std::size_t block);
+    void runBlock(std::size_t block, const Frame& frame);
+    static void turnAlong(const BlockView& view, std::uint32_t lane, Quat turn);
+    void cutLanes(const BlockView& view, float* rows, const float* next) const;
+    void enterFrame(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame);
+    void runStages(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame);
+    void restoreStrands(std::size_t block, const BlockView& view);
+    void rest(std::size_t block, const BlockView& view, const Frame& frame);
+    void sumReports();
+
+    SimulationSettings settings_;
+    Host host_;
+    std::shared_ptr<const RestShape> shape_;
+    EffectPlan plan_;
+    FrameWind wind_;
+    State state_;
+    Bend bend_;
+    Floats evaluation_;  // empty for position Verlet
+    std::size_t evaluationPlanes_ = 0;
+    StepReport report_;
+    std::vector<BlockReport> blockReports_;
+    // Of the frame under way.
+    Floats nextRoots_;  // as State::roots, at the frame's end
+    FrameSpheres spheres_;
+    std::vector<MovingSphere> movingSpheres_;
+    float rootMotion_ = 0.0f;  // metres, the longest way of a root
+};
+
+/// What all blocks share in one step.
+struct Engine::Impl::Frame {
+    const FrameInput* input;
+    SubstepContext context;
+    std::array<float, kWindModes> windFrom, windTo;
+    bool windy;
+    float rescale;  ///< new substep over old, 1 when equal
+    bool newBend;
+    const Kernels* kernels;
+    Passes passes;  ///< of the plan; single ones where there is a clock between its stages
+};
+
+}  // namespace hairloom::runtime
