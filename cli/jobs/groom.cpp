@@ -5,9 +5,8 @@
 #include "cli/job.h"
 #include "cli/stopwatch.h"
 #include "core/base/file.h"
-#include "core/editing/replay.h"
 #include "core/groom/file/project_file.h"
-#include "core/operations/script.h"
+#include "core/scene/hair_import.h"
 
 namespace hairloom::cli {
 namespace {
@@ -24,7 +23,7 @@ Result<Report> replay(const GroomOptions& options) {
     if (!groom) return tl::unexpected(groom.error());
     const auto text = readTextFile(options.script);
     if (!text) return tl::unexpected(text.error());
-    const auto script = parseScript(options.script, *text, editing::scriptExtensions());
+    const auto script = parseDocumentScript(options.script, *text);
     if (!script) return tl::unexpected(script.error());
     const auto outcome = runScript(*script, *groom);
     if (!outcome) return tl::unexpected(outcome.error());

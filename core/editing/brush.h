@@ -4,6 +4,7 @@
 // add one.
 
 #include <algorithm>
+#include <memory>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -32,11 +33,13 @@ constexpr BrushParameter boolParameter(const char* name, bool defaultValue, cons
 }
 
 struct BrushInfo {
-    std::string_view name;     ///< in records: "comb"
-    std::string_view label;    ///< for people: "Comb"
-    std::string_view meaning;  ///< one sentence
-    std::string_view inverse;  ///< what inverting makes of it, or empty where it makes nothing
-    std::span<const BrushParameter> parameters;
+    std::string_view name;          ///< in records: "comb"
+    std::string_view label;         ///< for people: "Comb"
+    std::string_view meaning;       ///< one sentence
+    std::string_view tip;           ///< what dragging does: "Drag to comb hair along"
+    std::string_view key = {};      ///< that takes it in hand at first, as "Shift+X"
+    std::string_view inverse = {};  ///< what inverting makes of it, or empty where it makes nothing
+    std::span<const BrushParameter> parameters = {};
     /// Segments get the lengths back that they had before each dab.
     bool keepsLengths = true;
     bool needsHead = false;
@@ -44,6 +47,11 @@ struct BrushInfo {
     bool drags = false;
     /// The brush itself leaves segments at their lengths.
     bool turnsSegments = false;
+    /// It goes down on the head as a ball; others reach along the view, to hair.
+    bool worksOnSkin = false;
+    /// What it moves must be kept out of the head.
+    bool movesHair = true;
+    int order = 300;  ///< in the tool bar, from 0: on the head, other tools from 30, on hair from 100
 };
 
 /// One dab as brushes see it.
@@ -126,6 +134,16 @@ class Brush {
     /// Does what waits for the end of the stroke.
     virtual Change finish(StrokeTarget&) { return {}; }
 };
+
+/// What a file of brushes/ makes known of its brush.
+struct BrushEntry {
+    const BrushInfo* info;
+    std::unique_ptr<Brush> (*make)();
+};
+template <class B>
+BrushEntry brushEntry(const BrushInfo& info) {
+    return {&info, []() -> std::unique_ptr<Brush> { return std::make_unique<B>(); }};
+}
 
 /// The strands that a dab reaches, with the weight of each of their points.
 struct Reached {

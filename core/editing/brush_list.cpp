@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 
 namespace hairloom::editing {
 namespace {
@@ -25,27 +24,14 @@ constexpr Field<S> kFields[] = {
     seedField<&S::seed>("seed", "another seed draws other random numbers"),
 };
 
-using Make = std::unique_ptr<Brush> (*)();
-constexpr Make kMakers[] = {makeComb,   makeBrushAlong, makeGrab,       makeSmooth,       makePuff,
-                            makePinch,  makeLength,     makeCut,        makeCutLine,      makeAdd,
-                            makeDelete, makeFreeze,     makeScalpPaint, makeDensityPaint, makeDyePaint};
-constexpr std::size_t kCount = std::size(kMakers);
-
-struct Entry {
-    std::string_view name;
-    std::unique_ptr<Brush> sample;
-};
-
-const std::array<Entry, kCount>& entries() {
-    static const std::array<Entry, kCount> list = [] {
-        std::array<Entry, kCount> made;
-        for (std::size_t i = 0; i < kCount; ++i) {
-            made[i].sample = kMakers[i]();
-            made[i].name = made[i].sample->info().name;
-        }
-        return made;
+/// By their order in a tool bar.
+const std::vector<BrushEntry>& entries() {
+    static const std::vector<BrushEntry> sorted = [] {
+        std::vector<BrushEntry> list = brushEntries();
+        std::ranges::stable_sort(list, {}, [](const BrushEntry& entry) { return entry.info->order; });
+        return list;
     }();
-    return list;
+    return sorted;
 }
 
 std::size_t indexOf(std::string_view name) {
@@ -82,25 +68,25 @@ std::span<const Field<BrushSettings>> fieldsOf(const BrushSettings&) {
 }
 
 std::span<const std::string_view> brushNames() {
-    static const std::array<std::string_view, kCount> names = [] {
-        std::array<std::string_view, kCount> list;
-        for (std::size_t i = 0; i < kCount; ++i) list[i] = entries()[i].name;
+    static const std::vector<std::string_view> names = [] {
+        std::vector<std::string_view> list;
+        for (const BrushEntry& entry : entries()) list.push_back(entry.info->name);
         return list;
     }();
     return names;
 }
 
 const BrushInfo& brushInfo(std::string_view name) {
-    return entries()[indexOf(name)].sample->info();
+    return *entries()[indexOf(name)].info;
 }
 
 std::unique_ptr<Brush> makeBrush(std::string_view name) {
     const std::size_t index = indexOf(name);
-    return index < kCount ? kMakers[index]() : nullptr;
+    return index < entries().size() ? entries()[index].make() : nullptr;
 }
 
 Status checkStroke(const Stroke& stroke) {
-    if (indexOf(stroke.tool) >= kCount)
+    if (indexOf(stroke.tool) >= entries().size())
         return fail(fmt::format("there is no brush '{}'", stroke.tool),
                     fmt::format("one of {}", fmt::join(brushNames(), ", ")));
     if (auto status = checkFields(stroke.tool, stroke.settings); !status) return status;

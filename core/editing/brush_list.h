@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// The brushes there are. A new one is a file in core/editing/brushes and a line here and in brush_list.cpp.
+// The brushes there are. A new one is a file in core/editing/brushes that defines `BrushEntry nameBrush()`,
+// with the name of the file.
 
 #include <memory>
 #include <span>
@@ -12,21 +13,8 @@
 
 namespace hairloom::editing {
 
-std::unique_ptr<Brush> makeComb();
-std::unique_ptr<Brush> makeBrushAlong();
-std::unique_ptr<Brush> makeGrab();
-std::unique_ptr<Brush> makeDelete();
-std::unique_ptr<Brush> makeCut();
-std::unique_ptr<Brush> makeCutLine();
-std::unique_ptr<Brush> makeLength();
-std::unique_ptr<Brush> makeSmooth();
-std::unique_ptr<Brush> makePuff();
-std::unique_ptr<Brush> makePinch();
-std::unique_ptr<Brush> makeFreeze();
-std::unique_ptr<Brush> makeAdd();
-std::unique_ptr<Brush> makeScalpPaint();
-std::unique_ptr<Brush> makeDensityPaint();
-std::unique_ptr<Brush> makeDyePaint();
+/// One of each file of brushes/, in order of file name (hairloom_registry).
+const std::vector<BrushEntry>& brushEntries();
 
 /// In the order of a toolbar.
 std::span<const std::string_view> brushNames();

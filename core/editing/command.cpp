@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/editing/command.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace hairloom::editing {
@@ -32,6 +33,19 @@ std::size_t CommandGroup::bytes() const {
     std::size_t sum = sizeof(*this) + name_.size();
     for (const auto& command : commands_) sum += command->bytes();
     return sum;
+}
+
+std::unique_ptr<Command> together(std::string name, std::vector<std::unique_ptr<Command>> commands) {
+    std::erase(commands, nullptr);
+    if (commands.empty()) return nullptr;
+    std::string record;
+    for (const auto& command : commands) {
+        record += (record.empty() ? '[' : ',') + command->record();
+    }
+    const bool all = std::ranges::none_of(commands, [](const auto& c) { return c->record().empty(); });
+    auto group = std::make_unique<CommandGroup>(std::move(name), std::move(commands), false);
+    if (all) group->setRecord(record + ']');
+    return group;
 }
 
 }  // namespace hairloom::editing

@@ -27,7 +27,8 @@ class Command {
     /// Memory held, bytes.
     virtual std::size_t bytes() const = 0;
 
-    /// The operation of a script that does the same (JSON), or empty where there is none.
+    /// The operation of a script that does the same (JSON; an array of them where it takes several), or empty
+    /// where there is none.
     const std::string& record() const { return record_; }
     void setRecord(std::string record) { record_ = std::move(record); }
 
@@ -49,5 +50,9 @@ class CommandGroup final : public Command {
     std::vector<std::unique_ptr<Command>> commands_;
     bool done_;
 };
+
+/// The commands (nulls are left out) as one step that is not done yet; its record is theirs, where all have
+/// one. Each must have been made for the model as the ones before it leave it. Null where there is none.
+std::unique_ptr<Command> together(std::string name, std::vector<std::unique_ptr<Command>> commands);
 
 }  // namespace hairloom::editing

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cassert>
 #include <map>
-#include <nlohmann/json.hpp>
+#include <string_view>
 #include <utility>
 
 #include "core/groom/file/project_file.h"
@@ -63,9 +63,37 @@ void Document::tell(const Change& change) {
 void Document::perform(std::unique_ptr<Command> command, std::string record) {
     assert(!stroke_);
     if (!command) return;
+    const Change change = carryOut(std::move(command), std::move(record));
+    changed({change.parts | Part::History, change.strands});
+}
+
+Change Document::carryOut(std::unique_ptr<Command> command, std::string record) {
     if (record.empty()) record = command->record();
     const Change change = command->exchange(model_);
     history_.add(std::move(command), std::move(record));
+    return change;
+}
+
+void Document::performMerged(std::uint64_t key,
+                             const std::function<std::unique_ptr<Command>(const Model&)>& make) {
+    assert(!stroke_ && key != 0);
+    // Nothing may be left to redo: the step would be one that was taken up again, not the newest.
+    const bool joins = key == mergeKey_ && history_.state() == mergeState_ && !history_.canRedo();
+    Change change;
+    if (joins) {
+        change.parts = history_.undo(model_).parts;
+        history_.dropUndone();
+    }
+    if (auto command = make(model_)) {
+        const Change made = carryOut(std::move(command), {});
+        change = {change.parts | made.parts, joins ? std::span<const std::uint32_t>() : made.strands};
+        mergeKey_ = key;
+        mergeState_ = history_.state();
+    } else if (joins) {
+        mergeState_ = history_.state();
+    } else {
+        return;
+    }
     changed({change.parts | Part::History, change.strands});
 }
 
@@ -141,15 +169,18 @@ Result<std::string> Document::script() const {
     if (history_.forgotten() > 0)
         return fail(fmt::format("the first {} steps are forgotten", history_.forgotten()),
                     "a larger limit of the history");
-    auto operations = nlohmann::ordered_json::array();
+    std::string operations;
     for (std::size_t i = 0; i < history_.doneCount(); ++i) {
-        if (history_.record(i).empty())
-            return fail(fmt::format("'{}' has no record that a script could replay", history_.name(i)));
-        operations.push_back(nlohmann::ordered_json::parse(history_.record(i)));
+        std::string_view record = history_.record(i);
+        if (record.empty())
+            return fail(fmt::format("step {}, '{}', has no record that a script could replay", i + 1,
+                                    history_.name(i)));
+        // What takes several operations is an array of them.
+        if (record.front() == '[') record = record.substr(1, record.size() - 2);
+        operations += fmt::format("{}\n  {}", operations.empty() ? "" : ",", record);
     }
-    const nlohmann::ordered_json script{{"hairloom_script", kScriptVersion},
-                                        {"operations", std::move(operations)}};
-    return script.dump(1) + '\n';
+    return fmt::format("{{\n \"hairloom_script\": {},\n \"operations\": [{}\n ]\n}}\n", kScriptVersion,
+                       operations);
 }
 
 const Skin* Document::skin() const {

@@ -52,6 +52,10 @@ class Document {
     /// Carries a command out and remembers it; null does nothing. `record`: the operation of a script that
     /// does the same, where the command knows none. Not during a stroke.
     void perform(std::unique_ptr<Command> command, std::string record = {});
+    /// Carries out what `make` gives for the model. Steps that follow each other with the same key become one
+    /// that leads from before the first to after the last, or none where that is where it began: a slider
+    /// that is dragged. Not during a stroke; a key is not 0.
+    void performMerged(std::uint64_t key, const std::function<std::unique_ptr<Command>(const Model&)>& make);
     bool canUndo() const { return !stroke_ && history_.canUndo(); }
     bool canRedo() const { return !stroke_ && history_.canRedo(); }
     /// False where nothing was done.
@@ -93,10 +97,13 @@ class Document {
   private:
     void changed(const Change& change);  ///< renews what is derived, then tells
     void tell(const Change& change);
+    Change carryOut(std::unique_ptr<Command> command, std::string record);
 
     Model model_;
     History history_;
     std::uint64_t savedState_ = 0;
+    std::uint64_t mergeKey_ = 0;    ///< of the step below
+    std::uint64_t mergeState_ = 0;  ///< state of the history that a step of that key led to
     std::unique_ptr<StrokeSession> stroke_;
     std::vector<std::uint8_t> strokeTouched_;  ///< per strand, 1 for those that this stroke touched
     struct Observers;

@@ -7,7 +7,7 @@
 namespace hairloom::editing {
 
 void History::add(std::unique_ptr<Command> command, std::string record) {
-    entries_.resize(done_);
+    dropUndone();
     entries_.push_back({std::move(command), std::move(record), ++lastState_});
     done_ = entries_.size();
     shrink();

@@ -15,15 +15,17 @@ class History {
   public:
     static constexpr std::size_t kDefaultLimit = std::size_t{512} << 20u;
 
-    /// Adds a command that has been carried out, with its record as a script's operation (JSON; may be
-    /// empty). What was undone is forgotten. The oldest steps go while more than the limit is held, but the
-    /// newest stays whatever its size.
+    /// Adds a command that has been carried out, with its record as a script's operation (JSON, as
+    /// Command::record()). What was undone is forgotten. The oldest steps go while more than the limit is
+    /// held, but the newest stays whatever its size.
     void add(std::unique_ptr<Command> command, std::string record = {});
     bool canUndo() const { return done_ > 0; }
     bool canRedo() const { return done_ < entries_.size(); }
     /// Only when it can.
     Change undo(Model& model);
     Change redo(Model& model);
+    /// Forgets what was undone.
+    void dropUndone() { entries_.resize(done_); }
     void clear();
 
     std::size_t size() const { return entries_.size(); }

@@ -34,9 +34,20 @@ enum class Part : std::uint32_t {
 constexpr Part operator|(Part a, Part b) {
     return static_cast<Part>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
 }
+/// Any of `part`'s.
 constexpr bool contains(Part parts, Part part) {
     return (static_cast<std::uint32_t>(parts) & static_cast<std::uint32_t>(part)) != 0;
 }
+
+constexpr Part without(Part parts, Part some) {
+    return static_cast<Part>(static_cast<std::uint32_t>(parts) & ~static_cast<std::uint32_t>(some));
+}
+
+/// All of the strands: what shows where hair is, and which.
+inline constexpr Part kHairParts =
+    Part::Points | Part::Strands | Part::StrandFlags | Part::Layers | Part::Triangulation;
+/// The head and where hair grows on it.
+inline constexpr Part kScalpParts = Part::Head | Part::ScalpFaces | Part::Density;
 
 struct Change {
     Part parts = Part::None;

@@ -21,11 +21,12 @@ using Made = Result<std::unique_ptr<Command>>;
 constexpr std::size_t kMostNumbers = 4'000'000;
 
 /// Settings under "settings"; those that are not named have their defaults.
-template <class S, std::unique_ptr<Command> (*Make)(const Model&, const S&)>
+template <class S, std::unique_ptr<Command> (*Make)(const Model&, const S&, std::string)>
 MakeCommand readSettingsStep(JsonReader& reader) {
     S checked;
     readSettings(reader.object("settings"), checked);
-    return [checked](const Document& document) -> Made { return Make(document.model(), checked); };
+    return
+        [checked](const Document& document) -> Made { return Make(document.model(), checked, "Settings"); };
 }
 
 MakeCommand readSpheres(JsonReader& reader) {

@@ -55,47 +55,122 @@ nlohmann::ordered_json layersToJson(const std::vector<Layer>& layers) {
     return list;
 }
 
-std::size_t arrayBytes(const Groom& groom) {
-    std::size_t sum = groom.offsets.size() * sizeof(std::uint32_t);
-    for (const AttributeSet* attributes : {&groom.strandAttributes, &groom.pointAttributes}) {
-        for (const auto& [name, data] : attributes->all()) {
-            std::visit([&]<class T>(const CowArray<T>& array) { sum += array.size() * sizeof(T); }, data);
-        }
-    }
-    return sum + groom.triangulation.triangles.size() * sizeof(Triangle) +
-           groom.scalpSelection.size() * sizeof(std::uint32_t) + groom.scalpDensity.size() * sizeof(float);
+/// Settings and spheres differ where their text does; it holds every bit of them.
+template <class S>
+bool differs(const S& a, const S& b) {
+    return toJson(a) != toJson(b);
 }
+
+bool differs(const std::vector<Layer>& a, const std::vector<Layer>& b) {
+    return layersToJson(a) != layersToJson(b);
+}
+
+bool sharesAll(const AttributeSet& a, const AttributeSet& b) {
+    return std::ranges::equal(a.all(), b.all(), [](const auto& x, const auto& y) {
+        return x.first == y.first && versionOf(x.second) == versionOf(y.second);
+    });
+}
+
+bool sameTriangles(const Groom& a, const Groom& b) {
+    return a.triangulation.triangles == b.triangulation.triangles;
+}
+
+/// Parts of which nothing is shared count as different.
+Part differenceOf(const Groom& a, const Groom& b) {
+    const std::pair<Part, bool> kinds[] = {
+        {Part::Strands, !a.offsets.sharesWith(b.offsets) ||
+                            !sharesAll(a.strandAttributes, b.strandAttributes) ||
+                            !sharesAll(a.pointAttributes, b.pointAttributes)},
+        {Part::Head, a.scalp != b.scalp || a.characterFile != b.characterFile},
+        {Part::ScalpFaces, a.scalpSelection != b.scalpSelection || a.scalpExpression != b.scalpExpression},
+        {Part::Density, a.scalpDensity != b.scalpDensity},
+        {Part::Placement, differs(a.placement, b.placement)},
+        {Part::Spheres, differs(a.spheres, b.spheres)},
+        {Part::Physics, differs(a.simulation, b.simulation)},
+        {Part::Material, differs(a.material, b.material)},
+        {Part::Interpolation, differs(a.interpolation, b.interpolation)},
+        {Part::Layers, differs(a.layers, b.layers) || a.groupNames != b.groupNames},
+        {Part::Triangulation, !sameTriangles(a, b)},
+    };
+    Part parts = Part::None;
+    for (const auto& [part, isDifferent] : kinds) {
+        if (isDifferent) parts = parts | part;
+    }
+    return parts;
+}
+
+std::size_t bytesNotShared(const AttributeSet& held, const AttributeSet& shown) {
+    std::size_t bytes = 0;
+    for (const auto& [name, data] : held.all()) {
+        if (versionOf(data) == shown.version(name)) continue;
+        bytes += std::visit([](const auto& array) { return array.view().size_bytes(); }, data);
+    }
+    return bytes;
+}
+
+/// Exchanges the whole groom. Arrays that are the same in both are shared.
+class GroomCommand final : public Command {
+  public:
+    GroomCommand(std::string name, Part parts, Groom other)
+        : name_(std::move(name)), parts_(parts), other_(std::move(other)) {}
+    std::string name() const override { return name_; }
+    Change exchange(Model& model) override {
+        std::swap(model.groom, other_);
+        bytes_ = bytesBeside(model.groom);
+        return {parts_, {}};
+    }
+    std::size_t bytes() const override { return bytes_; }
+
+  private:
+    std::size_t bytesBeside(const Groom& shown) const {
+        return sizeof(*this) + name_.capacity() +
+               bytesNotShared(other_.pointAttributes, shown.pointAttributes) +
+               bytesNotShared(other_.strandAttributes, shown.strandAttributes) +
+               (other_.offsets.sharesWith(shown.offsets) ? 0 : other_.offsets.view().size_bytes()) +
+               other_.scalpSelection.size() * sizeof(std::uint32_t) +
+               other_.scalpDensity.size() * sizeof(float) +
+               other_.triangulation.triangles.size() * sizeof(Triangle);
+    }
+
+    std::string name_;
+    Part parts_;
+    Groom other_;
+    std::size_t bytes_ = sizeof(*this);
+};
 
 }  // namespace
 
-std::unique_ptr<Command> setMaterial(const Model& model, const HairMaterial& material) {
+std::unique_ptr<Command> setMaterial(const Model& model, const HairMaterial& material, std::string name) {
     if (toJson(model.groom.material) == toJson(material)) return nullptr;
     return valueCommand<HairMaterial>(
-        "Look", Part::Material, [](Model& m) -> HairMaterial& { return m.groom.material; }, material,
+        std::move(name), Part::Material, [](Model& m) -> HairMaterial& { return m.groom.material; }, material,
         settingsRecord("material", material));
 }
 
-std::unique_ptr<Command> setPhysics(const Model& model, const runtime::SimulationSettings& settings) {
+std::unique_ptr<Command> setPhysics(const Model& model, const runtime::SimulationSettings& settings,
+                                    std::string name) {
     if (toJson(model.groom.simulation) == toJson(settings)) return nullptr;
     return valueCommand<runtime::SimulationSettings>(
-        "Physics", Part::Physics, [](Model& m) -> runtime::SimulationSettings& { return m.groom.simulation; },
-        settings, settingsRecord("simulation", settings));
+        std::move(name), Part::Physics,
+        [](Model& m) -> runtime::SimulationSettings& { return m.groom.simulation; }, settings,
+        settingsRecord("simulation", settings));
 }
 
-std::unique_ptr<Command> setInterpolation(const Model& model, const InterpolationSettings& settings) {
+std::unique_ptr<Command> setInterpolation(const Model& model, const InterpolationSettings& settings,
+                                          std::string name) {
     if (toJson(model.groom.interpolation) == toJson(settings)) return nullptr;
     return valueCommand<InterpolationSettings>(
-        "Follow hairs", Part::Interpolation,
+        std::move(name), Part::Interpolation,
         [](Model& m) -> InterpolationSettings& { return m.groom.interpolation; }, settings,
         settingsRecord("interpolation", settings));
 }
 
-std::unique_ptr<Command> setPlacementSettings(const Model& model, const PlacementSettings& settings) {
+std::unique_ptr<Command> setPlacementSettings(const Model& model, const PlacementSettings& settings,
+                                              std::string name) {
     if (toJson(model.groom.placement) == toJson(settings)) return nullptr;
     return valueCommand<PlacementSettings>(
-        "Placement settings", Part::Placement,
-        [](Model& m) -> PlacementSettings& { return m.groom.placement; }, settings,
-        settingsRecord("placement", settings));
+        std::move(name), Part::Placement, [](Model& m) -> PlacementSettings& { return m.groom.placement; },
+        settings, settingsRecord("placement", settings));
 }
 
 std::unique_ptr<Command> setSpheres(const Model& model, std::vector<CollisionSphere> spheres,
@@ -124,12 +199,22 @@ std::unique_ptr<Command> setLayers(const Model& model, std::vector<Layer> layers
         std::move(layers), std::move(record), bytes);
 }
 
-std::unique_ptr<Command> replaceGroom(const Model& model, Groom groom, std::string name) {
+std::unique_ptr<Command> setSettings(const Model& model, const Groom& from, std::string name) {
+    std::vector<std::unique_ptr<Command>> steps;
+    steps.push_back(setMaterial(model, from.material, name));
+    steps.push_back(setPhysics(model, from.simulation, name));
+    steps.push_back(setInterpolation(model, from.interpolation, name));
+    steps.push_back(setPlacementSettings(model, from.placement, name));
+    steps.push_back(setSpheres(model, from.spheres, name));
+    return together(std::move(name), std::move(steps));
+}
+
+std::unique_ptr<Command> replaceGroom(const Model& model, Groom groom, std::string name, std::string record) {
     if (sameContent(model.groom, groom)) return nullptr;
-    const std::size_t bytes = std::max(arrayBytes(groom), arrayBytes(model.groom));
-    return valueCommand<Groom>(
-        std::move(name), Part::Everything, [](Model& m) -> Groom& { return m.groom; }, std::move(groom),
-        std::string(), bytes);
+    const Part parts = differenceOf(model.groom, groom);
+    auto command = std::make_unique<GroomCommand>(std::move(name), parts, std::move(groom));
+    command->setRecord(std::move(record));
+    return command;
 }
 
 std::unique_ptr<Command> triangulate(const Model& model) {

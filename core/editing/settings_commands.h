@@ -11,18 +11,27 @@
 
 namespace hairloom::editing {
 
-std::unique_ptr<Command> setMaterial(const Model& model, const HairMaterial& material);
-std::unique_ptr<Command> setPhysics(const Model& model, const runtime::SimulationSettings& settings);
-std::unique_ptr<Command> setInterpolation(const Model& model, const InterpolationSettings& settings);
-std::unique_ptr<Command> setPlacementSettings(const Model& model, const PlacementSettings& settings);
-/// `name` for the history: "Move sphere".
+// `name` is for the history: "Wind speed", "Move sphere".
+std::unique_ptr<Command> setMaterial(const Model& model, const HairMaterial& material,
+                                     std::string name = "Look");
+std::unique_ptr<Command> setPhysics(const Model& model, const runtime::SimulationSettings& settings,
+                                    std::string name = "Physics");
+std::unique_ptr<Command> setInterpolation(const Model& model, const InterpolationSettings& settings,
+                                          std::string name = "Follow hairs");
+std::unique_ptr<Command> setPlacementSettings(const Model& model, const PlacementSettings& settings,
+                                              std::string name = "Placement settings");
 std::unique_ptr<Command> setSpheres(const Model& model, std::vector<CollisionSphere> spheres,
                                     std::string name);
 /// As many layers as there are or more, for strands name them by index.
 std::unique_ptr<Command> setLayers(const Model& model, std::vector<Layer> layers);
 
-/// Another groom altogether: a head with what is on it, imported hair, the outcome of a script.
-std::unique_ptr<Command> replaceGroom(const Model& model, Groom groom, std::string name);
+/// Of another groom all that the commands above set but the layers: what a preset or a field changes.
+std::unique_ptr<Command> setSettings(const Model& model, const Groom& from, std::string name);
+
+/// Another groom altogether: imported hair, the outcome of a script. It says which parts differ, and costs
+/// what the two do not share. `record` as Command::record().
+std::unique_ptr<Command> replaceGroom(const Model& model, Groom groom, std::string name,
+                                      std::string record = {});
 
 /// Roots that came or went have no triangles until somebody wants them, because making them takes longer than
 /// a stroke may. Null where the groom has them, or no bound roots.

@@ -19,8 +19,18 @@ constexpr BrushParameter kParameters[] = {
     parameter("reach", "m", 0, 0.2, 0.03f,
               "how far away hair may be whose shape new hair takes; 0: straight"),
 };
-constexpr BrushInfo kInfo{"add", "Add", "grows hair between the hair that is there", "", kParameters,
-                          true,  true};
+constexpr BrushInfo kInfo{
+    .name = "add",
+    .label = "Add",
+    .meaning = "grows hair between the hair that is there",
+    .tip = "Drag over the scalp to grow hair between the hair that is there",
+    .key = "A",
+    .parameters = kParameters,
+    .needsHead = true,
+    .worksOnSkin = true,
+    .movesHair = false,
+    .order = 200,
+};
 
 /// Throws darts at the disc under the dab: a root grows where no other is nearer than the density's distance.
 /// Where part of the head is selected for hair, only there.
@@ -116,8 +126,8 @@ class Add final : public Brush {
 
 }  // namespace
 
-std::unique_ptr<Brush> makeAdd() {
-    return std::make_unique<Add>();
+BrushEntry addBrush() {
+    return brushEntry<Add>(kInfo);
 }
 
 }  // namespace hairloom::editing

@@ -4,15 +4,17 @@
 namespace hairloom::editing {
 namespace {
 
-constexpr BrushInfo kInfo{"brush",
-                          "Brush",
-                          "turns hair into the direction of the stroke",
-                          "turns hair against the direction of the stroke",
-                          {},
-                          true,
-                          false,
-                          true,
-                          true};
+constexpr BrushInfo kInfo{
+    .name = "brush",
+    .label = "Brush",
+    .meaning = "turns hair into the direction of the stroke",
+    .tip = "Drag to turn hair into the direction of the stroke",
+    .key = "B",
+    .inverse = "turns hair against the direction of the stroke",
+    .drags = true,
+    .turnsSegments = true,
+    .order = 120,
+};
 
 class BrushAlong final : public StrandBrush {
   public:
@@ -44,8 +46,8 @@ class BrushAlong final : public StrandBrush {
 
 }  // namespace
 
-std::unique_ptr<Brush> makeBrushAlong() {
-    return std::make_unique<BrushAlong>();
+BrushEntry brushAlongBrush() {
+    return brushEntry<BrushAlong>(kInfo);
 }
 
 }  // namespace hairloom::editing

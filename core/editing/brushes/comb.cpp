@@ -4,7 +4,15 @@
 namespace hairloom::editing {
 namespace {
 
-constexpr BrushInfo kInfo{"comb", "Comb", "drags hair along with the brush", "", {}, true, false, true};
+constexpr BrushInfo kInfo{
+    .name = "comb",
+    .label = "Comb",
+    .meaning = "drags hair along with the brush",
+    .tip = "Drag to comb hair along; lengths stay",
+    .key = "C",
+    .drags = true,
+    .order = 110,
+};
 
 class Comb final : public StrandBrush {
   public:
@@ -20,8 +28,8 @@ class Comb final : public StrandBrush {
 
 }  // namespace
 
-std::unique_ptr<Brush> makeComb() {
-    return std::make_unique<Comb>();
+BrushEntry combBrush() {
+    return brushEntry<Comb>(kInfo);
 }
 
 }  // namespace hairloom::editing

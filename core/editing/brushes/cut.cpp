@@ -11,7 +11,16 @@ namespace {
 constexpr BrushParameter kParameters[] = {
     parameter("shortest", "m", 0.001, 1, 0.005f, "length that a cut always leaves"),
 };
-constexpr BrushInfo kInfo{"cut", "Cut", "cuts hair where it first meets the brush", "", kParameters, false};
+constexpr BrushInfo kInfo{
+    .name = "cut",
+    .label = "Cut",
+    .meaning = "cuts hair where it first meets the brush",
+    .tip = "Drag to cut hair where it meets the brush",
+    .key = "X",
+    .parameters = kParameters,
+    .keepsLengths = false,
+    .order = 180,
+};
 
 class Cut final : public StrandBrush {
   public:
@@ -67,8 +76,8 @@ class Cut final : public StrandBrush {
 
 }  // namespace
 
-std::unique_ptr<Brush> makeCut() {
-    return std::make_unique<Cut>();
+BrushEntry cutBrush() {
+    return brushEntry<Cut>(kInfo);
 }
 
 }  // namespace hairloom::editing

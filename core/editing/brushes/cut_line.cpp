@@ -11,8 +11,16 @@ namespace {
 constexpr BrushParameter kParameters[] = {
     parameter("shortest", "m", 0.001, 1, 0.005f, "length that a cut always leaves"),
 };
-constexpr BrushInfo kInfo{"cut_line", "Cut along line", "cuts hair where it crosses the line that is drawn",
-                          "",         kParameters,      false};
+constexpr BrushInfo kInfo{
+    .name = "cut_line",
+    .label = "Cut along line",
+    .meaning = "cuts hair where it crosses the line that is drawn",
+    .tip = "Draw a line; hair is cut where it crosses it",
+    .key = "Shift+X",
+    .parameters = kParameters,
+    .keepsLengths = false,
+    .order = 190,
+};
 
 /// The sheet that a piece of the line sweeps along the view: between the lines of sight through its ends,
 /// `depth` before and behind them.
@@ -98,8 +106,8 @@ class CutLine final : public StrandBrush {
 
 }  // namespace
 
-std::unique_ptr<Brush> makeCutLine() {
-    return std::make_unique<CutLine>();
+BrushEntry cutLineBrush() {
+    return brushEntry<CutLine>(kInfo);
 }
 
 }  // namespace hairloom::editing

@@ -8,7 +8,15 @@ namespace {
 constexpr BrushParameter kParameters[] = {
     boolParameter("roots", true, "takes strands by their roots alone; without, by any part of them"),
 };
-constexpr BrushInfo kInfo{"delete", "Delete", "removes hair", "", kParameters};
+constexpr BrushInfo kInfo{
+    .name = "delete",
+    .label = "Delete",
+    .meaning = "removes hair",
+    .tip = "Drag to remove hair",
+    .key = "D",
+    .parameters = kParameters,
+    .order = 210,
+};
 
 /// A dab hides strands, which is cheap and keeps their indices; they leave the groom when the stroke ends.
 class Delete final : public Brush {
@@ -38,8 +46,8 @@ class Delete final : public Brush {
 
 }  // namespace
 
-std::unique_ptr<Brush> makeDelete() {
-    return std::make_unique<Delete>();
+BrushEntry deleteBrush() {
+    return brushEntry<Delete>(kInfo);
 }
 
 }  // namespace hairloom::editing

@@ -10,13 +10,19 @@ namespace {
 constexpr BrushParameter kParameters[] = {
     parameter("density", "", 0, 1, 0, "density of roots that is painted; inverted, what is left to 1"),
 };
-constexpr BrushInfo kInfo{"density_paint",
-                          "Paint density",
-                          "brings the density of roots nearer to a value",
-                          "brings it nearer to 1 less the value",
-                          kParameters,
-                          true,
-                          true};
+constexpr BrushInfo kInfo{
+    .name = "density_paint",
+    .label = "Paint density",
+    .meaning = "brings the density of roots nearer to a value",
+    .tip = "Drag over the scalp to set how dense hair grows",
+    .key = "Shift+P",
+    .inverse = "brings it nearer to 1 less the value",
+    .parameters = kParameters,
+    .needsHead = true,
+    .worksOnSkin = true,
+    .movesHair = false,
+    .order = 20,
+};
 
 class DensityPaint final : public Brush {
   public:
@@ -49,8 +55,8 @@ class DensityPaint final : public Brush {
 
 }  // namespace
 
-std::unique_ptr<Brush> makeDensityPaint() {
-    return std::make_unique<DensityPaint>();
+BrushEntry densityPaintBrush() {
+    return brushEntry<DensityPaint>(kInfo);
 }
 
 }  // namespace hairloom::editing

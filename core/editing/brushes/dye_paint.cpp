@@ -11,8 +11,17 @@ constexpr BrushParameter kParameters[] = {
     parameter("amount", "", 0, 1, 1, "what the mask becomes; 1 is all of the material's dye"),
     boolParameter("smooth", false, "brings the mask nearer to its mean under the brush instead"),
 };
-constexpr BrushInfo kInfo{"dye_paint", "Paint dye", "brings the material's dye onto hair", "takes dye off",
-                          kParameters};
+constexpr BrushInfo kInfo{
+    .name = "dye_paint",
+    .label = "Paint dye",
+    .meaning = "brings the material's dye onto hair",
+    .tip = "Drag to bring the material's dye onto hair",
+    .key = "Y",
+    .inverse = "takes dye off",
+    .parameters = kParameters,
+    .movesHair = false,
+    .order = 220,
+};
 
 /// Moves nothing: it has the reach of the brushes that move points, and writes the mask at these points.
 class DyePaint final : public StrandBrush {
@@ -72,8 +81,8 @@ class DyePaint final : public StrandBrush {
 
 }  // namespace
 
-std::unique_ptr<Brush> makeDyePaint() {
-    return std::make_unique<DyePaint>();
+BrushEntry dyePaintBrush() {
+    return brushEntry<DyePaint>(kInfo);
 }
 
 }  // namespace hairloom::editing

@@ -10,7 +10,16 @@ namespace {
 constexpr BrushParameter kParameters[] = {
     boolParameter("roots", false, "takes strands by their roots alone"),
 };
-constexpr BrushInfo kInfo{"freeze", "Freeze", "keeps brushes from touching hair", "thaws hair", kParameters};
+constexpr BrushInfo kInfo{
+    .name = "freeze",
+    .label = "Freeze",
+    .meaning = "keeps brushes from touching hair",
+    .tip = "Drag to keep brushes from touching hair",
+    .key = "Z",
+    .inverse = "thaws hair",
+    .parameters = kParameters,
+    .order = 230,
+};
 
 /// Works on hair that is frozen already, or it could not be thawed.
 class Freeze final : public Brush {
@@ -29,8 +38,8 @@ class Freeze final : public Brush {
 
 }  // namespace
 
-std::unique_ptr<Brush> makeFreeze() {
-    return std::make_unique<Freeze>();
+BrushEntry freezeBrush() {
+    return brushEntry<Freeze>(kInfo);
 }
 
 }  // namespace hairloom::editing

@@ -5,7 +5,13 @@ namespace hairloom::editing {
 namespace {
 
 constexpr BrushInfo kInfo{
-    "grab", "Grab", "takes hold of hair and carries it along until it is let go", "", {}};
+    .name = "grab",
+    .label = "Grab",
+    .meaning = "takes hold of hair and carries it along until it is let go",
+    .tip = "Drag to take hair along and let it go elsewhere",
+    .key = "G",
+    .order = 130,
+};
 
 class Grab final : public StrandBrush {
   public:
@@ -23,8 +29,8 @@ class Grab final : public StrandBrush {
 
 }  // namespace
 
-std::unique_ptr<Brush> makeGrab() {
-    return std::make_unique<Grab>();
+BrushEntry grabBrush() {
+    return brushEntry<Grab>(kInfo);
 }
 
 }  // namespace hairloom::editing

@@ -14,7 +14,17 @@ constexpr BrushParameter kParameters[] = {
     parameter("shortest", "m", 0.001, 1, 0.005f, "length below which no hair is shortened"),
     parameter("longest", "m", 0.001, 5, 2, "length above which no hair grows"),
 };
-constexpr BrushInfo kInfo{"length", "Length", "makes hair longer", "makes hair shorter", kParameters, false};
+constexpr BrushInfo kInfo{
+    .name = "length",
+    .label = "Length",
+    .meaning = "makes hair longer",
+    .tip = "Drag to make hair longer",
+    .key = "L",
+    .inverse = "makes hair shorter",
+    .parameters = kParameters,
+    .keepsLengths = false,
+    .order = 170,
+};
 
 class Length final : public StrandBrush {
   public:
@@ -49,8 +59,8 @@ class Length final : public StrandBrush {
 
 }  // namespace
 
-std::unique_ptr<Brush> makeLength() {
-    return std::make_unique<Length>();
+BrushEntry lengthBrush() {
+    return brushEntry<Length>(kInfo);
 }
 
 }  // namespace hairloom::editing

@@ -4,11 +4,15 @@
 namespace hairloom::editing {
 namespace {
 
-constexpr BrushInfo kInfo{"pinch",
-                          "Pinch",
-                          "draws hair together under the brush",
-                          "spreads hair away from the middle of the brush",
-                          {}};
+constexpr BrushInfo kInfo{
+    .name = "pinch",
+    .label = "Pinch",
+    .meaning = "draws hair together under the brush",
+    .tip = "Drag to draw hair together",
+    .key = "I",
+    .inverse = "spreads hair away from the middle of the brush",
+    .order = 160,
+};
 
 class Pinch final : public StrandBrush {
   public:
@@ -26,8 +30,8 @@ class Pinch final : public StrandBrush {
 
 }  // namespace
 
-std::unique_ptr<Brush> makePinch() {
-    return std::make_unique<Pinch>();
+BrushEntry pinchBrush() {
+    return brushEntry<Pinch>(kInfo);
 }
 
 }  // namespace hairloom::editing

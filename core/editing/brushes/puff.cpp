@@ -7,8 +7,16 @@ namespace {
 constexpr BrushParameter kParameters[] = {
     parameter("height", "m", 0, 0.1, 0.01f, "how far a dab of full strength lifts"),
 };
-constexpr BrushInfo kInfo{"puff", "Puff", "lifts hair away from the skin", "presses hair onto the skin",
-                          kParameters};
+constexpr BrushInfo kInfo{
+    .name = "puff",
+    .label = "Puff",
+    .meaning = "lifts hair away from the skin",
+    .tip = "Drag to lift hair away from the skin",
+    .key = "U",
+    .inverse = "presses hair onto the skin",
+    .parameters = kParameters,
+    .order = 150,
+};
 
 class Puff final : public StrandBrush {
   public:
@@ -29,8 +37,8 @@ class Puff final : public StrandBrush {
 
 }  // namespace
 
-std::unique_ptr<Brush> makePuff() {
-    return std::make_unique<Puff>();
+BrushEntry puffBrush() {
+    return brushEntry<Puff>(kInfo);
 }
 
 }  // namespace hairloom::editing

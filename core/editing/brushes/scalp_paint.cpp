@@ -8,13 +8,18 @@
 namespace hairloom::editing {
 namespace {
 
-constexpr BrushInfo kInfo{"scalp_paint",
-                          "Paint scalp",
-                          "adds faces to the part of the head that carries hair",
-                          "takes faces away",
-                          {},
-                          true,
-                          true};
+constexpr BrushInfo kInfo{
+    .name = "scalp_paint",
+    .label = "Paint scalp",
+    .meaning = "adds faces to the part of the head that carries hair",
+    .tip = "Drag over the head to say where hair grows",
+    .key = "P",
+    .inverse = "takes faces away",
+    .needsHead = true,
+    .worksOnSkin = true,
+    .movesHair = false,
+    .order = 10,
+};
 
 class ScalpPaint final : public Brush {
   public:
@@ -40,8 +45,8 @@ class ScalpPaint final : public Brush {
 
 }  // namespace
 
-std::unique_ptr<Brush> makeScalpPaint() {
-    return std::make_unique<ScalpPaint>();
+BrushEntry scalpPaintBrush() {
+    return brushEntry<ScalpPaint>(kInfo);
 }
 
 }  // namespace hairloom::editing

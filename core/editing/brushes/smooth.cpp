@@ -8,8 +8,16 @@ namespace {
 constexpr BrushParameter kParameters[] = {
     parameter("passes", "", 1, 20, 2, "more is smoother over longer stretches with each dab"),
 };
-constexpr BrushInfo kInfo{"smooth", "Smooth", "takes bends out of hair", "", kParameters, true, false,
-                          false,    true};
+constexpr BrushInfo kInfo{
+    .name = "smooth",
+    .label = "Smooth",
+    .meaning = "takes bends out of hair",
+    .tip = "Drag to take bends out of hair",
+    .key = "S",
+    .parameters = kParameters,
+    .turnsSegments = true,
+    .order = 140,
+};
 
 class Smooth final : public StrandBrush {
   public:
@@ -39,8 +47,8 @@ class Smooth final : public StrandBrush {
 
 }  // namespace
 
-std::unique_ptr<Brush> makeSmooth() {
-    return std::make_unique<Smooth>();
+BrushEntry smoothBrush() {
+    return brushEntry<Smooth>(kInfo);
 }
 
 }  // namespace hairloom::editing

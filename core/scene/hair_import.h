@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Hair of another program in place of a groom's, as a person imports it and as a script repeats it.
+
+#include <string>
+#include <string_view>
+
+#include "core/groom/groom.h"
+#include "core/operations/script.h"
+#include "importers/strands.h"
+
+namespace hairloom {
+
+/// The strands of a file, bound to the head of `groom` where it has one. Of the options all but the scalp
+/// count. Errors: as importStrands().
+Result<ImportedStrands> importHairFor(const Groom& groom, const std::string& path,
+                                      StrandImportOptions options);
+
+/// Puts strands, group names and scalp selection of `hair` in place of the groom's; settings, layers and
+/// spheres stay.
+void replaceHair(Groom& groom, const Groom& hair);
+
+/// The operation "import" of a script (JSON) that does both. It holds the file's absolute path, not the file.
+std::string importRecord(const std::string& path, const StrandImportOptions& options);
+
+/// parseScript() with all operations that a document's script may hold: those of core/operations, an editor's
+/// steps, and "import". `file` is named in errors.
+Result<Script> parseDocumentScript(const std::string& file, std::string_view text);
+
+}  // namespace hairloom
