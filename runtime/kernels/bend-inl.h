@@ -23,11 +23,11 @@ enum class Shape {
     curved,    ///< by the frame carried along the strand
 };
 
-/// s = κ·h²·(t − target) of each joint of a block; those past the last segment are zero.
-struct Pulls {
-    alignas(64) float values[3 * kScratchPlane];
-    Planes planes() { return {values, kScratchPlane}; }
-};
+/// s = κ·h²·(t − target) of each joint of a block, in LaneFrame::solver; those past the last segment are
+/// zero.
+HWY_INLINE Planes pullsOf(const BlockView& block, const LaneFrame& lanes) {
+    return {lanes.solver, block.points * kBlockLanes + kPlanePadding};
+}
 
 /// A segment's direction: by its rest length, or of unit length.
 template <bool kExact>
@@ -73,7 +73,7 @@ HWY_INLINE V3 rootNormal(const BlockView& block, const LaneFrame& lanes, std::si
 
 /// Pulls of angular springs at `position`.
 template <Shape kShape, bool kExact>
-void measurePulls(const BlockView& block, const LaneFrame& lanes, Pulls& pulls) {
+void measurePulls(const BlockView& block, const LaneFrame& lanes, Planes pulls) {
     constexpr bool kFrames = kShape == Shape::curved;
     alignas(64) float inner[3][kBlockLanes], units[3][kBlockLanes], normals[3][kBlockLanes];
     const std::uint32_t first = block.firstFree - 1;
@@ -84,7 +84,7 @@ void measurePulls(const BlockView& block, const LaneFrame& lanes, Pulls& pulls) 
         store3(tangent, inner, lane);
         store3(tangent, units, lane);
         store3(normal, normals, lane);
-        store3(zero3(), pulls.planes(), std::size_t{block.points - 1} * kBlockLanes + lane);
+        store3(zero3(), pulls, std::size_t{block.points - 1} * kBlockLanes + lane);
     }
     for (std::uint32_t j = 0; j + 1 < block.points; ++j) {
         for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
@@ -95,7 +95,7 @@ void measurePulls(const BlockView& block, const LaneFrame& lanes, Pulls& pulls) 
                 V3 off = tangent - load3(inner, lane);
                 if constexpr (kFrames)
                     off = off - fromFrame(load3(units, lane), load3(normals, lane), load3(block.target, i));
-                store3(off * hn::Load(D(), block.stiffness + i), pulls.planes(), i);
+                store3(off * hn::Load(D(), block.stiffness + i), pulls, i);
             }
             if constexpr (kFrames) {
                 // Springs may stretch: a frame needs directions of unit length.
@@ -112,8 +112,8 @@ void measurePulls(const BlockView& block, const LaneFrame& lanes, Pulls& pulls) 
 /// The gradient of the energy by segment s, times h²: (s_s − s_{s+1})/l, or the part of it across the segment
 /// by its true length.
 template <bool kExact>
-HWY_INLINE V3 segmentPull(const BlockView& block, Pulls& pulls, std::size_t i) {
-    const V3 difference = load3(pulls.planes(), i) - load3(pulls.planes(), i + kBlockLanes);
+HWY_INLINE V3 segmentPull(const BlockView& block, Planes pulls, std::size_t i) {
+    const V3 difference = load3(pulls, i) - load3(pulls, i + kBlockLanes);
     const V inverseLength = hn::Load(D(), block.inverseLength + i);
     if constexpr (!kExact) return difference * inverseLength;
     const V3 edge = load3(block.position, i + kBlockLanes) - load3(block.position, i);
@@ -126,7 +126,7 @@ HWY_INLINE V3 segmentPull(const BlockView& block, Pulls& pulls, std::size_t i) {
 /// Angular springs as forces.
 template <Shape kShape, bool kExact>
 void applyAngular(const BlockView& block, LaneFrame& lanes, const SubstepContext&) {
-    Pulls pulls;
+    const Planes pulls = pullsOf(block, lanes);
     measurePulls<kShape, kExact>(block, lanes, pulls);
     for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
         const std::size_t before = std::size_t{block.firstFree - 1} * kBlockLanes + lane;

@@ -29,8 +29,8 @@ inline constexpr float kLeakSpeed = 0.0015f;
 /// curves.
 inline constexpr float kFold = -0.95f;
 
-/// What a strip of strands works with in a substep, point after point. A joint and the segment behind a point
-/// have the point's number.
+/// What a strip of strands works with in a substep, point after point, in LaneFrame::solver. A joint and the
+/// segment behind a point have the point's number.
 struct Strip {
     struct alignas(64) Point {
         Lanes3 direction;  ///< of the segment at the start of the substep, by its rest length
@@ -43,7 +43,9 @@ struct Strip {
         Lanes& upper() { return held.x; }    ///< of the system of lengths, as it is eliminated
         Lanes& tension() { return held.y; }  ///< likewise
     };
-    Point points[kMaxPoints];
+    Point* points;
+
+    HWY_INLINE explicit Strip(const LaneFrame& lanes) : points(reinterpret_cast<Point*>(lanes.solver)) {}
 };
 
 /// Fills the directions of segments at `previous`, and by how much less each turns than the one before it, q
@@ -287,7 +289,7 @@ template <Shape kShape>
 void bendBack(const BlockView& given, LaneFrame& lanes, const SubstepContext& context) {
     const BlockView block = localCopy(given);
     if (block.points <= block.firstFree) return;
-    Strip strip;
+    Strip strip(lanes);
     for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
         const PlaneRows rows(block, lane);
         if (block.tension) {

@@ -198,10 +198,7 @@ class Contacts {
     }
 
   private:
-    struct Touch {
-        NearPoints::Pair pair;
-        std::uint32_t inside;  ///< which lanes are
-    };
+    using Touch = NearPoints::Touch;
     static_assert(kMaxPoints * kBlockLanes <= 0x10000);
 
     HWY_INLINE V3 rootAt(std::size_t i) const { return load3(roots_, i % kBlockLanes); }
@@ -213,7 +210,7 @@ class Contacts {
     }
 
     HWY_INLINE void findTouches(std::span<const NearPoints::Pair> pairs) {
-        Touch* last = touches_;
+        Touch* last = near_.touches;
         for (const NearPoints::Pair& pair : pairs) {
             const std::size_t index = pair.index();
             const V3 centre = spheres_.centre(pair.sphere()) - rootAt(index);
@@ -222,11 +219,11 @@ class Contacts {
             *last = {{pair.which, pair.reachSquared}, inside};
             last += inside != 0 ? 1 : 0;
         }
-        touchCount_ = static_cast<std::size_t>(last - touches_);
+        touchCount_ = static_cast<std::size_t>(last - near_.touches);
     }
 
     HWY_INLINE void touchAll() {
-        for (std::size_t t = 0; t < touchCount_; ++t) touch(touches_[t]);
+        for (std::size_t t = 0; t < touchCount_; ++t) touch(near_.touches[t]);
     }
 
     HWY_INLINE void touch(Touch found) {
@@ -310,7 +307,6 @@ class Contacts {
     const float deepest_;  ///< square of kDeep; 0 where no length holds a point back
     alignas(64) float roots_[3][kBlockLanes];
     std::size_t touchCount_ = 0;
-    Touch touches_[NearPoints::kMostPairs + 1];  // written before it is known whether it stays
 };
 
 /// Pushes points and their pearls out of spheres (Eq. 14). Where spheres overlap, a point that one of them

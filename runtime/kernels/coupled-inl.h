@@ -43,9 +43,14 @@ struct CoupledSegment {
     V wrong;  ///< ½(|e|²/l − l) before the solve
 };
 
+/// Stands in LaneFrame::solver behind the strip of strands of so many points.
 struct CoupledSystem {
+    CoupledSystem(const LaneFrame& lanes, std::size_t points)
+        : strand{reinterpret_cast<StrandSystem::Point*>(Strip(lanes).points + points)},
+          segments(reinterpret_cast<CoupledSegment*>(strand.points + points)) {}
+
     StrandSystem strand;
-    CoupledSegment segments[kMaxPoints];
+    CoupledSegment* segments;
 };
 
 HWY_INLINE V3 edgeAt(const Planes& planes, std::size_t i) {
@@ -124,7 +129,7 @@ HWY_INLINE void fillSystem(const BlockView& block, std::size_t lane, CoupledSyst
     V3 inner = zero3();
     for (std::uint32_t s = first - 1; s < block.points; ++s) {
         const V3 outer = s + 1 < block.points ? forceOf(s, std::size_t{s} * kBlockLanes + lane) : zero3();
-        if (s >= first) system.strand.right[s] = outer - inner;
+        if (s >= first) system.strand.points[s].right = outer - inner;
         inner = outer;
     }
 }
@@ -192,8 +197,8 @@ template <Shape kShape>
 void bendCoupled(const BlockView& given, LaneFrame& lanes, const SubstepContext& context) {
     const BlockView block = localCopy(given);
     if (block.points <= block.firstFree) return;
-    CoupledSystem system;
-    Strip strip;
+    CoupledSystem system(lanes, block.points);
+    Strip strip(lanes);
     for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
         const PlaneRows rows(block, lane);
         SegmentPulls<kShape> pulls(block, rows, lanes, context, lane, strip);

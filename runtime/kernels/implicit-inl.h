@@ -83,11 +83,11 @@ void advanceFree(const BlockView& block, LaneFrame&, const SubstepContext&) {
 
 /// Backward Euler (Eq. 9) with angular springs: (M + h² K) d = M u + h² f, where u + h² f/M is the
 /// displacement that the forces left, so that d = u + h² f/M + δ with (M + h² K) δ = −h² K of it.
-void advanceImplicitBend(const BlockView& block, LaneFrame&, const SubstepContext&) {
+void advanceImplicitBend(const BlockView& block, LaneFrame& lanes, const SubstepContext&) {
     if (block.points <= block.firstFree) return finishClamped(block);
     const auto rateAt = [&](std::size_t i)
                             HWY_ATTR { return load3(block.position, i) - load3(block.previous, i); };
-    Strip strip;
+    Strip strip(lanes);
     for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
         V3 behind = zero3(), from = rateAt(lane);
         const auto jointPull = [&](std::uint32_t j) HWY_ATTR {
@@ -158,10 +158,13 @@ HWY_INLINE S3 coilJacobian(const BlockView& block, const SubstepContext& context
 /// The block-pentadiagonal system of a vector of strands by LDLᵀ, root to tip; couplings two points apart are
 /// scalar.
 struct StrandSystem {
-    S3 inverse[kMaxPoints];
-    M3 lower[kMaxPoints];
-    V second[kMaxPoints];
-    V3 right[kMaxPoints];
+    struct Point {
+        S3 inverse;
+        M3 lower;
+        V second;
+        V3 right;
+    };
+    Point* points;
 };
 
 /// Of point p: its own block and those to the point before and to the one before that.
@@ -186,11 +189,11 @@ HWY_INLINE void factorPoint(StrandSystem& system, std::uint32_t first, std::uint
     V second = hn::Zero(D());
     if (p > first + 1) {
         second = row.second;
-        const M3& before = system.lower[p - 1];
+        const M3& before = system.points[p - 1].lower;
         coupling.x = coupling.x - V3{before.x.x, before.y.x, before.z.x} * second;
         coupling.y = coupling.y - V3{before.x.y, before.y.y, before.z.y} * second;
         coupling.z = coupling.z - V3{before.x.z, before.y.z, before.z.z} * second;
-        const S3& far = system.inverse[p - 2];
+        const S3& far = system.points[p - 2].inverse;
         const V squared = second * second;
         diagonal = {diagonal.xx - far.xx * squared, diagonal.xy - far.xy * squared,
                     diagonal.xz - far.xz * squared, diagonal.yy - far.yy * squared,
@@ -198,7 +201,7 @@ HWY_INLINE void factorPoint(StrandSystem& system, std::uint32_t first, std::uint
     }
     M3 lower{zero3(), zero3(), zero3()};
     if (p > first) {
-        lower = multiply(coupling, system.inverse[p - 1]);
+        lower = multiply(coupling, system.points[p - 1].inverse);
         diagonal = {diagonal.xx - dotRoundingEach(lower.x, coupling.x),
                     diagonal.xy - dotRoundingEach(lower.x, coupling.y),
                     diagonal.xz - dotRoundingEach(lower.x, coupling.z),
@@ -206,24 +209,27 @@ HWY_INLINE void factorPoint(StrandSystem& system, std::uint32_t first, std::uint
                     diagonal.yz - dotRoundingEach(lower.y, coupling.z),
                     diagonal.zz - dotRoundingEach(lower.z, coupling.z)};
     }
-    system.inverse[p] = inverseOf(diagonal);
-    system.lower[p] = lower;
-    system.second[p] = second;
+    system.points[p].inverse = inverseOf(diagonal);
+    system.points[p].lower = lower;
+    system.points[p].second = second;
 }
 
 /// Solves for `right`, which it uses up, and calls take(p, solution) from tip to root.
 template <class Take>
 HWY_INLINE void solveSystem(StrandSystem& system, std::uint32_t first, std::uint32_t points, Take&& take) {
     for (std::uint32_t p = first + 1; p < points; ++p) {
-        V3 right = system.right[p];
-        if (p > first + 1) right = right - (system.inverse[p - 2] * system.right[p - 2]) * system.second[p];
-        system.right[p] = right - system.lower[p] * system.right[p - 1];
+        V3 right = system.points[p].right;
+        if (p > first + 1)
+            right =
+                right - (system.points[p - 2].inverse * system.points[p - 2].right) * system.points[p].second;
+        system.points[p].right = right - system.points[p].lower * system.points[p - 1].right;
     }
     V3 next1 = zero3(), next2 = zero3();
     for (std::uint32_t p = points; p-- > first;) {
-        V3 solution = system.inverse[p] * system.right[p];
-        if (p + 1 < points) solution = solution - transposedTimes(system.lower[p + 1], next1);
-        if (p + 2 < points) solution = solution - (system.inverse[p] * next2) * system.second[p + 2];
+        V3 solution = system.points[p].inverse * system.points[p].right;
+        if (p + 1 < points) solution = solution - transposedTimes(system.points[p + 1].lower, next1);
+        if (p + 2 < points)
+            solution = solution - (system.points[p].inverse * next2) * system.points[p + 2].second;
         take(p, solution);
         next2 = next1;
         next1 = solution;
@@ -232,9 +238,9 @@ HWY_INLINE void solveSystem(StrandSystem& system, std::uint32_t first, std::uint
 
 /// Backward Euler (Eq. 9) with coil springs: (M − h² ∂f/∂x) d = M u + h² f.
 template <bool kAngular>
-void advanceImplicitSpring(const BlockView& block, LaneFrame&, const SubstepContext& context) {
+void advanceImplicitSpring(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
     const V zero = hn::Zero(D());
-    StrandSystem system;
+    StrandSystem system{reinterpret_cast<StrandSystem::Point*>(lanes.solver)};
     for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
         const std::uint32_t first = block.firstFree;
         S3 inner = coilJacobian(block, context, std::size_t{first - 1} * kBlockLanes + lane);
@@ -255,7 +261,7 @@ void advanceImplicitSpring(const BlockView& block, LaneFrame&, const SubstepCont
             if (kAngular && p < first + 2 && p >= 2)
                 right = right - load3(block.rate, i - 2 * kBlockLanes) * bend.coupling2;
             factorPoint(system, first, p, row);
-            system.right[p] = right;
+            system.points[p].right = right;
             inner = outer;
         }
         solveSystem(system, first, block.points, [&](std::uint32_t p, V3 rate) {

@@ -21,10 +21,6 @@ using V = hn::Vec<D>;
 inline constexpr std::size_t kWidth = hn::MaxLanes(D());
 static_assert(kBlockLanes % kWidestVector == 0 && kWidestVector % kWidth == 0);
 
-/// Floats of a scratch plane: a slot for each point of a block, and a cache line that keeps planes off each
-/// other's 4 KiB aliases.
-inline constexpr std::size_t kScratchPlane = std::size_t{kMaxPoints} * kBlockLanes + 16;
-
 struct V3 {
     V x, y, z;
 };
@@ -135,26 +131,6 @@ HWY_INLINE V3 rotate(V4 q, V3 v) {
     const V3 twice = half + half;
     return mulAdd(twice, q.w, v) + cross(axis, twice);
 }
-/// A vector of lanes for each point of a strip. Compilers keep arrays of registers behind copies in memory;
-/// these are stored and loaded by name.
-struct StripRow {
-    /// A cache line more keeps neighbouring rows off each other's 4 KiB aliases.
-    alignas(64) float values[std::size_t{kMaxPoints} * kWidth + 16];
-
-    HWY_INLINE V operator[](std::size_t p) const { return hn::Load(D(), values + p * kWidth); }
-    HWY_INLINE void set(std::size_t p, V v) { hn::Store(v, D(), values + p * kWidth); }
-};
-struct StripRow3 {
-    StripRow x, y, z;
-
-    HWY_INLINE V3 operator[](std::size_t p) const { return {x[p], y[p], z[p]}; }
-    HWY_INLINE void set(std::size_t p, V3 v) {
-        x.set(p, v.x);
-        y.set(p, v.y);
-        z.set(p, v.z);
-    }
-};
-
 /// Rows.
 struct M3 {
     V3 x, y, z;

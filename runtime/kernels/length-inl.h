@@ -190,10 +190,10 @@ HWY_INLINE void reduceLengths(const BlockView& block, const Rows& rows, std::siz
 }
 
 template <Holding kHolding, bool kKept = false>
-void holdStrands(const BlockView& given, const SubstepContext& context) {
+void holdStrands(const BlockView& given, const LaneFrame& lanes, const SubstepContext& context) {
     const BlockView block = localCopy(given);
     if (block.points <= block.firstFree) return;
-    Strip strip;
+    Strip strip(lanes);
     for (std::size_t lane = 0; lane < block.lanes; lane += kWidth) {
         const PlaneRows rows(block, lane);
         reduceLengths<kHolding>(block, rows, lane, strip);
@@ -202,18 +202,18 @@ void holdStrands(const BlockView& given, const SubstepContext& context) {
 }
 
 template <Holding kHolding>
-void holdLength(const BlockView& block, LaneFrame&, const SubstepContext& context) {
+void holdLength(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
     for (std::uint32_t iteration = 0; iteration < context.lengthIterations; ++iteration) {
         if (kHolding == Holding::places && block.tension) {
-            holdStrands<kHolding, true>(block, context);
+            holdStrands<kHolding, true>(block, lanes, context);
         } else {
-            holdStrands<kHolding>(block, context);
+            holdStrands<kHolding>(block, lanes, context);
         }
     }
 }
 
-void holdRates(const BlockView& block, LaneFrame&, const SubstepContext& context) {
-    holdStrands<Holding::rates>(block, context);
+void holdRates(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
+    holdStrands<Holding::rates>(block, lanes, context);
 }
 
 /// The stages of angular springs and lengths of a strip in one go, with the same bits: points stay at hand
@@ -251,7 +251,7 @@ void bendAndHold(const BlockView& given, LaneFrame& lanes, const SubstepContext&
     constexpr bool kCurved = kShape == Shape::curved;
     const BlockView block = localCopy(given);
     if (block.points <= block.firstFree) return;
-    Strip strip;
+    Strip strip(lanes);
     for (std::size_t lane = 0; lane < block.lanes; lane += kWidth) {
         const PlaneRows planes(block, lane);
         if (block.points > kMostCopied) {

@@ -105,7 +105,7 @@ HWY_INLINE float farthestFromRoot(const NearInput& in) {
 }
 
 HWY_INLINE std::size_t nearPlane(const BlockView& block) {
-    return std::size_t{block.points} * kBlockLanes + 16;
+    return std::size_t{block.points} * kBlockLanes + kPlanePadding;
 }
 
 /// For the rest of the frame, should the points go on as they do, but not with so wide a margin that all are

@@ -121,6 +121,34 @@ Stage stageOf(StageId id) {
     return nullptr;
 }
 
+/// Of LaneFrame::solver, for a point.
+constexpr std::size_t solverFloats(StageId id) {
+    constexpr std::size_t kStrip = sizeof(Strip::Point) / sizeof(float);
+    constexpr std::size_t kSystem = sizeof(StrandSystem::Point) / sizeof(float);
+    switch (id) {
+        case StageId::angularCheap:
+        case StageId::angularExact:
+        case StageId::straightCheap:
+        case StageId::straightExact:
+            return 3 * kBlockLanes;
+        case StageId::implicitBend:
+        case StageId::angular:
+        case StageId::angularStraight:
+        case StageId::length:
+        case StageId::lengthNow:
+        case StageId::lengthRate:
+            return kStrip;
+        case StageId::implicitSpring:
+        case StageId::implicitSpringBend:
+            return kSystem;
+        case StageId::coupled:
+        case StageId::coupledStraight:
+            return kStrip + kSystem + sizeof(CoupledSegment) / sizeof(float);
+        default:
+            return 0;
+    }
+}
+
 template <bool kDamped, Air kAir>
 void fillMoves(Kernels& table) {
     auto& moves = table.moves[kDamped ? 1 : 0][static_cast<std::size_t>(kAir)];
@@ -137,7 +165,10 @@ void fillPart(Kernels& table) {
 
 Kernels makeTable() {
     Kernels table{};
-    for (std::uint32_t id = 0; id < kStageCount; ++id) table.stages[id] = stageOf(static_cast<StageId>(id));
+    for (std::uint32_t id = 0; id < kStageCount; ++id) {
+        table.stages[id] = stageOf(static_cast<StageId>(id));
+        table.solverFloats[id] = solverFloats(static_cast<StageId>(id));
+    }
     fillMoves<false, Air::none>(table);
     fillMoves<false, Air::still>(table);
     fillMoves<false, Air::moving>(table);

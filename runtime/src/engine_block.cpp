@@ -8,7 +8,7 @@
 
 namespace hairloom::runtime {
 
-void Engine::Impl::runBlock(std::size_t block, const Frame& frame) {
+void Engine::Impl::runBlock(std::size_t block, LaneFrame& lanes, const Frame& frame) {
     BlockReport& report = blockReports_[block];
     if (host_.nanoseconds) report.nanoseconds.fill(0);
     report.restored = 0;
@@ -21,7 +21,7 @@ void Engine::Impl::runBlock(std::size_t block, const Frame& frame) {
         return;
     }
     const BlockView blockView = view(block);
-    LaneFrame lanes;
+    lanes.near.forget();
     enterFrame(block, blockView, lanes, frame);
     if (frame.rescale != 1.0f) frame.kernels->rescale(blockView, frame.rescale);
     if (frame.windy) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
 
 #include "src/checks.h"
 #include "src/engine_impl.h"
@@ -69,6 +70,7 @@ void Engine::Impl::reset(std::span<const RootFrame> roots_ws) {
 std::string Engine::Impl::setSettings(const SimulationSettings& settings) {
     if (std::string error = whyRefused(settings); !error.empty()) return error;
     settings_ = settings;
+    scratch_ = {};
     wind_ = {makeWind(settings), false};
     bend_.substep = 0.0f;
     std::fill(state_.tanks.begin(), state_.tanks.end(), kNoCurve);
@@ -123,6 +125,10 @@ void Engine::Impl::allocateForPlan() {
                                                                    : kEvaluationPlanes;
     if (evaluation_.size() != shape_->planeFloats * evaluationPlanes_)
         evaluation_ = Floats(shape_->planeFloats * evaluationPlanes_, 0.0f);
+    // Sleeping strands keep theirs, so that they wake up without asking for memory.
+    const std::size_t jobs = (shape_->blocks.size() + kBlocksPerJob - 1) / kBlocksPerJob;
+    scratch_.grow(host_.parallelFor ? scratchPieces(jobs) : 1,
+                  solverFloats(plan_.stages(), shape_->longestPointCount, kernels()));
 }
 
 /// Keeps the roots that the frame ends on, their box and how far they go. What is no root stays where it was.
@@ -235,21 +241,28 @@ void Engine::Impl::step(const FrameInput& input) {
     }
 
     const Frame frame = makeFrame(input);
-    const std::size_t blocks = shape_->blocks.size();
-    const Host::Body body = [&](std::size_t first, std::size_t end) {
-        for (std::size_t b = first; b < end; ++b) runBlock(b, frame);
-    };
-    if (host_.parallelFor) {
-        host_.parallelFor(blocks, kBlocksPerJob, body);
-    } else {
-        body(0, blocks);
-    }
-
+    runBlocks(frame);
     state_.spheres.assign(spheres_.usable.begin(), spheres_.usable.end());
     state_.substep = frame.context.h;
     if (frame.newBend) bend_.substep = frame.context.h;
     sumReports();
     if (host_.nanoseconds) report_.milliseconds = static_cast<double>(host_.nanoseconds() - begin) * 1e-6;
+}
+
+void Engine::Impl::runBlocks(const Frame& frame) {
+    const std::size_t blocks = shape_->blocks.size();
+    const auto run = [&](std::size_t first, std::size_t end) {
+        Scratch::Piece& piece = scratch_.take();
+        for (std::size_t b = first; b < end; ++b) runBlock(b, piece.lanes, frame);
+        piece.taken.store(false, std::memory_order_release);
+    };
+    if (host_.parallelFor) {
+        // By reference: a std::function that copied the captures could allocate.
+        const Host::Body body = std::ref(run);
+        host_.parallelFor(blocks, kBlocksPerJob, body);
+    } else {
+        run(0, blocks);
+    }
 }
 
 void Engine::Impl::sumReports() {

@@ -6,6 +6,7 @@
 
 #include "hairloom/engine.h"
 #include "src/frame_setup.h"
+#include "src/scratch.h"
 #include "src/state.h"
 #include "src/state_read.h"
 
@@ -41,7 +42,8 @@ struct Engine::Impl {
     bool sphereNear(std::size_t block) const;
     Frame makeFrame(const FrameInput& input);
     BlockView view(std::size_t block);
-    void runBlock(std::size_t block, const Frame& frame);
+    void runBlocks(const Frame& frame);
+    void runBlock(std::size_t block, LaneFrame& lanes, const Frame& frame);
     static void turnAlong(const BlockView& view, std::uint32_t lane, Quat turn);
     void cutLanes(const BlockView& view, float* rows, const float* next) const;
     void enterFrame(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame);
@@ -59,6 +61,7 @@ struct Engine::Impl {
     Bend bend_;
     Floats evaluation_;  // empty for position Verlet
     std::size_t evaluationPlanes_ = 0;
+    Scratch scratch_;
     StepReport report_;
     std::vector<BlockReport> blockReports_;
     // Of the frame under way.

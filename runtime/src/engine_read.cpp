@@ -139,7 +139,7 @@ std::size_t Engine::Impl::baseBytes() const {
            (state_.planes.size() + state_.roots.size() + evaluation_.size()) * sizeof(float) +
            (state_.spheres.size() + spheres_.usable.size()) * sizeof(Sphere) +
            state_.rests.size() * sizeof(Rest) + nextRoots_.size() * sizeof(float) +
-           blockReports_.size() * sizeof(BlockReport);
+           blockReports_.size() * sizeof(BlockReport) + scratch_.bytes();
 }
 
 }  // namespace hairloom::runtime

@@ -27,6 +27,8 @@ namespace hairloom::runtime {
 
 inline constexpr std::uint32_t kBlockLanes = 32;
 inline constexpr std::uint32_t kWidestVector = 16;  ///< lanes
+/// Floats behind each plane: a cache line that keeps planes off each other's 4 KiB aliases.
+inline constexpr std::uint32_t kPlanePadding = 16;
 
 /// x, y and z of one quantity: three arrays, `pitch` floats apart.
 template <class Float>
@@ -94,6 +96,18 @@ struct NearPoints {
         std::size_t index() const { return which >> 16; }
     };
 
+    /// A pair, and which of its lanes are inside.
+    struct Touch {
+        Pair pair;
+        std::uint32_t inside;
+    };
+
+    /// At the start of a frame.
+    void forget() {
+        made = false;
+        overlapsKnown = 0;
+    }
+
     bool made = false;
     std::uint32_t substep;  ///< in which the list was made
     std::uint32_t pairCount;
@@ -101,7 +115,8 @@ struct NearPoints {
     float step;                  ///< metres in a substep that a sphere moves relative to a root, at most
     Pair pairs[kMostPairs + 1];  ///< those of a point in the order of spheres
     /// Where the points were when the list was made, relative to their roots.
-    alignas(64) float places[3 * (kMostPoints * kBlockLanes + 16)];
+    alignas(64) float places[3 * (kMostPoints * kBlockLanes + kPlanePadding)];
+    Touch touches[kMostPairs + 1];    ///< of one substep; written before it is known whether it stays
     std::uint64_t overlaps[64];       ///< of each sphere: those that can overlap it in this frame, as bits
     std::uint64_t overlapsKnown = 0;  ///< which of them are filled
 };
@@ -109,7 +124,7 @@ struct NearPoints {
 inline constexpr std::size_t kCopiedRows = 14;
 inline constexpr std::size_t kMostCopied = 64;
 
-/// What the strands of a block go through in one frame; lives on the stack of the thread that runs the block.
+/// What the strands of a block go through in one frame; one of an engine's Scratch (src/scratch.h).
 struct alignas(64) LaneFrame {
     float root[3][kBlockLanes];          ///< at the start of the frame, world
     float rootStep[3][kBlockLanes];      ///< the root's way in one substep
@@ -125,7 +140,11 @@ struct alignas(64) LaneFrame {
     /// Of strands of at most kMostCopied points: what the pass of bending and lengths reads of them, in its
     /// own order.
     alignas(64) float copied[kCopiedRows * kMostCopied * kBlockLanes];
+    /// What the solvers along a strand work in: for each point what Kernels::solverFloats says of the stage,
+    /// and kSolverPadding more. On a cache line.
+    float* solver = nullptr;
 };
+inline constexpr std::size_t kSolverPadding = 3 * kPlanePadding;
 
 struct MovingSphere {
     Float3 from_ws;  ///< centre at the start of the frame
@@ -177,7 +196,8 @@ enum class Air : std::uint32_t { none, still, moving };
 inline constexpr std::size_t kAirCount = 3;
 
 struct Kernels {
-    Stage stages[kStageCount];  ///< by StageId
+    Stage stages[kStageCount];              ///< by StageId
+    std::size_t solverFloats[kStageCount];  ///< of LaneFrame::solver that a stage needs for a point
     /// Stages that follow each other, in one pass and with the same bits: damping or none, by 0 and 1, then
     /// the air's stage, by Air, then gravity or none, then `verlet`.
     Stage moves[2][kAirCount][2];

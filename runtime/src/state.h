@@ -53,10 +53,9 @@ struct RestShape {
     std::size_t bytes() const;
 };
 
-/// A plane holds one float per point and lane, and a cache line that keeps planes off each other's 4 KiB
-/// aliases.
+/// A plane holds one float per point and lane.
 inline std::size_t planeSize(const Block& block) {
-    return std::size_t{block.points} * kBlockLanes + 16;
+    return std::size_t{block.points} * kBlockLanes + kPlanePadding;
 }
 
 /// `strands` must be sound (Engine::make checks it).

@@ -4,10 +4,12 @@
 // device are held against.
 
 #include <algorithm>
+#include <memory>
 #include <random>
 #include <vector>
 
 #include "core/gpu_simulation/strand_engine.h"
+#include "runtime/src/scratch.h"
 
 namespace hairloom::gpu_simulation::test {
 
@@ -258,9 +260,12 @@ inline runtime::State runOnCpu(const Scene& scene) {
         if (!bend.planes.empty()) runtime::fillBend(shape, scene.settings, kStep, b, bend);
         const runtime::BlockView view = runtime::viewOf(
             {shape, state, bend, evaluation, runtime::kRungeKuttaPlanes}, b, scene.settings.clampedPoints);
-        runtime::LaneFrame lanes;
-        fillLanes(scene, b, lanes);
         const runtime::Kernels& table = runtime::kernels();
+        const auto lanesOfBlock = std::make_unique<runtime::LaneFrame>();
+        runtime::LaneFrame& lanes = *lanesOfBlock;
+        runtime::Floats solver(runtime::solverFloats(frame.plan.stages(), view.points, table));
+        lanes.solver = solver.data();
+        fillLanes(scene, b, lanes);
         if (frame.plan.on(runtime::Effect::wind)) {
             const auto from =
                 runtime::windPhases(frame.wind.wind, 0.7 - static_cast<double>(scene.input().dt));

@@ -3,6 +3,9 @@
 // The strand engine. Authored settings, the plan and the state are three things with three lifetimes: the
 // settings are given, the plan is made from them each frame, and the state is what an Engine owns.
 //
+// Stack: at most kStackBytes in any call, of the thread that makes it and of those that Host::parallelFor
+// lends.
+//
 // docs/engine.md has the model in symbols. Does not do: hair against hair (alternatives/hair_volume.h does,
 // between frames), twist of a strand about itself, collision between points.
 
@@ -20,6 +23,9 @@
 #include "hairloom/strands.h"
 
 namespace hairloom::runtime {
+
+/// Of a thread's stack that a call into the engine takes at most.
+inline constexpr std::size_t kStackBytes = 64 * 1024;
 
 /// What the state looks like; taken when asked for, at about the cost of one substep.
 struct Measurements {
@@ -64,7 +70,7 @@ class Engine {
     /// Places all strands in their rest shape on these roots, without speed. One root per strand.
     bool reset(std::span<const RootFrame> roots_ws);
     /// Takes other settings from the next step on; empty, or why they are refused. May allocate; step() does
-    /// not, but for more spheres than ever before.
+    /// not, but for more spheres than ever before and for effects that it has not met.
     std::string setSettings(const SimulationSettings& settings);
     const SimulationSettings& settings() const;
 
@@ -91,7 +97,7 @@ class Engine {
     Measurements measure() const;
     /// Memory that exists because of this effect; 0 while it is off.
     std::size_t effectBytes(Effect effect) const;
-    /// Memory of strands, roots and bookkeeping.
+    /// Memory of strands, roots and bookkeeping, and of what threads work in.
     std::size_t baseBytes() const;
     /// Of all positions and speeds; equal for any number of threads, and for all instruction sets that have
     /// fused multiply-add as for all that have not.
