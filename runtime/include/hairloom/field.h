@@ -65,11 +65,11 @@ struct FieldInfo {
         return kind == FieldKind::Int || kind == FieldKind::Bool || kind == FieldKind::Choice ||
                kind == FieldKind::Seed;
     }
-    /// Inside, or on the border as a float rounds it. False for NaN.
+    /// Inside, or on the border as a float rounds it, where it takes fractions. False for NaN.
     bool holds(double value) const {
+        if (isWhole()) return value >= min && value <= max && value == std::floor(value);
         return value >= std::min(min, static_cast<double>(static_cast<float>(min))) &&
-               value <= std::max(max, static_cast<double>(static_cast<float>(max))) &&
-               !(isWhole() && value != std::floor(value));
+               value <= std::max(max, static_cast<double>(static_cast<float>(max)));
     }
 };
 
