@@ -22,14 +22,14 @@ std::uint64_t nanosecondsNow() {
 
 /// The roots of a frame are made before its clock runs.
 void runFrames(benchmark::State& state, Host host, bool perStage) {
-    const auto acting = static_cast<Acting>(state.range(1));
-    const HeadOfHair head(static_cast<std::uint32_t>(state.range(0)), kPoints, isStraight(acting));
-    const SimulationSettings settings = settingsFor(acting);
+    const auto activeForces = static_cast<ActiveForces>(state.range(1));
+    const HeadOfHair head(static_cast<std::uint32_t>(state.range(0)), kPoints, isStraight(activeForces));
+    const SimulationSettings settings = settingsFor(activeForces);
     auto made = Engine::make(head.view(), settings, std::move(host));
     Engine& engine = *made.engine;
     std::vector<RootFrame> roots;
     FrameInput input;
-    if (hasSpheres(acting)) input.spheres = head.spheres;
+    if (hasSpheres(activeForces)) input.spheres = head.spheres;
     std::array<double, kStageCount> sums{};
     std::uint64_t spent = 0;
     for (auto _ : state) {
@@ -74,7 +74,7 @@ void simulateByStage(benchmark::State& state) {
 }
 BENCHMARK(simulateByStage)
     ->ArgNames({"strands", "acting"})
-    ->Args({11400, static_cast<int>(Acting::windAndSpheres)})
+    ->Args({11400, static_cast<int>(ActiveForces::windAndSpheres)})
     ->Unit(benchmark::kMillisecond)
     ->UseManualTime();
 

@@ -3,8 +3,8 @@
 
 namespace hairloom::cli {
 
-void addTruthOptions(CLI::App& job, TruthOptions& options) {
-    job.add_option("--truth", options.truth,
+void addGroundTruthOptions(CLI::App& job, GroundTruthOptions& options) {
+    job.add_option("--truth", options.groundTruth,
                    "What counts as true: the reference in double precision, or the engine converged")
         ->check(CLI::IsMember({"reference", "engine"}));
     job.add_option("--truth-strands", options.strands,
@@ -18,8 +18,8 @@ void addTruthOptions(CLI::App& job, TruthOptions& options) {
         ->check(CLI::IsMember({8, 16, 32, 64}));
 }
 
-std::unique_ptr<TruthSource> makeTruth(const TruthOptions& options) {
-    if (options.truth == "engine") return std::make_unique<EngineConverged>(options.substeps);
+std::unique_ptr<GroundTruthSource> makeGroundTruth(const GroundTruthOptions& options) {
+    if (options.groundTruth == "engine") return std::make_unique<EngineConverged>(options.substeps);
     return std::make_unique<ReferenceConverged>(
         ReferenceConverged::Options{options.strands, options.toleranceMm, options.substeps});
 }

@@ -8,20 +8,20 @@
 #include <string>
 
 #include "cli/job.h"
+#include "core/accuracy/ground_truth.h"
 #include "core/accuracy/statistics.h"
-#include "core/accuracy/truth.h"
 
 namespace hairloom::cli {
 
-struct TruthOptions {
-    std::string truth = "reference";
+struct GroundTruthOptions {
+    std::string groundTruth = "reference";
     std::uint32_t strands = 16;
     std::uint32_t substeps = 64;
     double toleranceMm = 0.01;
 };
 /// --truth, --truth-strands, --truth-tolerance, --truth-substeps.
-void addTruthOptions(CLI::App& job, TruthOptions& options);
-std::unique_ptr<TruthSource> makeTruth(const TruthOptions& options);
+void addGroundTruthOptions(CLI::App& job, GroundTruthOptions& options);
+std::unique_ptr<GroundTruthSource> makeGroundTruth(const GroundTruthOptions& options);
 
 /// median, q1, q3.
 Report toReport(const Quartiles& times);

@@ -62,12 +62,12 @@ double Measurement::median() const {
 }
 
 Report rowOf(const Measurement& measurement) {
-    const auto [least, most] = std::ranges::minmax(measurement.values);
+    const auto [minimum, maximum] = std::ranges::minmax(measurement.values);
     return Report{{"name", measurement.name},
                   {"n", measurement.values.size()},
                   {"median", measurement.median()},
-                  {"min", least},
-                  {"max", most},
+                  {"min", minimum},
+                  {"max", maximum},
                   {"unit", measurement.unit}};
 }
 

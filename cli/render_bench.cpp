@@ -251,8 +251,8 @@ class CaseList {
 };
 
 std::string inWords(const Measurement& m) {
-    const auto [least, most] = std::ranges::minmax(m.values);
-    return fmt::format("{:.3g} ({:.3g}…{:.3g})", m.median(), least, most);
+    const auto [minimum, maximum] = std::ranges::minmax(m.values);
+    return fmt::format("{:.3g} ({:.3g}…{:.3g})", m.median(), minimum, maximum);
 }
 
 }  // namespace

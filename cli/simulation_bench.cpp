@@ -12,7 +12,7 @@
 namespace hairloom::cli {
 namespace {
 
-using scenes::Acting;
+using scenes::ActiveForces;
 
 constexpr std::uint32_t kPoints = 16;
 constexpr std::uint32_t kMoreStrands = 2'000;
@@ -32,9 +32,10 @@ class Bench {
         Progress progress("measuring", 3 * options_.strands.size() * threads.size() + 4);
         std::size_t done = 0;
         for (const std::uint32_t strands : options_.strands) {
-            for (const Acting acting : {Acting::gravity, Acting::noTorsion, Acting::windAndSpheres}) {
+            for (const ActiveForces activeForces :
+                 {ActiveForces::gravity, ActiveForces::noTorsion, ActiveForces::windAndSpheres}) {
                 for (const std::size_t count : threads) {
-                    bench_.steps.push_back(stepCosts({strands, kPoints, acting}, count));
+                    bench_.steps.push_back(stepCosts({strands, kPoints, activeForces}, count));
                     progress.done(++done);
                 }
             }
@@ -60,7 +61,7 @@ class Bench {
     }
 
     static std::string told(const StepScene& scene, std::size_t threads) {
-        return fmt::format("{}x{}, {}, {} thread{}", scene.strands, scene.points, nameOf(scene.acting),
+        return fmt::format("{}x{}, {}, {} thread{}", scene.strands, scene.points, nameOf(scene.activeForces),
                            threads, threads == 1 ? "" : "s");
     }
 
@@ -143,10 +144,10 @@ class Bench {
     }
 
     /// With the instruction set in use, of that name.
-    InstructionSetCosts setCosts(const std::string& set, Acting acting) const {
-        InstructionSetCosts costs{set, acting, {}};
+    InstructionSetCosts setCosts(const std::string& set, ActiveForces activeForces) const {
+        InstructionSetCosts costs{set, activeForces, {}};
         for (const std::uint32_t strands : options_.strands) {
-            const StepScene scene{.strands = strands, .acting = acting};
+            const StepScene scene{.strands = strands, .activeForces = activeForces};
             costs.steps.push_back(wholeStep(scene, fmt::format("step, {}, {}", told(scene, 1), set)));
         }
         return costs;
@@ -162,8 +163,8 @@ class Bench {
             // A set that this machine has and the engine was not built for runs as the next one.
             if (std::ranges::find(seen, name) != seen.end()) continue;
             seen.push_back(name);
-            for (const Acting acting : {Acting::noTorsion, Acting::windAndSpheres})
-                bench_.instructionSets.push_back(setCosts(name, acting));
+            for (const ActiveForces activeForces : {ActiveForces::noTorsion, ActiveForces::windAndSpheres})
+                bench_.instructionSets.push_back(setCosts(name, activeForces));
             if (name == "SCALAR" || name == "EMU128") scalar = target;
         }
         if (scalar != 0) {
@@ -195,7 +196,7 @@ class Bench {
 
     void measureOverheads() {
         for (const std::uint32_t strands : {kGuides, kMoreStrands}) {
-            StepRun engine({.strands = strands, .points = kPoints, .acting = Acting::nothing});
+            StepRun engine({.strands = strands, .points = kPoints, .activeForces = ActiveForces::nothing});
             BareIntegrator bare(strands, kPoints, 8);
             const std::uint32_t frames = engine.framesFor(0.5 * options_.seconds);
             bare.milliseconds(frames);

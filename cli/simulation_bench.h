@@ -37,7 +37,7 @@ struct StepCosts {
 /// substep.
 struct InstructionSetCosts {
     std::string set;
-    scenes::Acting acting;
+    scenes::ActiveForces activeForces;
     std::vector<Measurement> steps;  ///< by SimulationBench::strands
 };
 

@@ -20,8 +20,8 @@ std::string shortened(double value) {
 }
 
 std::string spread(const Measurement& m) {
-    const auto [least, most] = std::ranges::minmax(m.values);
-    return fmt::format("{} ({}…{})", shortened(m.median()), shortened(least), shortened(most));
+    const auto [minimum, maximum] = std::ranges::minmax(m.values);
+    return fmt::format("{} ({}…{})", shortened(m.median()), shortened(minimum), shortened(maximum));
 }
 
 void writeMachine(const SimulationBench& bench, const std::string& command, Out out) {
@@ -66,22 +66,23 @@ void writeSteps(const SimulationBench& bench, Out out) {
     for (const StepCosts& costs : bench.steps) {
         const double work =
             static_cast<double>(costs.scene.strands) * costs.scene.points * costs.scene.substeps * 1e-6;
-        fmt::format_to(out, "| {} | {} | {} | {} | {} |\n", costs.scene.strands, nameOf(costs.scene.acting),
-                       costs.threads, spread(costs.step), shortened(costs.step.median() * work));
+        fmt::format_to(out, "| {} | {} | {} | {} | {} |\n", costs.scene.strands,
+                       nameOf(costs.scene.activeForces), costs.threads, spread(costs.step),
+                       shortened(costs.step.median() * work));
     }
 }
 
 /// One table per scene on one thread: stages down, strands across.
 void writeStages(const SimulationBench& bench, Out out) {
-    for (const scenes::Acting acting : scenes::kActing) {
+    for (const scenes::ActiveForces activeForces : scenes::kActiveForces) {
         std::vector<const StepCosts*> columns;
         for (const StepCosts& costs : bench.steps) {
-            if (costs.scene.acting == acting && costs.threads == 1) columns.push_back(&costs);
+            if (costs.scene.activeForces == activeForces && costs.threads == 1) columns.push_back(&costs);
         }
         if (columns.empty()) continue;
         fmt::format_to(
             out, "\n## Stages: {}, one thread\n\nNanoseconds per particle and substep.\n\n| family | stage |",
-            nameOf(acting));
+            nameOf(activeForces));
         std::string rule = "|---|---|";
         for (const StepCosts* costs : columns) {
             fmt::format_to(out, " {} strands |", costs->scene.strands);
@@ -145,7 +146,7 @@ void writeInstructionSets(const SimulationBench& bench, Out out) {
     }
     fmt::format_to(out, "\n{}\n", rule);
     for (const InstructionSetCosts& set : bench.instructionSets) {
-        fmt::format_to(out, "| {} | {} |", set.set, nameOf(set.acting));
+        fmt::format_to(out, "| {} | {} |", set.set, nameOf(set.activeForces));
         for (const Measurement& step : set.steps) fmt::format_to(out, " {} |", spread(step));
         fmt::format_to(out, "\n");
     }

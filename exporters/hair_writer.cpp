@@ -10,16 +10,16 @@
 namespace hairloom {
 namespace {
 
-constexpr std::uint32_t kMostSegments = 65535;
+constexpr std::uint32_t kMaxSegments = 65535;
 constexpr std::uint32_t kAdvisablePoints = 32;  ///< Jolt Physics
 
 Result<std::vector<std::uint16_t>> segmentCounts(const PreparedStrands& strands) {
     std::vector<std::uint16_t> segments(strands.strandCount());
     for (std::size_t i = 0; i < segments.size(); ++i) {
         const std::uint32_t count = strands.offsets[i + 1] - strands.offsets[i] - 1;
-        if (count > kMostSegments) {
+        if (count > kMaxSegments) {
             return fail(fmt::format("strand {} has {} segments", strands.sources[i], count),
-                        fmt::format("a .hair strand has at most {}; resample it", kMostSegments));
+                        fmt::format("a .hair strand has at most {}; resample it", kMaxSegments));
         }
         segments[i] = static_cast<std::uint16_t>(count);
     }
@@ -51,12 +51,12 @@ void writeVectors(ByteWriter& writer, std::span<const Vec3f> values) {
 }
 
 void addLimits(PreparedStrands& strands) {
-    std::uint32_t most = 0;
+    std::uint32_t maximum = 0;
     for (std::size_t i = 0; i < strands.strandCount(); ++i) {
-        most = std::max(most, strands.offsets[i + 1] - strands.offsets[i]);
+        maximum = std::max(maximum, strands.offsets[i + 1] - strands.offsets[i]);
     }
-    if (most > kAdvisablePoints) {
-        strands.findings.push_back({Severity::Info, fmt::format("strands have up to {} points", most),
+    if (maximum > kAdvisablePoints) {
+        strands.findings.push_back({Severity::Info, fmt::format("strands have up to {} points", maximum),
                                     "points", "for Jolt Physics, 32 or fewer are advisable: resample"});
     }
 }

@@ -19,7 +19,7 @@ constexpr std::size_t kHeaderBytes = 160;
 constexpr std::array<std::uint32_t, 5> kTfxPointCounts{4, 8, 16, 32, 64};
 /// A compute dispatch has at most 65,535 groups in each direction, and TressFX's have 64 threads, one per
 /// vertex.
-constexpr std::size_t kMostVertices = std::size_t{65535} * 64;
+constexpr std::size_t kMaxVertices = std::size_t{65535} * 64;
 
 bool isAllowed(std::size_t points) {
     return std::find(kTfxPointCounts.begin(), kTfxPointCounts.end(), points) != kTfxPointCounts.end();
@@ -112,11 +112,11 @@ void writeColours(ByteWriter& writer, const PreparedStrands& strands) {
 }
 
 void addLimits(PreparedStrands& strands) {
-    if (strands.positions.size() > kMostVertices) {
+    if (strands.positions.size() > kMaxVertices) {
         strands.findings.push_back(
             {Severity::Warning,
              fmt::format("{} vertices are more than one TressFX dispatch can take ({})",
-                         strands.positions.size(), kMostVertices),
+                         strands.positions.size(), kMaxVertices),
              "strands", "split the groom, or export fewer guides and let TressFX make follow hairs"});
     }
 }

@@ -22,9 +22,9 @@ bool plausible(double metres) {
 
 /// How far a size is from the nearest typical one, as the logarithm of their ratio.
 double strangeness(double metres) {
-    double least = std::abs(std::log(metres / kTypical[0]));
-    for (const double typical : kTypical) least = std::min(least, std::abs(std::log(metres / typical)));
-    return least;
+    double minimum = std::abs(std::log(metres / kTypical[0]));
+    for (const double typical : kTypical) minimum = std::min(minimum, std::abs(std::log(metres / typical)));
+    return minimum;
 }
 
 }  // namespace

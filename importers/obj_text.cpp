@@ -73,13 +73,13 @@ std::optional<std::int64_t> parseWhole(std::string_view word) {
 }
 
 std::string shortened(std::string_view text) {
-    constexpr std::size_t kMost = 60;
-    std::string shown(text.substr(0, kMost));
+    constexpr std::size_t kMax = 60;
+    std::string shown(text.substr(0, kMax));
     std::ranges::replace_if(
         shown,
         [](char c) { return static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f; },
         '?');
-    if (text.size() > kMost) shown += "…";
+    if (text.size() > kMax) shown += "…";
     return shown;
 }
 

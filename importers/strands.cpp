@@ -66,7 +66,7 @@ class Cleaner {
         if (!raw_.rootUvs.empty()) raw_.rootUvs.resize(offsets_.size() - 1);
         if (!raw_.thicknessScale.empty()) raw_.thicknessScale.resize(offsets_.size() - 1);
         raw_.offsets = std::move(offsets_);
-        sayMended();
+        reportRepairs();
     }
 
   private:
@@ -91,7 +91,7 @@ class Cleaner {
             written_ = start;
             return drop(DropReason::ZeroLength);
         }
-        if (kept < end - begin) noteMended(source, end - begin - kept);
+        if (kept < end - begin) noteRepair(source, end - begin - kept);
         if (!raw_.rootUvs.empty()) raw_.rootUvs[offsets_.size() - 1] = raw_.rootUvs[strand];
         if (!raw_.thicknessScale.empty())
             raw_.thicknessScale[offsets_.size() - 1] = raw_.thicknessScale[strand];
@@ -107,17 +107,18 @@ class Cleaner {
         ++written_;
     }
 
-    void noteMended(std::uint32_t strand, std::size_t points) {
-        if (mendedStrands_++ == 0) firstMended_ = strand;
-        mendedPoints_ += points;
+    void noteRepair(std::uint32_t strand, std::size_t points) {
+        if (repairedStrands_++ == 0) firstRepaired_ = strand;
+        repairedPoints_ += points;
     }
 
-    void sayMended() {
-        if (mendedStrands_ == 0) return;
+    void reportRepairs() {
+        if (repairedStrands_ == 0) return;
         raw_.warnings.push_back(fileWarning(
-            fmt::format("{} points coincided with the one before and were removed", mendedPoints_),
-            mendedStrands_ == 1 ? fmt::format("strand {}", firstMended_)
-                                : fmt::format("strand {} and {} more", firstMended_, mendedStrands_ - 1),
+            fmt::format("{} points coincided with the one before and were removed", repairedPoints_),
+            repairedStrands_ == 1
+                ? fmt::format("strand {}", firstRepaired_)
+                : fmt::format("strand {} and {} more", firstRepaired_, repairedStrands_ - 1),
             "resample where every strand must have the same number of points"));
     }
 
@@ -125,9 +126,9 @@ class Cleaner {
     const StrandImportOptions& options_;
     std::vector<std::uint32_t> offsets_{0};
     std::size_t written_ = 0;
-    std::size_t mendedStrands_ = 0;
-    std::size_t mendedPoints_ = 0;
-    std::uint32_t firstMended_ = 0;
+    std::size_t repairedStrands_ = 0;
+    std::size_t repairedPoints_ = 0;
+    std::uint32_t firstRepaired_ = 0;
 };
 
 template <class T>
@@ -205,27 +206,27 @@ Groom makeFrom(RawStrands& raw, float metresPerUnit) {
 
 /// Attribute values that no consumer could use become the nearest that they can.
 template <class T, class Usable>
-void mendValues(std::vector<T>& values, std::string_view name, std::vector<Finding>& warnings,
-                const T& instead, Usable usable) {
-    std::size_t mended = 0;
+void repairValues(std::vector<T>& values, std::string_view name, std::vector<Finding>& warnings,
+                  const T& instead, Usable usable) {
+    std::size_t repaired = 0;
     for (T& value : values) {
         if (usable(value)) continue;
         value = instead;
-        ++mended;
+        ++repaired;
     }
-    if (mended > 0) {
-        warnings.push_back(fileWarning(fmt::format("{} values of {} are not finite", mended, name),
+    if (repaired > 0) {
+        warnings.push_back(fileWarning(fmt::format("{} values of {} are not finite", repaired, name),
                                        std::string(name), "they were set to a neutral value"));
     }
 }
 
-void mendAttributes(RawStrands& raw) {
+void repairAttributes(RawStrands& raw) {
     const auto finite = [](const auto& value) { return value.allFinite(); };
     const auto finiteNumber = [](float value) { return std::isfinite(value); };
-    mendValues(raw.transparency, "transparency", raw.warnings, 0.0f, finiteNumber);
-    mendValues(raw.thicknessScale, "strand thickness", raw.warnings, 1.0f, finiteNumber);
-    mendValues(raw.colours, "colours", raw.warnings, Vec3f(Vec3f::Ones()), finite);
-    mendValues(raw.rootUvs, "root UVs", raw.warnings, Vec2f(Vec2f::Zero()), finite);
+    repairValues(raw.transparency, "transparency", raw.warnings, 0.0f, finiteNumber);
+    repairValues(raw.thicknessScale, "strand thickness", raw.warnings, 1.0f, finiteNumber);
+    repairValues(raw.colours, "colours", raw.warnings, Vec3f(Vec3f::Ones()), finite);
+    repairValues(raw.rootUvs, "root UVs", raw.warnings, Vec2f(Vec2f::Zero()), finite);
 }
 
 }  // namespace
@@ -267,7 +268,7 @@ Result<ImportedStrands> importStrandsFromMemory(const std::string& file, std::sp
     }
     if (!raw->rootFirst && options.scalp && options.scalp->triangleCount() > 0)
         orientToScalp(*raw, *options.scalp);
-    mendAttributes(*raw);
+    repairAttributes(*raw);
     if (auto finding = implausibleSize(raw->offsets, raw->positions, options.metresPerUnit)) {
         raw->warnings.push_back(std::move(*finding));
     }

@@ -22,7 +22,7 @@ struct AccuracyOptions {
     std::uint32_t strands = 200;
     std::uint32_t repeats = 5;
     std::uint64_t seed = 1;
-    TruthOptions truth;
+    GroundTruthOptions groundTruth;
     std::vector<std::string> integrators, substeps, iterations, points, threadCounts;
     std::vector<std::string> vary;  ///< FIELD=V1,V2,…
 };
@@ -131,7 +131,7 @@ Result<Report> accuracy(const AccuracyOptions& options, const std::string& comma
         progress->done(done);
     };
     const auto result =
-        measureWorkPrecision(scene->groom, *scene->motion, measuring, *makeTruth(options.truth));
+        measureWorkPrecision(scene->groom, *scene->motion, measuring, *makeGroundTruth(options.groundTruth));
     progress.reset();
     if (!result) return tl::unexpected(result.error());
     const auto files = writeWorkPrecision(*result, {options.motion.input, options.motion.motion, commandLine},
@@ -144,9 +144,9 @@ Result<Report> accuracy(const AccuracyOptions& options, const std::string& comma
     report["frames"] = measuring.time.frames;
     report["runs"] = result->runs.size();
     report["diverged"] = std::ranges::count_if(result->runs, &WorkPrecisionRun::diverged);
-    report["truth"] = result->truthName;
-    report["truth_detail"] = result->truthDetail;
-    report["truth_uncertainty_mm"] = result->truthUncertaintyMm;
+    report["truth"] = result->groundTruthName;
+    report["truth_detail"] = result->groundTruthDetail;
+    report["truth_uncertainty_mm"] = result->groundTruthUncertaintyMm;
     report["front"] = frontReport(*result);
     report["notes"] = result->notes;
     report["output"] = options.output;
@@ -172,7 +172,7 @@ JobRun declare(CLI::App& job) {
     list("--thread-counts", options->threadCounts, "Numbers of threads to try, instead of --threads alone");
     job.add_option("--vary", options->vary, "Another setting to try, FIELD=VALUE,VALUE,…; may be repeated");
     job.add_option("--repeat", options->repeats, "Timed runs of each setting")->check(CLI::Range(1, 1000));
-    addTruthOptions(job, options->truth);
+    addGroundTruthOptions(job, options->groundTruth);
     job.add_option("--seed", options->seed, "Another seed draws other strands");
     return [options](const std::string& commandLine) { return accuracy(*options, commandLine); };
 }

@@ -22,7 +22,7 @@ struct BudgetJobOptions {
     std::string output;
     std::uint32_t strands = 100;
     std::uint32_t repeats = 5;
-    TruthOptions truth;
+    GroundTruthOptions groundTruth;
     std::uint64_t seed = 1;
 };
 
@@ -56,7 +56,8 @@ Result<Report> budget(const BudgetJobOptions& options) {
     solving.progress = [&](const std::string& what, std::size_t done, std::size_t total) {
         bars->show(what, done, total);
     };
-    const auto solved = solveBudget(scene->groom, *scene->motion, solving, *makeTruth(options.truth));
+    const auto solved =
+        solveBudget(scene->groom, *scene->motion, solving, *makeGroundTruth(options.groundTruth));
     bars.reset();
     if (!solved) return tl::unexpected(solved.error());
     if (!solved->fits) {
@@ -97,7 +98,7 @@ JobRun declare(CLI::App& job) {
                    "Strands that errors are taken from, drawn from the groom's")
         ->check(CLI::Range(1, 1'000'000));
     job.add_option("--repeat", options->repeats, "Timed runs of each candidate")->check(CLI::Range(1, 1000));
-    addTruthOptions(job, options->truth);
+    addGroundTruthOptions(job, options->groundTruth);
     job.add_option("--seed", options->seed, "Another seed draws other strands");
     return [options](const std::string&) { return budget(*options); };
 }

@@ -17,7 +17,7 @@ Result<Report> devices() {
                               {"api", info.apiVersion},
                               {"driver", info.driver},
                               {"usable", info.usable},
-                              {"why_unusable", info.whyUnusable},
+                              {"why_unusable", info.unusableReason},
                               {"samples", info.sampleCounts},
                               {"tessellation", info.tessellation},
                               {"timestamp_period_ns", info.timestampPeriodNs},

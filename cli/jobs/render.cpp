@@ -135,7 +135,7 @@ struct Shot {
 };
 
 Result<std::vector<Shot>> shotsOf(const RenderJobOptions& options) {
-    constexpr std::uint64_t kMostShots = 10'000;
+    constexpr std::uint64_t kMaxShots = 10'000;
     if (options.turntable > 0) {
         std::vector<Shot> shots;
         for (std::uint32_t i = 0; i < options.turntable; ++i) {
@@ -150,7 +150,7 @@ Result<std::vector<Shot>> shotsOf(const RenderJobOptions& options) {
     }
     const std::uint64_t step = options.frames.size() == 3 ? options.frames[2] : 1;
     if (step == 0 || options.frames[1] < options.frames[0] ||
-        (options.frames[1] - options.frames[0]) / step >= kMostShots) {
+        (options.frames[1] - options.frames[0]) / step >= kMaxShots) {
         return fail("--frames that go backwards, stand still or are more than 10000");
     }
     std::vector<Shot> shots;
@@ -297,7 +297,7 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
     auto groom = loadDocument(options.input);
     if (!groom) return tl::unexpected(groom.error());
     if (!options.material.empty()) {
-        const auto status = wearMaterial(findSamples(programFolder()), options.material, *groom);
+        const auto status = applyMaterial(findSamples(programFolder()), options.material, *groom);
         if (!status) return tl::unexpected(status.error());
     }
     gpu::DeviceOptions deviceOptions;
@@ -363,10 +363,10 @@ JobRun declare(CLI::App& job) {
     job.add_option(
            "--head-absorption", options->headAbsorption,
            "Light that hair behind the head gets fades with its depth there, per metre; 0: it gets none")
-        ->check(CLI::Range(0.0f, render::kMostHeadAbsorption));
+        ->check(CLI::Range(0.0f, render::kMaxHeadAbsorption));
     job.add_option("--shadow-blur", options->shadowBlur,
                    "Pixels by which shadows are blurred on the screen, which draws everything twice; 0: not")
-        ->check(CLI::Range(0.0f, render::kMostShadowBlur));
+        ->check(CLI::Range(0.0f, render::kMaxShadowBlur));
     job.add_option(
            "--aa", options->antiAliasing,
            "Samples a pixel and frame (auto: the most the device has, up to 8), or FXAA, which draws once")

@@ -97,12 +97,12 @@ Result<Report> set(const SetOptions& options) {
 
 template <class Settings>
 void addRows(const std::string& section, Report& rows) {
-    for (const auto& [info, standard] : fieldRows<Settings>()) {
+    for (const auto& [info, defaults] : fieldRows<Settings>()) {
         rows.push_back(Report{{"field", section + "." + info.name},
                               {"unit", info.unit},
                               {"min", info.min},
                               {"max", info.max},
-                              {"default", standard},
+                              {"default", defaults},
                               {"meaning", info.meaning}});
     }
 }

@@ -37,7 +37,7 @@ Report numberOrNull(double value) {
 }
 
 Report caseReport(const StabilityResult& result) {
-    const StabilityMark& m = result.closest();
+    const StabilityThreshold& m = result.closest();
     Report row;
     row["number"] = result.number;
     row["name"] = result.name;
@@ -47,7 +47,7 @@ Report caseReport(const StabilityResult& result) {
     row["pass"] = result.pass;
     row["measured"] = m.what;
     row["worst"] = numberOrNull(m.worst);
-    row["mark"] = m.mark;
+    row["mark"] = m.threshold;
     row["unit"] = m.unit;
     row["failed_at"] = result.failedAt ? Report(*result.failedAt) : Report();
     row["limit"] = result.limit;
@@ -73,7 +73,7 @@ Result<Report> stability(const StabilityJobOptions& options, const std::string& 
         auto made = GpuBackend::make(gpu::Backend::Vulkan, options.device);
         if (!made) return tl::unexpected(made.error());
         gpu = std::move(*made);
-        suite.engines = gpuTrialEngines(gpu->device(), gpu->kernels());
+        suite.engines = gpuHardCaseEngines(gpu->device(), gpu->kernels());
         // Backward Euler runs on the CPU only.
         std::erase(suite.integrators, runtime::Integrator::implicitEuler);
         std::erase(integrators, runtime::Integrator::implicitEuler);

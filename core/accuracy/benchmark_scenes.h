@@ -77,47 +77,47 @@ struct HeadOfHair {
 };
 
 /// What acts on the head of hair.
-enum class Acting : std::uint32_t {
+enum class ActiveForces : std::uint32_t {
     nothing,         ///< every effect is off: roots and integrator
     gravity,         ///< the engine's defaults without air, no spheres
     windAndSpheres,  ///< the engine's defaults in a turbulent wind of 4 m/s, and the ten spheres
     noTorsion,       ///< the same on straight hair, which needs no frames along its strands
 };
-inline constexpr Acting kActing[] = {Acting::nothing, Acting::gravity, Acting::windAndSpheres,
-                                     Acting::noTorsion};
+inline constexpr ActiveForces kActiveForces[] = {ActiveForces::nothing, ActiveForces::gravity,
+                                                 ActiveForces::windAndSpheres, ActiveForces::noTorsion};
 
-constexpr bool hasSpheres(Acting acting) {
-    return acting == Acting::windAndSpheres || acting == Acting::noTorsion;
+constexpr bool hasSpheres(ActiveForces activeForces) {
+    return activeForces == ActiveForces::windAndSpheres || activeForces == ActiveForces::noTorsion;
 }
-constexpr bool isStraight(Acting acting) {
-    return acting == Acting::noTorsion;
+constexpr bool isStraight(ActiveForces activeForces) {
+    return activeForces == ActiveForces::noTorsion;
 }
 
-constexpr std::string_view nameOf(Acting acting) {
-    switch (acting) {
-        case Acting::nothing:
+constexpr std::string_view nameOf(ActiveForces activeForces) {
+    switch (activeForces) {
+        case ActiveForces::nothing:
             return "all effects off";
-        case Acting::gravity:
+        case ActiveForces::gravity:
             return "no air, no spheres";
-        case Acting::windAndSpheres:
+        case ActiveForces::windAndSpheres:
             return "wind and ten spheres";
-        case Acting::noTorsion:
+        case ActiveForces::noTorsion:
             break;
     }
     return "straight hair, wind and ten spheres";
 }
 
-inline runtime::SimulationSettings settingsFor(Acting acting) {
+inline runtime::SimulationSettings settingsFor(ActiveForces activeForces) {
     runtime::SimulationSettings s;
     s.sleepSpeed = 0.0f;
-    if (hasSpheres(acting)) {
+    if (hasSpheres(activeForces)) {
         s.windSpeed = 4.0f;
     } else {
         s.airDrag = 0.0f;
     }
     // What stands straight under gravity would be curved without it.
-    if (isStraight(acting)) s.restGravity = 0.0f;
-    if (acting == Acting::nothing) {
+    if (isStraight(activeForces)) s.restGravity = 0.0f;
+    if (activeForces == ActiveForces::nothing) {
         s.angularStiffness = 0.0f;
         s.lengthIterations = 0;
         s.gravity = {};

@@ -14,10 +14,10 @@ namespace {
 
 constexpr std::array<std::string_view, 5> kMayGo = {"pearls", "drag", "wind", "collision", "angular"};
 
-std::uint32_t mostPoints(const Groom& groom) {
-    std::size_t most = 0;
-    for (std::size_t s = 0; s < groom.strandCount(); ++s) most = std::max(most, groom.strand(s).size());
-    return static_cast<std::uint32_t>(most);
+std::uint32_t maxPoints(const Groom& groom) {
+    std::size_t maximum = 0;
+    for (std::size_t s = 0; s < groom.strandCount(); ++s) maximum = std::max(maximum, groom.strand(s).size());
+    return static_cast<std::uint32_t>(maximum);
 }
 
 std::vector<GridAxis> axesOf(const Groom& groom) {
@@ -29,7 +29,7 @@ std::vector<GridAxis> axesOf(const Groom& groom) {
         axes.push_back({"lengthIterations", {iterations.begin(), iterations.end()}});
     }
     constexpr std::uint32_t kFewest = 4;
-    const std::uint32_t points = mostPoints(groom);
+    const std::uint32_t points = maxPoints(groom);
     std::set<double> counts{static_cast<double>(points)};
     for (const std::uint32_t part : {2u, 4u})
         counts.insert(std::max(points / part, std::min(points, kFewest)));
@@ -49,10 +49,10 @@ struct Candidate {
 class Solver {
   public:
     Solver(const Groom& groom, const HeadMotion& motion, const BudgetOptions& options,
-           const TruthSource& truth)
+           const GroundTruthSource& groundTruth)
         : motion_(motion),
           options_(options),
-          source_(truth),
+          source_(groundTruth),
           poses_(posesOf(motion, options.time)),
           all_(sampleStrands(groom, groom.strandCount(), 0)),
           sample_(sampleStrands(groom, options.strands, options.seed)),
@@ -63,7 +63,7 @@ class Solver {
         if (!authored) return tl::unexpected(authored.error());
         auto front = exactFirst();
         if (!front) return tl::unexpected(front.error());
-        auto chosen = mostExactThatFits(*front);
+        auto chosen = mostAccurateThatFits(*front);
         if (!chosen) return tl::unexpected(chosen.error());
         if (!fits(chosen->milliseconds)) {
             if (auto status = giveUpEffects(*chosen); !status) return tl::unexpected(status.error());
@@ -122,14 +122,14 @@ class Solver {
 
     SceneHair at(const SceneHair& hair, const std::vector<double>& values) const {
         const double points = values[*findAxis(axes_, kPointsAxis)];
-        const bool asAuthored = points == mostPoints(all_.groom);
+        const bool asAuthored = points == maxPoints(all_.groom);
         SceneHair result = asAuthored ? hair : resampledHair(hair, static_cast<std::uint32_t>(points));
         applyValues(axes_, values, result.groom.simulation);
         return result;
     }
 
     /// Along the front times fall, so that what fits begins at one place.
-    Result<Candidate> mostExactThatFits(const std::vector<WorkPrecisionRun>& front) const {
+    Result<Candidate> mostAccurateThatFits(const std::vector<WorkPrecisionRun>& front) const {
         std::size_t tooSlow = 0, enough = front.size() - 1;
         std::optional<Candidate> found;
         while (!found || tooSlow < enough) {
@@ -159,10 +159,10 @@ class Solver {
         const auto time = timed(candidate.all);
         if (!time) return tl::unexpected(time.error());
         candidate.milliseconds = *time;
-        const auto outcome = runScene(candidate.sample, poses_, options_.time, truth_->followed);
+        const auto outcome = runScene(candidate.sample, poses_, options_.time, groundTruth_->followed);
         if (!outcome) return tl::unexpected(outcome.error());
         candidate.sound = outcome->trajectory.finite && outcome->nanCount == 0;
-        if (candidate.sound) candidate.error = compare(outcome->trajectory, truth_->trajectory);
+        if (candidate.sound) candidate.error = compare(outcome->trajectory, groundTruth_->trajectory);
         return {};
     }
 
@@ -185,12 +185,12 @@ class Solver {
     }
 
     Status giveUpEffects(Candidate& chosen) {
-        const std::uint32_t finest = mostPoints(all_.groom);
-        auto truth = source_.compute(resampledHair(sample_, finest), motion_, options_.time,
-                                     {drawnStrands(sample_.groom, source_.mostStrands(), options_.seed),
-                                      evenShares(WorkPrecisionOptions{}.pointsCompared)});
-        if (!truth) return tl::unexpected(truth.error());
-        truth_ = std::move(*truth);
+        const std::uint32_t finest = maxPoints(all_.groom);
+        auto groundTruth = source_.compute(resampledHair(sample_, finest), motion_, options_.time,
+                                           {drawnStrands(sample_.groom, source_.maxStrands(), options_.seed),
+                                            evenShares(WorkPrecisionOptions{}.pointsCompared)});
+        if (!groundTruth) return tl::unexpected(groundTruth.error());
+        groundTruth_ = std::move(*groundTruth);
         while (!fits(chosen.milliseconds)) {
             auto candidates = withOneEffectLess(chosen);
             if (!candidates) return tl::unexpected(candidates.error());
@@ -217,27 +217,27 @@ class Solver {
         const runtime::SimulationSettings &from = all_.groom.simulation, &to = chosen.simulation;
         compareNumbers("substeps", from.substeps, to.substeps);
         compareNumbers("lengthIterations", from.lengthIterations, to.lengthIterations);
-        compareNumbers("points", mostPoints(all_.groom), mostPoints(chosen));
+        compareNumbers("points", maxPoints(all_.groom), maxPoints(chosen));
         return list;
     }
 
     const HeadMotion& motion_;
     const BudgetOptions& options_;
-    const TruthSource& source_;
+    const GroundTruthSource& source_;
     std::vector<HeadPose> poses_;
     SceneHair all_, sample_;
     std::vector<GridAxis> axes_;
-    std::optional<Truth> truth_;
+    std::optional<GroundTruth> groundTruth_;
     std::vector<std::string> notes_;
 };
 
 }  // namespace
 
 Result<Budget> solveBudget(const Groom& groom, const HeadMotion& motion, const BudgetOptions& options,
-                           const TruthSource& truth) {
+                           const GroundTruthSource& groundTruth) {
     assert(options.milliseconds > 0 && options.repeats >= 1 && options.strands >= 1);
     if (groom.strandCount() == 0) return fail("the groom has no strands", "expected strands to simulate");
-    return Solver(groom, motion, options, truth).solve();
+    return Solver(groom, motion, options, groundTruth).solve();
 }
 
 }  // namespace hairloom

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "core/accuracy/ground_truth.h"
 #include "core/accuracy/statistics.h"
-#include "core/accuracy/truth.h"
 
 namespace hairloom {
 
@@ -45,6 +45,6 @@ struct Budget {
 /// exactness for the time it saves. Torsion, sweep, gravity, damping, sleep and the length constraint stay.
 /// Errors: a groom that cannot be simulated, those of the truth.
 Result<Budget> solveBudget(const Groom& groom, const HeadMotion& motion, const BudgetOptions& options,
-                           const TruthSource& truth);
+                           const GroundTruthSource& groundTruth);
 
 }  // namespace hairloom

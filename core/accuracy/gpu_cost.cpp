@@ -84,7 +84,7 @@ class Copies {
 };
 
 runtime::SimulationSettings settingsOf(const GpuStepScene& scene) {
-    runtime::SimulationSettings s = scenes::settingsFor(scene.acting);
+    runtime::SimulationSettings s = scenes::settingsFor(scene.activeForces);
     s.substeps = scene.substeps;
     switch (scene.leftOut) {
         case LeftOut::nothing:
@@ -127,14 +127,14 @@ class KeptBusy {
     }
     /// For about so many milliseconds from now on.
     Status stay(double milliseconds) const {
-        const double copies = std::clamp(std::ceil(milliseconds / each_), 1.0, kMost);
+        const double copies = std::clamp(std::ceil(milliseconds / each_), 1.0, kMax);
         const auto submission = copies_.start(static_cast<std::uint32_t>(copies));
         return submission ? Status() : Status(tl::unexpected(submission.error()));
     }
 
   private:
     static constexpr std::uint32_t kSome = 200;
-    static constexpr double kMost = 4000.0;
+    static constexpr double kMax = 4000.0;
     KeptBusy(Copies copies, double each) : copies_(std::move(copies)), each_(each) {}
 
     Copies copies_;
@@ -179,7 +179,7 @@ GpuStepRun::GpuStepRun(const GpuStepScene& scene, scenes::HeadOfHair head,
 Result<GpuStepRun> GpuStepRun::make(gpu::Device& device,
                                     std::shared_ptr<gpu_simulation::KernelLibrary> kernels,
                                     const GpuStepScene& scene) {
-    scenes::HeadOfHair head(scene.strands, scene.points, isStraight(scene.acting));
+    scenes::HeadOfHair head(scene.strands, scene.points, isStraight(scene.activeForces));
     gpu_simulation::EngineOptions options;
     options.layout = scene.layout;
     auto engine = gpu_simulation::StrandEngine::make(device, std::move(kernels), head.view(),
@@ -203,7 +203,8 @@ void GpuStepRun::nextFrame() {
     input_.dt = kFrame;
     input_.time = time_;
     input_.roots_ws = roots_;
-    if (hasSpheres(scene_.acting) && scene_.leftOut != LeftOut::collision) input_.spheres = head_.spheres;
+    if (hasSpheres(scene_.activeForces) && scene_.leftOut != LeftOut::collision)
+        input_.spheres = head_.spheres;
 }
 
 /// One frame at a time. `device` takes what the device's clock says, where it is asked for.
@@ -291,8 +292,8 @@ double GpuStepRun::work() const {
 
 Result<double> copyBandwidth(gpu::Device& device) {
     constexpr int kRuns = 5;
-    constexpr std::uint64_t kMost = 256u << 20u;
-    const auto copies = Copies::make(device, kMost);
+    constexpr std::uint64_t kMax = 256u << 20u;
+    const auto copies = Copies::make(device, kMax);
     if (!copies) return tl::unexpected(copies.error());
     double best = 0.0;
     for (int run = 0; run < kRuns; ++run) {

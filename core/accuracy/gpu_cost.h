@@ -32,7 +32,7 @@ struct GpuStepScene {
     std::uint32_t strands = 0;
     std::uint32_t points = 16;
     std::uint32_t substeps = 8;
-    scenes::Acting acting = scenes::Acting::windAndSpheres;
+    scenes::ActiveForces activeForces = scenes::ActiveForces::windAndSpheres;
     LeftOut leftOut = LeftOut::nothing;
     gpu_simulation::LayoutOptions layout;
 };

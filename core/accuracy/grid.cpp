@@ -13,7 +13,7 @@ namespace hairloom {
 namespace {
 
 constexpr double kFewestPoints = 3;  // of which one is free even where two are clamped
-constexpr double kMostThreads = 1024;
+constexpr double kMaxThreads = 1024;
 
 struct Bounds {
     double min, max;
@@ -22,7 +22,7 @@ struct Bounds {
 /// Range of the axes that are no settings.
 Bounds ownBounds(std::string_view field) {
     if (field == kPointsAxis) return {kFewestPoints, static_cast<double>(runtime::kMaxPoints)};
-    return {0, kMostThreads};
+    return {0, kMaxThreads};
 }
 
 bool isOwn(std::string_view field) {

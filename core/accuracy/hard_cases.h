@@ -2,42 +2,42 @@
 #pragma once
 // The hard cases by family; stability.cpp lists them all.
 
-#include "core/accuracy/trial.h"
+#include "core/accuracy/hard_case_run.h"
 
 namespace hairloom::hardcases {
 
 // Degenerate and extreme shapes.
-void segmentWithoutLength(Trial& trial);
-void coincidentNeighbours(Trial& trial);
-void foldedBack(Trial& trial);
-void tinySegments(Trial& trial);
-void longStrand(Trial& trial);
-void smallCurls(Trial& trial);
-void oneSegment(Trial& trial);
-void smallAndLarge(Trial& trial);
-void massRatio(Trial& trial);
+void segmentWithoutLength(HardCaseRun& caseRun);
+void coincidentNeighbours(HardCaseRun& caseRun);
+void foldedBack(HardCaseRun& caseRun);
+void tinySegments(HardCaseRun& caseRun);
+void longStrand(HardCaseRun& caseRun);
+void smallCurls(HardCaseRun& caseRun);
+void oneSegment(HardCaseRun& caseRun);
+void smallAndLarge(HardCaseRun& caseRun);
+void massRatio(HardCaseRun& caseRun);
 
 // Motion of the head, time and input.
-void turningHead(Trial& trial);
-void teleport(Trial& trial);
-void frameTimes(Trial& trial);
-void changesInMidRun(Trial& trial);
-void everythingAtOnce(Trial& trial);
+void turningHead(HardCaseRun& caseRun);
+void teleport(HardCaseRun& caseRun);
+void frameTimes(HardCaseRun& caseRun);
+void changesInMidRun(HardCaseRun& caseRun);
+void everythingAtOnce(HardCaseRun& caseRun);
 
 // Spheres.
-void pointAtCentre(Trial& trial);
-void overlappingSpheres(Trial& trial);
-void rootThroughSphere(Trial& trial);
-void shrinkingSphere(Trial& trial);
-void negativeRadius(Trial& trial);
+void pointAtCentre(HardCaseRun& caseRun);
+void overlappingSpheres(HardCaseRun& caseRun);
+void rootThroughSphere(HardCaseRun& caseRun);
+void shrinkingSphere(HardCaseRun& caseRun);
+void negativeRadius(HardCaseRun& caseRun);
 
 // Stiffness, wind and energy.
-void stiffnessTimesMillion(Trial& trial);
-void reversingStorm(Trial& trial);
-void freeSwing(Trial& trial);
-void longRest(Trial& trial);
-void windThatIsNoNumber(Trial& trial);
-void denormalSpeeds(Trial& trial);
+void stiffnessTimesMillion(HardCaseRun& caseRun);
+void reversingStorm(HardCaseRun& caseRun);
+void freeSwing(HardCaseRun& caseRun);
+void longRest(HardCaseRun& caseRun);
+void windThatIsNoNumber(HardCaseRun& caseRun);
+void denormalSpeeds(HardCaseRun& caseRun);
 
 /// The setting whose bending stiffness is that of `setting` times `factor`.
 float stiffer(float setting, double factor);

@@ -44,32 +44,32 @@ float stiffer(float setting, double factor) {
     return static_cast<float>(ratio / (1.0 + ratio));
 }
 
-void stiffnessTimesMillion(Trial& trial) {
+void stiffnessTimesMillion(HardCaseRun& caseRun) {
     SimulationSettings settings;
     settings.angularStiffness = stiffer(settings.angularStiffness, 1e6);
-    trial.start(tuft(), settings);
-    trial.shakeRoots();
-    trial.frames(190);
-    trial.settle();
+    caseRun.start(tuft(), settings);
+    caseRun.shakeRoots();
+    caseRun.frames(190);
+    caseRun.settle();
 }
 
-void reversingStorm(Trial& trial) {
+void reversingStorm(HardCaseRun& caseRun) {
     SimulationSettings settings;
     settings.windKind = runtime::WindKind::uniform;
     settings.windSpeed = 100.0f;
-    trial.start(tuft(), settings);
-    SimulationSettings s = trial.settings();
+    caseRun.start(tuft(), settings);
+    SimulationSettings s = caseRun.settings();
     for (int f = 0; f < 250; ++f) {
         s.windDirection.x = f % 2 == 0 ? 1.0f : -1.0f;
-        trial.change(s);
-        trial.frame();
+        caseRun.change(s);
+        caseRun.frame();
     }
     s.windSpeed = 0.0f;
-    trial.change(s);
-    trial.settle();
+    caseRun.change(s);
+    caseRun.settle();
 }
 
-void freeSwing(Trial& trial) {
+void freeSwing(HardCaseRun& caseRun) {
     SimulationSettings settings;
     settings.dampingTime = 0.0f;
     settings.bendDampingTime = 0.0f;
@@ -77,124 +77,125 @@ void freeSwing(Trial& trial) {
     settings.sleepSpeed = 0.0f;
     settings.restGravity = 0.0f;
     settings.gravity = {4.0f, 0.0f, 2.0f};
-    trial.start(tuft(kPoints, kSegment), settings);
-    trial.frames(6);
-    settings = trial.settings();
+    caseRun.start(tuft(kPoints, kSegment), settings);
+    caseRun.frames(6);
+    settings = caseRun.settings();
     settings.gravity = {};
-    trial.change(settings);
+    caseRun.change(settings);
     const auto meanEnergy = [&] {
         double sum = 0.0;
         for (int f = 0; f < 60; ++f) {
-            trial.frame();
-            sum += trial.engine().measure().kineticEnergy +
-                   bendingEnergy(trial.strands(), settings, trial.positions());
+            caseRun.frame();
+            sum += caseRun.engine().measure().kineticEnergy +
+                   bendingEnergy(caseRun.strands(), settings, caseRun.positions());
         }
         return sum / 60.0;
     };
     const double start = meanEnergy();
-    trial.frames(static_cast<int>(60.0 * (trial.options().freeSeconds - 2.0)));
-    trial.expectEnergy("drift of energy", "%",
-                       trial.over() ? std::nan("") : 100.0 * std::abs(meanEnergy() / start - 1.0), 1.0);
+    caseRun.frames(static_cast<int>(60.0 * (caseRun.options().freeSeconds - 2.0)));
+    caseRun.expectEnergy("drift of energy", "%",
+                         caseRun.over() ? std::nan("") : 100.0 * std::abs(meanEnergy() / start - 1.0), 1.0);
 }
 
-void longRest(Trial& trial) {
-    const auto stepsPerFrame = [&] { return std::uint64_t{trial.settings().substeps}; };
+void longRest(HardCaseRun& caseRun) {
+    const auto stepsPerFrame = [&] { return std::uint64_t{caseRun.settings().substeps}; };
     for (const bool sleeps : {true, false}) {
         StrandSet strands;
         strands.addStraight({0.0f, 0.1f, 0.0f}, hangingAt(0.8f), 0.02f, 8);
         SimulationSettings settings;
         if (!sleeps) settings.sleepSpeed = 0.0f;
-        trial.start(std::move(strands), settings);
-        trial.frames(600);
-        const std::vector<Float3> before = trial.positions();
-        const std::vector<runtime::RootFrame> roots = trial.strands().roots();
-        for (std::uint64_t done = 0; done < trial.options().stepsAtRest && !trial.over();
+        caseRun.start(std::move(strands), settings);
+        caseRun.frames(600);
+        const std::vector<Float3> before = caseRun.positions();
+        const std::vector<runtime::RootFrame> roots = caseRun.strands().roots();
+        for (std::uint64_t done = 0; done < caseRun.options().stepsAtRest && !caseRun.over();
              done += stepsPerFrame())
-            trial.engine().step({kFrame, trial.time(), roots, {}});
-        trial.frame();
-        const std::vector<Float3> after = trial.positions();
+            caseRun.engine().step({kFrame, caseRun.time(), roots, {}});
+        caseRun.frame();
+        const std::vector<Float3> after = caseRun.positions();
         double drift = 0.0;
         for (std::size_t p = 0; p < after.size(); ++p)
             drift = std::fmax(drift, 1000.0 * static_cast<double>(length(after[p] - before[p])));
-        trial.expect(sleeps ? "drift asleep" : "drift awake", "mm", drift, sleeps ? 0.0 : 0.1);
+        caseRun.expect(sleeps ? "drift asleep" : "drift awake", "mm", drift, sleeps ? 0.0 : 0.1);
         if (sleeps) {
-            const std::uint32_t asleep = trial.engine().measure().asleep;
-            trial.expect("strands awake", "", trial.strands().count() - asleep, 0.0);
+            const std::uint32_t asleep = caseRun.engine().measure().asleep;
+            caseRun.expect("strands awake", "", caseRun.strands().count() - asleep, 0.0);
         }
     }
 }
 
-void windThatIsNoNumber(Trial& trial) {
+void windThatIsNoNumber(HardCaseRun& caseRun) {
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
-    trial.start(tuft());
-    trial.frames(60);
+    caseRun.start(tuft());
+    caseRun.frames(60);
     int taken = 0;
     for (const float bad : {kNan, kInfinity, -kInfinity}) {
         for (float SimulationSettings::*member :
              {&SimulationSettings::windSpeed, &SimulationSettings::windGustiness,
               &SimulationSettings::airDrag}) {
-            SimulationSettings s = trial.settings();
+            SimulationSettings s = caseRun.settings();
             s.*member = bad;
-            if (trial.engine().setSettings(s).empty()) ++taken;
+            if (caseRun.engine().setSettings(s).empty()) ++taken;
         }
-        SimulationSettings s = trial.settings();
+        SimulationSettings s = caseRun.settings();
         s.windDirection.y = bad;
-        if (trial.engine().setSettings(s).empty()) ++taken;
+        if (caseRun.engine().setSettings(s).empty()) ++taken;
     }
-    trial.expect("winds taken that are no number", "", taken, 0.0);
+    caseRun.expect("winds taken that are no number", "", taken, 0.0);
 
     // Time and poses reach the engine without a check of their own.
-    SimulationSettings windy = trial.settings();
+    SimulationSettings windy = caseRun.settings();
     windy.windSpeed = 5.0f;
-    trial.change(windy);
-    trial.engine().step({kFrame, static_cast<double>(kNan), trial.strands().roots(), {}});
-    std::vector<runtime::RootFrame> roots = trial.strands().roots();
+    caseRun.change(windy);
+    caseRun.engine().step({kFrame, static_cast<double>(kNan), caseRun.strands().roots(), {}});
+    std::vector<runtime::RootFrame> roots = caseRun.strands().roots();
     roots[2].position.y = kNan;
     roots[3].rotation.w = kInfinity;
-    trial.setRoots(roots);
-    trial.setSpheres({{{kNan, 0.0f, 0.0f}, 0.1f}, {{0.0f, 0.0f, 0.0f}, kInfinity}});
-    trial.frame();
-    const runtime::StepReport report = trial.engine().lastStep();
-    trial.expect("bad roots and spheres not reported", "",
-                 std::abs(4.0 - report.rejectedRoots - report.rejectedSpheres), 0.0);
-    trial.moveRoots({});
-    trial.setSpheres({});
-    trial.frames(30);
+    caseRun.setRoots(roots);
+    caseRun.setSpheres({{{kNan, 0.0f, 0.0f}, 0.1f}, {{0.0f, 0.0f, 0.0f}, kInfinity}});
+    caseRun.frame();
+    const runtime::StepReport report = caseRun.engine().lastStep();
+    caseRun.expect("bad roots and spheres not reported", "",
+                   std::abs(4.0 - report.rejectedRoots - report.rejectedSpheres), 0.0);
+    caseRun.moveRoots({});
+    caseRun.setSpheres({});
+    caseRun.frames(30);
 
     // A strand that does break is put back and reported: explicit Euler with real hair's stiffness.
-    SimulationSettings breaking = trial.settings();
+    SimulationSettings breaking = caseRun.settings();
     breaking.integrator = runtime::Integrator::explicitEuler;
     breaking.angularStiffness = 0.99f;
     breaking.lengthIterations = 0;
     breaking.dampingTime = 0.0f;
-    SimulationSettings sound = trial.settings();
+    SimulationSettings sound = caseRun.settings();
     sound.windSpeed = 0.0f;
     std::uint32_t restored = 0;
-    trial.engine().setSettings(breaking);
+    caseRun.engine().setSettings(breaking);
     for (int f = 0; f < 60; ++f) {
-        trial.engine().step({kFrame, trial.time(), trial.strands().roots(), {}});
-        restored += trial.engine().lastStep().restoredStrands;
+        caseRun.engine().step({kFrame, caseRun.time(), caseRun.strands().roots(), {}});
+        restored += caseRun.engine().lastStep().restoredStrands;
     }
-    trial.expect("broken strands not reported", "", restored > 0 ? 0.0 : 1.0, 0.0);
+    caseRun.expect("broken strands not reported", "", restored > 0 ? 0.0 : 1.0, 0.0);
     // Strands on their way to break when the settings change still count among the broken ones.
-    trial.engine().setSettings(sound);
-    for (int f = 0; f < 30; ++f) trial.engine().step({kFrame, trial.time(), trial.strands().roots(), {}});
-    trial.change(sound);
-    trial.settle();
+    caseRun.engine().setSettings(sound);
+    for (int f = 0; f < 30; ++f)
+        caseRun.engine().step({kFrame, caseRun.time(), caseRun.strands().roots(), {}});
+    caseRun.change(sound);
+    caseRun.settle();
 
     // And by hand: from there on it is as if nothing had been.
-    trial.engine().reset(trial.strands().roots());
-    const auto fresh = trial.another(sound);
-    for (int f = 0; f < 120 && !trial.over(); ++f) {
-        trial.frame();
-        fresh->step({kFrame, trial.time(), trial.strands().roots(), {}});
+    caseRun.engine().reset(caseRun.strands().roots());
+    const auto fresh = caseRun.another(sound);
+    for (int f = 0; f < 120 && !caseRun.over(); ++f) {
+        caseRun.frame();
+        fresh->step({kFrame, caseRun.time(), caseRun.strands().roots(), {}});
     }
-    trial.expect("unlike a fresh start after reset()", "",
-                 trial.engine().stateHash() == fresh->stateHash() ? 0.0 : 1.0, 0.0);
+    caseRun.expect("unlike a fresh start after reset()", "",
+                   caseRun.engine().stateHash() == fresh->stateHash() ? 0.0 : 1.0, 0.0);
 }
 
-void denormalSpeeds(Trial& trial) {
+void denormalSpeeds(HardCaseRun& caseRun) {
     StrandSet strands;
     strands.addStraight({}, {1.0f, 0.0f, 0.0f}, kSegment, kPoints);
     strands.addStraight({}, {0.0f, 0.0f, 1.0f}, kSegment, kPoints);
@@ -203,15 +204,15 @@ void denormalSpeeds(Trial& trial) {
     settings.restGravity = 0.0f;
     settings.windSpeed = 1e-38f;
     settings.windKind = runtime::WindKind::uniform;
-    trial.start(std::move(strands), settings);
-    trial.frames(250);
-    trial.expect("speed", "m/s", trial.greatestSpeed(), 1e-4);
-    settings = trial.settings();
+    caseRun.start(std::move(strands), settings);
+    caseRun.frames(250);
+    caseRun.expect("speed", "m/s", caseRun.greatestSpeed(), 1e-4);
+    settings = caseRun.settings();
     settings.gravity = SimulationSettings{}.gravity;
     settings.windSpeed = 0.0f;
-    trial.change(settings);
-    trial.frames(120);
-    trial.settle();
+    caseRun.change(settings);
+    caseRun.frames(120);
+    caseRun.settle();
 }
 
 }  // namespace hairloom::hardcases

@@ -21,32 +21,32 @@ float spinAt(double time) {
 
 }  // namespace
 
-void turningHead(Trial& trial) {
-    trial.start(tuft());
+void turningHead(HardCaseRun& caseRun) {
+    caseRun.start(tuft());
     for (int f = 1; f <= 250; ++f) {
-        trial.moveRoots({}, turnAboutY(spinAt(f / 60.0)));
-        trial.frame();
+        caseRun.moveRoots({}, turnAboutY(spinAt(f / 60.0)));
+        caseRun.frame();
     }
-    trial.settle();
+    caseRun.settle();
 }
 
-void teleport(Trial& trial) {
-    trial.start(tuft());
-    trial.shakeRoots();
-    trial.sourceEnds();  // a cut feeds nothing
-    trial.moveRoots({10.0f, 0.0f, 0.0f}, turnAboutY(2.0f));
-    trial.frame();
-    trial.moveRoots({});
-    trial.settle();
+void teleport(HardCaseRun& caseRun) {
+    caseRun.start(tuft());
+    caseRun.shakeRoots();
+    caseRun.sourceEnds();  // a cut feeds nothing
+    caseRun.moveRoots({10.0f, 0.0f, 0.0f}, turnAboutY(2.0f));
+    caseRun.frame();
+    caseRun.moveRoots({});
+    caseRun.settle();
 }
 
-void frameTimes(Trial& trial) {
-    trial.start(tuft(), {}, 1.0f);
+void frameTimes(HardCaseRun& caseRun) {
+    caseRun.start(tuft(), {}, 1.0f);
     const auto run = [&](float dt, int count) {
         for (int f = 0; f < count; ++f) {
-            const double t = trial.time() + static_cast<double>(dt);
-            trial.moveRoots({0.02f * static_cast<float>(std::sin(3.0 * t)), 0.0f, 0.0f});
-            trial.frame(dt);
+            const double t = caseRun.time() + static_cast<double>(dt);
+            caseRun.moveRoots({0.02f * static_cast<float>(std::sin(3.0 * t)), 0.0f, 0.0f});
+            caseRun.frame(dt);
         }
     };
     run(0.001f, 500);
@@ -56,59 +56,59 @@ void frameTimes(Trial& trial) {
     for (int round = 0; round < 20; ++round) {
         for (const float dt : kAlternating) run(dt, 1);
     }
-    trial.settle();
+    caseRun.settle();
 }
 
-void changesInMidRun(Trial& trial) {
-    trial.start(tuft());
-    const std::uint32_t own = trial.settings().substeps;
+void changesInMidRun(HardCaseRun& caseRun) {
+    caseRun.start(tuft());
+    const std::uint32_t own = caseRun.settings().substeps;
     const auto shake = [&](int frames) {
         for (int f = 0; f < frames; ++f) {
-            const double t = trial.time() + static_cast<double>(kFrame);
-            trial.moveRoots({0.03f * static_cast<float>(std::sin(12.0 * t)), 0.0f, 0.0f});
-            trial.frame();
+            const double t = caseRun.time() + static_cast<double>(kFrame);
+            caseRun.moveRoots({0.03f * static_cast<float>(std::sin(12.0 * t)), 0.0f, 0.0f});
+            caseRun.frame();
         }
     };
-    for (const runtime::Integrator other : trial.options().integrators) {
+    for (const runtime::Integrator other : caseRun.options().integrators) {
         // Explicit Euler holds no undamped wave; it is a neighbour that others must recover from.
-        SimulationSettings s = trial.settings();
+        SimulationSettings s = caseRun.settings();
         s.integrator = other;
         s.substeps = std::max(own, 16u);
-        trial.change(s);
+        caseRun.change(s);
         shake(other == runtime::Integrator::explicitEuler ? 1 : 10);
-        s.integrator = trial.integrator();
+        s.integrator = caseRun.integrator();
         s.substeps = std::min(own + 5, 64u);
-        trial.change(s);
+        caseRun.change(s);
         shake(10);
         s.substeps = own;
-        trial.change(s);
+        caseRun.change(s);
         shake(10);
     }
     for (const std::uint32_t points : {8u, 2u, 15u, 16u}) {
-        trial.restart(tuft(points, 0.18f / static_cast<float>(points - 1)), SimulationSettings{});
+        caseRun.restart(tuft(points, 0.18f / static_cast<float>(points - 1)), SimulationSettings{});
         shake(20);
     }
-    trial.settle();
+    caseRun.settle();
 }
 
-void everythingAtOnce(Trial& trial) {
+void everythingAtOnce(HardCaseRun& caseRun) {
     SimulationSettings settings;
     settings.angularStiffness = stiffer(settings.angularStiffness, 1e6);
     settings.windKind = runtime::WindKind::uniform;
     settings.windSpeed = 100.0f;
-    trial.start(tuft(), settings, 1.0f);
-    SimulationSettings calm = trial.settings();
+    caseRun.start(tuft(), settings, 1.0f);
+    SimulationSettings calm = caseRun.settings();
     calm.windSpeed = 0.0f;
     for (int f = 0; f < 250; ++f) {
-        SimulationSettings s = trial.settings();
+        SimulationSettings s = caseRun.settings();
         s.windDirection.x = f % 2 == 0 ? 1.0f : -1.0f;
-        trial.change(s);
+        caseRun.change(s);
         const float dt = kAlternating[f % 4];
-        trial.moveRoots({}, turnAboutY(spinAt(trial.time() + static_cast<double>(dt))));
-        trial.frame(dt);
+        caseRun.moveRoots({}, turnAboutY(spinAt(caseRun.time() + static_cast<double>(dt))));
+        caseRun.frame(dt);
     }
-    trial.change(calm);
-    trial.settle();
+    caseRun.change(calm);
+    caseRun.settle();
 }
 
 }  // namespace hairloom::hardcases

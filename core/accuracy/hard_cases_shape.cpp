@@ -20,9 +20,9 @@ std::vector<Float3> strandOf(const std::vector<float>& segments, float x) {
     return strand;
 }
 
-void shakeAndSettle(Trial& trial, double most = 5.0) {
-    trial.shakeRoots();
-    trial.settle(most);
+void shakeAndSettle(HardCaseRun& caseRun, double maximum = 5.0) {
+    caseRun.shakeRoots();
+    caseRun.settle(maximum);
 }
 
 StrandSet scaled(StrandSet strands, float scale) {
@@ -32,18 +32,18 @@ StrandSet scaled(StrandSet strands, float scale) {
 
 }  // namespace
 
-void segmentWithoutLength(Trial& trial) {
+void segmentWithoutLength(HardCaseRun& caseRun) {
     StrandSet strands;
     for (const std::size_t where : {std::size_t{0}, std::size_t{6}, std::size_t{14}}) {
         std::vector<float> segments(15, kSegment);
         segments[where] = 0.0f;
         strands.add(strandOf(segments, 0.01f * static_cast<float>(where)));
     }
-    trial.start(std::move(strands));
-    shakeAndSettle(trial);
+    caseRun.start(std::move(strands));
+    shakeAndSettle(caseRun);
 }
 
-void coincidentNeighbours(Trial& trial) {
+void coincidentNeighbours(HardCaseRun& caseRun) {
     StrandSet strands;
     std::vector<float> segments(15, kSegment);
     for (const std::size_t s : {5, 6, 7}) segments[s] = 0.0f;
@@ -53,33 +53,33 @@ void coincidentNeighbours(Trial& trial) {
     for (const std::size_t s : {5, 6, 7}) segments[s] = 1e-5f;
     strands.add(strandOf(segments, 0.01f));
     strands.add(strandOf(std::vector<float>(15, 0.0f), 0.02f));
-    trial.start(std::move(strands));
-    shakeAndSettle(trial);
+    caseRun.start(std::move(strands));
+    shakeAndSettle(caseRun);
 }
 
-void foldedBack(Trial& trial) {
+void foldedBack(HardCaseRun& caseRun) {
     StrandSet strands;
     std::vector<float> segments(15, kSegment);
     for (std::size_t s = 8; s < segments.size(); ++s) segments[s] = -kSegment;
     strands.add(strandOf(segments, 0.0f));
     for (std::size_t s = 0; s < segments.size(); ++s) segments[s] = s % 2 == 0 ? kSegment : -kSegment;
     strands.add(strandOf(segments, 0.02f));
-    trial.start(std::move(strands));
-    shakeAndSettle(trial);
+    caseRun.start(std::move(strands));
+    shakeAndSettle(caseRun);
 }
 
-void tinySegments(Trial& trial) {
-    trial.start(tuft(32, 0.0001f));
-    shakeAndSettle(trial);
+void tinySegments(HardCaseRun& caseRun) {
+    caseRun.start(tuft(32, 0.0001f));
+    shakeAndSettle(caseRun);
 }
 
-void longStrand(Trial& trial) {
-    trial.start(tuft(32, 1.5f / 31.0f));
+void longStrand(HardCaseRun& caseRun) {
+    caseRun.start(tuft(32, 1.5f / 31.0f));
     // A pendulum of 1.5 m swings in 2.5 s.
-    shakeAndSettle(trial, 15.0);
+    shakeAndSettle(caseRun, 15.0);
 }
 
-void smallCurls(Trial& trial) {
+void smallCurls(HardCaseRun& caseRun) {
     constexpr float kRadius = 0.002f, kPitch = 0.006f;
     constexpr int kPointsPerTurn = 12, kTurns = 5;
     StrandSet strands;
@@ -94,35 +94,35 @@ void smallCurls(Trial& trial) {
         }
         strands.add(strand);
     }
-    trial.start(std::move(strands));
-    shakeAndSettle(trial);
+    caseRun.start(std::move(strands));
+    shakeAndSettle(caseRun);
 }
 
-void oneSegment(Trial& trial) {
+void oneSegment(HardCaseRun& caseRun) {
     for (const std::uint32_t clamped : {1u, 2u}) {
         runtime::SimulationSettings settings;
         settings.clampedPoints = clamped;
-        trial.start(tuft(2, 0.05f), settings);
-        trial.shakeRoots();
+        caseRun.start(tuft(2, 0.05f), settings);
+        caseRun.shakeRoots();
     }
     StrandSet strands = tuft(2, 0.05f);
     runtime::SimulationSettings settings;
     settings.clampedPoints = 1;
-    trial.restart(std::move(strands), settings);
-    shakeAndSettle(trial);
+    caseRun.restart(std::move(strands), settings);
+    shakeAndSettle(caseRun);
 }
 
-void smallAndLarge(Trial& trial) {
+void smallAndLarge(HardCaseRun& caseRun) {
     for (const float scale : {0.001f, 1000.0f}) {
-        trial.start(scaled(tuft(), scale));
-        trial.shakeRoots();
-        trial.frames(200);
+        caseRun.start(scaled(tuft(), scale));
+        caseRun.shakeRoots();
+        caseRun.frames(200);
     }
-    trial.start(scaled(tuft(), 0.001f));
-    shakeAndSettle(trial);
+    caseRun.start(scaled(tuft(), 0.001f));
+    shakeAndSettle(caseRun);
 }
 
-void massRatio(Trial& trial) {
+void massRatio(HardCaseRun& caseRun) {
     StrandSet strands = tuft();
     for (std::uint32_t s = 0; s < strands.count(); ++s) {
         for (std::uint32_t p = 0; p < 16; ++p) {
@@ -130,8 +130,8 @@ void massRatio(Trial& trial) {
             strands.masses.push_back(std::pow(10.0f, 4.0f * share));
         }
     }
-    trial.start(std::move(strands));
-    shakeAndSettle(trial);
+    caseRun.start(std::move(strands));
+    shakeAndSettle(caseRun);
 }
 
 }  // namespace hairloom::hardcases

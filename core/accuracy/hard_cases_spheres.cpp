@@ -21,89 +21,89 @@ StrandSet oneDown() {
     return strands;
 }
 
-void leaveSpheres(Trial& trial, std::vector<Sphere> spheres) {
-    trial.setSpheres(std::move(spheres));
-    trial.frames(kToLeave);
-    trial.watchSpheres();
-    trial.frames(250);
-    trial.watchSpheres(false);
-    trial.setSpheres({});
+void leaveSpheres(HardCaseRun& caseRun, std::vector<Sphere> spheres) {
+    caseRun.setSpheres(std::move(spheres));
+    caseRun.frames(kToLeave);
+    caseRun.watchSpheres();
+    caseRun.frames(250);
+    caseRun.watchSpheres(false);
+    caseRun.setSpheres({});
 }
 
 }  // namespace
 
-void pointAtCentre(Trial& trial) {
-    trial.start(oneDown());
-    const Float3 point = trial.positions()[8];
-    leaveSpheres(trial, {{point, 0.02f}});
-    trial.settle();
+void pointAtCentre(HardCaseRun& caseRun) {
+    caseRun.start(oneDown());
+    const Float3 point = caseRun.positions()[8];
+    leaveSpheres(caseRun, {{point, 0.02f}});
+    caseRun.settle();
 }
 
-void overlappingSpheres(Trial& trial) {
-    trial.start(oneDown());
-    const Float3 point = trial.positions()[8];
-    leaveSpheres(trial,
+void overlappingSpheres(HardCaseRun& caseRun) {
+    caseRun.start(oneDown());
+    const Float3 point = caseRun.positions()[8];
+    leaveSpheres(caseRun,
                  {{point + Float3{0.01f, 0.0f, 0.0f}, 0.02f}, {point - Float3{0.01f, 0.0f, 0.0f}, 0.02f}});
-    trial.frames(250);
+    caseRun.frames(250);
     std::vector<Sphere> ring;
     for (int i = 0; i < 5; ++i) {
         const float angle = 1.2566371f * static_cast<float>(i);
         ring.push_back({point + Float3{std::cos(angle), 0.0f, std::sin(angle)} * 0.01f, 0.015f});
     }
-    leaveSpheres(trial, ring);
-    trial.settle();
+    leaveSpheres(caseRun, ring);
+    caseRun.settle();
 }
 
-void rootThroughSphere(Trial& trial) {
-    trial.start(tuft());
+void rootThroughSphere(HardCaseRun& caseRun) {
+    caseRun.start(tuft());
     constexpr float kRadius = 0.05f;
     const Float3 centre{0.25f, 0.1f, 0.0f};
-    trial.setSpheres({{centre, kRadius}});
+    caseRun.setSpheres({{centre, kRadius}});
     for (int f = 1; f <= 60; ++f) {
         const Float3 shift{0.5f * static_cast<float>(f) / 60.0f, 0.0f, 0.0f};
-        trial.moveRoots(shift);
+        caseRun.moveRoots(shift);
         // Hair whose root is inside cannot be outside.
         float nearest = 1e30f;
-        for (const runtime::RootFrame& root : trial.strands().roots(shift))
+        for (const runtime::RootFrame& root : caseRun.strands().roots(shift))
             nearest = std::min(nearest, length(root.position - centre));
-        trial.watchSpheres(nearest > kRadius + 2.0f * kSegment);
-        trial.frame();
+        caseRun.watchSpheres(nearest > kRadius + 2.0f * kSegment);
+        caseRun.frame();
     }
-    trial.watchSpheres();
-    trial.frames(200);
-    trial.settle();
+    caseRun.watchSpheres();
+    caseRun.frames(200);
+    caseRun.settle();
 }
 
-void shrinkingSphere(Trial& trial) {
-    trial.start(oneDown());
+void shrinkingSphere(HardCaseRun& caseRun) {
+    caseRun.start(oneDown());
     const auto sphereOf = [](float radius) { return Sphere{{0.01f, 0.0f, 0.0f}, radius}; };
-    trial.setSpheres({sphereOf(0.04f)});
-    trial.frames(kToLeave);
-    trial.watchSpheres();
+    caseRun.setSpheres({sphereOf(0.04f)});
+    caseRun.frames(kToLeave);
+    caseRun.watchSpheres();
     for (int f = 1; f <= 120; ++f) {
-        trial.setSpheres({sphereOf(0.04f * (1.0f - static_cast<float>(f) / 120.0f))});
-        trial.frame();
+        caseRun.setSpheres({sphereOf(0.04f * (1.0f - static_cast<float>(f) / 120.0f))});
+        caseRun.frame();
     }
-    trial.expect("a sphere without radius kept", "",
-                 trial.engine().lastStep().rejectedSpheres == 1 ? 0.0 : 1.0, 0.0);
-    trial.watchSpheres(false);
-    trial.settle();
+    caseRun.expect("a sphere without radius kept", "",
+                   caseRun.engine().lastStep().rejectedSpheres == 1 ? 0.0 : 1.0, 0.0);
+    caseRun.watchSpheres(false);
+    caseRun.settle();
 }
 
-void negativeRadius(Trial& trial) {
-    trial.start(oneDown());
-    const auto without = trial.another(trial.settings());
-    const std::vector<runtime::RootFrame> roots = trial.strands().roots();
-    trial.setSpheres({{{0.0f, 0.0f, 0.0f}, -0.05f}});
+void negativeRadius(HardCaseRun& caseRun) {
+    caseRun.start(oneDown());
+    const auto without = caseRun.another(caseRun.settings());
+    const std::vector<runtime::RootFrame> roots = caseRun.strands().roots();
+    caseRun.setSpheres({{{0.0f, 0.0f, 0.0f}, -0.05f}});
     std::uint32_t kept = 0;
-    for (int f = 1; f <= 250 && !trial.over(); ++f) {
-        trial.frame();
-        without->step({kFrame, trial.time(), roots, {}});
-        if (trial.engine().lastStep().rejectedSpheres != 1) ++kept;
+    for (int f = 1; f <= 250 && !caseRun.over(); ++f) {
+        caseRun.frame();
+        without->step({kFrame, caseRun.time(), roots, {}});
+        if (caseRun.engine().lastStep().rejectedSpheres != 1) ++kept;
     }
-    trial.expect("frames that kept the sphere", "", kept, 0.0);
-    trial.expect("it changed the hair", "", trial.engine().stateHash() == without->stateHash() ? 0.0 : 1.0,
-                 0.0);
+    caseRun.expect("frames that kept the sphere", "", kept, 0.0);
+    caseRun.expect("it changed the hair", "",
+                   caseRun.engine().stateHash() == without->stateHash() ? 0.0 : 1.0, 0.0);
 }
 
 }  // namespace hairloom::hardcases

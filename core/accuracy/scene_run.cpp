@@ -135,12 +135,12 @@ std::vector<float> evenShares(std::uint32_t count) {
     return shares;
 }
 
-TrajectoryError compare(const Trajectory& run, const Trajectory& truth) {
-    assert(run.points_ws.size() == truth.points_ws.size() && run.finite && truth.finite);
+TrajectoryError compare(const Trajectory& run, const Trajectory& groundTruth) {
+    assert(run.points_ws.size() == groundTruth.points_ws.size() && run.finite && groundTruth.finite);
     double sum = 0, largest = 0;
     for (std::size_t i = 0; i < run.points_ws.size(); ++i) {
         const double squared =
-            (run.points_ws[i].cast<double>() - truth.points_ws[i].cast<double>()).squaredNorm();
+            (run.points_ws[i].cast<double>() - groundTruth.points_ws[i].cast<double>()).squaredNorm();
         sum += squared;
         largest = std::max(largest, squared);
     }

@@ -54,7 +54,7 @@ struct TrajectoryError {
     double maxMm = 0;
 };
 /// Both are finite and of the same size.
-TrajectoryError compare(const Trajectory& run, const Trajectory& truth);
+TrajectoryError compare(const Trajectory& run, const Trajectory& groundTruth);
 
 /// `count` shares of the arc length, evenly spaced, from the first beyond the root to the tip.
 std::vector<float> evenShares(std::uint32_t count);

@@ -45,16 +45,16 @@ constexpr HardCase kCases[] = {
 // clang-format on
 
 /// Share of its mark; what is no number or may not happen at all is beyond every share.
-double share(const StabilityMark& m) {
-    if (m.met()) return m.mark > 0.0 ? m.worst / m.mark : 0.0;
-    return m.mark > 0.0 && std::isfinite(m.worst) ? m.worst / m.mark
-                                                  : std::numeric_limits<double>::infinity();
+double share(const StabilityThreshold& m) {
+    if (m.met()) return m.threshold > 0.0 ? m.worst / m.threshold : 0.0;
+    return m.threshold > 0.0 && std::isfinite(m.worst) ? m.worst / m.threshold
+                                                       : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace
 
-const StabilityMark& StabilityResult::closest() const {
-    return *std::ranges::max_element(marks, {}, share);
+const StabilityThreshold& StabilityResult::closest() const {
+    return *std::ranges::max_element(thresholds, {}, share);
 }
 
 std::span<const HardCase> hardCases() {
@@ -63,9 +63,9 @@ std::span<const HardCase> hardCases() {
 
 StabilityResult runHardCase(const HardCase& hardCase, runtime::Integrator integrator,
                             const StabilityOptions& options) {
-    Trial trial(integrator, options);
-    hardCase.run(trial);
-    StabilityResult result = trial.result();
+    HardCaseRun caseRun(integrator, options);
+    hardCase.run(caseRun);
+    StabilityResult result = caseRun.result();
     result.number = hardCase.number;
     result.name = hardCase.name;
     result.family = hardCase.family;

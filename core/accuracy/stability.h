@@ -15,24 +15,24 @@
 #include <string>
 #include <vector>
 
-#include "core/accuracy/trial_engine.h"
+#include "core/accuracy/hard_case_engine.h"
 #include "hairloom/settings.h"
 
 namespace hairloom {
 
 /// One thing measured, held to a mark.
-struct StabilityMark {
+struct StabilityThreshold {
     std::string what;
-    std::string unit = {};  ///< "" for a pure number
-    double worst = 0.0;     ///< greatest that was seen
-    double mark = 0.0;      ///< greatest allowed
+    std::string unit = {};   ///< "" for a pure number
+    double worst = 0.0;      ///< greatest that was seen
+    double threshold = 0.0;  ///< greatest allowed
     /// Whether the integrator promises to meet it. Those that hold lengths after bending has moved the points
     /// (all but position Verlet) promise neither rest nor a bound of the energy: the two undo part of each
     /// other's work, and hair may tremble.
     bool claimed = true;
 
     /// What is no number does not meet any mark.
-    bool met() const { return worst <= mark; }
+    bool met() const { return worst <= threshold; }
 };
 
 struct StabilityResult {
@@ -43,12 +43,12 @@ struct StabilityResult {
     std::uint32_t substeps = 0;  ///< a frame
     bool claimed = true;         ///< not where `limit` says why a mark may be missed
     bool pass = false;           ///< every mark is met
-    std::vector<StabilityMark> marks;
+    std::vector<StabilityThreshold> thresholds;
     std::string limit;  ///< why the case, or what it misses of it, is not claimed; empty where it is
     std::optional<std::uint64_t> failedAt;  ///< substep in which a strand broke; absent where none did
 
     /// The mark that is missed farthest, or met by the least.
-    const StabilityMark& closest() const;
+    const StabilityThreshold& closest() const;
 };
 
 /// All, as settings list them.
@@ -58,19 +58,19 @@ struct StabilityOptions {
     std::uint64_t stepsAtRest = 1'000'000;  ///< substeps of case 18, at least 8
     double freeSeconds = 60.0;              ///< of case 17, at least 2
     /// What runs the cases; empty: the engine on the CPU. Another runs them one after the other.
-    TrialEngineMaker engines = {};
+    HardCaseEngineFactory engines = {};
     /// That `engines` can have.
     std::vector<runtime::Integrator> integrators = allIntegrators();
 };
 
-class Trial;
+class HardCaseRun;
 
 struct HardCase {
     int number;
     const char* name;
     const char* family;
     const char* scene;  ///< what happens, one sentence
-    void (*run)(Trial&);
+    void (*run)(HardCaseRun&);
 };
 
 /// All, by number.

@@ -137,7 +137,7 @@ StabilityProbe probeStability(Integrator integrator, MappedForce force, double h
     const auto bounded = static_cast<float>(strength);
     settings.gravity =
         force == MappedForce::coils ? Float3{bounded, 0.0f, 0.0f} : Float3{0.0f, bounded, 0.0f};
-    runtime::Engine::Made made = runtime::Engine::make(strands.view(), settings);
+    runtime::Engine::Result made = runtime::Engine::make(strands.view(), settings);
     if (!made.engine) return probe;
     runtime::Engine& engine = *made.engine;
     const std::vector<runtime::RootFrame> roots = strands.roots();

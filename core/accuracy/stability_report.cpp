@@ -42,7 +42,7 @@ void addCases(const std::vector<StabilityResult>& results, HtmlReport& page) {
     std::vector<bool> strong;
     for (const StabilityResult& r : results) {
         rows.push_back({fmt::format("{} {}", r.number, r.name), meaningOf(r.number), r.integrator,
-                        std::to_string(r.substeps), verdict(r), decidingMark(r)});
+                        std::to_string(r.substeps), verdict(r), decidingThreshold(r)});
         strong.push_back(r.claimed && !r.pass);
     }
     page.heading("Cases");
@@ -77,27 +77,28 @@ std::string pageOf(const std::vector<StabilityResult>& results, const std::vecto
 
 }  // namespace
 
-std::string decidingMark(const StabilityResult& result) {
-    const StabilityMark& m = result.closest();
-    return fmt::format("{} {:.3g} of {:.3g}{}{}", m.what, m.worst, m.mark, m.unit.empty() ? "" : " ", m.unit);
+std::string decidingThreshold(const StabilityResult& result) {
+    const StabilityThreshold& m = result.closest();
+    return fmt::format("{} {:.3g} of {:.3g}{}{}", m.what, m.worst, m.threshold, m.unit.empty() ? "" : " ",
+                       m.unit);
 }
 
 std::string verdict(const StabilityResult& result) {
     if (result.claimed) return result.pass ? "pass" : "FAIL";
     if (result.failedAt) return fmt::format("limit, at substep {}", *result.failedAt);
-    return result.pass ? "held" : fmt::format("limit: {}", decidingMark(result));
+    return result.pass ? "held" : fmt::format("limit: {}", decidingThreshold(result));
 }
 
 std::string stabilityCsv(const std::vector<StabilityResult>& results) {
     std::string text =
         "number,case,family,integrator,substeps,claimed,pass,measured,worst,mark,unit,failed_at,limit\r\n";
     for (const StabilityResult& r : results) {
-        for (const StabilityMark& m : r.marks) {
-            text +=
-                fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\r\n", r.number, quoted(r.name),
-                            quoted(r.family), r.integrator, r.substeps, r.claimed ? 1 : 0, m.met() ? 1 : 0,
-                            quoted(m.what), std::isfinite(m.worst) ? fmt::format("{:.6g}", m.worst) : "",
-                            m.mark, m.unit, r.failedAt ? std::to_string(*r.failedAt) : "", quoted(r.limit));
+        for (const StabilityThreshold& m : r.thresholds) {
+            text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\r\n", r.number, quoted(r.name),
+                                quoted(r.family), r.integrator, r.substeps, r.claimed ? 1 : 0,
+                                m.met() ? 1 : 0, quoted(m.what),
+                                std::isfinite(m.worst) ? fmt::format("{:.6g}", m.worst) : "", m.threshold,
+                                m.unit, r.failedAt ? std::to_string(*r.failedAt) : "", quoted(r.limit));
         }
     }
     return text;
@@ -118,7 +119,7 @@ std::string stabilityMarkdown(const std::vector<StabilityResult>& results) {
             text += fmt::format(" {}", verdict(r));
             if (!r.failedAt && r.substeps != runtime::SimulationSettings{}.substeps)
                 text += fmt::format(" ({} substeps)", r.substeps);
-            if (r.claimed && !r.pass) text += fmt::format(": {}", decidingMark(r));
+            if (r.claimed && !r.pass) text += fmt::format(": {}", decidingThreshold(r));
             text += " |";
         }
         text += "\n";

@@ -12,11 +12,12 @@
 
 namespace hairloom {
 
-/// "pass", "FAIL", or for what is not claimed "held", "limit, at substep 64" or "limit: " and decidingMark().
+/// "pass", "FAIL", or for what is not claimed "held", "limit, at substep 64" or "limit: " and
+/// decidingThreshold().
 std::string verdict(const StabilityResult& result);
 
 /// "time to rest 6 of 5 s": the mark that decides.
-std::string decidingMark(const StabilityResult& result);
+std::string decidingThreshold(const StabilityResult& result);
 
 /// One line per mark after a head line, RFC 4180: number, case, family, integrator, substeps, claimed, pass,
 /// measured, worst, mark, unit, failed_at, limit.

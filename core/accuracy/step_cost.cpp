@@ -42,8 +42,8 @@ double milliseconds(std::uint64_t nanoseconds) {
 }  // namespace
 
 StepRun::StepRun(const StepScene& scene)
-    : scene_(scene), head_(scene.strands, scene.points, isStraight(scene.acting)) {
-    runtime::SimulationSettings settings = scenes::settingsFor(scene.acting);
+    : scene_(scene), head_(scene.strands, scene.points, isStraight(scene.activeForces)) {
+    runtime::SimulationSettings settings = scenes::settingsFor(scene.activeForces);
     settings.substeps = scene.substeps;
     runtime::Host host;
     if (scene.allThreads) host.parallelFor = parallelFor;
@@ -60,7 +60,7 @@ double StepRun::milliseconds(std::uint32_t frames) {
     std::array<std::vector<double>, runtime::kStageCount> stages;
     runtime::FrameInput input;
     input.dt = kFrame;
-    if (hasSpheres(scene_.acting)) input.spheres = head_.spheres;
+    if (hasSpheres(scene_.activeForces)) input.spheres = head_.spheres;
     const bool onWall = scene_.allThreads || scene_.byStage;
     for (std::uint32_t f = 0; f < frames; ++f) {
         time_ += static_cast<double>(kFrame);
@@ -112,7 +112,7 @@ void BareIntegrator::enterFrame(std::size_t block, runtime::LaneFrame& lanes) {
                                                to.rotation.y, to.rotation.z, to.rotation.w};
         for (std::size_t r = 0; r < 3; ++r) {
             lanes.root[r][lane] = rows[r * kBlockLanes + lane];
-            lanes.rootStep[r][lane] = (now[r] - rows[r * kBlockLanes + lane]) * share;
+            lanes.rootDisplacement[r][lane] = (now[r] - rows[r * kBlockLanes + lane]) * share;
         }
         for (std::size_t r = 0; r < 4; ++r) {
             lanes.rotationFrom[r][lane] = rows[(3 + r) * kBlockLanes + lane];

@@ -16,7 +16,7 @@ namespace hairloom {
 struct StepScene {
     std::uint32_t strands = 0;
     std::uint32_t points = 16;
-    scenes::Acting acting = scenes::Acting::windAndSpheres;
+    scenes::ActiveForces activeForces = scenes::ActiveForces::windAndSpheres;
     std::uint32_t substeps = 8;
     bool allThreads = false;  ///< those of parallelFor; else one
     bool byStage = false;     ///< with a clock around each stage of each block, which costs a little itself

@@ -73,7 +73,7 @@ class Counted {
 };
 
 /// Where each run's hair goes; the first run of each setting, which also warms the caches.
-Status followAll(const GridHair& hair, std::span<const HeadPose> poses, const Trajectory& truth,
+Status followAll(const GridHair& hair, std::span<const HeadPose> poses, const Trajectory& groundTruth,
                  const Followed& followed, WorkPrecision& result, Counted& counted) {
     for (WorkPrecisionRun& run : result.runs) {
         const ThreadLimit limit = hair.limitThreads(run.values);
@@ -82,7 +82,7 @@ Status followAll(const GridHair& hair, std::span<const HeadPose> poses, const Tr
         run.stateHash = outcome->stateHash;
         run.diverged = !outcome->trajectory.finite || outcome->nanCount > 0 || outcome->restoredStrands > 0;
         if (!run.diverged) {
-            run.error = compare(outcome->trajectory, truth);
+            run.error = compare(outcome->trajectory, groundTruth);
             run.diverged = !(run.error.rmsMm <= result.options.divergedAboveMm);
         }
         if (run.diverged) run.error = {};
@@ -173,15 +173,16 @@ void noteWhatMatters(WorkPrecision& result) {
     // An error that is not well above the truth's own tells the truth's as much as the run's.
     constexpr double kClear = 3;
     const auto unclear = std::ranges::count_if(result.runs, [&](const WorkPrecisionRun& run) {
-        return !run.diverged && run.error.rmsMm < kClear * result.truthUncertaintyMm;
+        return !run.diverged && run.error.rmsMm < kClear * result.groundTruthUncertaintyMm;
     });
     if (unclear > 0) {
         result.notes.push_back(
             fmt::format("The truth itself moves by {:.3g} mm when its resolution in time is halved. The "
                         "errors of {} of {} runs "
                         "are less than three times that; which of these is more exact cannot be told.",
-                        result.truthUncertaintyMm, unclear, result.runs.size()));
-        if (!result.truthDetail.empty()) result.notes.back() += fmt::format(" ({}.)", result.truthDetail);
+                        result.groundTruthUncertaintyMm, unclear, result.runs.size()));
+        if (!result.groundTruthDetail.empty())
+            result.notes.back() += fmt::format(" ({}.)", result.groundTruthDetail);
     }
     const auto diverged = std::ranges::count_if(result.runs, &WorkPrecisionRun::diverged);
     if (diverged > 0) {
@@ -213,7 +214,8 @@ Status checkAxes(const std::vector<GridAxis>& axes) {
 }  // namespace
 
 Result<WorkPrecision> measureWorkPrecision(const Groom& groom, const HeadMotion& motion,
-                                           const WorkPrecisionOptions& options, const TruthSource& truth) {
+                                           const WorkPrecisionOptions& options,
+                                           const GroundTruthSource& groundTruth) {
     assert(options.repeats >= 1 && options.strands >= 1 && options.time.stepsPerFrame == 1);
     if (auto status = checkAxes(options.axes); !status) return tl::unexpected(status.error());
     if (groom.strandCount() == 0) return fail("the groom has no strands", "expected strands to simulate");
@@ -221,28 +223,29 @@ Result<WorkPrecision> measureWorkPrecision(const Groom& groom, const HeadMotion&
     WorkPrecision result;
     result.options = options;
     result.settings = groom.simulation;
-    result.truthName = truth.name();
-    result.truthDescription = truth.description();
+    result.groundTruthName = groundTruth.name();
+    result.groundTruthDescription = groundTruth.description();
     result.groomStrands = groom.strandCount();
     for (auto& values : combinations(options.axes)) result.runs.push_back({.values = std::move(values)});
     SceneHair sample = sampleStrands(groom, options.strands, options.seed);
     result.strands = sample.groom.strandCount();
     if (!(options.divergedAboveMm > 0)) result.options.divergedAboveMm = longestStrandMm(sample.groom) / 4;
     if (const auto points = findAxis(options.axes, kPointsAxis)) {
-        result.truthPoints = largestCount(options.axes[*points].values);
+        result.groundTruthPoints = largestCount(options.axes[*points].values);
     }
     const GridHair hair(std::move(sample), result.options.axes);
 
     // The truth counts as one run; it takes as long as several, but how many depends on the grid.
     Counted counted(options, 1 + result.runs.size() * (1 + options.repeats));
     const SceneHair finest = hair.finest();
-    const auto exact = truth.compute(
-        finest, motion, options.time,
-        {drawnStrands(finest.groom, truth.mostStrands(), options.seed), evenShares(options.pointsCompared)});
+    const auto exact =
+        groundTruth.compute(finest, motion, options.time,
+                            {drawnStrands(finest.groom, groundTruth.maxStrands(), options.seed),
+                             evenShares(options.pointsCompared)});
     if (!exact) return tl::unexpected(exact.error());
     result.strandsCompared = exact->followed.strands.size();
-    result.truthUncertaintyMm = exact->uncertaintyMm;
-    result.truthDetail = exact->detail;
+    result.groundTruthUncertaintyMm = exact->uncertaintyMm;
+    result.groundTruthDetail = exact->detail;
     result.notes = exact->notes;
     counted.add();
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/accuracy/grid.h"
+#include "core/accuracy/ground_truth.h"
 #include "core/accuracy/statistics.h"
-#include "core/accuracy/truth.h"
 
 namespace hairloom {
 
@@ -38,11 +38,11 @@ struct WorkPrecisionRun {
 struct WorkPrecision {
     WorkPrecisionOptions options;          ///< with divergedAboveMm settled
     runtime::SimulationSettings settings;  ///< of the scene: what no axis varies
-    std::string truthName;
-    std::string truthDescription;
-    std::string truthDetail;
-    double truthUncertaintyMm = 0;
-    std::uint32_t truthPoints = 0;  ///< per strand; 0 as authored
+    std::string groundTruthName;
+    std::string groundTruthDescription;
+    std::string groundTruthDetail;
+    double groundTruthUncertaintyMm = 0;
+    std::uint32_t groundTruthPoints = 0;  ///< per strand; 0 as authored
     std::size_t groomStrands = 0;
     std::size_t strands = 0;             ///< that ran
     std::size_t strandsCompared = 0;     ///< of those, the ones that errors are taken from
@@ -53,6 +53,7 @@ struct WorkPrecision {
 /// Errors: an axis that is neither a field nor named above, values out of its range (all of them checked
 /// before anything runs), a groom that cannot be simulated.
 Result<WorkPrecision> measureWorkPrecision(const Groom& groom, const HeadMotion& motion,
-                                           const WorkPrecisionOptions& options, const TruthSource& truth);
+                                           const WorkPrecisionOptions& options,
+                                           const GroundTruthSource& groundTruth);
 
 }  // namespace hairloom

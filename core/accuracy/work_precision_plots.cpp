@@ -54,7 +54,7 @@ std::string noteUnderPlot(const WorkPrecision& result, const ReportContext& cont
         "{}{}{} of {} strands, {} frames at {:g} Hz, motion {}. Bars: quartiles of {} runs. Error "
         "against {}.",
         labels, labels.empty() ? "" : ". ", result.strands, result.groomStrands, result.options.time.frames,
-        result.options.time.framesPerSecond, context.motion, result.options.repeats, result.truthName);
+        result.options.time.framesPerSecond, context.motion, result.options.repeats, result.groundTruthName);
 }
 
 std::string tooltipOf(const WorkPrecision& result, const WorkPrecisionRun& run) {
@@ -162,7 +162,7 @@ Plot workPrecisionPlot(const WorkPrecision& result, const ReportContext& context
                            .colour = kGrey,
                            .marker = Marker::None,
                            .line = LineStyle::Solid});
-    addUncertainty(result.truthUncertaintyMm, times.low, times.high, plot);
+    addUncertainty(result.groundTruthUncertaintyMm, times.low, times.high, plot);
     for (auto& [key, one] : series) {
         one.colour = paletteColour(key.first);
         one.marker = kShapes[key.second % std::size(kShapes)];
@@ -218,7 +218,7 @@ std::optional<Plot> errorPlot(const WorkPrecision& result, std::size_t axisIndex
         std::ranges::sort(one.points, {}, &PlotPoint::x);
         plot.series.push_back(std::move(one));
     }
-    addUncertainty(result.truthUncertaintyMm, sorted.front(), sorted.back(), plot);
+    addUncertainty(result.groundTruthUncertaintyMm, sorted.front(), sorted.back(), plot);
     return plot;
 }
 

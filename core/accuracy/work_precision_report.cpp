@@ -114,14 +114,14 @@ void addWhatWasRun(const WorkPrecision& result, const ReportContext& context, Ht
         facts.emplace_back(axis.field, fmt::format("{}", fmt::join(values, ", ")));
     }
     facts.emplace_back("Other settings", otherSettings(result));
-    facts.emplace_back(
-        "Truth",
-        fmt::format("{}: {}; {} points per strand; {:.3g} mm root mean square from the same "
-                    "at half its resolution in time",
-                    result.truthName, result.truthDescription,
-                    result.truthPoints ? fmt::format("{}", result.truthPoints) : std::string("the authored"),
-                    result.truthUncertaintyMm));
-    if (!result.truthDetail.empty()) facts.emplace_back("Its convergence", result.truthDetail);
+    facts.emplace_back("Truth",
+                       fmt::format("{}: {}; {} points per strand; {:.3g} mm root mean square from the same "
+                                   "at half its resolution in time",
+                                   result.groundTruthName, result.groundTruthDescription,
+                                   result.groundTruthPoints ? fmt::format("{}", result.groundTruthPoints)
+                                                            : std::string("the authored"),
+                                   result.groundTruthUncertaintyMm));
+    if (!result.groundTruthDetail.empty()) facts.emplace_back("Its convergence", result.groundTruthDetail);
     if (result.strandsCompared < result.strands)
         facts.emplace_back("Strands compared", fmt::format("{}", result.strandsCompared));
     facts.emplace_back(

@@ -39,10 +39,10 @@ class Moves {
   public:
     Moves(std::size_t length, std::size_t size, std::span<const Range> gaps, Gaps change) : change_(change) {
         if (gaps.empty()) return;
-        constexpr std::size_t kLeastPiece = std::size_t{1} << 17u;  // bytes
+        constexpr std::size_t kMinPiece = std::size_t{1} << 17u;  // bytes
         const std::size_t all = length - (gaps.front().begin + total(gaps)) * size;
         const std::size_t count =
-            std::clamp<std::size_t>(all / kLeastPiece, 1, std::max<std::size_t>(threadCount(), 1));
+            std::clamp<std::size_t>(all / kMinPiece, 1, std::max<std::size_t>(threadCount(), 1));
         each_ = (all + count - 1) / count;
         moves_.reserve(gaps.size() + count);
         firsts_.reserve(count);

@@ -10,10 +10,10 @@ namespace hairloom::editing {
 
 class BrushCurve {
   public:
-    static constexpr std::size_t kMostValues = 64;
+    static constexpr std::size_t kMaxValues = 64;
 
     BrushCurve() = default;  ///< 1 everywhere
-    /// Values in [0, 1] at even distances from 0 to 1, at most kMostValues; straight between. None is 1
+    /// Values in [0, 1] at even distances from 0 to 1, at most kMaxValues; straight between. None is 1
     /// everywhere.
     explicit BrushCurve(std::vector<float> values) : values_(std::move(values)) {}
 

@@ -54,11 +54,11 @@ Status checkParameters(const BrushInfo& info, const BrushSettings& settings) {
 
 Status checkCurve(std::string_view name, const BrushCurve& curve) {
     const auto& values = curve.values();
-    const bool good = values.size() <= BrushCurve::kMostValues &&
+    const bool good = values.size() <= BrushCurve::kMaxValues &&
                       std::all_of(values.begin(), values.end(), [](float v) { return v >= 0 && v <= 1; });
     if (good) return {};
     return fail(fmt::format("the {} has {} values or one out of range", name, values.size()),
-                fmt::format("up to {} values from 0 to 1", BrushCurve::kMostValues));
+                fmt::format("up to {} values from 0 to 1", BrushCurve::kMaxValues));
 }
 
 }  // namespace

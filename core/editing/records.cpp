@@ -16,23 +16,24 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using Indices = std::vector<std::uint32_t>;
-using Made = Result<std::unique_ptr<Command>>;
+using CommandResult = Result<std::unique_ptr<Command>>;
 
-constexpr std::size_t kMostNumbers = 4'000'000;
+constexpr std::size_t kMaxNumbers = 4'000'000;
 
 /// Settings under "settings"; those that are not named have their defaults.
 template <class S, std::unique_ptr<Command> (*Make)(const Model&, const S&, std::string)>
 MakeCommand readSettingsStep(JsonReader& reader) {
     S checked;
     readSettings(reader.object("settings"), checked);
-    return
-        [checked](const Document& document) -> Made { return Make(document.model(), checked, "Settings"); };
+    return [checked](const Document& document) -> CommandResult {
+        return Make(document.model(), checked, "Settings");
+    };
 }
 
 MakeCommand readSpheres(JsonReader& reader) {
     std::vector<CollisionSphere> spheres;
     for (JsonReader& entry : reader.objects("spheres")) spheres.push_back(readSphere(entry));
-    return [spheres](const Document& document) -> Made {
+    return [spheres](const Document& document) -> CommandResult {
         return setSpheres(document.model(), spheres, "Spheres");
     };
 }
@@ -43,7 +44,7 @@ MakeCommand readLayers(JsonReader& reader) {
         layers.push_back({entry.string("name"), entry.boolean("visible"), entry.boolean("locked")});
         entry.finish();
     }
-    return [layers](const Document& document) -> Made {
+    return [layers](const Document& document) -> CommandResult {
         if (layers.size() < document.groom().layers.size())
             return fail(fmt::format("{} layers", layers.size()), "as many as there are, or more");
         return setLayers(document.model(), layers);
@@ -56,25 +57,25 @@ Status checkBelow(const Indices& indices, std::size_t count, std::string_view wh
 }
 
 MakeCommand readStrands(JsonReader& reader) {
-    constexpr std::string_view kWays[] = {"select", "hide", "show", "freeze", "thaw", "delete"};
-    const std::string_view way = kWays[reader.choice("do", kWays)];
-    const Indices strands = way == "show" ? Indices() : readRuns(reader, "strands");
-    return [way, strands](const Document& document) -> Made {
+    constexpr std::string_view kActions[] = {"select", "hide", "show", "freeze", "thaw", "delete"};
+    const std::string_view action = kActions[reader.choice("do", kActions)];
+    const Indices strands = action == "show" ? Indices() : readRuns(reader, "strands");
+    return [action, strands](const Document& document) -> CommandResult {
         const Model& model = document.model();
         if (auto status = checkBelow(strands, model.groom.strandCount(), "strand"); !status)
             return tl::unexpected(status.error());
-        if (way == "select") return selectStrands(model, strands, Choice::Replace);
-        if (way == "hide") return hideStrands(model, strands);
-        if (way == "show") return showStrands(model);
-        if (way == "delete") return deleteStrands(model, strands);
-        return freezeStrands(model, strands, way == "freeze");
+        if (action == "select") return selectStrands(model, strands, Choice::Replace);
+        if (action == "hide") return hideStrands(model, strands);
+        if (action == "show") return showStrands(model);
+        if (action == "delete") return deleteStrands(model, strands);
+        return freezeStrands(model, strands, action == "freeze");
     };
 }
 
 MakeCommand readScalp(JsonReader& reader) {
     const Indices faces = readRuns(reader, "faces");
     const std::string expression = reader.string("expression");
-    return [faces, expression](const Document& document) -> Made {
+    return [faces, expression](const Document& document) -> CommandResult {
         const std::size_t count = document.groom().scalp ? document.groom().scalp->triangleCount() : 0;
         if (auto status = checkBelow(faces, count, "face"); !status) return tl::unexpected(status.error());
         return selectScalp(document.model(), faces, Choice::Replace, expression);
@@ -83,9 +84,9 @@ MakeCommand readScalp(JsonReader& reader) {
 
 MakeCommand readDensity(JsonReader& reader) {
     std::vector<float> values;
-    for (const double value : reader.numbers("values", 0, 1, kMostNumbers))
+    for (const double value : reader.numbers("values", 0, 1, kMaxNumbers))
         values.push_back(static_cast<float>(value));
-    return [values](const Document& document) -> Made {
+    return [values](const Document& document) -> CommandResult {
         const std::size_t vertices = document.groom().scalp ? document.groom().scalp->vertexCount() : 0;
         if (values.size() != vertices)
             return fail(fmt::format("{} densities", values.size()),
@@ -100,13 +101,13 @@ MakeCommand readPlace(JsonReader& reader) {
     request.reach = static_cast<float>(reader.number("reach", 0, 10, "m"));
     const bool collide = reader.boolean("collide");
     const auto clearance = static_cast<float>(reader.number("clearance", 0, 0.01, "m"));
-    return [request, collide, clearance](const Document& document) -> Made {
+    return [request, collide, clearance](const Document& document) -> CommandResult {
         return place(document.groom(), request, KeepOut{collide ? document.skinField() : nullptr, clearance});
     };
 }
 
 MakeCommand readTriangulate(JsonReader&) {
-    return [](const Document& document) -> Made { return triangulate(document.model()); };
+    return [](const Document& document) -> CommandResult { return triangulate(document.model()); };
 }
 
 constexpr RecordedOperation kOperations[] = {
@@ -139,15 +140,15 @@ Json runsOf(std::span<const std::uint32_t> ascending) {
 
 Indices readRuns(JsonReader& reader, std::string_view name) {
     constexpr double kLargest = 4294967295.0;
-    const std::vector<double> runs = reader.numbers(name, 0, kLargest, kMostNumbers);
+    const std::vector<double> runs = reader.numbers(name, 0, kLargest, kMaxNumbers);
     Indices numbers;
     std::uint64_t next = 0;
     for (std::size_t i = 0; i + 1 < runs.size(); i += 2) {
         const auto first = static_cast<std::uint64_t>(runs[i]);
         const auto count = static_cast<std::uint64_t>(runs[i + 1]);
-        if (first < next || count > kMostNumbers - numbers.size()) {
+        if (first < next || count > kMaxNumbers - numbers.size()) {
             reader.complain(name, fmt::format("does not ascend at value {}", i),
-                            fmt::format("expected ascending runs of up to {} numbers", kMostNumbers));
+                            fmt::format("expected ascending runs of up to {} numbers", kMaxNumbers));
             return {};
         }
         for (std::uint64_t k = 0; k < count; ++k) numbers.push_back(static_cast<std::uint32_t>(first + k));

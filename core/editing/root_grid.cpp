@@ -56,12 +56,12 @@ std::vector<RootGrid::Neighbour> RootGrid::nearest(const Vec3f& point_ss, std::s
         });
         if (found.size() >= count || reach >= radius) break;
     }
-    const std::size_t most = std::min(count, found.size());
-    std::partial_sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(most), found.end(),
+    const std::size_t maximum = std::min(count, found.size());
+    std::partial_sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(maximum), found.end(),
                       [](const Neighbour& a, const Neighbour& b) {
                           return std::tie(a.distance, a.strand) < std::tie(b.distance, b.strand);
                       });
-    found.resize(most);
+    found.resize(maximum);
     return found;
 }
 

@@ -16,7 +16,7 @@ constexpr int kCorners = kCells + 1;
 constexpr std::size_t kValues = std::size_t{kCorners} * kCorners * kCorners;
 constexpr float kSlopeless =
     0.2f;  ///< on the ridge between two sides of the skin the interpolated slope vanishes
-constexpr double kMostBlocks = 2e6;
+constexpr double kMaxBlocks = 2e6;
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
 float halfDiagonal(float cell) {
@@ -75,7 +75,7 @@ SkinField::SkinField(std::shared_ptr<const Skin> skin, float cell)
         return (extent / (size * kCells)).array().ceil().cast<int>();
     };
     constexpr float kGrowth = 1.1f;
-    while (sizeAt(cell_).cast<double>().prod() > kMostBlocks) cell_ *= kGrowth;
+    while (sizeAt(cell_).cast<double>().prod() > kMaxBlocks) cell_ *= kGrowth;
     size_ = sizeAt(cell_);
     low_ = meshBounds_.min() - Vec3f::Constant(kReach + cell_ * kCells);
     perCell_ = 1 / cell_;
@@ -166,8 +166,8 @@ SkinDistance SkinField::distanceUpTo(const Vec3f& point, float enough) const {
     if (place.block == kNoBlock) return beyondTable(point);
     // From the middle of a block the distance falls by no more than the way to its corner.
     const float centre = centreDistance(place.block);
-    const float least = centre - halfDiagonal(cell_);
-    if (least > enough) return {least, Vec3f::UnitY()};
+    const float minimum = centre - halfDiagonal(cell_);
+    if (minimum > enough) return {minimum, Vec3f::UnitY()};
     if (std::abs(centre) > halfDiagonal(cell_) + kReach) return distanceAt(point);
     return interpolated(place, point, enough);
 }

@@ -22,7 +22,7 @@ namespace {
 constexpr std::size_t kSamples = 4000;
 constexpr std::size_t kSeeds = 1000;
 constexpr int kRounds = 60;
-constexpr std::uint32_t kMostSpheres = 64;
+constexpr std::uint32_t kMaxSpheres = 64;
 
 struct Ball {
     Vec3d centre;
@@ -38,11 +38,11 @@ struct Samples {
 
 std::size_t nearestTo(const std::vector<Vec3d>& points, const Vec3d& place) {
     std::size_t nearest = 0;
-    double least = std::numeric_limits<double>::infinity();
+    double minimum = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < points.size(); ++i) {
         const double distance = (points[i] - place).squaredNorm();
-        if (distance >= least) continue;
-        least = distance;
+        if (distance >= minimum) continue;
+        minimum = distance;
         nearest = i;
     }
     return nearest;
@@ -166,7 +166,7 @@ Quality qualityOf(const std::vector<Ball>& balls, const Samples& samples) {
 std::vector<Ball> refine(std::vector<Ball> balls, const Samples& samples, double largest) {
     constexpr std::size_t kFewest = 8;
     std::vector<Ball> best = balls;
-    double least = qualityOf(balls, samples).mean4;
+    double minimum = qualityOf(balls, samples).mean4;
     for (int round = 0; round < kRounds; ++round) {
         std::vector<std::vector<std::size_t>> owned(balls.size());
         for (std::size_t i = 0; i < samples.points.size(); ++i)
@@ -182,8 +182,8 @@ std::vector<Ball> refine(std::vector<Ball> balls, const Samples& samples, double
             }
         }
         const double now = qualityOf(balls, samples).mean4;
-        if (now >= least) continue;
-        least = now;
+        if (now >= minimum) continue;
+        minimum = now;
         best = balls;
     }
     return best;
@@ -213,8 +213,8 @@ Result<Samples> sample(const ScalpMesh& mesh, const SphereFitOptions& options) {
 }  // namespace
 
 Result<SphereFit> fitSpheres(const ScalpMesh& mesh, const SphereFitOptions& options) {
-    if (options.count < 1 || options.count > kMostSpheres)
-        return fail(fmt::format("{} spheres", options.count), fmt::format("1 to {}", kMostSpheres));
+    if (options.count < 1 || options.count > kMaxSpheres)
+        return fail(fmt::format("{} spheres", options.count), fmt::format("1 to {}", kMaxSpheres));
     if (!(options.largestRadius > 0.001f && options.largestRadius <= 10))
         return fail(fmt::format("a largest radius of {} m", options.largestRadius), "0.001 to 10 m");
     const auto samples = sample(mesh, options);

@@ -41,10 +41,10 @@ std::size_t firstWeighted(std::span<const float> weights) {
 void squaredDistances(const BrushVolume& volume, const float* xyz, std::span<float> squares) {
     const float cx = volume.centre.x(), cy = volume.centre.y(), cz = volume.centre.z();
     const float ax = volume.axis.x(), ay = volume.axis.y(), az = volume.axis.z();
-    const float most = volume.halfLength;
+    const float maximum = volume.halfLength;
     for (std::size_t i = 0; i < squares.size(); ++i) {
         const float x = xyz[3 * i] - cx, y = xyz[3 * i + 1] - cy, z = xyz[3 * i + 2] - cz;
-        const float along = std::min(std::max(x * ax + y * ay + z * az, -most), most);
+        const float along = std::min(std::max(x * ax + y * ay + z * az, -maximum), maximum);
         const float u = x - ax * along, v = y - ay * along, w = z - az * along;
         squares[i] = u * u + v * v + w * w;
     }

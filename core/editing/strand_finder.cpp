@@ -15,8 +15,8 @@ constexpr std::size_t kGrain = 256;
 bool segmentTouches(const BrushVolume& volume, const Vec3f& from, const Vec3f& to) {
     const float squaredRadius = volume.radius * volume.radius;
     const float pieces = std::ceil(2 * (to - from).norm() / volume.radius);
-    constexpr float kMostPieces = 64;
-    const float count = std::clamp(pieces, 1.0f, kMostPieces);
+    constexpr float kMaxPieces = 64;
+    const float count = std::clamp(pieces, 1.0f, kMaxPieces);
     for (int k = 0; k <= static_cast<int>(count); ++k) {
         const float t = static_cast<float>(k) / count;
         if (volume.squaredDistance(from + t * (to - from)) < squaredRadius) return true;

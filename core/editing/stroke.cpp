@@ -19,7 +19,7 @@ Json curveToJson(const BrushCurve& curve) {
 
 BrushCurve readCurve(JsonReader& reader, std::string_view name) {
     std::vector<float> values;
-    for (const double value : reader.numbers(name, 0, 1, BrushCurve::kMostValues))
+    for (const double value : reader.numbers(name, 0, 1, BrushCurve::kMaxValues))
         values.push_back(static_cast<float>(value));
     return BrushCurve(std::move(values));
 }

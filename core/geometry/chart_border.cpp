@@ -91,11 +91,11 @@ double ChartBorder::overhangOf(const std::vector<std::uint32_t>& chain, const Co
 /// The farthest that any end of the segments lies to the left of a → b.
 double ChartBorder::depth(const std::vector<std::uint32_t>& chain, const Vec2d& a, const Vec2d& b) const {
     const Vec2d along = (b - a).normalized();
-    double most = 0;
+    double maximum = 0;
     for (const std::uint32_t s : chain)
         for (const Vec2d& end : grid_.segments()[s])
-            most = std::max(most, along.x() * (end - a).y() - along.y() * (end - a).x());
-    return most;
+            maximum = std::max(maximum, along.x() * (end - a).y() - along.y() * (end - a).x());
+    return maximum;
 }
 
 }  // namespace hairloom

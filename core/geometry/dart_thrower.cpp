@@ -16,8 +16,8 @@ constexpr float kPart = 1.6f;
 constexpr double kFirstDarts = 1.5;  // random darts for each root of a saturated set
 // Parts are filled in so many rounds over the surface, so that a stop at a count leaves its gaps scattered.
 constexpr std::size_t kRounds = 8;
-constexpr std::size_t kMostBits = 64;
-constexpr float kLeastDensity = 1.0f / 64;
+constexpr std::size_t kMaxBits = 64;
+constexpr float kMinDensity = 1.0f / 64;
 
 template <class Point>
 std::array<std::array<Point, 3>, 4> quarters(const std::array<Point, 3>& corners) {
@@ -111,7 +111,7 @@ float DartThrower::densityAt(std::uint32_t triangle, const Vec3f& weights) const
 }
 
 float DartThrower::localRadius(float density) const {
-    return mask_.empty() ? apart_ : apart_ / std::sqrt(std::clamp(density, kLeastDensity, 1.0f));
+    return mask_.empty() ? apart_ : apart_ / std::sqrt(std::clamp(density, kMinDensity, 1.0f));
 }
 
 DartThrower::Spacing DartThrower::spacingOf(const Fragment& fragment) const {
@@ -121,7 +121,7 @@ DartThrower::Spacing DartThrower::spacingOf(const Fragment& fragment) const {
         densities[i] =
             densityAt(fragment.triangle, barycentric(fragment.corners[static_cast<std::size_t>(i)]));
     return {localRadius(densities.maxCoeff()), localRadius(densities.minCoeff()),
-            densities.maxCoeff() < kLeastDensity};
+            densities.maxCoeff() < kMinDensity};
 }
 
 DartThrower::Fragment DartThrower::wholeFace(std::uint32_t face) const {
@@ -148,7 +148,7 @@ std::uint64_t DartThrower::rootsReached(const Vec3f& place, std::size_t first) c
 /// One root reaches all corners, so that no dart in the part can stand: two roots keep the smaller of their
 /// local radii apart. With one radius for all, corners remember the roots that reach them.
 bool DartThrower::coveredByNear(Part& part) const {
-    if (mask_.empty() && near_.size() <= kMostBits) {
+    if (mask_.empty() && near_.size() <= kMaxBits) {
         for (std::size_t i = 0; i < 3; ++i) part.reached[i] |= rootsReached(part.places[i], part.known);
         part.known = near_.size();
         return (part.reached[0] & part.reached[1] & part.reached[2]) != 0;
@@ -171,7 +171,7 @@ void DartThrower::throwDart(const Fragment& fragment, bool gather) {
     const Vec3f place = mesh_.pointAt(fragment.triangle, weights);
     const float density = densityAt(fragment.triangle, weights);
     const float radius = localRadius(density);
-    if (density < kLeastDensity && !mask_.empty()) return;
+    if (density < kMinDensity && !mask_.empty()) return;
     if (gather) gatherNear(place, radius);
     for (const DartGrid::Entry& root : near_) {
         const float apart = std::min(root.radius, radius);
@@ -203,7 +203,7 @@ void DartThrower::splitAndKeep(const Part& part) {
 }
 
 /// Fills what is left of a part; all roots that matter to it are gathered once.
-void DartThrower::fill(const Fragment& fragment, std::size_t most) {
+void DartThrower::fill(const Fragment& fragment, std::size_t maximum) {
     const Spacing spacing = spacingOf(fragment);
     const Vec3f center = (fragment.places[0] + fragment.places[1] + fragment.places[2]) / 3;
     float reach = 0;
@@ -212,7 +212,7 @@ void DartThrower::fill(const Fragment& fragment, std::size_t most) {
     Part whole{fragment, {}, 0};
     if (coveredByNear(whole)) return;
     splitAndKeep(whole);
-    while (!small_.empty() && roots_.size() < most) {
+    while (!small_.empty() && roots_.size() < maximum) {
         Part part = small_.back();
         small_.pop_back();
         throwDart(part, false);
@@ -222,7 +222,7 @@ void DartThrower::fill(const Fragment& fragment, std::size_t most) {
     small_.clear();
 }
 
-void DartThrower::throwAnywhere(std::size_t most) {
+void DartThrower::throwAnywhere(std::size_t maximum) {
     const double perArea =
         kFirstDarts / (static_cast<double>(radius_) * radius_) / static_cast<double>(kRounds);
     for (std::size_t round = 0; round < kRounds; ++round)
@@ -232,7 +232,7 @@ void DartThrower::throwAnywhere(std::size_t most) {
             const auto count = static_cast<std::size_t>(darts + random_.uniformDouble());
             if (count == 0) continue;
             const Fragment whole = wholeFace(face);
-            for (std::size_t i = 0; i < count && roots_.size() < most; ++i) throwDart(whole, true);
+            for (std::size_t i = 0; i < count && roots_.size() < maximum; ++i) throwDart(whole, true);
         }
 }
 
@@ -244,15 +244,15 @@ void DartThrower::listParts(const Fragment& fragment) {
         forEachQuarter(fragment, [&](const Fragment& quarter) { listParts(quarter); });
 }
 
-bool DartThrower::run(std::size_t most) {
-    throwAnywhere(most);
+bool DartThrower::run(std::size_t maximum) {
+    throwAnywhere(maximum);
     for (const std::uint32_t face : faces_) listParts(wholeFace(face));
     const std::vector<Fragment> parts = std::move(left_);
     left_.clear();
     for (std::size_t round = 0; round < kRounds; ++round)
         for (std::size_t i = round; i < parts.size(); i += kRounds) {
-            if (roots_.size() < most)
-                fill(parts[i], most);
+            if (roots_.size() < maximum)
+                fill(parts[i], maximum);
             else
                 left_.push_back(parts[i]);
         }

@@ -72,7 +72,7 @@ class DartThrower {
                 std::uint64_t seed);
 
     /// Throws until the set is maximal (true) or holds `most` roots while gaps are left (false).
-    bool run(std::size_t most);
+    bool run(std::size_t maximum);
 
     /// After run: whether no point with density 1 (or of any density, against its own radius) is farther than
     /// `factor` local radii from a root.
@@ -107,12 +107,12 @@ class DartThrower {
     Spacing spacingOf(const Fragment& fragment) const;
     Fragment wholeFace(std::uint32_t face) const;
     /// Random darts on the whole selection: cheap while most of it is free.
-    void throwAnywhere(std::size_t most);
+    void throwAnywhere(std::size_t maximum);
     /// Lists the parts of a face that are small enough for fill().
     void listParts(const Fragment& fragment);
     /// Throws one dart at the fragment, checked against near_, which it may have to gather.
     void throwDart(const Fragment& fragment, bool gather);
-    void fill(const Fragment& fragment, std::size_t most);
+    void fill(const Fragment& fragment, std::size_t maximum);
     void gatherNear(const Vec3f& center, float range);
     bool coveredByNear(Part& part) const;
     std::uint64_t rootsReached(const Vec3f& place, std::size_t first) const;

@@ -14,8 +14,8 @@ namespace hairloom {
 namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-constexpr std::size_t kMostCorners = std::size_t{1} << 29u;  // three corners a triangle stay below 2^31
-constexpr float kFarthest = 1e7f;                            // metres
+constexpr std::size_t kMaxCorners = std::size_t{1} << 29u;  // three corners a triangle stay below 2^31
+constexpr float kFarthest = 1e7f;                           // metres
 
 Status checkFaceList(const PolygonSoup& soup) {
     const std::size_t faces = soup.offsets.empty() ? 0 : soup.offsets.size() - 1;
@@ -23,10 +23,10 @@ Status checkFaceList(const PolygonSoup& soup) {
     if (soup.offsets.front() != 0 || soup.offsets.back() != soup.corners.size() ||
         !std::is_sorted(soup.offsets.begin(), soup.offsets.end()))
         return fail("the list of face sizes does not add up to the number of corners");
-    if (soup.corners.size() > kMostCorners || soup.positions.size() > kMostCorners)
+    if (soup.corners.size() > kMaxCorners || soup.positions.size() > kMaxCorners)
         return fail(fmt::format("the mesh has {} corners and {} vertices", soup.corners.size(),
                                 soup.positions.size()),
-                    fmt::format("at most {} of each", kMostCorners));
+                    fmt::format("at most {} of each", kMaxCorners));
     const auto fits = [](std::size_t size, std::size_t wanted) { return size == 0 || size == wanted; };
     if (!fits(soup.uvs.size(), soup.corners.size()) || !fits(soup.normals.size(), soup.corners.size()))
         return fail("UVs or normals do not match the number of corners", "one per corner or none");

@@ -11,7 +11,7 @@
 namespace hairloom {
 namespace {
 
-constexpr double kMostStretch = 2;
+constexpr double kMaxStretch = 2;
 
 double flatArea(const std::vector<Vec2d>& uvs) {
     double sum = 0;
@@ -50,7 +50,7 @@ std::optional<Chart> chartFromUvs(const ScalpMesh& mesh, const FaceSet& piece) {
     }
     if (!isInjective(opposite, uvs)) return std::nullopt;
     Chart chart = finished(mesh, piece, std::move(uvs));
-    return chart.stretch <= kMostStretch ? std::optional(std::move(chart)) : std::nullopt;
+    return chart.stretch <= kMaxStretch ? std::optional(std::move(chart)) : std::nullopt;
 }
 
 }  // namespace

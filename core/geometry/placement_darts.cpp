@@ -15,7 +15,7 @@ namespace {
 /// (Zhang and Torquato 2013), and each covers π/4 squared radii.
 constexpr double kSaturated = 0.5470 * 4 / 3.14159265358979323846;
 constexpr double kSurplus = 1.008;  ///< aim for so many more than asked, so that the count is met at once
-constexpr int kMostTries = 48;
+constexpr int kMaxTries = 48;
 constexpr double kCm2PerM2 = 1e4;
 
 /// Below this radius the rounding of coordinates blurs the distances.
@@ -63,7 +63,7 @@ Result<Placement> placeDarts(const ScalpMesh& mesh, const FaceSet& faces, const 
     // Radii known to give too few roots, and to leave gaps that are too wide.
     double tooWide = std::numeric_limits<double>::infinity(), tooNarrow = 0;
     double radius = std::sqrt(kSaturated * area / (wanted * kSurplus));
-    for (int attempt = 0; attempt < kMostTries; ++attempt) {
+    for (int attempt = 0; attempt < kMaxTries; ++attempt) {
         if (radius < finest) return tooDense(wanted / area, finest);
         DartThrower thrower(mesh, faces, request.mask, static_cast<float>(radius), request.seed);
         const bool maximal = thrower.run(*count);

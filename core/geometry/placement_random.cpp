@@ -10,8 +10,8 @@
 namespace hairloom {
 namespace {
 
-constexpr double kMostPerCm2 = 10'000;
-constexpr double kMostRoots = 5e6;
+constexpr double kMaxPerCm2 = 10'000;
+constexpr double kMaxRoots = 5e6;
 constexpr double kCm2PerM2 = 1e4;
 
 /// Picks faces in proportion to their weight in constant expected time (the cutpoint method, Chen and Asau
@@ -53,9 +53,9 @@ Vec3f uniformBarycentric(Random& random) {
 
 /// Points of a face in proportion to a density that is linear over it.
 Vec3f pointByDensity(Random& random, const Vec3f& densities) {
-    const float most = densities.maxCoeff();
+    const float maximum = densities.maxCoeff();
     Vec3f point = uniformBarycentric(random);
-    while (random.uniform() * most >= point.dot(densities)) point = uniformBarycentric(random);
+    while (random.uniform() * maximum >= point.dot(densities)) point = uniformBarycentric(random);
     return point;
 }
 
@@ -85,7 +85,7 @@ double maskedArea(const ScalpMesh& mesh, const FaceSet& faces, std::span<const f
 
 Result<std::size_t> requestedCount(const PlacementRequest& request, double maskedSquareMetres) {
     const double cm2 = maskedSquareMetres * kCm2PerM2;
-    const double most = std::min(kMostRoots, kMostPerCm2 * cm2);
+    const double maximum = std::min(kMaxRoots, kMaxPerCm2 * cm2);
     const bool byDensity = request.densityPerCm2 != 0;
     const double wanted =
         byDensity ? std::round(request.densityPerCm2 * cm2) : static_cast<double>(request.count);
@@ -95,9 +95,9 @@ Result<std::size_t> requestedCount(const PlacementRequest& request, double maske
         return fail("the request asks for no root", byDensity
                                                         ? fmt::format("at least {:.3g} per cm²", 1 / cm2)
                                                         : std::string("a count of at least 1"));
-    if (wanted > most)
+    if (wanted > maximum)
         return fail(fmt::format("{:.0f} roots on {:.4g} cm² are {:.4g} per cm²", wanted, cm2, wanted / cm2),
-                    fmt::format("at most {:.4g} per cm²", most / cm2));
+                    fmt::format("at most {:.4g} per cm²", maximum / cm2));
     return static_cast<std::size_t>(wanted);
 }
 

@@ -93,8 +93,8 @@ Result<FaceSet> facesNamed(std::string_view term, std::string_view name, const F
 }
 
 FaceSet facesUpright(const ScalpMesh& mesh, const FaceSet& current, double capDegrees) {
-    const double least = std::cos(capDegrees * std::numbers::pi / 180) - 1e-6;
-    return filtered(current, [&](std::uint32_t face) { return mesh.triangleNormal(face).y() >= least; });
+    const double minimum = std::cos(capDegrees * std::numbers::pi / 180) - 1e-6;
+    return filtered(current, [&](std::uint32_t face) { return mesh.triangleNormal(face).y() >= minimum; });
 }
 
 FaceSet facesAbove(const ScalpMesh& mesh, const FaceSet& current, double fraction) {
@@ -104,11 +104,11 @@ FaceSet facesAbove(const ScalpMesh& mesh, const FaceSet& current, double fractio
             low = std::min(low, static_cast<double>(mesh.positions()[vertex].y()));
             high = std::max(high, static_cast<double>(mesh.positions()[vertex].y()));
         }
-    const double least = low + fraction * (high - low);
+    const double minimum = low + fraction * (high - low);
     return filtered(current, [&](std::uint32_t face) {
         double sum = 0;
         for (const std::uint32_t vertex : mesh.triangles()[face]) sum += mesh.positions()[vertex].y();
-        return sum / 3 >= least;
+        return sum / 3 >= minimum;
     });
 }
 
@@ -163,8 +163,8 @@ Result<FaceSet> applyWithArgument(const ScalpMesh& mesh, const FaceSet& current,
             return facesAbove(mesh, current, fraction);
         });
     if (word == "faces") return facesListed(mesh, current, std::string(argument));
-    constexpr double kMostRings = 1e6;
-    const Result<double> rings = numberBetween(term, argument, 0, kMostRings);
+    constexpr double kMaxRings = 1e6;
+    const Result<double> rings = numberBetween(term, argument, 0, kMaxRings);
     if (!rings) return tl::unexpected(rings.error());
     if (*rings != std::floor(*rings))
         return fail(fmt::format("selection '{}': '{}' is no whole number", term, argument));

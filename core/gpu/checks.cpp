@@ -146,7 +146,7 @@ Result<DeviceInfo> chooseDevice(const std::vector<DeviceInfo>& infos, const Devi
     }
     if (best != nullptr) return *best;
     if (refused != nullptr)
-        return fail("GPU '" + refused->name + "' cannot be used: " + refused->whyUnusable);
+        return fail("GPU '" + refused->name + "' cannot be used: " + refused->unusableReason);
     std::string names;
     for (const DeviceInfo& info : infos)
         names += fmt::format("{}{}: {}", names.empty() ? "" : ", ", info.index, info.name);

@@ -283,10 +283,10 @@ std::string_view toString(Backend backend);
 /// Threads that a wave may have where a compute pipeline asks for it; such waves have votes, ballots and
 /// shuffles.
 struct WaveSizes {
-    std::uint32_t least = 0, most = 0;  ///< 0: none can be asked for
+    std::uint32_t minimum = 0, maximum = 0;  ///< 0: none can be asked for
 
     bool has(std::uint32_t threads) const {
-        return std::has_single_bit(threads) && threads >= least && threads <= most;
+        return std::has_single_bit(threads) && threads >= minimum && threads <= maximum;
     }
 };
 
@@ -297,9 +297,9 @@ struct DeviceInfo {
     std::string apiVersion;  ///< "1.3.230"
     std::string driver;
     DeviceType type = DeviceType::Other;
-    bool usable = false;      ///< has everything createDevice() asks for
-    std::string whyUnusable;  ///< what is missing otherwise
-    bool validates = false;   ///< the API's own checks are installed
+    bool usable = false;         ///< has everything createDevice() asks for
+    std::string unusableReason;  ///< what is missing otherwise
+    bool validates = false;      ///< the API's own checks are installed
     std::vector<std::uint32_t>
         sampleCounts;  ///< that colour and depth targets both support, ascending from 1
     bool tessellation = false;

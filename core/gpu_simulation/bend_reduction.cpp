@@ -71,7 +71,7 @@ std::vector<Pair> pairsOf(const BendFactors& factors, std::uint32_t points) {
     return pairs;
 }
 
-shaders::float4 quad(double x, double y, double z, double w) {
+shaders::float4 toFloat4(double x, double y, double z, double w) {
     return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), static_cast<float>(w)};
 }
 
@@ -88,9 +88,9 @@ std::vector<shaders::float4> reduce(const BendFactors& factors, std::uint32_t po
     std::vector<Pair> pairs = pairsOf(factors, points);
     std::vector<shaders::float4> quads(std::size_t{points} * (steps + 1));
     const auto put = [&](std::size_t pair, std::uint32_t step, const Block& before, const Block& after) {
-        quads[2 * pair * (steps + 1) + step] = quad(before.a, before.b, after.a, after.b);
+        quads[2 * pair * (steps + 1) + step] = toFloat4(before.a, before.b, after.a, after.b);
         if (2 * pair + 1 < points)
-            quads[(2 * pair + 1) * (steps + 1) + step] = quad(before.c, before.d, after.c, after.d);
+            quads[(2 * pair + 1) * (steps + 1) + step] = toFloat4(before.c, before.d, after.c, after.d);
     };
     std::vector<Pair> next(pairs.size());
     for (std::uint32_t step = 0; step < steps; ++step) {
@@ -116,8 +116,8 @@ std::vector<shaders::float4> reduce(const BendFactors& factors, std::uint32_t po
     }
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         const Block own = inverse(pairs[i].own);
-        quads[2 * i * (steps + 1) + steps] = quad(own.a, own.b, 0.0, 0.0);
-        if (2 * i + 1 < points) quads[(2 * i + 1) * (steps + 1) + steps] = quad(own.d, own.c, 0.0, 0.0);
+        quads[2 * i * (steps + 1) + steps] = toFloat4(own.a, own.b, 0.0, 0.0);
+        if (2 * i + 1 < points) quads[(2 * i + 1) * (steps + 1) + steps] = toFloat4(own.d, own.c, 0.0, 0.0);
     }
     return quads;
 }

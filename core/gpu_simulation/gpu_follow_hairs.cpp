@@ -19,7 +19,7 @@ using runtime::Float3;
 
 constexpr std::uint32_t kGuidesPerGroup = 32;  // as in follow_wisps.comp.hlsl
 constexpr std::uint32_t kPointsPerGroup = 64;  // as in follow_hairs.comp.hlsl
-constexpr std::uint32_t kMostGroups = 65535;   // of one dimension, on every device
+constexpr std::uint32_t kMaxGroups = 65535;    // of one dimension, on every device
 constexpr std::size_t kRows = 4;
 
 shaders::float4 quad(Float3 v, float w = 0.0f) {
@@ -171,8 +171,8 @@ void GpuFollowHairs::record(gpu::CommandList& list, const FollowInput& input) {
     const std::array<Binding, 4> ofHairs{Binding::read(0, impl.rows), Binding::read(1, impl.planeBuffer),
                                          Binding::read(2, impl.bindings), Binding::write(0, impl.hairs)};
     const std::uint32_t groups = (constants.hairs * constants.points + kPointsPerGroup - 1) / kPointsPerGroup;
-    run(impl.sums, "follow hairs", ofHairs, std::min(groups, kMostGroups),
-        (groups + kMostGroups - 1) / kMostGroups);
+    run(impl.sums, "follow hairs", ofHairs, std::min(groups, kMaxGroups),
+        (groups + kMaxGroups - 1) / kMaxGroups);
 }
 
 }  // namespace hairloom::gpu_simulation

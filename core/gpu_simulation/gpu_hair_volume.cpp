@@ -74,7 +74,7 @@ void GpuHairVolume::record(gpu::CommandList& list, std::span<const StrandBatch> 
                            std::uint32_t clampedPoints, float dt, float h) const {
     shaders::VolumeConstants constants;
     constants.cellSize = settings_.cellSize;
-    constants.mostNodes = static_cast<float>(settings_.maxNodes);
+    constants.maxNodes = static_cast<float>(settings_.maxNodes);
     constants.targetDensity = settings_.targetDensity;
     constants.repulsion = settings_.repulsion;
     constants.share = -std::expm1(-settings_.friction * dt);

@@ -84,7 +84,7 @@ KernelKey keyFor(const runtime::EffectPlan& plan, const runtime::SimulationSetti
     return key;
 }
 
-std::string whyNoKernel(const runtime::SimulationSettings& settings) {
+std::string kernelError(const runtime::SimulationSettings& settings) {
     if (settings.integrator != Integrator::implicitEuler) return {};
     return "the integrator implicitEuler runs on the CPU only";
 }

@@ -65,6 +65,6 @@ KernelKey keyFor(const runtime::EffectPlan& plan, const runtime::SimulationSetti
                  const BatchShape& shape, std::size_t spheres, bool velocities);
 
 /// Empty, or in words why these settings have no kernels: the linear systems of backward Euler.
-std::string whyNoKernel(const runtime::SimulationSettings& settings);
+std::string kernelError(const runtime::SimulationSettings& settings);
 
 }  // namespace hairloom::gpu_simulation

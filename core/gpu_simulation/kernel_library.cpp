@@ -61,8 +61,8 @@ Words wordsIn(const shaders::Shader& shader, gpu::Backend backend) {
 }
 
 std::optional<Words> readWords(const std::filesystem::path& path) {
-    constexpr std::uint64_t kMost = 16u << 20u;
-    const auto bytes = readFile(path, kMost);
+    constexpr std::uint64_t kMax = 16u << 20u;
+    const auto bytes = readFile(path, kMax);
     if (!bytes || bytes->size() < 8 || bytes->size() % 4 != 0) return {};
     Words words(bytes->size() / 4);
     std::memcpy(words.data(), bytes->data(), bytes->size());

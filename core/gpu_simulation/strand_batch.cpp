@@ -15,23 +15,23 @@ using runtime::kBlockLanes;
 static_assert(kBlockLanes == HAIRLOOM_GROUP_STRANDS);
 
 /// Longer strands stay in buffers: the memory of all threads together would be too much.
-constexpr std::uint32_t kMostInThreads = 64;
-constexpr std::uint32_t kMostUnrolled = 32;
+constexpr std::uint32_t kMaxInThreads = 64;
+constexpr std::uint32_t kMaxUnrolled = 32;
 /// Of position and previous of a group, within the 32 KiB that every device has.
-constexpr std::uint32_t kMostInGroups = 32 * 1024 / (6 * sizeof(float) * kBlockLanes);
+constexpr std::uint32_t kMaxInGroups = 32 * 1024 / (6 * sizeof(float) * kBlockLanes);
 /// More different point counts than this share batches.
-constexpr std::size_t kMostExact = 3;
-constexpr std::uint32_t kLeastShared = 4;
+constexpr std::size_t kMaxExact = 3;
+constexpr std::uint32_t kMinShared = 4;
 /// Four threads sample the wind.
-constexpr std::uint32_t kLeastInLanes = 4, kLeastInPairs = 2 * kLeastInLanes;
+constexpr std::uint32_t kMinInLanes = 4, kMinInPairs = 2 * kMinInLanes;
 /// Blocks of strands from which on a thread for each strand is faster: docs/gpu-simulation.md, "What is
 /// measured".
-constexpr std::size_t kMostBlocksInLanes = 100'000 / kBlockLanes;
+constexpr std::size_t kMaxBlocksInLanes = 100'000 / kBlockLanes;
 /// Blocks of strands up to which lanes have a point each, and not two: as measured there.
-constexpr std::size_t kMostBlocksOfOne = 4'000 / kBlockLanes;
+constexpr std::size_t kMaxBlocksOfOne = 4'000 / kBlockLanes;
 
 /// Of lanes: the memory of a group of more would be too much.
-constexpr std::uint32_t kMostThreads = 256;
+constexpr std::uint32_t kMaxThreads = 256;
 
 /// As many threads are a group of several waves.
 constexpr std::uint32_t kManyThreads = 128;
@@ -70,17 +70,16 @@ BatchShape shapeFor(std::uint32_t points, bool exact, StrandStorage storage, con
     shape.points = points;
     shape.exact = exact;
     shape.storage = storage;
-    if (shape.storage == StrandStorage::lanes && points < kLeastInLanes)
+    if (shape.storage == StrandStorage::lanes && points < kMinInLanes) shape.storage = StrandStorage::threads;
+    if (shape.storage == StrandStorage::groups && points > kMaxInGroups)
         shape.storage = StrandStorage::threads;
-    if (shape.storage == StrandStorage::groups && points > kMostInGroups)
-        shape.storage = StrandStorage::threads;
-    if (points > kMostInThreads) shape.storage = StrandStorage::buffers;
-    shape.unrolled = options.unroll && exact && points <= kMostUnrolled;
+    if (points > kMaxInThreads) shape.storage = StrandStorage::buffers;
+    shape.unrolled = options.unroll && exact && points <= kMaxUnrolled;
     if (!sharesBlocks(shape.storage)) return shape;
     shape.together = true;
     shape.strands = 1;
     if (shape.storage == StrandStorage::wisps) return shape;
-    const bool pairs = points % 2 == 0 && points >= kLeastInPairs;
+    const bool pairs = points % 2 == 0 && points >= kMinInPairs;
     shape.perThread = pairs ? options.perThread.value_or(few ? 1 : 2) : 1;
     const std::uint32_t threads = points / shape.perThread;
     // Of many strands groups of several waves are faster, as those do not wait for each other.
@@ -88,7 +87,7 @@ BatchShape shapeFor(std::uint32_t points, bool exact, StrandStorage storage, con
     const std::uint32_t chosen =
         several ? std::min(kManyThreads / threads, kBlockLanes) : strandsThatFill(threads);
     shape.strands =
-        std::min(options.groupStrands.value_or(chosen), std::max(std::bit_floor(kMostThreads / threads), 1u));
+        std::min(options.groupStrands.value_or(chosen), std::max(std::bit_floor(kMaxThreads / threads), 1u));
     if (options.waves) shape.wave = waveFor(threads, threads * shape.strands, waves);
     return shape;
 }
@@ -106,23 +105,23 @@ std::vector<StrandBatch> makeBatches(const runtime::RestShape& shape, const Layo
                                      const gpu::WaveSizes& waves) {
     std::map<std::uint32_t, std::vector<std::uint32_t>> blocksOf;
     for (std::uint32_t b = 0; b < shape.blocks.size(); ++b) blocksOf[shape.blocks[b].points].push_back(b);
-    const bool exact = blocksOf.size() <= kMostExact;
+    const bool exact = blocksOf.size() <= kMaxExact;
     if (!exact) {
         std::map<std::uint32_t, std::vector<std::uint32_t>> shared;
         for (const auto& [points, blocks] : blocksOf) {
-            auto& all = shared[std::max(std::bit_ceil(points), kLeastShared)];
+            auto& all = shared[std::max(std::bit_ceil(points), kMinShared)];
             all.insert(all.end(), blocks.begin(), blocks.end());
         }
         blocksOf = std::move(shared);
     }
-    const bool few = shape.blocks.size() <= kMostBlocksInLanes;
+    const bool few = shape.blocks.size() <= kMaxBlocksInLanes;
     const StrandStorage storage =
         options.storage.value_or(few ? StrandStorage::lanes : StrandStorage::threads);
     std::vector<StrandBatch> batches;
     for (auto& [points, blocks] : blocksOf) {
         StrandBatch batch;
         batch.shape =
-            shapeFor(points, exact, storage, options, shape.blocks.size() <= kMostBlocksOfOne, waves);
+            shapeFor(points, exact, storage, options, shape.blocks.size() <= kMaxBlocksOfOne, waves);
         batch.slots = static_cast<std::uint32_t>(blocks.size()) * kBlockLanes;
         batch.blocks = std::move(blocks);
         batches.push_back(std::move(batch));

@@ -43,7 +43,7 @@ struct StrandBatch {
     // Made with the batch; names as in runtime/shaders/storage.hlsli.
     gpu::BufferPtr rest, segments, blockCounts, firstPoints, rootsTo, state, roots;
     // Null while what needs them is off.
-    gpu::BufferPtr bend, targets, curves, tanks, rests, gathered, scratch;
+    gpu::BufferPtr bend, targets, curves, energyTanks, rests, gathered, scratch;
     KernelKey key;
     gpu::ComputePipelinePtr kernel;
 };

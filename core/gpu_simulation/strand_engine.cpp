@@ -18,7 +18,7 @@ using runtime::Effect;
 using runtime::Float3;
 
 constexpr std::size_t kReportWords = 4;
-constexpr std::size_t kMostUnderWay = 2;
+constexpr std::size_t kMaxSubmissionsInFlight = 2;
 /// Floats a point that a kernel of StrandStorage::buffers works in: see storage.hlsli.
 constexpr std::array<std::size_t, 3> kScratchPlanes{5, 11, 20};
 constexpr std::size_t kCoupledPlanes = 29;
@@ -35,9 +35,9 @@ Result<StrandEngine> StrandEngine::make(gpu::Device& device, std::shared_ptr<Ker
                                         const runtime::StrandsView& strands,
                                         const runtime::SimulationSettings& settings,
                                         const EngineOptions& options) {
-    if (const std::string why = runtime::whyRefused(settings); !why.empty()) return fail(why);
-    if (const std::string why = runtime::whyRefused(strands); !why.empty()) return fail(why);
-    if (const std::string why = whyNoKernel(settings); !why.empty()) return fail(why);
+    if (const std::string why = runtime::validationError(settings); !why.empty()) return fail(why);
+    if (const std::string why = runtime::validationError(strands); !why.empty()) return fail(why);
+    if (const std::string why = kernelError(settings); !why.empty()) return fail(why);
     if (strands.offsets.size() < 2) return fail("there are no strands", "expected strands to simulate");
     auto impl = std::make_unique<Impl>(device, std::move(kernels), options);
     impl->shape = runtime::makeRestShape(strands);
@@ -48,7 +48,7 @@ Result<StrandEngine> StrandEngine::make(gpu::Device& device, std::shared_ptr<Ker
     if (direct3d && sharesBlocks(layout.storage.value_or(StrandStorage::lanes)))
         layout.storage = StrandStorage::threads;
     impl->batches = makeBatches(*impl->shape, layout, device.info().waves);
-    if (const std::string why = impl->whyNoVelocities(); !why.empty()) return fail(why);
+    if (const std::string why = impl->velocityError(); !why.empty()) return fail(why);
     impl->roots.resize(impl->shape->restRoots.size());
     if (auto made = impl->makeBuffers(); !made) return tl::unexpected(made.error());
     if (options.hairHair) {
@@ -68,7 +68,7 @@ StrandEngine& StrandEngine::operator=(StrandEngine&&) noexcept = default;
 StrandEngine::~StrandEngine() = default;
 
 /// Why this device cannot write the velocities that were asked for; empty where it can.
-std::string StrandEngine::Impl::whyNoVelocities() const {
+std::string StrandEngine::Impl::velocityError() const {
     const bool inBuffers = std::ranges::any_of(
         batches, [](const StrandBatch& batch) { return batch.shape.storage == StrandStorage::buffers; });
     if (!options.velocities || !inBuffers || device.info().backend != gpu::Backend::Direct3D11) return {};
@@ -141,7 +141,7 @@ Status StrandEngine::Impl::allocate() {
         fresh |= have(batch.targets, "rest directions", key.targets ? plane * 4 : 0, 16);
         if (fresh) bendSubstep = 0.0f;
         have(batch.curves, "curves", key.curves ? plane * 3 : 0, 4);
-        have(batch.tanks, "tanks", key.curves ? std::size_t{batch.slots} * 2 : 0, 4, batch.slots);
+        have(batch.energyTanks, "tanks", key.curves ? std::size_t{batch.slots} * 2 : 0, 4, batch.slots);
         const bool gathers = key.sleep && sharesBlocks(key.shape.storage);
         have(batch.gathered, "gathered", gathers ? batch.blocks.size() : 0, 4);
         have(batch.rests, "rests", key.sleep ? batch.blocks.size() * 2 : 0, 4);
@@ -162,20 +162,20 @@ StrandEngine::Impl::Run StrandEngine::Impl::runFor(const runtime::SimulationSett
                                                    Float3 high) {
     Run next{settings, {runtime::makeWind(settings), run.wind.given}, {}};
     rejectedWinds = runtime::takeWind(settings, input, next.wind);
-    runtime::FrameOutlook outlook;
-    outlook.strandCount = static_cast<std::uint32_t>(shape->restRoots.size());
-    outlook.longestPointCount = shape->longestPointCount;
-    outlook.longestStrand = shape->longestStrand;
-    outlook.straight = shape->straight;
-    outlook.sharpestCurl = shape->sharpestCurl;
-    outlook.unevenness = shape->unevenness;
-    outlook.substep = input.dt / static_cast<float>(settings.substeps);
-    outlook.rootsMin_ws = low;
-    outlook.rootsMax_ws = high;
-    outlook.rootMotion = rootMotion;
-    outlook.fastest = std::numeric_limits<float>::infinity();
-    next.plan =
-        runtime::planFrame(settings, outlook, next.wind, frameSpheres.usable, frameSpheres.motion, input.dt);
+    runtime::FrameOutlook planInput;
+    planInput.strandCount = static_cast<std::uint32_t>(shape->restRoots.size());
+    planInput.longestPointCount = shape->longestPointCount;
+    planInput.longestStrand = shape->longestStrand;
+    planInput.straight = shape->straight;
+    planInput.maxCurvature = shape->maxCurvature;
+    planInput.massRatio = shape->massRatio;
+    planInput.substep = input.dt / static_cast<float>(settings.substeps);
+    planInput.rootsMin_ws = low;
+    planInput.rootsMax_ws = high;
+    planInput.rootMotion = rootMotion;
+    planInput.fastest = std::numeric_limits<float>::infinity();
+    next.plan = runtime::planFrame(settings, planInput, next.wind, frameSpheres.usable, frameSpheres.motion,
+                                   input.dt);
     return next;
 }
 
@@ -230,8 +230,8 @@ Status StrandEngine::Impl::choose(const runtime::FrameInput& input, Float3 low, 
 }
 
 Status StrandEngine::setSettings(const runtime::SimulationSettings& settings) {
-    if (const std::string why = runtime::whyRefused(settings); !why.empty()) return fail(why);
-    if (const std::string why = whyNoKernel(settings); !why.empty()) return fail(why);
+    if (const std::string why = runtime::validationError(settings); !why.empty()) return fail(why);
+    if (const std::string why = kernelError(settings); !why.empty()) return fail(why);
     impl_->wanted = settings;
     return {};
 }
@@ -242,10 +242,10 @@ Status StrandEngine::step(const runtime::FrameInput& input) {
     if (auto recorded = impl_->record(**list, input); !recorded) return recorded;
     auto submission = impl_->device.submit(std::move(*list));
     if (!submission) return tl::unexpected(submission.error());
-    impl_->underWay.push_back(std::move(*submission));
-    if (impl_->underWay.size() <= kMostUnderWay) return {};
-    const gpu::SubmissionPtr oldest = std::move(impl_->underWay.front());
-    impl_->underWay.pop_front();
+    impl_->submissionsInFlight.push_back(std::move(*submission));
+    if (impl_->submissionsInFlight.size() <= kMaxSubmissionsInFlight) return {};
+    const gpu::SubmissionPtr oldest = std::move(impl_->submissionsInFlight.front());
+    impl_->submissionsInFlight.pop_front();
     return oldest->wait();
 }
 
@@ -285,7 +285,7 @@ std::size_t StrandEngine::effectBytes(Effect effect) const {
         if (effect == Effect::torsion) {
             add(batch.targets);
             add(batch.curves);
-            add(batch.tanks);
+            add(batch.energyTanks);
         }
         if (effect == Effect::sleep) {
             add(batch.rests);
@@ -307,7 +307,7 @@ std::size_t StrandEngine::volumeBytes() const {
 std::size_t StrandEngine::frameBytes() const {
     std::size_t bytes = 0;
     for (const StrandBatch& batch : impl_->batches) {
-        for (const auto& changing : {batch.state, batch.roots, batch.curves, batch.tanks}) {
+        for (const auto& changing : {batch.state, batch.roots, batch.curves, batch.energyTanks}) {
             if (changing != nullptr) bytes += 2 * static_cast<std::size_t>(changing->desc().size);
         }
         bytes += static_cast<std::size_t>(batch.rootsTo->desc().size);

@@ -25,7 +25,7 @@ std::span<const std::byte> bytesOfVector(const std::vector<T>& values) {
     return std::as_bytes(std::span(values));
 }
 
-shaders::float4 quad(Float3 v, float w) {
+shaders::float4 toFloat4(Float3 v, float w) {
     return {v.x, v.y, v.z, w};
 }
 
@@ -67,7 +67,7 @@ void StrandEngine::Impl::uploadRoots(gpu::CommandList& list, const std::vector<b
             const runtime::Block& block = shape->blocks[batch.blocks[slot / runtime::kBlockLanes]];
             const std::uint32_t strand = block.strandOfLane[slot % runtime::kBlockLanes];
             const RootFrame& root = roots[strand];
-            rows[2 * slot] = quad(root.position, !moved.empty() && moved[strand] ? 1.0f : 0.0f);
+            rows[2 * slot] = toFloat4(root.position, !moved.empty() && moved[strand] ? 1.0f : 0.0f);
             rows[2 * slot + 1] = {root.rotation.x, root.rotation.y, root.rotation.z, root.rotation.w};
         }
         list.updateBuffer(batch.rootsTo, 0, bytesOfVector(rows));
@@ -78,7 +78,7 @@ std::vector<shaders::SphereConstants> StrandEngine::Impl::sphereConstants() cons
     std::vector<shaders::SphereConstants> constants;
     constants.reserve(movingSpheres.size());
     for (const runtime::MovingSphere& sphere : movingSpheres)
-        constants.push_back({quad(sphere.from_ws, sphere.radius), quad(sphere.step, 0.0f)});
+        constants.push_back({toFloat4(sphere.from_ws, sphere.radius), toFloat4(sphere.step, 0.0f)});
     return constants;
 }
 
@@ -104,7 +104,7 @@ void StrandEngine::Impl::uploadSpheres(gpu::CommandList& list) {
     if (!sleeps) return;
     std::vector<shaders::float4> reaches;
     for (const runtime::Sphere& sphere : frameSpheres.waking)
-        reaches.push_back(quad(sphere.center_ws, sphere.radius));
+        reaches.push_back(toFloat4(sphere.center_ws, sphere.radius));
     upload(waking, "waking spheres", reaches);
 }
 
@@ -152,9 +152,9 @@ void StrandEngine::Impl::uploadChanges(gpu::CommandList& list) {
     }
     if (!curvesVoid) return;
     for (const StrandBatch& batch : batches) {
-        if (batch.tanks != nullptr) {
+        if (batch.energyTanks != nullptr) {
             const std::vector<float> none(batch.slots, runtime::kNoCurve);
-            list.updateBuffer(batch.tanks, 0, bytesOfVector(none));
+            list.updateBuffer(batch.energyTanks, 0, bytesOfVector(none));
         }
         if (batch.rests != nullptr) {
             const std::vector<float> awake(batch.blocks.size() * 2, 0.0f);
@@ -187,8 +187,8 @@ shaders::SimulationConstants StrandEngine::Impl::constants(const runtime::Subste
     c.penaltyStep = context.penaltyStep;
     c.bendRate = context.bendRate;
     c.maximalExtension = context.maximalExtension;
-    c.pearlRoot = context.pearlRoot;
-    c.pearlTip = context.pearlTip;
+    c.collisionRadiusAtRoot = context.collisionRadiusAtRoot;
+    c.collisionRadiusAtTip = context.collisionRadiusAtTip;
     c.friction = context.friction;
     c.restitution = context.restitution;
     c.teleportDistance = s.teleportDistance;
@@ -198,20 +198,20 @@ shaders::SimulationConstants StrandEngine::Impl::constants(const runtime::Subste
     c.slowSweep = context.slowestSwept;
     c.tensionShare = context.tensionShare;
     c.groups = batch.slots / batch.key.shape.strands;
-    c.sphereWay = c.unused = 0.0f;
+    c.sphereDisplacement = c.unused = 0.0f;
     for (const runtime::MovingSphere& sphere : movingSpheres)
-        c.sphereWay = std::max(c.sphereWay, length(sphere.step));
-    c.gravityStep = quad(context.gravityStep, 0.0f);
+        c.sphereDisplacement = std::max(c.sphereDisplacement, length(sphere.step));
+    c.gravityStep = toFloat4(context.gravityStep, 0.0f);
     const runtime::Wind& wind = run.wind.wind;
     c.windKind = static_cast<std::uint32_t>(wind.kind);
-    c.wind = quad(wind.mean, wind.strength);
+    c.wind = toFloat4(wind.mean, wind.strength);
     const double time = std::isfinite(input.time) ? input.time : 0.0;
     const auto from = runtime::windPhases(wind, time - static_cast<double>(input.dt));
     const auto to = runtime::windPhases(wind, time);
     static_assert(runtime::kWindModes == HAIRLOOM_WIND_MODES);
     for (std::size_t m = 0; m < runtime::kWindModes; ++m) {
-        c.windAmplitudes[m] = quad(wind.modes[m].amplitude, from[m]);
-        c.windWaves[m] = quad(wind.modes[m].waveVector, to[m]);
+        c.windAmplitudes[m] = toFloat4(wind.modes[m].amplitude, from[m]);
+        c.windWaves[m] = toFloat4(wind.modes[m].waveVector, to[m]);
     }
     return c;
 }
@@ -241,7 +241,7 @@ void StrandEngine::Impl::dispatch(gpu::CommandList& list, const StrandBatch& bat
     write(3, reportBuffer);
     write(4, places);
     write(5, batch.curves);
-    write(6, batch.tanks);
+    write(6, batch.energyTanks);
     const bool inBuffers = batch.key.shape.storage == StrandStorage::buffers;
     write(7, inBuffers ? batch.scratch : velocities);
     write(8, inBuffers ? velocities : batch.gathered);

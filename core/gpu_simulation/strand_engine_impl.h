@@ -46,7 +46,7 @@ struct StrandEngine::Impl {
     bool wakeAll = false;
     bool rootsMoved = false;  ///< in the last frame, as the device knows
 
-    std::deque<gpu::SubmissionPtr> underWay;
+    std::deque<gpu::SubmissionPtr> submissionsInFlight;
     std::optional<runtime::State> known;  ///< what was read since the last frame
     double milliseconds = 0.0;            ///< of the last step that was waited for
     double kernelMilliseconds = 0.0;      ///< that the last frame waited for kernels
@@ -56,7 +56,7 @@ struct StrandEngine::Impl {
         : device(d), kernels(std::move(k)), options(o) {}
 
     // strand_engine.cpp
-    std::string whyNoVelocities() const;
+    std::string velocityError() const;
     Status makeBuffers();
     Status allocate();
     Status adopt(const Run& next);

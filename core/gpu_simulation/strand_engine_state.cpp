@@ -41,7 +41,7 @@ std::vector<float> rowsOfBatch(const StrandBatch& batch, const float* blocks, st
 /// Of a batch, in the order in which takeBatch() takes them.
 std::vector<gpu::BufferPtr> changingBuffers(const StrandBatch& batch) {
     std::vector<gpu::BufferPtr> buffers;
-    for (const auto& buffer : {batch.state, batch.roots, batch.curves, batch.tanks, batch.rests}) {
+    for (const auto& buffer : {batch.state, batch.roots, batch.curves, batch.energyTanks, batch.rests}) {
         if (buffer != nullptr) buffers.push_back(buffer);
     }
     return buffers;
@@ -98,9 +98,9 @@ void StrandEngine::Impl::takeBatch(const StrandBatch& batch, std::span<const std
     rowsToBlocks(batch, take(batch.roots), runtime::kRootRows, state.roots.data());
     if (batch.curves != nullptr) {
         planesOfBlocks(*shape, batch, take(batch.curves), state.curves, 3);
-        const std::vector<float> tanks = take(batch.tanks);
-        const std::span<const float> all = tanks;
-        rowsToBlocks(batch, all.first(batch.slots), 1, state.tanks.data());
+        const std::vector<float> energyTanks = take(batch.energyTanks);
+        const std::span<const float> all = energyTanks;
+        rowsToBlocks(batch, all.first(batch.slots), 1, state.energyTanks.data());
         rowsToBlocks(batch, all.subspan(batch.slots), 1, state.motions.data());
     }
     if (batch.rests == nullptr) return;
@@ -126,7 +126,7 @@ Result<runtime::State> StrandEngine::readState() {
     state.rests.resize(shape.blocks.size());
     if (std::ranges::any_of(impl.batches, [](const StrandBatch& batch) { return batch.curves != nullptr; })) {
         state.curves.assign(shape.planeFloats * 3, 0.0f);
-        state.tanks.assign(shape.blocks.size() * kBlockLanes, runtime::kNoCurve);
+        state.energyTanks.assign(shape.blocks.size() * kBlockLanes, runtime::kNoCurve);
         state.motions.assign(shape.blocks.size() * kBlockLanes, 0.0f);
     }
     if (impl.run.plan.keepsTensions()) state.tensions.assign(shape.planeFloats, 0.0f);
@@ -161,18 +161,18 @@ Status StrandEngine::Impl::writeBatch(gpu::CommandList& list, const StrandBatch&
     send(batch.state, moving);
     send(batch.roots, rowsOfBatch(batch, state.roots.data(), runtime::kRootRows));
     if (batch.curves != nullptr) {
-        std::vector<float> tanks(std::size_t{batch.slots} * 2, 0.0f);
-        std::fill_n(tanks.begin(), batch.slots, runtime::kNoCurve);
+        std::vector<float> energyTanks(std::size_t{batch.slots} * 2, 0.0f);
+        std::fill_n(energyTanks.begin(), batch.slots, runtime::kNoCurve);
         if (!state.curves.empty()) {
             send(batch.curves, planesOfBatch(*shape, batch, state.curves, 3));
-            const std::vector<float> kept = rowsOfBatch(batch, state.tanks.data(), 1);
+            const std::vector<float> kept = rowsOfBatch(batch, state.energyTanks.data(), 1);
             const std::vector<float> motions = rowsOfBatch(batch, state.motions.data(), 1);
-            std::ranges::copy(kept, tanks.begin());
-            std::ranges::copy(motions, tanks.begin() + batch.slots);
+            std::ranges::copy(kept, energyTanks.begin());
+            std::ranges::copy(motions, energyTanks.begin() + batch.slots);
         } else {
             send(batch.curves, std::vector<float>(std::size_t{batch.shape.points} * batch.slots * 3, 0.0f));
         }
-        send(batch.tanks, tanks);
+        send(batch.energyTanks, energyTanks);
     }
     if (batch.rests != nullptr) {
         std::vector<float> rests;
@@ -271,10 +271,10 @@ Result<FrameReport> StrandEngine::report() {
 }
 
 Result<double> StrandEngine::wait() {
-    while (!impl_->underWay.empty()) {
-        const auto times = impl_->underWay.front()->passTimes();
+    while (!impl_->submissionsInFlight.empty()) {
+        const auto times = impl_->submissionsInFlight.front()->passTimes();
         if (!times) return tl::unexpected(times.error());
-        impl_->underWay.pop_front();
+        impl_->submissionsInFlight.pop_front();
         impl_->milliseconds = 0.0;
         for (const gpu::PassTime& time : *times) impl_->milliseconds += time.milliseconds;
     }

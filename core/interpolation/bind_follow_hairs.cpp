@@ -15,7 +15,7 @@ namespace hairloom {
 namespace {
 
 constexpr std::uint32_t kNone = 0xFFFFFFFFu;
-constexpr std::uint32_t kMostFollowPerGuide = 4096;
+constexpr std::uint32_t kMaxFollowPerGuide = 4096;
 constexpr float kLargestRadius = 0.1f;
 
 Status checkRange(std::string_view name, float value, float low, float high) {
@@ -24,9 +24,9 @@ Status checkRange(std::string_view name, float value, float low, float high) {
 }
 
 Status checkSettings(const InterpolationSettings& settings, const PartingSettings& parting) {
-    if (settings.followPerGuide > kMostFollowPerGuide) {
+    if (settings.followPerGuide > kMaxFollowPerGuide) {
         return fail(fmt::format("{} follow hairs for each guide", settings.followPerGuide),
-                    fmt::format("expected 0 to {}", kMostFollowPerGuide));
+                    fmt::format("expected 0 to {}", kMaxFollowPerGuide));
     }
     auto status = checkRange("the wisp radius at the root", settings.wispRadiusRoot, 0, kLargestRadius);
     if (status) status = checkRange("the wisp radius at the tip", settings.wispRadiusTip, 0, kLargestRadius);

@@ -14,9 +14,9 @@ namespace {
 
 /// Curves 32 times as fine still fit one of the device's buffers; the smallest that are offered have 128 MiB.
 std::uint32_t maxPointsPerBatch(const gpu::DeviceInfo& device) {
-    constexpr std::uint64_t kLeast = 1u << 17u, kMost = 1u << 20u;
+    constexpr std::uint64_t kMin = 1u << 17u, kMax = 1u << 20u;
     return static_cast<std::uint32_t>(
-        std::clamp(device.maxBufferBytes / (32 * sizeof(shaders::CurvePoint)), kLeast, kMost));
+        std::clamp(device.maxBufferBytes / (32 * sizeof(shaders::CurvePoint)), kMin, kMax));
 }
 
 std::vector<Vec3f> averagedNormals(std::span<const Vec3f> positions, std::span<const std::uint32_t> indices) {
@@ -159,14 +159,15 @@ Status uploadBatch(gpu::Device& device, const RenderStrands& strands, std::size_
 Status uploadStrands(gpu::Device& device, const RenderStrands& strands, std::size_t group,
                      std::vector<StrandGroup>& groups, std::vector<DrawBatch>& batches) {
     const std::size_t count = strands.offsets.empty() ? 0 : strands.offsets.size() - 1;
-    const std::uint32_t most = maxPointsPerBatch(device.info());
+    const std::uint32_t maximum = maxPointsPerBatch(device.info());
     std::size_t first = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const std::uint32_t points = strands.offsets[i + 1] - strands.offsets[i];
-        if (points > most) {
-            return fail(fmt::format("strand {} has {} points", i, points), fmt::format("at most {}", most));
+        if (points > maximum) {
+            return fail(fmt::format("strand {} has {} points", i, points),
+                        fmt::format("at most {}", maximum));
         }
-        if (strands.offsets[i + 1] - strands.offsets[first] > most) {
+        if (strands.offsets[i + 1] - strands.offsets[first] > maximum) {
             if (auto status = uploadBatch(device, strands, group, first, i, groups, batches); !status) {
                 return status;
             }
@@ -340,7 +341,7 @@ Result<bool> DeviceScene::prepareFibres(gpu::Device& device, bool behind) {
             if (!needsFibre(group)) continue;
         }
         if (behind && group.hasFibre && group.fibre.hasShaderFor(group.material)) {
-            if (!group.bake.isUnderWay())
+            if (!group.bake.isRunning())
                 group.bake.start(group.material.fibre, group.material.look.has_value());
             continue;
         }

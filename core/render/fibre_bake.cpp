@@ -7,13 +7,13 @@
 namespace hairloom::render {
 
 void FibreBake::start(const FibreMaterial& material, bool varies) {
-    assert(!isUnderWay());
+    assert(!isRunning());
     result_ =
         std::async(std::launch::async, [material, varies] { return FibreTables::bake(material, varies); });
 }
 
 std::optional<FibreTables> FibreBake::take() {
-    if (!isUnderWay() || result_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return {};
+    if (!isRunning() || result_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return {};
     return result_.get();
 }
 

@@ -12,7 +12,7 @@ namespace hairloom::render {
 /// One bake at a time. Its result does not depend on the thread it ran on. Destroying it waits for its end.
 class FibreBake {
   public:
-    bool isUnderWay() const { return result_.valid(); }
+    bool isRunning() const { return result_.valid(); }
     /// Nothing is under way.
     void start(const FibreMaterial& material, bool varies);
     /// The tables, not yet on the device, once they are baked.

@@ -63,7 +63,7 @@ shading::AverageScattering meanScattering(const shading::Table& averages,
 /// With `varies` absorption colours Sadeghi's TT and TRT.
 shaders::FibreConstants constantsOf(const FibreMaterial& material, bool varies) {
     shaders::FibreConstants c;
-    c.spread = {static_cast<float>(shading::kLeastSpread), static_cast<float>(shading::kLargestSpread), 0, 0};
+    c.spread = {static_cast<float>(shading::kMinSpread), static_cast<float>(shading::kLargestSpread), 0, 0};
     if (material.model == ShadingModel::marschner) {
         const auto& intensity = material.marschner.intensity;
         c.lobes = {static_cast<float>(intensity[0]), static_cast<float>(intensity[1]),

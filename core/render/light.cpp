@@ -11,22 +11,22 @@ namespace hairloom::render {
 namespace {
 
 constexpr float kMargin = 0.04f;       // of the size, around the hair
-constexpr float kLeastHalf = 1e-4f;    // metres
+constexpr float kMinHalf = 1e-4f;      // metres
 constexpr float kWidestSlope = 3.73f;  // of a point light's view: tan 75 degrees
 
 struct Extent {
-    float least = std::numeric_limits<float>::max();
-    float most = std::numeric_limits<float>::lowest();
+    float minimum = std::numeric_limits<float>::max();
+    float maximum = std::numeric_limits<float>::lowest();
 
     void add(float value) {
-        least = std::min(least, value);
-        most = std::max(most, value);
+        minimum = std::min(minimum, value);
+        maximum = std::max(maximum, value);
     }
-    float size() const { return most - least; }
+    float size() const { return maximum - minimum; }
     void widen(float share) {
-        const float by = std::max(share * size(), kLeastHalf);
-        least -= by;
-        most += by;
+        const float by = std::max(share * size(), kMinHalf);
+        minimum -= by;
+        maximum += by;
     }
 };
 
@@ -89,7 +89,7 @@ LightView fitLight(const Light& light, std::span<const Vec3f> hair_ws, const Box
         hairAlong.add(v.z());
     }
     if (hair_ws.empty()) {
-        for (Extent& extent : across) extent = {-kLeastHalf, kLeastHalf};
+        for (Extent& extent : across) extent = {-kMinHalf, kMinHalf};
         hairAlong.add(0);
     }
     for (int i = 0; i < 8 && !point && !more_ws.isEmpty(); ++i) {
@@ -102,14 +102,14 @@ LightView fitLight(const Light& light, std::span<const Vec3f> hair_ws, const Box
     }
     for (Extent& extent : across) extent.widen(kMargin);
     along.widen(0.01f);
-    if (point) along.least = std::max(along.least, std::max(1e-3f, 1e-4f * along.most));
-    along.most = std::max(along.most, along.least + kLeastHalf);
+    if (point) along.minimum = std::max(along.minimum, std::max(1e-3f, 1e-4f * along.maximum));
+    along.maximum = std::max(along.maximum, along.minimum + kMinHalf);
 
     view.eye_ws = point ? Vec4f(eye.x(), eye.y(), eye.z(), 1) : Vec4f(back.x(), back.y(), back.z(), 0);
     view.spread = std::max(across[0].size(), across[1].size());
-    view.nearPlane = point ? along.least : 0;
+    view.nearPlane = point ? along.minimum : 0;
     view.depthRange = along.size();
-    view.hairStart = std::max(hairAlong.least - along.least, 0.0f);
+    view.hairStart = std::max(hairAlong.minimum - along.minimum, 0.0f);
     view.hairRange = std::max(hairAlong.size(), 1e-3f);
 
     Mat4f viewFromWorld = Mat4f::Identity();
@@ -122,15 +122,15 @@ LightView fitLight(const Light& light, std::span<const Vec3f> hair_ws, const Box
     for (int axis = 0; axis < 2; ++axis) {
         const Extent& e = across[axis];
         clip(axis, axis) = 2 / e.size();
-        clip(axis, point ? 2 : 3) = -(e.least + e.most) / e.size();
+        clip(axis, point ? 2 : 3) = -(e.minimum + e.maximum) / e.size();
     }
     if (point) {
-        clip(2, 2) = along.most / along.size();
-        clip(2, 3) = -along.least * along.most / along.size();
+        clip(2, 2) = along.maximum / along.size();
+        clip(2, 3) = -along.minimum * along.maximum / along.size();
         clip(3, 2) = 1;
     } else {
         clip(2, 2) = 1 / along.size();
-        clip(2, 3) = -along.least / along.size();
+        clip(2, 3) = -along.minimum / along.size();
         clip(3, 3) = 1;
     }
     view.clipFromWorld = clip * viewFromWorld;

@@ -39,7 +39,7 @@ Status prepare(gpu::Device& device, const RenderScene& scene, const RenderOption
     if (const auto fitted = state.targets.fit(device, state.plan); !fitted)
         return tl::unexpected(fitted.error());
     if (auto status = state.scene.prepareCurves(device, options.subdivisions); !status) return status;
-    return prepareStandIns(device, state);
+    return preparePlaceholders(device, state);
 }
 
 }  // namespace

@@ -25,11 +25,11 @@ Status check(const RenderOptions& o, const gpu::DeviceInfo& device) {
     }
     if (o.skyStrands < 64)
         return fail(fmt::format("{} strands in maps of the sky", o.skyStrands), "at least 64");
-    if (!(o.headAbsorption >= 0 && o.headAbsorption <= kMostHeadAbsorption)) {
+    if (!(o.headAbsorption >= 0 && o.headAbsorption <= kMaxHeadAbsorption)) {
         return fail(fmt::format("an absorption behind the head of {} per metre", o.headAbsorption),
                     "0 to 10000");
     }
-    if (!(o.shadowBlur >= 0 && o.shadowBlur <= kMostShadowBlur)) {
+    if (!(o.shadowBlur >= 0 && o.shadowBlur <= kMaxShadowBlur)) {
         return fail(fmt::format("shadows blurred by {} pixels", o.shadowBlur), "0 to 32");
     }
     if (!(o.detail >= 0 && o.detail <= 100)) return fail("a detail outside 0 to 100 pixels");

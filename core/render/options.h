@@ -68,8 +68,8 @@ struct RenderOptions {
 
     bool operator==(const RenderOptions&) const = default;
 };
-inline constexpr float kMostHeadAbsorption = 10'000;  ///< 1/m
-inline constexpr float kMostShadowBlur = 32;          ///< pixels
+inline constexpr float kMaxHeadAbsorption = 10'000;  ///< 1/m
+inline constexpr float kMaxShadowBlur = 32;          ///< pixels
 inline constexpr std::uint64_t kMaxPixels = std::uint64_t{64} << 20u;
 
 /// Errors: a size or number out of its range, or something that this device lacks.

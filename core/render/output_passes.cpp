@@ -12,7 +12,7 @@ namespace {
 
 using gpu::Binding;
 
-constexpr std::uint64_t kLeastOverlayVertices = 256;
+constexpr std::uint64_t kMinOverlayVertices = 256;
 constexpr float kBlurReach = 3;  // standard deviations that a Gaussian is cut off at
 
 /// The device turns linear values into sRGB itself when it writes into this format.
@@ -148,7 +148,7 @@ Status prepareOverlay(gpu::Device& device, gpu::CommandList& list, OverlayOnDevi
         gpu::BufferDesc desc;
         desc.name = "overlay";
         desc.elementBytes = sizeof(OverlayVertex);
-        desc.size = std::max({count, kLeastOverlayVertices, 2 * room}) * sizeof(OverlayVertex);
+        desc.size = std::max({count, kMinOverlayVertices, 2 * room}) * sizeof(OverlayVertex);
         auto buffer = device.createBuffer(desc);
         if (!buffer) return tl::unexpected(buffer.error());
         overlay.vertices = std::move(*buffer);

@@ -188,15 +188,16 @@ void recordBlend(gpu::CommandList& list, RendererState& state, const Mat4f& clip
 
 }  // namespace
 
-Status prepareStandIns(gpu::Device& device, RendererState& state) {
-    if (state.nothing == nullptr) {
+Status preparePlaceholders(gpu::Device& device, RendererState& state) {
+    if (state.placeholderTexture == nullptr) {
         gpu::TextureDesc desc;
         desc.name = "nothing";
         auto made = device.createTexture(desc, std::array<std::byte, 4>{});
         if (!made) return tl::unexpected(made.error());
-        state.nothing = std::move(*made);
+        state.placeholderTexture = std::move(*made);
     }
-    if (auto status = prepareBuffer(device, "no words", sizeof(std::uint32_t), state.noWords); !status)
+    if (auto status = prepareBuffer(device, "no words", sizeof(std::uint32_t), state.placeholderBuffer);
+        !status)
         return status;
     return prepareBuffer(device, "no sky", sizeof(shaders::SkyPoint), state.noSky);
 }
@@ -225,11 +226,11 @@ void bind(gpu::CommandList& list, std::initializer_list<Binding> bindings) {
 }
 
 void bindShadows(gpu::CommandList& list, const RendererState& state) {
-    bind(list, {Binding::read(8, state.orNothing(TargetId::headDepth)),
-                Binding::read(9, state.orNothing(BufferId::firstHair)),
-                Binding::read(10, state.orNothing(BufferId::opacity)),
-                Binding::read(18, state.orNothing(TargetId::skyHead)),
-                Binding::read(19, state.orNothing(BufferId::skyLayers))});
+    bind(list, {Binding::read(8, state.orPlaceholder(TargetId::headDepth)),
+                Binding::read(9, state.orPlaceholder(BufferId::firstHair)),
+                Binding::read(10, state.orPlaceholder(BufferId::opacity)),
+                Binding::read(18, state.orPlaceholder(TargetId::skyHead)),
+                Binding::read(19, state.orPlaceholder(BufferId::skyLayers))});
     list.setConstants(3, gpu::bytesOf(state.sky));
 }
 
@@ -279,11 +280,11 @@ HairDetail detailOf(const RendererState& state) {
     const Box3f hair = state.scene.hairBounds();
     if (state.options.detail <= 0 || hair.isEmpty()) return detail;
     constexpr float kPixelsPerSegment = 2;
-    constexpr float kLeastShare = 1.0f / 64;
+    constexpr float kMinShare = 1.0f / 64;
     const HairMeasure measure = state.scene.measure();
     const float distance = std::max(distances(state.camera, hair)[0], 1e-3f);
     const float pixel = pixelSpread(state) * (state.camera.isOrthographic() ? 1.0f : distance);
-    detail.share = std::clamp(measure.diameter / pixel / state.options.detail, kLeastShare, 2.0f);
+    detail.share = std::clamp(measure.diameter / pixel / state.options.detail, kMinShare, 2.0f);
     const float pieces = std::ceil(measure.segment / pixel / kPixelsPerSegment);
     detail.subdivisions =
         static_cast<std::uint32_t>(std::clamp(pieces, 1.0f, static_cast<float>(state.options.subdivisions)));

@@ -48,10 +48,10 @@ struct RendererState {
     bool lit = false;
     bool onCpu;  ///< the device is a software rasteriser
     Targets targets;
-    gpu::TexturePtr nothing;       ///< one pixel, bound where a texture is not there
-    gpu::BufferPtr noWords;        ///< bound where a buffer of words is not there
-    gpu::BufferPtr noSky;          ///< bound where no point has seen the sky
-    gpu::SamplerPtr linearFilter;  ///< once a filter was asked for
+    gpu::TexturePtr placeholderTexture;  ///< one pixel, bound where a texture is not there
+    gpu::BufferPtr placeholderBuffer;    ///< bound where a buffer of words is not there
+    gpu::BufferPtr noSky;                ///< bound where no point has seen the sky
+    gpu::SamplerPtr linearFilter;        ///< once a filter was asked for
     std::vector<LightView> lightViews;
     std::vector<LightView> skyViews;  ///< where the plan has maps of the sky
     shaders::ShadeConstants shade;    ///< all but the material
@@ -68,12 +68,16 @@ struct RendererState {
     const gpu::BufferPtr& result() const {
         return targets[plan.runs(Pass::shadowBlur) ? BufferId::blurred : BufferId::sum];
     }
-    const gpu::TexturePtr& orNothing(TargetId id) const { return targets[id] ? targets[id] : nothing; }
-    const gpu::BufferPtr& orNothing(BufferId id) const { return targets[id] ? targets[id] : noWords; }
+    const gpu::TexturePtr& orPlaceholder(TargetId id) const {
+        return targets[id] ? targets[id] : placeholderTexture;
+    }
+    const gpu::BufferPtr& orPlaceholder(BufferId id) const {
+        return targets[id] ? targets[id] : placeholderBuffer;
+    }
 };
 
 /// What is bound where a scene has nothing of the kind; made once.
-Status prepareStandIns(gpu::Device& device, RendererState& state);
+Status preparePlaceholders(gpu::Device& device, RendererState& state);
 /// The constants that follow from camera and lights.
 void setUpLights(RendererState& state);
 shaders::ShadeConstants shadeConstants(const RendererState& state, const HairMaterial& material);

@@ -56,7 +56,7 @@ void dispatchMeshes(gpu::CommandList& list, RendererState& state, const Mat4f& c
                     std::uint32_t phase) {
     // So many groups that few large triangles keep a device busy as well.
     constexpr std::uint32_t kWantedGroups = 1u << 15u;
-    constexpr std::uint32_t kMostSlices = 64;
+    constexpr std::uint32_t kMaxSlices = 64;
     list.setPipeline(state.pipelines.compute("mesh_raster.comp"));
     bindShadows(list, state);
     list.setConstants(0, gpu::bytesOf(lightsOfFrame(state)));
@@ -65,7 +65,7 @@ void dispatchMeshes(gpu::CommandList& list, RendererState& state, const Mat4f& c
         const auto triangles = static_cast<std::uint32_t>(mesh.indices.size() / 3);
         if (triangles == 0) continue;
         const std::uint32_t row = std::min(triangles, kRowGroups);
-        const std::uint32_t slices = state.onCpu ? 1 : std::clamp(kWantedGroups / triangles, 1u, kMostSlices);
+        const std::uint32_t slices = state.onCpu ? 1 : std::clamp(kWantedGroups / triangles, 1u, kMaxSlices);
         raster.numbers.x = triangles;
         raster.numbers.y = row;
         raster.samples.z = slices;

@@ -24,7 +24,7 @@ struct Changes {
     static Changes head() { return {false, true, true, true, true}; }
     static Changes lights() { return {false, false, true, true, true}; }
     static Changes looks() { return {false, false, false, true, true}; }
-    static Changes nothing() { return {false, false, false, false, false}; }
+    static Changes placeholderTexture() { return {false, false, false, false, false}; }
     void add(const Changes& other) {
         curves |= other.curves;
         sky |= other.sky;
@@ -36,7 +36,7 @@ struct Changes {
 
 /// Which work another set of options calls for. Size and samples show in the targets.
 Changes compare(const RenderOptions& before, const RenderOptions& now) {
-    Changes changes = Changes::nothing();
+    Changes changes = Changes::placeholderTexture();
     if (now.shadowResolution != before.shadowResolution || now.shadows != before.shadows) {
         changes.add(Changes::lights());
     }
@@ -221,7 +221,7 @@ Status Renderer::Parts::prepareTargets(bool presents) {
 
 /// What is needed once and not by every scene.
 Status Renderer::Parts::prepareHelpers() {
-    if (auto status = prepareStandIns(device, state); !status) return status;
+    if (auto status = preparePlaceholders(device, state); !status) return status;
     if (state.plan.runs(Pass::filter) && state.linearFilter == nullptr) {
         auto made = device.createSampler({});
         if (!made) return tl::unexpected(made.error());
@@ -273,7 +273,7 @@ void Renderer::Parts::recordChanges(gpu::CommandList& list) {
         if (state.plan.runs(Pass::shadowBlur)) withoutShadows([&] { recordShading(list, state); });
     }
     if (changes.picture) accumulated = 0;
-    changes = Changes::nothing();
+    changes = Changes::placeholderTexture();
 }
 
 Status Renderer::record(gpu::CommandList& list, const RenderOptions& options, const gpu::TexturePtr& target) {

@@ -68,12 +68,12 @@ Status DeviceScene::prepareCurves(gpu::Device& device, std::uint32_t subdivision
             batch.curveSubdivisions = subdivisions;
             batch.litColour = nullptr;
         }
-        const std::uint32_t most = batch.curvePoints(batch.strandCount(), batch.curveSubdivisions);
+        const std::uint32_t maximum = batch.curvePoints(batch.strandCount(), batch.curveSubdivisions);
         if (!twice) {
             batch.litColour = nullptr;
         } else if (batch.litColour == nullptr) {
             gather(batch.litColour,
-                   written(device, "curve colours without shadows", most, sizeof(shaders::float4)));
+                   written(device, "curve colours without shadows", maximum, sizeof(shaders::float4)));
         }
         if (!sky) {
             batch.seen = nullptr;

@@ -92,7 +92,7 @@ void recordLayers(gpu::CommandList& list, RendererState& state, const ShadowAtla
     for (std::size_t i = 0; i < atlas.views.size(); ++i) {
         fill(list, state, atlas.counts, 0);
         list.setPipeline(state.pipelines.compute("light_layers.comp"));
-        bind(list, {Binding::read(2, state.orNothing(atlas.first)),
+        bind(list, {Binding::read(2, state.orPlaceholder(atlas.first)),
                     Binding::write(0, state.targets[atlas.counts])});
         rasterise(list, state, atlas, i);
         list.setPipeline(state.pipelines.compute("light_pack.comp"));
@@ -101,8 +101,8 @@ void recordLayers(gpu::CommandList& list, RendererState& state, const ShadowAtla
         constants.range = rangeOf(*atlas.views[i], mode);
         list.setConstants(0, gpu::bytesOf(constants));
         bind(list,
-             {Binding::read(0, state.orNothing(atlas.first)), Binding::read(1, state.targets[atlas.counts]),
-              Binding::write(0, state.targets[atlas.layers])});
+             {Binding::read(0, state.orPlaceholder(atlas.first)),
+              Binding::read(1, state.targets[atlas.counts]), Binding::write(0, state.targets[atlas.layers])});
         list.dispatch(groups, groups);
     }
     list.endPass();
@@ -216,8 +216,8 @@ ShadowAtlas skyAtlas(const RendererState& state) {
     for (const LightView& view : state.skyViews) atlas.views.push_back(&view);
     std::uint32_t strands = 0;
     for (const DrawBatch& batch : state.scene.batches) strands += batch.strandCount(state.detail);
-    const auto most = static_cast<float>(state.options.skyStrands);
-    atlas.share = std::min(1.0f, most / static_cast<float>(std::max(strands, 1u)));
+    const auto maximum = static_cast<float>(state.options.skyStrands);
+    atlas.share = std::min(1.0f, maximum / static_cast<float>(std::max(strands, 1u)));
     return atlas;
 }
 

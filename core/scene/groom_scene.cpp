@@ -84,8 +84,8 @@ Status readLight(JsonReader& reader, const std::filesystem::path& folder, ViewFi
     return {};
 }
 
-std::array<double, 3> readAngles(JsonReader& reader, const char* name, double least, double most) {
-    const Vec3f degrees = reader.vector(name, least, most, "degrees");
+std::array<double, 3> readAngles(JsonReader& reader, const char* name, double minimum, double maximum) {
+    const Vec3f degrees = reader.vector(name, minimum, maximum, "degrees");
     std::array<double, 3> angles{};
     for (int i = 0; i < 3; ++i) {
         angles[static_cast<std::size_t>(i)] = static_cast<double>(degrees[i]) * shading::kDegree;
@@ -165,7 +165,7 @@ std::vector<Quatf> rootRotations(const Groom& rest, const Groom& posed, const Fo
 }
 
 /// The same strands are in streaks and dyed, as strands and not the material say.
-bool hasSameShares(const HairMaterial& a, const HairMaterial& b) {
+bool hasSameStreaksAndDye(const HairMaterial& a, const HairMaterial& b) {
     return a.streakShare == b.streakShare && a.streakWidth == b.streakWidth &&
            a.streakSoftness == b.streakSoftness && a.streakSeed == b.streakSeed &&
            a.dyeStrength == b.dyeStrength;
@@ -202,11 +202,11 @@ Result<ViewFile> readViewFile(const std::string& path) {
     if (reader.has("head_albedo")) view.headAlbedo = reader.vector("head_albedo", 0, 1);
     if (reader.has("head_absorption_per_m")) {
         view.headAbsorption = static_cast<float>(reader.number(
-            "head_absorption_per_m", 0, static_cast<double>(render::kMostHeadAbsorption), "1/m"));
+            "head_absorption_per_m", 0, static_cast<double>(render::kMaxHeadAbsorption), "1/m"));
     }
     if (reader.has("shadow_blur_px")) {
         view.shadowBlur = static_cast<float>(
-            reader.number("shadow_blur_px", 0, static_cast<double>(render::kMostShadowBlur), "pixels"));
+            reader.number("shadow_blur_px", 0, static_cast<double>(render::kMaxShadowBlur), "pixels"));
     }
     if (reader.has("hair")) readHair(reader.object("hair"), view);
     reader.finish();
@@ -240,7 +240,7 @@ Result<GroomScene> GroomScene::make(const Groom& groom, const std::vector<Vec3f>
         }
     }
     if (groom.interpolation.followPerGuide == 0 || groom.strandCount() == 0) {
-        if (scene.material_.look) scene.shares_ = sharesOfStrands(groom);
+        if (scene.material_.look) scene.weights_ = weightsOfStrands(groom);
         return scene;
     }
 
@@ -251,9 +251,9 @@ Result<GroomScene> GroomScene::make(const Groom& groom, const std::vector<Vec3f>
     }
     scene.bindings_ = std::move(*bindings);
     if (scene.material_.look) {
-        auto shares = sharesOfFollowHairs(groom, *scene.bindings_);
-        if (!shares) return tl::unexpected(shares.error());
-        scene.shares_ = std::move(*shares);
+        auto weights = weightsOfFollowHairs(groom, *scene.bindings_);
+        if (!weights) return tl::unexpected(weights.error());
+        scene.weights_ = std::move(*weights);
     }
     if (auto status = scene.makeFollowHairs(); !status) return tl::unexpected(status.error());
     return scene;
@@ -271,7 +271,7 @@ void GroomScene::moveStrands(std::span<const std::uint32_t> strands, std::span<c
 
 bool GroomScene::setMaterial(const HairMaterial& authored, const ViewFile& view) {
     const HairMaterial& before = rest_.material;
-    if (authored.rootColour != before.rootColour || !hasSameShares(authored, before)) return false;
+    if (authored.rootColour != before.rootColour || !hasSameStreaksAndDye(authored, before)) return false;
     if (!radii_.empty() && authored.rootRadius != before.rootRadius) return false;
     rest_.material = authored;
     material_ = renderMaterial(rest_, view);
@@ -279,10 +279,10 @@ bool GroomScene::setMaterial(const HairMaterial& authored, const ViewFile& view)
 }
 
 bool GroomScene::setDye(const Groom& groom) {
-    if (shares_.pointDyes.empty() || !groom.pointAttributes.has(attribute::kPointDye)) return false;
+    if (weights_.pointDyes.empty() || !groom.pointAttributes.has(attribute::kPointDye)) return false;
     rest_.pointAttributes.set(attribute::kPointDye,
                               groom.pointAttributes.all().find(attribute::kPointDye)->second);
-    shares_.pointDyes = bindings_ ? pointDyesOfFollowHairs(rest_, *bindings_) : pointDyes(rest_);
+    weights_.pointDyes = bindings_ ? pointDyesOfFollowHairs(rest_, *bindings_) : pointDyes(rest_);
     return true;
 }
 
@@ -316,9 +316,9 @@ render::RenderScene GroomScene::scene() const {
         strands.offsets = hairOffsets_;
         strands.positions_ws = hairPositions_ws_;
     }
-    strands.streaks = shares_.streaks;
-    strands.dyes = shares_.dyes;
-    strands.pointDyes = shares_.pointDyes;
+    strands.streaks = weights_.streaks;
+    strands.dyes = weights_.dyes;
+    strands.pointDyes = weights_.pointDyes;
     scene.strands.push_back(strands);
     return scene;
 }

@@ -49,7 +49,7 @@ struct ViewFile {
 Result<ViewFile> readViewFile(const std::string& path);
 
 /// What of streaks and dye each strand that is drawn has, 0…1; empty: nothing.
-struct StrandShares {
+struct StreakAndDyeWeights {
     std::vector<float> streaks;
     std::vector<float> dyes;
     std::vector<float> pointDyes;  ///< one a point, shares of that; empty: nothing was painted
@@ -100,8 +100,8 @@ class GroomScene {
     std::vector<Vec3f> hairPositions_ws_;
     std::vector<float> radii_;  ///< of the strands' points where some are hidden, which have no thickness
     render::HairMaterial material_;
-    StrandShares shares_;  ///< of what is drawn, where the material has a look
-    bool matte_ = false;   ///< the head, where a view says what it is
+    StreakAndDyeWeights weights_;  ///< of what is drawn, where the material has a look
+    bool matte_ = false;           ///< the head, where a view says what it is
 };
 
 }  // namespace hairloom

@@ -13,7 +13,7 @@ namespace {
 
 using shading::LookQuantity;
 
-constexpr double kLeastLobeWidth = 0.5 * shading::kDegree;  // in θ_h
+constexpr double kMinLobeWidth = 0.5 * shading::kDegree;  // in θ_h
 constexpr double kLargestLobeWidth = 60 * shading::kDegree;
 
 double asDouble(float value) {
@@ -79,7 +79,7 @@ struct LobeControls {
     void applyTo(shading::MarschnerParameters& m) const {
         for (std::size_t p = 0; p < 3; ++p) {
             m.intensity[p] *= intensity[p];
-            m.width[p] = std::clamp(m.width[p] * width[p], kLeastLobeWidth, kLargestLobeWidth);
+            m.width[p] = std::clamp(m.width[p] * width[p], kMinLobeWidth, kLargestLobeWidth);
             m.tilt[p] += shift[p];
         }
     }
@@ -156,7 +156,7 @@ render::FibreMaterial fibreMaterial(const HairMaterial& authored, const FibreVie
                              : view.melanin  ? shading::absorption(*view.melanin)
                                              : absorptionLook(authored, roughness).root;
     m.azimuthal.width = shading::azimuthalWidth(roughness);
-    if (m.azimuthal.width >= shading::kLeastAzimuthalWidth) m.azimuthal.causticWidth = 0;
+    if (m.azimuthal.width >= shading::kMinAzimuthalWidth) m.azimuthal.causticWidth = 0;
     m.azimuthal.axisRatio = view.axisRatio.value_or(shading::axisRatio(asDouble(authored.eccentricity)));
     shading::setScales(m, asDouble(authored.scaleTiltDegrees) * shading::kDegree,
                        shading::longitudinalWidth(asDouble(authored.longitudinalRoughness)));
@@ -215,48 +215,48 @@ render::HairMaterial renderMaterial(const Groom& groom, const ViewFile& view) {
     return material;
 }
 
-StrandShares sharesOfStrands(const Groom& groom) {
-    StrandShares shares;
+StreakAndDyeWeights weightsOfStrands(const Groom& groom) {
+    StreakAndDyeWeights weights;
     const HairMaterial& material = groom.material;
-    if (material.streakShare > 0) shares.streaks = streakWeights(material, rootsOf(groom));
-    if (material.dyeStrength <= 0) return shares;
+    if (material.streakShare > 0) weights.streaks = streakWeights(material, rootsOf(groom));
+    if (material.dyeStrength <= 0) return weights;
     if (isPainted(groom)) {
-        shares.pointDyes = pointDyes(groom);
-        shares.dyes.assign(groom.strandCount(), material.dyeStrength);
-        return shares;
+        weights.pointDyes = pointDyes(groom);
+        weights.dyes.assign(groom.strandCount(), material.dyeStrength);
+        return weights;
     }
     const auto mask = groom.strandAttributes.view<float>(attribute::kDye);
-    shares.dyes.resize(groom.strandCount());
-    for (std::size_t s = 0; s < shares.dyes.size(); ++s)
-        shares.dyes[s] = material.dyeStrength * maskOf(mask, s);
-    return shares;
+    weights.dyes.resize(groom.strandCount());
+    for (std::size_t s = 0; s < weights.dyes.size(); ++s)
+        weights.dyes[s] = material.dyeStrength * maskOf(mask, s);
+    return weights;
 }
 
-Result<StrandShares> sharesOfFollowHairs(const Groom& groom, const FollowBindings& bindings) {
-    StrandShares shares;
+Result<StreakAndDyeWeights> weightsOfFollowHairs(const Groom& groom, const FollowBindings& bindings) {
+    StreakAndDyeWeights weights;
     const HairMaterial& material = groom.material;
     if (material.streakShare > 0) {
         const auto rest = bakeFollowHairs(groom, bindings);
         if (!rest) return tl::unexpected(rest.error());
-        shares.streaks = streakWeights(material, rootsOf(*rest));
+        weights.streaks = streakWeights(material, rootsOf(*rest));
     }
-    if (material.dyeStrength <= 0) return shares;
+    if (material.dyeStrength <= 0) return weights;
     if (isPainted(groom)) {
-        shares.pointDyes = pointDyesOfFollowHairs(groom, bindings);
-        shares.dyes.assign(bindings.hairCount(), material.dyeStrength);
-        return shares;
+        weights.pointDyes = pointDyesOfFollowHairs(groom, bindings);
+        weights.dyes.assign(bindings.hairCount(), material.dyeStrength);
+        return weights;
     }
     const auto mask = groom.strandAttributes.view<float>(attribute::kDye);
-    shares.dyes.resize(bindings.hairCount());
-    for (std::size_t hair = 0; hair < shares.dyes.size(); ++hair) {
+    weights.dyes.resize(bindings.hairCount());
+    for (std::size_t hair = 0; hair < weights.dyes.size(); ++hair) {
         float sum = 0;
         for (std::size_t k = 0; k < 3; ++k) {
             const std::uint32_t strand = bindings.guideStrands[bindings.guides[hair][k]];
             sum += bindings.rootWeights[hair][static_cast<int>(k)] * maskOf(mask, strand);
         }
-        shares.dyes[hair] = material.dyeStrength * std::clamp(sum, 0.0f, 1.0f);
+        weights.dyes[hair] = material.dyeStrength * std::clamp(sum, 0.0f, 1.0f);
     }
-    return shares;
+    return weights;
 }
 
 std::vector<float> pointDyesOfFollowHairs(const Groom& groom, const FollowBindings& bindings) {

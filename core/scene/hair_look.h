@@ -12,10 +12,10 @@ namespace hairloom {
 render::HairMaterial renderMaterial(const Groom& groom, const ViewFile& view);
 
 /// Of the groom's own strands, by their roots at rest and the attributes `dye`.
-StrandShares sharesOfStrands(const Groom& groom);
+StreakAndDyeWeights weightsOfStrands(const Groom& groom);
 /// Of follow hairs: by their own roots at rest, and the dye of the guides around them. Errors: hairs that
 /// cannot be evaluated.
-Result<StrandShares> sharesOfFollowHairs(const Groom& groom, const FollowBindings& bindings);
+Result<StreakAndDyeWeights> weightsOfFollowHairs(const Groom& groom, const FollowBindings& bindings);
 /// The painted dye of the guides around each point of a follow hair; empty where none was painted.
 std::vector<float> pointDyesOfFollowHairs(const Groom& groom, const FollowBindings& bindings);
 

@@ -29,7 +29,7 @@ std::vector<std::string> sampleMaterials(const fs::path& samples) {
     return names;
 }
 
-Status wearMaterial(const fs::path& samples, const std::string& nameOrFile, Groom& groom) {
+Status applyMaterial(const fs::path& samples, const std::string& nameOrFile, Groom& groom) {
     const auto names = sampleMaterials(samples);
     const bool isSample = std::ranges::find(names, nameOrFile) != names.end();
     std::error_code none;

@@ -16,6 +16,6 @@ std::vector<std::string> sampleMaterials(const std::filesystem::path& samples);
 /// Gives the groom a sample's material, or that of a JSON file of sections with fields (as `set --from`
 /// takes). Fields that it does not name get their defaults. Radii that points carry go where the material
 /// names some. Errors: no such material, listing those there are; a file that does not read.
-Status wearMaterial(const std::filesystem::path& samples, const std::string& nameOrFile, Groom& groom);
+Status applyMaterial(const std::filesystem::path& samples, const std::string& nameOrFile, Groom& groom);
 
 }  // namespace hairloom

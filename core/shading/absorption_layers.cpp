@@ -63,12 +63,12 @@ DualLayers bakeDualOf(std::uint32_t azimuth, std::uint32_t inclination, const Mo
 
 double absorptionOfLayer(std::uint32_t layer) {
     const double u = static_cast<double>(layer) / (kAbsorptionLayers - 1);
-    return kBend * u / (1 + kBend / kMostAbsorption - u);
+    return kBend * u / (1 + kBend / kMaxAbsorption - u);
 }
 
 LayerPlace layerPlace(double absorption) {
-    const double sigma = std::clamp(absorption, 0.0, kMostAbsorption);
-    const double u = sigma * (1 + kBend / kMostAbsorption) / (kBend + sigma);
+    const double sigma = std::clamp(absorption, 0.0, kMaxAbsorption);
+    const double u = sigma * (1 + kBend / kMaxAbsorption) / (kBend + sigma);
     const double at = u * (kAbsorptionLayers - 1);
     const auto low = std::min(static_cast<std::uint32_t>(at), kAbsorptionLayers - 2);
     const double below = absorptionOfLayer(low), above = absorptionOfLayer(low + 1);

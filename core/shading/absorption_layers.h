@@ -12,9 +12,9 @@ namespace hairloom::shading {
 /// A multiple of 3: three layers are baked at once, as the channels of one fibre.
 inline constexpr std::uint32_t kAbsorptionLayers = 9;
 /// Per fibre radius; what absorbs more looks the same.
-inline constexpr double kMostAbsorption = 8;
+inline constexpr double kMaxAbsorption = 8;
 
-/// Absorption of a layer, 0 … kMostAbsorption, closer to each other where there is light to see.
+/// Absorption of a layer, 0 … kMaxAbsorption, closer to each other where there is light to see.
 double absorptionOfLayer(std::uint32_t layer);
 
 /// Between which layers an absorption lies.

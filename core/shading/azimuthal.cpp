@@ -138,7 +138,7 @@ AzimuthalProfile::AzimuthalProfile(const AzimuthalParameters& parameters, double
     : parameters_(parameters), thetaD_(thetaD) {
     if (!isRough()) {
         parameters_.width = 0;
-        parameters_.causticWidth = std::max(parameters_.causticWidth, kLeastCausticWidth);
+        parameters_.causticWidth = std::max(parameters_.causticWidth, kMinCausticWidth);
     }
     circle_ = {makeSection(parameters_.ior)};
     if (parameters_.axisRatio == 1) {

@@ -30,7 +30,7 @@ enum class RootMethod {
 struct AzimuthalParameters {
     double ior = 1.55;                 ///< 1…3
     Vec3d absorption = Vec3d::Zero();  ///< RGB per fibre radius, >= 0
-    /// Standard deviation of what roughness and uneven cross-sections add; from kLeastAzimuthalWidth up,
+    /// Standard deviation of what roughness and uneven cross-sections add; from kMinAzimuthalWidth up,
     /// below it counts as none.
     double width = 0;
     /// Long over short axis, or the reverse, 0.5…2; changes TRT alone. Eq. 47 with φ_h as in Marschner et
@@ -45,9 +45,9 @@ struct AzimuthalParameters {
 
     bool operator==(const AzimuthalParameters&) const = default;
 };
-inline constexpr double kLeastAzimuthalWidth = 0.035;  ///< 2 degrees
+inline constexpr double kMinAzimuthalWidth = 0.035;  ///< 2 degrees
 /// Where nothing else blurs a caustic, w_c is at least this: it would be infinite.
-inline constexpr double kLeastCausticWidth = 0.035;
+inline constexpr double kMinCausticWidth = 0.035;
 
 /// All N of one inclination.
 class AzimuthalProfile {
@@ -84,7 +84,7 @@ class AzimuthalProfile {
     Vec3d smooth(const Section& section, Lobe lobe, double phi) const;
     Vec3d causticGauss(const Section& section, double phi) const;
     Vec3d rough(const Section& section, Lobe lobe, double phi) const;
-    bool isRough() const { return parameters_.width >= kLeastAzimuthalWidth; }
+    bool isRough() const { return parameters_.width >= kMinAzimuthalWidth; }
     const std::vector<Section>& sections(Lobe lobe) const { return lobe == Lobe::TRT ? trt_ : circle_; }
     Grid pointwiseGrid() const;
     Grid roughGrid() const;

@@ -11,11 +11,11 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr std::size_t kLast = AzimuthalProfile::kGridSize - 1;
 constexpr double kStep = kPi / static_cast<double>(kLast);
-constexpr double kMostAlbedo = 0.995;
+constexpr double kMaxAlbedo = 0.995;
 
 using Channels = std::array<std::array<float, AzimuthalProfile::kGridSize>, 3>;
 using LobeRows = std::array<Channels, 3>;
-constexpr double kLeastLoss =
+constexpr double kMinLoss =
     1e-3;  // of diffuse light at a fibre: what solves the equations in single precision
 
 struct LobeShape {
@@ -99,7 +99,7 @@ class Layer {
           depth_(scale_ * std::max(all, before)) {
         const double omega = (albedo - std::max(second, 0.0)) / scale_;
         asymmetric_ = (first - std::max(second, 0.0)) / scale_;
-        lost_ = std::max(1 - omega, kLeastLoss);
+        lost_ = std::max(1 - omega, kMinLoss);
         omega_ = 1 - lost_;
         // The beam must not fade exactly as diffuse light does.
         turned_ = 2 * (1 - asymmetric_);
@@ -205,8 +205,8 @@ DualScattering::Row DualScattering::at(double thetaD) const {
     row.average.second = momentOf(row.profile, 2);
     for (int c = 0; c < 3; ++c) {
         const double albedo = row.average.forward[c] + row.average.backward[c];
-        if (albedo <= kMostAlbedo) continue;
-        const double factor = kMostAlbedo / albedo;
+        if (albedo <= kMaxAlbedo) continue;
+        const double factor = kMaxAlbedo / albedo;
         for (Vec3d* share :
              {&row.average.forward, &row.average.backward, &row.average.first, &row.average.second}) {
             (*share)[c] *= factor;

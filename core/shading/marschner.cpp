@@ -52,7 +52,7 @@ double Marschner::energyFactor() const {
         const AzimuthalProfile profile(clear, std::min(static_cast<double>(i) * kStep / 2, 0.4999 * kPi));
         for (const Lobe lobe : kLobes) energies[i][index(lobe)] = profile.energy(lobe).x();
     }
-    double most = 1;
+    double maximum = 1;
     for (int i = 0; i < kSteps; ++i) {
         const double in = (i + 0.5) * kStep - kPi / 2;
         double sum = 0;
@@ -71,9 +71,9 @@ double Marschner::energyFactor() const {
             sum += all > 0 ? weighted / all
                            : energies[static_cast<std::size_t>(std::abs(kSteps - 1 - 2 * i))][index(lobe)];
         }
-        most = std::max(most, sum);
+        maximum = std::max(maximum, sum);
     }
-    return 1 / most;
+    return 1 / maximum;
 }
 
 Vec3d Marschner::lobe(Lobe lobe, double thetaIn, double thetaOut, double phi) const {

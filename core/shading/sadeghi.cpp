@@ -15,12 +15,12 @@ constexpr double kGlintShare = 0.2;
 /// The colour whose largest channel is 1, and that channel.
 SadeghiLobe lobeOf(const Vec3d& energy, double area, double shift, double deviation) {
     SadeghiLobe lobe;
-    const double most = energy.maxCoeff();
-    if (most > 0) lobe.colour = energy / most;
+    const double maximum = energy.maxCoeff();
+    if (maximum > 0) lobe.colour = energy / maximum;
     lobe.shift = shift;
     lobe.width = kWidthOfDeviation * deviation;
     // θ_h is half of θ_o: the longitudinal area over θ_o is twice the width.
-    lobe.intensity = most / (2 * lobe.width * area);
+    lobe.intensity = maximum / (2 * lobe.width * area);
     return lobe;
 }
 
@@ -94,13 +94,13 @@ SadeghiParameters withAbsorption(const SadeghiParameters& parameters, const Azim
     const TransmittedEnergies now = transmittedEnergies(fibre, absorption);
     SadeghiParameters result = parameters;
     const auto change = [](SadeghiLobe& lobe, const Vec3d& from, const Vec3d& to) {
-        const double most = to.maxCoeff();
-        if (!(most > 0) || !(from.maxCoeff() > 0)) {
+        const double maximum = to.maxCoeff();
+        if (!(maximum > 0) || !(from.maxCoeff() > 0)) {
             lobe.intensity = 0;
             return;
         }
-        lobe.intensity *= most / from.maxCoeff();
-        lobe.colour = to / most;
+        lobe.intensity *= maximum / from.maxCoeff();
+        lobe.colour = to / maximum;
     };
     change(result.tt, before.tt, now.tt);
     change(result.trt, before.trt, now.trt);

@@ -210,7 +210,7 @@ DualTables bakeDual(const DualScattering& model, std::uint32_t azimuth, std::uin
 Table bakeSpreadFactors() {
     Table table = makeTable(128, 48);
     forRows(table, [&](std::uint32_t y) {
-        const double width = kLeastSpread + coordinate(y, table.height) * (kLargestSpread - kLeastSpread);
+        const double width = kMinSpread + coordinate(y, table.height) * (kLargestSpread - kMinSpread);
         const LongitudinalLobe lobe(0, width);
         for (std::uint32_t x = 0; x < table.width; ++x) {
             const double theta = std::min(std::asin(coordinate(x, table.width)), kLargestTheta);

@@ -66,7 +66,7 @@ DualTables bakeDual(const DualScattering& model, std::uint32_t azimuth = 64, std
 /// LongitudinalLobe::factorOut() of lobes without tilt, in red, by |sin θ| and the place of the width between
 /// the two bounds; the same for all models.
 Table bakeSpreadFactors();
-inline constexpr double kLeastSpread = 1 * kDegree, kLargestSpread = 60 * kDegree;
+inline constexpr double kMinSpread = 1 * kDegree, kLargestSpread = 60 * kDegree;
 
 /// S cos θ_i as the shader computes it from the tables.
 Vec3d lookUp(const MarschnerTables& tables, double sinThetaIn, double sinThetaOut, double cosPhi);

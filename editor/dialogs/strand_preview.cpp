@@ -9,7 +9,7 @@
 namespace hairloom::editor {
 namespace {
 
-constexpr std::size_t kMostStrands = 3000;
+constexpr std::size_t kMaxStrands = 3000;
 
 }  // namespace
 
@@ -58,7 +58,7 @@ void StrandPreview::paintEvent(QPaintEvent*) {
     painter.setRenderHint(QPainter::Antialiasing);
     // Far strands first; those on the far side of the head are hidden by it only where they lie behind its
     // middle.
-    const std::size_t stride = std::max<std::size_t>(1, strands_.strandCount() / kMostStrands);
+    const std::size_t stride = std::max<std::size_t>(1, strands_.strandCount() / kMaxStrands);
     std::vector<std::pair<float, std::size_t>> order;
     for (std::size_t s = 0; s < strands_.strandCount(); s += stride) {
         const auto points = strands_.strand(s);

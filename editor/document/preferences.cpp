@@ -8,13 +8,13 @@
 namespace hairloom::editor {
 namespace {
 
-constexpr int kMostRecentFiles = 10;
+constexpr int kMaxRecentFiles = 10;
 constexpr const char* kRecent = "recentFiles";
 
 template <class Enum>
-Enum readChoice(const char* key, Enum standard, int count) {
-    const int value = QSettings().value(key, static_cast<int>(standard)).toInt();
-    return value >= 0 && value < count ? static_cast<Enum>(value) : standard;
+Enum readChoice(const char* key, Enum defaultValue, int count) {
+    const int value = QSettings().value(key, static_cast<int>(defaultValue)).toInt();
+    return value >= 0 && value < count ? static_cast<Enum>(value) : defaultValue;
 }
 
 }  // namespace
@@ -68,7 +68,7 @@ void Preferences::addRecentFile(const QString& path) {
     QStringList files = QSettings().value(kRecent).toStringList();
     files.removeAll(absolute);
     files.prepend(absolute);
-    while (files.size() > kMostRecentFiles) files.removeLast();
+    while (files.size() > kMaxRecentFiles) files.removeLast();
     QSettings().setValue(kRecent, files);
     Q_EMIT recentFilesChanged();
 }

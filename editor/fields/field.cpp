@@ -15,7 +15,8 @@ std::vector<Field> fieldsIn(S Groom::*section, Changes changes) {
     for (const runtime::Field<S>& described : fieldsOf(S{})) {
         if (described.components() == 0) continue;
         Field field{described, labelOf(described.name), {}, changes, {}, {}};
-        for (std::uint32_t c = 0; c < field.components(); ++c) field.standard[c] = defaultValue(described, c);
+        for (std::uint32_t c = 0; c < field.components(); ++c)
+            field.defaultValue[c] = defaultValue(described, c);
         field.value = [&described, section](const Groom& groom, std::uint32_t component) {
             return fieldValue(groom.*section, described, component);
         };
@@ -120,15 +121,15 @@ QString tooltipOf(const Field& field, DisplayUnit lengths) {
                        .arg(field.label, sentence(QString::fromUtf8(field.meaning)));
     if (field.kind == FieldKind::Choice) {
         return text + QObject::tr("<p>Standard: %1</p>")
-                          .arg(field.choiceLabels().value(static_cast<int>(field.standard[0])));
+                          .arg(field.choiceLabels().value(static_cast<int>(field.defaultValue[0])));
     }
     if (field.kind == FieldKind::Bool || field.kind == FieldKind::Colour) return text;
     const Shown shown = shownAs(QString::fromUtf8(field.unit), field.min, field.max, lengths);
     const auto number = [&](double value) { return QString::number(value * shown.factor, 'g', 6); };
-    text +=
-        QObject::tr("<p>%1 to %2 %3; standard %4</p>")
-            .arg(number(field.min), number(field.max),
-                 shown.unit.isEmpty() ? QString() : shown.unit.toHtmlEscaped(), number(field.standard[0]));
+    text += QObject::tr("<p>%1 to %2 %3; default %4</p>")
+                .arg(number(field.min), number(field.max),
+                     shown.unit.isEmpty() ? QString() : shown.unit.toHtmlEscaped(),
+                     number(field.defaultValue[0]));
     return text;
 }
 

@@ -15,8 +15,8 @@
 namespace hairloom::editor {
 
 struct Field : FieldInfo {
-    QString label;                     ///< "Wind speed"
-    std::array<double, 3> standard{};  ///< the default of each component
+    QString label;                         ///< "Wind speed"
+    std::array<double, 3> defaultValue{};  ///< the default of each component
     Changes changes;
     std::function<double(const Groom&, std::uint32_t component)> value;
     /// False, and no change, where the value is not allowed.

@@ -40,7 +40,7 @@ void FieldForm::addRow(const Field& field) {
     QWidget* control = nullptr;
     switch (field.kind) {
         case FieldKind::Bool:
-            control = makeTruth(field);
+            control = makeGroundTruth(field);
             break;
         case FieldKind::Choice:
             control = makeChoice(field);
@@ -61,30 +61,30 @@ void FieldForm::addRow(const Field& field) {
     control->setObjectName(field.name);
     auto* label = new QLabel(field.label);
     label->setBuddy(control);
-    auto* standard = new QToolButton;
-    standard->setObjectName("standard");
-    standard->setIcon(icon("reset"));
-    standard->setIconSize({12, 12});
-    standard->setAutoRaise(true);
-    standard->setToolTip(tr("Back to the standard value"));
-    standard->setFocusPolicy(Qt::NoFocus);
-    connect(standard, &QToolButton::clicked, this, [this, &field] {
+    auto* defaultValue = new QToolButton;
+    defaultValue->setObjectName("default");
+    defaultValue->setIcon(icon("reset"));
+    defaultValue->setIconSize({12, 12});
+    defaultValue->setAutoRaise(true);
+    defaultValue->setToolTip(tr("Back to the default value"));
+    defaultValue->setFocusPolicy(Qt::NoFocus);
+    connect(defaultValue, &QToolButton::clicked, this, [this, &field] {
         begin();
-        for (std::uint32_t c = 0; c < field.components(); ++c) store(field, field.standard[c], c);
+        for (std::uint32_t c = 0; c < field.components(); ++c) store(field, field.defaultValue[c], c);
     });
     const int row = grid_->rowCount();
     grid_->addWidget(label, row, 0);
     grid_->addWidget(control, row, 1);
-    grid_->addWidget(standard, row, 2);
-    refreshers_.push_back([this, &field, label, control, standard] {
+    grid_->addWidget(defaultValue, row, 2);
+    refreshers_.push_back([this, &field, label, control, defaultValue] {
         const QString tip = tooltipOf(field, preferences_.unit());
         label->setToolTip(tip);
         control->setToolTip(tip);
-        bool isStandard = true;
+        bool isDefault = true;
         for (std::uint32_t c = 0; c < field.components(); ++c) {
-            isStandard = isStandard && field.value(document_.groom(), c) == field.standard[c];
+            isDefault = isDefault && field.value(document_.groom(), c) == field.defaultValue[c];
         }
-        standard->setEnabled(!isStandard);
+        defaultValue->setEnabled(!isDefault);
     });
 }
 
@@ -100,7 +100,7 @@ QWidget* FieldForm::makeNumber(const Field& field) {
     return box;
 }
 
-QWidget* FieldForm::makeTruth(const Field& field) {
+QWidget* FieldForm::makeGroundTruth(const Field& field) {
     auto* box = new QCheckBox;
     connect(box, &QCheckBox::clicked, this, [this, &field](bool on) {
         begin();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Controls for described fields, one row each: label, control, and a way back to the standard. They follow
+// Controls for described fields, one row each: label, control, and a way back to the default. They follow
 // the document and change it through its commands.
 
 #include <QGridLayout>
@@ -27,7 +27,7 @@ class FieldForm : public QWidget {
   private:
     void addRow(const Field& field);
     QWidget* makeNumber(const Field& field);
-    QWidget* makeTruth(const Field& field);
+    QWidget* makeGroundTruth(const Field& field);
     QWidget* makeChoice(const Field& field);
     QWidget* makeVector(const Field& field);
     QWidget* makeColour(const Field& field);

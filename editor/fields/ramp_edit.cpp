@@ -13,9 +13,9 @@ namespace {
 
 using runtime::Ramp;
 
-constexpr double kReach_px = 9;       ///< of the pointer
-constexpr float kLeastApart = 0.01f;  ///< two keys along the curve
-constexpr float kStep = 0.01f;        ///< of a press of an arrow key
+constexpr double kReach_px = 9;     ///< of the pointer
+constexpr float kMinApart = 0.01f;  ///< two keys along the curve
+constexpr float kStep = 0.01f;      ///< of a press of an arrow key
 
 }  // namespace
 
@@ -54,12 +54,12 @@ QPointF RampEdit::handle_px(std::uint32_t key) const {
 
 std::optional<std::uint32_t> RampEdit::keyAt(const QPointF& place_px) const {
     std::optional<std::uint32_t> nearest;
-    double least = kReach_px;
+    double minimum = kReach_px;
     for (std::uint32_t k = 0; k < ramp_.count; ++k) {
         const QPointF way = place_px - handle_px(k);
         const double distance = std::hypot(way.x(), way.y());
-        if (distance > least) continue;
-        least = distance;
+        if (distance > minimum) continue;
+        minimum = distance;
         nearest = k;
     }
     return nearest;
@@ -67,10 +67,10 @@ std::optional<std::uint32_t> RampEdit::keyAt(const QPointF& place_px) const {
 
 bool RampEdit::mayAddAt(const QPointF& place_px) const {
     const float at = along(place_px);
-    if (ramp_.count == Ramp::kMostKeys || !(at > 0 && at < 1)) return false;
+    if (ramp_.count == Ramp::kMaxKeys || !(at > 0 && at < 1)) return false;
     if (std::abs(place_px.y() - toPlot_px(at, ramp_.at(at)).y()) > kReach_px) return false;
     return std::ranges::none_of(ramp_.inUse(),
-                                [&](const Ramp::Key& key) { return std::abs(key.at - at) < kLeastApart; });
+                                [&](const Ramp::Key& key) { return std::abs(key.at - at) < kMinApart; });
 }
 
 void RampEdit::addKey(const QPointF& place_px) {
@@ -97,7 +97,7 @@ void RampEdit::removeKey(std::uint32_t key) {
 void RampEdit::moveKey(std::uint32_t key, float at, float value) {
     Ramp::Key moved{ramp_.keys[key].at, std::clamp(value, 0.0f, 1.0f)};
     if (key > 0 && key + 1 < ramp_.count) {
-        const float first = ramp_.keys[key - 1].at + kLeastApart, last = ramp_.keys[key + 1].at - kLeastApart;
+        const float first = ramp_.keys[key - 1].at + kMinApart, last = ramp_.keys[key + 1].at - kMinApart;
         if (first <= last) moved.at = std::clamp(at, first, last);
     }
     if (moved == ramp_.keys[key]) return;

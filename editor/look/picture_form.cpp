@@ -31,27 +31,27 @@ class PictureForm : public OptionForm {
     }
 
     /// A choice of powers of two, from `least` on.
-    void addPower(const char* name, const QString& label, const QString& tip, std::uint32_t least, int count,
-                  const QString& unit, std::uint32_t PictureQuality::*member) {
+    void addPower(const char* name, const QString& label, const QString& tip, std::uint32_t minimum,
+                  int count, const QString& unit, std::uint32_t PictureQuality::*member) {
         QStringList choices;
-        for (int i = 0; i < count; ++i) choices.append(unit.arg(least << static_cast<std::uint32_t>(i)));
+        for (int i = 0; i < count; ++i) choices.append(unit.arg(minimum << static_cast<std::uint32_t>(i)));
         addChoice(
             name, label, tip, choices,
-            [this, member, least] {
+            [this, member, minimum] {
                 return static_cast<int>(std::countr_zero(viewport_.quality().*member) -
-                                        std::countr_zero(least));
+                                        std::countr_zero(minimum));
             },
-            [this, member, least](int index) {
+            [this, member, minimum](int index) {
                 PictureQuality quality = viewport_.quality();
-                quality.*member = least << static_cast<std::uint32_t>(index);
+                quality.*member = minimum << static_cast<std::uint32_t>(index);
                 viewport_.setQuality(quality);
             });
     }
 
-    void addAmount(const char* name, const QString& label, const QString& tip, const char* unit, float most,
-                   float PictureQuality::*member) {
+    void addAmount(const char* name, const QString& label, const QString& tip, const char* unit,
+                   float maximum, float PictureQuality::*member) {
         addNumber(
-            name, label, tip, unit, 0, static_cast<double>(most), false,
+            name, label, tip, unit, 0, static_cast<double>(maximum), false,
             [this, member] { return static_cast<double>(viewport_.quality().*member); },
             [this, member](double value) {
                 PictureQuality quality = viewport_.quality();
@@ -105,12 +105,12 @@ class PictureForm : public OptionForm {
         addAmount("headAbsorption", tr("Through the head"),
                   tr("Hair behind the head gets light that fades with its depth there, by this much a metre: "
                      "softer and without dots, but light comes through thin parts. 0: all or nothing"),
-                  "1/m", render::kMostHeadAbsorption, &PictureQuality::headAbsorption);
+                  "1/m", render::kMaxHeadAbsorption, &PictureQuality::headAbsorption);
         addAmount(
             "shadowBlur", tr("Shadow blur"),
             tr("Pixels by which shadows are blurred in the picture while nothing moves. Hair looks out of "
                "focus, and shadows bleed over edges into what is lit"),
-            "px", render::kMostShadowBlur, &PictureQuality::shadowBlur);
+            "px", render::kMaxShadowBlur, &PictureQuality::shadowBlur);
         addEnum("scattering", tr("Scattered light"),
                 tr("Light that other hairs have scattered: lost, or passed on (dual scattering); Marschner "
                    "and Sadeghi"),

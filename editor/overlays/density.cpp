@@ -52,10 +52,10 @@ void drawDensity(const Session& session, Marks& marks) {
     const Groom& groom = session.document.groom();
     if (groom.strandCount() == 0) return;
     const std::vector<std::uint32_t>& counts = rootsAround(groom);
-    const auto most = static_cast<float>(std::max(2u, *std::ranges::max_element(counts)));
+    const auto maximum = static_cast<float>(std::max(2u, *std::ranges::max_element(counts)));
     const auto positions = shownPositions(session);
     for (std::size_t s = 0; s < groom.strandCount(); ++s) {
-        marks.point(positions[groom.offsets[s]], heat(1 - static_cast<float>(counts[s]) / most), 4);
+        marks.point(positions[groom.offsets[s]], heat(1 - static_cast<float>(counts[s]) / maximum), 4);
     }
 }
 

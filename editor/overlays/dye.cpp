@@ -6,14 +6,14 @@
 namespace hairloom::editor {
 
 void drawDye(const Session& session, Marks& marks) {
-    constexpr float kLeast = 0.02f;  // of the mask; less is not drawn
+    constexpr float kMin = 0.02f;  // of the mask; less is not drawn
     const Groom& groom = session.document.groom();
     const std::vector<float> mask = pointDyes(groom);
     const auto positions = shownPositions(session);
     for (std::size_t s = 0; s < groom.strandCount(); ++s) {
         for (std::uint32_t p = groom.offsets[s] + 1; p < groom.offsets[s + 1]; ++p) {
             const float share = 0.5f * (mask[p - 1] + mask[p]);
-            if (share < kLeast) continue;
+            if (share < kMin) continue;
             marks.line(positions[p - 1], positions[p], QColor::fromRgbF(0.95f, 0.25f, 0.75f, share), 1);
         }
     }

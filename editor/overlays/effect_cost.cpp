@@ -57,14 +57,14 @@ void drawEffectCost(const Session& session, Marks& marks) {
     std::vector<float> cost(groom.strandCount());
     const auto perPoint = static_cast<float>(all / std::max(awake, 1.0));
     const auto perNear = static_cast<float>(spheres / std::max(reached, 1.0));
-    float most = 0;
+    float maximum = 0;
     for (std::size_t s = 0; s < cost.size(); ++s) {
         cost[s] = points[s] * perPoint + near[s] * perNear;
-        most = std::max(most, cost[s]);
+        maximum = std::max(maximum, cost[s]);
     }
     const auto& shown = frame->pose->positions_ws;
     for (std::size_t s = 0; s < cost.size(); ++s) {
-        const QColor colour = cost[s] > 0 ? heat(cost[s] / most) : QColor(110, 130, 160);
+        const QColor colour = cost[s] > 0 ? heat(cost[s] / maximum) : QColor(110, 130, 160);
         for (std::uint32_t p = groom.offsets[s] + 1; p < groom.offsets[s + 1]; ++p)
             marks.line(shown[p - 1], shown[p], colour, 1);
     }

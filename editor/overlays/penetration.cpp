@@ -5,7 +5,7 @@
 namespace hairloom::editor {
 
 void drawPenetration(const Session& session, Marks& marks) {
-    constexpr float kMost = 0.002f;
+    constexpr float kMax = 0.002f;
     const Groom& groom = session.document.groom();
     const auto& pose = session.viewport->pose();
     const bool moved = pose && pose->head.sphereCentres_ws.size() == groom.spheres.size();
@@ -21,7 +21,7 @@ void drawPenetration(const Session& session, Marks& marks) {
         for (std::size_t s = 0; s < centres.size(); ++s) {
             deepest = std::max(deepest, groom.spheres[s].radius - (point - centres[s]).norm());
         }
-        if (deepest > 0) marks.point(point, heat(deepest / kMost), 5, Marks::Depth::OnTop);
+        if (deepest > 0) marks.point(point, heat(deepest / kMax), 5, Marks::Depth::OnTop);
     }
 }
 

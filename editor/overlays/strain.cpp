@@ -7,7 +7,7 @@
 namespace hairloom::editor {
 
 void drawStrain(const Session& session, Marks& marks) {
-    constexpr float kMost = 0.01f;
+    constexpr float kMax = 0.01f;
     const Groom& groom = session.document.groom();
     const auto rest = groom.positions();
     const auto now = shownPositions(session);
@@ -16,7 +16,7 @@ void drawStrain(const Session& session, Marks& marks) {
             const float length = (rest[p] - rest[p - 1]).norm();
             if (!(length > 0)) continue;
             const float strain = std::abs((now[p] - now[p - 1]).norm() / length - 1);
-            marks.line(now[p - 1], now[p], heat(strain / kMost), 1);
+            marks.line(now[p - 1], now[p], heat(strain / kMax), 1);
         }
     }
 }

@@ -37,17 +37,17 @@ class EffectsPanel : public QWidget {
             if (isVisible()) refresh();
         };
         connect(&session_.player, &Player::frameReady, this, refreshSeen);
-        connect(&session_.player, &Player::outlookChanged, this, refreshSeen);
+        connect(&session_.player, &Player::planPreviewChanged, this, refreshSeen);
         connect(table_, &QTreeWidget::itemChanged, this, &EffectsPanel::takeCheck);
         refresh();
     }
 
   protected:
     void showEvent(QShowEvent*) override {
-        session_.player.setOutlookWatched(true);
+        session_.player.setPlanPreviewActive(true);
         refresh();
     }
-    void hideEvent(QHideEvent*) override { session_.player.setOutlookWatched(false); }
+    void hideEvent(QHideEvent*) override { session_.player.setPlanPreviewActive(false); }
 
   private:
     void makeTable() {

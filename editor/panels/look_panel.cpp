@@ -87,13 +87,13 @@ class LookPanel : public QWidget {
         : session_(session), model_(new QComboBox), layout_(new QVBoxLayout(this)) {
         layout_->setContentsMargins(0, 0, 0, 0);
         layout_->setSpacing(8);
-        layout_->addWidget(foldable(tr("Presets"), makePresetList(session_)));
-        layout_->addWidget(foldable(tr("Compare"), makeCompareBar(session_)));
+        layout_->addWidget(collapsible(tr("Presets"), makePresetList(session_)));
+        layout_->addWidget(collapsible(tr("Compare"), makeCompareBar(session_)));
         layout_->addWidget(heading(tr("Shading model")));
         makeModels();
         makeGroups();
-        layout_->addWidget(foldable(tr("Edges and shadows"), makePictureForm(session_), false));
-        layout_->addWidget(foldable(tr("Hairs between the guides"), form(followHairFields()), false));
+        layout_->addWidget(collapsible(tr("Edges and shadows"), makePictureForm(session_), false));
+        layout_->addWidget(collapsible(tr("Hairs between the guides"), form(followHairFields()), false));
         connect(session_.viewport, &Viewport::lookChanged, this, &LookPanel::refresh);
         refresh();
     }
@@ -130,9 +130,9 @@ class LookPanel : public QWidget {
         for (const Group& group : groups()) {
             QWidget* rows = form(pick(fields, group.fields));
             if (QLatin1String(group.title) == QLatin1String("Pigment")) rows = withColourButton(rows);
-            QWidget* const folded = foldable(tr(group.title), rows, group.open);
-            layout_->addWidget(folded);
-            shownFor_.emplace_back(folded, group.models);
+            QWidget* const section = collapsible(tr(group.title), rows, group.open);
+            layout_->addWidget(section);
+            shownFor_.emplace_back(section, group.models);
         }
         // Fields that materials have gained since.
         std::vector<Field> others;
@@ -140,7 +140,7 @@ class LookPanel : public QWidget {
             const auto has = [&](const Group& group) { return group.fields.contains(field.name); };
             if (std::ranges::none_of(groups(), has)) others.push_back(field);
         }
-        if (!others.empty()) layout_->addWidget(foldable(tr("More"), form(others), false));
+        if (!others.empty()) layout_->addWidget(collapsible(tr("More"), form(others), false));
     }
 
     /// For Kajiya-Kay, which knows colours only, and for those who want to go on from a natural colour.

@@ -65,7 +65,7 @@ void wrapRows(QTreeWidget& table) {
     QObject::connect(table.header(), &QHeaderView::sectionResized, &table, [&table] { wrapNow(table); });
 }
 
-QWidget* foldable(const QString& title, QWidget* content, bool open) {
+QWidget* collapsible(const QString& title, QWidget* content, bool open) {
     auto* widget = new QWidget;
     auto* layout = new QVBoxLayout(widget);
     layout->setContentsMargins(0, 0, 0, 0);

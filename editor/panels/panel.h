@@ -34,6 +34,6 @@ QWidget* column(std::initializer_list<QWidget*> rows);
 /// Rows become as high as their words need in columns as wide as they are now, and follow when those change.
 void wrapRows(QTreeWidget& table);
 /// Folds away under its heading; `open` at first.
-QWidget* foldable(const QString& title, QWidget* content, bool open = true);
+QWidget* collapsible(const QString& title, QWidget* content, bool open = true);
 
 }  // namespace hairloom::editor

@@ -86,7 +86,7 @@ QWidget* makePhysicsPanel(Session& session) {
         shown += group.fields;
         QWidget* form = new FieldForm(session.document, session.preferences, pick(fields, group.fields));
         if (group.fields.contains("angularStiffness")) form = withCurve(session, form);
-        layout->insertWidget(layout->count() - 1, foldable(group.title, form, group.open));
+        layout->insertWidget(layout->count() - 1, collapsible(group.title, form, group.open));
     }
     // Fields that the engine has gained since.
     QStringList others;
@@ -95,7 +95,7 @@ QWidget* makePhysicsPanel(Session& session) {
     }
     if (!others.isEmpty()) {
         auto* form = new FieldForm(session.document, session.preferences, pick(fields, others));
-        layout->insertWidget(layout->count() - 1, foldable(QObject::tr("More"), form, false));
+        layout->insertWidget(layout->count() - 1, collapsible(QObject::tr("More"), form, false));
     }
     return scrolled(content);
 }

@@ -13,7 +13,7 @@ namespace hairloom::editor {
 namespace {
 
 constexpr float kFrameTime = 1.0f / 60.0f;
-constexpr int kLeastShown = 3;  // of 100, so that the colour of a margin that is used up is seen
+constexpr int kMinShown = 3;  // of 100, so that the colour of a margin that is used up is seen
 
 runtime::StableAdvice adviceFor(const Groom& groom) {
     static_assert(sizeof(Vec3f) == sizeof(runtime::Float3));
@@ -82,7 +82,7 @@ void StabilityGauge::update() {
     advice_ = adviceFor(groom);
     const double factor = advice_.region.factor;
     const double margin = std::isfinite(factor) ? std::clamp(1 - factor, 0.0, 1.0) : 0;
-    bar_->setValue(std::max(kLeastShown, static_cast<int>(100 * margin)));
+    bar_->setValue(std::max(kMinShown, static_cast<int>(100 * margin)));
     const ThemeColours colours = themeColours(session_.preferences.theme());
     const QColor colour = factor > 1 ? colours.bad : factor > 0.8 ? colours.caution : colours.good;
     bar_->setStyleSheet(QStringLiteral("QProgressBar::chunk { background: %1; }").arg(colour.name()));
@@ -94,9 +94,9 @@ void StabilityGauge::update() {
         button->setToolTip(tr("Changes the settings to these, undoably"));
         offers_->addWidget(button);
         connect(button, &QPushButton::clicked, this, [this, settings = offer.settings] {
-            Groom mended = session_.document.groom();
-            mended.simulation = settings;
-            session_.document.change(tr("Stable settings"), Change::Simulation, std::move(mended));
+            Groom stable = session_.document.groom();
+            stable.simulation = settings;
+            session_.document.change(tr("Stable settings"), Change::Simulation, std::move(stable));
         });
     }
 }

@@ -23,10 +23,10 @@ std::string boneNear(const Skeleton& skeleton, const Vec3f& point_ss) {
         return bones[bone].inverseBind.inverse().translation();
     };
     std::string nearest;
-    float least = std::numeric_limits<float>::max();
+    float minimum = std::numeric_limits<float>::max();
     const auto offer = [&](std::size_t bone, float distance) {
-        if (distance >= least) return;
-        least = distance;
+        if (distance >= minimum) return;
+        minimum = distance;
         nearest = bones[bone].name;
     };
     for (std::size_t b = 0; b < bones.size(); ++b) {

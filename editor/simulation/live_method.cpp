@@ -16,12 +16,12 @@ std::vector<runtime::Sphere> spheresAt(const std::vector<CollisionSphere>& spher
 
 class LiveMethod : public StrandMethod {
   public:
-    LiveMethod(std::unique_ptr<StrandMethod> engine, std::shared_ptr<LiveKnobs> knobs)
-        : engine_(std::move(engine)), knobs_(std::move(knobs)) {}
+    LiveMethod(std::unique_ptr<StrandMethod> engine, std::shared_ptr<LiveParameters> parameters)
+        : engine_(std::move(engine)), parameters_(std::move(parameters)) {}
 
     void reset(const SceneInput& scene, const HeadPose& pose) override { engine_->reset(scene, pose); }
     void step(const SceneInput& scene, const HeadPose& pose, const runtime::FrameInput& input) override {
-        const std::vector<runtime::Sphere> spheres = spheresAt(knobs_->spheres, pose);
+        const std::vector<runtime::Sphere> spheres = spheresAt(parameters_->spheres, pose);
         runtime::FrameInput live = input;
         live.spheres = spheres;
         engine_->step(scene, pose, live);
@@ -38,20 +38,20 @@ class LiveMethod : public StrandMethod {
 
   private:
     std::unique_ptr<StrandMethod> engine_;
-    std::shared_ptr<LiveKnobs> knobs_;
+    std::shared_ptr<LiveParameters> parameters_;
 };
 
 }  // namespace
 
-MethodMaker liveMethod(std::shared_ptr<LiveKnobs> knobs) {
-    return [knobs = std::move(knobs)](const SceneInput& scene,
-                                      const std::optional<runtime::HairVolumeSettings>& hairHair)
+MethodMaker liveMethod(std::shared_ptr<LiveParameters> parameters) {
+    return [parameters = std::move(parameters)](const SceneInput& scene,
+                                                const std::optional<runtime::HairVolumeSettings>& hairHair)
                -> Result<std::unique_ptr<StrandMethod>> {
         auto engine = makeEngineMethod(scene, hairHair);
         if (!engine) return tl::unexpected(engine.error());
-        knobs->engine = engine->get();
-        knobs->spheres = scene.groom().spheres;
-        return std::make_unique<LiveMethod>(std::move(*engine), knobs);
+        parameters->engine = engine->get();
+        parameters->spheres = scene.groom().spheres;
+        return std::make_unique<LiveMethod>(std::move(*engine), parameters);
     };
 }
 

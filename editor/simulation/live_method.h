@@ -11,12 +11,12 @@
 namespace hairloom::editor {
 
 /// What a running simulation looks at before each step.
-struct LiveKnobs {
+struct LiveParameters {
     StrandMethod* engine = nullptr;        ///< set when the simulation has been made
     std::vector<CollisionSphere> spheres;  ///< in place of the groom's
 };
 
 /// For SimulationOptions::backend. `knobs->engine` is valid while the simulation lives.
-MethodMaker liveMethod(std::shared_ptr<LiveKnobs> knobs);
+MethodMaker liveMethod(std::shared_ptr<LiveParameters> parameters);
 
 }  // namespace hairloom::editor

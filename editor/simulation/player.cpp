@@ -15,7 +15,7 @@ namespace hairloom::editor {
 namespace {
 
 constexpr float kFrameTime = 1.0f / 60.0f;
-constexpr int kOutlookMs = 300;
+constexpr int kPlanPreviewMs = 300;
 constexpr QLatin1String kClip("clip:");
 
 Result<std::unique_ptr<HeadMotion>> motionOf(const QString& name, const std::shared_ptr<const Actor>& actor,
@@ -45,7 +45,7 @@ void apply(const Eigen::Isometry3f& offset, HeadPose& pose) {
 }  // namespace
 
 /// What the interface has asked of the thread and it has not taken up yet.
-struct Player::Orders {
+struct Player::WorkerRequests {
     bool stop = false;
     bool playing = false;
     int steps = 0;
@@ -56,13 +56,13 @@ struct Player::Orders {
     std::optional<runtime::SimulationSettings> settings;
     std::optional<std::vector<CollisionSphere>> spheres;
     QStringList leftOut;
-    std::shared_ptr<const Groom> outlook;  ///< whose plan is asked for
+    std::shared_ptr<const Groom> planPreview;  ///< whose plan is asked for
     quint64 epoch = 0;
     std::shared_ptr<const PlayedFrame> delivered;  ///< waits for the interface
 };
 
 Player::Player(Document& document, QObject* parent)
-    : QObject(parent), document_(document), orders_(std::make_unique<Orders>()) {
+    : QObject(parent), document_(document), requests_(std::make_unique<WorkerRequests>()) {
     connect(&document_, &Document::changed, this, &Player::documentChanged);
     connect(&document_, &Document::replaced, this, [this] {
         actor_.reset();
@@ -70,21 +70,21 @@ Player::Player(Document& document, QObject* parent)
         reset();
         Q_EMIT motionsChanged();
     });
-    outlookSoon_.setSingleShot(true);
-    outlookSoon_.setInterval(kOutlookMs);
-    connect(&outlookSoon_, &QTimer::timeout, this, &Player::askForOutlook);
+    planPreviewTimer_.setSingleShot(true);
+    planPreviewTimer_.setInterval(kPlanPreviewMs);
+    connect(&planPreviewTimer_, &QTimer::timeout, this, &Player::requestPlanPreview);
     thread_ = std::thread([this] { run(); });
 }
 
 Player::~Player() {
-    order([](Orders& orders) { orders.stop = true; });
+    request([](WorkerRequests& requests) { requests.stop = true; });
     thread_.join();
 }
 
-void Player::order(const std::function<void(Orders&)>& change) {
+void Player::request(const std::function<void(WorkerRequests&)>& change) {
     {
         const std::lock_guard lock(mutex_);
-        change(*orders_);
+        change(*requests_);
     }
     wake_.notify_all();
 }
@@ -96,7 +96,7 @@ void Player::play() {
     }
     capture();
     playing_ = true;
-    order([](Orders& orders) { orders.playing = true; });
+    request([](WorkerRequests& requests) { requests.playing = true; });
     Q_EMIT stateChanged();
 }
 
@@ -107,15 +107,15 @@ void Player::capture() {
     auto made = motionOf(motion_, actor_, *groom);
     std::shared_ptr<HeadMotion> motion;
     if (made) motion = std::move(*made);
-    order([&](Orders& orders) {
-        orders.groom = std::move(groom);
-        orders.motion = std::move(motion);
+    request([&](WorkerRequests& requests) {
+        requests.groom = std::move(groom);
+        requests.motion = std::move(motion);
     });
 }
 
 void Player::pause() {
     playing_ = false;
-    order([](Orders& orders) { orders.playing = false; });
+    request([](WorkerRequests& requests) { requests.playing = false; });
     Q_EMIT stateChanged();
 }
 
@@ -123,7 +123,7 @@ void Player::step() {
     if (playing_) pause();
     if (document_.groom().strandCount() == 0) return;
     capture();
-    order([](Orders& orders) { ++orders.steps; });
+    request([](WorkerRequests& requests) { ++requests.steps; });
 }
 
 void Player::reset() {
@@ -131,21 +131,21 @@ void Player::reset() {
     frame_.reset();
     ++epoch_;
     captured_ = false;
-    order([&](Orders& orders) {
-        orders.playing = false;
-        orders.steps = 0;
-        orders.restart = true;
-        orders.groom.reset();
-        orders.motion.reset();
-        orders.offset.setIdentity();
-        orders.settings.reset();
-        orders.spheres.reset();
-        orders.epoch = epoch_;
-        orders.delivered.reset();
+    request([&](WorkerRequests& requests) {
+        requests.playing = false;
+        requests.steps = 0;
+        requests.restart = true;
+        requests.groom.reset();
+        requests.motion.reset();
+        requests.offset.setIdentity();
+        requests.settings.reset();
+        requests.spheres.reset();
+        requests.epoch = epoch_;
+        requests.delivered.reset();
     });
     Q_EMIT frameReady();
     Q_EMIT stateChanged();
-    if (outlookOutdated_) outdateOutlook();
+    if (planPreviewOutdated_) outdatePlanPreview();
 }
 
 Status Player::setMotion(const QString& name) {
@@ -175,47 +175,49 @@ void Player::setActor(std::shared_ptr<const Actor> actor) {
 void Player::setLeftOut(const QStringList& effects) {
     leftOut_ = effects;
     const Groom& groom = document_.groom();
-    order([&](Orders& orders) {
-        orders.leftOut = effects;
-        orders.settings = groom.simulation;
-        orders.spheres = groom.spheres;
+    request([&](WorkerRequests& requests) {
+        requests.leftOut = effects;
+        requests.settings = groom.simulation;
+        requests.spheres = groom.spheres;
     });
-    outdateOutlook();
-    Q_EMIT outlookChanged();
+    outdatePlanPreview();
+    Q_EMIT planPreviewChanged();
 }
 
-void Player::setOutlookWatched(bool watched) {
-    outlookWatched_ = watched;
-    if (watched && outlookOutdated_) outlookSoon_.start();
-    if (!watched) outlookSoon_.stop();
+void Player::setPlanPreviewActive(bool watched) {
+    planPreviewActive_ = watched;
+    if (watched && planPreviewOutdated_) planPreviewTimer_.start();
+    if (!watched) planPreviewTimer_.stop();
 }
 
-void Player::outdateOutlook() {
-    outlookOutdated_ = true;
-    if (outlookWatched_) outlookSoon_.start();
+void Player::outdatePlanPreview() {
+    planPreviewOutdated_ = true;
+    if (planPreviewActive_) planPreviewTimer_.start();
 }
 
 std::vector<EffectReport> Player::effects() const {
-    return frame_ ? frame_->stats.effects : outlook_;
+    return frame_ ? frame_->stats.effects : planPreview_;
 }
 
-void Player::askForOutlook() {
+void Player::requestPlanPreview() {
     // Not amid a stroke, which would pay for parting from the copy.
     if (document_.editing().stroke()) {
-        outlookSoon_.start();
+        planPreviewTimer_.start();
         return;
     }
     if (frame_) return;
-    outlookOutdated_ = false;
+    planPreviewOutdated_ = false;
     if (document_.groom().strandCount() == 0) {
-        outlook_.clear();
-        Q_EMIT outlookChanged();
+        planPreview_.clear();
+        Q_EMIT planPreviewChanged();
         return;
     }
-    order([this](Orders& orders) { orders.outlook = std::make_shared<const Groom>(document_.groom()); });
+    request([this](WorkerRequests& requests) {
+        requests.planPreview = std::make_shared<const Groom>(document_.groom());
+    });
 }
 
-void Player::findOutlook(const Groom& groom, const QStringList& leftOut) {
+void Player::computePlanPreview(const Groom& groom, const QStringList& leftOut) {
     Groom tried = groom;
     tried.simulation = without(tried.simulation, leftOut);
     tried.spheres = without(std::move(tried.spheres), leftOut);
@@ -224,18 +226,18 @@ void Player::findOutlook(const Groom& groom, const QStringList& leftOut) {
     const auto made = Simulation::make(tried, (*motion)->poseAt(0), {});
     if (!made) return;
     QMetaObject::invokeMethod(this, [this, effects = made->stats().effects] {
-        outlook_ = effects;
-        Q_EMIT outlookChanged();
+        planPreview_ = effects;
+        Q_EMIT planPreviewChanged();
     });
 }
 
 void Player::setHeadOffset(const Eigen::Isometry3f& offset) {
-    order([&](Orders& orders) { orders.offset = offset; });
+    request([&](WorkerRequests& requests) { requests.offset = offset; });
 }
 
 void Player::documentChanged(Changes changes) {
     const Groom& groom = document_.groom();
-    if (changes & (Changes(Change::Simulation) | Change::Strands | Change::Spheres)) outdateOutlook();
+    if (changes & (Changes(Change::Simulation) | Change::Strands | Change::Spheres)) outdatePlanPreview();
     if (changes & (Changes(Change::Strands) | Change::Scalp)) {
         if (!captured_) return;
         const bool play = playing_ && groom.strandCount() > 0;
@@ -249,16 +251,16 @@ void Player::documentChanged(Changes changes) {
         // Clips carry spheres along by their bones.
         if (auto made = motionOf(motion_, actor_, groom)) motion = std::move(*made);
     }
-    order([&](Orders& orders) {
-        if (changes & Change::Simulation) orders.settings = groom.simulation;
+    request([&](WorkerRequests& requests) {
+        if (changes & Change::Simulation) requests.settings = groom.simulation;
         if (!(changes & Change::Spheres)) return;
-        orders.spheres = groom.spheres;
-        if (motion) orders.motion = motion;
+        requests.spheres = groom.spheres;
+        if (motion) requests.motion = motion;
     });
 }
 
 void Player::run() {
-    const auto knobs = std::make_shared<LiveKnobs>();
+    const auto parameters = std::make_shared<LiveParameters>();
     std::optional<Simulation> simulation;
     std::shared_ptr<const Groom> groom;
     std::shared_ptr<HeadMotion> motion;
@@ -275,36 +277,37 @@ void Player::run() {
         {
             std::unique_lock lock(mutex_);
             wake_.wait(lock, [&] {
-                const bool letGo = orders_->restart && simulation;
-                return orders_->stop || orders_->playing || orders_->steps > 0 || letGo || orders_->outlook;
+                const bool letGo = requests_->restart && simulation;
+                return requests_->stop || requests_->playing || requests_->steps > 0 || letGo ||
+                       requests_->planPreview;
             });
-            if (orders_->steps == 0 && orders_->playing) {
-                wake_.wait_until(lock, due, [this] { return orders_->stop; });
+            if (requests_->steps == 0 && requests_->playing) {
+                wake_.wait_until(lock, due, [this] { return requests_->stop; });
             }
-            if (orders_->stop) return;
-            leftOut = orders_->leftOut;
-            if (orders_->outlook) {
-                const auto outlook = std::exchange(orders_->outlook, nullptr);
+            if (requests_->stop) return;
+            leftOut = requests_->leftOut;
+            if (requests_->planPreview) {
+                const auto planPreview = std::exchange(requests_->planPreview, nullptr);
                 lock.unlock();
-                findOutlook(*outlook, leftOut);
+                computePlanPreview(*planPreview, leftOut);
                 continue;
             }
-            if (!orders_->playing && orders_->steps == 0) {
-                if (orders_->restart) {
+            if (!requests_->playing && requests_->steps == 0) {
+                if (requests_->restart) {
                     simulation.reset();
                     groom.reset();
                     motion.reset();
                 }
                 continue;
             }
-            if (orders_->steps > 0) --orders_->steps;
-            restart = std::exchange(orders_->restart, false);
-            offset = orders_->offset;
-            groom = orders_->groom;
-            motion = orders_->motion;
-            epoch = orders_->epoch;
-            settings = std::exchange(orders_->settings, std::nullopt);
-            spheres = std::exchange(orders_->spheres, std::nullopt);
+            if (requests_->steps > 0) --requests_->steps;
+            restart = std::exchange(requests_->restart, false);
+            offset = requests_->offset;
+            groom = requests_->groom;
+            motion = requests_->motion;
+            epoch = requests_->epoch;
+            settings = std::exchange(requests_->settings, std::nullopt);
+            spheres = std::exchange(requests_->spheres, std::nullopt);
         }
         const auto begin = std::chrono::steady_clock::now();
         due = begin + std::chrono::microseconds(16'667);
@@ -319,25 +322,25 @@ void Player::run() {
             time = 0;
             if (!groom || !motion) continue;
             SimulationOptions options;
-            options.backend = liveMethod(knobs);
+            options.backend = liveMethod(parameters);
             Groom tried = *groom;
             tried.simulation = without(tried.simulation, leftOut);
             auto made = Simulation::make(tried, motion->poseAt(0), options);
             if (!made) {
-                order([](Orders& orders) { orders.playing = false; });
+                request([](WorkerRequests& requests) { requests.playing = false; });
                 refuse(made.error());
                 continue;
             }
             simulation.emplace(std::move(*made));
-            knobs->spheres = without(groom->spheres, leftOut);
+            parameters->spheres = without(groom->spheres, leftOut);
             before.reset();
         }
         if (settings) {
-            if (auto taken = setEngineSettings(*knobs->engine, without(*settings, leftOut)); !taken) {
+            if (auto taken = setEngineSettings(*parameters->engine, without(*settings, leftOut)); !taken) {
                 refuse(taken.error());
             }
         }
-        if (spheres) knobs->spheres = without(std::move(*spheres), leftOut);
+        if (spheres) parameters->spheres = without(std::move(*spheres), leftOut);
         time += static_cast<double>(kFrameTime);
         auto pose = std::make_shared<HairPose>();
         pose->head = motion->poseAt(static_cast<float>(time));
@@ -360,9 +363,9 @@ void Player::deliver(std::shared_ptr<const PlayedFrame> frame, quint64 epoch) {
     bool isFirst = false;
     {
         const std::lock_guard lock(mutex_);
-        if (epoch != orders_->epoch) return;
-        isFirst = !orders_->delivered;
-        orders_->delivered = std::move(frame);
+        if (epoch != requests_->epoch) return;
+        isFirst = !requests_->delivered;
+        requests_->delivered = std::move(frame);
     }
     // One message under way is enough: it takes the newest frame.
     if (!isFirst) return;
@@ -370,7 +373,7 @@ void Player::deliver(std::shared_ptr<const PlayedFrame> frame, quint64 epoch) {
         std::shared_ptr<const PlayedFrame> newest;
         {
             const std::lock_guard lock(mutex_);
-            newest = std::exchange(orders_->delivered, nullptr);
+            newest = std::exchange(requests_->delivered, nullptr);
         }
         if (!newest) return;
         frame_ = std::move(newest);

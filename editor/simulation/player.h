@@ -42,7 +42,7 @@ class Player : public QObject {
     void reset();
     bool isPlaying() const { return playing_; }
     /// Anything but at rest at time zero.
-    bool isUnderWay() const { return frame_ != nullptr; }
+    bool hasFrame() const { return frame_ != nullptr; }
     /// The last frame; null at rest.
     const std::shared_ptr<const PlayedFrame>& frame() const { return frame_; }
 
@@ -63,7 +63,7 @@ class Player : public QObject {
     /// hair.
     std::vector<EffectReport> effects() const;
     /// What would run is looked for, strand by strand, only while somebody watches.
-    void setOutlookWatched(bool watched);
+    void setPlanPreviewActive(bool watched);
 
     /// Moves the head on top of its motion: by the hand of a person.
     void setHeadOffset(const Eigen::Isometry3f& offset);
@@ -74,22 +74,22 @@ class Player : public QObject {
     void stateChanged();
     void motionsChanged();
     /// effects() has changed while nothing played.
-    void outlookChanged();
+    void planPreviewChanged();
     void failed(const QString& problem);
 
   private:
-    struct Orders;
+    struct WorkerRequests;
     void run();
     /// Gives the thread the groom as it is now. Not before it is needed: strokes pay for copies that are
     /// held.
     void capture();
     void deliver(std::shared_ptr<const PlayedFrame> frame, quint64 epoch);
     void documentChanged(Changes changes);
-    void askForOutlook();
-    void outdateOutlook();
+    void requestPlanPreview();
+    void outdatePlanPreview();
     /// Makes the simulation to see its plan; on the thread.
-    void findOutlook(const Groom& groom, const QStringList& leftOut);
-    void order(const std::function<void(Orders&)>& change);
+    void computePlanPreview(const Groom& groom, const QStringList& leftOut);
+    void request(const std::function<void(WorkerRequests&)>& change);
 
     Document& document_;
     std::shared_ptr<const Actor> actor_;
@@ -100,12 +100,12 @@ class Player : public QObject {
     quint64 epoch_ = 0;  ///< frames of earlier ones are dropped
 
     QStringList leftOut_;
-    std::vector<EffectReport> outlook_;
-    QTimer outlookSoon_;
-    bool outlookWatched_ = false;
-    bool outlookOutdated_ = false;
+    std::vector<EffectReport> planPreview_;
+    QTimer planPreviewTimer_;
+    bool planPreviewActive_ = false;
+    bool planPreviewOutdated_ = false;
 
-    std::unique_ptr<Orders> orders_;
+    std::unique_ptr<WorkerRequests> requests_;
     std::mutex mutex_;
     std::condition_variable wake_;
     std::thread thread_;

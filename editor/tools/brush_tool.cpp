@@ -54,7 +54,7 @@ QString BrushTool::hint() const {
 
 void BrushTool::activate() {
     // Brushes work on the hair as it is authored.
-    if (session_.player.isUnderWay()) session_.player.reset();
+    if (session_.player.hasFrame()) session_.player.reset();
 }
 
 void BrushTool::hover(const Pointer& pointer) {
@@ -281,12 +281,12 @@ OptionForm* BrushTool::makeBasicOptions() {
     if (movesHair(brush_)) {
         number("brushClearance", tr("Clearance"), tr("Distance that hair keeps from the skin"), "m", 0, 0.01f,
                &editing::BrushSettings::clearance);
-        form->addTruth(
+        form->addGroundTruth(
             "brushCollide", tr("Keep out of the head"),
             tr("Hair that a dab would push into the head stays out"), [this] { return settings_.collide; },
             [this](bool on) { settings_.collide = on; });
     }
-    form->addTruth(
+    form->addGroundTruth(
         "brushSymmetric", tr("Symmetric"), tr("Each dab again on the other side of the head"),
         [this] { return settings_.symmetric; },
         [this](bool on) {
@@ -295,7 +295,7 @@ OptionForm* BrushTool::makeBasicOptions() {
         });
     const editing::BrushInfo& brush = editing::brushInfo(brush_);
     if (!brush.inverse.empty()) {
-        form->addTruth(
+        form->addGroundTruth(
             "brushInvert", tr("Invert"),
             tr("The opposite: %1. Ctrl does it for one stroke").arg(text(brush.inverse)),
             [this] { return settings_.invert; }, [this](bool on) { settings_.invert = on; });
@@ -309,7 +309,7 @@ QWidget* BrushTool::makeOptions() {
         const std::string name(parameter.name);
         const QString label = labelOf(text(parameter.name));
         if (parameter.kind == FieldKind::Bool) {
-            form->addTruth(
+            form->addGroundTruth(
                 "brush:" + text(name), label, text(parameter.meaning),
                 [this, name] { return settings_.parameters[name] != 0; },
                 [this, name](bool on) { settings_.parameters[name] = on ? 1.0f : 0.0f; });

@@ -12,7 +12,7 @@ class HeadTool : public Tool {
   public:
     explicit HeadTool(Session& session) : session_(session) {
         connect(&session_.player, &Player::stateChanged, this, [this] {
-            if (!session_.player.isUnderWay() && !session_.player.isPlaying()) offset_.setIdentity();
+            if (!session_.player.hasFrame() && !session_.player.isPlaying()) offset_.setIdentity();
         });
     }
     const ToolInfo& info() const override { return info_; }

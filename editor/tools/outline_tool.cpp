@@ -20,7 +20,7 @@ OutlineTool::OutlineTool(Session& session, Shape shape, ToolInfo info)
     : session_(session), shape_(shape), info_(std::move(info)) {}
 
 void OutlineTool::activate() {
-    if (session_.player.isUnderWay()) session_.player.reset();
+    if (session_.player.hasFrame()) session_.player.reset();
 }
 
 void OutlineTool::press(const Pointer& pointer) {

@@ -26,7 +26,7 @@ class ReplaceTool : public Tool {
     QString hint() const override { return tr("%1. [ ] set the size, Esc cancels").arg(info_.tip); }
 
     void activate() override {
-        if (session_.player.isUnderWay()) session_.player.reset();
+        if (session_.player.hasFrame()) session_.player.reset();
     }
     void hover(const Pointer& pointer) override {
         place_ = skinUnder(session_, pointer.at_px);

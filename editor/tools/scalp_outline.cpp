@@ -19,10 +19,10 @@ class ScalpOutlineTool : public OutlineTool {
 
     QWidget* makeOptions() override {
         auto* form = new OptionForm(session().preferences);
-        form->addTruth(
+        form->addGroundTruth(
             "scalpThrough", tr("Through the head"), tr("Faces on the far side count too"),
             [this] { return through_; }, [this](bool on) { through_ = on; });
-        form->addTruth(
+        form->addGroundTruth(
             "scalpSymmetric", tr("Symmetric"), tr("Faces on the other side of the head as well"),
             [this] { return symmetric_; }, [this](bool on) { symmetric_ = on; });
         return form;

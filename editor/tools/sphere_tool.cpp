@@ -20,7 +20,7 @@ class SphereTool : public Tool {
     const ToolInfo& info() const override { return info_; }
 
     void activate() override {
-        if (session_.player.isUnderWay()) session_.player.reset();
+        if (session_.player.hasFrame()) session_.player.reset();
     }
 
     void press(const Pointer& pointer) override {

@@ -66,12 +66,12 @@ bool samePoints(const Groom& a, const Groom& b) {
 }
 
 /// The most samples up to those that were asked for.
-std::uint32_t mostSamples(const gpu::DeviceInfo& device, std::uint32_t asked) {
-    std::uint32_t most = 1;
+std::uint32_t maxSamples(const gpu::DeviceInfo& device, std::uint32_t asked) {
+    std::uint32_t maximum = 1;
     for (const std::uint32_t count : device.sampleCounts) {
-        if (count <= asked) most = std::max(most, count);
+        if (count <= asked) maximum = std::max(maximum, count);
     }
-    return most;
+    return maximum;
 }
 
 ViewFile viewOf(const PictureRequest& request) {
@@ -250,7 +250,7 @@ render::RenderOptions RenderWork::options() const {
     options.width = width_;
     options.height = height_;
     options.exposure = last_->exposure;
-    options.samples = last_->moving ? 1 : mostSamples(device, quality.samples);
+    options.samples = last_->moving ? 1 : maxSamples(device, quality.samples);
     options.frames = last_->moving ? 1 : quality.frames;
     options.filter = quality.filter;
     options.transparency = quality.transparency;

@@ -126,11 +126,11 @@ Eigen::Affine3f SkeletonBuilder::meshToWorld(const aiMesh& mesh, const aiNode& n
     if (!ignoreSkinnedNodes_) return worldOf(node);
     const aiNode* topmost = nullptr;
     const aiBone* joint = nullptr;
-    unsigned least = std::numeric_limits<unsigned>::max();
+    unsigned minimum = std::numeric_limits<unsigned>::max();
     for (unsigned index = 0; index < mesh.mNumBones; ++index) {
         const auto found = nodeOfName_.find(mesh.mBones[index]->mName.C_Str());
-        if (found == nodeOfName_.end() || depth(found->second) >= least) continue;
-        least = depth(found->second);
+        if (found == nodeOfName_.end() || depth(found->second) >= minimum) continue;
+        minimum = depth(found->second);
         topmost = found->second;
         joint = mesh.mBones[index];
     }

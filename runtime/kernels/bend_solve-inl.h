@@ -58,7 +58,7 @@ HWY_INLINE void readSegments(const BlockView& block, const Rows& rows, const Lan
     const std::size_t pitch = block.pitch;
     const V q = all(context.bendRate);
     V3 from = load3(previous, pitch), moved = load3(position, pitch) - from;
-    V3 aim = rootDirection(block, lanes, lane);
+    V3 tangent = rootDirection(block, lanes, lane);
     auto row = rows.at(0);
     Strip::Point* at = strip.points;
     for (std::size_t left = block.points - 1; left > 0; --left, ++at, row.advance()) {
@@ -69,9 +69,9 @@ HWY_INLINE void readSegments(const BlockView& block, const Rows& rows, const Lan
         const V3 movedNext = load3(position, pitch) - to;
         const V3 edge = to - from;
         store3(edge * inverseLength, at->direction);
-        const V3 aimNext = mulAdd(movedNext - moved, q, edge) * inverseLength;
-        store3(aim - aimNext, at->ahead);
-        aim = aimNext;
+        const V3 nextTangent = mulAdd(movedNext - moved, q, edge) * inverseLength;
+        store3(tangent - nextTangent, at->ahead);
+        tangent = nextTangent;
         from = to;
         moved = movedNext;
     }
@@ -79,21 +79,21 @@ HWY_INLINE void readSegments(const BlockView& block, const Rows& rows, const Lan
 
 /// Share of the change that the tank pays, and what that leaves in it. Turning by the share α changes the
 /// energy by ½ α² size − α gain.
-HWY_INLINE V payFromTank(const BlockView& block, const SubstepContext& context, std::size_t lane, V gain,
-                         V size) {
+HWY_INLINE V spendEnergyTank(const BlockView& block, const SubstepContext& context, std::size_t lane, V gain,
+                             V size) {
     const V zero = hn::Zero(D()), one = all(1.0f);
     const V squared = all(context.h * context.h), slow = all(kLeakSpeed * kLeakSpeed);
-    const V tank = hn::Load(D(), block.tank + lane);
-    const auto fresh = tank < zero;
-    const V saved = hn::Max(tank, zero) * squared;
-    const V most = (gain + hn::Sqrt(gain * gain + (size + size) * saved)) / hn::Max(size, all(1e-30f));
-    const V mostLeak = all(std::fmin(context.h / kLeakTime, 1.0f));
-    const V leak = mostLeak * hn::Max(one - hn::Load(D(), block.motion + lane) / slow, zero);
-    V part = hn::Max(hn::Min(most, one), leak);
+    const V energyTank = hn::Load(D(), block.energyTank + lane);
+    const auto fresh = energyTank < zero;
+    const V saved = hn::Max(energyTank, zero) * squared;
+    const V maximum = (gain + hn::Sqrt(gain * gain + (size + size) * saved)) / hn::Max(size, all(1e-30f));
+    const V maxLeak = all(std::fmin(context.h / kLeakTime, 1.0f));
+    const V leak = maxLeak * hn::Max(one - hn::Load(D(), block.motion + lane) / slow, zero);
+    V part = hn::Max(hn::Min(maximum, one), leak);
     part = hn::IfThenElse(fresh, one, part);
     const V gained = part * (gain - all(0.5f) * part * size) / squared;
-    const V kept = hn::Max(hn::Max(tank, zero) + gained, zero) * all(context.velocityShare);
-    hn::Store(hn::IfThenElse(fresh, zero, kept), D(), block.tank + lane);
+    const V kept = hn::Max(hn::Max(energyTank, zero) + gained, zero) * all(context.velocityShare);
+    hn::Store(hn::IfThenElse(fresh, zero, kept), D(), block.energyTank + lane);
     return part;
 }
 
@@ -159,7 +159,7 @@ HWY_INLINE V followFrames(const BlockView& block, const Rows& rows, const LaneFr
         readSegments(block, rows, lanes, context, lane, strip);
         turning = measureTurning<true>(block, rows, lanes, lane, strip);
     }
-    return payFromTank(block, context, lane, turning.gain, turning.size);
+    return spendEnergyTank(block, context, lane, turning.gain, turning.size);
 }
 
 /// What the segments pull with, read root to tip: the gradient of the bending energy by a segment's outer

@@ -80,8 +80,8 @@ HWY_INLINE V3 backAlong(V3 offset, V3 relative, V squared, V reach) {
     const auto moving = a > all(1e-20f);
     const V s = above / hn::IfThenElse(moving, below, one);
     const auto steep = discriminant > a * reach * reach * all(0.0025f);
-    const auto onTheWay = hn::And(hn::And(moving, steep), hn::And(s >= all(-1.0f), s <= zero));
-    return select(onTheWay, offset + relative * s, offset);
+    const auto onPath = hn::And(hn::And(moving, steep), hn::And(s >= all(-1.0f), s <= zero));
+    return select(onPath, offset + relative * s, offset);
 }
 
 /// Distance from a sphere's centre, as a share of the reach, below which points leave it sideways.
@@ -164,18 +164,18 @@ template <bool kBackward>
 class Contacts {
   public:
     HWY_INLINE Contacts(const BlockView& block, const LaneFrame& lanes, const SubstepContext& context,
-                        const SphereSet& spheres, const float* pearls, NearPoints& near)
+                        const SphereSet& spheres, const float* collisionRadii, NearPoints& near)
         : block_(block),
           context_(context),
           spheres_(spheres),
-          pearls_(pearls),
+          collisionRadii_(collisionRadii),
           overlaps_(context, spheres, near),
           near_(near),
-          in_{block, lanes, context, spheres, pearls, roots_},
+          in_{block, lanes, context, spheres, collisionRadii, roots_},
           deepest_(context.lengthIterations > 0 ? kDeep * kDeep : 0.0f) {
         const V step = all(static_cast<float>(context.index + 1));
         for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth)
-            store3(load3(lanes.root, lane) + load3(lanes.rootStep, lane) * step, roots_, lane);
+            store3(load3(lanes.root, lane) + load3(lanes.rootDisplacement, lane) * step, roots_, lane);
     }
 
     /// With the list of the block, which it makes where there is none that holds; `fromList` is for
@@ -189,7 +189,7 @@ class Contacts {
 
     /// Without a list, some points of a strip after the other.
     HWY_INLINE void run() {
-        NearPoints::Pair pairs[SphereSet::kMost * kPartPoints + 1];
+        NearPoints::Pair pairs[SphereSet::kMax * kPartPoints + 1];
         forEachPart(block_, [&](std::uint32_t lane, std::uint32_t begin, std::uint32_t end) HWY_ATTR {
             findTouches({pairs, findPairs(in_, lane, begin, end, 0.0f, pairs)});
             touchAll();
@@ -202,11 +202,11 @@ class Contacts {
     static_assert(kMaxPoints * kBlockLanes <= 0x10000);
 
     HWY_INLINE V3 rootAt(std::size_t i) const { return load3(roots_, i % kBlockLanes); }
-    HWY_INLINE float pearlAt(std::size_t i) const { return pearls_[i / kBlockLanes]; }
+    HWY_INLINE float collisionRadiusAt(std::size_t i) const { return collisionRadii_[i / kBlockLanes]; }
     /// Of points with a sphere; of no lanes.
     HWY_INLINE Contact contactOf(std::size_t i, std::size_t sphere) const {
         return {noLane(), spheres_.centre(sphere) - rootAt(i), all3(context_.spheres[sphere].step),
-                all(spheres_.radius[sphere] + pearlAt(i)), zero3()};
+                all(spheres_.radius[sphere] + collisionRadiusAt(i)), zero3()};
     }
 
     HWY_INLINE void findTouches(std::span<const NearPoints::Pair> pairs) {
@@ -246,12 +246,12 @@ class Contacts {
         contact.touching = hn::And(maskOf(found.inside), squared < reachSquared);
         const V3 placed = respond(block_, context_, i, contact);
         const V3 root = rootAt(i);
-        const float pearl = pearlAt(i);
+        const float collisionRadius = collisionRadiusAt(i);
         auto again = noLane();
         for (std::uint64_t left = overlaps_.of(sphere); left != 0; left &= left - 1) {
             const auto other = static_cast<std::size_t>(std::countr_zero(left));
             const V3 itsOffset = placed - (spheres_.centre(other) - root);
-            const V itsReach = all(spheres_.radius[other] + pearl);
+            const V itsReach = all(spheres_.radius[other] + collisionRadius);
             again = hn::Or(again, depthIn(itsOffset, itsReach) > hn::Zero(D()));
         }
         again = hn::And(again, contact.touching);
@@ -266,7 +266,7 @@ class Contacts {
         constexpr int kSteps = 16;
         const std::size_t i = left.pair.index(), sphere = left.pair.sphere();
         const V3 root = rootAt(i);
-        const V pearl = all(pearlAt(i));
+        const V collisionRadius = all(collisionRadiusAt(i));
         Contact contact = contactOf(i, sphere);
         contact.touching = maskOf(lanes);
         std::uint64_t others = overlaps_.of(sphere) | (std::uint64_t{1} << sphere);
@@ -277,7 +277,7 @@ class Contacts {
             for (std::uint64_t some = others; some != 0; some &= some - 1) {
                 const auto j = static_cast<std::size_t>(std::countr_zero(some));
                 const V3 centre = spheres_.centre(j) - root;
-                const V reach = all(spheres_.radius[j]) + pearl;
+                const V reach = all(spheres_.radius[j]) + collisionRadius;
                 const V depth = depthIn(at - centre, reach);
                 // Of spheres that are equally deep the first counts.
                 const auto deeper = depth > deepest;
@@ -300,7 +300,7 @@ class Contacts {
     const BlockView& block_;
     const SubstepContext& context_;
     const SphereSet& spheres_;
-    const float* const pearls_;
+    const float* const collisionRadii_;
     Overlaps overlaps_;
     NearPoints& near_;
     const NearInput in_;
@@ -310,28 +310,28 @@ class Contacts {
 };
 
 /// Pushes points and their pearls out of spheres (Eq. 14). Where spheres overlap, a point that one of them
-/// pushes into others goes to their common edge. Of more than SphereSet::kMost spheres this holds within each
-/// kMost of them. `fromList` is what farthestFromList() says where there is a list.
+/// pushes into others goes to their common edge. Of more than SphereSet::kMax spheres this holds within each
+/// kMax of them. `fromList` is what farthestFromList() says where there is a list.
 template <bool kBackward>
 HWY_INLINE void collideWith(const BlockView& block, LaneFrame& lanes, const SubstepContext& context,
                             float fromList) {
     const float step = static_cast<float>(context.index + 1);
-    const float largestPearl = std::max(context.pearlRoot, context.pearlTip);
-    alignas(64) float pearls[kMaxPoints];
-    fillPearls(block, context, pearls);
+    const float maxCollisionRadius = std::max(context.collisionRadiusAtRoot, context.collisionRadiusAtTip);
+    alignas(64) float collisionRadii[kMaxPoints];
+    fillCollisionRadii(block, context, collisionRadii);
     SphereSet spheres;
-    if (context.spheres.size() <= SphereSet::kMost && block.points <= NearPoints::kMostPoints) {
-        spheres.take(context.spheres, step, largestPearl);
-        Contacts<kBackward>(block, lanes, context, spheres, pearls, lanes.near).runListed(fromList);
+    if (context.spheres.size() <= SphereSet::kMax && block.points <= NearPoints::kMaxPoints) {
+        spheres.take(context.spheres, step, maxCollisionRadius);
+        Contacts<kBackward>(block, lanes, context, spheres, collisionRadii, lanes.near).runListed(fromList);
         return;
     }
     SubstepContext part = context;
-    for (std::size_t first = 0; first < context.spheres.size(); first += SphereSet::kMost) {
+    for (std::size_t first = 0; first < context.spheres.size(); first += SphereSet::kMax) {
         part.spheres = context.spheres.subspan(
-            first, std::min<std::size_t>(SphereSet::kMost, context.spheres.size() - first));
-        spheres.take(part.spheres, step, largestPearl);
+            first, std::min<std::size_t>(SphereSet::kMax, context.spheres.size() - first));
+        spheres.take(part.spheres, step, maxCollisionRadius);
         lanes.near.overlapsKnown = 0;
-        Contacts<kBackward>(block, lanes, part, spheres, pearls, lanes.near).run();
+        Contacts<kBackward>(block, lanes, part, spheres, collisionRadii, lanes.near).run();
     }
 }
 
@@ -348,11 +348,11 @@ struct Points {
 };
 
 /// The force of one sphere.
-HWY_INLINE void push(const BlockView& block, Points points, V3 centre, float radius, const float* pearls,
-                     V stiffness) {
+HWY_INLINE void push(const BlockView& block, Points points, V3 centre, float radius,
+                     const float* collisionRadii, V stiffness) {
     for (std::uint32_t p = points.begin; p < points.end; ++p) {
         const std::size_t i = std::size_t{p} * kBlockLanes + points.lane;
-        const V reach = all(radius) + all(pearls[p]);
+        const V reach = all(radius) + all(collisionRadii[p]);
         const V3 offset = load3(block.position, i) - centre;
         const V squared = dot(offset, offset);
         const auto inside = squared < reach * reach;
@@ -372,20 +372,20 @@ HWY_INLINE void push(const BlockView& block, Points points, V3 centre, float rad
 void applyPenalty(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
     // Positions are still those of the substep's start.
     const float step = static_cast<float>(context.index);
-    alignas(64) float pearls[kMaxPoints];
-    fillPearls(block, context, pearls);
+    alignas(64) float collisionRadii[kMaxPoints];
+    fillCollisionRadii(block, context, collisionRadii);
     const V stiffness = all(context.penaltyStep);
     SphereSet spheres;
-    for (std::size_t first = 0; first < context.spheres.size(); first += SphereSet::kMost) {
+    for (std::size_t first = 0; first < context.spheres.size(); first += SphereSet::kMax) {
         spheres.take(context.spheres.subspan(
-                         first, std::min<std::size_t>(SphereSet::kMost, context.spheres.size() - first)),
-                     step, std::fmax(context.pearlRoot, context.pearlTip));
+                         first, std::min<std::size_t>(SphereSet::kMax, context.spheres.size() - first)),
+                     step, std::fmax(context.collisionRadiusAtRoot, context.collisionRadiusAtTip));
         forEachPart(block, [&](std::uint32_t lane, std::uint32_t begin, std::uint32_t end) HWY_ATTR {
-            const V3 root = load3(lanes.root, lane) + load3(lanes.rootStep, lane) * all(step);
+            const V3 root = load3(lanes.root, lane) + load3(lanes.rootDisplacement, lane) * all(step);
             WideBox world = WideBox::empty();
             world.add(boxOf(block, lane, begin, end), root);
             spheres.forEachMeeting(world.reduced(), 0.0f, [&](std::size_t k) HWY_ATTR {
-                push(block, {begin, end, lane}, spheres.centre(k) - root, spheres.radius[k], pearls,
+                push(block, {begin, end, lane}, spheres.centre(k) - root, spheres.radius[k], collisionRadii,
                      stiffness);
             });
             return true;

@@ -25,10 +25,10 @@ inline constexpr float kHardness = 2e3f;
 /// And what is added to γ for the tension that a segment carries, as a multiple of tension over length.
 inline constexpr float kLoadHardness = 300.0f;
 /// The most of that, as a multiple of the masses: as far as single precision tells them beside γ.
-inline constexpr float kMostHardness = 1e5f;
+inline constexpr float kMaxHardness = 1e5f;
 /// How often the system of a strand is solved at most, with the same factors, until no segment's length is
 /// wrong by more than this share of it, and by what rounding makes of places.
-inline constexpr std::uint32_t kMostSolves = 6;
+inline constexpr std::uint32_t kMaxSolves = 6;
 inline constexpr float kSolved = 3e-7f;
 inline constexpr float kRounding = 2.4e-7f;
 /// Tension that may act along the segments as they start, as ω²h² of the wave across them; Verlet's limit is
@@ -90,7 +90,7 @@ HWY_INLINE V3 openSegment(const BlockView& block, V3 pull, std::uint32_t s, std:
     const V mass = reducedMass(block, s, i);
     const V tension = hn::Load(D(), block.tension + i);
     const V load = hn::Abs(tension) * inverseLength * all(kLoadHardness);
-    const V hardness = mass * all(kHardness) + hn::Min(load, mass * all(kMostHardness));
+    const V hardness = mass * all(kHardness) + hn::Min(load, mass * all(kMaxHardness));
     const V across = acrossOf(tension, inverseLength, mass);
     const V wrong = half * (dotRoundingEach(free, free) * inverseLength - hn::Load(D(), block.length + i));
     // Points without a distance are held together.
@@ -209,7 +209,7 @@ void bendCoupled(const BlockView& given, LaneFrame& lanes, const SubstepContext&
         });
         factorSystem(block, context, lane, system);
         auto active = hn::Not(noLane());
-        for (std::uint32_t solve = 0; solve < kMostSolves; ++solve) {
+        for (std::uint32_t solve = 0; solve < kMaxSolves; ++solve) {
             if (solve > 0) {
                 const CoupledRest rest = reopenSystem(block, lane, system);
                 active = hn::And(active, hn::Or(rest.wrong, rest.loose));

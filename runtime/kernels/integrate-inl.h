@@ -27,12 +27,12 @@ HWY_INLINE void forEachPoint(const BlockView& block, Visit&& visit) {
 }
 
 /// The next evaluation of forces is at `place`, with the displacement `rate` for velocity.
-HWY_INLINE void aim(const BlockView& block, std::size_t i, V3 place, V3 rate) {
+HWY_INLINE void setEvaluationState(const BlockView& block, std::size_t i, V3 place, V3 rate) {
     store3(place, block.position, i);
     store3(place - rate, block.previous, i);
 }
 
-/// What the forces have added since aim().
+/// What the forces have added since setEvaluationState().
 HWY_INLINE V3 takeKick(const BlockView& block, std::size_t i, std::uint32_t p, V3 rate) {
     if (p < block.firstFree) return zero3();
     return load3(block.position, i) - load3(block.previous, i) - rate;
@@ -46,10 +46,11 @@ void openStep(const BlockView& block, LaneFrame& lanes, const SubstepContext&) {
         const V3 position = load3(block.position, i);
         const V3 previous = load3(block.previous, i);
         const V3 rate = position - previous;
-        const V3 start = p < block.firstFree ? previous : position - load3(lanes.rootStep, i % kBlockLanes);
+        const V3 start =
+            p < block.firstFree ? previous : position - load3(lanes.rootDisplacement, i % kBlockLanes);
         store3(start, block.start, i);
         store3(rate, block.rate, i);
-        aim(block, i, kHalves == 0 ? start : start + rate * all(0.5f), rate);
+        setEvaluationState(block, i, kHalves == 0 ? start : start + rate * all(0.5f), rate);
     });
 }
 
@@ -58,7 +59,7 @@ void advanceEuler(const BlockView& block, LaneFrame&, const SubstepContext&) {
     forEachPoint(block, [&](std::size_t i, std::uint32_t p) {
         const V3 rate = load3(block.rate, i);
         const V3 kick = takeKick(block, i, p, rate);
-        aim(block, i, load3(block.start, i) + rate, rate + kick);
+        setEvaluationState(block, i, load3(block.start, i) + rate, rate + kick);
     });
 }
 
@@ -68,7 +69,7 @@ void advanceLeapfrog(const BlockView& block, LaneFrame&, const SubstepContext&) 
     forEachPoint(block, [&](std::size_t i, std::uint32_t p) {
         const V3 rate = load3(block.rate, i);
         const V3 after = rate + takeKick(block, i, p, rate);
-        aim(block, i, load3(block.start, i) + (rate + after) * all(0.5f), after);
+        setEvaluationState(block, i, load3(block.start, i) + (rate + after) * all(0.5f), after);
     });
 }
 
@@ -77,20 +78,20 @@ void driftVerlet(const BlockView& block, LaneFrame&, const SubstepContext&) {
     forEachPoint(block, [&](std::size_t i, std::uint32_t p) {
         const V3 rate = load3(block.rate, i);
         const V3 half = rate + takeKick(block, i, p, rate) * all(0.5f);
-        aim(block, i, load3(block.start, i) + half, half);
+        setEvaluationState(block, i, load3(block.start, i) + half, half);
     });
 }
 
 /// Velocity Verlet: the constraints have moved points and changed the half-step velocity. Velocity-dependent
 /// forces see the velocity predicted for the end of the step; `start` keeps it.
-void aimVerlet(const BlockView& block, LaneFrame&, const SubstepContext&) {
+void setVerletEvaluationState(const BlockView& block, LaneFrame&, const SubstepContext&) {
     forEachPoint(block, [&](std::size_t i, std::uint32_t) {
         const V3 place = load3(block.position, i);
         const V3 half = place - load3(block.previous, i);
         const V3 predicted = half + half - load3(block.rate, i);
         store3(half, block.rate, i);
         store3(predicted, block.start, i);
-        aim(block, i, place, predicted);
+        setEvaluationState(block, i, place, predicted);
     });
 }
 
@@ -99,14 +100,14 @@ void kickVerlet(const BlockView& block, LaneFrame&, const SubstepContext&) {
     forEachPoint(block, [&](std::size_t i, std::uint32_t p) {
         const V3 kick = takeKick(block, i, p, load3(block.start, i));
         const V3 rate = load3(block.rate, i) + kick * all(0.5f);
-        aim(block, i, load3(block.position, i), rate);
+        setEvaluationState(block, i, load3(block.position, i), rate);
     });
 }
 
 /// Slope k of the classical Runge-Kutta method, 1…4. With A_k what the forces give at slope k, the velocities
 /// are u, u + A₁/2, u + A₂/2 and u + A₃, so the places need only sums of A.
 template <int kSlope>
-void takeSlope(const BlockView& block, LaneFrame&, const SubstepContext&) {
+void rk4Stage(const BlockView& block, LaneFrame&, const SubstepContext&) {
     forEachPoint(block, [&](std::size_t i, std::uint32_t p) {
         const V half = all(0.5f);
         const V3 start = load3(block.start, i), rate = load3(block.rate, i);
@@ -118,7 +119,7 @@ void takeSlope(const BlockView& block, LaneFrame&, const SubstepContext&) {
             const V sixth = all(1.0f / 6.0f);
             const V3 place = start + rate + load3(block.sum, i) * sixth;
             const V3 after = rate + (load3(block.sumRate, i) + kick) * sixth;
-            aim(block, i, place, after);
+            setEvaluationState(block, i, place, after);
         } else {
             V3 sum = kick, sumRate = kick;
             if constexpr (kSlope > 1) {
@@ -129,9 +130,9 @@ void takeSlope(const BlockView& block, LaneFrame&, const SubstepContext&) {
             store3(sum, block.sum, i);
             store3(sumRate, block.sumRate, i);
             if constexpr (kSlope == 3) {
-                aim(block, i, start + here, rate + kick);
+                setEvaluationState(block, i, start + here, rate + kick);
             } else {
-                aim(block, i, start + here * half, rate + kick * half);
+                setEvaluationState(block, i, start + here * half, rate + kick * half);
             }
         }
     });
@@ -142,7 +143,7 @@ float fastestOf(const BlockView& block, float h) {
     using Bits = hn::RebindToUnsigned<D>;
     const auto bitsOfSquare = [](V3 v) HWY_ATTR { return hn::BitCast(Bits(), dot(v, v)); };
     // Squares of places farther than this from their root leave single precision.
-    const V most = all(1e12f), rate = all(1.0f / (h * h));
+    const V maximum = all(1e12f), rate = all(1.0f / (h * h));
     V ofAll = hn::Zero(D());
     for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
         auto fastest = hn::Zero(Bits()), farthest = hn::Zero(Bits());
@@ -153,12 +154,12 @@ float fastestOf(const BlockView& block, float h) {
             farthest = hn::Max(farthest, bitsOfSquare(position));
         }
         const V squared = hn::BitCast(D(), fastest);
-        const auto sound = hn::And(squared < most, hn::BitCast(D(), farthest) < most);
+        const auto sound = hn::And(squared < maximum, hn::BitCast(D(), farthest) < maximum);
         const V counted = hn::IfThenElse(sound, squared, all(HUGE_VALF));
         if (block.motion) hn::Store(counted * rate, D(), block.motion + lane);
         ofAll = hn::Max(ofAll, counted);
     }
-    return laneMost(ofAll);
+    return laneMax(ofAll);
 }
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)

@@ -179,25 +179,25 @@ HWY_INLINE V sineOfTurns(V turns) {
     return all(0.775f) * parabola + all(0.225f) * parabola * hn::Abs(parabola);
 }
 
-HWY_INLINE float laneLeast(V v) {
+HWY_INLINE float laneMin(V v) {
     return hn::GetLane(hn::MinOfLanes(D(), v));
 }
-HWY_INLINE float laneMost(V v) {
+HWY_INLINE float laneMax(V v) {
     return hn::GetLane(hn::MaxOfLanes(D(), v));
 }
 
 /// The most of valueAt(i), 0 or more, of all free points.
 template <class ValueAt>
-HWY_INLINE float mostOfBlock(const BlockView& block, ValueAt&& valueAt) {
+HWY_INLINE float maxOfBlock(const BlockView& block, ValueAt&& valueAt) {
     V ofAll = hn::Zero(D());
     for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
         // A maximum waits for the one before it: those of the strips need not.
-        V most = hn::Zero(D());
+        V maximum = hn::Zero(D());
         for (std::uint32_t p = block.firstFree; p < block.points; ++p)
-            most = hn::Max(most, valueAt(std::size_t{p} * kBlockLanes + lane));
-        ofAll = hn::Max(ofAll, most);
+            maximum = hn::Max(maximum, valueAt(std::size_t{p} * kBlockLanes + lane));
+        ofAll = hn::Max(ofAll, maximum);
     }
-    return laneMost(ofAll);
+    return laneMax(ofAll);
 }
 
 struct Box {

@@ -17,10 +17,11 @@ namespace hairloom::runtime {
 namespace HWY_NAMESPACE {
 
 /// Where a strand's length is held.
-enum class Holding {
-    places,     ///< segments get their length back; the move counts as velocity
-    placesNow,  ///< likewise, with tension along the segments as they are after the integration
-    rates,      ///< the velocity's part that would change lengths is taken out
+enum class LengthProjection {
+    positions,                     ///< segments get their length back; the move counts as velocity
+    positionsWithCurrentGradient,  ///< likewise, with tension along the segments as they are after the
+                                   ///< integration
+    displacements,                 ///< the velocity's part that would change lengths is taken out
 };
 
 /// Keeps tension for the bending of the next substep. Slowly: what bending makes of it comes back a substep
@@ -38,22 +39,22 @@ template <class Rows>
 HWY_NOINLINE void cutTensions(const BlockView& block, const Rows& rows) {
     auto row = rows.at(block.firstFree - 1);
     for (std::size_t left = block.points - block.firstFree; left > 0; --left, row.advance()) {
-        const V most = row.halfLength() / (row.inverseMass() + (row + 1).inverseMass());
-        row.setTension(hn::Max(hn::Min(row.tension(), most), hn::Neg(most)));
+        const V maximum = row.halfLength() / (row.inverseMass() + (row + 1).inverseMass());
+        row.setTension(hn::Max(hn::Min(row.tension(), maximum), hn::Neg(maximum)));
     }
 }
 
 /// One Newton step on all length constraints ½(|e|²/l − l) = 0 of a strand together, or on their rates
 /// e·ė/l = 0; clamped points have infinite mass. The system is tridiagonal and is solved directly (after
-/// Goldenthal et al. 2007; with rates, RATTLE, Andersen 1983), so momentum travels along the whole strand in
-/// one step. Collapsed segments keep a diagonal of at least ¼ of their masses': no overshoot.
+/// Goldenthal et al. 2007; with displacements, RATTLE, Andersen 1983), so momentum travels along the whole
+/// strand in one step. Collapsed segments keep a diagonal of at least ¼ of their masses': no overshoot.
 ///
 /// Tension of places acts along the gradient at the start of the substep (SHAKE, Ryckaert et al. 1977), which
 /// keeps the order and the energy of the integrator; only that of segments that turn by more than 60° in a
 /// substep acts along the gradient of now.
 ///
 /// This eliminates segments, tip to root: the points outer to a segment first.
-template <Holding kHolding>
+template <LengthProjection kProjection>
 class LengthElimination {
   public:
     HWY_INLINE LengthElimination() {
@@ -81,7 +82,7 @@ class LengthElimination {
         const V above = dot(wanted, load3((&point + 1)->direction)) * outerMass_;
         V3 acting = wanted;
         V own = squared, error;
-        if constexpr (kHolding == Holding::places) {
+        if constexpr (kProjection == LengthProjection::positions) {
             acting = load3(point.direction);
             own = dot(wanted, acting);
             const auto alike = own + own > squared;
@@ -93,7 +94,7 @@ class LengthElimination {
         } else {
             store3(acting, point.direction);
         }
-        if constexpr (kHolding == Holding::rates) {
+        if constexpr (kProjection == LengthProjection::displacements) {
             error = dot(wanted, outerRate_ - rate);
             outerRate_ = rate;
         } else {
@@ -121,10 +122,10 @@ class LengthElimination {
 };
 
 /// Moves the points by the tension that the system gives, root to tip.
-template <Holding kHolding, bool kKept, class Rows>
+template <LengthProjection kProjection, bool kKept, class Rows>
 HWY_INLINE void applyTension(const BlockView& block, const Rows& rows, const SubstepContext& context,
                              std::size_t lane, Strip& strip) {
-    const Planes& moving = kHolding == Holding::rates ? block.previous : block.position;
+    const Planes& moving = kProjection == LengthProjection::displacements ? block.previous : block.position;
     float* at = moving.x + block.firstFree * kBlockLanes + lane;
     auto row = rows.at(block.firstFree - 1);
     Strip::Point* point = strip.points + (block.firstFree - 1);
@@ -136,8 +137,9 @@ HWY_INLINE void applyTension(const BlockView& block, const Rows& rows, const Sub
     };
     const auto move = [&](V3 force, V mass) HWY_ATTR {
         const V3 before = load3(at, block.pitch);
-        store3(kHolding == Holding::rates ? negMulAdd(force, mass, before) : mulAdd(force, mass, before), at,
-               block.pitch);
+        store3(kProjection == LengthProjection::displacements ? negMulAdd(force, mass, before)
+                                                              : mulAdd(force, mass, before),
+               at, block.pitch);
     };
     for (std::size_t left = block.points - block.firstFree; left > 1; --left, at += kBlockLanes) {
         const V mass = (row + 1).inverseMass();
@@ -168,13 +170,13 @@ HWY_INLINE void readStart(const BlockView& block, const Rows& rows, std::size_t 
     }
 }
 
-template <Holding kHolding, class Rows>
+template <LengthProjection kProjection, class Rows>
 HWY_INLINE void reduceLengths(const BlockView& block, const Rows& rows, std::size_t lane, Strip& strip) {
-    if constexpr (kHolding == Holding::places) readStart(block, rows, lane, strip);
-    LengthElimination<kHolding> lengths;
+    if constexpr (kProjection == LengthProjection::positions) readStart(block, rows, lane, strip);
+    LengthElimination<kProjection> lengths;
     std::size_t i = (block.points - 1) * kBlockLanes + lane;
     const auto rateAt = [&](V3 place) HWY_ATTR {
-        return kHolding == Holding::rates ? place - load3(block.previous, i) : zero3();
+        return kProjection == LengthProjection::displacements ? place - load3(block.previous, i) : zero3();
     };
     V3 place = load3(block.position, i);
     lengths.open(rows.at(block.points - 1), strip.points[block.points - 1], place, rateAt(place));
@@ -189,40 +191,40 @@ HWY_INLINE void reduceLengths(const BlockView& block, const Rows& rows, std::siz
     lengths.template take<true>(rows.at(clamped), strip.points[clamped], place, rateAt(place));
 }
 
-template <Holding kHolding, bool kKept = false>
-void holdStrands(const BlockView& given, const LaneFrame& lanes, const SubstepContext& context) {
+template <LengthProjection kProjection, bool kKept = false>
+void projectStrands(const BlockView& given, const LaneFrame& lanes, const SubstepContext& context) {
     const BlockView block = localCopy(given);
     if (block.points <= block.firstFree) return;
     Strip strip(lanes);
     for (std::size_t lane = 0; lane < block.lanes; lane += kWidth) {
         const PlaneRows rows(block, lane);
-        reduceLengths<kHolding>(block, rows, lane, strip);
-        applyTension<kHolding, kKept>(block, rows, context, lane, strip);
+        reduceLengths<kProjection>(block, rows, lane, strip);
+        applyTension<kProjection, kKept>(block, rows, context, lane, strip);
     }
 }
 
-template <Holding kHolding>
-void holdLength(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
+template <LengthProjection kProjection>
+void projectLength(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
     for (std::uint32_t iteration = 0; iteration < context.lengthIterations; ++iteration) {
-        if (kHolding == Holding::places && block.tension) {
-            holdStrands<kHolding, true>(block, lanes, context);
+        if (kProjection == LengthProjection::positions && block.tension) {
+            projectStrands<kProjection, true>(block, lanes, context);
         } else {
-            holdStrands<kHolding>(block, lanes, context);
+            projectStrands<kProjection>(block, lanes, context);
         }
     }
 }
 
-void holdRates(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
-    holdStrands<Holding::rates>(block, lanes, context);
+void projectDisplacements(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
+    projectStrands<LengthProjection::displacements>(block, lanes, context);
 }
 
 /// The stages of angular springs and lengths of a strip in one go, with the same bits: points stay at hand
 /// from the one to the other.
 template <Shape kShape, class Rows>
-HWY_INLINE void bendAndHoldStrip(const BlockView& block, const Rows& rows, const LaneFrame& lanes,
-                                 const SubstepContext& context, std::size_t lane, Strip& strip) {
+HWY_INLINE void bendAndProjectStrip(const BlockView& block, const Rows& rows, const LaneFrame& lanes,
+                                    const SubstepContext& context, std::size_t lane, Strip& strip) {
     pullStrip<kShape, true>(block, rows, lanes, context, lane, strip);
-    LengthElimination<Holding::places> lengths;
+    LengthElimination<LengthProjection::positions> lengths;
     float* at = block.position.x + (block.points - 1) * kBlockLanes + lane;
     const auto move = [&](V3 delta) HWY_ATTR {
         const V3 place = load3(at, block.pitch) + delta;
@@ -238,31 +240,31 @@ HWY_INLINE void bendAndHoldStrip(const BlockView& block, const Rows& rows, const
             HWY_ATTR { lengths.template take<false>(row, point, move(delta), zero3()); });
     const std::size_t clamped = block.firstFree - 1;
     lengths.template take<true>(rows.at(clamped), strip.points[clamped], load3(at, block.pitch), zero3());
-    applyTension<Holding::places, true>(block, rows, context, lane, strip);
+    applyTension<LengthProjection::positions, true>(block, rows, context, lane, strip);
     for (std::uint32_t iteration = 1; iteration < context.lengthIterations; ++iteration) {
-        reduceLengths<Holding::places>(block, rows, lane, strip);
-        applyTension<Holding::places, true>(block, rows, context, lane, strip);
+        reduceLengths<LengthProjection::positions>(block, rows, lane, strip);
+        applyTension<LengthProjection::positions, true>(block, rows, context, lane, strip);
     }
 }
 
 /// Between the substeps of a frame nothing else reads what CopiedRows copies.
 template <Shape kShape>
-void bendAndHold(const BlockView& given, LaneFrame& lanes, const SubstepContext& context) {
+void bendAndProject(const BlockView& given, LaneFrame& lanes, const SubstepContext& context) {
     constexpr bool kCurved = kShape == Shape::curved;
     const BlockView block = localCopy(given);
     if (block.points <= block.firstFree) return;
     Strip strip(lanes);
     for (std::size_t lane = 0; lane < block.lanes; lane += kWidth) {
         const PlaneRows planes(block, lane);
-        if (block.points > kMostCopied) {
-            bendAndHoldStrip<kShape>(block, planes, lanes, context, lane, strip);
+        if (block.points > kMaxCopied) {
+            bendAndProjectStrip<kShape>(block, planes, lanes, context, lane, strip);
             continue;
         }
         const CopiedRows<kCurved> rows(block, lanes, lane);
         if (context.index == 0) {
             for (std::size_t p = 0; p < block.points; ++p) rows.at(p).fill(planes.at(p));
         }
-        bendAndHoldStrip<kShape>(block, rows, lanes, context, lane, strip);
+        bendAndProjectStrip<kShape>(block, rows, lanes, context, lane, strip);
         if (context.index + 1 < context.count) continue;
         for (std::size_t p = 0; p + 1 < block.points; ++p) {
             planes.at(p).setTension(rows.at(p).tension());
@@ -273,8 +275,8 @@ void bendAndHold(const BlockView& given, LaneFrame& lanes, const SubstepContext&
 
 /// Whether a segment of a strip may be longer or shorter than the maximal extension allows. Looks at all of
 /// them before it asks, and with room for rounding.
-HWY_INLINE bool mayExceed(const BlockView& block, float most, float least, std::size_t lane) {
-    const V middle = all(0.5f * (most + least)), half = all(0.5f * (most - least) - 1e-6f);
+HWY_INLINE bool mayExceed(const BlockView& block, float maximum, float minimum, std::size_t lane) {
+    const V middle = all(0.5f * (maximum + minimum)), half = all(0.5f * (maximum - minimum) - 1e-6f);
     V3 parent = load3(block.position, (block.firstFree - 1) * kBlockLanes + lane);
     V excess = hn::Zero(D());
     for (std::size_t p = block.firstFree; p < block.points; ++p) {
@@ -294,11 +296,11 @@ HWY_INLINE bool mayExceed(const BlockView& block, float most, float least, std::
 void limitExtension(const BlockView& given, LaneFrame& lanes, const SubstepContext& context) {
     const BlockView block = localCopy(given);
     const float longest = 1.0f + context.maximalExtension, shortest = 1.0f - context.maximalExtension;
-    const float most = longest * longest, least = shortest * shortest;
+    const float maximum = longest * longest, minimum = shortest * shortest;
     const V tiny = all(1e-12f), one = all(1.0f), zero = hn::Zero(D());
     for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
-        if (HWY_LIKELY(!mayExceed(block, most, least, lane))) continue;
-        const V3 step = load3(lanes.rootStep, lane);
+        if (HWY_LIKELY(!mayExceed(block, maximum, minimum, lane))) continue;
+        const V3 step = load3(lanes.rootDisplacement, lane);
         V3 parent = load3(block.position, (block.firstFree - 1) * kBlockLanes + lane);
         for (std::size_t p = block.firstFree; p < block.points; ++p) {
             const std::size_t i = p * kBlockLanes + lane;
@@ -307,7 +309,7 @@ void limitExtension(const BlockView& given, LaneFrame& lanes, const SubstepConte
             const V rest = hn::Load(D(), block.length + (i - kBlockLanes));
             const V whole = rest * rest;
             const V squared = dot(edge, edge);
-            const auto wrong = hn::Or(squared > whole * all(most), squared < whole * all(least));
+            const auto wrong = hn::Or(squared > whole * all(maximum), squared < whole * all(minimum));
             parent = position;
             if (hn::AllFalse(D(), wrong)) continue;
             const V size = hn::Sqrt(squared);

@@ -19,11 +19,12 @@ namespace hairloom::runtime {
 namespace HWY_NAMESPACE {
 
 /// The air's way in a substep along a strip of strands: at the root, and how much more at the tip.
-struct AirWay {
+struct AirDisplacement {
     V3 atRoot, slope;
 };
 
-HWY_INLINE AirWay airWay(const LaneFrame& lanes, const SubstepContext& context, std::size_t lane) {
+HWY_INLINE AirDisplacement airDisplacement(const LaneFrame& lanes, const SubstepContext& context,
+                                           std::size_t lane) {
     const V t = all(static_cast<float>(context.index + 1) / static_cast<float>(context.count));
     const V3 r0 = load3(lanes.windRoot[0], lane), r1 = load3(lanes.windRoot[1], lane);
     const V3 t0 = load3(lanes.windTip[0], lane), t1 = load3(lanes.windTip[1], lane);
@@ -43,7 +44,7 @@ HWY_INLINE V blownShare(V3 flow, V3 tangent, V inverseShareSquared) {
 
 /// What moveFree() finds and leaves in `previous`: the place of a substep ago or the way since; or it makes
 /// the move.
-enum class Motion { place, way, made };
+enum class Motion { position, displacement, integrated };
 
 /// In this order: slows motion relative to the moving root, so that damping acts on velocity alone and leaves
 /// what holds the hair at rest untouched; then the forces of air and gravity; then position Verlet (Rünz
@@ -54,33 +55,35 @@ void moveFree(const BlockView& given, LaneFrame& lanes, const SubstepContext& co
     const V kept = all(context.velocityShare), lost = all(1.0f - context.velocityShare);
     const V inverseShareSquared = all(1.0f / std::max(context.dragShare * context.dragShare, 1e-30f));
     const V3 gravity = all3(context.gravityStep);
-    float shareOfWay[kMaxPoints];  // of each point, from root to tip
+    float fractionAlong[kMaxPoints];  // of each point, from root to tip
     if constexpr (kAir == Air::moving) {
         const float inverseLast = 1.0f / static_cast<float>(block.points - 1);
-        for (std::uint32_t p = 0; p < block.points; ++p) shareOfWay[p] = static_cast<float>(p) * inverseLast;
+        for (std::uint32_t p = 0; p < block.points; ++p)
+            fractionAlong[p] = static_cast<float>(p) * inverseLast;
     }
     for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
-        const V3 step = load3(lanes.rootStep, lane), lostStep = step * lost;
-        AirWay air{};
-        if constexpr (kAir == Air::moving) air = airWay(lanes, context, lane);
+        const V3 step = load3(lanes.rootDisplacement, lane), lostStep = step * lost;
+        AirDisplacement air{};
+        if constexpr (kAir == Air::moving) air = airDisplacement(lanes, context, lane);
         V3 parent = load3(block.position, std::size_t{block.firstFree - 1} * kBlockLanes + lane);
         for (std::uint32_t p = block.firstFree; p < block.points; ++p) {
             const std::size_t i = std::size_t{p} * kBlockLanes + lane;
             const V3 position = load3(block.position, i);
             V3 way = load3(block.previous, i);
-            if constexpr (kFrom == Motion::place) way = position - way;
+            if constexpr (kFrom == Motion::position) way = position - way;
             if constexpr (kDamped) way = mulAdd(way, kept, lostStep);
             if constexpr (kAir != Air::none) {
                 V3 flow = zero3();
-                if constexpr (kAir == Air::moving) flow = mulAdd(air.slope, all(shareOfWay[p]), air.atRoot);
+                if constexpr (kAir == Air::moving)
+                    flow = mulAdd(air.slope, all(fractionAlong[p]), air.atRoot);
                 flow = flow - way;
                 way = mulAdd(flow, blownShare(flow, position - parent, inverseShareSquared), way);
                 parent = position;
             }
             if constexpr (kHeavy) way = way + gravity;
-            if constexpr (kTo == Motion::way) store3(way, block.previous, i);
-            if constexpr (kTo == Motion::place) store3(position - way, block.previous, i);
-            if constexpr (kTo == Motion::made) {
+            if constexpr (kTo == Motion::displacement) store3(way, block.previous, i);
+            if constexpr (kTo == Motion::position) store3(position - way, block.previous, i);
+            if constexpr (kTo == Motion::integrated) {
                 const V3 start = position - step;
                 store3(start + way, block.position, i);
                 store3(start, block.previous, i);

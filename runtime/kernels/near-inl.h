@@ -27,7 +27,7 @@ struct NearInput {
     const LaneFrame& lanes;
     const SubstepContext& context;
     const SphereSet& spheres;
-    const float* pearls;
+    const float* collisionRadii;
     const float (*roots)[kBlockLanes];
 };
 
@@ -58,7 +58,7 @@ HWY_INLINE NearPoints::Pair* findPairs(const NearInput& in, std::uint32_t lane, 
         const V3 centre = in.spheres.centre(k) - root;
         std::size_t i = std::size_t{begin} * kBlockLanes + lane;
         for (std::uint32_t p = begin; p < end; ++p, i += kBlockLanes) {
-            const float reach = in.spheres.radius[k] + in.pearls[p], wider = reach + margin;
+            const float reach = in.spheres.radius[k] + in.collisionRadii[p], wider = reach + margin;
             const V3 offset = load3(in.block.position, i) - centre;
             const auto inside = dot(offset, offset) < all(wider * wider * 1.0001f);
             // Written first: a branch on what is as good as random costs more.
@@ -71,25 +71,25 @@ HWY_INLINE NearPoints::Pair* findPairs(const NearInput& in, std::uint32_t lane, 
 
 /// Metres in a substep that a sphere moves relative to a root of the block, at most.
 HWY_INLINE float fastestSphere(const NearInput& in) {
-    V most = hn::Zero(D());
+    V maximum = hn::Zero(D());
     for (std::uint32_t lane = 0; lane < in.block.lanes; lane += kWidth) {
-        const V3 step = load3(in.lanes.rootStep, lane);
+        const V3 step = load3(in.lanes.rootDisplacement, lane);
         for (const MovingSphere& sphere : in.context.spheres) {
             const V3 relative = all3(sphere.step) - step;
-            most = hn::Max(most, dot(relative, relative));
+            maximum = hn::Max(maximum, dot(relative, relative));
         }
     }
-    return std::sqrt(laneMost(most));
+    return std::sqrt(laneMax(maximum));
 }
 
 /// Metres by which rounding can move a sphere relative to a root.
 HWY_INLINE float roundingOfPlaces(const NearInput& in) {
-    V most = hn::Zero(D());
+    V maximum = hn::Zero(D());
     for (std::uint32_t lane = 0; lane < in.block.lanes; lane += kWidth) {
         const V3 root = load3(in.roots, lane);
-        most = hn::Max(most, hn::Max(hn::Abs(root.x), hn::Max(hn::Abs(root.y), hn::Abs(root.z))));
+        maximum = hn::Max(maximum, hn::Max(hn::Abs(root.x), hn::Max(hn::Abs(root.y), hn::Abs(root.z))));
     }
-    float farthest = laneMost(most);
+    float farthest = laneMax(maximum);
     for (const MovingSphere& sphere : in.context.spheres)
         farthest = std::fmax(farthest, length(sphere.from_ws) + length(sphere.step));
     return 2e-6f * farthest;
@@ -97,8 +97,8 @@ HWY_INLINE float roundingOfPlaces(const NearInput& in) {
 
 /// Metres that a point of the block moved relative to its root in this substep, at most.
 HWY_INLINE float farthestFromRoot(const NearInput& in) {
-    return std::sqrt(mostOfBlock(in.block, [&](std::size_t i) HWY_ATTR {
-        const V3 step = load3(in.lanes.rootStep, i % kBlockLanes);
+    return std::sqrt(maxOfBlock(in.block, [&](std::size_t i) HWY_ATTR {
+        const V3 step = load3(in.lanes.rootDisplacement, i % kBlockLanes);
         const V3 moved = load3(in.block.position, i) - load3(in.block.previous, i) - step;
         return dot(moved, moved);
     }));
@@ -127,7 +127,7 @@ HWY_INLINE void findNear(const NearInput& in, NearPoints& near) {
     NearPoints::Pair* last = near.pairs;
     near.made =
         forEachPart(in.block, [&](std::uint32_t lane, std::uint32_t begin, std::uint32_t end) HWY_ATTR {
-            const std::size_t room = NearPoints::kMostPairs - static_cast<std::size_t>(last - near.pairs);
+            const std::size_t room = NearPoints::kMaxPairs - static_cast<std::size_t>(last - near.pairs);
             if (room < in.spheres.count() * (end - begin)) return false;
             last = findPairs(in, lane, begin, end, wider, last);
             return true;
@@ -143,7 +143,7 @@ HWY_INLINE void findNear(const NearInput& in, NearPoints& near) {
 /// Square of the farthest that a free point is from where it was when the list was made, square metres.
 HWY_INLINE float farthestFromList(const BlockView& block, const NearPoints& near) {
     const ConstPlanes places{near.places, nearPlane(block)};
-    return mostOfBlock(block, [&](std::size_t i) HWY_ATTR {
+    return maxOfBlock(block, [&](std::size_t i) HWY_ATTR {
         const V3 moved = load3(block.position, i) - load3(places, i);
         return dot(moved, moved);
     });

@@ -9,9 +9,9 @@
 
 #include <cfloat>
 
-#include "src/checks.h"
 #include "hwy/highway.h"
 #include "kernels/lanes-inl.h"
+#include "src/checks.h"
 #include "src/kernels.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -45,7 +45,7 @@ void moveRoots(const BlockView& block, LaneFrame& lanes, const SubstepContext& c
         }
         store4(now, lanes.rotation, lane);
 
-        const V3 step = load3(lanes.rootStep, lane);
+        const V3 step = load3(lanes.rootDisplacement, lane);
         const V zero = hn::Zero(D());
         store3({zero - step.x, zero - step.y, zero - step.z}, block.previous, lane);
         if (block.firstFree > 1 && block.points > 1) {
@@ -62,7 +62,8 @@ HWY_INLINE hn::Mask<D> usableRoots(V3 place, V squaredRotation) {
     return hn::And(near, hn::And(squaredRotation > all(1e-12f), squaredRotation <= all(FLT_MAX)));
 }
 
-bool takeRoots(const float* before, float* next, bool sound, float cut, RootBounds& bounds) {
+bool takeRoots(const float* before, float* next, bool sound, float teleportDistanceSquared,
+               RootBounds& bounds) {
     const Planes places{next, kBlockLanes};
     const auto rotationAt = [&](std::size_t lane) HWY_ATTR {
         const float* const at = next + 3 * kBlockLanes + lane;
@@ -90,9 +91,9 @@ bool takeRoots(const float* before, float* next, bool sound, float cut, RootBoun
         store3({hn::Max(high.x, place.x), hn::Max(high.y, place.y), hn::Max(high.z, place.z)}, bounds.high,
                lane);
         const V squared = dot(way, way);
-        const auto noCut = squared <= all(cut);
-        bounds.anyCut = bounds.anyCut || !hn::AllTrue(D(), noCut);
-        const V counted = hn::IfThenElseZero(noCut, squared);
+        const auto inPlace = squared <= all(teleportDistanceSquared);
+        bounds.anyTeleported = bounds.anyTeleported || !hn::AllTrue(D(), inPlace);
+        const V counted = hn::IfThenElseZero(inPlace, squared);
         hn::Store(hn::Max(hn::Load(D(), bounds.longest + lane), counted), D(), bounds.longest + lane);
     }
     return true;

@@ -42,10 +42,12 @@ HWY_INLINE Direction directionOf(V3 offset) {
 }
 
 /// Pearl radius at each point, growing linearly to the tip.
-HWY_INLINE void fillPearls(const BlockView& block, const SubstepContext& context, float* pearls) {
-    const float slope = (context.pearlTip - context.pearlRoot) / static_cast<float>(block.points - 1);
+HWY_INLINE void fillCollisionRadii(const BlockView& block, const SubstepContext& context,
+                                   float* collisionRadii) {
+    const float slope =
+        (context.collisionRadiusAtTip - context.collisionRadiusAtRoot) / static_cast<float>(block.points - 1);
     for (std::uint32_t p = 0; p < block.points; ++p) {
-        pearls[p] = context.pearlRoot + slope * static_cast<float>(p);
+        collisionRadii[p] = context.collisionRadiusAtRoot + slope * static_cast<float>(p);
     }
 }
 
@@ -53,11 +55,11 @@ HWY_INLINE void fillPearls(const BlockView& block, const SubstepContext& context
 /// once.
 class SphereSet {
   public:
-    static constexpr std::size_t kMost = 64;
-    float radius[kMost];  ///< metres
-    float widest[kMost];  ///< with the largest pearl
+    static constexpr std::size_t kMax = 64;
+    float radius[kMax];  ///< metres
+    float widest[kMax];  ///< with the largest pearl
 
-    HWY_INLINE void take(std::span<const MovingSphere> spheres, float step, float largestPearl) {
+    HWY_INLINE void take(std::span<const MovingSphere> spheres, float step, float maxCollisionRadius) {
         count_ = spheres.size();
         for (std::size_t k = 0; k < count_; ++k) {
             const Float3 centre = spheres[k].from_ws + spheres[k].step * step;
@@ -65,7 +67,7 @@ class SphereSet {
             y_[k] = centre.y;
             z_[k] = centre.z;
             radius[k] = spheres[k].radius;
-            widest[k] = spheres[k].radius + largestPearl;
+            widest[k] = spheres[k].radius + maxCollisionRadius;
         }
         for (std::size_t k = count_; k % kWidth != 0; ++k) {
             x_[k] = y_[k] = z_[k] = 1e18f;
@@ -96,7 +98,7 @@ class SphereSet {
     /// The spheres in which a point on sphere k can be, as bits, until two of them have come nearer by
     /// `margin`.
     HWY_INLINE std::uint64_t overlapping(std::size_t k, float margin) const {
-        static_assert(kMost <= 64);
+        static_assert(kMax <= 64);
         const V3 at = centre(k);
         const V own = all(widest[k] + margin);
         std::uint64_t others = 0;
@@ -119,7 +121,7 @@ class SphereSet {
         }
     }
 
-    alignas(64) float x_[kMost], y_[kMost], z_[kMost];
+    alignas(64) float x_[kMax], y_[kMax], z_[kMax];
     std::size_t count_ = 0;
 };
 
@@ -131,15 +133,15 @@ struct WideBox {
         return {all3({1e30f, 1e30f, 1e30f}), all3({-1e30f, -1e30f, -1e30f})};
     }
 
-    HWY_INLINE void add(V3 least, V3 most) {
-        low = {hn::Min(low.x, least.x), hn::Min(low.y, least.y), hn::Min(low.z, least.z)};
-        high = {hn::Max(high.x, most.x), hn::Max(high.y, most.y), hn::Max(high.z, most.z)};
+    HWY_INLINE void add(V3 minimum, V3 maximum) {
+        low = {hn::Min(low.x, minimum.x), hn::Min(low.y, minimum.y), hn::Min(low.z, minimum.z)};
+        high = {hn::Max(high.x, maximum.x), hn::Max(high.y, maximum.y), hn::Max(high.z, maximum.z)};
     }
     HWY_INLINE void add(const WideBox& other, V3 shift) { add(other.low + shift, other.high + shift); }
     /// Around those of all lanes.
     HWY_INLINE Box reduced() const {
-        return {{laneLeast(low.x), laneLeast(low.y), laneLeast(low.z)},
-                {laneMost(high.x), laneMost(high.y), laneMost(high.z)}};
+        return {{laneMin(low.x), laneMin(low.y), laneMin(low.z)},
+                {laneMax(high.x), laneMax(high.y), laneMax(high.z)}};
     }
 };
 

@@ -19,14 +19,14 @@ namespace hairloom::runtime {
 namespace HWY_NAMESPACE {
 
 /// The first sphere that a point enters and passes the middle of on its way relative to it, as a contact.
-HWY_INLINE Contact firstEntered(const SubstepContext& context, V3 at, V3 moved, V3 root, V pearl,
+HWY_INLINE Contact firstEntered(const SubstepContext& context, V3 at, V3 moved, V3 root, V collisionRadius,
                                 float step) {
     const V zero = hn::Zero(D()), one = all(1.0f);
     Contact first{noLane(), zero3(), zero3(), zero, zero3()};
     V earliest = zero;
     for (const MovingSphere& sphere : context.spheres) {
         const V3 centre = all3(sphere.from_ws + sphere.step * step) - root;
-        const V reach = all(sphere.radius) + pearl;
+        const V reach = all(sphere.radius) + collisionRadius;
         const V3 relative = moved - all3(sphere.step);
         const V3 offset = at - centre;
         const V a = dot(relative, relative), b = dot(relative, offset);
@@ -51,16 +51,16 @@ HWY_INLINE Contact firstEntered(const SubstepContext& context, V3 at, V3 moved, 
 HWY_NOINLINE void catchFast(const BlockView& block, LaneFrame& lanes, const SubstepContext& context) {
     const float slow = context.slowestSwept;
     const float step = static_cast<float>(context.index + 1);
-    alignas(64) float pearls[kMaxPoints];
-    fillPearls(block, context, pearls);
+    alignas(64) float collisionRadii[kMaxPoints];
+    fillCollisionRadii(block, context, collisionRadii);
     for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
-        const V3 root = load3(lanes.root, lane) + load3(lanes.rootStep, lane) * all(step);
+        const V3 root = load3(lanes.root, lane) + load3(lanes.rootDisplacement, lane) * all(step);
         for (std::uint32_t p = block.firstFree; p < block.points; ++p) {
             const std::size_t i = std::size_t{p} * kBlockLanes + lane;
             const V3 at = load3(block.position, i);
             const V3 moved = at - load3(block.previous, i);
             if (hn::AllFalse(D(), dot(moved, moved) >= all(slow * slow))) continue;
-            const Contact first = firstEntered(context, at, moved, root, all(pearls[p]), step);
+            const Contact first = firstEntered(context, at, moved, root, all(collisionRadii[p]), step);
             if (!hn::AllFalse(D(), first.touching)) respond(block, context, i, first);
         }
     }
@@ -73,7 +73,7 @@ struct Farthest {
 };
 
 HWY_INLINE float farthestInSubstep(const BlockView& block) {
-    return mostOfBlock(block, [&](std::size_t i) HWY_ATTR {
+    return maxOfBlock(block, [&](std::size_t i) HWY_ATTR {
         const V3 moved = load3(block.position, i) - load3(block.previous, i);
         return dot(moved, moved);
     });
@@ -95,7 +95,7 @@ HWY_INLINE Farthest farthestOfBoth(const BlockView& block, const NearPoints& nea
         ofSubstep = hn::Max(ofSubstep, inSubstep);
         ofList = hn::Max(ofList, fromList);
     }
-    return {laneMost(ofSubstep), laneMost(ofList)};
+    return {laneMax(ofSubstep), laneMax(ofList)};
 }
 
 HWY_INLINE bool isFast(const SubstepContext& context, float farthestSquared) {

@@ -40,13 +40,13 @@ Stage stageOf(StageId id) {
         case StageId::roots:
             return moveRoots;
         case StageId::damping:
-            return partOfMove<StageId::damping, Motion::place, Motion::place>();
+            return partOfMove<StageId::damping, Motion::position, Motion::position>();
         case StageId::drag:
-            return partOfMove<StageId::drag, Motion::place, Motion::place>();
+            return partOfMove<StageId::drag, Motion::position, Motion::position>();
         case StageId::wind:
-            return partOfMove<StageId::wind, Motion::place, Motion::place>();
+            return partOfMove<StageId::wind, Motion::position, Motion::position>();
         case StageId::gravity:
-            return partOfMove<StageId::gravity, Motion::place, Motion::place>();
+            return partOfMove<StageId::gravity, Motion::position, Motion::position>();
         case StageId::springs:
             return applySprings;
         case StageId::angularCheap:
@@ -62,7 +62,7 @@ Stage stageOf(StageId id) {
         case StageId::penalty:
             return applyPenalty;
         case StageId::verlet:
-            return partOfMove<StageId::verlet, Motion::place, Motion::made>();
+            return partOfMove<StageId::verlet, Motion::position, Motion::integrated>();
         case StageId::open:
             return openStep<0>;
         case StageId::openHalfway:
@@ -74,17 +74,17 @@ Stage stageOf(StageId id) {
         case StageId::verletDrift:
             return driftVerlet;
         case StageId::verletAim:
-            return aimVerlet;
+            return setVerletEvaluationState;
         case StageId::verletKick:
             return kickVerlet;
         case StageId::rungeKutta1:
-            return takeSlope<1>;
+            return rk4Stage<1>;
         case StageId::rungeKutta2:
-            return takeSlope<2>;
+            return rk4Stage<2>;
         case StageId::rungeKutta3:
-            return takeSlope<3>;
+            return rk4Stage<3>;
         case StageId::rungeKutta4:
-            return takeSlope<4>;
+            return rk4Stage<4>;
         case StageId::implicitFree:
             return advanceFree;
         case StageId::implicitBend:
@@ -102,9 +102,9 @@ Stage stageOf(StageId id) {
         case StageId::coupledStraight:
             return bendCoupled<Shape::straight>;
         case StageId::length:
-            return holdLength<Holding::places>;
+            return projectLength<LengthProjection::positions>;
         case StageId::lengthNow:
-            return holdLength<Holding::placesNow>;
+            return projectLength<LengthProjection::positionsWithCurrentGradient>;
         case StageId::springLimit:
             return limitBySpeed;
         case StageId::collision:
@@ -116,7 +116,7 @@ Stage stageOf(StageId id) {
         case StageId::extension:
             return limitExtension;
         case StageId::lengthRate:
-            return holdRates;
+            return projectDisplacements;
     }
     return nullptr;
 }
@@ -152,15 +152,15 @@ constexpr std::size_t solverFloats(StageId id) {
 template <bool kDamped, Air kAir>
 void fillMoves(Kernels& table) {
     auto& moves = table.moves[kDamped ? 1 : 0][static_cast<std::size_t>(kAir)];
-    moves[0] = moveFree<kDamped, kAir, false, Motion::place, Motion::made>;
-    moves[1] = moveFree<kDamped, kAir, true, Motion::place, Motion::made>;
+    moves[0] = moveFree<kDamped, kAir, false, Motion::position, Motion::integrated>;
+    moves[1] = moveFree<kDamped, kAir, true, Motion::position, Motion::integrated>;
 }
 
 template <StageId kPart>
 void fillPart(Kernels& table) {
-    constexpr Motion kTo = kPart == StageId::verlet ? Motion::made : Motion::way;
-    table.partsOfMove[0][static_cast<std::size_t>(kPart)] = partOfMove<kPart, Motion::place, kTo>();
-    table.partsOfMove[1][static_cast<std::size_t>(kPart)] = partOfMove<kPart, Motion::way, kTo>();
+    constexpr Motion kTo = kPart == StageId::verlet ? Motion::integrated : Motion::displacement;
+    table.partsOfMove[0][static_cast<std::size_t>(kPart)] = partOfMove<kPart, Motion::position, kTo>();
+    table.partsOfMove[1][static_cast<std::size_t>(kPart)] = partOfMove<kPart, Motion::displacement, kTo>();
 }
 
 Kernels makeTable() {
@@ -180,8 +180,8 @@ Kernels makeTable() {
     fillPart<StageId::wind>(table);
     fillPart<StageId::gravity>(table);
     fillPart<StageId::verlet>(table);
-    table.bendAndHold[0] = bendAndHold<Shape::straight>;
-    table.bendAndHold[1] = bendAndHold<Shape::curved>;
+    table.bendAndProject[0] = bendAndProject<Shape::straight>;
+    table.bendAndProject[1] = bendAndProject<Shape::curved>;
     table.sweepAndCollide[0] = sweepAndCollide<false>;
     table.sweepAndCollide[1] = sweepAndCollide<true>;
     table.rescale = rescale;

@@ -61,9 +61,9 @@ float3 windHere(uint tip, uint end) { return gWinds[4 * gStrand + 2 * end + tip]
 
 /// A thread each for both places and both ends.
 void sampleWind() {
-    tellPositions();
+    exchangePositions();
     const bool atTip = (gThread & 1u) != 0u;
-    const float3 place = atTip ? gRoot + told(POINTS - 1).xyz : gRoot;
+    const float3 place = atTip ? gRoot + loadPoint(POINTS - 1).xyz : gRoot;
     const float3 way = windAt(place, (gThread >> 1) & 1u) * gFrame.h;
     if (gThread < 4) gWinds[4 * gStrand + gThread] = float4(way, 0);
     GroupMemoryBarrierWithGroupSync();

@@ -26,20 +26,20 @@ float3 fromFrame(float3 tangent, float3 normal, float3 local) {
 }
 
 #if HAIR_CURVES
-static float gTank, gMotion;
+static float gEnergyTank, gMotion;
 
 /// The share of a change of curves that the strand's tank pays, and what that does to the tank. `gain` and `size` are
 /// Σ pull · change and Σ stiffness · change² over the joints.
 float takeShare(float gain, float size) {
-    const bool fresh = gTank < 0.0;
+    const bool fresh = gEnergyTank < 0.0;
     const float squared = gFrame.h * gFrame.h;
-    const float saved = max(gTank, 0.0) * squared;
+    const float saved = max(gEnergyTank, 0.0) * squared;
     // Turning by the share α changes the energy by ½ α² s − α d.
-    const float most = (gain + sqrt(gain * gain + (size + size) * saved)) / max(size, 1e-30);
+    const float maximum = (gain + sqrt(gain * gain + (size + size) * saved)) / max(size, 1e-30);
     const float leak = min(gFrame.h / LEAK_TIME, 1.0) * max(1.0 - gMotion / (LEAK_SPEED * LEAK_SPEED), 0.0);
-    const float share = fresh ? 1.0 : max(min(most, 1.0), leak);
+    const float share = fresh ? 1.0 : max(min(maximum, 1.0), leak);
     const float gained = share * (gain - 0.5 * share * size) / squared;
-    gTank = fresh ? 0.0 : max(max(gTank, 0.0) + gained, 0.0) * gFrame.velocityShare;
+    gEnergyTank = fresh ? 0.0 : max(max(gEnergyTank, 0.0) + gained, 0.0) * gFrame.velocityShare;
     return share;
 }
 #endif

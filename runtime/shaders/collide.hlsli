@@ -29,8 +29,8 @@ float3 sphereCentre(uint k, float step) { return gSpheres[k].from.xyz + gSpheres
 #define SPHERE_BEFORE(end) min(sphereRow + sphereAt, end - 1)
 
 /// Pearl radius at a point, growing linearly to the tip.
-float pearlAt(uint p) {
-    return gFrame.pearlRoot + (gFrame.pearlTip - gFrame.pearlRoot) / float(POINTS - 1) * float(p);
+float collisionRadiusAt(uint p) {
+    return gFrame.collisionRadiusAtRoot + (gFrame.collisionRadiusAtTip - gFrame.collisionRadiusAtRoot) / float(POINTS - 1) * float(p);
 }
 
 /// What a point touches.
@@ -109,7 +109,7 @@ float3 nearestOfCircle(float3 at, Contact contact, float3 centre, float reach, o
 
 /// A point that left one sphere into others of a union goes to the circle that its last sphere and the one in
 /// which it is deepest have in common, until it is free.
-void settle(Contact contact, uint first, uint end, float pearl, float3 root, float step, inout float3 at,
+void settle(Contact contact, uint first, uint end, float collisionRadius, float3 root, float step, inout float3 at,
             inout float3 before) {
     bool inside = true;
     [loop] for (uint k = 0; k < 16 && inside; ++k) {
@@ -118,7 +118,7 @@ void settle(Contact contact, uint first, uint end, float pearl, float3 root, flo
         EACH_SPHERE(first, end) {
             const uint j = SPHERE_BEFORE(end);
             const float3 centre = sphereCentre(j, step) - root;
-            const float reach = gSpheres[j].from.w + pearl;
+            const float reach = gSpheres[j].from.w + collisionRadius;
             const float3 offset = at - centre;
             // About twice the reach times the depth, but for the depth that rounding leaves.
             const float depth = reach * (reach - 4e-6) - dot(offset, offset);
@@ -141,12 +141,12 @@ void settle(Contact contact, uint first, uint end, float pearl, float3 root, flo
 }
 
 /// Whether a place lies in one of the spheres but `own`.
-bool insideOthers(float3 at, uint own, uint first, uint end, float pearl, float3 root, float step) {
+bool insideOthers(float3 at, uint own, uint first, uint end, float collisionRadius, float3 root, float step) {
     bool inside = false;
     EACH_SPHERE(first, end) {
         const uint j = SPHERE_BEFORE(end);
         const float3 offset = at - (sphereCentre(j, step) - root);
-        const float reach = gSpheres[j].from.w + pearl;
+        const float reach = gSpheres[j].from.w + collisionRadius;
         inside = inside || (j != own && dot(offset, offset) < reach * reach);
     }
     return inside;
@@ -164,7 +164,7 @@ struct Touch {
 /// before it.
 Touch touchSpheres(bool backward, uint p, float3 at, float3 before, float3 inner, bool knowsInner, uint first, uint end,
                    uint2 near, float3 root, float step) {
-    const float pearl = pearlAt(p);
+    const float collisionRadius = collisionRadiusAt(p);
     const float3 began = at;
     Touch result;
     result.touched = result.asks = false;
@@ -180,7 +180,7 @@ Touch touchSpheres(bool backward, uint p, float3 at, float3 before, float3 inner
         const uint k = first + bit + (low ? 0u : 32u);
         Contact contact;
         contact.centre = sphereCentre(k, step) - root;
-        contact.reach = gSpheres[k].from.w + pearl;
+        contact.reach = gSpheres[k].from.w + collisionRadius;
         const float3 offset = at - contact.centre, offsetBegan = began - contact.centre;
         const float squared = dot(offset, offset), reachSquared = contact.reach * contact.reach;
         if (squared < reachSquared && dot(offsetBegan, offsetBegan) < reachSquared) {
@@ -193,8 +193,8 @@ Touch touchSpheres(bool backward, uint p, float3 at, float3 before, float3 inner
             }
             respond(contact, at, before);
             result.touched = true;
-            if (insideOthers(at, k, first, end, pearl, root, step))
-                settle(contact, first, end, pearl, root, step, at, before);
+            if (insideOthers(at, k, first, end, collisionRadius, root, step))
+                settle(contact, first, end, collisionRadius, root, step, at, before);
         }
     }
     result.at = at;
@@ -216,12 +216,12 @@ void sweepPoint(uint p, float3 root, float step) {
     float3 at = position(p), before = previous(p);
     const float3 moved = at - before;
     if (dot(moved, moved) >= gFrame.slowSweep * gFrame.slowSweep) {
-        const float pearl = pearlAt(pointOf(p));
+        const float collisionRadius = collisionRadiusAt(pointOf(p));
         float earliest = 0.0;
         uint met = 0u;
         EACH_SPHERE(0, gFrame.sphereCount) {
             const uint k = SPHERE_BEFORE(gFrame.sphereCount);
-            const float reach = gSpheres[k].from.w + pearl;
+            const float reach = gSpheres[k].from.w + collisionRadius;
             const float3 relative = moved - gSpheres[k].step.xyz;
             const float3 offset = at - (sphereCentre(k, step) - root);
             const float a = dot(relative, relative), b = dot(relative, offset);
@@ -239,7 +239,7 @@ void sweepPoint(uint p, float3 root, float step) {
             Contact contact;
             contact.centre = sphereCentre(met, step) - root;
             contact.step = gSpheres[met].step.xyz;
-            contact.reach = gSpheres[met].from.w + pearl;
+            contact.reach = gSpheres[met].from.w + collisionRadius;
             contact.from = at - contact.centre + (moved - contact.step) * earliest;
             respond(contact, at, before);
             setPosition(p, at);
@@ -249,11 +249,11 @@ void sweepPoint(uint p, float3 root, float step) {
 }
 void stageSweep() {
     const float step = float(gSubstep + 1);
-    const float3 root = gRoot + gRootStep * step;
+    const float3 root = gRoot + gRootDisplacement * step;
 #if HAIR_STORAGE == 3
     // Mostly none of the thread's points is fast.
     float fastest = 0.0;
-    EACH_OWN(k) {
+    EACH_OWN_POINT(k) {
         const float3 moved = gPosition[k] - gPrevious[k];
         fastest = max(fastest, dot(moved, moved));
     }
@@ -266,13 +266,13 @@ void stageSweep() {
 /// in. Positions are still those of the substep's start.
 void stagePenalty() {
     const float step = float(gSubstep);
-    const float3 root = gRoot + gRootStep * step;
+    const float3 root = gRoot + gRootDisplacement * step;
     FREE_POINTS(p) {
-        const float pearl = pearlAt(pointOf(p));
+        const float collisionRadius = collisionRadiusAt(pointOf(p));
         const float3 at = position(p);
         float3 way = float3(0, 0, 0);
         [loop] for (uint k = 0; k < gFrame.sphereCount; ++k) {
-            const float reach = gSpheres[k].from.w + pearl;
+            const float reach = gSpheres[k].from.w + collisionRadius;
             const float3 offset = at - (sphereCentre(k, step) - root);
             if (dot(offset, offset) < reach * reach) {
                 const Direction direction = directionOf(offset);

@@ -7,10 +7,10 @@
 // multiple of tension over length; and the most of that.
 #define HARDNESS 2000.0
 #define LOAD_HARDNESS 300.0
-#define MOST_HARDNESS 1e5
+#define MAX_HARDNESS 1e5
 // How often the system is solved at most, with the same factors, until no segment's length is wrong by more than this
 // share of it, and by what rounding makes of places.
-#define MOST_SOLVES 6
+#define MAX_SOLVES 6
 #define SOLVED 3e-7
 #define ROUNDING 2.4e-7
 // Tension that may act along the segments as they start, as ω²h² of the wave across them; Verlet's limit is 4.
@@ -100,7 +100,7 @@ float3 openSegment(uint s) {
     // Segments that turn by more than 60° are held where they go.
     const float3 direction = (dot(start, free) > 0.5 * dot(free, free) ? start : free) * inverse;
     const float mass = reducedMass(s), load = tension(s);
-    const float hardness = mass * HARDNESS + min(abs(load) * inverse * LOAD_HARDNESS, mass * MOST_HARDNESS);
+    const float hardness = mass * HARDNESS + min(abs(load) * inverse * LOAD_HARDNESS, mass * MAX_HARDNESS);
     const float across = acrossOf(load, inverse, mass);
     const float wrong = 0.5 * (dot(free, free) * inverse - segmentLength(s));
     setHeld(s, direction);
@@ -264,7 +264,7 @@ void bendCoupled() {
     openSystem();
     factorSystem();
     bool wrong = true, loose = false;
-    [loop] for (uint solve = 0; solve < MOST_SOLVES; ++solve) {
+    [loop] for (uint solve = 0; solve < MAX_SOLVES; ++solve) {
         if (solve > 0) {
             reopenSystem(wrong, loose);
             if (!wrong && !loose) break;

@@ -43,8 +43,8 @@ void enterLane(uint group) {
 /// What stays in the thread for the frame.
 void loadState() {
     gInverseLengthBefore = inverseLength(gThread > 0 ? pointOf(0) - 1 : 0);
-    gInverseMassAfter = inverseMass(min(pointOf(OWN), uint(HAIR_POINTS) - 1));
-    EACH_OWN(k) {
+    gInverseMassAfter = inverseMass(min(pointOf(POINTS_PER_THREAD), uint(HAIR_POINTS) - 1));
+    EACH_OWN_POINT(k) {
         const uint p = pointOf(k);
         gPosition[k] = savedPosition(p);
         gPrevious[k] = savedPrevious(p);
@@ -62,13 +62,13 @@ void loadState() {
 #endif
     }
 #if HAIR_CURVES
-    gTank = gTanks[gSlot];
-    gMotion = gTanks[gFrame.slots + gSlot];
+    gEnergyTank = gEnergyTanks[gSlot];
+    gMotion = gEnergyTanks[gFrame.slots + gSlot];
 #endif
 }
 
 void saveState() {
-    EACH_OWN(k) {
+    EACH_OWN_POINT(k) {
         const uint p = pointOf(k);
         savePosition(p, gPosition[k]);
         savePrevious(p, gPrevious[k]);
@@ -81,8 +81,8 @@ void saveState() {
     }
 #if HAIR_CURVES
     ONLY_POINT(0) {
-        gTanks[gSlot] = gTank;
-        gTanks[gFrame.slots + gSlot] = gMotion;
+        gEnergyTanks[gSlot] = gEnergyTank;
+        gEnergyTanks[gFrame.slots + gSlot] = gMotion;
     }
 #endif
 }
@@ -90,40 +90,40 @@ void saveState() {
 /// See serial_strand.hlsli.
 void placeAtRest() {
     float3 at = float3(0, 0, 0);
-    [loop] for (uint p = 0; p < pointOf(OWN); ++p) {
-        EACH_OWN(i) if (p == pointOf(i)) gPosition[i] = gPrevious[i] = at;
+    [loop] for (uint p = 0; p < pointOf(POINTS_PER_THREAD); ++p) {
+        EACH_OWN_POINT(i) if (p == pointOf(i)) gPosition[i] = gPrevious[i] = at;
         at += rotate(gRootsTo[2 * gSlot + 1], restVector(p));
     }
 #if HAIR_CURVES
-    EACH_OWN(c) setCurve(c, float3(0, 0, 0));
-    gTank = HAIRLOOM_NO_CURVE;
+    EACH_OWN_POINT(c) setCurve(c, float3(0, 0, 0));
+    gEnergyTank = HAIRLOOM_NO_CURVE;
     gMotion = 0.0;
 #endif
 #if HAIR_TENSIONS
-    EACH_OWN(t) gTension[t] = 0.0;
+    EACH_OWN_POINT(t) gTension[t] = 0.0;
 #endif
 }
 
 /// Takes stock after the last substep.
 void finishStrand(uint strands) {
     bool sound = true;
-    uint most = 0u;
+    uint maximum = 0u;
     ALL_POINTS(k) {
         const float3 here = gPosition[k], moved = here - gPrevious[k];
         const float squared = dot(moved, moved);
         sound = sound && isSound(here) && isSound(moved) && dot(here, here) < 1e12 && squared < 1e12;
-        if (pointOf(k) >= FIRST_FREE) most = max(most, asuint(squared));
+        if (pointOf(k) >= FIRST_FREE) maximum = max(maximum, asuint(squared));
     }
     if (!sound) {
         InterlockedOr(gStrandLost[gStrand], 1u);
     } else {
-        InterlockedMax(gStrandFastest[gStrand], most);
+        InterlockedMax(gStrandFastest[gStrand], maximum);
     }
     GroupMemoryBarrierWithGroupSync();
     const bool lost = gStrandLost[gStrand] != 0u;
-    most = lost ? 0u : gStrandFastest[gStrand];
+    maximum = lost ? 0u : gStrandFastest[gStrand];
 #if HAIR_CURVES
-    gMotion = asfloat(most) * (1.0 / (gFrame.h * gFrame.h));
+    gMotion = asfloat(maximum) * (1.0 / (gFrame.h * gFrame.h));
 #endif
     if (lost) placeAtRest();
     ONLY_POINT(0) {
@@ -131,7 +131,7 @@ void finishStrand(uint strands) {
             if (gSlot % HAIRLOOM_GROUP_STRANDS < strands) InterlockedAdd(gReport[REPORT_RESTORED], 1u);
             InterlockedOr(gGroupRestored, 1u);
         }
-        InterlockedMax(gGroupFastest, most);
+        InterlockedMax(gGroupFastest, maximum);
     }
     GroupMemoryBarrierWithGroupSync();
 }

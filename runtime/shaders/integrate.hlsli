@@ -5,14 +5,14 @@
 void stageDamping() {
     const float lost = 1.0 - gFrame.velocityShare;
     MOVED_POINTS(p)
-        setPrevious(p, previous(p) + (position(p) - previous(p) - gRootStep) * (lost * freedom(p)));
+        setPrevious(p, previous(p) + (position(p) - previous(p) - gRootDisplacement) * (lost * freedom(p)));
 }
 
 /// Position Verlet (Rünz 2012, Eq. 10).
 void stageVerlet() {
     MOVED_POINTS(p) {
         const float3 here = position(p);
-        const float3 from = here - gRootStep;
+        const float3 from = here - gRootDisplacement;
         setFreePosition(p, from + (here - previous(p)));
         setFreePrevious(p, from);
     }
@@ -20,12 +20,12 @@ void stageVerlet() {
 
 #if HAIR_EVALUATION >= 1
 /// The next evaluation of forces is at `place`, with the displacement `moving` for velocity.
-void aim(uint p, float3 place, float3 moving) {
+void setEvaluationState(uint p, float3 place, float3 moving) {
     setPosition(p, place);
     setPrevious(p, place - moving);
 }
 
-/// What the forces have added since aim().
+/// What the forces have added since setEvaluationState().
 float3 takeKick(uint p, float3 moving) {
     return pointOf(p) < FIRST_FREE ? float3(0, 0, 0) : position(p) - previous(p) - moving;
 }
@@ -37,10 +37,10 @@ void open(float way) {
         const float3 here = position(p);
         const float3 before = previous(p);
         const float3 moving = here - before;
-        const float3 from = pointOf(p) < FIRST_FREE ? before : here - gRootStep;
+        const float3 from = pointOf(p) < FIRST_FREE ? before : here - gRootDisplacement;
         setStart(p, from);
         setRate(p, moving);
-        aim(p, from + moving * way, moving);
+        setEvaluationState(p, from + moving * way, moving);
     }
 }
 void stageOpen() { open(0.0); }
@@ -50,7 +50,7 @@ void stageOpenHalfway() { open(0.5); }
 void stageExplicitEuler() {
     ALL_POINTS(p) {
         const float3 moving = rate(p);
-        aim(p, start(p) + moving, moving + takeKick(p, moving));
+        setEvaluationState(p, start(p) + moving, moving + takeKick(p, moving));
     }
 }
 
@@ -59,7 +59,7 @@ void stageLeapfrog() {
     ALL_POINTS(p) {
         const float3 moving = rate(p);
         const float3 after = moving + takeKick(p, moving);
-        aim(p, start(p) + (moving + after) * 0.5, after);
+        setEvaluationState(p, start(p) + (moving + after) * 0.5, after);
     }
 }
 
@@ -68,7 +68,7 @@ void stageVerletDrift() {
     ALL_POINTS(p) {
         const float3 moving = rate(p);
         const float3 half_ = moving + takeKick(p, moving) * 0.5;
-        aim(p, start(p) + half_, half_);
+        setEvaluationState(p, start(p) + half_, half_);
     }
 }
 
@@ -81,14 +81,14 @@ void stageVerletAim() {
         const float3 predicted = half_ + half_ - rate(p);
         setRate(p, half_);
         setStart(p, predicted);
-        aim(p, place, predicted);
+        setEvaluationState(p, place, predicted);
     }
 }
 
 /// Velocity Verlet, second half kick.
 void stageVerletKick() {
     ALL_POINTS(p)
-        aim(p, position(p), rate(p) + takeKick(p, start(p)) * 0.5);
+        setEvaluationState(p, position(p), rate(p) + takeKick(p, start(p)) * 0.5);
 }
 #endif
 
@@ -102,7 +102,7 @@ void stageRungeKutta1() {
         setKick(p, added);
         setSum(p, added);
         setSumRate(p, added);
-        aim(p, start(p) + moving * 0.5, moving + added * 0.5);
+        setEvaluationState(p, start(p) + moving * 0.5, moving + added * 0.5);
     }
 }
 void stageRungeKutta2() {
@@ -112,7 +112,7 @@ void stageRungeKutta2() {
         setKick(p, added);
         setSum(p, sum(p) + added);
         setSumRate(p, sumRate(p) + added + added);
-        aim(p, start(p) + here * 0.5, moving + added * 0.5);
+        setEvaluationState(p, start(p) + here * 0.5, moving + added * 0.5);
     }
 }
 void stageRungeKutta3() {
@@ -122,14 +122,14 @@ void stageRungeKutta3() {
         setKick(p, added);
         setSum(p, sum(p) + added);
         setSumRate(p, sumRate(p) + added + added);
-        aim(p, start(p) + here, moving + added);
+        setEvaluationState(p, start(p) + here, moving + added);
     }
 }
 void stageRungeKutta4() {
     ALL_POINTS(p) {
         const float3 moving = rate(p);
         const float3 added = takeKick(p, moving + kick(p));
-        aim(p, start(p) + moving + sum(p) * (1.0 / 6.0), moving + (sumRate(p) + added) * (1.0 / 6.0));
+        setEvaluationState(p, start(p) + moving + sum(p) * (1.0 / 6.0), moving + (sumRate(p) + added) * (1.0 / 6.0));
     }
 }
 #endif

@@ -5,10 +5,10 @@
 /// The normals that the segments before the thread's joints have, carried from the root; `known` is false where the strand
 /// folds before it. A step along the strand takes a normal n to n − a (t·n); in a wave threads hand normals on, else each goes
 /// all the way. `inner` is the direction before the thread's first point, `tangents` are those after its points.
-void walkNormal(float3 inner, float3 tangents[OWN], out float3 normals[OWN], out bool known[OWN]) {
-    float3 turns[OWN];
-    Quads ways;  // w: 1 where the strand folds
-    EACH_OWN(i) {
+void walkNormal(float3 inner, float3 tangents[POINTS_PER_THREAD], out float3 normals[POINTS_PER_THREAD], out bool known[POINTS_PER_THREAD]) {
+    float3 turns[POINTS_PER_THREAD];
+    Float4s ways;  // w: 1 where the strand folds
+    EACH_OWN_POINT(i) {
         const float3 before = INNER_OF(tangents, i, inner);
         const float cosine = dot(before, tangents[i]);
         turns[i] = (before + tangents[i]) * (1.0 / max(1.0 + cosine, 1e-6));
@@ -16,8 +16,8 @@ void walkNormal(float3 inner, float3 tangents[OWN], out float3 normals[OWN], out
     }
 #if HAIR_WAVE
     bool folds = false;
-    float3 end = rootNormal(), further[OWN];  // behind the thread's points; how it goes on from one before them
-    EACH_OWN(n) {
+    float3 end = rootNormal(), further[POINTS_PER_THREAD];  // behind the thread's points; how it goes on from one before them
+    EACH_OWN_POINT(n) {
         folds = folds || ways[n].w != 0.0;
         end -= turns[n] * dot(tangents[n], end);
         further[n] = gThread == 0 ? float3(0, 0, 0) : turns[n];
@@ -25,24 +25,24 @@ void walkNormal(float3 inner, float3 tangents[OWN], out float3 normals[OWN], out
     // The first thread's is right, and stays; after each turn another one's is.
     [unroll] for (uint turn = 2; turn < STRAND_THREADS; ++turn) {
         end = WaveReadLaneAt(end, gInner);
-        EACH_OWN(m) end -= further[m] * dot(tangents[m], end);
+        EACH_OWN_POINT(m) end -= further[m] * dot(tangents[m], end);
     }
     const float3 before = WaveReadLaneAt(end, gInner);
     const uint foldsBefore = WaveActiveBallot(folds).x & ((1u << gLane) - (1u << gFirst));
     float4 here = float4(gThread == 0 ? rootNormal() : before, foldsBefore != 0u ? 1.0 : 0.0);
 #else
-    tell(ways, quadsOf(turns));
+    exchange(ways, toFloat4s(turns));
     float4 start = float4(rootNormal(), 0), here = start;  // w: folds before it
     EACH for (uint thread = 0; thread + 1 < STRAND_THREADS; ++thread) {
-        EACH_OWN(n) {
-            const float4 to = told(thread * OWN + n);
-            start.xyz -= toldToo(thread * OWN + n).xyz * dot(to.xyz, start.xyz);
+        EACH_OWN_POINT(n) {
+            const float4 to = loadPoint(thread * POINTS_PER_THREAD + n);
+            start.xyz -= loadPointSecond(thread * POINTS_PER_THREAD + n).xyz * dot(to.xyz, start.xyz);
             start.w += to.w;
         }
         if (thread + 1 == gThread) here = start;
     }
 #endif
-    EACH_OWN(k) {
+    EACH_OWN_POINT(k) {
         normals[k] = here.xyz;
         known[k] = here.w == 0.0;
         here -= float4(turns[k] * dot(tangents[k], here.xyz), -ways[k].w);
@@ -51,12 +51,12 @@ void walkNormal(float3 inner, float3 tangents[OWN], out float3 normals[OWN], out
 #endif
 
 /// The pulls of the thread's joints at `position`.
-void measurePulls(bool frames, bool exact, out float3 pulls[OWN]) {
-    tellPositions();
-    const float3 before = toldInner().xyz, after = toldOuter().xyz;
-    float3 tangents[OWN], units[OWN], inners[OWN];
+void measurePulls(bool frames, bool exact, out float3 pulls[POINTS_PER_THREAD]) {
+    exchangePositions();
+    const float3 before = loadInner().xyz, after = loadOuter().xyz;
+    float3 tangents[POINTS_PER_THREAD], units[POINTS_PER_THREAD], inners[POINTS_PER_THREAD];
     float3 unitBefore = unitOf(gPosition[0] - before);
-    EACH_OWN(i) {
+    EACH_OWN_POINT(i) {
         const float3 edge = OUTER_OF(gPosition, i, after) - gPosition[i];
         const float3 innerEdge = gPosition[i] - INNER_OF(gPosition, i, before);
         units[i] = unitOf(edge);
@@ -64,26 +64,26 @@ void measurePulls(bool frames, bool exact, out float3 pulls[OWN]) {
         inners[i] = exact ? unitOf(innerEdge) : innerEdge * innerInverseLength(i);
     }
     if (gThread == 0) unitBefore = inners[0] = rootTangent();
-    EACH_OWN(k) pulls[k] = tangents[k] - inners[k];
+    EACH_OWN_POINT(k) pulls[k] = tangents[k] - inners[k];
 #if HAIR_TARGETS
     if (frames) {
         // Springs may stretch: a frame needs directions of unit length.
-        float3 normals[OWN];
-        bool known[OWN];
+        float3 normals[POINTS_PER_THREAD];
+        bool known[POINTS_PER_THREAD];
         walkNormal(unitBefore, units, normals, known);
-        EACH_OWN(f) pulls[f] -= fromFrame(INNER_OF(units, f, unitBefore), normals[f], target(pointOf(f)));
+        EACH_OWN_POINT(f) pulls[f] -= fromFrame(INNER_OF(units, f, unitBefore), normals[f], target(pointOf(f)));
     }
 #endif
-    EACH_OWN(j) pulls[j] = hasJoint(j) ? pulls[j] * gStiff[j] : float3(0, 0, 0);
+    EACH_OWN_POINT(j) pulls[j] = hasJoint(j) ? pulls[j] * gStiff[j] : float3(0, 0, 0);
 }
 
 /// Angular springs as forces.
 void applyAngular(bool frames, bool exact) {
-    float3 pulls[OWN], outers[OWN];
+    float3 pulls[POINTS_PER_THREAD], outers[POINTS_PER_THREAD];
     measurePulls(frames, exact, pulls);
-    tell(quadsOf(gPosition), quadsOf(pulls));
-    const float3 after = toldOuter().xyz, pullAfter = toldTooOuter().xyz;
-    EACH_OWN(i) {
+    exchange(toFloat4s(gPosition), toFloat4s(pulls));
+    const float3 after = loadOuter().xyz, pullAfter = loadOuterSecond().xyz;
+    EACH_OWN_POINT(i) {
         const float3 difference = pulls[i] - OUTER_OF(pulls, i, pullAfter);
         outers[i] = difference * gInverseLength[i];
         if (exact) {
@@ -94,8 +94,8 @@ void applyAngular(bool frames, bool exact) {
         }
         if (!hasSegment(i)) outers[i] = float3(0, 0, 0);
     }
-    tell(quadsOf(outers));
-    const float3 before = toldInner().xyz;
+    exchange(toFloat4s(outers));
+    const float3 before = loadInner().xyz;
     FREE_POINTS(k) gPrevious[k] += (INNER_OF(outers, k, before) - outers[k]) * gInverseMass[k];
 }
 #if HAIR_TARGETS
@@ -110,24 +110,24 @@ void stageStraightExact() { applyAngular(false, true); }
 /// Jesshope 1981): each step frees a pair of its neighbours and couples it to those twice as far. Its factors are the
 /// strand's own, from the program (core/gpu_simulation/bend_reduction.h); those of points that do not move are 0. They are read
 /// in every substep: kept, they cost registers, and fewer groups run side by side.
-void solveBend(inout float3 sides[OWN]) {
-    const int first = OWN == 1 ? -int(gThread & 1u) : 0;  // of the pair, from the thread's own
+void solveBend(inout float3 sides[POINTS_PER_THREAD]) {
+    const int first = POINTS_PER_THREAD == 1 ? -int(gThread & 1u) : 0;  // of the pair, from the thread's own
     [unroll] for (uint step = 0; step < BEND_STEPS; ++step) {
         const int apart = int(2u << step);
-        tell(quadsOf(sides));
+        exchange(toFloat4s(sides));
         // Beyond the ends factors are 0, and the point that is read any.
-        const float3 a = toldFrom(first - apart).xyz, b = toldFrom(first - apart + 1).xyz;
-        const float3 c = toldFrom(first + apart).xyz, d = toldFrom(first + apart + 1).xyz;
-        EACH_OWN(i) {
+        const float3 a = loadNeighbour(first - apart).xyz, b = loadNeighbour(first - apart + 1).xyz;
+        const float3 c = loadNeighbour(first + apart).xyz, d = loadNeighbour(first + apart + 1).xyz;
+        EACH_OWN_POINT(i) {
             const float4 by = gFactors[slotOf(step, pointOf(i))];
             sides[i] += a * by.x + b * by.y + c * by.z + d * by.w;
         }
     }
-    float2 reduced[OWN];
-    EACH_OWN(r) reduced[r] = gFactors[slotOf(BEND_STEPS, pointOf(r))].xy;
-#if OWN == 1
-    tell(quadsOf(sides));
-    sides[0] = sides[0] * reduced[0].x + toldFrom(first == 0 ? 1 : -1).xyz * reduced[0].y;
+    float2 reduced[POINTS_PER_THREAD];
+    EACH_OWN_POINT(r) reduced[r] = gFactors[slotOf(BEND_STEPS, pointOf(r))].xy;
+#if POINTS_PER_THREAD == 1
+    exchange(toFloat4s(sides));
+    sides[0] = sides[0] * reduced[0].x + loadNeighbour(first == 0 ? 1 : -1).xyz * reduced[0].y;
 #else
     const float3 even = sides[0], odd = sides[1];
     sides[0] = even * reduced[0].x + odd * reduced[0].y;
@@ -138,13 +138,13 @@ void solveBend(inout float3 sides[OWN]) {
 #if HAIR_CURVES
 /// Turns the curves that the thread's joints hold towards those of their frames at `previous`, as far as the strand's tank
 /// lasts. As walkNormal() has them: the directions.
-void followFrames(float3 inner, float3 tangents[OWN], out float3 curves[OWN]) {
-    float3 normals[OWN], changes[OWN];
-    bool known[OWN];
+void followFrames(float3 inner, float3 tangents[POINTS_PER_THREAD], out float3 curves[POINTS_PER_THREAD]) {
+    float3 normals[POINTS_PER_THREAD], changes[POINTS_PER_THREAD];
+    bool known[POINTS_PER_THREAD];
     walkNormal(inner, tangents, normals, known);
     float2 joints = float2(0, 0);
     const float4 turn = turnNow();
-    EACH_OWN(i) {
+    EACH_OWN_POINT(i) {
         const float3 before = INNER_OF(tangents, i, inner);
         const float3 was = curve(i), held = rotate(turn, was);
         changes[i] = fromFrame(before, normals[i], target(pointOf(i))) - held;
@@ -155,7 +155,7 @@ void followFrames(float3 inner, float3 tangents[OWN], out float3 curves[OWN]) {
     }
     const float2 sums = sumOfStrand(joints);
     const float share = takeShare(sums.x, sums.y);
-    EACH_OWN(k) {
+    EACH_OWN_POINT(k) {
         curves[k] += changes[k] * share;
         setCurve(k, curves[k]);
     }
@@ -164,40 +164,40 @@ void followFrames(float3 inner, float3 tangents[OWN], out float3 curves[OWN]) {
 
 /// Angular springs after position Verlet: see bend.hlsli.
 void bendBack() {
-    tell(quadsOf(gPrevious));
-    const float3 before = toldInner().xyz, after = toldOuter().xyz;
-    float3 tangents[OWN], moved[OWN], aheads[OWN], pulls[OWN], sides[OWN];
-    EACH_OWN(i) tangents[i] = (OUTER_OF(gPrevious, i, after) - gPrevious[i]) * gInverseLength[i];
+    exchange(toFloat4s(gPrevious));
+    const float3 before = loadInner().xyz, after = loadOuter().xyz;
+    float3 tangents[POINTS_PER_THREAD], moved[POINTS_PER_THREAD], aheads[POINTS_PER_THREAD], pulls[POINTS_PER_THREAD], sides[POINTS_PER_THREAD];
+    EACH_OWN_POINT(i) tangents[i] = (OUTER_OF(gPrevious, i, after) - gPrevious[i]) * gInverseLength[i];
     float3 inner = (gPrevious[0] - before) * gInverseLengthBefore;
     if (gThread == 0) inner = rootTangent();
 #if HAIR_CURVES
-    float3 curves[OWN];
+    float3 curves[POINTS_PER_THREAD];
     followFrames(inner, tangents, curves);
 #endif
     // Where the segments will point. Told after the frames, for which the registers are wanted.
-    EACH_OWN(d) moved[d] = gPosition[d] - gPrevious[d];
-    tell(quadsOf(moved));
-    const float3 movedBefore = toldInner().xyz, movedAfter = toldOuter().xyz;
-    EACH_OWN(a) {
+    EACH_OWN_POINT(d) moved[d] = gPosition[d] - gPrevious[d];
+    exchange(toFloat4s(moved));
+    const float3 movedBefore = loadInner().xyz, movedAfter = loadOuter().xyz;
+    EACH_OWN_POINT(a) {
         const float3 turned = OUTER_OF(moved, a, movedAfter) - moved[a];
         aheads[a] = tangents[a] + turned * (gInverseLength[a] * gFrame.bendRate);
     }
     float3 innerAhead = inner;
     if (gThread != 0) innerAhead += (moved[0] - movedBefore) * (gInverseLengthBefore * gFrame.bendRate);
-    EACH_OWN(j) {
+    EACH_OWN_POINT(j) {
         pulls[j] = aheads[j] - INNER_OF(aheads, j, innerAhead);
 #if HAIR_CURVES
         pulls[j] -= curves[j];
 #endif
         pulls[j] = hasJoint(j) ? pulls[j] * gStiff[j] : float3(0, 0, 0);
     }
-    Quads all = quadsOf(pulls);
+    Float4s all = toFloat4s(pulls);
 #if HAIR_TENSIONS
-    EACH_OWN(t) all[t].w = gTension[t];
+    EACH_OWN_POINT(t) all[t].w = gTension[t];
 #endif
-    tell(all);
-    const float4 allBefore = toldInner(), allAfter = toldOuter();
-    EACH_OWN(k) {
+    exchange(all);
+    const float4 allBefore = loadInner(), allAfter = loadOuter();
+    EACH_OWN_POINT(k) {
         const float4 innerAll = INNER_OF(all, k, allBefore), outerAll = OUTER_OF(all, k, allAfter);
         float3 outer = (pulls[k] - outerAll.xyz) * gInverseLength[k];
         float3 side = (pulls[k] - innerAll.xyz) * innerInverseLength(k);
@@ -209,7 +209,7 @@ void bendBack() {
         sides[k] = isFree(k) ? side : float3(0, 0, 0);
     }
     solveBend(sides);
-    EACH_OWN(m) gPosition[m] += sides[m];
+    EACH_OWN_POINT(m) gPosition[m] += sides[m];
 }
 void stageAngular() { bendBack(); }
 void stageAngularStraight() { bendBack(); }

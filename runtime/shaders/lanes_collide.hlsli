@@ -55,11 +55,11 @@ struct SphereSet {
     float step;
 };
 float3 centreOf(SphereSet set, uint k) { return sphereCentre(set.first + k, set.step) - set.root; }
-float reachOf(SphereSet set, uint k, float pearl) { return gSpheres[set.first + k].from.w + pearl; }
+float reachOf(SphereSet set, uint k, float collisionRadius) { return gSpheres[set.first + k].from.w + collisionRadius; }
 
 bool listHolds(SphereSet set, float3 place) {
     const float3 way = place + set.root - gNear.from_ws;
-    const float left = gNear.slack - gFrame.sphereWay * set.step;
+    const float left = gNear.slack - gFrame.sphereDisplacement * set.step;
     return left > 0.0 && dot(way, way) < left * left;
 }
 
@@ -67,69 +67,69 @@ bool listHolds(SphereSet set, float3 place) {
 /// end of the frame.
 void keepList(SphereSet set) {
     bool hold = gFrame.sphereCount <= SPHERE_SET;
-    EACH_OWN(i) hold = hold && listHolds(set, gPosition[i]);
+    EACH_OWN_POINT(i) hold = hold && listHolds(set, gPosition[i]);
     if (hold) return;
     const float left = float(gFrame.substeps) - set.step + 1.0;
-    const float pearl = max(gFrame.pearlRoot, gFrame.pearlTip);
+    const float collisionRadius = max(gFrame.collisionRadiusAtRoot, gFrame.collisionRadiusAtTip);
     float margin = 0.0;
-    EACH_OWN(j) {
+    EACH_OWN_POINT(j) {
         const float3 moved = gPosition[j] - gPrevious[j], apart = gPosition[j] - gPosition[0];
         margin = max(margin, 2.0 * sqrt(dot(moved, moved)) * left + sqrt(dot(apart, apart)));
     }
-    margin += gFrame.sphereWay * left + 1e-3;
+    margin += gFrame.sphereDisplacement * left + 1e-3;
     gNear.spheres = NO_SPHERES;
     gNear.from_ws = gPosition[0] + set.root;
-    gNear.slack = margin + gFrame.sphereWay * set.step;
+    gNear.slack = margin + gFrame.sphereDisplacement * set.step;
     [loop] for (uint k = 0; k < set.count; ++k) {
         // In the world, whose rounding the factor covers.
         const float3 offset = gNear.from_ws - sphereCentre(set.first + k, set.step);
-        const float far = reachOf(set, k, pearl) * 1.0001 + margin;
+        const float far = reachOf(set, k, collisionRadius) * 1.0001 + margin;
         if (dot(offset, offset) <= far * far) gNear.spheres |= bitOfSphere(k);
     }
 }
 
 /// Those in which each of the thread's points lies, whose list holds.
-void spheresTouched(SphereSet set, out SphereBits touched[OWN]) {
+void spheresTouched(SphereSet set, out SphereBits touched[POINTS_PER_THREAD]) {
     SphereBits left = gNear.spheres;
-    EACH_OWN(i) touched[i] = NO_SPHERES;
+    EACH_OWN_POINT(i) touched[i] = NO_SPHERES;
     [loop] while (hasSphere(left)) {
         const uint k = takeSphere(left);
         const float3 centre = centreOf(set, k);
-        EACH_OWN(n) {
+        EACH_OWN_POINT(n) {
             const float3 offset = gPosition[n] - centre;
-            const float reach = reachOf(set, k, pearlAt(pointOf(n)));
+            const float reach = reachOf(set, k, collisionRadiusAt(pointOf(n)));
             if (isFree(n) && dot(offset, offset) < reach * reach) touched[n] |= bitOfSphere(k);
         }
     }
 }
 
-Contact contactOf(SphereSet set, uint k, float pearl, float3 from) {
+Contact contactOf(SphereSet set, uint k, float collisionRadius, float3 from) {
     Contact contact;
     contact.centre = centreOf(set, k);
     contact.step = gSpheres[set.first + k].step.xyz;
-    contact.reach = reachOf(set, k, pearl);
+    contact.reach = reachOf(set, k, collisionRadius);
     contact.from = from;
     return contact;
 }
 
 /// The way out of sphere `next` for a point that left sphere `last` into it, from the centre of `next`.
-float3 wayOut(SphereSet set, uint last, uint next, float pearl, float3 at) {
-    const Contact left = contactOf(set, last, pearl, float3(0, 0, 0));
+float3 exitDirection(SphereSet set, uint last, uint next, float collisionRadius, float3 at) {
+    const Contact left = contactOf(set, last, collisionRadius, float3(0, 0, 0));
     const float3 centre = centreOf(set, next);
     bool meet;
-    const float3 onCircle = nearestOfCircle(at, left, centre, reachOf(set, next, pearl), meet);
+    const float3 onCircle = nearestOfCircle(at, left, centre, reachOf(set, next, collisionRadius), meet);
     return meet ? onCircle : at - centre;
 }
 
 /// Points that left a sphere, `last`, into others of a union go to the circle that their last sphere and the one in
 /// which they are deepest have in common, until they are free. `settles`: those that left one.
-void settleOwn(SphereSet set, uint last[OWN], bool settles[OWN], inout float3 ats[OWN], inout float3 befores[OWN]) {
+void settleOwn(SphereSet set, uint last[POINTS_PER_THREAD], bool settles[POINTS_PER_THREAD], inout float3 ats[POINTS_PER_THREAD], inout float3 befores[POINTS_PER_THREAD]) {
     [loop] for (uint n = 0; n < 16; ++n) {
-        SphereBits near[OWN], left = NO_SPHERES;
-        float deepest[OWN];
-        uint next[OWN];
-        bool inside[OWN];
-        EACH_OWN(i) {
+        SphereBits near[POINTS_PER_THREAD], left = NO_SPHERES;
+        float deepest[POINTS_PER_THREAD];
+        uint next[POINTS_PER_THREAD];
+        bool inside[POINTS_PER_THREAD];
+        EACH_OWN_POINT(i) {
             deepest[i] = 0.0;
             next[i] = last[i];
             inside[i] = n > 0u;
@@ -142,9 +142,9 @@ void settleOwn(SphereSet set, uint last[OWN], bool settles[OWN], inout float3 at
         [loop] while (hasSphere(left)) {
             const uint k = takeSphere(left);
             const float3 centre = centreOf(set, k);
-            EACH_OWN(t) {
+            EACH_OWN_POINT(t) {
                 const float3 offset = ats[t] - centre;
-                const float reach = reachOf(set, k, pearlAt(pointOf(t))), squared = dot(offset, offset);
+                const float reach = reachOf(set, k, collisionRadiusAt(pointOf(t))), squared = dot(offset, offset);
                 const bool counts = hasSphere(near[t] & bitOfSphere(k));
                 inside[t] = inside[t] || (counts && squared < reach * reach);
                 // About twice the reach times the depth, but for the depth that rounding leaves.
@@ -156,15 +156,15 @@ void settleOwn(SphereSet set, uint last[OWN], bool settles[OWN], inout float3 at
             }
         }
         bool any = false;
-        EACH_OWN(m) {
+        EACH_OWN_POINT(m) {
             settles[m] = settles[m] && inside[m] && deepest[m] > 0.0;
             any = any || settles[m];
         }
         if (!any) return;
-        EACH_OWN(o) {
-            const float pearl = pearlAt(pointOf(o));
+        EACH_OWN_POINT(o) {
+            const float collisionRadius = collisionRadiusAt(pointOf(o));
             float3 at = ats[o], before = befores[o];
-            respond(contactOf(set, next[o], pearl, wayOut(set, last[o], next[o], pearl, at)), at, before);
+            respond(contactOf(set, next[o], collisionRadius, exitDirection(set, last[o], next[o], collisionRadius, at)), at, before);
             ats[o] = settles[o] ? at : ats[o];
             befores[o] = settles[o] ? before : befores[o];
             last[o] = next[o];
@@ -175,26 +175,26 @@ void settleOwn(SphereSet set, uint last[OWN], bool settles[OWN], inout float3 at
 /// Pushes the thread's points of `ready` out of their spheres, but those that are deep in one, of which it returns bits: they
 /// ask where the point before them has gone. With `inners` they know. Only spheres in which they are at the start count: one that
 /// another pushes them into is settled. What a point does not need is worked out all the same, so that the points go side by side.
-uint leaveOwn(SphereSet set, bool backward, uint ready, bool knowsInner, float3 inners[OWN]) {
-    SphereBits touched[OWN], all = NO_SPHERES;
+uint leaveOwn(SphereSet set, bool backward, uint ready, bool knowsInner, float3 inners[POINTS_PER_THREAD]) {
+    SphereBits touched[POINTS_PER_THREAD], all = NO_SPHERES;
     spheresTouched(set, touched);
-    EACH_OWN(c) {
+    EACH_OWN_POINT(c) {
         if ((ready & 1u << c) == 0u) touched[c] = NO_SPHERES;
         all |= touched[c];
     }
     if (!hasSphere(all)) return 0u;
-    float3 ats[OWN] = gPosition;
-    float3 befores[OWN] = gPrevious;
+    float3 ats[POINTS_PER_THREAD] = gPosition;
+    float3 befores[POINTS_PER_THREAD] = gPrevious;
     uint asking = 0u;
     [loop] while (hasSphere(all)) {
-        uint last[OWN];
-        bool settles[OWN];
-        EACH_OWN(i) {
+        uint last[POINTS_PER_THREAD];
+        bool settles[POINTS_PER_THREAD];
+        EACH_OWN_POINT(i) {
             const bool touches = hasSphere(touched[i]);
             last[i] = 0u;
             if (touches) last[i] = takeSphere(touched[i]);
             const float3 offset = ats[i] - centreOf(set, last[i]);
-            Contact contact = contactOf(set, last[i], pearlAt(pointOf(i)), offset);
+            Contact contact = contactOf(set, last[i], collisionRadiusAt(pointOf(i)), offset);
             const float squared = dot(offset, offset), reachSquared = contact.reach * contact.reach;
             settles[i] = touches && squared < reachSquared;
             float3 at = ats[i], before = befores[i];
@@ -214,9 +214,9 @@ uint leaveOwn(SphereSet set, bool backward, uint ready, bool knowsInner, float3 
         }
         settleOwn(set, last, settles, ats, befores);
         all = NO_SPHERES;
-        EACH_OWN(b) all |= touched[b];
+        EACH_OWN_POINT(b) all |= touched[b];
     }
-    EACH_OWN(o) {
+    EACH_OWN_POINT(o) {
         if ((ready & ~asking & 1u << o) != 0u) {
             gPosition[o] = ats[o];
             gPrevious[o] = befores[o];
@@ -228,16 +228,16 @@ uint leaveOwn(SphereSet set, bool backward, uint ready, bool knowsInner, float3 
 /// Pushes points and their pearls out of the spheres of a set (Eq. 14).
 void collideWith(SphereSet set, bool backward) {
     keepList(set);
-    float3 inners[OWN] = gPosition;
-    uint asking = leaveOwn(set, backward, (1u << OWN) - 1u, false, inners);
+    float3 inners[POINTS_PER_THREAD] = gPosition;
+    uint asking = leaveOwn(set, backward, (1u << POINTS_PER_THREAD) - 1u, false, inners);
     // Round by round those go whose inner point has gone.
-    [loop] while (anyOfThem(asking != 0u)) {
-        Quads places = quadsOf(gPosition);
-        EACH_OWN(i) places[i].w = (asking & 1u << i) != 0u ? 1.0 : 0.0;
-        tellLast(places[OWN - 1]);
-        const float4 before = toldInner();
+    [loop] while (anyLane(asking != 0u)) {
+        Float4s places = toFloat4s(gPosition);
+        EACH_OWN_POINT(i) places[i].w = (asking & 1u << i) != 0u ? 1.0 : 0.0;
+        exchangeLast(places[POINTS_PER_THREAD - 1]);
+        const float4 before = loadInner();
         uint ready = 0u;
-        EACH_OWN(k) {
+        EACH_OWN_POINT(k) {
             const float4 inner = INNER_OF(places, k, before);
             inners[k] = inner.xyz;
             if ((asking & 1u << k) != 0u && inner.w == 0.0) ready |= 1u << k;
@@ -250,7 +250,7 @@ void collideWith(SphereSet set, bool backward) {
 void collide(bool backward) {
     SphereSet set;
     set.step = float(gSubstep + 1);
-    set.root = gRoot + gRootStep * set.step;
+    set.root = gRoot + gRootDisplacement * set.step;
     set.first = 0;
 #if HAIR_SPHERES == 1
     set.count = gFrame.sphereCount;

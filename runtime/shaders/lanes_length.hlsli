@@ -11,46 +11,46 @@ float4 reducedRow(float4 own, float4 before, float4 after) {
 
 /// λ of the last of the thread's rows, by parallel cyclic reduction (Hockney and Jesshope 1981): each step couples rows twice
 /// as far apart.
-float solveLengths(float4 rows[OWN]) {
-    float4 row = rows[OWN - 1];
-#if OWN == 2
+float solveLengths(float4 rows[POINTS_PER_THREAD]) {
+    float4 row = rows[POINTS_PER_THREAD - 1];
+#if POINTS_PER_THREAD == 2
     // The threads' first rows go out of the system.
-    tellFirst(rows[0]);
-    row = reducedRow(row, rows[0], toldOuter());
+    exchangeFirst(rows[0]);
+    row = reducedRow(row, rows[0], loadOuter());
 #endif
-    [unroll] for (uint stride = 1; stride * OWN < HAIR_POINTS - FIRST_FREE; stride *= 2) {
-        tellLast(row);
+    [unroll] for (uint stride = 1; stride * POINTS_PER_THREAD < HAIR_POINTS - FIRST_FREE; stride *= 2) {
+        exchangeLast(row);
         // Beyond the ends rows are not coupled: their factor is 0, and the row that is read any.
-        row = reducedRow(row, toldLast(-int(stride)), toldLast(int(stride)));
+        row = reducedRow(row, loadLast(-int(stride)), loadLast(int(stride)));
     }
     return row.z;
 }
 
 /// See length.hlsli.
-void holdStrand(int holding) {
-    float3 starts[OWN], wanted[OWN], acting[OWN];
-    float errors[OWN];
-    EACH_OWN(s) starts[s] = holding == HOLD_RATES ? gPrevious[s] : startOfSubstep(s);
-    tellFirst(float4(gPosition[0], 0));
-    const float3 after = toldOuter().xyz;
-    tellFirst(float4(starts[0], 0));
-    const float3 startAfter = toldOuter().xyz;
-    EACH_OWN(i) {
+void projectStrand(int holding) {
+    float3 starts[POINTS_PER_THREAD], wanted[POINTS_PER_THREAD], acting[POINTS_PER_THREAD];
+    float errors[POINTS_PER_THREAD];
+    EACH_OWN_POINT(s) starts[s] = holding == PROJECT_DISPLACEMENTS ? gPrevious[s] : startOfSubstep(s);
+    exchangeFirst(float4(gPosition[0], 0));
+    const float3 after = loadOuter().xyz;
+    exchangeFirst(float4(starts[0], 0));
+    const float3 startAfter = loadOuter().xyz;
+    EACH_OWN_POINT(i) {
         const float3 edge = OUTER_OF(gPosition, i, after) - gPosition[i];
         const float3 edgeBefore = OUTER_OF(starts, i, startAfter) - starts[i];
         wanted[i] = acting[i] = edge * gInverseLength[i];
         errors[i] = 0.5 * (dot(edge, wanted[i]) - gLength[i]);
-        if (holding == HOLD_PLACES) {
+        if (holding == PROJECT_POSITIONS) {
             const float3 was = edgeBefore * gInverseLength[i];
             if (dot(wanted[i], was) > 0.5 * dot(wanted[i], wanted[i])) acting[i] = was;
-        } else if (holding == HOLD_RATES) {
+        } else if (holding == PROJECT_DISPLACEMENTS) {
             errors[i] = dot(wanted[i], edge - edgeBefore);
         }
     }
-    tell(quadsOf(acting));
-    const float3 actingBefore = toldInner().xyz, actingAfter = toldOuter().xyz;
-    Quads rows;
-    EACH_OWN(j) {
+    exchange(toFloat4s(acting));
+    const float3 actingBefore = loadInner().xyz, actingAfter = loadOuter().xyz;
+    Float4s rows;
+    EACH_OWN_POINT(j) {
         const float inner = pointOf(j) >= FIRST_FREE ? gInverseMass[j] : 0.0, outer = outerInverseMass(j);
         const float inverse = 1.0 / (max(dot(wanted[j], acting[j]), 0.25) * (inner + outer));
         // The rows of the first and the last segment have one neighbour.
@@ -59,25 +59,25 @@ void holdStrand(int holding) {
         const bool held = pointOf(j) + 1 >= FIRST_FREE && hasSegment(j);
         rows[j] = held ? float4(below, above, errors[j] * inverse, 0) : float4(0, 0, 0, 0);
     }
-    float lambdas[OWN];
-    lambdas[OWN - 1] = solveLengths(rows);
-    tellLast(float4(lambdas[OWN - 1], 0, 0, 0));
-    const float lambdaBefore = toldInner().x;
-#if OWN == 2
+    float lambdas[POINTS_PER_THREAD];
+    lambdas[POINTS_PER_THREAD - 1] = solveLengths(rows);
+    exchangeLast(float4(lambdas[POINTS_PER_THREAD - 1], 0, 0, 0));
+    const float lambdaBefore = loadInner().x;
+#if POINTS_PER_THREAD == 2
     lambdas[0] = rows[0].x * lambdaBefore + rows[0].y * lambdas[1] + rows[0].z;
 #endif
-    EACH_OWN(k) {
+    EACH_OWN_POINT(k) {
         const float3 pullBefore = INNER_OF(acting, k, actingBefore) * INNER_OF(lambdas, k, lambdaBefore);
         const float3 move = (acting[k] * lambdas[k] - pullBefore) * gInverseMass[k];
         if (isFree(k)) {
-            if (holding == HOLD_RATES) {
+            if (holding == PROJECT_DISPLACEMENTS) {
                 gPrevious[k] -= move;
             } else {
                 gPosition[k] += move;
             }
         }
 #if HAIR_TENSIONS
-        if (holding == HOLD_PLACES && pointOf(k) + 1 >= FIRST_FREE && hasSegment(k))
+        if (holding == PROJECT_POSITIONS && pointOf(k) + 1 >= FIRST_FREE && hasSegment(k))
             keepTension(k, lambdas[k], gLength[k], gInverseMass[k] + outerInverseMass(k));
 #endif
     }
@@ -85,24 +85,24 @@ void holdStrand(int holding) {
 
 /// See length.hlsli. From the first segment that is wrong on, each thread goes the way to its own points.
 void stageExtension() {
-    tellLast(float4(gPosition[OWN - 1], gLength[OWN - 1]));
-    const float4 before = toldInner();
+    exchangeLast(float4(gPosition[POINTS_PER_THREAD - 1], gLength[POINTS_PER_THREAD - 1]));
+    const float4 before = loadInner();
     bool wrong = false;
-    EACH_OWN(i) {
+    EACH_OWN_POINT(i) {
         const float3 edge = gPosition[i] - INNER_OF(gPosition, i, before.xyz);
         wrong = wrong || (isFree(i) && isWrong(edge, INNER_OF(gLength, i, before.w)));
     }
-    if (!anyOfThem(wrong)) return;
-    Quads places = quadsOf(gPosition);
-    EACH_OWN(l) places[l].w = gLength[l];
-    tell(places);
+    if (!anyLane(wrong)) return;
+    Float4s places = toFloat4s(gPosition);
+    EACH_OWN_POINT(l) places[l].w = gLength[l];
+    exchange(places);
     bool moves = false;
-    float4 parent = told(FIRST_FREE - 1);
+    float4 parent = loadPoint(FIRST_FREE - 1);
     [loop] for (uint p = FIRST_FREE; p < POINTS; ++p) {
-        const float4 own = told(p);
+        const float4 own = loadPoint(p);
         moves = moves || isWrong(own.xyz - parent.xyz, parent.w);
         parent = float4(withinExtension(parent.xyz, own.xyz, parent.w), own.w);
-        EACH_OWN(k) {
+        EACH_OWN_POINT(k) {
             if (moves && p == pointOf(k)) takePlace(k, parent.xyz);
         }
     }

@@ -2,10 +2,10 @@
 // Springs of a strand spread over threads; springs.hlsli is the same, point after point.
 
 void stageSprings() {
-    tellPositions();
-    const float3 after = toldOuter().xyz;
-    float3 outers[OWN];
-    EACH_OWN(i) {
+    exchangePositions();
+    const float3 after = loadOuter().xyz;
+    float3 outers[POINTS_PER_THREAD];
+    EACH_OWN_POINT(i) {
         outers[i] = float3(0, 0, 0);
         if (pointOf(i) + 1 >= FIRST_FREE && hasSegment(i)) {
             const Direction edge = edgeOf(OUTER_OF(gPosition, i, after) - gPosition[i]);
@@ -13,17 +13,17 @@ void stageSprings() {
             outers[i] = edge.unit * ((edge.size - gLength[i]) * step);
         }
     }
-    tell(quadsOf(outers));
-    const float3 before = toldInner().xyz;
+    exchange(toFloat4s(outers));
+    const float3 before = loadInner().xyz;
     FREE_POINTS(k) gPrevious[k] -= (outers[k] - INNER_OF(outers, k, before)) * gInverseMass[k];
 }
 
 #if HAIR_BEND
 void stageFlexion() {
-    tellPositions();
-    const float3 before = toldInner().xyz, after = toldOuter().xyz;
-    float3 pulls[OWN];
-    EACH_OWN(i) {
+    exchangePositions();
+    const float3 before = loadInner().xyz, after = loadOuter().xyz;
+    float3 pulls[POINTS_PER_THREAD];
+    EACH_OWN_POINT(i) {
         pulls[i] = float3(0, 0, 0);
         if (pointOf(i) >= 1 && hasSegment(i)) {
             const float3 span = restVector(pointOf(i) - 1) + restVector(pointOf(i));
@@ -31,8 +31,8 @@ void stageFlexion() {
             pulls[i] = edge.unit * ((edge.size - sqrt(dot(span, span))) * gStiff[i]);
         }
     }
-    tell(quadsOf(pulls));
-    const float3 pullBefore = toldInner().xyz, pullAfter = toldOuter().xyz;
+    exchange(toFloat4s(pulls));
+    const float3 pullBefore = loadInner().xyz, pullAfter = loadOuter().xyz;
     FREE_POINTS(k) {
         gPrevious[k] += INNER_OF(pulls, k, pullBefore) * gInverseMass[k];
         if (hasSegment(k)) gPrevious[k] -= OUTER_OF(pulls, k, pullAfter) * gInverseMass[k];
@@ -43,22 +43,22 @@ void stageFlexion() {
 /// Each segment moves both its points, root to tip: each thread goes all the way and keeps its own.
 void stageSpringLimit() {
     [loop] for (uint n = 0; n < gFrame.lengthIterations; ++n) {
-        Quads places = quadsOf(gPosition), masses;
-        EACH_OWN(i) {
+        Float4s places = toFloat4s(gPosition), masses;
+        EACH_OWN_POINT(i) {
             places[i].w = gLength[i];
             masses[i] = float4(gInverseMass[i], 0, 0, 0);
         }
-        tell(places, masses);
-        float3 own[OWN] = gPosition;
-        float3 from = told(FIRST_FREE - 1).xyz;
-        float length = told(FIRST_FREE - 1).w, inner = 0.0;
+        exchange(places, masses);
+        float3 own[POINTS_PER_THREAD] = gPosition;
+        float3 from = loadPoint(FIRST_FREE - 1).xyz;
+        float length = loadPoint(FIRST_FREE - 1).w, inner = 0.0;
         [loop] for (uint p = FIRST_FREE; p < POINTS; ++p) {
-            const float4 to = told(p);
-            const float outer = toldToo(p).x;
+            const float4 to = loadPoint(p);
+            const float outer = loadPointSecond(p).x;
             const float3 impulse = limitImpulse(to.xyz - from, length, inner + outer);
-            EACH_OWN(k) if (p == pointOf(k) + 1) own[k] = from + impulse * inner;
+            EACH_OWN_POINT(k) if (p == pointOf(k) + 1) own[k] = from + impulse * inner;
             from = to.xyz - impulse * outer;
-            EACH_OWN(j) if (p == pointOf(j)) own[j] = from;
+            EACH_OWN_POINT(j) if (p == pointOf(j)) own[j] = from;
             length = to.w;
             inner = outer;
         }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Length of segments: the constraint, and the maximal extension as post-processing.
 
-#define HOLD_PLACES 0      // segments get their length back; the move counts as velocity
-#define HOLD_PLACES_NOW 1  // likewise, with tension along the segments as they are after the integration
-#define HOLD_RATES 2       // the velocity's part that would change lengths is taken out
+#define PROJECT_POSITIONS 0      // segments get their length back; the move counts as velocity
+#define PROJECT_POSITIONS_WITH_CURRENT_GRADIENT 1  // likewise, with tension along the segments as they are after the integration
+#define PROJECT_DISPLACEMENTS 2       // the velocity's part that would change lengths is taken out
 
 float3 startOfSubstep(uint p) {
 #if HAIR_EVALUATION >= 1
@@ -16,7 +16,7 @@ float3 startOfSubstep(uint p) {
 /// Where the tension of a segment acts: along the gradient at the start of the substep (SHAKE, Ryckaert et al.
 /// 1977); segments that turn by more than 60° in a substep take that of now.
 float3 actingGradient(int holding, float3 wanted, uint s, float inverse) {
-    if (holding != HOLD_PLACES) return wanted;
+    if (holding != PROJECT_POSITIONS) return wanted;
     const float3 before = (startOfSubstep(s + 1) - startOfSubstep(s)) * inverse;
     return dot(wanted, before) > 0.5 * dot(wanted, wanted) ? before : wanted;
 }
@@ -25,8 +25,8 @@ float3 actingGradient(int holding, float3 wanted, uint s, float inverse) {
 /// Keeps tension for the bending of the next substep. Slowly: what bending makes of it comes back a substep late. And
 /// no more than Verlet holds across a segment, by half of its limit. `weights` of the segment's ends together.
 void keepTension(uint s, float added, float size, float weights) {
-    const float most = 0.5 * size / weights;
-    setTension(s, clamp(tension(s) + added * gFrame.tensionShare, -most, most));
+    const float maximum = 0.5 * size / weights;
+    setTension(s, clamp(tension(s) + added * gFrame.tensionShare, -maximum, maximum));
 }
 #endif
 
@@ -52,7 +52,7 @@ float3 withinExtension(float3 parent, float3 here, float rest) {
 /// The move counts as velocity only where that slows the point relative to its root: it never adds energy.
 void takePlace(uint p, float3 place) {
     const float3 here = position(p), before = previous(p);
-    const float3 move = place - here, moving = here - before - gRootStep;
+    const float3 move = place - here, moving = here - before - gRootDisplacement;
     const float braking = -dot(moving, move) / (dot(move, move) + 1e-30);
     setPosition(p, place);
     setPrevious(p, before + move * (1.0 - min(max(braking, 0.0), 1.0)));
@@ -63,9 +63,9 @@ void takePlace(uint p, float3 place) {
 #else
 /// One Newton step on all length constraints ½(|e|²/l − l) = 0 of a strand together, or on their rates
 /// e·ė/l = 0; clamped points have infinite mass. The system is tridiagonal and is solved directly (after
-/// Goldenthal et al. 2007; with rates, RATTLE, Andersen 1983). Collapsed segments keep a diagonal of at least
+/// Goldenthal et al. 2007; with displacements, RATTLE, Andersen 1983). Collapsed segments keep a diagonal of at least
 /// ¼ of their masses': no overshoot.
-void holdStrand(int holding) {
+void projectStrand(int holding) {
     float inverse = 0.0, lastRight = 0.0;
     float3 lastWanted = float3(0, 0, 0), lastActing = float3(0, 0, 0);
     EACH for (uint s = FIRST_FREE - 1; s + 1 < POINTS; ++s) {
@@ -75,7 +75,7 @@ void holdStrand(int holding) {
         const float3 wanted = edge * inverseSize;
         const float3 acting = actingGradient(holding, wanted, s, inverseSize);
         float error;
-        if (holding == HOLD_RATES) {
+        if (holding == PROJECT_DISPLACEMENTS) {
             error = dot(wanted, edge - (previous(s + 1) - previous(s)));
         } else {
             error = 0.5 * (dot(edge, wanted) - size);
@@ -107,13 +107,13 @@ void holdStrand(int holding) {
         upAfter = upper(t);
         const float3 pull = work(t) * lambda;
         const float3 move = (after - pull) * inverseMass(t + 1);
-        if (holding == HOLD_RATES) {
+        if (holding == PROJECT_DISPLACEMENTS) {
             setPrevious(t + 1, previous(t + 1) - move);
         } else {
             setPosition(t + 1, position(t + 1) + move);
         }
 #if HAIR_TENSIONS
-        if (holding == HOLD_PLACES) keepTension(t, lambda, segmentLength(t), inverseMass(t) + inverseMass(t + 1));
+        if (holding == PROJECT_POSITIONS) keepTension(t, lambda, segmentLength(t), inverseMass(t) + inverseMass(t + 1));
 #endif
         after = pull;
     }
@@ -133,9 +133,9 @@ void stageExtension() {
 #endif
 
 void stageLength() {
-    [loop] for (uint n = 0; n < gFrame.lengthIterations; ++n) holdStrand(HOLD_PLACES);
+    [loop] for (uint n = 0; n < gFrame.lengthIterations; ++n) projectStrand(PROJECT_POSITIONS);
 }
 void stageLengthNow() {
-    [loop] for (uint n = 0; n < gFrame.lengthIterations; ++n) holdStrand(HOLD_PLACES_NOW);
+    [loop] for (uint n = 0; n < gFrame.lengthIterations; ++n) projectStrand(PROJECT_POSITIONS_WITH_CURRENT_GRADIENT);
 }
-void stageLengthRate() { holdStrand(HOLD_RATES); }
+void stageLengthRate() { projectStrand(PROJECT_DISPLACEMENTS); }

@@ -17,13 +17,13 @@ groupshared float3 gTangents[HAIR_THREADS];
 groupshared float3 gNormals[HAIR_THREADS];
 #endif
 static float gRootLength;
-static bool gCut;  // the root has jumped, and does not turn in this frame
+static bool gTeleported;  // the root has jumped, and does not turn in this frame
 
 /// Of this substep and the next ones, as many as the strand has threads.
 void carryRoot() {
     const float4 to = gRootsTo[2 * gSlot + 1];
     float4 from = to;
-    if (!gCut) from = float4(rootRow(3), rootRow(4), rootRow(5), rootRow(6));
+    if (!gTeleported) from = float4(rootRow(3), rootRow(4), rootRow(5), rootRow(6));
     const uint substep = gSubstep + gThread;
     const float share = 1.0 / float(gFrame.substeps);
     const float4 now = rotationBetween(from, to, float(substep + 1) * share);
@@ -90,8 +90,8 @@ void enterFrame() {
     const float4 rotationTo = gRootsTo[2 * gSlot + 1];
     const float3 way = to - from;
     // A cut carries the strand along rigidly.
-    const bool cut = !(dot(way, way) <= gFrame.teleportDistance * gFrame.teleportDistance);
-    if (cut) {
+    const bool teleported = !(dot(way, way) <= gFrame.teleportDistance * gFrame.teleportDistance);
+    if (teleported) {
         const float4 turn = multiply(rotationTo, conjugate(rotationFrom));
         ALL_POINTS(p) {
             setPosition(p, rotate(turn, position(p)));
@@ -104,9 +104,9 @@ void enterFrame() {
         rotationFrom = rotationTo;
     }
     gRoot = from;
-    gRootStep = (to - from) / float(gFrame.substeps);
+    gRootDisplacement = (to - from) / float(gFrame.substeps);
 #if HAIR_STORAGE == 3
-    gCut = cut;
+    gTeleported = teleported;
     gRootLength = segmentLength(0);
 #else
     setRotations(rotationFrom, rotationTo);
@@ -123,10 +123,10 @@ void leaveFrame() {
 /// Turns the root to where it is at the end of the substep and takes the clamped points along.
 void stageRoots() {
     turnRoot();
-    ONLY_POINT(0) setPrevious(0, -gRootStep);
+    ONLY_POINT(0) setPrevious(0, -gRootDisplacement);
 #if HAIR_CLAMPED > 1
     ONLY_POINT(1) {
-        setPrevious(ownOf(1), position(ownOf(1)) - gRootStep);
+        setPrevious(ownOf(1), position(ownOf(1)) - gRootDisplacement);
         setPosition(ownOf(1), firstSegment());
     }
 #endif

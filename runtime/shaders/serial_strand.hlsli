@@ -15,8 +15,8 @@ void loadState() {
     }
 #endif
 #if HAIR_CURVES
-    gTank = gTanks[gSlot];
-    gMotion = gTanks[gFrame.slots + gSlot];
+    gEnergyTank = gEnergyTanks[gSlot];
+    gMotion = gEnergyTanks[gFrame.slots + gSlot];
 #endif
 }
 
@@ -34,8 +34,8 @@ void saveState() {
     }
 #endif
 #if HAIR_CURVES
-    gTanks[gSlot] = gTank;
-    gTanks[gFrame.slots + gSlot] = gMotion;
+    gEnergyTanks[gSlot] = gEnergyTank;
+    gEnergyTanks[gFrame.slots + gSlot] = gMotion;
 #endif
 }
 
@@ -54,7 +54,7 @@ void placeAtRest() {
 #endif
     }
 #if HAIR_CURVES
-    gTank = HAIRLOOM_NO_CURVE;
+    gEnergyTank = HAIRLOOM_NO_CURVE;
     gMotion = 0.0;
 #endif
 }
@@ -62,16 +62,16 @@ void placeAtRest() {
 /// Greatest squared displacement of a free point in the last substep; `sound` is false where a point is no
 /// number or has left the range in which its square is one.
 float fastest(out bool sound) {
-    float most = 0.0;
+    float maximum = 0.0;
     sound = true;
     EACH for (uint p = 0; p < POINTS; ++p) {
         const float3 here = position(p);
         const float3 moved = here - previous(p);
         const float squared = dot(moved, moved);
         sound = sound && isSound(here) && isSound(moved) && dot(here, here) < 1e12 && squared < 1e12;
-        if (p >= FIRST_FREE) most = max(most, squared);
+        if (p >= FIRST_FREE) maximum = max(maximum, squared);
     }
-    return most;
+    return maximum;
 }
 
 void writePlace(uint p) {
@@ -86,15 +86,15 @@ void writePlace(uint p) {
 /// Takes stock after the last substep; the group's greatest displacement in gGroupFastest.
 void finishStrand(uint block, uint lane) {
     bool sound;
-    float most = fastest(sound);
+    float maximum = fastest(sound);
 #if HAIR_CURVES
-    gMotion = most * (1.0 / (gFrame.h * gFrame.h));
+    gMotion = maximum * (1.0 / (gFrame.h * gFrame.h));
 #endif
     if (!sound) {
         placeAtRest();
-        most = 0.0;
+        maximum = 0.0;
         if (lane < gBlocks[block].y) InterlockedAdd(gReport[REPORT_RESTORED], 1u);
         InterlockedOr(gGroupRestored, 1u);
     }
-    InterlockedMax(gGroupFastest, asuint(most));
+    InterlockedMax(gGroupFastest, asuint(maximum));
 }

@@ -28,29 +28,29 @@ struct SimulationConstants {
     uint substeps;  ///< per frame
     uint sphereCount;
     uint lengthIterations;
-    uint wakingCount;        ///< spheres that have changed since the last frame
-    uint windKind;           ///< runtime::WindKind
-    uint wakeAll;            ///< not 0: nothing sleeps, as wind blows or velocities were changed
-    float h;                 ///< seconds of a substep
-    float dt;                ///< seconds of the frame
-    float rescale;           ///< this substep over the last frame's
-    float velocityShare;     ///< exp(−h/dampingTime)
-    float dragShare;         ///< share of the air's speed taken on in a substep
-    float springStep;        ///< (ω h)² of coil springs
-    float penaltyStep;       ///< (ω h)² of penalty springs
-    float bendRate;          ///< q of docs/engine.md
-    float maximalExtension;  ///< share of a segment's length
-    float pearlRoot;         ///< metres
-    float pearlTip;          ///< metres
+    uint wakingCount;             ///< spheres that have changed since the last frame
+    uint windKind;                ///< runtime::WindKind
+    uint wakeAll;                 ///< not 0: nothing sleeps, as wind blows or velocities were changed
+    float h;                      ///< seconds of a substep
+    float dt;                     ///< seconds of the frame
+    float rescale;                ///< this substep over the last frame's
+    float velocityShare;          ///< exp(−h/dampingTime)
+    float dragShare;              ///< share of the air's speed taken on in a substep
+    float springStep;             ///< (ω h)² of coil springs
+    float penaltyStep;            ///< (ω h)² of penalty springs
+    float bendRate;               ///< q of docs/engine.md
+    float maximalExtension;       ///< share of a segment's length
+    float collisionRadiusAtRoot;  ///< metres
+    float collisionRadiusAtTip;   ///< metres
     float friction;
     float restitution;
-    float teleportDistance;  ///< metres
-    float slowSquared;       ///< square metres in a substep; slower strands rest
-    float sleepDelay;        ///< seconds
-    float slowSweep;         ///< metres in a substep; slower points cannot pass a sphere unseen
-    float tensionShare;      ///< of a substep's change of tension that bending takes on
-    uint groups;             ///< work groups of the batch, in rows of HAIRLOOM_GROUP_ROW
-    float sphereWay;         ///< metres; the longest way of a sphere in a substep
+    float teleportDistance;    ///< metres
+    float slowSquared;         ///< square metres in a substep; slower strands rest
+    float sleepDelay;          ///< seconds
+    float slowSweep;           ///< metres in a substep; slower points cannot pass a sphere unseen
+    float tensionShare;        ///< of a substep's change of tension that bending takes on
+    uint groups;               ///< work groups of the batch, in rows of HAIRLOOM_GROUP_ROW
+    float sphereDisplacement;  ///< metres; the longest way of a sphere in a substep
     float unused;
     float4 gravityStep;                          ///< g h², w unused
     float4 wind;                                 ///< mean velocity, m/s; w: strength of gusts

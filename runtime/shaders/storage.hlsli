@@ -62,7 +62,7 @@ StructuredBuffer<float4> gTargets : register(t3);
 #endif
 #if HAIR_CURVES
 RWStructuredBuffer<float> gCurves : register(u5);    // x y z
-RWStructuredBuffer<float> gTanks : register(u6);     // tank, greatest squared speed
+RWStructuredBuffer<float> gEnergyTanks : register(u6);     // tank, greatest squared speed
 #endif
 #if HAIR_SLEEP
 RWStructuredBuffer<float> gRests : register(u2);     // per work group: seconds at rest, 1 when asleep
@@ -105,7 +105,7 @@ uint ownOf(uint p) { return p; }
 
 /// What the strand goes through in the frame.
 static float3 gRoot;        // at the start of the frame, world
-static float3 gRootStep;    // its way in one substep
+static float3 gRootDisplacement;    // its way in one substep
 static uint gSubstep;
 
 uint slotOf(uint plane, uint p) {

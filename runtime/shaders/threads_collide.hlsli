@@ -4,12 +4,12 @@
 /// Spheres of a set that, with the largest pearl, meet the box of a strand, as bits.
 uint2 nearSpheres(uint first, uint end, float3 low, float3 high, float3 root, float step) {
     uint2 near = uint2(0, 0);
-    const float pearl = max(gFrame.pearlRoot, gFrame.pearlTip);
+    const float collisionRadius = max(gFrame.collisionRadiusAtRoot, gFrame.collisionRadiusAtTip);
     EACH_SPHERE(first, end) {
         const uint k = SPHERE_BEFORE(end);
         const float3 centre = sphereCentre(k, step) - root;
         const float3 gap = max(max(low - centre, centre - high), 0.0);
-        const float reach = gSpheres[k].from.w + pearl;
+        const float reach = gSpheres[k].from.w + collisionRadius;
         const uint bit = dot(gap, gap) <= reach * reach * 1.0001 ? 1u : 0u;
         if (k - first < 32u) {
             near.x |= bit << (k - first);
@@ -23,7 +23,7 @@ uint2 nearSpheres(uint first, uint end, float3 low, float3 high, float3 root, fl
 /// Pushes points and their pearls out of spheres (Eq. 14).
 void collide(bool backward) {
     const float step = float(gSubstep + 1);
-    const float3 root = gRoot + gRootStep * step;
+    const float3 root = gRoot + gRootDisplacement * step;
     [loop] for (uint first = 0; first < gFrame.sphereCount; first += SPHERE_SET) {
         const uint end = min(first + SPHERE_SET, gFrame.sphereCount);
         float3 low = position(FIRST_FREE), high = low;

@@ -48,7 +48,7 @@ Grid gridOf(uint box[8]) {
         // One more node than needed on each side carries the gradient.
         const float3 first = floor(low / grid.cell) - 1.0;
         const float3 count = floor(high / grid.cell) + 3.0 - first;
-        if (count.x * count.y * count.z <= gVolume.mostNodes) {
+        if (count.x * count.y * count.z <= gVolume.maxNodes) {
             grid.origin = int3(first);
             grid.size = uint3(count);
             break;

@@ -26,8 +26,8 @@ void addShifted(int value, uint shift, inout uint low, inout uint high) {
 void addProduct(uint word, uint weight, int value) {
     const int weightHigh = int(weight >> 12), weightLow = int(weight & 4095u);
     const int valueHigh = value >> 12, valueLow = value & 4095;
-    const int least = weightLow * valueLow;
-    uint low = uint(least), high = 0u;
+    const int minimum = weightLow * valueLow;
+    uint low = uint(minimum), high = 0u;
     addShifted(weightHigh * valueLow + weightLow * valueHigh, 12u, low, high);
     addShifted(weightHigh * valueHigh, 24u, low, high);
     add(word, low, high);

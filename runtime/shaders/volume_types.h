@@ -12,7 +12,7 @@ namespace hairloom::shaders {
 /// Of a batch of strands; the first seven are of the whole volume.
 struct VolumeConstants {
     float cellSize;  ///< metres, before it is doubled until the nodes suffice
-    float mostNodes;
+    float maxNodes;
     float targetDensity;
     float repulsion;  ///< m²/s²
     float share;      ///< of the velocity around it that hair takes on: 1 − exp(−friction dt)

@@ -17,12 +17,12 @@ constexpr double kStiffest = 1e7;
 /// The same where the matrix is factored in single precision.
 constexpr double kStiffestCoupled = 1e5;
 /// Radians by which a strand's own weight may turn it in all: softer hair carries a share of its weight only.
-constexpr double kMostHeld = std::numbers::pi;
+constexpr double kMaxHeld = std::numbers::pi;
 /// What keeps the fastest waves of curved hair from ringing on, whose pulls are not quite those of an energy.
-constexpr float kLeastCurvedRate = 0.25f;
+constexpr float kMinCurvedRate = 0.25f;
 /// The same where lengths are held by a step of their own, which does not leave the trapezoidal rule its
 /// energy.
-constexpr float kLeastRate = 0.02f;
+constexpr float kMinRate = 0.02f;
 /// 2 − √2: how much nearer the ends of two unit segments come when they turn by 90°.
 constexpr double kShortening = 0.585786437626905;
 
@@ -78,9 +78,9 @@ class StrandBend {
             if (!(outer > kNoLength) || (j > 0 && !(inner > kNoLength))) continue;
             kappa_[j] = stiffness * mass(j) / own / carried;
             if (stiffest > 0.0) {
-                const double most = outerShare(j) + innerShare(j);
+                const double maximum = outerShare(j) + innerShare(j);
                 const double lightest = std::min({mass(j), mass(j + 1), j > 0 ? mass(j - 1) : mass(j)});
-                kappa_[j] = std::min(kappa_[j], stiffest * lightest / (share * most * most));
+                kappa_[j] = std::min(kappa_[j], stiffest * lightest / (share * maximum * maximum));
             }
             // A flexion spring of the same energy where a straight joint has turned by 90°.
             if (flexion) kappa_[j] *= 2.0 / (kShortening * kShortening * own * own);
@@ -153,8 +153,8 @@ class StrandBend {
             bent_[j] = kappa_[j] > 0.0 ? moment * (1.0 / kappa_[j]) : Double3{};
             turning += std::sqrt(dotOf(bent_[j], bent_[j]));
         }
-        if (!(turning > kMostHeld)) return;
-        for (std::uint32_t j = 0; j + 1 < block_.points; ++j) bent_[j] = bent_[j] * (kMostHeld / turning);
+        if (!(turning > kMaxHeld)) return;
+        for (std::uint32_t j = 0; j + 1 < block_.points; ++j) bent_[j] = bent_[j] * (kMaxHeld / turning);
     }
 
     std::uint32_t firstJoint() const { return settings_.clampedPoints - 1; }
@@ -204,8 +204,8 @@ class StrandBend {
 float bendRate(const SimulationSettings& settings, float h, bool curved, bool coupled) {
     const float damping = settings.dampingTime > 0.0f ? 1.0f / settings.dampingTime : 0.0f;
     const float lost = 1.0f - std::exp(-h * (damping + settings.airDrag));
-    const float least = curved ? kLeastCurvedRate : coupled ? 0.0f : kLeastRate;
-    return std::max(settings.bendDampingTime / h, least) + 0.25f * lost;
+    const float minimum = curved ? kMinCurvedRate : coupled ? 0.0f : kMinRate;
+    return std::max(settings.bendDampingTime / h, minimum) + 0.25f * lost;
 }
 
 void fillBend(const RestShape& shape, const SimulationSettings& settings, float h, std::size_t index,

@@ -8,13 +8,13 @@
 
 namespace hairloom::runtime {
 
-std::string whyRefused(const SimulationSettings& settings) {
+std::string validationError(const SimulationSettings& settings) {
     std::string text;
     for (const std::string& problem : validate(settings)) text += (text.empty() ? "" : "\n") + problem;
     return text;
 }
 
-std::string whyRefused(const StrandsView& strands) {
+std::string validationError(const StrandsView& strands) {
     if (strands.offsets.empty()) return "no strand offsets; expected strand count + 1 of them";
     if (strands.offsets.front() != 0 || strands.offsets.back() != strands.restPositions_ss.size()) {
         return "strand offsets run from " + std::to_string(strands.offsets.front()) + " to " +

@@ -10,11 +10,11 @@
 namespace hairloom::runtime {
 
 /// Empty, or in words which settings lie outside their ranges, one line each.
-std::string whyRefused(const SimulationSettings& settings);
+std::string validationError(const SimulationSettings& settings);
 
 /// Empty, or in words why these are not strands: offsets that do not match the points, fewer than 2 or more
 /// than kMaxPoints points, a rotation that is none, a rest position that is no number within 1e6 m.
-std::string whyRefused(const StrandsView& strands);
+std::string validationError(const StrandsView& strands);
 
 /// Adds a line to text when the value is not in low…high.
 void refuseOutside(std::string& text, const char* name, double value, double low, double high);

@@ -19,9 +19,10 @@ Engine& Engine::operator=(Engine other) noexcept {
     return *this;
 }
 
-Engine::Made Engine::make(const StrandsView& strands, const SimulationSettings& settings, Host host) {
-    if (std::string error = whyRefused(settings); !error.empty()) return {std::nullopt, std::move(error)};
-    if (std::string error = whyRefused(strands); !error.empty()) return {std::nullopt, std::move(error)};
+Engine::Result Engine::make(const StrandsView& strands, const SimulationSettings& settings, Host host) {
+    if (std::string error = validationError(settings); !error.empty())
+        return {std::nullopt, std::move(error)};
+    if (std::string error = validationError(strands); !error.empty()) return {std::nullopt, std::move(error)};
     return {Engine(std::make_unique<Impl>(strands, settings, std::move(host))), {}};
 }
 

@@ -89,7 +89,7 @@ void Engine::Impl::turnAlong(const BlockView& view, std::uint32_t lane, Quat tur
 }
 
 /// Lanes whose roots go farther in the frame than teleportDistance start where they end.
-void Engine::Impl::cutLanes(const BlockView& view, float* rows, const float* next) const {
+void Engine::Impl::teleportLanes(const BlockView& view, float* rows, const float* next) const {
     const float cut = settings_.teleportDistance * settings_.teleportDistance;
     for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
         const auto place = [&](const float* from) {
@@ -115,12 +115,12 @@ void Engine::Impl::enterFrame(std::size_t block, const BlockView& view, LaneFram
     const auto at = [](const float* from, std::size_t r, std::uint32_t lane) {
         return from[r * kBlockLanes + lane];
     };
-    if (blockReports_[block].rootsCut) cutLanes(view, rows, next);
+    if (blockReports_[block].rootsTeleported) teleportLanes(view, rows, next);
     const float share = 1.0f / static_cast<float>(frame.context.count);
     for (std::size_t r = 0; r < 3; ++r) {
         for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
             lanes.root[r][lane] = at(rows, r, lane);
-            lanes.rootStep[r][lane] = (at(next, r, lane) - at(rows, r, lane)) * share;
+            lanes.rootDisplacement[r][lane] = (at(next, r, lane) - at(rows, r, lane)) * share;
         }
     }
     std::copy_n(rows + 3 * kBlockLanes, 4 * kBlockLanes, lanes.rotationFrom[0]);

@@ -23,10 +23,10 @@ RootBounds noRoots() {
     std::fill_n(bounds.longest, kBlockLanes, 0.0f);
     return bounds;
 }
-float least(const float* row) {
+float minimum(const float* row) {
     return *std::min_element(row, row + kBlockLanes);
 }
-float most(const float* row) {
+float maximum(const float* row) {
     return *std::max_element(row, row + kBlockLanes);
 }
 
@@ -68,12 +68,12 @@ void Engine::Impl::reset(std::span<const RootFrame> roots_ws) {
 }
 
 std::string Engine::Impl::setSettings(const SimulationSettings& settings) {
-    if (std::string error = whyRefused(settings); !error.empty()) return error;
+    if (std::string error = validationError(settings); !error.empty()) return error;
     settings_ = settings;
     scratch_ = {};
     wind_ = {makeWind(settings), false};
     bend_.substep = 0.0f;
-    std::fill(state_.tanks.begin(), state_.tanks.end(), kNoCurve);
+    std::fill(state_.energyTanks.begin(), state_.energyTanks.end(), kNoCurve);
     state_.rests.assign(shape_->blocks.size(), {});
     replan({}, {}, state_.rootsMin_ws, state_.rootsMax_ws, 0.0f);
     return {};
@@ -82,19 +82,19 @@ std::string Engine::Impl::setSettings(const SimulationSettings& settings) {
 void Engine::Impl::replan(std::span<const Sphere> spheres, std::span<const Float3> sphereMotion,
                           Float3 rootsMin_ws, Float3 rootsMax_ws, float frameTime) {
     const float h = frameTime > 0.0f ? frameTime / static_cast<float>(settings_.substeps) : state_.substep;
-    FrameOutlook outlook{strandCount(),         shape_->longestPointCount,
-                         shape_->longestStrand, shape_->straight,
-                         rootsMin_ws,           rootsMax_ws,
-                         rootMotion_,           state_.fastest};
-    outlook.sharpestCurl = shape_->sharpestCurl;
-    outlook.unevenness = shape_->unevenness;
-    outlook.substep = h > 0.0f ? h : kUsualFrame / static_cast<float>(settings_.substeps);
-    outlook.restTime = 1e30f;
+    FrameOutlook planInput{strandCount(),         shape_->longestPointCount,
+                           shape_->longestStrand, shape_->straight,
+                           rootsMin_ws,           rootsMax_ws,
+                           rootMotion_,           state_.fastest};
+    planInput.maxCurvature = shape_->maxCurvature;
+    planInput.massRatio = shape_->massRatio;
+    planInput.substep = h > 0.0f ? h : kUsualFrame / static_cast<float>(settings_.substeps);
+    planInput.restTime = 1e30f;
     for (std::size_t b = 0; b < state_.rests.size(); ++b) {
-        if (state_.rests[b].asleep) outlook.asleep += shape_->blocks[b].strands;
-        outlook.restTime = std::min(outlook.restTime, state_.rests[b].time);
+        if (state_.rests[b].asleep) planInput.asleep += shape_->blocks[b].strands;
+        planInput.restTime = std::min(planInput.restTime, state_.rests[b].time);
     }
-    plan_ = planFrame(settings_, outlook, wind_, spheres, sphereMotion, frameTime);
+    plan_ = planFrame(settings_, planInput, wind_, spheres, sphereMotion, frameTime);
     allocateForPlan();
 }
 
@@ -115,7 +115,7 @@ void Engine::Impl::allocateForPlan() {
     const bool curves = plan_.keepsCurves();
     if (curves == state_.curves.empty()) {
         state_.curves = Floats(curves ? shape_->planeFloats * 3 : 0, 0.0f);
-        state_.tanks = Floats(curves ? shape_->blocks.size() * kBlockLanes : 0, kNoCurve);
+        state_.energyTanks = Floats(curves ? shape_->blocks.size() * kBlockLanes : 0, kNoCurve);
         state_.motions = Floats(curves ? shape_->blocks.size() * kBlockLanes : 0, 0.0f);
     }
     if (plan_.keepsTensions() == state_.tensions.empty())
@@ -147,17 +147,17 @@ void Engine::Impl::takeRoots(const FrameInput& input) {
                                              root.rotation.w};
             for (std::size_t r = 0; r < kRootRows; ++r) next[r * kBlockLanes + lane] = values[r];
         }
-        bounds.anyCut = false;
+        bounds.anyTeleported = false;
         if (!table.takeRoots(rows, next, false, cut, bounds)) {
             repairRoots(b);
             table.takeRoots(rows, next, true, cut, bounds);
         }
-        blockReports_[b].rootsCut = bounds.anyCut;
+        blockReports_[b].rootsTeleported = bounds.anyTeleported;
         blockReports_[b].rootsMoved = std::memcmp(rows, next, kRootRows * kBlockLanes * sizeof(float)) != 0;
     }
-    rootMotion_ = std::sqrt(most(bounds.longest));
-    state_.rootsMin_ws = {least(bounds.low[0]), least(bounds.low[1]), least(bounds.low[2])};
-    state_.rootsMax_ws = {most(bounds.high[0]), most(bounds.high[1]), most(bounds.high[2])};
+    rootMotion_ = std::sqrt(maximum(bounds.longest));
+    state_.rootsMin_ws = {minimum(bounds.low[0]), minimum(bounds.low[1]), minimum(bounds.low[2])};
+    state_.rootsMax_ws = {maximum(bounds.high[0]), maximum(bounds.high[1]), maximum(bounds.high[2])};
 }
 
 /// Puts the block's roots that are no places back to those of the last frame.

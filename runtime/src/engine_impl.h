@@ -20,7 +20,7 @@ struct Engine::Impl {
         float fastest = 0.0f;  ///< square metres, as Kernels::fastest
         std::uint32_t restored = 0;
         bool rootsMoved = false;
-        bool rootsCut = false;  ///< some are carried along rigidly
+        bool rootsTeleported = false;  ///< some are carried along rigidly
     };
     Impl(const StrandsView& strands, const SimulationSettings& settings, Host host);
 
@@ -45,7 +45,7 @@ struct Engine::Impl {
     void runBlocks(const Frame& frame);
     void runBlock(std::size_t block, LaneFrame& lanes, const Frame& frame);
     static void turnAlong(const BlockView& view, std::uint32_t lane, Quat turn);
-    void cutLanes(const BlockView& view, float* rows, const float* next) const;
+    void teleportLanes(const BlockView& view, float* rows, const float* next) const;
     void enterFrame(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame);
     void runStages(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame);
     void restoreStrands(std::size_t block, const BlockView& view);

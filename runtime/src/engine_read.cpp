@@ -96,12 +96,12 @@ Measurements measureState(const RestShape& shape, const State& state, const Simu
             result.kineticEnergy += 0.5 * view.mass(i) * speed * speed;
             result.potentialEnergy -= view.mass(i) * static_cast<double>(dot(s.gravity, at_ws));
             const double along = static_cast<double>(p) / (view.block->points - 1);
-            const double pearl = static_cast<double>(s.pearlRadiusRoot) +
-                                 along * static_cast<double>(s.pearlRadiusTip - s.pearlRadiusRoot);
+            const double collisionRadius = static_cast<double>(s.pearlRadiusRoot) +
+                                           along * static_cast<double>(s.pearlRadiusTip - s.pearlRadiusRoot);
             for (const Sphere& sphere : state.spheres) {
                 if (!(sphere.radius > 0.0f)) continue;
                 const double depth =
-                    static_cast<double>(sphere.radius) + pearl - lengthOf(at_ws - sphere.center_ws);
+                    static_cast<double>(sphere.radius) + collisionRadius - lengthOf(at_ws - sphere.center_ws);
                 result.maxPenetration = std::max(result.maxPenetration, depth);
             }
         });
@@ -116,7 +116,7 @@ std::size_t Engine::Impl::effectBytes(Effect effect) const {
             return (bend_.planes.size() + state_.tensions.size()) * sizeof(float) - targets;
         case Effect::torsion:
             return targets +
-                   (state_.curves.size() + state_.tanks.size() + state_.motions.size()) * sizeof(float);
+                   (state_.curves.size() + state_.energyTanks.size() + state_.motions.size()) * sizeof(float);
         case Effect::wind:
             return plan_.on(effect) ? sizeof(Wind) : 0;
         case Effect::collision:

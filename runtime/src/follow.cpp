@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kGuidesPerJob = 64;
 constexpr std::size_t kHairsPerJob = 512;
-constexpr std::uint32_t kMostPoints = 1u << 20u;  // kernels count the floats of 16 guides in 32 bits
+constexpr std::uint32_t kMaxPoints = 1u << 20u;  // kernels count the floats of 16 guides in 32 bits
 constexpr float kWeightSumTolerance = 1e-3f;
 
 std::string number(std::size_t value) {
@@ -29,7 +29,7 @@ struct Expectation {
     std::size_t expected;
 };
 
-std::string whySizesRefused(const FollowView& view) {
+std::string sizeError(const FollowView& view) {
     const std::size_t guides = view.guideOffsets.size() - 1;
     const std::size_t hairs = view.guides.size();
     const Expectation expectations[] = {
@@ -47,12 +47,12 @@ std::string whySizesRefused(const FollowView& view) {
     return {};
 }
 
-std::string whyGuidesRefused(const FollowView& view) {
+std::string guideError(const FollowView& view) {
     if (view.guideOffsets.size() < 2 || view.guideOffsets.front() != 0) {
         return "no guide offsets from 0; expected guide count + 1 of them";
     }
-    if (view.pointsPerHair < 2 || view.pointsPerHair > kMostPoints) {
-        return number(view.pointsPerHair) + " points per hair; expected 2 to " + number(kMostPoints);
+    if (view.pointsPerHair < 2 || view.pointsPerHair > kMaxPoints) {
+        return number(view.pointsPerHair) + " points per hair; expected 2 to " + number(kMaxPoints);
     }
     bool resampled = false;
     for (std::size_t g = 0; g + 1 < view.guideOffsets.size(); ++g) {
@@ -83,7 +83,7 @@ bool isPartition(Float3 w) {
            std::abs(w.x + w.y + w.z - 1.0f) <= kWeightSumTolerance;
 }
 
-std::string whyHairRefused(const FollowView& view, std::size_t hair) {
+std::string hairError(const FollowView& view, std::size_t hair) {
     const auto guides = static_cast<std::uint32_t>(view.guideOffsets.size() - 1);
     for (const std::uint32_t guide : view.guides[hair]) {
         if (guide >= guides) return "follows guide " + number(guide) + " of " + number(guides);
@@ -97,9 +97,9 @@ std::string whyHairRefused(const FollowView& view, std::size_t hair) {
     return {};
 }
 
-std::string whyRefused(const FollowView& view) {
-    if (std::string why = whyGuidesRefused(view); !why.empty()) return why;
-    if (std::string why = whySizesRefused(view); !why.empty()) return why;
+std::string validationError(const FollowView& view) {
+    if (std::string why = guideError(view); !why.empty()) return why;
+    if (std::string why = sizeError(view); !why.empty()) return why;
     for (std::size_t g = 0; g < view.rootPlanes_ss.size(); ++g) {
         const RootPlane& plane = view.rootPlanes_ss[g];
         if (!isFinite(plane.x) || !isFinite(plane.y) || !isFinite(plane.normal)) {
@@ -112,8 +112,7 @@ std::string whyRefused(const FollowView& view) {
         }
     }
     for (std::size_t hair = 0; hair < view.guides.size(); ++hair) {
-        if (std::string why = whyHairRefused(view, hair); !why.empty())
-            return "hair " + number(hair) + " " + why;
+        if (std::string why = hairError(view, hair); !why.empty()) return "hair " + number(hair) + " " + why;
     }
     return {};
 }
@@ -255,8 +254,8 @@ FollowHairs::FollowHairs(FollowHairs&&) noexcept = default;
 FollowHairs& FollowHairs::operator=(FollowHairs&&) noexcept = default;
 FollowHairs::~FollowHairs() = default;
 
-FollowHairs::Made FollowHairs::make(const FollowView& view) {
-    if (std::string why = whyRefused(view); !why.empty()) return {std::nullopt, std::move(why)};
+FollowHairs::Result FollowHairs::make(const FollowView& view) {
+    if (std::string why = validationError(view); !why.empty()) return {std::nullopt, std::move(why)};
     return {FollowHairs(std::make_unique<Impl>(view)), {}};
 }
 

@@ -19,8 +19,8 @@ float shareLeft(float h, float timeConstant) {
 
 /// Faster air is a mistake, and its squares would leave the range of single precision.
 bool isWind(Float3 velocity) {
-    constexpr float kMost = 1000.0f;  // m/s
-    return isFinite(velocity) && length(velocity) <= kMost;
+    constexpr float kMax = 1000.0f;  // m/s
+    return isFinite(velocity) && length(velocity) <= kMax;
 }
 
 void findWaking(float hair, std::span<const Sphere> before, FrameSpheres& spheres) {
@@ -47,7 +47,7 @@ float slowestSwept(const SubstepContext& context) {
         smallest = std::min(smallest, sphere.radius);
         fastestSquared = std::max(fastestSquared, dot(sphere.step, sphere.step));
     }
-    smallest += std::min(context.pearlRoot, context.pearlTip);
+    smallest += std::min(context.collisionRadiusAtRoot, context.collisionRadiusAtTip);
     return std::max(0.999f * kUnsweptShare * smallest - 1.001f * std::sqrt(fastestSquared), 0.0f);
 }
 
@@ -105,19 +105,19 @@ std::uint32_t takeWind(const SimulationSettings& settings, const FrameInput& inp
     return rejected;
 }
 
-EffectPlan planFrame(const SimulationSettings& settings, const FrameOutlook& outlook, const FrameWind& wind,
+EffectPlan planFrame(const SimulationSettings& settings, const FrameOutlook& planInput, const FrameWind& wind,
                      std::span<const Sphere> spheres, std::span<const Float3> sphereMotion, float frameTime) {
-    SceneDescription scene;
+    PlanInput scene;
     scene.settings = settings;
-    scene.strandCount = outlook.strandCount;
-    scene.longestPointCount = outlook.longestPointCount;
-    scene.longestStrand = outlook.longestStrand;
-    scene.straight = outlook.straight;
-    scene.sharpestCurl = outlook.sharpestCurl;
-    scene.unevenness = outlook.unevenness;
-    scene.substep = outlook.substep;
-    scene.rootsMin_ws = outlook.rootsMin_ws;
-    scene.rootsMax_ws = outlook.rootsMax_ws;
+    scene.strandCount = planInput.strandCount;
+    scene.longestPointCount = planInput.longestPointCount;
+    scene.longestStrand = planInput.longestStrand;
+    scene.straight = planInput.straight;
+    scene.maxCurvature = planInput.maxCurvature;
+    scene.massRatio = planInput.massRatio;
+    scene.substep = planInput.substep;
+    scene.rootsMin_ws = planInput.rootsMin_ws;
+    scene.rootsMax_ws = planInput.rootsMax_ws;
     scene.spheres = spheres;
     scene.sphereMotion = sphereMotion;
     SimulationSettings& planned = scene.settings;
@@ -125,15 +125,16 @@ EffectPlan planFrame(const SimulationSettings& settings, const FrameOutlook& out
         planned.windSpeed = length(wind.wind.mean);
         if (planned.windSpeed > 0.0f) planned.windDirection = wind.wind.mean * (1.0f / planned.windSpeed);
     }
-    float sphereWay = 0.0f;
-    for (const Float3& motion : sphereMotion) sphereWay = std::max(sphereWay, length(motion));
+    float sphereDisplacement = 0.0f;
+    for (const Float3& motion : sphereMotion)
+        sphereDisplacement = std::max(sphereDisplacement, length(motion));
     // Within a frame hair may gain what gravity and air give, and a whip of its own.
     const float h = frameTime / static_cast<float>(settings.substeps);
     const float pushed = (length(settings.gravity) + settings.airDrag * length(wind.wind.mean)) * frameTime;
-    scene.fastest = 16.0f * outlook.fastest * h + pushed * h +
-                    (outlook.rootMotion + sphereWay) / static_cast<float>(settings.substeps);
-    scene.asleep = outlook.asleep;
-    scene.restTime = outlook.restTime;
+    scene.fastest = 16.0f * planInput.fastest * h + pushed * h +
+                    (planInput.rootMotion + sphereDisplacement) / static_cast<float>(settings.substeps);
+    scene.asleep = planInput.asleep;
+    scene.restTime = planInput.restTime;
     return plan(scene);
 }
 
@@ -159,8 +160,8 @@ SubstepContext substepContext(const SimulationSettings& settings, const EffectPl
     context.lengthIterations = settings.lengthIterations;
     context.maximalExtension = settings.maximalExtension;
     if (plan.on(Effect::pearls)) {
-        context.pearlRoot = settings.pearlRadiusRoot;
-        context.pearlTip = settings.pearlRadiusTip;
+        context.collisionRadiusAtRoot = settings.pearlRadiusRoot;
+        context.collisionRadiusAtTip = settings.pearlRadiusTip;
     }
     context.friction = settings.friction;
     context.restitution = settings.restitution;

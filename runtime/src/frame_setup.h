@@ -49,12 +49,12 @@ struct FrameOutlook {
     std::uint32_t asleep = 0;         ///< strands
     float restTime = 0.0f;            ///< seconds
     // Of the rest shape.
-    float sharpestCurl = 0.0f;
-    float unevenness = 1.0f;
+    float maxCurvature = 0.0f;
+    float massRatio = 1.0f;
     float substep = 0.0f;  ///< seconds
 };
 /// The plan of a frame of `frameTime` seconds.
-EffectPlan planFrame(const SimulationSettings& settings, const FrameOutlook& outlook, const FrameWind& wind,
+EffectPlan planFrame(const SimulationSettings& settings, const FrameOutlook& planInput, const FrameWind& wind,
                      std::span<const Sphere> spheres, std::span<const Float3> sphereMotion, float frameTime);
 
 /// Of the first substep of a frame of `dt` seconds.

@@ -62,7 +62,7 @@ struct BlockView {
     ConstPlanes target;
     // Of implicit angular springs of curved hair, null otherwise.
     Planes curve;  ///< what each joint adds to its inner segment's direction now, world
-    float* tank =
+    float* energyTank =
         nullptr;  ///< of each lane: energy that turning curves have saved; below 0 when `curve` is void
     float* motion =
         nullptr;  ///< of each lane: greatest squared speed of a point at the end of the last frame
@@ -81,8 +81,8 @@ struct BlockView {
 /// Which points of a block a sphere can reach before they have moved by a margin, found once and used for as
 /// many substeps as it holds (Verlet 1967). Of blocks of few points and spheres only.
 struct NearPoints {
-    static constexpr std::uint32_t kMostPoints = 64;   ///< of a strand
-    static constexpr std::uint32_t kMostPairs = 4096;  ///< where there can be more there is no list
+    static constexpr std::uint32_t kMaxPoints = 64;   ///< of a strand
+    static constexpr std::uint32_t kMaxPairs = 4096;  ///< where there can be more there is no list
 
     /// A vector of points, and a sphere that can reach one of them.
     struct Pair {
@@ -111,35 +111,35 @@ struct NearPoints {
     bool made = false;
     std::uint32_t substep;  ///< in which the list was made
     std::uint32_t pairCount;
-    float margin;                ///< metres that a point can move relative to its root
-    float step;                  ///< metres in a substep that a sphere moves relative to a root, at most
-    Pair pairs[kMostPairs + 1];  ///< those of a point in the order of spheres
+    float margin;               ///< metres that a point can move relative to its root
+    float step;                 ///< metres in a substep that a sphere moves relative to a root, at most
+    Pair pairs[kMaxPairs + 1];  ///< those of a point in the order of spheres
     /// Where the points were when the list was made, relative to their roots.
-    alignas(64) float places[3 * (kMostPoints * kBlockLanes + kPlanePadding)];
-    Touch touches[kMostPairs + 1];    ///< of one substep; written before it is known whether it stays
+    alignas(64) float places[3 * (kMaxPoints * kBlockLanes + kPlanePadding)];
+    Touch touches[kMaxPairs + 1];     ///< of one substep; written before it is known whether it stays
     std::uint64_t overlaps[64];       ///< of each sphere: those that can overlap it in this frame, as bits
     std::uint64_t overlapsKnown = 0;  ///< which of them are filled
 };
 
 inline constexpr std::size_t kCopiedRows = 14;
-inline constexpr std::size_t kMostCopied = 64;
+inline constexpr std::size_t kMaxCopied = 64;
 
 /// What the strands of a block go through in one frame; one of an engine's Scratch (src/scratch.h).
 struct alignas(64) LaneFrame {
-    float root[3][kBlockLanes];          ///< at the start of the frame, world
-    float rootStep[3][kBlockLanes];      ///< the root's way in one substep
-    float rotationFrom[4][kBlockLanes];  ///< x, y, z, w
-    float rotationTo[4][kBlockLanes];    ///< by the first substep on the side of rotationFrom
-    float rotation[4][kBlockLanes];      ///< of now; kept by the stage `roots`
+    float root[3][kBlockLanes];              ///< at the start of the frame, world
+    float rootDisplacement[3][kBlockLanes];  ///< the root's way in one substep
+    float rotationFrom[4][kBlockLanes];      ///< x, y, z, w
+    float rotationTo[4][kBlockLanes];        ///< by the first substep on the side of rotationFrom
+    float rotation[4][kBlockLanes];          ///< of now; kept by the stage `roots`
     /// From the rotation of a substep ago to that of now; likewise, where there is BlockView::curve.
     float turn[4][kBlockLanes];
     float windRoot[2][3]
                   [kBlockLanes];  ///< the air's way in one substep at start and end of the frame, at the root
     float windTip[2][3][kBlockLanes];
     NearPoints near;  ///< kept by the stage `collision`
-    /// Of strands of at most kMostCopied points: what the pass of bending and lengths reads of them, in its
+    /// Of strands of at most kMaxCopied points: what the pass of bending and lengths reads of them, in its
     /// own order.
-    alignas(64) float copied[kCopiedRows * kMostCopied * kBlockLanes];
+    alignas(64) float copied[kCopiedRows * kMaxCopied * kBlockLanes];
     /// What the solvers along a strand work in: for each point what Kernels::solverFloats says of the stage,
     /// and kSolverPadding more. On a cache line.
     float* solver = nullptr;
@@ -168,8 +168,8 @@ struct SubstepContext {
     float tensionShare = 0.0f;  ///< of a substep's change of tension that BlockView::tension takes on
     std::uint32_t lengthIterations = 0;
     float maximalExtension = 0.0f;
-    float pearlRoot = 0.0f;
-    float pearlTip = 0.0f;
+    float collisionRadiusAtRoot = 0.0f;
+    float collisionRadiusAtTip = 0.0f;
     float friction = 0.0f;
     float restitution = 0.0f;
     std::span<const MovingSphere> spheres;
@@ -188,7 +188,7 @@ inline constexpr std::size_t kRootRows = 7;  ///< of a block's roots: place x, y
 struct alignas(64) RootBounds {
     float low[3][kBlockLanes], high[3][kBlockLanes];  ///< world
     float longest[kBlockLanes];                       ///< square metres, of those that are no cuts
-    bool anyCut = false;                              ///< set by a way that is one
+    bool anyTeleported = false;                       ///< set by a way that is one
 };
 
 /// What the strands move through.
@@ -205,7 +205,7 @@ struct Kernels {
     /// substep. First what opens it, then what follows another one, by StageId; null for other stages.
     Stage partsOfMove[2][kStageCount];
     /// As `moves`: `angularStraight` or `angular`, then `length`, where tension is kept.
-    Stage bendAndHold[2];
+    Stage bendAndProject[2];
     /// As `moves`: `sweep`, then `collision` or `collisionBack`.
     Stage sweepAndCollide[2];
     /// Multiplies every displacement by `factor`: the speed stays when the length of the substep changes.
@@ -229,7 +229,7 @@ struct Kernels {
 
 /// What a plan makes of a block in a substep, call after call.
 struct Passes {
-    std::array<Stage, kMostStages> calls;
+    std::array<Stage, kMaxStages> calls;
     std::size_t count = 0;
 };
 /// As few passes over the block as there are kernels for.

@@ -30,12 +30,12 @@ class StageReader {
         return nullptr;
     }
 
-    /// The pass of Kernels::bendAndHold that comes next, or null and nothing is taken.
-    Stage takeBendAndHold(const Kernels& kernels) {
+    /// The pass of Kernels::bendAndProject that comes next, or null and nothing is taken.
+    Stage takeBendAndProject(const Kernels& kernels) {
         const std::size_t begin = next_;
         const bool curved = takeIf(StageId::angular);
         if ((curved || takeIf(StageId::angularStraight)) && takeIf(StageId::length))
-            return kernels.bendAndHold[curved ? 1 : 0];
+            return kernels.bendAndProject[curved ? 1 : 0];
         next_ = begin;
         return nullptr;
     }
@@ -62,7 +62,7 @@ Passes passesOf(std::span<const StageId> stages, const Kernels& kernels) {
     Passes passes;
     for (StageReader reader(stages); !reader.atEnd();) {
         Stage pass = reader.takeMove(kernels);
-        if (!pass) pass = reader.takeBendAndHold(kernels);
+        if (!pass) pass = reader.takeBendAndProject(kernels);
         if (!pass) pass = reader.takeSweepAndCollide(kernels);
         if (!pass) pass = kernels.stages[static_cast<std::size_t>(reader.take())];
         passes.calls[passes.count++] = pass;

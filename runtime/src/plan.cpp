@@ -14,7 +14,7 @@ namespace hairloom::runtime {
 namespace {
 
 /// Whether the sphere, anywhere on its way, can touch a point that hangs on a root inside the box.
-bool withinReach(const Sphere& sphere, Float3 motion, const SceneDescription& scene) {
+bool withinReach(const Sphere& sphere, Float3 motion, const PlanInput& scene) {
     if (!(sphere.radius > 0.0f)) return false;
     const float reach = (hairReach(scene.settings, scene.longestStrand) + sphere.radius) * 1.001f;
     const Float3 from = sphere.center_ws - motion;
@@ -34,7 +34,7 @@ struct Reachable {
     float smallest = 1e30f;  ///< radius, metres
 };
 
-Reachable spheresWithinReach(const SceneDescription& scene) {
+Reachable spheresWithinReach(const PlanInput& scene) {
     Reachable result;
     for (std::size_t i = 0; i < scene.spheres.size(); ++i) {
         const Float3 motion = scene.sphereMotion.empty() ? Float3{} : scene.sphereMotion[i];
@@ -64,7 +64,7 @@ Decision decideLength(const SimulationSettings& s) {
     return {true, Reason::authored, static_cast<float>(s.lengthIterations)};
 }
 
-Decision decideTorsion(const SceneDescription& scene, bool angular, bool held) {
+Decision decideTorsion(const PlanInput& scene, bool angular, bool held) {
     if (!angular) return {false, Reason::noAngular, 0.0f};
     if (scene.settings.angularMethod == AngularMethod::flexion) return {false, Reason::noFrames, 0.0f};
     if (scene.straight && !held) return {false, Reason::straightHair, 0.0f};
@@ -72,32 +72,32 @@ Decision decideTorsion(const SceneDescription& scene, bool angular, bool held) {
 }
 
 /// Masses or lengths that differ more along a strand are solved with its bending.
-constexpr float kMostUneven = 100.0f;
+constexpr float kMaxMassRatio = 100.0f;
 /// ω²h² of bending times the square of the curve, above which a step of bending and one of lengths undo each
 /// other.
 constexpr float kTightestCurl = 4.0f;
 
-Decision decideCoupling(const SceneDescription& scene, bool possible) {
+Decision decideCoupling(const PlanInput& scene, bool possible) {
     const SimulationSettings& s = scene.settings;
     if (!possible) return {false, Reason::lengthsFree, 0.0f};
     if (!(s.bendDampingTime > 0.0f)) return {true, Reason::undamped, 0.0f};
-    if (scene.unevenness > kMostUneven) return {true, Reason::uneven, scene.unevenness};
+    if (scene.massRatio > kMaxMassRatio) return {true, Reason::unevenMasses, scene.massRatio};
     const double stiffness = bendingStiffnessOf(static_cast<double>(greatestStiffness(s)));
     const double h = static_cast<double>(scene.substep);
-    const double curl = stiffness * h * h * static_cast<double>(scene.sharpestCurl);
+    const double curl = stiffness * h * h * static_cast<double>(scene.maxCurvature);
     if (curl > static_cast<double>(kTightestCurl))
         return {true, Reason::tightCurls, static_cast<float>(std::sqrt(curl) / (2.0 * std::numbers::pi))};
     return {false, Reason::evenHair, 0.0f};
 }
 
-Decision decidePearls(const SimulationSettings& s, bool collision) {
+Decision decideCollisionRadius(const SimulationSettings& s, bool collision) {
     if (!collision) return {false, Reason::noCollision, 0.0f};
     const float largest = std::max(s.pearlRadiusRoot, s.pearlRadiusTip);
     if (!(largest > 0.0f)) return {false, Reason::zeroRadius, 0.0f};
     return {true, Reason::authored, 1000.0f * largest};
 }
 
-Decision decideSweep(const SceneDescription& scene, bool collision, float smallestSphere) {
+Decision decideSweep(const PlanInput& scene, bool collision, float smallestSphere) {
     if (!collision) return {false, Reason::noCollision, 0.0f};
     if (scene.settings.collisionResponse == CollisionResponse::penalty) return {false, Reason::byForce, 0.0f};
     if (!std::isfinite(scene.fastest)) return {true, Reason::speedUnknown, 0.0f};
@@ -106,7 +106,7 @@ Decision decideSweep(const SceneDescription& scene, bool collision, float smalle
     return {true, Reason::fast, scene.fastest};
 }
 
-Decision decideSleep(const SceneDescription& scene) {
+Decision decideSleep(const PlanInput& scene) {
     if (!(scene.settings.sleepSpeed > 0.0f)) return {false, Reason::neverAsleep, 0.0f};
     if (scene.asleep == 0) return {false, Reason::allAwake, 0.0f};
     if (scene.asleep < scene.strandCount) return {true, Reason::someAsleep, static_cast<float>(scene.asleep)};
@@ -118,7 +118,7 @@ Decision decideSleep(const SceneDescription& scene) {
 /// Decides effect after effect, then lists the stages.
 class Planner {
   public:
-    explicit Planner(const SceneDescription& scene) : scene_(scene), s_(scene.settings) {}
+    explicit Planner(const PlanInput& scene) : scene_(scene), s_(scene.settings) {}
 
     EffectPlan make() {
         decide(Effect::sleep, decideSleep(scene_));
@@ -134,7 +134,7 @@ class Planner {
   private:
     bool on(Effect effect) const { return plan_.on(effect); }
     void add(StageId stage) {
-        assert(plan_.stageCount_ < kMostStages);
+        assert(plan_.stageCount_ < kMaxStages);
         plan_.stages_[plan_.stageCount_++] = stage;
     }
     void add(std::initializer_list<StageId> stages) {
@@ -179,7 +179,7 @@ class Planner {
                     static_cast<float>(reachable.count)});
         }
         const bool collision = on(Effect::collision);
-        decide(Effect::pearls, decidePearls(s_, collision));
+        decide(Effect::pearls, decideCollisionRadius(s_, collision));
         decide(Effect::sweep, decideSweep(scene_, collision, smallestSphere_));
     }
 
@@ -207,7 +207,7 @@ class Planner {
             case AngularMethod::exact:
                 return frames ? StageId::angularExact : StageId::straightExact;
             case AngularMethod::implicit:
-            case AngularMethod::cheap:
+            case AngularMethod::smallAngle:
                 break;
         }
         return frames ? StageId::angularCheap : StageId::straightCheap;
@@ -291,7 +291,7 @@ class Planner {
         if (!coils() && s_.lengthIterations > 0) add(StageId::lengthRate);
     }
 
-    const SceneDescription& scene_;
+    const PlanInput& scene_;
     const SimulationSettings& s_;
     EffectPlan plan_;
     float smallestSphere_ = 0.0f;
@@ -303,7 +303,7 @@ float hairReach(const SimulationSettings& settings, float strandLength) {
            std::max(settings.pearlRadiusRoot, settings.pearlRadiusTip);
 }
 
-EffectPlan plan(const SceneDescription& scene) {
+EffectPlan plan(const PlanInput& scene) {
     return Planner(scene).make();
 }
 

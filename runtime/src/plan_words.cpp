@@ -91,7 +91,7 @@ std::string words(Effect effect, const Decision& decision) {
             return "bending is damped, hair is even and has no tight curls";
         case Reason::undamped:
             return "bending is undamped";
-        case Reason::uneven:
+        case Reason::unevenMasses:
             text << "masses or segments differ " << std::setprecision(4) << decision.value
                  << " times along a strand";
             return text.str();

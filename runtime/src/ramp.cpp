@@ -21,9 +21,9 @@ std::string joined(const Parts&... parts) {
 
 }  // namespace
 
-std::string problemOf(const Ramp& ramp) {
-    if (ramp.count < 2 || ramp.count > Ramp::kMostKeys)
-        return joined("has ", ramp.count, " keys; expected 2 to ", Ramp::kMostKeys);
+std::string validationError(const Ramp& ramp) {
+    if (ramp.count < 2 || ramp.count > Ramp::kMaxKeys)
+        return joined("has ", ramp.count, " keys; expected 2 to ", Ramp::kMaxKeys);
     const auto keys = ramp.inUse();
     for (std::size_t k = 0; k < keys.size(); ++k) {
         const auto [at, value] = keys[k];

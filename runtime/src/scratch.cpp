@@ -51,10 +51,10 @@ std::size_t scratchPieces(std::size_t jobs) {
 }
 
 std::size_t solverFloats(std::span<const StageId> stages, std::uint32_t points, const Kernels& kernels) {
-    std::size_t most = 0;
+    std::size_t maximum = 0;
     for (const StageId stage : stages)
-        most = std::max(most, kernels.solverFloats[static_cast<std::size_t>(stage)]);
-    return most > 0 ? most * points + kSolverPadding : 0;
+        maximum = std::max(maximum, kernels.solverFloats[static_cast<std::size_t>(stage)]);
+    return maximum > 0 ? maximum * points + kSolverPadding : 0;
 }
 
 }  // namespace hairloom::runtime

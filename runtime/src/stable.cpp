@@ -17,7 +17,7 @@ using S = SimulationSettings;
 
 /// An offer stays this far inside its region.
 constexpr double kMargin = 0.9;
-constexpr std::uint32_t kMostSubsteps = 64;
+constexpr std::uint32_t kMaxSubsteps = 64;
 
 bool coilSprings(const S& s) {
     return s.lengthMethod != LengthMethod::constraint;
@@ -319,7 +319,7 @@ StableAdvice adviseStability(const StrandsView& strands, const SimulationSetting
         return regionOf(fastestWaves(strands, candidate), candidate, frame).factor <= kMargin;
     };
     S finer = settings;
-    for (std::uint32_t count = settings.substeps + 1; count <= kMostSubsteps; ++count) {
+    for (std::uint32_t count = settings.substeps + 1; count <= kMaxSubsteps; ++count) {
         finer.substeps = count;
         if (regionOf(waves, finer, frame).factor > kMargin) continue;
         advice.offers.push_back({text("%u substeps instead of %u", count, settings.substeps), finer});

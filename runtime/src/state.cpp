@@ -79,7 +79,7 @@ std::vector<Block> groupStrands(const StrandsView& strands) {
 /// Segments that turn by less, in radians, count as straight.
 constexpr float kStraight = 1e-4f;
 /// Least mass of a point as a share of the strand's mean.
-constexpr double kLeastMass = 1e-6;
+constexpr double kMinMass = 1e-6;
 
 void fillInverseMasses(const StrandsView& strands, std::uint32_t strand, const Block& block,
                        std::uint32_t lane, float* inverseMasses) {
@@ -99,7 +99,7 @@ void fillInverseMasses(const StrandsView& strands, std::uint32_t strand, const B
     const double mean = total / block.points;
     for (std::uint32_t p = 0; p < block.points; ++p) {
         // Between segments without length a point still weighs something.
-        const double relative = mean > 0.0 ? std::max(massOf(p) / mean, kLeastMass) : 1.0;
+        const double relative = mean > 0.0 ? std::max(massOf(p) / mean, kMinMass) : 1.0;
         inverseMasses[std::size_t{p} * kBlockLanes + lane] = static_cast<float>(1.0 / relative);
     }
 }
@@ -126,10 +126,10 @@ void measureHardness(const Block& block, std::uint32_t lane, const float* planes
         const double own = 0.5 * (at(3, p) + at(3, p - 1)), turns = at(4, p) + at(4, p - 1);
         const double light = std::max({at(5, p - 1), at(5, p), at(5, p + 1)}) / at(5, p);
         const double curl = curve * turns * turns * light / (own * own);
-        shape.sharpestCurl = std::max(shape.sharpestCurl, static_cast<float>(std::min(curl, 1e30)));
+        shape.maxCurvature = std::max(shape.maxCurvature, static_cast<float>(std::min(curl, 1e30)));
     }
-    const double uneven = std::max(heaviest / lightest, longest > 0.0 ? longest / shortest : 1.0);
-    shape.unevenness = std::max(shape.unevenness, static_cast<float>(uneven));
+    const double ratio = std::max(heaviest / lightest, longest > 0.0 ? longest / shortest : 1.0);
+    shape.massRatio = std::max(shape.massRatio, static_cast<float>(ratio));
 }
 
 void fillRestPlanes(const StrandsView& strands, const Block& block, RestShape& shape) {
@@ -243,7 +243,7 @@ BlockView viewOf(const Arrays& arrays, std::size_t index, std::uint32_t clampedP
     }
     if (!arrays.state.curves.empty()) {
         view.curve = three(arrays.state.curves.data() + block.firstPlane * 3);
-        view.tank = arrays.state.tanks.data() + index * kBlockLanes;
+        view.energyTank = arrays.state.energyTanks.data() + index * kBlockLanes;
         view.motion = arrays.state.motions.data() + index * kBlockLanes;
     }
     if (!arrays.state.tensions.empty()) view.tension = arrays.state.tensions.data() + block.firstPlane;
@@ -268,8 +268,8 @@ void placeAtRest(const RestShape& shape, State& state, std::size_t index, std::u
     const float* roots = state.roots.data() + index * kRootRows * kBlockLanes;
     const auto row = [&](std::size_t r) { return roots[r * kBlockLanes + lane]; };
     const Quat rotation{row(3), row(4), row(5), row(6)};
-    if (!state.tanks.empty()) {
-        state.tanks[index * kBlockLanes + lane] = kNoCurve;
+    if (!state.energyTanks.empty()) {
+        state.energyTanks[index * kBlockLanes + lane] = kNoCurve;
         state.motions[index * kBlockLanes + lane] = 0.0f;
         float* const curves = state.curves.data() + block.firstPlane * 3;
         for (std::size_t plane = 0; plane < 3; ++plane) {

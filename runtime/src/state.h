@@ -47,8 +47,8 @@ struct RestShape {
     float longestStrand = 0.0f;  ///< metres
     bool straight = true;        ///< no strand bends at rest
     /// Greatest (κ/B) (1/l_{j−1} + 1/l_j)² |c_j|² over a mass beside the joint (docs/engine.md), in 1/m⁴.
-    float sharpestCurl = 0.0f;
-    float unevenness = 1.0f;  ///< greatest ratio of two masses or lengths of a strand
+    float maxCurvature = 0.0f;
+    float massRatio = 1.0f;  ///< greatest ratio of two masses or lengths of a strand
 
     std::size_t bytes() const;
 };
@@ -74,7 +74,7 @@ struct State {
     Floats planes;  ///< per block: position x, y, z, previous x, y, z
     Floats roots;   ///< per block: position x, y, z, rotation x, y, z, w of each lane at the last frame's end
     Floats curves;  ///< per block: x, y, z of BlockView::curve; empty unless they are needed
-    Floats tanks;   ///< of each lane, BlockView::tank
+    Floats energyTanks;               ///< of each lane, BlockView::tank
     Floats motions;                   ///< of each lane, BlockView::motion; empty where `curves` is
     Floats tensions;                  ///< per block: BlockView::tension; empty unless it is needed
     std::vector<Rest> rests;          ///< per block

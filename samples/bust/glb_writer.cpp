@@ -51,14 +51,14 @@ class GlbWriter {
         Json low = Json::array();
         Json high = Json::array();
         for (std::size_t k = 0; k < width; ++k) {
-            float least = values[k];
-            float most = values[k];
+            float minimum = values[k];
+            float maximum = values[k];
             for (std::size_t i = k; i < values.size(); i += width) {
-                least = std::min(least, values[i]);
-                most = std::max(most, values[i]);
+                minimum = std::min(minimum, values[i]);
+                maximum = std::max(maximum, values[i]);
             }
-            low.push_back(least);
-            high.push_back(most);
+            low.push_back(minimum);
+            high.push_back(maximum);
         }
         json["accessors"][accessorIndex]["min"] = low;
         json["accessors"][accessorIndex]["max"] = high;

@@ -6,7 +6,7 @@
 
 #define ABSORPTION_LAYERS 9
 #define ABSORPTION_BEND 0.7
-#define ABSORPTION_MOST 8.0
+#define ABSORPTION_MAX 8.0
 
 struct LayerPlace {
     float low, part;
@@ -14,12 +14,12 @@ struct LayerPlace {
 
 float absorptionOfLayer(float layer) {
     const float u = layer / float(ABSORPTION_LAYERS - 1);
-    return ABSORPTION_BEND * u / (1.0 + ABSORPTION_BEND / ABSORPTION_MOST - u);
+    return ABSORPTION_BEND * u / (1.0 + ABSORPTION_BEND / ABSORPTION_MAX - u);
 }
 
 LayerPlace layerPlace(float absorption) {
-    const float sigma = clamp(absorption, 0.0, ABSORPTION_MOST);
-    const float u = sigma * (1.0 + ABSORPTION_BEND / ABSORPTION_MOST) / (ABSORPTION_BEND + sigma);
+    const float sigma = clamp(absorption, 0.0, ABSORPTION_MAX);
+    const float u = sigma * (1.0 + ABSORPTION_BEND / ABSORPTION_MAX) / (ABSORPTION_BEND + sigma);
     LayerPlace place;
     place.low = min(floor(u * float(ABSORPTION_LAYERS - 1)), float(ABSORPTION_LAYERS - 2));
     const float below = absorptionOfLayer(place.low);

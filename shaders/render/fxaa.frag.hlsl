@@ -8,7 +8,7 @@ cbuffer Constants : register(b0) { FilterConstants gFilter; };
 Texture2D<float4> gPicture : register(t0);  // sRGB values
 SamplerState gLinear : register(s0);
 
-static const float kLeastContrast = 0.0312;   // below it is noise
+static const float kMinContrast = 0.0312;   // below it is noise
 static const float kContrastShare = 0.125;    // of the brightest neighbour
 static const float kSubpixel = 0.75;          // how much single pixels are smoothed
 
@@ -33,9 +33,9 @@ float4 main(float4 position : SV_Position) : SV_Target0 {
     const float s = lumaAt(uv + float2(0, texel.y));
     const float w = lumaAt(uv - float2(texel.x, 0));
     const float e = lumaAt(uv + float2(texel.x, 0));
-    const float most = max(m, max(max(n, s), max(w, e)));
-    const float contrast = most - min(m, min(min(n, s), min(w, e)));
-    if (contrast < max(kLeastContrast, kContrastShare * most)) return shown(uv);
+    const float maximum = max(m, max(max(n, s), max(w, e)));
+    const float contrast = maximum - min(m, min(min(n, s), min(w, e)));
+    if (contrast < max(kMinContrast, kContrastShare * maximum)) return shown(uv);
     const float nw = lumaAt(uv - texel);
     const float se = lumaAt(uv + texel);
     const float ne = lumaAt(uv + float2(texel.x, -texel.y));

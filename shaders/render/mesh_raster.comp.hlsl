@@ -83,21 +83,21 @@ void main(uint3 group : SV_GroupID, uint thread : SV_GroupIndex) {
     const uint face = group.x + group.y * gRaster.numbers.y;
     if (face >= gRaster.numbers.x) return;
     float4 clip[3];
-    float2 least = 1e9;
-    float2 most = -1e9;
+    float2 minimum = 1e9;
+    float2 maximum = -1e9;
     bool inFront = true;
     for (uint i = 0; i < 3u; ++i) {
         clip[i] = mul(gMesh.clipFromWorld, float4(vertexOf(gPositions, gIndices[3u * face + i]), 1));
         inFront = inFront && clip[i].w > 1e-6;
         const float2 at = onBuffer(float4(clip[i].xyz, max(clip[i].w, 1e-6)));
-        least = min(least, at);
-        most = max(most, at);
+        minimum = min(minimum, at);
+        maximum = max(maximum, at);
     }
     if (max(clip[0].w, max(clip[1].w, clip[2].w)) <= 0.0) return;
     const float2 low = gRaster.window.xy;
     const float2 high = low + gRaster.window.zw - 1.0;
-    const int2 from = int2(inFront ? clamp(floor(least - 0.5 - gRaster.reach.x), low, high + 1.0) : low);
-    const int2 to = int2(inFront ? clamp(ceil(most - 0.5 + gRaster.reach.x), low - 1.0, high) : high);
+    const int2 from = int2(inFront ? clamp(floor(minimum - 0.5 - gRaster.reach.x), low, high + 1.0) : low);
+    const int2 to = int2(inFront ? clamp(ceil(maximum - 0.5 + gRaster.reach.x), low - 1.0, high) : high);
     if (any(to < from)) return;
 
     Corners c;

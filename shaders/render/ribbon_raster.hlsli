@@ -52,8 +52,8 @@ void visitPixels(RibbonPiece piece, float2 a0, float2 a1, float2 b0, float2 b1) 
     const float2 a = 0.5 * (a0 + a1);
     const float2 d = 0.5 * (b0 + b1) - a;
     const bool steep = abs(d.y) > abs(d.x);
-    const float2 least = min(min(a0, a1), min(b0, b1));
-    const float2 most = max(max(a0, a1), max(b0, b1));
+    const float2 minimum = min(min(a0, a1), min(b0, b1));
+    const float2 maximum = max(max(a0, a1), max(b0, b1));
     const float run = steep ? d.y : d.x;
     const float slope = abs(run) > 1e-6 ? (steep ? d.x : d.y) / run : 0.0;
     const float halfWidth = 0.5 * max(length(a1 - a0), length(b1 - b0));
@@ -64,8 +64,8 @@ void visitPixels(RibbonPiece piece, float2 a0, float2 a1, float2 b0, float2 b1) 
     const int2 high = low + int2(gRaster.window.zw) - 1;
     const int2 from = steep ? low.yx : low;
     const int2 to = steep ? high.yx : high;
-    const int u0 = max(int(ceil((steep ? least.y : least.x) - 0.5 - reach)), from.x);
-    const int u1 = min(int(floor((steep ? most.y : most.x) - 0.5 + reach)), to.x);
+    const int u0 = max(int(ceil((steep ? minimum.y : minimum.x) - 0.5 - reach)), from.x);
+    const int u1 = min(int(floor((steep ? maximum.y : maximum.x) - 0.5 + reach)), to.x);
     for (int u = u0; u <= u1; ++u) {
         const float middle = start.y + slope * (float(u) + 0.5 - start.x);
         const int v0 = max(int(ceil(middle - across - 0.5 - reach)), from.y);

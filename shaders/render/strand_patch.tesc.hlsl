@@ -15,8 +15,8 @@ PatchFactors factors(InputPatch<ControlPoint, POINTS> points) {
     const uint segments = points[0].patch.z;
     const uint first = points[0].patch.w & 1u;
     float pixels = 0;
-    float2 least = 1e9;
-    float2 most = -1e9;
+    float2 minimum = 1e9;
+    float2 maximum = -1e9;
     float w;
     float2 before = onScreen(points[first].position_ws.xyz, w);
     bool behind = w <= 0;
@@ -24,13 +24,13 @@ PatchFactors factors(InputPatch<ControlPoint, POINTS> points) {
         const float2 here = onScreen(points[first + i].position_ws.xyz, w);
         behind = behind || w <= 0;
         pixels += length((here - before) * 0.5 * gPatch.view.xy);
-        least = min(least, here);
-        most = max(most, here);
+        minimum = min(minimum, here);
+        maximum = max(maximum, here);
         before = here;
     }
     // A whole number of pieces a segment, so that the curve's points stay corners.
     const float pieces = clamp(ceil(pixels / (float(segments) * gPatch.view.z)), 1.0, floor(64.0 / float(segments)));
-    const bool seen = behind || (all(most > -1.1) && all(least < 1.1));
+    const bool seen = behind || (all(maximum > -1.1) && all(minimum < 1.1));
     PatchFactors o;
     const float along = seen ? float(segments) * max(pieces, 1.0) : 0.0;
     const float across = seen ? 1.0 : 0.0;

@@ -66,8 +66,8 @@ float3 lightFromAround(Place p, float3 albedo) {
 // however little of it is covered: the rim itself may be bright without bounds.
 float2 partSeen(float across) {
     const float reach = 0.5 * length(float2(ddx(across), ddy(across)));
-    const float most = max(1.0 - reach, 0.0);
-    const float middle = clamp(across, -most, most);
+    const float maximum = max(1.0 - reach, 0.0);
+    const float middle = clamp(across, -maximum, maximum);
     return clamp(float2(middle - reach, middle + reach), -1.0, 1.0);
 }
 

@@ -35,7 +35,7 @@ Result<Budget> solve(const Groom& groom, double milliseconds) {
     return solveBudget(groom, **motion, few(milliseconds), EngineConverged(8));
 }
 
-TEST(Budget, ALotOfTimeBuysMoreThanWasAuthored) {
+TEST(Budget, LargeBudgetExceedsAuthoredAccuracy) {
     const auto budget = solve(scene(), 1e5);
     ASSERT_TRUE(budget) << budget.error().message();
     EXPECT_TRUE(budget->fits);
@@ -45,7 +45,7 @@ TEST(Budget, ALotOfTimeBuysMoreThanWasAuthored) {
     EXPECT_GT(budget->authoredMilliseconds.median, 0);
 }
 
-TEST(Budget, WithoutTimeEverythingThatMayGoIsGone) {
+TEST(Budget, ZeroBudgetTurnsOffAllOptionalEffects) {
     const auto budget = solve(scene(), 1e-6);
     ASSERT_TRUE(budget) << budget.error().message();
     EXPECT_FALSE(budget->fits);
@@ -57,14 +57,14 @@ TEST(Budget, WithoutTimeEverythingThatMayGoIsGone) {
     EXPECT_NE(budget->groom.simulation.gravity.y, 0.0f);
 }
 
-TEST(Budget, MoreTimeIsNeverLessExact) {
+TEST(Budget, AccuracyGrowsWithTheBudget) {
     const auto poor = solve(scene(), 1e-6);
     const auto rich = solve(scene(), 1e5);
     ASSERT_TRUE(poor && rich);
     EXPECT_LE(rich->errorMm, poor->errorMm);
 }
 
-TEST(Budget, WhatCannotRunIsAnError) {
+TEST(Budget, UnsupportedSettingsAreErrors) {
     const Groom none;
     const auto motion = makeRigidMotion("none", scene());
     EXPECT_FALSE(solveBudget(none, **motion, few(1), EngineConverged(8)));

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "core/accuracy/grid.h"
+#include "core/accuracy/ground_truth.h"
 #include "core/accuracy/statistics.h"
-#include "core/accuracy/truth.h"
 #include "tests/accuracy/hair.h"
 
 namespace hairloom::test {
@@ -55,16 +55,17 @@ Trajectory trajectoryOf(std::vector<Vec3f> points) {
 }
 
 TEST(Errors, AreTheDistanceInMillimetres) {
-    const Trajectory truth = trajectoryOf({Vec3f(0, 0, 0), Vec3f(1, 0, 0), Vec3f(2, 1, 0), Vec3f(0, 0, 3)});
-    Trajectory moved = truth;
+    const Trajectory groundTruth =
+        trajectoryOf({Vec3f(0, 0, 0), Vec3f(1, 0, 0), Vec3f(2, 1, 0), Vec3f(0, 0, 3)});
+    Trajectory moved = groundTruth;
     for (Vec3f& point : moved.points_ws) point += Vec3f(0.003f, 0, 0.004f);
-    EXPECT_NEAR(compare(moved, truth).rmsMm, 5, 1e-3);
-    EXPECT_NEAR(compare(moved, truth).maxMm, 5, 1e-3);
-    moved = truth;
+    EXPECT_NEAR(compare(moved, groundTruth).rmsMm, 5, 1e-3);
+    EXPECT_NEAR(compare(moved, groundTruth).maxMm, 5, 1e-3);
+    moved = groundTruth;
     moved.points_ws[2].y() += 0.01f;  // one of four: √(10²/4)
-    EXPECT_NEAR(compare(moved, truth).rmsMm, 5, 1e-3);
-    EXPECT_NEAR(compare(moved, truth).maxMm, 10, 1e-3);
-    EXPECT_EQ(compare(truth, truth).maxMm, 0);
+    EXPECT_NEAR(compare(moved, groundTruth).rmsMm, 5, 1e-3);
+    EXPECT_NEAR(compare(moved, groundTruth).maxMm, 10, 1e-3);
+    EXPECT_EQ(compare(groundTruth, groundTruth).maxMm, 0);
 }
 
 TEST(Hair, SharesFollowTheArcLength) {
@@ -165,60 +166,62 @@ Trajectory pendulumTrajectory(const Groom& groom, const Trajectory& like) {
     return exact;
 }
 
-TEST(Truth, APendulumSwingsAsTheEquationSays) {
+TEST(GroundTruth, APendulumSwingsAsTheEquationSays) {
     const Groom groom = pendulum();
     const auto motion = makeRigidMotion("none", groom);
     const SceneTime time{.frames = 30};
-    const auto truth =
+    const auto groundTruth =
         EngineConverged(32).compute(sampleStrands(groom, 1, 1), **motion, time, {{0}, {0.5f, 1}});
-    ASSERT_TRUE(truth.has_value());
-    ASSERT_EQ(truth->trajectory.points_ws.size(), 2u * 30u);
+    ASSERT_TRUE(groundTruth.has_value());
+    ASSERT_EQ(groundTruth->trajectory.points_ws.size(), 2u * 30u);
     // The engine is of first order here, so the change of the last doubling is about the error that is left;
     // the tip swings 400 mm.
-    const TrajectoryError error = compare(truth->trajectory, pendulumTrajectory(groom, truth->trajectory));
+    const TrajectoryError error =
+        compare(groundTruth->trajectory, pendulumTrajectory(groom, groundTruth->trajectory));
     EXPECT_LT(error.maxMm, 3.0);
-    EXPECT_GT(truth->uncertaintyMm, 0.2 * error.rmsMm);
-    EXPECT_LT(truth->uncertaintyMm, 2.0);
-    EXPECT_THAT(truth->detail, HasSubstr("mm at 32"));
+    EXPECT_GT(groundTruth->uncertaintyMm, 0.2 * error.rmsMm);
+    EXPECT_LT(groundTruth->uncertaintyMm, 2.0);
+    EXPECT_THAT(groundTruth->detail, HasSubstr("mm at 32"));
 }
 
-TEST(Truth, TheReferenceSwingsAsTheEquationSays) {
+TEST(GroundTruth, TheReferenceSwingsAsTheEquationSays) {
     const Groom groom = pendulum();
     const auto motion = makeRigidMotion("none", groom);
     const SceneTime time{.frames = 30};
     const ReferenceConverged source;
-    const auto truth = source.compute(sampleStrands(groom, 1, 1), **motion, time, {{0}, {0.5f, 1}});
-    ASSERT_TRUE(truth.has_value());
-    ASSERT_EQ(truth->trajectory.points_ws.size(), 2u * 30u);
-    const TrajectoryError error = compare(truth->trajectory, pendulumTrajectory(groom, truth->trajectory));
+    const auto groundTruth = source.compute(sampleStrands(groom, 1, 1), **motion, time, {{0}, {0.5f, 1}});
+    ASSERT_TRUE(groundTruth.has_value());
+    ASSERT_EQ(groundTruth->trajectory.points_ws.size(), 2u * 30u);
+    const TrajectoryError error =
+        compare(groundTruth->trajectory, pendulumTrajectory(groom, groundTruth->trajectory));
     EXPECT_LT(error.maxMm, 0.01);
-    EXPECT_LT(truth->uncertaintyMm, 0.01);
-    EXPECT_THAT(truth->detail, HasSubstr("1 of 1 strands converged"));
-    EXPECT_THAT(truth->notes, testing::Not(testing::Contains(HasSubstr("energy tank"))));
+    EXPECT_LT(groundTruth->uncertaintyMm, 0.01);
+    EXPECT_THAT(groundTruth->detail, HasSubstr("1 of 1 strands converged"));
+    EXPECT_THAT(groundTruth->notes, testing::Not(testing::Contains(HasSubstr("energy tank"))));
 }
 
-TEST(Truth, TheReferenceSaysWhatItLeavesOut) {
+TEST(GroundTruth, TheReferenceSaysWhatItLeavesOut) {
     Groom groom = straightHair(3, 6);  // level, so that its rest shape carries its weight
     groom.simulation.lengthMethod = runtime::LengthMethod::springs;
     const auto motion = makeRigidMotion("nod", groom);
     const SceneTime time{.frames = 3};
-    const ReferenceConverged source({.strands = 2, .toleranceMm = 1e-9, .mostSubsteps = 4});
-    EXPECT_EQ(source.mostStrands(), 2u);
-    const auto truth = source.compute(sampleStrands(groom, 3, 1), **motion, time, {{0, 2}, {0.5f, 1}});
-    ASSERT_TRUE(truth.has_value()) << truth.error().message();
-    EXPECT_EQ(truth->followed.strands.size(), 2u);
-    EXPECT_EQ(truth->trajectory.points_ws.size(), 3u * 2u * 2u);
-    EXPECT_THAT(truth->detail, HasSubstr("0 of 2 strands converged"));
-    EXPECT_THAT(truth->detail, HasSubstr("last doubling moved"));
+    const ReferenceConverged source({.strands = 2, .toleranceMm = 1e-9, .maxSubsteps = 4});
+    EXPECT_EQ(source.maxStrands(), 2u);
+    const auto groundTruth = source.compute(sampleStrands(groom, 3, 1), **motion, time, {{0, 2}, {0.5f, 1}});
+    ASSERT_TRUE(groundTruth.has_value()) << groundTruth.error().message();
+    EXPECT_EQ(groundTruth->followed.strands.size(), 2u);
+    EXPECT_EQ(groundTruth->trajectory.points_ws.size(), 3u * 2u * 2u);
+    EXPECT_THAT(groundTruth->detail, HasSubstr("0 of 2 strands converged"));
+    EXPECT_THAT(groundTruth->detail, HasSubstr("last doubling moved"));
     for (const char* const note :
          {"does not sleep", "coil springs", "2 of 2 strands are curved", "The engine"})
-        EXPECT_THAT(truth->notes, testing::Contains(HasSubstr(note)));
+        EXPECT_THAT(groundTruth->notes, testing::Contains(HasSubstr(note)));
     groom.simulation.angularStiffness = 1;
     EXPECT_FALSE(source.compute(sampleStrands(groom, 3, 1), **motion, time, {{0}, {1}}).has_value());
 }
 
 /// Only spheres that a strand can reach count, and they do.
-TEST(Truth, TheReferenceMeetsSpheres) {
+TEST(GroundTruth, TheReferenceMeetsSpheres) {
     Groom groom = straightHair(2, 8);
     groom.spheres.push_back({"ball", Vec3f(0.1f, 1.53f, 0), 0.05f, ""});
     groom.spheres.push_back({"far", Vec3f(9, 9, 9), 0.05f, ""});

@@ -32,10 +32,10 @@ StabilityOptions quick() {
 
 std::string told(const StabilityResult& r) {
     std::string text;
-    for (const StabilityMark& m : r.marks) {
+    for (const StabilityThreshold& m : r.thresholds) {
         if (!m.met())
-            text += m.what + " " + std::to_string(m.worst) + " of " + std::to_string(m.mark) + " " + m.unit +
-                    "; ";
+            text += m.what + " " + std::to_string(m.worst) + " of " + std::to_string(m.threshold) + " " +
+                    m.unit + "; ";
     }
     return text;
 }
@@ -57,14 +57,14 @@ TEST_P(HardCaseTest, TheDefaultIntegratorHolds) {
     const StabilityResult result = runHardCase(GetParam(), runtime::SimulationSettings{}.integrator, quick());
     EXPECT_TRUE(result.claimed) << result.limit;
     EXPECT_TRUE(result.pass) << told(result);
-    EXPECT_FALSE(result.marks.empty());
+    EXPECT_FALSE(result.thresholds.empty());
     EXPECT_EQ(result.substeps, runtime::SimulationSettings{}.substeps);
 }
 
 INSTANTIATE_TEST_SUITE_P(Stability, HardCaseTest, testing::ValuesIn(hardCases().begin(), hardCases().end()),
                          [](const auto& tested) { return "Case" + std::to_string(tested.param.number); });
 
-TEST(HardCaseLimits, WhatIsNotClaimedSaysWhyAndWhereItFails) {
+TEST(HardCaseLimits, UnclaimedCasesReportReasonAndLimit) {
     // Explicit Euler at a million times the stiffness; the leapfrog with segments of 0.1 mm.
     const StabilityResult stiff = runHardCase(hardCases()[8], Integrator::explicitEuler, quick());
     EXPECT_FALSE(stiff.claimed);
@@ -78,7 +78,7 @@ TEST(HardCaseLimits, WhatIsNotClaimedSaysWhyAndWhereItFails) {
 
 /// What is promised is kept: a case that fails has its reason in theory, or at the marks of energy and rest
 /// that the integrator does not claim.
-TEST(HardCaseLimits, EveryIntegratorHoldsWhatItClaims) {
+TEST(HardCaseLimits, EveryIntegratorMeetsItsClaims) {
     StabilityOptions options = quick();
     options.stepsAtRest = 10'000;
     options.freeSeconds = 15.0;
@@ -88,11 +88,11 @@ TEST(HardCaseLimits, EveryIntegratorHoldsWhatItClaims) {
     }
 }
 
-TEST(HardCaseLimits, AMarkOfEnergyIsClaimedWhereBendingKnowsOfLengths) {
+TEST(HardCaseLimits, EnergyIsClaimedForCoupledBendingAlone) {
     const auto claims = [](Integrator integrator) {
         const StabilityResult r = runHardCase(hardCases()[14], integrator, quick());
-        const auto rest = std::ranges::find(r.marks, "time to rest", &StabilityMark::what);
-        const auto stretch = std::ranges::find(r.marks, "stretch", &StabilityMark::what);
+        const auto rest = std::ranges::find(r.thresholds, "time to rest", &StabilityThreshold::what);
+        const auto stretch = std::ranges::find(r.thresholds, "stretch", &StabilityThreshold::what);
         return std::pair(rest->claimed, stretch->claimed);
     };
     EXPECT_EQ(claims(Integrator::verlet), std::pair(true, true));
@@ -111,7 +111,7 @@ void PrintTo(const BorderCase& printed, std::ostream* out) {
 class Border : public testing::TestWithParam<BorderCase> {};
 
 /// On both sides of ω h = 2 and 2√2, for soft and stiff springs.
-TEST_P(Border, IsWhereTheoryHasIt) {
+TEST_P(Border, MatchesTheory) {
     const auto [integrator, force] = GetParam();
     const double limit = integrator == Integrator::rk4 ? 2.0 * std::numbers::sqrt2 : 2.0;
     ASSERT_DOUBLE_EQ(theoreticalLimit(integrator, force), limit);
@@ -176,23 +176,23 @@ TEST(StabilityMaps, AgreeWithTheoryAndAreDrawn) {
     EXPECT_THAT(drawing, HasSubstr("theory"));
 }
 
-TEST(StabilityReports, NameTheMarkThatDecides) {
+TEST(StabilityReports, NameTheDecidingThreshold) {
     StabilityResult r;
     r.number = 4;
     r.name = "a \"case\", quoted";
     r.integrator = "verlet";
     r.substeps = 8;
-    r.marks = {{"stretch", "%", 0.5, 1.0},
-               {"penetration", "mm", 0.7, 0.5},
-               {"points or strands lost", "", 0.0, 0.0}};
+    r.thresholds = {{"stretch", "%", 0.5, 1.0},
+                    {"penetration", "mm", 0.7, 0.5},
+                    {"points or strands lost", "", 0.0, 0.0}};
     r.pass = false;
-    EXPECT_EQ(decidingMark(r), "penetration 0.7 of 0.5 mm");
+    EXPECT_EQ(decidingThreshold(r), "penetration 0.7 of 0.5 mm");
     EXPECT_EQ(verdict(r), "FAIL");
     EXPECT_THAT(stabilityCsv({r}),
                 HasSubstr("4,\"a \"\"case\"\", quoted\",,verlet,8,1,0,penetration,0.7,0.5,mm,,"));
     EXPECT_THAT(stabilityMarkdown({r}), HasSubstr("| FAIL: penetration 0.7 of 0.5 mm |"));
-    r.marks[1].worst = std::nan("");
-    EXPECT_FALSE(r.marks[1].met());
+    r.thresholds[1].worst = std::nan("");
+    EXPECT_FALSE(r.thresholds[1].met());
     EXPECT_EQ(r.closest().what, "penetration");
 }
 

@@ -13,10 +13,10 @@ namespace hairloom {
 namespace {
 
 using runtime::StageId;
-using scenes::Acting;
+using scenes::ActiveForces;
 
 TEST(StepCost, WithAllEffectsOffRootsAndIntegratorAreLeft) {
-    StepRun run({.strands = 40, .acting = Acting::nothing});
+    StepRun run({.strands = 40, .activeForces = ActiveForces::nothing});
     run.milliseconds(2);
     const auto stages = run.engine().plan().stages();
     ASSERT_EQ(stages.size(), 2u);
@@ -26,7 +26,7 @@ TEST(StepCost, WithAllEffectsOffRootsAndIntegratorAreLeft) {
 }
 
 TEST(StepCost, HairTouchesTheSpheresInTheWind) {
-    StepRun run({.strands = 200, .acting = Acting::windAndSpheres});
+    StepRun run({.strands = 200, .activeForces = ActiveForces::windAndSpheres});
     run.milliseconds(20);
     using runtime::Effect;
     for (const Effect effect : {Effect::wind, Effect::collision, Effect::angular, Effect::torsion,
@@ -38,7 +38,7 @@ TEST(StepCost, HairTouchesTheSpheresInTheWind) {
 }
 
 TEST(StepCost, StagesAreThoseOfThePlanAndPartOfTheStep) {
-    StepRun run({.strands = 100, .acting = Acting::gravity, .byStage = true});
+    StepRun run({.strands = 100, .activeForces = ActiveForces::gravity, .byStage = true});
     for (int f = 0; f < 5; ++f) {
         const double step = run.milliseconds(1);
         const auto& stages = run.stageMilliseconds();

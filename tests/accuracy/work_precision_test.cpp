@@ -57,7 +57,7 @@ TEST(WorkPrecision, MoreWorkIsMorePrecise) {
     EXPECT_EQ(last, total);
     EXPECT_EQ(result->strands, 4u);
     EXPECT_EQ(result->groomStrands, 6u);
-    EXPECT_EQ(result->truthPoints, 12u);
+    EXPECT_EQ(result->groundTruthPoints, 12u);
     ASSERT_EQ(result->runs.size(), 4u);
     for (const WorkPrecisionRun& run : result->runs) {
         EXPECT_FALSE(run.diverged);
@@ -128,7 +128,7 @@ WorkPrecision known() {
     result.options.axes = {{"integrator", {0, 5}}, {"substeps", {1, 8}}};
     result.groomStrands = 40;
     result.strands = 4;
-    result.truthName = "made";
+    result.groundTruthName = "made";
     result.runs.push_back({{0, 1}, false, {0.5, 1, 2}, {4, 8}, true, 1});
     result.runs.push_back({{0, 8}, false, {4, 5, 6}, {0.25, 0.5}, true, 2});
     result.runs.push_back({{5, 1}, true, {}, {}, false, 3});
@@ -191,7 +191,7 @@ TEST(Report, AllFilesAreWrittenAndThePageStandsAlone) {
     fs::remove_all(folder.parent_path());
 }
 
-TEST(EffectCosts, EveryEffectSaysWhyAndWhatItCosts) {
+TEST(EffectCosts, EveryEffectReportsReasonAndCost) {
     Groom groom = straightHair(6, 8);
     groom.simulation.windSpeed = 2;
     const auto motion = makeRigidMotion("none", groom);
@@ -219,7 +219,7 @@ TEST(EffectCosts, EveryEffectSaysWhyAndWhatItCosts) {
     EXPECT_GE(on, 4u);
 }
 
-TEST(EffectCosts, CollisionIsTurnedOffByTakingTheSpheresAway) {
+TEST(EffectCosts, WithoutSpheresCollisionIsOff) {
     Groom groom = straightHair(6, 8);
     groom.spheres.push_back({"ball", Vec3f(0.1f, 1.45f, 0), 0.1f, ""});
     const auto motion = makeRigidMotion("none", groom);

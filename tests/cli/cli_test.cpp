@@ -77,7 +77,7 @@ TEST_F(Cli, StabilityWritesItsCasesAndMaps) {
         EXPECT_TRUE(fs::exists(folder / "out" / file)) << file;
 }
 
-TEST_F(Cli, CreateReportsWhatItMade) {
+TEST_F(Cli, CreateReportsItsResult) {
     const auto report = runJson(createArguments());
     EXPECT_EQ(report["strands"], 300);
     EXPECT_EQ(report["points"], 300 * 12);
@@ -211,7 +211,7 @@ TEST_F(Cli, AccuracyMeasuresAGridAndWritesAReport) {
     EXPECT_FALSE(fs::exists(folder / "bad"));
 }
 
-TEST_F(Cli, EffectsSayWhyAndWhatTheyCost) {
+TEST_F(Cli, EffectsReportReasonAndCost) {
     runJson(createArguments());
     const auto report = runJson("effects hair.hairloom --frames 4 --repeat 1 --motion nod");
     std::map<std::string, nlohmann::json> effects;
@@ -312,7 +312,7 @@ TEST_F(Cli, PresetsSetWhatAFibreIsMadeOf) {
     EXPECT_EQ(run("set hair.hairloom --preset angora -o hair.hairloom").exitCode, 2);
 }
 
-TEST_F(Cli, BenchMeasuresTheEngineBesideTheThesis) {
+TEST_F(Cli, BenchComparesTheEngineWithTheThesis) {
     const auto report = runJson("bench sim --quick --strands 40 --repeat 2 --markdown tables.md");
     std::set<std::string> names;
     double printed = 0.0;
@@ -337,7 +337,7 @@ TEST_F(Cli, BenchMeasuresTheEngineBesideTheThesis) {
     EXPECT_EQ(run("bench io --quick").exitCode, 1) << "of sim alone";
 }
 
-TEST_F(Cli, RenderWritesAPictureAndSaysWhatItCost) {
+TEST_F(Cli, RenderWritesAPictureAndReportsCosts) {
     runJson(createArguments());
     const auto report = runJson("render hair.hairloom -o hair.png --size 160x120 --camera front");
     EXPECT_FALSE(report["device"].get<std::string>().empty());

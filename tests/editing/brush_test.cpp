@@ -20,7 +20,7 @@ class EveryBrush : public testing::TestWithParam<std::string_view> {
 INSTANTIATE_TEST_SUITE_P(Brushes, EveryBrush, testing::ValuesIn(brushNames().begin(), brushNames().end()),
                          [](const auto& test) { return std::string(test.param); });
 
-TEST_P(EveryBrush, DoesUndoesAndDoesAgain) {
+TEST_P(EveryBrush, UndoAndRedoRestoreTheState) {
     Document document(hairOnHead());
     const std::uint64_t before = contentHash(document.groom());
     ASSERT_TRUE(document.replay(strokeFor(GetParam())));
@@ -36,7 +36,7 @@ TEST_P(EveryBrush, DoesUndoesAndDoesAgain) {
     }
 }
 
-TEST_P(EveryBrush, CancelsWithoutTrace) {
+TEST_P(EveryBrush, CancelRestoresTheState) {
     Document document(hairOnHead());
     const std::uint64_t before = contentHash(document.groom());
     const Stroke stroke = strokeFor(GetParam());
@@ -131,7 +131,7 @@ TEST_P(EveryBrush, DoesNothingFarAway) {
     EXPECT_FALSE(document.canUndo());
 }
 
-TEST_P(EveryBrush, RefusesADabThatIsNoPlace) {
+TEST_P(EveryBrush, RefusesInvalidDabs) {
     Document document(hairOnHead());
     ASSERT_TRUE(document.beginStroke(strokeFor(GetParam())));
     Dab dab = strokeFor(GetParam()).dabs[0];

@@ -159,7 +159,7 @@ class EveryCommand : public testing::TestWithParam<Action> {};
 INSTANTIATE_TEST_SUITE_P(Commands, EveryCommand, testing::ValuesIn(actions()),
                          [](const auto& test) { return std::string(test.param.name); });
 
-TEST_P(EveryCommand, DoesUndoesAndDoesAgain) {
+TEST_P(EveryCommand, UndoAndRedoRestoreTheState) {
     Groom groom = hairOnHead(100, 6);
     groom.spheres = {{"Arm_L", Vec3f(0.1f, 1.5f, 0), 0.05f, "arm_L"}};
     groom.strandAttributes.set(attribute::kHidden, std::vector<std::uint8_t>(100, 0));
@@ -305,7 +305,7 @@ TEST(Records, NameWhatIsWrong) {
                 HasSubstr("/operations/0/settings/specular is 9"));
 }
 
-TEST(Commands, ThatWouldChangeNothingAreNone) {
+TEST(Commands, NoChangeMakesNoCommand) {
     Document document(hairOnHead(20));
     const Model& model = document.model();
     EXPECT_EQ(setMaterial(model, model.groom.material), nullptr);
@@ -320,7 +320,7 @@ TEST(Commands, ThatWouldChangeNothingAreNone) {
     EXPECT_FALSE(document.canUndo());
 }
 
-TEST(Commands, SelectStrandsInEveryWay) {
+TEST(Commands, SelectHideFreezeAndDelete) {
     Document document(hairOnHead(10));
     const auto selected = [&] { return strandsWithFlag(document.groom(), attribute::kSelected); };
     document.perform(selectStrands(document.model(), Strands{1, 2, 3}, Choice::Replace));

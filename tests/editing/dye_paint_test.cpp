@@ -103,16 +103,16 @@ TEST(DyePaint, SmoothingBringsTheMaskToItsMean) {
     TopStrand top;
     ASSERT_TRUE(top.document.replay(top.at("dye_paint", {top.points()[8]}, 0.02f)));
     const auto spread = [&] {
-        float least = 1, most = 0;
+        float minimum = 1, maximum = 0;
         const Groom& groom = top.document.groom();
         const auto mask = groom.pointAttributes.view<float>(attribute::kPointDye);
         for (std::size_t p = 0; p < 16; ++p) {
             if ((top.points()[p] - top.points()[8]).norm() > 0.025f) continue;
             const float value = mask[groom.offsets[top.strand] + p];
-            least = std::min(least, value);
-            most = std::max(most, value);
+            minimum = std::min(minimum, value);
+            maximum = std::max(maximum, value);
         }
-        return most - least;
+        return maximum - minimum;
     };
     const float before = spread();
     ASSERT_GT(before, 0.5f);

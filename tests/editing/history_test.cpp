@@ -50,7 +50,7 @@ TEST(History, HoldsOnlyWhatAStrokeTouched) {
     EXPECT_LT(large.history().bytes(), small.history().bytes() / 4);
 }
 
-TEST(History, TellsSavedFromModified) {
+TEST(History, DistinguishesSavedFromModified) {
     const TemporaryFolder folder;
     Document document(hairOnHead());
     EXPECT_FALSE(document.isModified());
@@ -68,7 +68,7 @@ TEST(History, TellsSavedFromModified) {
     EXPECT_FALSE((*opened)->isModified());
 }
 
-TEST(Observers, HearOfDabsStepsAndNothingAfterTheyLeft) {
+TEST(Observers, AreNotifiedUntilTheyUnsubscribe) {
     Document document(hairOnHead());
     std::vector<Part> heard;
     std::size_t touched = 0;

@@ -10,7 +10,7 @@
 namespace hairloom::editing {
 namespace {
 
-TEST(SphereFit, FindsTheSphereThatAHeadIs) {
+TEST(SphereFit, FitsASphericalHead) {
     const auto head = sphereScalp(kHeadRadius, 4, kHeadCentre);
     SphereFitOptions options;
     options.count = 1;
@@ -74,7 +74,7 @@ TEST(SphereFit, MeasuresTheGapThatItSays) {
     EXPECT_NEAR(fit.worstGapAt_ss.y(), kHeadCentre.y() - kHeadRadius, 1e-6f);
 }
 
-TEST(SphereFit, RefusesWhatItCannotDo) {
+TEST(SphereFit, RefusesInvalidInput) {
     const auto head = sphereScalp();
     SphereFitOptions options;
     options.count = 0;

@@ -56,7 +56,7 @@ class EffectsTest : public WindowTest {
     }
 };
 
-TEST_F(EffectsTest, ThePanelSaysWhatWouldRunBeforeItPlays) {
+TEST_F(EffectsTest, PanelPreviewsThePlanBeforePlaying) {
     ASSERT_TRUE(waitForRow("wind"));
     EXPECT_FALSE(session().player.frame());
     EXPECT_TRUE(isOn("wind"));
@@ -67,7 +67,7 @@ TEST_F(EffectsTest, ThePanelSaysWhatWouldRunBeforeItPlays) {
     EXPECT_TRUE(QTest::qWaitFor([&] { return !isOn("wind"); }, 20'000)) << "follows the settings";
 }
 
-TEST_F(EffectsTest, AnEffectIsLeftOutForATryAndTheDocumentStays) {
+TEST_F(EffectsTest, DisablingAnEffectForNowKeepsTheDocument) {
     ASSERT_TRUE(waitForRow("wind"));
     const auto before = hash();
     ASSERT_TRUE(play(0.1));
@@ -88,7 +88,7 @@ TEST_F(EffectsTest, AnEffectIsLeftOutForATryAndTheDocumentStays) {
     EXPECT_EQ(hash(), before);
 }
 
-TEST_F(EffectsTest, WhatWasTriedCanBeKept) {
+TEST_F(EffectsTest, TemporaryChangeCanBeApplied) {
     ASSERT_TRUE(waitForRow("wind"));
     const auto before = hash();
     row("wind")->setCheckState(0, Qt::Unchecked);
@@ -99,7 +99,7 @@ TEST_F(EffectsTest, WhatWasTriedCanBeKept) {
     EXPECT_EQ(hash(), before);
 }
 
-TEST_F(EffectsTest, TheGaugeThatWasNotSeenLooksWhenItIsShown) {
+TEST_F(EffectsTest, HiddenGaugeRefreshesWhenShown) {
     auto* const gauge = window->findChild<StabilityGauge*>();
     ASSERT_TRUE(gauge);
     const auto factor = [&] { return gauge->advice().region.factor; };
@@ -107,7 +107,7 @@ TEST_F(EffectsTest, TheGaugeThatWasNotSeenLooksWhenItIsShown) {
     const double before = factor();
     Groom explicitly = groom();
     explicitly.simulation.integrator = runtime::Integrator::velocityVerlet;
-    explicitly.simulation.angularMethod = runtime::AngularMethod::cheap;
+    explicitly.simulation.angularMethod = runtime::AngularMethod::smallAngle;
     document().change("Integrator", Change::Simulation, explicitly);
     QTest::qWait(300);
     EXPECT_EQ(factor(), before);

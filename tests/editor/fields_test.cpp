@@ -77,7 +77,7 @@ TEST_F(FieldsTest, LengthsAreShownInTheUnitOfThePreferences) {
     EXPECT_EQ(document().stepCount(), 0) << "showing is no change";
 }
 
-TEST_F(FieldsTest, ChoicesAndStandards) {
+TEST_F(FieldsTest, ChoicesAndDefaults) {
     auto* integrator = find<QComboBox>("integrator");
     Q_EMIT integrator->activated(5);
     EXPECT_EQ(groom().simulation.integrator, runtime::Integrator::rk4);
@@ -92,7 +92,7 @@ TEST(FieldTest, ColoursGoToTheScreenAndBack) {
     EXPECT_NEAR(toLinear(QColor::fromRgbF(0.5f, 0.5f, 0.5f)).x(), 0.2140f, 1e-3f);
 }
 
-TEST(FieldTest, LabelsAreWords) {
+TEST(FieldTest, LabelsAreReadable) {
     EXPECT_EQ(labelOf("windGustSize"), "Wind gust size");
 }
 

@@ -51,7 +51,7 @@ TEST_F(ShellTest, WhatIsSavedOpensAgainWithTheSameHash) {
     EXPECT_EQ(session().preferences.recentFiles().value(0), inFolder("a.hairloom"));
 }
 
-TEST_F(ShellTest, AFileThatCannotBeReadIsToldInTheStatusLineAndChangesNothing) {
+TEST_F(ShellTest, UnreadableFileIsReportedAndChangesNothing) {
     openSampleHair("short");
     const auto before = hash();
     QFile file(inFolder("broken.hair"));
@@ -195,7 +195,7 @@ TEST_F(ShellTest, TheHistoryPanelSaysHowMuchMemoryUndoHolds) {
     EXPECT_GT(document().historyBytes(), groom().pointCount() * sizeof(Vec3f) - 1);
 }
 
-TEST_F(ShellTest, AnEmptyWindowOffersNothingThatWouldDoNothing) {
+TEST_F(ShellTest, EmptyWindowDisablesUselessActions) {
     EXPECT_FALSE(window->actions().get("file.save").isEnabled());
     EXPECT_FALSE(window->actions().get("tool.comb").isEnabled());
     EXPECT_FALSE(window->panel("look")->widget()->isEnabled());

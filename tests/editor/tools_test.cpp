@@ -64,7 +64,7 @@ TEST_P(BrushToolTest, AStrokeChangesHairAndIsOneStep) {
     strokeAndBack(GetParam());
 }
 
-TEST_P(BrushToolTest, EscapeLeavesNothing) {
+TEST_P(BrushToolTest, EscapeCancelsTheStroke) {
     auto& tool = dynamic_cast<BrushTool&>(activate(GetParam()));
     tool.setRadius(0.03f);
     const auto before = hash();

@@ -155,7 +155,7 @@ TEST_F(ViewportTest, BothOrbitStylesTurnMoveAndZoom) {
 }
 
 /// A stroke hands the renderer what it moves; the groom is handed over whole when the comparison changes.
-TEST_F(PictureTest, HairThatABrushMovesLooksLikeHairHandedOverWhole) {
+TEST_F(PictureTest, PartialUpdateRendersLikeAFullUpload) {
     if (viewport().presents()) GTEST_SKIP() << "pictures are not read back";
     window->resize(640, 400);
     openGuides();
@@ -221,7 +221,7 @@ TEST_F(ViewportTest, PicksHitWhatAnOrthographicViewShows) {
 }
 
 /// The renderer's view and the pointer's are one.
-TEST_F(PictureTest, MarksStandWhereTheCameraProjectsThem) {
+TEST_F(PictureTest, MarkersStandWhereTheCameraProjectsThem) {
     if (viewport().presents()) GTEST_SKIP() << "pictures are not read back";
     openBust();
     const Vec3f middle = viewport().camera().target_ws();
@@ -335,7 +335,7 @@ TEST_F(PictureTest, AWindowOfTheDeviceShowsTheHead) {
     EXPECT_GT((viewport().camera().camera().eye_ws - eye).norm(), 0.01f);
 }
 
-TEST_F(ViewportTest, PlayingMovesTheHairAndResettingPutsItBack) {
+TEST_F(ViewportTest, PlayingMovesTheHairAndResettingRestoresIt) {
     openSampleHair("short");
     const auto authored = hash();
     Groom windy = groom();

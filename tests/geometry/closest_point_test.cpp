@@ -54,7 +54,7 @@ TEST(SurfaceTree, ClosestAgreesWithAllTriangles) {
     }
 }
 
-TEST(SurfaceTree, SignTellsInsideOfASharpSolid) {
+TEST(SurfaceTree, SignIsCorrectInsideASharpSolid) {
     // A thin wedge: at its sharp edges the sign of one face's normal alone is wrong for many points.
     PolygonSoup soup;
     soup.positions = {{-1, 0, -1}, {1, 0, -1}, {0, 0, 1}, {0, 0.2f, 0}};

@@ -117,7 +117,7 @@ TEST_F(ComputeTest, IndirectArgumentsCountGroups) {
     EXPECT_EQ(result[128], 0u);
 }
 
-TEST_F(ComputeTest, WhatIsLetGoLivesUntilTheDeviceIsDone) {
+TEST_F(ComputeTest, ReleasedResourcesLiveUntilTheDeviceIsDone) {
     BufferPtr in = buffer(std::vector<std::uint32_t>(1u << 20u, 1u));
     BufferPtr out = buffer(std::vector<std::uint32_t>(1u << 20u, 0u));
     auto list = device->createCommandList().value();

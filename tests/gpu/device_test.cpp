@@ -13,7 +13,7 @@ TEST(Devices, AtLeastOneCanBeUsed) {
     for (const DeviceInfo& info : *devices) {
         EXPECT_EQ(info.index, index++);
         EXPECT_FALSE(info.name.empty());
-        EXPECT_EQ(info.usable, info.whyUnusable.empty());
+        EXPECT_EQ(info.usable, info.unusableReason.empty());
         if (!info.usable) continue;
         usable = true;
         EXPECT_EQ(info.sampleCounts.front(), 1u);
@@ -52,7 +52,7 @@ TEST(Devices, ResourcesMayOutliveTheDevice) {
     buffer.reset();
 }
 
-TEST_F(GpuTest, BuffersComeBackAsTheyWent) {
+TEST_F(GpuTest, BuffersKeepTheirContent) {
     Random random(3);
     for (const std::size_t count : {1u, 7u, 1000u, 3000000u}) {
         std::vector<std::uint32_t> content(count);
@@ -79,14 +79,14 @@ class RoundTrip : public GpuTest {
     }
 };
 
-TEST_F(RoundTrip, TexturesComeBackAsTheyWent) {
+TEST_F(RoundTrip, TexturesKeepTheirContent) {
     for (const Format format : {Format::Rgba8Unorm, Format::Rgba16Unorm, Format::Rgba32Float})
         expectRoundTrip(format);
 }
 
 /// Rows of no whole number of words: Wine 8 loses all but the first through its Vulkan renderer
 /// (docs/windows.md).
-TEST_F(RoundTrip, RowsOfOddBytesComeBackAsTheyWent) {
+TEST_F(RoundTrip, OddRowSizesKeepTheirContent) {
     expectRoundTrip(Format::R8Unorm);
 }
 

@@ -114,12 +114,12 @@ TEST(BendReduction, LosesNoMoreThanSubstitution) {
                 for (double& factor : *factors) factor = static_cast<double>(static_cast<float>(factor));
             }
             const Eigen::VectorXf side = pull.cast<float>();
-            const auto truth = substituted<double>(factored, side, kFirst);
+            const auto groundTruth = substituted<double>(factored, side, kFirst);
             const auto found = solvedByLanes(reduce(factored.between(kFirst, kPoints), kPoints), side);
             const auto other = substituted<float>(factored, side, kFirst);
             for (std::uint32_t p = kFirst; p < kPoints; ++p) {
-                byLanes += std::abs(static_cast<double>(found[p]) - truth[p]);
-                bySubstitution += std::abs(static_cast<double>(other[p]) - truth[p]);
+                byLanes += std::abs(static_cast<double>(found[p]) - groundTruth[p]);
+                bySubstitution += std::abs(static_cast<double>(other[p]) - groundTruth[p]);
             }
         }
         EXPECT_GT(bySubstitution, 0.0);
@@ -138,12 +138,12 @@ TEST(BendReduction, SolvesAsADenseMatrixDoes) {
                     const Factored factored(matrix);
                     Eigen::VectorXf side = Eigen::VectorXf::Zero(points);
                     for (std::uint32_t p = first; p < end; ++p) side[p] = about(engine);
-                    const Eigen::VectorXd truth = matrix.ldlt().solve(side.cast<double>());
+                    const Eigen::VectorXd groundTruth = matrix.ldlt().solve(side.cast<double>());
                     const Eigen::VectorXf found =
                         solvedByLanes(reduce(factored.between(first, end), points), side);
                     // Elimination of a positive definite matrix loses no more than its condition.
                     const double loss = 1e-6 * (1.0 + 0.02 * stiffness * points);
-                    EXPECT_LE((found.cast<double>() - truth).norm(), loss * side.norm())
+                    EXPECT_LE((found.cast<double>() - groundTruth).norm(), loss * side.norm())
                         << points << " points from " << first << " to " << end << ", " << stiffness;
                 }
             }

@@ -52,8 +52,8 @@ class Dice {
     Float3 inside(float radius) {
         return {between(-radius, radius), between(-radius, radius), between(-radius, radius)};
     }
-    Quat turn(float most) {
-        Quat q{between(-most, most), between(-most, most), between(-most, most), 1.0f};
+    Quat turn(float maximum) {
+        Quat q{between(-maximum, maximum), between(-maximum, maximum), between(-maximum, maximum), 1.0f};
         runtime::normalize(q);
         return q;
     }
@@ -117,7 +117,7 @@ inline void fillSpareLanes(const runtime::RestShape& shape, runtime::State& stat
 /// Moves every point of the state off its rest place and gives it a speed. Nasty states have points in one
 /// place, folds by 180° and a point that flies at 500 m/s.
 /// Others are off by up to `most` metres along each axis, and move in proportion, at 3 m/s for 2 mm.
-inline void disturb(Scene& scene, Hair hair, Dice& dice, float most = 0.002f) {
+inline void disturb(Scene& scene, Hair hair, Dice& dice, float maximum = 0.002f) {
     const std::vector<Seat> seats = seatsOf(*scene.shape);
     for (std::uint32_t strand = 0; strand < seats.size(); ++strand) {
         const runtime::Block& block = scene.shape->blocks[seats[strand].block];
@@ -126,8 +126,8 @@ inline void disturb(Scene& scene, Hair hair, Dice& dice, float most = 0.002f) {
         for (std::uint32_t p = scene.settings.clampedPoints; p < block.points; ++p) {
             const std::size_t i = std::size_t{p} * runtime::kBlockLanes + seats[strand].lane;
             const std::size_t before = i - runtime::kBlockLanes;
-            const Float3 shift = dice.inside(hair == Hair::nasty ? 0.01f : most);
-            const Float3 moved = dice.inside(3.0f * kStep * most / 0.002f);
+            const Float3 shift = dice.inside(hair == Hair::nasty ? 0.01f : maximum);
+            const Float3 moved = dice.inside(3.0f * kStep * maximum / 0.002f);
             const bool odd = hair == Hair::nasty && p > 2;
             for (std::size_t k = 0; k < 3; ++k) {
                 float& place = planes[k * size + i];
@@ -144,7 +144,7 @@ inline void disturb(Scene& scene, Hair hair, Dice& dice, float most = 0.002f) {
 
 /// A scene of 64 strands whose roots move and turn, about three spheres of which one moves.
 inline Scene makeScene(const runtime::SimulationSettings& settings, Hair hair, std::uint32_t seed,
-                       std::span<const std::uint32_t> points, float most = 0.002f) {
+                       std::span<const std::uint32_t> points, float maximum = 0.002f) {
     Scene scene;
     scene.settings = settings;
     Dice dice(seed);
@@ -167,7 +167,7 @@ inline Scene makeScene(const runtime::SimulationSettings& settings, Hair hair, s
             runtime::placeAtRest(shape, state, b, lane);
         }
     }
-    disturb(scene, hair, dice, most);
+    disturb(scene, hair, dice, maximum);
     scene.spheres = {
         {{0.0f, -0.05f, 0.0f}, 0.06f}, {{0.05f, -0.1f, 0.02f}, 0.05f}, {{-0.1f, 0.0f, 0.0f}, 0.03f}};
     state.spheres = scene.spheres;
@@ -189,18 +189,18 @@ struct CpuFrame {
         runtime::takeSpheres(scene.settings, shape.longestStrand, scene.state.spheres, scene.spheres,
                              spheres);
         wind.wind = runtime::makeWind(scene.settings);
-        runtime::FrameOutlook outlook;
-        outlook.strandCount = 64;
-        outlook.longestPointCount = shape.longestPointCount;
-        outlook.longestStrand = shape.longestStrand;
-        outlook.straight = shape.straight;
-        outlook.sharpestCurl = shape.sharpestCurl;
-        outlook.unevenness = shape.unevenness;
-        outlook.substep = kStep;
-        outlook.rootsMin_ws = {-1.0f, -1.0f, -1.0f};
-        outlook.rootsMax_ws = {1.0f, 1.0f, 1.0f};
-        outlook.fastest = std::numeric_limits<float>::infinity();
-        plan = runtime::planFrame(scene.settings, outlook, wind, spheres.usable, spheres.motion, dt);
+        runtime::FrameOutlook planInput;
+        planInput.strandCount = 64;
+        planInput.longestPointCount = shape.longestPointCount;
+        planInput.longestStrand = shape.longestStrand;
+        planInput.straight = shape.straight;
+        planInput.maxCurvature = shape.maxCurvature;
+        planInput.massRatio = shape.massRatio;
+        planInput.substep = kStep;
+        planInput.rootsMin_ws = {-1.0f, -1.0f, -1.0f};
+        planInput.rootsMax_ws = {1.0f, 1.0f, 1.0f};
+        planInput.fastest = std::numeric_limits<float>::infinity();
+        plan = runtime::planFrame(scene.settings, planInput, wind, spheres.usable, spheres.motion, dt);
         if (plan.on(runtime::Effect::collision))
             runtime::moveSpheres(spheres, scene.settings.substeps, moving);
         context = runtime::substepContext(scene.settings, plan, dt, moving);
@@ -215,7 +215,7 @@ inline void fillLanes(const Scene& scene, std::size_t b, runtime::LaneFrame& lan
         const float turns[] = {to.rotation.x, to.rotation.y, to.rotation.z, to.rotation.w};
         for (std::size_t k = 0; k < 3; ++k) {
             lanes.root[k][lane] = rows[k * runtime::kBlockLanes + lane];
-            lanes.rootStep[k][lane] =
+            lanes.rootDisplacement[k][lane] =
                 (ends[k] - lanes.root[k][lane]) * (1.0f / static_cast<float>(scene.settings.substeps));
         }
         for (std::size_t k = 0; k < 4; ++k) {
@@ -250,7 +250,7 @@ inline runtime::State runOnCpu(const Scene& scene) {
         bend.planes.assign(shape.planeFloats * bend.planeCount(), 0.0f);
     if (frame.plan.keepsCurves()) {
         state.curves.assign(shape.planeFloats * 3, 0.0f);
-        state.tanks.assign(shape.blocks.size() * runtime::kBlockLanes, runtime::kNoCurve);
+        state.energyTanks.assign(shape.blocks.size() * runtime::kBlockLanes, runtime::kNoCurve);
         state.motions.assign(shape.blocks.size() * runtime::kBlockLanes, 0.0f);
     }
     if (frame.plan.keepsTensions()) state.tensions.assign(shape.planeFloats, 0.0f);
@@ -280,7 +280,8 @@ inline runtime::State runOnCpu(const Scene& scene) {
         for (std::uint32_t lane = 0; lane < runtime::kBlockLanes; ++lane) {
             for (std::size_t k = 0; k < 3; ++k) {
                 float* const rows = state.roots.data() + b * runtime::kRootRows * runtime::kBlockLanes + lane;
-                rows[k * runtime::kBlockLanes] += lanes.rootStep[k][lane] * static_cast<float>(context.count);
+                rows[k * runtime::kBlockLanes] +=
+                    lanes.rootDisplacement[k][lane] * static_cast<float>(context.count);
             }
             for (std::size_t k = 0; k < 4; ++k)
                 state.roots[(b * runtime::kRootRows + 3 + k) * runtime::kBlockLanes + lane] =
@@ -310,7 +311,7 @@ inline Distance distanceOf(const Scene& scene, const runtime::State& a, const ru
         };
         for (std::uint32_t lane = 0; lane < block.strands; ++lane) {
             double greatest = 0.0;
-            float most = 1.0f;
+            float maximum = 1.0f;
             for (std::uint32_t p = 0; p < block.points; ++p) {
                 const std::size_t i = std::size_t{p} * runtime::kBlockLanes + lane;
                 const Float3 place = at(a, 0, i), other = at(b, 0, i);
@@ -318,9 +319,9 @@ inline Distance distanceOf(const Scene& scene, const runtime::State& a, const ru
                 if (isFinite(place) != isFinite(other)) ++distance.lost;
                 greatest = std::max({greatest, static_cast<double>(length(place - other)),
                                      static_cast<double>(length(moved - otherMoved))});
-                most = std::max({most, length(other), length(otherMoved)});
+                maximum = std::max({maximum, length(other), length(otherMoved)});
             }
-            distance.strands[block.strandOfLane[lane]] = greatest / static_cast<double>(most);
+            distance.strands[block.strandOfLane[lane]] = greatest / static_cast<double>(maximum);
         }
     }
     return distance;

@@ -34,13 +34,13 @@ class Follow : public GpuSimulationTest {
             device()->readBuffer(gpuHairs->positions_ws(), 0, std::as_writable_bytes(std::span(found))));
         std::vector<Float3> wanted(points);
         runtime::FollowHairs::make(view).hairs->evaluate(motion, wanted);
-        double most = 0.0;
+        double maximum = 0.0;
         for (std::size_t p = 0; p < points; ++p) {
             const Float3 place{found[p].x, found[p].y, found[p].z};
-            most = std::max(most, static_cast<double>(length(place - wanted[p])));
+            maximum = std::max(maximum, static_cast<double>(length(place - wanted[p])));
             EXPECT_EQ(found[p].w, 1.0f);
         }
-        return most;
+        return maximum;
     }
 };
 
@@ -75,7 +75,7 @@ TEST_F(Follow, GuidesAtRestOrWithoutLengthAreFollowed) {
     EXPECT_LE(distance(lawn.view(), motion), kTolerance);
 }
 
-TEST_F(Follow, TheEnginesPlacesAreTaken) {
+TEST_F(Follow, EnginePositionsAreUsed) {
     const scenes::Lawn lawn(40, 3, 6, 0.5f);
     EngineOptions engineOptions = options();
     engineOptions.velocities = true;

@@ -10,7 +10,7 @@ namespace {
 class HardCases : public GpuSimulationTest, public testing::WithParamInterface<std::size_t> {};
 
 /// What the engine on the CPU holds, the device holds too.
-TEST_P(HardCases, WhatTheCpuHoldsTheDeviceHolds) {
+TEST_P(HardCases, DeviceMeetsTheCpusHardCases) {
     ASSERT_LT(GetParam(), hardCases().size());
     const HardCase& hardCase = hardCases()[GetParam()];
     StabilityOptions quick;
@@ -20,11 +20,11 @@ TEST_P(HardCases, WhatTheCpuHoldsTheDeviceHolds) {
     if (!runHardCase(hardCase, runtime::Integrator::verlet, quick).pass)
         GTEST_SKIP() << "the CPU does not hold it either";
     StabilityOptions onDevice = quick;
-    onDevice.engines = gpuTrialEngines(*device(), library());
+    onDevice.engines = gpuHardCaseEngines(*device(), library());
     const StabilityResult result = runHardCase(hardCase, runtime::Integrator::verlet, onDevice);
     EXPECT_TRUE(result.pass) << result.number << " " << result.name << ": " << result.closest().what << " "
                              << result.closest().worst << " " << result.closest().unit << ", mark "
-                             << result.closest().mark;
+                             << result.closest().threshold;
 }
 
 constexpr std::size_t kCases = 25;

@@ -119,7 +119,7 @@ TEST_F(Permutation, ManySpheresStandInABuffer) {
 TEST_F(Permutation, KernelsOfTheProgramAreThoseOfDefaultPlans) {
     KernelLibrary own(*device(), {});
     SimulationSettings s;
-    runtime::SceneDescription scene;
+    runtime::PlanInput scene;
     scene.settings = s;
     scene.strandCount = 1;
     scene.longestPointCount = 16;

@@ -146,9 +146,9 @@ inline Eigen::MatrixXd Bodies::stiffness(std::size_t s, const Places& places) co
 }
 
 inline double farthest(const Places& a, const Places& b, std::size_t first) {
-    double most = 0.0;
-    for (std::size_t p = first; p < a.size(); ++p) most = std::max(most, (a[p] - b[p]).norm());
-    return most;
+    double maximum = 0.0;
+    for (std::size_t p = first; p < a.size(); ++p) maximum = std::max(maximum, (a[p] - b[p]).norm());
+    return maximum;
 }
 
 /// What hold() may compare.
@@ -163,7 +163,7 @@ class Reference : public GpuSimulationTest {
   protected:
     /// What the device and the CPU make of a substep, against `truth` of each strand before it; `of` picks
     /// what is compared.
-    void hold(const Scene& scene, const std::function<Places(std::size_t, const Strand&)>& truth,
+    void hold(const Scene& scene, const std::function<Places(std::size_t, const Strand&)>& groundTruth,
               const std::function<Places(const Strand&, const Strand&)>& of, double share) {
         const std::vector<Strand> before = strandsOf(scene, scene.state);
         const std::vector<Strand> cpu = strandsOf(scene, test::runOnCpu(scene));
@@ -175,7 +175,7 @@ class Reference : public GpuSimulationTest {
             const std::vector<Strand> gpu = strandsOf(scene, engine.readState().value());
             const std::size_t first = scene.settings.clampedPoints;
             for (std::size_t s = 0; s < before.size(); ++s) {
-                const Places exact = truth(s, before[s]);
+                const Places exact = groundTruth(s, before[s]);
                 const double off = farthest(of(before[s], gpu[s]), exact, first);
                 const double offOnCpu = farthest(of(before[s], cpu[s]), exact, first);
                 double size = 0.0;

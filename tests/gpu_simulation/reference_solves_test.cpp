@@ -38,8 +38,8 @@ struct BendSystem {
 
     BendSystem(const Bodies& bodies, std::size_t s, const Strand& before, bool curled) {
         const SimulationSettings& settings = bodies.settings();
-        const double least = curled ? 0.25 : settings.bendDampingTime > 0.0f ? 0.02 : 0.0;
-        const double rate = std::max(static_cast<double>(settings.bendDampingTime) / kSubstep, least);
+        const double minimum = curled ? 0.25 : settings.bendDampingTime > 0.0f ? 0.02 : 0.0;
+        const double rate = std::max(static_cast<double>(settings.bendDampingTime) / kSubstep, minimum);
         reference::Physics physics(settings);
         physics.bendDampingTime = 0.0;
         const MatrixXd stiffness = bodies.stiffness(s, before.places);
@@ -72,7 +72,7 @@ TEST_F(ReferenceSolves, ImplicitSpringsByADenseMatrix) {
             const SimulationSettings settings = springs(stiffness, 0.003f);
             const Scene scene = sceneFor(settings, hair, false, 0);
             const Bodies bodies(scene, settings);
-            const auto truth = [&](std::size_t s, const Strand& before) {
+            const auto groundTruth = [&](std::size_t s, const Strand& before) {
                 const BendSystem system(bodies, s, before, hair == Hair::curled);
                 const VectorXd move = system.matrix.ldlt().solve(system.right);
                 Places x = sumOf(before.places, before.moved);
@@ -80,7 +80,7 @@ TEST_F(ReferenceSolves, ImplicitSpringsByADenseMatrix) {
                     x[p] += move.segment<3>(3 * static_cast<Index>(p) - system.first);
                 return x;
             };
-            hold(scene, truth, placesOf, 0.0);
+            hold(scene, groundTruth, placesOf, 0.0);
         }
     }
 }
@@ -220,7 +220,7 @@ TEST_P(ReferenceIntegrators, StepAsTheirFormulas) {
     settings.lengthMethod = runtime::LengthMethod::springs;
     settings.springFrequency = 20.0f;
     settings.angularStiffness = 0.3f;
-    settings.angularMethod = runtime::AngularMethod::cheap;
+    settings.angularMethod = runtime::AngularMethod::smallAngle;
     settings.restGravity = 0.0f;
     const Scene scene = sceneFor(settings, Hair::curled, false, 0);
     const Bodies bodies(scene, settings);

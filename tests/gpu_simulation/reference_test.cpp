@@ -45,7 +45,7 @@ const Force kForces[] = {
     {"cheap",
      [](SimulationSettings& s) {
          s.angularStiffness = 0.3f;
-         s.angularMethod = runtime::AngularMethod::cheap;
+         s.angularMethod = runtime::AngularMethod::smallAngle;
      }},
     {"exact",
      [](SimulationSettings& s) {
@@ -74,7 +74,7 @@ TEST_P(ReferenceForces, AreThoseOfTheModel) {
             reference::Physics physics(settings);
             // Position Verlet lets the air's share decay exactly.
             physics.airDrag = -std::expm1(-static_cast<double>(settings.airDrag) * kSubstep) / kSubstep;
-            const auto truth = [&](std::size_t s, const Strand& before) {
+            const auto groundTruth = [&](std::size_t s, const Strand& before) {
                 return bodies.added(s, before.places, before.moved, physics);
             };
             const auto added = [](const Strand& before, const Strand& after) {
@@ -83,7 +83,7 @@ TEST_P(ReferenceForces, AreThoseOfTheModel) {
                     result.emplace_back(after.moved[p] - before.moved[p]);
                 return result;
             };
-            hold(scene, truth, added, nasty ? 0.0 : 1e-3);
+            hold(scene, groundTruth, added, nasty ? 0.0 : 1e-3);
         }
     }
 }
@@ -142,12 +142,12 @@ TEST_F(Reference, LengthsInDoublePrecision) {
             SCOPED_TRACE(clamped);
             settings.clampedPoints = clamped;
             const Scene scene = sceneFor(settings, hair, false, 0, 0.0005f);
-            const auto truth = [&](std::size_t s, const Strand& before) {
+            const auto groundTruth = [&](std::size_t s, const Strand& before) {
                 Places x = before.places;
                 for (std::size_t p = clamped; p < x.size(); ++p) x[p] += before.moved[p];
                 return heldInDouble(scene, s, before.places, x);
             };
-            hold(scene, truth, placesOf, 0.0);
+            hold(scene, groundTruth, placesOf, 0.0);
         }
     }
 }
@@ -162,7 +162,7 @@ TEST_F(Reference, SpheresInDoublePrecision) {
     const Vector3d centre_ws(sphere.center_ws.x, sphere.center_ws.y, sphere.center_ws.z);
     const double reach = sphere.radius, bounce = 1.0 + static_cast<double>(settings.restitution);
     std::size_t touched = 0;
-    const auto truth = [&](std::size_t s, const Strand& before) {
+    const auto groundTruth = [&](std::size_t s, const Strand& before) {
         const runtime::Float3 root = scene.roots[s].position;
         const Vector3d centre = centre_ws - Vector3d(root.x, root.y, root.z);
         Places x = before.places;
@@ -180,7 +180,7 @@ TEST_F(Reference, SpheresInDoublePrecision) {
         }
         return x;
     };
-    hold(scene, truth, placesOf, 0.0);
+    hold(scene, groundTruth, placesOf, 0.0);
     EXPECT_GT(touched, 10u);
 }
 

@@ -12,9 +12,9 @@ void main() {
     gResults[1] = asfloat(uint4(gFrame.wakingCount, gFrame.windKind, gFrame.wakeAll, asuint(gFrame.h)));
     gResults[2] = float4(gFrame.dt, gFrame.rescale, gFrame.velocityShare, gFrame.dragShare);
     gResults[3] = float4(gFrame.springStep, gFrame.penaltyStep, gFrame.bendRate, gFrame.maximalExtension);
-    gResults[4] = float4(gFrame.pearlRoot, gFrame.pearlTip, gFrame.friction, gFrame.restitution);
+    gResults[4] = float4(gFrame.collisionRadiusAtRoot, gFrame.collisionRadiusAtTip, gFrame.friction, gFrame.restitution);
     gResults[5] = float4(gFrame.teleportDistance, gFrame.slowSquared, gFrame.sleepDelay, gFrame.slowSweep);
-    gResults[6] = float4(gFrame.tensionShare, asfloat(gFrame.groups), gFrame.sphereWay, gFrame.unused);
+    gResults[6] = float4(gFrame.tensionShare, asfloat(gFrame.groups), gFrame.sphereDisplacement, gFrame.unused);
     gResults[7] = gFrame.gravityStep;
     gResults[8] = gFrame.wind;
     for (uint m = 0; m < HAIRLOOM_WIND_MODES; ++m) {

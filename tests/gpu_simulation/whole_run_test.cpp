@@ -29,10 +29,10 @@ class WholeRun : public GpuSimulationTest {
         return positions;
     }
     static double farthest(std::span<const Float3> a, std::span<const Float3> b) {
-        double most = 0.0;
+        double maximum = 0.0;
         for (std::size_t i = 0; i < a.size(); ++i)
-            most = std::max(most, static_cast<double>(length(a[i] - b[i])));
-        return most;
+            maximum = std::max(maximum, static_cast<double>(length(a[i] - b[i])));
+        return maximum;
     }
     static double meanDistance(std::span<const Float3> a, std::span<const Float3> b) {
         double sum = 0.0;
@@ -49,7 +49,7 @@ INSTANTIATE_TEST_SUITE_P(Layouts, EachLayout, testing::ValuesIn(kHeldLayouts),
 /// as a whole does not, and no bound is broken.
 TEST_P(EachLayout, EveryEffectStaysWithTheCpu) {
     const scenes::HeadOfHair head(64, 16);
-    const SimulationSettings settings = scenes::settingsFor(scenes::Acting::windAndSpheres);
+    const SimulationSettings settings = scenes::settingsFor(scenes::ActiveForces::windAndSpheres);
     StrandEngine gpu = engineOf(head.view(), settings, options(GetParam()));
     runtime::Engine cpu = *runtime::Engine::make(head.view(), settings).engine;
     std::vector<RootFrame> roots;
@@ -82,7 +82,7 @@ TEST_P(EachLayout, EveryEffectStaysWithTheCpu) {
 /// Where a strand is kept between substeps, and whether loops are unrolled, is nothing that the hair notices.
 TEST_F(WholeRun, LayoutsAgree) {
     const scenes::HeadOfHair head(40, 8);
-    const SimulationSettings settings = scenes::settingsFor(scenes::Acting::windAndSpheres);
+    const SimulationSettings settings = scenes::settingsFor(scenes::ActiveForces::windAndSpheres);
     std::vector<Float3> first;
     for (const LayoutOptions layout :
          {LayoutOptions{StrandStorage::threads, false}, LayoutOptions{StrandStorage::threads, true},
@@ -161,11 +161,11 @@ TEST_F(WholeRun, SwingsAsTheReferenceSays) {
         ASSERT_TRUE(gpu.step(input));
         reference->step(reference::frameOf(input));
     }
-    const auto truth = reference->positions_ws();
+    const auto groundTruth = reference->positions_ws();
     const std::vector<Float3> positions = positionsOf(gpu);
-    for (std::size_t p = 0; p < truth.size(); ++p) {
-        EXPECT_NEAR(static_cast<double>(positions[p].x), truth[p].x(), 1e-4) << p;
-        EXPECT_NEAR(static_cast<double>(positions[p].y), truth[p].y(), 1e-4) << p;
+    for (std::size_t p = 0; p < groundTruth.size(); ++p) {
+        EXPECT_NEAR(static_cast<double>(positions[p].x), groundTruth[p].x(), 1e-4) << p;
+        EXPECT_NEAR(static_cast<double>(positions[p].y), groundTruth[p].y(), 1e-4) << p;
     }
 }
 
@@ -200,7 +200,7 @@ TEST_P(EachLayout, SleepsAndWakes) {
 }
 /// A cut carries strands along rigidly; what is no number goes back to rest and is counted, and roots,
 /// spheres and winds that are none are left out.
-TEST_P(EachLayout, CutsAndLostStrands) {
+TEST_P(EachLayout, TeleportsAndRestoredStrands) {
     StrandSet strands = tuft(6);
     SimulationSettings s;
     s.gravity = {};
@@ -234,7 +234,7 @@ TEST_P(EachLayout, CutsAndLostStrands) {
 /// Equal input, equal bits; and a state that was read goes on as if nothing had been.
 TEST_F(WholeRun, StatesCanBeTakenAndPutBack) {
     const scenes::HeadOfHair head(40, 5);
-    const SimulationSettings settings = scenes::settingsFor(scenes::Acting::windAndSpheres);
+    const SimulationSettings settings = scenes::settingsFor(scenes::ActiveForces::windAndSpheres);
     std::vector<RootFrame> roots;
     const auto run = [&](StrandEngine& engine, int first, int last) {
         for (int f = first; f <= last; ++f) {

@@ -108,7 +108,7 @@ TEST_F(SwapChainTest, BackBufferKeepsItsContentAndCanBeRead) {
     }
 }
 
-TEST_F(SwapChainTest, WhatCannotBeIsAnError) {
+TEST_F(SwapChainTest, InvalidRequestsAreErrors) {
     EXPECT_FALSE(device->createSwapChain({window->broken(), 10, 10}));
     EXPECT_FALSE(device->createSwapChain({window->native(), 0, 10}));
     open(10, 10);

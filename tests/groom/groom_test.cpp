@@ -139,7 +139,7 @@ TEST(BindToScalp, FindsTheFacesThatStrandsGrewOn) {
     EXPECT_THAT(validate(loose), testing::IsEmpty());
 }
 
-TEST(BindToScalp, TellsTheDistanceOfRootsInTheAir) {
+TEST(BindToScalp, ReportsDistanceOfRootsOffTheScalp) {
     const auto scalp = sphereScalp();
     const Vec3f above(0, 1.6f + 0.09f + 0.25f, 0);
     Groom groom = makeGroom({0, 2}, {above, above + Vec3f(0, 0.1f, 0)});

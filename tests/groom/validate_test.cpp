@@ -104,7 +104,7 @@ std::vector<Broken> brokenGrooms() {
 
 class BrokenGroom : public testing::TestWithParam<Broken> {};
 
-TEST_P(BrokenGroom, IsFoundWithItsPlace) {
+TEST_P(BrokenGroom, IsReportedWithItsLocation) {
     Groom groom = fullGroom();
     GetParam().breakIt(groom);
     const auto findings = validate(groom);

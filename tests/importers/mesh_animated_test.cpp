@@ -23,11 +23,11 @@ Actor actorOf(ImportedScene scene) {
 }
 
 /// The largest distance from a posed vertex to the true vertices.
-float farthest(std::span<const Vec3f> posed, std::span<const Vec3f> truth) {
+float farthest(std::span<const Vec3f> posed, std::span<const Vec3f> groundTruth) {
     float worst = 0;
     for (const Vec3f& vertex : posed) {
-        float nearest = (vertex - truth.front()).norm();
-        for (const Vec3f& other : truth) nearest = std::min(nearest, (vertex - other).norm());
+        float nearest = (vertex - groundTruth.front()).norm();
+        for (const Vec3f& other : groundTruth) nearest = std::min(nearest, (vertex - other).norm());
         worst = std::max(worst, nearest);
     }
     return worst;

@@ -31,7 +31,7 @@ std::string failure(const std::string& how, const ChildLimits& limits = {}) {
     return output ? std::string() : output.error().message();
 }
 
-TEST(ChildProcess, HandsBackWhatTheChildWrote) {
+TEST(ChildProcess, ReturnsOutputOfTheChild) {
     const auto output = runProgram({"output"});
     ASSERT_TRUE(output) << output.error().message();
     ASSERT_EQ(output->size(), 300'003u);

@@ -74,7 +74,7 @@ TEST(ObjMesh, NumbersAreReadAsWrittenOrRefused) {
     }
 }
 
-TEST(ObjMesh, IndicesThatNameNothingAreToldWithTheirLine) {
+TEST(ObjMesh, InvalidIndicesAreReportedWithTheirLine) {
     EXPECT_THAT(refusal(kSquare + "f 1 2 5\n"),
                 HasSubstr("x.obj:5: a face names vertex 5; the file has 4 vertices"));
     EXPECT_THAT(refusal(kSquare + "f 0 1 2\n"), HasSubstr("x.obj:5: found '0'"));

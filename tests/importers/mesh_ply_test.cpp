@@ -95,7 +95,7 @@ TEST(PlyMesh, HostileCountsAreRefusedBeforeAllocation) {
                 HasSubstr("x.ply:11: a face names vertex -1"));
 }
 
-TEST(PlyMesh, DamagedHeadersAreToldWithTheirLine) {
+TEST(PlyMesh, DamagedHeadersAreReportedWithTheirLine) {
     EXPECT_THAT(refusal("plx\n"), HasSubstr("x.ply:1"));
     EXPECT_THAT(refusal("ply\nformat ascii 2.0\nend_header\n"),
                 HasSubstr("x.ply:2: the format is 'ascii 2.0'"));

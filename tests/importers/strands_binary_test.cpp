@@ -52,7 +52,7 @@ TEST(StrandsHair, UsesTheDefaultsOfTheHeader) {
     EXPECT_EQ(imported->groom.material.rootColour, Vec3f(0.5f, 0.25f, 0.125f));
 }
 
-TEST(StrandsHair, DropsStrandsOfOnePointAndTellsWhich) {
+TEST(StrandsHair, DropsOnePointStrandsAndReportsThem) {
     ByteWriter writer;
     writeHairHeader(writer, {3, 5, 3, 0});
     for (const int segments : {1, 0, 1}) writer.write(static_cast<std::uint16_t>(segments));
@@ -117,7 +117,7 @@ TEST(StrandsTfx, RefusesBadOffsetsByName) {
     EXPECT_THAT(read(bytes).error().message(), HasSubstr("TressFX version 2"));
 }
 
-TEST(StrandsMending, RemovesCoincidentPointsAndSaysSo) {
+TEST(StrandsRepair, RemovesCoincidentPointsAndSaysSo) {
     Bytes bytes = plainTfx3(3, 4);
     std::memcpy(bytes.data() + 296 + 12, bytes.data() + 296, 12);
     const auto imported = read(bytes);
@@ -130,7 +130,7 @@ TEST(StrandsMending, RemovesCoincidentPointsAndSaysSo) {
     EXPECT_TRUE(said);
 }
 
-TEST(StrandsMending, DropsWhatIsNotFiniteOrHasNoLength) {
+TEST(StrandsRepair, DropsWhatIsNotFiniteOrHasNoLength) {
     for (const float bad :
          {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
         Bytes bytes = fullTfx4(3, 4);

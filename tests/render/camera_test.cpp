@@ -67,7 +67,7 @@ TEST(Camera, DepthRunsFromNearToFar) {
     EXPECT_GT(depth(2), depth(1));
 }
 
-TEST(Camera, ImpossibleOnesAreRefused) {
+TEST(Camera, InvalidCamerasAreRefused) {
     Camera camera;
     camera.target_ws = camera.eye_ws;
     EXPECT_FALSE(check(camera));

@@ -66,7 +66,7 @@ class SintelHair {
     std::vector<std::uint32_t> indices_;
 };
 
-RenderOptions truthOptions() {
+RenderOptions groundTruthOptions() {
     RenderOptions options;
     options.width = options.height = 80;
     options.frames = 2;
@@ -83,7 +83,7 @@ class Sitting {
     }
     /// Linear light, RGBA.
     std::vector<float> draw() {
-        const RenderOptions options = truthOptions();
+        const RenderOptions options = groundTruthOptions();
         for (std::uint32_t i = 0; i < options.frames; ++i) {
             auto list = device_.createCommandList().value();
             const auto status = renderer_.record(*list, options, nullptr);
@@ -133,25 +133,27 @@ TEST_F(RenderTest, DualScatteringBrightensHairAsAPathTracerDoes) {
     const auto covered = coverage(*device, hair.scene(1, Scattering::single, black));
     Sitting onBlack(*device, hair.scene(1, Scattering::single, black));
     Sitting onSkin(*device, hair.scene(1, Scattering::single, skin));
-    struct Truth {
+    struct GroundTruth {
         Vec3f skin;
         double eumelanin, ratio;
     };
-    for (const Truth& truth : {Truth{black, 0.3, 2.679}, Truth{black, 1.3, 1.287}, Truth{black, 8, 1.054},
-                               Truth{skin, 0.3, 3.496}, Truth{skin, 1.3, 1.449}, Truth{skin, 8, 1.094}}) {
-        Sitting& sitting = truth.skin.x() > 0 ? onSkin : onBlack;
+    for (const GroundTruth& groundTruth :
+         {GroundTruth{black, 0.3, 2.679}, GroundTruth{black, 1.3, 1.287}, GroundTruth{black, 8, 1.054},
+          GroundTruth{skin, 0.3, 3.496}, GroundTruth{skin, 1.3, 1.449}, GroundTruth{skin, 8, 1.094}}) {
+        Sitting& sitting = groundTruth.skin.x() > 0 ? onSkin : onBlack;
         const auto light = [&](Scattering scattering) {
-            return sitting.light(hair.scene(truth.eumelanin, scattering, truth.skin).strands[0].material,
-                                 covered);
+            return sitting.light(
+                hair.scene(groundTruth.eumelanin, scattering, groundTruth.skin).strands[0].material, covered);
         };
         const Vec3d single = light(Scattering::single), all = light(Scattering::dual);
         const double ratio = all.dot(luminance) / single.dot(luminance);
-        EXPECT_NEAR(ratio, truth.ratio, 0.15 * truth.ratio)
-            << truth.eumelanin << " on " << truth.skin.transpose();
+        EXPECT_NEAR(ratio, groundTruth.ratio, 0.15 * groundTruth.ratio)
+            << groundTruth.eumelanin << " on " << groundTruth.skin.transpose();
         std::ostringstream measured;
         measured << ratio << ", red, green, blue " << all.cwiseQuotient(single).transpose();
-        RecordProperty("eumelanin_" + std::to_string(truth.eumelanin) + (truth.skin.x() > 0 ? "_skin" : ""),
-                       measured.str());
+        RecordProperty(
+            "eumelanin_" + std::to_string(groundTruth.eumelanin) + (groundTruth.skin.x() > 0 ? "_skin" : ""),
+            measured.str());
     }
 }
 

@@ -29,7 +29,7 @@ LinearImage lit(std::uint32_t width, std::uint32_t height,
     return image;
 }
 
-TEST(Exr, ComesBackAsItWent) {
+TEST(Exr, RoundTripsUnchanged) {
     Random random(3);
     const LinearImage image = lit(37, 19, [&](auto, auto) {
         return Vec3f(random.uniform(0, 500), random.uniform(), -random.uniform());
@@ -213,8 +213,9 @@ TEST_F(HairUnderSky, ALoneFibreShowsTheModelsIntegralOverTheSky) {
             strands.add({-0.2f * along, -0.1f * along, Vec3f::Zero(), 0.1f * along, 0.2f * along}, 0.06f);
             for (const Environment& environment : {kEven, kSky}) {
                 const Vec3d ours = picture(strands, environment, {0, 0, 4}, 1, Shadows::none);
-                const Vec3d truth = traced(radianceOf(environment), along.cast<double>(), Vec3d::UnitZ());
-                const double ratio = ours.sum() / truth.sum();
+                const Vec3d groundTruth =
+                    traced(radianceOf(environment), along.cast<double>(), Vec3d::UnitZ());
+                const double ratio = ours.sum() / groundTruth.sum();
                 worst = std::max(worst, std::abs(ratio - 1));
                 EXPECT_NEAR(ratio, 1, 0.04) << eumelanin << " roll " << roll << " lean " << lean;
                 EXPECT_LT(ours.maxCoeff(), 1.2) << "no fibre shines";
@@ -233,10 +234,10 @@ TEST_F(HairUnderSky, DenseHairShowsItsOpenSide) {
         const Layer layer(tilt);
         const Sky sky = radianceOf(kSky);
         const Vec3d ours = layerUnder(layer, kSky) / (1 - std::exp(-Layer::kFibres));
-        const Vec3d truth = traced([&](const Vec3d& d) { return layer.seenBy(d, sky); }, Vec3d::UnitX(),
-                                   layer.normal.cast<double>());
+        const Vec3d groundTruth = traced([&](const Vec3d& d) { return layer.seenBy(d, sky); }, Vec3d::UnitX(),
+                                         layer.normal.cast<double>());
         // Twelve directions see an edge without end differently as it turns.
-        const double ratio = ours.sum() / truth.sum();
+        const double ratio = ours.sum() / groundTruth.sum();
         EXPECT_NEAR(ratio, 1.08, 0.2) << "tilt " << tilt;
         mean += ratio / static_cast<double>(tilts.size());
     }

@@ -40,11 +40,11 @@ class FilterTest : public RenderTest {
 };
 
 TEST_F(FilterTest, SmoothEdgesComeNearerToManySamples) {
-    const Image truth = draw(PostFilter::none, 1, 64);
-    const double rough = difference(draw(PostFilter::none, 1, 1), truth);
-    const double filtered = difference(draw(PostFilter::fxaa, 1, 1), truth);
-    const double high = difference(draw(PostFilter::fxaaHigh, 1, 1), truth);
-    const double many = difference(draw(PostFilter::none, device->info().maxSamples(), 1), truth);
+    const Image groundTruth = draw(PostFilter::none, 1, 64);
+    const double rough = difference(draw(PostFilter::none, 1, 1), groundTruth);
+    const double filtered = difference(draw(PostFilter::fxaa, 1, 1), groundTruth);
+    const double high = difference(draw(PostFilter::fxaaHigh, 1, 1), groundTruth);
+    const double many = difference(draw(PostFilter::none, device->info().maxSamples(), 1), groundTruth);
     EXPECT_LT(filtered, 0.8 * rough);
     EXPECT_LT(high, 0.8 * rough);
     EXPECT_LT(many, 0.8 * rough);
@@ -116,12 +116,12 @@ TEST_F(FilterTest, ShadowsAreBlurredAsOnTheCpu) {
         for (const float blur : {0.7f, 3.0f}) {
             const Picture blurred = draw(Shadows::deepOpacity, blur);
             EXPECT_TRUE(blurred.plan.runs(Pass::shadowBlur));
-            const auto truth = blurredShadows(shadowed.linear, lit.linear, static_cast<double>(blur));
+            const auto groundTruth = blurredShadows(shadowed.linear, lit.linear, static_cast<double>(blur));
             double change = 0;
-            for (std::size_t i = 0; i < truth.size() / 3; ++i) {
+            for (std::size_t i = 0; i < groundTruth.size() / 3; ++i) {
                 for (std::size_t c = 0; c < 3; ++c) {
                     const double found = static_cast<double>(blurred.linear.rgba[4 * i + c]);
-                    ASSERT_NEAR(found, truth[3 * i + c], 1e-4 + 1e-3 * truth[3 * i + c])
+                    ASSERT_NEAR(found, groundTruth[3 * i + c], 1e-4 + 1e-3 * groundTruth[3 * i + c])
                         << blur << " px, " << i;
                     change = std::max(change,
                                       std::abs(found - static_cast<double>(shadowed.linear.rgba[4 * i + c])));

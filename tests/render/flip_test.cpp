@@ -28,7 +28,7 @@ double flip(const Image& a, const Image& b) {
     return difference ? difference->mean : -1;
 }
 
-TEST(Flip, IsNothingForEqualPicturesAndMuchForOpposites) {
+TEST(Flip, IsZeroForEqualAndLargeForOppositePictures) {
     Random random(1);
     const Image noise = picture(40, [&](auto, auto) { return random.below(256); });
     EXPECT_EQ(flip(noise, noise), 0);
@@ -37,8 +37,8 @@ TEST(Flip, IsNothingForEqualPicturesAndMuchForOpposites) {
     // Black and white are 100 apart in Hunt's Lab and have no features: Eq. 7 and 8 in closed form. Green and
     // blue, the farthest two, have Lab (87.7, -86.2, 83.2) and (32.3, 79.2, -107.9).
     const double chroma = std::hypot(0.877 * -86.2 - 0.323 * 79.2, 0.877 * 83.2 + 0.323 * 107.9);
-    const double most = std::pow(87.7 - 32.3 + chroma, 0.7);
-    const double expected = 0.95 + (std::pow(100, 0.7) - 0.4 * most) / (0.6 * most) * 0.05;
+    const double maximum = std::pow(87.7 - 32.3 + chroma, 0.7);
+    const double expected = 0.95 + (std::pow(100, 0.7) - 0.4 * maximum) / (0.6 * maximum) * 0.05;
     EXPECT_NEAR(flip(black, white), expected, 0.001);
     EXPECT_NEAR(flip(white, black), flip(black, white), 1e-12);
 }

@@ -15,7 +15,7 @@
 namespace hairloom::render {
 namespace {
 
-TEST(Png, ComesBackAsItWent) {
+TEST(Png, RoundTripsUnchanged) {
     Image image{33, 7, std::vector<std::uint8_t>(33 * 7 * 4)};
     Random random(2);
     for (auto& value : image.rgba) value = static_cast<std::uint8_t>(random.below(256));
@@ -33,7 +33,7 @@ TEST(Png, ComesBackAsItWent) {
     std::filesystem::remove(path);
 }
 
-TEST(Png, WhatCannotBeWrittenIsAnError) {
+TEST(Png, InvalidImagesAreErrors) {
     EXPECT_FALSE(writePng(std::filesystem::path(testing::TempDir()) / "empty.png", {}));
     EXPECT_FALSE(
         writePng(std::filesystem::path(testing::TempDir()) / "no" / "folder.png", {1, 1, {1, 2, 3, 4}}));
@@ -93,7 +93,7 @@ TEST(Png, DamagedOnesAreErrors) {
 }
 
 // Read back by the encoder's own library, which the program does not use for reading.
-TEST(Exr, ComesBackAsItWent) {
+TEST(Exr, RoundTripsUnchanged) {
     LinearImage image{19, 33, std::vector<float>(19 * 33 * 4)};
     Random random(3);
     for (float& value : image.rgba) value = random.uniform(-2, 300);

@@ -60,7 +60,7 @@ class OverlayTest : public RenderTest {
     bool plate = false;
 };
 
-TEST_F(OverlayTest, MarksHaveTheirSizeAndPlace) {
+TEST_F(OverlayTest, MarkersHaveTheirSizeAndPosition) {
     Overlay overlay;
     overlay.batches.push_back({OverlayShape::points, 10, true, {at(0.25f, 0.25f)}});
     auto pixels = draw(overlay);
@@ -113,7 +113,7 @@ TEST_F(OverlayTest, ColoursAreAsAskedForInEachFormat) {
     EXPECT_NEAR(encoded[middle + 1], 64, 1);
 }
 
-TEST_F(OverlayTest, BrokenMarksAreErrors) {
+TEST_F(OverlayTest, InvalidMarkersAreErrors) {
     Overlay overlay;
     overlay.batches = {{OverlayShape::lines, 2, true, {at(0, 0)}}};
     EXPECT_FALSE(check(overlay));

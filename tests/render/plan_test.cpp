@@ -118,7 +118,7 @@ TEST(RenderPlan, BlurringShadowsHasAPassAndItsBytes) {
     EXPECT_FALSE(planRender(wholeScene(), blurred, 1).has(BufferId::blurred));
 }
 
-TEST(RenderPlan, MarksAndBlendingCostOnlyWhereTheyAre) {
+TEST(RenderPlan, MarkersAndBlendingCostOnlyWhenUsed) {
     SceneFacts facts = wholeScene();
     EXPECT_FALSE(planRender(facts, options(), 4).has(TargetId::overlayDepth));
     facts.overlayOnTop = true;

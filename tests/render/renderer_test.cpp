@@ -242,7 +242,7 @@ TEST_F(RendererTest, TablesBakedBehindLetOldOnesServeAndEndInTheSamePicture) {
     EXPECT_TRUE(renderer.isSettled());
 }
 
-TEST_F(RendererTest, WhatRestsIsNotDoneAgain) {
+TEST_F(RendererTest, UnchangedWorkIsNotRepeated) {
     TestHead head(60);
     RenderOptions options = smallOptions();
     options.ribbons = Ribbons::strip;  // on a GPU, too

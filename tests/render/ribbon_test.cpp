@@ -239,14 +239,14 @@ class Walk {
 };
 
 struct Change {
-    double mean = 0, most = 0;
+    double mean = 0, maximum = 0;
 };
 Change between(const std::vector<float>& a, const std::vector<float>& b) {
     Change change;
     for (std::size_t i = 0; i < a.size(); ++i) {
         const double difference = std::abs(static_cast<double>(a[i] - b[i]));
         change.mean += difference / static_cast<double>(a.size());
-        change.most = std::max(change.most, difference);
+        change.maximum = std::max(change.maximum, difference);
     }
     return change;
 }
@@ -277,7 +277,7 @@ TEST_F(RibbonTest, HairsDoNotPop) {
     for (const float distance : places) {
         const Change all = between(walk.at(0.999f * distance, whole), walk.at(1.001f * distance, whole));
         const Change fewer = between(walk.at(0.999f * distance, some), walk.at(1.001f * distance, some));
-        EXPECT_LT(fewer.most, all.most + 0.13) << distance << " m";
+        EXPECT_LT(fewer.maximum, all.maximum + 0.13) << distance << " m";
         EXPECT_LT(fewer.mean, 1.5 * all.mean + 0.002) << distance << " m";
     }
 }
@@ -294,7 +294,7 @@ TEST_F(RibbonTest, LightAndCoverAreSteadyOverDistance) {
     RenderOptions how = options(48, 16);
     how.shadows = Shadows::none;
     double coverBefore = 0, lightBefore = 0;
-    std::uint64_t least = 1600;
+    std::uint64_t minimum = 1600;
     for (int step = 0; step < 6; ++step) {
         const float distance = 0.5f * std::pow(1.35f, static_cast<float>(step));
         scene.camera.eye_ws = scene.camera.target_ws + distance * towards;
@@ -302,7 +302,7 @@ TEST_F(RibbonTest, LightAndCoverAreSteadyOverDistance) {
         const LinearImage all = draw(scene, how);
         how.detail = 0.03f;
         const LinearImage some = draw(scene, how);
-        least = std::min(least, strands);
+        minimum = std::min(minimum, strands);
         const double cover = coverage(some) / coverage(all);
         const double light = meanLuminance(some) / meanLuminance(all);
         EXPECT_NEAR(cover, 1, 0.06) << distance << " m, " << strands << " hairs";
@@ -314,7 +314,7 @@ TEST_F(RibbonTest, LightAndCoverAreSteadyOverDistance) {
         coverBefore = cover;
         lightBefore = light;
     }
-    EXPECT_LT(least, 450u);
+    EXPECT_LT(minimum, 450u);
 }
 
 // What hair covers falls with the square of the distance, and no pixel of thin hair stays bright.
@@ -331,9 +331,9 @@ TEST_F(RibbonTest, HairThinsWithDistanceAndDoesNotSparkle) {
             EXPECT_NEAR(covered, before, 0.05 * before) << distance << " m";
         }
         before = covered;
-        const float most = *std::max_element(alpha.begin(), alpha.end());
-        EXPECT_LE(most, brightest) << distance << " m";
-        brightest = std::min(brightest, most + 0.2f);
+        const float maximum = *std::max_element(alpha.begin(), alpha.end());
+        EXPECT_LE(maximum, brightest) << distance << " m";
+        brightest = std::min(brightest, maximum + 0.2f);
     }
 }
 
@@ -360,7 +360,7 @@ TEST_F(RibbonTest, TubesShowNoDots) {
     how.subdivisions = 4;
     const LinearImage small = draw(scene, how);
     how.width = how.height = 40 * 8;
-    const LinearImage truth = draw(scene, how);
+    const LinearImage groundTruth = draw(scene, how);
     // Of some pixels, the light by what is covered.
     const auto radiance = [](const LinearImage& image, std::size_t first, std::size_t count) {
         double sum = 0, covered = 0;
@@ -372,7 +372,7 @@ TEST_F(RibbonTest, TubesShowNoDots) {
     };
     double squares = 0, worst = 0;
     for (std::size_t y = 8; y < 32; ++y) {
-        const double off = radiance(small, 40 * y, 40) / radiance(truth, 320 * 8 * y, 320 * 8) - 1;
+        const double off = radiance(small, 40 * y, 40) / radiance(groundTruth, 320 * 8 * y, 320 * 8) - 1;
         squares += off * off / 24;
         worst = std::max(worst, std::abs(off));
     }

@@ -11,7 +11,7 @@ namespace hairloom::render {
 namespace {
 
 /// A row of fibres across the light, one behind the other, wider than the beam.
-TEST(CountedFibres, AreThoseInTheWay) {
+TEST(CountedFibres, AreThoseBetweenTwoPoints) {
     TestStrands strands;
     const float radius = 0.0003f;
     for (int i = 0; i < 5; ++i) {
@@ -140,7 +140,7 @@ TEST_F(ShadowTest, LightBehindTheHeadFadesWithDepth) {
     }
 }
 
-TEST_F(ShadowTest, RaysTellWhatTheHeadShades) {
+TEST_F(ShadowTest, RaysAgreeWithShadowOfTheHead) {
     const TestHead head(400);
     RenderScene scene = head.scene();
     Light light;

@@ -53,7 +53,7 @@ double tipError(Float3 tip, const test::ElasticaShape& exact) {
     return std::sqrt(x * x + y * y + static_cast<double>(tip.z * tip.z)) / static_cast<double>(kLength);
 }
 
-TEST(Cantilever, TheTipComesToRestWhereTheElasticaHasIt) {
+TEST(Cantilever, TipRestsOnTheElastica) {
     for (const double share : {0.1, 0.4, 0.8}) {
         const double B = test::elasticaStiffness(share, kGravity, static_cast<double>(kLength));
         const test::ElasticaShape exact = test::solveElastica(B, kGravity, static_cast<double>(kLength));

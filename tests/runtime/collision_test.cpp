@@ -27,7 +27,7 @@ TEST(Collision, PointsEndOnASphereAwayFromTheOrigin) {
     for (const Float3& p : positionsOf(engine)) EXPECT_LT(length(p - strands.points[0]), 0.23f);
 }
 
-TEST(Collision, APointAtTheCentreLeavesUpwardsByTheRadiusAndItsPearl) {
+TEST(Collision, PointAtTheCentreLeavesUpwardsByBothRadii) {
     Strands strands;
     strands.add({0.5f, 0.5f, 0.5f}, {1.0f, 0.0f, 0.0f}, 0.2f, 2);
     SimulationSettings s = bare();
@@ -114,7 +114,7 @@ TEST(Collision, FrictionIsCoulombs) {
     expectNear(velocityAfterImpact(1.0f, 0.0f, {1.0f, 0.0f, 0.0f}), {1.0f, 0.0f, 0.0f});
 }
 
-TEST(Collision, SpheresWithoutSizeOrPlaceAreLeftOut) {
+TEST(Collision, InvalidSpheresAreIgnored) {
     const Strands strands = tuft(4);
     SimulationSettings s;
     Engine with = makeEngine(strands, s), without = makeEngine(strands, s);
@@ -168,11 +168,11 @@ double gap(Double3 a, Float3 b) {
                       a.z - static_cast<double>(b.z));
 }
 double penetration(Float3 at, std::span<const Sphere> spheres) {
-    double most = 0.0;
+    double maximum = 0.0;
     for (const Sphere& s : spheres) {
-        most = std::max(most, static_cast<double>(s.radius) - gap({at.x, at.y, at.z}, s.center_ws));
+        maximum = std::max(maximum, static_cast<double>(s.radius) - gap({at.x, at.y, at.z}, s.center_ws));
     }
-    return most;
+    return maximum;
 }
 
 /// Where a point that moves by `way` to `end` first meets the sphere.
@@ -263,7 +263,7 @@ TEST(Collision, ASphereOfAHundredMetresPerSecondTakesThePointAlong) {
     EXPECT_NEAR(FreePoints::velocity(engine).x, 100.0f, 0.02f);
 }
 
-TEST(Collision, BackwardIsWhereTheWayEnteredTheSphereAndRadialIsNot) {
+TEST(Collision, BackwardResponseReturnsToTheEntryPoint) {
     const float dt = 2e-3f;
     const Float3 way{0.006f, -0.012f, 0.003f};
     const auto placed = [&](CollisionResponse response, Float3& end, Sphere& sphere) {
@@ -287,7 +287,7 @@ TEST(Collision, BackwardIsWhereTheWayEnteredTheSphereAndRadialIsNot) {
     EXPECT_GT(length(radial - backward), 1e-4f);
 }
 
-TEST(Collision, BackwardWithoutAWayOutLeavesAlongTheRadius) {
+TEST(Collision, BackwardWithoutEntryPointIsRadial) {
     FreePoints points;
     points.add({0.0f, 0.0f, 0.0f});
     points.settings.collisionResponse = CollisionResponse::backward;
@@ -296,7 +296,7 @@ TEST(Collision, BackwardWithoutAWayOutLeavesAlongTheRadius) {
     EXPECT_LT(length(FreePoints::place(engine) - Float3{0.04f, 0.03f, 0.0f}), 1e-6f);
 }
 
-TEST(Collision, PearlsGrowLinearlyToTheTip) {
+TEST(Collision, CollisionRadiusGrowsLinearlyToTheTip) {
     Strands strands;
     strands.add({0.0f, 0.0f, 0.0f}, {1.0f, 0.0f, 0.0f}, 0.02f, 6);
     SimulationSettings s = FreePoints().settings;
@@ -469,7 +469,7 @@ std::vector<Float3> swept(const Strands& strands, CollisionResponse response) {
     return positionsOf(engine);
 }
 
-TEST(Collision, AStrandDoesNotNoticeItsNeighbours) {
+TEST(Collision, StrandsCollideIndependently) {
     for (const CollisionResponse response :
          {CollisionResponse::radial, CollisionResponse::backward, CollisionResponse::penalty}) {
         const Strands together = tuft(45);
@@ -486,7 +486,7 @@ TEST(Collision, AStrandDoesNotNoticeItsNeighbours) {
     }
 }
 
-TEST(Collision, ManySpheresAreNoTrouble) {
+TEST(Collision, HandlesManySpheres) {
     FreePoints points;
     std::vector<Sphere> spheres;
     for (int k = 0; k < 200; ++k) {

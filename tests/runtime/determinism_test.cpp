@@ -129,7 +129,7 @@ TEST(Determinism, StagesThatFollowEachOtherAreOnePass) {
               (std::vector<Stage>{alone(open), alone(drag), alone(gravity), alone(explicitEuler)}));
 }
 
-TEST(Determinism, StagesByThemselvesHandTheWayOn) {
+TEST(Determinism, SeparateStagesPassTheDisplacementOn) {
     using enum StageId;
     const auto singles = [](std::initializer_list<StageId> stages) {
         return callsFor(stages, singlePassesOf);
@@ -171,7 +171,7 @@ TEST(Determinism, AListOfNearPointsChangesNothing) {
     }
 }
 
-TEST(Determinism, ACopyRunsOnWithTheSameBits) {
+TEST(Determinism, CopyContinuesWithTheSameBits) {
     const Strands strands = tuft(40, true);
     for (const SimulationSettings& s : {everything(), coupled()}) {
         Engine engine = makeEngine(strands, s);
@@ -185,7 +185,7 @@ TEST(Determinism, ACopyRunsOnWithTheSameBits) {
     }
 }
 
-TEST(Determinism, AnEffectThatIsOffIsAsIfItWereNotThere) {
+TEST(Determinism, DisabledEffectChangesNoBits) {
     const Strands strands = tuft(70, true);
     SimulationSettings never;
     Engine bareEngine = makeEngine(strands, never);
@@ -203,7 +203,7 @@ TEST(Determinism, AnEffectThatIsOffIsAsIfItWereNotThere) {
 }
 
 /// Lanes are independent: a strand moves alike alone and among others, whatever the block's filling.
-TEST(Determinism, EachStrandMovesAsIfItWereAlone) {
+TEST(Determinism, StrandsDoNotAffectEachOther) {
     for (std::uint32_t count = 1; count <= 20; ++count) {
         const Strands all = tuft(count, true);
         Engine together = makeEngine(all, everything());
@@ -222,7 +222,7 @@ TEST(Determinism, EachStrandMovesAsIfItWereAlone) {
     }
 }
 
-TEST(Determinism, NoStrandsAreNoTrouble) {
+TEST(Determinism, StepsWithoutStrands) {
     const Strands none;
     Engine engine = makeEngine(none, {});
     run(engine, none, 3);

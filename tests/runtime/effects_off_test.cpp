@@ -151,7 +151,7 @@ std::vector<std::size_t> bytesOf(const Engine& engine) {
 class EffectsOff : public testing::TestWithParam<Integrator> {};
 
 /// What the other fields of the effect say does not matter while it is off.
-TEST_P(EffectsOff, IsAsIfItHadNeverBeenThere) {
+TEST_P(EffectsOff, OffEffectChangesNoBits) {
     const Strands strands = tuft(20, true);
     for (const Case& c : cases()) {
         SCOPED_TRACE(effectName(c.effect));
@@ -178,7 +178,7 @@ TEST_P(EffectsOff, IsAsIfItHadNeverBeenThere) {
 }
 
 /// Had and given up again between two frames, in motion, it leaves no trace in any later bit.
-TEST_P(EffectsOff, OnAndOffAgainLeavesNoTrace) {
+TEST_P(EffectsOff, OnThenOffChangesNoBits) {
     const Strands strands = tuft(20, true);
     for (const Case& c : cases()) {
         SCOPED_TRACE(effectName(c.effect));
@@ -198,7 +198,7 @@ TEST_P(EffectsOff, OnAndOffAgainLeavesNoTrace) {
 }
 
 /// While it runs on: the list and the memory shrink at the next step, to what they would be without it.
-TEST_P(EffectsOff, TurningItOffInMotionTakesItsStagesAndItsMemory) {
+TEST_P(EffectsOff, TurningOffMidRunRemovesStagesAndMemory) {
     const Strands strands = tuft(20, true);
     for (const Case& c : cases()) {
         SCOPED_TRACE(effectName(c.effect));
@@ -222,7 +222,7 @@ INSTANTIATE_TEST_SUITE_P(Integrators, EffectsOff,
                          [](const auto& tested) { return nameOf(tested.param); });
 
 /// All effects at once off: what is left is the integrator, and the roots that move it.
-TEST(EffectsOff, AllOffLeavesRootsAndIntegrator) {
+TEST(EffectsOff, AllOffRunsOnlyRootsAndIntegrator) {
     const Strands strands = tuft(20, true);
     SimulationSettings s = bare();
     s.lengthIterations = 0;
@@ -234,7 +234,7 @@ TEST(EffectsOff, AllOffLeavesRootsAndIntegrator) {
 }
 
 /// One Verlet step of zero acceleration keeps a strand's straight way: nothing else has touched it.
-TEST(EffectsOff, AllOffKeepsFreePointsOnTheirWay) {
+TEST(EffectsOff, AllOffFreePointsKeepTheirVelocity) {
     Strands strands;
     strands.add({}, {0.0f, -1.0f, 0.0f}, 0.05f, 3);
     SimulationSettings s = bare();

@@ -57,7 +57,7 @@ struct FollowScene {
                 weights, rootWeights, wispOffsets, blends, rootShifts};
     }
     std::vector<Float3> evaluate(const Host& host = {}) const {
-        FollowHairs::Made made = FollowHairs::make(view());
+        FollowHairs::Result made = FollowHairs::make(view());
         EXPECT_EQ(made.error, "");
         std::vector<Float3> result(hairs() * points);
         made.hairs->evaluate({positions, velocities, rotations, wispSpread}, result, host);

@@ -48,7 +48,7 @@ void moveRigidly(FollowScene& scene, Quat turn, Float3 shift) {
     for (Quat& q : scene.rotations) q = turn * q;
 }
 
-TEST(FollowHairs, AreWhatAPlainEvaluationGives) {
+TEST(FollowHairs, MatchAPlainEvaluation) {
     for (const std::uint32_t points : {2u, 3u, 5u, 8u, 16u, 17u, 22u, 33u}) {
         const FollowScene scene = tangled(points);
         const PlainFollowHairs plain(scene);
@@ -85,7 +85,7 @@ TEST(FollowHairs, BlendsLieBetweenTheirEnds) {
     EXPECT_LT(largestDistance(mixed, expected), 5e-7f);
 }
 
-TEST(FollowHairs, OfBlend0KnowOneGuideAndOfBlend1NoWisp) {
+TEST(FollowHairs, Blend0UsesOneGuideAndBlend1NoClump) {
     FollowScene scene = tangled(12);
     std::fill(scene.blends.begin(), scene.blends.end(), 0.0f);
     const auto wisp = scene.evaluate();
@@ -316,7 +316,7 @@ TEST(FollowHairs, SameBitsForEveryInstructionSetThatRoundsAlike) {
 
 TEST(FollowHairs, EvaluationAllocatesNothing) {
     const FollowScene scene = tangled(16);
-    FollowHairs::Made made = FollowHairs::make(scene.view());
+    FollowHairs::Result made = FollowHairs::make(scene.view());
     ASSERT_TRUE(made.hairs);
     std::vector<Float3> hairs(scene.hairs() * 16);
     Host host;
@@ -331,7 +331,7 @@ TEST(FollowHairs, EvaluationAllocatesNothing) {
 TEST(FollowHairs, AreFilledWithoutTouchingWhatLiesBeside) {
     for (const std::uint32_t points : {2u, 5u, 7u, 16u, 19u}) {
         const FollowScene scene = tangled(points, 7, 9);
-        FollowHairs::Made made = FollowHairs::make(scene.view());
+        FollowHairs::Result made = FollowHairs::make(scene.view());
         ASSERT_TRUE(made.hairs);
         const Float3 guard{7.0f, 8.0f, 9.0f};
         std::vector<Float3> memory(scene.hairs() * points + 2, guard);
@@ -350,7 +350,7 @@ bool follows(const FollowScene& scene, std::size_t hair, std::uint32_t guide) {
     return scene.blends[hair] > 0.0f && (of[1] == guide || of[2] == guide);
 }
 
-TEST(FollowHairs, AreNoNumbersOnlyWhereTheirGuidesAre) {
+TEST(FollowHairs, AreNonFiniteOnlyWhereTheirGuidesAre) {
     FollowScene scene = tangled(16);
     const std::vector<Float3> sound = scene.evaluate();
     for (const float bad : {kNan, std::numeric_limits<float>::infinity()}) {
@@ -369,7 +369,7 @@ TEST(FollowHairs, AreNoNumbersOnlyWhereTheirGuidesAre) {
     }
 }
 
-TEST(FollowHairs, ARootThatIsNoNumberTakesTheHairsThatTakePartOfIt) {
+TEST(FollowHairs, NonFiniteRootAffectsOnlyItsHairs) {
     FollowScene scene = tangled(8);
     scene.positions[scene.offsets[2]].x = kNan;
     const std::vector<Float3> hairs = scene.evaluate();
@@ -379,7 +379,7 @@ TEST(FollowHairs, ARootThatIsNoNumberTakesTheHairsThatTakePartOfIt) {
     }
 }
 
-TEST(FollowHairs, ARotationThatIsNoneCountsAsNone) {
+TEST(FollowHairs, InvalidRotationIsIdentity) {
     FollowScene scene = tangled(8);
     scene.rotations[1] = {0.0f, 0.0f, 0.0f, 1.0f};
     const std::vector<Float3> unturned = scene.evaluate();
@@ -395,39 +395,39 @@ TEST(FollowHairs, OfNoGuideAreNone) {
 }
 
 TEST(FollowHairs, RefuseWhatDoesNotFitInWords) {
-    const auto whyAfter = [](auto&& spoil) {
+    const auto errorAfter = [](auto&& spoil) {
         FollowScene scene = tangled(8);
         spoil(scene);
-        const FollowHairs::Made made = FollowHairs::make(scene.view());
+        const FollowHairs::Result made = FollowHairs::make(scene.view());
         EXPECT_EQ(made.hairs.has_value(), made.error.empty());
         return made.error;
     };
-    EXPECT_EQ(whyAfter([](FollowScene&) {}), "");
-    EXPECT_EQ(whyAfter([](FollowScene& s) { s.guides[7][2] = 21; }), "hair 7 follows guide 21 of 21");
-    EXPECT_EQ(whyAfter([](FollowScene& s) { s.weights[3].x += 0.1f; }),
+    EXPECT_EQ(errorAfter([](FollowScene&) {}), "");
+    EXPECT_EQ(errorAfter([](FollowScene& s) { s.guides[7][2] = 21; }), "hair 7 follows guide 21 of 21");
+    EXPECT_EQ(errorAfter([](FollowScene& s) { s.weights[3].x += 0.1f; }),
               "hair 3 has weights that are not shares of 1");
-    EXPECT_EQ(whyAfter([](FollowScene& s) {
+    EXPECT_EQ(errorAfter([](FollowScene& s) {
                   s.rootWeights[3] = {2.0f, -1.0f, 0.0f};
               }),
               "hair 3 has root weights that are not shares of 1");
-    EXPECT_EQ(whyAfter([](FollowScene& s) { s.blends[0] = kNan; }),
+    EXPECT_EQ(errorAfter([](FollowScene& s) { s.blends[0] = kNan; }),
               "hair 0 has a blend that is not between 0 and 1");
-    EXPECT_EQ(whyAfter([](FollowScene& s) { s.wispOffsets[1][1] = kNan; }),
+    EXPECT_EQ(errorAfter([](FollowScene& s) { s.wispOffsets[1][1] = kNan; }),
               "hair 1 has a wisp offset that is not finite");
-    EXPECT_EQ(whyAfter([](FollowScene& s) { s.rootShifts[1].z = kNan; }),
+    EXPECT_EQ(errorAfter([](FollowScene& s) { s.rootShifts[1].z = kNan; }),
               "hair 1 has a root shift that is not finite");
-    EXPECT_EQ(whyAfter([](FollowScene& s) { s.radii[5] = -1.0f; }),
+    EXPECT_EQ(errorAfter([](FollowScene& s) { s.radii[5] = -1.0f; }),
               "the wisp radius at point 5 is not a length");
-    EXPECT_EQ(whyAfter([](FollowScene& s) { s.planes[5].y.x = kNan; }),
+    EXPECT_EQ(errorAfter([](FollowScene& s) { s.planes[5].y.x = kNan; }),
               "the root plane of guide 5 is not finite");
-    EXPECT_EQ(whyAfter([](FollowScene& s) { s.rest[5].y = kNan; }), "rest position 5 is not finite");
-    EXPECT_EQ(whyAfter([](FollowScene& s) { s.blends.pop_back(); }), "299 blends; expected 300");
-    EXPECT_EQ(whyAfter([](FollowScene& s) { s.points = 1; }), "1 points per hair; expected 2 to 1048576");
-    EXPECT_EQ(whyAfter([](FollowScene& s) { s.offsets = {}; }),
+    EXPECT_EQ(errorAfter([](FollowScene& s) { s.rest[5].y = kNan; }), "rest position 5 is not finite");
+    EXPECT_EQ(errorAfter([](FollowScene& s) { s.blends.pop_back(); }), "299 blends; expected 300");
+    EXPECT_EQ(errorAfter([](FollowScene& s) { s.points = 1; }), "1 points per hair; expected 2 to 1048576");
+    EXPECT_EQ(errorAfter([](FollowScene& s) { s.offsets = {}; }),
               "no guide offsets from 0; expected guide count + 1 of them");
-    EXPECT_EQ(whyAfter([](FollowScene& s) { s.offsets[2] = s.offsets[1] + 1; }),
+    EXPECT_EQ(errorAfter([](FollowScene& s) { s.offsets[2] = s.offsets[1] + 1; }),
               "guide 1 runs from point 8 to 9; expected two points or more");
-    EXPECT_EQ(whyAfter([](FollowScene& s) {
+    EXPECT_EQ(errorAfter([](FollowScene& s) {
                   s.offsets[1] = 7;
                   s.rest.clear();
               }),

@@ -18,7 +18,7 @@ struct Points {
 };
 
 HairVolume makeVolume(const HairVolumeSettings& settings, Host host = {}) {
-    HairVolume::Made made = HairVolume::make(settings, std::move(host));
+    HairVolume::Result made = HairVolume::make(settings, std::move(host));
     EXPECT_EQ(made.error, "");
     return std::move(*made.volume);
 }
@@ -52,7 +52,7 @@ HairVolumeSettings frictionOnly(float rate) {
     return s;
 }
 
-TEST(HairVolume, SumsHoldAllMassAndMomentum) {
+TEST(HairVolume, GridConservesMassAndMomentum) {
     Points points = cloud(5000, 0.3f, 3.0f);
     for (Float3& v : points.velocities) v = v + Float3{1.0f, -2.0f, 0.5f};
     const auto before = momentumOf(points.velocities);
@@ -82,7 +82,7 @@ TEST(HairVolume, SameBitsForAnyNumberOfThreadsAndOrder) {
     EXPECT_FALSE(results[0].velocities == cloud(4000, 0.15f, 2.0f).velocities);
 }
 
-TEST(HairVolume, ThreadsThatMeetInOneCellLoseNothing) {
+TEST(HairVolume, ConcurrentWritesToOneCellLoseNothing) {
     Points points = cloud(200000, 0.004f, 2.0f);
     for (Float3& p : points.positions) p = p + Float3{0.005f, 0.005f, 0.005f};
     HairVolume volume = makeVolume(frictionOnly(1.0f), hostWithThreads(4));
@@ -90,7 +90,7 @@ TEST(HairVolume, ThreadsThatMeetInOneCellLoseNothing) {
     EXPECT_EQ(volume.totals().mass, 200000.0);
 }
 
-TEST(HairVolume, TheOrderOfPointsDoesNotCount) {
+TEST(HairVolume, IndependentOfPointOrder) {
     const Points forward = cloud(1000, 0.1f, 2.0f);
     Points a = forward, b = forward;
     std::reverse(b.positions.begin(), b.positions.end());
@@ -271,7 +271,7 @@ TEST(HairVolume, NothingIsAllocatedByApply) {
     EXPECT_EQ(allocationCount(), before);
 }
 
-TEST(HairVolume, WhatIsNoNumberStaysOutsideAndSpeedSaturates) {
+TEST(HairVolume, NonFiniteInputIsRejectedAndSpeedSaturates) {
     const float nan = std::numeric_limits<float>::quiet_NaN(), huge = 3e38f;
     Points points = cloud(100, 0.05f, 1.0f);
     points.positions[3].x = nan;

@@ -45,7 +45,7 @@ TEST(HardCases, PointsLeftFarBehindComeBackToTheirLength) {
     EXPECT_LT(engine.measure().maxStretch, 1.01f * s.maximalExtension);
 }
 
-TEST(HardCases, NoEnergyComesFromNowhere) {
+TEST(HardCases, EnergyDoesNotGrow) {
     // Undamped, without gravity or air: a swinging chain may lose energy, never gain it.
     const Strands strands = tuft(10);
     SimulationSettings s = bare();
@@ -56,26 +56,26 @@ TEST(HardCases, NoEnergyComesFromNowhere) {
     ASSERT_EQ(engine.setSettings(s), "");
     run(engine, strands, 1);
     const double start = engine.measure().kineticEnergy;
-    double most = 0.0;
+    double maximum = 0.0;
     for (int f = 0; f < 600; ++f) {
         run(engine, strands, 1);
-        most = std::max(most, engine.measure().kineticEnergy);
+        maximum = std::max(maximum, engine.measure().kineticEnergy);
     }
-    EXPECT_LT(most, 1.02 * start);
+    EXPECT_LT(maximum, 1.02 * start);
     expectSound(engine, "free swing");
 }
 
-TEST(HardCases, ACutOfTenMetresCarriesTheHairAlong) {
+TEST(HardCases, TeleportOfTenMetresCarriesTheHair) {
     const Strands strands = tuft(20);
     Engine engine = makeEngine(strands, {});
     run(engine, strands, 60);
     const std::vector<Float3> before = positionsOf(engine);
     const auto roots = strands.roots({10.0f, 0.0f, 0.0f});
-    Engine uncut = engine;
-    run(uncut, strands, 1);
+    Engine notTeleported = engine;
+    run(notTeleported, strands, 1);
     engine.step({1.0f / 60.0f, 0.0, roots, {}});
     expectSound(engine, "cut");
-    EXPECT_NEAR(engine.measure().kineticEnergy, uncut.measure().kineticEnergy, 1e-3);
+    EXPECT_NEAR(engine.measure().kineticEnergy, notTeleported.measure().kineticEnergy, 1e-3);
     const std::vector<Float3> after = positionsOf(engine);
     for (std::size_t i = 0; i < after.size(); ++i) {
         EXPECT_LT(length(after[i] - before[i] - Float3{10.0f, 0.0f, 0.0f}), 0.02f);
@@ -125,7 +125,7 @@ TEST(HardCases, SegmentsWithoutLengthFoldsAndCoincidentPoints) {
     }
 }
 
-TEST(HardCases, ASegmentTurnedByHalfATurnIsPutRight) {
+TEST(HardCases, ReversedSegmentRecovers) {
     // Rest points up; the root turns by exactly 180° in one frame.
     Strands strands;
     strands.add({}, {0.0f, 1.0f, 0.0f}, 0.02f, 8);
@@ -173,7 +173,7 @@ TEST(HardCases, WindOfAHundredMetresPerSecondThatReverses) {
     }
 }
 
-TEST(HardCases, RootsThatAreNoNumbersStayWhereTheyWere) {
+TEST(HardCases, NonFiniteRootsKeepTheirPose) {
     const Strands strands = tuft(3);
     Engine engine = makeEngine(strands, {});
     auto roots = strands.roots();
@@ -185,7 +185,7 @@ TEST(HardCases, RootsThatAreNoNumbersStayWhereTheyWere) {
     EXPECT_EQ(positionsOf(engine)[12], strands.points[12]);
 }
 
-TEST(HardCases, WhatCannotBeStrandsIsRefused) {
+TEST(HardCases, InvalidStrandsAreRefused) {
     Strands strands = tuft(2);
     const auto errorOf = [](const Strands& bad) { return Engine::make(bad.view(), {}).error; };
     Strands one = strands;

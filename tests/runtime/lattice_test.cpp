@@ -11,7 +11,7 @@ namespace hairloom::runtime {
 namespace {
 
 Lattice makeLattice(const Strands& strands, const LatticeSettings& settings = {}, Host host = {}) {
-    Lattice::Made made = Lattice::make(strands.view(), settings, std::move(host));
+    Lattice::Result made = Lattice::make(strands.view(), settings, std::move(host));
     EXPECT_EQ(made.error, "");
     return std::move(*made.lattice);
 }
@@ -38,13 +38,13 @@ Strands cap(std::uint32_t copies = 1) {
 const Quat kTurn = turnAbout({0.36f, 0.48f, 0.8f}, 0.9f);
 
 float farthestFromRigid(const Lattice& lattice, const Strands& strands, const RootFrame& head) {
-    float most = 0.0f;
+    float maximum = 0.0f;
     const std::vector<Float3> now = hairOf(lattice);
     for (std::size_t i = 0; i < now.size(); ++i) {
         const float away = length(now[i] - head.position - rotate(head.rotation, strands.points[i]));
-        if (!(away <= most)) most = away;
+        if (!(away <= maximum)) maximum = away;
     }
-    return most;
+    return maximum;
 }
 
 TEST(Lattice, RigidPlacesAreRigidToRounding) {
@@ -63,19 +63,19 @@ TEST(Lattice, RigidPlacesAreRigidToRounding) {
     EXPECT_LT(farthestFromRigid(carried, strands, far), 8e-6f);
 }
 
-TEST(Lattice, SteadyMotionOfTheHeadIsNotFelt) {
+TEST(Lattice, SteadyHeadMotionExertsNoForce) {
     const Strands strands = cap();
     LatticeSettings s;
     s.airDrag = 0.0f;
     Lattice lattice = makeLattice(strands, s);
     RootFrame head;
-    float most = 0.0f;
+    float maximum = 0.0f;
     for (int f = 1; f <= 240; ++f) {
         head.position.x = 0.02f * static_cast<float>(f);
         lattice.step(head, 1.0f / 60.0f);
-        if (f < 30) most = std::max(most, farthestFromRigid(lattice, strands, head));
+        if (f < 30) maximum = std::max(maximum, farthestFromRigid(lattice, strands, head));
     }
-    EXPECT_GT(most, 0.005f) << "setting off is felt";
+    EXPECT_GT(maximum, 0.005f) << "setting off is felt";
     EXPECT_LT(farthestFromRigid(lattice, strands, head), 1e-5f);
 }
 
@@ -338,7 +338,7 @@ TEST(Lattice, NothingIsAllocatedByStepAndEvaluate) {
     EXPECT_EQ(allocationCount(), before);
 }
 
-TEST(Lattice, WhatIsNoNumberStaysOutside) {
+TEST(Lattice, NonFiniteInputIsRejected) {
     const float nan = std::numeric_limits<float>::quiet_NaN(), huge = 3e38f;
     const Strands strands = cap();
     Lattice lattice = makeLattice(strands);
@@ -364,7 +364,7 @@ TEST(Lattice, WhatIsNoNumberStaysOutside) {
     }
 }
 
-TEST(Lattice, RefusesWhatItCannotUse) {
+TEST(Lattice, RefusesInvalidSettings) {
     LatticeSettings s;
     s.nodes = 2;
     s.wind.y = 300.0f;

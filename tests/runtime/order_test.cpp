@@ -109,34 +109,35 @@ TEST_P(Order, IsThatOfTheTextbook) {
     }
 }
 
-constexpr AngularMethod kCheap = AngularMethod::cheap;
+constexpr AngularMethod kSmallAngle = AngularMethod::smallAngle;
 constexpr AngularMethod kImplicit = AngularMethod::implicit;
 constexpr AngularMethod kExact = AngularMethod::exact;
 
 INSTANTIATE_TEST_SUITE_P(
     Smooth, Order,
-    testing::Values(OrderCase{"explicitEuler", Integrator::explicitEuler, kCheap, 0.0f, 1, 0.4, 64, 1e-4},
-                    OrderCase{"implicitEuler", Integrator::implicitEuler, kCheap, 0.0f, 1, 0.4, 64, 1e-4},
-                    OrderCase{"verletCheap", Integrator::verlet, kCheap, 0.0f, 2, 0.4, 12, 1e-5},
-                    OrderCase{"verletImplicit", Integrator::verlet, kImplicit, 0.0f, 2, 0.4, 12, 1e-5},
-                    OrderCase{"velocityVerlet", Integrator::velocityVerlet, kCheap, 0.0f, 2, 0.4, 12, 1e-5},
-                    OrderCase{"velocityVerletExact", Integrator::velocityVerlet, kExact, 0.0f, 2, 0.4, 12,
-                              1e-5},
-                    OrderCase{"leapfrog", Integrator::leapfrog, kCheap, 0.0f, 2, 0.4, 12, 1e-5},
-                    OrderCase{"rk4", Integrator::rk4, kCheap, 0.0f, 4, 0.5, 8, 3e-6},
-                    OrderCase{"rk4Exact", Integrator::rk4, kExact, 0.0f, 4, 0.5, 8, 3e-6}),
+    testing::Values(
+        OrderCase{"explicitEuler", Integrator::explicitEuler, kSmallAngle, 0.0f, 1, 0.4, 64, 1e-4},
+        OrderCase{"implicitEuler", Integrator::implicitEuler, kSmallAngle, 0.0f, 1, 0.4, 64, 1e-4},
+        OrderCase{"verletCheap", Integrator::verlet, kSmallAngle, 0.0f, 2, 0.4, 12, 1e-5},
+        OrderCase{"verletImplicit", Integrator::verlet, kImplicit, 0.0f, 2, 0.4, 12, 1e-5},
+        OrderCase{"velocityVerlet", Integrator::velocityVerlet, kSmallAngle, 0.0f, 2, 0.4, 12, 1e-5},
+        OrderCase{"velocityVerletExact", Integrator::velocityVerlet, kExact, 0.0f, 2, 0.4, 12, 1e-5},
+        OrderCase{"leapfrog", Integrator::leapfrog, kSmallAngle, 0.0f, 2, 0.4, 12, 1e-5},
+        OrderCase{"rk4", Integrator::rk4, kSmallAngle, 0.0f, 4, 0.5, 8, 3e-6},
+        OrderCase{"rk4Exact", Integrator::rk4, kExact, 0.0f, 4, 0.5, 8, 3e-6}),
     [](const auto& tested) { return std::string(tested.param.name); });
 
 /// Drag is a force of the velocity. Position Verlet and leapfrog give it that of half a step ago and of the
 /// step's start, which costs them an order; velocity Verlet predicts the velocity and keeps its order.
 INSTANTIATE_TEST_SUITE_P(
     WithDrag, Order,
-    testing::Values(OrderCase{"explicitEuler", Integrator::explicitEuler, kCheap, 5.0f, 1, 0.4, 64, 1e-4},
-                    OrderCase{"implicitEuler", Integrator::implicitEuler, kCheap, 5.0f, 1, 0.4, 64, 1e-4},
-                    OrderCase{"verlet", Integrator::verlet, kCheap, 5.0f, 1, 0.4, 64, 1e-4},
-                    OrderCase{"velocityVerlet", Integrator::velocityVerlet, kCheap, 5.0f, 2, 0.4, 12, 1e-5},
-                    OrderCase{"leapfrog", Integrator::leapfrog, kCheap, 5.0f, 1, 0.4, 64, 1e-4},
-                    OrderCase{"rk4", Integrator::rk4, kCheap, 5.0f, 4, 0.5, 8, 3e-6}),
+    testing::Values(
+        OrderCase{"explicitEuler", Integrator::explicitEuler, kSmallAngle, 5.0f, 1, 0.4, 64, 1e-4},
+        OrderCase{"implicitEuler", Integrator::implicitEuler, kSmallAngle, 5.0f, 1, 0.4, 64, 1e-4},
+        OrderCase{"verlet", Integrator::verlet, kSmallAngle, 5.0f, 1, 0.4, 64, 1e-4},
+        OrderCase{"velocityVerlet", Integrator::velocityVerlet, kSmallAngle, 5.0f, 2, 0.4, 12, 1e-5},
+        OrderCase{"leapfrog", Integrator::leapfrog, kSmallAngle, 5.0f, 1, 0.4, 64, 1e-4},
+        OrderCase{"rk4", Integrator::rk4, kSmallAngle, 5.0f, 4, 0.5, 8, 3e-6}),
     [](const auto& tested) { return std::string(tested.param.name); });
 
 }  // namespace

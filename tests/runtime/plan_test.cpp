@@ -11,8 +11,8 @@ namespace {
 
 using testing::ElementsAre;
 
-SceneDescription sceneOf(const SimulationSettings& settings) {
-    SceneDescription scene;
+PlanInput sceneOf(const SimulationSettings& settings) {
+    PlanInput scene;
     scene.settings = settings;
     scene.strandCount = 10;
     scene.longestPointCount = 16;
@@ -33,7 +33,7 @@ TEST(Plan, DefaultSceneSaysWhatRunsAndWhy) {
     EXPECT_EQ(p.why(Effect::collision), "collision: off, no spheres");
 }
 
-TEST(Plan, NothingAuthoredLeavesTheIntegratorAlone) {
+TEST(Plan, WithoutEffectsOnlyTheIntegratorRuns) {
     SimulationSettings s = bare();
     s.lengthIterations = 0;
     const EffectPlan p = plan(sceneOf(s));
@@ -43,7 +43,7 @@ TEST(Plan, NothingAuthoredLeavesTheIntegratorAlone) {
     EXPECT_EQ(p.why(Effect::length), "length: off, zero iterations");
 }
 
-TEST(Plan, WindTakesStillAirOver) {
+TEST(Plan, WindReplacesStillAir) {
     SimulationSettings s;
     s.windSpeed = 3.0f;
     const EffectPlan p = plan(sceneOf(s));
@@ -56,38 +56,38 @@ TEST(Plan, WindTakesStillAirOver) {
     EXPECT_EQ(plan(sceneOf(s)).why(Effect::wind), "wind: off, air drag is zero, so hair does not feel air");
 }
 
-TEST(Plan, BendingAndLengthsAreOneSystemWhereApartTheyWouldUndoEachOther) {
+TEST(Plan, StiffBendingIsCoupledWithLengths) {
     const auto planOf = [](auto&& change) {
-        SceneDescription scene = sceneOf({});
+        PlanInput scene = sceneOf({});
         change(scene);
         return plan(scene);
     };
     const EffectPlan usual = plan(sceneOf({}));
     EXPECT_EQ(usual.why(Effect::coupling),
               "coupling: off, bending is damped, hair is even and has no tight curls");
-    const EffectPlan undamped = planOf([](SceneDescription& s) { s.settings.bendDampingTime = 0.0f; });
+    const EffectPlan undamped = planOf([](PlanInput& s) { s.settings.bendDampingTime = 0.0f; });
     EXPECT_EQ(undamped.why(Effect::coupling), "coupling: on, bending is undamped");
     EXPECT_THAT(undamped.stages(),
                 ElementsAre(StageId::roots, StageId::damping, StageId::drag, StageId::gravity,
                             StageId::verlet, StageId::coupled, StageId::extension));
-    EXPECT_EQ(planOf([](SceneDescription& s) { s.unevenness = 1000.0f; }).why(Effect::coupling),
+    EXPECT_EQ(planOf([](PlanInput& s) { s.massRatio = 1000.0f; }).why(Effect::coupling),
               "coupling: on, masses or segments differ 1000 times along a strand");
-    const auto curled = [](SceneDescription& s) {
+    const auto curled = [](PlanInput& s) {
         s.substep = 0.002f;
         // ω²h² |c|² = 16, that is, two thirds of a turn.
-        s.sharpestCurl = static_cast<float>(
+        s.maxCurvature = static_cast<float>(
             16.0 / (bendingStiffnessOf(static_cast<double>(s.settings.angularStiffness)) * 0.002 * 0.002));
     };
     EXPECT_EQ(planOf(curled).why(Effect::coupling),
               "coupling: on, curls spring back 0.64 times in a substep");
-    EXPECT_FALSE(planOf([&](SceneDescription& s) {
+    EXPECT_FALSE(planOf([&](PlanInput& s) {
                      curled(s);
                      s.settings.integrator = Integrator::rk4;
                  }).on(Effect::coupling));
 }
 
 TEST(Plan, SpheresCountOnlyWithinReach) {
-    SceneDescription scene = sceneOf({});
+    PlanInput scene = sceneOf({});
     const std::vector<Sphere> spheres{{{0.0f, -0.5f, 0.0f}, 0.25f}, {{5.0f, 0.0f, 0.0f}, 0.25f}};
     scene.spheres = std::span(spheres).first(1);
     EXPECT_EQ(plan(scene).why(Effect::collision), "collision: on, 1 sphere within reach");
@@ -99,13 +99,13 @@ TEST(Plan, SpheresCountOnlyWithinReach) {
 }
 
 TEST(Plan, ARigidStrandOnlyMovesItsRoots) {
-    SceneDescription scene = sceneOf({});
+    PlanInput scene = sceneOf({});
     scene.longestPointCount = 2;
     EXPECT_THAT(plan(scene).stages(), ElementsAre(StageId::roots));
     EXPECT_EQ(plan(scene).why(Effect::gravity), "gravity: off, no point of any strand is free");
 }
 
-TEST(Plan, WhatIsOffHasNoMemory) {
+TEST(Plan, DisabledEffectsHaveNoMemory) {
     const Strands strands = tuft(40);
     Engine engine = makeEngine(strands, bare());
     run(engine, strands, 2);

@@ -10,7 +10,7 @@ namespace hairloom::runtime {
 namespace {
 
 ProjectiveEquations makeSticks(const Strands& strands, const SimulationSettings& settings, Host host = {}) {
-    ProjectiveEquations::Made made = ProjectiveEquations::make(strands.view(), settings, std::move(host));
+    ProjectiveEquations::Result made = ProjectiveEquations::make(strands.view(), settings, std::move(host));
     EXPECT_EQ(made.error, "");
     return std::move(*made.engine);
 }
@@ -172,11 +172,11 @@ TEST(Projective, AuthoredShapeComesBackAndTurnsWithTheRoot) {
         sticks.step({1.0f / 60.0f, 0.0, roots, {}});
     }
     const auto worst = [&] {
-        float most = 0.0f;
+        float maximum = 0.0f;
         const std::vector<Float3> now = placesOf(sticks);
         for (std::size_t i = 0; i < now.size(); ++i)
-            most = std::max(most, length(now[i] - rotate(turn, strands.points[i])));
-        return most;
+            maximum = std::max(maximum, length(now[i] - rotate(turn, strands.points[i])));
+        return maximum;
     };
     EXPECT_GT(worst(), 1e-3f) << "inertia leaves the hair behind";
     for (int f = 0; f < 300; ++f) sticks.step({1.0f / 60.0f, 0.0, strands.roots({}, turn), {}});
@@ -248,11 +248,11 @@ TEST(Projective, TipsLeaveSpheresAndSticksKeepTheirLength) {
     ProjectiveEquations sticks = makeSticks(strands, s);
     const std::vector<Sphere> spheres{{{0.08f, 0.005f, 0.0f}, 0.07f}};
     const auto deepest = [&] {
-        float most = -1.0f;
+        float maximum = -1.0f;
         for (const Float3& p : placesOf(sticks)) {
-            most = std::max(most, 0.072f - length(p - spheres[0].center_ws));
+            maximum = std::max(maximum, 0.072f - length(p - spheres[0].center_ws));
         }
-        return most;
+        return maximum;
     };
     ASSERT_GT(deepest(), 0.02f) << "the sphere should stand in the hair";
     for (int f = 0; f < 120; ++f) sticks.step({1.0f / 60.0f, 0.0, strands.roots(), spheres});
@@ -275,7 +275,7 @@ TEST(Projective, AStickThatRestedOnASphereStartsFromRest) {
     EXPECT_NEAR(before - placesOf(sticks)[1].y, 0.75f * 9.81f / 3600.0f, 4e-4f);
 }
 
-TEST(Projective, BeyondThePoleAPushGoesTheNearWay) {
+TEST(Projective, PushBeyondThePoleTakesTheShorterArc) {
     Stick stick = makeStick({0.1f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f});
     StickMotion motion;
     motion.theta = 0.2f;
@@ -332,7 +332,7 @@ TEST(Projective, AStepAllocatesNothing) {
     EXPECT_EQ(allocationCount(), before);
 }
 
-TEST(Projective, WhatIsNoNumberStaysOutside) {
+TEST(Projective, NonFiniteInputIsRejected) {
     const float nan = std::numeric_limits<float>::quiet_NaN(), huge = 1e38f;
     const Strands strands = tuft(4);
     SimulationSettings s;

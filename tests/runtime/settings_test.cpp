@@ -17,7 +17,7 @@ const Field<SimulationSettings>* named(const char* name) {
     return findField<SimulationSettings>(name);
 }
 
-TEST(Settings, DefaultsAreInRangeAndEachFieldIsTold) {
+TEST(Settings, DefaultsAreInRangeAndEveryFieldIsDescribed) {
     EXPECT_TRUE(validate({}).empty());
     std::set<std::string> names;
     for (const auto& field : fields()) {

@@ -76,7 +76,7 @@ struct Met {
 
 void callEverything(const StrandsView& view, const Strands& strands, const SimulationSettings& settings,
                     Met& met) {
-    Engine::Made made = Engine::make(view, settings);
+    Engine::Result made = Engine::make(view, settings);
     met.errors.insert(made.error);
     if (!made.engine) return;
     Engine& engine = *made.engine;
@@ -126,13 +126,13 @@ void forEveryMethod(const Visit& visit) {
 }
 
 TEST(Stack, EveryStageRunsOnASmallOne) {
-    std::size_t most = 0;
+    std::size_t maximum = 0;
     Met met;
     const auto onSmall = [&](const Hair& hair, bool coupled, const SimulationSettings& settings) {
         const std::size_t used =
             runOnStack(kStackBytes, [&] { callEverything(hair.view(coupled), hair.strands, settings, met); });
         ASSERT_GT(used, 0u);
-        most = std::max(most, used);
+        maximum = std::max(maximum, used);
     };
     const auto onSmallByEveryMethod = [&](std::uint32_t points, bool curled) {
         const Hair hair(points, curled);
@@ -153,9 +153,9 @@ TEST(Stack, EveryStageRunsOnASmallOne) {
     });
     const Hair hair(kMaxPoints, true);
     const auto advise = [&] { adviseStability(hair.view(true), {}, 1.0f / 60.0f); };
-    most = std::max(most, runOnStack(kStackBytes, advise));
-    EXPECT_LT(most, kStackBytes);
-    RecordProperty("bytes", static_cast<int>(most));
+    maximum = std::max(maximum, runOnStack(kStackBytes, advise));
+    EXPECT_LT(maximum, kStackBytes);
+    RecordProperty("bytes", static_cast<int>(maximum));
     EXPECT_EQ(met.errors, std::set<std::string>{""});
     for (std::uint32_t stage = 0; stage < kStageCount; ++stage) {
         EXPECT_TRUE(met.stages.contains(static_cast<StageId>(stage)))

@@ -141,14 +141,14 @@ TEST(Stable, KnowsThatDragIsStiffForForces) {
 /// Largest place of a damped oscillator of ω h = `wave` after many substeps, relative to the start, as
 /// position Verlet and explicit Euler take it with the share `kept` of the velocity.
 double swingAfter(Integrator integrator, double wave, double kept) {
-    double x = 1.0, u = 0.0, most = 0.0;
+    double x = 1.0, u = 0.0, maximum = 0.0;
     for (int i = 0; i < 4000 && std::abs(x) < 1e9; ++i) {
         const double before = x, moving = kept * u;
         u = moving - wave * wave * before;
         x = before + (integrator == Integrator::explicitEuler ? moving : u);
-        if (i > 3000 || std::abs(x) > 1e6) most = std::max(most, std::abs(x));
+        if (i > 3000 || std::abs(x) > 1e6) maximum = std::max(maximum, std::abs(x));
     }
-    return most;
+    return maximum;
 }
 
 TEST(Stable, LimitsWithDampingAreThoseOfTheRecursion) {

@@ -101,7 +101,7 @@ TEST(StepMemory, CollisionLeavesAndJoins) {
 }
 
 /// A copy taken in mid-run goes on as the original does, through sleep, held curves and wind.
-TEST(SavedState, GoesOnWithTheSameBits) {
+TEST(SavedState, ResumesWithTheSameBits) {
     Strands strands = tuft(60, true);
     // Curls, so that curves are state.
     for (std::size_t p = 0; p < strands.points.size(); ++p)

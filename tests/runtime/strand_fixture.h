@@ -58,7 +58,7 @@ inline SimulationSettings bare() {
 }
 
 inline Engine makeEngine(const Strands& strands, const SimulationSettings& settings, Host host = {}) {
-    Engine::Made made = Engine::make(strands.view(), settings, std::move(host));
+    Engine::Result made = Engine::make(strands.view(), settings, std::move(host));
     EXPECT_EQ(made.error, "");
     return std::move(*made.engine);
 }

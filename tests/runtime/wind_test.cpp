@@ -58,7 +58,7 @@ Double3 difference(Double3 a, Double3 b) {
 struct Statistics {
     Double3 mean;
     double deviation = 0.0;  ///< root mean square of the distance from the mean flow
-    double least = 1e9;      ///< along the mean flow
+    double minimum = 1e9;    ///< along the mean flow
 };
 Statistics statisticsOf(const Wind& wind) {
     constexpr int kCount = 40000;
@@ -72,7 +72,8 @@ Statistics statisticsOf(const Wind& wind) {
                        result.mean.z + v.z / kCount};
         const double off = lengthOf(difference(v, flow));
         result.deviation += off * off / kCount;
-        result.least = std::min(result.least, (v.x * flow.x + v.y * flow.y + v.z * flow.z) / lengthOf(flow));
+        result.minimum =
+            std::min(result.minimum, (v.x * flow.x + v.y * flow.y + v.z * flow.z) / lengthOf(flow));
     }
     result.deviation = std::sqrt(result.deviation);
     return result;
@@ -91,8 +92,8 @@ TEST(Wind, MeanAndDeviationAreThoseOfTheSettings) {
             EXPECT_LT(found.deviation, 1e-6);
         } else if (kind == WindKind::gusting) {
             EXPECT_NEAR(found.deviation, 0.7 * 0.4 * 5.0, 0.07);
-            EXPECT_GE(found.least, 0.6 * 5.0 - 1e-5);
-            EXPECT_LT(found.least, 0.7 * 5.0);
+            EXPECT_GE(found.minimum, 0.6 * 5.0 - 1e-5);
+            EXPECT_LT(found.minimum, 0.7 * 5.0);
         } else {
             EXPECT_NEAR(found.deviation, 0.4 * 5.0, 0.04);
         }
@@ -102,7 +103,7 @@ TEST(Wind, MeanAndDeviationAreThoseOfTheSettings) {
 TEST(Wind, FullGustinessDoesNotTurnAGustRound) {
     SimulationSettings s = blowing(WindKind::gusting);
     s.windGustiness = 1.0f;
-    EXPECT_GE(statisticsOf(makeWind(s)).least, -1e-5);
+    EXPECT_GE(statisticsOf(makeWind(s)).minimum, -1e-5);
 }
 
 TEST(Wind, IsContinuousInSpaceAndTime) {
@@ -252,7 +253,7 @@ TEST(Wind, AnActorRidesAgainstTheAirOfItsVehicleOnly) {
     EXPECT_EQ(length(Vane(s).taken(input)), 0.0f);
 }
 
-TEST(Wind, WhatIsNoWindIsIgnoredAndCounted) {
+TEST(Wind, InvalidWindIsIgnoredAndCounted) {
     const Vane vane(blowing(WindKind::vehicle));
     std::uint32_t rejected = 0;
     FrameInput input;

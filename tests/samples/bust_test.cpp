@@ -66,7 +66,7 @@ TEST_P(BustFileTest, HasEvenTrianglesOnTheSurface) {
     EXPECT_LT(static_cast<double>(thin), 0.03 * static_cast<double>(file.triangles.size()));
 }
 
-TEST_P(BustFileTest, IsAPersonsHeadAndMirrorsInX) {
+TEST_P(BustFileTest, HasHumanSizeAndMirrorsInX) {
     Eigen::AlignedBox3d box;
     Eigen::AlignedBox3d scalp;
     for (const Vec3d& p : file.positions) box.extend(p);

@@ -32,7 +32,7 @@ Groom plainGroom() {
     return groom;
 }
 
-TEST(HairLook, EvenHairHasNone) {
+TEST(HairLook, UniformHairHasNone) {
     const Groom plain = plainGroom();
     EXPECT_FALSE(renderMaterial(plain, kKajiya).look);
     EXPECT_FALSE(renderMaterial(plain, kMarschner).look);
@@ -49,7 +49,7 @@ TEST(HairLook, EvenHairHasNone) {
                                     static_cast<double>(coloured.material.azimuthalRoughness))));
 }
 
-TEST(HairLook, EachFeatureAsksForOne) {
+TEST(HairLook, EachFeatureNeedsOne) {
     const std::vector<std::function<void(Groom&)>> features = {
         [](Groom& g) { g.material.streakShare = 0.1f; },
         [](Groom& g) { g.material.dyeStrength = 0.1f; },
@@ -81,7 +81,7 @@ TEST(HairLook, DyeComesFromTheMaskAndFollowHairsShareIt) {
     auto groom = makeSample(kSamples, "short");
     ASSERT_TRUE(groom) << groom.error().message();
     groom->material.dyeStrength = 0.5f;
-    EXPECT_EQ(sharesOfStrands(*groom).dyes, std::vector<float>(groom->strandCount(), 0.5f));
+    EXPECT_EQ(weightsOfStrands(*groom).dyes, std::vector<float>(groom->strandCount(), 0.5f));
     std::vector<float> mask(groom->strandCount());
     for (std::size_t s = 0; s < mask.size(); ++s) mask[s] = groom->strand(s)[0].x() > 0 ? 1.0f : 0.0f;
     groom->strandAttributes.set("right_half", mask);
@@ -91,7 +91,7 @@ TEST(HairLook, DyeComesFromTheMaskAndFollowHairsShareIt) {
     groom->interpolation.followPerGuide = 2;
     const auto bindings = bindFollowHairs(*groom, groom->interpolation);
     ASSERT_TRUE(bindings);
-    const auto shares = sharesOfFollowHairs(*groom, *bindings);
+    const auto shares = weightsOfFollowHairs(*groom, *bindings);
     ASSERT_TRUE(shares);
     ASSERT_EQ(shares->dyes.size(), bindings->hairCount());
     ASSERT_EQ(shares->streaks.size(), bindings->hairCount());
@@ -116,13 +116,13 @@ TEST(HairLook, PaintedDyeIsThatOfThePointsAndAnotherMaskReplacesIt) {
             painted[p] = static_cast<float>(p - first) / static_cast<float>(last - first);
     }
     groom->pointAttributes.set(attribute::kPointDye, painted);
-    const StrandShares own = sharesOfStrands(*groom);
+    const StreakAndDyeWeights own = weightsOfStrands(*groom);
     EXPECT_EQ(own.pointDyes, painted);
     EXPECT_EQ(own.dyes, std::vector<float>(groom->strandCount(), 0.5f));
     groom->interpolation.followPerGuide = 2;
     const auto bindings = bindFollowHairs(*groom, groom->interpolation);
     ASSERT_TRUE(bindings);
-    const auto shares = sharesOfFollowHairs(*groom, *bindings);
+    const auto shares = weightsOfFollowHairs(*groom, *bindings);
     ASSERT_TRUE(shares);
     ASSERT_EQ(shares->pointDyes.size(), bindings->hairCount() * bindings->pointsPerHair);
     for (std::size_t p = 0; p < shares->pointDyes.size(); ++p) {
@@ -131,7 +131,7 @@ TEST(HairLook, PaintedDyeIsThatOfThePointsAndAnotherMaskReplacesIt) {
     }
     groom->strandAttributes.set("all", std::vector<float>(groom->strandCount(), 1.0f));
     ASSERT_TRUE(dyeFromAttribute("all", *groom));
-    EXPECT_TRUE(sharesOfStrands(*groom).pointDyes.empty());
+    EXPECT_TRUE(weightsOfStrands(*groom).pointDyes.empty());
 }
 
 TEST(HairLook, AnImageOverTheRootUvsIsAMask) {

@@ -20,7 +20,7 @@ TEST(SampleTest, TheFolderIsFoundFromBelowAndNotElsewhere) {
     EXPECT_EQ(findSamples("/"), std::filesystem::path());
 }
 
-TEST(SampleTest, ASampleIsWholeAndTheSameEachTime) {
+TEST(SampleTest, SamplesAreCompleteAndDeterministic) {
     EXPECT_THAT(sampleNames(kSamples), testing::ElementsAre("long", "short", "shoulder"));
     const auto made = makeSample(kSamples, "short");
     ASSERT_TRUE(made) << made.error().message();

@@ -22,7 +22,7 @@ Vec3d integral(const AzimuthalProfile& profile, Lobe lobe, int steps) {
 }
 
 // truth.md: a Monte-Carlo of 8 million rays through a smooth cylinder.
-TEST(Azimuthal, EnergiesAreThoseOfTheTruth) {
+TEST(Azimuthal, EnergiesMatchTheReference) {
     const double expected[][4] = {
         {0, 0.0750, 0.8618, 0.0557}, {20, 0.0793, 0.8545, 0.0579}, {45, 0.1098, 0.8026, 0.0736}};
     for (const auto& row : expected) {
@@ -44,7 +44,7 @@ TEST(Azimuthal, EnergiesAreThoseOfTheTruth) {
     }
 }
 
-TEST(Azimuthal, WhatComesOutAroundTheFibreIsTheEnergyOfThePath) {
+TEST(Azimuthal, AzimuthalIntegralIsTheEnergyOfThePath) {
     for (const double degrees : {0.0, 30.0, 47.0, 60.0, 80.0}) {
         AzimuthalParameters parameters;
         parameters.absorption = Vec3d(0, 0.3, 1.5);
@@ -71,7 +71,7 @@ TEST(Azimuthal, EllipticFibresSpreadTheSameEnergy) {
 }
 
 // A path's rays, deflected once more by random amounts, against N: azimuth by azimuth.
-TEST(Azimuthal, ProfilesAreThoseOfTracedRays) {
+TEST(Azimuthal, ProfilesMatchTracedRays) {
     constexpr int kBins = 36;
     constexpr int kRays = 80000;
     for (const double degrees : {0.0, 25.0, 60.0}) {
@@ -125,20 +125,21 @@ TEST(Azimuthal, TransmittedLightEndsWhereGrazingRaysLeave) {
                 1e-9);
 }
 
-TEST(Azimuthal, CausticsAreFiniteAndFadeWithoutAJump) {
+TEST(Azimuthal, CausticsAreFiniteAndContinuous) {
     for (const double width : {0.1, 0.25}) {
         AzimuthalParameters parameters;
         parameters.causticWidth = width;
         double before = -1;
         for (double degrees = 20; degrees < 80; degrees += 0.5) {
             const AzimuthalProfile profile(parameters, degrees * kDegrees);
-            double most = 0;
-            for (double phi = 0; phi < kPi; phi += 0.01) most = std::max(most, profile(Lobe::TRT, phi).x());
-            EXPECT_LT(most, 0.3) << degrees;
+            double maximum = 0;
+            for (double phi = 0; phi < kPi; phi += 0.01)
+                maximum = std::max(maximum, profile(Lobe::TRT, phi).x());
+            EXPECT_LT(maximum, 0.3) << degrees;
             if (before >= 0) {
-                EXPECT_NEAR(most, before, 0.2 * most) << degrees;
+                EXPECT_NEAR(maximum, before, 0.2 * maximum) << degrees;
             }
-            before = most;
+            before = maximum;
         }
     }
 }
@@ -153,7 +154,7 @@ TEST(Azimuthal, GlintsScaleTheCausticAlone) {
 }
 
 // The thesis solves Eq. 42 instead of Eq. 40. What that costs is in docs/rendering.md.
-TEST(Azimuthal, TheCubicComesNearTheExactAngles) {
+TEST(Azimuthal, CubicApproximatesTheExactAngles) {
     for (const double degrees : {0.0, 30.0, 60.0}) {
         AzimuthalParameters parameters;
         const AzimuthalProfile exact(parameters, degrees * kDegrees);

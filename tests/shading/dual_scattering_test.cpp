@@ -252,7 +252,7 @@ TEST(DualScattering, TablesHoldTheModel) {
                     0.01 * static_cast<double>(row.profile[c][90]));
     }
     const Table factors = bakeSpreadFactors();
-    const double width = kLeastSpread + 0.31 * (kLargestSpread - kLeastSpread);
+    const double width = kMinSpread + 0.31 * (kLargestSpread - kMinSpread);
     EXPECT_NEAR(factors.sample(0.4, 0.31)[0], LongitudinalLobe(0, width).factorOut(std::asin(0.4)), 2e-3);
 }
 

@@ -49,7 +49,7 @@ TEST(KajiyaKay, ReflectanceAgreesWithQuadrature) {
     }
 }
 
-TEST(KajiyaKay, NeverReturnsMoreThanItReceives) {
+TEST(KajiyaKay, NeverGainsEnergy) {
     for (int m = 0; m <= 1000; m += m < 32 ? 1 : 44) {
         for (const double theta : {0.05, 0.4, 0.9, 1.3, kPiDouble / 2, 2.2}) {
             EXPECT_LE(albedo({0, 1, static_cast<double>(m)}, theta), 1 + 1e-6) << m << " " << theta;
@@ -58,7 +58,7 @@ TEST(KajiyaKay, NeverReturnsMoreThanItReceives) {
     }
 }
 
-TEST(KajiyaKay, ReturnsAllOfItAcrossTheFibre) {
+TEST(KajiyaKay, LosesNoEnergyAcrossTheFibre) {
     for (const double m : {0.0, 1.0, 20.0, 400.0}) {
         EXPECT_NEAR(albedo({1, 0, m}, kPiDouble / 2), 1, 1e-6);
         EXPECT_NEAR(albedo({0, 1, m}, kPiDouble / 2), 1, 1e-6);

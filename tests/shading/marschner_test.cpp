@@ -28,7 +28,7 @@ double energyOf(const LongitudinalLobe& lobe, double thetaIn) {
     return sum;
 }
 
-TEST(Longitudinal, EveryLobeGivesBackAllItsLight) {
+TEST(Longitudinal, EveryLobeConservesEnergy) {
     for (const double width : {1.0, 4.0, 8.3, 17.0, 40.0}) {
         for (const double tilt : {0.0, -2.0, 3.0, -7.0}) {
             const LongitudinalLobe lobe(tilt * kDegree, width * kDegree);
@@ -114,7 +114,7 @@ TEST(Marschner, WhiteFurnaceOfTheSmoothFibre) {
     }
 }
 
-TEST(Marschner, NeverReturnsMoreThanItReceives) {
+TEST(Marschner, NeverGainsEnergy) {
     Random random(4);
     for (int i = 0; i < 40; ++i) {
         MarschnerParameters parameters;

@@ -48,7 +48,7 @@ TEST(Optics, FresnelOfSkewRaysIsThatOfTheirAngleInSpace) {
     }
 }
 
-TEST(Optics, TheWayInsideIsAnInclinedChord) {
+TEST(Optics, PathInsideIsAnInclinedChord) {
     // Section 5.2 prints exp(−2σ cos γ_t) for all θ, and footnote 7 a chord of 2 cos 2γ_t.
     const Vec3d absorption(0.5, 1, 2);
     for (const double theta : {0.0, 0.5, 1.1}) {
@@ -65,7 +65,7 @@ TEST(Optics, TheWayInsideIsAnInclinedChord) {
               CrossSection(1.55, 0.2, absorption).at(0).transmittance.x());
 }
 
-TEST(Optics, AllPathsTogetherLoseNothing) {
+TEST(Optics, AllPathsConserveEnergy) {
     for (const double theta : {0.0, 0.6, 1.3}) {
         for (const double h : {0.0, 0.5, 0.9, 0.999}) {
             const auto ray = CrossSection(1.55, theta, Vec3d::Zero()).at(h);
@@ -104,13 +104,13 @@ TEST(Cubic, FindsAllRealRoots) {
     EXPECT_EQ(solveCubic(1, 0, 0).x[0], 0);
 }
 
-TEST(Melanin, IsWhatTheViewFilesSay) {
+TEST(Melanin, MatchesTheViewFiles) {
     // truth.md: blond has eumelanin 0.3.
     EXPECT_TRUE(absorption({0.3, 0}).isApprox(Vec3d(0.1257, 0.2091, 0.411), 1e-9));
     EXPECT_TRUE(absorption({0, 0.5}).isApprox(Vec3d(0.0935, 0.2, 0.525), 1e-9));
 }
 
-TEST(Melanin, RoughnessIsThatOfTheTruth) {
+TEST(Melanin, RoughnessMatchesTheReference) {
     // truth.md: roughness 0.3 is β_R = 8.3 degrees in θ_h.
     EXPECT_NEAR(longitudinalWidth(0.3) * 180 / std::numbers::pi, 8.3, 0.05);
     EXPECT_NEAR(azimuthalWidth(0.3),

@@ -59,12 +59,12 @@ TEST(StrandLook, OwnColoursAndChanceActAsAbsorption) {
     EXPECT_TRUE(absorptionOfColour(deeper, 0.3).isApprox(1.5 * absorptionOfColour(own, 0.3)));
 }
 
-TEST(AbsorptionLayers, PlacesAndLayersAreEachOthersInverse) {
+TEST(AbsorptionLayers, LayerAndAbsorptionAreInverse) {
     for (std::uint32_t layer = 0; layer < kAbsorptionLayers; ++layer) {
         const LayerPlace place = layerPlace(absorptionOfLayer(layer));
         EXPECT_NEAR(place.low + place.part, layer, 1e-9);
     }
-    EXPECT_DOUBLE_EQ(absorptionOfLayer(kAbsorptionLayers - 1), kMostAbsorption);
+    EXPECT_DOUBLE_EQ(absorptionOfLayer(kAbsorptionLayers - 1), kMaxAbsorption);
     const LayerPlace between = layerPlace(1.0);
     EXPECT_NEAR((1 - between.part) * absorptionOfLayer(between.low) +
                     between.part * absorptionOfLayer(between.low + 1),

@@ -77,13 +77,13 @@ TEST(Elastica, ExactDirectionBendsAlike) {
     // Lengths are held: what the cheap direction adds along a segment the tension takes.
     const double stiffness = elasticaStiffness(0.4, kGravity, kLength);
     EXPECT_NEAR(tipError(16, stiffness, runtime::AngularMethod::exact),
-                tipError(16, stiffness, runtime::AngularMethod::cheap), 1e-7);
+                tipError(16, stiffness, runtime::AngularMethod::smallAngle), 1e-7);
 }
 
 TEST(Elastica, RestGravityKeepsTheAuthoredShape) {
     const double L = 0.2;
     for (const auto bendingForce : {reference::BendingForce::framesHeld, reference::BendingForce::gradient})
-        for (const auto method : {runtime::AngularMethod::cheap, runtime::AngularMethod::exact}) {
+        for (const auto method : {runtime::AngularMethod::smallAngle, runtime::AngularMethod::exact}) {
             runtime::SimulationSettings s = bareSettings();
             s.angularStiffness = 0.9f;
             s.restGravity = 1.0f;

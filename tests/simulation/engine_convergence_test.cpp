@@ -51,7 +51,7 @@ std::vector<std::vector<Vec3d>> engineRun(const Swing& swing, runtime::Simulatio
     s.sleepSpeed = 0.0f;
     std::vector<runtime::Float3> rest;
     for (const Vec3d& p : swing.strands.restPositions_ss) rest.push_back(toFloat3(p));
-    runtime::Engine::Made made = runtime::Engine::make({swing.strands.offsets, rest}, s);
+    runtime::Engine::Result made = runtime::Engine::make({swing.strands.offsets, rest}, s);
     EXPECT_EQ(made.error, "");
     std::vector<std::vector<Vec3d>> result;
     std::vector<runtime::Float3> points(rest.size());
@@ -78,7 +78,7 @@ double rmsMm(const std::vector<std::vector<Vec3d>>& a, const std::vector<std::ve
     return 1e3 * std::sqrt(sum / static_cast<double>(count));
 }
 
-std::vector<std::vector<Vec3d>> truthOf(const Swing& swing, const runtime::SimulationSettings& s) {
+std::vector<std::vector<Vec3d>> groundTruthOf(const Swing& swing, const runtime::SimulationSettings& s) {
     const reference::Root start;
     const reference::Goal goal{1e-6, 4, 256, 4};
     const auto result = reference::converged(swing.strands, s, {&start, 1}, swing.frames, goal);
@@ -88,12 +88,12 @@ std::vector<std::vector<Vec3d>> truthOf(const Swing& swing, const runtime::Simul
 
 /// Millimetres from the truth, at substeps from 2 doubled up to `most`.
 std::vector<double> errorsOf(const Swing& swing, const runtime::SimulationSettings& s, Integrator integrator,
-                             std::uint32_t most) {
-    const auto truth = truthOf(swing, s);
+                             std::uint32_t maximum) {
+    const auto groundTruth = groundTruthOf(swing, s);
     std::vector<double> errors;
-    for (std::uint32_t substeps = 2; substeps <= most; substeps *= 2)
-        errors.push_back(rmsMm(engineRun(swing, s, integrator, substeps), truth));
-    std::printf("%s, substeps 2 to %u:", nameOf(integrator), most);
+    for (std::uint32_t substeps = 2; substeps <= maximum; substeps *= 2)
+        errors.push_back(rmsMm(engineRun(swing, s, integrator, substeps), groundTruth));
+    std::printf("%s, substeps 2 to %u:", nameOf(integrator), maximum);
     for (const double error : errors) std::printf(" %.3g", error);
     std::printf(" mm\n");
     return errors;
@@ -176,7 +176,7 @@ TEST(EngineConverges, HairWhoseStiffnessFollowsACurve) {
     // The truth of another curve is farther away than the error.
     runtime::SimulationSettings even = s;
     even.angularCurve = {};
-    EXPECT_GT(rmsMm(truthOf(scene, s), truthOf(scene, even)), 5 * errors.back());
+    EXPECT_GT(rmsMm(groundTruthOf(scene, s), groundTruthOf(scene, even)), 5 * errors.back());
 }
 
 TEST(EngineConverges, CurvesThatCarryWeightKeepADifference) {

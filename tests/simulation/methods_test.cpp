@@ -54,7 +54,7 @@ float largestDistance(std::span<const Vec3f> a, std::span<const Vec3f> b) {
     return largest;
 }
 
-TEST(Methods, HairThatHangsStaysWhereItIs) {
+TEST(Methods, HangingHairStaysAtRest) {
     const Groom groom = hangingHair();
     for (const SimulationMethod method : kMethods) {
         const Outcome still = run(groom, "none", method, 30);

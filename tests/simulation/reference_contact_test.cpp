@@ -41,9 +41,9 @@ TEST(ReferenceContact, PointBouncesToTheShareOfItsHeight) {
     runtime::SimulationSettings s = freePoint();
     s.restitution = 0.5f;
     s.pearlRadiusTip = 0.01f;
-    const double pearl = static_cast<double>(s.pearlRadiusTip), height = 0.2;
+    const double collisionRadius = static_cast<double>(s.pearlRadiusTip), height = 0.2;
     reference::Solver solver = solverOf(straightStrand(1, 0.1), s);
-    const double surface = kSphere.center_ws.y() + kSphere.radius + pearl;
+    const double surface = kSphere.center_ws.y() + kSphere.radius + collisionRadius;
     const std::vector<Vec3d> x{Vec3d::Zero(), Vec3d(kSphere.center_ws.x(), surface + height, 0.1)};
     solver.setMotion(x, std::vector<Vec3d>(2, Vec3d::Zero()));
     const double fall = std::sqrt(2.0 * height / kGravity);
@@ -135,8 +135,9 @@ TEST(ReferenceContact, StrandComesToRestOnASphere) {
     std::size_t touching = 0;
     double drift = 0.0, lowest = 0.0;
     for (std::size_t p = 1; p <= 12; ++p) {
-        const double pearl = 0.001 + 0.003 * static_cast<double>(p) / 12.0;
-        const double gap = (solver.positions_ws()[p] - sphere.center_ws).norm() - sphere.radius - pearl;
+        const double collisionRadius = 0.001 + 0.003 * static_cast<double>(p) / 12.0;
+        const double gap =
+            (solver.positions_ws()[p] - sphere.center_ws).norm() - sphere.radius - collisionRadius;
         EXPECT_GT(gap, -1e-8);
         touching += gap < 1e-6;
         drift = std::max(drift, (solver.positions_ws()[p] - settled[p]).norm());

@@ -66,8 +66,8 @@ TEST(ReferenceShape, MassesAndStiffnessAreThoseOfAUniformRod) {
 
 TEST(ReferenceForces, AreReciprocal) {
     std::mt19937 random(7);
-    for (const auto method :
-         {runtime::AngularMethod::cheap, runtime::AngularMethod::exact, runtime::AngularMethod::flexion}) {
+    for (const auto method : {runtime::AngularMethod::smallAngle, runtime::AngularMethod::exact,
+                              runtime::AngularMethod::flexion}) {
         runtime::SimulationSettings s = bareSettings();
         s.angularStiffness = 0.5f;
         s.angularMethod = method;
@@ -94,8 +94,8 @@ TEST(ReferenceForces, AreReciprocal) {
 TEST(ReferenceForces, AreTheGradientOfTheirEnergyWhereFramesDoNotCount) {
     // A straight strand has c = 0: no frame enters. Coil and flexion springs have none at any shape.
     std::mt19937 random(3);
-    for (const auto method :
-         {runtime::AngularMethod::cheap, runtime::AngularMethod::exact, runtime::AngularMethod::flexion}) {
+    for (const auto method : {runtime::AngularMethod::smallAngle, runtime::AngularMethod::exact,
+                              runtime::AngularMethod::flexion}) {
         runtime::SimulationSettings s = bareSettings();
         s.clampedPoints = 2;
         s.angularStiffness = 0.5f;
@@ -130,7 +130,7 @@ TEST(ReferenceForces, AreTheGradientOfTheirEnergyWhereFramesDoNotCount) {
 TEST(ReferenceForces, WholeGradientOfACurledStrandIsThatOfItsEnergy) {
     std::mt19937 random(4);
     for (const std::uint32_t clamped : {1u, 2u}) {
-        for (const auto method : {runtime::AngularMethod::cheap, runtime::AngularMethod::exact}) {
+        for (const auto method : {runtime::AngularMethod::smallAngle, runtime::AngularMethod::exact}) {
             runtime::SimulationSettings s = bareSettings();
             s.clampedPoints = clamped;
             s.angularStiffness = 0.5f;
@@ -167,8 +167,8 @@ TEST(ReferenceForces, RestShapeInAnyPlaceBearsNoForce) {
     s.angularStiffness = 0.6f;
     s.gravity = {0, 0, 0};
     const std::vector<Vec3d> rest = randomChain(random, 12, 0.02);
-    for (const auto method :
-         {runtime::AngularMethod::cheap, runtime::AngularMethod::exact, runtime::AngularMethod::flexion}) {
+    for (const auto method : {runtime::AngularMethod::smallAngle, runtime::AngularMethod::exact,
+                              runtime::AngularMethod::flexion}) {
         s.angularMethod = method;
         const reference::StrandShape shape = reference::makeShape(edgesOf(rest), {}, s, Vec3d::Zero());
         const reference::Quaterniond turn(Eigen::AngleAxisd(2.0, Vec3d(1.0, 2.0, -0.5).normalized()));

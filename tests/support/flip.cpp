@@ -205,12 +205,12 @@ Plane<double> lightnessOf(const Colours& opponent) {
 
 /// Eq. 7 and 8: differences of colour, most of the range for those that are small.
 double colourDifference(const Vec3d& a, const Vec3d& b) {
-    static const double kMost =
+    static const double kMax =
         std::pow(hyab(huntLabOf(Vec3d(0, 1, 0)), huntLabOf(Vec3d(0, 0, 1))), kColourExponent);
     const double difference = std::pow(hyab(a, b), kColourExponent);
-    const double limit = kCompressed * kMost;
+    const double limit = kCompressed * kMax;
     if (difference < limit) return kCompressedTo / limit * difference;
-    return kCompressedTo + (difference - limit) / (kMost - limit) * (1 - kCompressedTo);
+    return kCompressedTo + (difference - limit) / (kMax - limit) * (1 - kCompressedTo);
 }
 
 }  // namespace

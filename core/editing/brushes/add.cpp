@@ -82,10 +82,10 @@ class Add final : public Brush {
         for (const std::uint32_t face : faces) areas.push_back(area += mesh.triangleArea(face));
         if (!(area > 0)) return {};
         constexpr float kTriesPerPlace = 4;
-        constexpr float kMostTries = 20000;
+        constexpr float kMaxTries = 20000;
         const float weight = dab.dab.strength * dab.dab.pressure;
         const auto tries = static_cast<std::size_t>(
-            std::min(kMostTries, std::ceil(weight * kTriesPerPlace * area / (distance_ * distance_))));
+            std::min(kMaxTries, std::ceil(weight * kTriesPerPlace * area / (distance_ * distance_))));
         Random random(target.settings.seed, 2 * dab.index + (dab.isMirror ? 1 : 0));
         std::vector<std::array<float, 3>> numbers(tries);
         for (auto& three : numbers)

@@ -70,8 +70,8 @@ DeviceType typeOf(const DXGI_ADAPTER_DESC1& desc) {
 /// Direct3D 11.3 functional specification, 21.7: 128 MiB are always possible, a quarter of the memory up to 2
 /// GiB.
 std::uint64_t maxBufferBytes(const DXGI_ADAPTER_DESC1& desc) {
-    constexpr std::uint64_t kLeast = std::uint64_t{128} << 20u, kMost = std::uint64_t{2} << 30u;
-    return std::clamp<std::uint64_t>(desc.DedicatedVideoMemory / 4, kLeast, kMost);
+    constexpr std::uint64_t kMin = std::uint64_t{128} << 20u, kMax = std::uint64_t{2} << 30u;
+    return std::clamp<std::uint64_t>(desc.DedicatedVideoMemory / 4, kMin, kMax);
 }
 
 }  // namespace
@@ -117,7 +117,7 @@ DeviceInfo describe(IDXGIAdapter1* adapter, std::uint32_t index) {
     info.memoryBytes = desc.DedicatedVideoMemory;
     Context context;
     if (auto status = openDevice(adapter, false, context); !status) {
-        info.whyUnusable = status.error().message();
+        info.unusableReason = status.error().message();
         return info;
     }
     info.usable = true;

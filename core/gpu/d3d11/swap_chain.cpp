@@ -9,7 +9,7 @@ namespace hairloom::gpu::d3d11 {
 namespace {
 
 constexpr DXGI_FORMAT kFormat = DXGI_FORMAT_B8G8R8A8_UNORM;
-constexpr UINT kMostOnTheirWay = 2;
+constexpr UINT kMaxFramesInFlight = 2;
 
 struct Size {
     UINT width = 0, height = 0;
@@ -37,7 +37,7 @@ Status SwapChainImpl::openWindow() {
     ComPtr<IDXGIAdapter> adapter;
     ComPtr<IDXGIFactory2> factory;
     HRESULT r = context_->device.As(&device);
-    if (SUCCEEDED(r)) r = device->SetMaximumFrameLatency(kMostOnTheirWay);
+    if (SUCCEEDED(r)) r = device->SetMaximumFrameLatency(kMaxFramesInFlight);
     if (SUCCEEDED(r)) r = device->GetAdapter(&adapter);
     if (SUCCEEDED(r)) r = adapter->GetParent(IID_PPV_ARGS(&factory));
     if (FAILED(r)) return context_->failed(r, "drawing to the window");

@@ -27,7 +27,7 @@ Status openDevice(Context& context) {
     auto f13 = make<VkPhysicalDeviceVulkan13Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES);
     f2.pNext = &f13;
     f13.dynamicRendering = f13.synchronization2 = VK_TRUE;
-    f13.subgroupSizeControl = f13.computeFullSubgroups = context.info.waves.most > 0 ? VK_TRUE : VK_FALSE;
+    f13.subgroupSizeControl = f13.computeFullSubgroups = context.info.waves.maximum > 0 ? VK_TRUE : VK_FALSE;
     f2.features.tessellationShader = offered.tessellationShader;
     f2.features.depthClamp = offered.depthClamp;
     f2.features.fillModeNonSolid = offered.fillModeNonSolid;

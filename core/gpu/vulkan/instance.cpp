@@ -225,7 +225,7 @@ DeviceInfo describe(VkPhysicalDevice physical, std::uint32_t index, bool surface
             break;
     }
     if (first.apiVersion < VK_API_VERSION_1_3) {
-        info.whyUnusable = "Vulkan " + info.apiVersion + ", 1.3 is needed";
+        info.unusableReason = "Vulkan " + info.apiVersion + ", 1.3 is needed";
         return info;
     }
     p2.pNext = &driver;
@@ -238,10 +238,10 @@ DeviceInfo describe(VkPhysicalDevice physical, std::uint32_t index, bool surface
     f2.pNext = &f13;
     vkGetPhysicalDeviceFeatures2(physical, &f2);
     const int family = findQueueFamily(physical);
-    if (family < 0) info.whyUnusable = "no queue for both graphics and compute";
-    if (f13.dynamicRendering == VK_FALSE) info.whyUnusable = "no dynamic rendering";
-    if (f13.synchronization2 == VK_FALSE) info.whyUnusable = "no synchronization2";
-    info.usable = info.whyUnusable.empty();
+    if (family < 0) info.unusableReason = "no queue for both graphics and compute";
+    if (f13.dynamicRendering == VK_FALSE) info.unusableReason = "no dynamic rendering";
+    if (f13.synchronization2 == VK_FALSE) info.unusableReason = "no synchronization2";
+    info.usable = info.unusableReason.empty();
     info.waves = wavesOf(physical, f13);
 
     const VkSampleCountFlags samples =

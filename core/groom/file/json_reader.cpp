@@ -192,40 +192,41 @@ std::vector<std::string> JsonReader::strings(std::string_view key) {
     return {};
 }
 
-std::vector<double> JsonReader::numbers(std::string_view key, double min, double max, std::size_t most,
+std::vector<double> JsonReader::numbers(std::string_view key, double min, double max, std::size_t maximum,
                                         std::string_view unit) {
     const json* value = member(key);
     if (!value) return {};
     std::vector<double> result;
-    bool good = value->is_array() && value->size() <= most;
+    bool good = value->is_array() && value->size() <= maximum;
     for (std::size_t i = 0; good && i < value->size(); ++i) {
         good = (*value)[i].is_number() && withinRange((*value)[i].get<double>(), min, max);
         if (good) result.push_back((*value)[i].get<double>());
     }
     if (good) return result;
-    complain(key, "is no such list",
-             fmt::format("expected an array of up to {} numbers from {}", most, rangeText(min, max, unit)));
+    complain(
+        key, "is no such list",
+        fmt::format("expected an array of up to {} numbers from {}", maximum, rangeText(min, max, unit)));
     return {};
 }
 
 std::vector<std::pair<double, double>> JsonReader::pairs(std::string_view key, double min, double max,
-                                                         std::size_t most) {
+                                                         std::size_t maximum) {
     const json* value = member(key);
     if (!value) return {};
     const auto isNumber = [&](const json& entry) {
         return entry.is_number() && withinRange(entry.get<double>(), min, max);
     };
     std::vector<std::pair<double, double>> result;
-    bool good = value->is_array() && value->size() <= most;
+    bool good = value->is_array() && value->size() <= maximum;
     for (std::size_t i = 0; good && i < value->size(); ++i) {
         const json& pair = (*value)[i];
         good = pair.is_array() && pair.size() == 2 && isNumber(pair[0]) && isNumber(pair[1]);
         if (good) result.emplace_back(pair[0].get<double>(), pair[1].get<double>());
     }
     if (good) return result;
-    complain(
-        key, "is no such list",
-        fmt::format("expected an array of up to {} pairs of numbers from {}", most, rangeText(min, max, {})));
+    complain(key, "is no such list",
+             fmt::format("expected an array of up to {} pairs of numbers from {}", maximum,
+                         rangeText(min, max, {})));
     return {};
 }
 
@@ -297,11 +298,11 @@ Vec3d JsonReader::components(const FieldInfo& field) {
 
 void JsonReader::ramp(std::string_view key, runtime::Ramp& ramp) {
     std::vector<runtime::Ramp::Key> keys;
-    for (const auto& [at, value] : pairs(key, 0, 1, runtime::Ramp::kMostKeys))
+    for (const auto& [at, value] : pairs(key, 0, 1, runtime::Ramp::kMaxKeys))
         keys.push_back({static_cast<float>(at), static_cast<float>(value)});
     if (!ok()) return;
     const auto read = runtime::Ramp::of(keys);
-    const std::string problem = runtime::problemOf(read);
+    const std::string problem = runtime::validationError(read);
     if (!problem.empty()) return complain(key, problem);
     ramp = read;
 }

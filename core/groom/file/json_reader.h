@@ -40,11 +40,11 @@ class JsonReader {
     Vec3f vector(std::string_view key, double min, double max, std::string_view unit = {});
     std::vector<std::string> strings(std::string_view key);
     /// An array of at most `most` numbers.
-    std::vector<double> numbers(std::string_view key, double min, double max, std::size_t most,
+    std::vector<double> numbers(std::string_view key, double min, double max, std::size_t maximum,
                                 std::string_view unit = {});
     /// An array of at most `most` pairs of numbers, each an array.
     std::vector<std::pair<double, double>> pairs(std::string_view key, double min, double max,
-                                                 std::size_t most);
+                                                 std::size_t maximum);
     /// An index into `choices`.
     std::size_t choice(std::string_view key, std::span<const std::string_view> choices);
     JsonReader object(std::string_view key);

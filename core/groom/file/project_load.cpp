@@ -36,8 +36,8 @@ Counts readHead(JsonReader& head, Groom& groom, ScalpMeshParts& scalp) {
     head.string("kind");
     const std::uint64_t version = head.count("version", 1, kProjectVersion);
     head.object("arrays");
-    constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
-    const Counts counts{version, head.count("strands", 0, kMost), head.count("points", 0, kMost)};
+    constexpr std::uint64_t kMax = std::numeric_limits<std::uint32_t>::max();
+    const Counts counts{version, head.count("strands", 0, kMax), head.count("points", 0, kMax)};
     readLayers(head, groom);
     groom.groupNames = head.strings("groups");
     for (JsonReader& entry : head.objects("spheres")) groom.spheres.push_back(readSphere(entry));
@@ -54,7 +54,7 @@ Counts readHead(JsonReader& head, Groom& groom, ScalpMeshParts& scalp) {
         scalp.materialNames = reader.strings("materials");
         for (JsonReader& entry : reader.objects("repairs")) {
             scalp.repairs.push_back(
-                {entry.string("what"), static_cast<std::size_t>(entry.count("count", 0, kMost))});
+                {entry.string("what"), static_cast<std::size_t>(entry.count("count", 0, kMax))});
             entry.finish();
         }
         reader.finish();

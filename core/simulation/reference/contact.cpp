@@ -8,13 +8,13 @@
 namespace hairloom::reference {
 namespace {
 
-constexpr int kMostSweeps = 1000;
+constexpr int kMaxSweeps = 1000;
 constexpr double kSmallSpeed = 1e-11;     // m/s
 constexpr double kSmallDistance = 1e-12;  // m
 /// Points change by at most so many times the fastest approach and the deepest penetration. What would need
 /// more has no sound solution: a straight strand pressed end-on would have to buckle at once, one between two
 /// spheres has nowhere to go.
-constexpr double kMostGain = 8.0;
+constexpr double kMaxGain = 8.0;
 
 struct Contact {
     std::size_t point;
@@ -55,8 +55,8 @@ void press(const Physics& physics, double mass, Contact& contact, Vec3d& v) {
     contact.pressed = pressed;
 
     Vec3d rubbed = contact.rubbed - mass * (relative - contact.normal * speed);
-    const double size = rubbed.norm(), most = physics.friction * pressed;
-    if (size > most) rubbed *= most / size;
+    const double size = rubbed.norm(), maximum = physics.friction * pressed;
+    if (size > maximum) rubbed *= maximum / size;
     v += (rubbed - contact.rubbed) / mass;
     contact.rubbed = rubbed;
 }
@@ -79,14 +79,14 @@ double fastestApproach(const std::vector<Contact>& contacts, const std::vector<V
 bool solveVelocities(const Physics& physics, const StrandShape& shape, std::vector<Contact>& contacts,
                      StrandState& state) {
     const std::vector<Vec3d> start = state.v;
-    const double most = kMostGain * fastestApproach(contacts, start);
+    const double maximum = kMaxGain * fastestApproach(contacts, start);
     std::vector<Vec3d> before;
-    for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+    for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
         before = state.v;
         for (Contact& contact : contacts)
             press(physics, shape.masses[contact.point], contact, state.v[contact.point]);
         if (physics.lengthHeld) projectVelocities(shape, state.x, state.v);
-        if (!(largestChange(start, state.v) <= most)) return false;
+        if (!(largestChange(start, state.v) <= maximum)) return false;
         if (largestChange(before, state.v) < kSmallSpeed) break;
     }
     return true;
@@ -112,12 +112,12 @@ double pushOut(const Physics& physics, const StrandShape& shape, std::span<const
 void resolvePlaces(const Physics& physics, const StrandShape& shape, std::span<const SphereNow> spheres,
                    const std::vector<Vec3d>& moved, std::vector<Vec3d>& x) {
     std::vector<Vec3d> next = moved;
-    const double most =
-        kMostGain * std::max(pushOut(physics, shape, spheres, x, false), largestChange(x, moved));
-    for (int pass = 0; pass < kMostSweeps; ++pass) {
+    const double maximum =
+        kMaxGain * std::max(pushOut(physics, shape, spheres, x, false), largestChange(x, moved));
+    for (int pass = 0; pass < kMaxSweeps; ++pass) {
         const double deepest = pushOut(physics, shape, spheres, next, true);
         if (physics.lengthHeld && !projectLengths(shape, next)) return;
-        if (!(largestChange(x, next) <= most)) return;
+        if (!(largestChange(x, next) <= maximum)) return;
         if (deepest < kSmallDistance) break;
     }
     x = std::move(next);

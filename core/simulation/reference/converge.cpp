@@ -58,7 +58,7 @@ Result<Convergence> converged(const Strands& strands, const runtime::SimulationS
     Convergence result;
     result.change = std::numeric_limits<double>::infinity();
     runFrames(*solver, start, frames, {goal.firstSubsteps, goal.order}, result);
-    while (!result.reached && result.substeps <= goal.mostSubsteps / 2) {
+    while (!result.reached && result.substeps <= goal.maxSubsteps / 2) {
         result.coarser_ws = std::move(result.positions_ws);
         runFrames(*solver, start, frames, {2 * result.substeps, goal.order}, result);
         result.change = largestDistance(result.coarser_ws, result.positions_ws);

@@ -7,10 +7,10 @@
 namespace hairloom::reference {
 
 struct Goal {
-    double tolerance = 1e-6;            ///< m, see Convergence::change
-    std::uint32_t firstSubsteps = 4;    ///< per frame
-    std::uint32_t mostSubsteps = 4096;  ///< per frame, never exceeded
-    int order = 4;                      ///< see StepOptions
+    double tolerance = 1e-6;           ///< m, see Convergence::change
+    std::uint32_t firstSubsteps = 4;   ///< per frame
+    std::uint32_t maxSubsteps = 4096;  ///< per frame, never exceeded
+    int order = 4;                     ///< see StepOptions
 };
 
 struct Convergence {

@@ -15,7 +15,7 @@
 namespace hairloom::reference {
 namespace {
 
-constexpr int kMostHalvings = 6;
+constexpr int kMaxHalvings = 6;
 
 Vec3d toDouble(runtime::Float3 v) {
     return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
@@ -34,9 +34,9 @@ bool usable(const Sphere& sphere) {
 /// Whether a point moves by more than half the strand's length beside its root: the equations of a strand in
 /// a tangle have other solutions far away.
 bool leaps(const StrandShape& shape, const std::vector<Vec3d>& from, const std::vector<Vec3d>& to) {
-    const double most = 0.5 * std::accumulate(shape.lengths.begin(), shape.lengths.end(), 0.0);
+    const double maximum = 0.5 * std::accumulate(shape.lengths.begin(), shape.lengths.end(), 0.0);
     for (std::size_t p = 0; p < from.size(); ++p) {
-        if (!((to[p] - from[p] - (to[0] - from[0])).norm() <= most)) return true;
+        if (!((to[p] - from[p] - (to[0] - from[0])).norm() <= maximum)) return true;
     }
     return false;
 }
@@ -224,7 +224,7 @@ void Solver::stepStrand(Strand& strand, const Path& path, const StepOptions& opt
     for (std::uint32_t i = 0; i < options.substeps; ++i) {
         const double from = static_cast<double>(i) * share, to = static_cast<double>(i + 1) * share;
         if (options.order < 4 || impulses) {
-            advance(strand, path, from, to, options.order == 1 ? 1.0 : 0.5, report, kMostHalvings);
+            advance(strand, path, from, to, options.order == 1 ? 1.0 : 0.5, report, kMaxHalvings);
             continue;
         }
         // Suzuki 1990: S(a h)² S((1 − 4a) h) S(a h)².
@@ -232,7 +232,7 @@ void Solver::stepStrand(Strand& strand, const Path& path, const StepOptions& opt
         const double parts[] = {0.0, a, 2.0 * a, 1.0 - 2.0 * a, 1.0 - a, 1.0};
         for (std::size_t k = 0; k + 1 < std::size(parts); ++k)
             advance(strand, path, from + share * parts[k], from + share * parts[k + 1], 0.5, report,
-                    kMostHalvings);
+                    kMaxHalvings);
     }
     if (physics_.lengthHeld && shape.firstFree < shape.points())
         report.largestStretch = std::max(report.largestStretch, largestStretch(shape, strand.state.x));

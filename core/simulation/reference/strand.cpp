@@ -115,8 +115,8 @@ Physics::Physics(const runtime::SimulationSettings& s, BendingForce bendingForce
       flexionSprings(s.angularStiffness > 0.0f && s.angularMethod == runtime::AngularMethod::flexion),
       penalty(s.collisionResponse == runtime::CollisionResponse::penalty),
       penaltyStiffness(squaredFrequency(static_cast<double>(s.penaltyFrequency))),
-      pearlRoot(static_cast<double>(s.pearlRadiusRoot)),
-      pearlTip(static_cast<double>(s.pearlRadiusTip)),
+      collisionRadiusAtRoot(static_cast<double>(s.pearlRadiusRoot)),
+      collisionRadiusAtTip(static_cast<double>(s.pearlRadiusTip)),
       friction(static_cast<double>(s.friction)),
       restitution(static_cast<double>(s.restitution)),
       clampedPoints(s.clampedPoints),
@@ -167,7 +167,8 @@ StrandShape makeShape(std::vector<Vec3d> edges, std::span<const double> authored
 
 double reach(const Physics& physics, const StrandShape& shape, std::size_t p, double radius) {
     const double along = static_cast<double>(p) / static_cast<double>(shape.segments());
-    return radius + physics.pearlRoot + (physics.pearlTip - physics.pearlRoot) * along;
+    return radius + physics.collisionRadiusAtRoot +
+           (physics.collisionRadiusAtTip - physics.collisionRadiusAtRoot) * along;
 }
 
 }  // namespace hairloom::reference

@@ -40,9 +40,9 @@ struct Physics {
     bool framesTurn;         ///< BendingForce::gradient
     bool exactDirection;     ///< exact
     bool flexionSprings;
-    bool penalty;                ///< spheres push by a spring instead of an impulse
-    double penaltyStiffness;     ///< (2π penaltyFrequency)², 1/s²
-    double pearlRoot, pearlTip;  ///< m
+    bool penalty;                                        ///< spheres push by a spring instead of an impulse
+    double penaltyStiffness;                             ///< (2π penaltyFrequency)², 1/s²
+    double collisionRadiusAtRoot, collisionRadiusAtTip;  ///< m
     double friction;
     double restitution;
     std::size_t clampedPoints;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kBlock = 4;  // unknowns of free point p: λ of the segment before it, then its x, y, z
 constexpr std::size_t kBand = 2 * kBlock + 2;
-constexpr int kMostIterations = 100;
+constexpr int kMaxIterations = 100;
 constexpr double kConverged = 1e-15;  // m
 constexpr double kRounding = 1e-12;   // m; smaller corrections that no longer shrink are rounding errors
 
@@ -44,7 +44,7 @@ class StepSolve {
     /// Leaves the force within the step in the workspace.
     bool run() {
         double before = std::numeric_limits<double>::infinity();
-        for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+        for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
             fillResidual();
             // Kept factors do while they converge fast.
             if (iteration < 2 || slow_) {

@@ -53,11 +53,11 @@ struct StepReport {
 
 class Engine {
   public:
-    struct Made;
+    struct Result;
     /// Strands at rest in their rest places. Errors, in words: settings out of range, offsets that do not
     /// match the points, a strand of fewer than 2 or more than kMaxPoints points, a rest position or rotation
     /// that is no number.
-    static Made make(const StrandsView& strands, const SimulationSettings& settings, Host host = {});
+    static Result make(const StrandsView& strands, const SimulationSettings& settings, Host host = {});
     /// A copy is a snapshot: running on from it gives the same bits. An engine that was moved from can only
     /// be assigned to.
     Engine(const Engine& other);
@@ -111,7 +111,7 @@ class Engine {
     std::unique_ptr<Impl> impl_;
 };
 
-struct Engine::Made {
+struct Engine::Result {
     std::optional<Engine> engine;
     std::string error;  ///< empty when there is an engine
 };

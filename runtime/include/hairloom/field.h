@@ -250,7 +250,7 @@ std::vector<FieldProblem> problemsIn(const S& settings) {
     std::vector<FieldProblem> problems;
     for (const Field<S>& field : fieldsOf(settings)) {
         if (field.kind == FieldKind::Ramp) {
-            std::string problem = problemOf(member<Ramp>(settings, field));
+            std::string problem = validationError(member<Ramp>(settings, field));
             if (!problem.empty()) problems.push_back({&field, 0, 0, std::move(problem)});
         }
         for (std::uint32_t c = 0; c < field.components(); ++c) {

@@ -68,10 +68,10 @@ struct GuideMotion {
 /// any number of threads; of instruction sets, for all that have fused multiply-add and all that have not.
 class FollowHairs {
   public:
-    struct Made;
+    struct Result;
     /// Errors, in words: arrays whose sizes do not match, a guide that is not there, point counts out of
     /// range, weights that do not sum to 1, anything that is not finite.
-    static Made make(const FollowView& view);
+    static Result make(const FollowView& view);
 
     FollowHairs(FollowHairs&&) noexcept;
     FollowHairs& operator=(FollowHairs&&) noexcept;
@@ -100,7 +100,7 @@ struct GuideSample {
 /// Appends `count` ≥ 2 samples at even shares of the length of a guide of two points or more.
 void sampleEvenly(std::span<const Float3> guide, std::uint32_t count, std::vector<GuideSample>& samples);
 
-struct FollowHairs::Made {
+struct FollowHairs::Result {
     std::optional<FollowHairs> hairs;
     std::string error;  ///< empty when there are hairs
 };

@@ -86,14 +86,14 @@ const char* stageFamily(StageId stage);
 std::optional<Effect> stageEffect(StageId stage);
 
 /// What the plan looks at.
-struct SceneDescription {
+struct PlanInput {
     SimulationSettings settings;
     std::uint32_t strandCount = 0;
     std::uint32_t longestPointCount = 0;   ///< of any strand
     float longestStrand = 0.0f;            ///< metres, at rest
     bool straight = false;                 ///< every strand is straight
-    float sharpestCurl = 0.0f;             ///< RestShape::sharpestCurl
-    float unevenness = 1.0f;               ///< RestShape::unevenness
+    float maxCurvature = 0.0f;             ///< RestShape::maxCurvature
+    float massRatio = 1.0f;                ///< RestShape::massRatio
     float substep = 0.0f;                  ///< seconds
     Float3 rootsMin_ws, rootsMax_ws;       ///< box of all roots over the frame
     std::span<const Sphere> spheres;       ///< at the end of the frame
@@ -126,7 +126,7 @@ enum class Reason : std::uint32_t {
     lengthsFree,
     evenHair,
     undamped,
-    uneven,
+    unevenMasses,
     tightCurls,
     noCollision,
     zeroRadius,
@@ -147,7 +147,7 @@ struct Decision {
 };
 
 /// More than any integrator lists.
-inline constexpr std::size_t kMostStages = 64;
+inline constexpr std::size_t kMaxStages = 64;
 
 class EffectPlan {
   public:
@@ -165,18 +165,18 @@ class EffectPlan {
     bool keepsTensions() const { return keepsTensions_; }
 
   private:
-    friend EffectPlan plan(const SceneDescription& scene);
+    friend EffectPlan plan(const PlanInput& scene);
     friend class Planner;
 
     std::array<Decision, kEffectCount> decisions_;
-    std::array<StageId, kMostStages> stages_{};
+    std::array<StageId, kMaxStages> stages_{};
     std::size_t stageCount_ = 0;
     bool factored_ = false;
     bool keepsCurves_ = false;
     bool keepsTensions_ = false;
 };
 
-EffectPlan plan(const SceneDescription& scene);
+EffectPlan plan(const PlanInput& scene);
 
 /// Metres from its root that a strand of that length and its pearls can come; infinite while nothing bounds
 /// its extension.

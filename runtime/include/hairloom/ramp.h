@@ -11,18 +11,19 @@
 
 namespace hairloom::runtime {
 
-/// A curve over 0…1 that is straight between its keys. Plain data: problemOf() says whether it is sound.
+/// A curve over 0…1 that is straight between its keys. Plain data: validationError() says whether it is
+/// sound.
 struct Ramp {
-    static constexpr std::uint32_t kMostKeys = 16;
+    static constexpr std::uint32_t kMaxKeys = 16;
     struct Key {
         float at = 0.0f;     ///< 0…1: 0 is the root, 1 the tip
         float value = 0.0f;  ///< 0…1
         friend bool operator==(const Key&, const Key&) = default;
     };
 
-    std::uint32_t count = 2;  ///< 2…kMostKeys
+    std::uint32_t count = 2;  ///< 2…kMaxKeys
     /// The first at 0, the last at 1, each behind the one before; those past `count` mean nothing.
-    std::array<Key, kMostKeys> keys{{{0.0f, 1.0f}, {1.0f, 1.0f}}};
+    std::array<Key, kMaxKeys> keys{{{0.0f, 1.0f}, {1.0f, 1.0f}}};
 
     static constexpr Ramp straight(float first, float last) {
         Ramp ramp;
@@ -30,16 +31,16 @@ struct Ramp {
         ramp.keys[1].value = last;
         return ramp;
     }
-    /// Of 2…kMostKeys keys.
+    /// Of 2…kMaxKeys keys.
     static constexpr Ramp of(std::span<const Key> keys) {
-        assert(keys.size() <= kMostKeys);
+        assert(keys.size() <= kMaxKeys);
         Ramp ramp;
         ramp.count = static_cast<std::uint32_t>(keys.size());
         std::copy(keys.begin(), keys.end(), ramp.keys.begin());
         return ramp;
     }
 
-    std::span<const Key> inUse() const { return {keys.data(), std::min(count, kMostKeys)}; }
+    std::span<const Key> inUse() const { return {keys.data(), std::min(count, kMaxKeys)}; }
 
     /// The value at 0 ≤ x ≤ 1 of a sound ramp.
     template <class Real>
@@ -52,15 +53,15 @@ struct Ramp {
         return low + (static_cast<Real>(after.value) - low) * way;
     }
     float greatest() const {
-        float most = 0.0f;
-        for (const Key& key : inUse()) most = std::max(most, key.value);
-        return most;
+        float maximum = 0.0f;
+        for (const Key& key : inUse()) maximum = std::max(maximum, key.value);
+        return maximum;
     }
 
     friend bool operator==(const Ramp& a, const Ramp& b) { return std::ranges::equal(a.inUse(), b.inUse()); }
 };
 
 /// What is wrong with it, "has 1 keys; expected 2 to 16", or nothing.
-std::string problemOf(const Ramp& ramp);
+std::string validationError(const Ramp& ramp);
 
 }  // namespace hairloom::runtime

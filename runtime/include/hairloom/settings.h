@@ -34,9 +34,9 @@ enum class LengthMethod : std::uint32_t {
 /// How strands keep their shape.
 enum class AngularMethod : std::uint32_t {
     implicit,  ///< angular springs (Eq. 4), solved together along a strand; explicit integrators take `cheap`
-    cheap,     ///< angular springs as forces towards the rest place
-    exact,     ///< angular springs as forces across the segment
-    flexion,   ///< springs between every second point; they have several rest shapes
+    smallAngle,  ///< angular springs as forces towards the rest place
+    exact,       ///< angular springs as forces across the segment
+    flexion,     ///< springs between every second point; they have several rest shapes
 };
 
 enum class WindKind : std::uint32_t {

@@ -25,10 +25,10 @@ std::array<float, 3> components(Float3 v) {
     return {v.x, v.y, v.z};
 }
 
-Float3 least(Float3 a, Float3 b) {
+Float3 componentMin(Float3 a, Float3 b) {
     return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)};
 }
-Float3 most(Float3 a, Float3 b) {
+Float3 componentMax(Float3 a, Float3 b) {
     return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
 }
 
@@ -47,7 +47,7 @@ std::int64_t weightOf(const std::array<std::uint32_t, 3>& share, unsigned corner
 
 }  // namespace
 
-HairVolume::Made HairVolume::make(const HairVolumeSettings& settings, Host host) {
+HairVolume::Result HairVolume::make(const HairVolumeSettings& settings, Host host) {
     std::string error;
     const auto check = [&](const char* name, float value, float low, float high) {
         refuseOutside(error, name, static_cast<double>(value), static_cast<double>(low),
@@ -112,8 +112,8 @@ HairVolume::Box HairVolume::measure(std::span<const Float3> positions, std::span
         Box box = empty;
         for (std::size_t i = begin; i < end; ++i) {
             if (!counts(positions[i], velocities[i])) continue;
-            box.low = least(box.low, positions[i]);
-            box.high = most(box.high, positions[i]);
+            box.low = componentMin(box.low, positions[i]);
+            box.high = componentMax(box.high, positions[i]);
             for (const float v : components(velocities[i])) {
                 box.fastest = std::max(box.fastest, std::min(std::abs(v), kFastest));
             }
@@ -123,8 +123,8 @@ HairVolume::Box HairVolume::measure(std::span<const Float3> positions, std::span
     });
     Box sum = empty;
     for (const Box& box : boxes_) {
-        sum.low = least(sum.low, box.low);
-        sum.high = most(sum.high, box.high);
+        sum.low = componentMin(sum.low, box.low);
+        sum.high = componentMax(sum.high, box.high);
         sum.fastest = std::max(sum.fastest, box.fastest);
         sum.points += box.points;
     }

@@ -48,7 +48,7 @@ float squaredRate(float frequency) {
     return rate * rate;
 }
 
-std::string whyRefused(const LatticeSettings& s) {
+std::string validationError(const LatticeSettings& s) {
     std::string text;
     const auto check = [&](const char* name, float value, double low, double high) {
         refuseOutside(text, name, static_cast<double>(value), low, high);
@@ -68,9 +68,9 @@ std::string whyRefused(const LatticeSettings& s) {
 
 }  // namespace
 
-Lattice::Made Lattice::make(const StrandsView& strands, const LatticeSettings& settings, Host host) {
-    std::string error = whyRefused(settings);
-    if (error.empty()) error = whyRefused(strands);
+Lattice::Result Lattice::make(const StrandsView& strands, const LatticeSettings& settings, Host host) {
+    std::string error = validationError(settings);
+    if (error.empty()) error = validationError(strands);
     if (error.empty() && strands.restPositions_ss.empty()) error = "no strands; expected one at least";
     if (!error.empty()) return {std::nullopt, std::move(error)};
     Lattice lattice;
@@ -144,8 +144,8 @@ void Lattice::step(const RootFrame& head_ws, float dt) {
     report_ = {};
     RootFrame to = head_ws;
     if (!usableWithin(to, kFarthest)) to = head_;
-    const bool cut = length(to.position - head_.position) > settings_.teleportDistance;
-    if (cut) {
+    const bool teleported = length(to.position - head_.position) > settings_.teleportDistance;
+    if (teleported) {
         const Quat turn = to.rotation * conjugate(head_.rotation);
         for (Node& node : nodes_) {
             node.displacement = rotate(turn, node.displacement);
@@ -160,7 +160,7 @@ void Lattice::step(const RootFrame& head_ws, float dt) {
     RootFrame before = from;
     for (std::uint32_t i = 0; i < settings_.substeps; ++i) {
         const RootFrame now = between(from, to, static_cast<float>(i + 1) / count);
-        advance(before, now, cut, h);
+        advance(before, now, teleported, h);
         before = now;
     }
     head_ = to;
@@ -168,7 +168,7 @@ void Lattice::step(const RootFrame& head_ws, float dt) {
 
 /// One implicit Euler step for the displacements from the head's rigid motion, whose own change of velocity
 /// acts against them.
-void Lattice::advance(const RootFrame& from, const RootFrame& to, bool cut, float h) {
+void Lattice::advance(const RootFrame& from, const RootFrame& to, bool teleported, float h) {
     const float damping = settings_.dampingTime > 0.0f ? 1.0f / settings_.dampingTime : 0.0f;
     const float damped = 1.0f + h * (damping + settings_.airDrag);
     const Float3 travel = to.position - from.position;
@@ -176,7 +176,7 @@ void Lattice::advance(const RootFrame& from, const RootFrame& to, bool cut, floa
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
         Node& node = nodes_[i];
         const Float3 before = node.headVelocity;
-        if (!cut) {
+        if (!teleported) {
             const Float3 way =
                 travel + rotate(to.rotation, node.rest_ss) - rotate(from.rotation, node.rest_ss);
             const float speed = length(way) / h;

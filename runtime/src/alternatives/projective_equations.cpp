@@ -58,10 +58,11 @@ struct ProjectiveEquations::Substep {
     float decay;             ///< share of its rate that damping leaves a stick
 };
 
-ProjectiveEquations::Made ProjectiveEquations::make(const StrandsView& strands,
-                                                    const SimulationSettings& settings, Host host) {
-    if (std::string error = whyRefused(settings); !error.empty()) return {std::nullopt, std::move(error)};
-    if (std::string error = whyRefused(strands); !error.empty()) return {std::nullopt, std::move(error)};
+ProjectiveEquations::Result ProjectiveEquations::make(const StrandsView& strands,
+                                                      const SimulationSettings& settings, Host host) {
+    if (std::string error = validationError(settings); !error.empty())
+        return {std::nullopt, std::move(error)};
+    if (std::string error = validationError(strands); !error.empty()) return {std::nullopt, std::move(error)};
     ProjectiveEquations made;
     made.host_ = std::move(host);
     made.offsets_.assign(strands.offsets.begin(), strands.offsets.end());
@@ -91,7 +92,7 @@ ProjectiveEquations::Made ProjectiveEquations::make(const StrandsView& strands,
 }
 
 std::string ProjectiveEquations::setSettings(const SimulationSettings& settings) {
-    if (std::string error = whyRefused(settings); !error.empty()) return error;
+    if (std::string error = validationError(settings); !error.empty()) return error;
     settings_ = settings;
     wind_ = makeWind(settings);
     fillSticks();
@@ -260,13 +261,13 @@ StickForces ProjectiveEquations::forcesOn(std::uint32_t point, Quat frame, float
 }
 
 void ProjectiveEquations::collide(std::uint32_t point, Quat frame, float along, const Substep& substep) {
-    const float pearl =
+    const float collisionRadius =
         settings_.pearlRadiusRoot + (settings_.pearlRadiusTip - settings_.pearlRadiusRoot) * along;
     const Float3 joint_ws = substep.root.position + positions_[point - 1];
     for (const MovingSphere& sphere : spheres_) {
         const Float3 centre_ws = sphere.from_ws + sphere.motion * substep.share;
         pushOut(sticks_[point], motions_[point], rotate(conjugate(frame), centre_ws - joint_ws),
-                sphere.radius + pearl);
+                sphere.radius + collisionRadius);
     }
 }
 

@@ -21,7 +21,7 @@ int main() {
     }
     SimulationSettings settings;
     settings.windSpeed = 3.0f;
-    Engine::Made made = Engine::make({offsets, points}, settings);
+    Engine::Result made = Engine::make({offsets, points}, settings);
     if (!made.engine) {
         std::fprintf(stderr, "%s\n", made.error.c_str());
         return 1;

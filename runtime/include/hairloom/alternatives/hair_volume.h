@@ -45,9 +45,9 @@ struct HairVolumeSettings {
 /// cells that double change the forces at once. It knows no skin and no directions of hair.
 class HairVolume {
   public:
-    struct Made;
+    struct Result;
     /// Takes all its memory here. Errors, in words: a setting outside its range.
-    static Made make(const HairVolumeSettings& settings, Host host = {});
+    static Result make(const HairVolumeSettings& settings, Host host = {});
 
     struct Report {
         float cellSize = 0.0f;    ///< metres, as used
@@ -111,7 +111,7 @@ class HairVolume {
     double velocityUnit_ = 0.0;             // m/s
 };
 
-struct HairVolume::Made {
+struct HairVolume::Result {
     std::optional<HairVolume> volume;
     std::string error;  ///< empty when there is a volume
 };

@@ -52,10 +52,10 @@ struct LatticeSettings {
 /// each cell and which collides with metaballs.
 class Lattice {
   public:
-    struct Made;
+    struct Result;
     /// Box and coordinates from the strands at rest, around a head whose rest pose is the identity. Errors,
     /// in words: settings out of range, strands as Engine::make, no strands at all.
-    static Made make(const StrandsView& strands, const LatticeSettings& settings, Host host = {});
+    static Result make(const StrandsView& strands, const LatticeSettings& settings, Host host = {});
 
     /// Undeformed and without speed, with the head here.
     void reset(const RootFrame& head_ws);
@@ -100,7 +100,7 @@ class Lattice {
 
     void layOut(const StrandsView& strands);
     void attach(const StrandsView& strands);
-    void advance(const RootFrame& from, const RootFrame& to, bool cut, float h);
+    void advance(const RootFrame& from, const RootFrame& to, bool teleported, float h);
     void solve(float damped, float h);
     /// Force per displacement at a control point: attachment and coupling.
     Float3 springs(std::size_t node, Float3 Node::*field) const;
@@ -114,7 +114,7 @@ class Lattice {
     StepReport report_;
 };
 
-struct Lattice::Made {
+struct Lattice::Result {
     std::optional<Lattice> lattice;
     std::string error;  ///< empty when there is a lattice
 };

@@ -41,9 +41,9 @@ namespace hairloom::runtime {
 /// friction, restitution, penaltyFrequency and sleep.
 class ProjectiveEquations {
   public:
-    struct Made;
+    struct Result;
     /// Strands at rest in their rest places. Errors, in words, as Engine::make.
-    static Made make(const StrandsView& strands, const SimulationSettings& settings, Host host = {});
+    static Result make(const StrandsView& strands, const SimulationSettings& settings, Host host = {});
 
     // Calls that are given arrays return false, and do nothing, where one has the wrong size.
 
@@ -96,7 +96,7 @@ class ProjectiveEquations {
     std::vector<Sphere> lastSpheres_;
 };
 
-struct ProjectiveEquations::Made {
+struct ProjectiveEquations::Result {
     std::optional<ProjectiveEquations> engine;
     std::string error;  ///< empty when there is an engine
 };

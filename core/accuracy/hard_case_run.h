@@ -7,17 +7,17 @@
 #include <string>
 #include <vector>
 
+#include "core/accuracy/hard_case_engine.h"
 #include "core/accuracy/stability.h"
 #include "core/accuracy/strand_set.h"
-#include "core/accuracy/trial_engine.h"
 
 namespace hairloom {
 
 inline constexpr float kFrame = 1.0f / 60.0f;  // seconds
 
-class Trial {
+class HardCaseRun {
   public:
-    Trial(runtime::Integrator integrator, const StabilityOptions& options)
+    HardCaseRun(runtime::Integrator integrator, const StabilityOptions& options)
         : integrator_(integrator), options_(options) {}
 
     /// Starts the engine with these strands at rest. Takes the integrator of the trial and, where it needs
@@ -31,9 +31,9 @@ class Trial {
     const StabilityOptions& options() const { return options_; }
     runtime::Integrator integrator() const { return integrator_; }
     const StrandSet& strands() const { return strands_; }
-    TrialEngine& engine() { return *engine_; }
+    HardCaseEngine& engine() { return *engine_; }
     /// Another one with these strands, at rest.
-    std::unique_ptr<TrialEngine> another(const runtime::SimulationSettings& settings);
+    std::unique_ptr<HardCaseEngine> another(const runtime::SimulationSettings& settings);
     /// As the trial runs them.
     runtime::SimulationSettings settings() const { return engine_->settings(); }
     /// Takes other settings; the substeps and integrator stay as given.
@@ -54,14 +54,14 @@ class Trial {
     void sourceEnds() { sourceEnded_ = true; }
     /// Without a source, runs until `most` seconds have passed; all speeds have to be below 5 mm/s for good
     /// before.
-    void settle(double most = 5.0);
+    void settle(double maximum = 5.0);
     /// Strands that are put back to rest are part of the case.
     void allowRestored(bool on) { restoredAllowed_ = on; }
 
     /// Another mark.
-    void expect(const std::string& what, const std::string& unit, double worst, double mark);
-    /// Another that is about energy: not claimed by every integrator (StabilityMark::claimed).
-    void expectEnergy(const std::string& what, const std::string& unit, double worst, double mark);
+    void expect(const std::string& what, const std::string& unit, double worst, double threshold);
+    /// Another that is about energy: not claimed by every integrator (StabilityThreshold::claimed).
+    void expectEnergy(const std::string& what, const std::string& unit, double worst, double threshold);
 
     std::vector<runtime::Float3> positions() const;
     /// Of all points, m/s.
@@ -74,22 +74,23 @@ class Trial {
 
   private:
     void inspect();
-    void raise(const std::string& what, const std::string& unit, double value, double mark, bool claimed);
+    void raise(const std::string& what, const std::string& unit, double value, double threshold,
+               bool claimed);
     /// Whether the integrator promises rest and a bound of the energy with these settings.
     bool holdsRest() const;
 
     runtime::Integrator integrator_;
     StabilityOptions options_;
     StrandSet strands_;
-    std::unique_ptr<TrialEngine> engine_;
+    std::unique_ptr<HardCaseEngine> engine_;
     std::vector<runtime::RootFrame> roots_;
     std::vector<runtime::Sphere> spheres_;
-    std::vector<StabilityMark> marks_;
+    std::vector<StabilityThreshold> thresholds_;
     std::string limit_;
     std::optional<std::uint64_t> failedAt_;
     std::uint64_t substeps_ = 0;
     double time_ = 0.0;
-    double mostEnergy_ = 0.0;  ///< kinetic, while there was a source
+    double maxEnergy_ = 0.0;  ///< kinetic, while there was a source
     bool watchingSpheres_ = false;
     bool sourceEnded_ = false;
     bool restoredAllowed_ = false;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/accuracy/trial_engine.h"
+#include "core/accuracy/hard_case_engine.h"
 
 namespace hairloom {
 namespace {
 
-class CpuTrialEngine final : public TrialEngine {
+class CpuHardCaseEngine final : public HardCaseEngine {
   public:
-    explicit CpuTrialEngine(runtime::Engine engine) : engine_(std::move(engine)) {}
+    explicit CpuHardCaseEngine(runtime::Engine engine) : engine_(std::move(engine)) {}
     void reset(std::span<const runtime::RootFrame> roots_ws) override { engine_.reset(roots_ws); }
     std::string setSettings(const runtime::SimulationSettings& settings) override {
         return engine_.setSettings(settings);
@@ -28,9 +28,9 @@ class CpuTrialEngine final : public TrialEngine {
     runtime::Engine engine_;
 };
 
-class GpuTrialEngine final : public TrialEngine {
+class GpuHardCaseEngine final : public HardCaseEngine {
   public:
-    explicit GpuTrialEngine(gpu_simulation::StrandEngine engine, runtime::SimulationSettings settings)
+    explicit GpuHardCaseEngine(gpu_simulation::StrandEngine engine, runtime::SimulationSettings settings)
         : engine_(std::move(engine)), settings_(settings) {}
 
     void reset(std::span<const runtime::RootFrame> roots_ws) override { keep(engine_.reset(roots_ws)); }
@@ -89,23 +89,23 @@ class GpuTrialEngine final : public TrialEngine {
 
 }  // namespace
 
-MadeTrialEngine makeCpuTrialEngine(const runtime::StrandsView& strands,
-                                   const runtime::SimulationSettings& settings) {
+HardCaseEngineResult makeCpuHardCaseEngine(const runtime::StrandsView& strands,
+                                           const runtime::SimulationSettings& settings) {
     auto made = runtime::Engine::make(strands, settings);
     if (!made.engine) return {nullptr, std::move(made.error)};
-    return {std::make_unique<CpuTrialEngine>(std::move(*made.engine)), {}};
+    return {std::make_unique<CpuHardCaseEngine>(std::move(*made.engine)), {}};
 }
 
-TrialEngineMaker gpuTrialEngines(gpu::Device& device,
-                                 std::shared_ptr<gpu_simulation::KernelLibrary> kernels) {
+HardCaseEngineFactory gpuHardCaseEngines(gpu::Device& device,
+                                         std::shared_ptr<gpu_simulation::KernelLibrary> kernels) {
     return [&device, kernels = std::move(kernels)](
                const runtime::StrandsView& strands,
-               const runtime::SimulationSettings& settings) -> MadeTrialEngine {
+               const runtime::SimulationSettings& settings) -> HardCaseEngineResult {
         gpu_simulation::EngineOptions options;
         options.layout = gpu_simulation::layoutFor(device.info().type);
         auto engine = gpu_simulation::StrandEngine::make(device, kernels, strands, settings, options);
         if (!engine) return {nullptr, engine.error().message()};
-        return {std::make_unique<GpuTrialEngine>(std::move(*engine), settings), {}};
+        return {std::make_unique<GpuHardCaseEngine>(std::move(*engine), settings), {}};
     };
 }
 

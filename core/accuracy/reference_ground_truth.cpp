@@ -5,7 +5,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "core/accuracy/truth.h"
+#include "core/accuracy/ground_truth.h"
 #include "core/base/parallel.h"
 #include "core/simulation/reference/converge.h"
 #include "core/simulation/scene_input.h"
@@ -75,10 +75,11 @@ StrandScene strandScene(const Groom& groom, const SceneFrames& frames, std::uint
     }
     scene.strand.offsets = {0, static_cast<std::uint32_t>(scene.strand.restPositions_ss.size())};
     const runtime::SimulationSettings& settings = groom.simulation;
-    const double pearl = static_cast<double>(std::max(settings.pearlRadiusRoot, settings.pearlRadiusTip));
+    const double collisionRadius =
+        static_cast<double>(std::max(settings.pearlRadiusRoot, settings.pearlRadiusTip));
     std::vector<std::size_t> near;
     for (std::size_t i = 0; i < groom.spheres.size(); ++i) {
-        const double reach = length + pearl + static_cast<double>(groom.spheres[i].radius);
+        const double reach = length + collisionRadius + static_cast<double>(groom.spheres[i].radius);
         if (comesNear(frames, strand, i, reach)) near.push_back(i);
     }
     scene.meetsSpheres = !near.empty();
@@ -102,23 +103,24 @@ StrandScene strandScene(const Groom& groom, const SceneFrames& frames, std::uint
 }
 
 /// One strand's outcome.
-struct StrandTruth {
+struct StrandGroundTruth {
     Result<reference::Convergence> motion = fail("not run");
     bool curved = false;
 };
 
-StrandTruth converge(const Groom& groom, const SceneFrames& frames, std::uint32_t strand,
-                     const reference::Goal& goal) {
+StrandGroundTruth converge(const Groom& groom, const SceneFrames& frames, std::uint32_t strand,
+                           const reference::Goal& goal) {
     const StrandScene scene = strandScene(groom, frames, strand);
-    StrandTruth truth;
-    truth.motion =
+    StrandGroundTruth groundTruth;
+    groundTruth.motion =
         reference::converged(scene.strand, groom.simulation, {&scene.start, 1}, scene.frames, goal);
     if (const auto solver = reference::Solver::make(scene.strand, groom.simulation)) {
         const reference::StrandShape& shape = solver->shape(0);
         for (std::size_t j = std::max<std::size_t>(shape.firstFree, 1); j < shape.bend.size(); ++j)
-            truth.curved = truth.curved || (shape.stiffness[j] > 0 && shape.bend[j].norm() > kStraight);
+            groundTruth.curved =
+                groundTruth.curved || (shape.stiffness[j] > 0 && shape.bend[j].norm() > kStraight);
     }
-    return truth;
+    return groundTruth;
 }
 
 /// The followed points at the ends of whole frames. `runs` are of the followed strands, in their order.
@@ -140,20 +142,20 @@ Trajectory trajectoryOf(const SceneHair& hair, const SceneTime& time, const Foll
     return result;
 }
 
-std::string detailOf(const std::vector<StrandTruth>& strands, double toleranceMm) {
+std::string detailOf(const std::vector<StrandGroundTruth>& strands, double toleranceMm) {
     std::size_t reached = 0;
-    std::uint32_t fewest = std::numeric_limits<std::uint32_t>::max(), most = 0;
+    std::uint32_t fewest = std::numeric_limits<std::uint32_t>::max(), maximum = 0;
     double worst = 0;
-    for (const StrandTruth& strand : strands) {
+    for (const StrandGroundTruth& strand : strands) {
         const reference::Convergence& motion = *strand.motion;
         reached += motion.reached;
         fewest = std::min(fewest, motion.substeps);
-        most = std::max(most, motion.substeps);
+        maximum = std::max(maximum, motion.substeps);
         worst = std::max(worst, motion.change);
     }
     std::string detail = fmt::format(
         "{} of {} strands converged to within {} mm, with {} to {} substeps in each quarter of a frame",
-        reached, strands.size(), toleranceMm, fewest, most);
+        reached, strands.size(), toleranceMm, fewest, maximum);
     if (reached < strands.size())
         detail +=
             fmt::format("; the last doubling moved a point of the others by up to {:.3g} mm", 1e3 * worst);
@@ -208,63 +210,64 @@ std::string ReferenceConverged::description() const {
         "the model in double precision (core/simulation/reference), with {} to {} substeps in each of {} "
         "parts "
         "of a frame, doubled until no point moves by more than {} mm",
-        2 * kFirstSubsteps, options_.mostSubsteps, kStepsPerFrame, options_.toleranceMm);
+        2 * kFirstSubsteps, options_.maxSubsteps, kStepsPerFrame, options_.toleranceMm);
 }
 
-Result<Truth> ReferenceConverged::compute(const SceneHair& hair, const HeadMotion& motion,
-                                          const SceneTime& time, const Followed& followed) const {
-    assert(options_.mostSubsteps >= 2 * kFirstSubsteps);
+Result<GroundTruth> ReferenceConverged::compute(const SceneHair& hair, const HeadMotion& motion,
+                                                const SceneTime& time, const Followed& followed) const {
+    assert(options_.maxSubsteps >= 2 * kFirstSubsteps);
     const auto scene = SceneInput::make(hair.groom);
     if (!scene) return tl::unexpected(scene.error());
     SceneTime fine = time;
     fine.stepsPerFrame = kStepsPerFrame;
     const SceneFrames frames = framesOf(*scene, motion, fine);
-    const reference::Goal goal{1e-3 * options_.toleranceMm, kFirstSubsteps, options_.mostSubsteps, 4};
-    std::vector<StrandTruth> strands(followed.strands.size());
+    const reference::Goal goal{1e-3 * options_.toleranceMm, kFirstSubsteps, options_.maxSubsteps, 4};
+    std::vector<StrandGroundTruth> strands(followed.strands.size());
     parallelFor(strands.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
             strands[i] = converge(hair.groom, frames, followed.strands[i], goal);
     });
 
     std::vector<const std::vector<std::vector<Vec3d>>*> last, before;
-    std::vector<StrandTruth> solved;
-    Truth truth;
-    truth.followed.shares = followed.shares;
+    std::vector<StrandGroundTruth> solved;
+    GroundTruth groundTruth;
+    groundTruth.followed.shares = followed.shares;
     for (std::size_t i = 0; i < strands.size(); ++i) {
         if (!strands[i].motion) return tl::unexpected(strands[i].motion.error());
         if (!std::isfinite(strands[i].motion->change) || strands[i].motion->report.failed > 0) continue;
-        truth.followed.strands.push_back(followed.strands[i]);
+        groundTruth.followed.strands.push_back(followed.strands[i]);
         solved.push_back(std::move(strands[i]));
     }
     if (solved.empty())
         return fail("the reference could not solve any strand", "expected a motion and a groom without NaN");
     std::size_t curved = 0;
-    for (const StrandTruth& strand : solved) {
+    for (const StrandGroundTruth& strand : solved) {
         last.push_back(&strand.motion->positions_ws);
         before.push_back(&strand.motion->coarser_ws);
         curved += strand.curved;
     }
-    truth.trajectory = trajectoryOf(hair, time, truth.followed, last);
-    truth.uncertaintyMm = compare(trajectoryOf(hair, time, truth.followed, before), truth.trajectory).rmsMm;
-    truth.detail = detailOf(solved, options_.toleranceMm);
-    truth.notes = notesOf(hair.groom.simulation, curved, solved.size());
+    groundTruth.trajectory = trajectoryOf(hair, time, groundTruth.followed, last);
+    groundTruth.uncertaintyMm =
+        compare(trajectoryOf(hair, time, groundTruth.followed, before), groundTruth.trajectory).rmsMm;
+    groundTruth.detail = detailOf(solved, options_.toleranceMm);
+    groundTruth.notes = notesOf(hair.groom.simulation, curved, solved.size());
     if (solved.size() < strands.size()) {
-        truth.notes.push_back(fmt::format(
+        groundTruth.notes.push_back(fmt::format(
             "The reference could not solve every step of {} of {} strands, which are left out of the "
             "errors: hair that is pressed end-on or between two spheres has no sound motion there.",
             strands.size() - solved.size(), strands.size()));
     }
 
-    const auto engine = EngineConverged(kEngineSubsteps).compute(hair, motion, time, truth.followed);
+    const auto engine = EngineConverged(kEngineSubsteps).compute(hair, motion, time, groundTruth.followed);
     if (!engine) return tl::unexpected(engine.error());
-    truth.notes.push_back(
+    groundTruth.notes.push_back(
         fmt::format("The engine (position Verlet) with its own steps refined until that changed {:.2g} mm is "
                     "{:.3g} mm from "
                     "the reference (root mean square). What is not explained by the former is what model and "
                     "precision of "
                     "the two differ by: substeps do not take errors below it.",
-                    engine->uncertaintyMm, compare(engine->trajectory, truth.trajectory).rmsMm));
-    return truth;
+                    engine->uncertaintyMm, compare(engine->trajectory, groundTruth.trajectory).rmsMm));
+    return groundTruth;
 }
 
 }  // namespace hairloom

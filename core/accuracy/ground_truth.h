@@ -11,7 +11,7 @@
 
 namespace hairloom {
 
-struct Truth {
+struct GroundTruth {
     Followed followed;  ///< of what was asked for, what there is a truth of
     Trajectory trajectory;
     /// Root mean square distance to the same source at half its resolution in time. Errors of runs below it
@@ -21,37 +21,37 @@ struct Truth {
     std::vector<std::string> notes;  ///< what it does not do that this scene asks for; whole sentences
 };
 
-class TruthSource {
+class GroundTruthSource {
   public:
-    virtual ~TruthSource() = default;
+    virtual ~GroundTruthSource() = default;
     virtual std::string name() const = 0;         ///< "engine-converged"
     virtual std::string description() const = 0;  ///< how it is computed; one sentence for reports
     /// Strands that it is meant to be asked for at once.
-    virtual std::size_t mostStrands() const { return std::numeric_limits<std::size_t>::max(); }
+    virtual std::size_t maxStrands() const { return std::numeric_limits<std::size_t>::max(); }
     /// The followed points, in the scene of `hair` and its settings. Errors: those of Simulation::make, a
     /// motion that is not finite for any strand.
-    virtual Result<Truth> compute(const SceneHair& hair, const HeadMotion& motion, const SceneTime& time,
-                                  const Followed& followed) const = 0;
+    virtual Result<GroundTruth> compute(const SceneHair& hair, const HeadMotion& motion,
+                                        const SceneTime& time, const Followed& followed) const = 0;
 };
 
 /// The engine itself, converged as far as it goes: position Verlet, with the head where the motion has it at
 /// the quarters of each frame, several Newton steps for length, no sleep, and substeps doubled from 4 to
-/// `mostSubsteps` in each quarter. Of these runs the one counts that is nearest to the run before it: beyond
+/// `maxSubsteps` in each quarter. Of these runs the one counts that is nearest to the run before it: beyond
 /// some step, single precision rounds away what a shorter one gains. It shares the engine's model and code,
 /// so it tells errors of time stepping and of coarse strands, not of the model. Where doubling changes more
 /// and more, `detail` says that the engine does not converge in this scene.
-class EngineConverged : public TruthSource {
+class EngineConverged : public GroundTruthSource {
   public:
     /// 8 … 64.
-    explicit EngineConverged(std::uint32_t mostSubsteps = 64) : mostSubsteps_(mostSubsteps) {}
+    explicit EngineConverged(std::uint32_t maxSubsteps = 64) : maxSubsteps_(maxSubsteps) {}
 
     std::string name() const override { return "engine-converged"; }
     std::string description() const override;
-    Result<Truth> compute(const SceneHair& hair, const HeadMotion& motion, const SceneTime& time,
-                          const Followed& followed) const override;
+    Result<GroundTruth> compute(const SceneHair& hair, const HeadMotion& motion, const SceneTime& time,
+                                const Followed& followed) const override;
 
   private:
-    std::uint32_t mostSubsteps_;
+    std::uint32_t maxSubsteps_;
 };
 
 /// The reference of core/simulation/reference: the model of docs/engine.md in double precision, with none of
@@ -63,22 +63,22 @@ class EngineConverged : public TruthSource {
 /// docs/engine.md says the reference leaves out: sleep, maximal extension on coil springs, and the tank that
 /// bounds how far held curves turn. What the scene has of it stands in the notes, and with it how far the
 /// converged engine is from the reference.
-class ReferenceConverged : public TruthSource {
+class ReferenceConverged : public GroundTruthSource {
   public:
     struct Options {
-        std::size_t strands = 16;         ///< see mostStrands()
-        double toleranceMm = 0.01;        ///< above 0
-        std::uint32_t mostSubsteps = 64;  ///< in each quarter of a frame, a power of two from 4
+        std::size_t strands = 16;        ///< see maxStrands()
+        double toleranceMm = 0.01;       ///< above 0
+        std::uint32_t maxSubsteps = 64;  ///< in each quarter of a frame, a power of two from 4
     };
     ReferenceConverged() : ReferenceConverged(Options{}) {}
     explicit ReferenceConverged(const Options& options) : options_(options) {}
 
     std::string name() const override { return "reference"; }
     std::string description() const override;
-    std::size_t mostStrands() const override { return options_.strands; }
+    std::size_t maxStrands() const override { return options_.strands; }
     /// Errors: also settings that the reference refuses, as angularStiffness 1.
-    Result<Truth> compute(const SceneHair& hair, const HeadMotion& motion, const SceneTime& time,
-                          const Followed& followed) const override;
+    Result<GroundTruth> compute(const SceneHair& hair, const HeadMotion& motion, const SceneTime& time,
+                                const Followed& followed) const override;
 
   private:
     Options options_;

@@ -13,9 +13,9 @@
 
 namespace hairloom {
 
-class TrialEngine {
+class HardCaseEngine {
   public:
-    virtual ~TrialEngine() = default;
+    virtual ~HardCaseEngine() = default;
     virtual void reset(std::span<const runtime::RootFrame> roots_ws) = 0;
     /// Empty, or why they are refused.
     virtual std::string setSettings(const runtime::SimulationSettings& settings) = 0;
@@ -33,16 +33,17 @@ class TrialEngine {
 };
 
 /// Strands at rest, or in words why there are none.
-struct MadeTrialEngine {
-    std::unique_ptr<TrialEngine> engine;
+struct HardCaseEngineResult {
+    std::unique_ptr<HardCaseEngine> engine;
     std::string error;
 };
-using TrialEngineMaker = std::function<MadeTrialEngine(const runtime::StrandsView& strands,
-                                                       const runtime::SimulationSettings& settings)>;
+using HardCaseEngineFactory = std::function<HardCaseEngineResult(
+    const runtime::StrandsView& strands, const runtime::SimulationSettings& settings)>;
 
-MadeTrialEngine makeCpuTrialEngine(const runtime::StrandsView& strands,
-                                   const runtime::SimulationSettings& settings);
+HardCaseEngineResult makeCpuHardCaseEngine(const runtime::StrandsView& strands,
+                                           const runtime::SimulationSettings& settings);
 /// `device` outlives what the maker makes.
-TrialEngineMaker gpuTrialEngines(gpu::Device& device, std::shared_ptr<gpu_simulation::KernelLibrary> kernels);
+HardCaseEngineFactory gpuHardCaseEngines(gpu::Device& device,
+                                         std::shared_ptr<gpu_simulation::KernelLibrary> kernels);
 
 }  // namespace hairloom

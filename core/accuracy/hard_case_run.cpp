@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/accuracy/trial.h"
+#include "core/accuracy/hard_case_run.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,10 +12,10 @@ namespace {
 
 using runtime::Float3;
 
-constexpr double kRestSpeed = 0.005;      // m/s
-constexpr double kNoEnergy = 1e-9;        // joules a point of 1 kg: below is rounding
-constexpr double kMostPenetration = 0.5;  // mm
-constexpr std::uint32_t kMostSubsteps = 64;
+constexpr double kRestSpeed = 0.005;     // m/s
+constexpr double kNoEnergy = 1e-9;       // joules a point of 1 kg: below is rounding
+constexpr double kMaxPenetration = 0.5;  // mm
+constexpr std::uint32_t kMaxSubsteps = 64;
 constexpr const char* kLengthsAfterBending =
     "lengths are held after bending has moved the points, and the two undo part of each other's work; only "
     "position Verlet bends with the tension of the lengths";
@@ -25,7 +25,7 @@ constexpr double kMargin = 0.3;
 
 /// Fewest substeps within the integrator's stable region, at least those of the settings; 64 where none are.
 std::uint32_t substepsFor(const StrandSet& strands, runtime::SimulationSettings settings, float frame) {
-    while (settings.substeps < kMostSubsteps &&
+    while (settings.substeps < kMaxSubsteps &&
            runtime::stableRegion(strands.view(), settings, frame).factor > kMargin)
         ++settings.substeps;
     return settings.substeps;
@@ -33,7 +33,7 @@ std::uint32_t substepsFor(const StrandSet& strands, runtime::SimulationSettings 
 
 }  // namespace
 
-void Trial::start(StrandSet strands, runtime::SimulationSettings settings, float longestFrame) {
+void HardCaseRun::start(StrandSet strands, runtime::SimulationSettings settings, float longestFrame) {
     strands_ = std::move(strands);
     settings.integrator = integrator_;
     settings.substeps = substepsFor(strands_, settings, longestFrame);
@@ -44,23 +44,23 @@ void Trial::start(StrandSet strands, runtime::SimulationSettings settings, float
     engine_->reset(roots_);
 }
 
-std::unique_ptr<TrialEngine> Trial::another(const runtime::SimulationSettings& settings) {
-    MadeTrialEngine made = options_.engines ? options_.engines(strands_.view(), settings)
-                                            : makeCpuTrialEngine(strands_.view(), settings);
+std::unique_ptr<HardCaseEngine> HardCaseRun::another(const runtime::SimulationSettings& settings) {
+    HardCaseEngineResult made = options_.engines ? options_.engines(strands_.view(), settings)
+                                                 : makeCpuHardCaseEngine(strands_.view(), settings);
     if (made.engine == nullptr) {
         expect("refused: " + made.error, "", 1.0, 0.0);
         strands_ = {};
-        made = makeCpuTrialEngine({}, {});
+        made = makeCpuHardCaseEngine({}, {});
     }
     return std::move(made.engine);
 }
 
-void Trial::change(const runtime::SimulationSettings& settings) {
+void HardCaseRun::change(const runtime::SimulationSettings& settings) {
     if (const std::string error = engine_->setSettings(settings); !error.empty())
         expect("refused: " + error, "", 1.0, 0.0);
 }
 
-void Trial::frame(float dt) {
+void HardCaseRun::frame(float dt) {
     if (over()) return;
     time_ += static_cast<double>(dt);
     engine_->step({dt, time_, roots_, spheres_});
@@ -68,11 +68,11 @@ void Trial::frame(float dt) {
     inspect();
 }
 
-void Trial::frames(int count, float dt) {
+void HardCaseRun::frames(int count, float dt) {
     for (int i = 0; i < count; ++i) frame(dt);
 }
 
-void Trial::shakeRoots() {
+void HardCaseRun::shakeRoots() {
     for (int f = 1; f <= 60; ++f) {
         const float t = static_cast<float>(f) / 60.0f;
         moveRoots({0.03f * std::sin(4.0f * std::numbers::pi_v<float> * t), 0.0f, 0.0f});
@@ -80,19 +80,19 @@ void Trial::shakeRoots() {
     }
 }
 
-void Trial::settle(double most) {
+void HardCaseRun::settle(double maximum) {
     sourceEnds();
     double moving = 0.0;
-    const int frameCount = static_cast<int>(std::lround(1.2 * most / static_cast<double>(kFrame)));
+    const int frameCount = static_cast<int>(std::lround(1.2 * maximum / static_cast<double>(kFrame)));
     for (int f = 1; f <= frameCount && !over(); ++f) {
         frame();
         // Not "> kRestSpeed": what is no number does not rest.
         if (!(greatestSpeed() <= kRestSpeed)) moving = f * static_cast<double>(kFrame);
     }
-    raise("time to rest", "s", over() ? std::nan("") : moving, most, holdsRest());
+    raise("time to rest", "s", over() ? std::nan("") : moving, maximum, holdsRest());
 }
 
-void Trial::inspect() {
+void HardCaseRun::inspect() {
     const runtime::Measurements m = engine_->measure();
     if (const std::string problem = engine_->problem(); !problem.empty()) expect(problem, "", 1.0, 0.0);
     const bool held = settings().lengthMethod == runtime::LengthMethod::constraint;
@@ -101,67 +101,70 @@ void Trial::inspect() {
                           (restoredAllowed_ ? 0.0 : static_cast<double>(engine_->lastStep().restoredStrands));
     expect("points or strands lost", "", broken, 0.0);
     expect("stretch", "%", 100.0 * m.maxStretch, 100.0 * stretch);
-    if (watchingSpheres_) expect("penetration", "mm", 1000.0 * m.maxPenetration, kMostPenetration);
+    if (watchingSpheres_) expect("penetration", "mm", 1000.0 * m.maxPenetration, kMaxPenetration);
     const bool sound = broken == 0.0 && m.maxStretch <= stretch && std::isfinite(m.kineticEnergy);
     if (!sound && !failedAt_) failedAt_ = substeps_;
     const double energy = m.kineticEnergy / std::max<double>(engine_->pointCount(), 1.0);
     if (!sourceEnded_) {
-        mostEnergy_ = std::max(mostEnergy_, energy);
+        maxEnergy_ = std::max(maxEnergy_, energy);
     } else {
         raise("kinetic energy over its peak with a source", "",
-              energy > kNoEnergy ? energy / std::max(mostEnergy_, kNoEnergy) : 0.0, 1.0, holdsRest());
+              energy > kNoEnergy ? energy / std::max(maxEnergy_, kNoEnergy) : 0.0, 1.0, holdsRest());
     }
 }
 
-void Trial::expect(const std::string& what, const std::string& unit, double worst, double mark) {
-    raise(what, unit, worst, mark, true);
+void HardCaseRun::expect(const std::string& what, const std::string& unit, double worst, double threshold) {
+    raise(what, unit, worst, threshold, true);
 }
 
-void Trial::expectEnergy(const std::string& what, const std::string& unit, double worst, double mark) {
-    raise(what, unit, worst, mark, holdsRest());
+void HardCaseRun::expectEnergy(const std::string& what, const std::string& unit, double worst,
+                               double threshold) {
+    raise(what, unit, worst, threshold, holdsRest());
 }
 
-bool Trial::holdsRest() const {
+bool HardCaseRun::holdsRest() const {
     return integrator_ == runtime::Integrator::verlet ||
            settings().lengthMethod != runtime::LengthMethod::constraint;
 }
 
-void Trial::raise(const std::string& what, const std::string& unit, double value, double mark, bool claimed) {
-    const auto found = std::ranges::find(marks_, what, &StabilityMark::what);
-    if (found == marks_.end()) {
-        marks_.push_back({what, unit, value, mark, claimed});
+void HardCaseRun::raise(const std::string& what, const std::string& unit, double value, double threshold,
+                        bool claimed) {
+    const auto found = std::ranges::find(thresholds_, what, &StabilityThreshold::what);
+    if (found == thresholds_.end()) {
+        thresholds_.push_back({what, unit, value, threshold, claimed});
     } else if (!(value <= found->worst)) {
         if (!std::isnan(found->worst)) found->worst = value;
     }
 }
 
-std::vector<Float3> Trial::positions() const {
+std::vector<Float3> HardCaseRun::positions() const {
     std::vector<Float3> result(engine_->pointCount());
     engine_->readPositions(result);
     return result;
 }
 
-double Trial::greatestSpeed() const {
+double HardCaseRun::greatestSpeed() const {
     std::vector<Float3> velocities(engine_->pointCount());
     engine_->readVelocities(velocities);
-    double most = 0.0;
+    double maximum = 0.0;
     for (const Float3& v : velocities) {
         const double speed = static_cast<double>(length(v));
-        if (!(speed <= most)) most = speed;
+        if (!(speed <= maximum)) maximum = speed;
     }
-    return most;
+    return maximum;
 }
 
-StabilityResult Trial::result() const {
+StabilityResult HardCaseRun::result() const {
     StabilityResult result;
     result.integrator = nameOf(integrator_);
     result.substeps = engine_ ? settings().substeps : 0;
     result.claimed = limit_.empty();
-    result.marks = marks_;
-    result.pass = !marks_.empty() && std::ranges::all_of(marks_, &StabilityMark::met) && !over();
+    result.thresholds = thresholds_;
+    result.pass =
+        !thresholds_.empty() && std::ranges::all_of(thresholds_, &StabilityThreshold::met) && !over();
     result.limit = limit_;
-    const auto kept = [](const StabilityMark& m) { return m.met() || !m.claimed; };
-    if (result.claimed && !result.pass && std::ranges::all_of(marks_, kept)) {
+    const auto kept = [](const StabilityThreshold& m) { return m.met() || !m.claimed; };
+    if (result.claimed && !result.pass && std::ranges::all_of(thresholds_, kept)) {
         result.claimed = false;
         result.limit = kLengthsAfterBending;
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/accuracy/truth.h"
+#include "core/accuracy/ground_truth.h"
 
 #include <fmt/format.h>
 
@@ -39,22 +39,22 @@ std::string EngineConverged::description() const {
         "the engine itself (single precision, position Verlet) with {} to {} substeps in each of {} parts of "
         "a "
         "frame, {} Newton steps for length and no sleep",
-        2 * kFewestSubsteps, mostSubsteps_, kStepsPerFrame, kLengthIterations);
+        2 * kFewestSubsteps, maxSubsteps_, kStepsPerFrame, kLengthIterations);
 }
 
-Result<Truth> EngineConverged::compute(const SceneHair& hair, const HeadMotion& motion, const SceneTime& time,
-                                       const Followed& followed) const {
-    assert(mostSubsteps_ >= 2 * kFewestSubsteps);
+Result<GroundTruth> EngineConverged::compute(const SceneHair& hair, const HeadMotion& motion,
+                                             const SceneTime& time, const Followed& followed) const {
+    assert(maxSubsteps_ >= 2 * kFewestSubsteps);
     SceneTime fine = time;
     fine.stepsPerFrame = kStepsPerFrame;
     const std::vector<HeadPose> poses = posesOf(motion, fine);
     auto before = run(hair, poses, fine, followed, kFewestSubsteps);
     if (!before) return tl::unexpected(before.error());
-    Truth best;
+    GroundTruth best;
     best.followed = followed;
     std::uint32_t bestSubsteps = 0;
     std::string changes;
-    for (std::uint32_t substeps = 2 * kFewestSubsteps; substeps <= mostSubsteps_; substeps *= 2) {
+    for (std::uint32_t substeps = 2 * kFewestSubsteps; substeps <= maxSubsteps_; substeps *= 2) {
         auto finer = run(hair, poses, fine, followed, substeps);
         if (!finer) return tl::unexpected(finer.error());
         const double change = compare(*before, *finer).rmsMm;
@@ -67,7 +67,7 @@ Result<Truth> EngineConverged::compute(const SceneHair& hair, const HeadMotion& 
         before = std::move(finer);
     }
     best.detail = fmt::format("{} substeps were taken; doubling changed {}", bestSubsteps, changes);
-    const bool onlyWorse = bestSubsteps == 2 * kFewestSubsteps && mostSubsteps_ >= 4 * kFewestSubsteps;
+    const bool onlyWorse = bestSubsteps == 2 * kFewestSubsteps && maxSubsteps_ >= 4 * kFewestSubsteps;
     if (onlyWorse) best.detail += "; the engine does not converge in this scene";
     return best;
 }
