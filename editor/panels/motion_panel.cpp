@@ -85,10 +85,9 @@ class MotionPanel : public QWidget {
         state_->setText("<table width='100%' cellspacing='0' cellpadding='0'>" +
                         row(tr("Time"), tr("%1 s").arg(frame->time, 0, 'f', 2)) +
                         row(tr("Frame"), tr("%1 ms").arg(frame->milliseconds, 0, 'f', 2)) +
-                        row(tr("Largest stretch"), tr("%1 %").arg(stats.maxStretch * 100, 0, 'f', 2)) +
+                        row(tr("Maximum stretch"), tr("%1 %").arg(stats.maxStretch * 100, 0, 'f', 2)) +
                         row(tr("Deepest in a sphere"), tr("%1 mm").arg(stats.maxPenetrationMm, 0, 'f', 2)) +
-                        row(tr("Put back to rest"), tr("%1 strands").arg(stats.restoredStrands)) +
-                        "</table>");
+                        row(tr("Reset to rest"), tr("%1 strands").arg(stats.restoredStrands)) + "</table>");
     }
 
     Session& session_;
