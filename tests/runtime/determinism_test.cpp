@@ -115,9 +115,10 @@ TEST(Determinism, StagesThatFollowEachOtherAreOnePass) {
     EXPECT_EQ(passes({roots, damping, wind, gravity, verlet, length}),
               (std::vector<Stage>{alone(roots), table.moves[1][2][1], alone(length)}));
     EXPECT_EQ(passes({roots, verlet}), (std::vector<Stage>{alone(roots), table.moves[0][0][0]}));
-    EXPECT_EQ(passes({roots, verlet, angular, length, sweep}),
-              (std::vector<Stage>{alone(roots), table.moves[0][0][0], table.bendAndHold[1], alone(sweep)}));
-    EXPECT_EQ(passes({angularStraight, length}), (std::vector<Stage>{table.bendAndHold[0]}));
+    EXPECT_EQ(
+        passes({roots, verlet, angular, length, sweep}),
+        (std::vector<Stage>{alone(roots), table.moves[0][0][0], table.bendAndProject[1], alone(sweep)}));
+    EXPECT_EQ(passes({angularStraight, length}), (std::vector<Stage>{table.bendAndProject[0]}));
     EXPECT_EQ(passes({angular, collision}), (std::vector<Stage>{alone(angular), alone(collision)}));
     EXPECT_EQ(passes({sweep, collision, extension}),
               (std::vector<Stage>{table.sweepAndCollide[0], alone(extension)}));
