@@ -124,7 +124,7 @@ Result<render::Image> Painter::draw(const Case& which) {
     }
     Groom groom = which.everyStrand > 1 ? thinnedOut(groom_, which.everyStrand) : groom_;
     if (!which.material.empty()) {
-        if (auto status = wearMaterial(samples, which.material, groom); !status)
+        if (auto status = applyMaterial(samples, which.material, groom); !status)
             return tl::unexpected(status.error());
     }
     // Fewer and thicker hairs cover as much.
