@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "cli/documents.h"
+#include "cli/field_rows.h"
 #include "cli/job.h"
 #include "cli/stopwatch.h"
 #include "core/base/file.h"
@@ -15,6 +16,7 @@ struct GroomOptions {
     std::string input;
     std::string script;
     std::string output;
+    bool list = false;
 };
 
 Result<Report> replay(const GroomOptions& options) {
@@ -34,12 +36,41 @@ Result<Report> replay(const GroomOptions& options) {
                   {"output", options.output}};
 }
 
+/// What scripts may say: operations, and the brushes of the operation "stroke".
+Result<Report> list() {
+    Report operators = Report::array();
+    for (const OperationInfo& operation : scriptOperations()) {
+        operators.push_back(Report{{"name", operation.name},
+                                   {"meaning", operation.meaning},
+                                   {"fields", reportOf(operation.fields)}});
+    }
+    Report brushes = Report::array();
+    for (const std::string_view name : editing::brushNames()) {
+        const editing::BrushInfo& brush = editing::brushInfo(name);
+        brushes.push_back(Report{{"name", brush.name},
+                                 {"label", brush.label},
+                                 {"meaning", brush.meaning},
+                                 {"inverse", brush.inverse},
+                                 {"fields", reportOf(parameterRows(brush))}});
+    }
+    return Report{{"operators", std::move(operators)},
+                  {"region", reportOf(scriptRegionFields())},
+                  {"brushes", std::move(brushes)},
+                  {"brush_settings", reportOf(fieldRows<editing::BrushSettings>())}};
+}
+
 JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<GroomOptions>();
-    job.add_option("groom", options->input, "Groom to work on")->required();
-    job.add_option("--script", options->script, "Operations (docs/formats/script.md)")->required();
-    job.add_option("-o,--output", options->output, "Project to write")->required();
-    return [options](const std::string&) { return replay(*options); };
+    auto* listing = job.add_flag("--list", options->list,
+                                 "Show all operations and brushes with their fields, units and ranges");
+    auto* input = job.add_option("groom", options->input, "Groom to work on")->excludes(listing);
+    auto* script = job.add_option("--script", options->script, "Operations (docs/formats/script.md)");
+    auto* output = job.add_option("-o,--output", options->output, "Project to write");
+    job.final_callback([listing, input, script, output] {
+        if (listing->count() == 0 && input->count() * script->count() * output->count() == 0)
+            throw CLI::RequiredError("groom, --script and -o");
+    });
+    return [options](const std::string&) { return options->list ? list() : replay(*options); };
 }
 
 }  // namespace

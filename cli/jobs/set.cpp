@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "cli/documents.h"
+#include "cli/field_rows.h"
 #include "cli/job.h"
 #include "core/base/file.h"
 #include "core/groom/file/project_file.h"
@@ -95,18 +96,6 @@ Result<Report> set(const SetOptions& options) {
     return Report{{"changed", changed}, {"output", options.output}};
 }
 
-template <class Settings>
-void addRows(const std::string& section, Report& rows) {
-    for (const auto& [info, defaults] : fieldRows<Settings>()) {
-        rows.push_back(Report{{"field", section + "." + info.name},
-                              {"unit", info.unit},
-                              {"min", info.min},
-                              {"max", info.max},
-                              {"default", defaults},
-                              {"meaning", info.meaning}});
-    }
-}
-
 Report presetRows() {
     Report rows = Report::array();
     for (const runtime::HairPreset& preset : runtime::presets()) {
@@ -124,9 +113,9 @@ Report presetRows() {
 
 Result<Report> list() {
     Report rows = Report::array();
-    addRows<runtime::SimulationSettings>("simulation", rows);
-    addRows<HairMaterial>("material", rows);
-    addRows<InterpolationSettings>("interpolation", rows);
+    for (const Section& section : settingsSections()) {
+        for (Report& row : reportOf(section.fields, section.name + ".")) rows.push_back(std::move(row));
+    }
     return Report{{"fields", std::move(rows)}, {"presets", presetRows()}};
 }
 

@@ -23,17 +23,17 @@ struct Dab {
     float pressure = 1.0f;               ///< 0 … 1; multiplies the strength
 };
 
-/// Ranges stand in fieldsOf() (core/editing/brush_list.h).
+/// fieldsOf() (core/editing/brush_list.h) describes the members but for the curves and the parameters.
 struct BrushSettings {
-    float radius = 0.02f;      ///< metres, 0.0001 … 1; of dabs made from these settings
-    float strength = 0.5f;     ///< 0 … 1; of dabs made from these settings
-    float depth = 0.02f;       ///< metres, 0 … 10; how far a dab with a direction reaches before and behind
-    float clearance = 0.001f;  ///< metres, 0 … 0.01; kept from the skin
-    bool collide = true;       ///< false: hair may enter the head
-    bool invert = false;       ///< the brush's opposite: lower, spread, shorten, thaw …
-    bool symmetric = false;    ///< each dab again at its mirror image
-    Vec3f mirrorPoint = Vec3f::Zero();                   ///< metres; a point of the mirror plane
-    Vec3f mirrorNormal = Vec3f::UnitX();                 ///< of the mirror plane, any length but 0
+    float radius = 0.02f;
+    float strength = 0.5f;
+    float depth = 0.02f;
+    float clearance = 0.001f;
+    bool collide = true;
+    bool invert = false;  ///< lower, spread, shorten, thaw …
+    bool symmetric = false;
+    Vec3f mirrorPoint = Vec3f::Zero();
+    Vec3f mirrorNormal = Vec3f::UnitX();                 ///< any length but 0
     BrushCurve falloff = BrushCurve::falloff("smooth");  ///< middle to rim
     BrushCurve profile;                                  ///< root to tip
     std::uint64_t seed = 1;

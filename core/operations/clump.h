@@ -5,14 +5,14 @@
 
 namespace hairloom {
 
-/// Ranges stand in fieldsOf().
+/// fieldsOf() describes the members.
 struct ClumpSettings {
-    float spacing = 0.012f;    ///< m; distance that chosen roots keep; larger locks are fewer
-    float strength = 0.6f;     ///< share of the way to the chosen strand at the tip
-    float profile = 1.0f;      ///< how the pull grows from the root: 1 evenly, above 1 nearer to the tip
-    float variation = 0.3f;    ///< random share by which the pull of a strand may be weaker
-    float clearance = 0.001f;  ///< m; distance kept from the skin
-    std::uint64_t seed = 1;    ///< another seed chooses other strands
+    float spacing = 0.012f;
+    float strength = 0.6f;
+    float profile = 1.0f;
+    float variation = 0.3f;
+    float clearance = 0.001f;
+    std::uint64_t seed = 1;
 };
 std::span<const Field<ClumpSettings>> fieldsOf(const ClumpSettings&);
 

@@ -5,10 +5,9 @@
 
 namespace hairloom {
 
-/// Ranges stand in fieldsOf().
+/// fieldsOf() describes the members.
 struct CollideSettings {
-    float distance =
-        0.002f;  ///< m; distance that points keep from the skin; near the root half the arc length
+    float distance = 0.002f;
 };
 std::span<const Field<CollideSettings>> fieldsOf(const CollideSettings&);
 

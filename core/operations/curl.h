@@ -5,14 +5,14 @@
 
 namespace hairloom {
 
-/// Ranges stand in fieldsOf().
+/// fieldsOf() describes the members.
 struct CurlSettings {
-    float radius = 0.006f;     ///< m; of the helix
-    float frequency = 15.0f;   ///< 1/m; turns for each metre of hair; segments limit it to one turn for four
-    float start = 0.03f;       ///< m; way from the root over which the radius grows to its full size
-    float phaseVariation = 1;  ///< 1 starts each strand at any angle, 0 all at the same
-    float clearance = 0.001f;  ///< m; distance kept from the skin
-    std::uint64_t seed = 1;    ///< another seed gives other angles
+    float radius = 0.006f;
+    float frequency = 15.0f;
+    float start = 0.03f;
+    float phaseVariation = 1;
+    float clearance = 0.001f;
+    std::uint64_t seed = 1;
 };
 std::span<const Field<CurlSettings>> fieldsOf(const CurlSettings&);
 

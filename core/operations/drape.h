@@ -5,11 +5,11 @@
 
 namespace hairloom {
 
-/// Ranges stand in fieldsOf().
+/// fieldsOf() describes the members.
 struct DrapeSettings {
-    float amount = 0.5f;       ///< share of the turn towards straight down at the tip
-    float rootAmount = 0;      ///< share of the turn at the root; between, it changes evenly
-    float clearance = 0.001f;  ///< m; distance kept from the skin
+    float amount = 0.5f;
+    float rootAmount = 0;
+    float clearance = 0.001f;
 };
 std::span<const Field<DrapeSettings>> fieldsOf(const DrapeSettings&);
 

@@ -5,13 +5,13 @@
 
 namespace hairloom {
 
-/// Ranges stand in fieldsOf().
+/// fieldsOf() describes the members.
 struct DyeSettings {
-    float amount = 1;              ///< 0 … 1; what the mask becomes
-    Vec3f centre = Vec3f::Zero();  ///< metres, in the scalp's rest space
-    float radius = 0;              ///< metres around the centre that roots are reached in; 0: all
-    float softness = 0.01f;        ///< metres over which the reach fades at the ball's rim
-    float variation = 0;           ///< 0 … 1; random share by which a strand's amount may be lower
+    float amount = 1;
+    Vec3f centre = Vec3f::Zero();
+    float radius = 0;
+    float softness = 0.01f;
+    float variation = 0;
     std::uint64_t seed = 1;
 };
 std::span<const Field<DyeSettings>> fieldsOf(const DyeSettings&);

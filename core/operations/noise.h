@@ -5,13 +5,13 @@
 
 namespace hairloom {
 
-/// Ranges stand in fieldsOf().
+/// fieldsOf() describes the members.
 struct NoiseSettings {
-    float amplitude = 0.003f;  ///< m; how far waves lead aside at the tip
-    float frequency = 20.0f;   ///< 1/m; waves for each metre of hair; segments limit it to one wave for four
-    float rootShare = 0;       ///< amplitude at the root as a share of that at the tip
-    float clearance = 0.001f;  ///< m; distance kept from the skin
-    std::uint64_t seed = 1;    ///< another seed gives other waves
+    float amplitude = 0.003f;
+    float frequency = 20.0f;
+    float rootShare = 0;
+    float clearance = 0.001f;
+    std::uint64_t seed = 1;
 };
 std::span<const Field<NoiseSettings>> fieldsOf(const NoiseSettings&);
 

@@ -5,11 +5,11 @@
 
 namespace hairloom {
 
-/// Ranges stand in fieldsOf().
+/// fieldsOf() describes the members.
 struct SmoothSettings {
-    float amount = 0.5f;       ///< share of the way to the middle of the neighbours in each pass
-    std::uint32_t passes = 5;  ///< more is smoother over longer stretches
-    float clearance = 0.001f;  ///< m; distance kept from the skin
+    float amount = 0.5f;
+    std::uint32_t passes = 5;
+    float clearance = 0.001f;
 };
 std::span<const Field<SmoothSettings>> fieldsOf(const SmoothSettings&);
 

@@ -18,10 +18,10 @@ inline constexpr double kAnywhere = 1000;  ///< metres; largest coordinate that 
 /// Which strands a brush reaches: those whose root lies on the side of a plane that `normal` points to. A
 /// normal of zero reaches all.
 struct Region {
-    Vec3f point = Vec3f::Zero();   ///< metres; a point of the plane
-    Vec3f normal = Vec3f::Zero();  ///< any length
-    float fade = 0;          ///< metres, 0 … 1; width of the seam in which strands are reached at random
-    std::uint64_t seed = 1;  ///< of the strands in the seam
+    Vec3f point = Vec3f::Zero();
+    Vec3f normal = Vec3f::Zero();
+    float fade = 0;
+    std::uint64_t seed = 1;
 };
 std::span<const Field<Region>> fieldsOf(const Region&);
 

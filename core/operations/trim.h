@@ -5,13 +5,13 @@
 
 namespace hairloom {
 
-/// Ranges stand in fieldsOf().
+/// fieldsOf() describes the members.
 struct TrimSettings {
-    Vec3f planePoint = Vec3f::Zero();   ///< metres; a point of the cutting plane
-    Vec3f planeNormal = Vec3f::Zero();  ///< side that is cut away; zero: no plane
-    float maxLength = 5.0f;             ///< metres; what is longer is cut
-    float raggedness = 0;      ///< metres; each strand is cut shorter by a random length of up to this
-    float minLength = 0.005f;  ///< metres that a cut always leaves
+    Vec3f planePoint = Vec3f::Zero();
+    Vec3f planeNormal = Vec3f::Zero();
+    float maxLength = 5.0f;
+    float raggedness = 0;
+    float minLength = 0.005f;
     std::uint64_t seed = 1;
 };
 std::span<const Field<TrimSettings>> fieldsOf(const TrimSettings&);

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The page docs/reference.md, made from the descriptions that the program itself works by.
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cctype>
+#include <memory>
+
+#include "cli/field_rows.h"
+#include "cli/job.h"
+#include "core/base/file.h"
+#include "core/groom/file/fields.h"
+#include "core/operations/script.h"
+
+namespace hairloom::cli {
+namespace {
+
+std::string rangeOf(const FieldInfo& field) {
+    switch (field.kind) {
+        case FieldKind::Bool:
+            return "true or false";
+        case FieldKind::Choice:
+            return fmt::format("{}", fmt::join(field.choices, ", "));
+        case FieldKind::Seed:
+            return "0 … 2^64 − 1";
+        case FieldKind::Ramp:
+            return "2 to 16 keys";
+        case FieldKind::Float:
+        case FieldKind::Int:
+        case FieldKind::Vector:
+        case FieldKind::Colour:
+            break;
+    }
+    return fmt::format("{} … {}", field.min, field.max);
+}
+
+void addFields(const std::vector<FieldRow>& rows, std::string& page) {
+    if (rows.empty()) return;
+    page += "\n| field | default | unit | range | meaning |\n|---|---|---|---|---|\n";
+    for (const auto& [info, standard] : rows) {
+        page += fmt::format("| `{}` | {} | {} | {} | {} |\n", info.name, standard.dump(), info.unit,
+                            rangeOf(info), info.meaning);
+    }
+}
+
+std::string asSentence(std::string_view words) {
+    std::string text(words);
+    text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+    return text + '.';
+}
+
+void addSettings(std::string& page) {
+    page +=
+        "\n## Settings of a groom\n\n"
+        "Project files have an object for each section. `hairloom-cli set GROOM SECTION.FIELD=VALUE` sets "
+        "one field,\n"
+        "but not of `placement`, which the editor and the script operation `placement` set.\n";
+    std::vector<Section> sections = settingsSections();
+    sections.push_back({"placement", "how the editor places roots and what grows from them",
+                        fieldRows<PlacementSettings>()});
+    for (const Section& section : sections) {
+        page += fmt::format("\n### `{}`\n\n{}\n", section.name, asSentence(section.holds));
+        addFields(section.fields, page);
+    }
+}
+
+void addOperations(std::string& page) {
+    page +=
+        "\n## Operations of scripts\n\n"
+        "[formats/script.md](formats/script.md) says what they do and how a script is written.\n"
+        "\n### `region`\n\nEvery operation takes one; it limits the operation to some strands.\n";
+    addFields(scriptRegionFields(), page);
+    for (const OperationInfo& operation : scriptOperations()) {
+        page += fmt::format("\n### `{}`\n\n{}\n", operation.name, asSentence(operation.meaning));
+        addFields(operation.fields, page);
+    }
+}
+
+void addBrushes(std::string& page) {
+    page += "\n## Brushes\n\nAll have these settings, and the curves `falloff` and `profile`.\n";
+    addFields(fieldRows<editing::BrushSettings>(), page);
+    for (const std::string_view name : editing::brushNames()) {
+        const editing::BrushInfo& brush = editing::brushInfo(name);
+        page += fmt::format("\n### `{}`: {}\n\n{}", name, brush.label, asSentence(brush.meaning));
+        if (!brush.inverse.empty()) page += fmt::format(" Inverted: {}.", brush.inverse);
+        page += '\n';
+        addFields(parameterRows(brush), page);
+    }
+}
+
+void addJobs(std::string& page) {
+    page +=
+        "\n## Jobs of the command line\n\n"
+        "`hairloom-cli JOB --help` shows the options of a job; [cli.md](cli.md) says what jobs answer.\n"
+        "\n| job | does | example |\n|---|---|---|\n";
+    for (const Job& job : jobs())
+        page +=
+            fmt::format("| `{}` | {} | `hairloom-cli {} {}` |\n", job.name, job.does, job.name, job.example);
+}
+
+Result<Report> write(const std::string& output) {
+    std::string page =
+        "# Reference\n\n"
+        "For whoever sets a value, writes a script or calls the command line: every field with its unit, "
+        "range and\n"
+        "default, and every job. `hairloom-cli reference -o docs/reference.md` makes this "
+        "page from\n"
+        "the program itself; do not edit it.\n\n"
+        "Lengths are in metres, time in seconds, angles in degrees. The range of a vector or colour holds "
+        "for each\n"
+        "component; a colour is linear red, green and blue.\n";
+    addSettings(page);
+    addOperations(page);
+    addBrushes(page);
+    addJobs(page);
+    if (auto status = writeFileAtomically(output, page); !status) return tl::unexpected(status.error());
+    return Report{{"bytes", page.size()}, {"output", output}};
+}
+
+JobRun declare(CLI::App& job) {
+    const auto output = std::make_shared<std::string>();
+    job.add_option("-o,--output", *output, "Markdown file to write")->required();
+    return [output](const std::string&) { return write(*output); };
+}
+
+}  // namespace
+
+Job referenceJob() {
+    return {"reference", "Write the reference page of settings, operations, brushes and jobs",
+            "-o docs/reference.md", declare};
+}
+
+}  // namespace hairloom::cli

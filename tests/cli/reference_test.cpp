@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The lists of what there is to set, and the page that is made from them.
+
+#include <gmock/gmock.h>
+
+#include "tests/cli/command.h"
+#include "tests/support/source_dir.h"
+
+namespace hairloom::test {
+namespace {
+
+class Reference : public CommandLineTest {};
+
+TEST_F(Reference, PageIsUpToDate) {
+    runJson("reference -o reference.md");
+    EXPECT_EQ(readText(folder / "reference.md"), readText(sourceDir() / "docs/reference.md"))
+        << "`hairloom-cli reference -o docs/reference.md` makes it anew";
+}
+
+TEST_F(Reference, GroomListsOperationsAndBrushesWithTheirFields) {
+    const auto listed = runJson("groom --list");
+    const auto named = [](const nlohmann::json& rows, const char* name) -> const nlohmann::json& {
+        for (const auto& row : rows) {
+            if (row["name"] == name) return row;
+        }
+        ADD_FAILURE() << name << " is not in the list";
+        return rows;
+    };
+    const nlohmann::json radius{{"field", "radius"}, {"unit", "m"},      {"min", 0},
+                                {"max", 0.1},        {"default", 0.006}, {"meaning", "of the helix"}};
+    EXPECT_EQ(named(listed["operators"], "curl")["fields"][0], radius);
+    const auto& puff = named(listed["brushes"], "puff");
+    EXPECT_EQ(puff["fields"][0]["field"], "height");
+    EXPECT_EQ(puff["fields"][0]["default"], 0.01);
+    EXPECT_EQ(puff["fields"][0]["max"], 0.1);
+    EXPECT_EQ(named(listed["brushes"], "delete")["fields"][0]["default"], true);
+    EXPECT_EQ(listed["region"].size(), 4u);
+    EXPECT_EQ(listed["brush_settings"][0]["field"], "radius");
+    EXPECT_EQ(run("groom hair.hairloom").exitCode, 2) << "neither --list nor a script";
+}
+
+}  // namespace
+}  // namespace hairloom::test
