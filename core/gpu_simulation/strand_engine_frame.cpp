@@ -179,24 +179,13 @@ shaders::SimulationConstants StrandEngine::Impl::constants(const runtime::Subste
     const bool windy = length(run.wind.wind.mean) > 0.0f && s.airDrag > 0.0f;
     c.wakeAll = windy || wakeAll ? 1 : 0;
     c.h = context.h;
+    c.substep = context;
     c.dt = input.dt;
     c.rescale = substep > 0.0f ? context.h / substep : 1.0f;
-    c.velocityShare = context.velocityShare;
-    c.dragShare = context.dragShare;
-    c.springStep = context.springStep;
-    c.penaltyStep = context.penaltyStep;
-    c.bendRate = context.bendRate;
-    c.maximalExtension = context.maximalExtension;
-    c.collisionRadiusAtRoot = context.collisionRadiusAtRoot;
-    c.collisionRadiusAtTip = context.collisionRadiusAtTip;
-    c.friction = context.friction;
-    c.restitution = context.restitution;
     c.teleportDistance = s.teleportDistance;
     const float slow = s.sleepSpeed * context.h;
     c.slowSquared = slow * slow;
     c.sleepDelay = s.sleepDelay;
-    c.slowSweep = context.slowestSwept;
-    c.tensionShare = context.tensionShare;
     c.groups = batch.slots / batch.key.shape.strands;
     c.sphereDisplacement = c.unused = 0.0f;
     for (const runtime::MovingSphere& sphere : movingSpheres)

@@ -52,7 +52,7 @@ struct DrawBatch {
 
 /// Strands of one material.
 struct StrandGroup {
-    HairMaterial material;
+    StrandShading material;
     FibreTables fibre;  ///< of the material, once they were asked for
     bool hasFibre = false;
     FibreBake bake;               ///< of tables that shall take their place

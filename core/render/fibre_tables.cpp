@@ -62,16 +62,19 @@ shading::AverageScattering meanScattering(const shading::Table& averages,
 
 /// With `varies` absorption colours Sadeghi's TT and TRT.
 shaders::FibreConstants constantsOf(const FibreMaterial& material, bool varies) {
-    shaders::FibreConstants c;
-    c.spread = {static_cast<float>(shading::kMinSpread), static_cast<float>(shading::kLargestSpread), 0, 0};
+    shaders::FibreConstants c{};
+    c.minSpread = static_cast<float>(shading::kMinSpread);
+    c.maxSpread = static_cast<float>(shading::kLargestSpread);
+    c.clumping = material.clumping;
     if (material.model == ShadingModel::marschner) {
         const auto& intensity = material.marschner.intensity;
-        c.lobes = {static_cast<float>(intensity[0]), static_cast<float>(intensity[1]),
-                   static_cast<float>(intensity[2]), material.clumping};
+        c.rIntensity = static_cast<float>(intensity[0]);
+        c.ttIntensity = static_cast<float>(intensity[1]);
+        c.trtIntensity = static_cast<float>(intensity[2]);
         return c;
     }
     const shading::SadeghiParameters& model = material.sadeghi;
-    c.lobes = {1, 1, 1, material.clumping};
+    c.rIntensity = c.ttIntensity = c.trtIntensity = 1;
     c.r = toFloat4(model.r.light());
     c.tt = toFloat4(varies ? Vec3d(model.tt.intensity * model.tt.tint) : model.tt.light());
     c.trt = toFloat4(varies ? Vec3d(model.trt.intensity * model.trt.tint) : model.trt.light());
@@ -189,7 +192,7 @@ Result<FibreTables> FibreTables::make(gpu::Device& device, const FibreMaterial& 
     return result;
 }
 
-bool FibreTables::hasShaderFor(const HairMaterial& material) const {
+bool FibreTables::hasShaderFor(const StrandShading& material) const {
     return varies_ == material.look.has_value() && material_.model == material.fibre.model &&
            material_.scattering == material.fibre.scattering;
 }

@@ -36,7 +36,7 @@ class FibreTables {
         return varies_ == varies && material_ == material;
     }
     /// Of the same kinds of tables, though perhaps of other numbers.
-    bool hasShaderFor(const HairMaterial& material) const;
+    bool hasShaderFor(const StrandShading& material) const;
     /// The compute shader that shades with this material.
     const char* shader() const;
     /// Tables and constants, registers b1, s0 and from t11 on; nothing for Kajiya-Kay.
@@ -62,7 +62,7 @@ class FibreTables {
 
     FibreMaterial material_;
     bool varies_ = false;
-    shaders::FibreConstants constants_;
+    shaders::FibreConstants constants_{};
     shading::AverageScattering across_;  ///< of the material's own absorption
     shading::Table averages_;       ///< shading::DualLayers::averages, where tables hold several absorptions
     std::vector<Waiting> waiting_;  ///< for their upload

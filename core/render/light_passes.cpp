@@ -14,16 +14,22 @@ using gpu::Binding;
 shaders::CurveConstants curveConstants(const RendererState& state, const DrawBatch& batch) {
     const StrandGroup& group = state.scene.groups[batch.group];
     const bool own = group.devicePositions == nullptr;
-    const HairMaterial& material = group.material;
-    shaders::CurveConstants c;
+    const StrandShading& material = group.material;
+    shaders::CurveConstants c{};
     c.strandCount = batch.strandCount(state.detail);
     c.subdivisions = state.detail.subdivisions;
     c.floatsPerPoint = own ? 3 : group.floatsPerPoint;
     c.strandMajor = own ? 0 : static_cast<std::uint32_t>(group.strandCount);
-    c.radius = {material.radius, material.tipScale, group.hasRadii ? 1.0f : 0.0f, material.radiusVariation};
-    c.opacity = {material.rootOpacity, material.tipOpacity, 0, 0};
-    c.detail = {0.9f * state.detail.share, 1.1f * state.detail.share,
-                1 / static_cast<float>(batch.strandCount()), state.detail.widening()};
+    c.rootRadius = material.radius;
+    c.tipScale = material.tipScale;
+    c.radiusVariation = material.radiusVariation;
+    c.hasRadii = group.hasRadii ? 1 : 0;
+    c.fullShare = 0.9f * state.detail.share;
+    c.goneShare = 1.1f * state.detail.share;
+    c.strandShare = 1 / static_cast<float>(batch.strandCount());
+    c.widening = state.detail.widening();
+    c.rootOpacity = material.rootOpacity;
+    c.tipOpacity = material.tipOpacity;
     return c;
 }
 
@@ -35,14 +41,16 @@ void setUpLights(RendererState& state) {
     for (std::size_t i = 0; i < state.environment.coefficients.size(); ++i) {
         shade.environment[i] = toShader(state.environment.coefficients[i], 0);
     }
-    shade.environment[0].w = state.environment.dark() ? 0.0f : 1.0f;
-    shade.environment[1].w = state.plan.runs(Pass::skyHead) || state.plan.runs(Pass::skyLayers) ? 1.0f : 0.0f;
+    shade.hasEnvironment = state.environment.dark() ? 0 : 1;
+    shade.hasSkyMaps = state.plan.runs(Pass::skyHead) || state.plan.runs(Pass::skyLayers) ? 1 : 0;
     shade.ground = toShader(state.scene.groundAlbedo(), 0);
     const HairFlux flux = state.scene.flux();
-    shade.sinking = toShader(flux.scattered, flux.clumping);
-    shade.turning = toShader(flux.first, flux.ofFibres ? 1.0f : 0.0f);
-    shade.straight = toShader(flux.second, 0);
-    shade.counts.y = static_cast<std::uint32_t>(state.lights.size());
+    shade.scattered = toShader(flux.scattered, 0);
+    shade.firstMoment = toShader(flux.first, 0);
+    shade.secondMoment = toShader(flux.second, 0);
+    shade.clumping = flux.clumping;
+    shade.ofFibres = flux.ofFibres ? 1 : 0;
+    shade.lightCount = static_cast<std::uint32_t>(state.lights.size());
     for (std::size_t i = 0; i < state.lights.size(); ++i) shade.lights[i] = lightConstants(state, i);
 }
 
@@ -52,36 +60,47 @@ shaders::ShadeConstants lightsOfFrame(const RendererState& state) {
     return c;
 }
 
-shaders::ShadeConstants shadeConstants(const RendererState& state, const HairMaterial& m) {
+shaders::ShadeConstants shadeConstants(const RendererState& state, const StrandShading& m) {
     shaders::ShadeConstants c = lightsOfFrame(state);
     const auto normalisation = [](float exponent) {
         return static_cast<float>(1 / (static_cast<double>(kPi) * shading::kajiyaReflectance(exponent)));
     };
-    c.primary = toShader(m.primary, m.primaryExponent);
-    c.secondary = toShader(m.secondary, m.secondaryExponent);
-    c.shift = {std::tan(radians(m.primaryShift)), std::tan(radians(m.secondaryShift)), m.diffuse,
-               m.scattering};
-    c.normalisation = {normalisation(0), normalisation(m.primaryExponent), normalisation(m.secondaryExponent),
-                       0};
+    c.primary = toShader(m.primary, 0);
+    c.secondary = toShader(m.secondary, 0);
+    c.primaryExponent = m.primaryExponent;
+    c.secondaryExponent = m.secondaryExponent;
+    c.primaryTilt = std::tan(radians(m.primaryShift));
+    c.secondaryTilt = std::tan(radians(m.secondaryShift));
+    c.diffuse = m.diffuse;
+    c.scattering = m.scattering;
+    c.diffuseNormalisation = normalisation(0);
+    c.primaryNormalisation = normalisation(m.primaryExponent);
+    c.secondaryNormalisation = normalisation(m.secondaryExponent);
+    c.rootBrightness = m.rootBrightness;
+    c.tipBrightness = m.tipBrightness;
+    c.brightnessVariation = m.variation;
+    c.fibreOpacity = m.opacity;
     c.albedo = toShader(m.albedo, 0);
-    c.rootTip = {m.rootBrightness, m.tipBrightness, m.variation, m.opacity};
     return c;
 }
 
 shaders::LookConstants lookConstants(const shading::StrandLook& look) {
-    const auto pack = [](const Vec3d& v, double w) {
-        return toShader(v.cast<float>(), static_cast<float>(w));
-    };
-    const bool absorbs = look.quantity == shading::LookQuantity::absorption;
-    shaders::LookConstants c;
-    c.root = pack(look.root, look.gradient.start);
-    c.tip = pack(look.tip, look.gradient.scale);
-    c.streakRoot = pack(look.streakRoot, look.spread);
-    c.streakTip = pack(look.streakTip, absorbs ? 1 : 0);
-    c.dye = pack(look.dye, look.ownScale);
-    c.along = {static_cast<float>(look.dyeAlong.start), static_cast<float>(look.dyeAlong.scale), 0, 0};
-    c.emissionRoot = pack(look.emissionRoot, 0);
-    c.emissionTip = pack(look.emissionTip, 0);
+    const auto rgb = [](const Vec3d& v) { return toShader(v.cast<float>(), 0); };
+    shaders::LookConstants c{};
+    c.root = rgb(look.root);
+    c.tip = rgb(look.tip);
+    c.streakRoot = rgb(look.streakRoot);
+    c.streakTip = rgb(look.streakTip);
+    c.dye = rgb(look.dye);
+    c.emissionRoot = rgb(look.emissionRoot);
+    c.emissionTip = rgb(look.emissionTip);
+    c.gradientStart = static_cast<float>(look.gradient.start);
+    c.gradientScale = static_cast<float>(look.gradient.scale);
+    c.dyeStart = static_cast<float>(look.dyeAlong.start);
+    c.dyeScale = static_cast<float>(look.dyeAlong.scale);
+    c.absorbs = look.quantity == shading::LookQuantity::absorption ? 1 : 0;
+    c.ownScale = static_cast<float>(look.ownScale);
+    c.spread = static_cast<float>(look.spread);
     return c;
 }
 
@@ -108,7 +127,9 @@ void recordSkySeen(gpu::CommandList& list, RendererState& state) {
     shaders::ShadeConstants constants = state.shade;
     for (const DrawBatch& batch : state.scene.batches) {
         const std::uint32_t strands = batch.strandCount(state.detail);
-        constants.counts = {strands, 0, 0, state.detail.subdivisions};
+        constants.count = strands;
+        constants.lightCount = constants.rowThreads = 0;
+        constants.subdivisions = state.detail.subdivisions;
         list.setConstants(0, gpu::bytesOf(constants));
         bind(list,
              {Binding::read(0, batch.curve), Binding::read(1, batch.headers), Binding::write(0, batch.seen)});
@@ -133,7 +154,9 @@ void recordShading(gpu::CommandList& list, RendererState& state) {
         const std::uint32_t points =
             batch.curvePoints(batch.strandCount(state.detail), state.detail.subdivisions);
         const Rows rows(points);
-        constants.counts = {points, constants.counts.y, rows.threads(), state.detail.subdivisions};
+        constants.count = points;
+        constants.rowThreads = rows.threads();
+        constants.subdivisions = state.detail.subdivisions;
         list.setConstants(0, gpu::bytesOf(constants));
         bind(list, {Binding::read(0, batch.curve), Binding::read(1, batch.headers),
                     Binding::read(3, batch.seen ? batch.seen : state.noSky),

@@ -54,7 +54,7 @@ struct RendererState {
     gpu::SamplerPtr linearFilter;        ///< once a filter was asked for
     std::vector<LightView> lightViews;
     std::vector<LightView> skyViews;  ///< where the plan has maps of the sky
-    shaders::ShadeConstants shade;    ///< all but the material
+    shaders::ShadeConstants shade{};  ///< all but the material
     shaders::SkyConstants sky;
 
     Box3f bounds() const;  ///< of all meshes and strands
@@ -80,7 +80,7 @@ struct RendererState {
 Status preparePlaceholders(gpu::Device& device, RendererState& state);
 /// The constants that follow from camera and lights.
 void setUpLights(RendererState& state);
-shaders::ShadeConstants shadeConstants(const RendererState& state, const HairMaterial& material);
+shaders::ShadeConstants shadeConstants(const RendererState& state, const StrandShading& material);
 /// Those of RendererState::shade, without shadows where it says so.
 shaders::ShadeConstants lightsOfFrame(const RendererState& state);
 shaders::LookConstants lookConstants(const shading::StrandLook& look);

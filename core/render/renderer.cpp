@@ -128,10 +128,10 @@ Status Renderer::setPointDyes(std::size_t group, std::span<const float> dyes) {
     return {};
 }
 
-Status Renderer::setMaterial(std::size_t group, const HairMaterial& material) {
+Status Renderer::setMaterial(std::size_t group, const StrandShading& material) {
     auto& groups = parts_->state.scene.groups;
     if (group >= groups.size()) return fail(fmt::format("group {} of {} of strands", group, groups.size()));
-    const HairMaterial& before = groups[group].material;
+    const StrandShading& before = groups[group].material;
     const bool sameShape = before.radius == material.radius && before.tipScale == material.tipScale &&
                            before.radiusVariation == material.radiusVariation &&
                            before.rootOpacity == material.rootOpacity &&

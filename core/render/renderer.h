@@ -50,7 +50,7 @@ class Renderer {
                               const Box3f& bounds_ws);
     /// One share of the dye a point, where RenderStrands::pointDyes had some.
     Status setPointDyes(std::size_t group, std::span<const float> dyes);
-    Status setMaterial(std::size_t group, const HairMaterial& material);
+    Status setMaterial(std::size_t group, const StrandShading& material);
     Status setCamera(const Camera& camera);
     Status setLights(std::span<const Light> lights);
     void setEnvironment(const Environment& environment);

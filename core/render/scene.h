@@ -26,8 +26,8 @@ struct RenderMesh {
     bool matte = false;                        ///< a plain Lambertian: no light under the skin, no highlight
 };
 
-/// How strands scatter light. Colours are linear RGB.
-struct HairMaterial {
+/// How strands are drawn: what core/scene/hair_look.h makes of an authored material. Colours are linear RGB.
+struct StrandShading {
     Vec3f albedo = Vec3f(0.21f, 0.115f, 0.06f);  ///< 0…1; where a strand has no colour of its own
     float radius = 0.00004f;    ///< metres at the root, where points have none; 25–60 µm are human
     float tipScale = 0.3f;      ///< radius at the tip, times that at the root; 0…1
@@ -65,7 +65,7 @@ struct RenderStrands {
     std::span<const float> streaks;    ///< 0…1, one a strand, for the look; empty: none is in a streak
     std::span<const float> dyes;       ///< 0…1, one a strand, for the look; empty: none is dyed
     std::span<const float> pointDyes;  ///< 0…1, one a point, shares of that; empty: 1 everywhere
-    HairMaterial material;
+    StrandShading material;
 };
 
 struct RenderScene {

@@ -220,7 +220,7 @@ Result<GroomScene> GroomScene::make(const Groom& groom, const std::vector<Vec3f>
     GroomScene scene;
     scene.rest_ = groom;
     scene.posed_ = pose ? posedGroom(groom, *positions_ws, *pose) : groom;
-    scene.material_ = renderMaterial(groom, view);
+    scene.material_ = strandShading(groom, view);
     // The view's radius goes before the points' own.
     if (view.rootRadius || view.tipScale) {
         scene.rest_.pointAttributes.erase(attribute::kRadius);
@@ -274,7 +274,7 @@ bool GroomScene::setMaterial(const HairMaterial& authored, const ViewFile& view)
     if (authored.rootColour != before.rootColour || !hasSameStreaksAndDye(authored, before)) return false;
     if (!radii_.empty() && authored.rootRadius != before.rootRadius) return false;
     rest_.material = authored;
-    material_ = renderMaterial(rest_, view);
+    material_ = strandShading(rest_, view);
     return true;
 }
 

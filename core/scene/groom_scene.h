@@ -29,7 +29,6 @@ struct FibreView {
 
     bool saysColour() const { return absorption || melanin || colour; }
 };
-render::FibreMaterial fibreMaterial(const HairMaterial& authored, const FibreView& view);
 
 /// What a view file (--view) says; docs/cli.md lists its members.
 struct ViewFile {
@@ -99,7 +98,7 @@ class GroomScene {
         hairOffsets_;  ///< of follow hairs; empty where the strands themselves are drawn
     std::vector<Vec3f> hairPositions_ws_;
     std::vector<float> radii_;  ///< of the strands' points where some are hidden, which have no thickness
-    render::HairMaterial material_;
+    render::StrandShading material_;
     StreakAndDyeWeights weights_;  ///< of what is drawn, where the material has a look
     bool matte_ = false;           ///< the head, where a view says what it is
 };

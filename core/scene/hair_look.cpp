@@ -123,30 +123,6 @@ void finishLook(const HairMaterial& authored, shading::StrandLook& look) {
     look.emissionTip = asDouble(authored.emission) * authored.emissionTipColour.cast<double>();
 }
 
-std::vector<Vec3f> rootsOf(const Groom& groom) {
-    std::vector<Vec3f> roots(groom.strandCount());
-    for (std::size_t s = 0; s < roots.size(); ++s) roots[s] = groom.strand(s)[0];
-    return roots;
-}
-
-bool isPainted(const Groom& groom) {
-    return groom.pointAttributes.has(attribute::kPointDye);
-}
-
-/// Of a strand's points, at a share of its length in points.
-float valueAt(std::span<const float> values, float share) {
-    const float place = share * static_cast<float>(values.size() - 1);
-    const std::size_t before = std::min(static_cast<std::size_t>(place), values.size() - 2);
-    const float t = place - static_cast<float>(before);
-    return values[before] + t * (values[before + 1] - values[before]);
-}
-
-float maskOf(std::span<const float> mask, std::size_t strand) {
-    return mask.empty() ? 1.0f : mask[strand];
-}
-
-}  // namespace
-
 render::FibreMaterial fibreMaterial(const HairMaterial& authored, const FibreView& view) {
     const double roughness = roughnessOf(authored, view);
     shading::MarschnerParameters m;
@@ -178,9 +154,33 @@ render::FibreMaterial fibreMaterial(const HairMaterial& authored, const FibreVie
     return fibre;
 }
 
-render::HairMaterial renderMaterial(const Groom& groom, const ViewFile& view) {
+std::vector<Vec3f> rootsOf(const Groom& groom) {
+    std::vector<Vec3f> roots(groom.strandCount());
+    for (std::size_t s = 0; s < roots.size(); ++s) roots[s] = groom.strand(s)[0];
+    return roots;
+}
+
+bool isPainted(const Groom& groom) {
+    return groom.pointAttributes.has(attribute::kPointDye);
+}
+
+/// Of a strand's points, at a share of its length in points.
+float valueAt(std::span<const float> values, float share) {
+    const float place = share * static_cast<float>(values.size() - 1);
+    const std::size_t before = std::min(static_cast<std::size_t>(place), values.size() - 2);
+    const float t = place - static_cast<float>(before);
+    return values[before] + t * (values[before + 1] - values[before]);
+}
+
+float maskOf(std::span<const float> mask, std::size_t strand) {
+    return mask.empty() ? 1.0f : mask[strand];
+}
+
+}  // namespace
+
+render::StrandShading strandShading(const Groom& groom, const ViewFile& view) {
     const HairMaterial& authored = groom.material;
-    render::HairMaterial material;
+    render::StrandShading material;
     material.albedo = authored.tipColour;
     material.rootBrightness = material.tipBrightness = 1;
     material.variation = authored.colourVariation;

@@ -6,10 +6,21 @@
 
 namespace hairloom {
 
-/// The material as the view and its shading model see it. A look is in it only where the hair does not look
-/// the same everywhere: it has other colours or pigment at the tip, streaks, dye, strands of their own
+/// The one way from the authored HairMaterial to what the renderer draws by; members of the view come first.
+///
+/// | authored | StrandShading |
+/// |---|---|
+/// | rootRadius, tipScale, radiusVariation, rootOpacity, tipOpacity, tubes | the same |
+/// | specular, shininess, scaleTiltDegrees | `primary…`, `secondary…`: Kajiya-Kay's two highlights |
+/// | tipColour, colourVariation | `albedo`, `variation` |
+/// | indexOfRefraction, roughnesses, scaleTiltDegrees, eccentricity, r…, tt…, trt… | `fibre.marschner` |
+/// | those, tints, ttAzimuthalWidth, glints | `fibre.sadeghi`, from the Marschner fibre of the same hair |
+/// | colours, melanin, gradient, streaks, dye, emission | `look`; even hair has none, but a fibre's
+/// absorption |
+///
+/// Hair is uneven where it has other colours or pigment at the tip, streaks, dye, strands of their own
 /// colour, random pigment or light of its own.
-render::HairMaterial renderMaterial(const Groom& groom, const ViewFile& view);
+render::StrandShading strandShading(const Groom& groom, const ViewFile& view);
 
 /// Of the groom's own strands, by their roots at rest and the attributes `dye`.
 StreakAndDyeWeights weightsOfStrands(const Groom& groom);

@@ -18,7 +18,7 @@ void takeAir(float3 atRoot, float3 atTip) {
         const float both = dot(flow, flow) * dot(tangent, tangent);
         const float parallel = dot(flow, tangent);
         const float sineSquared = max(both - parallel * parallel, 0.0) / (both + 1e-30);
-        setPrevious(p, before - flow * (gFrame.dragShare * freedom(p) * sqrt(min(sineSquared, 1.0))));
+        setPrevious(p, before - flow * (gFrame.substep.dragShare * freedom(p) * sqrt(min(sineSquared, 1.0))));
     }
 }
 

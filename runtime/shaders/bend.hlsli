@@ -39,7 +39,7 @@ float takeShare(float gain, float size) {
     const float leak = min(gFrame.h / LEAK_TIME, 1.0) * max(1.0 - gMotion / (LEAK_SPEED * LEAK_SPEED), 0.0);
     const float share = fresh ? 1.0 : max(min(maximum, 1.0), leak);
     const float gained = share * (gain - 0.5 * share * size) / squared;
-    gEnergyTank = fresh ? 0.0 : max(max(gEnergyTank, 0.0) + gained, 0.0) * gFrame.velocityShare;
+    gEnergyTank = fresh ? 0.0 : max(max(gEnergyTank, 0.0) + gained, 0.0) * gFrame.substep.velocityShare;
     return share;
 }
 #endif
@@ -138,7 +138,7 @@ void measureAhead(float share) {
     EACH for (uint j = 0; j + 1 < POINTS; ++j) {
         const float3 from = previous(j), to = previous(j + 1);
         const float3 moved = (position(j + 1) - to) - (position(j) - from);
-        const float3 tangent = ((to - from) + moved * gFrame.bendRate) * inverseLength(j);
+        const float3 tangent = ((to - from) + moved * gFrame.substep.bendRate) * inverseLength(j);
         if (j + 1 >= FIRST_FREE) {
             float3 off = tangent - inner;
 #if HAIR_CURVES

@@ -30,7 +30,7 @@ float3 sphereCentre(uint k, float step) { return gSpheres[k].from.xyz + gSpheres
 
 /// Pearl radius at a point, growing linearly to the tip.
 float collisionRadiusAt(uint p) {
-    return gFrame.collisionRadiusAtRoot + (gFrame.collisionRadiusAtTip - gFrame.collisionRadiusAtRoot) / float(POINTS - 1) * float(p);
+    return gFrame.substep.collisionRadiusAtRoot + (gFrame.substep.collisionRadiusAtTip - gFrame.substep.collisionRadiusAtRoot) / float(POINTS - 1) * float(p);
 }
 
 /// What a point touches.
@@ -51,8 +51,8 @@ void respond(Contact contact, inout float3 at, inout float3 before) {
     const float along = dot(relative, normal);
     const float3 sliding = relative - normal * along;
     const float approach = max(-along, 0.0);
-    const float bounce = 1.0 + gFrame.restitution;
-    const float frictionRate = gFrame.friction * bounce * rsqrt(dot(sliding, sliding) + 1e-30);
+    const float bounce = 1.0 + gFrame.substep.restitution;
+    const float frictionRate = gFrame.substep.friction * bounce * rsqrt(dot(sliding, sliding) + 1e-30);
     const float lost = min(frictionRate * approach, 1.0);
     // Friction also takes back what the point has slid while inside, or sticking hair would creep.
     const float depth = max(contact.reach - direction.size, 0.0);
@@ -215,7 +215,7 @@ void stageCollisionBack() { collide(true); }
 void sweepPoint(uint p, float3 root, float step) {
     float3 at = position(p), before = previous(p);
     const float3 moved = at - before;
-    if (dot(moved, moved) >= gFrame.slowSweep * gFrame.slowSweep) {
+    if (dot(moved, moved) >= gFrame.substep.slowestSwept * gFrame.substep.slowestSwept) {
         const float collisionRadius = collisionRadiusAt(pointOf(p));
         float earliest = 0.0;
         uint met = 0u;
@@ -257,7 +257,7 @@ void stageSweep() {
         const float3 moved = gPosition[k] - gPrevious[k];
         fastest = max(fastest, dot(moved, moved));
     }
-    if (fastest < gFrame.slowSweep * gFrame.slowSweep) return;
+    if (fastest < gFrame.substep.slowestSwept * gFrame.substep.slowestSwept) return;
 #endif
     FREE_POINTS(p) sweepPoint(p, root, step);
 }
@@ -276,7 +276,7 @@ void stagePenalty() {
             const float3 offset = at - (sphereCentre(k, step) - root);
             if (dot(offset, offset) < reach * reach) {
                 const Direction direction = directionOf(offset);
-                way += direction.unit * (max(reach - direction.size, 0.0) * gFrame.penaltyStep);
+                way += direction.unit * (max(reach - direction.size, 0.0) * gFrame.substep.penaltyStep);
             }
         }
         setPrevious(p, previous(p) - way);

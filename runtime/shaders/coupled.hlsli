@@ -118,7 +118,7 @@ struct SystemRow {
     float far;
 };
 SystemRow rowOf(uint p, Symmetric inner) {
-    const float share = 0.25 + gFrame.bendRate;
+    const float share = 0.25 + gFrame.substep.bendRate;
     const float outerBefore = inverseLength(p - 1), innerBefore = p > 1 ? inverseLength(p - 2) : 0.0;
     const float before = stiffness(p - 1) * outerBefore;
     float own = before * outerBefore, one = -before * (outerBefore + innerBefore);

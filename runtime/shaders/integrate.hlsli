@@ -3,7 +3,7 @@
 
 /// Slows motion relative to the moving root. First in a substep, so that it acts on velocity alone.
 void stageDamping() {
-    const float lost = 1.0 - gFrame.velocityShare;
+    const float lost = 1.0 - gFrame.substep.velocityShare;
     MOVED_POINTS(p)
         setPrevious(p, previous(p) + (position(p) - previous(p) - gRootDisplacement) * (lost * freedom(p)));
 }

@@ -180,10 +180,10 @@ void bendBack() {
     const float3 movedBefore = loadInner().xyz, movedAfter = loadOuter().xyz;
     EACH_OWN_POINT(a) {
         const float3 turned = OUTER_OF(moved, a, movedAfter) - moved[a];
-        aheads[a] = tangents[a] + turned * (gInverseLength[a] * gFrame.bendRate);
+        aheads[a] = tangents[a] + turned * (gInverseLength[a] * gFrame.substep.bendRate);
     }
     float3 innerAhead = inner;
-    if (gThread != 0) innerAhead += (moved[0] - movedBefore) * (gInverseLengthBefore * gFrame.bendRate);
+    if (gThread != 0) innerAhead += (moved[0] - movedBefore) * (gInverseLengthBefore * gFrame.substep.bendRate);
     EACH_OWN_POINT(j) {
         pulls[j] = aheads[j] - INNER_OF(aheads, j, innerAhead);
 #if HAIR_CURVES

@@ -70,7 +70,7 @@ void keepList(SphereSet set) {
     EACH_OWN_POINT(i) hold = hold && listHolds(set, gPosition[i]);
     if (hold) return;
     const float left = float(gFrame.substeps) - set.step + 1.0;
-    const float collisionRadius = max(gFrame.collisionRadiusAtRoot, gFrame.collisionRadiusAtTip);
+    const float collisionRadius = max(gFrame.substep.collisionRadiusAtRoot, gFrame.substep.collisionRadiusAtTip);
     float margin = 0.0;
     EACH_OWN_POINT(j) {
         const float3 moved = gPosition[j] - gPrevious[j], apart = gPosition[j] - gPosition[0];

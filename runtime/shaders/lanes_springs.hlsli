@@ -9,7 +9,7 @@ void stageSprings() {
         outers[i] = float3(0, 0, 0);
         if (pointOf(i) + 1 >= FIRST_FREE && hasSegment(i)) {
             const Direction edge = edgeOf(OUTER_OF(gPosition, i, after) - gPosition[i]);
-            const float step = 2.0 * gFrame.springStep / (gInverseMass[i] + outerInverseMass(i));
+            const float step = 2.0 * gFrame.substep.springStep / (gInverseMass[i] + outerInverseMass(i));
             outers[i] = edge.unit * ((edge.size - gLength[i]) * step);
         }
     }

@@ -26,13 +26,13 @@ float3 actingGradient(int holding, float3 wanted, uint s, float inverse) {
 /// no more than Verlet holds across a segment, by half of its limit. `weights` of the segment's ends together.
 void keepTension(uint s, float added, float size, float weights) {
     const float maximum = 0.5 * size / weights;
-    setTension(s, clamp(tension(s) + added * gFrame.tensionShare, -maximum, maximum));
+    setTension(s, clamp(tension(s) + added * gFrame.substep.tensionShare, -maximum, maximum));
 }
 #endif
 
 /// Whether a segment is shorter than (1 − ε) or longer than (1 + ε) of its length.
 bool isWrong(float3 edge, float rest) {
-    const float low = rest * (1.0 - gFrame.maximalExtension), high = rest * (1.0 + gFrame.maximalExtension);
+    const float low = rest * (1.0 - gFrame.substep.maximalExtension), high = rest * (1.0 + gFrame.substep.maximalExtension);
     const float squared = dot(edge, edge);
     return squared > high * high || squared < low * low;
 }
@@ -44,7 +44,7 @@ float3 withinExtension(float3 parent, float3 here, float rest) {
     if (!isWrong(edge, rest)) return here;
     const float size = sqrt(dot(edge, edge));
     const float bounded =
-        min(max(size, rest * (1.0 - gFrame.maximalExtension)), rest * (1.0 + gFrame.maximalExtension));
+        min(max(size, rest * (1.0 - gFrame.substep.maximalExtension)), rest * (1.0 + gFrame.substep.maximalExtension));
     const bool flat = size < 1e-12;
     return parent + (flat ? float3(0, -bounded, 0) : edge * (bounded / (flat ? 1.0 : size)));
 }

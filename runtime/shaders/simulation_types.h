@@ -23,35 +23,41 @@ namespace hairloom::shaders {
 /// As many work groups as a dispatch has along one axis.
 #define HAIRLOOM_GROUP_ROW 65535
 
-struct SimulationConstants {
-    uint slots;     ///< strands of the batch, with those that fill the last block
-    uint substeps;  ///< per frame
-    uint sphereCount;
-    uint lengthIterations;
-    uint wakingCount;             ///< spheres that have changed since the last frame
-    uint windKind;                ///< runtime::WindKind
-    uint wakeAll;                 ///< not 0: nothing sleeps, as wind blows or velocities were changed
-    float h;                      ///< seconds of a substep
-    float dt;                     ///< seconds of the frame
-    float rescale;                ///< this substep over the last frame's
-    float velocityShare;          ///< exp(−h/dampingTime)
-    float dragShare;              ///< share of the air's speed taken on in a substep
+/// What the settings make of a substep, for the engine's kernels (SubstepContext) and those of the GPU alike.
+struct SubstepNumbers {
+    float velocityShare;  ///< exp(−h/dampingTime)
+    float dragShare;  ///< share of the air's speed taken on: 1 − exp(−airDrag·h), or airDrag·h where an
+                      ///< integrator evaluates forces
     float springStep;             ///< (ω h)² of coil springs
     float penaltyStep;            ///< (ω h)² of penalty springs
-    float bendRate;               ///< q of docs/engine.md
+    float bendRate;               ///< q = bendDampingTime/h + (1 − velocityShare)/4 (docs/engine.md)
+    float tensionShare;           ///< of a substep's change of tension that bending takes on
     float maximalExtension;       ///< share of a segment's length
     float collisionRadiusAtRoot;  ///< metres
     float collisionRadiusAtTip;   ///< metres
     float friction;
     float restitution;
+    float slowestSwept;  ///< metres in a substep; slower points cannot pass a sphere unseen
+};
+
+struct SimulationConstants {
+    uint slots;     ///< strands of the batch, with those that fill the last block
+    uint substeps;  ///< per frame
+    uint sphereCount;
+    uint lengthIterations;
+    uint wakingCount;          ///< spheres that have changed since the last frame
+    uint windKind;             ///< runtime::WindKind
+    uint wakeAll;              ///< not 0: nothing sleeps, as wind blows or velocities were changed
+    float h;                   ///< seconds of a substep
+    float dt;                  ///< seconds of the frame
+    float rescale;             ///< this substep over the last frame's
     float teleportDistance;    ///< metres
     float slowSquared;         ///< square metres in a substep; slower strands rest
     float sleepDelay;          ///< seconds
-    float slowSweep;           ///< metres in a substep; slower points cannot pass a sphere unseen
-    float tensionShare;        ///< of a substep's change of tension that bending takes on
     uint groups;               ///< work groups of the batch, in rows of HAIRLOOM_GROUP_ROW
     float sphereDisplacement;  ///< metres; the longest way of a sphere in a substep
     float unused;
+    SubstepNumbers substep;
     float4 gravityStep;                          ///< g h², w unused
     float4 wind;                                 ///< mean velocity, m/s; w: strength of gusts
     float4 windAmplitudes[HAIRLOOM_WIND_MODES];  ///< m/s; w: phase at the start of the frame, turns
@@ -65,6 +71,7 @@ struct SphereConstants {
 };
 
 #ifdef __cplusplus
+static_assert(sizeof(SubstepNumbers) % 16 == 0 && offsetof(SimulationConstants, substep) == 64);
 static_assert(offsetof(SimulationConstants, h) == 28 && offsetof(SimulationConstants, gravityStep) == 112);
 static_assert(offsetof(SimulationConstants, windWaves) == 144 + 16 * HAIRLOOM_WIND_MODES);
 static_assert(sizeof(SimulationConstants) == 144 + 32 * HAIRLOOM_WIND_MODES);

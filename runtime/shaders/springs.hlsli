@@ -4,8 +4,8 @@
 /// The impulse along a segment that would leave its bounds; `weights` of its ends together.
 float3 limitImpulse(float3 way, float rest, float weights) {
     const Direction edge = edgeOf(way);
-    const float wrong = edge.size - min(max(edge.size, rest * (1.0 - gFrame.maximalExtension)),
-                                        rest * (1.0 + gFrame.maximalExtension));
+    const float wrong = edge.size - min(max(edge.size, rest * (1.0 - gFrame.substep.maximalExtension)),
+                                        rest * (1.0 + gFrame.substep.maximalExtension));
     return edge.unit * (wrong / weights);
 }
 
@@ -21,7 +21,7 @@ void stageSprings() {
         float3 outer = float3(0, 0, 0);
         if (p + 1 < POINTS) {
             const Direction edge = edgeOf(position(p + 1) - position(p));
-            const float step = 2.0 * gFrame.springStep / (mass + inverseMass(p + 1));
+            const float step = 2.0 * gFrame.substep.springStep / (mass + inverseMass(p + 1));
             outer = edge.unit * ((edge.size - segmentLength(p)) * step);
         }
         if (p >= FIRST_FREE) setPrevious(p, previous(p) - (outer - inner) * mass);

@@ -4,7 +4,7 @@
 /// Spheres of a set that, with the largest pearl, meet the box of a strand, as bits.
 uint2 nearSpheres(uint first, uint end, float3 low, float3 high, float3 root, float step) {
     uint2 near = uint2(0, 0);
-    const float collisionRadius = max(gFrame.collisionRadiusAtRoot, gFrame.collisionRadiusAtTip);
+    const float collisionRadius = max(gFrame.substep.collisionRadiusAtRoot, gFrame.substep.collisionRadiusAtTip);
     EACH_SPHERE(first, end) {
         const uint k = SPHERE_BEFORE(end);
         const float3 centre = sphereCentre(k, step) - root;

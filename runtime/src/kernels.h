@@ -22,6 +22,7 @@
 
 #include "hairloom/plan.h"
 #include "hairloom/wind.h"
+#include "shaders/simulation_types.h"
 
 namespace hairloom::runtime {
 
@@ -153,27 +154,15 @@ struct MovingSphere {
 };
 
 /// What all blocks share in one substep.
-struct SubstepContext {
+struct SubstepContext : shaders::SubstepNumbers {
+    SubstepContext() : SubstepNumbers{} { velocityShare = 1.0f; }
+
     std::uint32_t index = 0;  ///< substep of the frame, from 0
     std::uint32_t count = 1;
-    float h = 0.0f;              ///< seconds
-    float velocityShare = 1.0f;  ///< exp(−h/τ)
-    Float3 gravityStep;          ///< g·h²
-    /// Share of the air's speed taken on in a substep: 1 − exp(−airDrag·h), or airDrag·h where an integrator
-    /// evaluates forces.
-    float dragShare = 0.0f;
-    float springStep = 0.0f;    ///< (2π · springFrequency · h)²
-    float penaltyStep = 0.0f;   ///< (2π · penaltyFrequency · h)²
-    float bendRate = 0.0f;      ///< q = bendDampingTime/h + (1 − velocityShare)/4 (docs/engine.md)
-    float tensionShare = 0.0f;  ///< of a substep's change of tension that BlockView::tension takes on
+    float h = 0.0f;      ///< seconds
+    Float3 gravityStep;  ///< g·h²
     std::uint32_t lengthIterations = 0;
-    float maximalExtension = 0.0f;
-    float collisionRadiusAtRoot = 0.0f;
-    float collisionRadiusAtTip = 0.0f;
-    float friction = 0.0f;
-    float restitution = 0.0f;
     std::span<const MovingSphere> spheres;
-    float slowestSwept = 0.0f;  ///< metres in a substep below which no point passes a sphere unseen
 };
 
 /// Share of a sphere's radius that a point may move in one substep without the swept test looking at it: it

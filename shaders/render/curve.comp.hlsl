@@ -17,13 +17,13 @@ float3 pointOf(StrandHeader strand, uint k) {
 
 // Strands beyond the share that is drawn have no width; those near it fade (render::HairDetail).
 float levelWidth(uint strand) {
-    const float rank = (float(strand) + 0.5) * gCurve.detail.z;
-    return gCurve.detail.w * saturate((gCurve.detail.y - rank) / (gCurve.detail.y - gCurve.detail.x));
+    const float rank = (float(strand) + 0.5) * gCurve.strandShare;
+    return gCurve.widening * saturate((gCurve.goneShare - rank) / (gCurve.goneShare - gCurve.fullShare));
 }
 
 float radiusOf(StrandHeader strand, uint k, float along) {
-    if (gCurve.radius.z > 0) return gRadii[strand.firstPoint + k];
-    return gCurve.radius.x * (1.0 + (gCurve.radius.y - 1.0) * along * along);
+    if (gCurve.hasRadii > 0) return gRadii[strand.firstPoint + k];
+    return gCurve.rootRadius * (1.0 + (gCurve.tipScale - 1.0) * along * along);
 }
 
 [numthreads(64, 1, 1)]
@@ -32,7 +32,7 @@ void main(uint3 id : SV_DispatchThreadID) {
     const StrandHeader strand = gStrands[id.x];
     const uint segments = strand.pointCount - 1;
     const uint last = segments * gCurve.subdivisions;
-    const float width = levelWidth(id.x) * (1.0 + gCurve.radius.w * (2.0 * hashUnit(strand.source * 2u + 7u) - 1.0));
+    const float width = levelWidth(id.x) * (1.0 + gCurve.radiusVariation * (2.0 * hashUnit(strand.source * 2u + 7u) - 1.0));
     const uint first = strand.segmentsBefore * gCurve.subdivisions + id.x;
     float3 tangent = float3(0, 1, 0);
     // The control points around segment k. Beyond the ends the curve goes on as a mirror image.
@@ -59,7 +59,7 @@ void main(uint3 id : SV_DispatchThreadID) {
             result.tangentXy = packUnit(tangent);
             result.along = float(i) / float(last);
             result.strand = id.x;
-            result.opacity = lerp(gCurve.opacity.x, gCurve.opacity.y, result.along);
+            result.opacity = lerp(gCurve.rootOpacity, gCurve.tipOpacity, result.along);
             gResult[first + i] = result;
         }
         p0 = p1;

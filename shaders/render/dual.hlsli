@@ -62,8 +62,8 @@ float3 profileAt(float2 at, float3 absorption) { return lookUp(gProfile, at).rgb
 #endif
 
 float spreadLongitudinal(FibreConstants fibre, FibreFrame f, float tilt, float variance) {
-    const float width = clamp(sqrt(variance), fibre.spread.x, fibre.spread.y);
-    const float v = (width - fibre.spread.x) / (fibre.spread.y - fibre.spread.x);
+    const float width = clamp(sqrt(variance), fibre.minSpread, fibre.maxSpread);
+    const float v = (width - fibre.minSpread) / (fibre.maxSpread - fibre.minSpread);
     const float factors =
         lookUp(gSpreadFactors, float2(abs(f.sinIn), v)).r * lookUp(gSpreadFactors, float2(abs(f.sinOut), v)).r;
     const float x = (0.5 * (asin(clamp(f.sinIn, -1.0, 1.0)) + asin(clamp(f.sinOut, -1.0, 1.0))) - tilt) / width;

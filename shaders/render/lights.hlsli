@@ -14,7 +14,7 @@ float3 irradianceOf(LightConstants light, float3 position_ws) {
     return light.toLight_ws.w > 0 ? light.irradiance.rgb / max(dot(d, d), 1e-6) : light.irradiance.rgb;
 }
 
-bool hasEnvironment(ShadeConstants shade) { return shade.environment[0].w > 0; }
+bool hasEnvironment(ShadeConstants shade) { return shade.hasEnvironment > 0; }
 
 // Light from around in a direction, band by band.
 struct EnvironmentBands {

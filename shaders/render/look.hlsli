@@ -14,21 +14,21 @@ struct StrandPlace {
     float4 own;  // the strand's own colour; w: 1 where it has one
 };
 
-float gradientAt(float along) { return saturate((along - gLook.root.w) * gLook.tip.w); }
+float gradientAt(float along) { return saturate((along - gLook.gradientStart) * gLook.gradientScale); }
 
 // Linear RGB, or absorption a fibre radius.
 float3 lookAt(StrandPlace p) {
-    const bool absorbs = gLook.streakTip.w > 0.0;
+    const bool absorbs = gLook.absorbs > 0;
     const float t = gradientAt(p.along);
     float3 own = p.own.rgb;
     if (absorbs) {
-        const float3 depth = gLook.dye.w * log(clamp(own, 0.001, 1.0));
+        const float3 depth = gLook.ownScale * log(clamp(own, 0.001, 1.0));
         own = depth * depth;
     }
     const float3 plain = p.own.w > 0.0 ? own : lerp(gLook.root.rgb, gLook.tip.rgb, t);
     const float3 streaked = lerp(plain, lerp(gLook.streakRoot.rgb, gLook.streakTip.rgb, t), p.streak);
-    const float3 dyed = lerp(streaked, gLook.dye.rgb, p.dye * saturate((p.along - gLook.along.x) * gLook.along.y));
-    const float factor = 1.0 + gLook.streakRoot.w * (2.0 * p.random - 1.0);
+    const float3 dyed = lerp(streaked, gLook.dye.rgb, p.dye * saturate((p.along - gLook.dyeStart) * gLook.dyeScale));
+    const float factor = 1.0 + gLook.spread * (2.0 * p.random - 1.0);
     // Chiang et al. 2016: the logarithm of a colour goes with the root of the absorption.
     return absorbs ? factor * dyed : pow(max(dyed, 1e-6), sqrt(factor));
 }

@@ -27,11 +27,11 @@ float3 fibreScattering(FibreConstants fibre, FibreFrame f, float strandRandom, f
     const float4 m = longitudinal(f.sinIn, f.sinOut);
     const float2 at = float2(0.5 * f.cosPhi + 0.5, m.w);
     float3 sum = 0;
-    if (fibre.lobes.x + fibre.lobes.y > 0) {
+    if (fibre.rIntensity + fibre.ttIntensity > 0) {
         const float4 n = lookUp(gTransmitted, at);
         sum = m.x * n.a + m.y * n.rgb * tint;
     }
-    if (fibre.lobes.z > 0) sum += m.z * lookUp(gReflected, at).rgb * (tint * tint);
+    if (fibre.trtIntensity > 0) sum += m.z * lookUp(gReflected, at).rgb * (tint * tint);
     return sum;
 }
 #endif

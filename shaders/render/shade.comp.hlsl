@@ -24,29 +24,29 @@ float3 tilt(float3 tangent, float3 toView, float amount) {
 
 [numthreads(64, 1, 1)]
 void main(uint3 id : SV_DispatchThreadID) {
-    const uint index = id.x + id.y * gShade.counts.z;
-    if (id.x >= gShade.counts.z || index >= gShade.counts.x) return;
+    const uint index = id.x + id.y * gShade.rowThreads;
+    if (id.x >= gShade.rowThreads || index >= gShade.count) return;
     const CurvePoint p = gCurve[index];
     const StrandHeader strand = gStrands[p.strand];
     const float3 tangent = unpackUnit(p.tangentXy);
     const float3 toView = normalize(gShade.eye_ws.xyz - p.position_ws.xyz * gShade.eye_ws.w);
 
-    const float vary = 1.0 + gShade.rootTip.z * (strand.random * 2.0 - 1.0);
+    const float vary = 1.0 + gShade.brightnessVariation * (strand.random * 2.0 - 1.0);
 #ifdef HAIRLOOM_LOOK
     const float3 albedo = saturate(lookAt(placeOf(strand, p.along)) * vary);
 #else
     const float3 own = strand.albedo.w > 0 ? strand.albedo.rgb : gShade.albedo.rgb;
-    const float3 albedo = saturate(own * lerp(gShade.rootTip.x, gShade.rootTip.y, p.along) * vary);
+    const float3 albedo = saturate(own * lerp(gShade.rootBrightness, gShade.tipBrightness, p.along) * vary);
 #endif
     const float jitter = (hashUnit(p.strand * 2u + 1u) - 0.5) * 0.06;
-    const float3 tangent1 = tilt(tangent, toView, gShade.shift.x + jitter);
-    const float3 tangent2 = tilt(tangent, toView, gShade.shift.y + jitter);
+    const float3 tangent1 = tilt(tangent, toView, gShade.primaryTilt + jitter);
+    const float3 tangent2 = tilt(tangent, toView, gShade.secondaryTilt + jitter);
     const float sparkle = 0.6 + 0.8 * hashUnit(p.strand * 2u);
     // A fibre dims what passes it the more, the darker it is.
-    const float3 passed = saturate(1.0 - gShade.rootTip.w * (1.0 - 0.75 * sqrt(albedo)));
+    const float3 passed = saturate(1.0 - gShade.fibreOpacity * (1.0 - 0.75 * sqrt(albedo)));
 
     float3 colour = 0;
-    for (uint i = 0; i < gShade.counts.y; ++i) {
+    for (uint i = 0; i < gShade.lightCount; ++i) {
         const LightConstants light = gShade.lights[i];
         const float3 toLight = directionToLight(light, p.position_ws.xyz);
         const Occlusion shadow =
@@ -54,19 +54,19 @@ void main(uint3 id : SV_DispatchThreadID) {
         const float3 direct = pow(passed, shadow.fibres) * shadow.visibility;
         const float3 scattered = pow(passed, 0.5 * shadow.fibres) * lerp(0.15, 1.0, shadow.visibility);
         const float diffuse = kajiyaDiffuse(tangent, toLight);
-        const float3 lobe1 = gShade.primary.rgb * (gShade.normalisation.y *
-                             kajiyaSpecular(tangent1, toLight, toView, gShade.primary.w));
-        const float3 lobe2 = gShade.secondary.rgb * albedo * (sparkle * gShade.normalisation.z *
-                             kajiyaSpecular(tangent2, toLight, toView, gShade.secondary.w));
-        const float3 single = (gShade.shift.z * gShade.normalisation.x * albedo + lobe1 + lobe2) * diffuse;
+        const float3 lobe1 = gShade.primary.rgb * (gShade.primaryNormalisation *
+                             kajiyaSpecular(tangent1, toLight, toView, gShade.primaryExponent));
+        const float3 lobe2 = gShade.secondary.rgb * albedo * (sparkle * gShade.secondaryNormalisation *
+                             kajiyaSpecular(tangent2, toLight, toView, gShade.secondaryExponent));
+        const float3 single = (gShade.diffuse * gShade.diffuseNormalisation * albedo + lobe1 + lobe2) * diffuse;
         // Light that has bounced between fibres before: an artist's term after Zinke et al. 2008, not derived.
-        const float3 multiple = gShade.shift.w * albedo * albedo * diffuse / kPi;
+        const float3 multiple = gShade.scattering * albedo * albedo * diffuse / kPi;
         colour += irradianceOf(light, p.position_ws.xyz) * (single * direct + multiple * scattered);
     }
     if (hasEnvironment(gShade)) {
         SkyInHair sky = openSky();
         if (mapsTellTheSky(gShade)) {
-            const SkySeen seen = seenAt(gSeen, strand, p.strand, index, gShade.counts.w);
+            const SkySeen seen = seenAt(gSeen, strand, p.strand, index, gShade.subdivisions);
             FibreMoments fibre;
             fibre.albedo = albedo;
             fibre.first = fibre.second = 0;

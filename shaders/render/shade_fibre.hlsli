@@ -26,34 +26,34 @@ RWStructuredBuffer<float4> gColour : register(u0);
 
 [numthreads(64, 1, 1)]
 void main(uint3 id : SV_DispatchThreadID) {
-    const uint index = id.x + id.y * gShade.counts.z;
-    if (id.x >= gShade.counts.z || index >= gShade.counts.x) return;
+    const uint index = id.x + id.y * gShade.rowThreads;
+    if (id.x >= gShade.rowThreads || index >= gShade.count) return;
     const CurvePoint p = gCurve[index];
     const StrandHeader strand = gStrands[p.strand];
     const float3 tangent = unpackUnit(p.tangentXy);
     const float3 toView = normalize(gShade.eye_ws.xyz - p.position_ws.xyz * gShade.eye_ws.w);
 
-    const float vary = 1.0 + gShade.rootTip.z * (strand.random * 2.0 - 1.0);
+    const float vary = 1.0 + gShade.brightnessVariation * (strand.random * 2.0 - 1.0);
 #ifdef HAIRLOOM_LOOK
     const float3 tint = vary;
     const float3 absorption = lookAt(placeOf(strand, p.along));
 #else
     // A strand's own colour is known against the material's, whose absorption the tables hold.
     const float3 own = strand.albedo.w > 0 ? strand.albedo.rgb / max(gShade.albedo.rgb, 1e-3) : 1.0;
-    const float3 tint = own * (lerp(gShade.rootTip.x, gShade.rootTip.y, p.along) * vary);
+    const float3 tint = own * (lerp(gShade.rootBrightness, gShade.tipBrightness, p.along) * vary);
     const float3 absorption = 0;
 #endif
     float3 colour = 0;
-    for (uint i = 0; i < gShade.counts.y; ++i) {
+    for (uint i = 0; i < gShade.lightCount; ++i) {
         const LightConstants light = gShade.lights[i];
         const float3 toLight = directionToLight(light, p.position_ws.xyz);
         const Occlusion o = occlusion(light, p.position_ws.xyz, 0.0007, 0.004, light.filtering.z);
         const Occlusion shadow = shadowOf(light, o);
         const FibreFrame f = fibreFrame(tangent, toLight, toView);
-        float3 scattered = passedDirectly(light, shadow.fibres, gFibre.lobes.w) *
+        float3 scattered = passedDirectly(light, shadow.fibres, gFibre.clumping) *
                            fibreScattering(gFibre, f, hashUnit(p.strand * 2u), tint, absorption);
 #ifdef HAIRLOOM_DUAL
-        scattered += multipleScattering(gFibre, f, gFibre.lobes.w * shadow.fibres, gFibre.lobes.w * o.allFibres, tint,
+        scattered += multipleScattering(gFibre, f, gFibre.clumping * shadow.fibres, gFibre.clumping * o.allFibres, tint,
                                         absorption, gShade.ground.rgb * o.ground);
 #endif
         colour += irradianceOf(light, p.position_ws.xyz) * shadow.visibility * scattered;
@@ -62,7 +62,7 @@ void main(uint3 id : SV_DispatchThreadID) {
         const SkyMoments fibre = skyMoments(dot(toView, tangent), absorption);
         SkyInHair sky = openSky();
         if (mapsTellTheSky(gShade)) {
-            const SkySeen seen = seenAt(gSeen, strand, p.strand, index, gShade.counts.w);
+            const SkySeen seen = seenAt(gSeen, strand, p.strand, index, gShade.subdivisions);
 #ifdef HAIRLOOM_DUAL
             const FibreAverages across = averagesAt(0.0, absorption);
             sky = skyInHair(seen, tinted(across.moments, shareOf(across.moments, tint)), gShade.ground.rgb);

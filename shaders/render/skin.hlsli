@@ -7,29 +7,29 @@
 // Of the hair over the skin, where it is of fibres and not Kajiya-Kay's.
 FibreMoments hairOverSkin(ShadeConstants shade) {
     FibreMoments fibre;
-    fibre.albedo = shade.sinking.rgb;
-    fibre.first = shade.turning.rgb;
-    fibre.second = shade.straight.rgb;
+    fibre.albedo = shade.scattered.rgb;
+    fibre.first = shade.firstMoment.rgb;
+    fibre.second = shade.secondMoment.rgb;
     return fibre;
 }
 
 // The share of light that reaches the skin through so many fibres, with what the skin sends back into the hair and the
 // hair returns once more.
 float3 throughHair(ShadeConstants shade, LightConstants light, float fibres, float3 albedo) {
-    const float counted = shade.sinking.w * fibres;
-    if (shade.turning.w == 0) return exp(-shade.sinking.rgb * counted);
+    const float counted = shade.clumping * fibres;
+    if (shade.ofFibres == 0) return exp(-shade.scattered.rgb * counted);
     const LayerLight below = lightInLayer(hairOverSkin(shade), counted, counted, albedo);
     const float3 all = below.onward + below.fluence / 3.14159265 + 0.5 * below.flux;
-    return max(all - exp(-counted), 0.0) + passedDirectly(light, fibres, shade.sinking.w);
+    return max(all - exp(-counted), 0.0) + passedDirectly(light, fibres, shade.clumping);
 }
 
 // Light from around that hair and head let through, weighted by the cosine; with what hair over the skin sends back to it.
 float3 skyOnSkin(ShadeConstants shade, float3 position_ws, float3 normal, float3 albedo) {
     const float3 plain = environmentOnSkin(shade, normal);
     if (!mapsTellTheSky(shade)) return plain;
-    const bool fibres = shade.turning.w > 0.0;
+    const bool fibres = shade.ofFibres > 0;
     const Stopped stopped = stoppedBy(hairOverSkin(shade));
-    const float3 stopping = fibres ? stopped.share : shade.sinking.rgb;
+    const float3 stopping = fibres ? stopped.share : shade.scattered.rgb;
     const float3 sentOn = fibres ? 1.0 - stopped.lost : 0.0;
     float3 all = 0;
     float3 passed = 0;
@@ -42,7 +42,7 @@ float3 skyOnSkin(ShadeConstants shade, float3 position_ws, float3 normal, float3
         if (nl <= 0.0) continue;
         const float lift = map.filtering.y;
         const SkyRay ray = skyRay(map, position_ws + normal * lift, -lift * nl, lift);
-        const float3 through = exp(-(shade.sinking.w + map.filtering.x) * ray.before * stopping);
+        const float3 through = exp(-(shade.clumping + map.filtering.x) * ray.before * stopping);
         const float3 light = nl * environmentFrom(shade, d);
         all += light;
         passed += light * ray.open * through;
@@ -59,7 +59,7 @@ float3 skinLight(ShadeConstants shade, MeshConstants mesh, float3 position_ws, f
     float3 normal = normalize(normal_ws);
     if (dot(normal, toView) < 0) normal = -normal;
     float3 colour = 0;
-    for (uint k = 0; k < shade.counts.y; ++k) {
+    for (uint k = 0; k < shade.lightCount; ++k) {
         const LightConstants light = shade.lights[k];
         const float3 toLight = directionToLight(light, position_ws);
         const float nl = dot(normal, toLight);

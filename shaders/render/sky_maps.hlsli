@@ -18,7 +18,7 @@ struct SkyRay {
     float ends;    // 1: the other side ends on the head
 };
 
-bool mapsTellTheSky(ShadeConstants shade) { return shade.environment[1].w > 0.0; }
+bool mapsTellTheSky(ShadeConstants shade) { return shade.hasSkyMaps > 0; }
 
 // All or nothing would show the outline of each of the twelve shadows.
 float openBehind(float behind) {
@@ -148,7 +148,7 @@ SkyPoint skySeen(ShadeConstants shade, float3 position_ws) {
     for (uint i = 0; i < HAIRLOOM_SKY_MAPS; ++i) {
         const LightConstants map = gSkyMaps.maps[i];
         const SkyRay ray = skyRay(map, position_ws, 0.0007, 0.002 + 2.0 * map.filtering.y);
-        const float stopping = shade.sinking.w + map.filtering.x;
+        const float stopping = shade.clumping + map.filtering.x;
         addRay(whole, ray, map.toLight_ws.xyz, stopping);
         addRay(halved, ray, map.toLight_ws.xyz, 0.5 * stopping);
     }

@@ -11,11 +11,11 @@ RWStructuredBuffer<SkyPoint> gSeen : register(u0);
 
 [numthreads(64, 1, 1)]
 void main(uint3 id : SV_DispatchThreadID) {
-    if (id.x >= gShade.counts.x) return;
+    if (id.x >= gShade.count) return;
     const StrandHeader strand = gStrands[id.x];
-    const uint curve = strand.segmentsBefore * gShade.counts.w + id.x;
+    const uint curve = strand.segmentsBefore * gShade.subdivisions + id.x;
     for (uint i = id.y; i < strand.pointCount; i += EACH) {
-        const float3 position_ws = gCurve[curve + i * gShade.counts.w].position_ws.xyz;
+        const float3 position_ws = gCurve[curve + i * gShade.subdivisions].position_ws.xyz;
         gSeen[strand.segmentsBefore + id.x + i] = skySeen(gShade, position_ws);
     }
 }

@@ -45,7 +45,7 @@ float3 lightFrom(Place p, float3 albedo, float3 toLight, float lit) {
     const float3 middle = normalize(toLight + p.toView);
     const float fresnel = 0.04 + 0.96 * pow(1.0 - saturate(dot(p.toView, middle)), 5.0);
     // A film of water over rougher skin: two widths of one highlight, each normalised (Blinn and Phong).
-    const float m = gShade.primary.w;
+    const float m = gShade.primaryExponent;
     const float nh = saturate(dot(p.normal, middle));
     const float wide = 0.125 * m;
     const float highlight = 0.5 * ((m + 8.0) * pow(nh, m) + (wide + 8.0) * pow(nh, wide)) / (8.0 * kPi);
@@ -79,7 +79,7 @@ float4 main(Input i) : SV_Target0 {
     float3 irradiance[HAIRLOOM_MAX_LIGHTS];
     float lit[HAIRLOOM_MAX_LIGHTS];
     float openness = 0;
-    for (uint k = 0; k < gShade.counts.y; ++k) {
+    for (uint k = 0; k < gShade.lightCount; ++k) {
         const LightConstants light = gShade.lights[k];
         const Occlusion o = occlusion(light, position_ws, 0.3 * i.centre_ws.w, 0.002, light.filtering.z);
         toLight[k] = directionToLight(light, position_ws);
@@ -88,11 +88,11 @@ float4 main(Input i) : SV_Target0 {
         lit[k] = shadow.visibility * exp(-kOpacity * shadow.fibres);
         openness += exp(-kOpacity * 0.5 * o.fibres) * lerp(0.25, 1.0, o.visibility);
     }
-    openness = gShade.counts.y > 0 ? openness / float(gShade.counts.y) : 1.0;
+    openness = gShade.lightCount > 0 ? openness / float(gShade.lightCount) : 1.0;
     float3 colour = 0;
     for (uint n = 0; n < kPlaces; ++n) {
         const Place p = placeAt(i, lerp(part.x, part.y, (float(n) + 0.5) / float(kPlaces)));
-        for (uint k = 0; k < gShade.counts.y; ++k) {
+        for (uint k = 0; k < gShade.lightCount; ++k) {
             colour += irradiance[k] * lightFrom(p, i.albedo, toLight[k], lit[k]);
         }
         if (hasEnvironment(gShade)) colour += lightFromAround(p, i.albedo) * openness;

@@ -13,11 +13,11 @@ RWStructuredBuffer<float4> gColour : register(u0);
 
 [numthreads(64, 1, 1)]
 void main(uint3 id : SV_DispatchThreadID) {
-    const uint index = id.x + id.y * gShade.counts.z;
-    if (id.x >= gShade.counts.z || index >= gShade.counts.x) return;
+    const uint index = id.x + id.y * gShade.rowThreads;
+    if (id.x >= gShade.rowThreads || index >= gShade.count) return;
     const CurvePoint p = gCurve[index];
     const StrandHeader strand = gStrands[p.strand];
-    const float vary = 1.0 + gShade.rootTip.z * (strand.random * 2.0 - 1.0);
+    const float vary = 1.0 + gShade.brightnessVariation * (strand.random * 2.0 - 1.0);
 #ifdef HAIRLOOM_LOOK
     const float3 albedo = lookAt(placeOf(strand, p.along));
 #else

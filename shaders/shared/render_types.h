@@ -62,11 +62,17 @@ struct CurveConstants {
     uint floatsPerPoint;  // of the positions
     uint strandMajor;  // 0: points of a strand one after the other; else point p of strand s of the group at
                        // element p * strandMajor + s
-    float4 radius;  // x: metres at the root, y: of the tip by that of the root, z: 1 when points have their
-                    // own, w: random spread from strand to strand, a part of it
-    float4 detail;  // x: share of the strands that have their full width, y: share from which they have none,
-                    // z: one by the number of strands, w: widening
-    float4 opacity;  // x: at the root, y: at the tip
+    float rootRadius;  // metres
+    float tipScale;    // radius at the tip by that at the root
+    float radiusVariation;  // random spread from strand to strand, a part of the radius
+    uint hasRadii;          // 1: points have their own
+    float fullShare;        // share of the strands that have their full width
+    float goneShare;        // share from which on they have none
+    float strandShare;      // one by the number of strands
+    float widening;
+    float rootOpacity;
+    float tipOpacity;
+    float unused0, unused1;
 };
 
 struct PatchConstants {
@@ -115,46 +121,73 @@ struct SkyPoint {
 
 struct ShadeConstants {
     float4 eye_ws;  // w = 1: position of a perspective eye; w = 0: direction towards an orthographic one
-    float4 environment[9];  // radiance from around as real spherical harmonics, linear RGB; w of the first: 1
-                            // when there is any, of the second: 1 when maps tell what of the sky is seen
-    float4 primary;         // RGB strength of the first highlight, w: exponent
-    float4 secondary;       // RGB strength of the second, multiplied by the albedo; w: exponent
-    float4 shift;  // x, y: tilt of the two highlights (tangent of the angle), z: diffuse share, w: scattering
-    float4 normalisation;  // x: 1/(pi R_O(0)), y, z: 1/(pi R_O(m)) of the two highlights
-    float4 rootTip;        // x: brightness at the root, y: at the tip, z: random variation, w: fibre opacity
-    float4 albedo;         // linear RGB of strands without a colour of their own
-    float4 ground;         // linear RGB, albedo of what hair grows on
-    float4 sinking;   // of light on its way through hair to the skin: RGB, the share that a fibre scatters;
-                      // of Kajiya-Kay, what it takes, as the logarithm; w: fibres in the way by those
-                      // that are counted
-    float4 turning;   // RGB, first moment of the angle by which they turn light; w: 0 for Kajiya-Kay
-    float4 straight;  // RGB, second
-    uint4 counts;  // x: curve points, y: lights, z: row length of the dispatch in points, w: curve segments
-                   // per given segment
+    float4 environment[9];  // radiance from around as real spherical harmonics, linear RGB
+    // Of Kajiya-Kay.
+    float4 primary;    // RGB strength of the first highlight
+    float4 secondary;  // and of the second, multiplied by the albedo
+    float primaryExponent;
+    float secondaryExponent;
+    float primaryTilt;  // tangent of the angle by which the first highlight is shifted
+    float secondaryTilt;
+    float diffuse;               // share
+    float scattering;            // light that other fibres pass on
+    float diffuseNormalisation;  // 1/(pi R_O(0))
+    float primaryNormalisation;  // 1/(pi R_O(m)) of the first highlight
+    float secondaryNormalisation;
+    float rootBrightness;
+    float tipBrightness;
+    float brightnessVariation;  // random
+    float4 albedo;              // linear RGB of strands without a colour of their own
+    float4 ground;              // linear RGB, albedo of what hair grows on
+    // Light on its way through hair to the skin (shading::AverageScattering). RGB.
+    float4 scattered;    // the share that a fibre scatters; of Kajiya-Kay what it takes, as the logarithm
+    float4 firstMoment;  // of the angle by which fibres turn light
+    float4 secondMoment;
+    float clumping;       // fibres in the way by those that are counted
+    uint ofFibres;        // 0 for Kajiya-Kay
+    uint hasEnvironment;  // 1: there is light from around
+    uint hasSkyMaps;      // 1: maps hold what of the sky is seen
+    float fibreOpacity;
+    uint unused0, unused1, unused2;
+    uint count;  // of what a kernel works on: points of curves, or strands
+    uint lightCount;
+    uint rowThreads;    // of the dispatch
+    uint subdivisions;  // curve segments per given segment
     LightConstants lights[HAIRLOOM_MAX_LIGHTS];
 };
 
 // What the models of light in fibres take beside their tables.
 struct FibreConstants {
-    float4 lobes;  // x, y, z: intensities of R, TT and TRT, w: fibres in the way by those that are counted,
-                   // for hair grows in clumps
-    float4 r;      // Sadeghi's: colour times intensity, linear RGB
+    float rIntensity;
+    float ttIntensity;
+    float trtIntensity;
+    float clumping;  // fibres in the way by those that are counted, for hair grows in clumps
+    float4 r;        // Sadeghi's: colour times intensity, linear RGB
     float4 tt;
     float4 trt;
-    float4 spread;  // x, y: least and largest width of the table of wide lobes, radians
+    float minSpread;  // width of the table of wide lobes, radians
+    float maxSpread;
+    float unused0, unused1;
 };
 
 // Colours (linear RGB) or absorption (RGB per fibre radius) from place to place, of hair that does not look
 // the same everywhere: shading::StrandLook.
 struct LookConstants {
-    float4 root;          // w: where the gradient starts
-    float4 tip;           // w: one by its length
-    float4 streakRoot;    // w: random spread of absorption
-    float4 streakTip;     // w: 1 for absorption, 0 for colours
-    float4 dye;           // w: what the logarithm of a strand's own colour is multiplied with
-    float4 along;         // x: where dye starts, y: one by the length over which it does
+    float4 root;
+    float4 tip;
+    float4 streakRoot;
+    float4 streakTip;
+    float4 dye;
     float4 emissionRoot;  // linear RGB radiance
     float4 emissionTip;
+    float gradientStart;  // along a strand, where it begins
+    float gradientScale;  // one by its length
+    float dyeStart;
+    float dyeScale;
+    uint absorbs;    // 1 for absorption, 0 for colours
+    float ownScale;  // what the logarithm of a strand's own colour is multiplied with
+    float spread;    // random, of absorption
+    float unused0;
 };
 
 // Where compute kernels that rasterise put what they find.
@@ -274,12 +307,14 @@ HAIRLOOM_OFFSET(LightConstants, layers, 128);
 static_assert(sizeof(LightConstants) == 160);
 static_assert(sizeof(SkyConstants) == 160 * HAIRLOOM_SKY_MAPS);
 HAIRLOOM_OFFSET(SkyPoint, halved, 16);
-HAIRLOOM_OFFSET(ShadeConstants, shift, 192);
+HAIRLOOM_OFFSET(ShadeConstants, primaryExponent, 192);
 HAIRLOOM_OFFSET(ShadeConstants, albedo, 240);
-HAIRLOOM_OFFSET(ShadeConstants, counts, 320);
-HAIRLOOM_OFFSET(ShadeConstants, lights, 336);
-static_assert(sizeof(ShadeConstants) == 336 + 160 * HAIRLOOM_MAX_LIGHTS);
-static_assert(sizeof(LookConstants) == 128);
+HAIRLOOM_OFFSET(ShadeConstants, clumping, 320);
+HAIRLOOM_OFFSET(ShadeConstants, count, 352);
+HAIRLOOM_OFFSET(ShadeConstants, lights, 368);
+static_assert(sizeof(ShadeConstants) == 368 + 160 * HAIRLOOM_MAX_LIGHTS);
+HAIRLOOM_OFFSET(LookConstants, gradientStart, 112);
+static_assert(sizeof(LookConstants) == 144);
 static_assert(sizeof(MeshConstants) == 80);
 HAIRLOOM_OFFSET(RasterConstants, places, 64);
 static_assert(sizeof(RasterConstants) == 128);

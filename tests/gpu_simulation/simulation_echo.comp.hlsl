@@ -10,11 +10,12 @@ RWStructuredBuffer<float4> gResults : register(u0);
 void main() {
     gResults[0] = asfloat(uint4(gFrame.slots, gFrame.substeps, gFrame.sphereCount, gFrame.lengthIterations));
     gResults[1] = asfloat(uint4(gFrame.wakingCount, gFrame.windKind, gFrame.wakeAll, asuint(gFrame.h)));
-    gResults[2] = float4(gFrame.dt, gFrame.rescale, gFrame.velocityShare, gFrame.dragShare);
-    gResults[3] = float4(gFrame.springStep, gFrame.penaltyStep, gFrame.bendRate, gFrame.maximalExtension);
-    gResults[4] = float4(gFrame.collisionRadiusAtRoot, gFrame.collisionRadiusAtTip, gFrame.friction, gFrame.restitution);
-    gResults[5] = float4(gFrame.teleportDistance, gFrame.slowSquared, gFrame.sleepDelay, gFrame.slowSweep);
-    gResults[6] = float4(gFrame.tensionShare, asfloat(gFrame.groups), gFrame.sphereDisplacement, gFrame.unused);
+    gResults[2] = float4(gFrame.dt, gFrame.rescale, gFrame.teleportDistance, gFrame.slowSquared);
+    gResults[3] = float4(gFrame.sleepDelay, asfloat(gFrame.groups), gFrame.sphereDisplacement, gFrame.unused);
+    const SubstepNumbers substep = gFrame.substep;
+    gResults[4] = float4(substep.velocityShare, substep.dragShare, substep.springStep, substep.penaltyStep);
+    gResults[5] = float4(substep.bendRate, substep.tensionShare, substep.maximalExtension, substep.collisionRadiusAtRoot);
+    gResults[6] = float4(substep.collisionRadiusAtTip, substep.friction, substep.restitution, substep.slowestSwept);
     gResults[7] = gFrame.gravityStep;
     gResults[8] = gFrame.wind;
     for (uint m = 0; m < HAIRLOOM_WIND_MODES; ++m) {

@@ -97,7 +97,7 @@ class Sitting {
     }
 
     /// Sum over the pixels that hair covers by half or more, RGB.
-    Vec3d light(const HairMaterial& material, const std::vector<float>& covered) {
+    Vec3d light(const StrandShading& material, const std::vector<float>& covered) {
         EXPECT_TRUE(renderer_.setMaterial(0, material));
         const std::vector<float> all = draw();
         Vec3d sum = Vec3d::Zero();

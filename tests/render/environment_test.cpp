@@ -29,7 +29,7 @@ LinearImage lit(std::uint32_t width, std::uint32_t height,
     return image;
 }
 
-TEST(Exr, RoundTripsUnchanged) {
+TEST(Exr, ComesBackAsItWent) {
     Random random(3);
     const LinearImage image = lit(37, 19, [&](auto, auto) {
         return Vec3f(random.uniform(0, 500), random.uniform(), -random.uniform());
@@ -130,7 +130,7 @@ class HairUnderSky : public RenderTest {
                   std::uint32_t frames = 1, Shadows shadows = Shadows::deepOpacity) {
         RenderScene scene;
         scene.strands = {strands.view()};
-        HairMaterial& material = scene.strands[0].material;
+        StrandShading& material = scene.strands[0].material;
         material.variation = 0;
         material.rootBrightness = material.tipBrightness = 1;
         material.fibre.model = ShadingModel::marschner;

@@ -249,10 +249,16 @@ TEST_F(ShaderTest, HairThatVariesAgreesWithTheReference) {
 }
 
 TEST_F(ShaderTest, SharedLayoutsAgree) {
-    shaders::ShadeConstants shade;
+    shaders::ShadeConstants shade{};
     shade.eye_ws = {1, 2, 3, 4};
-    shade.rootTip = {5, 6, 7, 8};
-    shade.counts = {9, 10, 11, 12};
+    shade.primaryExponent = 5;
+    shade.diffuse = 6;
+    shade.brightnessVariation = 7;
+    shade.clumping = 8;
+    shade.count = 9;
+    shade.lightCount = 10;
+    shade.rowThreads = 11;
+    shade.subdivisions = 12;
     shade.lights[1].irradiance = {13, 14, 15, 16};
     shade.lights[2].range = {17, 18, 19, 20};
     for (int i = 0; i < 4; ++i) shade.lights[1].clipFromWorld.m[12 + i] = static_cast<float>(21 + i);

@@ -62,7 +62,7 @@ class SkinUnderHair : public RenderTest {
         return plate();
     }
 
-    /// As renderMaterial() of the workspace has it: the fibre itself takes nothing.
+    /// As strandShading() has it: the fibre itself takes nothing.
     Vec3d lookPlate(ShadingModel model, const Vec3d& absorption, const Vec3d& streak) {
         wear(model, model == ShadingModel::marschner ? Vec3d::Zero() : absorption);
         shading::StrandLook look;
@@ -75,7 +75,7 @@ class SkinUnderHair : public RenderTest {
 
     TestStrands strands;
     std::vector<float> streaks;
-    HairMaterial material;
+    StrandShading material;
 };
 
 TEST_F(SkinUnderHair, IsLitThroughTheLookAsThroughPlainHairOfItsColour) {

@@ -32,24 +32,24 @@ Groom plainGroom() {
     return groom;
 }
 
-TEST(HairLook, UniformHairHasNone) {
+TEST(HairLook, EvenHairHasNone) {
     const Groom plain = plainGroom();
-    EXPECT_FALSE(renderMaterial(plain, kKajiya).look);
-    EXPECT_FALSE(renderMaterial(plain, kMarschner).look);
+    EXPECT_FALSE(strandShading(plain, kKajiya).look);
+    EXPECT_FALSE(strandShading(plain, kMarschner).look);
     // Colours are nothing to fibres that take melanin.
     Groom coloured = plain;
     coloured.material.tipColour = Vec3f(0.5f, 0.1f, 0.9f);
-    EXPECT_TRUE(renderMaterial(coloured, kKajiya).look);
-    EXPECT_FALSE(renderMaterial(coloured, kMarschner).look);
+    EXPECT_TRUE(strandShading(coloured, kKajiya).look);
+    EXPECT_FALSE(strandShading(coloured, kMarschner).look);
     coloured.material.dyed = true;
-    const auto dyed = renderMaterial(coloured, kMarschner).look;
+    const auto dyed = strandShading(coloured, kMarschner).look;
     ASSERT_TRUE(dyed);
     EXPECT_TRUE(dyed->tip.isApprox(
         shading::absorptionOfColour(coloured.material.tipColour.cast<double>(),
                                     static_cast<double>(coloured.material.azimuthalRoughness))));
 }
 
-TEST(HairLook, EachFeatureNeedsOne) {
+TEST(HairLook, EachFeatureAsksForOne) {
     const std::vector<std::function<void(Groom&)>> features = {
         [](Groom& g) { g.material.streakShare = 0.1f; },
         [](Groom& g) { g.material.dyeStrength = 0.1f; },
@@ -59,22 +59,22 @@ TEST(HairLook, EachFeatureNeedsOne) {
     for (std::size_t i = 0; i < features.size(); ++i) {
         Groom groom = plainGroom();
         features[i](groom);
-        EXPECT_TRUE(renderMaterial(groom, kKajiya).look) << i;
-        EXPECT_TRUE(renderMaterial(groom, kMarschner).look) << i;
+        EXPECT_TRUE(strandShading(groom, kKajiya).look) << i;
+        EXPECT_TRUE(strandShading(groom, kMarschner).look) << i;
     }
     Groom bleached = plainGroom();
     bleached.material.tipMelanin = 0.25f;
-    EXPECT_FALSE(renderMaterial(bleached, kKajiya).look);
-    const auto look = renderMaterial(bleached, kMarschner).look;
+    EXPECT_FALSE(strandShading(bleached, kKajiya).look);
+    const auto look = strandShading(bleached, kMarschner).look;
     ASSERT_TRUE(look);
     EXPECT_TRUE(look->tip.isApprox(0.25 * look->root));
     Groom own = plainGroom();
     own.strandAttributes.set(attribute::kStrandColour, std::vector<Vec3f>(2, Vec3f(1, 0, 0)));
-    EXPECT_TRUE(renderMaterial(own, kMarschner).look);
+    EXPECT_TRUE(strandShading(own, kMarschner).look);
     // A view that says what colour hair has means all of it.
     ViewFile view = kMarschner;
     view.fibre.melanin = shading::Melanin{0.3, 0};
-    EXPECT_FALSE(renderMaterial(bleached, view).look);
+    EXPECT_FALSE(strandShading(bleached, view).look);
 }
 
 TEST(HairLook, DyeComesFromTheMaskAndFollowHairsShareIt) {

@@ -10,8 +10,8 @@ RWStructuredBuffer<float4> gResults : register(u0);
 [numthreads(1, 1, 1)]
 void main() {
     gResults[0] = gShade.eye_ws;
-    gResults[1] = gShade.rootTip;
-    gResults[2] = asfloat(gShade.counts);
+    gResults[1] = float4(gShade.primaryExponent, gShade.diffuse, gShade.brightnessVariation, gShade.clumping);
+    gResults[2] = asfloat(uint4(gShade.count, gShade.lightCount, gShade.rowThreads, gShade.subdivisions));
     gResults[3] = gShade.lights[1].irradiance;
     gResults[4] = gShade.lights[2].range;
     gResults[5] = mul(gShade.lights[1].clipFromWorld, float4(0, 0, 0, 1));
