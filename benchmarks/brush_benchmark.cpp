@@ -1,30 +1,49 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Dabs, strokes, undo and picking on combedHair(). A dab has a radius of 2 cm. Times are those of what the
-// name says alone; window_benchmark has them as a person waits for them.
-
-#include <benchmark/benchmark.h>
+// Dabs, strokes, undo and picking, of every brush: on the samples along the middles of strands, then on
+// combedHair(). A dab has a radius of 2 cm. Times are those of what the name says alone; bench_window has
+// them as a person waits for them.
 
 #include <cmath>
 
 #include "benchmarks/combed_hair.h"
+#include "benchmarks/measurement.h"
+#include "benchmarks/sample_hair.h"
+#include "core/editing/brush_list.h"
 #include "core/editing/document.h"
 #include "core/editing/picking.h"
 
-namespace hairloom::editing {
+namespace hairloom::benchmarks {
 namespace {
 
-Document& document() {
-    static Document shared(combedHair());
-    return shared;
+using editing::Document;
+using editing::Stroke;
+
+constexpr int kDabs = 24;
+
+/// From ear to ear over the crown.
+std::vector<Vec3f> overTheCrown() {
+    std::vector<Vec3f> points;
+    for (int i = 0; i < kDabs; ++i) points.push_back(onCombedHair(-60.0f + 5.0f * static_cast<float>(i)));
+    return points;
 }
 
-Stroke strokeOf(std::string_view tool) {
+/// The middles of strands that are spread over all.
+std::vector<Vec3f> throughTheHair(const Groom& groom) {
+    std::vector<Vec3f> points;
+    for (std::size_t i = 0; i < kDabs; ++i) {
+        const auto strand = groom.strand(i * groom.strandCount() / kDabs);
+        points.push_back(strand[strand.size() / 2]);
+    }
+    return points;
+}
+
+Stroke strokeOf(std::string_view tool, const std::vector<Vec3f>& points) {
     Stroke stroke;
     stroke.tool = tool;
     if (tool == "cut_line") stroke.settings.depth = 0.05f;
-    if (tool == "add") stroke.settings.parameters["density"] = 500;  // twice what is there
-    for (int i = 0; i < 24; ++i) {
-        stroke.dabs.push_back(dabAt(stroke.settings, onCombedHair(-60.0f + 5.0f * static_cast<float>(i))));
+    if (tool == "add") stroke.settings.parameters["density"] = 500;  // twice what combedHair() has
+    for (const Vec3f& point : points) {
+        stroke.dabs.push_back(editing::dabAt(stroke.settings, point));
         if (tool == "cut_line") stroke.dabs.back().direction_ss = -Vec3f::UnitZ();
     }
     return stroke;
@@ -32,43 +51,37 @@ Stroke strokeOf(std::string_view tool) {
 
 /// One dab after the other of a stroke that is begun anew when it ends; what skin there is to measure is
 /// measured before.
-void dab(benchmark::State& state, std::string_view tool) {
-    const Stroke stroke = strokeOf(tool);
-    static_cast<void>(document().replay(stroke));
-    document().undo();
+Status dab(Rounds& rounds, Document& document, const Stroke& stroke) {
+    static_cast<void>(document.replay(stroke));
+    document.undo();
     std::size_t next = 0;
-    double strands = 0;
-    double dabs = 0;
-    const Subscription subscription = document().observe(
-        [&](const Change& change) { strands += static_cast<double>(change.strands.size()); });
-    static_cast<void>(document().beginStroke(stroke));
-    for (auto _ : state) {
-        benchmark::DoNotOptimize(document().dab(stroke.dabs[next]));
-        ++dabs;
+    if (auto begun = document.beginStroke(stroke); !begun) return begun;
+    while (rounds.next()) {
+        keep(document.dab(stroke.dabs[next]));
         if (++next < stroke.dabs.size()) continue;
-        state.PauseTiming();
+        rounds.pause();
         next = 0;
-        document().cancelStroke();
-        static_cast<void>(document().beginStroke(stroke));
-        state.ResumeTiming();
+        document.cancelStroke();
+        if (auto begun = document.beginStroke(stroke); !begun) return begun;
+        rounds.resume();
     }
-    document().cancelStroke();
-    state.counters["strands_per_dab"] = strands / std::max(1.0, dabs);
+    document.cancelStroke();
+    return {};
 }
 
-void undoStroke(benchmark::State& state, std::string_view tool) {
-    static_cast<void>(document().replay(strokeOf(tool)));
-    for (auto _ : state) {
-        benchmark::DoNotOptimize(document().undo());
-        state.PauseTiming();
-        document().redo();
-        state.ResumeTiming();
+Status undoStroke(Rounds& rounds, Document& document, const Stroke& stroke) {
+    static_cast<void>(document.replay(stroke));
+    while (rounds.next()) {
+        keep(document.undo());
+        rounds.pause();
+        document.redo();
+        rounds.resume();
     }
-    state.counters["megabytes"] = static_cast<double>(document().history().bytes()) / 1e6;
-    document().undo();
+    document.undo();
+    return {};
 }
 
-void pickOneStrand(benchmark::State& state) {
+Status pickOneStrand(Rounds& rounds, Document& document) {
     const Vec3f eye(0, 0.05f, 0.8f);
     Mat4f view = Mat4f::Identity();
     view.topRightCorner<3, 1>() = -eye;
@@ -79,34 +92,48 @@ void pickOneStrand(benchmark::State& state) {
     projection(2, 2) = -1.01f;
     projection(2, 3) = -0.101f;
     projection(3, 2) = -1;
-    const View seen(view, projection, Vec2f(1920, 1080));
-    document().bounds();
-    document().surface();
+    const editing::View seen(view, projection, Vec2f(1920, 1080));
+    document.bounds();
+    document.surface();
     float x = 700;
-    for (auto _ : state) {
-        benchmark::DoNotOptimize(
-            pickStrand(document().groom(), document().bounds(), document().surface(), seen, Vec2f(x, 400)));
+    while (rounds.next()) {
+        keep(editing::pickStrand(document.groom(), document.bounds(), document.surface(), seen,
+                                 Vec2f(x, 400)));
         x = x < 1200 ? x + 7 : 700;
+    }
+    return {};
+}
+
+void measureHair(Timings& timings, const std::string& name, const Groom& groom,
+                 const std::vector<Vec3f>& points) {
+    Document document(groom);
+    for (const std::string_view tool : editing::brushNames()) {
+        const Stroke stroke = strokeOf(tool, points);
+        timings.measure(std::string(tool) + ", a dab, " + name,
+                        [&](Rounds& rounds) { return dab(rounds, document, stroke); });
+        timings.measure(std::string(tool) + ", undo of a stroke, " + name,
+                        [&](Rounds& rounds) { return undoStroke(rounds, document, stroke); });
     }
 }
 
-constexpr auto kMs = benchmark::kMillisecond;
-BENCHMARK_CAPTURE(dab, comb, "comb")->Unit(kMs)->MinTime(0.2)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(dab, brush, "brush")->Unit(kMs)->MinTime(0.2)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(dab, grab, "grab")->Unit(kMs)->MinTime(0.2)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(dab, smooth, "smooth")->Unit(kMs)->MinTime(0.2)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(dab, puff, "puff")->Unit(kMs)->MinTime(0.2)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(dab, pinch, "pinch")->Unit(kMs)->MinTime(0.2)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(dab, length, "length")->Unit(kMs)->MinTime(0.2)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(dab, cut, "cut")->Unit(kMs)->MinTime(0.2)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(dab, cut_line, "cut_line")->Unit(kMs)->MinTime(0.2)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(dab, add, "add")->Unit(kMs)->MinTime(0.2)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(dab, delete, "delete")->Unit(kMs)->MinTime(0.2)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(dab, freeze, "freeze")->Unit(kMs)->MinTime(0.2)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(undoStroke, comb, "comb")->Unit(kMs)->MinTime(0.2)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(undoStroke, delete, "delete")->Unit(kMs)->MinTime(0.2)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(undoStroke, add, "add")->Unit(kMs)->MinTime(0.2)->MeasureProcessCPUTime();
-BENCHMARK(pickOneStrand)->Unit(kMs)->MinTime(0.2)->MeasureProcessCPUTime();
+Result<Outcome> run(const Options& options) {
+    const auto& hairstyles = samples();
+    if (!hairstyles) return tl::unexpected(hairstyles.error());
+    Timings timings(options);
+    for (const Sample& sample : *hairstyles)
+        measureHair(timings, sample.name, sample.groom, throughTheHair(sample.groom));
+    const Groom combed = combedHair();
+    measureHair(timings, "100,000 strands of 16 points", combed, overTheCrown());
+    Document document(combed);
+    timings.measure("picking a strand, 100,000 strands of 16 points",
+                    [&](Rounds& rounds) { return pickOneStrand(rounds, document); });
+    return timings.outcome("brush");
+}
 
 }  // namespace
-}  // namespace hairloom::editing
+
+Benchmark brushBenchmark() {
+    return {"brush", "dabs, strokes, undo and picking", {"--quick"}, run};
+}
+
+}  // namespace hairloom::benchmarks

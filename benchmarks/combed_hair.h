@@ -6,17 +6,17 @@
 
 #include "core/geometry/placement.h"
 #include "core/geometry/selection.h"
+#include "core/geometry/shapes.h"
 #include "core/operations/flow.h"
-#include "tests/geometry/test_meshes.h"
 
-namespace hairloom {
+namespace hairloom::benchmarks {
 
 inline constexpr float kBenchHeadRadius = 0.09f;  ///< metres; its middle is the origin
 inline constexpr std::uint32_t kBenchStrands = 100'000;
 
 inline Groom combedHair() {
     const auto head =
-        std::make_shared<const ScalpMesh>(test::meshOf(test::icosphereSoup(5, kBenchHeadRadius)));
+        std::make_shared<const ScalpMesh>(shapes::meshOf(shapes::icosphere(5, kBenchHeadRadius)));
     FaceSet faces = selectFaces(*head, "cap:80").value();
     PlacementRequest request;
     request.count = kBenchStrands;
@@ -33,4 +33,4 @@ inline Vec3f onCombedHair(float degrees) {
     return Vec3f(std::sin(angle), std::cos(angle), 0.2f).normalized() * (kBenchHeadRadius + 0.012f);
 }
 
-}  // namespace hairloom
+}  // namespace hairloom::benchmarks

@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strand files in and out: 11,400 strands × 16 points, from memory for reading and with the read-back for
-// writing.
-
-#include <benchmark/benchmark.h>
+// Strand files in and out: reading, and writing with the read-back.
 
 #include <cmath>
-#include <filesystem>
 
-#include "core/base/file.h"
+#include "benchmarks/measurement.h"
+#include "benchmarks/sample_hair.h"
+#include "benchmarks/temporary_file.h"
 #include "exporters/strands.h"
 #include "importers/strands.h"
 
+namespace hairloom::benchmarks {
 namespace {
-
-using namespace hairloom;
 
 constexpr std::uint32_t kStrands = 11400;
 constexpr std::uint32_t kPoints = 16;
@@ -66,51 +63,57 @@ std::string objRibbons(const Groom& groom) {
     return text;
 }
 
-/// A file in the system's temporary folder that goes when the benchmark ends.
-struct TemporaryFile {
-    std::filesystem::path path;
-    explicit TemporaryFile(const char* name) : path(std::filesystem::temp_directory_path() / name) {}
-    ~TemporaryFile() {
-        std::error_code ignored;
-        std::filesystem::remove(path, ignored);
-    }
-};
-
-void writeStrands(benchmark::State& state, const char* format) {
-    const Groom groom = head();
+/// In every format that can be written.
+void measureFormats(Timings& timings, const std::string& name, const Groom& groom) {
     const TemporaryFile file("hairloom-io-benchmark");
-    for (auto step : state) {
-        if (!strandWriter(format).write(groom, file.path, {})) state.SkipWithError("cannot write");
+    for (const StrandWriter& writer : strandWriters()) {
+        timings.measure("write ." + writer.name + ", " + name, [&](Rounds& rounds) -> Status {
+            while (rounds.next()) {
+                const auto written = writer.write(groom, file.path, {});
+                if (!written) return tl::unexpected(written.error());
+            }
+            return {};
+        });
+        timings.measure("read ." + writer.name + ", " + name, [&](Rounds& rounds) -> Status {
+            while (rounds.next()) {
+                const auto imported = importStrands(file.path);
+                if (!imported) return tl::unexpected(imported.error());
+                keep(*imported);
+            }
+            return {};
+        });
     }
 }
 
-void readStrands(benchmark::State& state, const char* format) {
-    const TemporaryFile file("hairloom-io-benchmark");
-    if (!strandWriter(format).write(head(), file.path, {})) state.SkipWithError("cannot write");
-    for (auto step : state) {
-        auto imported = importStrands(file.path);
-        if (!imported) state.SkipWithError("cannot read");
-        benchmark::DoNotOptimize(imported);
-    }
-}
-
-void readText(benchmark::State& state, std::string (*make)(const Groom&)) {
-    const std::string text = make(head());
+void measureText(Timings& timings, const std::string& name, const std::string& text) {
     const auto bytes = std::as_bytes(std::span(text.data(), text.size()));
-    for (auto step : state) {
-        auto imported = importStrandsFromMemory("benchmark.obj", bytes);
-        if (!imported) state.SkipWithError("cannot read");
-        benchmark::DoNotOptimize(imported);
-    }
-    state.SetBytesProcessed(static_cast<std::int64_t>(state.iterations()) *
-                            static_cast<std::int64_t>(text.size()));
+    timings.measure(name, [&](Rounds& rounds) -> Status {
+        while (rounds.next()) {
+            const auto imported = importStrandsFromMemory("benchmark.obj", bytes);
+            if (!imported) return tl::unexpected(imported.error());
+            keep(*imported);
+        }
+        return {};
+    });
 }
 
-BENCHMARK_CAPTURE(readStrands, hair, "hair")->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK_CAPTURE(readStrands, tfx, "tfx")->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK_CAPTURE(readText, objLines, objLines)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK_CAPTURE(readText, objRibbons, objRibbons)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK_CAPTURE(writeStrands, hair, "hair")->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK_CAPTURE(writeStrands, tfx, "tfx")->Unit(benchmark::kMillisecond)->UseRealTime();
+Result<Outcome> run(const Options& options) {
+    const auto& hairstyles = samples();
+    if (!hairstyles) return tl::unexpected(hairstyles.error());
+    Timings timings(options);
+    for (const Sample& sample : *hairstyles) measureFormats(timings, sample.name, sample.groom);
+    const std::string made = "11,400 strands of 16 points";
+    const Groom groom = head();
+    measureFormats(timings, made, groom);
+    measureText(timings, "read .obj of lines, " + made, objLines(groom));
+    measureText(timings, "read .obj of ribbons, " + made, objRibbons(groom));
+    return timings.outcome("io");
+}
 
 }  // namespace
+
+Benchmark ioBenchmark() {
+    return {"io", "strand files in and out", {}, run};
+}
+
+}  // namespace hairloom::benchmarks

@@ -1,76 +1,96 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How long a frame is held up by a control of the material that has moved: recording it, with the tables of
-// the model baked in place or behind. Needs a device; what the device does afterwards is not in it.
-
-#include <benchmark/benchmark.h>
+// the model baked in place or behind. What the device does afterwards is not in it, nor does it depend on how
+// much hair there is.
 
 #include <array>
 
+#include "benchmarks/measurement.h"
 #include "core/gpu/device.h"
 #include "core/render/renderer.h"
 
-namespace hairloom::render {
+namespace hairloom::benchmarks {
 namespace {
 
-/// One hair: what is measured does not depend on how many there are.
 struct OneHair {
     std::array<std::uint32_t, 2> offsets{0, 2};
     std::array<Vec3f, 2> positions{Vec3f(0, -0.05f, 0), Vec3f(0, 0.05f, 0)};
-    RenderScene scene;
+    render::RenderScene scene;
 
     OneHair() {
-        RenderStrands strands;
+        render::RenderStrands strands;
         strands.offsets = offsets;
         strands.positions_ws = positions;
-        strands.material.fibre.model = ShadingModel::marschner;
+        strands.material.fibre.model = render::ShadingModel::marschner;
         scene.strands = {strands};
         scene.camera.eye_ws = {0, 0, 0.5f};
         scene.camera.target_ws = Vec3f::Zero();
     }
 };
 
-void controlMoves(benchmark::State& state, bool behind) {
-    const auto device = gpu::createDevice({});
-    if (!device) return state.SkipWithError(device.error().message().c_str());
-    OneHair hair;
-    Renderer renderer(**device);
-    if (!renderer.setScene(hair.scene)) return state.SkipWithError("the scene was refused");
-    RenderOptions options;
-    options.width = options.height = 16;
-    options.samples = 1;
-    options.frames = 1;
-    options.bakeBehind = behind;
-    const auto drawFrame = [&](bool timed) {
-        auto list = (*device)->createCommandList();
-        if (!list) return false;
-        if (timed) state.ResumeTiming();
-        const bool good = renderer.record(**list, options, nullptr).has_value();
-        if (timed) state.PauseTiming();
-        const auto submitted = (*device)->submit(std::move(*list));
-        return good && submitted && (*submitted)->wait().has_value();
-    };
-    if (!drawFrame(false)) return state.SkipWithError("the first frame failed");
-    HairMaterial material = hair.scene.strands.front().material;
-    for (auto _ : state) {
-        state.PauseTiming();
-        while (!renderer.isSettled() && drawFrame(false)) {
-        }
-        material.fibre.marschner.azimuthal.absorption.x() += 0.01;
-        const bool set = renderer.setMaterial(0, material).has_value();
-        if (!set || !drawFrame(true)) return state.SkipWithError("a frame failed");
-        state.ResumeTiming();
+class Drawing {
+  public:
+    Drawing(gpu::Device& device, bool behind) : device_(device), renderer_(device) {
+        options_.width = options_.height = 16;
+        options_.samples = 1;
+        options_.frames = 1;
+        options_.bakeBehind = behind;
     }
-}
 
-void tablesInPlace(benchmark::State& state) {
-    controlMoves(state, false);
-}
-BENCHMARK(tablesInPlace)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(50);
+    /// Begins and ends outside of the clock.
+    Status controlMoves(Rounds& rounds) {
+        if (auto status = renderer_.setScene(hair_.scene); !status) return status;
+        if (auto status = drawFrame(nullptr); !status) return status;
+        auto material = hair_.scene.strands.front().material;
+        while (rounds.next()) {
+            rounds.pause();
+            while (!renderer_.isSettled()) {
+                if (auto status = drawFrame(nullptr); !status) return status;
+            }
+            material.fibre.marschner.azimuthal.absorption.x() += 0.01;
+            if (auto status = renderer_.setMaterial(0, material); !status) return status;
+            if (auto status = drawFrame(&rounds); !status) return status;
+            rounds.resume();
+        }
+        return {};
+    }
 
-void tablesBehind(benchmark::State& state) {
-    controlMoves(state, true);
+  private:
+    Status drawFrame(Rounds* timed) {
+        auto list = device_.createCommandList();
+        if (!list) return tl::unexpected(list.error());
+        if (timed) timed->resume();
+        auto status = renderer_.record(**list, options_, nullptr);
+        if (timed) timed->pause();
+        if (!status) return status;
+        const auto submitted = device_.submit(std::move(*list));
+        if (!submitted) return tl::unexpected(submitted.error());
+        return (*submitted)->wait();
+    }
+
+    gpu::Device& device_;
+    OneHair hair_;
+    render::Renderer renderer_;
+    render::RenderOptions options_;
+};
+
+Result<Outcome> run(const Options& options) {
+    gpu::DeviceOptions wanted;
+    wanted.index = options.device;
+    const auto device = gpu::createDevice(wanted);
+    if (!device) return tl::unexpected(device.error());
+    Timings timings(options);
+    timings.measure("tables in place",
+                    [&](Rounds& rounds) { return Drawing(**device, false).controlMoves(rounds); });
+    timings.measure("tables behind",
+                    [&](Rounds& rounds) { return Drawing(**device, true).controlMoves(rounds); });
+    return timings.outcome("material");
 }
-BENCHMARK(tablesBehind)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(50);
 
 }  // namespace
-}  // namespace hairloom::render
+
+Benchmark materialBenchmark() {
+    return {"material", "a moved control of the material", {"--device", "--quick"}, run};
+}
+
+}  // namespace hairloom::benchmarks

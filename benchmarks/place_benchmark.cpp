@@ -1,59 +1,77 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Root placement on a scalp-sized cap (about 500 cm²), and repair of a mesh of 20,000 vertices.
-
-#include <benchmark/benchmark.h>
+// Root placement on the samples' scalps and on a cap of about 500 cm², and repair of a mesh of 20,000
+// vertices.
 
 #include <cmath>
 
+#include "benchmarks/measurement.h"
+#include "benchmarks/sample_hair.h"
 #include "core/geometry/placement.h"
 #include "core/geometry/selection.h"
-#include "tests/geometry/test_meshes.h"
+#include "core/geometry/shapes.h"
 
-namespace hairloom {
+namespace hairloom::benchmarks {
 namespace {
 
-struct Scalp {
-    ScalpMesh mesh = test::meshOf(test::icosphereSoup(4, 0.09f));
-    FaceSet faces = *selectFaces(mesh, "cap:90");
-};
+using Place = Result<Placement> (*)(const ScalpMesh&, const FaceSet&, const PlacementRequest&);
 
-const Scalp& scalp() {
-    static const Scalp kScalp;
-    return kScalp;
+void measurePlacing(Timings& timings, const std::string& name, const ScalpMesh& mesh, const FaceSet& faces,
+                    std::size_t count, Place place) {
+    PlacementRequest request;
+    request.count = count;
+    request.seed = 1;
+    timings.measure(name, [&](Rounds& rounds) -> Status {
+        while (rounds.next()) {
+            const auto placed = place(mesh, faces, request);
+            if (!placed) return tl::unexpected(placed.error());
+            keep(*placed);
+        }
+        return {};
+    });
 }
 
-PlacementRequest request(const benchmark::State& state) {
-    PlacementRequest result;
-    result.count = static_cast<std::size_t>(state.range(0));
-    result.seed = 1;
-    return result;
+void measureCap(Timings& timings) {
+    const ScalpMesh mesh = shapes::meshOf(shapes::icosphere(4, 0.09f));
+    const FaceSet faces = *selectFaces(mesh, "cap:90");
+    measurePlacing(timings, "at random, 100,000 roots", mesh, faces, 100'000, placeRandom);
+    for (const std::size_t count : {std::size_t{10'000}, std::size_t{100'000}}) {
+        const char* const name = count == 10'000 ? "by darts, 10,000 roots" : "by darts, 100,000 roots";
+        measurePlacing(timings, name, mesh, faces, count, placeDarts);
+    }
+    const double area = selectionArea(mesh, faces);
+    const auto radius = static_cast<float>(std::sqrt(0.6965 * area / 100'000));
+    timings.measure("by darts until none fits, about 100,000 roots", [&](Rounds& rounds) -> Status {
+        while (rounds.next()) {
+            const auto placed = placeDartsWithRadius(mesh, faces, radius, {}, 1);
+            if (!placed) return tl::unexpected(placed.error());
+            keep(*placed);
+        }
+        return {};
+    });
 }
 
-void placeAtRandom(benchmark::State& state) {
-    for (auto _ : state) benchmark::DoNotOptimize(placeRandom(scalp().mesh, scalp().faces, request(state)));
+Result<Outcome> run(const Options& options) {
+    const auto& hairstyles = samples();
+    if (!hairstyles) return tl::unexpected(hairstyles.error());
+    Timings timings(options);
+    for (const Sample& sample : *hairstyles) {
+        const std::size_t roots = sample.groom.strandCount();
+        measurePlacing(timings, "by darts, " + sample.name + ", " + std::to_string(roots) + " roots",
+                       *sample.groom.scalp, sample.groom.scalpSelection, roots, placeDarts);
+    }
+    measureCap(timings);
+    timings.measure("repair a mesh of 20,000 vertices", [](Rounds& rounds) -> Status {
+        const PolygonSoup soup = shapes::grid(141, 1);
+        while (rounds.next()) keep(ScalpMesh::make(soup));
+        return {};
+    });
+    return timings.outcome("place");
 }
-BENCHMARK(placeAtRandom)->Arg(100'000)->Unit(benchmark::kMillisecond);
-
-void placeByDarts(benchmark::State& state) {
-    for (auto _ : state) benchmark::DoNotOptimize(placeDarts(scalp().mesh, scalp().faces, request(state)));
-}
-BENCHMARK(placeByDarts)->Arg(10'000)->Arg(100'000)->Unit(benchmark::kMillisecond);
-
-void placeMaximally(benchmark::State& state) {
-    const double area = selectionArea(scalp().mesh, scalp().faces);
-    const auto radius = static_cast<float>(std::sqrt(0.6965 * area / static_cast<double>(state.range(0))));
-    std::size_t roots = 0;
-    for (auto _ : state)
-        roots = placeDartsWithRadius(scalp().mesh, scalp().faces, radius, {}, 1)->roots.size();
-    state.counters["roots"] = static_cast<double>(roots);
-}
-BENCHMARK(placeMaximally)->Arg(100'000)->Unit(benchmark::kMillisecond);
-
-void repairMesh(benchmark::State& state) {
-    const PolygonSoup soup = test::gridSoup(141, 1);
-    for (auto _ : state) benchmark::DoNotOptimize(ScalpMesh::make(soup));
-}
-BENCHMARK(repairMesh)->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace hairloom
+
+Benchmark placeBenchmark() {
+    return {"place", "placing roots", {"--quick"}, run};
+}
+
+}  // namespace hairloom::benchmarks

@@ -1,25 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Saving and loading 100,000 strands of 16 points. "Disk" is one bare write and flush of as many bytes: what
-// no file format can go below on the same disk.
-
-#include <benchmark/benchmark.h>
+// Saving and loading projects. "Disk" is one bare write and flush of as many bytes: what no file format can
+// go below on the same disk.
 
 #include <filesystem>
-#include <stdexcept>
 
+#include "benchmarks/measurement.h"
+#include "benchmarks/sample_hair.h"
+#include "benchmarks/temporary_file.h"
 #include "core/base/file.h"
 #include "core/groom/file/project_file.h"
 
+namespace hairloom::benchmarks {
 namespace {
 
-using namespace hairloom;
-
-constexpr std::uint32_t kStrands = 100000;
+constexpr std::uint32_t kStrands = 100'000;
 constexpr std::uint32_t kPoints = 16;
-
-std::filesystem::path file() {
-    return std::filesystem::temp_directory_path() / "hairloom-bench.hairloom";
-}
 
 Groom manyStrands() {
     std::vector<std::uint32_t> offsets(kStrands + 1);
@@ -34,33 +29,44 @@ Groom manyStrands() {
     return groom;
 }
 
-void require(bool good) {
-    if (!good) throw std::runtime_error("the benchmark's file cannot be written or read");
+void measure(Timings& timings, const std::string& name, const Groom& groom) {
+    const TemporaryFile file("hairloom-project-benchmark");
+    timings.measure("save, " + name, [&](Rounds& rounds) -> Status {
+        while (rounds.next()) {
+            if (auto saved = saveProject(groom, file.path); !saved) return saved;
+        }
+        return {};
+    });
+    timings.measure("load, " + name, [&](Rounds& rounds) -> Status {
+        while (rounds.next()) {
+            const auto loaded = loadProject(file.path);
+            if (!loaded) return tl::unexpected(loaded.error());
+            keep(*loaded);
+        }
+        return {};
+    });
+    timings.measure("disk, " + name, [&](Rounds& rounds) -> Status {
+        const std::vector<std::byte> bytes(std::filesystem::file_size(file.path), std::byte{1});
+        while (rounds.next()) {
+            if (auto written = writeFileAtomically(file.path, bytes); !written) return written;
+        }
+        return {};
+    });
 }
 
-void saveProjectFile(benchmark::State& state) {
-    const Groom groom = manyStrands();
-    for (auto _ : state) require(saveProject(groom, file()).has_value());
-    state.counters["MB"] = static_cast<double>(std::filesystem::file_size(file())) * 1e-6;
+Result<Outcome> run(const Options& options) {
+    const auto& hairstyles = samples();
+    if (!hairstyles) return tl::unexpected(hairstyles.error());
+    Timings timings(options);
+    for (const Sample& sample : *hairstyles) measure(timings, sample.name, sample.groom);
+    measure(timings, "100,000 strands of 16 points", manyStrands());
+    return timings.outcome("project");
 }
-
-void loadProjectFile(benchmark::State& state) {
-    require(saveProject(manyStrands(), file()).has_value());
-    for (auto _ : state) {
-        auto groom = loadProject(file());
-        require(groom.has_value());
-        benchmark::DoNotOptimize(groom);
-    }
-}
-
-void disk(benchmark::State& state) {
-    require(saveProject(manyStrands(), file()).has_value());
-    const std::vector<std::byte> bytes(std::filesystem::file_size(file()), std::byte{1});
-    for (auto _ : state) require(writeFileAtomically(file(), bytes).has_value());
-}
-
-BENCHMARK(saveProjectFile)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(loadProjectFile)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(disk)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace
+
+Benchmark projectBenchmark() {
+    return {"project", "saving and loading projects", {"--quick"}, run};
+}
+
+}  // namespace hairloom::benchmarks

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a moved control costs: the model and all its tables anew.
+// What a moved control of the material costs: the model and all its tables anew. It does not depend on the
+// hair.
 
-#include <benchmark/benchmark.h>
-
+#include "benchmarks/measurement.h"
 #include "core/shading/melanin.h"
 #include "core/shading/tables.h"
 
-namespace hairloom::shading {
+namespace hairloom::benchmarks {
 namespace {
+
+using namespace shading;
 
 MarschnerParameters parameters(bool rough, double axisRatio) {
     MarschnerParameters result;
@@ -20,37 +22,36 @@ MarschnerParameters parameters(bool rough, double axisRatio) {
     return result;
 }
 
-void bake(benchmark::State& state, const MarschnerParameters& p) {
-    for (auto _ : state) {
+Status bake(Rounds& rounds, const MarschnerParameters& p) {
+    while (rounds.next()) {
         const Marschner model(p);
-        benchmark::DoNotOptimize(bakeMarschner(model));
-        benchmark::DoNotOptimize(bakeDual(DualScattering(model)));
+        keep(bakeMarschner(model));
+        keep(bakeDual(DualScattering(model)));
     }
+    return {};
 }
 
-void marschnerRough(benchmark::State& state) {
-    bake(state, parameters(true, 1));
+Result<Outcome> run(const Options& options) {
+    Timings timings(options);
+    timings.measure("tables of Marschner, rough", [](Rounds& r) { return bake(r, parameters(true, 1)); });
+    timings.measure("tables of Marschner, smooth", [](Rounds& r) { return bake(r, parameters(false, 1)); });
+    timings.measure("tables of Marschner, elliptic",
+                    [](Rounds& r) { return bake(r, parameters(true, 1.2)); });
+    timings.measure("tables of Sadeghi", [](Rounds& rounds) -> Status {
+        const SadeghiParameters p = sadeghiLike(Marschner(parameters(true, 1)));
+        while (rounds.next()) {
+            keep(bakeSadeghi(p));
+            keep(bakeDual(DualScattering(p)));
+        }
+        return {};
+    });
+    return timings.outcome("shading");
 }
-BENCHMARK(marschnerRough)->Unit(benchmark::kMillisecond)->UseRealTime();
-
-void marschnerSmooth(benchmark::State& state) {
-    bake(state, parameters(false, 1));
-}
-BENCHMARK(marschnerSmooth)->Unit(benchmark::kMillisecond)->UseRealTime();
-
-void marschnerElliptic(benchmark::State& state) {
-    bake(state, parameters(true, 1.2));
-}
-BENCHMARK(marschnerElliptic)->Unit(benchmark::kMillisecond)->UseRealTime();
-
-void sadeghi(benchmark::State& state) {
-    const SadeghiParameters p = sadeghiLike(Marschner(parameters(true, 1)));
-    for (auto _ : state) {
-        benchmark::DoNotOptimize(bakeSadeghi(p));
-        benchmark::DoNotOptimize(bakeDual(DualScattering(p)));
-    }
-}
-BENCHMARK(sadeghi)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace
-}  // namespace hairloom::shading
+
+Benchmark shadingBenchmark() {
+    return {"shading", "the shading models' tables", {"--quick"}, run};
+}
+
+}  // namespace hairloom::benchmarks

@@ -1,156 +1,133 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
-#include "cli/gpu_bench.h"
+#include "benchmarks/benchmark.h"
 #include "cli/job.h"
-#include "cli/measurements.h"
-#include "cli/render_bench.h"
-#include "cli/shadow_bench.h"
-#include "cli/simulation_bench.h"
+#include "cli/progress.h"
 #include "cli/vectors.h"
 #include "core/base/file.h"
 
 namespace hairloom::cli {
 namespace {
 
+using benchmarks::Benchmark;
+
 struct BenchOptions {
-    RenderBenchOptions render;
+    std::string name;
+    int repetitions = 0;
     std::uint32_t device = 0;
     std::string size;
-    bool repetitionsGiven = false;
-    std::string name;
-    int repetitions = 5;
-    std::vector<std::uint32_t> strands;
-    bool quick = false;
     std::string markdown;
     std::string output;
-    bool deviceGiven = false;
+    std::vector<std::string> given;  ///< options that only some benchmarks take
+    benchmarks::Options measuring;
 };
 
-Result<Report> benchSimulation(const BenchOptions& options, const std::string& command) {
-    SimulationBenchOptions wanted;
-    wanted.repetitions = options.repetitions;
-    if (options.quick) {
-        wanted.strands = {300, 2'000};
-        wanted.seconds = 0.02;
-    }
-    if (!options.strands.empty()) wanted.strands = options.strands;
-    const SimulationBench bench = runSimulationBench(wanted);
-    Report report = reportOf(bench);
-    if (!options.markdown.empty()) {
-        if (auto written = writeFileAtomically(options.markdown, markdownOf(bench, command)); !written)
-            return tl::unexpected(written.error());
-        report["output"] = options.markdown;
-    }
-    return report;
+const Benchmark& benchmarkOf(const std::string& name) {
+    return *std::ranges::find(benchmarks::benchmarks(), name, &Benchmark::name);
 }
 
-Result<Report> benchGpuSimulation(const BenchOptions& options, const std::string& command) {
-    GpuBenchOptions wanted;
-    if (options.deviceGiven) wanted.device = options.device;
-    if (options.quick) {
-        wanted.strands = {100, 300};
-        wanted.details = {100};
-        wanted.seconds = 0.02;
+/// "sim, render"
+std::string whoTakes(const std::string& option) {
+    std::string names;
+    for (const Benchmark& benchmark : benchmarks::benchmarks()) {
+        if (std::ranges::find(benchmark.takes, option) == benchmark.takes.end()) continue;
+        names += (names.empty() ? "" : ", ") + benchmark.name;
     }
-    if (!options.strands.empty()) {
-        wanted.strands = options.strands;
-        wanted.details = {options.strands.back()};
-    }
-    const auto bench = runGpuBench(wanted);
-    if (!bench) return tl::unexpected(bench.error());
-    Report report = reportOf(*bench);
-    if (options.output.empty()) return report;
-    const auto written = writeFiles(options.output, {{"gpu-sim.csv", csvOf(*bench)},
-                                                     {"gpu-sim.md", markdownOf(*bench, command)},
-                                                     {"figure-27.svg", figureOf(*bench)}});
-    if (!written) return tl::unexpected(written.error());
-    report["output"] = *written;
-    return report;
+    return names;
 }
 
-Result<Report> benchRendering(const BenchOptions& options, const std::string& command) {
-    RenderBenchOptions wanted = options.render;
-    if (options.repetitionsGiven) wanted.repetitions = options.repetitions;
+Status checkOptions(const BenchOptions& options) {
+    const Benchmark& benchmark = benchmarkOf(options.name);
+    for (const std::string& option : options.given) {
+        if (std::ranges::find(benchmark.takes, option) != benchmark.takes.end()) continue;
+        return fail(fmt::format("`bench {}` takes no {}", options.name, option),
+                    fmt::format("expected it with {}", whoTakes(option)));
+    }
+    return {};
+}
+
+Result<Report> bench(const BenchOptions& options, const std::string& commandLine) {
+    if (auto status = checkOptions(options); !status) return tl::unexpected(status.error());
+    benchmarks::Options measuring = options.measuring;
+    measuring.commandLine = commandLine;
     if (!options.size.empty()) {
         const auto size = parseSize(options.size);
         if (!size) return tl::unexpected(size.error());
-        wanted.size = *size;
+        measuring.size = *size;
     }
-    const auto bench = runRenderBench(wanted);
-    if (!bench) return tl::unexpected(bench.error());
-    Report report = reportOf(*bench);
-    if (options.markdown.empty()) return report;
-    if (auto written = writeFileAtomically(options.markdown, markdownOf(*bench, command)); !written) {
-        return tl::unexpected(written.error());
+    std::unique_ptr<Progress> progress;
+    measuring.progress = [&](std::string_view what, std::size_t done, std::size_t total) {
+        if (!progress) progress = std::make_unique<Progress>(std::string(what), total);
+        progress->done(done);
+    };
+    auto outcome = benchmarkOf(options.name).run(measuring);
+    progress.reset();
+    if (!outcome) return tl::unexpected(outcome.error());
+    if (!options.markdown.empty()) {
+        if (auto written = writeFileAtomically(options.markdown, outcome->markdown); !written)
+            return tl::unexpected(written.error());
+        outcome->report["output"] = options.markdown;
     }
-    report["output"] = options.markdown;
-    return report;
+    if (!options.output.empty()) {
+        const auto written = writeFiles(options.output, outcome->files);
+        if (!written) return tl::unexpected(written.error());
+        outcome->report["output"] = *written;
+    }
+    return std::move(outcome->report);
 }
 
-Result<Report> benchShadows(const BenchOptions& options, const std::string& command) {
-    ShadowBenchOptions wanted;
-    wanted.quick = options.quick;
-    if (options.deviceGiven) wanted.device = options.device;
-    const auto bench = runShadowBench(wanted);
-    if (!bench) return tl::unexpected(bench.error());
-    Report report = reportOf(*bench);
-    if (options.output.empty()) return report;
-    const auto written = writeFiles(
-        options.output, {{"shadows.md", markdownOf(*bench, command)}, {"shadows.svg", figureOf(*bench)}});
-    if (!written) return tl::unexpected(written.error());
-    report["output"] = *written;
-    return report;
+std::vector<std::string> names() {
+    std::vector<std::string> all;
+    for (const Benchmark& benchmark : benchmarks::benchmarks()) all.push_back(benchmark.name);
+    return all;
 }
 
-Result<Report> bench(const BenchOptions& options, const std::string& command) {
-    if (options.name == "sim") return benchSimulation(options, command);
-    if (options.name == "gpu-sim") return benchGpuSimulation(options, command);
-    if (options.name == "render") return benchRendering(options, command);
-    if (options.name == "shadows") return benchShadows(options, command);
-    if (options.quick || !options.strands.empty() || !options.markdown.empty())
-        return fail(
-            "--strands and --quick are of `bench sim` and `bench gpu-sim`, --markdown of `bench sim` and "
-            "`bench "
-            "render`");
-    const auto measured = runBenchmarkProgram(options.name, options.repetitions);
-    if (!measured) return tl::unexpected(measured.error());
-    Report rows = Report::array();
-    for (const Measurement& measurement : *measured) rows.push_back(rowOf(measurement));
-    return Report{{"name", options.name}, {"rows", std::move(rows)}};
+std::string namesInWords() {
+    std::string text = "What to measure.";
+    for (const Benchmark& benchmark : benchmarks::benchmarks())
+        text += fmt::format(" {}: {}.", benchmark.name, benchmark.measures);
+    return text;
 }
 
 JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<BenchOptions>();
-    job.add_option("name", options->name, "What to measure")
-        ->required()
-        ->check(CLI::IsMember({"brush", "gpu-sim", "interpolate", "io", "material", "place", "project",
-                               "render", "shading", "shadows", "sim", "window"}));
+    job.add_option("name", options->name, namesInWords())->required()->check(CLI::IsMember(names()));
     auto* const repetitions =
         job.add_option("--repeat,--repetitions", options->repetitions, "Runs of each measurement")
             ->check(CLI::Range(1, 1000));
-    job.add_option("--strands", options->strands,
-                   "sim, gpu-sim: numbers of strands, instead of the usual ones, ascending")
-        ->delimiter(',')
-        ->check(CLI::Range(1, 1'000'000));
-    job.add_flag("--quick", options->quick,
-                 "sim, gpu-sim, shadows: shorter runs of fewer strands, to see that it works");
-    job.add_option("--markdown", options->markdown, "sim, render: file to write the tables to");
-    job.add_option("--hairs", options->render.hairs,
-                   "render: numbers of hairs, instead of 3100,9300,18300,100000")
-        ->delimiter(',')
-        ->check(CLI::Range(1, 1'000'000));
-    job.add_option("--size", options->size, "render: pixels WxH of all pictures");
-    job.add_option("-o,--output", options->output,
-                   "gpu-sim, shadows: folder to write the table, its Markdown and the chart to");
-    auto* const device = job.add_option("--device", options->device,
-                                        "gpu-sim, render, shadows: GPU to use, by its index in `devices`");
-    job.final_callback([options, repetitions, device] {
-        options->repetitionsGiven = repetitions->count() > 0;
-        options->deviceGiven = device->count() > 0;
-        if (options->deviceGiven) options->render.device = options->device;
+    std::vector<CLI::Option*> some;
+    const auto of = [](const char* option, const char* does) {
+        return fmt::format("{}: {}", whoTakes(option), does);
+    };
+    some.push_back(job.add_option("--strands", options->measuring.strands,
+                                  of("--strands", "numbers of strands, instead of the usual ones, ascending"))
+                       ->delimiter(',')
+                       ->check(CLI::Range(1, 1'000'000)));
+    some.push_back(job.add_flag("--quick", options->measuring.quick,
+                                of("--quick", "shorter runs, to see that it works")));
+    some.push_back(
+        job.add_option("--markdown", options->markdown, of("--markdown", "file to write the tables to")));
+    some.push_back(job.add_option("--hairs", options->measuring.hairs,
+                                  of("--hairs", "numbers of hairs, instead of 3100,9300,18300,100000"))
+                       ->delimiter(',')
+                       ->check(CLI::Range(1, 1'000'000)));
+    some.push_back(job.add_option("--size", options->size, of("--size", "pixels WxH of all pictures")));
+    some.push_back(
+        job.add_option("-o,--output", options->output,
+                       of("--output", "folder to write the table, its Markdown and the chart to")));
+    auto* const device =
+        job.add_option("--device", options->device, of("--device", "GPU to use, by its index in `devices`"));
+    some.push_back(device);
+    job.final_callback([options, repetitions, device, some] {
+        if (repetitions->count() > 0) options->measuring.repetitions = options->repetitions;
+        if (device->count() > 0) options->measuring.device = options->device;
+        for (const CLI::Option* option : some) {
+            if (option->count() > 0) options->given.push_back("--" + option->get_lnames().front());
+        }
     });
     return [options](const std::string& commandLine) { return bench(*options, commandLine); };
 }

@@ -3,7 +3,7 @@
 
 #include "cli/documents.h"
 #include "cli/job.h"
-#include "cli/stopwatch.h"
+#include "core/base/stopwatch.h"
 #include "core/base/log.h"
 #include "core/geometry/placement.h"
 #include "core/geometry/selection.h"

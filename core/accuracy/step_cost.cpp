@@ -9,7 +9,6 @@
 #include "core/accuracy/thread_clock.h"
 #include "core/base/parallel.h"
 #include "core/base/profiler.h"
-#include "runtime/src/kernels.h"
 
 namespace hairloom {
 namespace {
@@ -39,37 +38,61 @@ double milliseconds(std::uint64_t nanoseconds) {
     return static_cast<double>(nanoseconds) * 1e-6;
 }
 
-}  // namespace
+class TurningHead : public MovingStrands {
+  public:
+    explicit TurningHead(const StepScene& scene)
+        : head_(scene.strands, scene.points, isStraight(scene.activeForces)), acting_(scene.activeForces) {}
 
-StepRun::StepRun(const StepScene& scene)
-    : scene_(scene), head_(scene.strands, scene.points, isStraight(scene.activeForces)) {
+    runtime::StrandsView view() const override { return head_.view(); }
+    void move(double time, std::vector<runtime::RootFrame>& roots,
+              std::vector<runtime::Sphere>& spheres) const override {
+        head_.placeRoots(time, roots);
+        if (hasSpheres(acting_)) spheres = head_.spheres;
+    }
+
+  private:
+    scenes::HeadOfHair head_;
+    scenes::ActiveForces acting_;
+};
+
+runtime::SimulationSettings settingsOf(const StepScene& scene) {
     runtime::SimulationSettings settings = scenes::settingsFor(scene.activeForces);
     settings.substeps = scene.substeps;
+    return settings;
+}
+
+}  // namespace
+
+StepRun::StepRun(std::unique_ptr<MovingStrands> strands, const runtime::SimulationSettings& settings,
+                 bool allThreads, bool byStage)
+    : strands_(std::move(strands)), substeps_(settings.substeps), onWall_(allThreads || byStage) {
     runtime::Host host;
-    if (scene.allThreads) host.parallelFor = parallelFor;
-    if (scene.byStage) host.nanoseconds = nanosecondsNow;
-    auto made = runtime::Engine::make(head_.view(), settings, std::move(host));
+    if (allThreads) host.parallelFor = parallelFor;
+    if (byStage) host.nanoseconds = nanosecondsNow;
+    auto made = runtime::Engine::make(strands_->view(), settings, std::move(host));
     assert(made.engine);
     engine_ = std::move(made.engine);
-    head_.placeRoots(0.0, roots_);
+    strands_->move(0.0, roots_, spheres_);
     engine_->reset(roots_);
 }
+
+StepRun::StepRun(const StepScene& scene)
+    : StepRun(std::make_unique<TurningHead>(scene), settingsOf(scene), scene.allThreads, scene.byStage) {}
 
 double StepRun::milliseconds(std::uint32_t frames) {
     std::vector<double> whole;
     std::array<std::vector<double>, runtime::kStageCount> stages;
     runtime::FrameInput input;
     input.dt = kFrame;
-    if (hasSpheres(scene_.activeForces)) input.spheres = head_.spheres;
-    const bool onWall = scene_.allThreads || scene_.byStage;
     for (std::uint32_t f = 0; f < frames; ++f) {
         time_ += static_cast<double>(kFrame);
-        head_.placeRoots(time_, roots_);
+        strands_->move(time_, roots_, spheres_);
         input.time = time_;
         input.roots_ws = roots_;
-        const std::uint64_t begin = workNanoseconds(onWall);
+        input.spheres = spheres_;
+        const std::uint64_t begin = workNanoseconds(onWall_);
         engine_->step(input);
-        whole.push_back(hairloom::milliseconds(workNanoseconds(onWall) - begin));
+        whole.push_back(hairloom::milliseconds(workNanoseconds(onWall_) - begin));
         for (std::size_t i = 0; i < stages.size(); ++i)
             stages[i].push_back(engine_->lastStep().stageMilliseconds[i]);
     }
@@ -85,7 +108,7 @@ std::uint32_t StepRun::framesFor(double seconds) {
 }
 
 double StepRun::work() const {
-    return static_cast<double>(engine_->pointCount()) * scene_.substeps;
+    return static_cast<double>(engine_->pointCount()) * substeps_;
 }
 
 BareIntegrator::BareIntegrator(std::uint32_t strands, std::uint32_t points, std::uint32_t substeps)

@@ -22,10 +22,23 @@ struct StepScene {
     bool byStage = false;     ///< with a clock around each stage of each block, which costs a little itself
 };
 
+/// Strands, and where their roots and the spheres are over time.
+class MovingStrands {
+  public:
+    virtual ~MovingStrands() = default;
+    virtual runtime::StrandsView view() const = 0;
+    /// `time` in seconds; one root for each strand.
+    virtual void move(double time, std::vector<runtime::RootFrame>& roots,
+                      std::vector<runtime::Sphere>& spheres) const = 0;
+};
+
 /// A scene that runs on from measurement to measurement.
 class StepRun {
   public:
     explicit StepRun(const StepScene& scene);
+    /// `settings` must be in range for these strands.
+    StepRun(std::unique_ptr<MovingStrands> strands, const runtime::SimulationSettings& settings,
+            bool allThreads, bool byStage = false);
 
     /// Milliseconds of the median one of the next `frames` ≥ 1 frames of 1/60 s; of one thread in its
     /// processor time, of all on the wall, where what else the machine does falls on few of them.
@@ -41,10 +54,12 @@ class StepRun {
     double work() const;
 
   private:
-    StepScene scene_;
-    scenes::HeadOfHair head_;
+    std::unique_ptr<MovingStrands> strands_;
+    std::uint32_t substeps_;
+    bool onWall_;
     std::optional<runtime::Engine> engine_;
     std::vector<runtime::RootFrame> roots_;
+    std::vector<runtime::Sphere> spheres_;
     std::array<double, runtime::kStageCount> stages_{};
     double time_ = 0.0;
 };

@@ -327,6 +327,9 @@ TEST_F(Cli, BenchComparesTheEngineWithTheThesis) {
         printed += row["thesis"].get<double>();
         EXPECT_GT(row["median"].get<double>(), 0.0) << row["name"];
     }
+    const char* const first[] = {"step, short sample, 1 thread", "step, shoulder sample, 1 thread",
+                                 "step, long sample, 1 thread"};
+    for (std::size_t i = 0; i < std::size(first); ++i) EXPECT_EQ(report["rows"][i]["name"], first[i]);
     // Eight rows and four columns of Table 3; the sum is added up by hand from its print.
     EXPECT_EQ(ofTable3, 32);
     EXPECT_NEAR(printed, 33.2929, 1e-6);

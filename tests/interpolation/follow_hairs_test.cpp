@@ -6,11 +6,11 @@
 
 #include <cmath>
 
+#include "core/accuracy/guide_grid.h"
 #include "core/base/hash.h"
 #include "core/base/parallel.h"
 #include "core/geometry/curve.h"
 #include "core/interpolation/follow_hairs.h"
-#include "tests/interpolation/guide_grid.h"
 
 namespace hairloom {
 namespace {
@@ -30,7 +30,7 @@ std::shared_ptr<const ScalpMesh> plate() {
 /// of x at the tip, 0.1 m high, with two triangles for each square of roots.
 template <class Lean>
 Groom field(std::uint32_t points, Lean lean, bool withScalp = true) {
-    Groom groom = test::guidesOnGrid({kSide, kSide, points, kSpacing, 0.1f}, lean);
+    Groom groom = scenes::guidesOnGrid({kSide, kSide, points, kSpacing, 0.1f}, lean);
     if (!withScalp) return groom;
     const RootTriangulation triangulation = groom.triangulation;
     bindToScalp(groom, plate(), {});  // which forgets the triangulation

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "core/base/random.h"
+#include "core/accuracy/head_scene.h"
 #include "core/render/picture.h"
 #include "tests/gpu/test_backend.h"
 
@@ -46,44 +46,18 @@ struct TestStrands {
     }
 };
 
-/// An ellipsoid of the size of a head around the origin, with strands combed down from the crown.
+/// A head around the origin, with strands combed down from the crown.
 struct TestHead {
     std::vector<Vec3f> positions;
     std::vector<std::uint32_t> indices;
     TestStrands strands;
 
     explicit TestHead(std::uint32_t strandCount) {
-        constexpr std::uint32_t kRings = 16, kSectors = 24;
-        const Vec3f axes(0.075f, 0.11f, 0.095f);
-        for (std::uint32_t r = 0; r <= kRings; ++r) {
-            for (std::uint32_t s = 0; s < kSectors; ++s) {
-                positions.push_back(at(axes, kPi * static_cast<float>(r) / kRings,
-                                       2 * kPi * static_cast<float>(s) / kSectors));
-            }
-        }
-        for (std::uint32_t r = 0; r < kRings; ++r) {
-            for (std::uint32_t s = 0; s < kSectors; ++s) {
-                const std::uint32_t a = r * kSectors + s, b = r * kSectors + (s + 1) % kSectors;
-                for (const std::uint32_t i : {a, b, a + kSectors, b, b + kSectors, a + kSectors})
-                    indices.push_back(i);
-            }
-        }
-        Random random(11);
-        for (std::uint32_t i = 0; i < strandCount; ++i) {
-            const float phi = random.uniform(0, 2 * kPi);
-            const float theta = random.uniform(0.05f, 1.2f);
-            const float lift = random.uniform(1.02f, 1.12f);
-            for (int k = 0; k < 8; ++k) {
-                const float grown = 1 + (lift - 1) * std::min(1.0f, static_cast<float>(k) / 2.0f);
-                strands.positions.push_back(at(axes * grown, theta + 0.16f * static_cast<float>(k), phi));
-                strands.radii.push_back(0.00015f);
-            }
-            strands.offsets.push_back(static_cast<std::uint32_t>(strands.positions.size()));
-        }
-    }
-    static Vec3f at(const Vec3f& axes, float theta, float phi) {
-        return {axes.x() * std::sin(theta) * std::cos(phi), axes.y() * std::cos(theta),
-                axes.z() * std::sin(theta) * std::sin(phi)};
+        scenes::HeadSkin skin(16, 24);
+        positions = std::move(skin.points);
+        indices = std::move(skin.indices);
+        scenes::CombedStrands combed(strandCount);
+        strands = {std::move(combed.offsets), std::move(combed.positions), std::move(combed.radii)};
     }
     RenderScene scene() const {
         RenderScene result;

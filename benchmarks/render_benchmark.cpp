@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/render_bench.h"
+// What drawing hair costs on a device, with what is changed one at a time.
 
 #include <fmt/format.h>
 
@@ -9,25 +9,65 @@
 #include <memory>
 #include <tuple>
 
-#include "cli/bench_head.h"
-#include "cli/progress.h"
-#include "cli/stopwatch.h"
+#include "benchmarks/measurement.h"
+#include "benchmarks/sample_hair.h"
+#include "core/accuracy/head_scene.h"
 #include "core/base/random.h"
+#include "core/base/stopwatch.h"
+#include "core/gpu/device.h"
 #include "core/render/renderer.h"
+#include "core/scene/groom_scene.h"
 
-namespace hairloom::cli {
+namespace hairloom::benchmarks {
 namespace {
 
 constexpr int kWarmUp = 3;
 
-/// An ellipsoid of the size of a head, and hair combed down from its crown.
-struct HeadOfHair {
-    BenchHead head{96};
-    std::vector<std::uint32_t> offsets{0};
+/// One way of drawing one scene. Each frame has other positions, so that every pass runs.
+struct RenderCase {
+    std::string name;
+    const Sample* sample = nullptr;  ///< else a made-up head
+    std::uint32_t hairs = 0;
+    render::FibreMaterial shading;  ///< that of Marschner, single scattering, unless the name says otherwise
+    render::RenderOptions options;
+    bool sky = false;   ///< light from around as well
+    Measurement frame;  ///< all passes on the device, ms; wall time where it has no clock
+    Measurement wall;   ///< from recording to the end on the device, ms, with the upload of positions
+    std::vector<Measurement> passes;  ///< ms
+    std::uint64_t targetBytes = 0;
+    std::optional<double> limit;  ///< ms that the frame may take, where that is laid down for this device
+
+    bool met() const { return !limit || frame.median() <= *limit; }
+};
+
+struct RenderBench {
+    gpu::DeviceInfo device;
+    std::vector<RenderCase> cases;
+    std::vector<std::string> notes;  ///< what could not be measured, and why
+};
+
+inline constexpr std::uint32_t kBenchSegments = 18;
+
+/// A scene whose strands are in one place in one frame, in another in the next.
+struct Subject {
+    virtual ~Subject() = default;
+    virtual render::RenderScene scene() const = 0;
+
     std::vector<Vec3f> hair;
     std::vector<Vec3f> moved;  ///< the same, blown aside
+};
 
-    explicit HeadOfHair(std::uint32_t hairs) {
+/// `along` from 0 at the root to 1.
+Vec3f blownAside(const Vec3f& p, float along) {
+    return p + Vec3f(0.03f, 0.01f, 0.015f) * (along * along);
+}
+
+/// A head, and hair combed down from its crown.
+struct CombedHead : Subject {
+    scenes::HeadSkin head{48, 96};
+    std::vector<std::uint32_t> offsets{0};
+
+    explicit CombedHead(std::uint32_t hairs) {
         Random random(7);
         for (std::uint32_t i = 0; i < hairs; ++i) {
             const float around = random.uniform(0, 2 * kPi);
@@ -38,15 +78,14 @@ struct HeadOfHair {
                 const float along = static_cast<float>(k) / kBenchSegments;
                 const float grown = 1 + (lift - 1) * std::min(1.0f, 4 * along);
                 const float side = around + 0.03f * std::sin(9 * along + wave);
-                const Vec3f p = onBenchHead(grown, down + 1.3f * along, side);
-                hair.push_back(p);
-                moved.push_back(p + Vec3f(0.03f, 0.01f, 0.015f) * (along * along));
+                hair.push_back(scenes::onHead(grown, down + 1.3f * along, side));
+                moved.push_back(blownAside(hair.back(), along));
             }
             offsets.push_back(static_cast<std::uint32_t>(hair.size()));
         }
     }
 
-    render::RenderScene scene() const {
+    render::RenderScene scene() const override {
         render::RenderScene scene;
         render::RenderMesh mesh;
         mesh.positions_ws = head.points;
@@ -58,6 +97,36 @@ struct HeadOfHair {
         scene.strands = {strands};
         return scene;
     }
+};
+
+/// A sample hairstyle as the editor draws it, follow hairs and all.
+class SampleHead : public Subject {
+  public:
+    static Result<std::unique_ptr<SampleHead>> make(const Groom& groom) {
+        auto scene = GroomScene::make(groom, nullptr, nullptr, {}, {});
+        if (!scene) return tl::unexpected(scene.error());
+        return std::unique_ptr<SampleHead>(new SampleHead(std::move(*scene)));
+    }
+    render::RenderScene scene() const override { return scene_.scene(); }
+    std::uint32_t hairs() const { return hairs_; }
+
+  private:
+    explicit SampleHead(GroomScene scene) : scene_(std::move(scene)) {
+        const render::RenderScene drawn = scene_.scene();
+        const render::RenderStrands& strands = drawn.strands.front();
+        hair.assign(strands.positions_ws.begin(), strands.positions_ws.end());
+        hairs_ = static_cast<std::uint32_t>(strands.offsets.size() - 1);
+        for (std::uint32_t s = 0; s < hairs_; ++s) {
+            const std::uint32_t first = strands.offsets[s], last = strands.offsets[s + 1] - 1;
+            for (std::uint32_t p = first; p <= last; ++p) {
+                const float along = static_cast<float>(p - first) / static_cast<float>(last - first);
+                moved.push_back(blownAside(hair[p], along));
+            }
+        }
+    }
+
+    GroomScene scene_;
+    std::uint32_t hairs_ = 0;
 };
 
 Measurement& passOf(RenderCase& which, const std::string& name) {
@@ -72,10 +141,7 @@ class RenderMeasuring {
     RenderMeasuring(gpu::Device& device, int repetitions) : device_(device), repetitions_(repetitions) {}
 
     Status run(RenderCase& which) {
-        if (hair_ == nullptr || hairs_ != which.hairs) {
-            hair_ = std::make_unique<HeadOfHair>(which.hairs);
-            hairs_ = which.hairs;
-        }
+        if (auto status = take(which); !status) return status;
         render::RenderScene scene = hair_->scene();
         scene.strands[0].material.fibre = which.shading;
         const float aspect =
@@ -104,6 +170,21 @@ class RenderMeasuring {
     }
 
   private:
+    /// Keeps the hair of the case before where it is the same.
+    Status take(RenderCase& which) {
+        if (which.sample != nullptr) {
+            auto made = SampleHead::make(which.sample->groom);
+            if (!made) return tl::unexpected(made.error());
+            which.hairs = (*made)->hairs();
+            hair_ = std::move(*made);
+            hairs_ = 0;
+        } else if (hair_ == nullptr || hairs_ != which.hairs) {
+            hair_ = std::make_unique<CombedHead>(which.hairs);
+            hairs_ = which.hairs;
+        }
+        return {};
+    }
+
     Status frame(RenderCase& which, render::Renderer& renderer, const gpu::TexturePtr& target, int number) {
         const Stopwatch watch;
         auto status = renderer.setStrandPositions(0, number % 2 == 0 ? hair_->hair : hair_->moved);
@@ -128,14 +209,15 @@ class RenderMeasuring {
 
     gpu::Device& device_;
     int repetitions_;
-    std::unique_ptr<HeadOfHair> hair_;
-    std::uint32_t hairs_ = 0;
+    std::unique_ptr<Subject> hair_;
+    std::uint32_t hairs_ = 0;  ///< of a made-up head; 0 for a sample
 };
 
 class CaseList {
   public:
-    CaseList(const RenderBenchOptions& wanted, const gpu::DeviceInfo& device, RenderBench& bench)
-        : device_(device), bench_(bench), gpu_(device.type != gpu::DeviceType::Cpu) {
+    CaseList(const Options& wanted, const std::vector<Sample>& samples, const gpu::DeviceInfo& device,
+             RenderBench& bench)
+        : samples_(samples), device_(device), bench_(bench), gpu_(device.type != gpu::DeviceType::Cpu) {
         counts_ = wanted.hairs;
         if (counts_.empty()) {
             counts_ = gpu_ ? std::vector<std::uint32_t>{3'100, 9'300, 18'300, 100'000}
@@ -148,6 +230,10 @@ class CaseList {
     }
 
     void add() {
+        for (const Sample& sample : samples_) {
+            add(sample.name, 0, size_, [](auto&) {});
+            bench_.cases.back().sample = &sample;
+        }
         for (const std::uint32_t hairs : counts_) {
             const bool limited = gpu_ && hairs == 100'000 && size_ == std::pair(1920u, 1080u);
             add(
@@ -242,6 +328,7 @@ class CaseList {
         }
     }
 
+    const std::vector<Sample>& samples_;
     const gpu::DeviceInfo& device_;
     RenderBench& bench_;
     bool gpu_;
@@ -255,24 +342,24 @@ std::string inWords(const Measurement& m) {
     return fmt::format("{:.3g} ({:.3g}…{:.3g})", m.median(), minimum, maximum);
 }
 
-}  // namespace
-
-Result<RenderBench> runRenderBench(const RenderBenchOptions& options) {
+Result<RenderBench> measureAll(const Options& options) {
+    constexpr int kUsualRepetitions = 20;
     gpu::DeviceOptions wanted;
     wanted.index = options.device;
     const auto device = gpu::createDevice(wanted);
     if (!device) return tl::unexpected(device.error());
+    const auto& hairstyles = samples();
+    if (!hairstyles) return tl::unexpected(hairstyles.error());
     RenderBench bench;
     bench.device = (*device)->info();
     if (bench.device.timestampPeriodNs <= 0) {
         bench.notes.emplace_back("the device has no clock: frames are wall times, passes are 0");
     }
-    CaseList(options, bench.device, bench).add();
-    RenderMeasuring measuring(**device, options.repetitions);
-    Progress progress("drawing", bench.cases.size());
+    CaseList(options, *hairstyles, bench.device, bench).add();
+    RenderMeasuring measuring(**device, options.repetitions.value_or(kUsualRepetitions));
     for (std::size_t i = 0; i < bench.cases.size(); ++i) {
         if (auto status = measuring.run(bench.cases[i]); !status) return tl::unexpected(status.error());
-        progress.done(i + 1);
+        if (options.progress) options.progress("drawing", i + 1, bench.cases.size());
     }
     return bench;
 }
@@ -332,4 +419,16 @@ std::string markdownOf(const RenderBench& bench, const std::string& command) {
     return text;
 }
 
-}  // namespace hairloom::cli
+Result<Outcome> run(const Options& options) {
+    const auto bench = measureAll(options);
+    if (!bench) return tl::unexpected(bench.error());
+    return Outcome{reportOf(*bench), markdownOf(*bench, options.commandLine), {}};
+}
+
+}  // namespace
+
+Benchmark renderBenchmark() {
+    return {"render", "drawing hair", {"--hairs", "--size", "--device", "--markdown"}, run};
+}
+
+}  // namespace hairloom::benchmarks

@@ -9,16 +9,17 @@
 #include <string_view>
 #include <vector>
 
-#include "cli/measurements.h"
+#include "benchmarks/measurement.h"
 #include "core/accuracy/machine.h"
 #include "core/accuracy/step_cost.h"
 
-namespace hairloom::cli {
+namespace hairloom::benchmarks {
 
-struct SimulationBenchOptions {
-    std::vector<std::uint32_t> strands{300, 2'000, 10'000, 100'000};
-    int repetitions = 5;
-    double seconds = 0.1;  ///< of one repetition, about
+/// A step of a sample hairstyle with its own settings, on a nodding head.
+struct SampleStep {
+    Measurement step;  ///< nanoseconds per particle and substep
+    std::size_t threads = 1;
+    double work = 0;  ///< particles times substeps of a frame
 };
 
 /// One head of hair, in nanoseconds per particle and substep.
@@ -68,6 +69,7 @@ struct Wanted {
 struct SimulationBench {
     Machine machine;
     std::vector<std::uint32_t> strands;  ///< as asked for
+    std::vector<SampleStep> samples;
     std::vector<StepCosts> steps;
     std::vector<ThesisCosts> thesis;
     std::vector<InstructionSetCosts> instructionSets;  ///< the best first
@@ -79,10 +81,7 @@ struct SimulationBench {
 inline constexpr std::uint32_t kThesisSegments = 30;
 inline constexpr std::uint32_t kThesisSubsteps = 8;
 
-SimulationBench runSimulationBench(const SimulationBenchOptions& options);
-
-Report reportOf(const SimulationBench& bench);
 /// The tables as Markdown; `command` is how they were made.
 std::string markdownOf(const SimulationBench& bench, const std::string& command);
 
-}  // namespace hairloom::cli
+}  // namespace hairloom::benchmarks

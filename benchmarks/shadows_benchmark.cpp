@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/shadow_bench.h"
+// How far shadow maps of hair are from fibres counted on the CPU, by kind, layers and resolution; and those
+// of the head on hair from rays. Errors, not times.
 
 #include <fmt/format.h>
 
@@ -7,13 +8,12 @@
 #include <cmath>
 #include <numeric>
 
-#include "cli/bench_head.h"
-#include "cli/progress.h"
+#include "benchmarks/benchmark.h"
+#include "core/accuracy/head_scene.h"
 #include "core/accuracy/plot.h"
-#include "core/base/random.h"
 #include "core/render/shadow_truth.h"
 
-namespace hairloom::cli {
+namespace hairloom::benchmarks {
 namespace {
 
 using render::Shadows;
@@ -46,44 +46,37 @@ constexpr HeadKind kHeadKinds[] = {{"test of depth", 0},
                                    {"absorption, 1000 a metre", 1000},
                                    {"absorption, 3000 a metre", 3000}};
 
-/// Hair combed down around a head that is not there.
-struct BallOfHair {
-    std::vector<std::uint32_t> offsets{0};
-    std::vector<Vec3f> points;
-    std::vector<float> radii;
-
-    explicit BallOfHair(std::uint32_t hairs) {
-        constexpr int kPoints = 8;
-        constexpr float kRadius = 0.00015f;
-        Random random(11);
-        for (std::uint32_t i = 0; i < hairs; ++i) {
-            const float around = random.uniform(0, 2 * kPi), down = random.uniform(0.05f, 1.2f);
-            const float lift = random.uniform(1.02f, 1.12f);
-            for (int k = 0; k < kPoints; ++k) {
-                const float size = 1 + (lift - 1) * std::min(1.0f, static_cast<float>(k) / 2);
-                const float angle = down + 0.16f * static_cast<float>(k);
-                points.push_back(onBenchHead(size, angle, around));
-                radii.push_back(kRadius);
-            }
-            offsets.push_back(static_cast<std::uint32_t>(points.size()));
-        }
-    }
-    render::RenderScene scene() const {
-        render::RenderScene scene;
-        render::RenderStrands strands;
-        strands.offsets = offsets;
-        strands.positions_ws = points;
-        strands.radii = radii;
-        scene.strands = {strands};
-        render::Light light;
-        light.toLight_ws = Vec3f(0.4f, 0.8f, 0.45f);
-        scene.lights = {light};
-        return scene;
-    }
+struct ShadowRow {
+    std::string name;
+    std::vector<double> errors;  ///< root mean square of the transmittance, by resolution
 };
 
+struct ShadowBench {
+    std::string device;
+    std::size_t hairs = 0, points = 0;
+    double fibres = 0;  ///< mean of those counted
+    std::vector<std::uint32_t> resolutions;
+    std::vector<ShadowRow> rows;
+    double visible = 0;               ///< share of the points that the head does not shade
+    std::vector<ShadowRow> headRows;  ///< of the head's shadow on hair
+};
+
+/// Hair combed down around a head that is not there.
+render::RenderScene sceneOf(const scenes::CombedStrands& hair) {
+    render::RenderScene scene;
+    render::RenderStrands strands;
+    strands.offsets = hair.offsets;
+    strands.positions_ws = hair.positions;
+    strands.radii = hair.radii;
+    scene.strands = {strands};
+    render::Light light;
+    light.toLight_ws = Vec3f(0.4f, 0.8f, 0.45f);
+    scene.lights = {light};
+    return scene;
+}
+
 Status measureHead(gpu::Device& device, render::RenderScene scene, ShadowBench& bench) {
-    const BenchHead head(72);
+    const scenes::HeadSkin head(48, 72);
     render::RenderMesh mesh;
     mesh.positions_ws = head.points;
     mesh.indices = head.indices;
@@ -123,16 +116,14 @@ std::string tableOf(const std::vector<std::uint32_t>& resolutions, const std::ve
     return text;
 }
 
-}  // namespace
-
-Result<ShadowBench> runShadowBench(const ShadowBenchOptions& options) {
+Result<ShadowBench> measureAll(const Options& options) {
     gpu::DeviceOptions wanted;
     wanted.index = options.device;
     const auto device = gpu::createDevice(wanted);
     if (!device) return tl::unexpected(device.error());
     constexpr std::uint32_t kHairs = 1500;
-    const BallOfHair hair(kHairs);
-    const render::RenderScene scene = hair.scene();
+    const scenes::CombedStrands hair(kHairs);
+    const render::RenderScene scene = sceneOf(hair);
     ShadowBench bench;
     bench.device = (*device)->info().name;
     bench.hairs = kHairs;
@@ -142,7 +133,6 @@ Result<ShadowBench> runShadowBench(const ShadowBenchOptions& options) {
     const render::ShadowCases cases = countFibres(scene, bench.points, 8);
     bench.fibres = std::accumulate(cases.counted.begin(), cases.counted.end(), 0.0) /
                    static_cast<double>(cases.counted.size());
-    Progress progress("shadow maps", std::size(kKinds));
     for (const Kind& kind : kKinds) {
         ShadowRow row{kind.name, {}};
         for (const std::uint32_t resolution : bench.resolutions) {
@@ -151,7 +141,7 @@ Result<ShadowBench> runShadowBench(const ShadowBenchOptions& options) {
             row.errors.push_back(*error);
         }
         bench.rows.push_back(std::move(row));
-        progress.done(bench.rows.size());
+        if (options.progress) options.progress("shadow maps", bench.rows.size(), std::size(kKinds));
     }
     if (auto measured = measureHead(**device, scene, bench); !measured)
         return tl::unexpected(measured.error());
@@ -200,4 +190,20 @@ std::string figureOf(const ShadowBench& bench) {
     return svg(plot);
 }
 
-}  // namespace hairloom::cli
+Result<Outcome> run(const Options& options) {
+    const auto bench = measureAll(options);
+    if (!bench) return tl::unexpected(bench.error());
+    return Outcome{
+        reportOf(*bench),
+        {},
+        {{"shadows.md", markdownOf(*bench, options.commandLine)}, {"shadows.svg", figureOf(*bench)}}};
+}
+
+}  // namespace
+
+Benchmark shadowsBenchmark() {
+    return {
+        "shadows", "errors of shadow maps against counted fibres", {"--quick", "--device", "--output"}, run};
+}
+
+}  // namespace hairloom::benchmarks

@@ -4,10 +4,10 @@
 
 #include <iterator>
 
-#include "cli/gpu_bench.h"
+#include "benchmarks/gpu_sim.h"
 #include "core/accuracy/plot.h"
 
-namespace hairloom::cli {
+namespace hairloom::benchmarks {
 namespace {
 
 Report orNull(const std::optional<double>& value) {
@@ -157,4 +157,4 @@ std::string figureOf(const GpuBench& bench) {
     return svg(plot);
 }
 
-}  // namespace hairloom::cli
+}  // namespace hairloom::benchmarks

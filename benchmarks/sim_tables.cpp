@@ -6,9 +6,9 @@
 #include <cmath>
 #include <iterator>
 
-#include "cli/simulation_bench.h"
+#include "benchmarks/sim.h"
 
-namespace hairloom::cli {
+namespace hairloom::benchmarks {
 namespace {
 
 using Out = std::back_insert_iterator<std::string>;
@@ -55,6 +55,18 @@ void writeWanted(const SimulationBench& bench, Out out) {
             out, "| Table 3, {} guides with {} neighbours | {} | every row faster than the thesis | {} |\n",
             column.guides, column.neighbours, slower.empty() ? "all faster" : "slower: " + slower,
             slower.empty() ? "met" : "**not met**");
+    }
+}
+
+void writeSamples(const SimulationBench& bench, Out out) {
+    fmt::format_to(
+        out,
+        "\n## A step of the samples\n\nNanoseconds per particle and substep, with each sample's own "
+        "settings, on a nodding head; milliseconds are of a whole frame.\n\n| what | ns | ms a frame "
+        "|\n|---|---|---|\n");
+    for (const SampleStep& sample : bench.samples) {
+        fmt::format_to(out, "| {} | {} | {} |\n", sample.step.name, spread(sample.step),
+                       shortened(sample.step.median() * sample.work * 1e-6));
     }
 }
 
@@ -167,6 +179,7 @@ std::string markdownOf(const SimulationBench& bench, const std::string& command)
     const Out out(text);
     writeMachine(bench, command, out);
     writeWanted(bench, out);
+    writeSamples(bench, out);
     writeSteps(bench, out);
     writeStages(bench, out);
     writeThesis(bench, out);
@@ -175,4 +188,4 @@ std::string markdownOf(const SimulationBench& bench, const std::string& command)
     return text;
 }
 
-}  // namespace hairloom::cli
+}  // namespace hairloom::benchmarks

@@ -7,20 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "cli/job.h"
+#include "benchmarks/benchmark.h"
 #include "core/accuracy/gpu_cost.h"
 #include "core/accuracy/machine.h"
 
-namespace hairloom::cli {
-
-struct GpuBenchOptions {
-    std::vector<std::uint32_t> strands{100, 200, 300, 1'000, 3'000, 10'000, 30'000, 100'000};
-    /// Numbers of strands at which effects and layouts are told apart.
-    std::vector<std::uint32_t> details{300, 10'000, 100'000};
-    double seconds = 0.2;  ///< of one measurement, about
-    bool cpu = true;
-    std::optional<std::uint32_t> device;
-};
+namespace hairloom::benchmarks {
 
 struct GpuBenchRow {
     std::uint32_t strands = 0;
@@ -42,11 +33,9 @@ struct GpuBench {
         crossesAll;  ///< strands from which the GPU is faster than one, all threads
 };
 
-Result<GpuBench> runGpuBench(const GpuBenchOptions& options);
-
 Report reportOf(const GpuBench& bench);
 std::string csvOf(const GpuBench& bench);
 std::string markdownOf(const GpuBench& bench, const std::string& command);
 std::string figureOf(const GpuBench& bench);
 
-}  // namespace hairloom::cli
+}  // namespace hairloom::benchmarks

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Guides on a grid, for the tests of interpolation and its benchmark.
+// Guides on a grid, for the tests of interpolation and its benchmark: made from numbers alone.
 
 #include <utility>
 #include <vector>
 
 #include "core/groom/groom.h"
 
-namespace hairloom::test {
+namespace hairloom::scenes {
 
 struct GuideGrid {
     std::uint32_t columns, rows;
@@ -42,4 +42,4 @@ Groom guidesOnGrid(const GuideGrid& grid, Lean lean) {
     return groom;
 }
 
-}  // namespace hairloom::test
+}  // namespace hairloom::scenes

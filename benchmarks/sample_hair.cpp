@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "benchmarks/sample_hair.h"
+
+#include <algorithm>
+
+#include "core/geometry/curve.h"
+#include "core/scene/sample.h"
+#include "core/simulation/scene_input.h"
+#include "importers/child_process.h"
+
+namespace hairloom::benchmarks {
+namespace {
+
+double meanLength(const Groom& groom) {
+    double sum = 0;
+    for (std::size_t s = 0; s < groom.strandCount(); ++s) sum += polylineLength(groom.strand(s));
+    return sum / static_cast<double>(groom.strandCount());
+}
+
+Result<std::vector<Sample>> makeSamples() {
+    const auto folder = findSamples(programFolder());
+    if (folder.empty()) {
+        return fail("the sample hairstyles are not beside this program",
+                    "expected the environment variable HAIRLOOM_SAMPLES to name their folder");
+    }
+    std::vector<Sample> made;
+    for (const std::string& name : sampleNames(folder)) {
+        auto groom = makeSample(folder, name);
+        if (!groom) return tl::unexpected(groom.error());
+        made.push_back({name + " sample", std::move(*groom)});
+    }
+    std::ranges::sort(made, {}, [](const Sample& sample) { return meanLength(sample.groom); });
+    return made;
+}
+
+class NoddingHair : public MovingStrands {
+  public:
+    NoddingHair(SceneInput scene, std::unique_ptr<HeadMotion> motion)
+        : scene_(std::move(scene)), motion_(std::move(motion)) {}
+
+    runtime::StrandsView view() const override { return scene_.strands(); }
+    void move(double time, std::vector<runtime::RootFrame>& roots,
+              std::vector<runtime::Sphere>& spheres) const override {
+        const HeadPose pose = motion_->poseAt(static_cast<float>(time));
+        roots = scene_.rootsAt(pose);
+        spheres = scene_.spheresAt(pose);
+    }
+
+  private:
+    SceneInput scene_;
+    std::unique_ptr<HeadMotion> motion_;
+};
+
+}  // namespace
+
+const Result<std::vector<Sample>>& samples() {
+    static const Result<std::vector<Sample>> made = makeSamples();
+    return made;
+}
+
+Result<std::unique_ptr<MovingStrands>> nodding(const Groom& groom) {
+    auto scene = SceneInput::make(groom);
+    if (!scene) return tl::unexpected(scene.error());
+    auto motion = makeRigidMotion("nod", groom);
+    if (!motion) return tl::unexpected(motion.error());
+    return std::make_unique<NoddingHair>(std::move(*scene), std::move(*motion));
+}
+
+}  // namespace hairloom::benchmarks

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The sample hairstyles, which every benchmark of hair measures first.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/accuracy/step_cost.h"
+#include "core/groom/groom.h"
+
+namespace hairloom::benchmarks {
+
+struct Sample {
+    std::string name;  ///< "short sample"
+    Groom groom;
+};
+/// From short to long hair; made from the folder `samples` at the first call. Errors: there is no such folder
+/// beside the program or above it, a sample does not read.
+const Result<std::vector<Sample>>& samples();
+
+/// A groom's strands on a nodding head. Errors: those of SceneInput::make.
+Result<std::unique_ptr<MovingStrands>> nodding(const Groom& groom);
+
+}  // namespace hairloom::benchmarks
