@@ -4,7 +4,7 @@
 #include <QTimer>
 
 #include "editor/shell/main_window.h"
-#include "editor/shell/theme.h"
+#include "editor/style/theme.h"
 
 int main(int argc, char** argv) {
     using namespace hairloom::editor;

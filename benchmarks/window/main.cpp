@@ -17,7 +17,7 @@
 #include "benchmarks/measurement.h"
 #include "core/editing/brush_list.h"
 #include "core/editing/document.h"
-#include "editor/document/files.h"
+#include "editor/shell/files.h"
 #include "editor/shell/main_window.h"
 #include "editor/tools/brush_tool.h"
 #include "editor/viewport/render_work.h"
@@ -45,13 +45,13 @@ class Desk {
         viewport().frameAll();
         QCoreApplication::processEvents();
     }
-    Session& session() { return window_.session(); }
-    Document& document() { return window_.session().document; }
-    Viewport& viewport() { return *window_.session().viewport; }
+    PanelParts parts() { return window_.parts(); }
+    QtDocument& document() { return window_.parts().document; }
+    Viewport& viewport() { return window_.parts().viewport; }
 
     BrushTool& take(const char* name) {
         window_.actions().get(QString("tool.") + name).trigger();
-        auto& tool = dynamic_cast<BrushTool&>(*session().tools.find(name));
+        auto& tool = dynamic_cast<BrushTool&>(*parts().tools.find(name));
         tool.setRadius(0.02f);
         return tool;
     }
@@ -179,8 +179,8 @@ Status sampleOpens(Rounds& rounds, const QString& name) {
         window.show();
         QCoreApplication::processEvents();
         rounds.resume();
-        openSample(window.session(), name);
-        window.session().tasks.finish();
+        window.files().openSample(name);
+        window.parts().tasks.finish();
         QCoreApplication::processEvents();
         rounds.pause();
         window.close();

@@ -10,7 +10,7 @@
 #include <QVBoxLayout>
 #include <algorithm>
 
-#include "editor/panels/panel.h"
+#include "editor/fields/blocks.h"
 #include "exporters/strands.h"
 #include "importers/length_unit.h"
 
@@ -39,9 +39,10 @@ const std::vector<Choice>& choices() {
 
 }  // namespace
 
-ExportDialog::ExportDialog(Session& session, QWidget* parent)
+ExportDialog::ExportDialog(QtDocument& document, Tasks& tasks, Messages& messages, QWidget* parent)
     : QDialog(parent),
-      session_(session),
+      document_(document),
+      tasks_(tasks),
       target_(new QComboBox),
       note_(new QLabel),
       unit_(new QComboBox),
@@ -96,7 +97,7 @@ ExportDialog::ExportDialog(Session& session, QWidget* parent)
     connect(write_, &QPushButton::clicked, this, &ExportDialog::choosePath);
     connect(target_, &QComboBox::currentIndexChanged, this, &ExportDialog::takeTarget);
     takeTarget(0);
-    write_->setEnabled(session_.document.groom().strandCount() > 0);
+    write_->setEnabled(document_.groom().strandCount() > 0);
 }
 
 void ExportDialog::takeTarget(int index) {
@@ -113,7 +114,7 @@ void ExportDialog::takeTarget(int index) {
 void ExportDialog::choosePath() {
     const StrandWriter& writer = *choices()[static_cast<std::size_t>(target_->currentIndex())].writer;
     const QString suffix = "." + QString::fromStdString(writer.name);
-    const QString name = QFileInfo(session_.document.title()).completeBaseName() + suffix;
+    const QString name = QFileInfo(document_.title()).completeBaseName() + suffix;
     const QString path = QFileDialog::getSaveFileName(this, windowTitle(), name, "*" + suffix);
     if (!path.isEmpty()) exportTo(path);
 }
@@ -125,19 +126,19 @@ void ExportDialog::exportTo(const QString& path) {
     options.up = up_->currentIndex() == 1 ? UpAxis::Z : UpAxis::Y;
     options.pointsPerStrand = static_cast<std::uint32_t>(points_->value());
     write_->setEnabled(false);
-    const bool started = session_.tasks.run<ExportReport>(
+    const bool started = tasks_.run<ExportReport>(
         tr("Exporting %1").arg(QFileInfo(path).fileName()),
-        [groom = session_.document.groom(), path, options, &writer](TaskControl&) {
+        [groom = document_.groom(), path, options, &writer](TaskControl&) {
             return writer.write(groom, path.toStdString(), options);
         },
-        [self = QPointer(this), &session = session_, path](ExportReport report) {
-            session.messages.say(tr("%1 written and read back").arg(QFileInfo(path).fileName()));
+        [self = QPointer(this), &messages = messages_, path](ExportReport report) {
+            messages.say(tr("%1 written and read back").arg(QFileInfo(path).fileName()));
             if (!self) return;
             self->report_ = std::move(report);
             self->showReport();
         });
     if (!started) write_->setEnabled(true);
-    connect(&session_.tasks, &Tasks::stopped, this, [this] { write_->setEnabled(true); });
+    connect(&tasks_, &Tasks::stopped, this, [this] { write_->setEnabled(true); });
 }
 
 void ExportDialog::showReport() {

@@ -9,7 +9,9 @@
 #include <QSpinBox>
 #include <QTreeWidget>
 
-#include "editor/session.h"
+#include "editor/document/messages.h"
+#include "editor/document/qt_document.h"
+#include "editor/document/tasks.h"
 #include "exporters/report.h"
 
 namespace hairloom::editor {
@@ -18,7 +20,7 @@ class ExportDialog : public QDialog {
     Q_OBJECT
 
   public:
-    explicit ExportDialog(Session& session, QWidget* parent = nullptr);
+    ExportDialog(QtDocument& document, Tasks& tasks, Messages& messages, QWidget* parent = nullptr);
 
     /// Writes to this file with the options that are set; the report follows when it is done.
     void exportTo(const QString& path);
@@ -30,7 +32,8 @@ class ExportDialog : public QDialog {
     void showReport();
     void choosePath();
 
-    Session& session_;
+    QtDocument& document_;
+    Tasks& tasks_;
     QComboBox* target_;
     QLabel* note_;
     QComboBox* unit_;

@@ -12,9 +12,10 @@
 
 namespace hairloom::editor {
 
-ImportDialog::ImportDialog(Session& session, const QString& path, QWidget* parent)
+ImportDialog::ImportDialog(QtDocument& document, Tasks& tasks, const QString& path, QWidget* parent)
     : QDialog(parent),
-      session_(session),
+      document_(document),
+      tasks_(tasks),
       path_(path),
       unit_(new QComboBox),
       up_(new QComboBox),
@@ -76,9 +77,9 @@ void ImportDialog::read() {
     summary_->setText(tr("Reading…"));
     take_->setEnabled(false);
     // A later change of the options supersedes what is being read.
-    session_.tasks.cancel();
-    session_.tasks.finish();
-    session_.tasks.run<std::pair<Groom, QString>>(
+    tasks_.cancel();
+    tasks_.finish();
+    tasks_.run<std::pair<Groom, QString>>(
         tr("Reading %1").arg(QFileInfo(path_).fileName()),
         [path = path_, options = options()](TaskControl&) -> Result<std::pair<Groom, QString>> {
             auto imported = importStrands(path.toStdString(), options);
@@ -108,7 +109,7 @@ void ImportDialog::read() {
             self->preview_ = std::move(found.first);
             self->summary_->setText(found.second);
             self->take_->setEnabled(self->preview_.strandCount() > 0);
-            self->view_->show(self->preview_, self->session_.document.groom().scalp);
+            self->view_->show(self->preview_, self->document_.groom().scalp);
         });
 }
 

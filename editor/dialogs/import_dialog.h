@@ -9,7 +9,8 @@
 #include <QPushButton>
 #include <QSpinBox>
 
-#include "editor/session.h"
+#include "editor/document/qt_document.h"
+#include "editor/document/tasks.h"
 #include "importers/strands.h"
 
 namespace hairloom::editor {
@@ -20,7 +21,7 @@ class ImportDialog : public QDialog {
     Q_OBJECT
 
   public:
-    ImportDialog(Session& session, const QString& path, QWidget* parent = nullptr);
+    ImportDialog(QtDocument& document, Tasks& tasks, const QString& path, QWidget* parent = nullptr);
 
     StrandImportOptions options() const;
     /// What the file holds with these options; empty before it was read or where it cannot be.
@@ -29,7 +30,8 @@ class ImportDialog : public QDialog {
   private:
     void read();
 
-    Session& session_;
+    QtDocument& document_;
+    Tasks& tasks_;
     QString path_;
     QComboBox* unit_;
     QComboBox* up_;

@@ -7,7 +7,7 @@
 #include <QLineEdit>
 #include <QTreeWidget>
 
-#include "editor/shell/actions.h"
+#include "editor/style/actions.h"
 
 namespace hairloom::editor {
 

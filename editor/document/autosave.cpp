@@ -34,7 +34,7 @@ void removeAll(const QString& file) {
 
 }  // namespace
 
-Autosave::Autosave(Document& document, const Preferences& preferences, QObject* parent)
+Autosave::Autosave(QtDocument& document, const Preferences& preferences, QObject* parent)
     : QObject(parent),
       document_(document),
       preferences_(preferences),
@@ -43,8 +43,8 @@ Autosave::Autosave(Document& document, const Preferences& preferences, QObject* 
     lock_->setStaleLockTime(0);  // the lock says that this program runs, however long it does
     lock_->lock();
     connect(&timer_, &QTimer::timeout, this, &Autosave::saveNow);
-    connect(&document_, &Document::changed, this, [this] { dirty_ = true; });
-    connect(&document_, &Document::replaced, this, [this] {
+    connect(&document_, &QtDocument::changed, this, [this] { dirty_ = true; });
+    connect(&document_, &QtDocument::replaced, this, [this] {
         finish();
         removeAll(file_);
     });

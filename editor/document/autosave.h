@@ -10,8 +10,8 @@
 #include <optional>
 #include <thread>
 
-#include "editor/document/document.h"
 #include "editor/document/preferences.h"
+#include "editor/document/qt_document.h"
 
 namespace hairloom::editor {
 
@@ -27,7 +27,7 @@ class Autosave : public QObject {
     Q_OBJECT
 
   public:
-    Autosave(Document& document, const Preferences& preferences, QObject* parent = nullptr);
+    Autosave(QtDocument& document, const Preferences& preferences, QObject* parent = nullptr);
     /// A proper end: takes the copy away.
     ~Autosave() override;
 
@@ -47,7 +47,7 @@ class Autosave : public QObject {
   private:
     void restart();
 
-    Document& document_;
+    QtDocument& document_;
     const Preferences& preferences_;
     QString file_;
     std::unique_ptr<QLockFile> lock_;

@@ -10,11 +10,11 @@ namespace hairloom::editor {
 namespace {
 
 template <class S>
-std::vector<Field> fieldsIn(S Groom::*section, Changes changes) {
+std::vector<Field> fieldsIn(S Groom::*section, editing::Part part) {
     std::vector<Field> fields;
     for (const runtime::Field<S>& described : fieldsOf(S{})) {
         if (described.components() == 0) continue;
-        Field field{described, labelOf(described.name), {}, changes, {}, {}};
+        Field field{described, labelOf(described.name), {}, part, {}, {}};
         for (std::uint32_t c = 0; c < field.components(); ++c)
             field.defaultValue[c] = defaultValue(described, c);
         field.value = [&described, section](const Groom& groom, std::uint32_t component) {
@@ -37,19 +37,19 @@ QStringList Field::choiceLabels() const {
 }
 
 std::vector<Field> simulationFields() {
-    return fieldsIn(&Groom::simulation, Change::Simulation);
+    return fieldsIn(&Groom::simulation, editing::Part::Physics);
 }
 
 std::vector<Field> materialFields() {
-    return fieldsIn(&Groom::material, Change::Look);
+    return fieldsIn(&Groom::material, editing::Part::Material);
 }
 
 std::vector<Field> followHairFields() {
-    return fieldsIn(&Groom::interpolation, Change::FollowHairs);
+    return fieldsIn(&Groom::interpolation, editing::Part::Interpolation);
 }
 
 std::vector<Field> placementFields() {
-    return fieldsIn(&Groom::placement, Change::Placement);
+    return fieldsIn(&Groom::placement, editing::Part::Placement);
 }
 
 std::vector<Field> pick(const std::vector<Field>& all, const QStringList& names) {

@@ -9,15 +9,15 @@
 #include <vector>
 
 #include "core/groom/file/fields.h"
-#include "editor/document/document.h"
 #include "editor/document/preferences.h"
+#include "editor/document/qt_document.h"
 
 namespace hairloom::editor {
 
 struct Field : FieldInfo {
-    QString label;                         ///< "Wind speed"
-    std::array<double, 3> defaultValue{};  ///< the default of each component
-    Changes changes;
+    QString label;                             ///< "Wind speed"
+    std::array<double, 3> defaultValue{};      ///< the default of each component
+    editing::Part part = editing::Part::None;  ///< that a change of it touches
     std::function<double(const Groom&, std::uint32_t component)> value;
     /// False, and no change, where the value is not allowed.
     std::function<bool(Groom&, double value, std::uint32_t component)> set;

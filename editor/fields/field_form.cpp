@@ -9,13 +9,14 @@
 #include <QSignalBlocker>
 #include <QToolButton>
 
+#include "core/editing/settings_commands.h"
 #include "editor/fields/colour.h"
 #include "editor/fields/number_box.h"
-#include "editor/shell/icons.h"
+#include "editor/style/icons.h"
 
 namespace hairloom::editor {
 
-FieldForm::FieldForm(Document& document, const Preferences& preferences, std::vector<Field> fields,
+FieldForm::FieldForm(QtDocument& document, const Preferences& preferences, std::vector<Field> fields,
                      QWidget* parent)
     : QWidget(parent),
       document_(document),
@@ -28,12 +29,12 @@ FieldForm::FieldForm(Document& document, const Preferences& preferences, std::ve
     grid_->setColumnStretch(1, 1);
     grid_->setColumnMinimumWidth(0, 116);
     for (const Field& field : fields_) {
-        shown_ |= field.changes;
+        shown_ = shown_ | field.part;
         addRow(field);
     }
-    connect(&document_, &Document::changed, this, &FieldForm::refresh);
-    connect(&preferences_, &Preferences::changed, this, [this] { refresh(kEverything); });
-    refresh(kEverything);
+    connect(&document_, &QtDocument::changed, this, &FieldForm::refresh);
+    connect(&preferences_, &Preferences::changed, this, [this] { refresh(editing::Part::Everything); });
+    refresh(editing::Part::Everything);
 }
 
 void FieldForm::addRow(const Field& field) {
@@ -177,18 +178,20 @@ QWidget* FieldForm::makeColour(const Field& field) {
 }
 
 void FieldForm::begin() {
-    interaction_ = Document::nextMergeKey();
+    interaction_ = QtDocument::nextMergeKey();
 }
 
 void FieldForm::store(const Field& field, double value, std::uint32_t component) {
     if (field.value(document_.groom(), component) == value) return;
     Groom groom = document_.groom();
     if (!field.set(groom, value, component)) return;
-    document_.change(field.label, field.changes, std::move(groom), interaction_);
+    document_.performMerged(interaction_, [&](const editing::Model& model) {
+        return editing::setSettings(model, groom, field.label.toStdString());
+    });
 }
 
-void FieldForm::refresh(Changes changes) {
-    if (!(changes & shown_)) return;
+void FieldForm::refresh(editing::Part parts) {
+    if (!contains(parts, shown_)) return;
     for (const auto& refresh : refreshers_) refresh();
 }
 

@@ -17,7 +17,7 @@ class FieldForm : public QWidget {
     Q_OBJECT
 
   public:
-    FieldForm(Document& document, const Preferences& preferences, std::vector<Field> fields,
+    FieldForm(QtDocument& document, const Preferences& preferences, std::vector<Field> fields,
               QWidget* parent = nullptr);
 
     /// The control of a field, for tests and help; null where there is none of that name. Objects are named
@@ -34,13 +34,13 @@ class FieldForm : public QWidget {
     /// A change of one component that belongs to the interaction which began last.
     void store(const Field& field, double value, std::uint32_t component = 0);
     void begin();
-    void refresh(Changes changes);
+    void refresh(editing::Part parts);
 
-    Document& document_;
+    QtDocument& document_;
     const Preferences& preferences_;
     std::vector<Field> fields_;
     QGridLayout* grid_;
-    Changes shown_;
+    editing::Part shown_ = editing::Part::None;  ///< parts that the fields are of
     std::vector<std::function<void()>> refreshers_;
     quint64 interaction_ = 0;
 };

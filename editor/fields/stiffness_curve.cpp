@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editor/fields/stiffness_curve.h"
 
+#include "core/editing/settings_commands.h"
+
 namespace hairloom::editor {
 
-StiffnessCurve::StiffnessCurve(Document& document, QWidget* parent) : RampEdit(parent), document_(document) {
+StiffnessCurve::StiffnessCurve(QtDocument& document, QWidget* parent)
+    : RampEdit(parent), document_(document) {
     setObjectName("stiffnessCurve");
     setToolTip(tr(
         "<p><b>Stiffness from root to tip</b></p><p>Drag a key to change how strongly hair returns to its "
         "shape "
         "there: 0 is off, 0.5 real hair, 1 rigid. A press on the line adds a key, the right button or Delete "
         "removes it, arrows move the one that was touched last.</p>"));
-    connect(&document_, &Document::changed, this, [this](Changes changes) {
-        if (changes & Change::Simulation) refresh();
+    connect(&document_, &QtDocument::changed, this, [this](editing::Part parts) {
+        if (contains(parts, editing::Part::Physics)) refresh();
     });
-    connect(this, &RampEdit::begun, this, [this] { interaction_ = Document::nextMergeKey(); });
+    connect(this, &RampEdit::begun, this, [this] { interaction_ = QtDocument::nextMergeKey(); });
     connect(this, &RampEdit::edited, this, &StiffnessCurve::store);
     refresh();
 }
@@ -26,14 +29,14 @@ void StiffnessCurve::refresh() {
 }
 
 void StiffnessCurve::store(const runtime::Ramp& levels) {
-    Groom groom = document_.groom();
-    auto& settings = groom.simulation;
+    runtime::SimulationSettings settings = document_.groom().simulation;
     settings.angularStiffness = levels.greatest();
     settings.angularCurve = levels;
     for (runtime::Ramp::Key& key : settings.angularCurve.keys)
         key.value = settings.angularStiffness > 0 ? key.value / settings.angularStiffness : 1;
-    if (settings == document_.groom().simulation) return;
-    document_.change(tr("Stiffness curve"), Change::Simulation, std::move(groom), interaction_);
+    document_.performMerged(interaction_, [&](const editing::Model& model) {
+        return editing::setPhysics(model, settings, tr("Stiffness curve").toStdString());
+    });
 }
 
 }  // namespace hairloom::editor

@@ -3,7 +3,7 @@
 // The bending stiffness along the strand as a curve. Its keys show the stiffness itself: angularStiffness is
 // the greatest of them, angularCurve their shares of it.
 
-#include "editor/document/document.h"
+#include "editor/document/qt_document.h"
 #include "editor/fields/ramp_edit.h"
 
 namespace hairloom::editor {
@@ -12,13 +12,13 @@ class StiffnessCurve : public RampEdit {
     Q_OBJECT
 
   public:
-    explicit StiffnessCurve(Document& document, QWidget* parent = nullptr);
+    explicit StiffnessCurve(QtDocument& document, QWidget* parent = nullptr);
 
   private:
     void refresh();
     void store(const runtime::Ramp& levels);
 
-    Document& document_;
+    QtDocument& document_;
     quint64 interaction_ = 0;  ///< one drag is one step of the history
 };
 

@@ -4,15 +4,17 @@
 #include <QPushButton>
 #include <QVBoxLayout>
 
+#include "core/editing/document.h"
+#include "core/editing/settings_commands.h"
 #include "editor/look/parts.h"
-#include "editor/session.h"
 
 namespace hairloom::editor {
 namespace {
 
 class CompareBar : public QWidget {
   public:
-    explicit CompareBar(Session& session) : session_(session), note_(new QLabel) {
+    CompareBar(QtDocument& document, Viewport& viewport)
+        : document_(document), viewport_(viewport), note_(new QLabel) {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(6);
@@ -37,16 +39,16 @@ class CompareBar : public QWidget {
         layout->addWidget(note_);
         connect(keep_, &QPushButton::clicked, this, [this] {
             kept_ = now();
-            session_.viewport->setComparison(show_->isChecked() ? kept_ : std::nullopt);
+            viewport_.setComparison(show_->isChecked() ? kept_ : std::nullopt);
             refresh();
         });
         connect(show_, &QPushButton::toggled, this, [this](bool on) {
             if (on && !kept_) kept_ = now();
-            session_.viewport->setComparison(on ? kept_ : std::nullopt);
+            viewport_.setComparison(on ? kept_ : std::nullopt);
             refresh();
         });
         connect(swap_, &QPushButton::clicked, this, &CompareBar::swapLooks);
-        connect(&session_.document, &Document::replaced, this, [this] {
+        connect(&document_, &QtDocument::replaced, this, [this] {
             kept_.reset();
             show_->setChecked(false);
             refresh();
@@ -56,22 +58,22 @@ class CompareBar : public QWidget {
 
   private:
     Viewport::Comparison now() const {
-        const Groom& groom = session_.document.groom();
-        return {groom.material, groom.interpolation, session_.viewport->quality()};
+        const Groom& groom = document_.groom();
+        return {groom.material, groom.interpolation, viewport_.quality()};
     }
 
     void swapLooks() {
         if (!kept_) return;
         const Viewport::Comparison before = now();
-        Groom groom = session_.document.groom();
+        Groom groom = document_.groom();
         groom.material = kept_->material;
         groom.interpolation = kept_->interpolation;
         const PictureQuality quality = kept_->quality;
         kept_ = before;
-        session_.document.change(tr("Swap looks"), Changes(Change::Look) | Change::FollowHairs,
-                                 std::move(groom));
-        session_.viewport->setQuality(quality);
-        if (show_->isChecked()) session_.viewport->setComparison(kept_);
+        document_.perform(
+            editing::setSettings(document_.editing().model(), groom, tr("Swap looks").toStdString()));
+        viewport_.setQuality(quality);
+        if (show_->isChecked()) viewport_.setComparison(kept_);
     }
 
     void refresh() {
@@ -81,7 +83,8 @@ class CompareBar : public QWidget {
                                             : tr("A is kept."));
     }
 
-    Session& session_;
+    QtDocument& document_;
+    Viewport& viewport_;
     QPushButton *keep_, *show_, *swap_;
     QLabel* note_;
     std::optional<Viewport::Comparison> kept_;
@@ -89,8 +92,8 @@ class CompareBar : public QWidget {
 
 }  // namespace
 
-QWidget* makeCompareBar(Session& session) {
-    return new CompareBar(session);
+QWidget* makeCompareBar(QtDocument& document, Viewport& viewport) {
+    return new CompareBar(document, viewport);
 }
 
 }  // namespace hairloom::editor

@@ -4,15 +4,19 @@
 
 #include <QWidget>
 
+#include "editor/document/messages.h"
+#include "editor/document/preferences.h"
+#include "editor/document/qt_document.h"
+#include "editor/viewport/viewport.h"
+
 namespace hairloom::editor {
 
-class Session;
-
 /// Looks as thumbnails; a click takes one, and the document's can be kept under a name.
-QWidget* makePresetList(Session& session);
+QWidget* makePresetList(QtDocument& document, const Preferences& preferences, Messages& messages,
+                        Viewport& viewport);
 /// A look to compare with, left of a line in the viewport.
-QWidget* makeCompareBar(Session& session);
+QWidget* makeCompareBar(QtDocument& document, Viewport& viewport);
 /// How finely the viewport draws: edges, shadows, hair over hair.
-QWidget* makePictureForm(Session& session);
+QWidget* makePictureForm(const Preferences& preferences, Viewport& viewport);
 
 }  // namespace hairloom::editor

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <bit>
 
+#include "editor/fields/option_form.h"
 #include "editor/look/parts.h"
-#include "editor/session.h"
-#include "editor/tools/option_form.h"
 
 namespace hairloom::editor {
 namespace {
 
 class PictureForm : public OptionForm {
   public:
-    explicit PictureForm(Session& session) : OptionForm(session.preferences), viewport_(*session.viewport) {
+    PictureForm(const Preferences& preferences, Viewport& viewport)
+        : OptionForm(preferences), viewport_(viewport) {
         addEdges();
         addShadows();
         connect(&viewport_, &Viewport::lookChanged, this, &OptionForm::refresh);
@@ -122,8 +122,8 @@ class PictureForm : public OptionForm {
 
 }  // namespace
 
-QWidget* makePictureForm(Session& session) {
-    return new PictureForm(session);
+QWidget* makePictureForm(const Preferences& preferences, Viewport& viewport) {
+    return new PictureForm(preferences, viewport);
 }
 
 }  // namespace hairloom::editor

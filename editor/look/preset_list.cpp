@@ -9,13 +9,14 @@
 #include <QStandardPaths>
 #include <QVBoxLayout>
 
+#include "core/editing/document.h"
+#include "core/editing/settings_commands.h"
 #include "core/groom/file/settings_json.h"
 #include "core/scene/look_presets.h"
 #include "editor/fields/colour.h"
 #include "editor/look/parts.h"
 #include "editor/look/tress.h"
-#include "editor/session.h"
-#include "editor/shell/theme.h"
+#include "editor/style/theme.h"
 
 namespace hairloom::editor {
 namespace {
@@ -45,7 +46,12 @@ QPixmap swatch(const HairMaterial& material) {
 
 class PresetList : public QWidget {
   public:
-    explicit PresetList(Session& session) : session_(session), list_(new QListWidget) {
+    PresetList(QtDocument& document, const Preferences& preferences, Messages& messages, Viewport& viewport)
+        : document_(document),
+          preferences_(preferences),
+          messages_(messages),
+          viewport_(viewport),
+          list_(new QListWidget) {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(6);
@@ -68,20 +74,19 @@ class PresetList : public QWidget {
         layout->addLayout(row);
         connect(list_, &QListWidget::itemClicked, this, &PresetList::apply);
         connect(save, &QPushButton::clicked, this, &PresetList::save);
-        connect(session_.viewport, &Viewport::sidePictureReady, this, &PresetList::takePicture);
+        connect(&viewport_, &Viewport::sidePictureReady, this, &PresetList::takePicture);
         soon_.setSingleShot(true);
         soon_.setInterval(kSoonMs);
         connect(&soon_, &QTimer::timeout, this, &PresetList::askForPictures);
         // Not while the program starts or a document opens.
-        connect(session_.viewport, &Viewport::drawn, this, [this] {
+        connect(&viewport_, &Viewport::drawn, this, [this] {
             if (!asked_ && isVisible()) soon_.start();
         });
-        connect(&session_.preferences, &Preferences::changed, this,
-                [this, theme = session_.preferences.theme()]() mutable {
-                    if (theme == session_.preferences.theme()) return;
-                    theme = session_.preferences.theme();
-                    asked_ = false;
-                });
+        connect(&preferences_, &Preferences::changed, this, [this, theme = preferences_.theme()]() mutable {
+            if (theme == preferences_.theme()) return;
+            theme = preferences_.theme();
+            asked_ = false;
+        });
         fill();
     }
 
@@ -104,7 +109,7 @@ class PresetList : public QWidget {
             if (auto material = loadLook(folderOfLooks(), name)) {
                 add({words(name), *material, nullptr}, tr("A look that you kept"));
             } else {
-                session_.messages.warn(words(material.error().message()));
+                messages_.warn(words(material.error().message()));
             }
         }
         asked_ = false;
@@ -121,13 +126,10 @@ class PresetList : public QWidget {
 
     void apply(QListWidgetItem* item) {
         const Look& look = looks_[static_cast<std::size_t>(list_->row(item))];
-        Groom groom = session_.document.groom();
-        if (look.preset) {
-            applyLook(*look.preset, groom.material);
-        } else {
-            groom.material = look.material;
-        }
-        session_.document.change(tr("Look %1").arg(item->text()), Change::Look, std::move(groom));
+        HairMaterial material = look.preset ? document_.groom().material : look.material;
+        if (look.preset) applyLook(*look.preset, material);
+        document_.perform(editing::setMaterial(document_.editing().model(), material,
+                                               tr("Look %1").arg(item->text()).toStdString()));
     }
 
     void save() {
@@ -135,9 +137,9 @@ class PresetList : public QWidget {
         const QString name =
             QInputDialog::getText(this, tr("Keep this look"), tr("Name"), QLineEdit::Normal, {}, &taken);
         if (!taken || name.trimmed().isEmpty()) return;
-        const auto& material = session_.document.groom().material;
+        const auto& material = document_.groom().material;
         if (auto saved = saveLook(folderOfLooks(), name.trimmed().toStdString(), material); !saved) {
-            session_.messages.warn(words(saved.error().message()));
+            messages_.warn(words(saved.error().message()));
             return;
         }
         fill();
@@ -147,7 +149,7 @@ class PresetList : public QWidget {
     /// Drawn once for a material and a theme, then kept on disk.
     QString cacheFile(const HairMaterial& material) const {
         QByteArray what = QByteArray::fromStdString(toJson(material).dump());
-        what += session_.preferences.theme() == Theme::Dark ? "dark" : "light";
+        what += preferences_.theme() == Theme::Dark ? "dark" : "light";
         const QByteArray hash = QCryptographicHash::hash(what, QCryptographicHash::Sha1).toHex();
         return QStandardPaths::writableLocation(QStandardPaths::CacheLocation) + "/looks/" +
                QString::fromLatin1(hash) + ".png";
@@ -161,8 +163,8 @@ class PresetList : public QWidget {
             if (!kept.isNull()) {
                 show(i, kept);
             } else {
-                session_.viewport->requestSidePicture("look:" + looks_[i].name,
-                                                      tressPicture(looks_[i].material, kPicture, background));
+                viewport_.requestSidePicture("look:" + looks_[i].name,
+                                             tressPicture(looks_[i].material, kPicture, background));
             }
         }
     }
@@ -184,7 +186,10 @@ class PresetList : public QWidget {
         item->setData(Qt::UserRole, true);  // drawn
     }
 
-    Session& session_;
+    QtDocument& document_;
+    const Preferences& preferences_;
+    Messages& messages_;
+    Viewport& viewport_;
     QListWidget* list_;
     std::vector<Look> looks_;
     QTimer soon_;
@@ -193,8 +198,9 @@ class PresetList : public QWidget {
 
 }  // namespace
 
-QWidget* makePresetList(Session& session) {
-    return new PresetList(session);
+QWidget* makePresetList(QtDocument& document, const Preferences& preferences, Messages& messages,
+                        Viewport& viewport) {
+    return new PresetList(document, preferences, messages, viewport);
 }
 
 }  // namespace hairloom::editor

@@ -5,7 +5,6 @@
 
 #include "core/editing/root_grid.h"
 #include "editor/overlays/overlay_mode.h"
-#include "editor/session.h"
 
 namespace hairloom::editor {
 namespace {
@@ -28,8 +27,8 @@ const std::vector<std::uint32_t>& rootsAround(const Groom& groom) {
     return counts;
 }
 
-void drawPainted(const Session& session, Marks& marks) {
-    const Groom& groom = session.document.groom();
+void drawPainted(const OverlayView& view, Marks& marks) {
+    const Groom& groom = view.groom;
     if (!groom.scalp || groom.scalpDensity.empty()) return;
     const auto colourOf = [&](std::uint32_t vertex) {
         QColor colour = heat(1 - groom.scalpDensity[vertex]);
@@ -39,24 +38,30 @@ void drawPainted(const Session& session, Marks& marks) {
     for (const std::uint32_t face : groom.scalpSelection) {
         const Triangle& corners = groom.scalp->triangles()[face];
         marks.triangle(
-            {shownOnScalp(session, {face, Vec3f::UnitX()}), shownOnScalp(session, {face, Vec3f::UnitY()}),
-             shownOnScalp(session, {face, Vec3f::UnitZ()})},
+            {shownOnScalp(view, {face, Vec3f::UnitX()}), shownOnScalp(view, {face, Vec3f::UnitY()}),
+             shownOnScalp(view, {face, Vec3f::UnitZ()})},
             {colourOf(corners[0]), colourOf(corners[1]), colourOf(corners[2])});
+    }
+}
+
+void drawDensity(const OverlayView& view, Marks& marks) {
+    drawPainted(view, marks);
+    const Groom& groom = view.groom;
+    if (groom.strandCount() == 0) return;
+    const std::vector<std::uint32_t>& counts = rootsAround(groom);
+    const auto maximum = static_cast<float>(std::max(2u, *std::ranges::max_element(counts)));
+    const auto positions = shownPositions(view);
+    for (std::size_t s = 0; s < groom.strandCount(); ++s) {
+        marks.point(positions[groom.offsets[s]], heat(1 - static_cast<float>(counts[s]) / maximum), 4);
     }
 }
 
 }  // namespace
 
-void drawDensity(const Session& session, Marks& marks) {
-    drawPainted(session, marks);
-    const Groom& groom = session.document.groom();
-    if (groom.strandCount() == 0) return;
-    const std::vector<std::uint32_t>& counts = rootsAround(groom);
-    const auto maximum = static_cast<float>(std::max(2u, *std::ranges::max_element(counts)));
-    const auto positions = shownPositions(session);
-    for (std::size_t s = 0; s < groom.strandCount(); ++s) {
-        marks.point(positions[groom.offsets[s]], heat(1 - static_cast<float>(counts[s]) / maximum), 4);
-    }
+OverlayMode densityOverlay() {
+    return {"density", QT_TR_NOOP("Density"),
+            QT_TR_NOOP("Roots by how many lie within 1 cm, and the density that was painted: red is dense"),
+            drawDensity, 90};
 }
 
 }  // namespace hairloom::editor

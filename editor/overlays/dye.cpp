@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/groom/point_dye.h"
 #include "editor/overlays/overlay_mode.h"
-#include "editor/session.h"
 
 namespace hairloom::editor {
+namespace {
 
-void drawDye(const Session& session, Marks& marks) {
+void drawDye(const OverlayView& view, Marks& marks) {
     constexpr float kMin = 0.02f;  // of the mask; less is not drawn
-    const Groom& groom = session.document.groom();
+    const Groom& groom = view.groom;
     const std::vector<float> mask = pointDyes(groom);
-    const auto positions = shownPositions(session);
+    const auto positions = shownPositions(view);
     for (std::size_t s = 0; s < groom.strandCount(); ++s) {
         for (std::uint32_t p = groom.offsets[s] + 1; p < groom.offsets[s + 1]; ++p) {
             const float share = 0.5f * (mask[p - 1] + mask[p]);
@@ -17,6 +17,13 @@ void drawDye(const Session& session, Marks& marks) {
             marks.line(positions[p - 1], positions[p], QColor::fromRgbF(0.95f, 0.25f, 0.75f, share), 1);
         }
     }
+}
+
+}  // namespace
+
+OverlayMode dyeOverlay() {
+    return {"dye", QT_TR_NOOP("Dye"),
+            QT_TR_NOOP("Where hair is dyed, as painted: strands in pink by the mask's share"), drawDye, 100};
 }
 
 }  // namespace hairloom::editor

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "editor/overlays/overlay_mode.h"
-#include "editor/session.h"
 
 namespace hairloom::editor {
 namespace {
@@ -35,11 +34,9 @@ bool reachesSphere(const Groom& groom, std::size_t strand) {
     });
 }
 
-}  // namespace
-
-void drawEffectCost(const Session& session, Marks& marks) {
-    const auto& frame = session.player.frame();
-    const Groom& groom = session.document.groom();
+void drawEffectCost(const OverlayView& view, Marks& marks) {
+    const auto& frame = view.player.frame();
+    const Groom& groom = view.groom;
     if (!frame || frame->pose->positions_ws.size() != groom.pointCount()) return;
     double all = 0, spheres = 0;
     for (const EffectReport& effect : frame->stats.effects) {
@@ -68,6 +65,16 @@ void drawEffectCost(const Session& session, Marks& marks) {
         for (std::uint32_t p = groom.offsets[s] + 1; p < groom.offsets[s + 1]; ++p)
             marks.line(shown[p - 1], shown[p], colour, 1);
     }
+}
+
+}  // namespace
+
+OverlayMode effectCostOverlay() {
+    return {
+        "effectCost", QT_TR_NOOP("Effect cost"),
+        QT_TR_NOOP("Strands by what the simulation spends on each while it plays: red is the dearest, grey "
+                   "rests and costs nothing"),
+        drawEffectCost, 110};
 }
 
 }  // namespace hairloom::editor

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editor/overlays/overlay_mode.h"
-#include "editor/session.h"
 
 namespace hairloom::editor {
+namespace {
 
-void drawPenetration(const Session& session, Marks& marks) {
+void drawPenetration(const OverlayView& view, Marks& marks) {
     constexpr float kMax = 0.002f;
-    const Groom& groom = session.document.groom();
-    const auto& pose = session.viewport->pose();
+    const Groom& groom = view.groom;
+    const auto& pose = view.viewport.pose();
     const bool moved = pose && pose->head.sphereCentres_ws.size() == groom.spheres.size();
     std::vector<Vec3f> centres;
     for (std::size_t s = 0; s < groom.spheres.size(); ++s) {
@@ -16,13 +16,20 @@ void drawPenetration(const Session& session, Marks& marks) {
                           : pose ? Vec3f(pose->head.head_ws * rest)
                                  : rest);
     }
-    for (const Vec3f& point : shownPositions(session)) {
+    for (const Vec3f& point : shownPositions(view)) {
         float deepest = 0;
         for (std::size_t s = 0; s < centres.size(); ++s) {
             deepest = std::max(deepest, groom.spheres[s].radius - (point - centres[s]).norm());
         }
         if (deepest > 0) marks.point(point, heat(deepest / kMax), 5, Marks::Depth::OnTop);
     }
+}
+
+}  // namespace
+
+OverlayMode penetrationOverlay() {
+    return {"penetration", QT_TR_NOOP("Penetration"),
+            QT_TR_NOOP("Points inside a sphere: red by 2 mm and deeper"), drawPenetration, 80};
 }
 
 }  // namespace hairloom::editor

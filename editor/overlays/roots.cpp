@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editor/overlays/overlay_mode.h"
-#include "editor/session.h"
 
 namespace hairloom::editor {
+namespace {
 
-void drawRoots(const Session& session, Marks& marks) {
-    const Groom& groom = session.document.groom();
-    const auto positions = shownPositions(session);
+void drawRoots(const OverlayView& view, Marks& marks) {
+    const Groom& groom = view.groom;
+    const auto positions = shownPositions(view);
     const QColor colour(255, 196, 64);
     for (std::size_t s = 0; s < groom.strandCount(); ++s) marks.point(positions[groom.offsets[s]], colour, 4);
+}
+
+}  // namespace
+
+OverlayMode rootsOverlay() {
+    return {"roots", QT_TR_NOOP("Roots"), QT_TR_NOOP("A dot at the root of each strand"), drawRoots, 20};
 }
 
 }  // namespace hairloom::editor

@@ -1,19 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editor/overlays/overlay_mode.h"
-#include "editor/session.h"
 
 namespace hairloom::editor {
+namespace {
 
-void drawScalp(const Session& session, Marks& marks) {
-    const Groom& groom = session.document.groom();
+void drawScalp(const OverlayView& view, Marks& marks) {
+    const Groom& groom = view.groom;
     if (!groom.scalp) return;
     const QColor colour(80, 160, 255, 90);
     for (const std::uint32_t face : groom.scalpSelection) {
         marks.triangle(
-            {shownOnScalp(session, {face, Vec3f::UnitX()}), shownOnScalp(session, {face, Vec3f::UnitY()}),
-             shownOnScalp(session, {face, Vec3f::UnitZ()})},
+            {shownOnScalp(view, {face, Vec3f::UnitX()}), shownOnScalp(view, {face, Vec3f::UnitY()}),
+             shownOnScalp(view, {face, Vec3f::UnitZ()})},
             colour);
     }
+}
+
+}  // namespace
+
+OverlayMode scalpOverlay() {
+    return {"scalp", QT_TR_NOOP("Scalp"), QT_TR_NOOP("Tints the faces that carry hair"), drawScalp, 10};
 }
 
 }  // namespace hairloom::editor

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editor/overlays/overlay_mode.h"
-#include "editor/session.h"
 
 namespace hairloom::editor {
 
-void drawSpheres(const Session& session, Marks& marks) {
-    const Groom& groom = session.document.groom();
-    const auto& pose = session.viewport->pose();
+void drawSpheres(const OverlayView& view, Marks& marks) {
+    const Groom& groom = view.groom;
+    const auto& pose = view.viewport.pose();
     const QColor colour(90, 170, 255);
-    const Vec3f toEye = -session.viewport->camera().forward_ws();
+    const Vec3f toEye = -view.viewport.camera().forward_ws();
     for (std::size_t s = 0; s < groom.spheres.size(); ++s) {
         const CollisionSphere& sphere = groom.spheres[s];
         Vec3f centre = sphere.centre;
@@ -20,6 +19,11 @@ void drawSpheres(const Session& session, Marks& marks) {
         marks.circle(centre, toEye, sphere.radius, colour, 2, Marks::Depth::OnTop);
         marks.circle(centre, Vec3f::UnitY(), sphere.radius, colour, 1, Marks::Depth::OnTop);
     }
+}
+
+OverlayMode spheresOverlay() {
+    return {"spheres", QT_TR_NOOP("Spheres"), QT_TR_NOOP("The spheres that strands collide with"),
+            drawSpheres, 50};
 }
 
 }  // namespace hairloom::editor

@@ -2,15 +2,15 @@
 #include <cmath>
 
 #include "editor/overlays/overlay_mode.h"
-#include "editor/session.h"
 
 namespace hairloom::editor {
+namespace {
 
-void drawStrain(const Session& session, Marks& marks) {
+void drawStrain(const OverlayView& view, Marks& marks) {
     constexpr float kMax = 0.01f;
-    const Groom& groom = session.document.groom();
+    const Groom& groom = view.groom;
     const auto rest = groom.positions();
-    const auto now = shownPositions(session);
+    const auto now = shownPositions(view);
     for (std::size_t s = 0; s < groom.strandCount(); ++s) {
         for (std::uint32_t p = groom.offsets[s] + 1; p < groom.offsets[s + 1]; ++p) {
             const float length = (rest[p] - rest[p - 1]).norm();
@@ -19,6 +19,14 @@ void drawStrain(const Session& session, Marks& marks) {
             marks.line(now[p - 1], now[p], heat(strain / kMax), 1);
         }
     }
+}
+
+}  // namespace
+
+OverlayMode strainOverlay() {
+    return {"strain", QT_TR_NOOP("Strain"),
+            QT_TR_NOOP("Segments by how far they are stretched: green as authored, red by 1 % and more"),
+            drawStrain, 70};
 }
 
 }  // namespace hairloom::editor

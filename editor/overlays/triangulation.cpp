@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editor/overlays/overlay_mode.h"
-#include "editor/session.h"
 
 namespace hairloom::editor {
+namespace {
 
-void drawTriangulation(const Session& session, Marks& marks) {
-    const Groom& groom = session.document.groom();
-    const auto positions = shownPositions(session);
+void drawTriangulation(const OverlayView& view, Marks& marks) {
+    const Groom& groom = view.groom;
+    const auto positions = shownPositions(view);
     const QColor colour(120, 230, 160, 200);
     for (const Triangle& triangle : groom.triangulation.triangles) {
         for (std::size_t i = 0; i < 3; ++i) {
@@ -15,6 +15,14 @@ void drawTriangulation(const Session& session, Marks& marks) {
             if (a < b) marks.line(positions[groom.offsets[a]], positions[groom.offsets[b]], colour, 1);
         }
     }
+}
+
+}  // namespace
+
+OverlayMode triangulationOverlay() {
+    return {"triangulation", QT_TR_NOOP("Root triangles"),
+            QT_TR_NOOP("The triangles between roots that follow hairs are blended in"), drawTriangulation,
+            40};
 }
 
 }  // namespace hairloom::editor

@@ -3,20 +3,19 @@
 #include <cmath>
 
 #include "editor/overlays/overlay_mode.h"
-#include "editor/session.h"
 
 namespace hairloom::editor {
 
-void drawWind(const Session& session, Marks& marks) {
+void drawWind(const OverlayView& view, Marks& marks) {
     constexpr float kFastest = 25;  // m/s that the arrow still grows for
-    const auto& settings = session.document.groom().simulation;
-    const OrbitCamera& camera = session.viewport->camera();
+    const auto& settings = view.groom.simulation;
+    const OrbitCamera& camera = view.viewport.camera();
     const Vec3f direction(settings.windDirection.x, settings.windDirection.y, settings.windDirection.z);
     const Vec3f from = camera.target_ws();
     const QColor colour(120, 200, 255);
     marks.point(from, colour, 9, Marks::Depth::OnTop);
     if (settings.windSpeed <= 0 || direction.norm() < 1e-6f) return;
-    const float metresPerPixel = camera.metresPerPixel(from, session.viewport->viewSize_px());
+    const float metresPerPixel = camera.metresPerPixel(from, view.viewport.viewSize_px());
     const Vec3f along = direction.normalized();
     const Vec3f to = from + metresPerPixel * kWindPixels * std::min(settings.windSpeed, kFastest) * along;
     // A cone, so that the arrow shows where it points towards the eye and away from it.
@@ -36,6 +35,11 @@ void drawWind(const Session& session, Marks& marks) {
         const QColor side = QColor::fromRgbF(0.47f * shade, 0.78f * shade, shade);
         marks.triangle({to, rim(i), rim(i + 1)}, side, Marks::Depth::OnTop);
     }
+}
+
+OverlayMode windOverlay() {
+    return {"wind", QT_TR_NOOP("Wind"), QT_TR_NOOP("An arrow where the wind blows to; longer is stronger"),
+            drawWind, 120};
 }
 
 }  // namespace hairloom::editor

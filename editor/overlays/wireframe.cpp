@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editor/overlays/overlay_mode.h"
-#include "editor/session.h"
 
 namespace hairloom::editor {
+namespace {
 
-void drawWireframe(const Session& session, Marks& marks) {
-    const Groom& groom = session.document.groom();
+void drawWireframe(const OverlayView& view, Marks& marks) {
+    const Groom& groom = view.groom;
     if (!groom.scalp) return;
-    const auto& pose = session.viewport->pose();
-    const auto moved = shownVertices(session);
+    const auto& pose = view.viewport.pose();
+    const auto moved = shownVertices(view);
     const auto at = [&](std::uint32_t vertex) -> Vec3f {
         if (moved.size() == groom.scalp->vertexCount()) return moved[vertex];
         const Vec3f& rest = groom.scalp->positions()[vertex];
@@ -21,6 +21,12 @@ void drawWireframe(const Session& session, Marks& marks) {
         marks.line(at(static_cast<std::uint32_t>(mesh.from_vertex_handle(half).idx())),
                    at(static_cast<std::uint32_t>(mesh.to_vertex_handle(half).idx())), colour, 1);
     }
+}
+
+}  // namespace
+
+OverlayMode wireframeOverlay() {
+    return {"wireframe", QT_TR_NOOP("Wireframe"), QT_TR_NOOP("Edges of the head"), drawWireframe, 60};
 }
 
 }  // namespace hairloom::editor

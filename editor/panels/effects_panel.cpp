@@ -7,12 +7,12 @@
 #include <QTreeWidget>
 #include <QVBoxLayout>
 
+#include "core/editing/document.h"
+#include "core/editing/settings_commands.h"
 #include "core/simulation/effect_switch.h"
 #include "editor/fields/field.h"
-#include "editor/panels/list.h"
 #include "editor/panels/panel.h"
 #include "editor/panels/stability_gauge.h"
-#include "editor/session.h"
 
 namespace hairloom::editor {
 namespace {
@@ -21,8 +21,12 @@ enum Column { kName, kMs, kMb, kWhy, kColumns };
 
 class EffectsPanel : public QWidget {
   public:
-    explicit EffectsPanel(Session& session)
-        : session_(session), table_(new QTreeWidget), note_(new QLabel), trial_(new QWidget) {
+    EffectsPanel(QtDocument& document, Player& player)
+        : document_(document),
+          player_(player),
+          table_(new QTreeWidget),
+          note_(new QLabel),
+          trial_(new QWidget) {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(8);
@@ -36,18 +40,18 @@ class EffectsPanel : public QWidget {
         const auto refreshSeen = [this] {
             if (isVisible()) refresh();
         };
-        connect(&session_.player, &Player::frameReady, this, refreshSeen);
-        connect(&session_.player, &Player::planPreviewChanged, this, refreshSeen);
+        connect(&player_, &Player::frameReady, this, refreshSeen);
+        connect(&player_, &Player::planPreviewChanged, this, refreshSeen);
         connect(table_, &QTreeWidget::itemChanged, this, &EffectsPanel::takeCheck);
         refresh();
     }
 
   protected:
     void showEvent(QShowEvent*) override {
-        session_.player.setPlanPreviewActive(true);
+        player_.setPlanPreviewActive(true);
         refresh();
     }
-    void hideEvent(QHideEvent*) override { session_.player.setPlanPreviewActive(false); }
+    void hideEvent(QHideEvent*) override { player_.setPlanPreviewActive(false); }
 
   private:
     void makeTable() {
@@ -79,36 +83,34 @@ class EffectsPanel : public QWidget {
         row->addWidget(keep);
         row->addWidget(all);
         connect(keep, &QPushButton::clicked, this, &EffectsPanel::keepTrial);
-        connect(all, &QPushButton::clicked, this, [this] { session_.player.setLeftOut({}); });
+        connect(all, &QPushButton::clicked, this, [this] { player_.setLeftOut({}); });
     }
 
     void keepTrial() {
-        Groom groom = session_.document.groom();
-        Changes changes = Change::Simulation;
-        for (const QString& effect : session_.player.leftOut()) {
+        Groom groom = document_.groom();
+        for (const QString& effect : player_.leftOut()) {
             turnEffectOff(groom.simulation, effect.toStdString());
-            if (effect.toStdString() != kCollisionEffect) continue;
-            groom.spheres.clear();
-            changes |= Change::Spheres;
+            if (effect.toStdString() == kCollisionEffect) groom.spheres.clear();
         }
-        session_.player.setLeftOut({});
-        session_.document.change(tr("Leave effects out"), changes, std::move(groom));
+        player_.setLeftOut({});
+        document_.perform(
+            editing::setSettings(document_.editing().model(), groom, tr("Leave effects out").toStdString()));
     }
 
     void takeCheck(QTreeWidgetItem* item, int column) {
         if (column != kName || filling_ || !(item->flags() & Qt::ItemIsUserCheckable)) return;
         const QString effect = item->data(kName, Qt::UserRole).toString();
-        QStringList leftOut = session_.player.leftOut();
+        QStringList leftOut = player_.leftOut();
         const bool out = item->checkState(kName) == Qt::Unchecked;
         if (leftOut.contains(effect) == out) return;
         out ? leftOut.append(effect) : static_cast<void>(leftOut.removeAll(effect));
-        session_.player.setLeftOut(leftOut);
+        player_.setLeftOut(leftOut);
     }
 
     void refresh() {
         filling_ = true;
-        const std::vector<EffectReport> effects = session_.player.effects();
-        const auto& frame = session_.player.frame();
+        const std::vector<EffectReport> effects = player_.effects();
+        const auto& frame = player_.frame();
         note_->setText(frame              ? tr("Mean of %L1 frames").arg(frame->stats.frames)
                        : !effects.empty() ? tr("What would run; play (Space) to see what it costs.")
                                           : tr("Place hair to see what its simulation would run."));
@@ -120,13 +122,13 @@ class EffectsPanel : public QWidget {
             show(*table_->topLevelItem(static_cast<int>(i)), effects[i], frame != nullptr);
         }
         wrapRows(*table_);
-        trial_->setVisible(!session_.player.leftOut().isEmpty());
+        trial_->setVisible(!player_.leftOut().isEmpty());
         filling_ = false;
     }
 
     void show(QTreeWidgetItem& item, const EffectReport& effect, bool measured) {
         const QString name = QString::fromStdString(effect.name);
-        const bool leftOut = session_.player.leftOut().contains(name);
+        const bool leftOut = player_.leftOut().contains(name);
         item.setText(kName, labelOf(name));
         item.setData(kName, Qt::UserRole, name);
         const bool switchable = canTurnOff(effect.name) && (effect.on || leftOut);
@@ -152,7 +154,8 @@ class EffectsPanel : public QWidget {
         for (int c = 0; c < kColumns; ++c) item.setForeground(c, colour);
     }
 
-    Session& session_;
+    QtDocument& document_;
+    Player& player_;
     QTreeWidget* table_;
     QLabel* note_;
     QWidget* trial_;
@@ -161,9 +164,18 @@ class EffectsPanel : public QWidget {
 
 }  // namespace
 
-QWidget* makeEffectsPanel(Session& session) {
-    return scrolled(column({heading(QObject::tr("Stability")), new StabilityGauge(session),
-                            heading(QObject::tr("Effects")), new EffectsPanel(session)}));
+PanelInfo effectsPanel() {
+    return {"effects",
+            QObject::tr("Effects"),
+            "effects",
+            Qt::RightDockWidgetArea,
+            90,
+            true,
+            [](const PanelParts& parts) -> QWidget* {
+                return scrolled(column(
+                    {heading(QObject::tr("Stability")), new StabilityGauge(parts.document, parts.preferences),
+                     heading(QObject::tr("Effects")), new EffectsPanel(parts.document, parts.player)}));
+            }};
 }
 
 }  // namespace hairloom::editor

@@ -4,16 +4,13 @@
 #include <QListWidget>
 #include <QVBoxLayout>
 
-#include "editor/panels/list.h"
-#include "editor/session.h"
-
 namespace hairloom::editor {
 namespace {
 
 class HistoryPanel : public QWidget {
   public:
-    explicit HistoryPanel(Session& session)
-        : document_(session.document), list_(new QListWidget), memory_(new QLabel) {
+    explicit HistoryPanel(QtDocument& document)
+        : document_(document), list_(new QListWidget), memory_(new QLabel) {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(12, 8, 12, 12);
         list_->setObjectName("steps");
@@ -24,8 +21,8 @@ class HistoryPanel : public QWidget {
         layout->addWidget(memory_);
         connect(list_, &QListWidget::itemClicked, this,
                 [this](QListWidgetItem* item) { document_.goToStep(list_->row(item)); });
-        connect(&document_, &Document::historyChanged, this, [this] { fill(); });
-        connect(&document_, &Document::replaced, this, [this] { fill(); });
+        connect(&document_, &QtDocument::historyChanged, this, [this] { fill(); });
+        connect(&document_, &QtDocument::replaced, this, [this] { fill(); });
         fill();
     }
 
@@ -51,15 +48,21 @@ class HistoryPanel : public QWidget {
                              .arg(static_cast<double>(document_.historyLimit()) / kMega, 0, 'f', 0));
     }
 
-    Document& document_;
+    QtDocument& document_;
     QListWidget* list_;
     QLabel* memory_;
 };
 
 }  // namespace
 
-QWidget* makeHistoryPanel(Session& session) {
-    return new HistoryPanel(session);
+PanelInfo historyPanel() {
+    return {"history",
+            QObject::tr("History"),
+            "history",
+            Qt::LeftDockWidgetArea,
+            40,
+            true,
+            [](const PanelParts& parts) -> QWidget* { return new HistoryPanel(parts.document); }};
 }
 
 }  // namespace hairloom::editor

@@ -7,12 +7,12 @@
 #include <QVBoxLayout>
 #include <algorithm>
 
+#include "core/editing/document.h"
+#include "core/editing/settings_commands.h"
 #include "core/scene/look_presets.h"
 #include "editor/fields/field_form.h"
 #include "editor/look/parts.h"
-#include "editor/panels/list.h"
 #include "editor/panels/panel.h"
-#include "editor/session.h"
 
 namespace hairloom::editor {
 namespace {
@@ -83,24 +83,31 @@ const std::vector<Group>& groups() {
 
 class LookPanel : public QWidget {
   public:
-    explicit LookPanel(Session& session)
-        : session_(session), model_(new QComboBox), layout_(new QVBoxLayout(this)) {
+    LookPanel(QtDocument& document, const Preferences& preferences, Messages& messages, Viewport& viewport)
+        : document_(document),
+          preferences_(preferences),
+          messages_(messages),
+          viewport_(viewport),
+          model_(new QComboBox),
+          layout_(new QVBoxLayout(this)) {
         layout_->setContentsMargins(0, 0, 0, 0);
         layout_->setSpacing(8);
-        layout_->addWidget(collapsible(tr("Presets"), makePresetList(session_)));
-        layout_->addWidget(collapsible(tr("Compare"), makeCompareBar(session_)));
+        layout_->addWidget(
+            collapsible(tr("Presets"), makePresetList(document_, preferences_, messages_, viewport_)));
+        layout_->addWidget(collapsible(tr("Compare"), makeCompareBar(document_, viewport_)));
         layout_->addWidget(heading(tr("Shading model")));
         makeModels();
         makeGroups();
-        layout_->addWidget(collapsible(tr("Edges and shadows"), makePictureForm(session_), false));
+        layout_->addWidget(
+            collapsible(tr("Edges and shadows"), makePictureForm(preferences_, viewport_), false));
         layout_->addWidget(collapsible(tr("Hairs between the guides"), form(followHairFields()), false));
-        connect(session_.viewport, &Viewport::lookChanged, this, &LookPanel::refresh);
+        connect(&viewport_, &Viewport::lookChanged, this, &LookPanel::refresh);
         refresh();
     }
 
   private:
     FieldForm* form(const std::vector<Field>& fields) {
-        return new FieldForm(session_.document, session_.preferences, fields);
+        return new FieldForm(document_, preferences_, fields);
     }
 
     void makeModels() {
@@ -113,15 +120,15 @@ class LookPanel : public QWidget {
         model_->setItemData(2, tr("Marschner's lobes as separate controls for an artist"), Qt::ToolTipRole);
         model_->setToolTip(tr("How light scatters in a fibre; each model keeps its own controls"));
         connect(model_, &QComboBox::activated, this, [this](int index) {
-            PictureQuality quality = session_.viewport->quality();
+            PictureQuality quality = viewport_.quality();
             quality.model = static_cast<render::ShadingModel>(index);
-            session_.viewport->setQuality(quality);
+            viewport_.setQuality(quality);
             QSettings().setValue(kModelKey, index);
         });
-        PictureQuality quality = session_.viewport->quality();
+        PictureQuality quality = viewport_.quality();
         quality.model = static_cast<render::ShadingModel>(
             std::clamp(QSettings().value(kModelKey, 0).toInt(), 0, model_->count() - 1));
-        session_.viewport->setQuality(quality);
+        viewport_.setQuality(quality);
         layout_->addWidget(model_);
     }
 
@@ -154,21 +161,25 @@ class LookPanel : public QWidget {
         button->setObjectName("colourByMelanin");
         button->setToolTip(tr("Gives root and tip the colour that this pigment makes of much hair"));
         connect(button, &QPushButton::clicked, this, [this] {
-            Groom groom = session_.document.groom();
-            colourByMelanin(groom.material);
-            session_.document.change(tr("Colours from the pigment"), Change::Look, std::move(groom));
+            HairMaterial material = document_.groom().material;
+            colourByMelanin(material);
+            document_.perform(editing::setMaterial(document_.editing().model(), material,
+                                                   tr("Colours from the pigment").toStdString()));
         });
         layout->addWidget(button);
         return widget;
     }
 
     void refresh() {
-        const auto model = static_cast<unsigned>(session_.viewport->quality().model);
+        const auto model = static_cast<unsigned>(viewport_.quality().model);
         model_->setCurrentIndex(static_cast<int>(model));
         for (const auto& [group, models] : shownFor_) group->setVisible((models >> model) & 1u);
     }
 
-    Session& session_;
+    QtDocument& document_;
+    const Preferences& preferences_;
+    Messages& messages_;
+    Viewport& viewport_;
     QComboBox* model_;
     QVBoxLayout* layout_;
     std::vector<std::pair<QWidget*, unsigned>> shownFor_;
@@ -176,8 +187,17 @@ class LookPanel : public QWidget {
 
 }  // namespace
 
-QWidget* makeLookPanel(Session& session) {
-    return scrolled(column({new LookPanel(session)}));
+PanelInfo lookPanel() {
+    return {"look",
+            QObject::tr("Look"),
+            "look",
+            Qt::RightDockWidgetArea,
+            50,
+            true,
+            [](const PanelParts& parts) -> QWidget* {
+                return scrolled(column(
+                    {new LookPanel(parts.document, parts.preferences, parts.messages, parts.viewport)}));
+            }};
 }
 
 }  // namespace hairloom::editor

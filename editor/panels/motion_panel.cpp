@@ -6,17 +6,16 @@
 #include <QPushButton>
 #include <QVBoxLayout>
 
-#include "editor/panels/list.h"
 #include "editor/panels/panel.h"
-#include "editor/session.h"
-#include "editor/shell/icons.h"
+#include "editor/style/icons.h"
 
 namespace hairloom::editor {
 namespace {
 
 class MotionPanel : public QWidget {
   public:
-    explicit MotionPanel(Session& session) : session_(session), motion_(new QComboBox), state_(new QLabel) {
+    MotionPanel(Messages& messages, Player& player)
+        : messages_(messages), player_(player), motion_(new QComboBox), state_(new QLabel) {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(8);
@@ -40,20 +39,20 @@ class MotionPanel : public QWidget {
         state_->setTextFormat(Qt::RichText);
         layout->addWidget(state_);
         connect(play, &QPushButton::clicked, this,
-                [this] { session_.player.isPlaying() ? session_.player.pause() : session_.player.play(); });
-        connect(step, &QPushButton::clicked, &session_.player, &Player::step);
-        connect(reset, &QPushButton::clicked, &session_.player, &Player::reset);
-        connect(&session_.player, &Player::stateChanged, this, [this, play] {
-            play->setIcon(icon(session_.player.isPlaying() ? "pause" : "play"));
-            play->setText(session_.player.isPlaying() ? tr("Pause") : tr("Play"));
+                [this] { player_.isPlaying() ? player_.pause() : player_.play(); });
+        connect(step, &QPushButton::clicked, &player_, &Player::step);
+        connect(reset, &QPushButton::clicked, &player_, &Player::reset);
+        connect(&player_, &Player::stateChanged, this, [this, play] {
+            play->setIcon(icon(player_.isPlaying() ? "pause" : "play"));
+            play->setText(player_.isPlaying() ? tr("Pause") : tr("Play"));
         });
         connect(motion_, &QComboBox::activated, this, [this](int index) {
-            if (auto set = session_.player.setMotion(motion_->itemData(index).toString()); !set) {
-                session_.messages.warn(QString::fromStdString(set.error().message()));
+            if (auto set = player_.setMotion(motion_->itemData(index).toString()); !set) {
+                messages_.warn(QString::fromStdString(set.error().message()));
             }
         });
-        connect(&session_.player, &Player::motionsChanged, this, &MotionPanel::fill);
-        connect(&session_.player, &Player::frameReady, this, &MotionPanel::showState);
+        connect(&player_, &Player::motionsChanged, this, &MotionPanel::fill);
+        connect(&player_, &Player::frameReady, this, &MotionPanel::showState);
         fill();
         showState();
     }
@@ -61,16 +60,16 @@ class MotionPanel : public QWidget {
   private:
     void fill() {
         motion_->clear();
-        for (const QString& name : session_.player.motions()) {
+        for (const QString& name : player_.motions()) {
             QString label = name.startsWith("clip:") ? tr("Clip: %1").arg(name.mid(5)) : name;
             label[0] = label[0].toUpper();
             motion_->addItem(label, name);
         }
-        motion_->setCurrentIndex(std::max(0, motion_->findData(session_.player.motion())));
+        motion_->setCurrentIndex(std::max(0, motion_->findData(player_.motion())));
     }
 
     void showState() {
-        const auto& frame = session_.player.frame();
+        const auto& frame = player_.frame();
         if (!frame) {
             state_->setText(tr("At rest."));
             return;
@@ -90,15 +89,24 @@ class MotionPanel : public QWidget {
                         row(tr("Reset to rest"), tr("%1 strands").arg(stats.restoredStrands)) + "</table>");
     }
 
-    Session& session_;
+    Messages& messages_;
+    Player& player_;
     QComboBox* motion_;
     QLabel* state_;
 };
 
 }  // namespace
 
-QWidget* makeMotionPanel(Session& session) {
-    return scrolled(column({new MotionPanel(session)}));
+PanelInfo motionPanel() {
+    return {"motion",
+            QObject::tr("Motion"),
+            "play",
+            Qt::RightDockWidgetArea,
+            70,
+            true,
+            [](const PanelParts& parts) -> QWidget* {
+                return scrolled(column({new MotionPanel(parts.messages, parts.player)}));
+            }};
 }
 
 }  // namespace hairloom::editor

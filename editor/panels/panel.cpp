@@ -1,91 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editor/panels/panel.h"
 
-#include <QHeaderView>
-#include <QLabel>
-#include <QScrollArea>
-#include <QToolButton>
-#include <QVBoxLayout>
 #include <algorithm>
 
 namespace hairloom::editor {
 
-QWidget* heading(const QString& text) {
-    auto* label = new QLabel(text);
-    label->setProperty("role", "heading");
-    label->setIndent(0);
-    return label;
-}
-
-QWidget* scrolled(QWidget* content) {
-    auto* area = new QScrollArea;
-    area->setWidgetResizable(true);
-    area->setFrameShape(QFrame::NoFrame);
-    area->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-    area->setWidget(content);
-    area->setMinimumWidth(content->minimumSizeHint().width() + 12);
-    return area;
-}
-
-QWidget* column(std::initializer_list<QWidget*> rows) {
-    auto* widget = new QWidget;
-    auto* layout = new QVBoxLayout(widget);
-    layout->setContentsMargins(12, 8, 12, 12);
-    layout->setSpacing(8);
-    for (QWidget* row : rows) layout->addWidget(row);
-    layout->addStretch(1);
-    return widget;
-}
-
-namespace {
-
-void wrapNow(QTreeWidget& table) {
-    constexpr int kAside = 12, kAbove = 8;  // pixels that a cell has besides its words
-    for (int row = 0; row < table.topLevelItemCount(); ++row) {
-        QTreeWidgetItem* const item = table.topLevelItem(row);
-        int height = table.fontMetrics().height();
-        for (int c = 0; c < table.columnCount(); ++c) {
-            const int width = std::max(20, table.columnWidth(c) - kAside);
-            height =
-                std::max(height, table.fontMetrics()
-                                     .boundingRect(QRect(0, 0, width, 4000), Qt::TextWordWrap, item->text(c))
-                                     .height());
-        }
-        const QSize hint(0, height + kAbove);
-        if (item->sizeHint(0).height() != hint.height()) item->setSizeHint(0, hint);
-    }
-}
-
-}  // namespace
-
-void wrapRows(QTreeWidget& table) {
-    wrapNow(table);
-    if (table.property("wraps").toBool()) return;
-    table.setProperty("wraps", true);
-    QObject::connect(table.header(), &QHeaderView::sectionResized, &table, [&table] { wrapNow(table); });
-}
-
-QWidget* collapsible(const QString& title, QWidget* content, bool open) {
-    auto* widget = new QWidget;
-    auto* layout = new QVBoxLayout(widget);
-    layout->setContentsMargins(0, 0, 0, 0);
-    layout->setSpacing(4);
-    auto* button = new QToolButton;
-    button->setText(title);
-    button->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
-    button->setArrowType(open ? Qt::DownArrow : Qt::RightArrow);
-    button->setProperty("role", "fold");
-    button->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
-    button->setToolTip(QObject::tr("Shows or hides these controls"));
-    layout->addWidget(button);
-    layout->addWidget(content);
-    content->setVisible(open);
-    QObject::connect(button, &QToolButton::clicked, content, [button, content] {
-        const bool show = content->isHidden();
-        content->setVisible(show);
-        button->setArrowType(show ? Qt::DownArrow : Qt::RightArrow);
-    });
-    return widget;
+const std::vector<PanelInfo>& panels() {
+    static const std::vector<PanelInfo> sorted = [] {
+        std::vector<PanelInfo> list = panelFiles();
+        std::ranges::stable_sort(list, {}, &PanelInfo::order);
+        return list;
+    }();
+    return sorted;
 }
 
 }  // namespace hairloom::editor

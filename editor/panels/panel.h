@@ -1,39 +1,48 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// A dockable panel. Each is a file of its own with one function that makes it; panels/registry.cpp lists
-// them.
+// A dockable panel. Each is a file of its own, panels/NAME_panel.cpp, with one function `PanelInfo
+// namePanel()`; the list is made from the names of the files.
 
 #include <QString>
-#include <QTreeWidget>
 #include <QWidget>
 #include <functional>
 #include <vector>
 
+#include "editor/document/messages.h"
+#include "editor/document/preferences.h"
+#include "editor/document/qt_document.h"
+#include "editor/document/tasks.h"
+#include "editor/fields/blocks.h"
+#include "editor/simulation/player.h"
+#include "editor/tools/tool_box.h"
+#include "editor/viewport/viewport.h"
+
 namespace hairloom::editor {
 
-class Session;
+/// What panels are made with; each hands on what its widgets use.
+struct PanelParts {
+    QtDocument& document;
+    Preferences& preferences;
+    Tasks& tasks;
+    Messages& messages;
+    Player& player;
+    Viewport& viewport;
+    ToolBox& tools;
+};
 
 struct PanelInfo {
     QString id;  ///< layouts are saved under it
     QString title;
     QString icon;
     Qt::DockWidgetArea area = Qt::RightDockWidgetArea;
+    int order = 100;   ///< from the first tab of its area on
     bool open = true;  ///< in the first layout
-    std::function<QWidget*(Session&)> make;
+    std::function<QWidget*(const PanelParts&)> make;
 };
 
-/// In the order in which they stand in their areas.
+/// In order of file name (hairloom_registry).
+const std::vector<PanelInfo>& panelFiles();
+/// By their order.
 const std::vector<PanelInfo>& panels();
-
-// Building blocks that panels share.
-QWidget* heading(const QString& text);
-/// `content` in a scroll area with the margins of a panel.
-QWidget* scrolled(QWidget* content);
-/// A widget with a vertical layout, margins and spacing of a panel.
-QWidget* column(std::initializer_list<QWidget*> rows);
-/// Rows become as high as their words need in columns as wide as they are now, and follow when those change.
-void wrapRows(QTreeWidget& table);
-/// Folds away under its heading; `open` at first.
-QWidget* collapsible(const QString& title, QWidget* content, bool open = true);
 
 }  // namespace hairloom::editor

@@ -4,12 +4,12 @@
 #include <QComboBox>
 #include <QVBoxLayout>
 
+#include "core/editing/document.h"
+#include "core/editing/settings_commands.h"
 #include "core/scene/hair_preset.h"
 #include "editor/fields/field_form.h"
 #include "editor/fields/stiffness_curve.h"
-#include "editor/panels/list.h"
 #include "editor/panels/panel.h"
-#include "editor/session.h"
 
 namespace hairloom::editor {
 namespace {
@@ -40,7 +40,7 @@ std::vector<Group> groups() {
     };
 }
 
-QWidget* makePresets(Session& session) {
+QWidget* makePresets(QtDocument& document) {
     auto* row = new QWidget;
     auto* layout = new QVBoxLayout(row);
     layout->setContentsMargins(0, 0, 0, 0);
@@ -52,40 +52,38 @@ QWidget* makePresets(Session& session) {
         box->addItem(labelOf(preset.name));
         box->setItemData(box->count() - 1, QString::fromUtf8(preset.description), Qt::ToolTipRole);
     }
-    QObject::connect(box, &QComboBox::activated, box, [&session, box](int index) {
+    QObject::connect(box, &QComboBox::activated, box, [&document, box](int index) {
         if (index == 0) return;
         const runtime::HairPreset& preset = runtime::presets()[static_cast<std::size_t>(index - 1)];
-        Groom groom = session.document.groom();
+        Groom groom = document.groom();
         applyPreset(preset, groom);
-        session.document.change(QObject::tr("Preset %1").arg(box->itemText(index)),
-                                Changes(Change::Simulation) | Change::Look, std::move(groom));
+        const QString step = QObject::tr("Preset %1").arg(box->itemText(index));
+        document.perform(editing::setSettings(document.editing().model(), groom, step.toStdString()));
         box->setCurrentIndex(0);
     });
     layout->addWidget(box);
     return row;
 }
 
-QWidget* withCurve(Session& session, QWidget* form) {
+QWidget* withCurve(QtDocument& document, QWidget* form) {
     auto* widget = new QWidget;
     auto* layout = new QVBoxLayout(widget);
     layout->setContentsMargins(0, 0, 0, 0);
     layout->setSpacing(6);
-    layout->addWidget(new StiffnessCurve(session.document));
+    layout->addWidget(new StiffnessCurve(document));
     layout->addWidget(form);
     return widget;
 }
 
-}  // namespace
-
-QWidget* makePhysicsPanel(Session& session) {
+QWidget* makePanel(QtDocument& document, const Preferences& preferences) {
     const std::vector<Field> fields = simulationFields();
-    QWidget* const content = column({makePresets(session)});
+    QWidget* const content = column({makePresets(document)});
     auto* layout = static_cast<QVBoxLayout*>(content->layout());
     QStringList shown;
     for (const Group& group : groups()) {
         shown += group.fields;
-        QWidget* form = new FieldForm(session.document, session.preferences, pick(fields, group.fields));
-        if (group.fields.contains("angularStiffness")) form = withCurve(session, form);
+        QWidget* form = new FieldForm(document, preferences, pick(fields, group.fields));
+        if (group.fields.contains("angularStiffness")) form = withCurve(document, form);
         layout->insertWidget(layout->count() - 1, collapsible(group.title, form, group.open));
     }
     // Fields that the engine has gained since.
@@ -94,10 +92,22 @@ QWidget* makePhysicsPanel(Session& session) {
         if (!shown.contains(field.name)) others.append(field.name);
     }
     if (!others.isEmpty()) {
-        auto* form = new FieldForm(session.document, session.preferences, pick(fields, others));
+        auto* form = new FieldForm(document, preferences, pick(fields, others));
         layout->insertWidget(layout->count() - 1, collapsible(QObject::tr("More"), form, false));
     }
     return scrolled(content);
+}
+
+}  // namespace
+
+PanelInfo physicsPanel() {
+    return {"physics",
+            QObject::tr("Physics"),
+            "physics",
+            Qt::RightDockWidgetArea,
+            60,
+            true,
+            [](const PanelParts& parts) { return makePanel(parts.document, parts.preferences); }};
 }
 
 }  // namespace hairloom::editor

@@ -13,17 +13,19 @@
 #include "core/editing/surface_disc.h"
 #include "core/geometry/selection.h"
 #include "editor/fields/field_form.h"
-#include "editor/panels/list.h"
 #include "editor/panels/panel.h"
-#include "editor/session.h"
 
 namespace hairloom::editor {
 namespace {
 
 class ScalpPanel : public QWidget {
   public:
-    explicit ScalpPanel(Session& session)
-        : session_(session), groups_(new QComboBox), expression_(new QLineEdit), area_(new QLabel) {
+    ScalpPanel(QtDocument& document, Messages& messages)
+        : document_(document),
+          messages_(messages),
+          groups_(new QComboBox),
+          expression_(new QLineEdit),
+          area_(new QLabel) {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(8);
@@ -47,8 +49,8 @@ class ScalpPanel : public QWidget {
         layout->addWidget(expression_);
         layout->addLayout(makeButtons());
         layout->addWidget(area_);
-        connect(&session_.document, &Document::changed, this, [this](Changes changes) {
-            if (changes & Change::Scalp) refresh();
+        connect(&document_, &QtDocument::changed, this, [this](editing::Part parts) {
+            if (contains(parts, editing::kScalpParts)) refresh();
         });
         refresh();
     }
@@ -74,8 +76,7 @@ class ScalpPanel : public QWidget {
         add("scalpInvert", tr("Invert"), tr("Takes all other faces instead"),
             [this] { return invertSelection(mesh(), groom().scalpSelection); });
         add("scalpSymmetric", tr("Mirror"), tr("Adds the faces on the other side of the head"), [this] {
-            return editing::symmetricFaces(mesh(), *session_.document.editing().surface(),
-                                           groom().scalpSelection);
+            return editing::symmetricFaces(mesh(), *document_.editing().surface(), groom().scalpSelection);
         });
         add("scalpConnected", tr("Largest"), tr("Keeps the largest connected piece only"), [this] {
             const auto pieces = connectedPieces(mesh(), groom().scalpSelection);
@@ -85,22 +86,22 @@ class ScalpPanel : public QWidget {
         return grid;
     }
 
-    const Groom& groom() const { return session_.document.groom(); }
+    const Groom& groom() const { return document_.groom(); }
     const ScalpMesh& mesh() const { return *groom().scalp; }
 
     void select(const QString& expression) {
         if (!groom().scalp || expression.isEmpty()) return;
         auto faces = selectFaces(mesh(), expression.toStdString());
         if (!faces) {
-            session_.messages.warn(QString::fromStdString(faces.error().message()));
+            messages_.warn(QString::fromStdString(faces.error().message()));
             return;
         }
         perform(*faces, expression);
     }
 
     void perform(const FaceSet& faces, const QString& expression = {}) {
-        const auto& model = session_.document.editing().model();
-        session_.document.perform(
+        const auto& model = document_.editing().model();
+        document_.perform(
             editing::selectScalp(model, faces, editing::Choice::Replace, expression.toStdString()));
     }
 
@@ -128,7 +129,8 @@ class ScalpPanel : public QWidget {
         }
     }
 
-    Session& session_;
+    QtDocument& document_;
+    Messages& messages_;
     QComboBox* groups_;
     QLineEdit* expression_;
     QLabel* area_;
@@ -140,11 +142,13 @@ using Roots = std::vector<SurfacePoint>;
 
 class PlacePanel : public QWidget {
   public:
-    explicit PlacePanel(Session& session) : session_(session), note_(new QLabel) {
+    PlacePanel(QtDocument& document, const Preferences& preferences, Tasks& tasks, Messages& messages,
+               Viewport& viewport)
+        : document_(document), tasks_(tasks), messages_(messages), viewport_(viewport), note_(new QLabel) {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(8);
-        layout->addWidget(new FieldForm(session.document, session.preferences, placementFields()));
+        layout->addWidget(new FieldForm(document, preferences, placementFields()));
         auto* preview = new QPushButton(tr("Preview roots"));
         preview->setObjectName("placePreview");
         preview->setCheckable(true);
@@ -167,11 +171,11 @@ class PlacePanel : public QWidget {
             previewing_ = on;
             refresh();
         });
-        connect(&session_.document, &Document::changed, this, [this](Changes changes) {
-            if (changes & (Changes(Change::Placement) | Change::Scalp)) refresh();
+        connect(&document_, &QtDocument::changed, this, [this](editing::Part parts) {
+            if (contains(parts, editing::Part::Placement | editing::kScalpParts)) refresh();
         });
-        session_.viewport->addMarks([this](Marks& marks) {
-            const Groom& groom = session_.document.groom();
+        viewport_.addMarks([this](Marks& marks) {
+            const Groom& groom = document_.groom();
             if (!groom.scalp) return;
             for (const SurfacePoint& root : roots_) {
                 marks.point(groom.scalp->pointAt(root.triangle, root.barycentric), QColor(90, 230, 140), 4);
@@ -183,40 +187,43 @@ class PlacePanel : public QWidget {
     void refresh() {
         roots_.clear();
         note_->clear();
-        session_.viewport->redraw();
-        if (!previewing_ || !session_.document.groom().scalp) return;
-        session_.tasks.run<Roots>(
+        viewport_.redraw();
+        if (!previewing_ || !document_.groom().scalp) return;
+        tasks_.run<Roots>(
             tr("Placing roots"),
-            [groom = session_.document.groom()](TaskControl&) { return editing::placeRoots(groom, {}); },
+            [groom = document_.groom()](TaskControl&) { return editing::placeRoots(groom, {}); },
             [this](Roots roots) {
                 roots_ = std::move(roots);
                 note_->setText(tr("%L1 roots").arg(roots_.size()));
-                session_.viewport->redraw();
+                viewport_.redraw();
             });
     }
 
     void place() {
         using Command = std::shared_ptr<std::unique_ptr<editing::Command>>;
-        session_.tasks.run<Command>(
+        tasks_.run<Command>(
             tr("Placing hair"),
-            [groom = session_.document.groom()](TaskControl&) -> Result<Command> {
+            [groom = document_.groom()](TaskControl&) -> Result<Command> {
                 auto command = editing::place(groom, {}, {});
                 if (!command) return tl::unexpected(command.error());
                 return std::make_shared<std::unique_ptr<editing::Command>>(std::move(*command));
             },
-            [this, strandsBefore = session_.document.groom().offsets.version(),
-             selection = session_.document.groom().scalpSelection](const Command& command) {
-                const Groom& groom = session_.document.groom();
+            [this, strandsBefore = document_.groom().offsets.version(),
+             selection = document_.groom().scalpSelection](const Command& command) {
+                const Groom& groom = document_.groom();
                 if (groom.offsets.version() != strandsBefore || groom.scalpSelection != selection) {
-                    session_.messages.warn(tr("The hair has changed meanwhile; place it again"));
+                    messages_.warn(tr("The hair has changed meanwhile; place it again"));
                     return;
                 }
-                session_.document.perform(std::move(*command));
-                session_.messages.say(tr("%L1 strands placed").arg(session_.document.groom().strandCount()));
+                document_.perform(std::move(*command));
+                messages_.say(tr("%L1 strands placed").arg(document_.groom().strandCount()));
             });
     }
 
-    Session& session_;
+    QtDocument& document_;
+    Tasks& tasks_;
+    Messages& messages_;
+    Viewport& viewport_;
     QLabel* note_;
     Roots roots_;
     bool previewing_ = false;
@@ -224,9 +231,20 @@ class PlacePanel : public QWidget {
 
 }  // namespace
 
-QWidget* makeScalpPanel(Session& session) {
-    return scrolled(column({heading(QObject::tr("Where hair grows")), new ScalpPanel(session),
-                            heading(QObject::tr("Place hair")), new PlacePanel(session)}));
+PanelInfo scalpPanel() {
+    return {"scalp",
+            QObject::tr("Scalp"),
+            "scalp-paint",
+            Qt::LeftDockWidgetArea,
+            20,
+            true,
+            [](const PanelParts& parts) -> QWidget* {
+                return scrolled(column({heading(QObject::tr("Where hair grows")),
+                                        new ScalpPanel(parts.document, parts.messages),
+                                        heading(QObject::tr("Place hair")),
+                                        new PlacePanel(parts.document, parts.preferences, parts.tasks,
+                                                       parts.messages, parts.viewport)}));
+            }};
 }
 
 }  // namespace hairloom::editor

@@ -12,11 +12,9 @@
 #include "core/editing/settings_commands.h"
 #include "core/editing/sphere_commands.h"
 #include "core/editing/sphere_fit.h"
-#include "editor/panels/list.h"
+#include "editor/fields/option_form.h"
 #include "editor/panels/panel.h"
-#include "editor/session.h"
 #include "editor/simulation/bones.h"
-#include "editor/tools/option_form.h"
 
 namespace hairloom::editor {
 namespace {
@@ -32,8 +30,13 @@ QPushButton* button(const char* name, const QString& text, const QString& tip) {
 
 class SpheresPanel : public QWidget {
   public:
-    explicit SpheresPanel(Session& session)
-        : session_(session),
+    SpheresPanel(QtDocument& document, const Preferences& preferences, Tasks& tasks, Messages& messages,
+                 Player& player)
+        : document_(document),
+          preferences_(preferences),
+          tasks_(tasks),
+          messages_(messages),
+          player_(player),
           list_(new QTreeWidget),
           bone_(new QComboBox),
           count_(new QSpinBox),
@@ -86,19 +89,19 @@ class SpheresPanel : public QWidget {
         fit_->setWordWrap(true);
         layout->addWidget(fit_);
         connect(fit, &QPushButton::clicked, this, &SpheresPanel::fit);
-        connect(&session_.document, &Document::changed, this, [this](Changes changes) {
-            if (changes & Change::Spheres) refresh();
+        connect(&document_, &QtDocument::changed, this, [this](editing::Part parts) {
+            if (contains(parts, editing::Part::Spheres)) refresh();
         });
-        connect(&session_.player, &Player::motionsChanged, this, &SpheresPanel::refresh);
+        connect(&player_, &Player::motionsChanged, this, &SpheresPanel::refresh);
         connect(list_, &QTreeWidget::currentItemChanged, this, [this] { showNumbers(); });
         refresh();
     }
 
   private:
-    const std::vector<CollisionSphere>& spheres() const { return session_.document.groom().spheres; }
+    const std::vector<CollisionSphere>& spheres() const { return document_.groom().spheres; }
 
     void makeNumbers(QVBoxLayout& layout) {
-        numbers_ = new OptionForm(session_.preferences);
+        numbers_ = new OptionForm(preferences_);
         numbers_->addNumber(
             "selectedRadius", tr("Radius"), tr("Radius of the chosen sphere"), "m", 0.001, 0.5, false,
             [this] { return selected() ? static_cast<double>(spheres()[*selected()].radius) : 0.001; },
@@ -129,10 +132,10 @@ class SpheresPanel : public QWidget {
     void onSelected(MakeCommand make) {
         const auto index = selected();
         if (!index) {
-            session_.messages.say(tr("Choose a sphere in the list first"));
+            messages_.say(tr("Choose a sphere in the list first"));
             return;
         }
-        session_.document.perform(make(session_.document.editing().model(), *index));
+        document_.perform(make(document_.editing().model(), *index));
     }
 
     void refresh() {
@@ -155,7 +158,7 @@ class SpheresPanel : public QWidget {
         numbers_->refresh();
         bone_->clear();
         bone_->addItem(tr("none"));
-        if (const auto& actor = session_.player.actor()) {
+        if (const auto& actor = player_.actor()) {
             for (const Bone& bone : actor->skeleton().bones())
                 bone_->addItem(QString::fromStdString(bone.name));
         }
@@ -167,11 +170,11 @@ class SpheresPanel : public QWidget {
     }
 
     void fit() {
-        const Groom& groom = session_.document.groom();
+        const Groom& groom = document_.groom();
         if (!groom.scalp) return;
-        session_.tasks.run<editing::SphereFit>(
+        tasks_.run<editing::SphereFit>(
             tr("Fitting spheres"),
-            [groom, count = count_->value(), actor = session_.player.actor()](TaskControl&) {
+            [groom, count = count_->value(), actor = player_.actor()](TaskControl&) {
                 editing::SphereFitOptions options;
                 options.count = static_cast<std::uint32_t>(count);
                 if (groom.strandCount() > 0) options.region = editing::facesNearHair(groom, kNearHair);
@@ -186,12 +189,16 @@ class SpheresPanel : public QWidget {
                                   .arg(fit.worstGap * 1000, 0, 'f', 1)
                                   .arg(fit.meanGap * 1000, 0, 'f', 1)
                                   .arg(fit.worstBulge * 1000, 0, 'f', 1));
-                session_.document.perform(editing::setSpheres(session_.document.editing().model(),
-                                                              std::move(fit.spheres), "Fit spheres"));
+                document_.perform(
+                    editing::setSpheres(document_.editing().model(), std::move(fit.spheres), "Fit spheres"));
             });
     }
 
-    Session& session_;
+    QtDocument& document_;
+    const Preferences& preferences_;
+    Tasks& tasks_;
+    Messages& messages_;
+    Player& player_;
     QTreeWidget* list_;
     OptionForm* numbers_ = nullptr;
     QComboBox* bone_;
@@ -201,8 +208,17 @@ class SpheresPanel : public QWidget {
 
 }  // namespace
 
-QWidget* makeSpheresPanel(Session& session) {
-    return scrolled(column({new SpheresPanel(session)}));
+PanelInfo spheresPanel() {
+    return {"spheres",
+            QObject::tr("Spheres"),
+            "sphere",
+            Qt::RightDockWidgetArea,
+            80,
+            true,
+            [](const PanelParts& parts) -> QWidget* {
+                return scrolled(column({new SpheresPanel(parts.document, parts.preferences, parts.tasks,
+                                                         parts.messages, parts.player)}));
+            }};
 }
 
 }  // namespace hairloom::editor

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "core/editing/document.h"
-#include "editor/session.h"
-#include "editor/shell/theme.h"
+#include "core/editing/settings_commands.h"
+#include "editor/style/theme.h"
 
 namespace hairloom::editor {
 namespace {
@@ -26,9 +26,10 @@ runtime::StableAdvice adviceFor(const Groom& groom) {
 
 }  // namespace
 
-StabilityGauge::StabilityGauge(Session& session, QWidget* parent)
+StabilityGauge::StabilityGauge(QtDocument& document, const Preferences& preferences, QWidget* parent)
     : QWidget(parent),
-      session_(session),
+      document_(document),
+      preferences_(preferences),
       bar_(new QProgressBar),
       words_(new QLabel),
       offers_(new QVBoxLayout) {
@@ -49,18 +50,18 @@ StabilityGauge::StabilityGauge(Session& session, QWidget* parent)
     soon_.setInterval(80);
     connect(&soon_, &QTimer::timeout, this, [this] {
         // It looks at every strand: not while a hand rests amid a stroke.
-        session_.document.editing().stroke() ? soon_.start() : update();
+        document_.editing().stroke() ? soon_.start() : update();
     });
-    connect(&session_.document, &Document::changed, this, [this](Changes changes) {
-        if (changes & (Changes(Change::Simulation) | Change::Strands)) outdate();
+    connect(&document_, &QtDocument::changed, this, [this](editing::Part parts) {
+        if (contains(parts, editing::Part::Physics | editing::kHairParts)) outdate();
     });
-    connect(&session_.preferences, &Preferences::changed, this, &StabilityGauge::outdate);
+    connect(&preferences_, &Preferences::changed, this, &StabilityGauge::outdate);
     outdate();
 }
 
 void StabilityGauge::outdate() {
     isOutdated_ = true;
-    setVisible(session_.document.groom().strandCount() > 0);
+    setVisible(document_.groom().strandCount() > 0);
     if (isVisible()) soon_.start();
 }
 
@@ -78,12 +79,12 @@ void StabilityGauge::update() {
         delete item;
     }
     isOutdated_ = false;
-    const Groom& groom = session_.document.groom();
+    const Groom& groom = document_.groom();
     advice_ = adviceFor(groom);
     const double factor = advice_.region.factor;
     const double margin = std::isfinite(factor) ? std::clamp(1 - factor, 0.0, 1.0) : 0;
     bar_->setValue(std::max(kMinShown, static_cast<int>(100 * margin)));
-    const ThemeColours colours = themeColours(session_.preferences.theme());
+    const ThemeColours colours = themeColours(preferences_.theme());
     const QColor colour = factor > 1 ? colours.bad : factor > 0.8 ? colours.caution : colours.good;
     bar_->setStyleSheet(QStringLiteral("QProgressBar::chunk { background: %1; }").arg(colour.name()));
     words_->setText(!advice_.words.empty() ? QString::fromStdString(advice_.words)
@@ -94,9 +95,8 @@ void StabilityGauge::update() {
         button->setToolTip(tr("Changes the settings to these, undoably"));
         offers_->addWidget(button);
         connect(button, &QPushButton::clicked, this, [this, settings = offer.settings] {
-            Groom stable = session_.document.groom();
-            stable.simulation = settings;
-            session_.document.change(tr("Stable settings"), Change::Simulation, std::move(stable));
+            document_.perform(editing::setPhysics(document_.editing().model(), settings,
+                                                  tr("Stable settings").toStdString()));
         });
     }
 }

@@ -8,17 +8,17 @@
 #include <QVBoxLayout>
 #include <QWidget>
 
+#include "editor/document/preferences.h"
+#include "editor/document/qt_document.h"
 #include "hairloom/stable.h"
 
 namespace hairloom::editor {
-
-class Session;
 
 class StabilityGauge : public QWidget {
     Q_OBJECT
 
   public:
-    explicit StabilityGauge(Session& session, QWidget* parent = nullptr);
+    StabilityGauge(QtDocument& document, const Preferences& preferences, QWidget* parent = nullptr);
     const runtime::StableAdvice& advice() const { return advice_; }
 
   protected:
@@ -30,7 +30,8 @@ class StabilityGauge : public QWidget {
     void outdate();
     void update();
 
-    Session& session_;
+    QtDocument& document_;
+    const Preferences& preferences_;
     QProgressBar* bar_;
     QLabel* words_;
     QVBoxLayout* offers_;

@@ -4,13 +4,13 @@
 #include <QStackedWidget>
 #include <QVBoxLayout>
 
-#include "editor/panels/list.h"
 #include "editor/panels/panel.h"
-#include "editor/session.h"
 
 namespace hairloom::editor {
 
-QWidget* makeToolPanel(Session& session) {
+namespace {
+
+QWidget* makePages(ToolBox& tools) {
     auto* pages = new QStackedWidget;
     const auto page = [](const QString& title, const QString& tip, QWidget* options) {
         auto* text = new QLabel(tip);
@@ -24,15 +24,24 @@ QWidget* makeToolPanel(Session& session) {
                          "the left to change something."),
              nullptr));
     QHash<Tool*, QWidget*> pageOf;
-    for (const auto& tool : session.tools.all()) {
+    for (const auto& tool : tools.all()) {
         QWidget* const made = page(tool->info().name, tool->info().tip, tool->makeOptions());
         pages->addWidget(made);
         pageOf.insert(tool.get(), made);
     }
-    QObject::connect(&session.tools, &ToolBox::activeChanged, pages, [pages, pageOf](Tool* tool) {
+    QObject::connect(&tools, &ToolBox::activeChanged, pages, [pages, pageOf](Tool* tool) {
         pages->setCurrentWidget(tool ? pageOf.value(tool) : pages->widget(0));
     });
     return scrolled(pages);
+}
+
+}  // namespace
+
+PanelInfo toolPanel() {
+    return {
+        "tool", QObject::tr("Tool"), "brush", Qt::LeftDockWidgetArea, 10, true, [](const PanelParts& parts) {
+            return makePages(parts.tools);
+        }};
 }
 
 }  // namespace hairloom::editor

@@ -11,9 +11,7 @@
 
 #include "editor/fields/number_box.h"
 #include "editor/overlays/overlay_mode.h"
-#include "editor/panels/list.h"
 #include "editor/panels/panel.h"
-#include "editor/session.h"
 
 namespace hairloom::editor {
 namespace {
@@ -26,35 +24,35 @@ QCheckBox* check(const QString& name, const QString& title, const QString& tip, 
     return box;
 }
 
-QWidget* makeParts(Session& session) {
+QWidget* makeParts(QtDocument& document, const Player& player, Viewport& viewport) {
     auto* widget = new QWidget;
     auto* layout = new QVBoxLayout(widget);
     layout->setContentsMargins(0, 0, 0, 0);
     layout->setSpacing(5);
     auto* hair = check("hair", QObject::tr("Hair"), QObject::tr("Shows the hair"), true);
     auto* head = check("head", QObject::tr("Head"), QObject::tr("Shows the head"), true);
-    QObject::connect(hair, &QCheckBox::toggled, session.viewport, &Viewport::setHairShown);
-    QObject::connect(head, &QCheckBox::toggled, session.viewport, &Viewport::setHeadShown);
+    QObject::connect(hair, &QCheckBox::toggled, &viewport, &Viewport::setHairShown);
+    QObject::connect(head, &QCheckBox::toggled, &viewport, &Viewport::setHeadShown);
     layout->addWidget(hair);
     layout->addWidget(head);
     const auto shown = std::make_shared<std::set<const OverlayMode*>>();
     for (const OverlayMode& mode : overlayModes()) {
         auto* box = check(mode.id, QObject::tr(mode.title), QObject::tr(mode.tip), false);
         layout->addWidget(box);
-        QObject::connect(box, &QCheckBox::toggled, session.viewport, [&session, &mode, shown](bool on) {
+        QObject::connect(box, &QCheckBox::toggled, &viewport, [&viewport, &mode, shown](bool on) {
             on ? static_cast<void>(shown->insert(&mode)) : static_cast<void>(shown->erase(&mode));
-            session.viewport->redraw();
+            viewport.redraw();
         });
     }
-    session.viewport->addMarks([&session, shown](Marks& marks) {
+    viewport.addMarks([&document, &player, &viewport, shown](Marks& marks) {
         for (const OverlayMode& mode : overlayModes()) {
-            if (shown->contains(&mode)) mode.draw(session, marks);
+            if (shown->contains(&mode)) mode.draw({document.groom(), viewport, player}, marks);
         }
     });
     return widget;
 }
 
-QWidget* makeLight(Session& session) {
+QWidget* makeLight(Viewport& viewport) {
     auto* widget = new QWidget;
     auto* layout = new QFormLayout(widget);
     layout->setContentsMargins(0, 0, 0, 0);
@@ -65,29 +63,28 @@ QWidget* makeLight(Session& session) {
         box->setObjectName(name);
         box->setValue(value);
         box->setToolTip(tip);
-        QObject::connect(box, &NumberBox::edited, session.viewport,
+        QObject::connect(box, &NumberBox::edited, &viewport,
                          [take](double edited) { take(static_cast<float>(edited)); });
         layout->addRow(label, box);
         return box;
     };
-    Viewport* const viewport = session.viewport;
     number("lightTurn", QObject::tr("Turn light"),
            QObject::tr("Degrees by which the three lights are turned about the head"), {-180, 180}, 0,
-           [viewport](float degrees) { viewport->setLightTurn(degrees); })
+           [&viewport](float degrees) { viewport.setLightTurn(degrees); })
         ->setShown(1, QStringLiteral("°"), 0);
     number("exposure", QObject::tr("Exposure"),
            QObject::tr("Factor on the brightness of the picture; 1.6 shows skin as it is"), {0.2, 6}, 1.6,
-           [viewport](float factor) { viewport->setExposure(factor); });
+           [&viewport](float factor) { viewport.setExposure(factor); });
     number("lightScale", QObject::tr("Lights"),
            QObject::tr("Factor on the key, fill and rim light; 1 as they come"), {0, 3}, 1,
-           [viewport](float factor) { viewport->setLight(factor, viewport->surroundings()); });
+           [&viewport](float factor) { viewport.setLight(factor, viewport.surroundings()); });
     number("surroundings", QObject::tr("Environment"),
            QObject::tr("Factor on the light from all around; 0 leaves the lights alone"), {0, 3}, 1,
-           [viewport](float factor) { viewport->setLight(viewport->lightScale(), factor); });
+           [&viewport](float factor) { viewport.setLight(viewport.lightScale(), factor); });
     return widget;
 }
 
-QWidget* makeReference(Session& session) {
+QWidget* makeReference(Viewport& viewport, Messages& messages) {
     auto* widget = new QWidget;
     auto* layout = new QVBoxLayout(widget);
     layout->setContentsMargins(0, 0, 0, 0);
@@ -109,35 +106,44 @@ QWidget* makeReference(Session& session) {
     opacity->setToolTip(QObject::tr("0 hides the picture, 1 shows it as it is"));
     opacity->setEnabled(false);
     layout->addWidget(opacity);
-    const auto show = [&session, opacity, clear](const QImage& image) {
-        session.viewport->setReference(image, opacity->value());
+    const auto show = [&viewport, opacity, clear](const QImage& image) {
+        viewport.setReference(image, opacity->value());
         opacity->setEnabled(!image.isNull());
         clear->setEnabled(!image.isNull());
     };
-    QObject::connect(choose, &QPushButton::clicked, widget, [&session, widget, show] {
+    QObject::connect(choose, &QPushButton::clicked, widget, [&messages, widget, show] {
         const QString path = QFileDialog::getOpenFileName(widget, QObject::tr("Reference picture"), {},
                                                           QObject::tr("Pictures (*.png *.jpg *.jpeg *.bmp)"));
         if (path.isEmpty()) return;
         const QImage image(path);
         if (image.isNull()) {
-            session.messages.warn(QObject::tr("%1 is no picture that can be read").arg(path));
+            messages.warn(QObject::tr("%1 is no picture that can be read").arg(path));
         } else {
             show(image);
         }
     });
     QObject::connect(clear, &QPushButton::clicked, widget, [show] { show({}); });
-    QObject::connect(opacity, &NumberBox::edited, session.viewport, [&session](double value) {
-        session.viewport->setReference(session.viewport->reference(), value);
-    });
+    QObject::connect(opacity, &NumberBox::edited, &viewport,
+                     [&viewport](double value) { viewport.setReference(viewport.reference(), value); });
     return widget;
 }
 
 }  // namespace
 
-QWidget* makeViewPanel(Session& session) {
-    return scrolled(
-        column({heading(QObject::tr("Show")), makeParts(session), heading(QObject::tr("Light")),
-                makeLight(session), heading(QObject::tr("Reference picture")), makeReference(session)}));
+PanelInfo viewPanel() {
+    return {
+        "view",
+        QObject::tr("View"),
+        "overlay",
+        Qt::LeftDockWidgetArea,
+        30,
+        true,
+        [](const PanelParts& parts) -> QWidget* {
+            return scrolled(column(
+                {heading(QObject::tr("Show")), makeParts(parts.document, parts.player, parts.viewport),
+                 heading(QObject::tr("Light")), makeLight(parts.viewport),
+                 heading(QObject::tr("Reference picture")), makeReference(parts.viewport, parts.messages)}));
+        }};
 }
 
 }  // namespace hairloom::editor

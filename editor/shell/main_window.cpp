@@ -12,11 +12,13 @@
 #include <QSettings>
 #include <QToolBar>
 
+#include "core/base/file.h"
+#include "core/editing/document.h"
 #include "editor/dialogs/import_dialog.h"
-#include "editor/document/files.h"
 #include "editor/panels/panel.h"
-#include "editor/shell/icons.h"
-#include "editor/shell/theme.h"
+#include "editor/shell/files.h"
+#include "editor/style/icons.h"
+#include "editor/style/theme.h"
 
 namespace hairloom::editor {
 namespace {
@@ -36,14 +38,14 @@ MainWindow::MainWindow()
     setTabPosition(Qt::AllDockWidgetAreas, QTabWidget::North);
     resize(1440, 900);
 
-    session_.viewport = new Viewport(session_.document, session_.preferences);
-    session_.tools.fill(session_);
-    autosave_ = std::make_unique<Autosave>(session_.document, session_.preferences);
-    start_ = new StartPage(session_);
-    status_ = new StatusLine(session_);
+    viewport_ = new Viewport(document_, preferences_);
+    tools_.fill({document_, preferences_, messages_, player_, *viewport_});
+    autosave_ = std::make_unique<Autosave>(document_, preferences_);
+    start_ = new StartPage(files_, preferences_);
+    status_ = new StatusLine(document_, preferences_, tasks_, messages_, player_, *viewport_);
     setStatusBar(status_);
     pages_->addWidget(start_);
-    pages_->addWidget(session_.viewport);
+    pages_->addWidget(viewport_);
     setCentralWidget(pages_);
 
     addFileActions();
@@ -59,25 +61,24 @@ MainWindow::MainWindow()
     restoreLayout();
 
     connect(start_, &StartPage::openRequested, this, &MainWindow::chooseAndOpen);
-    connect(&session_.document, &Document::titleChanged, this, &MainWindow::showTitle);
-    connect(&session_.document, &Document::changed, this, &MainWindow::showPage);
-    connect(&session_.preferences, &Preferences::recentFilesChanged, this, &MainWindow::fillRecentMenu);
-    connect(&session_.preferences, &Preferences::changed, this,
-            [this, theme = session_.preferences.theme()]() mutable {
-                if (theme == session_.preferences.theme()) return;
-                theme = session_.preferences.theme();
-                applyTheme(*qApp, theme);
-            });
-    connect(autosave_.get(), &Autosave::failed, &session_.messages, &Messages::warn);
-    connect(session_.viewport, &Viewport::keyPressed, this, &MainWindow::runShortcut);
-    connect(session_.viewport, &Viewport::hintChanged, this, [this] {
-        const Tool* tool = session_.viewport->tool();
+    connect(&document_, &QtDocument::titleChanged, this, &MainWindow::showTitle);
+    connect(&document_, &QtDocument::changed, this, &MainWindow::showPage);
+    connect(&preferences_, &Preferences::recentFilesChanged, this, &MainWindow::fillRecentMenu);
+    connect(&preferences_, &Preferences::changed, this, [this, theme = preferences_.theme()]() mutable {
+        if (theme == preferences_.theme()) return;
+        theme = preferences_.theme();
+        applyTheme(*qApp, theme);
+    });
+    connect(autosave_.get(), &Autosave::failed, &messages_, &Messages::warn);
+    connect(viewport_, &Viewport::keyPressed, this, &MainWindow::runShortcut);
+    connect(viewport_, &Viewport::hintChanged, this, [this] {
+        const Tool* tool = viewport_->tool();
         status_->setHint(tool ? tool->hint() : QString());
     });
-    connect(&session_.tools, &ToolBox::activeChanged, session_.viewport, &Viewport::setTool);
-    connect(&session_.player, &Player::frameReady, this, [this] {
-        const auto& frame = session_.player.frame();
-        session_.viewport->setPose(frame ? frame->pose : nullptr);
+    connect(&tools_, &ToolBox::activeChanged, viewport_, &Viewport::setTool);
+    connect(&player_, &Player::frameReady, this, [this] {
+        const auto& frame = player_.frame();
+        viewport_->setPose(frame ? frame->pose : nullptr);
     });
     showTitle();
     fillRecentMenu();
@@ -85,13 +86,13 @@ MainWindow::MainWindow()
 }
 
 MainWindow::~MainWindow() {
-    session_.tasks.cancel();
-    session_.tasks.finish();
+    tasks_.cancel();
+    tasks_.finish();
     // The viewport's last words would go to parts that are gone.
-    session_.viewport->disconnect();
-    session_.player.disconnect();
-    delete session_.viewport;
-    session_.viewport = nullptr;
+    viewport_->disconnect();
+    player_.disconnect();
+    delete viewport_;
+    viewport_ = nullptr;
 }
 
 QDockWidget* MainWindow::panel(const QString& id) const {
@@ -103,7 +104,7 @@ void MainWindow::makePanels() {
     for (const PanelInfo& info : panels()) {
         auto* dock = new QDockWidget(info.title, this);
         dock->setObjectName("panel:" + info.id);
-        dock->setWidget(info.make(session_));
+        dock->setWidget(info.make(parts()));
         dock->setMinimumWidth(240);
         addDockWidget(info.area, dock);
         if (QDockWidget* last = lastIn.value(info.area)) tabifyDockWidget(last, dock);
@@ -156,30 +157,31 @@ void MainWindow::resetLayout() {
 }
 
 void MainWindow::showTitle() {
-    setWindowTitle(tr("%1[*] – Hairloom").arg(session_.document.title()));
-    setWindowModified(session_.document.isModified());
+    setWindowTitle(tr("%1[*] – Hairloom").arg(document_.title()));
+    setWindowModified(document_.isModified());
 }
 
 void MainWindow::showPage() {
-    const bool empty = session_.document.isEmpty();
+    const bool empty = document_.isEmpty();
     if (shownEmpty_ == empty) return;
     shownEmpty_ = empty;
-    pages_->setCurrentWidget(empty ? static_cast<QWidget*>(start_) : session_.viewport);
+    pages_->setCurrentWidget(empty ? static_cast<QWidget*>(start_) : viewport_);
     // Nothing to work on: what would do nothing looks so.
     for (const PanelInfo& info : panels()) panel(info.id)->widget()->setEnabled(!empty);
     for (QAction* tool : toolGroup_->actions()) tool->setEnabled(!empty);
-    for (const char* id : {"file.save", "file.saveAs", "file.import", "file.export", "play.toggle",
-                           "play.step", "play.reset", "view.frame", "view.turntable", "view.orthographic"}) {
+    for (const char* id :
+         {"file.save", "file.saveAs", "file.saveScript", "file.import", "file.export", "play.toggle",
+          "play.step", "play.reset", "view.frame", "view.turntable", "view.orthographic"}) {
         actions_->get(id).setEnabled(!empty);
     }
 }
 
 bool MainWindow::mayLeaveDocument() {
-    if (!session_.document.isModified()) return true;
+    if (!document_.isModified()) return true;
     Unsaved answer = unsaved_;
     if (answer == Unsaved::Ask) {
         const auto button = QMessageBox::question(
-            this, tr("Unsaved changes"), tr("Save the changes to %1?").arg(session_.document.title()),
+            this, tr("Unsaved changes"), tr("Save the changes to %1?").arg(document_.title()),
             QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, QMessageBox::Save);
         answer = button == QMessageBox::Save      ? Unsaved::Save
                  : button == QMessageBox::Discard ? Unsaved::Discard
@@ -191,17 +193,17 @@ bool MainWindow::mayLeaveDocument() {
 
 void MainWindow::newDocument() {
     if (!mayLeaveDocument()) return;
-    session_.document.open({}, {}, {});
+    document_.open({}, {}, {});
 }
 
 void MainWindow::open(const QString& path) {
-    const bool ontoHead = session_.document.groom().scalp && kindOf(path) == FileKind::Strands;
+    const bool ontoHead = document_.groom().scalp && kindOf(path) == FileKind::Strands;
     if (!ontoHead) {
-        if (mayLeaveDocument()) openFile(session_, path);
+        if (mayLeaveDocument()) files_.open(path);
         return;
     }
-    ImportDialog dialog(session_, path, this);
-    if (dialog.exec() == QDialog::Accepted) importStrandsInto(session_, path, dialog.options());
+    ImportDialog dialog(document_, tasks_, path, this);
+    if (dialog.exec() == QDialog::Accepted) files_.importStrands(path, dialog.options());
 }
 
 void MainWindow::chooseAndOpen() {
@@ -212,36 +214,54 @@ void MainWindow::chooseAndOpen() {
 void MainWindow::chooseAndImport() {
     const QString path = QFileDialog::getOpenFileName(this, tr("Import hair"), {}, strandFilter());
     if (path.isEmpty()) return;
-    ImportDialog dialog(session_, path, this);
-    if (dialog.exec() == QDialog::Accepted) importStrandsInto(session_, path, dialog.options());
+    ImportDialog dialog(document_, tasks_, path, this);
+    if (dialog.exec() == QDialog::Accepted) files_.importStrands(path, dialog.options());
 }
 
 bool MainWindow::saveTo(const QString& path) {
-    if (auto saved = session_.document.save(path); !saved) {
-        session_.messages.warn(QString::fromStdString(saved.error().message()));
+    if (auto saved = document_.save(path); !saved) {
+        messages_.warn(QString::fromStdString(saved.error().message()));
         return false;
     }
-    session_.preferences.addRecentFile(path);
-    session_.messages.say(tr("%1 saved").arg(QFileInfo(path).fileName()));
+    preferences_.addRecentFile(path);
+    messages_.say(tr("%1 saved").arg(QFileInfo(path).fileName()));
     return true;
 }
 
 bool MainWindow::save() {
-    return session_.document.path().isEmpty() ? saveAs() : saveTo(session_.document.path());
+    return document_.path().isEmpty() ? saveAs() : saveTo(document_.path());
 }
 
 bool MainWindow::saveAs() {
-    const QString name = session_.document.path().isEmpty()
-                             ? QFileInfo(session_.document.title()).completeBaseName() + ".hairloom"
-                             : session_.document.path();
+    const QString name = document_.path().isEmpty()
+                             ? QFileInfo(document_.title()).completeBaseName() + ".hairloom"
+                             : document_.path();
     const QString path =
         QFileDialog::getSaveFileName(this, tr("Save"), name, tr("Hairloom projects (*.hairloom)"));
     return !path.isEmpty() && saveTo(path);
 }
 
+bool MainWindow::saveScriptTo(const QString& path) {
+    const auto script = document_.editing().script();
+    const Status saved =
+        script ? writeFileAtomically(path.toStdString(), *script) : Status(tl::unexpected(script.error()));
+    if (!saved) {
+        messages_.warn(tr("No script: %1").arg(QString::fromStdString(saved.error().message())));
+        return false;
+    }
+    messages_.say(tr("%1: %Ln steps", nullptr, document_.doneSteps()).arg(QFileInfo(path).fileName()));
+    return true;
+}
+
+void MainWindow::chooseAndSaveScript() {
+    const QString name = QFileInfo(document_.title()).completeBaseName() + ".json";
+    const QString path = QFileDialog::getSaveFileName(this, tr("Save script"), name, tr("Scripts (*.json)"));
+    if (!path.isEmpty()) saveScriptTo(path);
+}
+
 void MainWindow::fillRecentMenu() {
     recentMenu_->clear();
-    for (const QString& path : session_.preferences.recentFiles()) {
+    for (const QString& path : preferences_.recentFiles()) {
         QAction* action = recentMenu_->addAction(QFileInfo(path).fileName());
         action->setToolTip(path);
         connect(action, &QAction::triggered, this, [this, path] { open(path); });
@@ -288,7 +308,7 @@ void MainWindow::dropEvent(QDropEvent* event) {
 
 void MainWindow::changeEvent(QEvent* event) {
     QMainWindow::changeEvent(event);
-    if (event->type() == QEvent::PaletteChange) session_.viewport->redraw();
+    if (event->type() == QEvent::PaletteChange) viewport_->redraw();
 }
 
 }  // namespace hairloom::editor

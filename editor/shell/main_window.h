@@ -9,8 +9,9 @@
 #include <optional>
 
 #include "editor/document/autosave.h"
-#include "editor/session.h"
-#include "editor/shell/actions.h"
+#include "editor/panels/panel.h"
+#include "editor/style/actions.h"
+#include "editor/shell/files.h"
 #include "editor/shell/start_page.h"
 #include "editor/shell/status_line.h"
 
@@ -23,7 +24,8 @@ class MainWindow : public QMainWindow {
     MainWindow();
     ~MainWindow() override;
 
-    Session& session() { return session_; }
+    PanelParts parts() { return {document_, preferences_, tasks_, messages_, player_, *viewport_, tools_}; }
+    DocumentFiles& files() { return files_; }
     Actions& actions() { return *actions_; }
     StatusLine& statusLine() { return *status_; }
     QDockWidget* panel(const QString& id) const;
@@ -32,6 +34,9 @@ class MainWindow : public QMainWindow {
     void open(const QString& path);
     /// False where the user cancelled or writing failed.
     bool saveTo(const QString& path);
+    /// Writes the steps since the document was opened as a script. False, with a word in the status line,
+    /// where one cannot be in it or writing failed.
+    bool saveScriptTo(const QString& path);
     /// What to do about unsaved changes: answers without asking, for tests and scripts.
     enum class Unsaved { Ask, Save, Discard, Keep };
     void setUnsavedAnswer(Unsaved answer) { unsaved_ = answer; }
@@ -63,11 +68,21 @@ class MainWindow : public QMainWindow {
     void chooseAndImport();
     bool save();
     bool saveAs();
+    void chooseAndSaveScript();
     /// True where the document may go.
     bool mayLeaveDocument();
     bool runShortcut(int key, Qt::KeyboardModifiers modifiers);
 
-    Session session_;
+    void frameSelection();
+
+    Preferences preferences_;
+    QtDocument document_;
+    Tasks tasks_;
+    Messages messages_;
+    Player player_{document_};
+    DocumentFiles files_{document_, player_, preferences_, tasks_, messages_};
+    ToolBox tools_;
+    Viewport* viewport_;
     Actions* actions_;
     std::unique_ptr<Autosave> autosave_;
     QStackedWidget* pages_;

@@ -9,8 +9,8 @@
 #include "editor/dialogs/export_dialog.h"
 #include "editor/dialogs/preferences_dialog.h"
 #include "editor/dialogs/shortcut_dialog.h"
-#include "editor/shell/icons.h"
 #include "editor/shell/main_window.h"
+#include "editor/style/icons.h"
 
 namespace hairloom::editor {
 namespace {
@@ -29,20 +29,20 @@ Box3f boundsOfSelection(const Groom& groom) {
     return box;
 }
 
-void frameSelection(Session& session) {
-    const Box3f box = boundsOfSelection(session.document.groom());
+}  // namespace
+
+void MainWindow::frameSelection() {
+    const Box3f box = boundsOfSelection(document_.groom());
     if (box.isEmpty()) {
-        session.messages.say(QObject::tr("Nothing is selected"));
+        messages_.say(QObject::tr("Nothing is selected"));
         return;
     }
-    Viewport& viewport = *session.viewport;
+    Viewport& viewport = *viewport_;
     const float aspect =
         static_cast<float>(viewport.width()) / static_cast<float>(std::max(viewport.height(), 1));
     viewport.camera().frame(box, aspect);
     viewport.redraw();
 }
-
-}  // namespace
 
 void MainWindow::addFileActions() {
     QMenu* menu = menuBar()->addMenu(tr("&File"));
@@ -62,6 +62,12 @@ void MainWindow::addFileActions() {
     add({"file.saveAs", tr("Save &as…"), "", tr("Writes the project to another file"),
          QKeySequence("Ctrl+Shift+S")},
         [this] { saveAs(); });
+    add({"file.saveScript",
+         tr("Save s&cript…"),
+         "",
+         tr("Writes the steps since the document was opened, for hairloom-cli groom to repeat"),
+         {}},
+        [this] { chooseAndSaveScript(); });
     menu->addSeparator();
     add({"file.import", tr("&Import hair…"), "import",
          tr("Takes strands of another program onto the head, after a look at them"), QKeySequence("Ctrl+I")},
@@ -69,7 +75,7 @@ void MainWindow::addFileActions() {
     add({"file.export", tr("&Export hair…"), "export",
          tr("Writes the hair for a game and reads it back to compare"), QKeySequence("Ctrl+E")},
         [this] {
-            ExportDialog dialog(session_, this);
+            ExportDialog dialog(document_, tasks_, messages_, this);
             dialog.exec();
         });
     menu->addSeparator();
@@ -87,12 +93,12 @@ void MainWindow::addEditActions() {
     };
     QAction& undo =
         add({"edit.undo", tr("&Undo"), "undo", tr("Takes the last step back"), QKeySequence("Ctrl+Z")},
-            [this] { session_.document.undo(); });
+            [this] { document_.undo(); });
     QAction& redo = add({"edit.redo", tr("&Redo"), "redo", tr("Does the step again that was taken back"),
                          QKeySequence("Ctrl+Shift+Z")},
-                        [this] { session_.document.redo(); });
+                        [this] { document_.redo(); });
     const auto enable = [this, &undo, &redo] {
-        const Document& document = session_.document;
+        const QtDocument& document = document_;
         undo.setEnabled(document.doneSteps() > 0);
         redo.setEnabled(document.doneSteps() < document.stepCount());
         undo.setText(undo.isEnabled() ? tr("&Undo %1").arg(document.stepName(document.doneSteps() - 1))
@@ -100,14 +106,14 @@ void MainWindow::addEditActions() {
         redo.setText(redo.isEnabled() ? tr("&Redo %1").arg(document.stepName(document.doneSteps()))
                                       : tr("&Redo"));
     };
-    connect(&session_.document, &Document::historyChanged, this, enable);
-    connect(&session_.document, &Document::replaced, this, enable);
+    connect(&document_, &QtDocument::historyChanged, this, enable);
+    connect(&document_, &QtDocument::replaced, this, enable);
     enable();
     menu->addSeparator();
     add({"edit.preferences", tr("&Preferences…"), "settings", tr("Theme, units, mouse, pen, autosave"),
          QKeySequence("Ctrl+,")},
         [this] {
-            PreferencesDialog dialog(session_.preferences, this);
+            PreferencesDialog dialog(preferences_, this);
             dialog.exec();
         });
     add({"edit.shortcuts",
@@ -130,11 +136,11 @@ void MainWindow::addViewActions() {
         return action;
     };
     add({"view.frame", tr("&Frame all"), "frame", tr("Shows all of the hair"), QKeySequence("Home")},
-        [this] { session_.viewport->frameAll(); });
+        [this] { viewport_->frameAll(); });
     add({"view.frameSelection", tr("Frame s&election"), "",
          tr("Shows the selected strands; where none is, the selected part of the head"),
          QKeySequence("Shift+Home")},
-        [this] { frameSelection(session_); });
+        [this] { frameSelection(); });
     const struct {
         const char *id, *text, *key;
         render::View view;
@@ -147,17 +153,17 @@ void MainWindow::addViewActions() {
     };
     for (const auto& view : kViews) {
         add({view.id, tr(view.text), "", tr("Looks at the head from this side"), QKeySequence(view.key)},
-            [this, at = view.view] { session_.viewport->look(at); });
+            [this, at = view.view] { viewport_->look(at); });
     }
     menu->addSeparator();
     QAction& ortho = add({"view.orthographic", tr("&Orthographic"), "ortho",
                           tr("Takes perspective out of the view"), QKeySequence("5"), true},
                          [] {});
-    connect(&ortho, &QAction::toggled, session_.viewport, &Viewport::setOrthographic);
+    connect(&ortho, &QAction::toggled, viewport_, &Viewport::setOrthographic);
     QAction& turntable = add({"view.turntable", tr("&Turntable"), "turntable",
                               tr("Turns the view about the head"), QKeySequence("Shift+T"), true},
                              [] {});
-    connect(&turntable, &QAction::toggled, session_.viewport, &Viewport::setTurntable);
+    connect(&turntable, &QAction::toggled, viewport_, &Viewport::setTurntable);
     menu->addSeparator();
     panelMenu_ = menu->addMenu(tr("&Panels"));
     add({"view.resetLayout",
@@ -169,7 +175,7 @@ void MainWindow::addViewActions() {
     add({"view.theme", tr("Light or &dark"), "theme", tr("Changes between the two themes"),
          QKeySequence("Ctrl+T")},
         [this] {
-            Preferences& preferences = session_.preferences;
+            Preferences& preferences = preferences_;
             preferences.setTheme(preferences.theme() == Theme::Dark ? Theme::Light : Theme::Dark);
         });
 }
@@ -182,18 +188,17 @@ void MainWindow::addPlayActions() {
         menu->addAction(&action);
         return action;
     };
-    QAction& toggle =
-        add({"play.toggle", tr("&Play"), "play", tr("Lets the hair move, or stops it where it is"),
-             QKeySequence("Space")},
-            [this] { session_.player.isPlaying() ? session_.player.pause() : session_.player.play(); });
+    QAction& toggle = add({"play.toggle", tr("&Play"), "play",
+                           tr("Lets the hair move, or stops it where it is"), QKeySequence("Space")},
+                          [this] { player_.isPlaying() ? player_.pause() : player_.play(); });
     add({"play.step", tr("&Step"), "step", tr("Moves the hair by one frame of 1/60 s"), QKeySequence(".")},
-        [this] { session_.player.step(); });
+        [this] { player_.step(); });
     add({"play.reset", tr("&Reset to rest"), "reset", tr("Puts the hair back to its authored shape"),
          QKeySequence("Shift+Space")},
-        [this] { session_.player.reset(); });
-    connect(&session_.player, &Player::stateChanged, this, [this, &toggle] {
-        toggle.setIcon(icon(session_.player.isPlaying() ? "pause" : "play"));
-        toggle.setText(session_.player.isPlaying() ? tr("&Pause") : tr("&Play"));
+        [this] { player_.reset(); });
+    connect(&player_, &Player::stateChanged, this, [this, &toggle] {
+        toggle.setIcon(icon(player_.isPlaying() ? "pause" : "play"));
+        toggle.setText(player_.isPlaying() ? tr("&Pause") : tr("&Play"));
     });
 }
 
@@ -202,16 +207,16 @@ void MainWindow::addToolActions() {
     menu->setToolTipsVisible(true);
     toolGroup_->setExclusive(true);
     const auto add = [&](const ActionInfo& info, Tool* tool) {
-        QAction& action = actions_->add(info, [this, tool] { session_.tools.activate(tool); });
+        QAction& action = actions_->add(info, [this, tool] { tools_.activate(tool); });
         toolGroup_->addAction(&action);
         menu->addAction(&action);
-        connect(&session_.tools, &ToolBox::activeChanged, &action,
+        connect(&tools_, &ToolBox::activeChanged, &action,
                 [&action, tool](Tool* active) { action.setChecked(active == tool); });
     };
     add({"tool.view", tr("Move the view"), "navigate",
          tr("Drag turns the view, the middle button moves it, the wheel zooms"), QKeySequence("Q"), true},
         nullptr);
-    for (const auto& tool : session_.tools.all()) {
+    for (const auto& tool : tools_.all()) {
         const ToolInfo& info = tool->info();
         add({"tool." + info.id, info.name, info.icon, info.tip, info.shortcut, true}, tool.get());
     }

@@ -27,13 +27,13 @@ void MainWindow::addSelectActions() {
         std::function<std::unique_ptr<editing::Command>(const editing::Model&, const Strands& selected)>;
     const auto add = [&](const ActionInfo& info, Make make, bool needsSelection) {
         menu->addAction(&actions_->add(info, [this, make = std::move(make), needsSelection] {
-            const editing::Model& model = session_.document.editing().model();
+            const editing::Model& model = document_.editing().model();
             const Strands selected = editing::strandsWithFlag(model.groom, attribute::kSelected);
             if (needsSelection && selected.empty()) {
-                session_.messages.say(tr("Select strands first (E)"));
+                messages_.say(tr("Select strands first (E)"));
                 return;
             }
-            session_.document.perform(make(model, selected));
+            document_.perform(make(model, selected));
         }));
     };
     using editing::Choice;
@@ -106,16 +106,16 @@ void MainWindow::addSelectActions() {
 
 void MainWindow::fillGroupMenu() {
     groupMenu_->clear();
-    const Groom& groom = session_.document.groom();
+    const Groom& groom = document_.groom();
     for (std::uint32_t g = 0; g < groom.groupNames.size(); ++g) {
         const std::vector<std::uint32_t> strands = editing::strandsOfGroup(groom, g);
         QAction* action = groupMenu_->addAction(
             tr("%1 (%L2 strands)").arg(QString::fromStdString(groom.groupNames[g])).arg(strands.size()));
         action->setToolTip(tr("Selects the strands of this group"));
         connect(action, &QAction::triggered, this, [this, g] {
-            const editing::Model& model = session_.document.editing().model();
-            session_.document.perform(editing::selectStrands(model, editing::strandsOfGroup(model.groom, g),
-                                                             editing::Choice::Replace));
+            const editing::Model& model = document_.editing().model();
+            document_.perform(editing::selectStrands(model, editing::strandsOfGroup(model.groom, g),
+                                                     editing::Choice::Replace));
         });
     }
     if (groom.groupNames.empty()) groupMenu_->addAction(tr("The hair has no groups"))->setEnabled(false);

@@ -7,10 +7,10 @@
 #include <QPushButton>
 
 #include "core/scene/sample.h"
-#include "editor/document/files.h"
+#include "editor/fields/blocks.h"
 #include "editor/fields/field.h"
-#include "editor/panels/panel.h"
-#include "editor/shell/icons.h"
+#include "editor/shell/files.h"
+#include "editor/style/icons.h"
 
 namespace hairloom::editor {
 namespace {
@@ -40,8 +40,12 @@ QLabel* dim(const QString& text) {
 
 }  // namespace
 
-StartPage::StartPage(Session& session, QWidget* parent)
-    : QWidget(parent), session_(session), recent_(new QVBoxLayout), recoveries_(new QVBoxLayout) {
+StartPage::StartPage(DocumentFiles& files, const Preferences& preferences, QWidget* parent)
+    : QWidget(parent),
+      files_(files),
+      preferences_(preferences),
+      recent_(new QVBoxLayout),
+      recoveries_(new QVBoxLayout) {
     setProperty("role", "page");
     setAttribute(Qt::WA_StyledBackground);
     auto* outer = new QHBoxLayout(this);
@@ -77,7 +81,7 @@ StartPage::StartPage(Session& session, QWidget* parent)
     const auto addSample = [&](const QString& name, const QString& label, const QString& tip) {
         auto* button = card(label, "hairloom", tip);
         button->setObjectName("sample:" + name);
-        connect(button, &QPushButton::clicked, this, [this, name] { openSample(session_, name); });
+        connect(button, &QPushButton::clicked, this, [this, name] { files_.openSample(name); });
         samples->addWidget(button);
     };
     if (folder.empty()) {
@@ -93,18 +97,18 @@ StartPage::StartPage(Session& session, QWidget* parent)
     page->addWidget(heading(tr("Recent files")));
     page->addLayout(recent_);
     page->addStretch(3);
-    connect(&session_.preferences, &Preferences::recentFilesChanged, this, &StartPage::fillRecent);
+    connect(&preferences_, &Preferences::recentFilesChanged, this, &StartPage::fillRecent);
     fillRecent();
     fillRecoveries();
 }
 
 void StartPage::fillRecent() {
     clear(*recent_);
-    const QStringList files = session_.preferences.recentFiles();
+    const QStringList files = preferences_.recentFiles();
     if (files.isEmpty()) recent_->addWidget(dim(tr("Files that you open will stand here.")));
     for (const QString& path : files.mid(0, 6)) {
         auto* button = card(QFileInfo(path).fileName(), "history", path);
-        connect(button, &QPushButton::clicked, this, [this, path] { openFile(session_, path); });
+        connect(button, &QPushButton::clicked, this, [this, path] { files_.open(path); });
         recent_->addWidget(button);
     }
 }
@@ -123,7 +127,7 @@ void StartPage::fillRecoveries() {
         layout->addWidget(restore, 1);
         layout->addWidget(discard);
         connect(restore, &QPushButton::clicked, this, [this, recovery] {
-            openRecovered(session_, recovery.file, recovery.documentPath, recovery.name);
+            files_.openRecovered(recovery.file, recovery.documentPath, recovery.name);
         });
         connect(discard, &QPushButton::clicked, row, [row, recovery] {
             Autosave::discard(recovery);

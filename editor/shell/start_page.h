@@ -6,7 +6,8 @@
 #include <QWidget>
 
 #include "editor/document/autosave.h"
-#include "editor/session.h"
+#include "editor/document/preferences.h"
+#include "editor/shell/files.h"
 
 namespace hairloom::editor {
 
@@ -14,7 +15,7 @@ class StartPage : public QWidget {
     Q_OBJECT
 
   public:
-    explicit StartPage(Session& session, QWidget* parent = nullptr);
+    StartPage(DocumentFiles& files, const Preferences& preferences, QWidget* parent = nullptr);
 
   Q_SIGNALS:
     void openRequested();
@@ -23,7 +24,8 @@ class StartPage : public QWidget {
     void fillRecent();
     void fillRecoveries();
 
-    Session& session_;
+    DocumentFiles& files_;
+    const Preferences& preferences_;
     QVBoxLayout* recent_;
     QVBoxLayout* recoveries_;
 };

@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editor/shell/status_line.h"
 
-#include "editor/shell/icons.h"
-#include "editor/shell/theme.h"
+#include "editor/style/icons.h"
+#include "editor/style/theme.h"
 
 namespace hairloom::editor {
 
-StatusLine::StatusLine(Session& session, QWidget* parent)
+StatusLine::StatusLine(QtDocument& document, const Preferences& preferences, Tasks& tasks, Messages& messages,
+                       Player& player, Viewport& viewport, QWidget* parent)
     : QStatusBar(parent),
-      session_(session),
+      document_(document),
+      preferences_(preferences),
+      tasks_(tasks),
+      messages_(messages),
+      player_(player),
+      viewport_(viewport),
       message_(new QLabel),
       counts_(new QLabel),
       frameTime_(new QLabel),
@@ -41,8 +47,8 @@ StatusLine::StatusLine(Session& session, QWidget* parent)
     fade_.setSingleShot(true);
     fade_.setInterval(8000);
     connect(&fade_, &QTimer::timeout, this, [this] { setHint(hint_); });
-    connect(&session_.messages, &Messages::said, this, &StatusLine::say);
-    connect(&session_.tasks, &Tasks::started, this, [this](const QString& name) {
+    connect(&messages_, &Messages::said, this, &StatusLine::say);
+    connect(&tasks_, &Tasks::started, this, [this](const QString& name) {
         say(name + QChar(0x2026), false);
         fade_.stop();
         showWork();
@@ -50,28 +56,27 @@ StatusLine::StatusLine(Session& session, QWidget* parent)
         cancel_->show();
         poll_.start();
     });
-    connect(&session_.tasks, &Tasks::stopped, this, [this] {
+    connect(&tasks_, &Tasks::stopped, this, [this] {
         poll_.stop();
         progress_->hide();
         cancel_->hide();
         fade_.start(0);
     });
-    connect(&session_.tasks, &Tasks::failed, this, [this](const QString& text) { say(text, true); });
-    connect(&session_.player, &Player::failed, this, [this](const QString& text) { say(text, true); });
-    connect(cancel_, &QToolButton::clicked, &session_.tasks, &Tasks::cancel);
-    connect(&session_.document, &Document::changed, this, &StatusLine::showCounts);
-    connect(session_.viewport, &Viewport::failed, this, [this](const QString& text) { say(text, true); });
-    connect(session_.viewport, &Viewport::drawn, this, [this](const PictureReport& report) {
-        const auto& frame = session_.player.frame();
+    connect(&tasks_, &Tasks::failed, this, [this](const QString& text) { say(text, true); });
+    connect(&player_, &Player::failed, this, [this](const QString& text) { say(text, true); });
+    connect(cancel_, &QToolButton::clicked, &tasks_, &Tasks::cancel);
+    connect(&document_, &QtDocument::changed, this, &StatusLine::showCounts);
+    connect(&viewport_, &Viewport::failed, this, [this](const QString& text) { say(text, true); });
+    connect(&viewport_, &Viewport::drawn, this, [this](const PictureReport& report) {
+        const auto& frame = player_.frame();
         const QString picture = tr("%1 ms").arg(report.milliseconds, 0, 'f', 1);
         frameTime_->setText(frame ? tr("%1 + %2 ms").arg(picture).arg(frame->milliseconds, 0, 'f', 1)
                                   : picture);
     });
-    connect(session_.viewport, &Viewport::deviceReady, this,
-            [this](const QString& name, const QString& problem) {
-                device_->setText(problem.isEmpty() ? name.section(" (", 0, 0) : tr("no graphics device"));
-                if (!problem.isEmpty()) say(problem, true);
-            });
+    connect(&viewport_, &Viewport::deviceReady, this, [this](const QString& name, const QString& problem) {
+        device_->setText(problem.isEmpty() ? name.section(" (", 0, 0) : tr("no graphics device"));
+        if (!problem.isEmpty()) say(problem, true);
+    });
     device_->setText(tr("looking for a device"));
     showCounts();
 }
@@ -80,7 +85,7 @@ void StatusLine::say(const QString& text, bool isWarning) {
     warning_ = isWarning;
     message_->setText(text);
     message_->setToolTip(text);
-    const ThemeColours colours = themeColours(session_.preferences.theme());
+    const ThemeColours colours = themeColours(preferences_.theme());
     message_->setStyleSheet(isWarning ? QStringLiteral("QLabel { color: %1; }").arg(colours.bad.name())
                                       : QString());
     fade_.start(isWarning ? 20'000 : 8000);
@@ -96,7 +101,7 @@ void StatusLine::setHint(const QString& hint) {
 }
 
 void StatusLine::showCounts() {
-    const Groom& groom = session_.document.groom();
+    const Groom& groom = document_.groom();
     const std::pair counts(groom.strandCount(), groom.pointCount());
     if (counts == counted_) return;
     counted_ = counts;
@@ -104,7 +109,7 @@ void StatusLine::showCounts() {
 }
 
 void StatusLine::showWork() {
-    const float progress = session_.tasks.progress();
+    const float progress = tasks_.progress();
     progress_->setRange(0, progress < 0 ? 0 : 100);
     progress_->setValue(static_cast<int>(100 * progress));
 }

@@ -11,7 +11,12 @@
 #include <optional>
 #include <utility>
 
-#include "editor/session.h"
+#include "editor/document/messages.h"
+#include "editor/document/preferences.h"
+#include "editor/document/qt_document.h"
+#include "editor/document/tasks.h"
+#include "editor/simulation/player.h"
+#include "editor/viewport/viewport.h"
 
 namespace hairloom::editor {
 
@@ -19,7 +24,8 @@ class StatusLine : public QStatusBar {
     Q_OBJECT
 
   public:
-    explicit StatusLine(Session& session, QWidget* parent = nullptr);
+    StatusLine(QtDocument& document, const Preferences& preferences, Tasks& tasks, Messages& messages,
+               Player& player, Viewport& viewport, QWidget* parent = nullptr);
     QString message() const { return message_->text(); }
     /// What the active tool says to do; stands when nothing else is said.
     void setHint(const QString& hint);
@@ -29,7 +35,12 @@ class StatusLine : public QStatusBar {
     void showCounts();
     void showWork();
 
-    Session& session_;
+    QtDocument& document_;
+    const Preferences& preferences_;
+    Tasks& tasks_;
+    Messages& messages_;
+    Player& player_;
+    Viewport& viewport_;
     QLabel* message_;
     QLabel* counts_;
     QLabel* frameTime_;

@@ -61,10 +61,10 @@ struct Player::WorkerRequests {
     std::shared_ptr<const PlayedFrame> delivered;  ///< waits for the interface
 };
 
-Player::Player(Document& document, QObject* parent)
+Player::Player(QtDocument& document, QObject* parent)
     : QObject(parent), document_(document), requests_(std::make_unique<WorkerRequests>()) {
-    connect(&document_, &Document::changed, this, &Player::documentChanged);
-    connect(&document_, &Document::replaced, this, [this] {
+    connect(&document_, &QtDocument::changed, this, &Player::documentChanged);
+    connect(&document_, &QtDocument::replaced, this, [this] {
         actor_.reset();
         motion_ = "none";
         reset();
@@ -235,10 +235,11 @@ void Player::setHeadOffset(const Eigen::Isometry3f& offset) {
     request([&](WorkerRequests& requests) { requests.offset = offset; });
 }
 
-void Player::documentChanged(Changes changes) {
+void Player::documentChanged(editing::Part parts) {
     const Groom& groom = document_.groom();
-    if (changes & (Changes(Change::Simulation) | Change::Strands | Change::Spheres)) outdatePlanPreview();
-    if (changes & (Changes(Change::Strands) | Change::Scalp)) {
+    if (contains(parts, editing::Part::Physics | editing::kHairParts | editing::Part::Spheres))
+        outdatePlanPreview();
+    if (contains(parts, editing::kHairParts | editing::kScalpParts)) {
         if (!captured_) return;
         const bool play = playing_ && groom.strandCount() > 0;
         reset();
@@ -247,13 +248,13 @@ void Player::documentChanged(Changes changes) {
     }
     if (!captured_) return;
     std::shared_ptr<HeadMotion> motion;
-    if (changes & Change::Spheres) {
+    if (contains(parts, editing::Part::Spheres)) {
         // Clips carry spheres along by their bones.
         if (auto made = motionOf(motion_, actor_, groom)) motion = std::move(*made);
     }
     request([&](WorkerRequests& requests) {
-        if (changes & Change::Simulation) requests.settings = groom.simulation;
-        if (!(changes & Change::Spheres)) return;
+        if (contains(parts, editing::Part::Physics)) requests.settings = groom.simulation;
+        if (!contains(parts, editing::Part::Spheres)) return;
         requests.spheres = groom.spheres;
         if (motion) requests.motion = motion;
     });

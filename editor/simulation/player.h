@@ -13,7 +13,7 @@
 
 #include "core/animation/actor.h"
 #include "core/simulation/simulation.h"
-#include "editor/document/document.h"
+#include "editor/document/qt_document.h"
 #include "editor/viewport/picture_request.h"
 
 namespace hairloom::editor {
@@ -31,7 +31,7 @@ class Player : public QObject {
     Q_OBJECT
 
   public:
-    explicit Player(Document& document, QObject* parent = nullptr);
+    explicit Player(QtDocument& document, QObject* parent = nullptr);
     ~Player() override;
 
     void play();
@@ -84,14 +84,14 @@ class Player : public QObject {
     /// held.
     void capture();
     void deliver(std::shared_ptr<const PlayedFrame> frame, quint64 epoch);
-    void documentChanged(Changes changes);
+    void documentChanged(editing::Part parts);
     void requestPlanPreview();
     void outdatePlanPreview();
     /// Makes the simulation to see its plan; on the thread.
     void computePlanPreview(const Groom& groom, const QStringList& leftOut);
     void request(const std::function<void(WorkerRequests&)>& change);
 
-    Document& document_;
+    QtDocument& document_;
     std::shared_ptr<const Actor> actor_;
     QString motion_ = "none";
     bool playing_ = false;

@@ -7,7 +7,7 @@
 
 #include "core/editing/document.h"
 #include "editor/fields/field.h"
-#include "editor/session.h"
+#include "editor/style/icons.h"
 
 namespace hairloom::editor {
 namespace {
@@ -20,41 +20,48 @@ QString text(std::string_view words) {
     return QString::fromUtf8(words.data(), static_cast<qsizetype>(words.size()));
 }
 
-bool paintsTheHead(const std::string& brush) {
-    return brush == "scalp_paint" || brush == "density_paint" || brush == "add";
-}
-
-/// And must keep it out of the head.
-bool movesHair(const std::string& brush) {
-    return !paintsTheHead(brush) && brush != "dye_paint";
+/// The brush's own icon, or that of brushes.
+QString iconOf(const editing::BrushInfo& brush) {
+    const QString name = text(brush.name).replace('_', '-');
+    return hasIcon(name) ? name : QStringLiteral("brush");
 }
 
 /// The brush's own parameter makes it smooth what it does; others leave that to the brush `smooth`.
-bool smoothsItself(const std::string& brush) {
-    return std::ranges::any_of(editing::brushInfo(brush).parameters, [](const editing::BrushParameter& p) {
+bool smoothsItself(const editing::BrushInfo& brush) {
+    return std::ranges::any_of(brush.parameters, [](const editing::BrushParameter& p) {
         return std::string_view(p.name) == "smooth";
     });
 }
 
 }  // namespace
 
-BrushTool::BrushTool(Session& session, std::string brush, ToolInfo info)
-    : session_(session), brush_(std::move(brush)), info_(std::move(info)) {
-    for (const editing::BrushParameter& parameter : editing::brushInfo(brush_).parameters) {
+BrushTool::BrushTool(const ToolParts& parts, std::string_view brush)
+    : document_(parts.document),
+      preferences_(parts.preferences),
+      messages_(parts.messages),
+      player_(parts.player),
+      viewport_(parts.viewport),
+      brush_(editing::brushInfo(brush)),
+      info_{text(brush_.name),
+            text(brush_.label),
+            iconOf(brush_),
+            text(brush_.tip),
+            QKeySequence(text(brush_.key)),
+            brush_.order} {
+    for (const editing::BrushParameter& parameter : brush_.parameters) {
         settings_.parameters.emplace(parameter.name, parameter.defaultValue);
     }
 }
 
 QString BrushTool::hint() const {
-    const editing::BrushInfo& brush = editing::brushInfo(brush_);
     QString hint = info_.tip;
-    if (!brush.inverse.empty()) hint += tr(". Ctrl: %1").arg(text(brush.inverse));
+    if (!brush_.inverse.empty()) hint += tr(". Ctrl: %1").arg(text(brush_.inverse));
     return hint + tr(". Shift smooths, F and [ ] set the size, Esc cancels");
 }
 
 void BrushTool::activate() {
     // Brushes work on the hair as it is authored.
-    if (session_.player.hasFrame()) session_.player.reset();
+    if (player_.hasFrame()) player_.reset();
 }
 
 void BrushTool::hover(const Pointer& pointer) {
@@ -81,21 +88,22 @@ void BrushTool::press(const Pointer& pointer) {
 }
 
 BrushPlace BrushTool::underPointer(const Pointer& pointer) const {
-    return paintsTheHead(brush_) ? skinUnder(session_, pointer.at_px) : placeUnder(session_, pointer.at_px);
+    return brush_.worksOnSkin ? skinUnder(document_, viewport_, pointer.at_px)
+                              : placeUnder(document_, viewport_, pointer.at_px);
 }
 
 bool BrushTool::begin(const Pointer& pointer) {
     place_ = underPointer(pointer);
-    if (paintsTheHead(brush_) && !place_->skin) return false;
+    if (brush_.worksOnSkin && !place_->skin) return false;
     editing::Stroke header;
     const bool smooths = pointer.modifiers & Qt::ShiftModifier;
-    header.tool = smooths && !smoothsItself(brush_) ? "smooth" : brush_;
+    header.tool = smooths && !smoothsItself(brush_) ? "smooth" : brush_.name;
     header.settings = settings_;
-    if (header.tool != brush_) header.settings.parameters.clear();
-    if (smooths && header.tool == brush_) header.settings.parameters["smooth"] = 1;
+    if (header.tool != brush_.name) header.settings.parameters.clear();
+    if (smooths && header.tool == brush_.name) header.settings.parameters["smooth"] = 1;
     if (pointer.modifiers & Qt::ControlModifier) header.settings.invert = !settings_.invert;
-    if (auto begun = session_.document.editing().beginStroke(std::move(header)); !begun) {
-        session_.messages.warn(QString::fromStdString(begun.error().message()));
+    if (auto begun = document_.editing().beginStroke(std::move(header)); !begun) {
+        messages_.warn(QString::fromStdString(begun.error().message()));
         return false;
     }
     return true;
@@ -103,10 +111,10 @@ bool BrushTool::begin(const Pointer& pointer) {
 
 bool BrushTool::putDown(const BrushPlace& place, double pressure) {
     // A brush on the head is a ball; one on the hair reaches along the view.
-    const Vec3f direction = paintsTheHead(brush_) ? Vec3f(Vec3f::Zero()) : place.direction_ss;
+    const Vec3f direction = brush_.worksOnSkin ? Vec3f(Vec3f::Zero()) : place.direction_ss;
     const auto dab = editing::dabAt(settings_, place.position_ss, direction, static_cast<float>(pressure));
-    if (auto done = session_.document.editing().dab(dab); !done) {
-        session_.messages.warn(QString::fromStdString(done.error().message()));
+    if (auto done = document_.editing().dab(dab); !done) {
+        messages_.warn(QString::fromStdString(done.error().message()));
         cancel();
         return false;
     }
@@ -119,10 +127,10 @@ void BrushTool::drag(const Pointer& pointer) {
     if (!last_) return;
     // On hair it stays at the depth where the stroke began, so that hair that moves does not pull it in and
     // out.
-    const BrushPlace to = paintsTheHead(brush_) ? underPointer(pointer)
-                                                : placeAtDepthOf(session_, last_->position_ss, pointer.at_px);
+    const BrushPlace to = brush_.worksOnSkin ? underPointer(pointer)
+                                             : placeAtDepthOf(viewport_, last_->position_ss, pointer.at_px);
     place_ = to;
-    if (paintsTheHead(brush_) && !to.skin) return;
+    if (brush_.worksOnSkin && !to.skin) return;
     const BrushPlace from = *last_;
     const float length = (to.position_ss - from.position_ss).norm();
     const int dabs = static_cast<int>(length / (kSpacing * settings_.radius));
@@ -138,12 +146,12 @@ void BrushTool::drag(const Pointer& pointer) {
 void BrushTool::release(const Pointer&) {
     if (!last_) return;
     last_.reset();
-    session_.document.editing().endStroke();
+    document_.editing().endStroke();
 }
 
 void BrushTool::cancel() {
     resizing_ = Resizing::None;
-    if (session_.document.editing().stroke()) session_.document.editing().cancelStroke();
+    if (document_.editing().stroke()) document_.editing().cancelStroke();
     last_.reset();
 }
 
@@ -158,7 +166,7 @@ void BrushTool::setStrength(float strength) {
 }
 
 void BrushTool::setParameter(const std::string& name, float value) {
-    const auto parameters = editing::brushInfo(brush_).parameters;
+    const auto parameters = brush_.parameters;
     const auto known =
         std::ranges::find_if(parameters, [&](const editing::BrushParameter& p) { return p.name == name; });
     if (known == parameters.end()) return;
@@ -199,9 +207,8 @@ void BrushTool::resize(const QPointF& to_px) {
     if (resizing_ == Resizing::Strength) {
         setStrength(resizeFrom_ + 0.005f * by_px);
     } else {
-        const Vec3f at = place_ ? place_->position_ss : session_.viewport->camera().target_ws();
-        const float metres =
-            session_.viewport->camera().metresPerPixel(at, session_.viewport->viewSize_px()) * by_px;
+        const Vec3f at = place_ ? place_->position_ss : viewport_.camera().target_ws();
+        const float metres = viewport_.camera().metresPerPixel(at, viewport_.viewSize_px()) * by_px;
         setRadius(resizeFrom_ + metres);
     }
 }
@@ -213,8 +220,8 @@ void BrushTool::changed() {
 
 void BrushTool::draw(Marks& marks) const {
     if (!place_) return;
-    const bool paints = paintsTheHead(brush_);
-    const Vec3f normal = paints ? place_->normal_ss : Vec3f(-session_.viewport->camera().forward_ws());
+    const bool paints = brush_.worksOnSkin;
+    const Vec3f normal = paints ? place_->normal_ss : Vec3f(-viewport_.camera().forward_ws());
     const QColor outer(255, 255, 255, 230);
     const QColor inner(255, 255, 255, 110);
     marks.circle(place_->position_ss, normal, settings_.radius, QColor(0, 0, 0, 120), 3.5f,
@@ -232,7 +239,7 @@ void BrushTool::draw(Marks& marks) const {
 }
 
 OptionForm* BrushTool::makeBasicOptions() {
-    auto* form = new OptionForm(session_.preferences);
+    auto* form = new OptionForm(preferences_);
     const auto number = [&](const char* name, const QString& label, const QString& tip, const char* unit,
                             float min, float max, float editing::BrushSettings::*member) {
         form->addNumber(
@@ -262,7 +269,7 @@ OptionForm* BrushTool::makeBasicOptions() {
             falloff_ = editing::BrushCurve::falloffNames()[static_cast<std::size_t>(index)];
             settings_.falloff = editing::BrushCurve::falloff(falloff_);
         });
-    if (!paintsTheHead(brush_)) {
+    if (!brush_.worksOnSkin) {
         form->addChoice(
             "brushProfile", tr("Root to tip"), tr("Where along the strand the brush works most"),
             {tr("Everywhere"), tr("More at the tip"), tr("More at the root")},
@@ -278,7 +285,7 @@ OptionForm* BrushTool::makeBasicOptions() {
         number("brushDepth", tr("Depth"), tr("How far before and behind its place the brush reaches"), "m", 0,
                0.3f, &editing::BrushSettings::depth);
     }
-    if (movesHair(brush_)) {
+    if (brush_.movesHair) {
         number("brushClearance", tr("Clearance"), tr("Distance that hair keeps from the skin"), "m", 0, 0.01f,
                &editing::BrushSettings::clearance);
         form->addGroundTruth(
@@ -293,11 +300,10 @@ OptionForm* BrushTool::makeBasicOptions() {
             settings_.symmetric = on;
             Q_EMIT updated();
         });
-    const editing::BrushInfo& brush = editing::brushInfo(brush_);
-    if (!brush.inverse.empty()) {
+    if (!brush_.inverse.empty()) {
         form->addGroundTruth(
             "brushInvert", tr("Invert"),
-            tr("The opposite: %1. Ctrl does it for one stroke").arg(text(brush.inverse)),
+            tr("The opposite: %1. Ctrl does it for one stroke").arg(text(brush_.inverse)),
             [this] { return settings_.invert; }, [this](bool on) { settings_.invert = on; });
     }
     return form;
@@ -305,7 +311,7 @@ OptionForm* BrushTool::makeBasicOptions() {
 
 QWidget* BrushTool::makeOptions() {
     OptionForm* const form = makeBasicOptions();
-    for (const editing::BrushParameter& parameter : editing::brushInfo(brush_).parameters) {
+    for (const editing::BrushParameter& parameter : brush_.parameters) {
         const std::string name(parameter.name);
         const QString label = labelOf(text(parameter.name));
         if (parameter.kind == FieldKind::Bool) {
@@ -323,6 +329,15 @@ QWidget* BrushTool::makeOptions() {
     }
     connect(this, &BrushTool::settingsChanged, form, &OptionForm::refresh);
     return form;
+}
+
+ToolMaker brushTool() {
+    return [](const ToolParts& parts) {
+        Tools tools;
+        for (const std::string_view name : editing::brushNames())
+            tools.push_back(std::make_unique<BrushTool>(parts, name));
+        return tools;
+    };
 }
 
 }  // namespace hairloom::editor

@@ -4,20 +4,18 @@
 // shows its ring, changes size and strength by keys.
 
 #include "core/editing/brush_list.h"
-#include "editor/tools/option_form.h"
+#include "editor/fields/option_form.h"
 #include "editor/tools/surface_pick.h"
-#include "editor/tools/tool.h"
+#include "editor/tools/tool_maker.h"
 
 namespace hairloom::editor {
-
-class Session;
 
 class BrushTool : public Tool {
     Q_OBJECT
 
   public:
     /// `brush` is one of editing::brushNames().
-    BrushTool(Session& session, std::string brush, ToolInfo info);
+    BrushTool(const ToolParts& parts, std::string_view brush);
 
     const ToolInfo& info() const override { return info_; }
     QString hint() const override;
@@ -53,8 +51,12 @@ class BrushTool : public Tool {
     void changed();
     OptionForm* makeBasicOptions();
 
-    Session& session_;
-    std::string brush_;
+    QtDocument& document_;
+    const Preferences& preferences_;
+    Messages& messages_;
+    Player& player_;
+    Viewport& viewport_;
+    const editing::BrushInfo& brush_;
     ToolInfo info_;
     editing::BrushSettings settings_;
     std::string falloff_ = "smooth";

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Drags the head about, to see how the hair follows. Changes no document.
-#include "editor/session.h"
-#include "editor/tools/registry.h"
+#include "editor/tools/tool_maker.h"
 
 namespace hairloom::editor {
 namespace {
@@ -10,9 +9,9 @@ constexpr float kTurnPerPixel = 0.01f;  // radians
 
 class HeadTool : public Tool {
   public:
-    explicit HeadTool(Session& session) : session_(session) {
-        connect(&session_.player, &Player::stateChanged, this, [this] {
-            if (!session_.player.hasFrame() && !session_.player.isPlaying()) offset_.setIdentity();
+    HeadTool(Player& player, Viewport& viewport) : player_(player), viewport_(viewport) {
+        connect(&player_, &Player::stateChanged, this, [this] {
+            if (!player_.hasFrame() && !player_.isPlaying()) offset_.setIdentity();
         });
     }
     const ToolInfo& info() const override { return info_; }
@@ -22,12 +21,12 @@ class HeadTool : public Tool {
         held_ = true;
         from_px_ = pointer.at_px;
         start_ = offset_;
-        if (!session_.player.isPlaying()) session_.player.play();
+        if (!player_.isPlaying()) player_.play();
     }
 
     void drag(const Pointer& pointer) override {
         if (!held_) return;
-        const OrbitCamera& camera = session_.viewport->camera();
+        const OrbitCamera& camera = viewport_.camera();
         const QPointF by = pointer.at_px - from_px_;
         const auto x = static_cast<float>(by.x()), y = static_cast<float>(by.y());
         const Vec3f pivot = camera.target_ws();
@@ -37,10 +36,10 @@ class HeadTool : public Tool {
                 Eigen::AngleAxisf(kTurnPerPixel * y, camera.right_ws()) * Eigen::Translation3f(-pivot);
             offset_ = turn * start_;
         } else {
-            const float metres = camera.metresPerPixel(pivot, session_.viewport->viewSize_px());
+            const float metres = camera.metresPerPixel(pivot, viewport_.viewSize_px());
             offset_ = Eigen::Translation3f(metres * (x * camera.right_ws() - y * camera.up_ws())) * start_;
         }
-        session_.player.setHeadOffset(offset_);
+        player_.setHeadOffset(offset_);
     }
 
     void release(const Pointer&) override { held_ = false; }
@@ -49,13 +48,18 @@ class HeadTool : public Tool {
         if (!held_) return;
         held_ = false;
         offset_ = start_;
-        session_.player.setHeadOffset(offset_);
+        player_.setHeadOffset(offset_);
     }
 
   private:
-    Session& session_;
-    ToolInfo info_{"head", tr("Drag the head"), "drag-head",
-                   tr("Drag to move the head and watch the hair follow"), QKeySequence("H")};
+    Player& player_;
+    Viewport& viewport_;
+    ToolInfo info_{"head",
+                   tr("Drag the head"),
+                   "drag-head",
+                   tr("Drag to move the head and watch the hair follow"),
+                   QKeySequence("H"),
+                   420};
     Eigen::Isometry3f offset_ = Eigen::Isometry3f::Identity();
     Eigen::Isometry3f start_ = Eigen::Isometry3f::Identity();
     QPointF from_px_;
@@ -65,7 +69,7 @@ class HeadTool : public Tool {
 }  // namespace
 
 ToolMaker headTool() {
-    return [](Session& session) -> std::unique_ptr<Tool> { return std::make_unique<HeadTool>(session); };
+    return [](const ToolParts& parts) { return oneTool<HeadTool>(parts.player, parts.viewport); };
 }
 
 }  // namespace hairloom::editor

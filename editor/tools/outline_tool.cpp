@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editor/tools/outline_tool.h"
 
-#include "editor/session.h"
 #include "editor/tools/surface_pick.h"
 
 namespace hairloom::editor {
@@ -16,11 +15,16 @@ editing::Choice choiceOf(Qt::KeyboardModifiers modifiers) {
 
 }  // namespace
 
-OutlineTool::OutlineTool(Session& session, Shape shape, ToolInfo info)
-    : session_(session), shape_(shape), info_(std::move(info)) {}
+OutlineTool::OutlineTool(const ToolParts& parts, Shape shape, ToolInfo info)
+    : document_(parts.document),
+      preferences_(parts.preferences),
+      player_(parts.player),
+      viewport_(parts.viewport),
+      shape_(shape),
+      info_(std::move(info)) {}
 
 void OutlineTool::activate() {
-    if (session_.player.hasFrame()) session_.player.reset();
+    if (player_.hasFrame()) player_.reset();
 }
 
 void OutlineTool::press(const Pointer& pointer) {
@@ -66,8 +70,7 @@ std::vector<QPointF> OutlineTool::corners_px() const {
 void OutlineTool::draw(Marks& marks) const {
     if (path_px_.empty()) return;
     const auto corners = corners_px();
-    marks.path(corners, true, QColor(255, 255, 255, 220), session_.viewport->camera(),
-               session_.viewport->viewSize_px());
+    marks.path(corners, true, QColor(255, 255, 255, 220), viewport_.camera(), viewport_.viewSize_px());
 }
 
 }  // namespace hairloom::editor

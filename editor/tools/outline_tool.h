@@ -5,18 +5,16 @@
 
 #include "core/editing/region_select.h"
 #include "core/editing/selection_commands.h"
-#include "editor/tools/tool.h"
+#include "editor/tools/tool_maker.h"
 
 namespace hairloom::editor {
-
-class Session;
 
 class OutlineTool : public Tool {
     Q_OBJECT
 
   public:
     enum class Shape { Box, Lasso };
-    OutlineTool(Session& session, Shape shape, ToolInfo info);
+    OutlineTool(const ToolParts& parts, Shape shape, ToolInfo info);
 
     const ToolInfo& info() const override { return info_; }
     void activate() override;
@@ -33,12 +31,17 @@ class OutlineTool : public Tool {
     virtual void click(const QPointF&, editing::Choice) {}
     void setShape(Shape shape) { shape_ = shape; }
     Shape shape() const { return shape_; }
-    Session& session() const { return session_; }
+    QtDocument& document() const { return document_; }
+    const Preferences& preferences() const { return preferences_; }
+    const Viewport& viewport() const { return viewport_; }
 
   private:
     std::vector<QPointF> corners_px() const;
 
-    Session& session_;
+    QtDocument& document_;
+    const Preferences& preferences_;
+    Player& player_;
+    Viewport& viewport_;
     Shape shape_;
     ToolInfo info_;
     std::vector<QPointF> path_px_;

@@ -9,10 +9,9 @@
 #include "core/editing/document.h"
 #include "core/editing/place.h"
 #include "core/editing/surface_disc.h"
-#include "editor/session.h"
-#include "editor/tools/option_form.h"
-#include "editor/tools/registry.h"
+#include "editor/fields/option_form.h"
 #include "editor/tools/surface_pick.h"
+#include "editor/tools/tool_maker.h"
 
 namespace hairloom::editor {
 namespace {
@@ -21,15 +20,21 @@ constexpr float kSmallest = 0.002f, kLargest = 0.2f;  // metres
 
 class ReplaceTool : public Tool {
   public:
-    explicit ReplaceTool(Session& session) : session_(session) {}
+    ReplaceTool(QtDocument& document, const Preferences& preferences, Messages& messages, Player& player,
+                Viewport& viewport)
+        : document_(document),
+          preferences_(preferences),
+          messages_(messages),
+          player_(player),
+          viewport_(viewport) {}
     const ToolInfo& info() const override { return info_; }
     QString hint() const override { return tr("%1. [ ] set the size, Esc cancels").arg(info_.tip); }
 
     void activate() override {
-        if (session_.player.hasFrame()) session_.player.reset();
+        if (player_.hasFrame()) player_.reset();
     }
     void hover(const Pointer& pointer) override {
-        place_ = skinUnder(session_, pointer.at_px);
+        place_ = skinUnder(document_, viewport_, pointer.at_px);
         Q_EMIT updated();
     }
     void leave() override {
@@ -41,8 +46,8 @@ class ReplaceTool : public Tool {
         drag(pointer);
     }
     void drag(const Pointer& pointer) override {
-        place_ = skinUnder(session_, pointer.at_px);
-        editing::Document& document = session_.document.editing();
+        place_ = skinUnder(document_, viewport_, pointer.at_px);
+        editing::Document& document = document_.editing();
         if (!painting_ || !place_->skin || !document.surface()) return;
         const Groom& groom = document.groom();
         FaceSet here = editing::faceDisc(*groom.scalp, *document.surface(), place_->position_ss, radius_);
@@ -76,7 +81,7 @@ class ReplaceTool : public Tool {
     }
 
     void draw(Marks& marks) const override {
-        const Groom& groom = session_.document.groom();
+        const Groom& groom = document_.groom();
         if (!groom.scalp) return;
         for (const std::uint32_t face : region_) {
             marks.triangle(
@@ -92,7 +97,7 @@ class ReplaceTool : public Tool {
     }
 
     QWidget* makeOptions() override {
-        form_ = new OptionForm(session_.preferences);
+        form_ = new OptionForm(preferences_);
         form_->addNumber(
             "replaceRadius", tr("Radius"), tr("Reach of the brush on the skin. Keys: [ and ]"), "m",
             static_cast<double>(kSmallest), static_cast<double>(kLargest), false,
@@ -111,20 +116,27 @@ class ReplaceTool : public Tool {
 
   private:
     void replaceHair(const FaceSet& region) {
-        editing::Document& document = session_.document.editing();
+        editing::Document& document = document_.editing();
         auto command = editing::place(document.groom(), {region, reach_}, {document.skinField(), 0.001f});
         if (!command) {
-            session_.messages.warn(QString::fromStdString(command.error().message()));
+            messages_.warn(QString::fromStdString(command.error().message()));
             return;
         }
-        session_.document.perform(std::move(*command));
-        session_.messages.say(tr("%L1 strands now").arg(document.groom().strandCount()));
+        document_.perform(std::move(*command));
+        messages_.say(tr("%L1 strands now").arg(document.groom().strandCount()));
     }
 
-    Session& session_;
-    ToolInfo info_{"replace", tr("Place anew"), "place",
+    QtDocument& document_;
+    const Preferences& preferences_;
+    Messages& messages_;
+    Player& player_;
+    Viewport& viewport_;
+    ToolInfo info_{"replace",
+                   tr("Place anew"),
+                   "place",
                    tr("Paint over the scalp; hair there is placed anew with the settings of the Scalp panel"),
-                   QKeySequence("N")};
+                   QKeySequence("N"),
+                   60};
     float radius_ = 0.02f;
     float reach_ = 0.03f;
     bool painting_ = false;
@@ -136,7 +148,10 @@ class ReplaceTool : public Tool {
 }  // namespace
 
 ToolMaker replaceTool() {
-    return [](Session& session) -> std::unique_ptr<Tool> { return std::make_unique<ReplaceTool>(session); };
+    return [](const ToolParts& parts) {
+        return oneTool<ReplaceTool>(parts.document, parts.preferences, parts.messages, parts.player,
+                                    parts.viewport);
+    };
 }
 
 }  // namespace hairloom::editor

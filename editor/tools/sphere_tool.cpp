@@ -3,52 +3,57 @@
 // resizes it.
 #include "core/editing/document.h"
 #include "core/editing/sphere_commands.h"
+#include "editor/fields/option_form.h"
 #include "editor/overlays/overlay_mode.h"
-#include "editor/session.h"
 #include "editor/simulation/bones.h"
-#include "editor/tools/option_form.h"
-#include "editor/tools/registry.h"
 #include "editor/tools/surface_pick.h"
+#include "editor/tools/tool_maker.h"
 
 namespace hairloom::editor {
 namespace {
 
 class SphereTool : public Tool {
   public:
-    explicit SphereTool(Session& session) : session_(session) {}
+    SphereTool(QtDocument& document, const Preferences& preferences, Messages& messages, Player& player,
+               Viewport& viewport)
+        : document_(document),
+          preferences_(preferences),
+          messages_(messages),
+          player_(player),
+          viewport_(viewport) {}
 
     const ToolInfo& info() const override { return info_; }
 
     void activate() override {
-        if (session_.player.hasFrame()) session_.player.reset();
+        if (player_.hasFrame()) player_.reset();
     }
 
     void press(const Pointer& pointer) override {
-        editing::Document& document = session_.document.editing();
+        editing::Document& document = document_.editing();
         from_px_ = pointer.at_px;
-        held_ = editing::pickSphere(document.groom().spheres, viewOf(session_), toPixels(pointer.at_px));
+        held_ = editing::pickSphere(document.groom().spheres, viewOf(viewport_), toPixels(pointer.at_px));
         if (held_) {
             start_ = document.groom().spheres[*held_];
             resizing_ = onRim(start_, pointer.at_px);
             moved_ = start_;
             return;
         }
-        const BrushPlace place = placeUnder(session_, pointer.at_px);
+        const BrushPlace place = placeUnder(document_, viewport_, pointer.at_px);
         if (!place.skin) return;
-        const auto& actor = session_.player.actor();
+        const auto& actor = player_.actor();
         const std::string bone = actor ? boneNear(actor->skeleton(), place.position_ss) : std::string();
         document.perform(editing::placeSphere(document.model(), *place.skin, radius_, bone));
-        session_.messages.say(tr("Sphere placed; drag its middle to move it, its rim to resize it"));
+        messages_.say(tr("Sphere placed; drag its middle to move it, its rim to resize it"));
     }
 
     void drag(const Pointer& pointer) override {
         if (!held_) return;
-        const OrbitCamera& camera = session_.viewport->camera();
-        const float metres = camera.metresPerPixel(start_.centre, session_.viewport->viewSize_px());
+        const OrbitCamera& camera = viewport_.camera();
+        const float metres = camera.metresPerPixel(start_.centre, viewport_.viewSize_px());
         const QPointF by = pointer.at_px - from_px_;
         moved_ = start_;
         if (resizing_) {
-            const auto centre = camera.project(start_.centre, session_.viewport->viewSize_px());
+            const auto centre = camera.project(start_.centre, viewport_.viewSize_px());
             if (!centre) return;
             const QPointF out = pointer.at_px - *centre;
             moved_.radius = std::clamp(metres * static_cast<float>(std::hypot(out.x(), out.y())),
@@ -62,7 +67,7 @@ class SphereTool : public Tool {
 
     void release(const Pointer&) override {
         if (!held_) return;
-        editing::Document& document = session_.document.editing();
+        editing::Document& document = document_.editing();
         document.perform(resizing_ ? editing::resizeSphere(document.model(), *held_, moved_.radius)
                                    : editing::moveSphere(document.model(), *held_, moved_.centre));
         held_.reset();
@@ -73,21 +78,21 @@ class SphereTool : public Tool {
 
     bool key(int key, Qt::KeyboardModifiers) override {
         if (key != Qt::Key_Delete || !held_) return false;
-        editing::Document& document = session_.document.editing();
+        editing::Document& document = document_.editing();
         document.perform(editing::removeSphere(document.model(), *held_));
         held_.reset();
         return true;
     }
 
     void draw(Marks& marks) const override {
-        drawSpheres(session_, marks);
+        drawSpheres({document_.groom(), viewport_, player_}, marks);
         if (!held_) return;
-        marks.circle(moved_.centre, -session_.viewport->camera().forward_ws(), moved_.radius,
-                     QColor(255, 200, 80), 2.5f, Marks::Depth::OnTop);
+        marks.circle(moved_.centre, -viewport_.camera().forward_ws(), moved_.radius, QColor(255, 200, 80),
+                     2.5f, Marks::Depth::OnTop);
     }
 
     QWidget* makeOptions() override {
-        auto* form = new OptionForm(session_.preferences);
+        auto* form = new OptionForm(preferences_);
         form->addNumber(
             "sphereRadius", tr("Radius"), tr("Radius of spheres that a click places"), "m", 0.005, 0.2, false,
             [this] { return static_cast<double>(radius_); },
@@ -97,17 +102,24 @@ class SphereTool : public Tool {
 
   private:
     bool onRim(const CollisionSphere& sphere, const QPointF& at_px) const {
-        const QSizeF view = session_.viewport->viewSize_px();
-        const auto centre = session_.viewport->camera().project(sphere.centre, view);
+        const QSizeF view = viewport_.viewSize_px();
+        const auto centre = viewport_.camera().project(sphere.centre, view);
         if (!centre) return false;
-        const float rim = sphere.radius / session_.viewport->camera().metresPerPixel(sphere.centre, view);
+        const float rim = sphere.radius / viewport_.camera().metresPerPixel(sphere.centre, view);
         return std::hypot(at_px.x() - centre->x(), at_px.y() - centre->y()) > 0.75 * static_cast<double>(rim);
     }
 
-    Session& session_;
-    ToolInfo info_{"sphere", tr("Spheres"), "sphere",
+    QtDocument& document_;
+    const Preferences& preferences_;
+    Messages& messages_;
+    Player& player_;
+    Viewport& viewport_;
+    ToolInfo info_{"sphere",
+                   tr("Spheres"),
+                   "sphere",
                    tr("Click the head to place a sphere; drag its middle to move it, its rim to resize it"),
-                   QKeySequence("O")};
+                   QKeySequence("O"),
+                   400};
     float radius_ = 0.05f;
     std::optional<std::size_t> held_;
     bool resizing_ = false;
@@ -118,7 +130,10 @@ class SphereTool : public Tool {
 }  // namespace
 
 ToolMaker sphereTool() {
-    return [](Session& session) -> std::unique_ptr<Tool> { return std::make_unique<SphereTool>(session); };
+    return [](const ToolParts& parts) {
+        return oneTool<SphereTool>(parts.document, parts.preferences, parts.messages, parts.player,
+                                   parts.viewport);
+    };
 }
 
 }  // namespace hairloom::editor

@@ -2,13 +2,12 @@
 #include "editor/tools/surface_pick.h"
 
 #include "core/editing/document.h"
-#include "editor/session.h"
 
 namespace hairloom::editor {
 
-editing::View viewOf(const Session& session) {
-    const render::Camera camera = session.viewport->camera().camera();
-    const QSizeF size = session.viewport->viewSize_px();
+editing::View viewOf(const Viewport& viewport) {
+    const render::Camera camera = viewport.camera().camera();
+    const QSizeF size = viewport.viewSize_px();
     const float away = (camera.target_ws - camera.eye_ws).norm();
     const auto aspect = static_cast<float>(size.width() / std::max(size.height(), 1.0));
     const float nearPlane = camera.isOrthographic() ? -20 * away : 0.05f * away;
@@ -26,9 +25,9 @@ namespace {
 /// Places under the pointer, by how deep they are in the view.
 class UnderPointer {
   public:
-    UnderPointer(const Session& session, const QPointF& at_px)
-        : ray_(session.viewport->camera().rayThrough(at_px, session.viewport->viewSize_px())),
-          forward_(session.viewport->camera().forward_ws()) {}
+    UnderPointer(const Viewport& viewport, const QPointF& at_px)
+        : ray_(viewport.camera().rayThrough(at_px, viewport.viewSize_px())),
+          forward_(viewport.camera().forward_ws()) {}
 
     float depthOf(const Vec3f& point_ws) const { return (point_ws - ray_.origin_ws).dot(forward_); }
     /// Facing the view.
@@ -45,11 +44,11 @@ class UnderPointer {
     Vec3f forward_;
 };
 
-BrushPlace placeAt(const Session& session, const QPointF& at_px, bool onHair) {
-    const editing::Document& document = session.document.editing();
-    const editing::View view = viewOf(session);
-    const UnderPointer pointer(session, at_px);
-    BrushPlace place = pointer.at(pointer.depthOf(session.viewport->camera().target_ws()));
+BrushPlace placeAt(const QtDocument& shown, const Viewport& viewport, const QPointF& at_px, bool onHair) {
+    const editing::Document& document = shown.editing();
+    const editing::View view = viewOf(viewport);
+    const UnderPointer pointer(viewport, at_px);
+    BrushPlace place = pointer.at(pointer.depthOf(viewport.camera().target_ws()));
     float skinDepth = 0;
     if (const auto hit = editing::pickHead(document.surface(), view, toPixels(at_px))) {
         place = pointer.at(pointer.depthOf(hit->position));
@@ -71,16 +70,16 @@ BrushPlace placeAt(const Session& session, const QPointF& at_px, bool onHair) {
 
 }  // namespace
 
-BrushPlace placeUnder(const Session& session, const QPointF& at_px) {
-    return placeAt(session, at_px, true);
+BrushPlace placeUnder(const QtDocument& document, const Viewport& viewport, const QPointF& at_px) {
+    return placeAt(document, viewport, at_px, true);
 }
 
-BrushPlace skinUnder(const Session& session, const QPointF& at_px) {
-    return placeAt(session, at_px, false);
+BrushPlace skinUnder(const QtDocument& document, const Viewport& viewport, const QPointF& at_px) {
+    return placeAt(document, viewport, at_px, false);
 }
 
-BrushPlace placeAtDepthOf(const Session& session, const Vec3f& point_ws, const QPointF& at_px) {
-    const UnderPointer pointer(session, at_px);
+BrushPlace placeAtDepthOf(const Viewport& viewport, const Vec3f& point_ws, const QPointF& at_px) {
+    const UnderPointer pointer(viewport, at_px);
     return pointer.at(pointer.depthOf(point_ws));
 }
 

@@ -7,12 +7,12 @@
 
 #include "core/editing/picking.h"
 #include "core/editing/view.h"
+#include "editor/document/qt_document.h"
+#include "editor/viewport/viewport.h"
 
 namespace hairloom::editor {
 
-class Session;
-
-editing::View viewOf(const Session& session);
+editing::View viewOf(const Viewport& viewport);
 Vec2f toPixels(const QPointF& at_px);
 
 /// A place for a brush: on the hair or the head, whichever is nearer, else at the depth of the middle of the
@@ -23,10 +23,10 @@ struct BrushPlace {
     Vec3f direction_ss = -Vec3f::UnitZ();  ///< into the view; unit length
     std::optional<SurfacePoint> skin;      ///< where the pointer is over the head
 };
-BrushPlace placeUnder(const Session& session, const QPointF& at_px);
+BrushPlace placeUnder(const QtDocument& document, const Viewport& viewport, const QPointF& at_px);
 /// The same for what works on the skin: hair before it does not count.
-BrushPlace skinUnder(const Session& session, const QPointF& at_px);
+BrushPlace skinUnder(const QtDocument& document, const Viewport& viewport, const QPointF& at_px);
 /// Under the pointer as deep in the view as `point_ws`, whatever is there.
-BrushPlace placeAtDepthOf(const Session& session, const Vec3f& point_ws, const QPointF& at_px);
+BrushPlace placeAtDepthOf(const Viewport& viewport, const Vec3f& point_ws, const QPointF& at_px);
 
 }  // namespace hairloom::editor

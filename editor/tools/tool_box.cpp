@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editor/tools/tool_box.h"
 
-#include "editor/tools/registry.h"
+#include <algorithm>
+#include <iterator>
 
 namespace hairloom::editor {
 
 ToolBox::ToolBox(QObject* parent) : QObject(parent) {}
 ToolBox::~ToolBox() = default;
 
-void ToolBox::fill(Session& session) {
-    for (const ToolMaker& make : toolMakers()) tools_.push_back(make(session));
+void ToolBox::fill(const ToolParts& parts) {
+    for (const ToolMaker make : toolMakers()) std::ranges::move(make(parts), std::back_inserter(tools_));
+    std::ranges::stable_sort(tools_, {}, [](const auto& tool) { return tool->info().order; });
 }
 
 Tool* ToolBox::find(const QString& id) const {

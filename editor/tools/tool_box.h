@@ -6,11 +6,9 @@
 #include <memory>
 #include <vector>
 
-#include "editor/tools/tool.h"
+#include "editor/tools/tool_maker.h"
 
 namespace hairloom::editor {
-
-class Session;
 
 class ToolBox : public QObject {
     Q_OBJECT
@@ -19,8 +17,9 @@ class ToolBox : public QObject {
     explicit ToolBox(QObject* parent = nullptr);
     ~ToolBox() override;
 
-    /// Makes all tools of tools/registry.cpp; once.
-    void fill(Session& session);
+    /// Makes all tools there are; once.
+    void fill(const ToolParts& parts);
+    /// In the order of the tool bar.
     const std::vector<std::unique_ptr<Tool>>& all() const { return tools_; }
     Tool* find(const QString& id) const;
     Tool* active() const { return active_; }

@@ -2,9 +2,9 @@
 // The wind as an arrow in the view: drag to turn it, away from the head for more of it.
 #include <cmath>
 
+#include "core/editing/settings_commands.h"
 #include "editor/overlays/overlay_mode.h"
-#include "editor/session.h"
-#include "editor/tools/registry.h"
+#include "editor/tools/tool_maker.h"
 
 namespace hairloom::editor {
 namespace {
@@ -13,29 +13,29 @@ constexpr float kFastest = 25;  // m/s that a drag reaches
 
 class WindTool : public Tool {
   public:
-    explicit WindTool(Session& session) : session_(session) {
-        connect(&session_.document, &Document::changed, this, [this](Changes changes) {
-            if (changes & Change::Simulation) Q_EMIT updated();
+    WindTool(QtDocument& document, Player& player, Viewport& viewport)
+        : document_(document), player_(player), viewport_(viewport) {
+        connect(&document_, &QtDocument::changed, this, [this](editing::Part parts) {
+            if (contains(parts, editing::Part::Physics)) Q_EMIT updated();
         });
     }
     const ToolInfo& info() const override { return info_; }
 
     QString hint() const override {
-        return tr("%1. Now %2 m/s")
-            .arg(info_.tip)
-            .arg(session_.document.groom().simulation.windSpeed, 0, 'f', 1);
+        return tr("%1. Now %2 m/s").arg(info_.tip).arg(document_.groom().simulation.windSpeed, 0, 'f', 1);
     }
 
     void press(const Pointer& pointer) override {
-        before_ = session_.document.groom().simulation;
+        before_ = document_.groom().simulation;
+        drag_ = QtDocument::nextMergeKey();
         drag(pointer);
     }
 
     /// The arrow lies in the plane of the view and blows from the middle to the pointer.
     void drag(const Pointer& pointer) override {
         if (!before_) return;
-        const OrbitCamera& camera = session_.viewport->camera();
-        const auto middle = camera.project(middle_ws(), session_.viewport->viewSize_px());
+        const OrbitCamera& camera = viewport_.camera();
+        const auto middle = camera.project(middle_ws(), viewport_.viewSize_px());
         if (!middle) return;
         const QPointF out = pointer.at_px - *middle;
         const auto x = static_cast<float>(out.x()), y = static_cast<float>(-out.y());
@@ -46,43 +46,46 @@ class WindTool : public Tool {
             const Vec3f direction = (x * camera.right_ws() + y * camera.up_ws()).normalized();
             settings.windDirection = {direction.x(), direction.y(), direction.z()};
         }
-        Groom groom = session_.document.groom();
-        groom.simulation = settings;
-        session_.document.change(tr("Wind"), Change::Simulation, std::move(groom), mergeKey());
+        store(settings);
     }
 
-    void release(const Pointer&) override {
-        before_.reset();
-        ++strokes_;
-    }
+    void release(const Pointer&) override { before_.reset(); }
 
     void cancel() override {
         if (!before_) return;
-        Groom groom = session_.document.groom();
-        groom.simulation = *before_;
-        session_.document.change(tr("Wind"), Change::Simulation, std::move(groom), mergeKey());
+        store(*before_);
         release({});
     }
 
-    void draw(Marks& marks) const override { drawWind(session_, marks); }
+    void draw(Marks& marks) const override { drawWind({document_.groom(), viewport_, player_}, marks); }
 
   private:
-    Vec3f middle_ws() const { return session_.viewport->camera().target_ws(); }
-    /// One drag is one step of the history.
-    quint64 mergeKey() const { return (quint64{0x77696e64} << 32u) + strokes_; }
+    Vec3f middle_ws() const { return viewport_.camera().target_ws(); }
+    void store(const runtime::SimulationSettings& settings) {
+        document_.performMerged(drag_, [&](const editing::Model& model) {
+            return editing::setPhysics(model, settings, tr("Wind").toStdString());
+        });
+    }
 
-    Session& session_;
-    ToolInfo info_{"wind", tr("Wind"), "wind",
+    QtDocument& document_;
+    Player& player_;
+    Viewport& viewport_;
+    ToolInfo info_{"wind",
+                   tr("Wind"),
+                   "wind",
                    tr("Drag from the middle of the view to where the wind blows; farther is stronger"),
-                   QKeySequence("W")};
+                   QKeySequence("W"),
+                   410};
     std::optional<runtime::SimulationSettings> before_;
-    quint64 strokes_ = 0;
+    quint64 drag_ = 0;  ///< merge key: one drag is one step of the history
 };
 
 }  // namespace
 
 ToolMaker windTool() {
-    return [](Session& session) -> std::unique_ptr<Tool> { return std::make_unique<WindTool>(session); };
+    return [](const ToolParts& parts) {
+        return oneTool<WindTool>(parts.document, parts.player, parts.viewport);
+    };
 }
 
 }  // namespace hairloom::editor

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "editor/fields/colour.h"
-#include "editor/shell/theme.h"
+#include "editor/style/theme.h"
 #include "editor/viewport/native_window.h"
 
 namespace hairloom::editor {
@@ -44,7 +44,7 @@ Box3f boundsToShow(const Groom& groom, const HairPose* pose) {
 
 }  // namespace
 
-Viewport::Viewport(Document& document, const Preferences& preferences, QWidget* parent)
+Viewport::Viewport(QtDocument& document, const Preferences& preferences, QWidget* parent)
     : QWidget(parent), document_(document), preferences_(preferences) {
     setObjectName("viewport");
     setMinimumSize(240, 180);
@@ -91,8 +91,8 @@ Viewport::Viewport(Document& document, const Preferences& preferences, QWidget* 
         handOverAll();
         Q_EMIT failed(problem);
     });
-    connect(&document_, &Document::changed, this, &Viewport::documentChanged);
-    connect(&document_, &Document::replaced, this, [this] {
+    connect(&document_, &QtDocument::changed, this, &Viewport::documentChanged);
+    connect(&document_, &QtDocument::replaced, this, [this] {
         pose_.reset();
         framed_ = false;
     });
@@ -292,14 +292,15 @@ void Viewport::redraw(bool moving) {
     if (!postSoon_.isActive()) postSoon_.start();
 }
 
-void Viewport::documentChanged(Changes changes) {
+void Viewport::documentChanged(editing::Part parts) {
     // While points move, the groom that the renderer has stays, and nobody parts from a copy of it.
     if (document_.movedStrands().empty()) {
         handOverAll();
     } else {
         noteMoved(document_.movedStrands());
     }
-    if (changes & Change::Strands && pose_ && pose_->positions_ws.size() != document_.groom().pointCount()) {
+    if (contains(parts, editing::kHairParts) && pose_ &&
+        pose_->positions_ws.size() != document_.groom().pointCount()) {
         pose_.reset();
     }
     if (!framed_ && !document_.isEmpty()) {

@@ -13,12 +13,12 @@
 #include <span>
 #include <vector>
 
-#include "editor/document/document.h"
 #include "editor/document/preferences.h"
-#include "editor/tools/tool.h"
+#include "editor/document/qt_document.h"
 #include "editor/viewport/canvas.h"
 #include "editor/viewport/orbit_camera.h"
 #include "editor/viewport/render_thread.h"
+#include "editor/viewport/tool.h"
 
 namespace hairloom::editor {
 
@@ -26,7 +26,7 @@ class Viewport : public QWidget {
     Q_OBJECT
 
   public:
-    Viewport(Document& document, const Preferences& preferences, QWidget* parent = nullptr);
+    Viewport(QtDocument& document, const Preferences& preferences, QWidget* parent = nullptr);
     ~Viewport() override;
 
     OrbitCamera& camera() { return camera_; }
@@ -135,9 +135,9 @@ class Viewport : public QWidget {
     bool overSplit(const QPointF& at_px) const;
     bool tablet(const QTabletEvent& event);
     Pointer pointerAt(const QPointF& at_px, Qt::MouseButton button, Qt::KeyboardModifiers modifiers) const;
-    void documentChanged(Changes changes);
+    void documentChanged(editing::Part parts);
 
-    Document& document_;
+    QtDocument& document_;
     const Preferences& preferences_;
     OrbitCamera camera_;
     RenderThread renderer_;

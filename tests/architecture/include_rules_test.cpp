@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads the includes of every source file and holds the rooms to what the table of
-// docs/architecture.md lets them use.
+// Reads the includes of every source file and holds rooms and the editor's folders to what the tables of
+// docs/architecture.md let them use.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -61,25 +61,27 @@ Rooms readUses(std::string column, const std::string& row, const std::map<std::s
     return uses;
 }
 
-/// The table of docs/architecture.md: what each room may include besides itself, directly. A room that is not
-/// listed may not exist.
-std::map<std::string, Rooms> readTable() {
+/// The tables of docs/architecture.md: what each room may include besides itself, directly; the first is that
+/// of the rooms, the second that of the editor's folders. What is not listed may not exist.
+std::vector<std::map<std::string, Rooms>> readTables() {
     std::ifstream file(sourceDir() / "docs/architecture.md");
-    std::map<std::string, Rooms> table;
-    bool isInside = false;
+    std::vector<std::map<std::string, Rooms>> tables;
     for (std::string line; std::getline(file, line);) {
         const auto columns = split(line, '|');
-        isInside = columns.size() >= 4 && (isInside || columns[1] == "room");
-        if (!isInside || columns[1] == "room" || columns[1].rfind("---", 0) == 0) continue;
-        const Rooms uses = readUses(columns[3], columns[1], table);
-        table[columns[1]] = uses;
+        if (columns.size() < 4) continue;
+        if (columns[1] == "room" || columns[1] == "folder") {
+            tables.emplace_back();
+        } else if (!tables.empty() && columns[1].rfind("---", 0) != 0) {
+            const Rooms uses = readUses(columns[3], columns[1], tables.back());
+            tables.back()[columns[1]] = uses;
+        }
     }
-    return table;
+    return tables;
 }
 
-const std::map<std::string, Rooms>& rooms() {
-    static const std::map<std::string, Rooms> table = readTable();
-    return table;
+const std::vector<std::map<std::string, Rooms>>& tables() {
+    static const auto read = readTables();
+    return read;
 }
 
 std::string roomOf(const std::string& path, const std::map<std::string, Rooms>& table) {
@@ -114,11 +116,19 @@ Rooms foldersWithoutRow(const std::string& top, const std::map<std::string, Room
 
 TEST(IncludeRules, EveryRoomUsesOnlyWhatItMay) {
     ASSERT_GT(allIncludes().size(), 50u);
-    EXPECT_GT(rooms().size(), 20u);
-    EXPECT_THAT(brokenBy(rooms()), IsEmpty());
-    Rooms missing = foldersWithoutRow("", rooms());
+    ASSERT_EQ(tables().size(), 2u);
+    EXPECT_GT(tables()[0].size(), 20u);
+    EXPECT_THAT(brokenBy(tables()[0]), IsEmpty());
+    Rooms missing = foldersWithoutRow("", tables()[0]);
     missing.erase("packaging");
     EXPECT_THAT(missing, IsEmpty());
+}
+
+TEST(IncludeRules, EveryFolderOfTheEditorUsesOnlyWhatItMay) {
+    ASSERT_EQ(tables().size(), 2u);
+    EXPECT_GT(tables()[1].size(), 8u);
+    EXPECT_THAT(brokenBy(tables()[1]), IsEmpty());
+    EXPECT_THAT(foldersWithoutRow("editor/", tables()[1]), IsEmpty());
 }
 
 TEST(IncludeRules, QtStaysInTheEditor) {

@@ -21,7 +21,7 @@ class EffectsTest : public WindowTest {
         openSampleHair("short");
         Groom windy = groom();
         windy.simulation.windSpeed = 6;
-        document().change("Wind", Change::Simulation, windy);
+        change("Wind", windy);
         window->panel("effects")->raise();
         QCoreApplication::processEvents();
     }
@@ -37,19 +37,19 @@ class EffectsTest : public WindowTest {
         return QTest::qWaitFor([&] { return row(effect) != nullptr; }, 20'000);
     }
     bool isOn(const char* name) {
-        for (const EffectReport& effect : session().player.effects()) {
+        for (const EffectReport& effect : parts().player.effects()) {
             if (effect.name == name) return effect.on;
         }
         ADD_FAILURE() << "no effect " << name;
         return false;
     }
     bool play(double seconds) {
-        if (!session().player.isPlaying()) trigger("play.toggle");
-        const auto& frame = session().player.frame();
+        if (!parts().player.isPlaying()) trigger("play.toggle");
+        const auto& frame = parts().player.frame();
         const double from = frame ? frame->time : 0;
         return QTest::qWaitFor(
             [&] {
-                const auto& now = session().player.frame();
+                const auto& now = parts().player.frame();
                 return now && now->time > from + seconds;
             },
             30'000);
@@ -58,12 +58,12 @@ class EffectsTest : public WindowTest {
 
 TEST_F(EffectsTest, PanelPreviewsThePlanBeforePlaying) {
     ASSERT_TRUE(waitForRow("wind"));
-    EXPECT_FALSE(session().player.frame());
+    EXPECT_FALSE(parts().player.frame());
     EXPECT_TRUE(isOn("wind"));
     EXPECT_FALSE(row("wind")->text(3).isEmpty());
     Groom still = groom();
     still.simulation.windSpeed = 0;
-    document().change("Wind", Change::Simulation, still);
+    change("Wind", still);
     EXPECT_TRUE(QTest::qWaitFor([&] { return !isOn("wind"); }, 20'000)) << "follows the settings";
 }
 
@@ -74,7 +74,7 @@ TEST_F(EffectsTest, DisablingAnEffectForNowKeepsTheDocument) {
     EXPECT_TRUE(isOn("wind"));
     EXPECT_GT(row("wind")->text(1).toDouble(), 0) << "milliseconds are live";
     row("wind")->setCheckState(0, Qt::Unchecked);
-    EXPECT_EQ(session().player.leftOut(), QStringList{"wind"});
+    EXPECT_EQ(parts().player.leftOut(), QStringList{"wind"});
     ASSERT_TRUE(play(0.1));
     EXPECT_FALSE(isOn("wind"));
     row("collision")->setCheckState(0, Qt::Unchecked);
@@ -94,7 +94,7 @@ TEST_F(EffectsTest, TemporaryChangeCanBeApplied) {
     row("wind")->setCheckState(0, Qt::Unchecked);
     find<QPushButton>("effectsKeep")->click();
     EXPECT_EQ(groom().simulation.windSpeed, 0);
-    EXPECT_TRUE(session().player.leftOut().isEmpty());
+    EXPECT_TRUE(parts().player.leftOut().isEmpty());
     trigger("edit.undo");
     EXPECT_EQ(hash(), before);
 }
@@ -108,7 +108,7 @@ TEST_F(EffectsTest, HiddenGaugeRefreshesWhenShown) {
     Groom explicitly = groom();
     explicitly.simulation.integrator = runtime::Integrator::velocityVerlet;
     explicitly.simulation.angularMethod = runtime::AngularMethod::smallAngle;
-    document().change("Integrator", Change::Simulation, explicitly);
+    change("Integrator", explicitly);
     QTest::qWait(300);
     EXPECT_EQ(factor(), before);
     window->panel("effects")->show();
@@ -129,7 +129,7 @@ class StiffnessTest : public EffectsTest {
         Groom straight = groom();
         straight.simulation.angularStiffness = 0.9f;
         straight.simulation.angularCurve = runtime::Ramp::straight(1, 0.8f);
-        document().change("Straight", Change::Simulation, straight);
+        change("Straight", straight);
     }
     const runtime::SimulationSettings& settings() { return groom().simulation; }
     float levelOf(std::uint32_t key) {
@@ -202,7 +202,7 @@ TEST_F(StiffnessTest, KeysComeAndGo) {
 }
 
 TEST_F(StiffnessTest, TheHairMovesWhereItWasMadeSoft) {
-    const auto positions = [&] { return session().player.frame()->pose->positions_ws; };
+    const auto positions = [&] { return parts().player.frame()->pose->positions_ws; };
     ASSERT_TRUE(play(1));
     trigger("play.toggle");
     const auto stiff = positions();

@@ -68,11 +68,11 @@ TEST_F(FieldsTest, OneDragOfASliderIsOneStep) {
 
 TEST_F(FieldsTest, LengthsAreShownInTheUnitOfThePreferences) {
     auto* box = find<NumberBox>("windGustSize");
-    session().preferences.setUnit(DisplayUnit::Centimetre);
+    parts().preferences.setUnit(DisplayUnit::Centimetre);
     EXPECT_DOUBLE_EQ(box->spinBox().value(), 50.0);
-    session().preferences.setUnit(DisplayUnit::Metre);
+    parts().preferences.setUnit(DisplayUnit::Metre);
     EXPECT_DOUBLE_EQ(box->spinBox().value(), 0.5);
-    session().preferences.setUnit(DisplayUnit::Inch);
+    parts().preferences.setUnit(DisplayUnit::Inch);
     EXPECT_NEAR(box->spinBox().value(), 0.5 / 0.0254, 1e-3);
     EXPECT_EQ(document().stepCount(), 0) << "showing is no change";
 }

@@ -155,7 +155,7 @@ TEST_F(LookPictureTest, TwoLooksStandSideBySideAndTheLineIsDragged) {
     find<QPushButton>("compareKeep")->click();
     Groom pale = groom();
     applyLook(lookPresets().back(), pale.material);
-    document().change("Look", Change::Look, pale);
+    change("Look", pale);
     const QImage b = shot();
     find<QPushButton>("compareShow")->setChecked(true);
     const QImage both = shot();

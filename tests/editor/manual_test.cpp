@@ -58,7 +58,7 @@ class ManualTest : public WindowTest {
     }
     BrushTool& brush(const char* id) {
         trigger((std::string("tool.") + id).c_str());
-        return dynamic_cast<BrushTool&>(*session().tools.find(id));
+        return dynamic_cast<BrushTool&>(*parts().tools.find(id));
     }
     QPoint onHead(float x, float down, float z) {
         return at(Vec3f(x, groom().scalp->bounds().max().y() - down, z));
@@ -88,7 +88,7 @@ TEST_F(ManualTest, ScalpAndRoots) {
     Groom groom = document().groom();
     groom.placement.count = 400;
     groom.placement.length = 0.16f;
-    document().change("Placement", Change::Placement, groom);
+    change("Placement", groom);
     find<QPushButton>("placePreview")->click();
     finishWork();
     shootWindow("placement");
@@ -99,7 +99,7 @@ TEST_F(ManualTest, GroomingSpheresMotionAndLook) {
     // As many hairs as a software device draws in a minute.
     Groom fewer = groom();
     fewer.interpolation.followPerGuide = 5;
-    document().change("Follow hairs", Change::FollowHairs, fewer);
+    change("Follow hairs", fewer);
     showFromThreeQuarters();
     trigger("tool.comb");
     raise("tool");
@@ -118,7 +118,7 @@ TEST_F(ManualTest, GroomingSpheresMotionAndLook) {
     raise("tool");
     Groom auburn = groom();
     applyLook(lookPresets()[4], auburn.material);
-    document().change("Look", Change::Look, auburn);
+    change("Look", auburn);
     find<QPushButton>("compareKeep")->click();
     PictureQuality fibres = viewport().quality();
     fibres.model = render::ShadingModel::marschner;
@@ -137,18 +137,18 @@ TEST_F(ManualTest, GroomingSpheresMotionAndLook) {
     Groom windy = groom();
     windy.simulation.windSpeed = 7;
     windy.simulation.windDirection = {-1, 0.1f, 0.1f};
-    document().change("Wind", Change::Simulation, windy);
+    change("Wind", windy);
     trigger("play.toggle");
     ASSERT_TRUE(QTest::qWaitFor(
         [this] {
-            const auto& frame = session().player.frame();
+            const auto& frame = parts().player.frame();
             return frame && frame->time > 1.2;
         },
         kPatience));
     trigger("play.toggle");
     shootWindow("wind");
     trigger("play.reset");
-    ExportDialog exporting(session(), window.get());
+    ExportDialog exporting(document(), parts().tasks, parts().messages, window.get());
     exporting.show();
     exporting.exportTo(inFolder("shoulder.tfx"));
     finishWork();

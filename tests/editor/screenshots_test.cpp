@@ -25,11 +25,11 @@ class ScreenshotsTest : public WindowTest, public testing::WithParamInterface<Th
     ScreenshotsTest() : WindowTest(true) {}
     void SetUp() override {
         WindowTest::SetUp();
-        session().preferences.setTheme(GetParam());
+        parts().preferences.setTheme(GetParam());
         QDir().mkpath(HAIRLOOM_SCREENSHOTS);
     }
     void TearDown() override {
-        session().preferences.setTheme(Theme::Dark);
+        parts().preferences.setTheme(Theme::Dark);
         WindowTest::TearDown();
     }
     void shoot(QWidget& widget, const QString& name) {
@@ -88,13 +88,14 @@ TEST_P(ScreenshotsTest, WindowAndPanels) {
     document().open(fewer, {}, "shoulder");
     Groom windy = groom();
     windy.simulation.windSpeed = 4;
-    document().change("Wind speed", Change::Simulation, windy);
+    change("Wind speed", windy);
     ASSERT_TRUE(viewport().waitForPicture(120'000));
     shoot(*window, "window");
-    document().change("Wind direction", Change::Simulation, windy);
+    windy.simulation.windDirection = {0, 0, 1};
+    change("Wind direction", windy);
     trigger("edit.undo");
     trigger("play.step");
-    ASSERT_TRUE(QTest::qWaitFor([this] { return session().player.frame() != nullptr; }, 20'000));
+    ASSERT_TRUE(QTest::qWaitFor([this] { return parts().player.frame() != nullptr; }, 20'000));
     window->panel("motion")->raise();
     shoot(*window->panel("motion")->widget(), "panel-motion-under-way");
     trigger("tool.comb");
@@ -109,7 +110,7 @@ TEST_P(ScreenshotsTest, WindowAndPanels) {
 
 TEST_P(ScreenshotsTest, Dialogs) {
     openSampleHair("short");
-    PreferencesDialog preferences(session().preferences, window.get());
+    PreferencesDialog preferences(parts().preferences, window.get());
     preferences.show();
     shoot(preferences, "preferences");
     preferences.hide();
@@ -119,14 +120,14 @@ TEST_P(ScreenshotsTest, Dialogs) {
     for (const auto* button : shortcuts.findChildren<QPushButton*>())
         EXPECT_EQ(button->isDefault(), button->text() == "Close") << button->text().toStdString();
     shortcuts.hide();
-    ExportDialog exporting(session(), window.get());
+    ExportDialog exporting(document(), parts().tasks, parts().messages, window.get());
     exporting.show();
     exporting.exportTo(inFolder("hair.tfx"));
     finishWork();
     shoot(exporting, "export");
     exporting.hide();
     openBust();
-    ImportDialog importing(session(), inFolder("hair.tfx"), window.get());
+    ImportDialog importing(document(), parts().tasks, inFolder("hair.tfx"), window.get());
     importing.show();
     finishWork();
     shoot(importing, "import");

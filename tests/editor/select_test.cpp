@@ -6,7 +6,7 @@
 
 #include "core/editing/document.h"
 #include "core/editing/selection_commands.h"
-#include "editor/tools/tool.h"
+#include "editor/viewport/tool.h"
 #include "tests/editor/window_fixture.h"
 
 namespace hairloom::editor {

@@ -8,11 +8,14 @@
 #include <QPushButton>
 #include <QStandardPaths>
 
+#include "core/base/file.h"
 #include "core/groom/file/project_file.h"
+#include "core/scene/hair_import.h"
 #include "editor/dialogs/export_dialog.h"
 #include "editor/dialogs/import_dialog.h"
 #include "editor/dialogs/preferences_dialog.h"
 #include "editor/dialogs/shortcut_dialog.h"
+#include "editor/fields/number_box.h"
 #include "editor/panels/panel.h"
 #include "importers/strands.h"
 #include "tests/editor/window_fixture.h"
@@ -33,8 +36,8 @@ TEST_F(ShellTest, AnEmptyWindowSaysWhatToDoFirstAndOffersTheSamples) {
     finishWork();
     EXPECT_TRUE(groom().scalp);
     EXPECT_FALSE(first->isVisible());
-    EXPECT_TRUE(session().player.actor());
-    EXPECT_TRUE(session().player.motions().contains("clip:nod_and_turn"));
+    EXPECT_TRUE(parts().player.actor());
+    EXPECT_TRUE(parts().player.motions().contains("clip:nod_and_turn"));
 }
 
 TEST_F(ShellTest, WhatIsSavedOpensAgainWithTheSameHash) {
@@ -48,7 +51,7 @@ TEST_F(ShellTest, WhatIsSavedOpensAgainWithTheSameHash) {
     finishWork();
     EXPECT_EQ(hash(), before);
     EXPECT_EQ(document().path(), inFolder("a.hairloom"));
-    EXPECT_EQ(session().preferences.recentFiles().value(0), inFolder("a.hairloom"));
+    EXPECT_EQ(parts().preferences.recentFiles().value(0), inFolder("a.hairloom"));
 }
 
 TEST_F(ShellTest, UnreadableFileIsReportedAndChangesNothing) {
@@ -58,7 +61,7 @@ TEST_F(ShellTest, UnreadableFileIsReportedAndChangesNothing) {
     ASSERT_TRUE(file.open(QIODevice::WriteOnly));
     file.write("HAIR and then nothing");
     file.close();
-    openFile(session(), file.fileName());
+    files().open(file.fileName());
     finishWork();
     EXPECT_TRUE(window->statusLine().message().contains("broken.hair"))
         << window->statusLine().message().toStdString();
@@ -70,7 +73,7 @@ TEST_F(ShellTest, UnsavedChangesAreGuarded) {
     ASSERT_TRUE(window->saveTo(inFolder("guarded.hairloom")));
     Groom changed = groom();
     changed.material.specular = 1.25f;
-    document().change("Specular", Change::Look, changed);
+    change("Specular", changed);
     EXPECT_TRUE(window->isWindowModified());
     const auto unsaved = hash();
     window->setUnsavedAnswer(MainWindow::Unsaved::Keep);
@@ -98,18 +101,18 @@ TEST_F(ShellTest, DroppedFilesOpen) {
 }
 
 TEST_F(ShellTest, WorkCanBeCancelled) {
-    openSample(session(), "long");
-    session().tasks.cancel();
+    files().openSample("long");
+    parts().tasks.cancel();
     finishWork();
     EXPECT_TRUE(document().isEmpty());
-    EXPECT_FALSE(session().tasks.isBusy());
+    EXPECT_FALSE(parts().tasks.isBusy());
 }
 
 TEST_F(ShellTest, AfterACrashTheWorkIsOffered) {
     openSampleHair("short");
     Groom changed = groom();
     changed.material.specular = 1.25f;
-    document().change("Specular", Change::Look, changed);
+    change("Specular", changed);
     const auto unsaved = hash();
     // A copy whose program is gone: its lock is not held.
     ASSERT_TRUE(saveProject(groom(), (QStandardPaths::writableLocation(QStandardPaths::AppDataLocation) +
@@ -118,7 +121,7 @@ TEST_F(ShellTest, AfterACrashTheWorkIsOffered) {
     const QList<Recovery> found = Autosave::recoveries();
     ASSERT_EQ(found.size(), 1);
     trigger("file.new");
-    openRecovered(session(), found[0].file, {}, "crashed");
+    files().openRecovered(found[0].file, {}, "crashed");
     finishWork();
     EXPECT_EQ(hash(), unsaved);
     EXPECT_TRUE(window->isWindowModified());
@@ -127,7 +130,7 @@ TEST_F(ShellTest, AfterACrashTheWorkIsOffered) {
 }
 
 TEST_F(ShellTest, AutosaveKeepsWhatIsUnsavedUntilTheProgramEndsProperly) {
-    Document edited;
+    QtDocument edited;
     const Preferences preferences;
     QString file;
     {
@@ -140,7 +143,7 @@ TEST_F(ShellTest, AutosaveKeepsWhatIsUnsavedUntilTheProgramEndsProperly) {
         EXPECT_FALSE(QFile::exists(file)) << "nothing is unsaved yet";
         Groom changed = groom();
         changed.material.specular = 0.75f;
-        edited.change("Specular", Change::Look, changed);
+        edited.perform(editing::setMaterial(edited.editing().model(), changed.material));
         autosave.saveNow();
         autosave.finish();
         const auto copy = loadProject(file.toStdString());
@@ -152,11 +155,11 @@ TEST_F(ShellTest, AutosaveKeepsWhatIsUnsavedUntilTheProgramEndsProperly) {
 }
 
 TEST_F(ShellTest, PreferencesTakeEffectAtOnceAndLast) {
-    PreferencesDialog dialog(session().preferences);
+    PreferencesDialog dialog(parts().preferences);
     auto* unit = dialog.findChild<QComboBox*>("unit");
     unit->setCurrentIndex(3);
     Q_EMIT unit->activated(3);
-    EXPECT_EQ(session().preferences.unit(), DisplayUnit::Inch);
+    EXPECT_EQ(parts().preferences.unit(), DisplayUnit::Inch);
     EXPECT_EQ(Preferences().unit(), DisplayUnit::Inch);
     const QColor dark = QApplication::palette().color(QPalette::Window);
     trigger("view.theme");
@@ -190,7 +193,7 @@ TEST_F(ShellTest, TheHistoryPanelSaysHowMuchMemoryUndoHolds) {
     EXPECT_FALSE(empty.isEmpty());
     Groom moved = groom();
     for (Vec3f& point : moved.pointAttributes.edit<Vec3f>(attribute::kPosition)) point.y() += 1e-4f;
-    document().change("Move", Change::Strands, moved);
+    document().perform(editing::replaceGroom(document().editing().model(), moved, "Move"));
     EXPECT_NE(said(), empty);
     EXPECT_GT(document().historyBytes(), groom().pointCount() * sizeof(Vec3f) - 1);
 }
@@ -236,7 +239,7 @@ TEST_F(ShellTest, EveryControlOfThePanelsHasATip) {
 
 TEST_F(ShellTest, ExportIsReadBackAndReported) {
     openSampleHair("short");
-    ExportDialog dialog(session());
+    ExportDialog dialog(document(), parts().tasks, parts().messages);
     dialog.findChild<QComboBox*>("target")->setCurrentText("Yuksel .hair");
     dialog.exportTo(inFolder("hair.hair"));
     finishWork();
@@ -251,12 +254,12 @@ TEST_F(ShellTest, ImportShowsTheStrandsBeforeTheyAreTakenAndBindsThemToTheHead) 
     openSampleHair("short");
     const std::size_t strands = groom().strandCount();
     {
-        ExportDialog dialog(session());
+        ExportDialog dialog(document(), parts().tasks, parts().messages);
         dialog.exportTo(inFolder("hair.tfx"));
         finishWork();
     }
     openBust();
-    ImportDialog dialog(session(), inFolder("hair.tfx"));
+    ImportDialog dialog(document(), parts().tasks, inFolder("hair.tfx"));
     finishWork();
     EXPECT_EQ(dialog.preview().strandCount(), strands);
     const float metres = dialog.preview().bounds().sizes().y();
@@ -266,13 +269,39 @@ TEST_F(ShellTest, ImportShowsTheStrandsBeforeTheyAreTakenAndBindsThemToTheHead) 
     EXPECT_NEAR(dialog.preview().bounds().sizes().y(), 0.01f * metres, 1e-4f);
     unit->setCurrentText("m");
     finishWork();
-    importStrandsInto(session(), inFolder("hair.tfx"), dialog.options());
+    files().importStrands(inFolder("hair.tfx"), dialog.options());
     finishWork();
     EXPECT_EQ(groom().strandCount(), strands);
     EXPECT_EQ(groom().rootBindings().size(), strands);
     EXPECT_EQ(document().stepCount(), 1);
     document().undo();
     EXPECT_EQ(groom().strandCount(), 0u);
+}
+
+TEST_F(ShellTest, ASavedScriptRepeatsTheStepsOnTheHeadThatWasOpened) {
+    openSampleHair("short");
+    {
+        ExportDialog dialog(document(), parts().tasks, parts().messages);
+        dialog.exportTo(inFolder("hair.tfx"));
+        finishWork();
+    }
+    openBust();
+    Groom replayed = groom();
+    files().importStrands(inFolder("hair.tfx"), {});
+    finishWork();
+    auto* speed = find<NumberBox>("windSpeed");
+    for (const double metresPerSecond : {2.0, 5.0}) speed->spinBox().setValue(metresPerSecond);
+    trigger("select.all");
+    trigger("select.freeze");
+    ASSERT_TRUE(window->saveScriptTo(inFolder("steps.json")));
+    const auto text = readTextFile(inFolder("steps.json").toStdString());
+    ASSERT_TRUE(text) << text.error().message();
+    const auto script = parseDocumentScript("steps.json", *text);
+    ASSERT_TRUE(script) << script.error().message();
+    const auto report = runScript(*script, replayed);
+    ASSERT_TRUE(report) << report.error().message();
+    EXPECT_EQ(contentHash(replayed), hash());
+    EXPECT_EQ(replayed.simulation.windSpeed, 5);
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ class ToolsTest : public WindowTest {
     }
     Tool& activate(const QString& id) {
         trigger(("tool." + id).toUtf8().constData());
-        Tool* const tool = session().tools.find(id);
+        Tool* const tool = parts().tools.find(id);
         EXPECT_EQ(viewport().tool(), tool);
         return *tool;
     }
@@ -265,7 +265,7 @@ TEST_F(ToolsTest, ThePressureOfAPenIsThatOfTheDabs) {
                            Qt::LeftButton);
         QCoreApplication::sendEvent(target, &event);
     };
-    session().preferences.setTabletCurve(2);
+    parts().preferences.setTabletCurve(2);
     touch(QEvent::TabletPress, 0.5);
     press(crown);
     touch(QEvent::TabletMove, 0.8);
@@ -291,7 +291,7 @@ TEST_F(ToolsTest, RootsArePreviewedAndFollowTheSettings) {
     finishWork();
     Groom fewer = groom();
     fewer.placement.count = 777;
-    document().change("Count", Change::Placement, fewer);
+    change("Count", fewer);
     finishWork();
     EXPECT_TRUE(noted("777 roots"));
     preview->click();
@@ -356,7 +356,7 @@ TEST_F(ToolsTest, SpheresAreFittedToTheHead) {
     EXPECT_EQ(document().stepName(0), "Fit spheres");
     std::set<std::string> bones;
     for (const CollisionSphere& sphere : groom().spheres) {
-        EXPECT_TRUE(session().player.actor()->skeleton().find(sphere.bone))
+        EXPECT_TRUE(parts().player.actor()->skeleton().find(sphere.bone))
             << sphere.name << " on " << sphere.bone;
         bones.insert(sphere.bone);
     }
@@ -387,7 +387,7 @@ TEST_F(ToolsTest, TheHeadIsDraggedAndTheHairFollows) {
     moveTo(centre + QPoint(60, 0));
     ASSERT_TRUE(QTest::qWaitFor(
         [this] {
-            const auto& frame = session().player.frame();
+            const auto& frame = parts().player.frame();
             return frame && frame->pose->head.head_ws.translation().x() > 0.01f;
         },
         20'000));

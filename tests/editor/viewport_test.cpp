@@ -139,7 +139,7 @@ TEST_F(ViewportTest, BothOrbitStylesTurnMoveAndZoom) {
     const auto target = [this] { return viewport().camera().target_ws(); };
     const QPoint a(300, 300), b(360, 320);
     for (const OrbitStyle style : {OrbitStyle::Maya, OrbitStyle::Blender}) {
-        session().preferences.setOrbitStyle(style);
+        parts().preferences.setOrbitStyle(style);
         const bool maya = style == OrbitStyle::Maya;
         Vec3f eyeBefore = eye(), targetBefore = target();
         drag({a, b}, maya ? Qt::AltModifier : Qt::NoModifier, maya ? Qt::LeftButton : Qt::MiddleButton);
@@ -162,7 +162,7 @@ TEST_F(PictureTest, PartialUpdateRendersLikeAFullUpload) {
     viewport().look(render::View::Front);
     viewport().frameAll();
     trigger("tool.comb");
-    auto& comb = dynamic_cast<BrushTool&>(*session().tools.find("comb"));
+    auto& comb = dynamic_cast<BrushTool&>(*parts().tools.find("comb"));
     comb.setRadius(0.05f);
     comb.setStrength(1);
     Box3f roots;
@@ -212,7 +212,7 @@ TEST_F(ViewportTest, PicksHitWhatAnOrthographicViewShows) {
             viewport().camera().zoom(orthographic ? nearer : 1.0f);
             const auto px = viewport().camera().project(nose, viewport().viewSize_px());
             ASSERT_TRUE(px);
-            const BrushPlace place = skinUnder(session(), *px);
+            const BrushPlace place = skinUnder(document(), viewport(), *px);
             ASSERT_TRUE(place.skin) << orthographic << ", " << nearer;
             EXPECT_LT((place.position_ss - nose).norm(), 2e-4f) << orthographic << ", " << nearer;
         }
@@ -267,11 +267,11 @@ TEST_F(PictureTest, OverlaysOfMotionAreDrawn) {
     // A sphere that hair is in from the start shows as deep.
     windy.spheres.push_back({"deep", windy.strand(0).back(), 0.03f, {}});
     windy.simulation.lengthIterations = 0;
-    document().change("Wind", Changes(Change::Simulation) | Change::Spheres, windy);
+    change("Wind", windy);
     for (int i = 0; i < 3; ++i) trigger("play.step");
     ASSERT_TRUE(QTest::qWaitFor(
         [this] {
-            const auto& frame = session().player.frame();
+            const auto& frame = parts().player.frame();
             return frame && frame->time > 0.04;
         },
         20'000));
@@ -283,7 +283,7 @@ TEST_F(PictureTest, DyeShowsWhileItIsPainted) {
     openGuides();
     Groom red = groom();
     red.material.dyeColour = Vec3f(0.95f, 0.0f, 0.0f);
-    document().change("Dye", Change::Look, red);
+    change("Dye", red);
     viewport().look(render::View::Front);
     viewport().frameAll();
     trigger("tool.dye_paint");
@@ -340,11 +340,11 @@ TEST_F(ViewportTest, PlayingMovesTheHairAndResettingRestoresIt) {
     const auto authored = hash();
     Groom windy = groom();
     windy.simulation.windSpeed = 8;
-    document().change("Wind", Change::Simulation, windy);
+    change("Wind", windy);
     trigger("play.toggle");
     ASSERT_TRUE(QTest::qWaitFor(
         [this] {
-            const auto& f = session().player.frame();
+            const auto& f = parts().player.frame();
             return f && f->time > 0.2;
         },
         20'000));
@@ -355,7 +355,7 @@ TEST_F(ViewportTest, PlayingMovesTheHairAndResettingRestoresIt) {
         farthest = std::max(farthest, (pose->positions_ws[p] - groom().positions()[p]).norm());
     }
     EXPECT_GT(farthest, 0.002f);
-    EXPECT_EQ(session().player.frame()->stats.nanCount, 0u);
+    EXPECT_EQ(parts().player.frame()->stats.nanCount, 0u);
     trigger("play.reset");
     EXPECT_FALSE(viewport().pose());
     document().undo();
@@ -368,14 +368,14 @@ TEST_F(ViewportTest, SettingsTakeEffectWhileItPlays) {
     const auto played = [this](double seconds) {
         return QTest::qWaitFor(
             [&] {
-                const auto& f = session().player.frame();
+                const auto& f = parts().player.frame();
                 return f && f->time > seconds;
             },
             20'000);
     };
     ASSERT_TRUE(played(0.05));
     const auto windIsOn = [this] {
-        for (const EffectReport& effect : session().player.frame()->stats.effects) {
+        for (const EffectReport& effect : parts().player.frame()->stats.effects) {
             if (effect.name == "wind") return effect.on;
         }
         return false;
@@ -383,19 +383,19 @@ TEST_F(ViewportTest, SettingsTakeEffectWhileItPlays) {
     EXPECT_FALSE(windIsOn());
     Groom windy = groom();
     windy.simulation.windSpeed = 8;
-    document().change("Wind", Change::Simulation, windy);
-    const double now = session().player.frame()->time;
+    change("Wind", windy);
+    const double now = parts().player.frame()->time;
     ASSERT_TRUE(played(now + 0.1)) << "it went on from where it was";
     EXPECT_TRUE(windIsOn());
 }
 
 TEST_F(ViewportTest, ClipsOfTheCharacterPlay) {
     openSampleHair("short");
-    ASSERT_TRUE(session().player.setMotion("clip:nod_and_turn"));
-    EXPECT_FALSE(session().player.setMotion("clip:no_such"));
+    ASSERT_TRUE(parts().player.setMotion("clip:nod_and_turn"));
+    EXPECT_FALSE(parts().player.setMotion("clip:no_such"));
     trigger("play.step");
-    ASSERT_TRUE(QTest::qWaitFor([this] { return session().player.frame() != nullptr; }, 20'000));
-    EXPECT_EQ(session().player.frame()->pose->head.scalpPositions_ws.size(), groom().scalp->vertexCount());
+    ASSERT_TRUE(QTest::qWaitFor([this] { return parts().player.frame() != nullptr; }, 20'000));
+    EXPECT_EQ(parts().player.frame()->pose->head.scalpPositions_ws.size(), groom().scalp->vertexCount());
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ TEST_F(WalkTest, FromAnEmptyWindowToAnExportedMovingHairstyle) {
     viewport().frameAll();
     // A scalp, painted from the front and from behind.
     trigger("tool.scalp_paint");
-    auto& paint = dynamic_cast<BrushTool&>(*session().tools.find("scalp_paint"));
+    auto& paint = dynamic_cast<BrushTool&>(*parts().tools.find("scalp_paint"));
     paint.setRadius(0.03f);
     const Box3f box = groom().scalp->bounds();
     const auto onHead = [&](float x, float down, float z) { return at(Vec3f(x, box.max().y() - down, z)); };
@@ -54,7 +54,7 @@ TEST_F(WalkTest, FromAnEmptyWindowToAnExportedMovingHairstyle) {
     find<NumberBox>("length")->setFocus();
     Groom settings = groom();
     settings.placement.length = 0.12f;
-    document().change("Length", Change::Placement, settings);
+    change("Length", settings);
     find<QPushButton>("placePreview")->click();
     finishWork();
     find<QPushButton>("place")->click();
@@ -63,7 +63,7 @@ TEST_F(WalkTest, FromAnEmptyWindowToAnExportedMovingHairstyle) {
     expectSound();
     // Grooming: comb down behind, cut the ends.
     trigger("tool.comb");
-    auto& comb = dynamic_cast<BrushTool&>(*session().tools.find("comb"));
+    auto& comb = dynamic_cast<BrushTool&>(*parts().tools.find("comb"));
     comb.setRadius(0.04f);
     comb.setStrength(0.8f);
     const auto placed = hash();
@@ -90,12 +90,12 @@ TEST_F(WalkTest, FromAnEmptyWindowToAnExportedMovingHairstyle) {
     trigger("play.toggle");
     ASSERT_TRUE(QTest::qWaitFor(
         [this] {
-            const auto& f = session().player.frame();
+            const auto& f = parts().player.frame();
             return f && f->time > 0.3;
         },
         30'000));
     expectLivePicture();
-    const SimulationStats stats = session().player.frame()->stats;
+    const SimulationStats stats = parts().player.frame()->stats;
     EXPECT_EQ(stats.nanCount, 0u);
     EXPECT_EQ(stats.restoredStrands, 0u);
     trigger("play.reset");
@@ -103,7 +103,7 @@ TEST_F(WalkTest, FromAnEmptyWindowToAnExportedMovingHairstyle) {
     // Out, and back in again.
     ASSERT_TRUE(window->saveTo(inFolder("walk.hairloom")));
     const auto saved = hash();
-    ExportDialog dialog(session());
+    ExportDialog dialog(document(), parts().tasks, parts().messages);
     dialog.exportTo(inFolder("walk.tfx"));
     finishWork();
     EXPECT_EQ(dialog.report().strands, groom().strandCount());

@@ -14,9 +14,11 @@
 #include <map>
 #include <memory>
 
+#include "core/editing/document.h"
+#include "core/editing/settings_commands.h"
 #include "core/groom/groom_hash.h"
 #include "core/groom/validate.h"
-#include "editor/document/files.h"
+#include "editor/shell/files.h"
 #include "editor/shell/main_window.h"
 
 namespace hairloom::editor {
@@ -46,10 +48,15 @@ class WindowTest : public testing::Test {
         ASSERT_TRUE(QTest::qWaitForWindowExposed(window.get()));
     }
 
-    Session& session() { return window->session(); }
-    Document& document() { return window->session().document; }
+    PanelParts parts() { return window->parts(); }
+    DocumentFiles& files() { return window->files(); }
+    QtDocument& document() { return parts().document; }
     const Groom& groom() { return document().groom(); }
-    Viewport& viewport() { return *window->session().viewport; }
+    Viewport& viewport() { return parts().viewport; }
+    /// A step of that name which gives the document the settings and spheres of another groom.
+    void change(const char* name, const Groom& to) {
+        document().perform(editing::setSettings(document().editing().model(), to, name));
+    }
     std::uint64_t hash() { return contentHash(groom()); }
 
     void trigger(const char* id) { window->actions().get(id).trigger(); }
@@ -63,21 +70,21 @@ class WindowTest : public testing::Test {
     }
     /// Waits for work off the interface thread and what comes of it.
     void finishWork() {
-        session().tasks.finish();
+        parts().tasks.finish();
         QCoreApplication::processEvents();
     }
     /// Made once for all tests; AnEmptyWindow… opens one as a person does.
     void openSampleHair(const QString& name) {
         static std::map<QString, std::pair<Groom, std::shared_ptr<const Actor>>> made;
         if (!made.contains(name)) {
-            openSample(session(), name);
+            files().openSample(name);
             finishWork();
             ASSERT_GT(groom().strandCount(), 0u) << window->statusLine().message().toStdString();
-            made[name] = {groom(), session().player.actor()};
+            made[name] = {groom(), parts().player.actor()};
             return;
         }
         document().open(made[name].first, {}, name);
-        session().player.setActor(made[name].second);
+        parts().player.setActor(made[name].second);
     }
     /// Short hair, all of it seen from the front.
     void openHairFromTheFront() {
@@ -86,7 +93,7 @@ class WindowTest : public testing::Test {
         viewport().frameAll();
     }
     void openBust() {
-        openSample(session(), {});
+        files().openSample({});
         finishWork();
         ASSERT_TRUE(groom().scalp) << window->statusLine().message().toStdString();
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// What the pointer does in the viewport. A tool is a file of its own; tools/registry.cpp lists them. Tools
+// What the pointer does in the viewport. Tools
 // change the document through its commands only.
 
 #include <QKeySequence>
@@ -25,6 +25,7 @@ struct ToolInfo {
     QString icon;
     QString tip;  ///< one sentence: what dragging does
     QKeySequence shortcut;
+    int order = 300;  ///< in the tool bar, with those of brushes (editing::BrushInfo)
 };
 
 class Tool : public QObject {

@@ -5,40 +5,26 @@
 
 #include <QObject>
 #include <QString>
+#include <functional>
 #include <memory>
 #include <span>
 
-#include "core/groom/groom.h"
+#include "core/editing/model.h"
 
 namespace hairloom::editing {
 class Command;
 class Document;
 class Subscription;
-struct Change;
 }  // namespace hairloom::editing
 
 namespace hairloom::editor {
 
-/// Parts of a groom that a change touches.
-enum class Change : unsigned {
-    Strands = 1,  ///< strands or points came, went or moved
-    Scalp = 2,    ///< the mesh, what of it is selected, or how dense hair grows on it
-    Spheres = 4,
-    Look = 8,
-    Simulation = 16,
-    FollowHairs = 32,
-    Placement = 64,
-};
-Q_DECLARE_FLAGS(Changes, Change)
-Q_DECLARE_OPERATORS_FOR_FLAGS(Changes)
-inline constexpr Changes kEverything{0x7f};
-
-class Document : public QObject {
+class QtDocument : public QObject {
     Q_OBJECT
 
   public:
-    explicit Document(QObject* parent = nullptr);
-    ~Document() override;
+    explicit QtDocument(QObject* parent = nullptr);
+    ~QtDocument() override;
 
     const Groom& groom() const;
     /// For tools: strokes and commands. Valid until another groom is opened.
@@ -61,9 +47,10 @@ class Document : public QObject {
 
     /// Carries a command out; null does nothing.
     void perform(std::unique_ptr<editing::Command> command);
-    /// Makes `after` the groom, undoably. Changes that follow each other with the same `mergeKey` other than
-    /// 0 become one step: a slider being dragged.
-    void change(const QString& text, Changes changes, Groom after, quint64 mergeKey = 0);
+    /// Carries out what `make` gives. Steps that follow each other with the same key become one: a slider
+    /// being dragged.
+    using Make = std::function<std::unique_ptr<editing::Command>(const editing::Model&)>;
+    void performMerged(quint64 key, const Make& make);
     /// One that was never used.
     static quint64 nextMergeKey();
 
@@ -86,7 +73,8 @@ class Document : public QObject {
     std::size_t historyLimit() const;
 
   Q_SIGNALS:
-    void changed(hairloom::editor::Changes changes);
+    /// Parts of the groom; never none, and never the history.
+    void changed(hairloom::editing::Part parts);
     void historyChanged();
     /// Another groom has been opened; changed() follows.
     void replaced();
@@ -102,9 +90,7 @@ class Document : public QObject {
     QString path_;
     QString name_;
     bool restored_ = false;
-    quint64 lastMerge_ = 0;  ///< key of the newest step, while another change may join it
     std::span<const std::uint32_t> moved_;
-    bool silent_ = false;  ///< between taking a step back and doing its successor
 };
 
 }  // namespace hairloom::editor

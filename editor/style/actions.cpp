@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "editor/shell/actions.h"
+#include "editor/style/actions.h"
 
 #include <QSettings>
 #include <cassert>
 
-#include "editor/shell/icons.h"
+#include "editor/style/icons.h"
 
 namespace hairloom::editor {
 namespace {

@@ -10,6 +10,8 @@ namespace hairloom::editor {
 /// Of the files of icons: svg, or png in builds for systems without Qt's SVG plugin.
 const QString& iconEnding();
 /// The drawing editor/resources/icons/NAME.svg, sharp at any size; follows the palette of the application.
+/// Whether there is one of that name.
+bool hasIcon(const QString& name);
 QIcon icon(const QString& name);
 
 }  // namespace hairloom::editor

@@ -1,27 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Selects strands by click, box or lasso, by any part, by their roots or by their tips.
 #include "core/editing/document.h"
-#include "editor/session.h"
-#include "editor/tools/option_form.h"
+#include "editor/fields/option_form.h"
 #include "editor/tools/outline_tool.h"
-#include "editor/tools/registry.h"
 #include "editor/tools/surface_pick.h"
+#include "editor/tools/tool_maker.h"
 
 namespace hairloom::editor {
 namespace {
 
 class StrandSelectTool : public OutlineTool {
   public:
-    explicit StrandSelectTool(Session& session)
-        : OutlineTool(
-              session, Shape::Lasso,
-              {"select", tr("Select strands"), "select",
-               tr("Click a strand or draw around some; brushes then touch only these"), QKeySequence("E")}) {}
+    explicit StrandSelectTool(const ToolParts& parts)
+        : OutlineTool(parts, Shape::Lasso,
+                      {"select", tr("Select strands"), "select",
+                       tr("Click a strand or draw around some; brushes then touch only these"),
+                       QKeySequence("E"), 70}) {}
 
     QString hint() const override { return tr("%1. Shift adds, Ctrl takes away").arg(info().tip); }
 
     QWidget* makeOptions() override {
-        auto* form = new OptionForm(session().preferences);
+        auto* form = new OptionForm(preferences());
         form->addChoice(
             "selectShape", tr("Shape"), tr("Outline that a drag draws"), {tr("Box"), tr("Lasso")},
             [this] { return static_cast<int>(shape()); },
@@ -38,7 +37,7 @@ class StrandSelectTool : public OutlineTool {
 
     void draw(Marks& marks) const override {
         OutlineTool::draw(marks);
-        const Groom& groom = session().document.groom();
+        const Groom& groom = document().groom();
         const auto selected = groom.strandAttributes.view<std::uint8_t>(attribute::kSelected);
         const QColor colour(255, 170, 60, 230);
         for (std::size_t s = 0; s < selected.size() && s < groom.strandCount(); ++s) {
@@ -51,24 +50,24 @@ class StrandSelectTool : public OutlineTool {
 
   protected:
     void choose(const editing::ScreenRegion& region, editing::Choice choice) override {
-        editing::Document& document = session().document.editing();
-        take(editing::strandsIn(region, document.groom(), document.surface(), viewOf(session()), options_),
+        editing::Document& document = OutlineTool::document().editing();
+        take(editing::strandsIn(region, document.groom(), document.surface(), viewOf(viewport()), options_),
              choice);
     }
 
     void click(const QPointF& at_px, editing::Choice choice) override {
-        editing::Document& document = session().document.editing();
+        editing::Document& document = OutlineTool::document().editing();
         editing::PickOptions options;
         options.part = options_.part;
         options.throughHead = options_.throughHead;
         const auto picked = editing::pickStrand(document.groom(), document.bounds(), document.surface(),
-                                                viewOf(session()), toPixels(at_px), options);
+                                                viewOf(viewport()), toPixels(at_px), options);
         take(picked ? std::vector<std::uint32_t>{picked->strand} : std::vector<std::uint32_t>(), choice);
     }
 
   private:
     void take(const std::vector<std::uint32_t>& strands, editing::Choice choice) {
-        editing::Document& document = session().document.editing();
+        editing::Document& document = OutlineTool::document().editing();
         document.perform(editing::selectStrands(document.model(), strands, choice));
         Q_EMIT updated();
     }
@@ -79,8 +78,7 @@ class StrandSelectTool : public OutlineTool {
 }  // namespace
 
 ToolMaker strandSelectTool() {
-    return
-        [](Session& session) -> std::unique_ptr<Tool> { return std::make_unique<StrandSelectTool>(session); };
+    return [](const ToolParts& parts) { return oneTool<StrandSelectTool>(parts); };
 }
 
 }  // namespace hairloom::editor

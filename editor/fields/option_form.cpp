@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "editor/tools/option_form.h"
+#include "editor/fields/option_form.h"
 
 #include <QCheckBox>
 #include <QComboBox>

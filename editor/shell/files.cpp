@@ -1,37 +1,38 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "editor/document/files.h"
+#include "editor/shell/files.h"
 
 #include <QCoreApplication>
 #include <QFileInfo>
 
 #include "core/base/file.h"
+#include "core/editing/document.h"
+#include "core/editing/settings_commands.h"
 #include "core/groom/file/project_file.h"
+#include "core/scene/hair_import.h"
 #include "core/scene/motions.h"
 #include "core/scene/open.h"
 #include "core/scene/sample.h"
 #include "importers/mesh_format.h"
 
 namespace hairloom::editor {
-namespace {
-
 /// A groom, and the character that its head came from where that can be read.
-struct OpenedFile {
+struct DocumentFiles::Opened {
     Groom groom;
     std::shared_ptr<const Actor> actor;
     QString note;  ///< for the status line
 };
 
-std::shared_ptr<const Actor> actorOf(const Groom& groom) {
+std::shared_ptr<const Actor> DocumentFiles::actorOf(const Groom& groom) {
     if (groom.characterFile.empty() || !QFileInfo::exists(QString::fromStdString(groom.characterFile)))
         return {};
     auto actor = loadActor({}, groom);
     return actor ? std::move(*actor) : nullptr;
 }
 
-Result<OpenedFile> openHead(const std::string& path) {
+Result<DocumentFiles::Opened> DocumentFiles::openHead(const std::string& path) {
     auto scene = importSceneLoud(path, {});
     if (!scene) return tl::unexpected(scene.error());
-    OpenedFile opened;
+    Opened opened;
     opened.groom.scalp = std::make_shared<const ScalpMesh>(std::move(scene->mesh));
     opened.groom.characterFile = path;
     if (!scene->warnings.empty()) opened.note = QString::fromStdString(scene->warnings.front());
@@ -41,19 +42,18 @@ Result<OpenedFile> openHead(const std::string& path) {
     return opened;
 }
 
-Result<OpenedFile> openProject(const std::string& path) {
+Result<DocumentFiles::Opened> DocumentFiles::openProject(const std::string& path) {
     auto groom = loadProject(path);
     if (!groom) return tl::unexpected(groom.error());
-    OpenedFile opened;
+    Opened opened;
     opened.actor = actorOf(*groom);
     opened.groom = std::move(*groom);
     return opened;
 }
 
-Result<OpenedFile> openStrands(const std::string& path, const StrandImportOptions& options) {
-    auto imported = importStrands(path, options);
+Result<DocumentFiles::Opened> DocumentFiles::openedStrands(Result<ImportedStrands> imported) {
     if (!imported) return tl::unexpected(imported.error());
-    OpenedFile opened;
+    Opened opened;
     opened.groom = std::move(imported->groom);
     if (!imported->dropped.empty()) {
         opened.note =
@@ -64,15 +64,17 @@ Result<OpenedFile> openStrands(const std::string& path, const StrandImportOption
     return opened;
 }
 
-void show(Session& session, OpenedFile opened, const QString& path, const QString& name) {
-    session.document.open(std::move(opened.groom), path, name);
-    session.player.setActor(std::move(opened.actor));
-    const Groom& groom = session.document.groom();
+void DocumentFiles::show(Opened opened, const QString& path, const QString& name) {
+    document_.open(std::move(opened.groom), path, name);
+    player_.setActor(std::move(opened.actor));
+    const Groom& groom = document_.groom();
     const QString what = groom.strandCount() > 0 ? QObject::tr("%L1 strands").arg(groom.strandCount())
                                                  : QObject::tr("a head; paint its scalp next");
-    session.messages.say(opened.note.isEmpty() ? QObject::tr("%1: %2").arg(name, what)
-                                               : QObject::tr("%1: %2. %3").arg(name, what, opened.note));
+    messages_.say(opened.note.isEmpty() ? QObject::tr("%1: %2").arg(name, what)
+                                        : QObject::tr("%1: %2. %3").arg(name, what, opened.note));
 }
+
+namespace {
 
 /// "*.hair *.tfx"
 QString patternsOf(const std::vector<FileFormat>& formats) {
@@ -90,7 +92,7 @@ FileKind kindOf(const QString& path) {
     if (looksLikeProject(file)) return FileKind::Project;
     if (looksLikeStrandFile(readBeginning(file, 256))) return FileKind::Strands;
     if (!path.endsWith(".obj", Qt::CaseInsensitive)) return FileKind::Head;
-    return importStrands(file) ? FileKind::Strands : FileKind::Head;
+    return hairloom::importStrands(file) ? FileKind::Strands : FileKind::Head;
 }
 
 QString openFilter() {
@@ -109,87 +111,81 @@ std::filesystem::path samplesFolder() {
     return findSamples(QCoreApplication::applicationDirPath().toStdString());
 }
 
-void openFile(Session& session, const QString& path, std::function<void()> done) {
+void DocumentFiles::open(const QString& path, std::function<void()> done) {
     const QString name = QFileInfo(path).fileName();
-    session.tasks.run<std::pair<OpenedFile, FileKind>>(
+    tasks_.run<std::pair<Opened, FileKind>>(
         QObject::tr("Opening %1").arg(name),
-        [path](TaskControl&) -> Result<std::pair<OpenedFile, FileKind>> {
+        [path](TaskControl&) -> Result<std::pair<Opened, FileKind>> {
             const FileKind kind = kindOf(path);
             const std::string file = path.toStdString();
             auto opened = kind == FileKind::Project   ? openProject(file)
-                          : kind == FileKind::Strands ? openStrands(file, {})
+                          : kind == FileKind::Strands ? openedStrands(hairloom::importStrands(file))
                                                       : openHead(file);
             if (!opened) return tl::unexpected(opened.error());
             return std::pair(std::move(*opened), kind);
         },
-        [&session, path, name, done = std::move(done)](std::pair<OpenedFile, FileKind> opened) {
-            show(session, std::move(opened.first), opened.second == FileKind::Project ? path : QString(),
-                 name);
-            session.preferences.addRecentFile(path);
+        [this, path, name, done = std::move(done)](std::pair<Opened, FileKind> opened) {
+            show(std::move(opened.first), opened.second == FileKind::Project ? path : QString(), name);
+            preferences_.addRecentFile(path);
             if (done) done();
         });
 }
 
-void openSample(Session& session, const QString& name) {
+void DocumentFiles::openSample(const QString& name) {
     const auto samples = samplesFolder();
     if (name.isEmpty()) {
-        openFile(session, QString::fromStdString((samples / "bust/bust.glb").string()));
+        open(QString::fromStdString((samples / "bust/bust.glb").string()));
         return;
     }
-    session.tasks.run<OpenedFile>(
+    tasks_.run<Opened>(
         QObject::tr("Making the sample “%1”").arg(name),
-        [samples, name](TaskControl&) -> Result<OpenedFile> {
+        [samples, name](TaskControl&) -> Result<Opened> {
             auto groom = makeSample(samples, name.toStdString());
             if (!groom) return tl::unexpected(groom.error());
-            OpenedFile opened;
+            Opened opened;
             opened.actor = actorOf(*groom);
             opened.groom = std::move(*groom);
             return opened;
         },
-        [&session, name](OpenedFile opened) { show(session, std::move(opened), {}, name); });
+        [this, name](Opened opened) { show(std::move(opened), {}, name); });
 }
 
-void importStrandsInto(Session& session, const QString& path, const StrandImportOptions& options) {
+void DocumentFiles::importStrands(const QString& path, const StrandImportOptions& options) {
     const QString name = QFileInfo(path).fileName();
-    session.tasks.run<OpenedFile>(
+    tasks_.run<Opened>(
         QObject::tr("Importing %1").arg(name),
-        [path, options, head = session.document.groom().scalp,
-         selection = session.document.groom().scalpSelection](TaskControl&) -> Result<OpenedFile> {
-            StrandImportOptions bound = options;
-            bound.scalp = head.get();
-            auto opened = openStrands(path.toStdString(), bound);
-            if (opened && head) bindToScalp(opened->groom, head, selection);
-            return opened;
+        [path, options, groom = document_.groom()](TaskControl&) -> Result<Opened> {
+            return openedStrands(importHairFor(groom, path.toStdString(), options));
         },
-        [&session, path, name](OpenedFile opened) {
-            Groom groom = session.document.groom();
+        [this, path, name, options, head = document_.groom().scalp,
+         selection = document_.groom().scalpSelection](Opened opened) {
+            Groom groom = document_.groom();
             if (!groom.scalp) {
-                show(session, std::move(opened), {}, name);
+                show(std::move(opened), {}, name);
+            } else if (groom.scalp != head || groom.scalpSelection != selection) {
+                messages_.warn(QObject::tr("The scalp has changed meanwhile; import the hair again"));
+                return;
             } else {
-                groom.offsets = opened.groom.offsets;
-                groom.strandAttributes = opened.groom.strandAttributes;
-                groom.pointAttributes = opened.groom.pointAttributes;
-                groom.groupNames = opened.groom.groupNames;
-                groom.triangulation = {};
-                groom.scalpSelection = opened.groom.scalpSelection;
-                session.document.change(QObject::tr("Import %1").arg(name),
-                                        Changes(Change::Strands) | Change::Scalp, std::move(groom));
-                session.messages.say(QObject::tr("%1: %L2 strands on the head")
-                                         .arg(name)
-                                         .arg(session.document.groom().strandCount()));
+                replaceHair(groom, opened.groom);
+                document_.perform(editing::replaceGroom(document_.editing().model(), std::move(groom),
+                                                        QObject::tr("Import %1").arg(name).toStdString(),
+                                                        importRecord(path.toStdString(), options)));
+                messages_.say(QObject::tr("%1: %L2 strands on the head")
+                                  .arg(name)
+                                  .arg(document_.groom().strandCount()));
             }
-            session.preferences.addRecentFile(path);
+            preferences_.addRecentFile(path);
         });
 }
 
-void openRecovered(Session& session, const QString& file, const QString& documentPath, const QString& name) {
-    session.tasks.run<OpenedFile>(
+void DocumentFiles::openRecovered(const QString& file, const QString& documentPath, const QString& name) {
+    tasks_.run<Opened>(
         QObject::tr("Recovering %1").arg(name),
         [file](TaskControl&) { return openProject(file.toStdString()); },
-        [&session, documentPath, name](OpenedFile opened) {
-            session.document.restore(std::move(opened.groom), documentPath, name);
-            session.player.setActor(std::move(opened.actor));
-            session.messages.say(QObject::tr("%1 is back as it was; save it to keep it").arg(name));
+        [this, documentPath, name](Opened opened) {
+            document_.restore(std::move(opened.groom), documentPath, name);
+            player_.setActor(std::move(opened.actor));
+            messages_.say(QObject::tr("%1 is back as it was; save it to keep it").arg(name));
         });
 }
 

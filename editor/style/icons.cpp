@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "editor/shell/icons.h"
+#include "editor/style/icons.h"
 
 #include <QApplication>
 #include <QFile>
@@ -59,6 +59,10 @@ class TintedEngine : public QIconEngine {
 const QString& iconEnding() {
     static const QString ending = QFile::exists(":/icons/open.png") ? "png" : "svg";
     return ending;
+}
+
+bool hasIcon(const QString& name) {
+    return QFile::exists(QStringLiteral(":/icons/%1.%2").arg(name, iconEnding()));
 }
 
 QIcon icon(const QString& name) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "editor/shell/theme.h"
+#include "editor/style/theme.h"
 
 #include <QFile>
 #include <QPalette>
@@ -7,7 +7,7 @@
 #include <QStyleFactory>
 #include <map>
 
-#include "editor/shell/icons.h"
+#include "editor/style/icons.h"
 
 /// Icons and style sheet lie in a static library, whose resources nobody else asks for.
 static void takeResources() {

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Building blocks that panels and dialogs share.
+
+#include <QTreeWidget>
+#include <QWidget>
+#include <initializer_list>
+
+namespace hairloom::editor {
+
+QWidget* heading(const QString& text);
+/// `content` in a scroll area with the margins of a panel.
+QWidget* scrolled(QWidget* content);
+/// A widget with a vertical layout, margins and spacing of a panel.
+QWidget* column(std::initializer_list<QWidget*> rows);
+/// Rows become as high as their words need in columns as wide as they are now, and follow when those change.
+void wrapRows(QTreeWidget& table);
+/// Folds away under its heading; `open` at first.
+QWidget* collapsible(const QString& title, QWidget* content, bool open = true);
+
+}  // namespace hairloom::editor

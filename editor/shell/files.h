@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Opening files into the document: projects, heads, hair, samples. The reading runs as a task.
+
+#include <QString>
+#include <filesystem>
+
+#include "core/animation/actor.h"
+#include "editor/document/messages.h"
+#include "editor/document/preferences.h"
+#include "editor/document/qt_document.h"
+#include "editor/document/tasks.h"
+#include "editor/simulation/player.h"
+#include "importers/strands.h"
+
+namespace hairloom::editor {
+
+enum class FileKind {
+    Project,
+    Head,     ///< a mesh, with its skeleton and clips
+    Strands,  ///< hair of another program
+};
+/// From the beginning of the file, and the name where that does not tell. OBJ may be either: it is a head
+/// where it has faces that are no ribbons of hair.
+FileKind kindOf(const QString& path);
+
+/// For file dialogs: all that opens, and hair of other programs alone.
+QString openFilter();
+QString strandFilter();
+
+class DocumentFiles {
+  public:
+    DocumentFiles(QtDocument& document, Player& player, Preferences& preferences, Tasks& tasks,
+                  Messages& messages)
+        : document_(document),
+          player_(player),
+          preferences_(preferences),
+          tasks_(tasks),
+          messages_(messages) {}
+
+    /// Project or head, opened as the document; hair as it is, without a head. `done` is called when it is
+    /// there.
+    void open(const QString& path, std::function<void()> done = {});
+    /// A sample of samples/hairstyles, or the bare bust where the name is empty.
+    void openSample(const QString& name);
+    /// Strands with these options, bound to the head of the document if it has one, replacing its strands.
+    void importStrands(const QString& path, const StrandImportOptions& options);
+    /// What a crash left.
+    void openRecovered(const QString& file, const QString& documentPath, const QString& name);
+
+  private:
+    struct Opened;
+    static std::shared_ptr<const Actor> actorOf(const Groom& groom);
+    static Result<Opened> openHead(const std::string& path);
+    static Result<Opened> openProject(const std::string& path);
+    static Result<Opened> openedStrands(Result<ImportedStrands> imported);
+    void show(Opened opened, const QString& path, const QString& name);
+
+    QtDocument& document_;
+    Player& player_;
+    Preferences& preferences_;
+    Tasks& tasks_;
+    Messages& messages_;
+};
+
+std::filesystem::path samplesFolder();
+
+}  // namespace hairloom::editor
