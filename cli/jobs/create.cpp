@@ -3,8 +3,8 @@
 
 #include "cli/documents.h"
 #include "cli/job.h"
-#include "core/base/stopwatch.h"
 #include "core/base/log.h"
+#include "core/base/stopwatch.h"
 #include "core/geometry/placement.h"
 #include "core/geometry/selection.h"
 #include "core/groom/file/project_file.h"

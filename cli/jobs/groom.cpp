@@ -4,8 +4,8 @@
 #include "cli/documents.h"
 #include "cli/field_rows.h"
 #include "cli/job.h"
-#include "core/base/stopwatch.h"
 #include "core/base/file.h"
+#include "core/base/stopwatch.h"
 #include "core/groom/file/project_file.h"
 #include "core/scene/hair_import.h"
 

@@ -43,6 +43,7 @@ ExportDialog::ExportDialog(QtDocument& document, Tasks& tasks, Messages& message
     : QDialog(parent),
       document_(document),
       tasks_(tasks),
+      messages_(messages),
       target_(new QComboBox),
       note_(new QLabel),
       unit_(new QComboBox),

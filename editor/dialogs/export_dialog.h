@@ -34,6 +34,7 @@ class ExportDialog : public QDialog {
 
     QtDocument& document_;
     Tasks& tasks_;
+    Messages& messages_;
     QComboBox* target_;
     QLabel* note_;
     QComboBox* unit_;

@@ -36,8 +36,8 @@ void OptionForm::addNumber(const QString& name, const QString& label, const QStr
     layout_->addRow(label, box);
 }
 
-void OptionForm::addGroundTruth(const QString& name, const QString& label, const QString& tip,
-                                std::function<bool()> get, std::function<void(bool)> set) {
+void OptionForm::addBool(const QString& name, const QString& label, const QString& tip,
+                         std::function<bool()> get, std::function<void(bool)> set) {
     auto* box = new QCheckBox(label);
     box->setObjectName(name);
     box->setToolTip(tip);

@@ -20,8 +20,8 @@ class OptionForm : public QWidget {
     void addNumber(const QString& name, const QString& label, const QString& tip, const QString& unit,
                    double min, double max, bool whole, std::function<double()> get,
                    std::function<void(double)> set);
-    void addGroundTruth(const QString& name, const QString& label, const QString& tip,
-                        std::function<bool()> get, std::function<void(bool)> set);
+    void addBool(const QString& name, const QString& label, const QString& tip, std::function<bool()> get,
+                 std::function<void(bool)> set);
     void addChoice(const QString& name, const QString& label, const QString& tip, const QStringList& choices,
                    std::function<int()> get, std::function<void(int)> set);
     void addWidget(const QString& label, QWidget* widget);

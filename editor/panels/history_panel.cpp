@@ -4,6 +4,9 @@
 #include <QListWidget>
 #include <QVBoxLayout>
 
+#include "editor/panels/list.h"
+#include "editor/panels/panel.h"
+
 namespace hairloom::editor {
 namespace {
 

@@ -10,10 +10,10 @@
 
 #include "editor/document/autosave.h"
 #include "editor/panels/panel.h"
-#include "editor/style/actions.h"
 #include "editor/shell/files.h"
 #include "editor/shell/start_page.h"
 #include "editor/shell/status_line.h"
+#include "editor/style/actions.h"
 
 namespace hairloom::editor {
 

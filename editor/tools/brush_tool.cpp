@@ -288,12 +288,12 @@ OptionForm* BrushTool::makeBasicOptions() {
     if (brush_.movesHair) {
         number("brushClearance", tr("Clearance"), tr("Distance that hair keeps from the skin"), "m", 0, 0.01f,
                &editing::BrushSettings::clearance);
-        form->addGroundTruth(
+        form->addBool(
             "brushCollide", tr("Keep out of the head"),
             tr("Hair that a dab would push into the head stays out"), [this] { return settings_.collide; },
             [this](bool on) { settings_.collide = on; });
     }
-    form->addGroundTruth(
+    form->addBool(
         "brushSymmetric", tr("Symmetric"), tr("Each dab again on the other side of the head"),
         [this] { return settings_.symmetric; },
         [this](bool on) {
@@ -301,7 +301,7 @@ OptionForm* BrushTool::makeBasicOptions() {
             Q_EMIT updated();
         });
     if (!brush_.inverse.empty()) {
-        form->addGroundTruth(
+        form->addBool(
             "brushInvert", tr("Invert"),
             tr("The opposite: %1. Ctrl does it for one stroke").arg(text(brush_.inverse)),
             [this] { return settings_.invert; }, [this](bool on) { settings_.invert = on; });
@@ -315,7 +315,7 @@ QWidget* BrushTool::makeOptions() {
         const std::string name(parameter.name);
         const QString label = labelOf(text(parameter.name));
         if (parameter.kind == FieldKind::Bool) {
-            form->addGroundTruth(
+            form->addBool(
                 "brush:" + text(name), label, text(parameter.meaning),
                 [this, name] { return settings_.parameters[name] != 0; },
                 [this, name](bool on) { settings_.parameters[name] = on ? 1.0f : 0.0f; });

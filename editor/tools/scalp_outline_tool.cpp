@@ -18,10 +18,10 @@ class ScalpOutlineTool : public OutlineTool {
 
     QWidget* makeOptions() override {
         auto* form = new OptionForm(preferences());
-        form->addGroundTruth(
+        form->addBool(
             "scalpThrough", tr("Through the head"), tr("Faces on the far side count too"),
             [this] { return through_; }, [this](bool on) { through_ = on; });
-        form->addGroundTruth(
+        form->addBool(
             "scalpSymmetric", tr("Symmetric"), tr("Faces on the other side of the head as well"),
             [this] { return symmetric_; }, [this](bool on) { symmetric_ = on; });
         return form;

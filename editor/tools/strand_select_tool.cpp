@@ -29,7 +29,7 @@ class StrandSelectTool : public OutlineTool {
             "selectPart", tr("Part"), tr("Part of a strand that must be inside"),
             {tr("Any"), tr("Root"), tr("Tip")}, [this] { return static_cast<int>(options_.part); },
             [this](int index) { options_.part = static_cast<editing::StrandPart>(index); });
-        form->addGroundTruth(
+        form->addBool(
             "selectThrough", tr("Through the head"), tr("Strands behind the head count too"),
             [this] { return options_.throughHead; }, [this](bool on) { options_.throughHead = on; });
         return form;
