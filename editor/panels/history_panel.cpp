@@ -4,7 +4,6 @@
 #include <QListWidget>
 #include <QVBoxLayout>
 
-#include "editor/panels/list.h"
 #include "editor/panels/panel.h"
 
 namespace hairloom::editor {
