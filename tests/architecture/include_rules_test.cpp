@@ -66,12 +66,15 @@ Rooms readUses(std::string column, const std::string& row, const std::map<std::s
 std::vector<std::map<std::string, Rooms>> readTables() {
     std::ifstream file(sourceDir() / "docs/architecture.md");
     std::vector<std::map<std::string, Rooms>> tables;
+    bool inside = false;
     for (std::string line; std::getline(file, line);) {
         const auto columns = split(line, '|');
-        if (columns.size() < 4) continue;
-        if (columns[1] == "room" || columns[1] == "folder") {
+        if (columns.size() < 4) {
+            inside = false;
+        } else if (columns[1] == "room" || columns[1] == "folder") {
             tables.emplace_back();
-        } else if (!tables.empty() && columns[1].rfind("---", 0) != 0) {
+            inside = true;
+        } else if (inside && columns[1].rfind("---", 0) != 0) {
             const Rooms uses = readUses(columns[3], columns[1], tables.back());
             tables.back()[columns[1]] = uses;
         }

@@ -23,15 +23,15 @@ class FieldsTest : public WindowTest {
 TEST_F(FieldsTest, EveryFieldHasAControlThatShowsItsValue) {
     for (const Field& field : simulationFields()) {
         QWidget* control = window->panel("physics")->findChild<QWidget*>(field.name);
-        ASSERT_TRUE(control) << field.name.toStdString();
-        EXPECT_FALSE(control->toolTip().isEmpty()) << field.name.toStdString();
+        ASSERT_TRUE(control) << std::string(field.name);
+        EXPECT_FALSE(control->toolTip().isEmpty()) << std::string(field.name);
         if (auto* box = qobject_cast<NumberBox*>(control)) {
-            EXPECT_EQ(box->value(), field.value(groom(), 0)) << field.name.toStdString();
+            EXPECT_EQ(box->value(), field.value(groom(), 0)) << std::string(field.name);
         }
     }
     for (const auto& fields : {materialFields(), followHairFields()}) {
         for (const Field& field : fields) {
-            EXPECT_TRUE(window->panel("look")->findChild<QWidget*>(field.name)) << field.name.toStdString();
+            EXPECT_TRUE(window->panel("look")->findChild<QWidget*>(field.name)) << std::string(field.name);
         }
     }
 }
