@@ -90,7 +90,7 @@ void Document::performMerged(std::uint64_t key,
         mergeKey_ = key;
         mergeState_ = history_.state();
     } else if (joins) {
-        mergeState_ = history_.state();
+        mergeKey_ = 0;  // the step before is another's
     } else {
         return;
     }

@@ -56,7 +56,7 @@ S withAnyField(const S& settings, Random& random) {
     S changed = settings;
     const JsonReader reader(json, "settings");
     read(reader, changed);
-    return reader.ok() ? changed : settings;
+    return reader.ok() && runtime::problemsIn(changed).empty() ? changed : settings;
 }
 
 runtime::SimulationSettings anyPhysics(const runtime::SimulationSettings& settings, Random& random) {
@@ -95,7 +95,7 @@ void anyStroke(Document& document, Random& random) {
         const auto min = static_cast<float>(parameter.min), max = static_cast<float>(parameter.max);
         const float value = random.uniform(min, std::min(max, min + 10));
         stroke.settings.parameters[std::string(parameter.name)] =
-            max <= 1 && random.below(2) == 0 ? 1.0f : value;
+            parameter.kind == runtime::FieldKind::Bool ? static_cast<float>(random.below(2)) : value;
     }
     Vec3f out(random.uniform(-1, 1), random.uniform(0, 1), random.uniform(-1, 1));
     const auto begun = document.beginStroke(stroke);
@@ -327,6 +327,27 @@ TEST(MergedSteps, AreNoneWhereTheSliderIsPutBack) {
     EXPECT_EQ(document.history().size(), 0u);
     EXPECT_FALSE(document.isModified());
     EXPECT_EQ(heard, Part::Physics | Part::History) << "the value that went back is said";
+}
+
+TEST(MergedSteps, AfterASliderIsPutBackTheDragTouchesNoOtherStep) {
+    Document document(hairOnHead(20));
+    const float before = document.groom().simulation.windSpeed;
+    const auto drag = [&](std::uint64_t key, float speed) {
+        document.performMerged(key, [&](const Model& model) {
+            runtime::SimulationSettings settings = model.groom.simulation;
+            settings.windSpeed = speed;
+            return setPhysics(model, settings);
+        });
+    };
+    for (const float speed : {before + 1, before, before + 2}) drag(7, speed);
+    EXPECT_EQ(document.history().size(), 1u);
+    EXPECT_EQ(document.groom().simulation.windSpeed, before + 2);
+    for (const float speed : {before + 3, before + 2, before + 4}) drag(8, speed);
+    EXPECT_EQ(document.history().size(), 2u);
+    document.undo();
+    EXPECT_EQ(document.groom().simulation.windSpeed, before + 2);
+    document.undo();
+    EXPECT_EQ(document.groom().simulation.windSpeed, before);
 }
 
 TEST(ReplacedGroom, SaysWhichPartsDifferAndNamesItsStepWhereAScriptCannotHoldIt) {
