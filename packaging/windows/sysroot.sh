@@ -36,10 +36,11 @@ source_of() {
     dpkg-source --no-check -x "$work"/download/"${package}"_*.dsc "$work/$package" > /dev/null
 }
 
-# cmake_install NAME SOURCE OPTION…
+# cmake_install NAME SOURCE OPTION…: always from an empty folder, since one that was begun from another checkout names files there.
 cmake_install() {
     local name=$1 source=$2
     shift 2
+    rm -rf "$work/build-$name"
     cmake -S "$source" -B "$work/build-$name" -G Ninja -DCMAKE_TOOLCHAIN_FILE="$here/mingw64.cmake" \
         -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX="$root" -DCMAKE_INSTALL_LIBDIR=lib -DBUILD_SHARED_LIBS=OFF \
         -DBUILD_TESTING=OFF -DCMAKE_POLICY_DEFAULT_CMP0077=NEW \
