@@ -14,20 +14,20 @@ std::vector<Section> settingsSections() {
 std::vector<FieldRow> parameterRows(const editing::BrushInfo& brush) {
     std::vector<FieldRow> rows;
     for (const editing::BrushParameter& parameter : brush.parameters) {
-        const Vec3d standard(static_cast<double>(parameter.defaultValue), 0, 0);
-        rows.push_back({parameter, valueToJson(parameter, standard)});
+        const Vec3d defaultValue(static_cast<double>(parameter.defaultValue), 0, 0);
+        rows.push_back({parameter, valueToJson(parameter, defaultValue)});
     }
     return rows;
 }
 
 Report reportOf(const std::vector<FieldRow>& rows, const std::string& prefix) {
     Report report = Report::array();
-    for (const auto& [info, standard] : rows) {
+    for (const auto& [info, defaultValue] : rows) {
         report.push_back(Report{{"field", prefix + info.name},
                                 {"unit", info.unit},
                                 {"min", info.min},
                                 {"max", info.max},
-                                {"default", standard},
+                                {"default", defaultValue},
                                 {"meaning", info.meaning}});
     }
     return report;

@@ -20,7 +20,7 @@ struct CreateOptions {
     std::string scalp = "all";
     std::size_t count = 0;
     double density = 0;
-    std::string placement = "dart";
+    std::string placement = "poissonDisk";
     float length = 0.15f;
     std::uint32_t points = 16;
     std::uint64_t seed = 0;
@@ -32,7 +32,8 @@ struct CreateOptions {
 /// The settings as a project keeps them, so that an editor goes on from them.
 PlacementSettings settingsOf(const CreateOptions& options, std::size_t placed) {
     PlacementSettings settings;
-    settings.darts = options.placement == "dart";
+    settings.placement =
+        options.placement == "random" ? PlacementMethod::random : PlacementMethod::poissonDisk;
     settings.count = static_cast<std::uint32_t>(placed);
     settings.densityPerCm2 = static_cast<float>(options.density);
     settings.length = options.length;
@@ -106,8 +107,10 @@ JobRun declare(CLI::App& job) {
     auto* density =
         job.add_option("--density", options->density, "Roots per cm²")->check(CLI::PositiveNumber);
     count->excludes(density);
-    job.add_option("--placement", options->placement, "How roots are placed")
-        ->check(CLI::IsMember({"random", "dart"}));
+    job.add_option("--placement", options->placement,
+                   "How roots are placed: random, or poissonDisk (by dart throwing; dart for short), at even "
+                   "distances")
+        ->check(CLI::IsMember({"random", "poissonDisk", "dart"}));
     job.add_option("--mask", options->mask, "Text file with a density in [0, 1] per vertex of the mesh file");
     job.add_option("--length", options->length, "Strand length, metres")->check(CLI::Range(1e-4, 10.0));
     job.add_option("--points", options->points, "Points per strand")->check(CLI::Range(2, 1024));

@@ -38,8 +38,8 @@ std::string rangeOf(const FieldInfo& field) {
 void addFields(const std::vector<FieldRow>& rows, std::string& page) {
     if (rows.empty()) return;
     page += "\n| field | default | unit | range | meaning |\n|---|---|---|---|---|\n";
-    for (const auto& [info, standard] : rows) {
-        page += fmt::format("| `{}` | {} | {} | {} | {} |\n", info.name, standard.dump(), info.unit,
+    for (const auto& [info, defaultValue] : rows) {
+        page += fmt::format("| `{}` | {} | {} | {} | {} |\n", info.name, defaultValue.dump(), info.unit,
                             rangeOf(info), info.meaning);
     }
 }

@@ -12,7 +12,8 @@
 namespace hairloom {
 namespace {
 
-constexpr std::array<std::string_view, 5> kMayGo = {"pearls", "drag", "wind", "collision", "angular"};
+constexpr std::array<std::string_view, 5> kMayGo = {"collisionRadius", "drag", "wind", "collision",
+                                                    "angular"};
 
 std::uint32_t maxPoints(const Groom& groom) {
     std::size_t maximum = 0;

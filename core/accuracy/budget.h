@@ -42,8 +42,8 @@ struct Budget {
 /// Tries substeps, corrections of length and points per strand at and below those authored, and more substeps
 /// where the budget has room; of those that are as exact as possible for their time, the most exact that fits
 /// all strands. Where none fits, effects are turned off besides, each time the one that costs the least
-/// exactness for the time it saves. Torsion, sweep, gravity, damping, sleep and the length constraint stay.
-/// Errors: a groom that cannot be simulated, those of the truth.
+/// exactness for the time it saves. Torsion, continuous collision, gravity, damping, sleep and the length
+/// constraint stay. Errors: a groom that cannot be simulated, those of the truth.
 Result<Budget> solveBudget(const Groom& groom, const HeadMotion& motion, const BudgetOptions& options,
                            const GroundTruthSource& groundTruth);
 

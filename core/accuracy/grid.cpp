@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "core/groom/file/former_names.h"
 #include "hairloom/strands.h"
 
 namespace hairloom {
@@ -48,7 +49,12 @@ Status checkValue(const GridAxis& axis, double value) {
         fmt::format("expected {} to {}{}{}", field->min, field->max, *field->unit ? " " : "", field->unit));
 }
 
-Result<double> parseValue(const std::string& field, const std::string& text) {
+std::span<const FormerMember> formerNames() {
+    return formerMembers(runtime::SimulationSettings{});
+}
+
+Result<double> parseValue(const std::string& field, const std::string& given) {
+    const auto text = currentValue(formerNames(), field, given).get<std::string>();
     if (const auto* info = runtime::findField<runtime::SimulationSettings>(field);
         info && !info->choices.empty()) {
         const auto chosen =
@@ -74,7 +80,7 @@ std::string axisValueText(const GridAxis& axis, double value) {
 }
 
 Result<GridAxis> parseAxis(std::string_view field, const std::vector<std::string>& values) {
-    GridAxis axis{std::string(field), {}};
+    GridAxis axis{std::string(currentName(formerNames(), field)), {}};
     for (const std::string& text : values) {
         const auto value = parseValue(axis.field, text);
         if (!value) return tl::unexpected(value.error());

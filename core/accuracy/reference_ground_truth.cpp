@@ -76,7 +76,7 @@ StrandScene strandScene(const Groom& groom, const SceneFrames& frames, std::uint
     scene.strand.offsets = {0, static_cast<std::uint32_t>(scene.strand.restPositions_ss.size())};
     const runtime::SimulationSettings& settings = groom.simulation;
     const double collisionRadius =
-        static_cast<double>(std::max(settings.pearlRadiusRoot, settings.pearlRadiusTip));
+        static_cast<double>(std::max(settings.collisionRadiusRoot, settings.collisionRadiusTip));
     std::vector<std::size_t> near;
     for (std::size_t i = 0; i < groom.spheres.size(); ++i) {
         const double reach = length + collisionRadius + static_cast<double>(groom.spheres[i].radius);

@@ -15,8 +15,8 @@ struct WithoutEffect {
     std::string how;  ///< "simulation.windSpeed=0", "no spheres"
 };
 
-/// By the effect's name in EffectReport; nothing where no setting turns it off, as torsion and sweep, which
-/// follow from the hair's shape and its speed.
+/// By the effect's name in EffectReport; nothing where no setting turns it off, as torsion and continuous
+/// collision, which follow from the hair's shape and its speed.
 std::optional<WithoutEffect> withoutEffect(const SceneHair& hair, std::string_view effect);
 
 }  // namespace hairloom

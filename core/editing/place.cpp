@@ -68,8 +68,9 @@ Result<std::vector<SurfacePoint>> placeRoots(const Groom& groom, const PlaceRequ
         wanted.count = static_cast<std::size_t>(std::max(
             1.0, std::round(static_cast<double>(wanted.count) * maskedShare(groom, request.region))));
     }
-    auto placed = groom.placement.darts ? placeDarts(*groom.scalp, faces, wanted)
-                                        : placeRandom(*groom.scalp, faces, wanted);
+    auto placed = groom.placement.placement == PlacementMethod::random
+                      ? placeRandom(*groom.scalp, faces, wanted)
+                      : placeDarts(*groom.scalp, faces, wanted);
     if (!placed) return tl::unexpected(placed.error());
     if (request.region.empty() || !(placed->radius > 0)) return std::move(placed->roots);
     const std::vector<std::uint32_t> going = strandsToReplace(groom, request.region);

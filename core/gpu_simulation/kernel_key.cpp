@@ -15,7 +15,7 @@ using runtime::Effect;
 using runtime::Integrator;
 using runtime::StageId;
 
-/// "stageAngularCheap();"
+/// "stageAngularSmallAngle();"
 std::string callOf(StageId stage) {
     std::string name = runtime::stageName(stage);
     name.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(name.front())));

@@ -4,9 +4,9 @@
 // of strands. docs/gpu-simulation.md says how. Particles stay on the device; what is read back is read when
 // asked.
 //
-// Differs from runtime::Engine: the results agree within rounding, not in bits; the swept test runs wherever
-// points collide and leaves slow ones out itself, so that the plan needs nothing from the device; sleeping
-// strands are known to the device only. Does not do: backward Euler.
+// Differs from runtime::Engine: the results agree within rounding, not in bits; the test for continuous
+// collision runs wherever points collide and leaves slow ones out itself, so that the plan needs nothing from
+// the device; sleeping strands are known to the device only. Does not do: backward Euler.
 
 #include <memory>
 #include <optional>

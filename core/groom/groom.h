@@ -41,9 +41,14 @@ struct InterpolationSettings {
     std::uint64_t seed = 1;
 };
 
+enum class PlacementMethod : std::uint32_t {
+    random,       ///< anywhere, by area
+    poissonDisk,  ///< at even distances, by dart throwing
+};
+
 /// How roots are placed on the scalp selection and what grows from them. fieldsOf() describes the members.
 struct PlacementSettings {
-    bool darts = true;  ///< Poisson disk
+    PlacementMethod placement = PlacementMethod::poissonDisk;
     std::uint32_t count = 3000;
     float densityPerCm2 = 0;
     float length = 0.15f;

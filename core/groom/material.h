@@ -8,6 +8,12 @@
 
 namespace hairloom {
 
+/// What the fibres of Marschner and Sadeghi absorb by.
+enum class ColourSource : std::uint32_t {
+    melanin,  ///< the pigment
+    colours,  ///< the colours that Kajiya-Kay shows: the hair is dyed
+};
+
 /// Units, ranges and meanings stand in fieldsOf() (core/groom/file/fields.h).
 struct HairMaterial {
     float rootRadius = 0.00004f;
@@ -29,13 +35,13 @@ struct HairMaterial {
     float gradientEnd = 1.0f;
     float tipMelanin = 1.0f;
     float melaninVariation = 0.0f;
-    bool dyed = false;
+    ColourSource colourSource = ColourSource::melanin;
 
     // Streaks: strands whose roots lie together and that differ from the others.
     float streakShare = 0.0f;
     float streakWidth = 0.008f;
     float streakSoftness = 0.3f;
-    bool streakDyed = false;
+    ColourSource streakColourSource = ColourSource::melanin;
     Vec3f streakColour = Vec3f(0.55f, 0.36f, 0.18f);
     float streakMelanin = 0.3f;
     std::uint64_t streakSeed = 1;

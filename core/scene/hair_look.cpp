@@ -34,7 +34,7 @@ shading::StrandLook colourLook(const HairMaterial& authored) {
     look.quantity = LookQuantity::colour;
     look.root = authored.rootColour.cast<double>();
     look.tip = authored.tipColour.cast<double>();
-    if (authored.streakDyed) {
+    if (authored.streakColourSource == ColourSource::colours) {
         look.streakRoot = look.streakTip = authored.streakColour.cast<double>();
     } else {
         const double factor = asDouble(authored.streakMelanin);
@@ -53,10 +53,11 @@ shading::StrandLook absorptionLook(const HairMaterial& authored, double roughnes
     const auto ofColour = [&](const Vec3f& colour) {
         return shading::absorptionOfColour(colour.cast<double>(), roughness);
     };
-    look.root = authored.dyed ? ofColour(authored.rootColour) : melaninAbsorption(authored, 1);
-    look.tip = authored.dyed ? ofColour(authored.tipColour)
-                             : melaninAbsorption(authored, asDouble(authored.tipMelanin));
-    if (authored.streakDyed) {
+    const bool dyed = authored.colourSource == ColourSource::colours;
+    look.root = dyed ? ofColour(authored.rootColour) : melaninAbsorption(authored, 1);
+    look.tip =
+        dyed ? ofColour(authored.tipColour) : melaninAbsorption(authored, asDouble(authored.tipMelanin));
+    if (authored.streakColourSource == ColourSource::colours) {
         look.streakRoot = look.streakTip = ofColour(authored.streakColour);
     } else {
         look.streakRoot = asDouble(authored.streakMelanin) * look.root;

@@ -64,8 +64,8 @@ class MeasuredPoints {
         if (dt_ > 0) result.kineticEnergy += 0.5 * (at - toDouble(before_[p])).squaredNorm() / (dt_ * dt_);
         const double share =
             static_cast<double>(along) / static_cast<double>(groom_.offsets[s + 1] - first - 1);
-        const double collisionRadius = (1 - share) * static_cast<double>(settings.pearlRadiusRoot) +
-                                       share * static_cast<double>(settings.pearlRadiusTip);
+        const double collisionRadius = (1 - share) * static_cast<double>(settings.collisionRadiusRoot) +
+                                       share * static_cast<double>(settings.collisionRadiusTip);
         for (const runtime::Sphere& sphere : spheres_) {
             const double depth = static_cast<double>(sphere.radius) + collisionRadius -
                                  (at - toDouble(sphere.center_ws)).norm();

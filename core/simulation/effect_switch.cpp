@@ -13,10 +13,15 @@ struct Switch {
     std::string_view effect;
     const char* field;
 };
-constexpr Switch kSwitches[] = {
-    {"damping", "dampingTime"},   {"sleep", "sleepSpeed"},         {"pearls", "pearlRadiusRoot"},
-    {"pearls", "pearlRadiusTip"}, {"gravity", "gravity"},          {"drag", "airDrag"},
-    {"wind", "windSpeed"},        {"angular", "angularStiffness"}, {"length", "lengthIterations"}};
+constexpr Switch kSwitches[] = {{"damping", "dampingTime"},
+                                {"sleep", "sleepSpeed"},
+                                {"collisionRadius", "collisionRadiusRoot"},
+                                {"collisionRadius", "collisionRadiusTip"},
+                                {"gravity", "gravity"},
+                                {"drag", "airDrag"},
+                                {"wind", "windSpeed"},
+                                {"angular", "angularStiffness"},
+                                {"length", "lengthIterations"}};
 
 }  // namespace
 

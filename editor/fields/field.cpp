@@ -120,7 +120,7 @@ QString tooltipOf(const Field& field, DisplayUnit lengths) {
     QString text = QStringLiteral("<p><b>%1</b></p><p>%2</p>")
                        .arg(field.label, sentence(QString::fromUtf8(field.meaning)));
     if (field.kind == FieldKind::Choice) {
-        return text + QObject::tr("<p>Standard: %1</p>")
+        return text + QObject::tr("<p>Default: %1</p>")
                           .arg(field.choiceLabels().value(static_cast<int>(field.defaultValue[0])));
     }
     if (field.kind == FieldKind::Bool || field.kind == FieldKind::Colour) return text;

@@ -10,7 +10,7 @@ namespace hairloom::editor {
 namespace {
 
 bool isAboutSpheres(const std::string& effect) {
-    return effect == "collision" || effect == "pearls" || effect == "sweep";
+    return effect == "collision" || effect == "collisionRadius" || effect == "continuousCollision";
 }
 
 /// Moved since the frame before by more than its root did.

@@ -34,7 +34,7 @@ std::vector<Group> groups() {
          {"lengthMethod", "lengthIterations", "maximalExtension", "springFrequency", "clampedPoints"},
          false},
         {QObject::tr("Collision"),
-         {"collisionResponse", "pearlRadiusRoot", "pearlRadiusTip", "friction", "restitution",
+         {"collisionResponse", "collisionRadiusRoot", "collisionRadiusTip", "friction", "restitution",
           "penaltyFrequency"},
          false},
     };

@@ -27,7 +27,7 @@ struct Contact {
     hn::Mask<D> touching;
     V3 centre;  ///< relative to the roots
     V3 step;    ///< the sphere's way in one substep
-    V reach;    ///< radius and pearl
+    V reach;    ///< of the sphere and of the strand
     V3 from;    ///< from the centre into the direction in which the point is placed; any length
 };
 
@@ -309,9 +309,9 @@ class Contacts {
     std::size_t touchCount_ = 0;
 };
 
-/// Pushes points and their pearls out of spheres (Eq. 14). Where spheres overlap, a point that one of them
-/// pushes into others goes to their common edge. Of more than SphereSet::kMax spheres this holds within each
-/// kMax of them. `fromList` is what farthestFromList() says where there is a list.
+/// Pushes points, with their collision radius, out of spheres (Eq. 14). Where spheres overlap, a point that
+/// one of them pushes into others goes to their common edge. Of more than SphereSet::kMax spheres this holds
+/// within each kMax of them. `fromList` is what farthestFromList() says where there is a list.
 template <bool kBackward>
 HWY_INLINE void collideWith(const BlockView& block, LaneFrame& lanes, const SubstepContext& context,
                             float fromList) {

@@ -41,7 +41,7 @@ HWY_INLINE Direction directionOf(V3 offset) {
     return {{offset.x, offset.y + centred, offset.z}, inverse, squared * inverse};
 }
 
-/// Pearl radius at each point, growing linearly to the tip.
+/// Collision radius at each point ("pearls" in the thesis), growing linearly to the tip.
 HWY_INLINE void fillCollisionRadii(const BlockView& block, const SubstepContext& context,
                                    float* collisionRadii) {
     const float slope =
@@ -57,7 +57,7 @@ class SphereSet {
   public:
     static constexpr std::size_t kMax = 64;
     float radius[kMax];  ///< metres
-    float widest[kMax];  ///< with the largest pearl
+    float widest[kMax];  ///< with the largest collision radius
 
     HWY_INLINE void take(std::span<const MovingSphere> spheres, float step, float maxCollisionRadius) {
         count_ = spheres.size();
@@ -78,8 +78,8 @@ class SphereSet {
     /// World.
     HWY_INLINE V3 centre(std::size_t k) const { return all3({x_[k], y_[k], z_[k]}); }
 
-    /// Calls visit(k) for each sphere that, with the largest pearl and the margin around it, meets the box;
-    /// in ascending order.
+    /// Calls visit(k) for each sphere that, with the largest collision radius and the margin around it, meets
+    /// the box; in ascending order.
     template <class Visit>
     HWY_INLINE void forEachMeeting(const Box& box, float margin, Visit&& visit) const {
         const V zero = hn::Zero(D());

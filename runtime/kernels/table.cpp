@@ -13,6 +13,7 @@
 #include "kernels/air-inl.h"
 #include "kernels/bend-inl.h"
 #include "kernels/collide-inl.h"
+#include "kernels/continuous_collision-inl.h"
 #include "kernels/coupled-inl.h"
 #include "kernels/implicit-inl.h"
 #include "kernels/integrate-inl.h"
@@ -20,7 +21,6 @@
 #include "kernels/motion-inl.h"
 #include "kernels/roots-inl.h"
 #include "kernels/springs-inl.h"
-#include "kernels/sweep-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {
@@ -49,11 +49,11 @@ Stage stageOf(StageId id) {
             return partOfMove<StageId::gravity, Motion::position, Motion::position>();
         case StageId::springs:
             return applySprings;
-        case StageId::angularCheap:
+        case StageId::angularSmallAngle:
             return applyAngular<Shape::curved, false>;
         case StageId::angularExact:
             return applyAngular<Shape::curved, true>;
-        case StageId::straightCheap:
+        case StageId::straightSmallAngle:
             return applyAngular<Shape::straight, false>;
         case StageId::straightExact:
             return applyAngular<Shape::straight, true>;
@@ -73,7 +73,7 @@ Stage stageOf(StageId id) {
             return advanceLeapfrog;
         case StageId::verletDrift:
             return driftVerlet;
-        case StageId::verletAim:
+        case StageId::verletEvaluationState:
             return setVerletEvaluationState;
         case StageId::verletKick:
             return kickVerlet;
@@ -111,8 +111,8 @@ Stage stageOf(StageId id) {
             return collide<false>;
         case StageId::collisionBack:
             return collide<true>;
-        case StageId::sweep:
-            return sweep;
+        case StageId::continuousCollision:
+            return continuousCollision;
         case StageId::extension:
             return limitExtension;
         case StageId::lengthRate:
@@ -126,9 +126,9 @@ constexpr std::size_t solverFloats(StageId id) {
     constexpr std::size_t kStrip = sizeof(Strip::Point) / sizeof(float);
     constexpr std::size_t kSystem = sizeof(StrandSystem::Point) / sizeof(float);
     switch (id) {
-        case StageId::angularCheap:
+        case StageId::angularSmallAngle:
         case StageId::angularExact:
-        case StageId::straightCheap:
+        case StageId::straightSmallAngle:
         case StageId::straightExact:
             return 3 * kBlockLanes;
         case StageId::implicitBend:
@@ -182,8 +182,8 @@ Kernels makeTable() {
     fillPart<StageId::verlet>(table);
     table.bendAndProject[0] = bendAndProject<Shape::straight>;
     table.bendAndProject[1] = bendAndProject<Shape::curved>;
-    table.sweepAndCollide[0] = sweepAndCollide<false>;
-    table.sweepAndCollide[1] = sweepAndCollide<true>;
+    table.bothCollisions[0] = bothCollisions<false>;
+    table.bothCollisions[1] = bothCollisions<true>;
     table.rescale = rescale;
     table.takeRoots = takeRoots;
     table.sampleWind = sampleWind;

@@ -10,7 +10,7 @@ StructuredBuffer<SphereConstants> gSpheres : register(t7);
 
 // Where spheres overlap, the places that respond to one are settled among this many: those of the engine's set.
 #define SPHERE_SET 64
-// Share of a sphere's radius that a point may move in one substep unseen by the swept test.
+// Share of a sphere's radius that a point may move in one substep unseen by the test for continuous collision.
 #define UNSWEPT_SHARE 0.25
 
 float3 sphereCentre(uint k, float step) { return gSpheres[k].from.xyz + gSpheres[k].step.xyz * step; }
@@ -28,7 +28,7 @@ float3 sphereCentre(uint k, float step) { return gSpheres[k].from.xyz + gSpheres
         [unroll] for (uint sphereAt = 0; sphereAt < SPHERES_AT_ONCE; ++sphereAt)
 #define SPHERE_BEFORE(end) min(sphereRow + sphereAt, end - 1)
 
-/// Pearl radius at a point, growing linearly to the tip.
+/// Collision radius at a point, growing linearly to the tip.
 float collisionRadiusAt(uint p) {
     return gFrame.substep.collisionRadiusAtRoot + (gFrame.substep.collisionRadiusAtTip - gFrame.substep.collisionRadiusAtRoot) / float(POINTS - 1) * float(p);
 }
@@ -37,7 +37,7 @@ float collisionRadiusAt(uint p) {
 struct Contact {
     float3 centre;  // relative to the root
     float3 step;    // the sphere's way in one substep
-    float reach;    // radius and pearl
+    float reach;    // of the sphere and of the strand
     float3 from;    // from the centre into the direction in which the point is placed; any length
 };
 
@@ -212,7 +212,7 @@ void stageCollisionBack() { collide(true); }
 
 /// Catches a fast point where it first enters a sphere that it has passed, or passed the middle of, by the end
 /// of the substep. Runs before `collide`.
-void sweepPoint(uint p, float3 root, float step) {
+void collideContinuously(uint p, float3 root, float step) {
     float3 at = position(p), before = previous(p);
     const float3 moved = at - before;
     if (dot(moved, moved) >= gFrame.substep.slowestSwept * gFrame.substep.slowestSwept) {
@@ -247,7 +247,7 @@ void sweepPoint(uint p, float3 root, float step) {
         }
     }
 }
-void stageSweep() {
+void stageContinuousCollision() {
     const float step = float(gSubstep + 1);
     const float3 root = gRoot + gRootDisplacement * step;
 #if HAIR_STORAGE == 3
@@ -259,7 +259,7 @@ void stageSweep() {
     }
     if (fastest < gFrame.substep.slowestSwept * gFrame.substep.slowestSwept) return;
 #endif
-    FREE_POINTS(p) sweepPoint(p, root, step);
+    FREE_POINTS(p) collideContinuously(p, root, step);
 }
 
 /// Penalty force: a spring of frequency penaltyFrequency from the point to its p_a on each sphere that it is

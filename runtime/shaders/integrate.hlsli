@@ -74,7 +74,7 @@ void stageVerletDrift() {
 
 /// Velocity Verlet: forces see where the constraints have put the points and the velocity predicted for the
 /// end of the step; `start` keeps it.
-void stageVerletAim() {
+void stageVerletEvaluationState() {
     ALL_POINTS(p) {
         const float3 place = position(p);
         const float3 half_ = place - previous(p);

@@ -99,10 +99,10 @@ void applyAngular(bool frames, bool exact) {
     FREE_POINTS(k) gPrevious[k] += (INNER_OF(outers, k, before) - outers[k]) * gInverseMass[k];
 }
 #if HAIR_TARGETS
-void stageAngularCheap() { applyAngular(true, false); }
+void stageAngularSmallAngle() { applyAngular(true, false); }
 void stageAngularExact() { applyAngular(true, true); }
 #endif
-void stageStraightCheap() { applyAngular(false, false); }
+void stageStraightSmallAngle() { applyAngular(false, false); }
 void stageStraightExact() { applyAngular(false, true); }
 
 #if HAIR_BEND == 2

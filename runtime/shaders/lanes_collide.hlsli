@@ -225,7 +225,7 @@ uint leaveOwn(SphereSet set, bool backward, uint ready, bool knowsInner, float3 
     return asking;
 }
 
-/// Pushes points and their pearls out of the spheres of a set (Eq. 14).
+/// Pushes points, with their collision radius, out of the spheres of a set (Eq. 14).
 void collideWith(SphereSet set, bool backward) {
     keepList(set);
     float3 inners[POINTS_PER_THREAD] = gPosition;

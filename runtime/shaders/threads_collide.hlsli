@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Points against spheres, of a strand whose points follow each other in a thread.
 
-/// Spheres of a set that, with the largest pearl, meet the box of a strand, as bits.
+/// Spheres of a set that, with the largest collision radius, meet the box of a strand, as bits.
 uint2 nearSpheres(uint first, uint end, float3 low, float3 high, float3 root, float step) {
     uint2 near = uint2(0, 0);
     const float collisionRadius = max(gFrame.substep.collisionRadiusAtRoot, gFrame.substep.collisionRadiusAtTip);
@@ -20,7 +20,7 @@ uint2 nearSpheres(uint first, uint end, float3 low, float3 high, float3 root, fl
     return near;
 }
 
-/// Pushes points and their pearls out of spheres (Eq. 14).
+/// Pushes points, with their collision radius, out of spheres (Eq. 14).
 void collide(bool backward) {
     const float step = float(gSubstep + 1);
     const float3 root = gRoot + gRootDisplacement * step;

@@ -96,8 +96,9 @@ Measurements measureState(const RestShape& shape, const State& state, const Simu
             result.kineticEnergy += 0.5 * view.mass(i) * speed * speed;
             result.potentialEnergy -= view.mass(i) * static_cast<double>(dot(s.gravity, at_ws));
             const double along = static_cast<double>(p) / (view.block->points - 1);
-            const double collisionRadius = static_cast<double>(s.pearlRadiusRoot) +
-                                           along * static_cast<double>(s.pearlRadiusTip - s.pearlRadiusRoot);
+            const double collisionRadius =
+                static_cast<double>(s.collisionRadiusRoot) +
+                along * static_cast<double>(s.collisionRadiusTip - s.collisionRadiusRoot);
             for (const Sphere& sphere : state.spheres) {
                 if (!(sphere.radius > 0.0f)) continue;
                 const double depth =
@@ -126,8 +127,8 @@ std::size_t Engine::Impl::effectBytes(Effect effect) const {
         case Effect::drag:
         case Effect::length:
         case Effect::coupling:
-        case Effect::pearls:
-        case Effect::sweep:
+        case Effect::collisionRadius:
+        case Effect::continuousCollision:
         case Effect::sleep:
             return 0;
     }

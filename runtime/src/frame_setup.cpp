@@ -40,7 +40,7 @@ void findWaking(float hair, std::span<const Sphere> before, FrameSpheres& sphere
     }
 }
 
-/// SubstepContext::slowestSwept for the spheres and pearls of the context.
+/// SubstepContext::slowestSwept for the spheres and collision radii of the context.
 float slowestSwept(const SubstepContext& context) {
     float smallest = 1e30f, fastestSquared = 0.0f;
     for (const MovingSphere& sphere : context.spheres) {
@@ -159,9 +159,9 @@ SubstepContext substepContext(const SimulationSettings& settings, const EffectPl
     context.tensionShare = 1.0f - shareLeft(h, kTensionTime);
     context.lengthIterations = settings.lengthIterations;
     context.maximalExtension = settings.maximalExtension;
-    if (plan.on(Effect::pearls)) {
-        context.collisionRadiusAtRoot = settings.pearlRadiusRoot;
-        context.collisionRadiusAtTip = settings.pearlRadiusTip;
+    if (plan.on(Effect::collisionRadius)) {
+        context.collisionRadiusAtRoot = settings.collisionRadiusRoot;
+        context.collisionRadiusAtTip = settings.collisionRadiusTip;
     }
     context.friction = settings.friction;
     context.restitution = settings.restitution;

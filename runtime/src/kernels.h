@@ -88,7 +88,7 @@ struct NearPoints {
     /// A vector of points, and a sphere that can reach one of them.
     struct Pair {
         std::uint32_t which;  ///< the sphere, and from bit 16 on the index of the first lane
-        float reachSquared;   ///< of the sphere's radius and the point's pearl, square metres
+        float reachSquared;   ///< of the sphere's radius and the point's collision radius, square metres
 
         static std::uint32_t join(std::size_t sphere, std::size_t index) {
             return static_cast<std::uint32_t>(sphere | (index << 16));
@@ -165,8 +165,8 @@ struct SubstepContext : shaders::SubstepNumbers {
     std::span<const MovingSphere> spheres;
 };
 
-/// Share of a sphere's radius that a point may move in one substep without the swept test looking at it: it
-/// can then cut no deeper than 0.8 % of the radius into it unseen.
+/// Share of a sphere's radius that a point may move in one substep without the test for continuous collision
+/// looking at it: it can then cut no deeper than 0.8 % of the radius into it unseen.
 inline constexpr float kUnsweptShare = 0.25f;
 
 using Stage = void (*)(const BlockView& block, LaneFrame& lanes, const SubstepContext& context);
@@ -195,8 +195,8 @@ struct Kernels {
     Stage partsOfMove[2][kStageCount];
     /// As `moves`: `angularStraight` or `angular`, then `length`, where tension is kept.
     Stage bendAndProject[2];
-    /// As `moves`: `sweep`, then `collision` or `collisionBack`.
-    Stage sweepAndCollide[2];
+    /// As `moves`: `continuousCollision`, then `collision` or `collisionBack`.
+    Stage bothCollisions[2];
     /// Multiplies every displacement by `factor`: the speed stays when the length of the substep changes.
     void (*rescale)(const BlockView& block, float factor);
     /// Fills windRoot and windTip, for substeps of h seconds, for the frame that begins at the phases `from`

@@ -40,12 +40,12 @@ class StageReader {
         return nullptr;
     }
 
-    /// The pass of Kernels::sweepAndCollide that comes next, or null and nothing is taken.
-    Stage takeSweepAndCollide(const Kernels& kernels) {
+    /// The pass of Kernels::bothCollisions that comes next, or null and nothing is taken.
+    Stage takeBothCollisions(const Kernels& kernels) {
         const std::size_t begin = next_;
-        if (takeIf(StageId::sweep)) {
-            if (takeIf(StageId::collision)) return kernels.sweepAndCollide[0];
-            if (takeIf(StageId::collisionBack)) return kernels.sweepAndCollide[1];
+        if (takeIf(StageId::continuousCollision)) {
+            if (takeIf(StageId::collision)) return kernels.bothCollisions[0];
+            if (takeIf(StageId::collisionBack)) return kernels.bothCollisions[1];
         }
         next_ = begin;
         return nullptr;
@@ -63,7 +63,7 @@ Passes passesOf(std::span<const StageId> stages, const Kernels& kernels) {
     for (StageReader reader(stages); !reader.atEnd();) {
         Stage pass = reader.takeMove(kernels);
         if (!pass) pass = reader.takeBendAndProject(kernels);
-        if (!pass) pass = reader.takeSweepAndCollide(kernels);
+        if (!pass) pass = reader.takeBothCollisions(kernels);
         if (!pass) pass = kernels.stages[static_cast<std::size_t>(reader.take())];
         passes.calls[passes.count++] = pass;
     }

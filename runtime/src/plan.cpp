@@ -92,12 +92,12 @@ Decision decideCoupling(const PlanInput& scene, bool possible) {
 
 Decision decideCollisionRadius(const SimulationSettings& s, bool collision) {
     if (!collision) return {false, Reason::noCollision, 0.0f};
-    const float largest = std::max(s.pearlRadiusRoot, s.pearlRadiusTip);
+    const float largest = std::max(s.collisionRadiusRoot, s.collisionRadiusTip);
     if (!(largest > 0.0f)) return {false, Reason::zeroRadius, 0.0f};
     return {true, Reason::authored, 1000.0f * largest};
 }
 
-Decision decideSweep(const PlanInput& scene, bool collision, float smallestSphere) {
+Decision decideContinuousCollision(const PlanInput& scene, bool collision, float smallestSphere) {
     if (!collision) return {false, Reason::noCollision, 0.0f};
     if (scene.settings.collisionResponse == CollisionResponse::penalty) return {false, Reason::byForce, 0.0f};
     if (!std::isfinite(scene.fastest)) return {true, Reason::speedUnknown, 0.0f};
@@ -179,8 +179,8 @@ class Planner {
                     static_cast<float>(reachable.count)});
         }
         const bool collision = on(Effect::collision);
-        decide(Effect::pearls, decideCollisionRadius(s_, collision));
-        decide(Effect::sweep, decideSweep(scene_, collision, smallestSphere_));
+        decide(Effect::collisionRadius, decideCollisionRadius(s_, collision));
+        decide(Effect::continuousCollision, decideContinuousCollision(scene_, collision, smallestSphere_));
     }
 
     bool coils() const { return s_.lengthMethod != LengthMethod::constraint; }
@@ -210,7 +210,7 @@ class Planner {
             case AngularMethod::smallAngle:
                 break;
         }
-        return frames ? StageId::angularCheap : StageId::straightCheap;
+        return frames ? StageId::angularSmallAngle : StageId::straightSmallAngle;
     }
 
     StageId implicitStep() const {
@@ -237,7 +237,7 @@ class Planner {
                 listForces();
                 add(StageId::verletDrift);
                 listConstraints();
-                add(StageId::verletAim);
+                add(StageId::verletEvaluationState);
                 listForces();
                 add(StageId::verletKick);
                 listRateProjection();
@@ -279,7 +279,7 @@ class Planner {
         if (held) add(now ? StageId::lengthNow : StageId::length);
         if (s_.lengthMethod == LengthMethod::springVelocities && s_.lengthIterations > 0)
             add(StageId::springLimit);
-        if (on(Effect::sweep)) add(StageId::sweep);
+        if (on(Effect::continuousCollision)) add(StageId::continuousCollision);
         if (on(Effect::collision) && s_.collisionResponse != CollisionResponse::penalty) {
             add(s_.collisionResponse == CollisionResponse::radial ? StageId::collision
                                                                   : StageId::collisionBack);
@@ -300,7 +300,7 @@ class Planner {
 float hairReach(const SimulationSettings& settings, float strandLength) {
     if (settings.lengthIterations == 0) return std::numeric_limits<float>::infinity();
     return strandLength * (1.0f + settings.maximalExtension) +
-           std::max(settings.pearlRadiusRoot, settings.pearlRadiusTip);
+           std::max(settings.collisionRadiusRoot, settings.collisionRadiusTip);
 }
 
 EffectPlan plan(const PlanInput& scene) {

@@ -31,13 +31,13 @@ std::string quantity(Effect effect, float value) {
         case Effect::length:
             text << value << (value == 1.0f ? " iteration" : " iterations");
             break;
-        case Effect::pearls:
+        case Effect::collisionRadius:
             text << "up to " << value << " mm";
             break;
         case Effect::torsion:
         case Effect::coupling:
         case Effect::collision:
-        case Effect::sweep:
+        case Effect::continuousCollision:
         case Effect::sleep:
             break;
     }
@@ -139,9 +139,9 @@ constexpr StageWords kStages[kStageCount] = {
     {"wind", "external forces", Effect::wind},
     {"gravity", "external forces", Effect::gravity},
     {"springs", "linear forces", Effect::length},
-    {"angularCheap", "angular forces", Effect::angular},
+    {"angularSmallAngle", "angular forces", Effect::angular},
     {"angularExact", "angular forces", Effect::angular},
-    {"straightCheap", "angular forces", Effect::angular},
+    {"straightSmallAngle", "angular forces", Effect::angular},
     {"straightExact", "angular forces", Effect::angular},
     {"flexion", "angular forces", Effect::angular},
     {"penalty", "collision", Effect::collision},
@@ -151,7 +151,7 @@ constexpr StageWords kStages[kStageCount] = {
     {"explicitEuler", "integration", std::nullopt},
     {"leapfrog", "integration", std::nullopt},
     {"verletDrift", "integration", std::nullopt},
-    {"verletAim", "integration", std::nullopt},
+    {"verletEvaluationState", "integration", std::nullopt},
     {"verletKick", "integration", std::nullopt},
     {"rungeKutta1", "integration", std::nullopt},
     {"rungeKutta2", "integration", std::nullopt},
@@ -170,7 +170,7 @@ constexpr StageWords kStages[kStageCount] = {
     {"springLimit", "post-processing", Effect::length},
     {"collision", "collision", Effect::collision},
     {"collisionBack", "collision", Effect::collision},
-    {"sweep", "collision", Effect::sweep},
+    {"continuousCollision", "collision", Effect::continuousCollision},
     {"extension", "post-processing", Effect::length},
     {"lengthRate", "linear forces", Effect::length},
 };
@@ -178,9 +178,18 @@ constexpr StageWords kStages[kStageCount] = {
 }  // namespace
 
 const char* effectName(Effect effect) {
-    constexpr const char* kNames[kEffectCount] = {"damping",   "gravity", "drag",    "wind",
-                                                  "length",    "angular", "torsion", "coupling",
-                                                  "collision", "pearls",  "sweep",   "sleep"};
+    constexpr const char* kNames[kEffectCount] = {"damping",
+                                                  "gravity",
+                                                  "drag",
+                                                  "wind",
+                                                  "length",
+                                                  "angular",
+                                                  "torsion",
+                                                  "coupling",
+                                                  "collision",
+                                                  "collisionRadius",
+                                                  "continuousCollision",
+                                                  "sleep"};
     return kNames[static_cast<std::size_t>(effect)];
 }
 

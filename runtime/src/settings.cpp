@@ -12,7 +12,7 @@ using S = SimulationSettings;
 constexpr const char* kIntegrators[] = {"verlet",        "velocityVerlet", "leapfrog",
                                         "explicitEuler", "implicitEuler",  "rk4"};
 constexpr const char* kLengthMethods[] = {"constraint", "springs", "springVelocities"};
-constexpr const char* kAngularMethods[] = {"implicit", "cheap", "exact", "flexion"};
+constexpr const char* kAngularMethods[] = {"implicit", "smallAngle", "exact", "flexion"};
 constexpr const char* kWindKinds[] = {"uniform", "gusting", "turbulent", "vehicle"};
 constexpr const char* kResponses[] = {"radial", "backward", "penalty"};
 constexpr double kLargestCount = 4294967295.0;
@@ -45,8 +45,8 @@ constexpr Field<S> kFields[] = {
     field<&S::windGustSize>("windGustSize", "m", 0.01, 100, "distance over which gusts differ: lower separates locks"),
     field<&S::windSeed>("windSeed", "", 0, kLargestCount, "another seed gives another sequence of gusts"),
     choiceField<&S::collisionResponse>("collisionResponse", "how points leave a sphere", kResponses),
-    field<&S::pearlRadiusRoot>("pearlRadiusRoot", "m", 0, 0.1, "distance kept from spheres at the root"),
-    field<&S::pearlRadiusTip>("pearlRadiusTip", "m", 0, 0.1, "distance kept from spheres at the tip"),
+    field<&S::collisionRadiusRoot>("collisionRadiusRoot", "m", 0, 0.1, "distance kept from spheres at the root"),
+    field<&S::collisionRadiusTip>("collisionRadiusTip", "m", 0, 0.1, "distance kept from spheres at the tip"),
     field<&S::friction>("friction", "", 0, 1, "grip of the skin: 0 slides freely, 1 sticks"),
     field<&S::restitution>("restitution", "", 0, 1, "share of the approaching speed kept when bouncing off"),
     field<&S::penaltyFrequency>("penaltyFrequency", "Hz", 1, 10000, "stiffness of penalty springs: higher penetrates less and needs shorter steps"),

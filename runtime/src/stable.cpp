@@ -193,7 +193,7 @@ StableRegion regionOf(const FastestWaves& waves, const S& s, double frameTime) {
     };
     const double limit = stableLimit(s, h);
     if (coilSprings(s) && !solves) {
-        // The cheap direction also holds lengths.
+        // The small-angle direction also holds lengths.
         const bool along = angularForces(s) && s.angularMethod != AngularMethod::exact;
         consider(Stiff::coils, std::hypot(waves.coils, along ? waves.bending : 0.0), limit);
     }

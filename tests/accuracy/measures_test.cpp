@@ -254,6 +254,11 @@ TEST(Grid, AxesAreReadByTheNamesOfFields) {
 }
 
 TEST(Grid, WhatIsWrongIsRefusedWithWhatWasExpected) {
+    const auto former = parseAxis("pearlRadiusTip", {"0.002"});
+    ASSERT_TRUE(former) << former.error().message();
+    EXPECT_EQ(former->field, "collisionRadiusTip");
+    EXPECT_EQ(parseAxis("angularMethod", {"cheap", "exact"})->values,
+              parseAxis("angularMethod", {"smallAngle", "exact"})->values);
     EXPECT_THAT(parseAxis("integrator", {"guess"}).error().message(), HasSubstr("velocityVerlet"));
     EXPECT_THAT(parseAxis("substeps", {"0"}).error().message(), HasSubstr("1 to 64"));
     EXPECT_THAT(parseAxis("substeps", {"4x"}).error().message(), HasSubstr("number"));

@@ -204,7 +204,7 @@ TEST(EffectCosts, EveryEffectReportsReasonAndCost) {
     std::size_t on = 0;
     for (const EffectCost& effect : costs->effects) {
         EXPECT_FALSE(effect.why.empty()) << effect.name;
-        const bool follows = effect.name == "torsion" || effect.name == "sweep";
+        const bool follows = effect.name == "torsion" || effect.name == "continuousCollision";
         EXPECT_EQ(effect.on && !follows, effect.costMilliseconds.has_value()) << effect.name;
         EXPECT_EQ(effect.on && !follows, !effect.turnedOffBy.empty()) << effect.name;
         on += effect.on;

@@ -272,6 +272,43 @@ TEST_F(Cli, SettingsAreCheckedByNameAndRange) {
     EXPECT_THAT(name.errors, HasSubstr("friction")) << "the fields there are";
 }
 
+TEST_F(Cli, SettingsAreKnownByTheirFormerNames) {
+    runJson(createArguments());
+    const auto hashWith = [&](const std::string& settings) {
+        runJson("set hair.hairloom " + settings + " -o named.hairloom");
+        return readText(folder / "named.hairloom");
+    };
+    const std::string now = hashWith(
+        "simulation.collisionRadiusRoot=0.002 simulation.collisionRadiusTip=0.006 "
+        "simulation.angularMethod=smallAngle material.colourSource=colours");
+    EXPECT_EQ(hashWith("simulation.pearlRadiusRoot=0.002 simulation.pearlRadiusTip=0.006 "
+                       "simulation.angularMethod=cheap material.dyed=true"),
+              now);
+    EXPECT_NE(now.find("collisionRadiusTip"), std::string::npos);
+    EXPECT_EQ(now.find("pearl"), std::string::npos) << "what is written has the names of now";
+
+    std::ofstream(folder / "former.json") << R"({"hairloom_script": 1, "operations": [
+        {"op": "simulation", "settings": {"pearlRadiusTip": 0.004, "angularMethod": "cheap"}},
+        {"op": "placement", "settings": {"darts": false}}]})";
+    std::ofstream(folder / "now.json") << R"({"hairloom_script": 1, "operations": [
+        {"op": "simulation", "settings": {"collisionRadiusTip": 0.004, "angularMethod": "smallAngle"}},
+        {"op": "placement", "settings": {"placement": "random"}}]})";
+    runJson("groom hair.hairloom --script former.json -o former.hairloom");
+    runJson("groom hair.hairloom --script now.json -o now.hairloom");
+    EXPECT_EQ(readText(folder / "former.hairloom"), readText(folder / "now.hairloom"));
+}
+
+TEST_F(Cli, PoissonDiskPlacementHasTwoNames) {
+    std::string arguments = createArguments();
+    runJson(arguments);
+    const std::string darts = readText(folder / "hair.hairloom");
+    const std::string former = "--placement dart";
+    arguments.replace(arguments.find(former), former.size(), "--placement poissonDisk");
+    runJson(arguments);
+    EXPECT_EQ(readText(folder / "hair.hairloom"), darts);
+    EXPECT_NE(darts.find("\"placement\": \"poissonDisk\""), std::string::npos);
+}
+
 TEST_F(Cli, TheStiffnessFollowsACurveOfKeys) {
     runJson(createArguments());
     const auto hashWith = [&](const std::string& settings) {

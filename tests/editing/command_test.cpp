@@ -104,7 +104,8 @@ std::vector<Action> actions() {
                  PlacementSettings settings = m.groom.placement;
                  settings.count = 40 + r.below(100);
                  settings.points = 2 + r.below(12);
-                 settings.darts = r.below(2) == 0;
+                 settings.placement =
+                     r.below(2) == 0 ? PlacementMethod::poissonDisk : PlacementMethod::random;
                  settings.seed = r.next();
                  return setPlacementSettings(m, settings);
              }},

@@ -107,8 +107,8 @@ TEST(Place, FillsTheSelectionOfAnEmptyDocument) {
     Groom empty;
     empty.scalp = sphereScalp(kHeadRadius, 4, kHeadCentre);
     empty.scalpSelection = selectFaces(*empty.scalp, "cap:60").value();
-    for (const bool darts : {true, false}) {
-        empty.placement = {darts, 500, 0, 0.1f, 8, 3};
+    for (const auto method : {PlacementMethod::poissonDisk, PlacementMethod::random}) {
+        empty.placement = {method, 500, 0, 0.1f, 8, 3};
         Document document(empty);
         auto command = place(document.groom(), {}, {});
         ASSERT_TRUE(command) << command.error().message();
@@ -130,7 +130,7 @@ TEST(Place, ReplacesOnlyTheRegionAndKeepsItsDistance) {
     Groom groom;
     groom.scalp = sphereScalp(kHeadRadius, 4, kHeadCentre);
     groom.scalpSelection = selectFaces(*groom.scalp, "cap:80").value();
-    groom.placement = {true, 1, 4.0f, 0.1f, 8, 3};
+    groom.placement = {PlacementMethod::poissonDisk, 1, 4.0f, 0.1f, 8, 3};
     Document document(groom);
     document.perform(place(document.groom(), {}, {}).value());
     const Groom before = document.groom();
@@ -169,7 +169,7 @@ TEST(Place, GivesShareOfTheCountAndFollowsTheDensityMap) {
     Groom groom;
     groom.scalp = sphereScalp(kHeadRadius, 4, kHeadCentre);
     groom.scalpSelection = selectFaces(*groom.scalp, "cap:90").value();
-    groom.placement = {false, 4000, 0, 0.1f, 2, 3};
+    groom.placement = {PlacementMethod::random, 4000, 0, 0.1f, 2, 3};
     groom.scalpDensity.assign(groom.scalp->vertexCount(), 1);
     for (std::size_t v = 0; v < groom.scalpDensity.size(); ++v) {
         if (groom.scalp->positions()[v].x() < 0) groom.scalpDensity[v] = 0.25f;

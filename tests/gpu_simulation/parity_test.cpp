@@ -77,8 +77,8 @@ void integrate(SimulationSettings& s, Integrator integrator) {
 void collide(SimulationSettings& s, CollisionResponse response) {
     s.collisionResponse = response;
     s.restitution = 0.4f;
-    s.pearlRadiusRoot = 0.001f;
-    s.pearlRadiusTip = 0.004f;
+    s.collisionRadiusRoot = 0.001f;
+    s.collisionRadiusTip = 0.004f;
     s.maximalExtension = 0.05f;
     s.lengthIterations = 1;
 }
@@ -144,7 +144,7 @@ const Case kCases[] = {
          const runtime::Ramp::Key keys[] = {{0, 0.4f}, {0.3f, 1}, {0.5f, 0.1f}, {1, 0.7f}};
          s.angularCurve = runtime::Ramp::of(keys);
      }},
-    {"angularCheap", [](SimulationSettings& s) { bend(s, AngularMethod::smallAngle); }},
+    {"angularSmallAngle", [](SimulationSettings& s) { bend(s, AngularMethod::smallAngle); }},
     {"angularExact", [](SimulationSettings& s) { bend(s, AngularMethod::exact); }},
     {"flexion", [](SimulationSettings& s) { bend(s, AngularMethod::flexion); }},
     {"velocityVerlet", [](SimulationSettings& s) { integrate(s, Integrator::velocityVerlet); }},

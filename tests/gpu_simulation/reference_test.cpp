@@ -42,7 +42,7 @@ const Force kForces[] = {
          s.lengthMethod = runtime::LengthMethod::springs;
          s.springFrequency = 20.0f;
      }},
-    {"cheap",
+    {"smallAngle",
      [](SimulationSettings& s) {
          s.angularStiffness = 0.3f;
          s.angularMethod = runtime::AngularMethod::smallAngle;

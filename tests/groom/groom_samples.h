@@ -117,7 +117,7 @@ inline Groom fullGroom() {
     groom.simulation.gravity = {0.1f, -9.7f, 0.3f};
     groom.interpolation.followPerGuide = 12;
     groom.interpolation.seed = 0xfedcba9876543210ull;
-    groom.placement = {false, 1234, 7.5f, 0.2f, 9, 77};
+    groom.placement = {PlacementMethod::random, 1234, 7.5f, 0.2f, 9, 77};
     groom.scalpDensity.assign(groom.scalp->vertexCount(), 0.25f);
     groom.triangulation.triangles = {{0, 1, 2}, {2, 1, 3}};
     groom.triangulation.coincident = {{4, 0}};

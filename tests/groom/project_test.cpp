@@ -118,6 +118,51 @@ TEST(Project, ReadsTheStiffnessAtTheTipOfVersion3AsAStraightCurve) {
     EXPECT_TRUE(sameContent(*loaded, expected));
 }
 
+/// The member gets its former name and the value given for it.
+void nameAsBefore(nlohmann::ordered_json& section, const char* name, const char* former,
+                  const nlohmann::ordered_json& value) {
+    ASSERT_EQ(section.erase(name), 1u);
+    section[former] = value;
+}
+
+TEST(Project, ReadsTheNamesOfVersion4) {
+    Groom expected = fullGroom();
+    expected.simulation.collisionRadiusRoot = 0.001f;
+    expected.simulation.collisionRadiusTip = 0.003f;
+    expected.simulation.angularMethod = runtime::AngularMethod::smallAngle;
+    expected.material.colourSource = ColourSource::colours;
+    expected.material.streakColourSource = ColourSource::melanin;
+    expected.placement.placement = PlacementMethod::random;
+    OlderProject project;
+    nameAsBefore(project.head["simulation"], "collisionRadiusRoot", "pearlRadiusRoot", 0.001);
+    nameAsBefore(project.head["simulation"], "collisionRadiusTip", "pearlRadiusTip", 0.003);
+    nameAsBefore(project.head["simulation"], "angularMethod", "angularMethod", "cheap");
+    nameAsBefore(project.head["material"], "colourSource", "dyed", true);
+    nameAsBefore(project.head["material"], "streakColourSource", "streakDyed", false);
+    nameAsBefore(project.head["placement"], "placement", "darts", false);
+    const auto loaded = project.load(4);
+    ASSERT_TRUE(loaded) << loaded.error().message();
+    EXPECT_TRUE(sameContent(*loaded, expected));
+
+    project.head["placement"]["darts"] = true;
+    expected.placement.placement = PlacementMethod::poissonDisk;
+    EXPECT_TRUE(sameContent(project.load(4).value(), expected));
+    project.head["placement"]["placement"] = "random";
+    const auto both = project.load(4);
+    ASSERT_FALSE(both);
+    EXPECT_THAT(both.error().message(), HasSubstr("/placement/darts stands beside placement"));
+    project.head["placement"].erase("placement");
+    project.head["simulation"]["pearlRadiusTip"] = -1;
+    const auto outside = project.load(4);
+    ASSERT_FALSE(outside);
+    EXPECT_THAT(outside.error().message(), HasSubstr("/simulation/pearlRadiusTip is -1"));
+    project.head["simulation"].erase("pearlRadiusTip");
+    project.head["simulation"]["pearlRadiusMiddle"] = 0;
+    const auto unknown = project.load(4);
+    ASSERT_FALSE(unknown);
+    EXPECT_THAT(unknown.error().message(), HasSubstr("/simulation/pearlRadiusMiddle is not known"));
+}
+
 TEST(Project, TruncatedAnywhereIsRefused) {
     const TemporaryFolder folder;
     const auto path = folder / "a.hairloom";
@@ -209,7 +254,7 @@ TEST(HostileProject, VersionsAndKindsAreNamed) {
     const TemporaryFolder folder;
     Forger newer(folder);
     newer.version = 7;
-    EXPECT_THAT(newer.error(), HasSubstr("project is version 7; this program reads versions up to 4"));
+    EXPECT_THAT(newer.error(), HasSubstr("project is version 7; this program reads versions up to 5"));
     Forger other(folder);
     other.kind = "cache";
     EXPECT_THAT(other.error(), HasSubstr("/kind is 'cache'; expected 'project'"));

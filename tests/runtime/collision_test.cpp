@@ -13,8 +13,8 @@ TEST(Collision, PointsEndOnASphereAwayFromTheOrigin) {
     SimulationSettings s = bare();
     s.gravity = {0.0f, -9.81f, 0.0f};
     s.dampingTime = 0.3f;
-    s.pearlRadiusRoot = 0.001f;
-    s.pearlRadiusTip = 0.003f;
+    s.collisionRadiusRoot = 0.001f;
+    s.collisionRadiusTip = 0.003f;
     const std::vector<Sphere> spheres{{{3.1f, 1.88f, 1.003f}, 0.1f}};
     Engine engine = makeEngine(strands, s);
     for (int f = 0; f < 240; ++f) {
@@ -33,7 +33,7 @@ TEST(Collision, PointAtTheCentreLeavesUpwardsByBothRadii) {
     SimulationSettings s = bare();
     s.lengthIterations = 0;
     s.substeps = 1;
-    s.pearlRadiusTip = 0.01f;
+    s.collisionRadiusTip = 0.01f;
     const std::vector<Sphere> spheres{{strands.points[1], 0.05f}};
     Engine engine = makeEngine(strands, s);
     run(engine, strands, 1, 0.01f, spheres);
@@ -69,7 +69,7 @@ Float3 velocityAfterImpact(float friction, float restitution, Float3 sphereVeloc
     SimulationSettings s = bare();
     s.lengthIterations = 0;
     s.substeps = 1;
-    s.pearlRadiusTip = 0.0f;
+    s.collisionRadiusTip = 0.0f;
     s.friction = friction;
     s.restitution = restitution;
     const float dt = 1e-3f;
@@ -135,7 +135,7 @@ struct FreePoints {
     FreePoints() {
         settings.lengthIterations = 0;
         settings.substeps = 1;
-        settings.pearlRadiusTip = 0.0f;
+        settings.collisionRadiusTip = 0.0f;
         settings.friction = 0.0f;
         settings.teleportDistance = 100.0f;
     }
@@ -300,8 +300,8 @@ TEST(Collision, CollisionRadiusGrowsLinearlyToTheTip) {
     Strands strands;
     strands.add({0.0f, 0.0f, 0.0f}, {1.0f, 0.0f, 0.0f}, 0.02f, 6);
     SimulationSettings s = FreePoints().settings;
-    s.pearlRadiusRoot = 0.002f;
-    s.pearlRadiusTip = 0.012f;
+    s.collisionRadiusRoot = 0.002f;
+    s.collisionRadiusTip = 0.012f;
     const std::vector<Sphere> sphere{{{0.05f, -0.02f, 0.0f}, 0.3f}};
     Engine engine = makeEngine(strands, s);
     run(engine, strands, 1, 1e-3f, sphere);

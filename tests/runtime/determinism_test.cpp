@@ -115,14 +115,14 @@ TEST(Determinism, StagesThatFollowEachOtherAreOnePass) {
     EXPECT_EQ(passes({roots, damping, wind, gravity, verlet, length}),
               (std::vector<Stage>{alone(roots), table.moves[1][2][1], alone(length)}));
     EXPECT_EQ(passes({roots, verlet}), (std::vector<Stage>{alone(roots), table.moves[0][0][0]}));
-    EXPECT_EQ(
-        passes({roots, verlet, angular, length, sweep}),
-        (std::vector<Stage>{alone(roots), table.moves[0][0][0], table.bendAndProject[1], alone(sweep)}));
+    EXPECT_EQ(passes({roots, verlet, angular, length, continuousCollision}),
+              (std::vector<Stage>{alone(roots), table.moves[0][0][0], table.bendAndProject[1],
+                                  alone(continuousCollision)}));
     EXPECT_EQ(passes({angularStraight, length}), (std::vector<Stage>{table.bendAndProject[0]}));
     EXPECT_EQ(passes({angular, collision}), (std::vector<Stage>{alone(angular), alone(collision)}));
-    EXPECT_EQ(passes({sweep, collision, extension}),
-              (std::vector<Stage>{table.sweepAndCollide[0], alone(extension)}));
-    EXPECT_EQ(passes({sweep, collisionBack}), (std::vector<Stage>{table.sweepAndCollide[1]}));
+    EXPECT_EQ(passes({continuousCollision, collision, extension}),
+              (std::vector<Stage>{table.bothCollisions[0], alone(extension)}));
+    EXPECT_EQ(passes({continuousCollision, collisionBack}), (std::vector<Stage>{table.bothCollisions[1]}));
     // Another force between them, or another integrator after them: each by itself.
     EXPECT_EQ(passes({damping, gravity, springs, verlet}),
               (std::vector<Stage>{alone(damping), alone(gravity), alone(springs), table.moves[0][0][0]}));
@@ -140,8 +140,9 @@ TEST(Determinism, SeparateStagesPassTheDisplacementOn) {
     EXPECT_EQ(singles({roots, damping, wind, gravity, verlet, angular, length}),
               (std::vector<Stage>{alone(roots), opens(damping), follows(wind), follows(gravity),
                                   follows(verlet), alone(angular), alone(length)}));
-    EXPECT_EQ(singles({roots, verlet, sweep, collision}),
-              (std::vector<Stage>{alone(roots), opens(verlet), alone(sweep), alone(collision)}));
+    EXPECT_EQ(
+        singles({roots, verlet, continuousCollision, collision}),
+        (std::vector<Stage>{alone(roots), opens(verlet), alone(continuousCollision), alone(collision)}));
     // What stands between them reads places.
     EXPECT_EQ(singles({damping, gravity, springs, verlet}),
               (std::vector<Stage>{alone(damping), alone(gravity), alone(springs), opens(verlet)}));

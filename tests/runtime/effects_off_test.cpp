@@ -35,8 +35,8 @@ std::vector<Case> cases() {
         s.restitution = 0.7f;
         s.penaltyFrequency = 50.0f;
         s.collisionResponse = CollisionResponse::backward;
-        s.pearlRadiusRoot = 0.003f;
-        s.pearlRadiusTip = 0.004f;
+        s.collisionRadiusRoot = 0.003f;
+        s.collisionRadiusTip = 0.004f;
     };
     const Change blowing = [](S& s) {
         s.windKind = WindKind::gusting;
@@ -81,12 +81,12 @@ std::vector<Case> cases() {
          .unread = touching,
          .spheresOn = kNear,
          .spheresOff = kFar},
-        {.effect = Effect::pearls,
-         .on = [](S& s) { s.pearlRadiusTip = 0.004f; },
-         .off = [](S& s) { s.pearlRadiusTip = 0.0f; },
+        {.effect = Effect::collisionRadius,
+         .on = [](S& s) { s.collisionRadiusTip = 0.004f; },
+         .off = [](S& s) { s.collisionRadiusTip = 0.0f; },
          .spheresOn = kNear,
          .spheresOff = kNear},
-        {.effect = Effect::sweep,
+        {.effect = Effect::continuousCollision,
          .on = same,
          .off = [](S& s) { s.collisionResponse = CollisionResponse::penalty; },
          .unread = [](S& s) { s.friction = 0.8f, s.restitution = 0.9f; },

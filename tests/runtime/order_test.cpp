@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Orders of convergence, measured: a strand of coil springs and cheap angular springs that gravity sets in
+// Orders of convergence, measured: a strand of coil springs and small-angle springs that gravity sets in
 // motion from rest, against the model in double precision.
 #include <Eigen/Core>
 #include <cstdio>
@@ -118,7 +118,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         OrderCase{"explicitEuler", Integrator::explicitEuler, kSmallAngle, 0.0f, 1, 0.4, 64, 1e-4},
         OrderCase{"implicitEuler", Integrator::implicitEuler, kSmallAngle, 0.0f, 1, 0.4, 64, 1e-4},
-        OrderCase{"verletCheap", Integrator::verlet, kSmallAngle, 0.0f, 2, 0.4, 12, 1e-5},
+        OrderCase{"verletSmallAngle", Integrator::verlet, kSmallAngle, 0.0f, 2, 0.4, 12, 1e-5},
         OrderCase{"verletImplicit", Integrator::verlet, kImplicit, 0.0f, 2, 0.4, 12, 1e-5},
         OrderCase{"velocityVerlet", Integrator::velocityVerlet, kSmallAngle, 0.0f, 2, 0.4, 12, 1e-5},
         OrderCase{"velocityVerletExact", Integrator::velocityVerlet, kExact, 0.0f, 2, 0.4, 12, 1e-5},

@@ -244,7 +244,7 @@ TEST(Projective, TipsLeaveSpheresAndSticksKeepTheirLength) {
     const Strands strands = tuft(40);
     SimulationSettings s;
     s.angularStiffness = 0.02f;
-    s.pearlRadiusRoot = s.pearlRadiusTip = 0.002f;
+    s.collisionRadiusRoot = s.collisionRadiusTip = 0.002f;
     ProjectiveEquations sticks = makeSticks(strands, s);
     const std::vector<Sphere> spheres{{{0.08f, 0.005f, 0.0f}, 0.07f}};
     const auto deepest = [&] {
@@ -264,7 +264,7 @@ TEST(Projective, AStickThatRestedOnASphereStartsFromRest) {
     const Strands strands = oneStick({1.0f, 0.0f, 0.0f}, 0.1f);
     SimulationSettings s = bare();
     s.gravity = {0.0f, -9.81f, 0.0f};
-    s.pearlRadiusTip = 0.0f;
+    s.collisionRadiusTip = 0.0f;
     ProjectiveEquations sticks = makeSticks(strands, s);
     const std::vector<Sphere> spheres{{{0.1f, -0.05f, 0.0f}, 0.05f}};
     for (int f = 0; f < 120; ++f) sticks.step({1.0f / 60.0f, 0.0, strands.roots(), spheres});

@@ -105,7 +105,7 @@ void forEveryMethod(const Visit& visit) {
     s.substeps = 2;
     s.angularStiffness = 0.02f;
     s.windKind = WindKind::turbulent;
-    s.pearlRadiusRoot = 0.001f;
+    s.collisionRadiusRoot = 0.001f;
     s.sleepSpeed = 0.0f;
     const Field<Settings>* const fields[] = {findField<Settings>("integrator"),
                                              findField<Settings>("lengthMethod"),

@@ -41,7 +41,7 @@ TEST(HairLook, EvenHairHasNone) {
     coloured.material.tipColour = Vec3f(0.5f, 0.1f, 0.9f);
     EXPECT_TRUE(strandShading(coloured, kKajiya).look);
     EXPECT_FALSE(strandShading(coloured, kMarschner).look);
-    coloured.material.dyed = true;
+    coloured.material.colourSource = ColourSource::colours;
     const auto dyed = strandShading(coloured, kMarschner).look;
     ASSERT_TRUE(dyed);
     EXPECT_TRUE(dyed->tip.isApprox(

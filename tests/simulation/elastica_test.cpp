@@ -74,7 +74,7 @@ TEST(Elastica, CantileverComesToRestOnIt) {
 }
 
 TEST(Elastica, ExactDirectionBendsAlike) {
-    // Lengths are held: what the cheap direction adds along a segment the tension takes.
+    // Lengths are held: what the small-angle method adds along a segment the tension takes.
     const double stiffness = elasticaStiffness(0.4, kGravity, kLength);
     EXPECT_NEAR(tipError(16, stiffness, runtime::AngularMethod::exact),
                 tipError(16, stiffness, runtime::AngularMethod::smallAngle), 1e-7);

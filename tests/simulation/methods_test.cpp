@@ -82,7 +82,7 @@ TEST(Methods, EachMovesAndMeasuresItself) {
 
 TEST(Methods, MeasurementsOfAnAlternativeAreThoseOfItsPoints) {
     Groom groom = hangingHair(1, 3);
-    groom.simulation.pearlRadiusRoot = groom.simulation.pearlRadiusTip = 0;
+    groom.simulation.collisionRadiusRoot = groom.simulation.collisionRadiusTip = 0;
     groom.spheres.push_back({"ball", Vec3f(0, 1.4f, 0.1f), 0.03f, ""});  // about the tip, which lattices miss
     const Outcome still = run(groom, "none", SimulationMethod::lattice, 3);
     EXPECT_NEAR(still.stats.maxPenetrationMm, 30, 0.1);

@@ -37,11 +37,11 @@ reference::Frame sphereFrame(double dt, const reference::Sphere& sphere = kSpher
 }
 
 TEST(ReferenceContact, PointBouncesToTheShareOfItsHeight) {
-    // Dropped from h above the pearl it leaves at ε √(2 g h).
+    // Dropped from h above the collision radius it leaves at ε √(2 g h).
     runtime::SimulationSettings s = freePoint();
     s.restitution = 0.5f;
-    s.pearlRadiusTip = 0.01f;
-    const double collisionRadius = static_cast<double>(s.pearlRadiusTip), height = 0.2;
+    s.collisionRadiusTip = 0.01f;
+    const double collisionRadius = static_cast<double>(s.collisionRadiusTip), height = 0.2;
     reference::Solver solver = solverOf(straightStrand(1, 0.1), s);
     const double surface = kSphere.center_ws.y() + kSphere.radius + collisionRadius;
     const std::vector<Vec3d> x{Vec3d::Zero(), Vec3d(kSphere.center_ws.x(), surface + height, 0.1)};
@@ -119,8 +119,8 @@ TEST(ReferenceContact, MovingSphereCarriesAStickingPoint) {
 TEST(ReferenceContact, StrandComesToRestOnASphere) {
     runtime::SimulationSettings s = bareSettings();
     s.dampingTime = 0.1f;
-    s.pearlRadiusRoot = 0.001f;
-    s.pearlRadiusTip = 0.004f;
+    s.collisionRadiusRoot = 0.001f;
+    s.collisionRadiusTip = 0.004f;
     const reference::Strands strands = straightStrand(12, 0.3);
     reference::Solver solver = solverOf(strands, s);
     const reference::Sphere sphere{Vec3d(0.1, -0.115, 0.0), 0.1};
@@ -169,7 +169,7 @@ TEST(ReferenceContact, HairPressedEndOnStaysAStrand) {
     s.angularStiffness = 0.97f;
     s.bendDampingTime = 0.03f;
     s.dampingTime = 0.2f;
-    s.pearlRadiusTip = 0.002f;
+    s.collisionRadiusTip = 0.002f;
     reference::Solver solver = solverOf(straightStrand(23, 0.07, Vec3d::UnitY()), s);
     std::uint64_t failed = 0;
     for (int f = 0; f < 30; ++f) {

@@ -38,7 +38,7 @@ inline runtime::SimulationSettings bareSettings() {
     s.restGravity = 0.0f;
     s.airDrag = 0.0f;
     s.windSpeed = 0.0f;
-    s.pearlRadiusRoot = s.pearlRadiusTip = 0.0f;
+    s.collisionRadiusRoot = s.collisionRadiusTip = 0.0f;
     s.friction = 0.0f;
     s.restitution = 0.0f;
     return s;

@@ -10,6 +10,9 @@ using M = HairMaterial;
 using I = InterpolationSettings;
 using P = PlacementSettings;
 
+constexpr const char* kColourSources[] = {"melanin", "colours"};
+constexpr const char* kPlacementMethods[] = {"random", "poissonDisk"};
+
 // clang-format off
 constexpr Field<M> kMaterialFields[] = {
     field<&M::rootRadius>("rootRadius", "m", 5e-6, 0.05, "half the fibre's diameter at the root; a hair has 25e-6 to 60e-6"),
@@ -30,11 +33,11 @@ constexpr Field<M> kMaterialFields[] = {
     field<&M::gradientEnd>("gradientEnd", "", 0, 1, "share of the length from which on it has the colour of the tip"),
     field<&M::tipMelanin>("tipMelanin", "", 0, 8, "pigment at the tip over that at the root: below 1 is bleached"),
     field<&M::melaninVariation>("melaninVariation", "", 0, 1, "random spread of the pigment, or of the depth of the colour"),
-    boolField<&M::dyed>("dyed", "true: Marschner and Sadeghi take the colours too; false: they take the melanin"),
+    choiceField<&M::colourSource>("colourSource", "what colours Marschner and Sadeghi's hair: the melanin, or the colours above as dye", kColourSources),
     field<&M::streakShare>("streakShare", "", 0, 1, "share of the strands that are in streaks; 0 turns streaks off"),
     field<&M::streakWidth>("streakWidth", "m", 0.0005, 0.2, "width of a streak on the scalp"),
     field<&M::streakSoftness>("streakSoftness", "", 0, 1, "0 bounds streaks sharply, 1 lets them fade over their width"),
-    boolField<&M::streakDyed>("streakDyed", "true: streaks have the streak colour; false: they differ in pigment"),
+    choiceField<&M::streakColourSource>("streakColourSource", "what colours streaks: other melanin, or the streak colour as dye", kColourSources),
     colourField<&M::streakColour>("streakColour", "linear red, green and blue of dyed streaks"),
     field<&M::streakMelanin>("streakMelanin", "", 0, 8, "pigment in streaks over that beside them: below 1 is bleached"),
     seedField<&M::streakSeed>("streakSeed", "another seed puts streaks in other places"),
@@ -77,7 +80,7 @@ constexpr Field<I> kInterpolationFields[] = {
 };
 
 constexpr Field<P> kPlacementFields[] = {
-    boolField<&P::darts>("darts", "true places roots at even distances, false at random"),
+    choiceField<&P::placement>("placement", "how roots are placed: at random, or at even distances (Poisson disk, by dart throwing)", kPlacementMethods),
     field<&P::count>("count", "", 1, 5e6, "number of roots; used while densityPerCm2 is 0"),
     field<&P::densityPerCm2>("densityPerCm2", "1/cm²", 0, 10000, "roots per area where the density map is 1; 0 uses the count"),
     field<&P::length>("length", "m", 0.0001, 10, "length of the strands that grow"),

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -95,7 +96,23 @@ JsonReader::JsonReader(const json& value, std::string path, std::shared_ptr<Cont
 
 bool JsonReader::has(std::string_view key) {
     asked_.emplace(key);
-    return value_->is_object() && value_->contains(key);
+    return value_->is_object() && value_->contains(written(key));
+}
+
+void JsonReader::alsoReadFormer(std::span<const FormerMember> members) {
+    former_ = members;
+    if (!value_->is_object()) return;
+    for (const FormerMember& member : members) {
+        if (member.former != member.name && value_->contains(member.former) && value_->contains(member.name))
+            complain(member.former, "stands beside " + member.name, "expected one of the two");
+    }
+}
+
+std::string_view JsonReader::written(std::string_view key) const {
+    if (!value_->is_object() || value_->contains(key)) return key;
+    const auto member = std::ranges::find(former_, key, &FormerMember::name);
+    return member != former_.end() && value_->contains(member->former) ? std::string_view(member->former)
+                                                                       : key;
 }
 
 std::vector<std::string> JsonReader::keys() const {
@@ -108,8 +125,8 @@ std::vector<std::string> JsonReader::keys() const {
 const json* JsonReader::member(std::string_view key) {
     asked_.emplace(key);
     if (value_->is_object()) {
-        const auto found = value_->find(key);
-        if (found != value_->end()) return &*found;
+        const auto found = value_->find(written(key));
+        if (found != value_->end()) return &currentValue(former_, key, *found);
     }
     complain(key, "is missing");
     return nullptr;
@@ -117,7 +134,7 @@ const json* JsonReader::member(std::string_view key) {
 
 void JsonReader::complain(std::string_view key, const std::string& problem, const std::string& expected) {
     if (context_->error) return;
-    std::string where = key.empty() ? path_ : path_ + pathPart(key);
+    std::string where = key.empty() ? path_ : path_ + pathPart(written(key));
     if (where.empty()) where = "/";
     context_->error = Error{context_->file, {}, where + " " + problem, expected};
 }
@@ -260,7 +277,7 @@ std::vector<JsonReader> JsonReader::objects(std::string_view key) {
 void JsonReader::finish() {
     if (!value_->is_object()) return;
     for (const auto& item : value_->items()) {
-        if (asked_.contains(item.key())) continue;
+        if (asked_.contains(currentName(former_, item.key()))) continue;
         return complain(item.key(), "is not known to this program",
                         fmt::format("expected only {}", fmt::join(asked_, ", ")));
     }

@@ -14,6 +14,7 @@
 #include "core/base/math.h"
 #include "core/base/result.h"
 #include "core/groom/file/fields.h"
+#include "core/groom/file/former_names.h"
 
 namespace hairloom {
 
@@ -52,9 +53,11 @@ class JsonReader {
     /// The names of all members, in order of name.
     std::vector<std::string> keys() const;
 
-    /// Every member of the object that fieldsOf(S) describes; absent ones keep their value.
+    /// Every member of the object that fieldsOf(S) describes, by its name or its former one; absent ones keep
+    /// their value.
     template <class S>
     void fields(S& settings) {
+        alsoReadFormer(formerMembers(settings));
         for (const Field<S>& field : fieldsOf(settings)) {
             if (has(field.name)) read(field, settings);
         }
@@ -74,6 +77,10 @@ class JsonReader {
     };
     JsonReader(const nlohmann::json& value, std::string path, std::shared_ptr<Context> context);
     const nlohmann::json* member(std::string_view key);
+    /// Complains where a member stands beside its former name.
+    void alsoReadFormer(std::span<const FormerMember> members);
+    /// As the object has it: the former name where that stands there.
+    std::string_view written(std::string_view key) const;
 
     template <class S>
     void read(const Field<S>& field, S& settings) {
@@ -96,6 +103,7 @@ class JsonReader {
     std::string path_;
     std::shared_ptr<Context> context_;
     std::set<std::string, std::less<>> asked_;
+    std::span<const FormerMember> former_;
 };
 
 /// The shortest decimal number that gives the same float again.
@@ -132,7 +140,7 @@ nlohmann::ordered_json fieldsToJson(const S& settings) {
 /// What stands in lists and on the reference page: a description and the default as it stands in JSON.
 struct FieldRow {
     FieldInfo info;
-    nlohmann::ordered_json standard;
+    nlohmann::ordered_json defaultValue;
 };
 template <class S>
 std::vector<FieldRow> fieldRows() {

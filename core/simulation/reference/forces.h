@@ -38,7 +38,7 @@ class BlockSink {
 };
 
 /// Exact for coil, flexion and penalty springs and for damping. The frames and the sine of the air's angle
-/// count as constant, and angular springs as those of the cheap direction: a Newton iteration with these
+/// count as constant, and angular springs as those of the small-angle method: a Newton iteration with these
 /// converges linearly, to the same solution.
 void addDerivatives(const Physics& physics, const StrandShape& shape, const std::vector<Vec3d>& x,
                     const std::vector<Vec3d>& v, const Surroundings& around, double place, double speed,

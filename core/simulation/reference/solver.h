@@ -6,11 +6,11 @@
 //
 // Of the settings it reads what states the model; it chooses its own time steps and solves, so that
 // integrator, substeps, the count of lengthIterations (0 still frees the lengths) and maximalExtension do not
-// count, `implicit` springs are `cheap` ones, `springVelocities` are `springs`, and `backward` response is
-// `radial`: they differ only by a step's length. Kelvin-Voigt damping of bending acts in both directions of
-// angular springs. The wind is that of runtime/wind.h at each point itself. Does not do: maximal extension of
-// springs, sleep; stiff hair that is pressed end-on or between two spheres, where lengths and hard contacts
-// have no sound common solution: StepReport::failed tells.
+// count, `implicit` springs are `smallAngle` ones, `springVelocities` are `springs`, and `backward` response
+// is `radial`: they differ only by a step's length. Kelvin-Voigt damping of bending acts in both directions
+// of angular springs. The wind is that of runtime/wind.h at each point itself. Does not do: maximal extension
+// of springs, sleep; stiff hair that is pressed end-on or between two spheres, where lengths and hard
+// contacts have no sound common solution: StepReport::failed tells.
 
 #include <cstdint>
 #include <span>

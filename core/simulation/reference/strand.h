@@ -36,7 +36,7 @@ struct Physics {
     double bendDampingTime;  ///< s
     bool lengthHeld;         ///< segments are inextensible
     bool coilSprings;        ///< segments are coil springs
-    bool angularSprings;     ///< cheap or exact
+    bool angularSprings;     ///< small-angle or exact
     bool framesTurn;         ///< BendingForce::gradient
     bool exactDirection;     ///< exact
     bool flexionSprings;

@@ -32,7 +32,7 @@ struct Measurements {
     std::uint64_t nanCount = 0;  ///< points that are not finite
     double maxStretch = 0.0;  ///< largest |length / rest length − 1|; segments without length do not count
     double maxPenetration =
-        0.0;  ///< metres that a free point and its pearl lie inside a sphere of the last frame
+        0.0;  ///< metres that a free point, with its collision radius, lies inside a sphere of the last frame
     double kineticEnergy = 0.0;  ///< joules, over free points; the points of a strand weigh 1 kg on average
     double potentialEnergy =
         0.0;                   ///< joules, likewise, in the gravity of the settings, 0 at the world's origin

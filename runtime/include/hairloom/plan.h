@@ -24,9 +24,9 @@ enum class Effect : std::uint32_t {
     torsion,   ///< frames carried along the strands, for angular springs of hair that is not straight
     coupling,  ///< angular springs and lengths solved as one system along each strand
     collision,
-    pearls,  ///< distance that points keep from spheres
-    sweep,   ///< collisions between the places of two substeps
-    sleep,   ///< strands at rest are left out
+    collisionRadius,      ///< distance that points keep from spheres
+    continuousCollision,  ///< collisions between the positions of two substeps
+    sleep,                ///< strands at rest are left out
 };
 inline constexpr std::uint32_t kEffectCount = 12;
 const char* effectName(Effect effect);
@@ -37,46 +37,47 @@ enum class StageId : std::uint32_t {
     roots,    ///< moves clamped points with the scalp
     damping,  ///< slows motion relative to the root
     // Forces: each adds a·h² to the displacement of the free points.
-    drag,           ///< external: still air
-    wind,           ///< external: moving air
-    gravity,        ///< external
-    springs,        ///< linear: coil springs (Eq. 3)
-    angularCheap,   ///< angular (Eq. 4) towards the rest place
-    angularExact,   ///< angular (Eq. 4) across the segment
-    straightCheap,  ///< as angularCheap, for straight hair: no frames
-    straightExact,  ///< as angularExact, for straight hair: no frames
-    flexion,        ///< springs between every second point
-    penalty,        ///< springs out of spheres
+    drag,                ///< external: still air
+    wind,                ///< external: moving air
+    gravity,             ///< external
+    springs,             ///< linear: coil springs (Eq. 3)
+    angularSmallAngle,   ///< angular (Eq. 4) towards the rest place
+    angularExact,        ///< angular (Eq. 4) across the segment
+    straightSmallAngle,  ///< as angularSmallAngle, for straight hair: no frames
+    straightExact,       ///< as angularExact, for straight hair: no frames
+    flexion,             ///< springs between every second point
+    penalty,             ///< springs out of spheres
     // Integration.
-    verlet,         ///< Eq. 10
-    open,           ///< forces are evaluated at the start of the substep
-    openHalfway,    ///< forces are evaluated after half a drift
-    explicitEuler,  ///< Eq. 7
-    leapfrog,       ///< kick and second half drift
-    verletDrift,    ///< velocity Verlet, Eq. 12: first half kick and drift
-    verletAim,      ///< velocity Verlet: forces are evaluated again where the constraints have put the points
-    verletKick,     ///< velocity Verlet: second half kick
-    rungeKutta1,    ///< RK4: takes the first slope
-    rungeKutta2,    ///< RK4: takes the second slope
-    rungeKutta3,    ///< RK4: takes the third slope
-    rungeKutta4,    ///< RK4: takes the fourth slope and the step
-    implicitFree,   ///< backward Euler (Eq. 9) without stiff forces
-    implicitBend,   ///< backward Euler with angular springs
-    implicitSpring,      ///< backward Euler with coil springs
-    implicitSpringBend,  ///< backward Euler with coil and angular springs
+    verlet,                 ///< Eq. 10
+    open,                   ///< forces are evaluated at the start of the substep
+    openHalfway,            ///< forces are evaluated after half a drift
+    explicitEuler,          ///< Eq. 7
+    leapfrog,               ///< kick and second half drift
+    verletDrift,            ///< velocity Verlet, Eq. 12: first half kick and drift
+    verletEvaluationState,  ///< velocity Verlet: forces are evaluated again where the constraints have put
+                            ///< the points
+    verletKick,             ///< velocity Verlet: second half kick
+    rungeKutta1,            ///< RK4: takes the first slope
+    rungeKutta2,            ///< RK4: takes the second slope
+    rungeKutta3,            ///< RK4: takes the third slope
+    rungeKutta4,            ///< RK4: takes the fourth slope and the step
+    implicitFree,           ///< backward Euler (Eq. 9) without stiff forces
+    implicitBend,           ///< backward Euler with angular springs
+    implicitSpring,         ///< backward Euler with coil springs
+    implicitSpringBend,     ///< backward Euler with coil and angular springs
     // After it.
-    angular,          ///< angular springs, implicitly, with frames (Eq. 4)
-    angularStraight,  ///< the same for straight hair: no frames
-    coupled,          ///< angular springs and length constraint, one system along each strand
-    coupledStraight,  ///< the same for straight hair: no frames
-    length,           ///< length constraint, Newton steps along the gradients at the start of the substep
-    lengthNow,        ///< the same along the gradients of now
-    springLimit,      ///< maximal extension by velocities (Bridson et al. 2003)
-    collision,        ///< spheres (Eqs. 13–21), out along the radius
-    collisionBack,    ///< spheres, back along the way
-    sweep,            ///< first contact of fast points with spheres
-    extension,        ///< maximal extension by positions (Provot 1995)
-    lengthRate,       ///< takes out velocity that would change lengths (RATTLE)
+    angular,              ///< angular springs, implicitly, with frames (Eq. 4)
+    angularStraight,      ///< the same for straight hair: no frames
+    coupled,              ///< angular springs and length constraint, one system along each strand
+    coupledStraight,      ///< the same for straight hair: no frames
+    length,               ///< length constraint, Newton steps along the gradients at the start of the substep
+    lengthNow,            ///< the same along the gradients of now
+    springLimit,          ///< maximal extension by velocities (Bridson et al. 2003)
+    collision,            ///< spheres (Eqs. 13–21), out along the radius
+    collisionBack,        ///< spheres, back along the way
+    continuousCollision,  ///< first contact of fast points with spheres
+    extension,            ///< maximal extension by positions (Provot 1995)
+    lengthRate,           ///< takes out velocity that would change lengths (RATTLE)
 };
 inline constexpr std::uint32_t kStageCount = static_cast<std::uint32_t>(StageId::lengthRate) + 1;
 const char* stageName(StageId stage);
@@ -178,8 +179,8 @@ class EffectPlan {
 
 EffectPlan plan(const PlanInput& scene);
 
-/// Metres from its root that a strand of that length and its pearls can come; infinite while nothing bounds
-/// its extension.
+/// Metres from its root that a strand of that length can reach, with its collision radius; infinite while
+/// nothing bounds its extension.
 float hairReach(const SimulationSettings& settings, float strandLength);
 
 }  // namespace hairloom::runtime

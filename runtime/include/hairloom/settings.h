@@ -33,7 +33,8 @@ enum class LengthMethod : std::uint32_t {
 
 /// How strands keep their shape.
 enum class AngularMethod : std::uint32_t {
-    implicit,  ///< angular springs (Eq. 4), solved together along a strand; explicit integrators take `cheap`
+    implicit,    ///< angular springs (Eq. 4), solved together along a strand; explicit integrators take
+                 ///< `smallAngle`
     smallAngle,  ///< angular springs as forces towards the rest place
     exact,       ///< angular springs as forces across the segment
     flexion,     ///< springs between every second point; they have several rest shapes
@@ -99,9 +100,10 @@ struct SimulationSettings {
 
     // --- Collision with spheres ---
     CollisionResponse collisionResponse = CollisionResponse::radial;
-    /// Grows linearly to pearlRadiusTip. A larger one keeps the middle of long segments out of a sphere.
-    float pearlRadiusRoot = 0.0f;
-    float pearlRadiusTip = 0.002f;
+    /// Of a strand: the distance that its points keep from spheres. Grows linearly to collisionRadiusTip. A
+    /// larger one keeps the middle of long segments out of a sphere.
+    float collisionRadiusRoot = 0.0f;
+    float collisionRadiusTip = 0.002f;
     /// Coulomb.
     float friction = 0.3f;
     float restitution = 0.0f;

@@ -261,8 +261,8 @@ StickForces ProjectiveEquations::forcesOn(std::uint32_t point, Quat frame, float
 }
 
 void ProjectiveEquations::collide(std::uint32_t point, Quat frame, float along, const Substep& substep) {
-    const float collisionRadius =
-        settings_.pearlRadiusRoot + (settings_.pearlRadiusTip - settings_.pearlRadiusRoot) * along;
+    const float collisionRadius = settings_.collisionRadiusRoot +
+                                  (settings_.collisionRadiusTip - settings_.collisionRadiusRoot) * along;
     const Float3 joint_ws = substep.root.position + positions_[point - 1];
     for (const MovingSphere& sphere : spheres_) {
         const Float3 centre_ws = sphere.from_ws + sphere.motion * substep.share;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Collisions between the places of two substeps, with spheres that fast points would pass.
-#if defined(HAIRLOOM_RUNTIME_SWEEP_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef HAIRLOOM_RUNTIME_SWEEP_INL_H
-#undef HAIRLOOM_RUNTIME_SWEEP_INL_H
+#if defined(HAIRLOOM_RUNTIME_CONTINUOUS_COLLISION_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef HAIRLOOM_RUNTIME_CONTINUOUS_COLLISION_INL_H
+#undef HAIRLOOM_RUNTIME_CONTINUOUS_COLLISION_INL_H
 #else
-#define HAIRLOOM_RUNTIME_SWEEP_INL_H
+#define HAIRLOOM_RUNTIME_CONTINUOUS_COLLISION_INL_H
 #endif
 
 #include "hwy/highway.h"
@@ -103,13 +103,13 @@ HWY_INLINE bool isFast(const SubstepContext& context, float farthestSquared) {
 }
 
 /// Runs before the stage of collisions and leaves slow blocks at once.
-void sweep(const BlockView& given, LaneFrame& lanes, const SubstepContext& context) {
+void continuousCollision(const BlockView& given, LaneFrame& lanes, const SubstepContext& context) {
     const BlockView block = localCopy(given);
     if (isFast(context, farthestInSubstep(block))) catchFast(block, lanes, context);
 }
 
 template <bool kBackward>
-void sweepAndCollide(const BlockView& given, LaneFrame& lanes, const SubstepContext& context) {
+void bothCollisions(const BlockView& given, LaneFrame& lanes, const SubstepContext& context) {
     const BlockView block = localCopy(given);
     Farthest farthest{0.0f, 0.0f};
     if (lanes.near.made) {
