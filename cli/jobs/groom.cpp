@@ -39,10 +39,10 @@ Result<Report> replay(const GroomOptions& options) {
 /// What scripts may say: operations, and the brushes of the operation "stroke".
 Result<Report> list() {
     Report operators = Report::array();
-    for (const OperationInfo& operation : scriptOperations()) {
+    for (const Operation& operation : operations()) {
         operators.push_back(Report{{"name", operation.name},
                                    {"meaning", operation.meaning},
-                                   {"fields", reportOf(operation.fields)}});
+                                   {"fields", reportOf(operation.fields())}});
     }
     Report brushes = Report::array();
     for (const std::string_view name : editing::brushNames()) {

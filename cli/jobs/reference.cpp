@@ -71,9 +71,9 @@ void addOperations(std::string& page) {
         "[formats/script.md](formats/script.md) says what they do and how a script is written.\n"
         "\n### `region`\n\nEvery operation takes one; it limits the operation to some strands.\n";
     addFields(scriptRegionFields(), page);
-    for (const OperationInfo& operation : scriptOperations()) {
+    for (const Operation& operation : operations()) {
         page += fmt::format("\n### `{}`\n\n{}\n", operation.name, asSentence(operation.meaning));
-        addFields(operation.fields, page);
+        addFields(operation.fields(), page);
     }
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/operations/clump_centres.h"
 #include "core/operations/length_constraint.h"
+#include "core/operations/operation.h"
 
 namespace hairloom {
 namespace {
@@ -52,6 +53,10 @@ Result<std::size_t> clump(Groom& groom, const S& settings, const Region& region)
         }
         restoreLengths(strand.points, strand.lengths);
     });
+}
+
+Operation clumpOperation() {
+    return operation<S, clump>("clump", 30, "pulls strands together in locks");
 }
 
 }  // namespace hairloom

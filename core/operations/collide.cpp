@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/operations/collide.h"
 
+#include "core/operations/operation.h"
+
 namespace hairloom {
 namespace {
 
@@ -21,6 +23,10 @@ Result<std::size_t> collide(Groom& groom, const S& settings, const Region& regio
     if (auto status = checkFields("collide", settings); !status) return tl::unexpected(status.error());
     if (!groom.scalp) return fail("collide: the groom has no scalp", "bind it to one first");
     return editStrands(groom, region, {settings.distance}, [](StrandEdit&) {});
+}
+
+Operation collideOperation() {
+    return operation<S, collide>("collide", 90, "pushes strands out of the head");
 }
 
 }  // namespace hairloom

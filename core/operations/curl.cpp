@@ -6,6 +6,7 @@
 
 #include "core/geometry/curve.h"
 #include "core/operations/length_constraint.h"
+#include "core/operations/operation.h"
 
 namespace hairloom {
 namespace {
@@ -50,6 +51,10 @@ Result<std::size_t> curl(Groom& groom, const S& settings, const Region& region) 
         }
         restoreLengthsByDirection(strand.points, strand.lengths);
     });
+}
+
+Operation curlOperation() {
+    return operation<S, curl>("curl", 50, "winds strands into helices");
 }
 
 }  // namespace hairloom

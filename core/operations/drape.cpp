@@ -2,6 +2,7 @@
 #include "core/operations/drape.h"
 
 #include "core/geometry/curve.h"
+#include "core/operations/operation.h"
 
 namespace hairloom {
 namespace {
@@ -42,6 +43,10 @@ Result<std::size_t> drape(Groom& groom, const S& settings, const Region& region)
             strand.points[i] = strand.points[i - 1] + turned * strand.lengths[i - 1];
         }
     });
+}
+
+Operation drapeOperation() {
+    return operation<S, drape>("drape", 70, "bends strands down as gravity does");
 }
 
 }  // namespace hairloom

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/groom/point_dye.h"
+#include "core/operations/operation.h"
 
 namespace hairloom {
 namespace {
@@ -63,6 +64,10 @@ Result<std::size_t> dye(Groom& groom, const S& settings, const Region& region) {
         groom.strandAttributes.set(attribute::kDye, std::move(mask));
     }
     return changed;
+}
+
+Operation dyeOperation() {
+    return operation<S, dye>("dye", 100, "says which strands the material's dye colours, and how much");
 }
 
 }  // namespace hairloom

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/operations/length_constraint.h"
+#include "core/operations/operation.h"
 
 namespace hairloom {
 namespace {
@@ -151,6 +152,10 @@ Result<std::size_t> flow(Groom& groom, const S& settings, const Region& region) 
     if (!groom.scalp) return fail("flow: the groom has no scalp", "bind it to one first");
     return editStrands(groom, region, {-1.0f, true},
                        [&](StrandEdit& strand) { layStrand(strand, settings); });
+}
+
+Operation flowOperation() {
+    return operation<S, flow>("flow", 20, "lays strands along the head: from a crown, a parting, by a sweep");
 }
 
 }  // namespace hairloom

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/operations/length_constraint.h"
+#include "core/operations/operation.h"
 
 namespace hairloom {
 namespace {
@@ -60,6 +61,10 @@ Result<std::size_t> noise(Groom& groom, const S& settings, const Region& region)
         }
         restoreLengthsByDirection(strand.points, strand.lengths);
     });
+}
+
+Operation noiseOperation() {
+    return operation<S, noise>("noise", 40, "bends strands at random: frizz, an uneven fall");
 }
 
 }  // namespace hairloom

@@ -6,64 +6,12 @@
 #include <algorithm>
 #include <map>
 
-#include "core/operations/clump.h"
-#include "core/operations/collide.h"
-#include "core/operations/curl.h"
-#include "core/operations/drape.h"
-#include "core/operations/dye.h"
-#include "core/operations/flow.h"
-#include "core/operations/noise.h"
-#include "core/operations/set_length.h"
-#include "core/operations/smooth.h"
-#include "core/operations/trim.h"
-
 namespace hairloom {
 namespace {
 
-using Run = std::function<Result<std::size_t>(Groom&)>;
-
-/// One operation with its settings' type erased.
-struct Operation {
-    std::string_view name;
-    std::string_view meaning;
-    Run (*read)(JsonReader&);
-    std::vector<FieldRow> (*fields)();
-};
-
-template <class S, Result<std::size_t> (*Apply)(Groom&, const S&, const Region&)>
-Run readOperation(JsonReader& reader) {
-    S settings;
-    reader.fields(settings);
-    Region region;
-    if (reader.has("region")) {
-        JsonReader part = reader.object("region");
-        part.fields(region);
-        part.finish();
-    }
-    return [settings, region](Groom& groom) { return Apply(groom, settings, region); };
-}
-
-template <class S, Result<std::size_t> (*Apply)(Groom&, const S&, const Region&)>
-constexpr Operation operation(std::string_view name, std::string_view meaning) {
-    return {name, meaning, &readOperation<S, Apply>, &fieldRows<S>};
-}
-
-constexpr Operation kOperations[] = {
-    operation<SetLengthSettings, setLength>("set_length", "gives strands a length"),
-    operation<FlowSettings, flow>("flow", "lays strands along the head: from a crown, a parting, by a sweep"),
-    operation<ClumpSettings, clump>("clump", "pulls strands together in locks"),
-    operation<NoiseSettings, noise>("noise", "bends strands at random: frizz, an uneven fall"),
-    operation<CurlSettings, curl>("curl", "winds strands into helices"),
-    operation<SmoothSettings, smooth>("smooth", "takes bends out of strands"),
-    operation<DrapeSettings, drape>("drape", "bends strands down as gravity does"),
-    operation<TrimSettings, trim>("trim", "cuts strands by a plane or at a length, blunt or ragged"),
-    operation<CollideSettings, collide>("collide", "pushes strands out of the head"),
-    operation<DyeSettings, dye>("dye", "says which strands the material's dye colours, and how much"),
-};
-
 std::vector<std::string_view> operationNames(std::span<const ScriptExtension> extensions) {
     std::vector<std::string_view> names;
-    for (const Operation& entry : kOperations) names.push_back(entry.name);
+    for (const Operation& entry : operations()) names.push_back(entry.name);
     for (const ScriptExtension& entry : extensions) names.push_back(entry.name);
     return names;
 }
@@ -113,8 +61,9 @@ Result<Script> parseScript(const std::string& file, std::string_view text,
     const auto names = operationNames(extensions);
     for (JsonReader& step : reader.objects("operations")) {
         const std::size_t chosen = step.choice("op", names);
-        Run run = chosen < std::size(kOperations) ? kOperations[chosen].read(step)
-                                                  : extensions[chosen - std::size(kOperations)].read(step);
+        const std::size_t own = operations().size();
+        RunOperation run =
+            chosen < own ? operations()[chosen].read(step) : extensions[chosen - own].read(step);
         step.finish();
         script.steps.push_back({std::string(names[chosen]), std::move(run)});
     }
@@ -141,15 +90,13 @@ Result<ScriptReport> runScript(const Script& script, Groom& groom) {
     return report;
 }
 
-const std::vector<OperationInfo>& scriptOperations() {
-    static const std::vector<OperationInfo> infos = [] {
-        std::vector<OperationInfo> list;
-        for (const Operation& entry : kOperations) {
-            list.push_back({std::string(entry.name), std::string(entry.meaning), entry.fields()});
-        }
+const std::vector<Operation>& operations() {
+    static const std::vector<Operation> kSorted = [] {
+        std::vector<Operation> list = operationEntries();
+        std::ranges::stable_sort(list, {}, &Operation::order);
         return list;
     }();
-    return infos;
+    return kSorted;
 }
 
 const std::vector<FieldRow>& scriptRegionFields() {

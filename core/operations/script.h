@@ -9,8 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/groom/file/json_reader.h"
-#include "core/groom/groom.h"
+#include "core/operations/operation.h"
 
 namespace hairloom {
 
@@ -18,7 +17,7 @@ inline constexpr std::uint32_t kScriptVersion = 1;
 
 struct ScriptStep {
     std::string operation;
-    std::function<Result<std::size_t>(Groom&)> run;  ///< returns the number of strands touched
+    RunOperation run;
 };
 
 struct Script {
@@ -28,7 +27,7 @@ struct Script {
 /// An operation of another room: reads its members (complaints are the reader's) and gives what runs it.
 struct ScriptExtension {
     std::string_view name;
-    std::function<std::function<Result<std::size_t>(Groom&)>(JsonReader&)> read;
+    std::function<RunOperation(JsonReader&)> read;
 };
 
 /// `text` is the JSON; `file` is named in errors. Errors name the JSON path, what stands there and what is
@@ -46,13 +45,6 @@ struct ScriptReport {
 /// Runs all operations, in order. On error the groom is as it was.
 Result<ScriptReport> runScript(const Script& script, Groom& groom);
 
-/// What a script may say, for help texts and documentation.
-struct OperationInfo {
-    std::string name;
-    std::string meaning;
-    std::vector<FieldRow> fields;
-};
-const std::vector<OperationInfo>& scriptOperations();
 /// The fields of the "region" that every operation takes.
 const std::vector<FieldRow>& scriptRegionFields();
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/operations/operation.h"
 #include "core/operations/reshape.h"
 
 namespace hairloom {
@@ -50,6 +51,10 @@ Result<std::size_t> setLength(Groom& groom, const S& settings, const Region& reg
             cutOrExtend(strand.points, length);
         }
     });
+}
+
+Operation setLengthOperation() {
+    return operation<S, setLength>("set_length", 10, "gives strands a length");
 }
 
 }  // namespace hairloom

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/operations/length_constraint.h"
+#include "core/operations/operation.h"
 
 namespace hairloom {
 namespace {
@@ -36,6 +37,10 @@ Result<std::size_t> smooth(Groom& groom, const S& settings, const Region& region
         }
         restoreLengthsByDirection(strand.points, strand.lengths);
     });
+}
+
+Operation smoothOperation() {
+    return operation<S, smooth>("smooth", 60, "takes bends out of strands");
 }
 
 }  // namespace hairloom

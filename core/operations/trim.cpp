@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/operations/operation.h"
 #include "core/operations/reshape.h"
 
 namespace hairloom {
@@ -54,6 +55,10 @@ Result<std::size_t> trim(Groom& groom, const S& settings, const Region& region) 
         const float length = std::max(settings.minLength, cut - ragged);
         if (length < now) cutOrExtend(strand.points, length);
     });
+}
+
+Operation trimOperation() {
+    return operation<S, trim>("trim", 80, "cuts strands by a plane or at a length, blunt or ragged");
 }
 
 }  // namespace hairloom

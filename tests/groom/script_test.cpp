@@ -84,11 +84,21 @@ TEST(Script, AnErrorLeavesTheGroomAsItWas) {
     EXPECT_EQ(contentHash(groom), before);
 }
 
+TEST(Script, OperationsAreListedInTheOrderOfTheirNumbers) {
+    int before = -1;
+    for (const Operation& operation : operations()) {
+        EXPECT_GT(operation.order, before) << operation.name << ": no two have the same place";
+        before = operation.order;
+    }
+    EXPECT_EQ(operations().size(), operationEntries().size());
+    EXPECT_EQ(operations().front().name, "set_length");
+}
+
 TEST(Script, EachOperationHasItsPlaceInTheFormatsPage) {
     const auto text = readTextFile(sourceDir() / "docs/formats/script.md");
     ASSERT_TRUE(text);
-    for (const OperationInfo& operation : scriptOperations())
-        EXPECT_THAT(*text, HasSubstr("`" + operation.name + "`"));
+    for (const Operation& operation : operations())
+        EXPECT_THAT(*text, HasSubstr("`" + std::string(operation.name) + "`"));
     for (const FieldRow& field : scriptRegionFields())
         EXPECT_THAT(*text, HasSubstr("`" + std::string(field.info.name) + "`"));
 }
