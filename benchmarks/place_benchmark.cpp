@@ -2,8 +2,6 @@
 // Root placement on the samples' scalps and on a cap of about 500 cm², and repair of a mesh of 20,000
 // vertices.
 
-#include <cmath>
-
 #include "benchmarks/measurement.h"
 #include "benchmarks/sample_hair.h"
 #include "core/geometry/placement.h"
@@ -38,16 +36,6 @@ void measureCap(Timings& timings) {
         const char* const name = count == 10'000 ? "by darts, 10,000 roots" : "by darts, 100,000 roots";
         measurePlacing(timings, name, mesh, faces, count, placeDarts);
     }
-    const double area = selectionArea(mesh, faces);
-    const auto radius = static_cast<float>(std::sqrt(0.6965 * area / 100'000));
-    timings.measure("by darts until none fits, about 100,000 roots", [&](Rounds& rounds) -> Status {
-        while (rounds.next()) {
-            const auto placed = placeDartsWithRadius(mesh, faces, radius, {}, 1);
-            if (!placed) return tl::unexpected(placed.error());
-            keep(*placed);
-        }
-        return {};
-    });
 }
 
 Result<Outcome> run(const Options& options) {

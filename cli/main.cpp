@@ -13,6 +13,7 @@
 #include "cli/job.h"
 #include "core/base/log.h"
 #include "core/base/parallel.h"
+#include "core/base/profiler.h"
 
 namespace {
 
@@ -37,6 +38,13 @@ std::string joined(int argc, char** argv) {
     std::string text = "hairloom-cli";
     for (int i = 1; i < argc; ++i) text += fmt::format(" {}", argv[i]);
     return text;
+}
+
+/// What the parts of the job took, the costliest first.
+void printProfile() {
+    fmt::print(stderr, "{:>12} {:>9}  part (ms are summed over threads)\n", "ms", "calls");
+    for (const auto& [name, calls, milliseconds] : hairloom::profiler::report())
+        fmt::print(stderr, "{:>12.3f} {:>9}  {}\n", milliseconds, calls, name);
 }
 
 int runChosenJob(const hairloom::cli::Jobs& jobs, const std::string& commandLine, bool json) {
@@ -66,10 +74,12 @@ int main(int argc, char** argv) {
     bool json = false;
     std::size_t threads = 0;
     bool quiet = false;
+    bool profile = false;
     app.add_flag("--json", json, "Print exactly one JSON object on standard output");
     app.add_option("--threads", threads, "Threads to use, 0 for one per core; results do not depend on it")
         ->check(CLI::Range(0, 1024));
     app.add_flag("--quiet", quiet, "No warnings on standard error");
+    app.add_flag("--profile", profile, "Print on standard error what the parts of the job took");
 
     const hairloom::cli::Jobs jobs(app);
 
@@ -81,7 +91,9 @@ int main(int argc, char** argv) {
     if (quiet) hairloom::log::setThreshold(hairloom::log::Level::Error);
     try {
         hairloom::setThreadCount(threads);
-        return runChosenJob(jobs, joined(argc, argv), json);
+        const int exitCode = runChosenJob(jobs, joined(argc, argv), json);
+        if (profile) printProfile();
+        return exitCode;
     } catch (const std::bad_alloc&) {
         fmt::print(stderr, "error: out of memory\n");
     } catch (const std::exception& error) {

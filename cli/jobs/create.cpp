@@ -67,6 +67,7 @@ Result<Report> create(const CreateOptions& options) {
         if (!read) return tl::unexpected(read.error());
         mask = std::move(*read);
     }
+    const double maskedM2 = maskedArea(*mesh, *faces, mask);
     const auto placement = place(*mesh, *faces, options, mask);
     if (!placement) return tl::unexpected(placement.error());
     auto groom = growStraight(mesh, std::move(*faces), placement->roots, options.length, options.points);
@@ -83,7 +84,9 @@ Result<Report> create(const CreateOptions& options) {
     report["strands"] = groom->strandCount();
     report["points"] = groom->pointCount();
     report["scalp_area_cm2"] = areaCm2;
-    report["min_root_distance"] = finiteOrNull(minimumRootDistance(*mesh, placement->roots));
+    const double apart = minimumRootDistance(*mesh, placement->roots);
+    report["min_root_distance"] = finiteOrNull(apart);
+    report["relative_radius"] = relativeRadius(apart, placement->roots.size(), maskedM2);
     report["triangles"] = groom->triangulation.triangles.size();
     report["alone"] = groom->triangulation.alone.size();
     report["repairs"] = Report::array();

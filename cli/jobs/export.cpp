@@ -6,7 +6,7 @@
 #include "cli/documents.h"
 #include "cli/job.h"
 #include "core/base/file.h"
-#include "exporters/strands.h"
+#include "core/scene/hair_export.h"
 
 namespace hairloom::cli {
 namespace {
@@ -14,6 +14,7 @@ namespace {
 struct ExportOptions {
     std::string input;
     std::string format;
+    std::string what = "guides";
     std::string unit;
     std::string up = "y";
     std::uint32_t points = 0;
@@ -27,7 +28,8 @@ Result<Report> exportAsset(const ExportOptions& options) {
     exporting.metresPerUnit = metresPerUnit(options.unit);
     exporting.up = options.up == "z" ? UpAxis::Z : UpAxis::Y;
     exporting.pointsPerStrand = options.points;
-    const auto written = strandWriter(options.format).write(*groom, options.output, exporting);
+    const auto what = options.what == "hairs" ? ExportedHair::hairs : ExportedHair::guides;
+    const auto written = exportHair(*groom, what, strandWriter(options.format), options.output, exporting);
     if (!written) return tl::unexpected(written.error());
     const Report report = toJson(*written);
     if (auto saved =
@@ -60,6 +62,9 @@ JobRun declare(CLI::App& job) {
     job.add_option("--format", options->format, "What to write. " + formatsInWords())
         ->required()
         ->check(CLI::IsMember(formatNames()));
+    job.add_option("--what", options->what,
+                   "guides: the strands of the groom; hairs: the follow hairs that pictures show, at rest")
+        ->check(CLI::IsMember({"guides", "hairs"}));
     addUnitOption(job, options->unit);
     job.add_option("--up", options->up, "Axis that points up in the file")->check(CLI::IsMember({"y", "z"}));
     job.add_option("--points", options->points, "Resample every strand to so many points; 0 keeps them")

@@ -13,17 +13,7 @@ namespace {
 
 double maskedShare(const Groom& groom, const FaceSet& region) {
     const auto area = [&](const FaceSet& faces) {
-        double sum = 0;
-        for (const std::uint32_t face : faces) {
-            float density = 1;
-            if (!groom.scalpDensity.empty()) {
-                density = 0;
-                for (const std::uint32_t v : groom.scalp->triangles()[face])
-                    density += groom.scalpDensity[v] / 3;
-            }
-            sum += static_cast<double>(density * groom.scalp->triangleArea(face));
-        }
-        return sum;
+        return maskedArea(*groom.scalp, faces, groom.scalpDensity);
     };
     const double whole = area(groom.scalpSelection);
     return whole > 0 ? area(region) / whole : 0;

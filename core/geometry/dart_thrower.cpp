@@ -14,10 +14,15 @@ constexpr float kSmallest = 5e-4f;  // of the radius: size of fragments that are
 // Parts below this many radii are filled at once: the roots around them are few and are gathered once.
 constexpr float kPart = 1.6f;
 constexpr double kFirstDarts = 1.5;  // random darts for each root of a saturated set
-// Parts are filled in so many rounds over the surface, so that a stop at a count leaves its gaps scattered.
+// They fall in so many rounds over the surface, so that none of it is full before others have any.
 constexpr std::size_t kRounds = 8;
 constexpr std::size_t kMaxBits = 64;
 constexpr float kMinDensity = 1.0f / 64;
+// Of the radius: gaps that are never filled, size of the parts that gaps are first looked for in, and how
+// exactly the widest is found.
+constexpr float kNarrowest = 0.9f;
+constexpr float kCoarse = 0.4f;
+constexpr float kGapTolerance = 5e-4f;
 
 template <class Point>
 std::array<std::array<Point, 3>, 4> quarters(const std::array<Point, 3>& corners) {
@@ -212,13 +217,12 @@ void DartThrower::fill(const Fragment& fragment, std::size_t maximum) {
     Part whole{fragment, {}, 0};
     if (coveredByNear(whole)) return;
     splitAndKeep(whole);
-    while (!small_.empty() && roots_.size() < maximum) {
+    while (!small_.empty() && roots_.size() <= maximum) {
         Part part = small_.back();
         small_.pop_back();
         throwDart(part, false);
         if (!coveredByNear(part)) splitAndKeep(part);
     }
-    left_.insert(left_.end(), small_.begin(), small_.end());
     small_.clear();
 }
 
@@ -232,53 +236,90 @@ void DartThrower::throwAnywhere(std::size_t maximum) {
             const auto count = static_cast<std::size_t>(darts + random_.uniformDouble());
             if (count == 0) continue;
             const Fragment whole = wholeFace(face);
-            for (std::size_t i = 0; i < count && roots_.size() < maximum; ++i) throwDart(whole, true);
+            for (std::size_t i = 0; i < count && roots_.size() <= maximum; ++i) throwDart(whole, true);
         }
 }
 
-void DartThrower::listParts(const Fragment& fragment) {
-    if (spacingOf(fragment).bare) return;
+void DartThrower::fillParts(const Fragment& fragment, std::size_t maximum) {
+    if (roots_.size() > maximum || spacingOf(fragment).bare) return;
     if (squaredSize(fragment.places) <= kPart * kPart * apart_ * apart_)
-        left_.push_back(fragment);
+        fill(fragment, maximum);
     else
-        forEachQuarter(fragment, [&](const Fragment& quarter) { listParts(quarter); });
+        forEachQuarter(fragment, [&](const Fragment& quarter) { fillParts(quarter, maximum); });
 }
 
 bool DartThrower::run(std::size_t maximum) {
     throwAnywhere(maximum);
-    for (const std::uint32_t face : faces_) listParts(wholeFace(face));
-    const std::vector<Fragment> parts = std::move(left_);
-    left_.clear();
-    for (std::size_t round = 0; round < kRounds; ++round)
-        for (std::size_t i = round; i < parts.size(); i += kRounds) {
-            if (roots_.size() < maximum)
-                fill(parts[i], maximum);
-            else
-                left_.push_back(parts[i]);
-        }
-    return left_.empty();
+    for (const std::uint32_t face : faces_) fillParts(wholeFace(face), maximum);
+    return roots_.size() <= maximum;
 }
 
-bool DartThrower::gapWithin(const Fragment& fragment, float factor, int depth) const {
+DartThrower::Gap DartThrower::gapOf(const Fragment& fragment) const {
     const Spacing spacing = spacingOf(fragment);
-    if (spacing.bare) return true;
     const Vec3f middle = (fragment.places[0] + fragment.places[1] + fragment.places[2]) / 3;
-    const float reach = factor * spacing.radius;
-    const auto reached = [&](const DartGrid::Entry& root) {
-        return allWithin(fragment.places, root.position, reach);
-    };
-    if (grid_.search(middle, reach, reached)) return true;
-    constexpr int kDeepest = 12;
-    if (depth == kDeepest) return false;
-    bool within = true;
-    forEachQuarter(fragment,
-                   [&](const Fragment& part) { within = within && gapWithin(part, factor, depth + 1); });
-    return within;
+    const float density =
+        densityAt(fragment.triangle,
+                  barycentric((fragment.corners[0] + fragment.corners[1] + fragment.corners[2]) / 3));
+    const float radius = localRadius(density);
+    float reach = 0;
+    for (const Vec3f& place : fragment.places) reach = std::max(reach, (place - middle).norm());
+    // No point of a maximal set is farther.
+    Gap gap{fragment, 1, 1, 0};
+    grid_.search(middle, spacing.widest, [&](const DartGrid::Entry& root) {
+        const float distance = (root.position - middle).norm();
+        gap.widest = std::min(gap.widest, (distance + reach) / std::min(root.radius, spacing.radius));
+        gap.middle = std::min(gap.middle, distance / std::min(root.radius, radius));
+        return false;
+    });
+    if (!mask_.empty() && density < kMinDensity) gap.middle = 0;
+    return gap;
 }
 
-bool DartThrower::gapsWithin(float factor) const {
-    return std::all_of(left_.begin(), left_.end(),
-                       [&](const Fragment& fragment) { return gapWithin(fragment, factor, 0); });
+void DartThrower::pushGap(const Fragment& fragment) {
+    if (spacingOf(fragment).bare) return;
+    Gap gap = gapOf(fragment);
+    if (gap.widest < kNarrowest) return;
+    gap.order = foundGaps_++;
+    gaps_.push_back(gap);
+    std::push_heap(gaps_.begin(), gaps_.end());
+}
+
+/// Splits until parts are small against the radius: larger ones would only go through the heap to be split.
+void DartThrower::listGaps(const Fragment& fragment) {
+    const float coarse = kCoarse * apart_;
+    if (squaredSize(fragment.places) <= coarse * coarse) return pushGap(fragment);
+    if (spacingOf(fragment).bare || gapOf(fragment).widest < kNarrowest) return;
+    forEachQuarter(fragment, [&](const Fragment& quarter) { listGaps(quarter); });
+}
+
+std::optional<float> DartThrower::fillWidestGaps(std::size_t count) {
+    float share = 1;
+    if (roots_.size() < count) {
+        for (const std::uint32_t face : faces_) listGaps(wholeFace(face));
+    }
+    while (roots_.size() < count) {
+        if (gaps_.empty()) return std::nullopt;
+        std::pop_heap(gaps_.begin(), gaps_.end());
+        const Gap top = gaps_.back();
+        gaps_.pop_back();
+        const Gap now = gapOf(top);  // roots may have come since
+        const float smallest = kSmallest * spacingOf(top).radius;
+        const bool known = now.middle >= (1 - kGapTolerance) * top.widest;
+        const bool tiny = squaredSize(top.places) <= smallest * smallest;
+        if (known) {
+            const Vec3f weights = barycentric((top.corners[0] + top.corners[1] + top.corners[2]) / 3);
+            const Vec3f place = mesh_.pointAt(top.triangle, weights);
+            roots_.push_back({top.triangle, weights});
+            grid_.add({place, localRadius(densityAt(top.triangle, weights))});
+            share = std::min(share, now.middle);
+        } else if (now.widest < top.widest) {
+            pushGap(top);
+        } else if (!tiny) {
+            forEachQuarter(static_cast<const Fragment&>(top),
+                           [&](const Fragment& quarter) { pushGap(quarter); });
+        }
+    }
+    return share * radius_ * (1 - kRounding);
 }
 
 }  // namespace hairloom

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Hierarchical dart throwing on triangles (Cline, Jeschke, White, Razdan and Wonka 2009). Private to
-// core/geometry.
+// Hierarchical dart throwing on triangles (Cline, Jeschke, White, Razdan and Wonka 2009), and more roots in
+// the widest gaps that it leaves. Private to core/geometry.
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -71,12 +72,13 @@ class DartThrower {
     DartThrower(const ScalpMesh& mesh, const FaceSet& faces, std::span<const float> mask, float radius,
                 std::uint64_t seed);
 
-    /// Throws until the set is maximal (true) or holds `most` roots while gaps are left (false).
+    /// Throws until the set is maximal (true), or until it would hold more than `maximum` roots (false).
     bool run(std::size_t maximum);
 
-    /// After run: whether no point with density 1 (or of any density, against its own radius) is farther than
-    /// `factor` local radii from a root.
-    bool gapsWithin(float factor) const;
+    /// After a run that ended maximal: puts a root where the surface is farthest from all, again and again,
+    /// until there are `count`. Returns the distance that roots keep then, metres, for which the set is
+    /// maximal again; nothing where the gaps are too small for so many.
+    std::optional<float> fillWidestGaps(std::size_t count);
 
     std::vector<SurfacePoint> takeRoots() { return std::move(roots_); }
     std::size_t rootCount() const { return roots_.size(); }
@@ -108,8 +110,8 @@ class DartThrower {
     Fragment wholeFace(std::uint32_t face) const;
     /// Random darts on the whole selection: cheap while most of it is free.
     void throwAnywhere(std::size_t maximum);
-    /// Lists the parts of a face that are small enough for fill().
-    void listParts(const Fragment& fragment);
+    /// Fills the parts of a face that are small enough for fill().
+    void fillParts(const Fragment& fragment, std::size_t maximum);
     /// Throws one dart at the fragment, checked against near_, which it may have to gather.
     void throwDart(const Fragment& fragment, bool gather);
     void fill(const Fragment& fragment, std::size_t maximum);
@@ -117,7 +119,21 @@ class DartThrower {
     bool coveredByNear(Part& part) const;
     std::uint64_t rootsReached(const Vec3f& place, std::size_t first) const;
     void splitAndKeep(const Part& part);
-    bool gapWithin(const Fragment& fragment, float factor, int depth) const;
+
+    /// How far a part of the surface is from its roots, as a share of the distance that the two have to keep.
+    struct Gap : Fragment {
+        float widest;         ///< no point of the part is farther
+        float middle;         ///< of the part's middle; 0 where nothing may grow
+        std::uint64_t order;  ///< in which they were found
+
+        bool operator<(const Gap& other) const {
+            return widest < other.widest || (widest == other.widest && order > other.order);
+        }
+    };
+    /// Those of a part that may be wider than kNarrowest.
+    void listGaps(const Fragment& fragment);
+    Gap gapOf(const Fragment& fragment) const;
+    void pushGap(const Fragment& fragment);
 
     const ScalpMesh& mesh_;
     std::span<const float> mask_;
@@ -126,10 +142,11 @@ class DartThrower {
     Random random_;
     DartGrid grid_;
     FaceSet faces_;
-    std::vector<Fragment> left_;  ///< parts of the surface not yet known to be covered
-    std::vector<Part> small_;     ///< parts of the fragment in work
+    std::vector<Part> small_;  ///< parts of the fragment in work
     std::vector<SurfacePoint> roots_;
     std::vector<DartGrid::Entry> near_;
+    std::vector<Gap> gaps_;  ///< a heap, the widest on top
+    std::uint64_t foundGaps_ = 0;
 };
 
 }  // namespace hairloom

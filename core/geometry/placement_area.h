@@ -18,9 +18,6 @@ inline Vec3f cornerDensities(const ScalpMesh& mesh, std::span<const float> mask,
     return {mask[t[0]], mask[t[1]], mask[t[2]]};
 }
 
-/// m², each bit of area weighted with its density.
-double maskedArea(const ScalpMesh& mesh, const FaceSet& faces, std::span<const float> mask);
-
 /// Number of roots that a request asks for. Errors: none or too many to hold (with the density that would
 /// fit).
 Result<std::size_t> requestedCount(const PlacementRequest& request, double maskedSquareMetres);

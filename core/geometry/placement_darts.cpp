@@ -14,8 +14,9 @@ namespace {
 /// Roots of a saturated set in the plane per squared radius: disks of half the radius cover 0.5470 of it
 /// (Zhang and Torquato 2013), and each covers π/4 squared radii.
 constexpr double kSaturated = 0.5470 * 4 / 3.14159265358979323846;
-constexpr double kSurplus = 1.008;  ///< aim for so many more than asked, so that the count is met at once
-constexpr int kMaxTries = 48;
+/// Share of the roots that darts aim for: the others go where gaps are widest, so that the count is met.
+constexpr double kThrown = 0.985;
+constexpr int kMaxTries = 64;
 constexpr double kCm2PerM2 = 1e4;
 
 /// Below this radius the rounding of coordinates blurs the distances.
@@ -33,25 +34,6 @@ tl::unexpected<Error> tooDense(double perM2, double finest) {
 
 }  // namespace
 
-Result<Placement> placeDartsWithRadius(const ScalpMesh& mesh, const FaceSet& faces, float radius,
-                                       std::span<const float> mask, std::uint64_t seed) {
-    if (Status status = checkPlacement(mesh, faces, mask); !status) return tl::unexpected(status.error());
-    if (!(radius > 0) || !std::isfinite(radius))
-        return fail(fmt::format("a distance of {} metres between roots", radius), "a positive number");
-    const double expected =
-        kSaturated * maskedArea(mesh, faces, mask) / (static_cast<double>(radius) * radius);
-    if (radius < finestRadius(mesh))
-        return tooDense(kSaturated / (double{radius} * radius), finestRadius(mesh));
-    PlacementRequest limits;
-    limits.densityPerCm2 = expected / (maskedArea(mesh, faces, mask) * kCm2PerM2);
-    if (expected >= 1)
-        if (const auto count = requestedCount(limits, maskedArea(mesh, faces, mask)); !count)
-            return tl::unexpected(count.error());
-    DartThrower thrower(mesh, faces, mask, radius, seed);
-    thrower.run(std::numeric_limits<std::size_t>::max());
-    return Placement{thrower.takeRoots(), radius};
-}
-
 Result<Placement> placeDarts(const ScalpMesh& mesh, const FaceSet& faces, const PlacementRequest& request) {
     if (Status status = checkPlacement(mesh, faces, request.mask); !status)
         return tl::unexpected(status.error());
@@ -60,21 +42,23 @@ Result<Placement> placeDarts(const ScalpMesh& mesh, const FaceSet& faces, const 
     if (!count) return tl::unexpected(count.error());
     const auto wanted = static_cast<double>(*count);
     const double finest = finestRadius(mesh);
-    // Radii known to give too few roots, and to leave gaps that are too wide.
+    // Radii known to leave gaps for too few roots, and to take too many.
     double tooWide = std::numeric_limits<double>::infinity(), tooNarrow = 0;
-    double radius = std::sqrt(kSaturated * area / (wanted * kSurplus));
+    double radius = std::sqrt(kSaturated * area / (wanted * kThrown));
     for (int attempt = 0; attempt < kMaxTries; ++attempt) {
         if (radius < finest) return tooDense(wanted / area, finest);
         DartThrower thrower(mesh, faces, request.mask, static_cast<float>(radius), request.seed);
-        const bool maximal = thrower.run(*count);
-        const auto reached = static_cast<double>(thrower.rootCount());
-        if (thrower.rootCount() == *count && (maximal || thrower.gapsWithin(2)))
-            return Placement{thrower.takeRoots(), static_cast<float>(radius)};
-        (maximal ? tooWide : tooNarrow) = radius;
+        const bool fewEnough = thrower.run(*count);
+        const auto thrown = static_cast<double>(thrower.rootCount());
+        if (fewEnough) {
+            if (const auto apart = thrower.fillWidestGaps(*count))
+                return Placement{thrower.takeRoots(), *apart};
+        }
+        (fewEnough ? tooWide : tooNarrow) = radius;
         if (tooNarrow > 0 && std::isfinite(tooWide))
             radius = (tooNarrow + tooWide) / 2;
         else
-            radius *= maximal ? std::min(0.999, std::sqrt(reached / (wanted * kSurplus))) : 1.05;
+            radius *= fewEnough ? std::min(0.995, std::sqrt(thrown / (wanted * kThrown))) : 1.02;
     }
     return fail(fmt::format("no distance between roots gives {} of them on this selection", *count),
                 "another count, or fewer separate pieces");

@@ -75,6 +75,11 @@ Status checkPlacement(const ScalpMesh& mesh, const FaceSet& faces, std::span<con
     return {};
 }
 
+double relativeRadius(double minRootDistance, std::size_t roots, double squareMetres) {
+    if (roots < 2 || !(squareMetres > 0)) return 0;
+    return minRootDistance / std::sqrt(2 / std::sqrt(3.0) * squareMetres / static_cast<double>(roots));
+}
+
 double maskedArea(const ScalpMesh& mesh, const FaceSet& faces, std::span<const float> mask) {
     double area = 0;
     for (const std::uint32_t face : faces)

@@ -12,12 +12,13 @@ Vec3f colourOf(runtime::Float3 colour) {
 
 std::size_t applyPreset(const runtime::HairPreset& preset, Groom& groom) {
     runtime::applyPreset(preset, groom.simulation);
+    groom.material.eccentricity = static_cast<float>(preset.eccentricity);
     groom.material.rootRadius = static_cast<float>(0.5 * preset.diameter);
     groom.material.rootColour = colourOf(preset.rootColour);
     groom.material.tipColour = colourOf(preset.tipColour);
     groom.material.eumelanin = preset.eumelanin;
     groom.material.pheomelanin = 0.0f;
-    return 7;
+    return 8;
 }
 
 }  // namespace hairloom

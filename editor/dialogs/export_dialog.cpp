@@ -10,8 +10,8 @@
 #include <QVBoxLayout>
 #include <algorithm>
 
+#include "core/scene/hair_export.h"
 #include "editor/fields/blocks.h"
-#include "exporters/strands.h"
 #include "importers/length_unit.h"
 
 namespace hairloom::editor {
@@ -45,6 +45,7 @@ ExportDialog::ExportDialog(QtDocument& document, Tasks& tasks, Messages& message
       tasks_(tasks),
       messages_(messages),
       target_(new QComboBox),
+      what_(new QComboBox),
       note_(new QLabel),
       unit_(new QComboBox),
       up_(new QComboBox),
@@ -64,6 +65,11 @@ ExportDialog::ExportDialog(QtDocument& document, Tasks& tasks, Messages& message
     for (const Choice& choice : choices()) target_->addItem(QString::fromStdString(choice.target->name));
     target_->setObjectName("target");
     target_->setToolTip(tr("Sets unit, axis and points as this program expects them"));
+    what_->addItem(tr("Guides: the strands of the document"), static_cast<int>(ExportedHair::guides));
+    what_->addItem(tr("Hairs: those that the picture shows"), static_cast<int>(ExportedHair::hairs));
+    what_->setObjectName("what");
+    what_->setToolTip(
+        tr("Guides for programs that interpolate hair themselves; else the hairs between them, too"));
     note_->setProperty("role", "dim");
     note_->setWordWrap(true);
     for (const LengthUnit& unit : lengthUnits()) unit_->addItem(unit.name, unit.metres);
@@ -75,6 +81,7 @@ ExportDialog::ExportDialog(QtDocument& document, Tasks& tasks, Messages& message
     points_->setToolTip(tr("Points of every strand, resampled evenly"));
     form->addRow(tr("For"), target_);
     form->addRow(QString(), note_);
+    form->addRow(tr("Strands"), what_);
     form->addRow(tr("Unit"), unit_);
     form->addRow(tr("Axis"), up_);
     form->addRow(tr("Points a strand"), points_);
@@ -126,11 +133,12 @@ void ExportDialog::exportTo(const QString& path) {
     options.metresPerUnit = static_cast<float>(unit_->currentData().toDouble());
     options.up = up_->currentIndex() == 1 ? UpAxis::Z : UpAxis::Y;
     options.pointsPerStrand = static_cast<std::uint32_t>(points_->value());
+    const auto what = static_cast<ExportedHair>(what_->currentData().toInt());
     write_->setEnabled(false);
     const bool started = tasks_.run<ExportReport>(
         tr("Exporting %1").arg(QFileInfo(path).fileName()),
-        [groom = document_.groom(), path, options, &writer](TaskControl&) {
-            return writer.write(groom, path.toStdString(), options);
+        [groom = document_.groom(), what, path, options, &writer](TaskControl&) {
+            return exportHair(groom, what, writer, path.toStdString(), options);
         },
         [self = QPointer(this), &messages = messages_, path](ExportReport report) {
             messages.say(tr("%1 written and read back").arg(QFileInfo(path).fileName()));

@@ -36,6 +36,7 @@ class ExportDialog : public QDialog {
     Tasks& tasks_;
     Messages& messages_;
     QComboBox* target_;
+    QComboBox* what_;
     QLabel* note_;
     QComboBox* unit_;
     QComboBox* up_;

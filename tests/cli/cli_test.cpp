@@ -84,6 +84,8 @@ TEST_F(Cli, CreateReportsItsResult) {
     EXPECT_GT(report["scalp_area_cm2"], 300.0);
     EXPECT_GT(report["min_root_distance"], 0.003);
     EXPECT_GT(report["triangles"], 300);
+    EXPECT_GT(report["relative_radius"], 0.7) << "maximal and even";
+    EXPECT_LT(report["relative_radius"], 0.85);
     const auto info = runJson("info hair.hairloom");
     EXPECT_EQ(info["strands"], 300);
     EXPECT_EQ(info["guides"], 300);
@@ -245,6 +247,29 @@ TEST_F(Cli, ExportedAssetsComeBackTheSame) {
     }
 }
 
+TEST_F(Cli, ProfileSaysWhatPartsTook) {
+    const Outcome profiled = run(createArguments("--json --profile"));
+    EXPECT_EQ(profiled.exitCode, 0);
+    EXPECT_THAT(profiled.errors, HasSubstr("groom: save project"));
+    EXPECT_EQ(profiled.json()["strands"], 300) << "nothing of it on standard output";
+    EXPECT_EQ(run(createArguments()).errors.find("groom: save project"), std::string::npos);
+}
+
+TEST_F(Cli, FollowHairsAreExportedWhenAskedFor) {
+    runJson(createArguments("", 7, 16));
+    runJson("set hair.hairloom interpolation.followPerGuide=5 -o full.hairloom");
+    const auto guides = runJson("export full.hairloom --format hair -o guides.hair");
+    EXPECT_EQ(guides["strands"], 300);
+    ASSERT_EQ(guides["findings"].size(), 1u) << guides.dump(2);
+    EXPECT_EQ(guides["findings"][0]["what"], "5 follow hairs for each guide are left out");
+    const auto hairs = runJson("export full.hairloom --format hair --what hairs -o hairs.hair");
+    EXPECT_EQ(hairs["strands"], 300 * 5);
+    EXPECT_LT(hairs["max_error_mm"], 1e-3);
+    EXPECT_EQ(runJson("import hairs.hair -o back.hairloom")["strands"], 300 * 5);
+    EXPECT_EQ(runJson("export hair.hairloom --format hair --what hairs -o same.hair")["strands"], 300)
+        << "without follow hairs the strands are what pictures show";
+}
+
 TEST_F(Cli, AStrokeOfDyeIsReplayed) {
     runJson(createArguments());
     std::ofstream(folder / "dye.json") << R"({"hairloom_script": 1, "operations": [{"op": "stroke",
@@ -337,7 +362,10 @@ TEST_F(Cli, PresetsSetWhatAFibreIsMadeOf) {
     const auto listed = runJson("set --list");
     for (const auto& preset : listed["presets"]) {
         const auto name = preset["preset"].get<std::string>();
-        EXPECT_EQ(runJson("set hair.hairloom --preset " + name + " -o " + name + ".hairloom")["changed"], 7);
+        EXPECT_EQ(runJson("set hair.hairloom --preset " + name + " -o " + name + ".hairloom")["changed"], 8);
+        EXPECT_GE(preset["eccentricity"], 0.6) << name;
+        EXPECT_THAT(readText(folder / (name + ".hairloom")),
+                    HasSubstr("\"eccentricity\":" + preset["eccentricity"].dump()));
         hashes[runJson("simulate " + name + ".hairloom --frames 5 --motion nod")["state_hash"]] = name;
     }
     EXPECT_EQ(hashes.size(), 3u) << "fibres of other stiffness should move otherwise";

@@ -248,6 +248,14 @@ TEST_F(ShellTest, ExportIsReadBackAndReported) {
     const auto back = importStrands(inFolder("hair.hair").toStdString());
     ASSERT_TRUE(back) << back.error().message();
     EXPECT_EQ(back->groom.strandCount(), groom().strandCount());
+
+    Groom full = groom();
+    full.interpolation.followPerGuide = 3;
+    document().open(full, {}, "full");
+    dialog.findChild<QComboBox*>("what")->setCurrentIndex(1);
+    dialog.exportTo(inFolder("hairs.hair"));
+    finishWork();
+    EXPECT_EQ(dialog.report().strands, 3 * full.strandCount());
 }
 
 TEST_F(ShellTest, ImportShowsTheStrandsBeforeTheyAreTakenAndBindsThemToTheHead) {

@@ -121,37 +121,46 @@ TEST(PlaceRandom, MaskThinsInProportion) {
     EXPECT_NEAR(sum / 40'000, 2.0 / 3, 4 * std::sqrt(1.0 / 18 / 40'000));
 }
 
-TEST(PlaceDarts, GivenRadiusIsKeptAndTheSetIsMaximal) {
+void expectMaximal(const ScalpMesh& mesh, const FaceSet& faces, const Placement& placement, int samples) {
+    expectOnFaces(faces, placement.roots);
+    const std::vector<Vec3f> places = placesOf(mesh, placement.roots);
+    EXPECT_GT(placement.radius, 0);
+    EXPECT_GE(bruteForceMinimum(places), placement.radius);
+    EXPECT_EQ(bruteForceMinimum(places), minimumRootDistance(mesh, placement.roots));
+    EXPECT_LE(widestGap(mesh, faces, places, samples), placement.radius * 1.001f);
+}
+
+TEST(PlaceDarts, TheSetIsMaximalOnFacesOfAnySize) {
     struct Case {
         PolygonSoup soup;
         const char* selection;
-        float radius;
+        std::size_t count;
     };
     PolygonSoup pieces = test::icosphereSoup(2, 0.2f);
     test::append(pieces, test::gridSoup(3, 0.5f), {1, 0, 0});
     const std::vector<Case> cases = {
-        {test::icosphereSoup(3, 1), "cap:70", 0.06f},
-        {test::icosphereSoup(5, 1), "all", 0.2f},           // faces much smaller than the radius
-        {test::gridSoup(1, 1), "all", 0.03f},               // and much larger
-        {test::torusSoup(30, 12, 1, 0.05f), "all", 0.08f},  // thinner than the radius
-        {pieces, "all", 0.03f}};
+        {test::icosphereSoup(3, 1), "cap:70", 800},
+        {test::icosphereSoup(5, 1), "all", 220},          // faces much smaller than the distance
+        {test::gridSoup(1, 1), "all", 850},               // and much larger
+        {test::torusSoup(30, 12, 1, 0.05f), "all", 210},  // thinner than the distance
+        {pieces, "all", 600}};
     for (const Case& c : cases) {
         const ScalpMesh mesh = test::meshOf(c.soup);
         const FaceSet faces = *selectFaces(mesh, c.selection);
-        const Result<Placement> placement = placeDartsWithRadius(mesh, faces, c.radius, {}, 3);
+        PlacementRequest request;
+        request.count = c.count;
+        request.seed = 3;
+        const Result<Placement> placement = placeDarts(mesh, faces, request);
         ASSERT_TRUE(placement);
-        expectOnFaces(faces, placement->roots);
-        const std::vector<Vec3f> places = placesOf(mesh, placement->roots);
-        EXPECT_GE(bruteForceMinimum(places), c.radius);
-        EXPECT_EQ(bruteForceMinimum(places), minimumRootDistance(mesh, placement->roots));
-        const int samples = static_cast<int>(60'000 / faces.size()) + 4;
-        EXPECT_LE(widestGap(mesh, faces, places, samples), c.radius * 1.001f);
-        EXPECT_TRUE(same(placement->roots, placeDartsWithRadius(mesh, faces, c.radius, {}, 3)->roots));
-        EXPECT_FALSE(same(placement->roots, placeDartsWithRadius(mesh, faces, c.radius, {}, 4)->roots));
+        EXPECT_EQ(placement->roots.size(), c.count);
+        expectMaximal(mesh, faces, *placement, static_cast<int>(60'000 / faces.size()) + 4);
+        EXPECT_TRUE(same(placement->roots, placeDarts(mesh, faces, request)->roots));
+        request.seed = 4;
+        EXPECT_FALSE(same(placement->roots, placeDarts(mesh, faces, request)->roots));
     }
 }
 
-TEST(PlaceDarts, CountIsMetWithoutWideGaps) {
+TEST(PlaceDarts, AnyCountIsMetByAMaximalSet) {
     const ScalpMesh mesh = test::meshOf(test::icosphereSoup(3, 0.1f));
     const FaceSet faces = *selectFaces(mesh, "cap:80");
     for (const std::size_t count : {1u, 2u, 3u, 10u, 137u, 3000u}) {
@@ -161,18 +170,25 @@ TEST(PlaceDarts, CountIsMetWithoutWideGaps) {
         const Result<Placement> placement = placeDarts(mesh, faces, request);
         ASSERT_TRUE(placement) << count;
         EXPECT_EQ(placement->roots.size(), count);
-        const std::vector<Vec3f> places = placesOf(mesh, placement->roots);
-        EXPECT_GE(bruteForceMinimum(places), placement->radius);
-        EXPECT_LE(widestGap(mesh, faces, places, 60), 2 * placement->radius);
-        // Saturated sets hold 0.70 roots per squared radius; no useful answer is far from it.
-        if (count > 100) {
-            const double perRadius = static_cast<double>(count) * placement->radius * placement->radius /
-                                     selectionArea(mesh, faces);
-            EXPECT_GT(perRadius, 0.6);
-            EXPECT_LT(perRadius, 0.85);
-        }
-        EXPECT_TRUE(same(placement->roots, placeDarts(mesh, faces, request)->roots));
+        expectMaximal(mesh, faces, *placement, 60);
+        if (count < 100) continue;
+        const double even =
+            relativeRadius(minimumRootDistance(mesh, placement->roots), count, selectionArea(mesh, faces));
+        EXPECT_GT(even, 0.7) << count;
+        EXPECT_LT(even, 0.85) << count;
     }
+}
+
+TEST(PlaceRandom, IsFarLessEvenThanDarts) {
+    const ScalpMesh mesh = test::meshOf(test::gridSoup(4, 1));
+    PlacementRequest request;
+    request.count = 2000;
+    const Result<Placement> placement = placeRandom(mesh, test::allFaces(mesh), request);
+    ASSERT_TRUE(placement);
+    EXPECT_LT(relativeRadius(minimumRootDistance(mesh, placement->roots), 2000, 1.0), 0.1);
+    // As many in a lattice of triangles of side d cover √3/2 d² each.
+    EXPECT_NEAR(relativeRadius(0.25, 100, 100 * std::sqrt(3.0) / 2 * 0.25 * 0.25), 1, 1e-12);
+    EXPECT_EQ(relativeRadius(0.25, 1, 1), 0);
 }
 
 TEST(PlaceDarts, DensityIsMetAndAskingForTooMuchSaysWhatFits) {
@@ -210,29 +226,32 @@ TEST(PlaceDarts, MaskWidensTheSpacing) {
     std::vector<float> mask;
     for (const Vec3f& p : mesh.positions())
         mask.push_back(p.x() < -0.15f ? 1.0f : p.x() > 0.15f ? 0.25f : 0.5f);
-    constexpr float kRadius = 0.02f;
-    const Result<Placement> placement = placeDartsWithRadius(mesh, test::allFaces(mesh), kRadius, mask, 1);
+    PlacementRequest request;
+    request.count = 1000;
+    request.mask = mask;
+    request.seed = 1;
+    const Result<Placement> placement = placeDarts(mesh, test::allFaces(mesh), request);
     ASSERT_TRUE(placement);
+    EXPECT_EQ(placement->roots.size(), 1000u);
     std::vector<Vec3f> dense, sparse;
     for (const Vec3f& p : placesOf(mesh, placement->roots)) {
         if (p.x() < -0.25f) dense.push_back(p);
         if (p.x() > 0.25f) sparse.push_back(p);
     }
-    EXPECT_GE(bruteForceMinimum(dense), kRadius);
-    EXPECT_GE(bruteForceMinimum(sparse), 2 * kRadius);
+    EXPECT_GE(bruteForceMinimum(dense), placement->radius);
+    EXPECT_GE(bruteForceMinimum(sparse), 2 * placement->radius);
     EXPECT_NEAR(static_cast<double>(dense.size()) / static_cast<double>(sparse.size()), 4, 0.6);
     // Nothing grows where the mask is 0.
     for (std::size_t v = 0; v < mask.size(); ++v) mask[v] = mesh.positions()[v].x() > 0.05f ? 0.0f : 1.0f;
-    for (const Vec3f& p :
-         placesOf(mesh, placeDartsWithRadius(mesh, test::allFaces(mesh), kRadius, mask, 1)->roots))
+    for (const Vec3f& p : placesOf(mesh, placeDarts(mesh, test::allFaces(mesh), request)->roots))
         EXPECT_LE(p.x(), 0.1f);
     mask.assign(mask.size(), 0.0f);
-    EXPECT_FALSE(placeDartsWithRadius(mesh, test::allFaces(mesh), kRadius, mask, 1));
+    EXPECT_FALSE(placeDarts(mesh, test::allFaces(mesh), request));
     mask.pop_back();
-    EXPECT_FALSE(placeDartsWithRadius(mesh, test::allFaces(mesh), kRadius, mask, 1));
-    EXPECT_FALSE(placeDartsWithRadius(mesh, {}, kRadius, {}, 1));
-    EXPECT_FALSE(placeDartsWithRadius(mesh, test::allFaces(mesh), 0, {}, 1));
-    EXPECT_FALSE(placeDartsWithRadius(mesh, test::allFaces(mesh), 1e-9f, {}, 1));
+    request.mask = mask;
+    EXPECT_FALSE(placeDarts(mesh, test::allFaces(mesh), request));
+    request.mask = {};
+    EXPECT_FALSE(placeDarts(mesh, {}, request));
 }
 
 }  // namespace
