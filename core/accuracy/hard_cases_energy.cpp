@@ -101,7 +101,7 @@ void longRest(HardCaseRun& caseRun) {
     const auto stepsPerFrame = [&] { return std::uint64_t{caseRun.settings().substeps}; };
     for (const bool sleeps : {true, false}) {
         StrandSet strands;
-        strands.addStraight({0.0f, 0.1f, 0.0f}, hangingAt(0.8f), 0.02f, 8);
+        strands.add({0.0f, 0.1f, 0.0f}, hangingAt(0.8f), 0.02f, 8);
         SimulationSettings settings;
         if (!sleeps) settings.sleepSpeed = 0.0f;
         caseRun.start(std::move(strands), settings);
@@ -197,8 +197,8 @@ void windThatIsNoNumber(HardCaseRun& caseRun) {
 
 void denormalSpeeds(HardCaseRun& caseRun) {
     StrandSet strands;
-    strands.addStraight({}, {1.0f, 0.0f, 0.0f}, kSegment, kPoints);
-    strands.addStraight({}, {0.0f, 0.0f, 1.0f}, kSegment, kPoints);
+    strands.add({}, {1.0f, 0.0f, 0.0f}, kSegment, kPoints);
+    strands.add({}, {0.0f, 0.0f, 1.0f}, kSegment, kPoints);
     SimulationSettings settings;
     settings.gravity = {0.0f, -1e-36f, 0.0f};
     settings.restGravity = 0.0f;

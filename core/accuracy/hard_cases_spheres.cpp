@@ -17,7 +17,7 @@ constexpr int kToLeave = 30;
 
 StrandSet oneDown() {
     StrandSet strands;
-    strands.addStraight({0.0f, 0.1f, 0.0f}, {0.0f, -1.0f, 0.0f}, kSegment, 16);
+    strands.add({0.0f, 0.1f, 0.0f}, {0.0f, -1.0f, 0.0f}, kSegment, 16);
     return strands;
 }
 

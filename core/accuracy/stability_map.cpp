@@ -38,7 +38,7 @@ constexpr double kEulerBorder = 2.0;
 
 StrandSet mappedStrand() {
     StrandSet strands;
-    strands.addStraight({}, {1.0f, 0.0f, 0.0f}, kSegment, kPoints);
+    strands.add({}, {1.0f, 0.0f, 0.0f}, kSegment, kPoints);
     return strands;
 }
 

@@ -34,7 +34,7 @@ TEST(Physics, AHangingStrandStaysAtItsRestLength) {
 TEST(Physics, APendulumSwingsWithTheClosedFormsPeriod) {
     const float l = 0.25f;
     Strands strands;
-    strands.add({}, polar(0.05f), l, 2);
+    strands.add({}, hangingAt(0.05f), l, 2);
     SimulationSettings s = bare();
     s.gravity = {0.0f, -9.81f, 0.0f};
     s.substeps = 16;

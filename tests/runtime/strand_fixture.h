@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/accuracy/strand_set.h"
 #include "hairloom/engine.h"
 
 namespace hairloom::runtime {
@@ -17,33 +18,12 @@ inline void PrintTo(Integrator integrator, std::ostream* out) {
     *out << nameOf(integrator);
 }
 
-inline Float3 polar(float angle) {
-    return {std::sin(angle), -std::cos(angle), 0.0f};
-}
 inline Quat turnAbout(Float3 axis, float angle) {
     const Float3 v = axis * std::sin(angle / 2.0f);
     return {v.x, v.y, v.z, std::cos(angle / 2.0f)};
 }
 
-struct Strands {
-    std::vector<std::uint32_t> offsets{0};
-    std::vector<Float3> points;
-
-    void add(Float3 root, Float3 direction, float segment, std::uint32_t count) {
-        for (std::uint32_t p = 0; p < count; ++p) {
-            points.push_back(root + direction * (segment * static_cast<float>(p)));
-        }
-        offsets.push_back(static_cast<std::uint32_t>(points.size()));
-    }
-    StrandsView view() const { return {offsets, points, {}}; }
-    std::uint32_t count() const { return static_cast<std::uint32_t>(offsets.size() - 1); }
-    std::vector<RootFrame> roots(Float3 shift = {}, Quat turn = {}) const {
-        std::vector<RootFrame> result;
-        for (std::uint32_t s = 0; s < count(); ++s)
-            result.push_back({rotate(turn, points[offsets[s]]) + shift, turn});
-        return result;
-    }
-};
+using Strands = StrandSet;
 
 /// Nothing acts but inertia and the length constraint.
 inline SimulationSettings bare() {
@@ -80,7 +60,7 @@ inline Strands tuft(std::uint32_t count, bool mixed = false) {
     Strands strands;
     for (std::uint32_t s = 0; s < count; ++s) {
         const float f = static_cast<float>(s);
-        strands.add({0.004f * f, 0.1f, 0.003f * std::sin(f)}, polar(1.2f * std::sin(f * 1.7f) + 1.4f), 0.011f,
+        strands.add({0.004f * f, 0.1f, 0.003f * std::sin(f)}, hangingAt(1.2f * std::sin(f * 1.7f) + 1.4f), 0.011f,
                     mixed ? 2 + (s * 5) % 17 : 12);
     }
     return strands;
