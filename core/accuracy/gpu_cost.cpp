@@ -7,6 +7,7 @@
 
 #include "core/accuracy/statistics.h"
 #include "core/gpu_simulation/compiled_kernel.h"
+#include "shaders/shared/group_sizes.h"
 
 namespace hairloom {
 namespace {
@@ -52,7 +53,8 @@ class Copies {
         const gpu::Binding bindings[] = {gpu::Binding::read(0, source_), gpu::Binding::write(0, target_)};
         (*list)->bind(bindings);
         for (std::uint32_t n = 0; n < copies; ++n)
-            (*list)->dispatch(std::min(groups, kRow), (groups + kRow - 1) / kRow);
+            (*list)->dispatch(std::min<std::uint32_t>(groups, HAIRLOOM_COPY_ROW),
+                              (groups + HAIRLOOM_COPY_ROW - 1) / HAIRLOOM_COPY_ROW);
         (*list)->endPass();
         return device_->submit(std::move(*list));
     }
@@ -69,7 +71,7 @@ class Copies {
     }
 
   private:
-    static constexpr std::uint32_t kElementBytes = 16, kGroupBytes = 256 * kElementBytes, kRow = 65535;
+    static constexpr std::uint32_t kElementBytes = 16, kGroupBytes = HAIRLOOM_COPY_GROUP * kElementBytes;
     static constexpr std::uint32_t kCopies = 8;
 
     Copies(gpu::Device& device, gpu::BufferPtr source, gpu::BufferPtr target, gpu::ComputePipelinePtr kernel)

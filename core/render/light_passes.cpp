@@ -56,7 +56,7 @@ void setUpLights(RendererState& state) {
 
 shaders::ShadeConstants lightsOfFrame(const RendererState& state) {
     shaders::ShadeConstants c = state.shade;
-    for (shaders::LightConstants& light : c.lights) light.filtering.w = state.lit ? 1.0f : 0.0f;
+    for (shaders::LightConstants& light : c.lights) light.withoutShadows = state.lit ? 1.0f : 0.0f;
     return c;
 }
 
@@ -114,7 +114,7 @@ void recordCurves(gpu::CommandList& list, RendererState& state) {
         bind(list, {Binding::read(0, batch.headers),
                     Binding::read(1, group.devicePositions ? group.devicePositions : batch.positions),
                     Binding::read(2, batch.radii), Binding::write(0, batch.curve)});
-        list.dispatch((constants.strandCount + 63) / 64);
+        list.dispatch(groupsFor(constants.strandCount, HAIRLOOM_LIST_GROUP));
     }
     list.endPass();
 }
@@ -123,7 +123,6 @@ void recordSkySeen(gpu::CommandList& list, RendererState& state) {
     list.beginPass({passName(Pass::skySeen), {}, {}});
     list.setPipeline(state.pipelines.compute("sky_seen.comp"));
     bindShadows(list, state);
-    constexpr std::uint32_t kGroup = 64, kThreadsOfAStrand = 16;
     shaders::ShadeConstants constants = state.shade;
     for (const DrawBatch& batch : state.scene.batches) {
         const std::uint32_t strands = batch.strandCount(state.detail);
@@ -133,7 +132,7 @@ void recordSkySeen(gpu::CommandList& list, RendererState& state) {
         list.setConstants(0, gpu::bytesOf(constants));
         bind(list,
              {Binding::read(0, batch.curve), Binding::read(1, batch.headers), Binding::write(0, batch.seen)});
-        list.dispatch((strands + kGroup - 1) / kGroup, kThreadsOfAStrand);
+        list.dispatch(groupsFor(strands, HAIRLOOM_LIST_GROUP), HAIRLOOM_SKY_THREADS_OF_STRAND);
     }
     list.endPass();
 }

@@ -7,8 +7,6 @@
 namespace hairloom::render {
 namespace {
 
-constexpr std::uint32_t kGroup = 64;
-
 Result<gpu::BufferPtr> makeBuffer(gpu::Device& device, const char* name, std::span<const std::byte> content,
                                   std::uint32_t element) {
     gpu::BufferDesc desc;
@@ -71,7 +69,7 @@ Result<std::vector<shaders::LightAnswer>> probeLight(gpu::Device& device, const 
     commands.setConstants(0, gpu::bytesOf(state.shade));
     bindShadows(commands, state);
     bind(commands, {gpu::Binding::read(0, *in), gpu::Binding::write(0, *out)});
-    commands.dispatch(static_cast<std::uint32_t>((cases.size() + kGroup - 1) / kGroup));
+    commands.dispatch(groupsFor(static_cast<std::uint32_t>(cases.size()), HAIRLOOM_LIST_GROUP));
     commands.endPass();
     if (auto status = state.pipelines.takeStatus(); !status) return failed(status.error());
     const auto submission = device.submit(std::move(*list));

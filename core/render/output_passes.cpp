@@ -43,15 +43,17 @@ void drawOverlay(gpu::CommandList& list, RendererState& state, gpu::Format forma
     needs.depthTest = !onTop;
     list.setPipeline(state.pipelines.graphics(needs));
     bind(list, {Binding::read(0, state.overlay.vertices)});
-    shaders::OverlayConstants constants;
+    shaders::OverlayConstants constants{};
     constants.clipFromWorld = toShader(overlayMatrix(state));
-    constants.viewport = {static_cast<float>(state.options.width), static_cast<float>(state.options.height),
-                          encodesItself(format) ? 0.0f : 1.0f, 0};
+    constants.width = static_cast<float>(state.options.width);
+    constants.height = static_cast<float>(state.options.height);
+    constants.keepsSrgb = encodesItself(format) ? 0.0f : 1.0f;
     std::uint32_t first = 0;
     for (const OverlayBatch& batch : state.overlay.overlay.batches) {
         if (batch.onTop == onTop && !batch.vertices.empty()) {
-            constants.shape = {static_cast<std::uint32_t>(batch.shape), first, 0, 0};
-            constants.viewport.w = 0.5f * batch.size;
+            constants.shape = static_cast<std::uint32_t>(batch.shape);
+            constants.firstVertex = first;
+            constants.markRadius = 0.5f * batch.size;
             list.setConstants(0, gpu::bytesOf(constants));
             list.draw(corners(batch));
         }
@@ -60,15 +62,16 @@ void drawOverlay(gpu::CommandList& list, RendererState& state, gpu::Format forma
 }
 
 void recordFilter(gpu::CommandList& list, RendererState& state, const gpu::TexturePtr& target) {
-    const auto width = static_cast<float>(state.options.width);
-    const auto height = static_cast<float>(state.options.height);
     list.beginPass({passName(Pass::filter), {{target, gpu::LoadOp::Discard, {}, {}}}, {}});
     list.setPipeline(state.pipelines.graphics(
         {.vertex = "fullscreen.vert", .pixel = "fxaa.frag", .colour = target->desc().format}));
-    shaders::FilterConstants constants;
-    constants.size = {width, height, 1 / width, 1 / height};
-    constants.output = {encodesItself(target->desc().format) ? 0.0f : 1.0f,
-                        state.options.filter == PostFilter::fxaaHigh ? 1.0f : 0.0f, 0, 0};
+    shaders::FilterConstants constants{};
+    constants.width = static_cast<float>(state.options.width);
+    constants.height = static_cast<float>(state.options.height);
+    constants.texelWidth = 1 / constants.width;
+    constants.texelHeight = 1 / constants.height;
+    constants.keepsSrgb = encodesItself(target->desc().format) ? 0.0f : 1.0f;
+    constants.longSearch = state.options.filter == PostFilter::fxaaHigh ? 1.0f : 0.0f;
     list.setConstants(0, gpu::bytesOf(constants));
     bind(list, {Binding::read(0, state.targets[TargetId::shown]), Binding::sample(0, state.linearFilter)});
     list.draw(3);
@@ -102,20 +105,22 @@ bool OverlayOnDevice::needsDepth() const {
 void recordShadowBlur(gpu::CommandList& list, RendererState& state) {
     const Targets& t = state.targets;
     const float deviation = state.options.shadowBlur;
-    shaders::BlurConstants constants;
-    constants.size = {state.options.width, state.options.height, 0,
-                      static_cast<std::uint32_t>(std::ceil(kBlurReach * deviation))};
-    constants.kernel = {-0.5f / (deviation * deviation), 0, 0, 0};
+    shaders::BlurConstants constants{};
+    constants.width = state.options.width;
+    constants.height = state.options.height;
+    constants.reach = static_cast<std::uint32_t>(std::ceil(kBlurReach * deviation));
+    constants.falloff = -0.5f / (deviation * deviation);
     list.beginPass({passName(Pass::shadowBlur), {}, {}});
     list.setPipeline(state.pipelines.compute("shadow_blur.comp"));
     for (const std::uint32_t direction : {0u, 1u}) {
         const bool alongRows = direction == 0;
-        constants.size.z = direction;
+        constants.alongColumns = direction;
         list.setConstants(0, gpu::bytesOf(constants));
         bind(list, {Binding::read(0, t[BufferId::sum]), Binding::read(1, t[BufferId::litSum]),
                     Binding::read(2, t[alongRows ? BufferId::litSum : BufferId::blurHalfway]),
                     Binding::write(0, t[alongRows ? BufferId::blurHalfway : BufferId::blurred])});
-        list.dispatch((state.options.width + 7) / 8, (state.options.height + 7) / 8);
+        list.dispatch(groupsFor(state.options.width, HAIRLOOM_TILE_GROUP),
+                      groupsFor(state.options.height, HAIRLOOM_TILE_GROUP));
     }
     list.endPass();
 }
@@ -127,10 +132,11 @@ void recordPresent(gpu::CommandList& list, RendererState& state, std::uint32_t f
     list.beginPass({passName(Pass::toneMap), {{shown, gpu::LoadOp::Discard, {}, {}}}, {}});
     list.setPipeline(state.pipelines.graphics(
         {.vertex = "fullscreen.vert", .pixel = "tone_map.frag", .colour = shown->desc().format}));
-    shaders::ToneConstants constants;
-    constants.exposure = {state.options.exposure, 1 / static_cast<float>(frames),
-                          encodesItself(shown->desc().format) ? 0.0f : 1.0f,
-                          static_cast<float>(state.options.width)};
+    shaders::ToneConstants constants{};
+    constants.exposure = state.options.exposure;
+    constants.frameShare = 1 / static_cast<float>(frames);
+    constants.encodesSrgb = encodesItself(shown->desc().format) ? 0.0f : 1.0f;
+    constants.width = static_cast<float>(state.options.width);
     list.setConstants(0, gpu::bytesOf(constants));
     bind(list, {Binding::read(0, state.result())});
     list.draw(3);
@@ -171,7 +177,7 @@ void recordOverlay(gpu::CommandList& list, RendererState& state, const gpu::Text
                         {},
                         {state.targets[TargetId::overlayDepth], gpu::LoadOp::Clear, 1}});
         list.setPipeline(state.pipelines.graphics(kMeshDepth));
-        shaders::MeshConstants constants;
+        shaders::MeshConstants constants{};
         constants.clipFromWorld = toShader(overlayMatrix(state));
         list.setConstants(1, gpu::bytesOf(constants));
         drawMeshes(list, state);

@@ -16,8 +16,6 @@ using gpu::Binding;
 // Software rasterisers corrupt geometry when one draw emits more than 65,536 vertices.
 constexpr std::uint32_t kPatchesPerDrawOnCpu = 32;
 constexpr float kPixelsPerPiece = 2;  // of a tessellated ribbon
-constexpr shaders::float4 kSkin{0.35f, 0.6f, 28, 0};
-constexpr shaders::float4 kMatte{0, 0, 1, 0};
 
 /// One element of zeros, where there is none yet.
 Status prepareBuffer(gpu::Device& device, const char* name, std::uint32_t elementBytes,
@@ -99,9 +97,11 @@ GraphicsNeeds strandPipeline(const RendererState& state) {
 }
 
 void drawPatches(gpu::CommandList& list, const RendererState& state) {
-    shaders::PatchConstants constants;
-    constants.view = {static_cast<float>(state.options.width), static_cast<float>(state.options.height),
-                      kPixelsPerPiece, 0};
+    shaders::PatchConstants constants{};
+    constants.width = static_cast<float>(state.options.width);
+    constants.height = static_cast<float>(state.options.height);
+    constants.pieceLength = kPixelsPerPiece;
+    constants.subdivisions = state.detail.subdivisions;
     for (const DrawBatch& batch : state.scene.batches) {
         if (state.scene.groups[batch.group].material.tubes) continue;
         bind(list, {Binding::read(0, batch.curve), Binding::read(1, state.colourOf(batch)),
@@ -109,7 +109,7 @@ void drawPatches(gpu::CommandList& list, const RendererState& state) {
         const std::uint32_t count = batch.patchesBefore[batch.strandCount(state.detail)];
         const std::uint32_t step = state.onCpu ? kPatchesPerDrawOnCpu : count;
         for (std::uint32_t first = 0; first < count; first += step) {
-            constants.numbers = {first, state.detail.subdivisions, 0, 0};
+            constants.firstPatch = first;
             list.setConstants(2, gpu::bytesOf(constants));
             list.draw(std::min(step, count - first) * HAIRLOOM_PATCH_POINTS);
         }
@@ -205,19 +205,25 @@ Status preparePlaceholders(gpu::Device& device, RendererState& state) {
 shaders::ViewConstants viewConstants(const RendererState& state, const Mat4f& clipFromWorld,
                                      std::uint32_t number) {
     const auto [begin, depth] = depthOfHair(state, clipFromWorld);
-    shaders::ViewConstants view;
+    shaders::ViewConstants view{};
     view.clipFromWorld = toShader(clipFromWorld);
     view.eye_ws = eyeOf(state.camera);
-    view.pixel = {pixelSpread(state), 1, 0, 0};
-    view.sampling = {state.samples, number, static_cast<std::uint32_t>(state.options.transparency), 0};
-    view.range = {begin, depth, 0, 0};
+    view.pixelSize = pixelSpread(state);
+    view.minWidth = 1;
+    view.samples = state.samples;
+    view.frame = number;
+    view.transparency = static_cast<std::uint32_t>(state.options.transparency);
+    view.hairBegins = begin;
+    view.hairDepth = depth;
     return view;
 }
 
 shaders::MeshConstants meshConstants(const Mat4f& clipFromWorld, bool matte) {
-    shaders::MeshConstants constants;
+    shaders::MeshConstants constants{};
     constants.clipFromWorld = toShader(clipFromWorld);
-    constants.skin = matte ? kMatte : kSkin;
+    constants.wrap = matte ? 0.0f : 0.35f;
+    constants.specular = matte ? 0.0f : 0.6f;
+    constants.specularExponent = matte ? 1.0f : 28.0f;
     return constants;
 }
 
@@ -334,13 +340,16 @@ void recordFrame(gpu::CommandList& list, RendererState& state, std::uint32_t num
 
     list.beginPass({passName(Pass::accumulate), {}, {}});
     list.setPipeline(state.pipelines.compute("accumulate.comp"));
-    shaders::ResolveConstants constants;
+    shaders::ResolveConstants constants{};
     const std::uint32_t width = state.options.width;
     const std::uint32_t height = state.options.height;
-    constants.size = {width * height, width, 1, number == 0 ? 1u : 0u};
+    constants.pixels = width * height;
+    constants.rowThreads = width;
+    constants.samples = 1;
+    constants.sumBegins = number == 0 ? 1 : 0;
     list.setConstants(0, gpu::bytesOf(constants));
     bind(list, {Binding::read(0, t.frame()), Binding::write(0, state.frames())});
-    list.dispatch((width + 7) / 8, (height + 7) / 8);
+    list.dispatch(groupsFor(width, HAIRLOOM_TILE_GROUP), groupsFor(height, HAIRLOOM_TILE_GROUP));
     list.endPass();
 }
 

@@ -55,7 +55,7 @@ struct RendererState {
     std::vector<LightView> lightViews;
     std::vector<LightView> skyViews;  ///< where the plan has maps of the sky
     shaders::ShadeConstants shade{};  ///< all but the material
-    shaders::SkyConstants sky;
+    shaders::SkyConstants sky{};
 
     Box3f bounds() const;  ///< of all meshes and strands
     /// Where the light of a batch's curve points is, with shadows or without.
@@ -112,7 +112,12 @@ void drawStrips(gpu::CommandList& list, const RendererState& state, std::optiona
 void dispatchStrands(gpu::CommandList& list, const RendererState& state, shaders::RasterConstants raster,
                      float share = 1);
 void fill(gpu::CommandList& list, RendererState& state, BufferId buffer, std::uint32_t value);
-/// A thread for each of `count`, 64 in a group: devices take no more than 65,535 groups in a row.
+/// Groups of so many threads that it takes for `threads`.
+constexpr std::uint32_t groupsFor(std::uint32_t threads, std::uint32_t group) {
+    return (threads + group - 1) / group;
+}
+/// A thread for each of `count`, in groups of HAIRLOOM_LIST_GROUP: devices take no more than 65,535 groups in
+/// a row.
 struct Rows {
     explicit Rows(std::uint64_t count);
     std::uint32_t groups = 1;  ///< in a row

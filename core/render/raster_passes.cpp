@@ -11,7 +11,6 @@ namespace {
 
 using gpu::Binding;
 
-constexpr std::uint32_t kGroup = 64;
 constexpr std::uint32_t kRowGroups = 32768;
 
 /// Of a pixel's samples from its middle: Direct3D's standard patterns, in sixteenths of a pixel.
@@ -35,10 +34,12 @@ std::span<const std::array<int, 2>> samplePattern(std::uint32_t samples) {
 
 shaders::RasterConstants frameConstants(const RendererState& state, std::uint32_t phase) {
     const std::uint32_t width = state.options.width;
-    shaders::RasterConstants c;
+    shaders::RasterConstants c{};
     c.window = {0, 0, static_cast<float>(width), static_cast<float>(state.options.height)};
-    c.numbers = {0, 0, width, phase};
-    c.samples = {state.samples, 0, 1, 0};
+    c.bufferWidth = width;
+    c.phase = phase;
+    c.samples = state.samples;
+    c.slices = 1;
     const auto pattern = samplePattern(state.samples);
     int reach = 0;
     for (std::size_t i = 0; i < pattern.size(); ++i) {
@@ -48,7 +49,7 @@ shaders::RasterConstants frameConstants(const RendererState& state, std::uint32_
         (i % 2 == 0 ? two.x : two.z) = static_cast<float>(x) / 16;
         (i % 2 == 0 ? two.y : two.w) = static_cast<float>(y) / 16;
     }
-    c.reach = {static_cast<float>(reach) / 16, 0, 0, 0};
+    c.sampleReach = static_cast<float>(reach) / 16;
     return c;
 }
 
@@ -66,9 +67,9 @@ void dispatchMeshes(gpu::CommandList& list, RendererState& state, const Mat4f& c
         if (triangles == 0) continue;
         const std::uint32_t row = std::min(triangles, kRowGroups);
         const std::uint32_t slices = state.onCpu ? 1 : std::clamp(kWantedGroups / triangles, 1u, kMaxSlices);
-        raster.numbers.x = triangles;
-        raster.numbers.y = row;
-        raster.samples.z = slices;
+        raster.count = triangles;
+        raster.rowLength = row;
+        raster.slices = slices;
         list.setConstants(1, gpu::bytesOf(meshConstants(clipFromWorld, mesh.matte)));
         list.setConstants(2, gpu::bytesOf(raster));
         bind(list, {Binding::read(0, mesh.positions), Binding::read(1, mesh.normals),
@@ -92,8 +93,11 @@ void recordResolve(gpu::CommandList& list, RendererState& state, std::uint32_t n
     const std::uint32_t pixels = state.options.width * state.options.height;
     const Targets& t = state.targets;
     const Rows rows(pixels);
-    shaders::ResolveConstants constants;
-    constants.size = {pixels, rows.threads(), state.samples, number == 0 ? 1u : 0u};
+    shaders::ResolveConstants constants{};
+    constants.pixels = pixels;
+    constants.rowThreads = rows.threads();
+    constants.samples = state.samples;
+    constants.sumBegins = number == 0 ? 1 : 0;
     constants.background =
         state.options.transparentBackground ? shaders::float4{0, 0, 0, 0} : toShader(state.background, 1);
     list.beginPass({passName(Pass::accumulate), {}, {}});
@@ -108,20 +112,22 @@ void recordResolve(gpu::CommandList& list, RendererState& state, std::uint32_t n
 }  // namespace
 
 Rows::Rows(std::uint64_t count) {
-    const auto all = static_cast<std::uint32_t>((count + kGroup - 1) / kGroup);
+    const auto all = static_cast<std::uint32_t>((count + HAIRLOOM_LIST_GROUP - 1) / HAIRLOOM_LIST_GROUP);
     groups = std::clamp(all, 1u, kRowGroups);
     rows = std::max((all + groups - 1) / groups, 1u);
 }
 
 std::uint32_t Rows::threads() const {
-    return groups * kGroup;
+    return groups * HAIRLOOM_LIST_GROUP;
 }
 
 void fill(gpu::CommandList& list, RendererState& state, BufferId buffer, std::uint32_t value) {
     const auto words = static_cast<std::uint32_t>(state.targets[buffer]->desc().size / 4);
     const Rows rows(words);
-    shaders::FillConstants constants;
-    constants.numbers = {value, words, rows.threads(), 0};
+    shaders::FillConstants constants{};
+    constants.value = value;
+    constants.elements = words;
+    constants.rowThreads = rows.threads();
     list.setPipeline(state.pipelines.compute("fill.comp"));
     list.setConstants(0, gpu::bytesOf(constants));
     bind(list, {Binding::write(0, state.targets[buffer])});
@@ -135,8 +141,8 @@ void dispatchStrands(gpu::CommandList& list, const RendererState& state, shaders
         const std::uint32_t points =
             batch.curvePoints(static_cast<std::uint32_t>(wanted), state.detail.subdivisions);
         const Rows rows(points);
-        raster.numbers.x = points;
-        raster.numbers.y = rows.threads();
+        raster.count = points;
+        raster.rowLength = rows.threads();
         list.setConstants(2, gpu::bytesOf(raster));
         bind(list, {Binding::read(0, batch.curve), Binding::read(1, state.colourOf(batch))});
         list.dispatch(rows.groups, rows.rows);

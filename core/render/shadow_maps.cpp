@@ -45,22 +45,22 @@ std::uint32_t layerCount(Shadows shadows) {
     return shadows == Shadows::deepOpacity ? 3 : 4;
 }
 
-shaders::float4 rangeOf(const LightView& view, std::uint32_t mode) {
-    return {view.depthRange, static_cast<float>(mode), view.nearPlane, view.hairStart};
-}
-
 /// For drawing strands into a square.
 shaders::ViewConstants squareConstants(const RendererState& state, const ShadowAtlas& atlas,
                                        std::size_t square) {
     const LightView& view = *atlas.views[square];
-    const auto mode = static_cast<std::uint32_t>(atlas.shadows);
-    shaders::ViewConstants c;
+    shaders::ViewConstants c{};
     c.clipFromWorld = toShader(view.clipFromWorld);
     c.eye_ws = {view.eye_ws.x(), view.eye_ws.y(), view.eye_ws.z(), view.eye_ws.w()};
-    c.pixel = {view.spread / static_cast<float>(atlas.side), 1, 1 / atlas.share, 0};
-    c.sampling = {1, 0, 0, mode};
+    c.pixelSize = view.spread / static_cast<float>(atlas.side);
+    c.minWidth = 1;
+    c.fibresForEach = 1 / atlas.share;
+    c.samples = 1;
+    c.shadows = static_cast<std::uint32_t>(atlas.shadows);
     c.layers = layersOf(state, atlas.shadows, view);
-    c.range = rangeOf(view, mode);
+    c.depthRange = view.depthRange;
+    c.nearPlane = view.nearPlane;
+    c.hairBegins = view.hairStart;
     return c;
 }
 
@@ -68,10 +68,12 @@ shaders::ViewConstants squareConstants(const RendererState& state, const ShadowA
 void rasterise(gpu::CommandList& list, const RendererState& state, const ShadowAtlas& atlas,
                std::size_t square) {
     const auto side = static_cast<float>(atlas.side);
-    shaders::RasterConstants raster;
+    shaders::RasterConstants raster{};
     raster.window = {static_cast<float>(atlas.left(square)), 0, side, side};
-    raster.numbers = {0, 0, atlas.width(), 0};
-    raster.samples = {1, layerCount(atlas.shadows), 1, 0};
+    raster.bufferWidth = atlas.width();
+    raster.samples = 1;
+    raster.layers = layerCount(atlas.shadows);
+    raster.slices = 1;
     list.setConstants(0, gpu::bytesOf(squareConstants(state, atlas, square)));
     dispatchStrands(list, state, raster, atlas.share);
 }
@@ -86,8 +88,7 @@ void recordFirstHair(gpu::CommandList& list, RendererState& state, const ShadowA
 }
 
 void recordLayers(gpu::CommandList& list, RendererState& state, const ShadowAtlas& atlas) {
-    const auto mode = static_cast<std::uint32_t>(atlas.shadows);
-    const std::uint32_t groups = (atlas.side + 7) / 8;
+    const std::uint32_t groups = groupsFor(atlas.side, HAIRLOOM_TILE_GROUP);
     list.beginPass({passName(atlas.layersPass), {}, {}});
     for (std::size_t i = 0; i < atlas.views.size(); ++i) {
         fill(list, state, atlas.counts, 0);
@@ -96,9 +97,13 @@ void recordLayers(gpu::CommandList& list, RendererState& state, const ShadowAtla
                     Binding::write(0, state.targets[atlas.counts])});
         rasterise(list, state, atlas, i);
         list.setPipeline(state.pipelines.compute("light_pack.comp"));
-        shaders::PackConstants constants;
-        constants.size = {atlas.side, atlas.left(i), atlas.width(), mode};
-        constants.range = rangeOf(*atlas.views[i], mode);
+        shaders::PackConstants constants{};
+        constants.side = atlas.side;
+        constants.tileLeft = atlas.left(i);
+        constants.atlasWidth = atlas.width();
+        constants.shadows = static_cast<std::uint32_t>(atlas.shadows);
+        constants.depthRange = atlas.views[i]->depthRange;
+        constants.nearPlane = atlas.views[i]->nearPlane;
         list.setConstants(0, gpu::bytesOf(constants));
         bind(list,
              {Binding::read(0, state.orPlaceholder(atlas.first)),
@@ -116,7 +121,7 @@ void recordHeadDepth(gpu::CommandList& list, RendererState& state, const ShadowA
         const std::uint32_t left = atlas.left(i);
         list.setViewport({static_cast<float>(left), 0, side, side, 0, 1});
         list.setScissor({left, 0, atlas.side, atlas.side});
-        shaders::MeshConstants constants;
+        shaders::MeshConstants constants{};
         constants.clipFromWorld = toShader(atlas.views[i]->clipFromWorld);
         list.setConstants(1, gpu::bytesOf(constants));
         drawMeshes(list, state);
@@ -125,7 +130,7 @@ void recordHeadDepth(gpu::CommandList& list, RendererState& state, const ShadowA
 }
 
 shaders::LightConstants viewOf(const LightView& view) {
-    shaders::LightConstants c;
+    shaders::LightConstants c{};
     c.clipFromWorld = toShader(view.clipFromWorld);
     c.toLight_ws = {view.eye_ws.x(), view.eye_ws.y(), view.eye_ws.z(), view.eye_ws.w()};
     return c;
@@ -227,14 +232,21 @@ shaders::LightConstants mapConstants(const RendererState& state, const ShadowAtl
     const bool hair = !state.scene.batches.empty();
     const auto side = static_cast<float>(atlas.side);
     shaders::LightConstants c = viewOf(view);
-    c.tile = {static_cast<float>(atlas.left(square)), side, state.plan.runs(atlas.headPass) ? 1.0f : 0.0f,
-              static_cast<float>(atlas.width())};
-    c.range = rangeOf(view, hair ? static_cast<std::uint32_t>(atlas.shadows) : 0u);
+    c.tileLeft = static_cast<float>(atlas.left(square));
+    c.tileSize = side;
+    c.headCasts = state.plan.runs(atlas.headPass) ? 1.0f : 0.0f;
+    c.atlasWidth = static_cast<float>(atlas.width());
+    c.depthRange = view.depthRange;
+    c.shadows = hair ? static_cast<float>(atlas.shadows) : 0.0f;
+    c.nearPlane = view.nearPlane;
+    c.hairBegins = view.hairStart;
     c.layers = layersOf(state, atlas.shadows, view);
     const float distance =
         view.eye_ws.w() > 0 ? view.nearPlane + view.hairStart + 0.5f * view.hairRange : 1.0f;
     const float texel = view.spread * distance / side;
-    c.filtering = {resolvedClumps(texel), texel, state.options.headAbsorption, 0};
+    c.resolvedClumping = resolvedClumps(texel);
+    c.texelSize = texel;
+    c.headAbsorption = state.options.headAbsorption;
     return c;
 }
 

@@ -8,9 +8,9 @@
 
 // The samples of a pixel that a hair with this share of it takes; bit s is sample s.
 uint sampleMask(ViewConstants view, float coverage, uint2 pixel, uint strand) {
-    const uint samples = view.sampling.x;
-    const uint key = hashUint(strand * 0x9e3779b9u + hashUint(pixel.x + (pixel.y << 16u) + view.sampling.y * 0x85ebca6bu));
-    const bool fixedSet = view.sampling.z == HAIRLOOM_TRANSPARENCY_ALPHA_TO_COVERAGE;
+    const uint samples = view.samples;
+    const uint key = hashUint(strand * 0x9e3779b9u + hashUint(pixel.x + (pixel.y << 16u) + view.frame * 0x85ebca6bu));
+    const bool fixedSet = view.transparency == HAIRLOOM_TRANSPARENCY_ALPHA_TO_COVERAGE;
     // Interleaved gradient noise (Jimenez 2014) rounds a fixed set up or down by place.
     const float ordered = frac(52.9829189 * frac(dot(float2(pixel), float2(0.06711056, 0.00583715))));
     const float chance = fixedSet ? ordered : hashUnit(key);

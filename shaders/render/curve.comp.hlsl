@@ -26,7 +26,7 @@ float radiusOf(StrandHeader strand, uint k, float along) {
     return gCurve.rootRadius * (1.0 + (gCurve.tipScale - 1.0) * along * along);
 }
 
-[numthreads(64, 1, 1)]
+[numthreads(HAIRLOOM_LIST_GROUP, 1, 1)]
 void main(uint3 id : SV_DispatchThreadID) {
     if (id.x >= gCurve.strandCount) return;
     const StrandHeader strand = gStrands[id.x];

@@ -5,8 +5,8 @@
 cbuffer Constants : register(b0) { FillConstants gFill; };
 RWStructuredBuffer<uint> gTarget : register(u0);
 
-[numthreads(64, 1, 1)]
+[numthreads(HAIRLOOM_LIST_GROUP, 1, 1)]
 void main(uint3 id : SV_DispatchThreadID) {
-    const uint index = id.x + id.y * gFill.numbers.z;
-    if (id.x < gFill.numbers.z && index < gFill.numbers.y) gTarget[index] = gFill.numbers.x;
+    const uint index = id.x + id.y * gFill.rowThreads;
+    if (id.x < gFill.rowThreads && index < gFill.elements) gTarget[index] = gFill.value;
 }

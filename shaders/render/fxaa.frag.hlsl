@@ -22,11 +22,11 @@ float stepSize(uint i, bool longSearch) {
 
 float4 shown(float2 uv) {
     const float4 colour = gPicture.SampleLevel(gLinear, uv, 0);
-    return float4(gFilter.output.x > 0 ? colour.rgb : decodeSrgb(colour.rgb), colour.a);
+    return float4(gFilter.keepsSrgb > 0 ? colour.rgb : decodeSrgb(colour.rgb), colour.a);
 }
 
 float4 main(float4 position : SV_Position) : SV_Target0 {
-    const float2 texel = gFilter.size.zw;
+    const float2 texel = float2(gFilter.texelWidth, gFilter.texelHeight);
     const float2 uv = position.xy * texel;
     const float m = lumaAt(uv);
     const float n = lumaAt(uv - float2(0, texel.y));
@@ -62,7 +62,7 @@ float4 main(float4 position : SV_Position) : SV_Target0 {
 
     // To both ends, where the mean of the two rows leaves that of the edge.
     const float2 onEdge = uv + 0.5 * across;
-    const bool longSearch = gFilter.output.y > 0;
+    const bool longSearch = gFilter.longSearch > 0;
     const uint steps = longSearch ? 12u : 5u;
     float2 back = 0;
     float2 front = 0;

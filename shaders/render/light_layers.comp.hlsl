@@ -12,12 +12,12 @@ void visitPixel(RibbonPiece piece, int2 pixel) {
     const float t = placeOn(piece, fromOrigin(piece, pixel));
     const float z = lerp(piece.depth.x, piece.depth.y, t);
     if (t < 0.0 || z < 0.0 || z > 1.0) return;
-    const uint amount = uint(saturate(lerp(piece.coverage.x, piece.coverage.y, t)) * gView.pixel.z * FIBRE_COUNT + 0.5);
-    const bool fixedLayers = gView.sampling.w == HAIRLOOM_SHADOWS_OPACITY_MAPS;
+    const uint amount = uint(saturate(lerp(piece.coverage.x, piece.coverage.y, t)) * gView.fibresForEach * FIBRE_COUNT + 0.5);
+    const bool fixedLayers = gView.shadows == HAIRLOOM_SHADOWS_OPACITY_MAPS;
     const float begins =
-        fixedLayers ? gView.range.w : metresBehindNear(gView.range, asfloat(gFirst[pixelIndex(pixel)]));
-    const float behind = metresBehindNear(gView.range, z) - begins;
-    const uint last = gRaster.samples.y - 1u;
+        fixedLayers ? gView.hairBegins : metresBehindNear(gView.depthRange, gView.nearPlane, asfloat(gFirst[pixelIndex(pixel)]));
+    const float behind = metresBehindNear(gView.depthRange, gView.nearPlane, z) - begins;
+    const uint last = gRaster.layers - 1u;
     const uint layer = (behind >= gView.layers.x ? 1u : 0u) + (behind >= gView.layers.y ? 1u : 0u) +
                        (behind >= gView.layers.z ? 1u : 0u);
     const int2 inSquare = pixel - int2(gRaster.window.xy);

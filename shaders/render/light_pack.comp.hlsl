@@ -9,12 +9,12 @@ StructuredBuffer<uint> gFirst : register(t0);
 StructuredBuffer<uint> gCounts : register(t1);
 RWStructuredBuffer<uint> gOpacity : register(u0);  // two words a texel
 
-[numthreads(8, 8, 1)]
+[numthreads(HAIRLOOM_TILE_GROUP, HAIRLOOM_TILE_GROUP, 1)]
 void main(uint3 id : SV_DispatchThreadID) {
-    if (any(id.xy >= gPack.size.xx)) return;
-    const uint texel = id.y * gPack.size.x + id.x;
-    const uint at = id.y * gPack.size.z + gPack.size.y + id.x;
-    const bool fixedLayers = gPack.size.w == HAIRLOOM_SHADOWS_OPACITY_MAPS;
+    if (id.x >= gPack.side || id.y >= gPack.side) return;
+    const uint texel = id.y * gPack.side + id.x;
+    const uint at = id.y * gPack.atlasWidth + gPack.tileLeft + id.x;
+    const bool fixedLayers = gPack.shadows == HAIRLOOM_SHADOWS_OPACITY_MAPS;
     const uint layers = fixedLayers ? 4u : 3u;
     const uint counts = texel * layers;
     float4 share = float4(gCounts[counts], gCounts[counts + 1u], gCounts[counts + 2u], 0);
@@ -22,7 +22,7 @@ void main(uint3 id : SV_DispatchThreadID) {
     share *= OPACITY_UNIT / FIBRE_COUNT;
     if (!fixedLayers) {
         const float z = asfloat(gFirst[at]);
-        share.w = z < 1.0 ? 1.0 - saturate(metresBehindNear(gPack.range, z) / gPack.range.x) : 0.0;
+        share.w = z < 1.0 ? 1.0 - saturate(metresBehindNear(gPack.depthRange, gPack.nearPlane, z) / gPack.depthRange) : 0.0;
     }
     const uint2 packed = packShares(share);
     gOpacity[2u * at] = packed.x;

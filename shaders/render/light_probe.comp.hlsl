@@ -7,13 +7,13 @@ cbuffer Constants : register(b0) { ShadeConstants gShade; };
 StructuredBuffer<LightCase> gCases : register(t0);
 RWStructuredBuffer<LightAnswer> gResults : register(u0);
 
-[numthreads(64, 1, 1)]
+[numthreads(HAIRLOOM_LIST_GROUP, 1, 1)]
 void main(uint3 id : SV_DispatchThreadID) {
     uint count, stride;
     gCases.GetDimensions(count, stride);
     if (id.x >= count) return;
     const LightCase c = gCases[id.x];
-    const Occlusion o = occlusion(gShade.lights[0], c.position_ws.xyz, c.position_ws.w, 0.002, gShade.lights[0].filtering.z);
+    const Occlusion o = occlusion(gShade.lights[0], c.position_ws.xyz, c.position_ws.w, 0.002, gShade.lights[0].headAbsorption);
     const SkyShares seen = unpackSky(skySeen(gShade, c.position_ws.xyz).whole);
     LightAnswer answer;
     answer.onHair = float4(environmentOnHair(gShade, c.direction.xyz, openSky()), o.fibres);

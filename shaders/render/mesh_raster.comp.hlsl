@@ -14,7 +14,6 @@ StructuredBuffer<float4> gAlbedo : register(t3);  // per triangle
 RWStructuredBuffer<uint> gNearest : register(u0);
 RWStructuredBuffer<uint> gLight : register(u1);
 
-#define THREADS 64u
 static const float kBeside = -1e-5;  // of the triangle: neighbours leave no gaps
 
 struct Corners {
@@ -54,7 +53,7 @@ float3 lightAt(Corners c, float2 at, uint face) {
 
 void visitPixel(Corners c, int2 pixel, uint face) {
     const float2 middle = float2(pixel - c.origin) + 0.5;
-    const uint samples = gRaster.samples.x;
+    const uint samples = gRaster.samples;
     const uint base = pixelIndex(pixel) * samples;
     uint shown = 0;
     float2 place = 0;
@@ -63,7 +62,7 @@ void visitPixel(Corners c, int2 pixel, uint face) {
         const float depth = depthAt(c, at);
         if (depth < 0.0 || depth > 1.0) continue;
         const uint bits = asuint(depth);
-        if (gRaster.numbers.w == HAIRLOOM_PHASE_NEAREST) {
+        if (gRaster.phase == HAIRLOOM_PHASE_NEAREST) {
             if (bits < gNearest[base + s]) InterlockedMin(gNearest[base + s], bits);
         } else if (bits == gNearest[base + s]) {
             if (shown == 0u) place = at;
@@ -78,10 +77,10 @@ void visitPixel(Corners c, int2 pixel, uint face) {
     }
 }
 
-[numthreads(64, 1, 1)]
+[numthreads(HAIRLOOM_LIST_GROUP, 1, 1)]
 void main(uint3 group : SV_GroupID, uint thread : SV_GroupIndex) {
-    const uint face = group.x + group.y * gRaster.numbers.y;
-    if (face >= gRaster.numbers.x) return;
+    const uint face = group.x + group.y * gRaster.rowLength;
+    if (face >= gRaster.count) return;
     float4 clip[3];
     float2 minimum = 1e9;
     float2 maximum = -1e9;
@@ -96,8 +95,8 @@ void main(uint3 group : SV_GroupID, uint thread : SV_GroupIndex) {
     if (max(clip[0].w, max(clip[1].w, clip[2].w)) <= 0.0) return;
     const float2 low = gRaster.window.xy;
     const float2 high = low + gRaster.window.zw - 1.0;
-    const int2 from = int2(inFront ? clamp(floor(minimum - 0.5 - gRaster.reach.x), low, high + 1.0) : low);
-    const int2 to = int2(inFront ? clamp(ceil(maximum - 0.5 + gRaster.reach.x), low - 1.0, high) : high);
+    const int2 from = int2(inFront ? clamp(floor(minimum - 0.5 - gRaster.sampleReach), low, high + 1.0) : low);
+    const int2 to = int2(inFront ? clamp(ceil(maximum - 0.5 + gRaster.sampleReach), low - 1.0, high) : high);
     if (any(to < from)) return;
 
     Corners c;
@@ -115,7 +114,7 @@ void main(uint3 group : SV_GroupID, uint thread : SV_GroupIndex) {
     c.depths = float3(clip[0].z, clip[1].z, clip[2].z);
     const uint width = uint(to.x - from.x + 1);
     const uint count = width * uint(to.y - from.y + 1);
-    for (uint n = group.z * THREADS + thread; n < count; n += THREADS * gRaster.samples.z) {
+    for (uint n = group.z * HAIRLOOM_LIST_GROUP + thread; n < count; n += HAIRLOOM_LIST_GROUP * gRaster.slices) {
         visitPixel(c, from + int2(int(n % width), int(n / width)), face);
     }
 }

@@ -22,9 +22,9 @@ float fibresInLayers(float4 layers, float3 ends, float behind) {
     return dot(layers.rgb, saturate((behind - begins) / (ends - begins))) / OPACITY_UNIT;
 }
 
-// Metres behind the near plane of a light's view; `range` as in LightConstants.
-float metresBehindNear(float4 range, float depth) {
-    const float farPlane = range.z + range.x;
-    return range.z > 0 ? range.z * farPlane / (farPlane - depth * range.x) - range.z : depth * range.x;
+// Metres behind the near plane of a light's view; its range and near plane as in LightConstants.
+float metresBehindNear(float depthRange, float nearPlane, float depth) {
+    const float farPlane = nearPlane + depthRange;
+    return nearPlane > 0 ? nearPlane * farPlane / (farPlane - depth * depthRange) - nearPlane : depth * depthRange;
 }
 #endif

@@ -13,11 +13,11 @@ struct Input {
 };
 
 float4 main(Input i) : SV_Target0 {
-    const float3 colour = gOverlay.viewport.z > 0 ? i.colour.rgb : decodeSrgb(i.colour.rgb);
-    if (gOverlay.shape.x == 2u) return float4(colour, i.colour.a);
+    const float3 colour = gOverlay.keepsSrgb > 0 ? i.colour.rgb : decodeSrgb(i.colour.rgb);
+    if (gOverlay.shape == 2u) return float4(colour, i.colour.a);
     // Distance from the point, or from the line's nearest point.
     const float2 d = float2(max(abs(i.offset.x) - i.halfLength, 0.0), i.offset.y);
-    const float radius = gOverlay.viewport.w;
+    const float radius = gOverlay.markRadius;
     const float edge = saturate(radius + 0.5 - length(d)) - saturate(0.5 - radius - length(d));
     if (edge <= 0) discard;
     return float4(colour, i.colour.a * edge);

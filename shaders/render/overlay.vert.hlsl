@@ -27,9 +27,9 @@ Output main(uint id : SV_VertexID) {
     Output o;
     o.offset = 0;
     o.halfLength = 0;
-    const float2 halfView = 0.5 * gOverlay.viewport.xy;
-    if (gOverlay.shape.x == 2u) {
-        const OverlayVertex v = gVertices[gOverlay.shape.y + id];
+    const float2 halfView = 0.5 * float2(gOverlay.width, gOverlay.height);
+    if (gOverlay.shape == 2u) {
+        const OverlayVertex v = gVertices[gOverlay.firstVertex + id];
         o.position = toClip(v);
         o.colour = v.colour;
         return o;
@@ -39,17 +39,17 @@ Output main(uint id : SV_VertexID) {
     // Corners 0 1 2, 2 1 3 of the square.
     const uint place = corner < 3u ? corner : (corner == 3u ? 2u : (corner == 4u ? 1u : 3u));
     const float2 side = float2((place & 1u) != 0u ? 1.0 : -1.0, (place & 2u) != 0u ? 1.0 : -1.0);
-    const float reach = gOverlay.viewport.w + 1.0;
-    if (gOverlay.shape.x == 0u) {
-        const OverlayVertex v = gVertices[gOverlay.shape.y + mark];
+    const float reach = gOverlay.markRadius + 1.0;
+    if (gOverlay.shape == 0u) {
+        const OverlayVertex v = gVertices[gOverlay.firstVertex + mark];
         const float4 clip = toClip(v);
         o.colour = v.colour;
         o.offset = side * reach;
         o.position = clip + float4(o.offset / halfView * clip.w, 0, 0);
         return o;
     }
-    const OverlayVertex first = gVertices[gOverlay.shape.y + 2u * mark];
-    const OverlayVertex second = gVertices[gOverlay.shape.y + 2u * mark + 1u];
+    const OverlayVertex first = gVertices[gOverlay.firstVertex + 2u * mark];
+    const OverlayVertex second = gVertices[gOverlay.firstVertex + 2u * mark + 1u];
     float4 a = toClip(first);
     float4 b = toClip(second);
     float4 colourA = first.colour;

@@ -20,7 +20,7 @@ float2 onBuffer(float4 clip) {
     return gRaster.window.xy + (0.5 + 0.5 * float2(clip.x, -clip.y) / clip.w) * gRaster.window.zw;
 }
 
-uint pixelIndex(int2 pixel) { return uint(pixel.y) * gRaster.numbers.z + uint(pixel.x); }
+uint pixelIndex(int2 pixel) { return uint(pixel.y) * gRaster.bufferWidth + uint(pixel.x); }
 
 float powerOfTwo(int n) { return asfloat(uint(127 + n) << 23u); }
 

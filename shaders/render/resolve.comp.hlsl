@@ -7,11 +7,11 @@ StructuredBuffer<uint> gNearest : register(t0);
 StructuredBuffer<uint> gLight : register(t1);
 RWStructuredBuffer<float4> gSum : register(u0);
 
-[numthreads(64, 1, 1)]
+[numthreads(HAIRLOOM_LIST_GROUP, 1, 1)]
 void main(uint3 id : SV_DispatchThreadID) {
-    const uint pixel = id.x + id.y * gResolve.size.y;
-    if (id.x >= gResolve.size.y || pixel >= gResolve.size.x) return;
-    const uint samples = gResolve.size.z;
+    const uint pixel = id.x + id.y * gResolve.rowThreads;
+    if (id.x >= gResolve.rowThreads || pixel >= gResolve.pixels) return;
+    const uint samples = gResolve.samples;
     float4 mean = 0;
     for (uint s = 0; s < samples; ++s) {
         const uint at = pixel * samples + s;
@@ -19,5 +19,5 @@ void main(uint3 id : SV_DispatchThreadID) {
         mean += nothing ? gResolve.background : float4(unpackLight(gLight[at]), 1);
     }
     mean /= float(samples);
-    gSum[pixel] = gResolve.size.w != 0u ? mean : gSum[pixel] + mean;
+    gSum[pixel] = gResolve.sumBegins != 0u ? mean : gSum[pixel] + mean;
 }

@@ -13,8 +13,8 @@ RibbonCorner ribbonCorner(ViewConstants view, CurvePoint p, bool second) {
     const float3 toEye = view.eye_ws.xyz - centre_ws * view.eye_ws.w;
     const float3 across = cross(unpackUnit(p.tangentXy), toEye);
     const float3 side = across * rsqrt(max(dot(across, across), 1e-20));
-    const float pixelSize = view.pixel.x * (view.eye_ws.w > 0 ? length(toEye) : 1.0);
-    const float radius = max(p.position_ws.w, 0.5 * view.pixel.y * pixelSize);
+    const float pixelSize = view.pixelSize * (view.eye_ws.w > 0 ? length(toEye) : 1.0);
+    const float radius = max(p.position_ws.w, 0.5 * view.minWidth * pixelSize);
     RibbonCorner corner;
     corner.position = mul(view.clipFromWorld, float4(centre_ws + side * (second ? radius : -radius), 1));
     // A hair thinner than the least width keeps its share of light by being as transparent as it is too wide.

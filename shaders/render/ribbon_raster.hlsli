@@ -57,7 +57,7 @@ void visitPixels(RibbonPiece piece, float2 a0, float2 a1, float2 b0, float2 b1) 
     const float run = steep ? d.y : d.x;
     const float slope = abs(run) > 1e-6 ? (steep ? d.x : d.y) / run : 0.0;
     const float halfWidth = 0.5 * max(length(a1 - a0), length(b1 - b0));
-    const float reach = gRaster.reach.x;
+    const float reach = gRaster.sampleReach;
     const float across = halfWidth * sqrt(1.0 + slope * slope) + reach * abs(slope);
     const float2 start = steep ? a.yx : a;
     const int2 low = int2(gRaster.window.xy) - piece.origin;
@@ -74,10 +74,10 @@ void visitPixels(RibbonPiece piece, float2 a0, float2 a1, float2 b0, float2 b1) 
     }
 }
 
-[numthreads(64, 1, 1)]
+[numthreads(HAIRLOOM_LIST_GROUP, 1, 1)]
 void main(uint3 id : SV_DispatchThreadID) {
-    const uint index = id.x + id.y * gRaster.numbers.y;
-    if (id.x >= gRaster.numbers.y || index + 1u >= gRaster.numbers.x) return;
+    const uint index = id.x + id.y * gRaster.rowLength;
+    if (id.x >= gRaster.rowLength || index + 1u >= gRaster.count) return;
     const CurvePoint p = gCurve[index];
     const CurvePoint q = gCurve[index + 1u];
     if (p.strand != q.strand) return;

@@ -22,7 +22,7 @@ float3 tilt(float3 tangent, float3 toView, float amount) {
     return normalize(tangent + normal * (amount * rsqrt(max(dot(normal, normal), 1e-8))));
 }
 
-[numthreads(64, 1, 1)]
+[numthreads(HAIRLOOM_LIST_GROUP, 1, 1)]
 void main(uint3 id : SV_DispatchThreadID) {
     const uint index = id.x + id.y * gShade.rowThreads;
     if (id.x >= gShade.rowThreads || index >= gShade.count) return;
@@ -50,7 +50,7 @@ void main(uint3 id : SV_DispatchThreadID) {
         const LightConstants light = gShade.lights[i];
         const float3 toLight = directionToLight(light, p.position_ws.xyz);
         const Occlusion shadow =
-            shadowOf(light, occlusion(light, p.position_ws.xyz, 0.0007, 0.004, light.filtering.z));
+            shadowOf(light, occlusion(light, p.position_ws.xyz, 0.0007, 0.004, light.headAbsorption));
         const float3 direct = pow(passed, shadow.fibres) * shadow.visibility;
         const float3 scattered = pow(passed, 0.5 * shadow.fibres) * lerp(0.15, 1.0, shadow.visibility);
         const float diffuse = kajiyaDiffuse(tangent, toLight);

@@ -24,7 +24,7 @@ StructuredBuffer<StrandHeader> gStrands : register(t1);
 StructuredBuffer<SkyPoint> gSeen : register(t3);
 RWStructuredBuffer<float4> gColour : register(u0);
 
-[numthreads(64, 1, 1)]
+[numthreads(HAIRLOOM_LIST_GROUP, 1, 1)]
 void main(uint3 id : SV_DispatchThreadID) {
     const uint index = id.x + id.y * gShade.rowThreads;
     if (id.x >= gShade.rowThreads || index >= gShade.count) return;
@@ -47,7 +47,7 @@ void main(uint3 id : SV_DispatchThreadID) {
     for (uint i = 0; i < gShade.lightCount; ++i) {
         const LightConstants light = gShade.lights[i];
         const float3 toLight = directionToLight(light, p.position_ws.xyz);
-        const Occlusion o = occlusion(light, p.position_ws.xyz, 0.0007, 0.004, light.filtering.z);
+        const Occlusion o = occlusion(light, p.position_ws.xyz, 0.0007, 0.004, light.headAbsorption);
         const Occlusion shadow = shadowOf(light, o);
         const FibreFrame f = fibreFrame(tangent, toLight, toView);
         float3 scattered = passedDirectly(light, shadow.fibres, gFibre.clumping) *

@@ -11,34 +11,34 @@ StructuredBuffer<float4> gHalfway : register(t2);   // of each pixel both, blurr
 RWStructuredBuffer<float4> gResult : register(u0);
 
 float4 shadowedAt(uint pixel) {
-    if (gBlur.size.z == 0u) return gShadowed[pixel];
+    if (gBlur.alongColumns == 0u) return gShadowed[pixel];
     return gHalfway[2u * pixel];
 }
 
 float4 litAt(uint pixel) {
-    if (gBlur.size.z == 0u) return gLit[pixel];
+    if (gBlur.alongColumns == 0u) return gLit[pixel];
     return gHalfway[2u * pixel + 1u];
 }
 
-[numthreads(8, 8, 1)]
+[numthreads(HAIRLOOM_TILE_GROUP, HAIRLOOM_TILE_GROUP, 1)]
 void main(uint3 id : SV_DispatchThreadID) {
-    if (any(id.xy >= gBlur.size.xy)) return;
-    const bool alongRow = gBlur.size.z == 0u;
-    const int reach = int(gBlur.size.w);
-    const int last = int(alongRow ? gBlur.size.x : gBlur.size.y) - 1;
+    if (any(id.xy >= uint2(gBlur.width, gBlur.height))) return;
+    const bool alongRow = gBlur.alongColumns == 0u;
+    const int reach = int(gBlur.reach);
+    const int last = int(alongRow ? gBlur.width : gBlur.height) - 1;
     const int here = int(alongRow ? id.x : id.y);
-    const uint step = alongRow ? 1u : gBlur.size.x;
-    const uint start = alongRow ? id.y * gBlur.size.x : id.x;
+    const uint step = alongRow ? 1u : gBlur.width;
+    const uint start = alongRow ? id.y * gBlur.width : id.x;
     float4 shadowed = 0;
     float4 lit = 0;
     for (int k = max(here - reach, 0); k <= min(here + reach, last); ++k) {
         const float away = float(k - here);
-        const float weight = exp(away * away * gBlur.kernel.x);
+        const float weight = exp(away * away * gBlur.falloff);
         const uint pixel = start + uint(k) * step;
         shadowed += weight * shadowedAt(pixel);
         lit += weight * litAt(pixel);
     }
-    const uint pixel = id.y * gBlur.size.x + id.x;
+    const uint pixel = id.y * gBlur.width + id.x;
     if (alongRow) {
         gResult[2u * pixel] = shadowed;
         gResult[2u * pixel + 1u] = lit;

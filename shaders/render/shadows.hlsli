@@ -21,7 +21,7 @@ struct Occlusion {
 
 // What a light of its own shadows: nothing where shadows are left out. Light from around is still kept off.
 Occlusion shadowOf(LightConstants light, Occlusion o) {
-    if (light.filtering.w == 0.0) return o;
+    if (light.withoutShadows == 0.0) return o;
     o.fibres = 0.0;
     o.visibility = 1.0;
     return o;
@@ -31,24 +31,24 @@ Occlusion shadowOf(LightConstants light, Occlusion o) {
 // by chance, for hair grows in clumps, and more of it passes than of their mean: `clumping` of them count. The finer the
 // texels, the more of this the map resolves itself, down to single fibres, which let nothing through at all.
 float passedDirectly(LightConstants light, float fibres, float clumping) {
-    return exp(-(clumping + light.filtering.x) * fibres);
+    return exp(-(clumping + light.resolvedClumping) * fibres);
 }
 
 // Fibres in front of a depth, as one texel of a map tells; `bias` metres of them are left out.
 float fibresAt(LightConstants light, uint texel, float depth, float bias) {
-    const uint mode = uint(light.range.y);
+    const uint mode = uint(light.shadows);
     if (mode == HAIRLOOM_SHADOWS_ABSORPTION) {
         // Dachsbacher and Stamminger 2003 for hair: evenly spread, up to as many as there are from side to side.
-        const float behind = depth - metresBehindNear(light.range, asfloat(gFirstHair[texel])) - bias;
+        const float behind = depth - metresBehindNear(light.depthRange, light.nearPlane, asfloat(gFirstHair[texel])) - bias;
         return light.layers.y * (1.0 - exp(-max(behind, 0.0) * light.layers.x / max(light.layers.y, 1e-6)));
     }
     const float4 layers = unpackShares(uint2(gOpacity[2u * texel], gOpacity[2u * texel + 1u]));
     if (mode == HAIRLOOM_SHADOWS_OPACITY_MAPS) {
         const float4 begins = float4(0, light.layers.xyz);
-        const float4 part = saturate((depth - bias - light.range.w - begins) / (light.layers - begins));
+        const float4 part = saturate((depth - bias - light.hairBegins - begins) / (light.layers - begins));
         return dot(layers, part) / OPACITY_UNIT;
     }
-    return fibresInLayers(layers, light.layers.xyz, depth - bias - (1.0 - layers.a) * light.range.x);
+    return fibresInLayers(layers, light.layers.xyz, depth - bias - (1.0 - layers.a) * light.depthRange);
 }
 
 // What the head leaves of the light at `behind` metres behind its first surface: all or nothing, or with `absorption` as
@@ -67,18 +67,18 @@ Occlusion occlusion(LightConstants light, float3 position_ws, float hairBias, fl
     result.ends = 0;
     result.ground = 0;
     const float4 clip = mul(light.clipFromWorld, float4(position_ws, 1));
-    const bool hair = light.range.y > 0;
-    const bool head = light.tile.z > 0;
+    const bool hair = light.shadows > 0;
+    const bool head = light.headCasts > 0;
     if (!(hair || head) || clip.w <= 0) return result;
     const float2 uv = float2(0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w);
     if (any(uv < 0.0) || any(uv > 1.0)) return result;
-    const int size = int(light.tile.y);
+    const int size = int(light.tileSize);
     // A quadratic B-spline over 3 x 3 texels of finished comparisons, from `base` on: its mean is half a texel further
     // than base + f, and so are the middles of texels.
-    const float2 place = uv * light.tile.y - 1.0;
+    const float2 place = uv * light.tileSize - 1.0;
     const int2 base = int2(floor(place));
     const float2 f = place - float2(base);
-    const float depth = metresBehindNear(light.range, clip.z / clip.w);
+    const float depth = metresBehindNear(light.depthRange, light.nearPlane, clip.z / clip.w);
     const float3 wx = float3(0.5 * (1 - f.x) * (1 - f.x), 0.5 + f.x * (1 - f.x), 0.5 * f.x * f.x);
     const float3 wy = float3(0.5 * (1 - f.y) * (1 - f.y), 0.5 + f.y * (1 - f.y), 0.5 * f.y * f.y);
     float fibres = 0;
@@ -90,17 +90,17 @@ Occlusion occlusion(LightConstants light, float3 position_ws, float hairBias, fl
     for (int y = 0; y < 3; ++y) {
         for (int x = 0; x < 3; ++x) {
             const int2 at = clamp(base + int2(x, y), int2(0, 0), int2(size - 1, size - 1));
-            const int3 where = int3(at.x + int(light.tile.x), at.y, 0);
-            const uint texel = uint(at.y) * uint(light.tile.w) + uint(where.x);
+            const int3 where = int3(at.x + int(light.tileLeft), at.y, 0);
+            const uint texel = uint(at.y) * uint(light.atlasWidth) + uint(where.x);
             const float w = wx[x] * wy[y];
-            const float headDepth = metresBehindNear(light.range, head ? gHeadDepth.Load(where) : 1.0);
+            const float headDepth = metresBehindNear(light.depthRange, light.nearPlane, head ? gHeadDepth.Load(where) : 1.0);
             if (hair) {
                 fibres += w * fibresAt(light, texel, depth, hairBias);
                 all += w * fibresAt(light, texel, headDepth, 0);
             }
             if (head) {
                 visible += w * throughHead(depth - headDepth - headBias, headAbsorption);
-                ends += w * (headDepth < light.range.x ? 1.0 : 0.0);
+                ends += w * (headDepth < light.depthRange ? 1.0 : 0.0);
                 behind += w * max(headDepth - depth, 0.0);
                 rise += float2(x - 1, y - 1) * (headDepth / 6.0);
             }
@@ -110,7 +110,7 @@ Occlusion occlusion(LightConstants light, float3 position_ws, float hairBias, fl
     result.allFibres = max(all, fibres);
     result.visibility = head ? visible : 1.0;
     // A slope gets less light on its area; and from afar the lit skin is a smaller part of what lies around.
-    const float texelSize = light.filtering.y;
+    const float texelSize = light.texelSize;
     const float facing = texelSize * rsqrt(texelSize * texelSize + dot(rise, rise));
     result.ends = ends;
     result.ground = ends * facing * kSkinPatch * kSkinPatch / (kSkinPatch * kSkinPatch + behind * behind);

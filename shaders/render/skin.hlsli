@@ -40,9 +40,9 @@ float3 skyOnSkin(ShadeConstants shade, float3 position_ws, float3 normal, float3
         const float3 d = map.toLight_ws.xyz;
         const float nl = dot(normal, d);
         if (nl <= 0.0) continue;
-        const float lift = map.filtering.y;
+        const float lift = map.texelSize;
         const SkyRay ray = skyRay(map, position_ws + normal * lift, -lift * nl, lift);
-        const float3 through = exp(-(shade.clumping + map.filtering.x) * ray.before * stopping);
+        const float3 through = exp(-(shade.clumping + map.resolvedClumping) * ray.before * stopping);
         const float3 light = nl * environmentFrom(shade, d);
         all += light;
         passed += light * ray.open * through;
@@ -68,12 +68,12 @@ float3 skinLight(ShadeConstants shade, MeshConstants mesh, float3 position_ws, f
         const Occlusion shadow =
             shadowOf(light, occlusion(light, position_ws + normal * lift, -lift * saturate(nl), 0.002, 0.0));
         // Red light travels farther under the skin. The denominator keeps the energy of a Lambertian.
-        const float3 wrap = mesh.skin.x * float3(1, 0.5, 0.35);
+        const float3 wrap = mesh.wrap * float3(1, 0.5, 0.35);
         const float3 diffuse = saturate((nl + wrap) / ((1 + wrap) * (1 + wrap)));
         const float3 middle = normalize(toLight + toView);
         const float fresnel = 0.04 + 0.96 * pow(1.0 - saturate(dot(toView, middle)), 5.0);
-        const float m = mesh.skin.z;
-        const float specular = mesh.skin.y * fresnel * (m + 8.0) / (8.0 * kPi) *
+        const float m = mesh.specularExponent;
+        const float specular = mesh.specular * fresnel * (m + 8.0) / (8.0 * kPi) *
                                pow(saturate(dot(normal, middle)), m) * saturate(nl);
         const float lit = lerp(0.0, shadow.visibility, saturate(nl * 8.0 + 0.6));
         colour += irradianceOf(light, position_ws) * (albedo / kPi * diffuse + specular) *

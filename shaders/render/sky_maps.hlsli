@@ -34,7 +34,7 @@ SkyRay skyRay(LightConstants map, float3 position_ws, float hairBias, float head
     ray.beyond = 0;
     ray.ends = 0;
     const float4 clip = mul(map.clipFromWorld, float4(position_ws, 1));
-    const float size = map.tile.y;
+    const float size = map.tileSize;
     const float2 place = float2(0.5 + 0.5 * clip.x, 0.5 - 0.5 * clip.y) * size - 0.5;
     // Towards the edge of what the map shows the sky opens.
     const float2 inside = min(place, size - 1.0 - place);
@@ -42,26 +42,26 @@ SkyRay skyRay(LightConstants map, float3 position_ws, float hairBias, float head
     if (known <= 0.0) return ray;
     const int2 base = int2(floor(place));
     const float2 f = place - float2(base);
-    const float depth = metresBehindNear(map.range, clip.z);
-    const bool hair = map.range.y > 0.0;
-    const bool head = map.tile.z > 0.0;
+    const float depth = metresBehindNear(map.depthRange, map.nearPlane, clip.z);
+    const bool hair = map.shadows > 0.0;
+    const bool head = map.headCasts > 0.0;
     float open = 0;
     float all = 0;
     [unroll] for (int y = 0; y < 2; ++y) {
         [unroll] for (int x = 0; x < 2; ++x) {
             const int2 at = base + int2(x, y);
             const float w = (x == 0 ? 1.0 - f.x : f.x) * (y == 0 ? 1.0 - f.y : f.y);
-            const int column = at.x + int(map.tile.x);
-            float headDepth = map.range.x;
-            if (head) headDepth = metresBehindNear(map.range, gSkyHead.Load(int3(column, at.y, 0)));
+            const int column = at.x + int(map.tileLeft);
+            float headDepth = map.depthRange;
+            if (head) headDepth = metresBehindNear(map.depthRange, map.nearPlane, gSkyHead.Load(int3(column, at.y, 0)));
             if (hair) {
-                const uint texel = 2u * (uint(at.y) * uint(map.tile.w) + uint(column));
+                const uint texel = 2u * (uint(at.y) * uint(map.atlasWidth) + uint(column));
                 const float4 layers = unpackShares(uint2(gSkyLayers[texel], gSkyLayers[texel + 1u]));
-                const float first = (1.0 - layers.a) * map.range.x;
+                const float first = (1.0 - layers.a) * map.depthRange;
                 ray.before += w * fibresInLayers(layers, map.layers.xyz, depth - hairBias - first);
                 all += w * fibresInLayers(layers, map.layers.xyz, headDepth - first);
             }
-            const float ends = headDepth < map.range.x ? 1.0 : 0.0;
+            const float ends = headDepth < map.depthRange ? 1.0 : 0.0;
             open += w * lerp(1.0, openBehind(depth - headDepth - headBias), ends);
             ray.ends += w * ends;
         }
@@ -147,8 +147,8 @@ SkyPoint skySeen(ShadeConstants shade, float3 position_ws) {
     SkyShares halved = noShares();
     for (uint i = 0; i < HAIRLOOM_SKY_MAPS; ++i) {
         const LightConstants map = gSkyMaps.maps[i];
-        const SkyRay ray = skyRay(map, position_ws, 0.0007, 0.002 + 2.0 * map.filtering.y);
-        const float stopping = shade.clumping + map.filtering.x;
+        const SkyRay ray = skyRay(map, position_ws, 0.0007, 0.002 + 2.0 * map.texelSize);
+        const float stopping = shade.clumping + map.resolvedClumping;
         addRay(whole, ray, map.toLight_ws.xyz, stopping);
         addRay(halved, ray, map.toLight_ws.xyz, 0.5 * stopping);
     }

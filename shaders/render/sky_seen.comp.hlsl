@@ -2,19 +2,17 @@
 // How much of the sky and of the head the points of strands see. Neither lights nor the camera change it.
 #include "shaders/render/sky_maps.hlsli"
 
-#define EACH 16u  // so many threads share a strand
-
 cbuffer Constants : register(b0) { ShadeConstants gShade; };
 StructuredBuffer<CurvePoint> gCurve : register(t0);
 StructuredBuffer<StrandHeader> gStrands : register(t1);
 RWStructuredBuffer<SkyPoint> gSeen : register(u0);
 
-[numthreads(64, 1, 1)]
+[numthreads(HAIRLOOM_LIST_GROUP, 1, 1)]
 void main(uint3 id : SV_DispatchThreadID) {
     if (id.x >= gShade.count) return;
     const StrandHeader strand = gStrands[id.x];
     const uint curve = strand.segmentsBefore * gShade.subdivisions + id.x;
-    for (uint i = id.y; i < strand.pointCount; i += EACH) {
+    for (uint i = id.y; i < strand.pointCount; i += HAIRLOOM_SKY_THREADS_OF_STRAND) {
         const float3 position_ws = gCurve[curve + i * gShade.subdivisions].position_ws.xyz;
         gSeen[strand.segmentsBefore + id.x + i] = skySeen(gShade, position_ws);
     }

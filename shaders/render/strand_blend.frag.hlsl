@@ -20,7 +20,7 @@ static const float kHalvings = 26.0;  // over the depth of the hair; half floats
 
 Output main(Input i) {
     const float alpha = saturate(i.coverage.x);
-    const float behind = saturate((i.coverage.y - gView.range.x) / max(gView.range.y, 1e-6));
+    const float behind = saturate((i.coverage.y - gView.hairBegins) / max(gView.hairDepth, 1e-6));
     const float weight = alpha * exp2(kHalvings * (0.45 - behind));
     Output o;
     o.sum = float4(i.colour * weight, weight);

@@ -23,13 +23,13 @@ PatchFactors factors(InputPatch<ControlPoint, POINTS> points) {
     for (uint i = 0; i <= segments; ++i) {
         const float2 here = onScreen(points[first + i].position_ws.xyz, w);
         behind = behind || w <= 0;
-        pixels += length((here - before) * 0.5 * gPatch.view.xy);
+        pixels += length((here - before) * 0.5 * float2(gPatch.width, gPatch.height));
         minimum = min(minimum, here);
         maximum = max(maximum, here);
         before = here;
     }
     // A whole number of pieces a segment, so that the curve's points stay corners.
-    const float pieces = clamp(ceil(pixels / (float(segments) * gPatch.view.z)), 1.0, floor(64.0 / float(segments)));
+    const float pieces = clamp(ceil(pixels / (float(segments) * gPatch.pieceLength)), 1.0, floor(64.0 / float(segments)));
     const bool seen = behind || (all(maximum > -1.1) && all(minimum < 1.1));
     PatchFactors o;
     const float along = seen ? float(segments) * max(pieces, 1.0) : 0.0;

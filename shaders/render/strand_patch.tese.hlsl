@@ -43,8 +43,8 @@ Output main(PatchFactors factors, float2 place : SV_DomainLocation,
     p.opacity = lerp(points[a].tangent.w, points[a + 1u].tangent.w, t);
     const RibbonCorner corner = ribbonCorner(gView, p, place.y > 0.5);
     // Light was worked out at the points of the strip's curve.
-    const float at = x * float(gPatch.numbers.y);
-    const uint before = min(uint(at), patch.z * gPatch.numbers.y - 1u);
+    const float at = x * float(gPatch.subdivisions);
+    const uint before = min(uint(at), patch.z * gPatch.subdivisions - 1u);
     Output o;
     o.position = corner.position;
     o.colour = lerp(gColour[patch.y + before].rgb, gColour[patch.y + before + 1u].rgb, at - float(before));

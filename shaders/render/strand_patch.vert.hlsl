@@ -7,9 +7,9 @@ StructuredBuffer<StrandHeader> gStrands : register(t2);
 StructuredBuffer<StrandPatch> gPatches : register(t3);
 
 ControlPoint main(uint id : SV_VertexID) {
-    const StrandPatch patch = gPatches[gPatch.numbers.x + id / POINTS];
+    const StrandPatch patch = gPatches[gPatch.firstPatch + id / POINTS];
     const uint k = min(id % POINTS, patch.pointCount - 1u);
-    const uint subdivisions = gPatch.numbers.y;
+    const uint subdivisions = gPatch.subdivisions;
     const uint root = gStrands[patch.strand].segmentsBefore * subdivisions + patch.strand;
     const uint skipped = patch.firstPoint > 0u ? 1u : 0u;
     ControlPoint o;

@@ -11,7 +11,7 @@ void visitPixel(RibbonPiece piece, int2 pixel) {
     const float2 middle = fromOrigin(piece, pixel);
     const float coverage = lerp(piece.coverage.x, piece.coverage.y, alongPiece(piece, middle));
     const uint mask = sampleMask(gView, coverage, uint2(pixel), piece.strand);
-    const uint samples = gRaster.samples.x;
+    const uint samples = gRaster.samples;
     const uint base = pixelIndex(pixel) * samples;
     for (uint s = 0; s < samples && (mask >> s) != 0u; ++s) {
         if (((mask >> s) & 1u) == 0u) continue;
@@ -19,7 +19,7 @@ void visitPixel(RibbonPiece piece, int2 pixel) {
         const float depth = lerp(piece.depth.x, piece.depth.y, t);
         if (t < 0.0 || depth < 0.0) continue;
         const uint bits = asuint(depth);
-        if (gRaster.numbers.w == HAIRLOOM_PHASE_NEAREST) {
+        if (gRaster.phase == HAIRLOOM_PHASE_NEAREST) {
             if (bits < gNearest[base + s]) InterlockedMin(gNearest[base + s], bits);
         } else if (bits == gNearest[base + s]) {
             const float3 light = lerp(gColour[piece.first].rgb, gColour[piece.first + 1u].rgb, t);

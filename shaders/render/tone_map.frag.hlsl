@@ -7,7 +7,7 @@ cbuffer Constants : register(b0) { ToneConstants gTone; };
 StructuredBuffer<float4> gSum : register(t0);
 
 float4 main(float4 position : SV_Position) : SV_Target0 {
-    const float4 average = gSum[uint(position.y) * uint(gTone.exposure.w) + uint(position.x)] * gTone.exposure.y;
-    const float3 shown = toneCurve(average.rgb * gTone.exposure.x);
-    return float4(gTone.exposure.z > 0 ? encodeSrgb(shown) : shown, saturate(average.a));
+    const float4 average = gSum[uint(position.y) * uint(gTone.width) + uint(position.x)] * gTone.frameShare;
+    const float3 shown = toneCurve(average.rgb * gTone.exposure);
+    return float4(gTone.encodesSrgb > 0 ? encodeSrgb(shown) : shown, saturate(average.a));
 }

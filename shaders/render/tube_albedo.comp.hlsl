@@ -11,7 +11,7 @@ StructuredBuffer<CurvePoint> gCurve : register(t0);
 StructuredBuffer<StrandHeader> gStrands : register(t1);
 RWStructuredBuffer<float4> gColour : register(u0);
 
-[numthreads(64, 1, 1)]
+[numthreads(HAIRLOOM_LIST_GROUP, 1, 1)]
 void main(uint3 id : SV_DispatchThreadID) {
     const uint index = id.x + id.y * gShade.rowThreads;
     if (id.x >= gShade.rowThreads || index >= gShade.count) return;

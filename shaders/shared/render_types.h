@@ -3,6 +3,7 @@
 #ifndef HAIRLOOM_SHARED_RENDER_TYPES_H
 #define HAIRLOOM_SHARED_RENDER_TYPES_H
 #include "runtime/shaders/types.h"
+#include "shaders/shared/group_sizes.h"
 #ifdef __cplusplus
 namespace hairloom::shaders {
 #define HAIRLOOM_OFFSET(type, member, offset) static_assert(offsetof(type, member) == (offset))
@@ -11,6 +12,7 @@ namespace hairloom::shaders {
 #endif
 
 #define HAIRLOOM_MAX_LIGHTS 3
+
 // Directions that the sky is seen from: the corners of an icosahedron, each with the one across from it.
 #define HAIRLOOM_SKY_MAPS 12
 
@@ -76,35 +78,52 @@ struct CurveConstants {
 };
 
 struct PatchConstants {
-    uint4 numbers;  // x: first patch, y: curve segments per given segment
-    float4 view;    // x, y: size in pixels, z: pixels that a piece of a ribbon may be long
+    uint firstPatch;
+    uint subdivisions;  // curve segments per given segment
+    uint unused0, unused1;
+    float width;  // of the view in pixels
+    float height;
+    float pieceLength;  // pixels that a piece of a ribbon may be long
+    float unused2;
 };
 
 // Projection of strands or mesh, for the camera or for a light.
 struct ViewConstants {
     float4x4 clipFromWorld;
-    float4 eye_ws;   // w = 1: position of a perspective eye; w = 0: direction towards an orthographic one
-    float4 pixel;    // x: world size of a pixel at distance 1 (w = 1) or anywhere (w = 0); y: least width in
-                     // pixels; z, of a light: fibres that each of them stands for
-    uint4 sampling;  // x: samples a pixel, y: frame number, z: HAIRLOOM_TRANSPARENCY_*, w: HAIRLOOM_SHADOWS_*
-    float4 layers;   // of a light: see LightConstants
-    float4 range;    // of a light: see LightConstants; of the camera: x: where hair begins, y: its depth, in
-                     // metres or as RibbonCorner::depth has it
+    float4 eye_ws;    // w = 1: position of a perspective eye; w = 0: direction towards an orthographic one
+    float pixelSize;  // metres, at distance 1 (eye_ws.w = 1) or anywhere (0)
+    float minWidth;   // pixels
+    float fibresForEach;  // of a light: fibres that each of them stands for
+    float unused0;
+    uint samples;       // in a pixel
+    uint frame;         // its number
+    uint transparency;  // HAIRLOOM_TRANSPARENCY_*
+    uint shadows;       // HAIRLOOM_SHADOWS_*
+    float4 layers;      // of a light: see LightConstants
+    float depthRange;   // of a light: see LightConstants
+    float nearPlane;    // of a light
+    float hairBegins;   // of a light: see there; of the camera: in metres, or as RibbonCorner::depth has it
+    float hairDepth;    // of the camera: from where hair begins to its end, in the same unit
 };
 
 struct LightConstants {
     float4x4 clipFromWorld;
     float4 toLight_ws;  // w = 0: unit direction; w = 1: place of a point light
     float4 irradiance;  // linear RGB, perpendicular to the light; of a point light at 1 m
-    float4 tile;    // x: left edge of the light's square in the atlas, y: its size, in pixels; z: 1 where the
-                    // head casts shadows; w: pixels in a row of the atlas
-    float4 range;   // x: depth range of the frustum in metres, y: HAIRLOOM_SHADOWS_*, z: near plane of a
-                    // perspective view, 0 for an orthographic one; w: where hair begins, metres behind it
-    float4 layers;  // ends of the opacity layers in metres behind the first hair, or behind where hair
-                    // begins; absorption: x: fibres a metre, y: most fibres
-    float4 filtering;  // x: by how much more fibres stop light than over a beam of 5 mm, y: metres of a
-                       // texel, z: absorption of hair behind the head, 1/m, 0: a test of depth; w: 1: shadows
-                       // are left out
+    float tileLeft;     // left edge of the light's square in the atlas, pixels
+    float tileSize;     // of the square, pixels
+    float headCasts;    // 1 where the head casts shadows
+    float atlasWidth;   // pixels
+    float depthRange;   // of the frustum, metres
+    float shadows;      // HAIRLOOM_SHADOWS_*
+    float nearPlane;    // of a perspective view, metres; 0 for an orthographic one
+    float hairBegins;   // metres behind the near plane
+    float4 layers;      // ends of the opacity layers in metres behind the first hair, or behind where hair
+                        // begins; absorption: x: fibres a metre, y: most fibres
+    float resolvedClumping;  // by how much more fibres stop light than over a beam of 5 mm
+    float texelSize;         // metres
+    float headAbsorption;    // of hair behind the head, 1/m; 0: a test of depth
+    float withoutShadows;    // 1: shadows of the light itself are left out
 };
 
 // Deep opacity maps of hair and depth maps of the head, as the sky sees them.
@@ -193,60 +212,94 @@ struct LookConstants {
 // Where compute kernels that rasterise put what they find.
 #define HAIRLOOM_MAX_SAMPLES 8
 struct RasterConstants {
-    float4 window;  // x, y: upper left corner of what is drawn, in pixels of the buffer, z, w: its size
-    uint4 numbers;  // x: curve points, or triangles; y: row length of the dispatch, in threads (of triangles:
-                    // in groups); z: pixels in a row of the buffer; w: HAIRLOOM_PHASE_*
-    uint4 samples;  // x: in a pixel, y: opacity layers, z: slices that a triangle is cut into
-    float4 reach;   // x: farthest that a sample lies from the middle of its pixel along x or y, in pixels
+    float4 window;     // xy: upper left corner of what is drawn, in pixels of the buffer; zw: its size
+    uint count;        // curve points, or triangles
+    uint rowLength;    // of the dispatch, in threads; of triangles in groups
+    uint bufferWidth;  // pixels
+    uint phase;        // HAIRLOOM_PHASE_*
+    uint samples;      // in a pixel
+    uint layers;       // of opacity
+    uint slices;       // that a triangle is cut into
+    uint unused0;
+    float sampleReach;  // farthest that a sample lies from the middle of its pixel along x or y, pixels
+    float unused1, unused2, unused3;
     float4 places[HAIRLOOM_MAX_SAMPLES / 2];  // of the samples from the middle, in pixels, two in each
 };
 #define HAIRLOOM_PHASE_NEAREST 0
 #define HAIRLOOM_PHASE_LIGHT 1
 
 struct FillConstants {
-    uint4 numbers;  // x: value, y: elements, z: row length of the dispatch
+    uint value;
+    uint elements;
+    uint rowThreads;  // of the dispatch
+    uint unused0;
 };
 
 // From samples to pixels.
 struct ResolveConstants {
-    uint4 size;         // x: pixels, y: row length of the dispatch, z: samples a pixel, w: 1: the sum begins
+    uint pixels;
+    uint rowThreads;    // of the dispatch
+    uint samples;       // in a pixel
+    uint sumBegins;     // 1: with this frame
     float4 background;  // linear RGB and coverage
 };
 
 // From counted fibres to a light's square of the opacity map.
 struct PackConstants {
-    uint4 size;  // x: pixels along a side of the square, y: left edge in the atlas, z: pixels in a row of it
-                 // w: HAIRLOOM_SHADOWS_*
-    float4 range;  // see LightConstants
+    uint side;         // of the square, pixels
+    uint tileLeft;     // its left edge in the atlas, pixels
+    uint atlasWidth;   // pixels
+    uint shadows;      // HAIRLOOM_SHADOWS_*
+    float depthRange;  // see LightConstants
+    float nearPlane;
+    float unused0, unused1;
 };
 
 struct MeshConstants {
     float4x4 clipFromWorld;
-    float4 skin;  // x: wrap, y: specular strength, z: specular exponent
+    float wrap;      // share of the half turned away that light reaches
+    float specular;  // strength
+    float specularExponent;
+    float unused0;
 };
 
 struct ToneConstants {
-    float4 exposure;  // x: factor on the light, y: on the sum of frames, z: 1 when the shader encodes sRGB
-                      // itself, w: pixels in a row
+    float exposure;     // factor on the light
+    float frameShare;   // factor on the sum of frames
+    float encodesSrgb;  // 1 when the shader does so itself
+    float width;        // pixels in a row
 };
 
 // Shadows blurred on the screen, along rows first.
 struct BlurConstants {
-    uint4 size;     // x, y: of the picture in pixels, z: 0 along rows, 1 along columns, w: reach in pixels
-    float4 kernel;  // x: -1 by twice the variance
+    uint width;  // of the picture, pixels
+    uint height;
+    uint alongColumns;  // 0 along rows
+    uint reach;         // pixels
+    float falloff;      // -1 by twice the variance, 1/pixel^2
+    float unused0, unused1, unused2;
 };
 
 struct FilterConstants {
-    float4 size;    // x, y: of the picture in pixels, z, w: one by them
-    float4 output;  // x: 1 when colours stay sRGB, y: 1 for the long search
+    float width;  // of the picture, pixels
+    float height;
+    float texelWidth;  // one by them
+    float texelHeight;
+    float keepsSrgb;   // 1 when colours stay sRGB
+    float longSearch;  // 1 for the long search
+    float unused0, unused1;
 };
 
 // Marks over the picture: OverlayShape says what `shape` means.
 struct OverlayConstants {
     float4x4 clipFromWorld;
-    float4
-        viewport;  // x, y: size in pixels, z: 1 when colours stay sRGB, w: half the size of a mark in pixels
-    uint4 shape;   // x: 0 points, 1 lines, 2 triangles; y: first vertex
+    float width;  // of the view, pixels
+    float height;
+    float keepsSrgb;   // 1 when colours stay sRGB
+    float markRadius;  // half the size of a mark, pixels
+    uint shape;        // 0 points, 1 lines, 2 triangles
+    uint firstVertex;
+    uint unused0, unused1;
 };
 
 struct OverlayVertex {
@@ -296,13 +349,13 @@ static_assert(sizeof(StrandPatch) == 16);
 static_assert(sizeof(PatchConstants) == 32);
 static_assert(sizeof(CurveConstants) == 64);
 HAIRLOOM_OFFSET(ViewConstants, eye_ws, 64);
-HAIRLOOM_OFFSET(ViewConstants, pixel, 80);
-HAIRLOOM_OFFSET(ViewConstants, sampling, 96);
+HAIRLOOM_OFFSET(ViewConstants, pixelSize, 80);
+HAIRLOOM_OFFSET(ViewConstants, samples, 96);
 HAIRLOOM_OFFSET(ViewConstants, layers, 112);
-HAIRLOOM_OFFSET(ViewConstants, range, 128);
+HAIRLOOM_OFFSET(ViewConstants, depthRange, 128);
 static_assert(sizeof(ViewConstants) == 144);
 HAIRLOOM_OFFSET(LightConstants, toLight_ws, 64);
-HAIRLOOM_OFFSET(LightConstants, range, 112);
+HAIRLOOM_OFFSET(LightConstants, depthRange, 112);
 HAIRLOOM_OFFSET(LightConstants, layers, 128);
 static_assert(sizeof(LightConstants) == 160);
 static_assert(sizeof(SkyConstants) == 160 * HAIRLOOM_SKY_MAPS);

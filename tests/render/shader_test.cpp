@@ -260,7 +260,10 @@ TEST_F(ShaderTest, SharedLayoutsAgree) {
     shade.rowThreads = 11;
     shade.subdivisions = 12;
     shade.lights[1].irradiance = {13, 14, 15, 16};
-    shade.lights[2].range = {17, 18, 19, 20};
+    shade.lights[2].depthRange = 17;
+    shade.lights[2].shadows = 18;
+    shade.lights[2].nearPlane = 19;
+    shade.lights[2].hairBegins = 20;
     for (int i = 0; i < 4; ++i) shade.lights[1].clipFromWorld.m[12 + i] = static_cast<float>(21 + i);
     std::vector<shaders::StrandHeader> strands(2);
     strands[1] = {30, 31, 32, 0.5f, {33, 34, 35, 36}, 37, 0.25f, 0.75f, 0};

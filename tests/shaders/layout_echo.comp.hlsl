@@ -13,7 +13,8 @@ void main() {
     gResults[1] = float4(gShade.primaryExponent, gShade.diffuse, gShade.brightnessVariation, gShade.clumping);
     gResults[2] = asfloat(uint4(gShade.count, gShade.lightCount, gShade.rowThreads, gShade.subdivisions));
     gResults[3] = gShade.lights[1].irradiance;
-    gResults[4] = gShade.lights[2].range;
+    gResults[4] = float4(gShade.lights[2].depthRange, gShade.lights[2].shadows, gShade.lights[2].nearPlane,
+                         gShade.lights[2].hairBegins);
     gResults[5] = mul(gShade.lights[1].clipFromWorld, float4(0, 0, 0, 1));
     gResults[6] = gStrands[1].albedo;
     gResults[7] = float4(gStrands[1].random, asfloat(gStrands[1].segmentsBefore), gCurve[1].along, asfloat(gCurve[1].strand));
