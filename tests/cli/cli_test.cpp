@@ -364,8 +364,8 @@ TEST_F(Cli, PresetsSetWhatAFibreIsMadeOf) {
         const auto name = preset["preset"].get<std::string>();
         EXPECT_EQ(runJson("set hair.hairloom --preset " + name + " -o " + name + ".hairloom")["changed"], 8);
         EXPECT_GE(preset["eccentricity"], 0.6) << name;
-        EXPECT_THAT(readText(folder / (name + ".hairloom")),
-                    HasSubstr("\"eccentricity\":" + preset["eccentricity"].dump()));
+        const std::string eccentricity = "\"eccentricity\": " + preset["eccentricity"].dump();
+        EXPECT_NE(readText(folder / (name + ".hairloom")).find(eccentricity), std::string::npos) << name;
         hashes[runJson("simulate " + name + ".hairloom --frames 5 --motion nod")["state_hash"]] = name;
     }
     EXPECT_EQ(hashes.size(), 3u) << "fibres of other stiffness should move otherwise";
