@@ -225,7 +225,9 @@ TEST(Plots, NothingIsPrintedOutsideTheDrawing) {
     const auto elements = parsed(plot);
     const double width = std::stod(elements[0].attributes.at("width"));
     const double height = std::stod(elements[0].attributes.at("height"));
-    for (const XmlElement& text : named(elements, "text")) {
+    const auto texts = named(elements, "text");
+    EXPECT_GE(texts.size(), 8u) << "title, note, ticks and a series";
+    for (const XmlElement& text : texts) {
         if (text.attributes.contains("transform")) continue;
         const double x = std::stod(text.attributes.at("x")), y = std::stod(text.attributes.at("y"));
         const double wide = textWidth(text.text, std::stod(text.attributes.at("font-size")));

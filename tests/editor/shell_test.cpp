@@ -210,6 +210,7 @@ TEST_F(ShellTest, EmptyWindowDisablesUselessActions) {
 
 TEST_F(ShellTest, EveryActionHasATipAndNoTwoShareKeys) {
     QHash<QString, QString> keys;
+    EXPECT_GT(window->actions().all().size(), 40u);
     for (const ActionInfo& info : window->actions().all()) {
         EXPECT_FALSE(info.tip.isEmpty()) << info.id.toStdString();
         const QString shortcut = info.shortcut.toString();
@@ -223,7 +224,9 @@ TEST_F(ShellTest, EveryActionHasATipAndNoTwoShareKeys) {
 
 TEST_F(ShellTest, EveryControlOfThePanelsHasATip) {
     for (const PanelInfo& info : panels()) {
+        int controls = 0;
         for (QWidget* control : window->panel(info.id)->widget()->findChildren<QWidget*>()) {
+            ++controls;
             const bool isControl =
                 qobject_cast<QAbstractButton*>(control) || qobject_cast<QComboBox*>(control) ||
                 qobject_cast<QAbstractSpinBox*>(control) || qobject_cast<QSlider*>(control);
@@ -234,6 +237,7 @@ TEST_F(ShellTest, EveryControlOfThePanelsHasATip) {
             EXPECT_TRUE(hasTip) << info.id.toStdString() << ": " << control->objectName().toStdString() << " "
                                 << control->metaObject()->className();
         }
+        EXPECT_GT(controls, 0) << info.id.toStdString();
     }
 }
 

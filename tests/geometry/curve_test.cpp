@@ -81,7 +81,9 @@ TEST(ShortestArc, TurnsOneIntoTheOtherByTheSmallestAngle) {
 
 TEST(ParallelTransport, FramesAreOrthonormalAndDoNotTwist) {
     const std::vector<Vec3f> curve = randomCurve(3, 40);
-    for (const Mat3f& frame : parallelTransportFrames(curve, Vec3f(0.3f, 1, 0))) {
+    const std::vector<Mat3f> random = parallelTransportFrames(curve, Vec3f(0.3f, 1, 0));
+    EXPECT_EQ(random.size(), curve.size());
+    for (const Mat3f& frame : random) {
         EXPECT_LT((frame.transpose() * frame - Mat3f::Identity()).norm(), 1e-5f);
         EXPECT_NEAR(frame.determinant(), 1, 1e-5);
     }
@@ -90,14 +92,16 @@ TEST(ParallelTransport, FramesAreOrthonormalAndDoNotTwist) {
     for (int i = 0; i < 50; ++i)
         arc.emplace_back(std::cos(0.1f * static_cast<float>(i)), std::sin(0.1f * static_cast<float>(i)),
                          0.0f);
-    for (const Mat3f& frame : parallelTransportFrames(arc, Vec3f::UnitZ()))
-        EXPECT_GT(frame.col(0).z(), 0.9999f);
+    const std::vector<Mat3f> level = parallelTransportFrames(arc, Vec3f::UnitZ());
+    EXPECT_EQ(level.size(), arc.size());
+    for (const Mat3f& frame : level) EXPECT_GT(frame.col(0).z(), 0.9999f);
     // Neighbouring frames of a smooth space curve differ by the turn of the tangent and nothing more.
     std::vector<Vec3f> helix;
     for (int i = 0; i < 200; ++i)
         helix.emplace_back(std::cos(0.05f * static_cast<float>(i)), std::sin(0.05f * static_cast<float>(i)),
                            0.02f * static_cast<float>(i));
     const std::vector<Mat3f> frames = parallelTransportFrames(helix, Vec3f::UnitZ());
+    ASSERT_EQ(frames.size(), helix.size());
     for (std::size_t i = 1; i < frames.size(); ++i) {
         const float bend = std::acos(std::min(1.0f, frames[i].col(2).dot(frames[i - 1].col(2))));
         const float turn =
@@ -108,7 +112,9 @@ TEST(ParallelTransport, FramesAreOrthonormalAndDoNotTwist) {
 
 TEST(ParallelTransport, SurvivesRepeatedPoints) {
     const std::vector<Vec3f> curve = {{0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 0, 0}};
-    for (const Mat3f& frame : parallelTransportFrames(curve, Vec3f::UnitX()))
+    const std::vector<Mat3f> frames = parallelTransportFrames(curve, Vec3f::UnitX());
+    EXPECT_EQ(frames.size(), curve.size());
+    for (const Mat3f& frame : frames)
         EXPECT_LT((frame.transpose() * frame - Mat3f::Identity()).norm(), 1e-5f);
 }
 

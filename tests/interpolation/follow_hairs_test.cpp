@@ -191,9 +191,13 @@ TEST(FollowHairs, BlendLiesBetweenItsEnds) {
     const auto wisp = at(0);
     const auto triangle = at(1);
     const auto mixed = at(0.25f);
+    ASSERT_FALSE(mixed.empty());
+    float apart = 0;
     for (std::size_t i = 0; i < mixed.size(); ++i) {
+        apart = std::max(apart, (wisp[i] - triangle[i]).norm());
         EXPECT_LT((0.75f * wisp[i] + 0.25f * triangle[i] - mixed[i]).norm(), 1e-6f);
     }
+    EXPECT_GT(apart, 1e-3f) << "the ends differ";
 }
 
 TEST(FollowHairs, APartingStaysOpen) {

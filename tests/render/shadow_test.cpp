@@ -27,6 +27,7 @@ TEST(CountedFibres, AreThoseBetweenTwoPoints) {
     const double footprint = kShadowFootprint;
     const double one = 2 * 0.0003 * 2 * footprint / (3.14159265358979 * footprint * footprint);
     const ShadowCases cases = countFibres(scene, 40, 3);
+    ASSERT_EQ(cases.counted.size(), 40u);
     for (std::size_t i = 0; i < cases.counted.size(); ++i) {
         const double above = 4 - std::round(static_cast<double>(cases.cases[i].position_ws.y) / 0.01);
         const bool atEnd = std::abs(cases.cases[i].position_ws.x) > 0.099f;
