@@ -73,12 +73,12 @@ class Bench {
         return result;
     }
 
-    static std::string told(const StepScene& scene, std::size_t threads) {
+    static std::string describe(const StepScene& scene, std::size_t threads) {
         return fmt::format("{}x{}, {}, {}", scene.strands, scene.points, nameOf(scene.activeForces),
-                           told(threads));
+                           describe(threads));
     }
 
-    static std::string told(std::size_t threads) {
+    static std::string describe(std::size_t threads) {
         return fmt::format("{} thread{}", threads, threads == 1 ? "" : "s");
     }
 
@@ -90,7 +90,8 @@ class Bench {
             if (!strands) return tl::unexpected(strands.error());
             StepRun run(std::move(*strands), sample.groom.simulation, threads > 1);
             bench_.samples.push_back(
-                {stepOf(run, fmt::format("step, {}, {}", sample.name, told(threads))), threads, run.work()});
+                {stepOf(run, fmt::format("step, {}, {}", sample.name, describe(threads))), threads,
+                 run.work()});
         }
         return {};
     }
@@ -110,7 +111,7 @@ class Bench {
         StepCosts costs;
         scene.allThreads = threads > 1;
         costs.threads = threads;
-        costs.step = wholeStep(scene, "step, " + told(scene, threads));
+        costs.step = wholeStep(scene, "step, " + describe(scene, threads));
         scene.byStage = true;
         costs.scene = scene;
         StepRun run(scene);
@@ -132,7 +133,7 @@ class Bench {
             if (place == costs.stages.end()) {
                 const std::string name =
                     fmt::format("{}, {}, {}", runtime::stageFamily(id), runtime::stageName(id),
-                                told(costs.scene, costs.threads));
+                                describe(costs.scene, costs.threads));
                 place = costs.stages.insert(costs.stages.end(), {id, {name, kPerParticle, {}}});
             }
             place->cost.values.push_back(milliseconds * 1e6 / run.work());
@@ -182,7 +183,7 @@ class Bench {
         InstructionSetCosts costs{set, activeForces, {}};
         for (const std::uint32_t strands : bench_.strands) {
             const StepScene scene{.strands = strands, .activeForces = activeForces};
-            costs.steps.push_back(wholeStep(scene, fmt::format("step, {}, {}", told(scene, 1), set)));
+            costs.steps.push_back(wholeStep(scene, fmt::format("step, {}, {}", describe(scene, 1), set)));
         }
         return costs;
     }
@@ -219,7 +220,7 @@ class Bench {
             return run.milliseconds(frames);
         };
         const std::string name =
-            fmt::format("scalar code against {}, {}", bench_.machine.instructionSet, told(scene, 1));
+            fmt::format("scalar code against {}, {}", bench_.machine.instructionSet, describe(scene, 1));
         bench_.others.push_back({repeated(name, "times",
                                           [&] {
                                               const double slow = timeWith(scalar);
@@ -258,7 +259,7 @@ class Bench {
         const scenes::Lawn lawn(kGuides, kFollowNeighbours + 1, kPoints, 0.5f);
         auto made = runtime::FollowHairs::make(lawn.view());
         const auto follow = [&](bool all) { return followMilliseconds(*made.hairs, lawn, all, frames); };
-        bench_.others.push_back({repeated(fmt::format("frame of 1/60 s, {}", told(scene, 1)), "ms",
+        bench_.others.push_back({repeated(fmt::format("frame of 1/60 s, {}", describe(scene, 1)), "ms",
                                           [&] { return guides.milliseconds(frames); }),
                                  {}});
         bench_.others.push_back(

@@ -349,7 +349,7 @@ JobRun declare(CLI::App& job) {
         ->delimiter(',')
         ->allow_extra_args(false);
     job.add_option("--material", options->material,
-                   "Sample material (fire, tentacles, …) or JSON file of material fields to wear");
+                   "Sample material (fire, tentacles, …) or JSON file of material fields to apply");
     job.add_option("--shading", options->shading, "Shading model")
         ->check(CLI::IsMember({"kajiya", "marschner", "sadeghi"}));
     job.add_option(

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// A scene that is run over and over with different settings, and what its hair did: the places of the same
+// A scene that is run over and over with different settings, and what its hair did: the positions of the same
 // material points in every frame, whatever the number of points that a strand was simulated with.
 
 #include <cstdint>
@@ -73,7 +73,8 @@ class MaterialPoints {
   public:
     MaterialPoints(const SceneHair& hair, const Followed& followed);
     std::size_t count() const { return places_.size(); }
-    /// Appends the places; false when one of them is not finite. `positions_ws` are all points of the hair.
+    /// Appends the positions; false when one of them is not finite. `positions_ws` are all points of the
+    /// hair.
     bool read(std::span<const Vec3f> positions_ws, std::vector<Vec3f>& into_ws) const;
 
   private:

@@ -28,7 +28,7 @@ struct StrandSet {
 
     runtime::StrandsView view() const { return {offsets, points, {}, masses}; }
     std::uint32_t count() const { return static_cast<std::uint32_t>(offsets.size() - 1); }
-    /// Roots in their rest places, turned about the origin, then moved.
+    /// Roots in their rest positions, turned about the origin, then moved.
     std::vector<runtime::RootFrame> roots(runtime::Float3 shift = {}, runtime::Quat turn = {}) const {
         std::vector<runtime::RootFrame> result;
         for (std::uint32_t s = 0; s < count(); ++s)

@@ -53,10 +53,10 @@ void Document::changed(const Change& change) {
     } else if (boundsFit_ && contains(change.parts, Part::Points)) {
         bounds_.update(model_.groom, change.strands);
     }
-    tell(change);
+    notify(change);
 }
 
-void Document::tell(const Change& change) {
+void Document::notify(const Change& change) {
     for (const auto& [key, observer] : observers_->list) observer(change);
 }
 
@@ -129,7 +129,7 @@ Status Document::dab(const Dab& dab) {
     strokeTouched_.resize(std::max(strokeTouched_.size(), model_.groom.strandCount()), 0);
     for (const std::uint32_t s : change->strands) strokeTouched_[s] = 1;
     if (change->parts == Part::None) return {};
-    tell(*change);  // the session keeps the bounds
+    notify(*change);  // the session keeps the bounds
     return {};
 }
 

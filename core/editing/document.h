@@ -95,8 +95,8 @@ class Document {
     Groom takeGroom() &&;
 
   private:
-    void changed(const Change& change);  ///< renews what is derived, then tells
-    void tell(const Change& change);
+    void changed(const Change& change);  ///< renews what is derived, then notifies
+    void notify(const Change& change);
     Change carryOut(std::unique_ptr<Command> command, std::string record);
 
     Model model_;

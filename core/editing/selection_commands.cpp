@@ -27,8 +27,8 @@ std::unique_ptr<Command> prepared(const Model& model, std::string name, std::str
     return command;
 }
 
-std::string strandsRecord(std::string_view way, std::span<const std::uint32_t> strands) {
-    return recordOf("strands", {{"do", way}, {"strands", runsOf(strands)}});
+std::string strandsRecord(std::string_view action, std::span<const std::uint32_t> strands) {
+    return recordOf("strands", {{"do", action}, {"strands", runsOf(strands)}});
 }
 
 Indices chosen(const Indices& now, std::span<const std::uint32_t> given, Choice choice) {

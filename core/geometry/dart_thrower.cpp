@@ -35,19 +35,19 @@ std::array<std::array<Point, 3>, 4> quarters(const std::array<Point, 3>& corners
 template <class Fragment, class Visit>
 void forEachQuarter(const Fragment& fragment, Visit visit) {
     const auto corners = quarters(fragment.corners);
-    const auto places = quarters(fragment.places);
-    for (std::size_t i = 0; i < 4; ++i) visit(Fragment{corners[i], places[i], fragment.triangle});
+    const auto positions = quarters(fragment.positions);
+    for (std::size_t i = 0; i < 4; ++i) visit(Fragment{corners[i], positions[i], fragment.triangle});
 }
 
-float squaredSize(const std::array<Vec3f, 3>& places) {
-    return std::max({(places[0] - places[1]).squaredNorm(), (places[1] - places[2]).squaredNorm(),
-                     (places[2] - places[0]).squaredNorm()});
+float squaredSize(const std::array<Vec3f, 3>& positions) {
+    return std::max({(positions[0] - positions[1]).squaredNorm(), (positions[1] - positions[2]).squaredNorm(),
+                     (positions[2] - positions[0]).squaredNorm()});
 }
 
-bool allWithin(const std::array<Vec3f, 3>& places, const Vec3f& center, float reach) {
+bool allWithin(const std::array<Vec3f, 3>& positions, const Vec3f& center, float reach) {
     const float squared = reach * reach;
-    return (places[0] - center).squaredNorm() < squared && (places[1] - center).squaredNorm() < squared &&
-           (places[2] - center).squaredNorm() < squared;
+    return (positions[0] - center).squaredNorm() < squared &&
+           (positions[1] - center).squaredNorm() < squared && (positions[2] - center).squaredNorm() < squared;
 }
 
 }  // namespace
@@ -131,8 +131,8 @@ DartThrower::Spacing DartThrower::spacingOf(const Fragment& fragment) const {
 
 DartThrower::Fragment DartThrower::wholeFace(std::uint32_t face) const {
     const Triangle& t = mesh_.triangles()[face];
-    const auto place = [&](std::size_t i) { return mesh_.positions()[t[i]]; };
-    return {{Vec2f(0, 0), Vec2f(1, 0), Vec2f(0, 1)}, {place(0), place(1), place(2)}, face};
+    const auto position = [&](std::size_t i) { return mesh_.positions()[t[i]]; };
+    return {{Vec2f(0, 0), Vec2f(1, 0), Vec2f(0, 1)}, {position(0), position(1), position(2)}, face};
 }
 
 void DartThrower::gatherNear(const Vec3f& center, float range) {
@@ -143,10 +143,10 @@ void DartThrower::gatherNear(const Vec3f& center, float range) {
     });
 }
 
-std::uint64_t DartThrower::rootsReached(const Vec3f& place, std::size_t first) const {
+std::uint64_t DartThrower::rootsReached(const Vec3f& position, std::size_t first) const {
     std::uint64_t bits = 0;
     for (std::size_t i = first; i < near_.size(); ++i)
-        bits |= std::uint64_t{(near_[i].position - place).squaredNorm() < apart_ * apart_} << i;
+        bits |= std::uint64_t{(near_[i].position - position).squaredNorm() < apart_ * apart_} << i;
     return bits;
 }
 
@@ -154,13 +154,13 @@ std::uint64_t DartThrower::rootsReached(const Vec3f& place, std::size_t first) c
 /// local radii apart. With one radius for all, corners remember the roots that reach them.
 bool DartThrower::coveredByNear(Part& part) const {
     if (mask_.empty() && near_.size() <= kMaxBits) {
-        for (std::size_t i = 0; i < 3; ++i) part.reached[i] |= rootsReached(part.places[i], part.known);
+        for (std::size_t i = 0; i < 3; ++i) part.reached[i] |= rootsReached(part.positions[i], part.known);
         part.known = near_.size();
         return (part.reached[0] & part.reached[1] & part.reached[2]) != 0;
     }
     const float radius = spacingOf(part).radius;
     return std::any_of(near_.begin(), near_.end(), [&](const DartGrid::Entry& root) {
-        return allWithin(part.places, root.position, std::min(root.radius, radius));
+        return allWithin(part.positions, root.position, std::min(root.radius, radius));
     });
 }
 
@@ -173,17 +173,17 @@ void DartThrower::throwDart(const Fragment& fragment, bool gather) {
     const Vec2f part = fragment.corners[0] + a * (fragment.corners[1] - fragment.corners[0]) +
                        b * (fragment.corners[2] - fragment.corners[0]);
     const Vec3f weights = barycentric(part);
-    const Vec3f place = mesh_.pointAt(fragment.triangle, weights);
+    const Vec3f position = mesh_.pointAt(fragment.triangle, weights);
     const float density = densityAt(fragment.triangle, weights);
     const float radius = localRadius(density);
     if (density < kMinDensity && !mask_.empty()) return;
-    if (gather) gatherNear(place, radius);
+    if (gather) gatherNear(position, radius);
     for (const DartGrid::Entry& root : near_) {
         const float apart = std::min(root.radius, radius);
-        if ((root.position - place).squaredNorm() < apart * apart) return;
+        if ((root.position - position).squaredNorm() < apart * apart) return;
     }
     roots_.push_back({fragment.triangle, weights});
-    near_.push_back({place, radius});
+    near_.push_back({position, radius});
     grid_.add(near_.back());
 }
 
@@ -191,7 +191,7 @@ void DartThrower::throwDart(const Fragment& fragment, bool gather) {
 void DartThrower::splitAndKeep(const Part& part) {
     std::array<std::array<std::uint64_t, 3>, 4> reached{};
     if (part.known == near_.size()) {
-        const auto& [a, b, c] = part.places;
+        const auto& [a, b, c] = part.positions;
         const auto& [atA, atB, atC] = part.reached;
         const std::uint64_t ab = rootsReached((a + b) / 2, 0), bc = rootsReached((b + c) / 2, 0),
                             ca = rootsReached((c + a) / 2, 0);
@@ -202,7 +202,7 @@ void DartThrower::splitAndKeep(const Part& part) {
         Part child{fragment, reached[quarter++], part.known};
         const Spacing spacing = spacingOf(child);
         const float smallest = kSmallest * spacing.radius;
-        const bool negligible = spacing.bare || squaredSize(child.places) <= smallest * smallest;
+        const bool negligible = spacing.bare || squaredSize(child.positions) <= smallest * smallest;
         if (!negligible && !coveredByNear(child)) small_.push_back(child);
     });
 }
@@ -210,9 +210,9 @@ void DartThrower::splitAndKeep(const Part& part) {
 /// Fills what is left of a part; all roots that matter to it are gathered once.
 void DartThrower::fill(const Fragment& fragment, std::size_t maximum) {
     const Spacing spacing = spacingOf(fragment);
-    const Vec3f center = (fragment.places[0] + fragment.places[1] + fragment.places[2]) / 3;
+    const Vec3f center = (fragment.positions[0] + fragment.positions[1] + fragment.positions[2]) / 3;
     float reach = 0;
-    for (const Vec3f& place : fragment.places) reach = std::max(reach, (place - center).norm());
+    for (const Vec3f& position : fragment.positions) reach = std::max(reach, (position - center).norm());
     gatherNear(center, reach + spacing.widest);
     Part whole{fragment, {}, 0};
     if (coveredByNear(whole)) return;
@@ -242,7 +242,7 @@ void DartThrower::throwAnywhere(std::size_t maximum) {
 
 void DartThrower::fillParts(const Fragment& fragment, std::size_t maximum) {
     if (roots_.size() > maximum || spacingOf(fragment).bare) return;
-    if (squaredSize(fragment.places) <= kPart * kPart * apart_ * apart_)
+    if (squaredSize(fragment.positions) <= kPart * kPart * apart_ * apart_)
         fill(fragment, maximum);
     else
         forEachQuarter(fragment, [&](const Fragment& quarter) { fillParts(quarter, maximum); });
@@ -256,13 +256,13 @@ bool DartThrower::run(std::size_t maximum) {
 
 DartThrower::Gap DartThrower::gapOf(const Fragment& fragment) const {
     const Spacing spacing = spacingOf(fragment);
-    const Vec3f middle = (fragment.places[0] + fragment.places[1] + fragment.places[2]) / 3;
+    const Vec3f middle = (fragment.positions[0] + fragment.positions[1] + fragment.positions[2]) / 3;
     const float density =
         densityAt(fragment.triangle,
                   barycentric((fragment.corners[0] + fragment.corners[1] + fragment.corners[2]) / 3));
     const float radius = localRadius(density);
     float reach = 0;
-    for (const Vec3f& place : fragment.places) reach = std::max(reach, (place - middle).norm());
+    for (const Vec3f& position : fragment.positions) reach = std::max(reach, (position - middle).norm());
     // No point of a maximal set is farther.
     Gap gap{fragment, 1, 1, 0};
     grid_.search(middle, spacing.widest, [&](const DartGrid::Entry& root) {
@@ -287,7 +287,7 @@ void DartThrower::pushGap(const Fragment& fragment) {
 /// Splits until parts are small against the radius: larger ones would only go through the heap to be split.
 void DartThrower::listGaps(const Fragment& fragment) {
     const float coarse = kCoarse * apart_;
-    if (squaredSize(fragment.places) <= coarse * coarse) return pushGap(fragment);
+    if (squaredSize(fragment.positions) <= coarse * coarse) return pushGap(fragment);
     if (spacingOf(fragment).bare || gapOf(fragment).widest < kNarrowest) return;
     forEachQuarter(fragment, [&](const Fragment& quarter) { listGaps(quarter); });
 }
@@ -305,12 +305,12 @@ std::optional<float> DartThrower::fillWidestGaps(std::size_t count) {
         const Gap now = gapOf(top);  // roots may have come since
         const float smallest = kSmallest * spacingOf(top).radius;
         const bool known = now.middle >= (1 - kGapTolerance) * top.widest;
-        const bool tiny = squaredSize(top.places) <= smallest * smallest;
+        const bool tiny = squaredSize(top.positions) <= smallest * smallest;
         if (known) {
             const Vec3f weights = barycentric((top.corners[0] + top.corners[1] + top.corners[2]) / 3);
-            const Vec3f place = mesh_.pointAt(top.triangle, weights);
+            const Vec3f position = mesh_.pointAt(top.triangle, weights);
             roots_.push_back({top.triangle, weights});
-            grid_.add({place, localRadius(densityAt(top.triangle, weights))});
+            grid_.add({position, localRadius(densityAt(top.triangle, weights))});
             share = std::min(share, now.middle);
         } else if (now.widest < top.widest) {
             pushGap(top);

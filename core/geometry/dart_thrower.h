@@ -16,8 +16,8 @@
 
 namespace hairloom {
 
-/// Roots by place, in cells two radii wide, so that a search of one radius reads at most eight. Cells lie in
-/// blocks that exist only where the surface goes.
+/// Roots by position, in cells two radii wide, so that a search of one radius reads at most eight. Cells lie
+/// in blocks that exist only where the surface goes.
 class DartGrid {
   public:
     struct Entry {
@@ -86,8 +86,8 @@ class DartThrower {
   private:
     /// Part of a triangle.
     struct Fragment {
-        std::array<Vec2f, 3> corners;  ///< second and third barycentric, exact at any depth used
-        std::array<Vec3f, 3> places;   ///< metres
+        std::array<Vec2f, 3> corners;    ///< second and third barycentric, exact at any depth used
+        std::array<Vec3f, 3> positions;  ///< metres
         std::uint32_t triangle;
     };
     /// A fragment in work. Per corner, bit i tells that root i of near_ is within reach, for the first
@@ -117,7 +117,7 @@ class DartThrower {
     void fill(const Fragment& fragment, std::size_t maximum);
     void gatherNear(const Vec3f& center, float range);
     bool coveredByNear(Part& part) const;
-    std::uint64_t rootsReached(const Vec3f& place, std::size_t first) const;
+    std::uint64_t rootsReached(const Vec3f& position, std::size_t first) const;
     void splitAndKeep(const Part& part);
 
     /// How far a part of the surface is from its roots, as a share of the distance that the two have to keep.

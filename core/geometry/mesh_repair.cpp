@@ -69,7 +69,7 @@ std::uint64_t hashPosition(const Vec3f& p) {
     return Random::mix(Random::mix(xy) ^ std::bit_cast<std::uint32_t>(p.z()));
 }
 
-/// Fills positions and sourceVertices with the distinct places that corners use; returns soup vertex →
+/// Fills positions and sourceVertices with the distinct positions that corners use; returns soup vertex →
 /// vertex.
 std::vector<std::uint32_t> weld(const PolygonSoup& soup, RepairedTriangles& mesh) {
     std::vector<bool> used(soup.positions.size(), false);

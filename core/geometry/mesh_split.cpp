@@ -158,7 +158,7 @@ bool detachOffenders(const std::vector<Triangle>& labels, std::vector<bool>& det
     return any;
 }
 
-/// Numbers the fans by the vertex they come from, then by their first corner, and copies places.
+/// Numbers the fans by the vertex they come from, then by their first corner, and copies positions.
 void renumber(RepairedTriangles& mesh, const std::vector<Triangle>& labels) {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> fans;  // (vertex, label)
     for (std::uint32_t t = 0; t < labels.size(); ++t)

@@ -178,7 +178,7 @@ Result<RootTriangulation> triangulateRoots(const ScalpMesh& mesh, const FaceSet&
         for (std::size_t i = 0; i < 3; ++i)
             uv += weights[static_cast<int>(i)] * flat->charts[chart].cornerUvs[3 * std::size_t{place} + i];
         if (!uv.allFinite())
-            return fail(fmt::format("root {} has no finite place", r), "finite barycentrics");
+            return fail(fmt::format("root {} has no finite position", r), "finite barycentrics");
         perChart[chart].push_back({uv.x(), uv.y(), r});
     }
     RootTriangulation result;

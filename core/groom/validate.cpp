@@ -16,7 +16,8 @@ void findSpheres(const Groom& groom, std::vector<Finding>& findings) {
         const bool good = sphere.centre.allFinite() && std::isfinite(sphere.radius) && sphere.radius > 0;
         if (!good) places.named(fmt::format("sphere '{}' (radius {} m)", sphere.name, sphere.radius));
     }
-    places.report(findings, Severity::Error, "a collision sphere has no finite place or no positive radius",
+    places.report(findings, Severity::Error,
+                  "a collision sphere has no finite position or no positive radius",
                   "delete the sphere or set its centre and radius");
 }
 

@@ -15,7 +15,7 @@ constexpr Field<S> kFields[] = {
     field<&S::amount>("amount", "", 0, 1, "what the mask becomes: 1 is all of the material's dye"),
     field<&S::centre>("centre", "m", -kAnywhere, kAnywhere, "middle of the ball in which roots are reached"),
     field<&S::radius>("radius", "m", 0, kAnywhere, "of that ball; 0 reaches all roots"),
-    field<&S::softness>("softness", "m", 0, 1, "way over which the reach fades at the ball's rim"),
+    field<&S::softness>("softness", "m", 0, 1, "distance over which the reach fades at the ball's rim"),
     field<&S::variation>("variation", "", 0, 1, "random share by which a strand's amount may be lower"),
     seedField<&S::seed>("seed", "another seed varies the strands differently"),
 };

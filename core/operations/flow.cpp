@@ -27,9 +27,9 @@ constexpr Field<S> kFields[] = {
     field<&S::liftRoot>("liftRoot", "m", 0, 0.3,
                         "height over the skin that hair near its root rises to: volume"),
     field<&S::liftTip>("liftTip", "m", 0, 0.3, "height over the skin at the tip"),
-    field<&S::rise>("rise", "m", 0.001, 1, "way along the hair over which it rises"),
+    field<&S::rise>("rise", "m", 0.001, 1, "distance along the hair over which it rises"),
     field<&S::bend>("bend", "m", 0, 1,
-                    "way along the hair over which it turns into the flow: larger is rounder"),
+                    "distance along the hair over which it turns into the flow: larger is rounder"),
     field<&S::variation>("variation", "", 0, 1, "random share by which the lift of a strand may be lower"),
     clearanceField<&S::clearance>(),
     seedField<&S::seed>("seed", "another seed varies the strands differently"),
@@ -54,7 +54,7 @@ Vec3f unitOr(const Vec3f& v, const Vec3f& fallback) {
 
 /// What a strand draws once.
 struct Character {
-    Vec3f blur;  ///< metres, added to the way from the crown
+    Vec3f blur;  ///< metres, added to the offset from the crown
     float liftScale;
     float side;     ///< of the parting, ±1
     float parting;  ///< share of the parting at the root
@@ -76,10 +76,10 @@ Character characterOf(const StrandEdit& strand, const S& settings) {
 
 /// The flow before gravity; not of unit length.
 Vec3f flowAt(const Vec3f& point, const Vec3f& outward, const Character& character, const S& settings) {
-    const Vec3f way = point - settings.crown + character.blur;
-    const float turn = radians(settings.whorlDegrees) * std::exp(-way.norm() / kWhorlReach);
+    const Vec3f offset = point - settings.crown + character.blur;
+    const float turn = radians(settings.whorlDegrees) * std::exp(-offset.norm() / kWhorlReach);
     const Vec3f fromCrown =
-        Eigen::AngleAxisf(turn, outward) * unitOr(way - outward * way.dot(outward), Vec3f::UnitX());
+        Eigen::AngleAxisf(turn, outward) * unitOr(offset - outward * offset.dot(outward), Vec3f::UnitX());
     const Vec3f fromParting = unitOr(settings.partingNormal, Vec3f::Zero()) * character.side;
     return fromCrown * (1 - character.parting) + fromParting * character.parting + settings.sweep;
 }

@@ -19,7 +19,7 @@ constexpr Field<S> kFields[] = {
     field<&S::gradientPoint>("gradientPoint", "m", -kAnywhere, kAnywhere, "where the gradient begins"),
     field<&S::gradientAxis>("gradientAxis", "", -kAnywhere, kAnywhere, "direction in which lengths change"),
     field<&S::gradientDistance>("gradientDistance", "m", 0, kAnywhere,
-                                "way along the axis until farScale is reached; 0: no gradient"),
+                                "distance along the axis until farScale is reached; 0: no gradient"),
     field<&S::farScale>("farScale", "", 0.01, 100, "length at the gradient's end over that at its beginning"),
     clearanceField<&S::clearance>(),
     seedField<&S::seed>("seed", "another seed varies the strands differently"),

@@ -45,7 +45,7 @@ shaders::RasterConstants frameConstants(const RendererState& state, std::uint32_
     for (std::size_t i = 0; i < pattern.size(); ++i) {
         const auto [x, y] = pattern[i];
         reach = std::max({reach, std::abs(x), std::abs(y)});
-        shaders::float4& two = c.places[i / 2];
+        shaders::float4& two = c.samplePositions[i / 2];
         (i % 2 == 0 ? two.x : two.z) = static_cast<float>(x) / 16;
         (i % 2 == 0 ? two.y : two.w) = static_cast<float>(y) / 16;
     }

@@ -35,10 +35,10 @@ std::size_t QtDocument::historyLimit() const {
 
 void QtDocument::watch() {
     subscription_ = std::make_unique<editing::Subscription>(
-        editing_->observe([this](const editing::Change& change) { tell(change); }));
+        editing_->observe([this](const editing::Change& change) { notify(change); }));
 }
 
-void QtDocument::tell(const editing::Change& change) {
+void QtDocument::notify(const editing::Change& change) {
     using editing::Part;
     const Part parts = without(change.parts, Part::History);
     if (parts == Part::Points) moved_ = change.strands;

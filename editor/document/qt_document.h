@@ -83,7 +83,7 @@ class QtDocument : public QObject {
 
   private:
     void watch();
-    void tell(const editing::Change& change);
+    void notify(const editing::Change& change);
 
     std::unique_ptr<editing::Document> editing_;
     std::unique_ptr<editing::Subscription> subscription_;

@@ -56,8 +56,8 @@ std::optional<std::uint32_t> RampEdit::keyAt(const QPointF& place_px) const {
     std::optional<std::uint32_t> nearest;
     double minimum = kReach_px;
     for (std::uint32_t k = 0; k < ramp_.count; ++k) {
-        const QPointF way = place_px - handle_px(k);
-        const double distance = std::hypot(way.x(), way.y());
+        const QPointF offset = place_px - handle_px(k);
+        const double distance = std::hypot(offset.x(), offset.y());
         if (distance > minimum) continue;
         minimum = distance;
         nearest = k;

@@ -18,10 +18,11 @@ bool isAwake(const Groom& groom, std::size_t strand, const PlayedFrame& frame) {
     if (!frame.before) return true;
     constexpr float kStill = 1e-6f;  // metres
     const std::uint32_t root = groom.offsets[strand], tip = groom.offsets[strand + 1] - 1;
-    const auto way = [&](std::uint32_t p) -> Vec3f {
+    const auto displacement = [&](std::uint32_t p) -> Vec3f {
         return frame.pose->positions_ws[p] - frame.before->positions_ws[p];
     };
-    return (way(tip) - way(root)).norm() > kStill || (way((root + tip) / 2) - way(root)).norm() > kStill;
+    return (displacement(tip) - displacement(root)).norm() > kStill ||
+           (displacement((root + tip) / 2) - displacement(root)).norm() > kStill;
 }
 
 /// At rest: the head carries its spheres along.

@@ -77,8 +77,8 @@ QWidget* makeLight(Viewport& viewport) {
            [&viewport](float factor) { viewport.setExposure(factor); });
     number("lightScale", QObject::tr("Lights"),
            QObject::tr("Factor on the key, fill and rim light; 1 as they come"), {0, 3}, 1,
-           [&viewport](float factor) { viewport.setLight(factor, viewport.surroundings()); });
-    number("surroundings", QObject::tr("Environment"),
+           [&viewport](float factor) { viewport.setLight(factor, viewport.environment()); });
+    number("environment", QObject::tr("Environment"),
            QObject::tr("Factor on the light from all around; 0 leaves the lights alone"), {0, 3}, 1,
            [&viewport](float factor) { viewport.setLight(viewport.lightScale(), factor); });
     return widget;

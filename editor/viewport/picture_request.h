@@ -41,7 +41,7 @@ struct PictureRequest {
     float lightTurn = 0;  ///< degrees by which the lights are turned about the vertical
     float exposure = 1.6f;
     float lightScale = 1;                     ///< factor on the lights
-    float surroundings = 1;                   ///< factor on the light from around
+    float environment = 1;                    ///< factor on the light from around
     Vec3f background{0.02f, 0.022f, 0.025f};  ///< linear RGB
     bool seeThrough = false;  ///< where nothing is, the picture is transparent instead; read back only
     PictureQuality quality;

@@ -29,7 +29,7 @@ std::vector<render::Light> lightsOf(const PictureRequest& request) {
 
 render::Environment environmentOf(const PictureRequest& request) {
     render::Environment environment = render::RenderScene().environment;
-    for (Vec3f& coefficient : environment.coefficients) coefficient *= request.surroundings;
+    for (Vec3f& coefficient : environment.coefficients) coefficient *= request.environment;
     return environment;
 }
 
@@ -147,7 +147,7 @@ Status RenderWork::take(PictureRequest request) {
     if (auto taken = takeScene(request, draft); !taken) return taken;
     if (auto set = renderer_.setCamera(request.camera); !set) return set;
     if (auto set = renderer_.setLights(lightsOf(request)); !set) return set;
-    if (!last_ || last_->surroundings != request.surroundings) {
+    if (!last_ || last_->environment != request.environment) {
         renderer_.setEnvironment(environmentOf(request));
     }
     if (!last_ || last_->background != request.background) renderer_.setBackground(request.background);

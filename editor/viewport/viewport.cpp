@@ -227,9 +227,9 @@ void Viewport::setExposure(float factor) {
     exposure_ = factor;
     redraw();
 }
-void Viewport::setLight(float lights, float surroundings) {
+void Viewport::setLight(float lights, float environment) {
     lightScale_ = lights;
-    surroundings_ = surroundings;
+    environment_ = environment;
     redraw();
 }
 void Viewport::setTurntable(bool on) {
@@ -362,7 +362,7 @@ void Viewport::post() {
     request.lightTurn = lightTurn_;
     request.exposure = exposure_;
     request.lightScale = lightScale_;
-    request.surroundings = surroundings_;
+    request.environment = environment_;
     request.background = toLinear(themeColours(preferences_.theme()).viewport);
     request.quality = quality_;
     request.seeThrough = canvas_ && !reference_.isNull();

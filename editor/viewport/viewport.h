@@ -72,9 +72,9 @@ class Viewport : public QWidget {
     void setLightTurn(float degrees);
     void setExposure(float factor);
     /// Factors on the lights and on the light from around; 1 as they come.
-    void setLight(float lights, float surroundings);
+    void setLight(float lights, float environment);
     float lightScale() const { return lightScale_; }
-    float surroundings() const { return surroundings_; }
+    float environment() const { return environment_; }
     void setTurntable(bool on);
     bool hasTurntable() const { return turntable_.isActive(); }
     void look(render::View view);
@@ -159,7 +159,7 @@ class Viewport : public QWidget {
     bool showHair_ = true, showHead_ = true;
     float lightTurn_ = 0;
     float exposure_ = 1.6f;
-    float lightScale_ = 1, surroundings_ = 1;
+    float lightScale_ = 1, environment_ = 1;
     bool presentsByItself_ = false;  ///< the device can and shall
     PictureQuality quality_;
     std::optional<Comparison> comparison_;

@@ -10,16 +10,16 @@ struct FibreMoments {
 
 // What a fibre sends nearly straight on, as much as the second moment says, counts as not stopped.
 struct Stopped {
-    float3 straight;  // of the light that meets the fibre
+    float3 forward;  // f of delta-Eddington, of the light that meets the fibre
     float3 share;     // of it, the rest
     float3 lost;      // of that, never none
 };
 
 Stopped stoppedBy(FibreMoments m) {
     Stopped stopped;
-    stopped.straight = max(m.second, 0.0);
-    stopped.share = 1.0 - stopped.straight;
-    stopped.lost = max(1.0 - (m.albedo - stopped.straight) / stopped.share, 1e-3);
+    stopped.forward = max(m.second, 0.0);
+    stopped.share = 1.0 - stopped.forward;
+    stopped.lost = max(1.0 - (m.albedo - stopped.forward) / stopped.share, 1e-3);
     return stopped;
 }
 
@@ -36,7 +36,7 @@ LayerLight lightInLayer(FibreMoments m, float before, float all, float3 ground) 
     const Stopped stopped = stoppedBy(m);
     const float3 scale = stopped.share;
     const float3 lost = stopped.lost;
-    const float3 asymmetric = (m.first - stopped.straight) / scale;
+    const float3 asymmetric = (m.first - stopped.forward) / scale;
     const float3 omega = 1.0 - lost;
     // The beam must not fade exactly as diffuse light does.
     const float3 wanted = 2.0 * (1.0 - asymmetric);

@@ -11,7 +11,7 @@ cbuffer Raster : register(b2) { RasterConstants gRaster; };
 
 // From the middle of a pixel.
 float2 samplePlace(uint s) {
-    const float4 two = gRaster.places[s >> 1u];
+    const float4 two = gRaster.samplePositions[s >> 1u];
     return (s & 1u) != 0u ? two.zw : two.xy;
 }
 

@@ -223,7 +223,8 @@ struct RasterConstants {
     uint unused0;
     float sampleReach;  // farthest that a sample lies from the middle of its pixel along x or y, pixels
     float unused1, unused2, unused3;
-    float4 places[HAIRLOOM_MAX_SAMPLES / 2];  // of the samples from the middle, in pixels, two in each
+    float4
+        samplePositions[HAIRLOOM_MAX_SAMPLES / 2];  // of the samples from the middle, in pixels, two in each
 };
 #define HAIRLOOM_PHASE_NEAREST 0
 #define HAIRLOOM_PHASE_LIGHT 1
@@ -369,7 +370,7 @@ static_assert(sizeof(ShadeConstants) == 368 + 160 * HAIRLOOM_MAX_LIGHTS);
 HAIRLOOM_OFFSET(LookConstants, gradientStart, 112);
 static_assert(sizeof(LookConstants) == 144);
 static_assert(sizeof(MeshConstants) == 80);
-HAIRLOOM_OFFSET(RasterConstants, places, 64);
+HAIRLOOM_OFFSET(RasterConstants, samplePositions, 64);
 static_assert(sizeof(RasterConstants) == 128);
 static_assert(sizeof(FillConstants) == 16);
 static_assert(sizeof(ResolveConstants) == 32);
