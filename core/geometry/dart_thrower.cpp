@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/geometry/placement_area.h"
 
@@ -18,10 +19,10 @@ constexpr double kFirstDarts = 1.5;  // random darts for each root of a saturate
 constexpr std::size_t kRounds = 8;
 constexpr std::size_t kMaxBits = 64;
 constexpr float kMinDensity = 1.0f / 64;
-// Of the radius: gaps that are never filled, size of the parts that gaps are first looked for in, and how
+// Of the radius: gaps that are never filled, size of the parts that all gaps are looked for in, and how
 // exactly the widest is found.
-constexpr float kNarrowest = 0.9f;
-constexpr float kCoarse = 0.4f;
+constexpr float kNarrowest = 0.93f;
+constexpr float kFine = 0.1f;
 constexpr float kGapTolerance = 5e-4f;
 
 template <class Point>
@@ -37,6 +38,16 @@ void forEachQuarter(const Fragment& fragment, Visit visit) {
     const auto corners = quarters(fragment.corners);
     const auto positions = quarters(fragment.positions);
     for (std::size_t i = 0; i < 4; ++i) visit(Fragment{corners[i], positions[i], fragment.triangle});
+}
+
+template <class Point>
+Point centreOf(const std::array<Point, 3>& corners) {
+    return (corners[0] + corners[1] + corners[2]) / 3;
+}
+
+float reachFrom(const Vec3f& point, const std::array<Vec3f, 3>& positions) {
+    return std::max(
+        {(positions[0] - point).norm(), (positions[1] - point).norm(), (positions[2] - point).norm()});
 }
 
 float squaredSize(const std::array<Vec3f, 3>& positions) {
@@ -209,11 +220,7 @@ void DartThrower::splitAndKeep(const Part& part) {
 
 /// Fills what is left of a part; all roots that matter to it are gathered once.
 void DartThrower::fill(const Fragment& fragment, std::size_t maximum) {
-    const Spacing spacing = spacingOf(fragment);
-    const Vec3f center = (fragment.positions[0] + fragment.positions[1] + fragment.positions[2]) / 3;
-    float reach = 0;
-    for (const Vec3f& position : fragment.positions) reach = std::max(reach, (position - center).norm());
-    gatherNear(center, reach + spacing.widest);
+    gatherAround(fragment);
     Part whole{fragment, {}, 0};
     if (coveredByNear(whole)) return;
     splitAndKeep(whole);
@@ -254,42 +261,62 @@ bool DartThrower::run(std::size_t maximum) {
     return roots_.size() <= maximum;
 }
 
-DartThrower::Gap DartThrower::gapOf(const Fragment& fragment) const {
+DartThrower::Gap DartThrower::gapByNear(const Fragment& fragment) const {
     const Spacing spacing = spacingOf(fragment);
-    const Vec3f middle = (fragment.positions[0] + fragment.positions[1] + fragment.positions[2]) / 3;
-    const float density =
-        densityAt(fragment.triangle,
-                  barycentric((fragment.corners[0] + fragment.corners[1] + fragment.corners[2]) / 3));
-    const float radius = localRadius(density);
-    float reach = 0;
-    for (const Vec3f& position : fragment.positions) reach = std::max(reach, (position - middle).norm());
+    const Vec3f middle = centreOf(fragment.positions);
+    const float reach = reachFrom(middle, fragment.positions);
     // No point of a maximal set is farther.
     Gap gap{fragment, 1, 1, 0};
-    grid_.search(middle, spacing.widest, [&](const DartGrid::Entry& root) {
+    if (mask_.empty()) {
+        float squared = std::numeric_limits<float>::infinity();
+        for (const DartGrid::Entry& root : near_)
+            squared = std::min(squared, (root.position - middle).squaredNorm());
+        const float distance = std::sqrt(squared);
+        gap.widest = std::min(1.0f, (distance + reach) / apart_);
+        gap.middle = std::min(1.0f, distance / apart_);
+        return gap;
+    }
+    const float density = densityAt(fragment.triangle, barycentric(centreOf(fragment.corners)));
+    const float radius = localRadius(density);
+    for (const DartGrid::Entry& root : near_) {
         const float distance = (root.position - middle).norm();
         gap.widest = std::min(gap.widest, (distance + reach) / std::min(root.radius, spacing.radius));
         gap.middle = std::min(gap.middle, distance / std::min(root.radius, radius));
-        return false;
-    });
-    if (!mask_.empty() && density < kMinDensity) gap.middle = 0;
+    }
+    if (density < kMinDensity) gap.middle = 0;
     return gap;
 }
 
-void DartThrower::pushGap(const Fragment& fragment) {
-    if (spacingOf(fragment).bare) return;
-    Gap gap = gapOf(fragment);
+void DartThrower::gatherAround(const Fragment& fragment) {
+    const Vec3f middle = centreOf(fragment.positions);
+    gatherNear(middle, reachFrom(middle, fragment.positions) + spacingOf(fragment).widest);
+}
+
+void DartThrower::pushGap(Gap gap) {
     if (gap.widest < kNarrowest) return;
     gap.order = foundGaps_++;
     gaps_.push_back(gap);
     std::push_heap(gaps_.begin(), gaps_.end());
 }
 
-/// Splits until parts are small against the radius: larger ones would only go through the heap to be split.
+/// All roots that matter to a part of about a radius are gathered once; it is then split until the widest of
+/// it is known well enough.
 void DartThrower::listGaps(const Fragment& fragment) {
-    const float coarse = kCoarse * apart_;
-    if (squaredSize(fragment.positions) <= coarse * coarse) return pushGap(fragment);
-    if (spacingOf(fragment).bare || gapOf(fragment).widest < kNarrowest) return;
-    forEachQuarter(fragment, [&](const Fragment& quarter) { listGaps(quarter); });
+    if (spacingOf(fragment).bare) return;
+    if (squaredSize(fragment.positions) > kPart * kPart * apart_ * apart_) {
+        forEachQuarter(fragment, [&](const Fragment& quarter) { listGaps(quarter); });
+        return;
+    }
+    gatherAround(fragment);
+    refineGaps(fragment);
+}
+
+void DartThrower::refineGaps(const Fragment& fragment) {
+    const float fine = kFine * apart_;
+    if (spacingOf(fragment).bare) return;
+    const Gap gap = gapByNear(fragment);
+    if (gap.widest < kNarrowest || squaredSize(fragment.positions) <= fine * fine) return pushGap(gap);
+    forEachQuarter(fragment, [&](const Fragment& quarter) { refineGaps(quarter); });
 }
 
 std::optional<float> DartThrower::fillWidestGaps(std::size_t count) {
@@ -302,21 +329,23 @@ std::optional<float> DartThrower::fillWidestGaps(std::size_t count) {
         std::pop_heap(gaps_.begin(), gaps_.end());
         const Gap top = gaps_.back();
         gaps_.pop_back();
-        const Gap now = gapOf(top);  // roots may have come since
+        gatherAround(top);
+        const Gap now = gapByNear(top);  // roots may have come since
         const float smallest = kSmallest * spacingOf(top).radius;
         const bool known = now.middle >= (1 - kGapTolerance) * top.widest;
         const bool tiny = squaredSize(top.positions) <= smallest * smallest;
         if (known) {
-            const Vec3f weights = barycentric((top.corners[0] + top.corners[1] + top.corners[2]) / 3);
+            const Vec3f weights = barycentric(centreOf(top.corners));
             const Vec3f position = mesh_.pointAt(top.triangle, weights);
             roots_.push_back({top.triangle, weights});
             grid_.add({position, localRadius(densityAt(top.triangle, weights))});
             share = std::min(share, now.middle);
         } else if (now.widest < top.widest) {
-            pushGap(top);
+            pushGap(now);
         } else if (!tiny) {
-            forEachQuarter(static_cast<const Fragment&>(top),
-                           [&](const Fragment& quarter) { pushGap(quarter); });
+            forEachQuarter(static_cast<const Fragment&>(top), [&](const Fragment& quarter) {
+                if (!spacingOf(quarter).bare) pushGap(gapByNear(quarter));
+            });
         }
     }
     return share * radius_ * (1 - kRounding);

@@ -116,6 +116,8 @@ class DartThrower {
     void throwDart(const Fragment& fragment, bool gather);
     void fill(const Fragment& fragment, std::size_t maximum);
     void gatherNear(const Vec3f& center, float range);
+    /// All roots that matter to the fragment.
+    void gatherAround(const Fragment& fragment);
     bool coveredByNear(Part& part) const;
     std::uint64_t rootsReached(const Vec3f& position, std::size_t first) const;
     void splitAndKeep(const Part& part);
@@ -130,10 +132,12 @@ class DartThrower {
             return widest < other.widest || (widest == other.widest && order > other.order);
         }
     };
-    /// Those of a part that may be wider than kNarrowest.
+    /// Puts those of a part that may be wide enough to be filled into the heap.
     void listGaps(const Fragment& fragment);
-    Gap gapOf(const Fragment& fragment) const;
-    void pushGap(const Fragment& fragment);
+    void refineGaps(const Fragment& fragment);
+    /// Against the roots of near_, which gatherAround() gathered for the fragment or one around it.
+    Gap gapByNear(const Fragment& fragment) const;
+    void pushGap(Gap gap);
 
     const ScalpMesh& mesh_;
     std::span<const float> mask_;

@@ -260,10 +260,14 @@ TEST_F(Cli, FollowHairsAreExportedWhenAskedFor) {
     runJson("set hair.hairloom interpolation.followPerGuide=5 -o full.hairloom");
     const auto guides = runJson("export full.hairloom --format hair -o guides.hair");
     EXPECT_EQ(guides["strands"], 300);
-    ASSERT_EQ(guides["findings"].size(), 1u) << guides.dump(2);
-    EXPECT_EQ(guides["findings"][0]["what"], "5 follow hairs for each guide are left out");
+    const auto saysThatHairsStay = [](const nlohmann::json& report) {
+        return report["findings"].dump().find("5 follow hairs for each guide are left out") !=
+               std::string::npos;
+    };
+    EXPECT_TRUE(saysThatHairsStay(guides)) << guides.dump(2);
     const auto hairs = runJson("export full.hairloom --format hair --what hairs -o hairs.hair");
     EXPECT_EQ(hairs["strands"], 300 * 5);
+    EXPECT_FALSE(saysThatHairsStay(hairs)) << hairs.dump(2);
     EXPECT_LT(hairs["max_error_mm"], 1e-3);
     EXPECT_EQ(runJson("import hairs.hair -o back.hairloom")["strands"], 300 * 5);
     EXPECT_EQ(runJson("export hair.hairloom --format hair --what hairs -o same.hair")["strands"], 300)
