@@ -39,6 +39,8 @@ Stage stageOf(StageId id) {
     switch (id) {
         case StageId::roots:
             return moveRoots;
+        case StageId::rod:
+            return rodKernel().stage;
         case StageId::damping:
             return partOfMove<StageId::damping, Motion::position, Motion::position>();
         case StageId::drag:
@@ -169,6 +171,7 @@ Kernels makeTable() {
         table.stages[id] = stageOf(static_cast<StageId>(id));
         table.solverFloats[id] = solverFloats(static_cast<StageId>(id));
     }
+    table.solverFloats[static_cast<std::size_t>(StageId::rod)] = rodKernel().solverFloats;
     fillMoves<false, Air::none>(table);
     fillMoves<false, Air::still>(table);
     fillMoves<false, Air::moving>(table);

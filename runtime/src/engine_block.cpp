@@ -23,8 +23,8 @@ void Engine::Impl::runBlock(std::size_t block, LaneFrame& lanes, const Frame& fr
     const BlockView blockView = view(block);
     lanes.near.forget();
     enterFrame(block, blockView, lanes, frame);
-    if (frame.rescale != 1.0f) frame.kernels->rescale(blockView, frame.rescale);
-    if (frame.windy) {
+    if (frame.rescale != 1.0f && rods_.planes.empty()) frame.kernels->rescale(blockView, frame.rescale);
+    if (frame.windy && rods_.planes.empty()) {
         frame.kernels->sampleWind(blockView, lanes, frame.context.h, wind_.wind, frame.windFrom.data(),
                                   frame.windTo.data());
     }
@@ -51,6 +51,7 @@ void Engine::Impl::restoreStrands(std::size_t block, const BlockView& blockView)
         }
         if (sound) continue;
         placeAtRest(*shape_, state_, block, lane);
+        placeRodAtRest(*shape_, rods_, state_, block, lane);
         if (lane < shape_->blocks[block].strands) ++report.restored;
     }
     report.fastest = 0.0f;
@@ -78,13 +79,16 @@ void Engine::Impl::rest(std::size_t block, const BlockView& blockView, const Fra
 void Engine::Impl::turnAlong(const BlockView& view, std::uint32_t lane, Quat turn) {
     for (std::uint32_t p = 0; p < view.points; ++p) {
         const std::size_t i = std::size_t{p} * kBlockLanes + lane;
-        for (const Planes& planes : {view.position, view.previous, view.curve}) {
+        const RodView& rod = view.rod;
+        for (const Planes& planes : {view.position, view.previous, view.curve, rod.increment,
+                                     rod.displacement, rod.velocity, rod.velocityBefore}) {
             if (!planes.x) continue;
             const Float3 turned = rotate(turn, Float3{planes.x[i], planes.y()[i], planes.z()[i]});
             planes.x[i] = turned.x;
             planes.y()[i] = turned.y;
             planes.z()[i] = turned.z;
         }
+        if (rod.rotation) turnRodAlong(view, i, turn);
     }
 }
 
@@ -107,6 +111,27 @@ void Engine::Impl::teleportLanes(const BlockView& view, float* rows, const float
     }
 }
 
+/// Keeps the spheres that can touch the block's rods in this frame.
+void Engine::Impl::touchSpheres(std::size_t block, LaneFrame& lanes) const {
+    lanes.touchable.clear();
+    if (rods_.planes.empty() || !plan_.on(Effect::collision)) return;
+    const float hair = hairReach(settings_, shape_->longestStrand);
+    const auto substeps = static_cast<float>(settings_.substeps);
+    for (const MovingSphere& sphere : movingSpheres_) {
+        const Float3 middle = sphere.from_ws + sphere.step * (0.5f * substeps);
+        const float reach = hair + sphere.radius + 0.5f * substeps * length(sphere.step);
+        for (std::uint32_t lane = 0; lane < shape_->blocks[block].strands; ++lane) {
+            const Float3 root{lanes.root[0][lane], lanes.root[1][lane], lanes.root[2][lane]};
+            const Float3 way{lanes.rootDisplacement[0][lane], lanes.rootDisplacement[1][lane],
+                             lanes.rootDisplacement[2][lane]};
+            if (length(root + way * (0.5f * substeps) - middle) > reach + 0.5f * substeps * length(way))
+                continue;
+            lanes.touchable.push_back(sphere);
+            break;
+        }
+    }
+}
+
 /// Fills the lanes' way through the frame and keeps its end for the next.
 void Engine::Impl::enterFrame(std::size_t block, const BlockView& view, LaneFrame& lanes,
                               const Frame& frame) {
@@ -126,12 +151,19 @@ void Engine::Impl::enterFrame(std::size_t block, const BlockView& view, LaneFram
     std::copy_n(rows + 3 * kBlockLanes, 4 * kBlockLanes, lanes.rotationFrom[0]);
     std::copy_n(next + 3 * kBlockLanes, 4 * kBlockLanes, lanes.rotationTo[0]);
     std::copy_n(next, kRootRows * kBlockLanes, rows);
+    touchSpheres(block, lanes);
+}
+
+void Engine::Impl::openSubstep(SubstepContext& context, const Frame& frame) {
+    context.windPhases = frame.windPhases[context.index].data();
+    if (context.index > 0) context.stepRatio = 1.0f;
 }
 
 void Engine::Impl::runStages(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame) {
     SubstepContext context = frame.context;
     if (!host_.nanoseconds) {
         for (context.index = 0; context.index < context.count; ++context.index) {
+            openSubstep(context, frame);
             for (std::size_t i = 0; i < frame.passes.count; ++i) frame.passes.calls[i](view, lanes, context);
         }
         return;
@@ -139,6 +171,7 @@ void Engine::Impl::runStages(std::size_t block, const BlockView& view, LaneFrame
     auto& times = blockReports_[block].nanoseconds;
     std::uint64_t before = host_.nanoseconds();
     for (context.index = 0; context.index < context.count; ++context.index) {
+        openSubstep(context, frame);
         for (std::size_t i = 0; i < frame.passes.count; ++i) {
             frame.passes.calls[i](view, lanes, context);
             const std::uint64_t after = host_.nanoseconds();

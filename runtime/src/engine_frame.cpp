@@ -38,6 +38,7 @@ Engine::Impl::Impl(const StrandsView& strands, const SimulationSettings& setting
     state_.roots.assign(shape_->blocks.size() * kRootRows * kBlockLanes, 0.0f);
     blockReports_.resize(shape_->blocks.size());
     nextRoots_.assign(state_.roots.size(), 0.0f);
+    makeRods();
     wind_.wind = makeWind(settings);
     reset(shape_->restRoots);
 }
@@ -56,6 +57,7 @@ void Engine::Impl::reset(std::span<const RootFrame> roots_ws) {
                                              root.rotation.w};
             for (std::size_t r = 0; r < kRootRows; ++r) rows[r * kBlockLanes + lane] = values[r];
             placeAtRest(*shape_, state_, b, lane);
+            placeRodAtRest(*shape_, rods_, state_, b, lane);
         }
     }
     state_.spheres.clear();
@@ -70,6 +72,7 @@ void Engine::Impl::reset(std::span<const RootFrame> roots_ws) {
 std::string Engine::Impl::setSettings(const SimulationSettings& settings) {
     if (std::string error = validationError(settings); !error.empty()) return error;
     settings_ = settings;
+    makeRods();
     scratch_ = {};
     wind_ = {makeWind(settings), false};
     bend_.substep = 0.0f;
@@ -96,6 +99,23 @@ void Engine::Impl::replan(std::span<const Sphere> spheres, std::span<const Float
     }
     plan_ = planFrame(settings_, planInput, wind_, spheres, sphereMotion, frameTime);
     allocateForPlan();
+}
+
+/// What strands are as rods under these settings; strands that were none before go on from where they are.
+void Engine::Impl::makeRods() {
+    if (settings_.strandModel != StrandModel::rods) {
+        rods_ = {};
+        state_.rods = state_.rodLanes = {};
+        return;
+    }
+    rods_ = makeRodRest(*shape_, settings_);
+    if (!state_.rods.empty()) return;
+    state_.rods = Floats(shape_->planeFloats * kRodStatePlanes, 0.0f);
+    state_.rodLanes = Floats(shape_->blocks.size() * kRodLaneRows * kBlockLanes, 0.0f);
+    for (std::size_t b = 0; b < shape_->blocks.size(); ++b) {
+        for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane)
+            placeRodOnPoints(*shape_, rods_, state_, b, lane);
+    }
 }
 
 void Engine::Impl::allocateForPlan() {
@@ -210,6 +230,16 @@ Engine::Impl::Frame Engine::Impl::makeFrame(const FrameInput& input) {
         frame.windFrom = windPhases(wind_.wind, time - static_cast<double>(input.dt));
         frame.windTo = windPhases(wind_.wind, time);
     }
+    frame.context.stepRatio = state_.substep > 0.0f ? h / state_.substep : kRodFirstRatio;
+    frame.context.conservative = !frame.windy;
+    if (frame.windy) {
+        frame.context.wind = &wind_.wind;
+        const double time = std::isfinite(input.time) ? input.time : 0.0;
+        for (std::uint32_t i = 0; i < settings_.substeps; ++i) {
+            const double left = static_cast<double>(settings_.substeps - 1 - i) * static_cast<double>(h);
+            frame.windPhases[i] = windPhases(wind_.wind, time - left);
+        }
+    }
     frame.rescale = state_.substep > 0.0f ? h / state_.substep : 1.0f;
     frame.newBend = plan_.on(Effect::angular) && bend_.substep != h;
     frame.kernels = &kernels();
@@ -236,6 +266,7 @@ void Engine::Impl::step(const FrameInput& input) {
            input.dt);
     if (plan_.on(Effect::collision)) {
         moveSpheres(spheres_, settings_.substeps, movingSpheres_);
+        if (!rods_.planes.empty()) scratch_.reserveSpheres(movingSpheres_.size());
     } else {
         movingSpheres_ = {};
     }
@@ -281,14 +312,19 @@ void Engine::Impl::sumReports() {
 }
 
 BlockView Engine::Impl::view(std::size_t block) {
-    return viewOf({*shape_, state_, bend_, evaluation_, evaluationPlanes_}, block, settings_.clampedPoints);
+    BlockView view =
+        viewOf({*shape_, state_, bend_, evaluation_, evaluationPlanes_}, block, settings_.clampedPoints);
+    view.rod = rodViewOf(*shape_, rods_, state_, block);
+    return view;
 }
 
 void Engine::Impl::addVelocities(std::span<const Float3> changes_ws) {
     const float h = state_.substep;
     for (std::size_t b = 0; b < shape_->blocks.size(); ++b) {
         const Block& block = shape_->blocks[b];
-        const Planes previous = view(b).previous;
+        const BlockView blockView = view(b);
+        const Planes previous = blockView.previous;
+        const RodView& rod = blockView.rod;
         bool changed = false;
         for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
             // Lanes past the last strand repeat it.
@@ -300,6 +336,13 @@ void Engine::Impl::addVelocities(std::span<const Float3> changes_ws) {
                 previous.x[i] -= change.x * h;
                 previous.y()[i] -= change.y * h;
                 previous.z()[i] -= change.z * h;
+                for (const Planes& velocity : {rod.velocity, rod.velocityBefore}) {
+                    if (!velocity.x) continue;
+                    velocity.x[i] += change.x;
+                    velocity.y()[i] += change.y;
+                    velocity.z()[i] += change.z;
+                }
+                if (rod.energy) rod.energy[lane] = kRodNoEnergy;
                 changed = true;
             }
         }

@@ -6,6 +6,7 @@
 
 #include "hairloom/engine.h"
 #include "src/frame_setup.h"
+#include "src/rods.h"
 #include "src/scratch.h"
 #include "src/state.h"
 #include "src/state_read.h"
@@ -36,6 +37,7 @@ struct Engine::Impl {
     void replan(std::span<const Sphere> spheres, std::span<const Float3> sphereMotion, Float3 rootsMin_ws,
                 Float3 rootsMax_ws, float frameTime);
     void allocateForPlan();
+    void makeRods();
     void takeRoots(const FrameInput& input);
     void repairRoots(std::size_t block);
     void wakeBlocks();
@@ -46,7 +48,9 @@ struct Engine::Impl {
     void runBlock(std::size_t block, LaneFrame& lanes, const Frame& frame);
     static void turnAlong(const BlockView& view, std::uint32_t lane, Quat turn);
     void teleportLanes(const BlockView& view, float* rows, const float* next) const;
+    void touchSpheres(std::size_t block, LaneFrame& lanes) const;
     void enterFrame(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame);
+    static void openSubstep(SubstepContext& context, const Frame& frame);
     void runStages(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame);
     void restoreStrands(std::size_t block, const BlockView& view);
     void rest(std::size_t block, const BlockView& view, const Frame& frame);
@@ -55,6 +59,7 @@ struct Engine::Impl {
     SimulationSettings settings_;
     Host host_;
     std::shared_ptr<const RestShape> shape_;
+    RodRest rods_;  // empty for springs
     EffectPlan plan_;
     FrameWind wind_;
     State state_;
@@ -77,6 +82,8 @@ struct Engine::Impl::Frame {
     SubstepContext context;
     std::array<float, kWindModes> windFrom, windTo;
     bool windy;
+    /// Of rods: of the wind at the end of each substep.
+    std::array<std::array<float, kWindModes>, kMaxSubsteps> windPhases;
     float rescale;  ///< new substep over old, 1 when equal
     bool newBend;
     const Kernels* kernels;

@@ -163,6 +163,13 @@ SubstepContext substepContext(const SimulationSettings& settings, const EffectPl
         context.collisionRadiusAtRoot = settings.collisionRadiusRoot;
         context.collisionRadiusAtTip = settings.collisionRadiusTip;
     }
+    context.air = plan.on(Effect::wind) ? Air::moving : plan.on(Effect::drag) ? Air::still : Air::none;
+    context.gravity = settings.gravity;
+    context.airDrag = settings.airDrag;
+    context.rootDamping = settings.dampingTime > 0.0f ? 1.0f / settings.dampingTime : 0.0f;
+    context.bendDampingTime = settings.bendDampingTime;
+    context.torsionRatio = settings.torsionRatio;
+    context.sweeps = plan.on(Effect::continuousCollision);
     context.friction = settings.friction;
     context.restitution = settings.restitution;
     context.spheres = spheres;

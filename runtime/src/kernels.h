@@ -19,6 +19,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "hairloom/plan.h"
 #include "hairloom/wind.h"
@@ -42,6 +43,34 @@ struct PlanesOf {
 };
 using Planes = PlanesOf<float>;
 using ConstPlanes = PlanesOf<const float>;
+
+/// Strands as elastic rods (docs/engine.md, "Rods"); all null for springs. Of segment or vertex j at [j ·
+/// kBlockLanes + lane]; a vertex stands at its outer segment, world space unless said otherwise, all with the
+/// block's pitch.
+struct RodView {
+    ConstPlanes tangent;          ///< of a segment in the shape without load, in the root's frame
+    ConstPlanes axis;             ///< that a vertex twists about there
+    const float* bend = nullptr;  ///< B/l̄ of a vertex, m³/s²
+    const float* mass = nullptr;  ///< of each point, metres of hair
+    const float* restRotation =
+        nullptr;                ///< x, y, z, w of a segment: from the shape without load to the authored one
+    float* rotation = nullptr;  ///< x, y, z, w: from the shape without load to the world
+    Planes increment;           ///< rotation of each segment in the last substep
+    Planes displacement;        ///< of each point in the last substep, metres
+    Planes velocity, velocityBefore;  ///< m/s, at the end of the last substep and of the one before
+    Planes strain, strainBefore;      ///< likewise
+    float* load = nullptr;            ///< force of each point's contacts in the last substep, m²/s²
+    float* turn =
+        nullptr;  ///< of each lane: most that a segment turned in the last substep, radians, or kRodNoStep
+    float* energy = nullptr;  ///< of each lane, of motion, shape and weight, m³/s², or kRodNoEnergy
+    bool curved = false;      ///< twist matters
+};
+/// There is no substep before that a second order scheme could build on.
+inline constexpr float kRodNoStep = 1e9f;
+/// SubstepContext::stepRatio where there is no step before.
+inline constexpr float kRodFirstRatio = 1e9f;
+/// Nothing is known of the energy before.
+inline constexpr float kRodNoEnergy = 1e30f;
 
 struct BlockView {
     std::uint32_t lanes;      ///< from the first on; those with strands, in whole vectors of any width
@@ -77,6 +106,7 @@ struct BlockView {
     // Of integrators that evaluate forces elsewhere than at the last place, null otherwise; each is a
     // displacement in one substep but for `start`, a place.
     Planes start, rate, kick, sum, sumRate;
+    RodView rod;
 };
 
 /// Which points of a block a sphere can reach before they have moved by a margin, found once and used for as
@@ -122,6 +152,16 @@ struct NearPoints {
     std::uint64_t overlapsKnown = 0;  ///< which of them are filled
 };
 
+struct MovingSphere {
+    Float3 from_ws;  ///< centre at the start of the frame
+    Float3 step;     ///< the centre's way in one substep
+    float radius;
+};
+
+/// What the strands move through.
+enum class Air : std::uint32_t { none, still, moving };
+inline constexpr std::size_t kAirCount = 3;
+
 inline constexpr std::size_t kCopiedRows = 14;
 inline constexpr std::size_t kMaxCopied = 64;
 
@@ -137,7 +177,8 @@ struct alignas(64) LaneFrame {
     float windRoot[2][3]
                   [kBlockLanes];  ///< the air's way in one substep at start and end of the frame, at the root
     float windTip[2][3][kBlockLanes];
-    NearPoints near;  ///< kept by the stage `collision`
+    NearPoints near;                      ///< kept by the stage `collision`
+    std::vector<MovingSphere> touchable;  ///< of rods: spheres that can reach the block in this frame
     /// Of strands of at most kMaxCopied points: what the pass of bending and lengths reads of them, in its
     /// own order.
     alignas(64) float copied[kCopiedRows * kMaxCopied * kBlockLanes];
@@ -146,12 +187,6 @@ struct alignas(64) LaneFrame {
     float* solver = nullptr;
 };
 inline constexpr std::size_t kSolverPadding = 3 * kPlanePadding;
-
-struct MovingSphere {
-    Float3 from_ws;  ///< centre at the start of the frame
-    Float3 step;     ///< the centre's way in one substep
-    float radius;
-};
 
 /// What all blocks share in one substep.
 struct SubstepContext : shaders::SubstepNumbers {
@@ -163,6 +198,18 @@ struct SubstepContext : shaders::SubstepNumbers {
     Float3 gravityStep;  ///< g·h²
     std::uint32_t lengthIterations = 0;
     std::span<const MovingSphere> spheres;
+    // Of rods.
+    Air air = Air::none;
+    Float3 gravity;                ///< m/s²
+    float airDrag = 0.0f;          ///< 1/s
+    float rootDamping = 0.0f;      ///< 1/s
+    float bendDampingTime = 0.0f;  ///< seconds
+    float torsionRatio = 1.0f;     ///< GJ/EI
+    float stepRatio = 1.0f;        ///< h over that of the substep before
+    bool sweeps = false;           ///< spheres are met where fast points come in
+    bool conservative = false;     ///< nothing but a root's motion adds energy
+    const Wind* wind = nullptr;
+    const float* windPhases = nullptr;  ///< of the substep's end
 };
 
 /// Share of a sphere's radius that a point may move in one substep without the test for continuous collision
@@ -179,10 +226,6 @@ struct alignas(64) RootBounds {
     float longest[kBlockLanes];                       ///< square metres, of those that are no cuts
     bool anyTeleported = false;                       ///< set by a way that is one
 };
-
-/// What the strands move through.
-enum class Air : std::uint32_t { none, still, moving };
-inline constexpr std::size_t kAirCount = 3;
 
 struct Kernels {
     Stage stages[kStageCount];              ///< by StageId
@@ -215,6 +258,13 @@ struct Kernels {
     const char* target;  ///< name of the instruction set
     bool fuses;          ///< MulAdd rounds once
 };
+
+/// The rods' stage, and the floats of LaneFrame::solver that it needs for a point.
+struct RodKernel {
+    Stage stage;
+    std::size_t solverFloats;
+};
+RodKernel rodKernel();
 
 /// What a plan makes of a block in a substep, call after call.
 struct Passes {

@@ -59,6 +59,7 @@ Decision decideDrag(const SimulationSettings& s, bool wind) {
 }
 
 Decision decideLength(const SimulationSettings& s) {
+    if (s.strandModel == StrandModel::rods) return {true, Reason::byRods, 0.0f};
     if (s.lengthMethod != LengthMethod::constraint) return {true, Reason::springsOn, s.springFrequency};
     if (s.lengthIterations == 0) return {false, Reason::zeroIterations, 0.0f};
     return {true, Reason::authored, static_cast<float>(s.lengthIterations)};
@@ -66,6 +67,9 @@ Decision decideLength(const SimulationSettings& s) {
 
 Decision decideTorsion(const PlanInput& scene, bool angular, bool held) {
     if (!angular) return {false, Reason::noAngular, 0.0f};
+    if (scene.settings.strandModel == StrandModel::rods)
+        return scene.straight && !held ? Decision{false, Reason::straightHair, 0.0f}
+                                       : Decision{true, Reason::curvedHair, 0.0f};
     if (scene.settings.angularMethod == AngularMethod::flexion) return {false, Reason::noFrames, 0.0f};
     if (scene.straight && !held) return {false, Reason::straightHair, 0.0f};
     return {true, Reason::curvedHair, 0.0f};
@@ -99,7 +103,9 @@ Decision decideCollisionRadius(const SimulationSettings& s, bool collision) {
 
 Decision decideContinuousCollision(const PlanInput& scene, bool collision, float smallestSphere) {
     if (!collision) return {false, Reason::noCollision, 0.0f};
-    if (scene.settings.collisionResponse == CollisionResponse::penalty) return {false, Reason::byForce, 0.0f};
+    if (scene.settings.strandModel == StrandModel::springs &&
+        scene.settings.collisionResponse == CollisionResponse::penalty)
+        return {false, Reason::byForce, 0.0f};
     if (!std::isfinite(scene.fastest)) return {true, Reason::speedUnknown, 0.0f};
     // A slower point that passes cuts at most 0.8 % of the radius.
     if (scene.fastest < 0.25f * smallestSphere) return {false, Reason::slowEnough, 0.0f};
@@ -159,12 +165,12 @@ class Planner {
         decide(Effect::angular, {stiff, stiff ? Reason::authored : Reason::zeroStiffness, stiffest});
         const bool held = stiff && gravity > 0.0f && s_.restGravity > 0.0f;
         decide(Effect::torsion, decideTorsion(scene_, stiff, held));
-        const bool coupled = stiff && implicitly() && !coils() && s_.lengthIterations > 0;
+        const bool coupled = !rods() && stiff && implicitly() && !coils() && s_.lengthIterations > 0;
         decide(Effect::coupling, decideCoupling(scene_, coupled));
         decideCollision();
-        plan_.keepsCurves_ = on(Effect::torsion) && implicitly();
+        plan_.keepsCurves_ = !rods() && on(Effect::torsion) && implicitly();
         plan_.keepsTensions_ = coupled;
-        plan_.factored_ = stiff && s_.angularMethod != AngularMethod::flexion &&
+        plan_.factored_ = !rods() && stiff && s_.angularMethod != AngularMethod::flexion &&
                           (implicitly() || (s_.integrator == Integrator::implicitEuler && !coils()));
     }
 
@@ -183,6 +189,7 @@ class Planner {
         decide(Effect::continuousCollision, decideContinuousCollision(scene_, collision, smallestSphere_));
     }
 
+    bool rods() const { return s_.strandModel == StrandModel::rods; }
     bool coils() const { return s_.lengthMethod != LengthMethod::constraint; }
     /// Angular springs solved as a stage after position Verlet.
     bool implicitly() const {
@@ -221,6 +228,10 @@ class Planner {
 
     void listStages() {
         add(StageId::roots);
+        if (rods()) {
+            add(StageId::rod);
+            return;
+        }
         if (on(Effect::damping)) add(StageId::damping);
         switch (s_.integrator) {
             case Integrator::verlet:
@@ -298,8 +309,9 @@ class Planner {
 };
 
 float hairReach(const SimulationSettings& settings, float strandLength) {
-    if (settings.lengthIterations == 0) return std::numeric_limits<float>::infinity();
-    return strandLength * (1.0f + settings.maximalExtension) +
+    const bool rods = settings.strandModel == StrandModel::rods;
+    if (!rods && settings.lengthIterations == 0) return std::numeric_limits<float>::infinity();
+    return strandLength * (1.0f + (rods ? 0.0f : settings.maximalExtension)) +
            std::max(settings.collisionRadiusRoot, settings.collisionRadiusTip);
 }
 

@@ -87,6 +87,8 @@ std::string words(Effect effect, const Decision& decision) {
             return "hair is curved or carries its weight";
         case Reason::lengthsFree:
             return "not with implicit angular springs and the length constraint";
+        case Reason::byRods:
+            return "rods have no other length";
         case Reason::evenHair:
             return "bending is damped, hair is even and has no tight curls";
         case Reason::undamped:
@@ -134,6 +136,7 @@ struct StageWords {
 /// By StageId; families are the rows of the thesis' Table 3.
 constexpr StageWords kStages[kStageCount] = {
     {"roots", "animation", std::nullopt},
+    {"rod", "integration", std::nullopt},
     {"damping", "integration", Effect::damping},
     {"drag", "external forces", Effect::drag},
     {"wind", "external forces", Effect::wind},

@@ -30,6 +30,10 @@ void Scratch::make(std::size_t count, std::size_t floats) {
     floats_ = floats;
 }
 
+void Scratch::reserveSpheres(std::size_t count) {
+    for (std::size_t i = 0; i < count_; ++i) pieces_[i].lanes.touchable.reserve(count);
+}
+
 Scratch::Piece& Scratch::take() {
     const std::size_t own = threadNumber() % count_;
     for (;;) {

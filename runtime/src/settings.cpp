@@ -11,6 +11,7 @@ using S = SimulationSettings;
 
 constexpr const char* kIntegrators[] = {"verlet",        "velocityVerlet", "leapfrog",
                                         "explicitEuler", "implicitEuler",  "rk4"};
+constexpr const char* kModels[] = {"rods", "springs"};
 constexpr const char* kLengthMethods[] = {"constraint", "springs", "springVelocities"};
 constexpr const char* kAngularMethods[] = {"implicit", "smallAngle", "exact", "flexion"};
 constexpr const char* kWindKinds[] = {"uniform", "gusting", "turbulent", "vehicle"};
@@ -19,8 +20,9 @@ constexpr double kLargestCount = 4294967295.0;
 
 // clang-format off
 constexpr Field<S> kFields[] = {
+    choiceField<&S::strandModel>("strandModel", "what a strand is: an elastic rod, or masses and springs with the methods below", kModels),
     choiceField<&S::integrator>("integrator", "how motion is advanced", kIntegrators),
-    field<&S::substeps>("substeps", "", 1, 64, "steps per frame: more is stiffer, more exact and slower"),
+    field<&S::substeps>("substeps", "", 1, kMaxSubsteps, "steps per frame: more is stiffer, more exact and slower"),
     field<&S::dampingTime>("dampingTime", "s", 0, 100, "time in which motion falls to 1/e: lower is calmer, 0 is undamped"),
     field<&S::teleportDistance>("teleportDistance", "m", 0.01, 10000, "a root that moves farther in a frame carries its strand along"),
     field<&S::sleepSpeed>("sleepSpeed", "m/s", 0, 1, "slower strands fall asleep: 0 keeps all awake"),
@@ -33,6 +35,7 @@ constexpr Field<S> kFields[] = {
     choiceField<&S::angularMethod>("angularMethod", "how strands keep their shape", kAngularMethods),
     field<&S::angularStiffness>("angularStiffness", "", 0, 1, "how strongly hair returns to its shape: 0 is off, 0.5 real hair, 1 rigid"),
     rampField<&S::angularCurve>("angularCurve", "share of the stiffness from root to tip, by keys [place, share]: lower is looser there"),
+    field<&S::torsionRatio>("torsionRatio", "", 0.01, 100, "torsional over bending stiffness of rods: 0.75 is a round fibre"),
     field<&S::bendDampingTime>("bendDampingTime", "s", 0, 1, "waves faster than this fade: 0 rings on"),
     field<&S::restGravity>("restGravity", "", 0, 1, "share of gravity that the authored shape already carries: 0 sags from there"),
     field<&S::gravity>("gravity", "m/s²", -1000, 1000, "acceleration of everything"),

@@ -17,7 +17,6 @@ using S = SimulationSettings;
 
 /// An offer stays this far inside its region.
 constexpr double kMargin = 0.9;
-constexpr std::uint32_t kMaxSubsteps = 64;
 
 bool coilSprings(const S& s) {
     return s.lengthMethod != LengthMethod::constraint;

@@ -209,6 +209,8 @@ std::uint64_t State::hash() const {
     hash = mix(hash, planes.data(), planes.size() * sizeof(float));
     hash = mix(hash, curves.data(), curves.size() * sizeof(float));
     hash = mix(hash, tensions.data(), tensions.size() * sizeof(float));
+    hash = mix(hash, rods.data(), rods.size() * sizeof(float));
+    hash = mix(hash, rodLanes.data(), rodLanes.size() * sizeof(float));
     return mix(hash, roots.data(), roots.size() * sizeof(float));
 }
 

@@ -77,6 +77,8 @@ struct State {
     Floats energyTanks;               ///< of each lane, BlockView::tank
     Floats motions;                   ///< of each lane, BlockView::motion; empty where `curves` is
     Floats tensions;                  ///< per block: BlockView::tension; empty unless it is needed
+    Floats rods;                      ///< per block: what RodView says; empty for springs
+    Floats rodLanes;                  ///< per block: RodView::turn and energy
     std::vector<Rest> rests;          ///< per block
     std::vector<Sphere> spheres;      ///< of the last frame
     Float3 rootsMin_ws, rootsMax_ws;  ///< box of the last frame's roots

@@ -35,6 +35,7 @@ const char* effectName(Effect effect);
 /// evaluates forces several times lists them several times.
 enum class StageId : std::uint32_t {
     roots,    ///< moves clamped points with the scalp
+    rod,      ///< elastic rods: all that moves them, in one solve
     damping,  ///< slows motion relative to the root
     // Forces: each adds a·h² to the displacement of the free points.
     drag,                ///< external: still air
@@ -125,6 +126,7 @@ enum class Reason : std::uint32_t {
     straightHair,
     curvedHair,
     lengthsFree,
+    byRods,
     evenHair,
     undamped,
     unevenMasses,

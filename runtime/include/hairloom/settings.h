@@ -24,6 +24,12 @@ enum class Integrator : std::uint32_t {
     rk4,             ///< the classical Runge-Kutta method of order 4
 };
 
+/// What a strand is.
+enum class StrandModel : std::uint32_t {
+    rods,     ///< an inextensible elastic rod: bending and twist, one implicit solve
+    springs,  ///< masses and springs (Rünz 2012), with the integrators and methods below
+};
+
 /// How segments keep their length.
 enum class LengthMethod : std::uint32_t {
     constraint,       ///< Newton steps on all segments of a strand together
@@ -55,6 +61,8 @@ enum class CollisionResponse : std::uint32_t {
 
 /// Units, ranges and meanings stand in fieldsOf(); a value outside is refused by Engine::make, not clamped.
 struct SimulationSettings {
+    StrandModel strandModel = StrandModel::springs;
+
     // --- Time ---
     Integrator integrator = Integrator::verlet;
     std::uint32_t substeps = 8;
@@ -80,6 +88,8 @@ struct SimulationSettings {
     /// segments.
     float angularStiffness = 0.3f;
     Ramp angularCurve = Ramp::straight(1.0f, 0.5f);
+    /// GJ/EI of rods; 0.75 is a round section whose Poisson ratio is 1/3.
+    float torsionRatio = 0.75f;
     /// Kelvin-Voigt.
     float bendDampingTime = 0.03f;
     /// At 1 hair keeps its authored shape as far as its stiffness can carry it.
@@ -113,6 +123,8 @@ struct SimulationSettings {
 };
 /// In the order in which a panel shows them; each member stands there once.
 std::span<const Field<SimulationSettings>> fieldsOf(const SimulationSettings&);
+
+inline constexpr std::uint32_t kMaxSubsteps = 64;  ///< of a frame
 
 /// Of angularStiffness anywhere along a strand, 0…1.
 float greatestStiffness(const SimulationSettings& settings);

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+// Contacts of rods with spheres: potentials of a node that enter its solve (docs/engine.md, "Contacts").
+#if defined(HAIRLOOM_RUNTIME_ROD_CONTACT_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef HAIRLOOM_RUNTIME_ROD_CONTACT_INL_H
+#undef HAIRLOOM_RUNTIME_ROD_CONTACT_INL_H
+#else
+#define HAIRLOOM_RUNTIME_ROD_CONTACT_INL_H
+#endif
+
+#include "hwy/highway.h"
+#include "kernels/lanes-inl.h"
+#include "kernels/rod_math-inl.h"
+#include "src/kernels.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace hairloom::runtime {
+namespace HWY_NAMESPACE {
+
+/// The contacts of a node: ½ c + g·x + ½ xᵀH x in its displacement x beyond the predicted one.
+struct RodContact {
+    V hessian[6];  ///< xx, xy, xz, yy, yz, zz
+    V3 gradient;
+    V twiceEnergy;
+    V touching;  ///< 1 where there is any
+
+    HWY_INLINE V3 times(V3 x) const {
+        return {mad(hessian[0], x.x, mad(hessian[1], x.y, hessian[2] * x.z)),
+                mad(hessian[1], x.x, mad(hessian[3], x.y, hessian[4] * x.z)),
+                mad(hessian[2], x.x, mad(hessian[4], x.y, hessian[5] * x.z))};
+    }
+    HWY_INLINE V twiceEnergyAt(V3 x) const { return twiceEnergy + dot(gradient + gradient + times(x), x); }
+    /// Force of the contacts on the node.
+    HWY_INLINE V3 force(V3 x) const { return zero3() - gradient - times(x); }
+
+    /// ½ k (depth − n·x)², which keeps the node out, and ½ g |T (slip + x)|², which holds it back along the
+    /// surface.
+    HWY_INLINE void add(V k, V g, V3 n, V depth, V3 slip) {
+        const V across = k - g;
+        const V3 nn = n * across;
+        hessian[0] = hessian[0] + mad(nn.x, n.x, g);
+        hessian[1] = mad(nn.x, n.y, hessian[1]);
+        hessian[2] = mad(nn.x, n.z, hessian[2]);
+        hessian[3] = hessian[3] + mad(nn.y, n.y, g);
+        hessian[4] = mad(nn.y, n.z, hessian[4]);
+        hessian[5] = hessian[5] + mad(nn.z, n.z, g);
+        const V push = k * depth;
+        gradient = gradient + negMad3(n, push, slip * g);
+        twiceEnergy = twiceEnergy + mad(push, depth, g * dot(slip, slip));
+    }
+};
+
+/// What a node is and does in this substep.
+struct RodNode {
+    V3 position;      ///< predicted, relative to the root at the end of the substep
+    V3 displacement;  ///< predicted, world
+    V3 velocity;      ///< of the last substep, world
+    V weight;         ///< m/(h² D)
+    V load;           ///< force of its contacts in the last substep
+    V step;           ///< seconds of the time scheme
+    float radius;     ///< metres that it keeps from spheres
+};
+
+HWY_INLINE void meetSphere(const MovingSphere& sphere, V3 root, const RodNode& node,
+                           const SubstepContext& context, RodContact& contact) {
+    const V3 step = all3(sphere.step);
+    const V3 centre = all3(sphere.from_ws + sphere.step * static_cast<float>(context.index + 1)) - root;
+    const V reach = all(sphere.radius + node.radius);
+    const V3 to = node.position - centre;
+    const V distance = hn::Sqrt(hn::Max(dot(to, to), all(1e-18f)));
+    V3 n = to * (all(1.0f) / distance);
+    V depth = reach - distance;
+    if (context.sweeps) {
+        // What would pass the sphere meets it where it comes in.
+        const V3 way = node.displacement - step, from = to - way;
+        const V a = dot(way, way), b = dot(from, way), c = mad(reach, hn::Neg(reach), dot(from, from));
+        const V root2 = negMad(a, c, b * b);
+        const V first = (hn::Neg(b) - hn::Sqrt(hn::Max(root2, hn::Zero(D())))) / hn::Max(a, all(1e-30f));
+        const auto enters = hn::And(hn::And(c > hn::Zero(D()), root2 > hn::Zero(D())),
+                                    hn::And(first >= hn::Zero(D()), first < all(1.0f)));
+        const V3 entry = mad3(way, first, from) * (all(1.0f) / reach);
+        n = select(enters, entry, n);
+        depth = hn::IfThenElse(enters, reach - dot(entry, to), depth);
+    }
+    const auto inside = depth > hn::Zero(D());
+    if (hn::AllFalse(D(), inside)) return;
+    const V approach = dot(n, step * all(1.0f / context.h) - node.velocity);
+    depth = mad(hn::Max(approach, hn::Zero(D())) * node.step, all(context.restitution), depth);
+    const V k = hn::IfThenElseZero(inside, node.weight * all(static_cast<float>(HAIRLOOM_ROD_CONTACT)));
+    // Coulomb, with the force of the last substep and at most what stops the node.
+    const V3 moved = node.displacement - step;
+    const V3 slip = negMad3(n, dot(n, moved), moved);
+    const V size = hn::Sqrt(dot(slip, slip));
+    const V grip = hn::Min(node.load * all(context.friction) / hn::Max(size, all(1e-12f)), k);
+    contact.add(k, hn::IfThenElseZero(inside, grip), n, depth, slip);
+    contact.touching = hn::IfThenElse(inside, all(1.0f), contact.touching);
+}
+
+/// Of all spheres that the block can touch.
+HWY_INLINE RodContact contactOf(const LaneFrame& lanes, V3 root, const RodNode& node,
+                                const SubstepContext& context) {
+    RodContact contact;
+    for (V& number : contact.hessian) number = hn::Zero(D());
+    contact.gradient = zero3();
+    contact.twiceEnergy = contact.touching = hn::Zero(D());
+    for (const MovingSphere& sphere : lanes.touchable) meetSphere(sphere, root, node, context, contact);
+    return contact;
+}
+
+// NOLINTNEXTLINE(google-readability-namespace-comments)
+}  // namespace HWY_NAMESPACE
+}  // namespace hairloom::runtime
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: MIT
+// One segment of an elastic rod in a substep, written once for C++, where a number is a vector of strands,
+// and for HLSL, where it is a number (docs/engine.md, "Rods"). Who includes it defines ROD_FUNCTION, Real,
+// Real3, Real4, ROD_INOUT, ROD_OUT and ROD_NUMBER and has cross, dot, mad (a b + c), mad3 (a s + b), negMad
+// (c − a b), negMad3 (b − a s), maximum, minimum, absolute, root, xyz, real3, real4 and withSignOf.
+//
+// A segment is a rotation q, from its place in the rest shape, in the root's frame, to the world. A vertex
+// lies between an inner and an outer segment; its strain is ε = 2 vec(p), p = q_inner⁻¹ q_outer, in the
+// root's frame at rest, and its energy ½ (B |ε|² + (C − B) (a·ε)²)/l̄ with its axis a: an even function of p,
+// so smooth for all rotations. u is a small rotation of a segment, world space. Masses are metres of hair,
+// stiffnesses m³/s².
+#ifndef HAIRLOOM_ROD_H
+#define HAIRLOOM_ROD_H
+#include "rod_constants.h"
+#endif
+
+#if !defined(HAIRLOOM_ROD_FUNCTIONS) && defined(ROD_FUNCTION)
+#define HAIRLOOM_ROD_FUNCTIONS
+
+/// Conjugate of a, times b; of the two quaternions of that rotation the one on the side of another.
+ROD_FUNCTION Real4 rodRelative(Real4 a, Real4 b, Real4 other) {
+    const Real3 av = xyz(a), bv = xyz(b);
+    const Real w = mad(a.w, b.w, dot(av, bv));
+    const Real3 v = mad3(bv, a.w, negMad3(av, b.w, cross(bv, av)));
+    const Real side = mad(w, other.w, dot(v, xyz(other)));
+    return real4(withSignOf(v, side), withSignOf(w, side));
+}
+
+/// The quaternion of a strain, with w ≥ 0.
+ROD_FUNCTION Real4 rodOfStrain(Real3 strain) {
+    const Real3 v = strain * ROD_NUMBER(0.5);
+    return real4(v, root(maximum(negMad(v.x, v.x, negMad(v.y, v.y, negMad(v.z, v.z, ROD_NUMBER(1.0)))),
+                                 ROD_NUMBER(0.0))));
+}
+
+ROD_FUNCTION Real4 rodNormalized(Real4 q) {
+    const Real scale = ROD_NUMBER(1.0) / root(mad(q.w, q.w, dot(xyz(q), xyz(q))));
+    return real4(xyz(q) * scale, q.w * scale);
+}
+
+/// First q, then the rotation of 2 atan(|u|/2) about u (Cayley), which is legal for any u.
+ROD_FUNCTION Real4 rodTurned(Real4 q, Real3 u) {
+    const Real3 h = u * ROD_NUMBER(0.5), v = xyz(q);
+    return rodNormalized(
+        real4(mad3(h, q.w, v) + cross(h, v), negMad(h.x, v.x, negMad(h.y, v.y, negMad(h.z, v.z, q.w)))));
+}
+
+/// What that rotation adds to a unit vector t.
+ROD_FUNCTION Real3 rodTangentChange(Real3 u, Real3 t) {
+    const Real3 c = cross(u, t);
+    return mad3(cross(u, c), ROD_NUMBER(0.5), c) *
+           (ROD_NUMBER(1.0) / mad(dot(u, u), ROD_NUMBER(0.25), ROD_NUMBER(1.0)));
+}
+
+/// Rotates v.
+ROD_FUNCTION Real3 rodRotate(Real4 q, Real3 v) {
+    const Real3 c = cross(xyz(q), v);
+    const Real3 twice = c + c;
+    return mad3(twice, q.w, v) + cross(xyz(q), twice);
+}
+
+/// Twice the energy of a strain e with `twist` for (C − B)/l̄.
+ROD_FUNCTION Real rodTwiceEnergy(Real3 e, Real3 axis, Real bend, Real twist) {
+    const Real along = dot(e, axis);
+    return mad(bend, dot(e, e), twist * along * along);
+}
+
+/// What lies beyond a node, as a quadratic form in the node's displacement x and in the rotation u of the
+/// segment before it: ½ xᵀP x + xᵀR u + ½ uᵀU u + gx·x + gu·u. P and U are symmetric: xx, xy, xz, yy, yz, zz.
+struct RodForm {
+    Real P[6];
+    Real R[9];  ///< by rows
+    Real U[6];
+    Real3 gx, gu;
+    Real3 force;  ///< what the nodes beyond pull with, which is the tension of the segment
+};
+
+/// The rotation of a segment is u_before − d with d = k + K (x, u_before), where x is the displacement of its
+/// inner node and u_before the rotation of the segment before, both beyond what was predicted.
+struct RodGains {
+    Real k[21];  ///< rows of three: each with 3 for x, 3 for u, 1 alone
+};
+
+/// A node of weight mi = m/(h² D), whose gradient at the prediction is r. It pulls at its segments with
+/// `pull`: r where a motion was predicted, else nothing, since r is then mostly what stops the node.
+ROD_FUNCTION void rodAddNode(ROD_INOUT(RodForm) f, Real mi, Real3 r, Real3 pull) {
+    f.P[0] = f.P[0] + mi;
+    f.P[3] = f.P[3] + mi;
+    f.P[5] = f.P[5] + mi;
+    f.gx = f.gx + r;
+    f.force = f.force + pull;
+}
+
+/// A node's contacts: the Hessian `h` (as P) of their potentials.
+ROD_FUNCTION void rodAddContact(ROD_INOUT(RodForm) f, Real h0, Real h1, Real h2, Real h3, Real h4, Real h5) {
+    f.P[0] = f.P[0] + h0;
+    f.P[1] = f.P[1] + h1;
+    f.P[2] = f.P[2] + h2;
+    f.P[3] = f.P[3] + h3;
+    f.P[4] = f.P[4] + h4;
+    f.P[5] = f.P[5] + h5;
+}
+
+/// Takes a form from a segment's outer node to its inner one and eliminates the segment's rotation. `q` is
+/// the segment's rotation, t its tangent, `relative` the p of the vertex at its inner node, e the strain
+/// there less what it is pulled to, `twist` (C − B)/l̄, which counts where `twists`.
+ROD_FUNCTION void rodEliminate(ROD_INOUT(RodForm) f, Real4 q, Real3 t, Real segment, Real4 relative, Real3 e,
+                               Real3 axis, Real bend, Real twist, bool twists, ROD_OUT(RodGains) gains) {
+    // Displacements: outer = inner + l u × t.
+    const Real3 lt = t * segment;
+    const Real3 P0 = real3(f.P[0], f.P[1], f.P[2]), P1 = real3(f.P[1], f.P[3], f.P[4]),
+                P2 = real3(f.P[2], f.P[4], f.P[5]);
+    const Real3 W0 = real3(f.R[0], f.R[1], f.R[2]) + cross(lt, P0);
+    const Real3 W1 = real3(f.R[3], f.R[4], f.R[5]) + cross(lt, P1);
+    const Real3 W2 = real3(f.R[6], f.R[7], f.R[8]) + cross(lt, P2);
+    const Real3 a0 = cross(lt, real3(W0.x, W1.x, W2.x)), a1 = cross(lt, real3(W0.y, W1.y, W2.y)),
+                a2 = cross(lt, real3(W0.z, W1.z, W2.z));
+    const Real3 b0 = cross(lt, real3(f.R[0], f.R[3], f.R[6])), b1 = cross(lt, real3(f.R[1], f.R[4], f.R[7])),
+                b2 = cross(lt, real3(f.R[2], f.R[5], f.R[8]));
+    // Tension turns a segment back: the positive part of l (T (1 − t tᵀ) + (p tᵀ + t pᵀ)/2), T = −F·t, p = F
+    // − (F·t) t.
+    const Real along = dot(f.force, t);
+    const Real tension = maximum(ROD_NUMBER(0.0) - along, ROD_NUMBER(0.0)) * segment;
+    const Real3 across = negMad3(t, along, f.force);
+    const Real size = root(dot(across, across));
+    const Real3 pull = mad3(across, ROD_NUMBER(1.0) / maximum(size, ROD_NUMBER(1e-12)), t);
+    const Real pk = segment * size * ROD_NUMBER(0.25);
+    const Real3 tt = t * tension, pp = pull * pk;
+    const Real Y0 = f.U[0] + a0.x + b0.x + tension + negMad(tt.x, t.x, pp.x * pull.x);
+    const Real Y1 = f.U[1] + a1.x + b0.y + negMad(tt.x, t.y, pp.x * pull.y);
+    const Real Y2 = f.U[2] + a2.x + b0.z + negMad(tt.x, t.z, pp.x * pull.z);
+    const Real Y3 = f.U[3] + a1.y + b1.y + tension + negMad(tt.y, t.y, pp.y * pull.y);
+    const Real Y4 = f.U[4] + a2.y + b1.z + negMad(tt.y, t.z, pp.y * pull.z);
+    const Real Y5 = f.U[5] + a2.z + b2.z + tension + negMad(tt.z, t.z, pp.z * pull.z);
+    const Real3 gu = f.gu + cross(lt, f.gx);
+
+    // The vertex. With J = w + [v]× the strain changes by J Rᵀ (u_outer − u_inner); JᵀJ = 1 − v vᵀ.
+    const Real3 v = xyz(relative);
+    Real3 moment = e * bend;
+    if (twists) moment = mad3(axis, twist * dot(axis, e), moment);
+    const Real3 g = rodRotate(q, mad3(moment, relative.w, cross(moment, v)));
+    const Real3 V = rodRotate(q, v), bv = V * bend;
+    Real S0 = Y0 + negMad(bv.x, V.x, bend), S1 = negMad(bv.x, V.y, Y1), S2 = negMad(bv.x, V.z, Y2);
+    Real S3 = Y3 + negMad(bv.y, V.y, bend), S4 = negMad(bv.y, V.z, Y4), S5 = Y5 + negMad(bv.z, V.z, bend);
+    if (twists) {
+        const Real3 T = rodRotate(q, mad3(axis, relative.w, cross(axis, v))), kt = T * twist;
+        S0 = mad(kt.x, T.x, S0);
+        S1 = mad(kt.x, T.y, S1);
+        S2 = mad(kt.x, T.z, S2);
+        S3 = mad(kt.y, T.y, S3);
+        S4 = mad(kt.y, T.z, S4);
+        S5 = mad(kt.z, T.z, S5);
+    }
+
+    // S = L D Lᵀ, with pivots no smaller than what rounding leaves of them.
+    const Real least =
+        mad(bend, ROD_NUMBER(HAIRLOOM_ROD_LEAST_PIVOT),
+            (absolute(S0) + absolute(S3) + absolute(S5)) * ROD_NUMBER(HAIRLOOM_ROD_PIVOT_ROUNDING));
+    const Real D0 = maximum(S0, least), i0 = ROD_NUMBER(1.0) / D0;
+    const Real l1 = S1 * i0, l2 = S2 * i0;
+    const Real D1 = maximum(negMad(l1, S1, S3), least), i1 = ROD_NUMBER(1.0) / D1;
+    const Real s3 = negMad(l1, S2, S4), l3 = s3 * i1;
+    const Real D2 = maximum(negMad(l3, s3, negMad(l2, S2, S5)), least), i2 = ROD_NUMBER(1.0) / D2;
+
+    // Columns of L⁻¹ [Wᵀ Y g], and S⁻¹ of them.
+    const Real3 total = gu + g;
+    const Real3 N[7] = {W0, W1, W2, real3(Y0, Y1, Y2), real3(Y1, Y3, Y4), real3(Y2, Y4, Y5), total};
+    Real3 Z[7], ZD[7];
+    ROD_UNROLL for (int c = 0; c < 7; ++c) {
+        const Real z0 = N[c].x, z1 = negMad(l1, z0, N[c].y), z2 = negMad(l3, z1, negMad(l2, z0, N[c].z));
+        Z[c] = real3(z0, z1, z2);
+        ZD[c] = real3(z0 * i0, z1 * i1, z2 * i2);
+        const Real k2 = ZD[c].z, k1 = negMad(l3, k2, ZD[c].y), k0 = negMad(l1, k1, negMad(l2, k2, ZD[c].x));
+        gains.k[c] = k0;
+        gains.k[7 + c] = k1;
+        gains.k[14 + c] = k2;
+    }
+
+    f.P[0] = f.P[0] - dot(Z[0], ZD[0]);
+    f.P[1] = f.P[1] - dot(Z[0], ZD[1]);
+    f.P[2] = f.P[2] - dot(Z[0], ZD[2]);
+    f.P[3] = f.P[3] - dot(Z[1], ZD[1]);
+    f.P[4] = f.P[4] - dot(Z[1], ZD[2]);
+    f.P[5] = f.P[5] - dot(Z[2], ZD[2]);
+    f.R[0] = W0.x - dot(Z[0], ZD[3]);
+    f.R[1] = W0.y - dot(Z[0], ZD[4]);
+    f.R[2] = W0.z - dot(Z[0], ZD[5]);
+    f.R[3] = W1.x - dot(Z[1], ZD[3]);
+    f.R[4] = W1.y - dot(Z[1], ZD[4]);
+    f.R[5] = W1.z - dot(Z[1], ZD[5]);
+    f.R[6] = W2.x - dot(Z[2], ZD[3]);
+    f.R[7] = W2.y - dot(Z[2], ZD[4]);
+    f.R[8] = W2.z - dot(Z[2], ZD[5]);
+    f.U[0] = Y0 - dot(Z[3], ZD[3]);
+    f.U[1] = Y1 - dot(Z[3], ZD[4]);
+    f.U[2] = Y2 - dot(Z[3], ZD[5]);
+    f.U[3] = Y3 - dot(Z[4], ZD[4]);
+    f.U[4] = Y4 - dot(Z[4], ZD[5]);
+    f.U[5] = Y5 - dot(Z[5], ZD[5]);
+    f.gx = real3(f.gx.x - dot(Z[0], ZD[6]), f.gx.y - dot(Z[1], ZD[6]), f.gx.z - dot(Z[2], ZD[6]));
+    f.gu = real3(gu.x - dot(Z[3], ZD[6]), gu.y - dot(Z[4], ZD[6]), gu.z - dot(Z[5], ZD[6]));
+}
+
+/// One of the three numbers of d, of which `row` gives the gains.
+ROD_FUNCTION Real rodGain(RodGains g, int row, Real share, Real3 x, Real3 u) {
+    const int at = 7 * row;
+    const Real ofX = mad(g.k[at], x.x, mad(g.k[at + 1], x.y, g.k[at + 2] * x.z));
+    const Real ofU = mad(g.k[at + 3], u.x, mad(g.k[at + 4], u.y, g.k[at + 5] * u.z));
+    return mad(share, g.k[at + 6], ofX + ofU);
+}
+
+#endif

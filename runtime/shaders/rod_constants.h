@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// Numbers of the rod's solver, once for C++ and HLSL.
+#ifndef HAIRLOOM_ROD_CONSTANTS_H
+#define HAIRLOOM_ROD_CONSTANTS_H
+
+/// Least pivot of a segment's rotation: a share of the vertex' stiffness, and of the pivots' sum what
+/// rounding takes.
+#define HAIRLOOM_ROD_LEAST_PIVOT 0.0375
+#define HAIRLOOM_ROD_PIVOT_ROUNDING 9.5367431640625e-7
+/// Radians by which the predicted rotation of a substep turns a segment at most.
+#define HAIRLOOM_ROD_LARGEST_PREDICTION 0.5
+/// The scheme of second order fades to backward Euler while a substep turns a segment by 0.25 to 0.5 radians.
+#define HAIRLOOM_ROD_BLEND_END 2.0
+#define HAIRLOOM_ROD_BLEND_SLOPE 4.0
+/// Longest step over the one before it that keeps the scheme of second order.
+#define HAIRLOOM_ROD_LONGEST_RATIO 2.0
+/// A prediction is dropped where it raises the objective by more than this share.
+#define HAIRLOOM_ROD_PREDICTION_SHARE 1.05
+/// A step is shortened by this, at most so many times, where it raises the objective by more than rounding
+/// does.
+#define HAIRLOOM_ROD_SHORTENING 0.4
+#define HAIRLOOM_ROD_SHORTENINGS 3
+#define HAIRLOOM_ROD_ROUNDING 1.1920929e-7
+/// Stiffness of a contact over m/h².
+#define HAIRLOOM_ROD_CONTACT 300.0
+
+#endif

@@ -1,0 +1,381 @@
+// SPDX-License-Identifier: MIT
+#include "src/rods.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "hairloom/presets.h"
+
+namespace hairloom::runtime {
+namespace {
+
+/// B beyond which single precision cannot tell a strand's weight from its stiffness: a strand of 30 cm that
+/// is as stiff hangs within a thousandth of its length of its rest shape.
+constexpr double kStiffest = 1e3 * kHairBendingStiffness;
+/// Radians by which a strand's own weight may bend it in all: softer hair carries a share of its weight only.
+constexpr double kMaxHeld = std::numbers::pi;
+/// A strain, in radians, that counts as none.
+constexpr double kStraight = 1e-4;
+
+struct Double3 {
+    double x = 0.0, y = 0.0, z = 0.0;
+
+    friend Double3 operator+(Double3 a, Double3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+    friend Double3 operator-(Double3 a, Double3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+    friend Double3 operator*(Double3 a, double s) { return {a.x * s, a.y * s, a.z * s}; }
+};
+double dotOf(Double3 a, Double3 b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+Double3 crossOf(Double3 a, Double3 b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+double lengthOf(Double3 a) {
+    return std::sqrt(dotOf(a, a));
+}
+
+struct Rotation {
+    Double3 v;
+    double w = 1.0;
+};
+Rotation normalized(Rotation q) {
+    const double scale = 1.0 / std::sqrt(dotOf(q.v, q.v) + q.w * q.w);
+    return {q.v * scale, q.w * scale};
+}
+Rotation operator*(Rotation a, Rotation b) {
+    return {b.v * a.w + a.v * b.w + crossOf(a.v, b.v), a.w * b.w - dotOf(a.v, b.v)};
+}
+Rotation inverse(Rotation q) {
+    return {q.v * -1.0, q.w};
+}
+Double3 rotate(Rotation q, Double3 v) {
+    const Double3 twice = crossOf(q.v, v) * 2.0;
+    return v + twice * q.w + crossOf(q.v, twice);
+}
+/// The least rotation that takes one unit vector to another.
+Rotation between(Double3 a, Double3 b) {
+    const double c = dotOf(a, b);
+    if (c > -0.999999) return normalized({crossOf(a, b), 1.0 + c});
+    const Double3 other = std::abs(a.x) < 0.8 ? Double3{1.0, 0.0, 0.0} : Double3{0.0, 1.0, 0.0};
+    return normalized({crossOf(a, other), 0.0});
+}
+
+/// How a vertex is bent by a moment on its outer segment.
+struct Couple {
+    double bend;   // B/l̄
+    double ratio;  // GJ/EI
+    Double3 axis;  // of twist, in the outer segment's frame
+
+    /// Moment of the quaternion (v, √(1 − |v|²)).
+    Double3 moment(Double3 v) const {
+        const double w = std::sqrt(std::max(1.0 - dotOf(v, v), 0.0));
+        const double along = (ratio - 1.0) * dotOf(v, axis);
+        return (v * w + (axis * w + crossOf(axis, v)) * along) * (2.0 * bend);
+    }
+    /// The v of a moment: steps of Newton's method with the derivative of a small one. No more than kLargest.
+    Double3 solve(Double3 n) const {
+        Double3 v{};
+        for (int step = 0; step < 24; ++step) {
+            const double w = std::sqrt(std::max(1.0 - dotOf(v, v), 0.25));
+            const Double3 left = (n - moment(v)) * (0.5 / (bend * w));
+            v = v + left + axis * (dotOf(left, axis) * (1.0 / ratio - 1.0));
+            const double size = lengthOf(v);
+            if (size > kLargest) v = v * (kLargest / size);
+        }
+        return v;
+    }
+    static constexpr double kLargest = 0.6;  // 74 degrees of turn, short of where the moment is greatest
+};
+
+/// One strand of a block, in double precision and in the frame of its root.
+class RestRod {
+  public:
+    RestRod(const RestShape& shape, const SimulationSettings& settings, std::size_t index, std::uint32_t lane)
+        : settings_(settings),
+          block_(shape.blocks[index]),
+          size_(planeSize(block_)),
+          rest_(shape.planes.data() + block_.firstPlane * kRestPlanes),
+          lane_(lane),
+          rootRotation_(shape.restRoots[block_.strandOfLane[lane]].rotation),
+          first_(settings.clampedPoints - 1) {
+        for (std::uint32_t j = 0; j + 1 < block_.points; ++j) total_ += segment(j);
+        carryFrames();
+        fillBends();
+        const double turning = unload(settings.restGravity);
+        if (turning > kMaxHeld) unload(static_cast<double>(settings.restGravity) * kMaxHeld / turning);
+    }
+
+    bool curved() const {
+        for (std::uint32_t j = first_; j + 1 < block_.points; ++j) {
+            const Double3 bent = rotate(inverse(inner(free_, j)) * free_[j], kAlong) - kAlong;
+            if (lengthOf(bent) > kStraight) return true;
+        }
+        return false;
+    }
+
+    void write(float* planes) const {
+        for (std::uint32_t p = 0; p < block_.points; ++p) {
+            Double3 tangent = kAlong, axis = kAlong;
+            Rotation loaded;
+            if (p + 1 < block_.points) {
+                tangent = rotate(free_[p], kAlong);
+                axis = tangent + rotate(inner(free_, p), kAlong);
+                axis = axis * (1.0 / std::max(lengthOf(axis), 1e-9));
+                loaded = authored_[p] * inverse(free_[p]);
+            }
+            const double values[kRodRestPlanes] = {tangent.x,  tangent.y,  tangent.z,  axis.x,
+                                                   axis.y,     axis.z,     bend_[p],   mass(p),
+                                                   loaded.v.x, loaded.v.y, loaded.v.z, loaded.w};
+            for (std::size_t plane = 0; plane < kRodRestPlanes; ++plane)
+                planes[plane * size_ + at(p)] = static_cast<float>(values[plane]);
+        }
+    }
+
+  private:
+    using Frames = std::array<Rotation, kMaxPoints>;
+    static constexpr Double3 kAlong{0.0, 0.0, 1.0};  // a segment's tangent in its frame
+    static constexpr double kNoLength = 1e-9;        // metres
+
+    std::size_t at(std::uint32_t p) const { return std::size_t{p} * kBlockLanes + lane_; }
+    double segment(std::uint32_t j) const { return static_cast<double>(rest_[3 * size_ + at(j)]); }
+    /// Metres of hair; those of a strand add up to its length.
+    double mass(std::uint32_t p) const {
+        return total_ / block_.points / static_cast<double>(rest_[5 * size_ + at(p)]);
+    }
+    /// Of the segment before; the root holds the first one as authored.
+    const Rotation& inner(const Frames& frames, std::uint32_t j) const {
+        return j > 0 ? frames[j - 1] : authored_[0];
+    }
+
+    /// Frames of the authored shape by parallel transport.
+    void carryFrames() {
+        Double3 before = kAlong;
+        Rotation frame;
+        for (std::uint32_t j = 0; j + 1 < block_.points; ++j) {
+            const Double3 along{static_cast<double>(rest_[at(j)]), static_cast<double>(rest_[size_ + at(j)]),
+                                static_cast<double>(rest_[2 * size_ + at(j)])};
+            const double size = lengthOf(along);
+            if (size > kNoLength) {
+                const Double3 tangent = along * (1.0 / size);
+                frame = normalized(between(before, tangent) * frame);
+                before = tangent;
+            }
+            authored_[j] = frame;
+        }
+    }
+
+    /// B/l̄. The vertex at the clamp stands for the half segment beside it, too.
+    void fillBends() {
+        const std::uint32_t segments = block_.points - 1;
+        const double least = 1e-3 * total_ / segments;
+        bend_[segments] = 0.0;
+        for (std::uint32_t j = 0; j < segments; ++j) {
+            const double along = static_cast<double>(j) / segments;
+            const double share =
+                static_cast<double>(settings_.angularStiffness) * settings_.angularCurve.at(along);
+            const double before = j > 0 ? segment(j - 1) : 0.0;
+            double own = 0.5 * (before + segment(j));
+            if (j == first_ && j > 0) own += 0.5 * before;
+            bend_[j] = std::min(bendingStiffnessOf(share), kStiffest) / std::max(own, std::max(least, 1e-9));
+        }
+    }
+
+    /// The shape without load that hangs in the authored one under this share of its weight: the moment about
+    /// a vertex of what lies beyond it, Σ l t × F with the weight F beyond a segment, is that of the vertex.
+    /// Returns the radians by which it bends in all.
+    double unload(double share) {
+        const Float3 down = runtime::rotate(conjugate(rootRotation_), settings_.gravity);
+        const Double3 gravity = Double3{down.x, down.y, down.z} * share;
+        Double3 moment{};
+        double beyond = 0.0, turning = 0.0;
+        for (std::uint32_t j = 0; j < first_; ++j) free_[j] = authored_[j];
+        Frames turns;  // from a segment to the next, without load
+        for (std::uint32_t j = block_.points - 1; j-- > first_;) {
+            beyond += mass(j + 1);
+            moment = moment + crossOf(rotate(authored_[j], kAlong), gravity) * (segment(j) * beyond);
+            const Rotation loaded = inverse(inner(authored_, j)) * authored_[j];
+            const Double3 n = rotate(inverse(authored_[j]), moment);
+            turns[j] = loaded;
+            if (!(bend_[j] > 0.0) || !(lengthOf(n) > 0.0)) continue;
+            Double3 v{};
+            for (int step = 0; step < 4; ++step) {
+                const Double3 both = kAlong + rotate(inverse(turns[j]), kAlong);
+                v = Couple{bend_[j], static_cast<double>(settings_.torsionRatio),
+                           both * (1.0 / std::max(lengthOf(both), 1e-9))}
+                        .solve(n);
+                turns[j] = loaded * Rotation{v * -1.0, std::sqrt(1.0 - dotOf(v, v))};
+            }
+            turning += 2.0 * std::asin(lengthOf(v));
+        }
+        for (std::uint32_t j = first_; j + 1 < block_.points; ++j)
+            free_[j] = normalized(inner(free_, j) * turns[j]);
+        return turning;
+    }
+
+    const SimulationSettings& settings_;
+    const Block& block_;
+    std::size_t size_;
+    const float* rest_;
+    std::uint32_t lane_;
+    Quat rootRotation_;
+    std::uint32_t first_;  // segment that is free, and vertex
+    double total_ = 0.0;
+    Frames authored_, free_;  // of segments, with the weight and without load
+    std::array<double, kMaxPoints> bend_;
+};
+
+}  // namespace
+
+RodRest makeRodRest(const RestShape& shape, const SimulationSettings& settings) {
+    RodRest rest;
+    rest.planes.assign(shape.planeFloats * kRodRestPlanes, 0.0f);
+    rest.curved.assign(shape.blocks.size(), 0);
+    for (std::size_t b = 0; b < shape.blocks.size(); ++b) {
+        for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+            const auto rod =
+                std::make_unique<RestRod>(shape, settings, b, lane);  // too large for a game's stack
+            if (rod->curved()) rest.curved[b] = 1;
+            rod->write(rest.planes.data() + shape.blocks[b].firstPlane * kRodRestPlanes);
+        }
+    }
+    return rest;
+}
+
+void placeRodAtRest(const RestShape& shape, const RodRest& rest, State& state, std::size_t index,
+                    std::uint32_t lane) {
+    if (state.rods.empty()) return;
+    const Block& block = shape.blocks[index];
+    const float* const roots = state.roots.data() + index * kRootRows * kBlockLanes;
+    const auto row = [&](std::size_t r) { return roots[r * kBlockLanes + lane]; };
+    const Quat root{row(3), row(4), row(5), row(6)};
+    const RodView rod = rodViewOf(shape, rest, state, index);
+    const std::size_t size = planeSize(block);
+    const auto rotationAt = [&](const float* planes, std::size_t i) {
+        return Quat{planes[i], planes[size + i], planes[2 * size + i], planes[3 * size + i]};
+    };
+    Quat inner = root;
+    for (std::uint32_t p = 0; p < block.points; ++p) {
+        const std::size_t i = std::size_t{p} * kBlockLanes + lane;
+        for (std::size_t plane = 0; plane < kRodStatePlanes; ++plane) rod.rotation[plane * size + i] = 0.0f;
+        Quat q = root;
+        if (p + 1 < block.points) q = root * rotationAt(rod.restRotation, i);
+        normalize(q);
+        const float values[] = {q.x, q.y, q.z, q.w};
+        for (std::size_t plane = 0; plane < 4; ++plane) rod.rotation[plane * size + i] = values[plane];
+        if (p + 1 < block.points) {
+            const Quat turn = conjugate(inner) * q;
+            const float twice = turn.w < 0.0f ? -2.0f : 2.0f;
+            for (const Planes& strain : {rod.strain, rod.strainBefore}) {
+                strain.x[i] = twice * turn.x;
+                strain.y()[i] = twice * turn.y;
+                strain.z()[i] = twice * turn.z;
+            }
+        }
+        inner = q;
+    }
+    rod.turn[lane] = kRodNoStep;
+    rod.energy[lane] = kRodNoEnergy;
+}
+
+void placeRodOnPoints(const RestShape& shape, const RodRest& rest, State& state, std::size_t index,
+                      std::uint32_t lane) {
+    placeRodAtRest(shape, rest, state, index, lane);
+    const Block& block = shape.blocks[index];
+    const RodView rod = rodViewOf(shape, rest, state, index);
+    const std::size_t size = planeSize(block);
+    const float* const moving = state.planes.data() + block.firstPlane * kStatePlanes;
+    const float rate = state.substep > 0.0f ? 1.0f / state.substep : 0.0f;
+    const auto position = [&](std::uint32_t p) {
+        const std::size_t i = std::size_t{p} * kBlockLanes + lane;
+        return Float3{moving[i], moving[size + i], moving[2 * size + i]};
+    };
+    const float* const roots = state.roots.data() + index * kRootRows * kBlockLanes;
+    const auto row = [&](std::size_t r) { return roots[r * kBlockLanes + lane]; };
+    const Quat root{row(3), row(4), row(5), row(6)};
+    Quat atRestBefore, before;
+    for (std::uint32_t p = 0; p < block.points; ++p) {
+        const std::size_t i = std::size_t{p} * kBlockLanes + lane;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const float moved = moving[axis * size + i] - moving[(axis + 3) * size + i];
+            rod.displacement.x[axis * size + i] = moved;
+            rod.velocity.x[axis * size + i] = rod.velocityBefore.x[axis * size + i] = moved * rate;
+        }
+        if (p + 1 == block.points) break;
+        const Quat atRest{rod.rotation[i], rod.rotation[size + i], rod.rotation[2 * size + i],
+                          rod.rotation[3 * size + i]};
+        Quat q = p == 0 ? atRest : before * (conjugate(atRestBefore) * atRest);
+        const Float3 edge = position(p + 1) - position(p);
+        const float long_ = length(edge);
+        if (long_ > 1e-9f) {
+            const Float3 now = rotate(q, {rod.tangent.x[i], rod.tangent.y()[i], rod.tangent.z()[i]}),
+                         wanted = edge * (1.0f / long_);
+            const Float3 axis = cross(now, wanted);
+            const float c = dot(now, wanted);
+            Quat turn{axis.x, axis.y, axis.z, 1.0f + c};
+            if (c < -0.9999f) {
+                const Float3 any =
+                    cross(now, std::abs(now.x) < 0.8f ? Float3{1.0f, 0.0f, 0.0f} : Float3{0.0f, 1.0f, 0.0f});
+                turn = {any.x, any.y, any.z, 0.0f};
+            }
+            normalize(turn);
+            q = turn * q;
+            normalize(q);
+        }
+        const float values[] = {q.x, q.y, q.z, q.w};
+        for (std::size_t plane = 0; plane < 4; ++plane) rod.rotation[plane * size + i] = values[plane];
+        {
+            const Quat between = conjugate(p > 0 ? before : root) * q;
+            const float twice = between.w < 0.0f ? -2.0f : 2.0f;
+            for (const Planes& strain : {rod.strain, rod.strainBefore}) {
+                strain.x[i] = twice * between.x;
+                strain.y()[i] = twice * between.y;
+                strain.z()[i] = twice * between.z;
+            }
+        }
+        atRestBefore = atRest;
+        before = q;
+    }
+}
+
+void turnRodAlong(const BlockView& view, std::size_t i, Quat turn) {
+    float* const x = view.rod.rotation + i;
+    const std::size_t pitch = view.pitch;
+    Quat q = turn * Quat{x[0], x[pitch], x[2 * pitch], x[3 * pitch]};
+    normalize(q);
+    x[0] = q.x;
+    x[pitch] = q.y;
+    x[2 * pitch] = q.z;
+    x[3 * pitch] = q.w;
+}
+
+RodView rodViewOf(const RestShape& shape, const RodRest& rest, State& state, std::size_t index) {
+    RodView view;
+    if (state.rods.empty()) return view;
+    const Block& block = shape.blocks[index];
+    const std::size_t size = planeSize(block);
+    const float* const fixed = rest.planes.data() + block.firstPlane * kRodRestPlanes;
+    float* const moving = state.rods.data() + block.firstPlane * kRodStatePlanes;
+    const auto three = [&](std::size_t plane) { return Planes{moving + plane * size, size}; };
+    view.tangent = {fixed, size};
+    view.axis = {fixed + 3 * size, size};
+    view.bend = fixed + 6 * size;
+    view.mass = fixed + 7 * size;
+    view.restRotation = fixed + 8 * size;
+    view.rotation = moving;
+    view.increment = three(4);
+    view.displacement = three(7);
+    view.velocity = three(10);
+    view.velocityBefore = three(13);
+    view.strain = three(16);
+    view.strainBefore = three(19);
+    view.load = moving + 22 * size;
+    view.turn = state.rodLanes.data() + index * kRodLaneRows * kBlockLanes;
+    view.energy = view.turn + kBlockLanes;
+    view.curved = rest.curved[index] != 0;
+    return view;
+}
+
+}  // namespace hairloom::runtime

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Strands as elastic rods: what they are at rest, and what they remember from step to step (docs/engine.md,
+// "Rods").
+
+#include <cstdint>
+#include <vector>
+
+#include "src/state.h"
+
+namespace hairloom::runtime {
+
+/// What follows from rest shape and settings; made anew when settings change.
+struct RodRest {
+    Floats planes;                     ///< per block: RodView's tangent, axis, bend, mass, rest rotation
+    std::vector<std::uint8_t> curved;  ///< per block: strands have rest curvature, so twist matters
+
+    std::size_t bytes() const { return planes.size() * sizeof(float) + curved.size(); }
+};
+inline constexpr std::size_t kRodRestPlanes = 12;
+inline constexpr std::size_t kRodStatePlanes = 23;
+inline constexpr std::size_t kRodLaneRows = 2;
+
+RodRest makeRodRest(const RestShape& shape, const SimulationSettings& settings);
+
+/// Puts lane `lane` of block `index` at rest on its row of state.roots, without a step before.
+void placeRodAtRest(const RestShape& shape, const RodRest& rest, State& state, std::size_t index,
+                    std::uint32_t lane);
+
+/// Makes lane `lane` of block `index` a rod that passes through its positions and moves as they do, without
+/// twist beyond that at rest.
+void placeRodOnPoints(const RestShape& shape, const RodRest& rest, State& state, std::size_t index,
+                      std::uint32_t lane);
+
+/// Turns segment and vertex `i` of a rod along with its root: what BlockView's positions do not hold.
+void turnRodAlong(const BlockView& view, std::size_t i, Quat turn);
+
+/// The rods of a block; all null where there are none.
+RodView rodViewOf(const RestShape& shape, const RodRest& rest, State& state, std::size_t index);
+
+}  // namespace hairloom::runtime
