@@ -139,9 +139,9 @@ ROD_FUNCTION void rodEliminate(ROD_INOUT(RodForm) f, Real4 q, Real3 t, Real segm
     Real3 moment = e * bend;
     if (twists) moment = mad3(axis, twist * dot(axis, e), moment);
     const Real3 g = rodRotate(q, mad3(moment, relative.w, cross(moment, v)));
-    const Real3 V = rodRotate(q, v), bv = V * bend;
-    Real S0 = Y0 + negMad(bv.x, V.x, bend), S1 = negMad(bv.x, V.y, Y1), S2 = negMad(bv.x, V.z, Y2);
-    Real S3 = Y3 + negMad(bv.y, V.y, bend), S4 = negMad(bv.y, V.z, Y4), S5 = Y5 + negMad(bv.z, V.z, bend);
+    const Real3 swing = rodRotate(q, v), bv = swing * bend;
+    Real S0 = Y0 + negMad(bv.x, swing.x, bend), S1 = negMad(bv.x, swing.y, Y1), S2 = negMad(bv.x, swing.z, Y2);
+    Real S3 = Y3 + negMad(bv.y, swing.y, bend), S4 = negMad(bv.y, swing.z, Y4), S5 = Y5 + negMad(bv.z, swing.z, bend);
     if (twists) {
         const Real3 T = rodRotate(q, mad3(axis, relative.w, cross(axis, v))), kt = T * twist;
         S0 = mad(kt.x, T.x, S0);
