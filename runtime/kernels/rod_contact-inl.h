@@ -69,30 +69,33 @@ HWY_INLINE void meetSphere(const MovingSphere& sphere, V3 root, const RodNode& n
     const V distance = hn::Sqrt(hn::Max(dot(to, to), all(1e-18f)));
     V3 n = to * (all(1.0f) / distance);
     V depth = reach - distance;
+    const V3 way = node.displacement - step, from = to - way;
+    const V c = mad(reach, hn::Neg(reach), dot(from, from));
+    // What a contact holds is inside by a little, and stays held while the prediction lifts it off.
+    auto held = hn::Or(depth > hn::Zero(D()), c < hn::Zero(D()));
     if (context.sweeps) {
         // What would pass the sphere meets it where it comes in.
-        const V3 way = node.displacement - step, from = to - way;
-        const V a = dot(way, way), b = dot(from, way), c = mad(reach, hn::Neg(reach), dot(from, from));
-        const V root2 = negMad(a, c, b * b);
-        const V first = (hn::Neg(b) - hn::Sqrt(hn::Max(root2, hn::Zero(D())))) / hn::Max(a, all(1e-30f));
-        const auto enters = hn::And(hn::And(c > hn::Zero(D()), root2 > hn::Zero(D())),
+        const V a = dot(way, way), b = dot(from, way);
+        const V discriminant = negMad(a, c, b * b);
+        const V first = (hn::Neg(b) - hn::Sqrt(hn::Max(discriminant, hn::Zero(D())))) / hn::Max(a, all(1e-30f));
+        const auto enters = hn::And(hn::And(c >= hn::Zero(D()), discriminant > hn::Zero(D())),
                                     hn::And(first >= hn::Zero(D()), first < all(1.0f)));
         const V3 entry = mad3(way, first, from) * (all(1.0f) / reach);
         n = select(enters, entry, n);
         depth = hn::IfThenElse(enters, reach - dot(entry, to), depth);
+        held = hn::Or(held, enters);
     }
-    const auto inside = depth > hn::Zero(D());
-    if (hn::AllFalse(D(), inside)) return;
+    if (hn::AllFalse(D(), held)) return;
     const V approach = dot(n, step * all(1.0f / context.h) - node.velocity);
     depth = mad(hn::Max(approach, hn::Zero(D())) * node.step, all(context.restitution), depth);
-    const V k = hn::IfThenElseZero(inside, node.weight * all(static_cast<float>(HAIRLOOM_ROD_CONTACT)));
+    const V k = hn::IfThenElseZero(held, node.weight * all(static_cast<float>(HAIRLOOM_ROD_CONTACT)));
     // Coulomb, with the force of the last substep and at most what stops the node.
     const V3 moved = node.displacement - step;
     const V3 slip = negMad3(n, dot(n, moved), moved);
     const V size = hn::Sqrt(dot(slip, slip));
     const V grip = hn::Min(node.load * all(context.friction) / hn::Max(size, all(1e-12f)), k);
-    contact.add(k, hn::IfThenElseZero(inside, grip), n, depth, slip);
-    contact.touching = hn::IfThenElse(inside, all(1.0f), contact.touching);
+    contact.add(k, hn::IfThenElseZero(held, grip), n, depth, slip);
+    contact.touching = hn::IfThenElse(held, all(1.0f), contact.touching);
 }
 
 /// Of all spheres that the block can touch.
