@@ -47,26 +47,51 @@ void orderByPlace(std::span<std::uint32_t> strands, std::span<const Float3> plac
     orderByPlace(strands.subspan(half), places);
 }
 
+/// Segments that turn by less, in radians, count as straight.
+constexpr float kStraight = 1e-4f;
+
+/// Whether the strand bends at rest.
+bool bends(std::span<const Float3> points) {
+    Float3 before{};
+    for (std::size_t p = 1; p < points.size(); ++p) {
+        const Float3 segment = points[p] - points[p - 1];
+        const float size = length(segment);
+        if (!(size > 1e-9f)) continue;
+        const Float3 direction = segment * (1.0f / size);
+        if (length(before) > 0.5f && length(direction - before) > kStraight) return true;
+        before = direction;
+    }
+    return false;
+}
+
+/// In blocks of equal point counts; straight strands and others apart, so that each block pays for what it
+/// needs.
 std::vector<Block> groupStrands(const StrandsView& strands) {
     const std::size_t count = strands.offsets.size() - 1;
     const auto pointsOf = [&](std::uint32_t s) { return strands.offsets[s + 1] - strands.offsets[s]; };
     std::vector<std::uint32_t> order(count);
     std::iota(order.begin(), order.end(), 0u);
+    std::vector<std::uint32_t> kind(count);  // twice the points, and one more where the strand bends
+    for (std::uint32_t s = 0; s < count; ++s) {
+        const bool curved = bends(strands.restPositions_ss.subspan(strands.offsets[s], pointsOf(s)));
+        kind[s] = 2 * pointsOf(s) + (curved ? 1 : 0);
+    }
     std::stable_sort(order.begin(), order.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return pointsOf(a) < pointsOf(b); });
+                     [&](std::uint32_t a, std::uint32_t b) { return kind[a] < kind[b]; });
     // Where strands touch things, rather than where they grow.
     std::vector<Float3> places(count);
     for (std::uint32_t s = 0; s < count; ++s)
         places[s] = strands.restPositions_ss[strands.offsets[s] + pointsOf(s) / 4];
     for (std::size_t first = 0, end = 0; first < count; first = end) {
-        while (end < count && pointsOf(order[end]) == pointsOf(order[first])) ++end;
+        while (end < count && kind[order[end]] == kind[order[first]]) ++end;
         orderByPlace(std::span(order).subspan(first, end - first), places);
     }
     std::vector<Block> blocks;
     std::size_t plane = 0;
     for (std::size_t i = 0; i < count;) {
         Block block{pointsOf(order[i]), 0, plane, {}};
-        while (i < count && block.strands < kBlockLanes && pointsOf(order[i]) == block.points) {
+        const std::uint32_t sort = kind[order[i]];
+        while (i < count && block.strands < kBlockLanes && kind[order[i]] == sort) {
             block.strandOfLane[block.strands++] = order[i++];
         }
         std::fill(block.strandOfLane + block.strands, block.strandOfLane + kBlockLanes, order[i - 1]);
@@ -76,8 +101,6 @@ std::vector<Block> groupStrands(const StrandsView& strands) {
     return blocks;
 }
 
-/// Segments that turn by less, in radians, count as straight.
-constexpr float kStraight = 1e-4f;
 /// Least mass of a point as a share of the strand's mean.
 constexpr double kMinMass = 1e-6;
 
@@ -141,7 +164,7 @@ void fillRestPlanes(const StrandsView& strands, const Block& block, RestShape& s
         const Quat toRoot = conjugate(shape.restRoots[strand].rotation);
         fillInverseMasses(strands, strand, block, lane, planes + 5 * size);
         float total = 0.0f;
-        Float3 before{};
+        shape.straight = shape.straight && !bends({points, block.points});
         for (std::uint32_t s = 0; s + 1 < block.points; ++s) {
             const Float3 segment = rotate(toRoot, points[s + 1] - points[s]);
             const float l = length(segment);
@@ -152,11 +175,6 @@ void fillRestPlanes(const StrandsView& strands, const Block& block, RestShape& s
             planes[3 * size + i] = l;
             planes[4 * size + i] = l > 1e-9f ? 1.0f / l : 0.0f;
             total += l;
-            const Float3 direction = segment * planes[4 * size + i];
-            const bool bends =
-                s > 0 && length(direction - before) > kStraight && length(before) > 0.5f && l > 1e-9f;
-            shape.straight = shape.straight && !bends;
-            if (l > 1e-9f) before = direction;
         }
         measureHardness(block, lane, planes, shape);
         shape.longestStrand = std::max(shape.longestStrand, total);

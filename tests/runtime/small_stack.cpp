@@ -145,6 +145,10 @@ TEST(Stack, EveryStageRunsOnASmallOne) {
             settings.bendDampingTime = 0.0f;
             onSmall(hair, true, settings);
         });
+        SimulationSettings rods;
+        rods.strandModel = StrandModel::rods;
+        rods.windSpeed = 4.0f;
+        onSmall(hair, false, rods);
     };
     forEveryInstructionSet([&] {
         onSmallByEveryMethod(kMaxPoints, true);
