@@ -15,8 +15,11 @@ namespace {
 /// B beyond which single precision cannot tell a strand's weight from its stiffness: a strand of 30 cm that
 /// is as stiff hangs within a thousandth of its length of its rest shape.
 constexpr double kStiffest = 1e3 * kHairBendingStiffness;
-/// Radians by which a strand's own weight may bend it in all: softer hair carries a share of its weight only.
-constexpr double kMaxHeld = std::numbers::pi;
+/// Radians by which a strand's own weight may bend it in all.
+constexpr double kMaxHeld = 2.5;
+/// Share of a vertex' stiffness that has to be left against the load that would make a held shape swing round
+/// or buckle.
+constexpr double kStableShare = 0.05;
 /// A strain, in radians, that counts as none.
 constexpr double kStraight = 1e-4;
 
@@ -63,6 +66,46 @@ Rotation between(Double3 a, Double3 b) {
     return normalized({crossOf(a, other), 0.0});
 }
 
+struct Matrix3 {
+    double at[9] = {};
+    double& operator()(int row, int column) { return at[3 * row + column]; }
+    double operator()(int row, int column) const { return at[3 * row + column]; }
+};
+double part(Double3 v, int axis) {
+    return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
+}
+/// result −= left · sum⁻¹ · right, or false where the symmetric `sum` is not positive definite.
+bool eliminate(const Matrix3& sum, const Matrix3& left, const Matrix3& right, Matrix3& result) {
+    double lower[3][3] = {}, pivot[3];
+    for (int r = 0; r < 3; ++r) {
+        for (int c = 0; c <= r; ++c) {
+            double value = sum(r, c);
+            for (int k = 0; k < c; ++k) value -= lower[r][k] * lower[c][k] * pivot[k];
+            if (c == r) {
+                if (!(value > 0.0)) return false;
+                pivot[r] = value;
+                lower[r][r] = 1.0;
+            } else {
+                lower[r][c] = value / pivot[c];
+            }
+        }
+    }
+    for (int column = 0; column < 3; ++column) {
+        double x[3];
+        for (int r = 0; r < 3; ++r) {
+            x[r] = right(r, column);
+            for (int k = 0; k < r; ++k) x[r] -= lower[r][k] * x[k];
+        }
+        for (int r = 3; r-- > 0;) {
+            x[r] /= pivot[r];
+            for (int k = r + 1; k < 3; ++k) x[r] -= lower[k][r] * x[k];
+        }
+        for (int r = 0; r < 3; ++r)
+            result(r, column) -= left(r, 0) * x[0] + left(r, 1) * x[1] + left(r, 2) * x[2];
+    }
+    return true;
+}
+
 /// How a vertex is bent by a moment on its outer segment.
 struct Couple {
     double bend;   // B/l̄
@@ -82,6 +125,7 @@ struct Couple {
             const double w = std::sqrt(std::max(1.0 - dotOf(v, v), 0.25));
             const Double3 left = (n - moment(v)) * (0.5 / (bend * w));
             v = v + left + axis * (dotOf(left, axis) * (1.0 / ratio - 1.0));
+            if (dotOf(left, left) < 1e-24) break;
             const double size = lengthOf(v);
             if (size > kLargest) v = v * (kLargest / size);
         }
@@ -104,8 +148,8 @@ class RestRod {
         for (std::uint32_t j = 0; j + 1 < block_.points; ++j) total_ += segment(j);
         carryFrames();
         fillBends();
-        const double turning = unload(settings.restGravity);
-        if (turning > kMaxHeld) unload(static_cast<double>(settings.restGravity) * kMaxHeld / turning);
+        weigh();
+        stiffen();
     }
 
     bool curved() const {
@@ -183,36 +227,126 @@ class RestRod {
         }
     }
 
-    /// The shape without load that hangs in the authored one under this share of its weight: the moment about
-    /// a vertex of what lies beyond it, Σ l t × F with the weight F beyond a segment, is that of the vertex.
-    /// Returns the radians by which it bends in all.
-    double unload(double share) {
+    /// The moment about each vertex of what lies beyond it: Σ l t × F with the weight F beyond a segment.
+    void weigh() {
         const Float3 down = runtime::rotate(conjugate(rootRotation_), settings_.gravity);
-        const Double3 gravity = Double3{down.x, down.y, down.z} * share;
+        const Double3 gravity = Double3{down.x, down.y, down.z} * static_cast<double>(settings_.restGravity);
         Double3 moment{};
-        double beyond = 0.0, turning = 0.0;
-        for (std::uint32_t j = 0; j < first_; ++j) free_[j] = authored_[j];
-        Frames turns;  // from a segment to the next, without load
+        double beyond = 0.0;
         for (std::uint32_t j = block_.points - 1; j-- > first_;) {
             beyond += mass(j + 1);
             moment = moment + crossOf(rotate(authored_[j], kAlong), gravity) * (segment(j) * beyond);
-            const Rotation loaded = inverse(inner(authored_, j)) * authored_[j];
-            const Double3 n = rotate(inverse(authored_[j]), moment);
-            turns[j] = loaded;
-            if (!(bend_[j] > 0.0) || !(lengthOf(n) > 0.0)) continue;
-            Double3 v{};
-            for (int step = 0; step < 4; ++step) {
-                const Double3 both = kAlong + rotate(inverse(turns[j]), kAlong);
-                v = Couple{bend_[j], static_cast<double>(settings_.torsionRatio),
-                           both * (1.0 / std::max(lengthOf(both), 1e-9))}
-                        .solve(n);
-                turns[j] = loaded * Rotation{v * -1.0, std::sqrt(1.0 - dotOf(v, v))};
-            }
-            turning += 2.0 * std::asin(lengthOf(v));
+            moment_[j] = moment;
         }
-        for (std::uint32_t j = first_; j + 1 < block_.points; ++j)
-            free_[j] = normalized(inner(free_, j) * turns[j]);
-        return turning;
+    }
+
+    /// Makes hair stiffer where its weight bends it most, which is near the root, until the held shape is
+    /// stable: it stands for the hair around that carries it. The radians that the weight bends a strand by
+    /// in all are what is searched for.
+    void stiffen() {
+        const std::array<double, kMaxPoints> own = bend_;
+        const auto holds = [&](double held) {
+            bend_ = own;
+            if (bentBy(1e30) > held) {
+                double low = 0.0, high = held;
+                for (int halving = 0; halving < 30; ++halving) {
+                    const double middle = 0.5 * (low + high);
+                    (bentBy(middle) > held ? high : low) = middle;
+                }
+                for (std::uint32_t j = first_; j + 1 < block_.points; ++j) {
+                    if (bend_[j] > 0.0)
+                        bend_[j] = std::max(bend_[j], lengthOf(moment_[j]) / std::max(low, 1e-9));
+                }
+            }
+            unload();
+            return stable();
+        };
+        if (holds(kMaxHeld)) return;
+        double low = -9.0, high = std::log2(kMaxHeld);
+        for (int halving = 0; halving < 8; ++halving) {
+            const double middle = 0.5 * (low + high);
+            (holds(std::exp2(middle)) ? low : high) = middle;
+        }
+        holds(std::exp2(low));
+    }
+    /// Radians by which the weight bends the strand where no vertex bends by more than `most`.
+    double bentBy(double most) const {
+        double sum = 0.0;
+        for (std::uint32_t j = first_; j + 1 < block_.points; ++j) {
+            if (bend_[j] > 0.0) sum += std::min(lengthOf(moment_[j]) / bend_[j], most);
+        }
+        return sum;
+    }
+
+    /// Whether the second variation of the energy of shape and weight is positive in the authored shape, by
+    /// elimination from the tip. A vertex adds ½ dᵀH d + dᵀN u in the rotation u of its inner segment and u +
+    /// d of its outer one, a segment ½ l uᵀ ((F·t) 1 − ½ (F tᵀ + t Fᵀ)) u with the weight F beyond it.
+    bool stable() const {
+        const Float3 down = runtime::rotate(conjugate(rootRotation_), settings_.gravity);
+        const Double3 gravity = Double3{down.x, down.y, down.z} * static_cast<double>(settings_.restGravity);
+        Matrix3 beyond{};
+        double weight = 0.0;
+        for (std::uint32_t j = block_.points - 1; j-- > first_;) {
+            weight += mass(j + 1);
+            const Double3 t = rotate(authored_[j], kAlong), force = gravity * weight;
+            const double l = segment(j);
+            for (int r = 0; r < 3; ++r) {
+                for (int c = 0; c < 3; ++c) {
+                    beyond(r, c) += l * ((r == c ? dotOf(force, t) : 0.0) -
+                                         0.5 * (part(force, r) * part(t, c) + part(t, r) * part(force, c)));
+                }
+            }
+            const Rotation turn = inverse(inner(free_, j)) * free_[j];
+            const Rotation loaded = inverse(inner(authored_, j)) * authored_[j];
+            Rotation strain = inverse(turn) * loaded;  // in the outer segment's frame
+            if (strain.w < 0.0) strain = {strain.v * -1.0, -strain.w};
+            const Double3 both = kAlong + rotate(inverse(turn), kAlong);
+            const Double3 v = rotate(authored_[j], strain.v);
+            const Double3 a = rotate(authored_[j], both * (1.0 / std::max(lengthOf(both), 1e-9)));
+            const double b = bend_[j], more = b * (static_cast<double>(settings_.torsionRatio) - 1.0);
+            const Double3 m = v * b + a * (more * dotOf(a, v));
+            const Double3 twist = a * strain.w + crossOf(a, v);  // Jᵀ a
+            const Double3 couple = (m * strain.w + crossOf(v, m)) * 2.0;
+            Matrix3 sum = beyond, left = beyond, right = beyond;
+            for (int r = 0; r < 3; ++r) {
+                for (int c = 0; c < 3; ++c) {
+                    sum(r, c) += (r == c ? b - dotOf(m, v) - kStableShare * b : 0.0) -
+                                 b * part(v, r) * part(v, c) + more * part(twist, r) * part(twist, c);
+                }
+            }
+            const double half[3][3] = {
+                {0.0, -couple.z, couple.y}, {couple.z, 0.0, -couple.x}, {-couple.y, couple.x, 0.0}};
+            for (int r = 0; r < 3; ++r) {
+                for (int c = 0; c < 3; ++c) {
+                    right(r, c) -= 0.5 * half[r][c];
+                    left(r, c) += 0.5 * half[r][c];
+                }
+            }
+            if (!eliminate(sum, left, right, beyond)) return false;
+        }
+        return true;
+    }
+
+    /// The shape without load that hangs in the authored one under its weight.
+    void unload() {
+        for (std::uint32_t j = 0; j < first_; ++j) free_[j] = authored_[j];
+        for (std::uint32_t j = first_; j + 1 < block_.points; ++j) {
+            const Rotation loaded = inverse(inner(authored_, j)) * authored_[j];
+            const Double3 n = rotate(inverse(authored_[j]), moment_[j]);
+            Rotation turn = loaded;
+            // The axis of twist depends on the shape that is sought.
+            for (int step = 0; step < 4 && bend_[j] > 0.0 && lengthOf(n) > 0.0; ++step) {
+                const Double3 both = kAlong + rotate(inverse(turn), kAlong);
+                const Couple couple{bend_[j], static_cast<double>(settings_.torsionRatio),
+                                    both * (1.0 / std::max(lengthOf(both), 1e-9))};
+                const Double3 v = couple.solve(n);
+                const Rotation next = loaded * Rotation{v * -1.0, std::sqrt(1.0 - dotOf(v, v))};
+                const bool found = lengthOf(next.v - turn.v) < 1e-9;
+                turn = next;
+                if (found) break;
+            }
+            free_[j] = normalized(inner(free_, j) * turn);
+        }
     }
 
     const SimulationSettings& settings_;
@@ -224,6 +358,7 @@ class RestRod {
     std::uint32_t first_;  // segment that is free, and vertex
     double total_ = 0.0;
     Frames authored_, free_;  // of segments, with the weight and without load
+    std::array<Double3, kMaxPoints> moment_;
     std::array<double, kMaxPoints> bend_;
 };
 

@@ -139,6 +139,28 @@ TEST(Rods, ShapeThatCarriesItsWeightDoesNotMove) {
     EXPECT_LT(rmsBetween(positionsOf(engine), strand.points), 2e-6);
 }
 
+/// Shapes that no hair of theirs could hold: it is made as stiff as it takes.
+TEST(Rods, AnyShapeIsHeldAndComesBack) {
+    Strands level, upright;
+    level.add({}, {1.0f, 0.0f, 0.0f}, 0.012f, 26);
+    upright.add({}, unit({0.07f, 1.0f, 0.0f}), 0.012f, 26);
+    for (const Strands& strand : {level, upright, Helix{10e-3, 20e-3, 6, 12}.strand()}) {
+        for (const float stiffness : {0.03f, 0.3f, 0.6f}) {
+            SimulationSettings s = rods(stiffness);
+            s.restGravity = 1.0f;
+            Engine engine = makeEngine(strand, s);
+            for (int frame = 0; frame < 120; ++frame) {
+                const auto t = static_cast<float>(frame);
+                const std::vector<RootFrame> roots =
+                    strand.roots({0.05f * std::sin(0.7f * t), 0.0f, 0.05f * std::cos(0.9f * t)});
+                engine.step({1.0f / 60.0f, frame / 60.0, roots});
+            }
+            run(engine, strand, 900);
+            EXPECT_LT(rmsBetween(positionsOf(engine), strand.points), 1e-4) << stiffness;
+        }
+    }
+}
+
 TEST(Rods, CurlsComeBackAfterAShake) {
     const Strands strand = Helix{8e-3, 20e-3, 4, 12}.strand(40);
     SimulationSettings s = rods();
