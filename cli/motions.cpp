@@ -24,7 +24,8 @@ void addMotionOptions(CLI::App& job, MotionOptions& options) {
     job.add_option("--frames", options.frames, "Frames of each run")->check(CLI::Range(1, 100'000));
     job.add_option("--fps", options.framesPerSecond, "Frames per second")->check(CLI::Range(10.0, 1000.0));
     job.add_option("--wind", options.wind, "Velocity of the air X,Y,Z in m/s, instead of the groom's own");
-    job.add_option("--motion", options.motion, "How the head moves: none, spin, nod or clip:NAME");
+    job.add_option("--motion", options.motion,
+                   "How the head moves: none, spin, nod, clip:NAME or a file of keys F.json");
     job.add_option("--character", options.character,
                    "File with the skeleton and clips, instead of the one the scalp came from");
 }

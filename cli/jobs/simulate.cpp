@@ -14,6 +14,7 @@
 #include "core/base/log.h"
 #include "core/groom/file/project_file.h"
 #include "core/simulation/frame_record.h"
+#include "core/simulation/sag.h"
 #include "core/simulation/simulation.h"
 #include "hairloom/stable.h"
 
@@ -26,6 +27,7 @@ struct SimulateOptions {
     float framesPerSecond = 60;
     std::string backend = "cpu";
     std::optional<std::uint32_t> device;
+    std::string model;
     std::string integrator;
     std::uint32_t substeps = 0;
     std::string wind;
@@ -33,6 +35,7 @@ struct SimulateOptions {
     std::string character;
     std::string method = "strands";
     bool hairHair = false;
+    bool sag = false;
     std::string record;
     std::string against;
     std::string output;
@@ -79,7 +82,10 @@ Status overrideSettings(Groom& groom, const SimulateOptions& options) {
     const auto names = runtime::integratorNames();
     if (const auto chosen = std::ranges::find(names, options.integrator); chosen != names.end()) {
         groom.simulation.integrator = static_cast<runtime::Integrator>(chosen - names.begin());
+        groom.simulation.strandModel = runtime::StrandModel::springs;  // rods have no other
     }
+    if (options.model == "rods") groom.simulation.strandModel = runtime::StrandModel::rods;
+    if (options.model == "springs") groom.simulation.strandModel = runtime::StrandModel::springs;
     return setWind(groom, options.wind);
 }
 
@@ -129,8 +135,47 @@ Report statsReport(const Groom& groom, const SimulationStats& stats) {
     report["max_penetration_mm"] = finiteOrNull(stats.maxPenetrationMm);
     report["energy"] = finiteOrNull(stats.energy);
     report["nan_count"] = stats.nanCount;
+    report["restored_strands"] = stats.restoredStrands;
+    report["resting_strands"] = stats.restingStrands;
+    report["fastest_at_end_mm_s"] = finiteOrNull(stats.fastestMmPerSecond);
     report["state_hash"] = fmt::format("{:016x}", stats.stateHash);
     report["effects"] = effectsReport(stats.effects);
+    return report;
+}
+
+Report sagReport(const Groom& groom, const Sag& sag) {
+    constexpr double kHolds = 1;  // mm
+    constexpr std::size_t kNamed = 20;
+    const std::vector<SaggingStrand> sagging = strandsThatSag(groom, sag, kHolds);
+    Report report{{"mean_mm", sag.meanMm},
+                  {"max_mm", sag.maxMm},
+                  {"residual", sag.residual},
+                  {"strands_that_cannot", sagging.size()}};
+    Report reasons = Report::array();
+    for (std::size_t i = 0; i < std::min(sagging.size(), kNamed); ++i)
+        reasons.push_back(
+            Report{{"strand", sagging[i].strand}, {"mm", sagging[i].mm}, {"reason", sagging[i].reason}});
+    report["reasons"] = std::move(reasons);
+    return report;
+}
+
+/// Lets the authored shape hang, as it is and where it carries its weight.
+Result<Report> sagOf(const Groom& groom, const SimulateOptions& options) {
+    const auto before = measureSag(groom);
+    if (!before) return tl::unexpected(before.error());
+    const Groom held = holdingItsShape(groom);
+    const auto after = measureSag(held);
+    if (!after) return tl::unexpected(after.error());
+    Report report;
+    report["strands"] = groom.strandCount();
+    report["points"] = groom.pointCount();
+    report["sag_before"] = sagReport(groom, *before);
+    report["sag"] = sagReport(held, *after);
+    report["residual"] = after->residual;
+    if (!options.output.empty()) {
+        if (auto saved = saveProject(held, options.output); !saved) return tl::unexpected(saved.error());
+        report["output"] = options.output;
+    }
     return report;
 }
 
@@ -138,6 +183,7 @@ Result<Report> simulate(const SimulateOptions& options) {
     auto groom = loadDocument(options.input);
     if (!groom) return tl::unexpected(groom.error());
     if (auto status = overrideSettings(*groom, options); !status) return tl::unexpected(status.error());
+    if (options.sag) return sagOf(*groom, options);
     const auto motion = makeMotion(options.motion, options.character, *groom);
     if (!motion) return tl::unexpected(motion.error());
     HeadPose pose = (*motion)->poseAt(0);
@@ -205,18 +251,25 @@ JobRun declare(CLI::App& job) {
     job.add_option("--backend", options->backend, "What runs it")
         ->check(CLI::IsMember({"cpu", "vulkan", "d3d11"}));
     job.add_option("--device", options->device, "GPU to use, by its index in `devices`");
-    job.add_option("--integrator", options->integrator, "How motion is advanced")
+    job.add_option("--model", options->model, "What a strand is, instead of the groom's own")
+        ->check(CLI::IsMember({"rods", "springs"}));
+    job.add_option("--integrator", options->integrator, "How springs are advanced; makes strands springs")
         ->check(CLI::IsMember(runtime::integratorNames()));
     job.add_option("--substeps", options->substeps, "Steps per frame, instead of the groom's own")
         ->check(CLI::Range(1, 64));
     job.add_option("--wind", options->wind, "Velocity of the air X,Y,Z in m/s, instead of the groom's own");
-    job.add_option("--motion", options->motion, "How the head moves: none, spin, nod or clip:NAME");
+    job.add_option("--motion", options->motion,
+                   "How the head moves: none, spin, nod, clip:NAME or a file of keys F.json");
     job.add_option("--character", options->character,
                    "File with the skeleton and clips, instead of the one the scalp came from");
     job.add_option("--method", options->method,
                    "How strands move: the strand engine, projective equations, or a lattice around the head")
         ->check(CLI::IsMember({"strands", "projective", "lattice"}));
     job.add_flag("--hair-hair", options->hairHair, "Hair against hair, through a volume between frames");
+    job.add_flag("--sag", options->sag,
+                 "Let the authored shape hang under gravity and contact: how far each strand drops in two "
+                 "seconds, as it is and as rods "
+                 "that carry their weight; -o keeps the latter");
     job.add_option("--record", options->record, "File to write every frame to");
     job.add_option("--against", options->against,
                    "Record of the same groom and frames to tell the distance from");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/scene/motions.h"
 
+#include "core/scene/keyed_motion.h"
 #include "core/scene/open.h"
 #include "core/simulation/clip_motion.h"
 
@@ -29,7 +30,8 @@ Result<std::shared_ptr<const Actor>> loadActor(const std::string& character, con
 
 Result<std::unique_ptr<HeadMotion>> makeMotion(const std::string& name, const std::string& character,
                                                const Groom& groom) {
-    constexpr std::string_view kClip = "clip:";
+    constexpr std::string_view kClip = "clip:", kFile = ".json";
+    if (name.size() > kFile.size() && name.ends_with(kFile)) return readKeyedMotion(name);
     if (name.rfind(kClip, 0) != 0) return makeRigidMotion(name, groom);
     auto actor = loadActor(character, groom);
     if (!actor) return tl::unexpected(actor.error());

@@ -3,6 +3,7 @@
 // How the head moves: the seam between whatever animates a character and the simulation.
 
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct HeadPose {
     std::vector<Vec3f>
         scalpPositions_ws;  ///< per vertex of the groom's scalp; empty: the scalp moves with head_ws
     std::vector<Vec3f> sphereCentres_ws;  ///< per collision sphere; empty: spheres move with head_ws
+    std::optional<Vec3f> wind_ws;         ///< m/s, in place of the groom's mean wind
 };
 
 class HeadMotion {

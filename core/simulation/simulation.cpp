@@ -52,6 +52,8 @@ void Simulation::Impl::gather() {
     stats.energy = measured.kineticEnergy;
     stats.nanCount += measured.nanCount;
     stats.restoredStrands += method->restoredStrands();
+    stats.restingStrands = measured.asleep;
+    stats.fastestMmPerSecond = measured.fastest * 1e3;
 }
 
 Result<Simulation> Simulation::make(const Groom& groom, const HeadPose& start,
@@ -82,6 +84,8 @@ void Simulation::step(float dt, const HeadPose& pose) {
     input.time = impl_->time;
     input.roots_ws = roots;
     input.spheres = spheres;
+    if (pose.wind_ws)
+        input.wind_ws = runtime::Float3{pose.wind_ws->x(), pose.wind_ws->y(), pose.wind_ws->z()};
     impl_->method->step(impl_->scene, pose, input);
     impl_->readPositions();
     impl_->gather();

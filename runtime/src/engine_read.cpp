@@ -93,6 +93,7 @@ Measurements measureState(const RestShape& shape, const State& state, const Simu
             if (p < s.clampedPoints) return;
             const Float3 at_ws = view.root(lane) + at;
             const double speed = lengthOf(moved) * rate;
+            result.fastest = std::max(result.fastest, speed);
             result.kineticEnergy += 0.5 * view.mass(i) * speed * speed;
             result.potentialEnergy -= view.mass(i) * static_cast<double>(dot(s.gravity, at_ws));
             const double along = static_cast<double>(p) / (view.block->points - 1);
@@ -114,7 +115,7 @@ std::size_t Engine::Impl::effectBytes(Effect effect) const {
     const std::size_t targets = bend_.targets ? 3 * plane : 0;
     switch (effect) {
         case Effect::angular:
-            return (bend_.planes.size() + state_.tensions.size()) * sizeof(float) - targets;
+            return (bend_.planes.size() + state_.tensions.size()) * sizeof(float) - targets + rods_.bytes();
         case Effect::torsion:
             return targets +
                    (state_.curves.size() + state_.energyTanks.size() + state_.motions.size()) * sizeof(float);

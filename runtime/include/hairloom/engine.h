@@ -36,6 +36,7 @@ struct Measurements {
     double kineticEnergy = 0.0;  ///< joules, over free points; the points of a strand weigh 1 kg on average
     double potentialEnergy =
         0.0;                   ///< joules, likewise, in the gravity of the settings, 0 at the world's origin
+    double fastest = 0.0;      ///< m/s, greatest speed of a free point over the last substep
     std::uint32_t asleep = 0;  ///< strands
 };
 
