@@ -136,6 +136,7 @@ Report statsReport(const Groom& groom, const SimulationStats& stats) {
     report["energy"] = finiteOrNull(stats.energy);
     report["nan_count"] = stats.nanCount;
     report["restored_strands"] = stats.restoredStrands;
+    report["guarded_strands"] = stats.guardedStrands;
     report["resting_strands"] = stats.restingStrands;
     report["fastest_at_end_mm_s"] = finiteOrNull(stats.fastestMmPerSecond);
     report["state_hash"] = fmt::format("{:016x}", stats.stateHash);

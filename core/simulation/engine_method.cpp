@@ -57,6 +57,7 @@ class EngineMethod : public StrandMethod {
     }
     double stepMilliseconds() const override { return milliseconds_; }
     std::uint32_t restoredStrands() const override { return engine_.lastStep().restoredStrands; }
+    std::uint32_t guardedStrands() const override { return engine_.lastStep().guardedStrands; }
     runtime::Measurements measure() const override { return engine_.measure(); }
     std::uint64_t stateHash() const override { return engine_.stateHash(); }
 

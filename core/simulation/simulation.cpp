@@ -52,6 +52,7 @@ void Simulation::Impl::gather() {
     stats.energy = measured.kineticEnergy;
     stats.nanCount += measured.nanCount;
     stats.restoredStrands += method->restoredStrands();
+    stats.guardedStrands += method->guardedStrands();
     stats.restingStrands = measured.asleep;
     stats.fastestMmPerSecond = measured.fastest * 1e3;
 }

@@ -34,6 +34,7 @@ struct SimulationStats {
     double energy = 0;  ///< kinetic energy after the last frame, joules for strands of unit mass per point
     std::uint64_t nanCount = 0;         ///< points that are not finite, over all frames
     std::uint64_t restoredStrands = 0;  ///< put back to rest because they exploded, over all frames
+    std::uint64_t guardedStrands = 0;   ///< whose speeds were taken back, over all frames
     std::uint64_t restingStrands = 0;   ///< asleep after the last frame
     double fastestMmPerSecond = 0;      ///< of a point, after the last frame
     std::uint64_t stateHash = 0;        ///< equal for any number of threads

@@ -34,6 +34,8 @@ class StrandMethod {
     virtual Status status() const { return {}; }
     /// Strands that the last step put back to rest because they were no numbers.
     virtual std::uint32_t restoredStrands() const { return 0; }
+    /// Strands whose speeds the last step took back because no force explains them.
+    virtual std::uint32_t guardedStrands() const { return 0; }
     virtual runtime::Measurements measure() const = 0;
     virtual std::uint64_t stateHash() const = 0;
     /// With the mean time of each since the start.

@@ -354,7 +354,9 @@ class RodStrip {
                 all(1.0f));
             slow(share);
             after = mad(kinetic, share * share, energy);
-            turn = hn::IfThenElse(share < all(0.9f), all(kRodNoStep), turn);
+            const auto guarded = share < all(0.9f);
+            turn = hn::IfThenElse(guarded, all(kRodNoStep), turn);
+            lanes_.guarded |= bitsOf(guarded) << lane_;
         }
         // Contacts do work that is not counted here.
         const V unknown = all(kRodNoEnergy);

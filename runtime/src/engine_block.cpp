@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What one block of strands goes through in a frame, on whatever thread.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "src/checks.h"
@@ -11,7 +12,7 @@ namespace hairloom::runtime {
 void Engine::Impl::runBlock(std::size_t block, LaneFrame& lanes, const Frame& frame) {
     BlockReport& report = blockReports_[block];
     if (host_.nanoseconds) report.nanoseconds.fill(0);
-    report.restored = 0;
+    report.restored = report.guarded = 0;
     report.fastest = 0.0f;
     if (frame.newBend) {
         fillBend(*shape_, settings_, frame.context.h, block, bend_);
@@ -22,6 +23,7 @@ void Engine::Impl::runBlock(std::size_t block, LaneFrame& lanes, const Frame& fr
     }
     const BlockView blockView = view(block);
     lanes.near.forget();
+    lanes.guarded = 0;
     enterFrame(block, blockView, lanes, frame);
     if (frame.rescale != 1.0f && rods_.planes.empty()) frame.kernels->rescale(blockView, frame.rescale);
     if (frame.windy && rods_.planes.empty()) {
@@ -29,6 +31,10 @@ void Engine::Impl::runBlock(std::size_t block, LaneFrame& lanes, const Frame& fr
                                   frame.windTo.data());
     }
     runStages(block, blockView, lanes, frame);
+    const std::uint32_t strands = shape_->blocks[block].strands;
+    const std::uint32_t own =
+        strands < kBlockLanes ? (1u << strands) - 1 : ~0u;  // lanes past the last repeat it
+    report.guarded = static_cast<std::uint32_t>(std::popcount(lanes.guarded & own));
     report.fastest = frame.kernels->fastest(blockView, frame.context.h);
     if (!std::isfinite(report.fastest)) restoreStrands(block, blockView);
     rest(block, blockView, frame);

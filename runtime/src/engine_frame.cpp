@@ -302,6 +302,7 @@ void Engine::Impl::sumReports() {
         for (std::size_t i = 0; host_.nanoseconds && i < kStageCount; ++i)
             report_.stageMilliseconds[i] += static_cast<double>(block.nanoseconds[i]) * 1e-6;
         report_.restoredStrands += block.restored;
+        report_.guardedStrands += block.guarded;
         fastest = std::max(fastest, block.fastest);
     }
     state_.fastest = std::sqrt(fastest) / state_.substep;

@@ -19,7 +19,7 @@ struct Engine::Impl {
     struct BlockReport {
         std::array<std::uint64_t, kStageCount> nanoseconds{};
         float fastest = 0.0f;  ///< square metres, as Kernels::fastest
-        std::uint32_t restored = 0;
+        std::uint32_t restored = 0, guarded = 0;
         bool rootsMoved = false;
         bool rootsTeleported = false;  ///< some are carried along rigidly
     };

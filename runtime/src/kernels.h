@@ -178,6 +178,7 @@ struct alignas(64) LaneFrame {
                   [kBlockLanes];  ///< the air's way in one substep at start and end of the frame, at the root
     float windTip[2][3][kBlockLanes];
     NearPoints near;                      ///< kept by the stage `collision`
+    std::uint32_t guarded = 0;  ///< of rods: a bit for each lane whose speeds were taken back in this frame
     std::vector<MovingSphere> touchable;  ///< of rods: spheres that can reach the block in this frame
     /// Of strands of at most kMaxCopied points: what the pass of bending and lengths reads of them, in its
     /// own order.

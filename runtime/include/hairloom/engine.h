@@ -50,6 +50,8 @@ struct StepReport {
     /// Strands with a point that was no number, or farther from its root than any hair; they were put back to
     /// rest.
     std::uint32_t restoredStrands = 0;
+    /// Rods whose speeds no force explains: more energy than before on a head at rest. It was taken out of them.
+    std::uint32_t guardedStrands = 0;
 };
 
 class Engine {
