@@ -113,6 +113,7 @@ class RodStrip {
         step_ = h * (all(1.0f) - blend_ / ratio);
         inverseStep_ = all(1.0f) / step_;
         damped_ = all(1.0f) + all(context_.bendDampingTime) * inverseStep_;
+        dampingShare_ = (damped_ - all(1.0f)) / damped_;
         rootDisplacement_ = load3(lanes_.rootDisplacement, lane_);
         takeRoot();
     }
@@ -137,6 +138,15 @@ class RodStrip {
         still_ = hn::And(moved <= hn::Zero(D()), all(context_.conservative ? 1.0f : 0.0f) > hn::Zero(D()));
     }
 
+    /// A predicted rotation, which is no longer than HAIRLOOM_ROD_LARGEST_PREDICTION.
+    static V3 shortened(V3 u) {
+        const V squared = dot(u, u);
+        const V most = all(static_cast<float>(HAIRLOOM_ROD_LARGEST_PREDICTION));
+        const auto longer = squared > most * most;
+        if (HWY_LIKELY(hn::AllFalse(D(), longer))) return u;
+        return u * hn::IfThenElse(longer, most / hn::Sqrt(squared), all(1.0f));
+    }
+
     /// Repeats the last substep's rotations, in lanes that keep them, and finds the objective there and where
     /// nothing turns.
     void predict() {
@@ -151,9 +161,7 @@ class RodStrip {
             const V4 old = loadRotation(rod_.rotation, i);
             const V3 along = restTangent(j), oldTangent = rodRotate(old, along);
             V3 u = load3(rod_.increment, i) * all(context_.stepRatio);
-            const V size = hn::Sqrt(dot(u, u));
-            const V most = all(static_cast<float>(HAIRLOOM_ROD_LARGEST_PREDICTION));
-            u = u * hn::IfThenElseZero(kept_, hn::Min(all(1.0f), most / hn::Max(size, all(1e-9f))));
+            u = onlyWhere(kept_, shortened(u));
             const V length = lengthOf(j);
             outer = mad3(rodTangentChange(u, oldTangent), length, outer);
             point.increment = u;
@@ -202,7 +210,7 @@ class RodStrip {
     /// none.
     V3 blendStrain(V3 strain, std::size_t i) const {
         const V3 extrapolated = mad3(strain - load3(rod_.strainBefore, i), blend_, strain);
-        return extrapolated * ((damped_ - all(1.0f)) / damped_);
+        return extrapolated * dampingShare_;
     }
 
     /// Where inertia, gravity and air take a node.
@@ -227,9 +235,9 @@ class RodStrip {
             rate = rate + drag;
             change = mad3(air, drag * step_, change);
         }
-        const V share = all(1.0f) / mad(rate, step_, all(1.0f));
-        point.target = mad3(load3(rod_.displacement, node), blend_, change * (step_ * share));
-        point.weight = hn::Load(D(), rod_.mass + node) * inverseStep_ * inverseStep_ / share;
+        const V slowed = mad(rate, step_, all(1.0f));
+        point.target = mad3(load3(rod_.displacement, node), blend_, change * (step_ / slowed));
+        point.weight = hn::Load(D(), rod_.mass + node) * inverseStep_ * inverseStep_ * slowed;
     }
     V3 rootPosition() const {
         return mad3(rootDisplacement_, all(static_cast<float>(context_.index + 1)),
@@ -379,7 +387,8 @@ class RodStrip {
     std::uint32_t lane_;
     RodPoint* points_;
     std::uint32_t first_, segments_;
-    V blend_, step_, inverseStep_, damped_;
+    V blend_, step_, inverseStep_;
+    V damped_, dampingShare_;  ///< 1 + τ/h, and the part of it that is damping
     V3 rootDisplacement_, inDisplacement_;
     V4 inner_;  ///< rotation of the segment before the first free one
     hn::Mask<D> kept_, still_;

@@ -26,11 +26,11 @@ ROD_FUNCTION Real4 rodRelative(Real4 a, Real4 b, Real4 other) {
     return real4(withSignOf(v, side), withSignOf(w, side));
 }
 
-/// The quaternion of a strain, with w ≥ 0.
+/// About the quaternion of a strain, with w ≥ 0: as near as telling the two quaternions of a rotation apart
+/// takes.
 ROD_FUNCTION Real4 rodOfStrain(Real3 strain) {
     const Real3 v = strain * ROD_NUMBER(0.5);
-    return real4(v, root(maximum(negMad(v.x, v.x, negMad(v.y, v.y, negMad(v.z, v.z, ROD_NUMBER(1.0)))),
-                                 ROD_NUMBER(0.0))));
+    return real4(v, maximum(negMad(dot(v, v), ROD_NUMBER(0.5), ROD_NUMBER(1.0)), ROD_NUMBER(0.0)));
 }
 
 ROD_FUNCTION Real4 rodNormalized(Real4 q) {
@@ -38,18 +38,25 @@ ROD_FUNCTION Real4 rodNormalized(Real4 q) {
     return real4(xyz(q) * scale, q.w * scale);
 }
 
-/// First q, then the rotation of 2 atan(|u|/2) about u (Cayley), which is legal for any u.
+/// 1/(1 + |u|²/4).
+ROD_FUNCTION Real rodInverseOfTurn(Real3 u) {
+    return ROD_NUMBER(1.0) / mad(dot(u, u), ROD_NUMBER(0.25), ROD_NUMBER(1.0));
+}
+
+/// First q, of about unit length, then the rotation of 2 atan(|u|/2) about u (Cayley), which is legal for any
+/// u. The result is nearer to unit length than q.
 ROD_FUNCTION Real4 rodTurned(Real4 q, Real3 u) {
     const Real3 h = u * ROD_NUMBER(0.5), v = xyz(q);
-    return rodNormalized(
-        real4(mad3(h, q.w, v) + cross(h, v), negMad(h.x, v.x, negMad(h.y, v.y, negMad(h.z, v.z, q.w)))));
+    const Real squared = mad(q.w, q.w, dot(v, v));
+    const Real scale = root(rodInverseOfTurn(u)) * negMad(squared, ROD_NUMBER(0.5), ROD_NUMBER(1.5));
+    const Real w = negMad(h.x, v.x, negMad(h.y, v.y, negMad(h.z, v.z, q.w)));
+    return real4((mad3(h, q.w, v) + cross(h, v)) * scale, w * scale);
 }
 
 /// What that rotation adds to a unit vector t.
 ROD_FUNCTION Real3 rodTangentChange(Real3 u, Real3 t) {
     const Real3 c = cross(u, t);
-    return mad3(cross(u, c), ROD_NUMBER(0.5), c) *
-           (ROD_NUMBER(1.0) / mad(dot(u, u), ROD_NUMBER(0.25), ROD_NUMBER(1.0)));
+    return mad3(cross(u, c), ROD_NUMBER(0.5), c) * rodInverseOfTurn(u);
 }
 
 /// Rotates v.
@@ -57,6 +64,24 @@ ROD_FUNCTION Real3 rodRotate(Real4 q, Real3 v) {
     const Real3 c = cross(xyz(q), v);
     const Real3 twice = c + c;
     return mad3(twice, q.w, v) + cross(xyz(q), twice);
+}
+
+/// Columns of a rotation.
+struct RodMatrix {
+    Real3 x, y, z;
+};
+ROD_FUNCTION RodMatrix rodMatrix(Real4 q) {
+    const Real x = q.x + q.x, y = q.y + q.y, z = q.z + q.z, one = ROD_NUMBER(1.0);
+    const Real xw = x * q.w, yw = y * q.w, zw = z * q.w;
+    const Real yy = y * q.y, zz = z * q.z;
+    RodMatrix m;
+    m.x = real3(one - (yy + zz), mad(x, q.y, zw), mad(x, q.z, ROD_NUMBER(0.0) - yw));
+    m.y = real3(mad(x, q.y, ROD_NUMBER(0.0) - zw), negMad(x, q.x, one - zz), mad(y, q.z, xw));
+    m.z = real3(mad(x, q.z, yw), mad(y, q.z, ROD_NUMBER(0.0) - xw), negMad(x, q.x, one - yy));
+    return m;
+}
+ROD_FUNCTION Real3 rodTimes(RodMatrix m, Real3 v) {
+    return mad3(m.z, v.z, mad3(m.y, v.y, m.x * v.x));
 }
 
 /// Twice the energy of a strain e with `twist` for (C − B)/l̄.
@@ -135,15 +160,18 @@ ROD_FUNCTION void rodEliminate(ROD_INOUT(RodForm) f, Real4 q, Real3 t, Real segm
     const Real3 gu = f.gu + cross(lt, f.gx);
 
     // The vertex. With J = w + [v]× the strain changes by J Rᵀ (u_outer − u_inner); JᵀJ = 1 − v vᵀ.
+    const RodMatrix m = rodMatrix(q);
     const Real3 v = xyz(relative);
     Real3 moment = e * bend;
     if (twists) moment = mad3(axis, twist * dot(axis, e), moment);
-    const Real3 g = rodRotate(q, mad3(moment, relative.w, cross(moment, v)));
-    const Real3 swing = rodRotate(q, v), bv = swing * bend;
-    Real S0 = Y0 + negMad(bv.x, swing.x, bend), S1 = negMad(bv.x, swing.y, Y1), S2 = negMad(bv.x, swing.z, Y2);
-    Real S3 = Y3 + negMad(bv.y, swing.y, bend), S4 = negMad(bv.y, swing.z, Y4), S5 = Y5 + negMad(bv.z, swing.z, bend);
+    const Real3 g = rodTimes(m, mad3(moment, relative.w, cross(moment, v)));
+    const Real3 swing = rodTimes(m, v), bv = swing * bend;
+    Real S0 = Y0 + negMad(bv.x, swing.x, bend), S1 = negMad(bv.x, swing.y, Y1),
+         S2 = negMad(bv.x, swing.z, Y2);
+    Real S3 = Y3 + negMad(bv.y, swing.y, bend), S4 = negMad(bv.y, swing.z, Y4),
+         S5 = Y5 + negMad(bv.z, swing.z, bend);
     if (twists) {
-        const Real3 T = rodRotate(q, mad3(axis, relative.w, cross(axis, v))), kt = T * twist;
+        const Real3 T = rodTimes(m, mad3(axis, relative.w, cross(axis, v))), kt = T * twist;
         S0 = mad(kt.x, T.x, S0);
         S1 = mad(kt.x, T.y, S1);
         S2 = mad(kt.x, T.z, S2);
