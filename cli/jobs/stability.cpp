@@ -19,17 +19,22 @@ struct StabilityJobOptions {
     std::uint32_t cells = 24;
     std::uint32_t steps = 2000;
     std::uint64_t stepsAtRest = StabilityOptions{}.stepsAtRest;
+    std::uint32_t storms = StabilityOptions{}.storms;
     std::string backend = "cpu";
     std::optional<std::uint32_t> device;
 };
 
-std::vector<runtime::Integrator> chosenIntegrators(const std::vector<std::string>& names) {
-    std::vector<runtime::Integrator> chosen;
-    for (const runtime::Integrator integrator : allIntegrators()) {
-        if (names.empty() || std::ranges::find(names, nameOf(integrator)) != names.end())
-            chosen.push_back(integrator);
+std::vector<StabilityMethod> chosenMethods(const std::vector<std::string>& names) {
+    std::vector<StabilityMethod> chosen;
+    for (const StabilityMethod& method : allStabilityMethods()) {
+        if (names.empty() || std::ranges::find(names, method.name()) != names.end()) chosen.push_back(method);
     }
     return chosen;
+}
+std::vector<std::string> methodNames() {
+    std::vector<std::string> names;
+    for (const StabilityMethod& method : allStabilityMethods()) names.push_back(method.name());
+    return names;
 }
 
 Report numberOrNull(double value) {
@@ -66,7 +71,7 @@ Report mapReport(const StabilityMap& map) {
 }
 
 Result<Report> stability(const StabilityJobOptions& options, const std::string& commandLine) {
-    std::vector<runtime::Integrator> integrators = chosenIntegrators(options.integrators);
+    std::vector<StabilityMethod> methods = chosenMethods(options.integrators);
     StabilityOptions suite;
     std::unique_ptr<GpuBackend> gpu;
     if (options.backend == "vulkan") {
@@ -76,16 +81,19 @@ Result<Report> stability(const StabilityJobOptions& options, const std::string& 
         suite.engines = gpuHardCaseEngines(gpu->device(), gpu->kernels());
         // Backward Euler runs on the CPU only.
         std::erase(suite.integrators, runtime::Integrator::implicitEuler);
-        std::erase(integrators, runtime::Integrator::implicitEuler);
+        std::erase(methods, springsWith(runtime::Integrator::implicitEuler));
     }
     suite.stepsAtRest = options.stepsAtRest;
-    const std::vector<StabilityResult> results = runHardCases(integrators, suite);
+    suite.storms = options.storms;
+    const std::vector<StabilityResult> results = runHardCases(methods, suite);
     std::vector<StabilityMap> maps;
     // Maps are of the integrators, not of what runs them.
     for (const MappedForce force : {MappedForce::coils, MappedForce::angular}) {
         if (gpu) break;
-        for (const runtime::Integrator integrator : integrators)
-            maps.push_back(mapStability(integrator, force, options.cells, options.steps));
+        for (const StabilityMethod& method : methods) {
+            if (!method.rods())
+                maps.push_back(mapStability(method.integrator, force, options.cells, options.steps));
+        }
     }
     const auto files = writeStability(results, maps, commandLine, options.output);
     if (!files) return tl::unexpected(files.error());
@@ -111,9 +119,11 @@ JobRun declare(CLI::App& job) {
     job.add_option("-o,--output", options->output,
                    "Folder for report.html, cases.json, cases.csv, cases.md and the maps")
         ->required();
-    job.add_option("--integrators", options->integrators, "Integrators to run, instead of all")
+    job.add_option("--integrators", options->integrators,
+                   "Rods, or integrators of springs, to run, instead of all")
         ->delimiter(',')
-        ->check(CLI::IsMember(runtime::integratorNames()));
+        ->check(CLI::IsMember(methodNames()));
+    job.add_option("--storms", options->storms, "Random storms of case 26")->check(CLI::Range(1, 1'000'000));
     job.add_option("--backend", options->backend, "What runs the cases; maps are made on the CPU only")
         ->check(CLI::IsMember({"cpu", "vulkan"}));
     job.add_option("--device", options->device, "GPU to use, by its index in `devices`");

@@ -16,6 +16,7 @@ constexpr double kRestSpeed = 0.005;     // m/s
 constexpr double kNoEnergy = 1e-9;       // joules a point of 1 kg: below is rounding
 constexpr double kMaxPenetration = 0.5;  // mm
 constexpr std::uint32_t kMaxSubsteps = 64;
+constexpr std::uint32_t kRodSubsteps = 2;
 constexpr const char* kLengthsAfterBending =
     "lengths are held after bending has moved the points, and the two undo part of each other's work; only "
     "position Verlet bends with the tension of the lengths";
@@ -35,8 +36,9 @@ std::uint32_t substepsFor(const StrandSet& strands, runtime::SimulationSettings 
 
 void HardCaseRun::start(StrandSet strands, runtime::SimulationSettings settings, float longestFrame) {
     strands_ = std::move(strands);
-    settings.integrator = integrator_;
-    settings.substeps = substepsFor(strands_, settings, longestFrame);
+    settings.strandModel = method_.model;
+    settings.integrator = method_.integrator;
+    settings.substeps = method_.rods() ? kRodSubsteps : substepsFor(strands_, settings, longestFrame);
     const runtime::StableAdvice advice = runtime::adviseStability(strands_.view(), settings, longestFrame);
     if (limit_.empty()) limit_ = advice.words;
     engine_ = another(settings);
@@ -123,7 +125,7 @@ void HardCaseRun::expectEnergy(const std::string& what, const std::string& unit,
 }
 
 bool HardCaseRun::holdsRest() const {
-    return integrator_ == runtime::Integrator::verlet ||
+    return method_.rods() || method_.integrator == runtime::Integrator::verlet ||
            settings().lengthMethod != runtime::LengthMethod::constraint;
 }
 
@@ -156,7 +158,7 @@ double HardCaseRun::greatestSpeed() const {
 
 StabilityResult HardCaseRun::result() const {
     StabilityResult result;
-    result.integrator = nameOf(integrator_);
+    result.integrator = method_.name();
     result.substeps = engine_ ? settings().substeps : 0;
     result.claimed = limit_.empty();
     result.thresholds = thresholds_;

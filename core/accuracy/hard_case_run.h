@@ -17,11 +17,11 @@ inline constexpr float kFrame = 1.0f / 60.0f;  // seconds
 
 class HardCaseRun {
   public:
-    HardCaseRun(runtime::Integrator integrator, const StabilityOptions& options)
-        : integrator_(integrator), options_(options) {}
+    HardCaseRun(const StabilityMethod& method, const StabilityOptions& options)
+        : method_(method), options_(options) {}
 
-    /// Starts the engine with these strands at rest. Takes the integrator of the trial and, where it needs
-    /// them for frames of `longestFrame` seconds, more substeps.
+    /// Starts the engine with these strands at rest. Takes the method of the trial and, where its integrator
+    /// needs them for frames of `longestFrame` seconds, more substeps; rods take two.
     void start(StrandSet strands, runtime::SimulationSettings settings = {}, float longestFrame = kFrame);
     /// As start(), in the middle of a case: what was measured stays.
     void restart(StrandSet strands, runtime::SimulationSettings settings) {
@@ -29,7 +29,7 @@ class HardCaseRun {
     }
 
     const StabilityOptions& options() const { return options_; }
-    runtime::Integrator integrator() const { return integrator_; }
+    const StabilityMethod& method() const { return method_; }
     const StrandSet& strands() const { return strands_; }
     HardCaseEngine& engine() { return *engine_; }
     /// Another one with these strands, at rest.
@@ -55,6 +55,10 @@ class HardCaseRun {
     /// Without a source, runs until `most` seconds have passed; all speeds have to be below 5 mm/s for good
     /// before.
     void settle(double maximum = 5.0);
+    /// What comes is beyond what the method claims, for this reason.
+    void disclaim(const std::string& reason) {
+        if (limit_.empty()) limit_ = reason;
+    }
     /// Strands that are put back to rest are part of the case.
     void allowRestored(bool on) { restoredAllowed_ = on; }
 
@@ -79,7 +83,7 @@ class HardCaseRun {
     /// Whether the integrator promises rest and a bound of the energy with these settings.
     bool holdsRest() const;
 
-    runtime::Integrator integrator_;
+    StabilityMethod method_;
     StabilityOptions options_;
     StrandSet strands_;
     std::unique_ptr<HardCaseEngine> engine_;

@@ -23,6 +23,10 @@ void teleport(HardCaseRun& caseRun);
 void frameTimes(HardCaseRun& caseRun);
 void changesInMidRun(HardCaseRun& caseRun);
 void everythingAtOnce(HardCaseRun& caseRun);
+void randomStorms(HardCaseRun& caseRun);
+
+/// Runs storm `seed` and five seconds of rest; the speed that is left, m/s.
+double runStorm(HardCaseRun& caseRun, std::uint32_t seed);
 
 // Spheres.
 void pointAtCentre(HardCaseRun& caseRun);

@@ -93,8 +93,13 @@ void freeSwing(HardCaseRun& caseRun) {
     };
     const double start = meanEnergy();
     caseRun.frames(static_cast<int>(60.0 * (caseRun.options().freeSeconds - 2.0)));
-    caseRun.expectEnergy("drift of energy", "%",
-                         caseRun.over() ? std::nan("") : 100.0 * std::abs(meanEnergy() / start - 1.0), 1.0);
+    const double gained = caseRun.over() ? std::nan("") : 100.0 * (meanEnergy() / start - 1.0);
+    // The steps of rods take energy out of fast waves; they add none.
+    if (caseRun.method().rods()) {
+        caseRun.expectEnergy("energy gained", "%", std::isnan(gained) ? gained : std::max(gained, 0.0), 1.0);
+    } else {
+        caseRun.expectEnergy("drift of energy", "%", std::abs(gained), 1.0);
+    }
 }
 
 void longRest(HardCaseRun& caseRun) {

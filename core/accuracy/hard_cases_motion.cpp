@@ -72,11 +72,13 @@ void changesInMidRun(HardCaseRun& caseRun) {
     for (const runtime::Integrator other : caseRun.options().integrators) {
         // Explicit Euler holds no undamped wave; it is a neighbour that others must recover from.
         SimulationSettings s = caseRun.settings();
+        s.strandModel = runtime::StrandModel::springs;
         s.integrator = other;
         s.substeps = std::max(own, 16u);
         caseRun.change(s);
         shake(other == runtime::Integrator::explicitEuler ? 1 : 10);
-        s.integrator = caseRun.integrator();
+        s.strandModel = caseRun.method().model;
+        s.integrator = caseRun.method().integrator;
         s.substeps = std::min(own + 5, 64u);
         caseRun.change(s);
         shake(10);
@@ -109,6 +111,19 @@ void everythingAtOnce(HardCaseRun& caseRun) {
     }
     caseRun.change(calm);
     caseRun.settle();
+}
+
+void randomStorms(HardCaseRun& caseRun) {
+    if (!caseRun.method().rods()) caseRun.disclaim("springs claim no storm; rods do");
+    double fastest = 0.0, calm = 0.0;
+    for (std::uint32_t storm = 0; storm < caseRun.options().storms && !caseRun.over(); ++storm) {
+        const double left = runStorm(caseRun, storm);
+        if (!(left <= fastest)) fastest = left;
+        if (left <= 0.005) calm += 1.0;
+    }
+    caseRun.expectEnergy("speed five seconds after a storm", "m/s", fastest, 0.5);
+    caseRun.expectEnergy("storms that end above 5 mm/s", "%",
+                         100.0 * (1.0 - calm / std::max(caseRun.options().storms, 1u)), 5.0);
 }
 
 }  // namespace hairloom::hardcases

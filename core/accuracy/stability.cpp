@@ -41,6 +41,7 @@ constexpr HardCase kCases[] = {
     {23, "negative radius", "spheres", "a sphere of -5 cm is left out and changes nothing", negativeRadius},
     {24, "changes in mid-run", "motion", "integrator, substeps and number of segments change every few frames", changesInMidRun},
     {25, "6, 8, 9 and 11 at once", "motion", "turning at 10 rev/s in a reversing storm, stiffness x 10^6, frames of 1 to 1,000 ms", everythingAtOnce},
+    {26, "random storms", "motion", "jumps of metres, any turns, frames of 1 ms to 1 s, gusts to 300 m/s and spheres at once, on hair of 2 to 200 points, straight and curled; then still", randomStorms},
 };
 // clang-format on
 
@@ -61,9 +62,9 @@ std::span<const HardCase> hardCases() {
     return kCases;
 }
 
-StabilityResult runHardCase(const HardCase& hardCase, runtime::Integrator integrator,
+StabilityResult runHardCase(const HardCase& hardCase, const StabilityMethod& method,
                             const StabilityOptions& options) {
-    HardCaseRun caseRun(integrator, options);
+    HardCaseRun caseRun(method, options);
     hardCase.run(caseRun);
     StabilityResult result = caseRun.result();
     result.number = hardCase.number;
@@ -72,22 +73,31 @@ StabilityResult runHardCase(const HardCase& hardCase, runtime::Integrator integr
     return result;
 }
 
-std::vector<StabilityResult> runHardCases(std::span<const runtime::Integrator> integrators,
+std::vector<StabilityResult> runHardCases(std::span<const StabilityMethod> methods,
                                           const StabilityOptions& options,
                                           const std::function<void(std::size_t)>& progress) {
-    std::vector<StabilityResult> results(hardCases().size() * integrators.size());
+    std::vector<StabilityResult> results(hardCases().size() * methods.size());
     std::atomic<std::size_t> done{0};
     // A device is used from one thread.
     const std::size_t piece = options.engines ? results.size() : 1;
     parallelFor(results.size(), std::max<std::size_t>(piece, 1), [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            results[i] = runHardCase(hardCases()[i / integrators.size()], integrators[i % integrators.size()],
-                                     options);
+            results[i] = runHardCase(hardCases()[i / methods.size()], methods[i % methods.size()], options);
             const std::size_t count = ++done;
             if (progress) progress(count);
         }
     });
     return results;
+}
+
+std::string StabilityMethod::name() const {
+    return rods() ? "rods" : nameOf(integrator);
+}
+
+std::vector<StabilityMethod> allStabilityMethods() {
+    std::vector<StabilityMethod> all{kRods};
+    for (const runtime::Integrator integrator : allIntegrators()) all.push_back(springsWith(integrator));
+    return all;
 }
 
 std::vector<runtime::Integrator> allIntegrators() {

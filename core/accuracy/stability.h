@@ -39,7 +39,7 @@ struct StabilityResult {
     int number = 0;
     std::string name;
     std::string family;
-    std::string integrator;
+    std::string integrator;      ///< StabilityMethod::name
     std::uint32_t substeps = 0;  ///< a frame
     bool claimed = true;         ///< not where `limit` says why a mark may be missed
     bool pass = false;           ///< every mark is met
@@ -51,12 +51,30 @@ struct StabilityResult {
     const StabilityThreshold& closest() const;
 };
 
+/// What moves the strands of a case: rods, or springs with an integrator.
+struct StabilityMethod {
+    runtime::StrandModel model = runtime::StrandModel::springs;
+    runtime::Integrator integrator = runtime::Integrator::verlet;
+
+    /// "rods", or the integrator's name.
+    std::string name() const;
+    bool rods() const { return model == runtime::StrandModel::rods; }
+    friend bool operator==(const StabilityMethod&, const StabilityMethod&) = default;
+};
+inline constexpr StabilityMethod kRods{runtime::StrandModel::rods, runtime::Integrator::verlet};
+inline StabilityMethod springsWith(runtime::Integrator integrator) {
+    return {runtime::StrandModel::springs, integrator};
+}
+
 /// All, as settings list them.
 std::vector<runtime::Integrator> allIntegrators();
+/// Rods, then springs with each integrator.
+std::vector<StabilityMethod> allStabilityMethods();
 
 struct StabilityOptions {
     std::uint64_t stepsAtRest = 1'000'000;  ///< substeps of case 18, at least 8
     double freeSeconds = 60.0;              ///< of case 17, at least 2
+    std::uint32_t storms = 40;              ///< of case 26
     /// What runs the cases; empty: the engine on the CPU. Another runs them one after the other.
     HardCaseEngineFactory engines = {};
     /// That `engines` can have.
@@ -76,12 +94,12 @@ struct HardCase {
 /// All, by number.
 std::span<const HardCase> hardCases();
 
-StabilityResult runHardCase(const HardCase& hardCase, runtime::Integrator integrator,
+StabilityResult runHardCase(const HardCase& hardCase, const StabilityMethod& method,
                             const StabilityOptions& options = {});
 
-/// Every case with each of the integrators, side by side on threads; ordered by case, then as `integrators`.
+/// Every case with each of the methods, side by side on threads; ordered by case, then as `methods`.
 /// `progress` may be empty; it is called from any thread with the number of results so far.
-std::vector<StabilityResult> runHardCases(std::span<const runtime::Integrator> integrators,
+std::vector<StabilityResult> runHardCases(std::span<const StabilityMethod> methods,
                                           const StabilityOptions& options = {},
                                           const std::function<void(std::size_t)>& progress = {});
 

@@ -2,11 +2,13 @@
 // How the hair moves: presets of measured hair, and all settings of the engine. A change shows in the running
 // simulation at once.
 #include <QComboBox>
+#include <QPushButton>
 #include <QVBoxLayout>
 
 #include "core/editing/document.h"
 #include "core/editing/settings_commands.h"
 #include "core/scene/hair_preset.h"
+#include "core/simulation/sag.h"
 #include "editor/fields/field_form.h"
 #include "editor/fields/stiffness_curve.h"
 #include "editor/panels/panel.h"
@@ -22,20 +24,22 @@ struct Group {
 
 std::vector<Group> groups() {
     return {
-        {QObject::tr("Time"),
-         {"integrator", "substeps", "dampingTime", "teleportDistance", "sleepSpeed", "sleepDelay"},
+        {QObject::tr("Strands"),
+         {"strandModel", "angularStiffness", "torsionRatio", "bendDampingTime", "restGravity"},
          true},
-        {QObject::tr("Shape"), {"angularMethod", "angularStiffness", "bendDampingTime", "restGravity"}, true},
+        {QObject::tr("Time"),
+         {"substeps", "dampingTime", "teleportDistance", "sleepSpeed", "sleepDelay"},
+         true},
         {QObject::tr("Wind and gravity"),
          {"windSpeed", "windKind", "windDirection", "windGustiness", "windFrequency", "windGustSize",
           "windSeed", "airDrag", "gravity"},
          true},
-        {QObject::tr("Length"),
-         {"lengthMethod", "lengthIterations", "maximalExtension", "springFrequency", "clampedPoints"},
-         false},
         {QObject::tr("Collision"),
-         {"collisionResponse", "collisionRadiusRoot", "collisionRadiusTip", "friction", "restitution",
-          "penaltyFrequency"},
+         {"collisionRadiusRoot", "collisionRadiusTip", "friction", "restitution"},
+         false},
+        {QObject::tr("Springs only"),
+         {"integrator", "angularMethod", "lengthMethod", "lengthIterations", "maximalExtension",
+          "springFrequency", "collisionResponse", "penaltyFrequency"},
          false},
     };
 }
@@ -65,6 +69,19 @@ QWidget* makePresets(QtDocument& document) {
     return row;
 }
 
+QWidget* makeHoldButton(QtDocument& document) {
+    auto* button = new QPushButton(QObject::tr("Hold this shape under gravity"));
+    button->setObjectName("hold-shape");
+    button->setToolTip(QObject::tr(
+        "Makes strands rods whose rest shape carries their weight: the hair hangs as it is drawn"));
+    QObject::connect(button, &QPushButton::clicked, button, [&document] {
+        document.perform(editing::setPhysics(document.editing().model(),
+                                             holdingItsShape(document.groom()).simulation,
+                                             QObject::tr("Hold shape under gravity").toStdString()));
+    });
+    return button;
+}
+
 QWidget* withCurve(QtDocument& document, QWidget* form) {
     auto* widget = new QWidget;
     auto* layout = new QVBoxLayout(widget);
@@ -77,7 +94,7 @@ QWidget* withCurve(QtDocument& document, QWidget* form) {
 
 QWidget* makePanel(QtDocument& document, const Preferences& preferences) {
     const std::vector<Field> fields = simulationFields();
-    QWidget* const content = column({makePresets(document)});
+    QWidget* const content = column({makePresets(document), makeHoldButton(document)});
     auto* layout = static_cast<QVBoxLayout*>(content->layout());
     QStringList shown;
     for (const Group& group : groups()) {

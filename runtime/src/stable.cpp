@@ -184,6 +184,7 @@ StableRegion regionOf(const FastestWaves& waves, const S& s, double frameTime) {
     const bool solves = s.integrator == Integrator::implicitEuler;
     StableRegion region;
     region.step = h;
+    if (s.strandModel == StrandModel::rods) return region;  // their step has no limit
     const auto consider = [&](Stiff cause, double frequency, double limit) {
         if (!(frequency > 0.0)) return;
         const double factor = limit > 0.0 ? frequency * h / limit : std::numeric_limits<double>::infinity();
@@ -307,9 +308,10 @@ StableRegion stableRegion(const StrandsView& strands, const SimulationSettings& 
 
 StableAdvice adviseStability(const StrandsView& strands, const SimulationSettings& settings,
                              float frameTime) {
-    const FastestWaves waves = fastestWaves(strands, settings);
     const double frame = static_cast<double>(frameTime);
     StableAdvice advice;
+    if (settings.strandModel == StrandModel::rods) return advice;
+    const FastestWaves waves = fastestWaves(strands, settings);
     advice.region = regionOf(waves, settings, frame);
     if (advice.region.stable()) return advice;
     advice.words = wordsFor(advice.region, settings);

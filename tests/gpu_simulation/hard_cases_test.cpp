@@ -17,11 +17,11 @@ TEST_P(HardCases, DeviceMeetsTheCpusHardCases) {
     quick.stepsAtRest = 400;
     quick.freeSeconds = 2.0;
     quick.integrators = {runtime::Integrator::verlet};
-    if (!runHardCase(hardCase, runtime::Integrator::verlet, quick).pass)
+    if (!runHardCase(hardCase, springsWith(runtime::Integrator::verlet), quick).pass)
         GTEST_SKIP() << "the CPU does not hold it either";
     StabilityOptions onDevice = quick;
     onDevice.engines = gpuHardCaseEngines(*device(), library());
-    const StabilityResult result = runHardCase(hardCase, runtime::Integrator::verlet, onDevice);
+    const StabilityResult result = runHardCase(hardCase, springsWith(runtime::Integrator::verlet), onDevice);
     EXPECT_TRUE(result.pass) << result.number << " " << result.name << ": " << result.closest().what << " "
                              << result.closest().worst << " " << result.closest().unit << ", mark "
                              << result.closest().threshold;

@@ -48,7 +48,7 @@ struct StableRegion {
     bool stable() const { return factor <= 1.0; }
 };
 
-/// Of substeps of frames of `frameTime` seconds, above 0. The forces that the integrator solves implicitly do
+/// Rods have no limit. Of substeps of frames of `frameTime` seconds, above 0. The forces that the integrator solves implicitly do
 /// not count.
 StableRegion stableRegion(const StrandsView& strands, const SimulationSettings& settings, float frameTime);
 
