@@ -43,7 +43,8 @@ bool leaps(const StrandShape& shape, const std::vector<Vec3d>& from, const std::
 
 Status check(const Strands& strands, const runtime::SimulationSettings& settings) {
     for (const std::string& problem : runtime::validate(settings)) return fail(problem);
-    if (!(greatestStiffness(settings) < 1.0f))
+    const bool springs = settings.strandModel == runtime::StrandModel::springs;
+    if (springs && !(greatestStiffness(settings) < 1.0f))
         return fail("angularStiffness 1 has no finite stiffness", "less than 1");
     const std::size_t points = strands.restPositions_ss.size();
     if (strands.offsets.empty() || strands.offsets.front() != 0 || strands.offsets.back() != points)
@@ -68,43 +69,6 @@ Status check(const Strands& strands, const runtime::SimulationSettings& settings
 }
 
 }  // namespace
-
-/// A strand's root and the spheres on their way through a frame. Shares run from 0 to 1.
-struct Solver::Path {
-    Vec3d from, to;
-    Quaterniond turnFrom, turnTo;  // in the same half
-    double dt, endTime;
-    std::vector<SphereNow> spheresAtEnd;
-
-    Vec3d velocity() const { return (to - from) / dt; }
-    Vec3d position(double share) const { return from + (to - from) * share; }
-    Eigen::Vector4d mixed(double share) const {
-        return (1.0 - share) * turnFrom.coeffs() + share * turnTo.coeffs();
-    }
-    Quaterniond rotation(double share) const { return Quaterniond(mixed(share).normalized()); }
-    /// ω = 2 q̇ q*.
-    Vec3d angularVelocity(double share) const {
-        const Eigen::Vector4d u = mixed(share), q = u.normalized();
-        const Eigen::Vector4d straight = (turnTo.coeffs() - turnFrom.coeffs()) / (dt * u.norm());
-        const Quaterniond rate(Eigen::Vector4d(straight - q * q.dot(straight)));
-        return 2.0 * (rate * Quaterniond(q).conjugate()).vec();
-    }
-    std::vector<SphereNow> spheres(double share) const {
-        std::vector<SphereNow> now = spheresAtEnd;
-        for (SphereNow& sphere : now) sphere.center -= sphere.velocity * ((1.0 - share) * dt);
-        return now;
-    }
-    ClampedEnd clamped(const StrandShape& shape, double share) const {
-        ClampedEnd end;
-        Vec3d offset = Vec3d::Zero();
-        for (std::size_t p = 0; p < shape.firstFree; ++p) {
-            if (p > 0) offset += rotation(share) * shape.edges[p - 1];
-            end.x.push_back(position(share) + offset);
-            end.v.push_back(velocity() + angularVelocity(share).cross(offset));
-        }
-        return end;
-    }
-};
 
 Strands strandsOf(const runtime::StrandsView& view) {
     Strands strands;
@@ -139,8 +103,16 @@ Result<Solver> Solver::make(const Strands& strands, const runtime::SimulationSet
         std::span<const double> masses(strands.pointMasses);
         if (!masses.empty()) masses = masses.subspan(first, end - first);
         const Vec3d gravityAtRest = root.rotation.conjugate() * solver.physics_.gravity;
-        solver.strands_.push_back(
-            {makeShape(std::move(edges), masses, settings, gravityAtRest, bendingForce), {}, root, {}});
+        Strand strand;
+        strand.root = root;
+        if (solver.physics_.rods) {
+            strand.shape = makeBody(std::move(edges), masses, settings);
+            strand.rod.emplace();
+            strand.rod->shape = makeRodShape(strand.shape, settings, gravityAtRest);
+        } else {
+            strand.shape = makeShape(std::move(edges), masses, settings, gravityAtRest, bendingForce);
+        }
+        solver.strands_.push_back(std::move(strand));
         solver.restRoots_.push_back(root);
     }
     solver.reset(solver.restRoots_);
@@ -157,6 +129,7 @@ void Solver::reset(std::span<const Root> roots_ws) {
             strand.state.x.push_back(strand.state.x.back() + strand.root.rotation * edge);
         strand.state.v.assign(strand.state.x.size(), Vec3d::Zero());
         strand.work = {};
+        if (strand.rod) strand.rod->motion = rodAtRest(strand.rod->shape, strand.root.rotation);
     }
     spheres_.clear();
 }
@@ -170,6 +143,7 @@ void Solver::setMotion(std::span<const Vec3d> positions_ws, std::span<const Vec3
             strand.state.v[p] = velocities_ws[first + p];
         }
         first += strand.shape.points();
+        if (strand.rod) turnToPoints(strand.shape, strand.rod->shape, strand.state.x, strand.rod->motion);
         if (physics_.lengthHeld && strand.shape.firstFree < strand.shape.points())
             projectVelocities(strand.shape, strand.state.x, strand.state.v);
     }
@@ -199,10 +173,11 @@ StepReport Solver::step(const Frame& frame, const StepOptions& options) {
             const Quaterniond turn = to.rotation * strand.root.rotation.conjugate();
             for (Vec3d& x : strand.state.x) x = to.position + turn * (x - strand.root.position);
             for (Vec3d& v : strand.state.v) v = turn * v;
+            if (strand.rod) strand.rod->turn(turn);
             strand.root = to;
         }
-        Path path{strand.root.position, to.position, strand.root.rotation, to.rotation, frame.dt,
-                  frame.time,           spheres};
+        RootPath path{strand.root.position, to.position, strand.root.rotation, to.rotation, frame.dt,
+                      frame.time,           spheres};
         if (path.turnFrom.dot(path.turnTo) < 0.0) path.turnTo.coeffs() *= -1.0;
         stepStrand(strand, path, options, report);
         strand.root = to;
@@ -210,7 +185,7 @@ StepReport Solver::step(const Frame& frame, const StepOptions& options) {
     return report;
 }
 
-void Solver::stepStrand(Strand& strand, const Path& path, const StepOptions& options,
+void Solver::stepStrand(Strand& strand, const RootPath& path, const StepOptions& options,
                         StepReport& report) const {
     const StrandShape& shape = strand.shape;
     // A root that changes its speed between frames does so at once: a blow on the strand.
@@ -223,6 +198,10 @@ void Solver::stepStrand(Strand& strand, const Path& path, const StepOptions& opt
     const double share = 1.0 / static_cast<double>(options.substeps);
     for (std::uint32_t i = 0; i < options.substeps; ++i) {
         const double from = static_cast<double>(i) * share, to = static_cast<double>(i + 1) * share;
+        if (strand.rod) {
+            advanceRod(strand, path, from, to, options.order, report, kMaxHalvings);
+            continue;
+        }
         if (options.order < 4 || impulses) {
             advance(strand, path, from, to, options.order == 1 ? 1.0 : 0.5, report, kMaxHalvings);
             continue;
@@ -238,7 +217,7 @@ void Solver::stepStrand(Strand& strand, const Path& path, const StepOptions& opt
         report.largestStretch = std::max(report.largestStretch, largestStretch(shape, strand.state.x));
 }
 
-bool Solver::trySubstep(Strand& strand, const Path& path, double from, double to, double weight) const {
+bool Solver::trySubstep(Strand& strand, const RootPath& path, double from, double to, double weight) const {
     const double within = from + weight * (to - from), h = (to - from) * path.dt;
     const std::vector<SphereNow> spheres = path.spheres(within);
     const Surroundings around{path.endTime - (1.0 - within) * path.dt, path.rotation(within), path.velocity(),
@@ -255,8 +234,43 @@ bool Solver::trySubstep(Strand& strand, const Path& path, double from, double to
     return solved;
 }
 
+void Solver::Rod::turn(const Quaterniond& by) {
+    for (Quaterniond& rotation : motion.rotation) rotation = (by * rotation).normalized();
+    for (Vec3d& spin : motion.spin) spin = by * spin;
+    for (Vec3d& tension : motion.tension) tension = by * tension;
+}
+
+void Solver::advanceRod(Strand& strand, const RootPath& path, double from, double to, int order,
+                        StepReport& report, int halvings) const {
+    Rod& rod = *strand.rod;
+    StrandState next = strand.state;
+    RodMotion motion = rod.motion;
+    const std::size_t stages = order == 1 ? 1 : order == 2 ? 2 : 3;
+    const RodStepResult result =
+        stepRod(physics_, strand.shape, rod.shape, stages, path, from, to, next, motion, rod.work);
+    const bool solved = result.converged && !leaps(strand.shape, strand.state.x, next.x);
+    if (!solved && halvings > 0) {
+        ++report.halved;
+        const double middle = 0.5 * (from + to);
+        advanceRod(strand, path, from, middle, order, report, halvings - 1);
+        advanceRod(strand, path, middle, to, order, report, halvings - 1);
+        return;
+    }
+    ++report.steps;
+    if (!solved) {
+        ++report.failed;
+        rod.turn(path.rotation(to) * path.rotation(from).conjugate());
+        carryAlong(strand, path, from, to);
+        return;
+    }
+    strand.state = std::move(next);
+    rod.motion = std::move(motion);
+    report.contacts += result.contacts;
+    report.deepestPenetration = std::max(report.deepestPenetration, result.penetration);
+}
+
 /// Takes the strand along with its root, without speed: what has no solution is not let run away.
-void Solver::carryAlong(Strand& strand, const Path& path, double from, double to) {
+void Solver::carryAlong(Strand& strand, const RootPath& path, double from, double to) {
     const Quaterniond turn = path.rotation(to) * path.rotation(from).conjugate();
     for (Vec3d& x : strand.state.x) x = path.position(to) + turn * (x - path.position(from));
     std::fill(strand.state.v.begin(), strand.state.v.end(), path.velocity());
@@ -265,7 +279,7 @@ void Solver::carryAlong(Strand& strand, const Path& path, double from, double to
     std::copy(end.v.begin(), end.v.end(), strand.state.v.begin());
 }
 
-void Solver::advance(Strand& strand, const Path& path, double from, double to, double weight,
+void Solver::advance(Strand& strand, const RootPath& path, double from, double to, double weight,
                      StepReport& report, int halvings) const {
     const bool solved = trySubstep(strand, path, from, to, weight);
     if (!solved && halvings > 0) {
@@ -304,8 +318,10 @@ Energy Solver::energy() const {
     for (const Strand& strand : strands_) {
         const Potentials potential = potentials(physics_, strand.shape, strand.state.x, strand.root.rotation);
         sum.gravity += potential.gravity;
-        sum.springs += potential.springs;
-        sum.angular += potential.angular;
+        sum.springs += strand.rod ? 0.0 : potential.springs;
+        sum.angular += strand.rod ? elasticEnergy(strand.shape, strand.rod->shape, strand.root.rotation,
+                                                  strand.rod->motion)
+                                  : potential.angular;
         for (std::size_t p = strand.shape.firstFree; p < strand.shape.points(); ++p)
             sum.kinetic += 0.5 * strand.shape.masses[p] * strand.state.v[p].squaredNorm();
     }

@@ -11,12 +11,18 @@
 // of angular springs. The wind is that of runtime/wind.h at each point itself. Does not do: maximal extension
 // of springs, sleep; stiff hair that is pressed end-on or between two spheres, where lengths and hard
 // contacts have no sound common solution: StepReport::failed tells.
+//
+// `strandModel` decides which model it is. Rods (rod_step.h) read none of the settings of lengths and
+// angular springs, nor collisionResponse: contacts are springs whose stiffness grows with the square of the
+// count of steps.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "core/base/result.h"
+#include "core/simulation/reference/rod_step.h"
 #include "core/simulation/reference/strand.h"
 #include "core/simulation/reference/substep.h"
 #include "hairloom/settings.h"
@@ -58,7 +64,8 @@ struct StepOptions {
     std::uint32_t substeps = 64;  ///< per frame, above 0
     /// 1, 2 or 4. 4 is five steps of order 2, one of them backwards in time (Suzuki 1990). Frames with
     /// spheres that respond by impulses are of order 1 either way; 4 takes steps of order 2 in them. 1, the
-    /// implicit Euler method, brings strands to rest sooner, and leaves the place of rest as it is.
+    /// implicit Euler method, brings strands to rest sooner, and leaves the place of rest as it is. Of rods:
+    /// 1, 2 or 3 stages of Radau IIA collocation, which damp what is too fast for a step.
     int order = 4;
 };
 
@@ -105,21 +112,30 @@ class Solver {
     std::size_t strandCount() const { return strands_.size(); }
 
   private:
+    struct Rod {
+        RodShape shape;
+        RodMotion motion;
+        RodWorkspace work;
+        void turn(const Quaterniond& by);
+    };
     struct Strand {
         StrandShape shape;
         StrandState state;
         Root root;
         Workspace work;
+        std::optional<Rod> rod;  // StrandModel::rods
     };
-    struct Path;
 
     Solver(const runtime::SimulationSettings& settings, BendingForce bendingForce)
         : settings_(settings), physics_(settings, bendingForce) {}
-    void stepStrand(Strand& strand, const Path& path, const StepOptions& options, StepReport& report) const;
-    bool trySubstep(Strand& strand, const Path& path, double from, double to, double weight) const;
-    static void carryAlong(Strand& strand, const Path& path, double from, double to);
-    void advance(Strand& strand, const Path& path, double from, double to, double weight, StepReport& report,
-                 int halvings) const;
+    void stepStrand(Strand& strand, const RootPath& path, const StepOptions& options,
+                    StepReport& report) const;
+    bool trySubstep(Strand& strand, const RootPath& path, double from, double to, double weight) const;
+    void advanceRod(Strand& strand, const RootPath& path, double from, double to, int order,
+                    StepReport& report, int halvings) const;
+    static void carryAlong(Strand& strand, const RootPath& path, double from, double to);
+    void advance(Strand& strand, const RootPath& path, double from, double to, double weight,
+                 StepReport& report, int halvings) const;
 
     runtime::SimulationSettings settings_;
     Physics physics_;

@@ -54,9 +54,7 @@ void setStiffness(StrandShape& shape, const std::vector<double>& h,
     const std::size_t n = shape.segments();
     const std::size_t first = shape.firstFree - 1;
     for (std::size_t j = first; j < n; ++j) {
-        const double along = static_cast<double>(j) / static_cast<double>(n);
-        const double authored =
-            static_cast<double>(settings.angularStiffness) * valueAt(settings.angularCurve, along);
+        const double authored = authoredStiffness(settings, static_cast<double>(j) / static_cast<double>(n));
         const double span =
             j == first ? 0.5 * shape.lengths[j] : 0.5 * (shape.lengths[j - 1] + shape.lengths[j]);
         shape.stiffness[j] = bendingStiffness(authored) * shape.masses[j] / h[j] / span;
@@ -103,11 +101,12 @@ void setBend(StrandShape& shape, const Vec3d& gravity, BendingForce bendingForce
 }  // namespace
 
 Physics::Physics(const runtime::SimulationSettings& s, BendingForce bendingForce)
-    : gravity(toDouble(s.gravity)),
+    : rods(s.strandModel == runtime::StrandModel::rods),
+      gravity(toDouble(s.gravity)),
       airDrag(static_cast<double>(s.airDrag)),
       dampingRate(s.dampingTime > 0.0f ? 1.0 / static_cast<double>(s.dampingTime) : 0.0),
       bendDampingTime(static_cast<double>(s.bendDampingTime)),
-      lengthHeld(s.lengthMethod == runtime::LengthMethod::constraint && s.lengthIterations > 0),
+      lengthHeld(rods || (s.lengthMethod == runtime::LengthMethod::constraint && s.lengthIterations > 0)),
       coilSprings(s.lengthMethod != runtime::LengthMethod::constraint),
       angularSprings(s.angularStiffness > 0.0f && s.angularMethod != runtime::AngularMethod::flexion),
       framesTurn(bendingForce == BendingForce::gradient),
@@ -129,33 +128,44 @@ void Physics::takeWind(const runtime::SimulationSettings& settings, const runtim
     windy = airDrag > 0.0 && length(wind.mean) > 0.0f;
 }
 
+double authoredStiffness(const runtime::SimulationSettings& settings, double along) {
+    return static_cast<double>(settings.angularStiffness) * valueAt(settings.angularCurve, along);
+}
+
 double bendingStiffness(double authored) {
     return runtime::kHairBendingStiffness * authored / (1.0 - authored);
 }
 
-StrandShape makeShape(std::vector<Vec3d> edges, std::span<const double> authoredMasses,
-                      const runtime::SimulationSettings& settings, const Vec3d& gravityAtRest,
-                      BendingForce bendingForce) {
+StrandShape makeBody(std::vector<Vec3d> edges, std::span<const double> authoredMasses,
+                     const runtime::SimulationSettings& settings) {
     StrandShape shape;
     const std::size_t n = edges.size();
     shape.firstFree = std::min<std::size_t>(settings.clampedPoints, n + 1);
     shape.edges = std::move(edges);
     for (const Vec3d& edge : shape.edges) shape.lengths.push_back(edge.norm());
-    const std::vector<double> h = shares(shape.lengths);
     shape.masses.assign(authoredMasses.begin(), authoredMasses.end());
-    if (shape.masses.empty()) shape.masses = h;
+    if (shape.masses.empty()) shape.masses = shares(shape.lengths);
     divideByMean(shape.masses);
-
     shape.stiffness.assign(n, 0.0);
-    setStiffness(shape, h, settings);
     shape.bend.assign(n, Vec3d::Zero());
+    shape.coil.assign(n, 0.0);
+    shape.flexion.assign(n, 0.0);
+    shape.pairLength.assign(n, 0.0);
+    return shape;
+}
+
+StrandShape makeShape(std::vector<Vec3d> edges, std::span<const double> authoredMasses,
+                      const runtime::SimulationSettings& settings, const Vec3d& gravityAtRest,
+                      BendingForce bendingForce) {
+    StrandShape shape = makeBody(std::move(edges), authoredMasses, settings);
+    const std::size_t n = shape.segments();
+    const std::vector<double> h = shares(shape.lengths);
+    setStiffness(shape, h, settings);
     setBend(shape, gravityAtRest * static_cast<double>(settings.restGravity), bendingForce);
 
     const double squared = squaredFrequency(static_cast<double>(settings.springFrequency));
-    shape.flexion.assign(n, 0.0);
-    shape.pairLength.assign(n, 0.0);
     for (std::size_t j = 0; j < n; ++j) {
-        shape.coil.push_back(2.0 * squared / (1.0 / shape.masses[j] + 1.0 / shape.masses[j + 1]));
+        shape.coil[j] = 2.0 * squared / (1.0 / shape.masses[j] + 1.0 / shape.masses[j + 1]);
         if (j == 0) continue;
         // The energy of the angular spring where a straight joint has turned by 90°.
         const double shortening = (2.0 - std::numbers::sqrt2) * h[j];

@@ -30,6 +30,7 @@ struct Physics {
     /// Both values of `input` are finite.
     void takeWind(const runtime::SimulationSettings& settings, const runtime::WindInput& input);
 
+    bool rods;               ///< StrandModel::rods; then no springs act
     Vec3d gravity;           ///< m/s²
     double airDrag;          ///< 1/s
     double dampingRate;      ///< 1/dampingTime, 0 for none
@@ -67,7 +68,11 @@ struct StrandShape {
     std::size_t segments() const { return lengths.size(); }
 };
 
-/// `edges` in the root's frame, each of a length above 0; `authoredMasses` empty or one above 0 per point;
+/// Lengths and masses alone, without springs. `edges` in the root's frame, each of a length above 0;
+/// `authoredMasses` empty or one above 0 per point.
+StrandShape makeBody(std::vector<Vec3d> edges, std::span<const double> authoredMasses,
+                     const runtime::SimulationSettings& settings);
+/// With the springs of StrandModel::springs.
 /// `gravityAtRest` is gravity turned into the root's frame of the rest pose.
 StrandShape makeShape(std::vector<Vec3d> edges, std::span<const double> authoredMasses,
                       const runtime::SimulationSettings& settings, const Vec3d& gravityAtRest,
@@ -78,6 +83,8 @@ inline Vec3d across(const Vec3d& t, const Vec3d& v) {
     return v - t * t.dot(v);
 }
 
+/// angularStiffness at that share of the segments.
+double authoredStiffness(const runtime::SimulationSettings& settings, double along);
 /// B of an authored stiffness 0 ≤ s < 1, m⁴/s².
 double bendingStiffness(double authored);
 
