@@ -13,12 +13,6 @@ namespace {
 constexpr double kContactStiffness = 10.0;  // of a contact, over m/h²
 constexpr double kCreep = 0.5;              // m/s², speed of what sticks over h
 
-Eigen::Matrix3d crossMatrix(const Vec3d& v) {
-    Eigen::Matrix3d m;
-    m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-    return m;
-}
-
 /// Damping over critical damping of a spring that returns that share of the speed.
 double dampingRatio(double restitution) {
     if (!(restitution > 1e-3)) return 1.0;

@@ -1,19 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/simulation/reference/rod_shape.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <limits>
 #include <numeric>
+
+#include "core/simulation/reference/rod_forces.h"
 
 namespace hairloom::reference {
 namespace {
 
 /// Stiffer hair counts as this stiff: it does not bend visibly.
 constexpr double kStiffest = 1e3 * runtime::kHairBendingStiffness;
-/// Radians that the carried weight turns a strand at most.
-constexpr double kMostTurning = std::numbers::pi;
+/// Radians that the carried weight bends a strand by at most.
+constexpr double kMostHeld = 2.5;
+/// What is searched for ends there, in powers of two of radians, after so many halvings.
+constexpr double kLeastHeldPower = -9.0;
+constexpr int kHalvings = 8;
+/// Share of a vertex' stiffness without which a held shape still has to be stable.
+constexpr double kSpareShare = 0.05;
 /// |vec p| that the carried weight makes at most; beyond about 0.7 more turning carries less.
 constexpr double kMostBent = 0.6;
 
@@ -69,17 +77,25 @@ struct Vertex {
     }
 };
 
-/// Fills what the unloaded shape decides; radians by which this gravity turns the vertices in all.
-double unload(const StrandShape& body, const Vec3d& gravity, RodShape& rod) {
-    const std::size_t n = body.segments(), first = body.firstFree - 1;
-    std::vector<Vec3d> moment(n, Vec3d::Zero());  // that the vertex carries
-    double beyond = 0.0;
-    for (std::size_t j = n; j-- > first;) {
-        beyond += body.masses[j + 1];
-        if (j + 1 < n) moment[j] = moment[j + 1];
-        moment[j] += body.edges[j].cross(beyond * gravity);
+/// What a held shape carries: beyond each segment a weight, about each vertex a moment.
+struct Load {
+    std::vector<Vec3d> weight, moment;
+};
+
+Load loadOf(const StrandShape& body, const Vec3d& gravity) {
+    const std::size_t n = body.segments();
+    Load load{std::vector<Vec3d>(n, Vec3d::Zero()), std::vector<Vec3d>(n, Vec3d::Zero())};
+    Vec3d weight = Vec3d::Zero(), moment = Vec3d::Zero();
+    for (std::size_t j = n; j-- > body.firstFree - 1;) {
+        load.weight[j] = weight += body.masses[j + 1] * gravity;
+        load.moment[j] = moment += body.edges[j].cross(weight);
     }
-    double turning = 0.0;
+    return load;
+}
+
+/// Fills what the unloaded shape decides.
+void unload(const StrandShape& body, const Load& load, RodShape& rod) {
+    const std::size_t n = body.segments(), first = body.firstFree - 1;
     rod.atRest.assign(n, Quaterniond::Identity());
     for (std::size_t j = 0; j < n; ++j) {
         const Vec3d tangent = body.edges[j].normalized();
@@ -88,17 +104,84 @@ double unload(const StrandShape& body, const Vec3d& gravity, RodShape& rod) {
         const Quaterniond inner = j > 0 ? rod.atRest[j - 1] : Quaterniond::Identity();
         const Vertex vertex{inner, j > 0 ? rod.tangent[j - 1] : tangent, tangent, rod.stiffness[j],
                             rod.torsionRatio};
-        Vec3d v = Vec3d::Zero();
-        if (rod.stiffness[j] > 0.0) v = vertex.bent(moment[j]);
-        turning += 2.0 * std::asin(v.norm());
+        const Vec3d v = rod.stiffness[j] > 0.0 ? vertex.bent(load.moment[j]) : Vec3d(Vec3d::Zero());
         rod.atRest[j] = (inner * rotationOf(v)).normalized();
         rod.tangent[j] = vertex.unloadedTangent(v);
         rod.axis[j] = vertex.axis(v);
     }
-    return turning;
+}
+
+/// Whether the energy of shape and weight grows in all directions from the authored shape: its second
+/// derivatives in the turns of the segments, less the spare share, have a Cholesky factorisation.
+bool stable(const StrandShape& body, const Load& load, const RodShape& rod) {
+    const std::size_t first = body.firstFree - 1;
+    const auto at = [&](std::size_t j) { return static_cast<Eigen::Index>(3 * (j - first)); };
+    const Eigen::Index size = at(body.segments());
+    Eigen::MatrixXd second = Eigen::MatrixXd::Zero(size, size);
+    for (std::size_t j = first; j < body.segments(); ++j) {
+        const Quaterniond inner = j > 0 ? rod.atRest[j - 1] : Quaterniond::Identity();
+        const Quaterniond p = relativeRotation(inner, rod.atRest[j], Quaterniond::Identity());
+        const VertexMoment moment(rod.elasticity(j), 0.0, inner, p, Vec3d::Zero());
+        const Eigen::Matrix3d bend =
+            moment.elastic - kSpareShare * rod.stiffness[j] * Eigen::Matrix3d::Identity();
+        second.block<3, 3>(at(j), at(j)) += bend - crossMatrix(load.weight[j]) * crossMatrix(body.edges[j]);
+        if (j == first) continue;
+        const Eigen::Matrix3d carried = bend + crossMatrix(moment.world);
+        second.block<3, 3>(at(j), at(j - 1)) -= carried;
+        second.block<3, 3>(at(j - 1), at(j)) -= bend;
+        second.block<3, 3>(at(j - 1), at(j - 1)) += carried;
+    }
+    // In balance the rest of it is none: turns that follow each other do not commute, moments do.
+    const Eigen::MatrixXd even = 0.5 * (second + second.transpose());
+    return Eigen::LLT<Eigen::MatrixXd>(even).info() == Eigen::Success;
+}
+
+/// Radians of the load's small bends, each `most` at most.
+double bentBy(const RodShape& rod, const Load& load, double most) {
+    double sum = 0.0;
+    for (std::size_t j = 0; j < rod.stiffness.size(); ++j)
+        if (rod.stiffness[j] > 0.0) sum += std::min(load.moment[j].norm() / rod.stiffness[j], most);
+    return sum;
+}
+
+/// As stiff as `own`, but for vertices that the load bends more than all may: so much that the sum is `held`.
+void stiffen(const std::vector<double>& own, const Load& load, double held, RodShape& rod) {
+    rod.stiffness = own;
+    if (bentBy(rod, load, std::numeric_limits<double>::infinity()) <= held) return;
+    double low = 0.0, high = held;
+    for (int halving = 0; halving < 60; ++halving) {
+        const double middle = 0.5 * (low + high);
+        (bentBy(rod, load, middle) > held ? high : low) = middle;
+    }
+    for (std::size_t j = 0; j < own.size(); ++j)
+        if (own[j] > 0.0) rod.stiffness[j] = std::max(own[j], load.moment[j].norm() / std::max(low, 1e-9));
+}
+
+/// Where the shape that hangs in the authored one is not stable, or bent too far, hair is stiffened by the
+/// least that makes it so.
+void hold(const StrandShape& body, const Load& load, RodShape& rod) {
+    const std::vector<double> own = rod.stiffness;
+    const auto holds = [&](double held) {
+        stiffen(own, load, held, rod);
+        unload(body, load, rod);
+        return stable(body, load, rod);
+    };
+    if (holds(kMostHeld)) return;
+    double low = kLeastHeldPower, high = std::log2(kMostHeld);
+    for (int halving = 0; halving < kHalvings; ++halving) {
+        const double middle = 0.5 * (low + high);
+        (holds(std::exp2(middle)) ? low : high) = middle;
+    }
+    holds(std::exp2(low));
 }
 
 }  // namespace
+
+Eigen::Matrix3d crossMatrix(const Vec3d& v) {
+    Eigen::Matrix3d m;
+    m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
+    return m;
+}
 
 Quaterniond turnBy(const Vec3d& u) {
     const double angle = u.norm();
@@ -122,9 +205,7 @@ RodShape makeRodShape(const StrandShape& body, const runtime::SimulationSettings
     rod.axis.assign(n, Vec3d::Zero());
     rod.stiffness.assign(n, 0.0);
     for (std::size_t j = body.firstFree - 1; j < n; ++j) rod.stiffness[j] = stiffnessOf(body, settings, j);
-    const Vec3d carried = gravityAtRest * static_cast<double>(settings.restGravity);
-    const double turning = unload(body, carried, rod);
-    if (turning > kMostTurning) unload(body, carried * (kMostTurning / turning), rod);
+    hold(body, loadOf(body, gravityAtRest * static_cast<double>(settings.restGravity)), rod);
     return rod;
 }
 

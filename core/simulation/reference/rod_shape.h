@@ -26,11 +26,13 @@ struct RodShape {
 };
 
 /// `gravityAtRest` as in makeShape(). The unloaded shape is the one that hangs in the authored shape under
-/// `restGravity` of its weight; where that would turn its vertices by more than half a turn in all, under
-/// the share of it that turns them by half a turn.
+/// `restGravity` of its weight. Where that weight would bend it too far, or could let it swing round or
+/// buckle, the vertices that it bends most are stiffer than the settings say: it stands for the hair around.
 RodShape makeRodShape(const StrandShape& body, const runtime::SimulationSettings& settings,
                       const Vec3d& gravityAtRest);
 
+/// [v]× of v × w.
+Eigen::Matrix3d crossMatrix(const Vec3d& v);
 /// Rotation by |u| about u.
 Quaterniond turnBy(const Vec3d& u);
 /// The u of the shorter turn.

@@ -26,12 +26,6 @@ constexpr double kRounding = 1e-10;   // smaller corrections that no longer shri
 constexpr double kLoose = 1e-6;
 constexpr double kLargestTurn = 0.7;  // radians, of a correction
 
-Eigen::Matrix3d crossMatrix(const Vec3d& v) {
-    Eigen::Matrix3d m;
-    m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-    return m;
-}
-
 /// A stage, and the equations' remainders there.
 struct Stage {
     Quaterniond root;
