@@ -29,8 +29,8 @@ StrandSet stormHair(Dice& dice) {
     const auto points = static_cast<std::uint32_t>(dice.spread(3.0f, 200.0f));
     StrandSet strands;
     if (dice.oneIn(2)) {
-        strands.addStraight({}, hangingAt(dice.between(-3.0f, 3.0f)),
-                            dice.spread(0.005f, 1.5f) / static_cast<float>(points - 1), points);
+        strands.add({}, hangingAt(dice.between(-3.0f, 3.0f)),
+                    dice.spread(0.005f, 1.5f) / static_cast<float>(points - 1), points);
         return strands;
     }
     const float radius = dice.spread(0.001f, 0.03f), pitch = dice.spread(0.002f, 0.05f);
