@@ -22,6 +22,7 @@ class GpuEngineMethod final : public StrandMethod {
         milliseconds_ = 1e-6 * static_cast<double>(host_.nanoseconds() - begin);
         if (report) {
             restored_ = report->restoredStrands;
+            guarded_ = report->guardedStrands;
             // Kernels are made once, not every frame.
             milliseconds_ -= report->kernelMilliseconds;
         } else {
@@ -34,6 +35,7 @@ class GpuEngineMethod final : public StrandMethod {
     }
     double stepMilliseconds() const override { return milliseconds_; }
     std::uint32_t restoredStrands() const override { return restored_; }
+    std::uint32_t guardedStrands() const override { return guarded_; }
     Status status() const override { return status_; }
 
     runtime::Measurements measure() const override {
@@ -72,6 +74,7 @@ class GpuEngineMethod final : public StrandMethod {
     runtime::Host host_;
     double milliseconds_ = 0.0;
     std::uint32_t restored_ = 0;
+    std::uint32_t guarded_ = 0;
 };
 
 }  // namespace

@@ -46,12 +46,14 @@ Status GpuHairVolume::makeBuffers(gpu::Device& device) {
     auto fields = makeBuffer<shaders::float4>(device, "volume fields", both, nodes * 2, {});
     if (!fields) return tl::unexpected(fields.error());
     constexpr std::array<float, 2> kNone{};
-    auto noRests = makeBuffer<float>(device, "no rests", both, kNone.size(), kNone);
-    if (!noRests) return tl::unexpected(noRests.error());
+    for (gpu::BufferPtr& nothing : nothing_) {
+        auto made = makeBuffer<float>(device, "nothing", both, kNone.size(), kNone);
+        if (!made) return tl::unexpected(made.error());
+        nothing = std::move(*made);
+    }
     box_ = std::move(*box);
     nodes_ = std::move(*sums);
     fields_ = std::move(*fields);
-    noRests_ = std::move(*noRests);
     return {};
 }
 
@@ -81,6 +83,7 @@ void GpuHairVolume::record(gpu::CommandList& list, std::span<const StrandBatch> 
     constants.dt = dt;
     constants.h = h;
     constants.clampedPoints = clampedPoints;
+    constants.unused1 = constants.unused2 = constants.unused3 = 0;
     list.updateBuffer(box_, 0, std::as_bytes(std::span(kEmptyBox)));
     gpu::PassDesc pass;
     pass.name = "hair against hair";
@@ -98,6 +101,7 @@ void GpuHairVolume::record(gpu::CommandList& list, std::span<const StrandBatch> 
             constants.points = batch.shape.points;
             constants.together = batch.shape.together ? 1 : 0;
             constants.sleeps = batch.rests != nullptr ? 1 : 0;
+            constants.rods = batch.rodState != nullptr ? 1 : 0;
             list.setPipeline(pipeline);
             const std::array<Binding, 3> strands{Binding::read(0, batch.blockCounts),
                                                  Binding::read(1, batch.firstPoints),
@@ -113,7 +117,7 @@ void GpuHairVolume::record(gpu::CommandList& list, std::span<const StrandBatch> 
         const Binding state = Binding::read(3, batch.state);
         list.bind({&state, 1});
     };
-    constants.slots = constants.points = constants.together = constants.sleeps = 0;
+    constants.slots = constants.points = constants.together = constants.sleeps = constants.rods = 0;
     const std::array<Binding, 1> measured{Binding::write(0, box_)};
     overPoints(measure_, measured, readState);
     const std::array<Binding, 2> cleared{Binding::read(0, box_), Binding::write(0, nodes_)};
@@ -125,9 +129,10 @@ void GpuHairVolume::record(gpu::CommandList& list, std::span<const StrandBatch> 
     overNodes(resolve_, resolved);
     const std::array<Binding, 2> pushed{Binding::read(3, box_), Binding::read(4, fields_)};
     overPoints(push_, pushed, [&](const StrandBatch& batch) {
-        const std::array<Binding, 2> written{
+        const std::array<Binding, 3> written{
             Binding::write(0, batch.state),
-            Binding::write(1, batch.rests != nullptr ? batch.rests : noRests_)};
+            Binding::write(1, batch.rests != nullptr ? batch.rests : nothing_[0]),
+            Binding::write(2, batch.rodState != nullptr ? batch.rodState : nothing_[1])};
         list.bind(written);
     });
     list.endPass();
@@ -135,7 +140,7 @@ void GpuHairVolume::record(gpu::CommandList& list, std::span<const StrandBatch> 
 
 std::size_t GpuHairVolume::bytes() const {
     std::size_t bytes = 0;
-    for (const auto& buffer : {box_, nodes_, fields_, noRests_})
+    for (const auto& buffer : {box_, nodes_, fields_, nothing_[0], nothing_[1]})
         bytes += static_cast<std::size_t>(buffer->desc().size);
     return bytes;
 }

@@ -6,6 +6,7 @@
 // Differs from the runtime's: places and pressures are in single precision, and velocities of a sum are whole
 // numbers of up to 23 bits; sums are exact and equal in any order all the same.
 
+#include <array>
 #include <span>
 
 #include "core/gpu_simulation/strand_batch.h"
@@ -30,7 +31,8 @@ class GpuHairVolume {
     Status makeKernels(gpu::Device& device);
 
     runtime::HairVolumeSettings settings_;
-    gpu::BufferPtr box_, nodes_, fields_, noRests_;
+    gpu::BufferPtr box_, nodes_, fields_;
+    std::array<gpu::BufferPtr, 2> nothing_;  // stands for what a batch has not
     gpu::ComputePipelinePtr measure_, clear_, add_, resolve_, push_;
 };
 

@@ -27,10 +27,42 @@ std::uint32_t evaluationOf(Integrator integrator) {
     return integrator == Integrator::rk4 ? 2 : 1;
 }
 
+/// A block is a work group, and each of its strands a thread's.
+void takeThreads(BatchShape& shape, StrandStorage storage) {
+    shape.storage = storage;
+    shape.strands = runtime::kBlockLanes;
+    shape.perThread = 1;
+    shape.wave = 0;
+}
+
+/// "stageRoots(); stageRod();"
+std::string callsOf(const runtime::EffectPlan& plan) {
+    std::string calls;
+    for (const StageId stage : plan.stages()) {
+        if (!calls.empty()) calls.push_back(' ');
+        calls.append(callOf(stage));
+    }
+    return calls;
+}
+
+SphereSource sourceFor(const runtime::EffectPlan& plan, std::size_t spheres) {
+    if (!plan.on(Effect::collision)) return SphereSource::none;
+    return spheres > HAIRLOOM_CONSTANT_SPHERES ? SphereSource::buffer : SphereSource::constants;
+}
+
 }  // namespace
 
 std::string KernelKey::defines() const {
     const auto flag = [](bool on) { return on ? 1 : 0; };
+    if (rods) {
+        return fmt::format(
+            "#define HAIR_RODS 1\n#define HAIR_TOGETHER {}\n#define HAIR_CLAMPED {}\n#define HAIR_SPHERES "
+            "{}\n"
+            "#define HAIR_WIND {}\n#define HAIR_SLEEP {}\n#define HAIR_VELOCITIES {}\n#define HAIR_STAGES "
+            "{}\n",
+            flag(shape.together), clampedPoints, static_cast<std::uint32_t>(spheres), flag(wind), flag(sleep),
+            flag(velocities), stages);
+    }
     return fmt::format(
         "#define HAIR_POINTS {}\n#define HAIR_EXACT {}\n#define HAIR_UNROLL {}\n#define HAIR_STORAGE {}\n"
         "#define HAIR_STRANDS {}\n#define HAIR_TOGETHER {}\n"
@@ -55,6 +87,14 @@ KernelKey keyFor(const runtime::EffectPlan& plan, const runtime::SimulationSetti
     key.clampedPoints = settings.clampedPoints;
     key.sleep = settings.sleepSpeed > 0.0f;
     key.velocities = velocities;
+    key.rods = settings.strandModel == runtime::StrandModel::rods;
+    if (key.rods) {
+        takeThreads(key.shape, StrandStorage::buffers);
+        key.spheres = sourceFor(plan, spheres);
+        key.wind = plan.on(Effect::wind);
+        key.stages = callsOf(plan);
+        return key;
+    }
     // Strands without a free point follow their roots and nothing else.
     if (shape.points <= settings.clampedPoints) {
         key.stages = callOf(StageId::roots);
@@ -67,20 +107,10 @@ KernelKey keyFor(const runtime::EffectPlan& plan, const runtime::SimulationSetti
     key.tensions = plan.keepsTensions();
     key.coupled = plan.on(Effect::coupling);
     // That system is solved point after point.
-    if (key.coupled && shape.storage == StrandStorage::lanes) {
-        key.shape.storage = StrandStorage::threads;
-        key.shape.strands = runtime::kBlockLanes;
-        key.shape.perThread = 1;
-        key.shape.wave = 0;
-    }
-    if (plan.on(Effect::collision)) {
-        key.spheres = spheres > HAIRLOOM_CONSTANT_SPHERES ? SphereSource::buffer : SphereSource::constants;
-    }
+    if (key.coupled && shape.storage == StrandStorage::lanes) takeThreads(key.shape, StrandStorage::threads);
+    key.spheres = sourceFor(plan, spheres);
     key.wind = plan.on(Effect::wind);
-    for (const StageId stage : plan.stages()) {
-        if (!key.stages.empty()) key.stages.push_back(' ');
-        key.stages.append(callOf(stage));
-    }
+    key.stages = callsOf(plan);
     return key;
 }
 

@@ -52,8 +52,11 @@ struct KernelKey {
     bool wind = false;
     bool sleep = false;
     bool velocities = false;  ///< are written as well as places
+    bool rods = false;        ///< a thread per strand, whose numbers stay in buffers
     std::string stages;       ///< of a substep, as calls
 
+    /// The file of runtime/shaders that becomes the kernel.
+    const char* source() const { return rods ? "rods.hlsli" : "strands.hlsli"; }
     /// Lines of #define; equal keys have equal ones.
     std::string defines() const;
 

@@ -23,7 +23,6 @@
 namespace hairloom::gpu_simulation {
 namespace {
 
-constexpr const char* kSource = "strands.hlsli";
 constexpr std::uint32_t kSpirvMagic = 0x07230203;
 constexpr std::uint32_t kDxbcMagic = 0x43425844;  // "DXBC"
 
@@ -120,7 +119,7 @@ struct KernelLibrary::Impl {
 
     void work();
     Entry& entryOf(const KernelKey& key);
-    Result<Words> wordsOf(const std::string& defines);
+    Result<Words> wordsOf(const KernelKey& key, const std::string& defines);
     Result<gpu::ComputePipelinePtr> make(const KernelKey& key, const std::string& defines);
     void count(std::uint32_t Sources::*source) {
         const std::lock_guard lock(mutex);
@@ -128,7 +127,7 @@ struct KernelLibrary::Impl {
     }
 };
 
-Result<Words> KernelLibrary::Impl::wordsOf(const std::string& defines) {
+Result<Words> KernelLibrary::Impl::wordsOf(const KernelKey& key, const std::string& defines) {
     if (const shaders::Shader* builtIn = findBuiltIn(defines)) {
         count(&Sources::builtIn);
         return wordsIn(*builtIn, device.info().backend);
@@ -141,7 +140,7 @@ Result<Words> KernelLibrary::Impl::wordsOf(const std::string& defines) {
             return *words;
         }
     }
-    auto words = compileHlsl(kSource, defines, device.info().backend);
+    auto words = compileHlsl(key.source(), defines, device.info().backend);
     if (!words) return words;
     count(&Sources::compiled);
     if (!folder.empty()) {
@@ -152,7 +151,7 @@ Result<Words> KernelLibrary::Impl::wordsOf(const std::string& defines) {
 }
 
 Result<gpu::ComputePipelinePtr> KernelLibrary::Impl::make(const KernelKey& key, const std::string& defines) {
-    const auto words = wordsOf(defines);
+    const auto words = wordsOf(key, defines);
     if (!words) return tl::unexpected(words.error());
     gpu::ShaderDesc desc{"strands", gpu::ShaderStage::Compute};
     const bool direct3d = device.info().backend == gpu::Backend::Direct3D11;

@@ -170,6 +170,26 @@ void planesOfBlocks(const runtime::RestShape& shape, const StrandBatch& batch, s
     });
 }
 
+void rowsToBlocks(const StrandBatch& batch, std::span<const float> values, std::size_t rows, float* blocks) {
+    for (std::size_t n = 0; n < batch.blocks.size(); ++n) {
+        for (std::size_t r = 0; r < rows; ++r) {
+            std::copy_n(values.data() + r * batch.slots + n * kBlockLanes, kBlockLanes,
+                        blocks + (batch.blocks[n] * rows + r) * kBlockLanes);
+        }
+    }
+}
+
+std::vector<float> rowsOfBatch(const StrandBatch& batch, const float* blocks, std::size_t rows) {
+    std::vector<float> values(rows * batch.slots);
+    for (std::size_t n = 0; n < batch.blocks.size(); ++n) {
+        for (std::size_t r = 0; r < rows; ++r) {
+            std::copy_n(blocks + (batch.blocks[n] * rows + r) * kBlockLanes, kBlockLanes,
+                        values.data() + r * batch.slots + n * kBlockLanes);
+        }
+    }
+    return values;
+}
+
 std::vector<shaders::float4> quadsOfBatch(const runtime::RestShape& shape, const StrandBatch& batch,
                                           const runtime::Floats& planes, std::size_t count,
                                           std::span<const std::size_t> which) {

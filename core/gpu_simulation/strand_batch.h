@@ -44,6 +44,8 @@ struct StrandBatch {
     gpu::BufferPtr rest, segments, blockCounts, firstPoints, rootsTo, state, roots;
     // Null while what needs them is off.
     gpu::BufferPtr bend, targets, curves, energyTanks, rests, gathered, scratch;
+    // Of rods, as in runtime/shaders/rod_storage.hlsli; null for springs.
+    gpu::BufferPtr rodRest, rodMasses, curvedBlocks, rodState;
     KernelKey key;
     gpu::ComputePipelinePtr kernel;
 };
@@ -68,6 +70,10 @@ std::vector<float> planesOfBatch(const runtime::RestShape& shape, const StrandBa
 /// The reverse.
 void planesOfBlocks(const runtime::RestShape& shape, const StrandBatch& batch, std::span<const float> values,
                     runtime::Floats& planes, std::size_t count);
+/// Rows of one value per slot in the order of blocks: `rows` of them a block.
+void rowsToBlocks(const StrandBatch& batch, std::span<const float> values, std::size_t rows, float* blocks);
+/// The reverse.
+std::vector<float> rowsOfBatch(const StrandBatch& batch, const float* blocks, std::size_t rows);
 /// Up to four of the planes of each block, as the components of a float4 for each point.
 std::vector<shaders::float4> quadsOfBatch(const runtime::RestShape& shape, const StrandBatch& batch,
                                           const runtime::Floats& planes, std::size_t count,

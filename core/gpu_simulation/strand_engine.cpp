@@ -27,6 +27,13 @@ std::size_t bendFloats(const KernelKey& key) {
     if (key.bend < 2) return key.bend;
     return key.shape.storage == StrandStorage::lanes ? 4 * (reductionSteps(key.shape.points) + 1) : 4;
 }
+std::size_t scratchPlanes(const KernelKey& key) {
+    if (key.rods) {
+        const bool contacts = key.spheres != SphereSource::none;
+        return HAIRLOOM_ROD_WORK_PLANES + (contacts ? HAIRLOOM_ROD_CONTACT_PLANES : 0);
+    }
+    return key.coupled ? kCoupledPlanes : kScratchPlanes[key.evaluation];
+}
 constexpr Usage kReadWrite = Usage::ShaderRead | Usage::UnorderedAccess;
 
 }  // namespace
@@ -47,10 +54,14 @@ Result<StrandEngine> StrandEngine::make(gpu::Device& device, std::shared_ptr<Ker
     const bool direct3d = device.info().backend == gpu::Backend::Direct3D11;
     if (direct3d && sharesBlocks(layout.storage.value_or(StrandStorage::lanes)))
         layout.storage = StrandStorage::threads;
+    // A thread takes a rod, and finds those of its neighbours beside it.
+    if (settings.strandModel == runtime::StrandModel::rods && !layout.storage)
+        layout.storage = StrandStorage::threads;
     impl->batches = makeBatches(*impl->shape, layout, device.info().waves);
     if (const std::string why = impl->velocityError(); !why.empty()) return fail(why);
     impl->roots.resize(impl->shape->restRoots.size());
     if (auto made = impl->makeBuffers(); !made) return tl::unexpected(made.error());
+    if (auto taken = impl->takeRods(settings); !taken) return tl::unexpected(taken.error());
     if (options.hairHair) {
         auto volume = GpuHairVolume::make(device, *options.hairHair);
         if (!volume) return tl::unexpected(volume.error());
@@ -145,9 +156,8 @@ Status StrandEngine::Impl::allocate() {
         const bool gathers = key.sleep && sharesBlocks(key.shape.storage);
         have(batch.gathered, "gathered", gathers ? batch.blocks.size() : 0, 4);
         have(batch.rests, "rests", key.sleep ? batch.blocks.size() * 2 : 0, 4);
-        const bool scratch = batch.shape.storage == StrandStorage::buffers && !key.stages.empty();
-        const std::size_t planes = key.coupled ? kCoupledPlanes : kScratchPlanes[key.evaluation];
-        have(batch.scratch, "scratch", scratch ? plane * planes : 0, 4);
+        const bool scratch = key.shape.storage == StrandStorage::buffers && !key.stages.empty();
+        have(batch.scratch, "scratch", scratch ? plane * scratchPlanes(key) : 0, 4);
         sleeps = sleeps || key.sleep;
     }
     if (!sleeps) waking = nullptr;
@@ -205,6 +215,7 @@ Status StrandEngine::Impl::adopt(const Run& next) {
     if (run.settings != next.settings) {
         bendSubstep = 0.0f;
         curvesVoid = wakeAll = true;
+        if (auto taken = takeRods(next.settings); !taken) return taken;
     }
     if (adopted && !run.plan.keepsTensions() && next.plan.keepsTensions()) tensionsVoid = true;
     if (run.plan.on(Effect::coupling) != next.plan.on(Effect::coupling)) bendSubstep = 0.0f;
@@ -281,7 +292,11 @@ std::size_t StrandEngine::effectBytes(Effect effect) const {
         if (buffer != nullptr) bytes += static_cast<std::size_t>(buffer->desc().size);
     };
     for (const StrandBatch& batch : impl_->batches) {
-        if (effect == Effect::angular) add(batch.bend);
+        if (effect == Effect::angular) {
+            for (const auto& buffer :
+                 {batch.bend, batch.rodRest, batch.rodMasses, batch.curvedBlocks, batch.rodState})
+                add(buffer);
+        }
         if (effect == Effect::torsion) {
             add(batch.targets);
             add(batch.curves);
@@ -307,7 +322,8 @@ std::size_t StrandEngine::volumeBytes() const {
 std::size_t StrandEngine::frameBytes() const {
     std::size_t bytes = 0;
     for (const StrandBatch& batch : impl_->batches) {
-        for (const auto& changing : {batch.state, batch.roots, batch.curves, batch.energyTanks}) {
+        for (const auto& changing :
+             {batch.state, batch.roots, batch.curves, batch.energyTanks, batch.rodState}) {
             if (changing != nullptr) bytes += 2 * static_cast<std::size_t>(changing->desc().size);
         }
         bytes += static_cast<std::size_t>(batch.rootsTo->desc().size);

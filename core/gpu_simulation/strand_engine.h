@@ -37,8 +37,9 @@ struct FrameReport {
     double milliseconds = 0.0;        ///< on the device, of the dispatches; 0 without timestamps
     double kernelMilliseconds = 0.0;  ///< that the frame waited for kernels to be made
     std::uint32_t restoredStrands = 0;
-    std::uint32_t asleep = 0;  ///< strands
-    float fastest = 0.0f;      ///< m/s
+    std::uint32_t guardedStrands = 0;  ///< as in runtime::StepReport
+    std::uint32_t asleep = 0;          ///< strands
+    float fastest = 0.0f;              ///< m/s
     // Of the input, as runtime::StepReport counts them.
     std::uint32_t rejectedRoots = 0;
     std::uint32_t rejectedSpheres = 0;

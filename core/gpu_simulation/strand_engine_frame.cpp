@@ -181,7 +181,8 @@ shaders::SimulationConstants StrandEngine::Impl::constants(const runtime::Subste
     c.h = context.h;
     c.substep = context;
     c.dt = input.dt;
-    c.rescale = substep > 0.0f ? context.h / substep : 1.0f;
+    // Rods keep speeds, not ways.
+    c.rescale = substep > 0.0f && !batch.key.rods ? context.h / substep : 1.0f;
     c.teleportDistance = s.teleportDistance;
     const float slow = s.sleepSpeed * context.h;
     c.slowSquared = slow * slow;
@@ -206,8 +207,10 @@ shaders::SimulationConstants StrandEngine::Impl::constants(const runtime::Subste
 }
 
 void StrandEngine::Impl::dispatch(gpu::CommandList& list, const StrandBatch& batch,
-                                  const shaders::SimulationConstants& constants) const {
+                                  const shaders::SimulationConstants& constants,
+                                  const shaders::RodConstants& ofRods) const {
     list.setPipeline(batch.kernel);
+    const bool rods = batch.key.rods;
     std::vector<Binding> bindings;
     const auto read = [&](std::uint32_t slot, const gpu::BufferPtr& buffer) {
         if (buffer != nullptr) bindings.push_back(Binding::read(slot, buffer));
@@ -217,25 +220,27 @@ void StrandEngine::Impl::dispatch(gpu::CommandList& list, const StrandBatch& bat
     };
     read(0, batch.rest);
     read(1, batch.segments);
-    read(2, batch.bend);
-    read(3, batch.targets);
+    read(2, rods ? batch.rodRest : batch.bend);
+    read(3, rods ? batch.rodMasses : batch.targets);
     read(4, batch.blockCounts);
     read(5, batch.firstPoints);
     read(6, batch.rootsTo);
     read(7, spheres);
     read(8, waking);
+    read(9, batch.curvedBlocks);
     write(0, batch.state);
     write(1, batch.roots);
     write(2, batch.rests);
     write(3, reportBuffer);
     write(4, places);
-    write(5, batch.curves);
-    write(6, batch.energyTanks);
     const bool inBuffers = batch.key.shape.storage == StrandStorage::buffers;
+    write(5, rods ? batch.rodState : batch.curves);
+    write(6, rods ? velocities : batch.energyTanks);
     write(7, inBuffers ? batch.scratch : velocities);
-    write(8, inBuffers ? velocities : batch.gathered);
+    write(8, rods ? nullptr : inBuffers ? velocities : batch.gathered);
     list.bind(bindings);
     list.setConstants(0, gpu::bytesOf(constants));
+    if (rods) list.setConstants(2, gpu::bytesOf(ofRods));
     if (batch.key.spheres == SphereSource::constants) {
         std::vector<shaders::SphereConstants> all = sphereConstants();
         all.resize(HAIRLOOM_CONSTANT_SPHERES);
@@ -277,12 +282,13 @@ Status StrandEngine::Impl::record(gpu::CommandList& list, const runtime::FrameIn
     gpu::PassDesc pass;
     pass.name = "strands";
     list.beginPass(pass);
-    for (const StrandBatch& batch : batches) dispatch(list, batch, constants(context, input, batch));
+    for (const StrandBatch& batch : batches)
+        dispatch(list, batch, constants(context, input, batch), rodConstants(context, batch));
     list.endPass();
     if (volume) volume->record(list, batches, run.settings.clampedPoints, input.dt, context.h);
     spheresBefore = frameSpheres.usable;
     substep = context.h;
-    wakeAll = false;
+    wakeAll = rodsFresh = false;
     return {};
 }
 

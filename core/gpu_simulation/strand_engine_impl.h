@@ -5,7 +5,8 @@
 #include <deque>
 
 #include "core/gpu_simulation/strand_engine.h"
-#include "runtime/shaders/simulation_types.h"
+#include "runtime/shaders/rod_types.h"
+#include "runtime/src/rods.h"
 
 namespace hairloom::gpu_simulation {
 
@@ -21,6 +22,7 @@ struct StrandEngine::Impl {
     std::shared_ptr<KernelLibrary> kernels;
     EngineOptions options;
     std::shared_ptr<const runtime::RestShape> shape;
+    runtime::RodRest rodRest;  ///< empty for springs
     std::vector<StrandBatch> batches;
     std::optional<GpuHairVolume> volume;
     gpu::BufferPtr reportBuffer, places, velocities;
@@ -44,6 +46,7 @@ struct StrandEngine::Impl {
     bool curvesVoid = false;    ///< the kept curves fit other settings
     bool tensionsVoid = false;  ///< those on the device are of a plan that is over
     bool wakeAll = false;
+    bool rodsFresh = false;   ///< the device has places of rods, and nothing else yet
     bool rootsMoved = false;  ///< in the last frame, as the device knows
 
     std::deque<gpu::SubmissionPtr> submissionsInFlight;
@@ -74,13 +77,21 @@ struct StrandEngine::Impl {
     shaders::SimulationConstants constants(const runtime::SubstepContext& context,
                                            const runtime::FrameInput& input, const StrandBatch& batch) const;
     void dispatch(gpu::CommandList& list, const StrandBatch& batch,
-                  const shaders::SimulationConstants& constants) const;
+                  const shaders::SimulationConstants& constants, const shaders::RodConstants& ofRods) const;
     std::vector<shaders::SphereConstants> sphereConstants() const;
+    // strand_engine_rods.cpp
+    Status takeRods(const runtime::SimulationSettings& settings);
+    Status makeRodBuffers(StrandBatch& batch) const;
+    void placeRods(runtime::State& state) const;
+    void sendRods(gpu::CommandList& list, const StrandBatch& batch, const runtime::State& state) const;
+    shaders::RodConstants rodConstants(const runtime::SubstepContext& context,
+                                       const StrandBatch& batch) const;
     // strand_engine_state.cpp
+    Result<runtime::State> readState();
     Result<std::vector<std::byte>> readTogether(const std::vector<gpu::BufferPtr>& buffers) const;
     void takeBatch(const StrandBatch& batch, std::span<const std::byte>& bytes, runtime::State& state) const;
     Status writeBatch(gpu::CommandList& list, const StrandBatch& batch, const runtime::State& state) const;
-    Status writeState(const runtime::State& state);
+    Status writeState(const runtime::State& given);
 };
 
 }  // namespace hairloom::gpu_simulation

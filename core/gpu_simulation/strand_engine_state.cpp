@@ -17,31 +17,11 @@ using runtime::Float3;
 using runtime::kBlockLanes;
 using runtime::RootFrame;
 
-/// Rows of one value per slot in the order of blocks: `rows` of them a block.
-void rowsToBlocks(const StrandBatch& batch, std::span<const float> values, std::size_t rows, float* blocks) {
-    for (std::size_t n = 0; n < batch.blocks.size(); ++n) {
-        for (std::size_t r = 0; r < rows; ++r) {
-            std::copy_n(values.data() + r * batch.slots + n * kBlockLanes, kBlockLanes,
-                        blocks + (batch.blocks[n] * rows + r) * kBlockLanes);
-        }
-    }
-}
-
-std::vector<float> rowsOfBatch(const StrandBatch& batch, const float* blocks, std::size_t rows) {
-    std::vector<float> values(rows * batch.slots);
-    for (std::size_t n = 0; n < batch.blocks.size(); ++n) {
-        for (std::size_t r = 0; r < rows; ++r) {
-            std::copy_n(blocks + (batch.blocks[n] * rows + r) * kBlockLanes, kBlockLanes,
-                        values.data() + r * batch.slots + n * kBlockLanes);
-        }
-    }
-    return values;
-}
-
 /// Of a batch, in the order in which takeBatch() takes them.
 std::vector<gpu::BufferPtr> changingBuffers(const StrandBatch& batch) {
     std::vector<gpu::BufferPtr> buffers;
-    for (const auto& buffer : {batch.state, batch.roots, batch.curves, batch.energyTanks, batch.rests}) {
+    for (const auto& buffer :
+         {batch.state, batch.roots, batch.curves, batch.energyTanks, batch.rodState, batch.rests}) {
         if (buffer != nullptr) buffers.push_back(buffer);
     }
     return buffers;
@@ -103,6 +83,12 @@ void StrandEngine::Impl::takeBatch(const StrandBatch& batch, std::span<const std
         rowsToBlocks(batch, all.first(batch.slots), 1, state.energyTanks.data());
         rowsToBlocks(batch, all.subspan(batch.slots), 1, state.motions.data());
     }
+    if (batch.rodState != nullptr) {
+        const std::vector<float> rods = take(batch.rodState);
+        const std::size_t planes = std::size_t{batch.shape.points} * batch.slots * runtime::kRodStatePlanes;
+        planesOfBlocks(*shape, batch, std::span(rods).first(planes), state.rods, runtime::kRodStatePlanes);
+        rowsToBlocks(batch, std::span(rods).subspan(planes), runtime::kRodLaneRows, state.rodLanes.data());
+    }
     if (batch.rests == nullptr) return;
     const std::vector<float> rests = take(batch.rests);
     for (std::size_t n = 0; n < batch.blocks.size(); ++n) {
@@ -117,33 +103,39 @@ void StrandEngine::Impl::takeBatch(const StrandBatch& batch, std::span<const std
 }
 
 Result<runtime::State> StrandEngine::readState() {
-    if (impl_->known) return *impl_->known;
-    const Impl& impl = *impl_;
-    const runtime::RestShape& shape = *impl.shape;
+    return impl_->readState();
+}
+
+Result<runtime::State> StrandEngine::Impl::readState() {
+    if (known) return *known;
     runtime::State state;
-    state.planes.assign(shape.planeFloats * runtime::kStatePlanes, 0.0f);
-    state.roots.assign(shape.blocks.size() * runtime::kRootRows * kBlockLanes, 0.0f);
-    state.rests.resize(shape.blocks.size());
-    if (std::ranges::any_of(impl.batches, [](const StrandBatch& batch) { return batch.curves != nullptr; })) {
-        state.curves.assign(shape.planeFloats * 3, 0.0f);
-        state.energyTanks.assign(shape.blocks.size() * kBlockLanes, runtime::kNoCurve);
-        state.motions.assign(shape.blocks.size() * kBlockLanes, 0.0f);
+    state.planes.assign(shape->planeFloats * runtime::kStatePlanes, 0.0f);
+    state.roots.assign(shape->blocks.size() * runtime::kRootRows * kBlockLanes, 0.0f);
+    state.rests.resize(shape->blocks.size());
+    if (!rodRest.planes.empty()) {
+        state.rods.assign(shape->planeFloats * runtime::kRodStatePlanes, 0.0f);
+        state.rodLanes.assign(shape->blocks.size() * runtime::kRodLaneRows * kBlockLanes, 0.0f);
     }
-    if (impl.run.plan.keepsTensions()) state.tensions.assign(shape.planeFloats, 0.0f);
+    if (std::ranges::any_of(batches, [](const StrandBatch& batch) { return batch.curves != nullptr; })) {
+        state.curves.assign(shape->planeFloats * 3, 0.0f);
+        state.energyTanks.assign(shape->blocks.size() * kBlockLanes, runtime::kNoCurve);
+        state.motions.assign(shape->blocks.size() * kBlockLanes, 0.0f);
+    }
+    if (run.plan.keepsTensions()) state.tensions.assign(shape->planeFloats, 0.0f);
     std::vector<gpu::BufferPtr> buffers;
-    for (const StrandBatch& batch : impl.batches) {
+    for (const StrandBatch& batch : batches) {
         const auto own = changingBuffers(batch);
         buffers.insert(buffers.end(), own.begin(), own.end());
     }
-    const auto bytes = impl.readTogether(buffers);
+    const auto bytes = readTogether(buffers);
     if (!bytes) return tl::unexpected(bytes.error());
     std::span<const std::byte> rest = *bytes;
-    for (const StrandBatch& batch : impl.batches) impl.takeBatch(batch, rest, state);
-    state.spheres = impl.spheresBefore;
-    state.rootsMin_ws = impl.rootsMin_ws;
-    state.rootsMax_ws = impl.rootsMax_ws;
-    state.substep = impl.substep;
-    impl_->known = state;
+    for (const StrandBatch& batch : batches) takeBatch(batch, rest, state);
+    state.spheres = spheresBefore;
+    state.rootsMin_ws = rootsMin_ws;
+    state.rootsMax_ws = rootsMax_ws;
+    state.substep = substep;
+    known = state;
     return state;
 }
 
@@ -174,6 +166,7 @@ Status StrandEngine::Impl::writeBatch(gpu::CommandList& list, const StrandBatch&
         }
         send(batch.energyTanks, energyTanks);
     }
+    if (batch.rodState != nullptr) sendRods(list, batch, state);
     if (batch.rests != nullptr) {
         std::vector<float> rests;
         for (const std::uint32_t block : batch.blocks) {
@@ -185,8 +178,13 @@ Status StrandEngine::Impl::writeBatch(gpu::CommandList& list, const StrandBatch&
     return {};
 }
 
-Status StrandEngine::Impl::writeState(const runtime::State& state) {
+Status StrandEngine::Impl::writeState(const runtime::State& given) {
     known.reset();
+    // A state of springs becomes one of rods.
+    std::optional<runtime::State> made;
+    if (!rodRest.planes.empty() && given.rods.empty()) placeRods(made.emplace(given));
+    const runtime::State& state = made ? *made : given;
+    rodsFresh = false;
     auto list = device.createCommandList();
     if (!list) return tl::unexpected(list.error());
     for (const StrandBatch& batch : batches) {
@@ -235,6 +233,10 @@ Status StrandEngine::reset(std::span<const RootFrame> roots_ws) {
     state.planes.assign(shape.planeFloats * runtime::kStatePlanes, 0.0f);
     state.roots.assign(shape.blocks.size() * runtime::kRootRows * kBlockLanes, 0.0f);
     state.rests.resize(shape.blocks.size());
+    if (!impl_->rodRest.planes.empty()) {
+        state.rods.assign(shape.planeFloats * runtime::kRodStatePlanes, 0.0f);
+        state.rodLanes.assign(shape.blocks.size() * runtime::kRodLaneRows * kBlockLanes, 0.0f);
+    }
     for (std::size_t b = 0; b < shape.blocks.size(); ++b) {
         for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
             const std::uint32_t strand = shape.blocks[b].strandOfLane[lane];
@@ -246,6 +248,7 @@ Status StrandEngine::reset(std::span<const RootFrame> roots_ws) {
             for (std::size_t r = 0; r < values.size(); ++r)
                 state.roots[(b * runtime::kRootRows + r) * kBlockLanes + lane] = values[r];
             runtime::placeAtRest(shape, state, b, lane);
+            runtime::placeRodAtRest(shape, impl_->rodRest, state, b, lane);
         }
     }
     return impl_->writeState(state);
@@ -255,11 +258,12 @@ Result<FrameReport> StrandEngine::report() {
     FrameReport report;
     const auto bytes = impl_->readTogether({impl_->reportBuffer});
     if (!bytes) return tl::unexpected(bytes.error());
-    std::array<std::uint32_t, 3> words{};
+    std::array<std::uint32_t, 4> words{};
     std::memcpy(words.data(), bytes->data(), sizeof(words));
     if (impl_->substep > 0.0f) report.fastest = std::sqrt(std::bit_cast<float>(words[0])) / impl_->substep;
     report.restoredStrands = words[1];
     report.asleep = words[2];
+    report.guardedStrands = words[3];
     report.kernelMilliseconds = impl_->kernelMilliseconds;
     report.rejectedRoots = impl_->rejectedRoots;
     report.rejectedSpheres = impl_->frameSpheres.rejected;

@@ -25,35 +25,9 @@ void takeAir(float3 atRoot, float3 atTip) {
 void stageDrag() { takeAir(float3(0, 0, 0), float3(0, 0, 0)); }
 
 #if HAIR_WIND
-#define WIND_UNIFORM 0
-#define WIND_GUSTING 1
-
-/// sin(2π · turns) to 0.1 %: a parabola, refined once by its own square.
-float sineOfTurns(float turns) {
-    const float part = turns - round(turns);
-    const float parabola = 16.0 * part * (0.5 - abs(part));
-    return 0.775 * parabola + 0.225 * parabola * abs(parabola);
-}
-
-/// Velocity of the air at one place at the start (0) or end (1) of the frame.
-float3 windAt(float3 place_ws, uint end) {
-    const float3 mean = gFrame.wind.xyz;
-    if (gFrame.windKind == WIND_UNIFORM) return mean;
-    float waves = 0.0;
-    float3 eddies = float3(0, 0, 0);
-    [loop] for (uint m = 0; m < HAIRLOOM_WIND_MODES; ++m) {
-        const float4 amplitude = gFrame.windAmplitudes[m];
-        const float4 waveVector = gFrame.windWaves[m];
-        const float wave = sineOfTurns(dot(place_ws, waveVector.xyz) + (end == 0 ? amplitude.w : waveVector.w));
-        waves += wave;
-        eddies += amplitude.xyz * wave;
-    }
-    if (gFrame.windKind != WIND_GUSTING) return mean + eddies;
-    // The sum of waves has the variance of their number / 2; a sine of it, a quarter turn for its deviation,
-    // keeps it smooth and within ±1.
-    const float strength = sineOfTurns(waves * (0.25 * sqrt(2.0 / float(HAIRLOOM_WIND_MODES))));
-    return mean * (1.0 + strength * gFrame.wind.w);
-}
+/// At the start (0) or end (1) of the frame.
+float windPhase(uint m, uint end) { return end == 0 ? gFrame.windAmplitudes[m].w : gFrame.windWaves[m].w; }
+#include "wind.hlsli"
 
 #if HAIR_STORAGE == 3
 groupshared float4 gWinds[4 * HAIR_STRANDS];  // of each strand at root and tip, at the start and the end

@@ -2,18 +2,12 @@
 // Collision with spheres (Rünz 2012, Section 3.4).
 #if HAIR_SPHERES
 
-#if HAIR_SPHERES == 1
-cbuffer Spheres : register(b1) { SphereConstants gSpheres[HAIRLOOM_CONSTANT_SPHERES]; };
-#else
-StructuredBuffer<SphereConstants> gSpheres : register(t7);
-#endif
+#include "spheres.hlsli"
 
 // Where spheres overlap, the places that respond to one are settled among this many: those of the engine's set.
 #define SPHERE_SET 64
 // Share of a sphere's radius that a point may move in one substep unseen by the test for continuous collision.
 #define UNSWEPT_SHARE 0.25
-
-float3 sphereCentre(uint k, float step) { return gSpheres[k].from.xyz + gSpheres[k].step.xyz * step; }
 
 // Spheres that are looked at together, so that they are fetched while others are worked on; the last stands for
 // those past the end.
@@ -27,11 +21,6 @@ float3 sphereCentre(uint k, float step) { return gSpheres[k].from.xyz + gSpheres
     [loop] for (uint sphereRow = first; sphereRow < end; sphereRow += SPHERES_AT_ONCE) \
         [unroll] for (uint sphereAt = 0; sphereAt < SPHERES_AT_ONCE; ++sphereAt)
 #define SPHERE_BEFORE(end) min(sphereRow + sphereAt, end - 1)
-
-/// Collision radius at a point, growing linearly to the tip.
-float collisionRadiusAt(uint p) {
-    return gFrame.substep.collisionRadiusAtRoot + (gFrame.substep.collisionRadiusAtTip - gFrame.substep.collisionRadiusAtRoot) / float(POINTS - 1) * float(p);
-}
 
 /// What a point touches.
 struct Contact {

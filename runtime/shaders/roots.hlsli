@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The way of the roots through a frame.
 
-float rootRow(uint row) { return gRoots[row * gFrame.slots + gSlot]; }
-
 /// From one rotation to another by the share t of the way.
 float4 rotationBetween(float4 from, float4 to, float t) {
     const float4 mixed = from + ((dot(from, to) < 0.0 ? -to : to) - from) * t;
@@ -84,24 +82,30 @@ float3 rootNormal() { return rotate(gRotation, gNormalAtRest); }
 
 /// Takes the way of the root through the frame.
 void enterFrame() {
+#if HAIR_RODS
+    if (gRod.fresh != 0u) placeRodOnPoints();
+#endif
     float3 from = float3(rootRow(0), rootRow(1), rootRow(2));
     float4 rotationFrom = float4(rootRow(3), rootRow(4), rootRow(5), rootRow(6));
     const float3 to = gRootsTo[2 * gSlot].xyz;
-    const float4 rotationTo = gRootsTo[2 * gSlot + 1];
+    const float4 turnedTo = gRootsTo[2 * gSlot + 1];
     const float3 way = to - from;
     // A cut carries the strand along rigidly.
     const bool teleported = !(dot(way, way) <= gFrame.teleportDistance * gFrame.teleportDistance);
     if (teleported) {
-        const float4 turn = multiply(rotationTo, conjugate(rotationFrom));
+        const float4 turn = multiply(turnedTo, conjugate(rotationFrom));
         ALL_POINTS(p) {
             setPosition(p, rotate(turn, position(p)));
             setPrevious(p, rotate(turn, previous(p)));
 #if HAIR_CURVES
             setCurve(p, rotate(turn, curve(p)));
 #endif
+#if HAIR_RODS
+            turnRodAlong(p, turn);
+#endif
         }
         from = to;
-        rotationFrom = rotationTo;
+        rotationFrom = turnedTo;
     }
     gRoot = from;
     gRootDisplacement = (to - from) / float(gFrame.substeps);
@@ -109,7 +113,7 @@ void enterFrame() {
     gTeleported = teleported;
     gRootLength = segmentLength(0);
 #else
-    setRotations(rotationFrom, rotationTo);
+    setRotations(rotationFrom, turnedTo);
 #endif
 }
 

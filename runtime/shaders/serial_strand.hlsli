@@ -57,6 +57,9 @@ void placeAtRest() {
     gEnergyTank = HAIRLOOM_NO_CURVE;
     gMotion = 0.0;
 #endif
+#if HAIR_RODS
+    placeRodAtRest();
+#endif
 }
 
 /// Greatest squared displacement of a free point in the last substep; `sound` is false where a point is no

@@ -28,9 +28,12 @@ RWStructuredBuffer<float4> gPlaces : register(u4);   // world, in the caller's o
 #define REPORT_FASTEST 0   // bits of the greatest squared displacement of a substep
 #define REPORT_RESTORED 1  // strands put back to rest
 #define REPORT_ASLEEP 2    // strands
+#define REPORT_GUARDED 3   // rods whose speeds were taken back
 
 // Direct3D 11.0 has u0 to u7; scratch memory takes the last where strands live in the buffers.
-#if HAIR_STORAGE == 2
+#if HAIR_RODS
+#define HAIR_VELOCITIES_REGISTER u6
+#elif HAIR_STORAGE == 2
 #define HAIR_VELOCITIES_REGISTER u8
 #else
 #define HAIR_VELOCITIES_REGISTER u7
@@ -75,6 +78,7 @@ RWStructuredBuffer<float4> gVelocities : register(HAIR_VELOCITIES_REGISTER);  //
 #endif
 
 static uint gSlot;
+float rootRow(uint row) { return gRoots[row * gFrame.slots + gSlot]; }
 #if HAIR_EXACT
 #define POINTS HAIR_POINTS
 #else

@@ -1,11 +1,22 @@
 // SPDX-License-Identifier: MIT
 // Gives each free point what the nodes around it say.
 #include "volume_points.hlsli"
+#include "rod_types.h"
 
 StructuredBuffer<uint> gBox : register(t3);
 StructuredBuffer<float4> gFields : register(t4);
 RWStructuredBuffer<float> gState : register(u0);
 RWStructuredBuffer<float> gRests : register(u1);
+RWStructuredBuffer<float> gRodState : register(u2);  // see rod_storage.hlsli
+
+// Planes of velocity and velocityBefore.
+#define ROD_VELOCITY 10
+
+void pushRod(Point at, float3 change) {
+    [unroll] for (uint axis = 0; axis < 6; ++axis)
+        gRodState[planeSlot(ROD_VELOCITY + axis, at)] += change[axis % 3];
+    gRodState[(HAIRLOOM_ROD_STATE_PLANES * gVolume.points + 1) * gVolume.slots + at.slot] = HAIRLOOM_ROD_NO_ENERGY;
+}
 
 [numthreads(64, 1, 1)]
 void main(uint3 thread : SV_DispatchThreadID) {
@@ -34,6 +45,7 @@ void main(uint3 thread : SV_DispatchThreadID) {
     if (!isSound(change) || all(change == float3(0, 0, 0))) return;
     [unroll] for (uint axis = 0; axis < 3; ++axis)
         gState[planeSlot(3 + axis, at)] = before[axis] - change[axis] * gVolume.h;
+    if (gVolume.rods != 0u) pushRod(at, change);
     if (gVolume.sleeps != 0u) {
         gRests[2 * (at.slot / 32)] = 0.0;
         gRests[2 * (at.slot / 32) + 1] = 0.0;

@@ -23,10 +23,12 @@ struct VolumeConstants {
     uint clampedPoints;
     uint sleeps;    ///< not 0: strands that are pushed wake up
     uint together;  ///< not 0: the points of a strand stand side by side
+    uint rods;      ///< not 0: strands are rods, which keep velocities
+    uint unused1, unused2, unused3;
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(VolumeConstants) == 48 && offsetof(VolumeConstants, slots) == 28);
+static_assert(sizeof(VolumeConstants) == 64 && offsetof(VolumeConstants, slots) == 28);
 }  // namespace hairloom::shaders
 #endif
 #endif

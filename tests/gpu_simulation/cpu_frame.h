@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/gpu_simulation/strand_engine.h"
+#include "runtime/src/rods.h"
 #include "runtime/src/scratch.h"
 
 namespace hairloom::gpu_simulation::test {
@@ -142,6 +143,19 @@ inline void disturb(Scene& scene, Hair hair, Dice& dice, float maximum = 0.002f)
     fillSpareLanes(*scene.shape, scene.state);
 }
 
+/// Where the settings say so, strands are rods that pass through the state's points.
+inline void makeRods(Scene& scene) {
+    if (scene.settings.strandModel != runtime::StrandModel::rods) return;
+    const runtime::RestShape& shape = *scene.shape;
+    const runtime::RodRest rest = runtime::makeRodRest(shape, scene.settings);
+    scene.state.rods.assign(shape.planeFloats * runtime::kRodStatePlanes, 0.0f);
+    scene.state.rodLanes.assign(shape.blocks.size() * runtime::kRodLaneRows * runtime::kBlockLanes, 0.0f);
+    for (std::size_t b = 0; b < shape.blocks.size(); ++b) {
+        for (std::uint32_t lane = 0; lane < runtime::kBlockLanes; ++lane)
+            runtime::placeRodOnPoints(shape, rest, scene.state, b, lane);
+    }
+}
+
 /// A scene of 64 strands whose roots move and turn, about three spheres of which one moves.
 inline Scene makeScene(const runtime::SimulationSettings& settings, Hair hair, std::uint32_t seed,
                        std::span<const std::uint32_t> points, float maximum = 0.002f) {
@@ -168,6 +182,7 @@ inline Scene makeScene(const runtime::SimulationSettings& settings, Hair hair, s
         }
     }
     disturb(scene, hair, dice, maximum);
+    makeRods(scene);
     scene.spheres = {
         {{0.0f, -0.05f, 0.0f}, 0.06f}, {{0.05f, -0.1f, 0.02f}, 0.05f}, {{-0.1f, 0.0f, 0.0f}, 0.03f}};
     state.spheres = scene.spheres;
@@ -254,27 +269,38 @@ inline runtime::State runOnCpu(const Scene& scene) {
         state.motions.assign(shape.blocks.size() * runtime::kBlockLanes, 0.0f);
     }
     if (frame.plan.keepsTensions()) state.tensions.assign(shape.planeFloats, 0.0f);
+    const bool rods = scene.settings.strandModel == runtime::StrandModel::rods;
+    runtime::RodRest rodRest;
+    if (rods) rodRest = runtime::makeRodRest(shape, scene.settings);
     runtime::Floats evaluation(shape.planeFloats * runtime::kRungeKuttaPlanes, 0.0f);
     if (scene.settings.integrator == runtime::Integrator::verlet) evaluation.clear();
     for (std::size_t b = 0; b < shape.blocks.size(); ++b) {
         if (!bend.planes.empty()) runtime::fillBend(shape, scene.settings, kStep, b, bend);
-        const runtime::BlockView view = runtime::viewOf(
+        runtime::BlockView view = runtime::viewOf(
             {shape, state, bend, evaluation, runtime::kRungeKuttaPlanes}, b, scene.settings.clampedPoints);
+        view.rod = runtime::rodViewOf(shape, rodRest, state, b);
         const runtime::Kernels& table = runtime::kernels();
         const auto lanesOfBlock = std::make_unique<runtime::LaneFrame>();
         runtime::LaneFrame& lanes = *lanesOfBlock;
         runtime::Floats solver(runtime::solverFloats(frame.plan.stages(), view.points, table));
         lanes.solver = solver.data();
         fillLanes(scene, b, lanes);
-        if (frame.plan.on(runtime::Effect::wind)) {
+        if (rods) lanes.touchable = frame.moving;
+        if (!rods && frame.plan.on(runtime::Effect::wind)) {
             const auto from =
                 runtime::windPhases(frame.wind.wind, 0.7 - static_cast<double>(scene.input().dt));
             const auto to = runtime::windPhases(frame.wind.wind, 0.7);
             table.sampleWind(view, lanes, kStep, frame.wind.wind, from.data(), to.data());
         }
         runtime::SubstepContext context = frame.context;
+        context.conservative = !frame.plan.on(runtime::Effect::wind);
+        context.wind = &frame.wind.wind;
         const runtime::Passes passes = runtime::passesOf(frame.plan.stages(), table);
         for (context.index = 0; context.index < context.count; ++context.index) {
+            const auto left = static_cast<double>(context.count - 1 - context.index);
+            const auto phases =
+                runtime::windPhases(frame.wind.wind, 0.7 - left * static_cast<double>(context.h));
+            context.windPhases = phases.data();
             for (std::size_t i = 0; i < passes.count; ++i) passes.calls[i](view, lanes, context);
         }
         for (std::uint32_t lane = 0; lane < runtime::kBlockLanes; ++lane) {
@@ -286,7 +312,9 @@ inline runtime::State runOnCpu(const Scene& scene) {
             for (std::size_t k = 0; k < 4; ++k)
                 state.roots[(b * runtime::kRootRows + 3 + k) * runtime::kBlockLanes + lane] =
                     lanes.rotationTo[k][lane];
-            if (!isSound(view, lane)) runtime::placeAtRest(shape, state, b, lane);
+            if (isSound(view, lane)) continue;
+            runtime::placeAtRest(shape, state, b, lane);
+            runtime::placeRodAtRest(shape, rodRest, state, b, lane);
         }
     }
     return state;

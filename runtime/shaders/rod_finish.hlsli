@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// The end of a rod's substep.
+
+/// Takes the share of its motion from a strand.
+void slowRod(float share) {
+    EACH_SEGMENT(j) {
+        setVelocity(j + 1, velocity(j + 1) * share);
+        setIncrement(j, increment(j) * share);
+    }
+}
+
+/// Takes the step: places, velocities, and what the next one starts from.
+void finishRodStep() {
+    float3 at = firstPlace();
+    float turn = 0.0, energy = 0.0, kinetic = 0.0, size = 0.0, stiffness = 0.0, touched = 0.0;
+    // The least that the normal part of a contact's force can be of it.
+    const float normalShare = 1.0 / sqrt(1.0 + gFrame.substep.friction * gFrame.substep.friction);
+    EACH_SEGMENT(j) {
+        const uint node = j + 1;
+        const float4 rest = restTangentAndBend(j), relative = newRelative(j);
+        at = mad3(rodRotate(rotation(j), rest.xyz), segmentLength(j), at);
+        const float3 moved = newDisplacement(j);
+        const float3 now = negMad3(displacement(node), gBlend, moved) * gInverseTimeStep;
+        setVelocityBefore(node, velocity(node));
+        setVelocity(node, now);
+        setDisplacement(node, moved);
+        setPosition(node, at);
+        setPrevious(node, at - moved);
+        // Strains are those of quaternions with w ≥ 0; the one before goes with the new one.
+        const float3 bent = withSignOf(twice(relative), relative.w);
+        setStrainBefore(j, withSignOf(strain(j), relative.w));
+        setStrain(j, bent);
+        const float3 turned = increment(j);
+        turn = max(turn, dot(turned, turned));
+        stiffness += rest.w;
+        const float elastic = rodTwiceEnergy(bent, twistAxis(j), rest.w, rest.w * gTwist) * 0.5;
+        const float metres = mass(node), weight = metres * dot(gRod.gravity.xyz, at);
+        energy += elastic - weight;
+        size += elastic + abs(weight);
+        kinetic = mad(metres * 0.5, dot(now, now), kinetic);
+        float pressed = 0.0;
+#if HAIR_SPHERES
+        if (gReachable != 0u) {
+            const RodContact met = contact(j);
+            touched = max(touched, met.touching);
+            const float3 force = forceOf(met, moved - predictedDisplacement(j));
+            pressed = sqrt(dot(force, force)) * normalShare;
+        }
+#endif
+        setLoad(node, pressed);
+    }
+    turn = sqrt(turn);
+    // While nothing moves the root and no air blows, energy cannot rise: what rounding and the time scheme add is taken
+    // back.
+    const float last = energyBefore();
+    const float noise = 30.0 * HAIRLOOM_ROD_ROUNDING * (size + kinetic) +
+                        4.0 * HAIRLOOM_ROD_ROUNDING * sqrt((size + size) * stiffness);
+    float after = energy + kinetic;
+    if (gStill && after > last + noise && kinetic > 0.0) {
+        const float share = sqrt(min(max((last - energy) / max(kinetic, 1e-30), 0.0), 1.0));
+        slowRod(share);
+        after = mad(kinetic, share * share, energy);
+        if (share < 0.9) {
+            turn = HAIRLOOM_ROD_NO_STEP;
+            gGuarded = true;
+        }
+    }
+    // Contacts do work that is not counted here.
+    if (touched > 0.0) after = HAIRLOOM_ROD_NO_ENERGY;
+    setEnergyBefore(after);
+    setLargestTurn(turn);
+}

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: MIT
+// A substep of elastic rods (docs/engine.md, "Rods"): a prediction, one elimination from tip to root, one pass back, and
+// the guards that keep the objective from rising. As runtime/kernels/rod-inl.h.
+
+#define FIRST_SEGMENT (HAIR_CLAMPED - 1)
+#define SEGMENTS (POINTS - 1)
+#define EACH_SEGMENT(j) [loop] for (uint j = FIRST_SEGMENT; j < SEGMENTS; ++j)
+
+static float gStepRatio;         // of this substep
+static float gBlend;             // c of the time scheme
+static float gTimeStep, gInverseTimeStep;
+static float gDamped, gDampingShare;  // 1 + τ/h, and the part of it that is damping
+static float gTwist;             // (C − B)/B where twist counts
+static float3 gInDisplacement;   // of the first free segment's inner node
+static float4 gInner;            // rotation of the segment before it
+static bool gStill;              // nothing adds energy
+static bool gGuarded;            // in this frame: speeds were taken back
+static bool gPredicts;           // the last substep's rotations are repeated
+static float gObjective, gStartObjective, gStiffnessSum;
+
+float3 rootAtEnd() { return mad3(gRootDisplacement, float(gSubstep + 1), gRoot); }
+/// Of the inner node of the first free segment, relative to the root.
+float3 firstPlace() {
+#if HAIR_CLAMPED > 1
+    return rodRotate(gInner, restTangent(0)) * segmentLength(0);
+#else
+    return float3(0, 0, 0);
+#endif
+}
+
+/// The rounding error of an elastic energy: strains are wrong by about one unit in the last place.
+float roundingOf(float energy) { return 4.0 * HAIRLOOM_ROD_ROUNDING * sqrt(abs(energy + energy) * gStiffnessSum); }
+
+/// The time scheme: y = x + c (x − x₋), backward differences of second order with c = r²/(1 + 2r) for steps of the
+/// ratio r, backward Euler with c = 0.
+void openRodStep() {
+    gStepRatio = gSubstep == 0 ? gRod.stepRatio : 1.0;
+    float most = 0.0;
+    if (gStepRatio < HAIRLOOM_ROD_LONGEST_RATIO) most = gStepRatio * gStepRatio / (1.0 + 2.0 * gStepRatio);
+    gBlend = most * min(max(negMad(largestTurn(), HAIRLOOM_ROD_BLEND_SLOPE, HAIRLOOM_ROD_BLEND_END), 0.0), 1.0);
+    gTimeStep = gFrame.h * (1.0 - gBlend / gStepRatio);
+    gInverseTimeStep = 1.0 / gTimeStep;
+    gDamped = 1.0 + gRod.bendDampingTime * gInverseTimeStep;
+    gDampingShare = (gDamped - 1.0) / gDamped;
+    gTwist = gCurved ? gRod.torsionRatio - 1.0 : 0.0;
+    gInner = gRotation;
+    gInDisplacement = gRootDisplacement;
+#if HAIR_CLAMPED > 1
+    // The clamped segment turns with its root; where only the root is held, the frame that stands for one.
+    const float3 along = restTangent(0);
+    gInDisplacement = mad3(rodRotate(gInner, along) - rodRotate(rotation(0), along), segmentLength(0), gRootDisplacement);
+    setRotation(0, gInner);
+#endif
+    const float4 turned = abs(gRotationFrom - (dot(gRotationFrom, gRotationTo) < 0.0 ? -gRotationTo : gRotationTo));
+    const float moved = dot(gRootDisplacement, gRootDisplacement) + turned.x + turned.y + turned.z + turned.w;
+    gStill = moved <= 0.0 && gRod.conservative != 0u;
+}
+
+/// Where inertia, gravity and air take a node; w: its weight m/(h² D).
+float4 aim(uint node, float3 tangent, float3 position) {
+    const float3 now = velocity(node);
+    const float3 faster = mad3(now - velocityBefore(node), gBlend, now);
+    float3 change = mad3(gRod.gravity.xyz, gTimeStep, faster);
+    float rate = gRod.rootDamping;
+    change = mad3(gRootDisplacement, gRod.rootDamping / gFrame.h * gTimeStep, change);
+    if (gRod.gravity.w > 0.0) {
+        float3 air = float3(0, 0, 0);
+#if HAIR_WIND
+        air = windAt(position + rootAtEnd(), gFrame.substeps - 1 - gSubstep);
+#endif
+        // Hair takes on the air's velocity at the rate airDrag · sin of its angle to the tangent (Rünz 2012, Section 3.3).
+        const float3 flow = air - faster;
+        const float all2 = dot(flow, flow), parallel = dot(flow, tangent);
+        const float drag = sqrt(max(negMad(parallel, parallel, all2), 0.0) / max(all2, 1e-30)) * gRod.gravity.w;
+        rate += drag;
+        change = mad3(air, drag * gTimeStep, change);
+    }
+    const float slowed = mad(rate, gTimeStep, 1.0);
+    return float4(mad3(displacement(node), gBlend, change * (gTimeStep / slowed)),
+                  mass(node) * gInverseTimeStep * gInverseTimeStep * slowed);
+}
+
+#if HAIR_SPHERES
+RodContact meet(uint node, float3 position, float3 moved, float weight) {
+    RodNode met;
+    met.position = position;
+    met.displacement = moved;
+    met.velocity = velocity(node);
+    met.weight = weight;
+    met.load = load(node);
+    met.radius = collisionRadiusAt(node);
+    return contactOf(rootAtEnd(), met, gTimeStep);
+}
+#endif
+
+/// Repeats the last substep's rotations where gPredicts, and finds the objective there and where nothing turns.
+void predict() {
+    float3 outer = gInDisplacement, position = firstPlace();
+    float4 before = gInner;
+    gObjective = gStartObjective = gStiffnessSum = 0.0;
+    EACH_SEGMENT(j) {
+        const float4 old = rotation(j), rest = restTangentAndBend(j);
+        const float3 oldTangent = rodRotate(old, rest.xyz);
+        float3 u = increment(j) * gStepRatio;
+        const float squared = dot(u, u);
+        if (squared > HAIRLOOM_ROD_LARGEST_PREDICTION * HAIRLOOM_ROD_LARGEST_PREDICTION)
+            u *= HAIRLOOM_ROD_LARGEST_PREDICTION / sqrt(squared);
+        if (!gPredicts) u = float3(0, 0, 0);
+        const float along = segmentLength(j);
+        outer = mad3(rodTangentChange(u, oldTangent), along, outer);
+        const float4 q = rodTurned(old, u);
+        position = mad3(rodRotate(q, rest.xyz), along, position);
+        const float4 aimed = aim(j + 1, oldTangent, position);
+
+        // Damping pulls to the strain extrapolated from the last two substeps (Kelvin-Voigt), elasticity to none.
+        const float3 last = strain(j), axis = twistAxis(j);
+        const float3 wanted = mad3(last - strainBefore(j), gBlend, last) * gDampingShare;
+        const float4 side = rodOfStrain(last), relative = rodRelative(before, q, side);
+        const float bend = rest.w * gDamped, twist = bend * gTwist;
+        gStiffnessSum += bend;
+        const float3 off = outer - aimed.xyz, offStart = gInDisplacement - aimed.xyz;
+        gObjective += rodTwiceEnergy(twice(relative) - wanted, axis, bend, twist) + aimed.w * dot(off, off);
+        float3 strainStart = last;
+        if (j == FIRST_SEGMENT) strainStart = twice(rodRelative(gInner, old, side));
+        gStartObjective += rodTwiceEnergy(strainStart - wanted, axis, bend, twist) + aimed.w * dot(offStart, offStart);
+        setPredictedRotation(j, q);
+        setPredictedRelative(j, relative);
+        setWantedStrain(j, wanted);
+        setPredictedIncrement(j, u);
+        setPredictedDisplacement(j, outer);
+        setTarget(j, aimed);
+#if HAIR_SPHERES
+        if (gReachable != 0u) {
+            const RodContact met = meet(j + 1, position, outer, aimed.w);
+            gObjective += met.twiceEnergy;
+            gStartObjective += twiceEnergyAt(met, gInDisplacement - outer);
+            setContact(j, met);
+        }
+#endif
+        before = q;
+    }
+    gObjective *= 0.5;
+    gStartObjective *= 0.5;
+}
+
+void eliminate() {
+    RodForm form = noForm();
+    [loop] for (uint j = SEGMENTS; j-- > FIRST_SEGMENT;) {
+        const float4 aimed = target(j);
+        float3 r = (predictedDisplacement(j) - aimed.xyz) * aimed.w;
+#if HAIR_SPHERES
+        if (gReachable != 0u) {
+            const float3 diagonal = contactDiagonal(j), others = contactOthers(j);
+            r += contactGradient(j);
+            rodAddContact(form, diagonal.x, others.x, others.y, diagonal.y, others.z, diagonal.z);
+        }
+#endif
+        float3 pull = r;
+        if (!gPredicts) pull = float3(0, 0, 0);
+        rodAddNode(form, aimed.w, r, pull);
+        const float4 rest = restTangentAndBend(j), q = predictedRotation(j), relative = predictedRelative(j);
+        const float bend = rest.w * gDamped;
+        RodGains found;
+        rodEliminate(form, q, rodRotate(q, rest.xyz), segmentLength(j), relative, twice(relative) - wantedStrain(j),
+                     twistAxis(j), bend, bend * gTwist, gCurved, found);
+        setGains(j, found);
+    }
+}
+
+/// Turns the segments from root to tip; returns the objective.
+float advance(float share) {
+    float3 outer = gInDisplacement, predicted = gInDisplacement;
+    float3 x = float3(0, 0, 0), u = float3(0, 0, 0);
+    float4 before = gInner;
+    float sum = 0.0;
+    EACH_SEGMENT(j) {
+        const RodGains g = gains(j);
+        u -= float3(rodGain(g, 0, share, x, u), rodGain(g, 1, share, x, u), rodGain(g, 2, share, x, u));
+        const float4 from = predictedRotation(j), rest = restTangentAndBend(j), q = rodTurned(from, u);
+        const float3 change = rodTangentChange(u, rodRotate(from, rest.xyz));
+        // Displacements are summed from rotations: differences of positions would lose their digits.
+        const float3 here = predictedDisplacement(j);
+        outer = mad3(change, segmentLength(j), outer) + (here - predicted);
+        predicted = here;
+        x = outer - here;
+        const float4 relative = rodRelative(before, q, predictedRelative(j)), aimed = target(j);
+        const float bend = rest.w * gDamped;
+        const float3 off = outer - aimed.xyz;
+        sum += rodTwiceEnergy(twice(relative) - wantedStrain(j), twistAxis(j), bend, bend * gTwist) +
+               aimed.w * dot(off, off);
+#if HAIR_SPHERES
+        if (gReachable != 0u) sum += twiceEnergyAt(contact(j), x);
+#endif
+        setNewDisplacement(j, outer);
+        setNewRelative(j, relative);
+        setRotation(j, q);
+        setIncrement(j, predictedIncrement(j) + u);
+        before = q;
+    }
+    return sum * 0.5;
+}
+
+#include "rod_finish.hlsli"
+
+/// All that moves a rod in a substep, in one solve.
+void stageRod() {
+    openRodStep();
+    bool worse = false;
+    [loop] for (uint attempt = 0; attempt < 2; ++attempt) {
+        gPredicts = attempt == 0;
+        predict();
+        worse = gObjective > mad(gStartObjective, HAIRLOOM_ROD_PREDICTION_SHARE, roundingOf(gStartObjective));
+        if (!worse) break;
+    }
+    eliminate();
+    float share = 1.0;
+    const float limit = gObjective + mad(gObjective, 1e-5, roundingOf(gObjective));
+    [loop] for (uint shortenings = 0; shortenings <= HAIRLOOM_ROD_SHORTENINGS + 1; ++shortenings) {
+        const float objective = advance(share);
+        // What is no number has risen, too.
+        if (objective <= limit && isSound(float3(objective, limit, 0.0))) break;
+        share = shortenings < HAIRLOOM_ROD_SHORTENINGS ? share * HAIRLOOM_ROD_SHORTENING : 0.0;
+    }
+    finishRodStep();
+}

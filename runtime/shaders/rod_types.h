@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// What the kernel of rods is told each frame besides SimulationConstants. Metres, seconds, world space.
+#ifndef HAIRLOOM_ROD_TYPES_H
+#define HAIRLOOM_ROD_TYPES_H
+#include "simulation_types.h"
+
+#ifdef __cplusplus
+#include <cstddef>
+namespace hairloom::shaders {
+#endif
+
+/// In RodView::turn and energy: nothing is known of the substep before.
+#define HAIRLOOM_ROD_NO_STEP 1e9
+#define HAIRLOOM_ROD_NO_ENERGY 1e30
+/// Planes of a point in the buffer of rods, as RodView has them; two rows of a strand follow them.
+#define HAIRLOOM_ROD_STATE_PLANES 23
+/// Planes of a point that a substep works in, and those of contacts behind them.
+#define HAIRLOOM_ROD_WORK_PLANES 49
+#define HAIRLOOM_ROD_CONTACT_PLANES 11
+
+struct RodConstants {
+    float4 gravity;         ///< m/s²; w: drag of the air, 1/s, 0 without air
+    float rootDamping;      ///< 1/s
+    float bendDampingTime;  ///< seconds
+    float torsionRatio;     ///< GJ/EI
+    float stepRatio;        ///< the first substep over the one before it
+    uint points;            ///< that a strand of the batch may have
+    uint sweeps;            ///< not 0: spheres are met where fast points come in
+    uint conservative;      ///< not 0: nothing but a root's motion adds energy
+    uint fresh;             ///< not 0: strands were none before, and go on as rods through their points
+    float4 windTurns[HAIRLOOM_WIND_MODES];  ///< x: turns of a wave in a substep
+};
+
+#ifdef __cplusplus
+static_assert(offsetof(RodConstants, rootDamping) == 16 && offsetof(RodConstants, windTurns) == 48);
+static_assert(sizeof(RodConstants) == 48 + 16 * HAIRLOOM_WIND_MODES);
+}  // namespace hairloom::shaders
+#endif
+#endif

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// A frame of strands as elastic rods, one thread a strand and 32 a work group, as rods.cpp of the engine has them. Whoever
+// compiles this defines HAIR_RODS 1 and, as strands.hlsli has them, HAIR_TOGETHER, HAIR_CLAMPED, HAIR_SPHERES, HAIR_WIND,
+// HAIR_SLEEP, HAIR_VELOCITIES and HAIR_STAGES. Any number of points has the same kernel.
+#define HAIR_POINTS gRod.points
+#define HAIR_EXACT 0
+#define HAIR_UNROLL 0
+#define HAIR_STORAGE 2
+#define HAIR_STRANDS 32
+#define HAIR_EVALUATION 0
+#define HAIR_BEND 0
+#define HAIR_TARGETS 0
+#define HAIR_CURVES 0
+#include "simulation_types.h"
+#include "rod_types.h"
+#include "math.hlsli"
+cbuffer Rods : register(b2) { RodConstants gRod; };
+#include "storage.hlsli"
+#include "rod_math.hlsli"
+#include "rod_storage.hlsli"
+#include "rod_places.hlsli"
+#include "roots.hlsli"
+#if HAIR_WIND
+/// At the end of the substep that has so many behind it.
+float windPhase(uint m, uint left) { return mad(gRod.windTurns[m].x, float(left), gFrame.windWaves[m].w); }
+#include "wind.hlsli"
+#endif
+#if HAIR_SPHERES
+#include "rod_contact.hlsli"
+#endif
+#include "rod_substep.hlsli"
+#include "sleeping.hlsli"
+
+void runSubsteps() {
+    const uint block = gSlot / HAIR_STRANDS;
+    gCurved = gCurvedBlocks[block] != 0u;
+    gGuarded = false;
+#if HAIR_SPHERES
+    findReachableSpheres();
+#endif
+    [loop] for (gSubstep = 0; gSubstep < gFrame.substeps; ++gSubstep) {
+        HAIR_STAGES
+    }
+    if (gGuarded && gSlot % HAIR_STRANDS < gBlocks[block].y) InterlockedAdd(gReport[REPORT_GUARDED], 1u);
+}
+
+#include "frame_threads.hlsli"
