@@ -104,6 +104,46 @@ TEST_F(Permutation, BuffersComeAndGoWithTheirEffects) {
     EXPECT_EQ(engine.effectBytes(runtime::Effect::torsion), 0u);
 }
 
+TEST_F(Permutation, RodsHaveBuffersAndAKernelOfTheirOwn) {
+    const std::vector<std::string> ofRods{"rods", "rods at rest", "masses of rods", "curved blocks",
+                                          "scratch"};
+    const std::vector<std::string> ofSprings{"angular springs", "rest directions", "curves", "tanks"};
+    SimulationSettings s;
+    s.strandModel = runtime::StrandModel::rods;
+    StrandEngine engine = engineOf(strands.view(), s, options());
+    const auto used = usedBy(engine);
+    EXPECT_THAT(used, IsSupersetOf(ofRods));
+    for (const std::string& name : ofSprings) EXPECT_THAT(livingNames(), Not(Contains(name)));
+    EXPECT_GT(engine.effectBytes(runtime::Effect::angular), 0u);
+    s.strandModel = runtime::StrandModel::springs;
+    ASSERT_TRUE(engine.setSettings(s));
+    EXPECT_THAT(usedBy(engine), IsSupersetOf(ofSprings));
+    for (const std::string& name : ofRods) EXPECT_THAT(livingNames(), Not(Contains(name)));
+}
+
+/// One for every number of points and storage; what is off is not in it.
+TEST_F(Permutation, RodsOfAllPointCountsShareAKernel) {
+    runtime::PlanInput scene;
+    scene.settings.strandModel = runtime::StrandModel::rods;
+    scene.strandCount = 1;
+    scene.longestStrand = 1.0f;
+    const auto keyOf = [&](std::uint32_t points, StrandStorage storage) {
+        scene.longestPointCount = points;
+        return keyFor(runtime::plan(scene), scene.settings, {points, true, true, storage}, 0, false);
+    };
+    const KernelKey key = keyOf(16, StrandStorage::threads);
+    EXPECT_STREQ(key.source(), "rods.hlsli");
+    EXPECT_EQ(key.shape.strands, runtime::kBlockLanes);
+    EXPECT_THAT(key.defines(), testing::HasSubstr("HAIR_RODS 1"));
+    EXPECT_THAT(key.defines(), testing::HasSubstr("HAIR_WIND 0"));
+    EXPECT_EQ(key.defines(), keyOf(512, StrandStorage::buffers).defines());
+    EXPECT_EQ(key.defines(), keyOf(2, StrandStorage::wisps).defines());
+    scene.settings.windSpeed = 3.0f;
+    EXPECT_THAT(keyOf(16, StrandStorage::threads).defines(), testing::HasSubstr("HAIR_WIND 1"));
+    scene.settings.strandModel = runtime::StrandModel::springs;
+    EXPECT_STREQ(keyOf(16, StrandStorage::threads).source(), "strands.hlsli");
+}
+
 TEST_F(Permutation, ManySpheresStandInABuffer) {
     SimulationSettings s = withoutAll();
     s.lengthIterations = 1;
