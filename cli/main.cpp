@@ -6,14 +6,20 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <cstdio>
+#include <algorithm>
 #include <exception>
 #include <string>
+#include <string_view>
+#include <system_error>
 
+#include "cli/error_report.h"
+#include "cli/finite_numbers.h"
 #include "cli/job.h"
 #include "core/base/log.h"
+#include "core/base/output_file.h"
 #include "core/base/parallel.h"
 #include "core/base/profiler.h"
+#include "core/base/write_rules.h"
 
 namespace {
 
@@ -47,24 +53,44 @@ void printProfile() {
         fmt::print(stderr, "{:>12.3f} {:>9}  {}\n", milliseconds, calls, name);
 }
 
+int failWith(const hairloom::Error& error, bool json) {
+    hairloom::cli::printError(error, json);
+    return kFailed;
+}
+
 int runChosenJob(const hairloom::cli::Jobs& jobs, const std::string& commandLine, bool json) {
     const auto report = jobs.run(commandLine);
-    if (!report) {
-        fmt::print(stderr, "error: {}\n", report.error().message());
-        return kFailed;
+    if (!report) return failWith(report.error(), json);
+    try {
+        if (json) {
+            // Names and messages may quote bytes of damaged files, which need not be valid UTF-8.
+            fmt::print("{}\n", report->dump(2, ' ', false, Report::error_handler_t::replace));
+        } else {
+            printForPeople(*report);
+        }
+    } catch (const std::system_error&) {
+        // fmt's word for a stream that takes no more; flushOutput() has the reason.
     }
-    if (json) {
-        // Names and messages may quote bytes of damaged files, which need not be valid UTF-8.
-        fmt::print("{}\n", report->dump(2, ' ', false, Report::error_handler_t::replace));
-    } else {
-        printForPeople(*report);
+    if (const auto flushed = hairloom::cli::flushOutput(); !flushed) return failWith(flushed.error(), false);
+    return kDone;
+}
+
+/// What the parser says goes where it belongs: help and version are answers, all else is wrong usage.
+int endParsing(const CLI::App& app, const CLI::ParseError& error, bool json) {
+    const bool isAnswer = app.exit(error) == 0;
+    if (!isAnswer) {
+        if (json) hairloom::cli::printErrorObject({{}, {}, error.what(), "see --help"});
+        return kWrongUsage;
     }
+    if (const auto flushed = hairloom::cli::flushOutput(); !flushed) return failWith(flushed.error(), false);
     return kDone;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+    hairloom::cli::keepStandardStreams();
+    hairloom::removeTemporariesWhenEnded();
     CLI::App app("Hairloom: author hairstyles for games, without a window.");
     app.require_subcommand(1);
     // On Windows, too, a word that begins with a slash is a path.
@@ -75,19 +101,27 @@ int main(int argc, char** argv) {
     std::size_t threads = 0;
     bool quiet = false;
     bool profile = false;
+    bool force = false;
     app.add_flag("--json", json, "Print exactly one JSON object on standard output");
     app.add_option("--threads", threads, "Threads to use, 0 for one per core; results do not depend on it")
         ->check(CLI::Range(0, 1024));
     app.add_flag("--quiet", quiet, "No warnings on standard error");
     app.add_flag("--profile", profile, "Print on standard error what the parts of the job took");
 
+    app.add_flag("--force", force,
+                 "Write also over an input, another kind of file, a read-only file, a device or a FIFO");
+
     const hairloom::cli::Jobs jobs(app);
+    hairloom::cli::refuseNumbersThatAreNone(app);
 
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? kDone : kWrongUsage;
+        // The flag may stand behind what could not be read.
+        const auto isJson = [](const char* word) { return std::string_view(word) == "--json"; };
+        return endParsing(app, error, std::any_of(argv + 1, argv + argc, isJson));
     }
+    hairloom::setWriteRules({force, true, "give another name, or --force"});
     if (quiet) hairloom::log::setThreshold(hairloom::log::Level::Error);
     try {
         hairloom::setThreadCount(threads);
@@ -95,9 +129,8 @@ int main(int argc, char** argv) {
         if (profile) printProfile();
         return exitCode;
     } catch (const std::bad_alloc&) {
-        fmt::print(stderr, "error: out of memory\n");
+        return failWith({{}, {}, "out of memory", {}}, json);
     } catch (const std::exception& error) {
-        fmt::print(stderr, "error: {}\n", error.what());
+        return failWith({{}, {}, error.what(), {}}, json);
     }
-    return kFailed;
 }

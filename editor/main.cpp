@@ -3,11 +3,13 @@
 #include <QCommandLineParser>
 #include <QTimer>
 
+#include "core/base/output_file.h"
 #include "editor/shell/main_window.h"
 #include "editor/style/theme.h"
 
 int main(int argc, char** argv) {
     using namespace hairloom::editor;
+    hairloom::removeTemporariesWhenEnded();
     QApplication application(argc, argv);
     QCoreApplication::setApplicationName("Hairloom");
     QCoreApplication::setOrganizationName("Hairloom");

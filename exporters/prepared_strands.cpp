@@ -260,7 +260,11 @@ Result<ExportReport> writeAndCompare(const Groom& groom, PreparedStrands prepare
     StrandImportOptions importOptions;
     importOptions.metresPerUnit = options.metresPerUnit;
     importOptions.up = options.up;
-    const auto readBack = importStrands(path, importOptions);
+    // What went into a device cannot be had back.
+    std::error_code code;
+    const auto readBack = std::filesystem::is_regular_file(path, code)
+                              ? importStrands(path, importOptions)
+                              : importStrandsFromMemory(path.string(), bytes, importOptions);
     if (!readBack) return tl::unexpected(readBack.error());
     if (readBack->groom.strandCount() != prepared.strandCount()) {
         return failIn(path.string(), {},

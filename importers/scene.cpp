@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "core/base/file.h"
+#include "core/base/write_rules.h"
 #include "importers/child_process.h"
 #include "importers/length_unit.h"
 #include "importers/mesh_format.h"
@@ -156,6 +157,7 @@ Result<ImportedScene> finishScene(RawScene raw, MeshFormat format, const MeshImp
 Result<ImportedScene> importScene(const std::filesystem::path& path, const MeshImportOptions& options) {
     assert(!options.metresPerUnit || *options.metresPerUnit > 0);
     const std::string file = path.string();
+    noteInput(path);
     const auto head = readHead(path);
     if (!head) return tl::unexpected(head.error());
     if (startsWithUtf16Mark(head->bytes)) return failIn(file, {}, "is UTF-16 text", "expected UTF-8");

@@ -6,6 +6,7 @@
 
 #include "benchmarks/benchmark.h"
 #include "cli/job.h"
+#include "cli/outputs.h"
 #include "cli/progress.h"
 #include "cli/vectors.h"
 #include "core/base/file.h"
@@ -129,7 +130,9 @@ JobRun declare(CLI::App& job) {
             if (option->count() > 0) options->given.push_back("--" + option->get_lnames().front());
         }
     });
-    return [options](const std::string& commandLine) { return bench(*options, commandLine); };
+    return [options](const std::string& commandLine) {
+        return withOutputs({{options->markdown}}, [&] { return bench(*options, commandLine); });
+    };
 }
 
 }  // namespace

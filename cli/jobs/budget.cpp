@@ -8,8 +8,10 @@
 #include "cli/documents.h"
 #include "cli/job.h"
 #include "cli/motions.h"
+#include "cli/outputs.h"
 #include "cli/progress.h"
 #include "core/accuracy/budget.h"
+#include "core/base/content_kind.h"
 #include "core/groom/file/project_file.h"
 #include "core/groom/file/settings_json.h"
 
@@ -100,7 +102,9 @@ JobRun declare(CLI::App& job) {
     job.add_option("--repeat", options->repeats, "Timed runs of each candidate")->check(CLI::Range(1, 1000));
     addGroundTruthOptions(job, options->groundTruth);
     job.add_option("--seed", options->seed, "Another seed draws other strands");
-    return [options](const std::string&) { return budget(*options); };
+    return [options](const std::string&) {
+        return withOutputs({{options->output, content::kProject}}, [&] { return budget(*options); });
+    };
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include "cli/documents.h"
 #include "cli/job.h"
+#include "cli/outputs.h"
+#include "core/base/content_kind.h"
 #include "core/base/log.h"
 #include "core/base/stopwatch.h"
 #include "core/geometry/placement.h"
@@ -123,7 +125,9 @@ JobRun declare(CLI::App& job) {
     job.final_callback([count, density] {
         if (count->count() + density->count() == 0) throw CLI::RequiredError("--count or --density");
     });
-    return [options](const std::string&) { return create(*options); };
+    return [options](const std::string&) {
+        return withOutputs({{options->output, content::kProject}}, [&] { return create(*options); });
+    };
 }
 
 }  // namespace

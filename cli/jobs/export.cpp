@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
+#include <system_error>
 
 #include "cli/documents.h"
 #include "cli/job.h"
+#include "cli/outputs.h"
+#include "core/base/content_kind.h"
 #include "core/base/file.h"
 #include "core/scene/hair_export.h"
 
@@ -21,6 +25,15 @@ struct ExportOptions {
     std::string output;
 };
 
+/// Beside the asset; a device has no report.
+std::string companionOf(const std::string& output) {
+    std::error_code code;
+    const auto type = std::filesystem::status(output, code).type();
+    const bool file =
+        type == std::filesystem::file_type::regular || type == std::filesystem::file_type::not_found;
+    return file ? output + ".report.json" : std::string();
+}
+
 Result<Report> exportAsset(const ExportOptions& options) {
     const auto groom = loadDocument(options.input);
     if (!groom) return tl::unexpected(groom.error());
@@ -32,11 +45,10 @@ Result<Report> exportAsset(const ExportOptions& options) {
     const auto written = exportHair(*groom, what, strandWriter(options.format), options.output, exporting);
     if (!written) return tl::unexpected(written.error());
     const Report report = toJson(*written);
-    if (auto saved =
-            writeFileAtomically(options.output + ".report.json", std::string_view(report.dump(2) + "\n"));
-        !saved) {
+    const std::string companion = companionOf(options.output);
+    if (companion.empty()) return report;
+    if (auto saved = writeFileAtomically(companion, std::string_view(report.dump(2) + "\n")); !saved)
         return tl::unexpected(saved.error());
-    }
     return report;
 }
 
@@ -70,7 +82,11 @@ JobRun declare(CLI::App& job) {
     job.add_option("--points", options->points, "Resample every strand to so many points; 0 keeps them")
         ->check(CLI::Range(0, 1024));
     job.add_option("-o,--output", options->output, "File to write; the report goes beside it")->required();
-    return [options](const std::string&) { return exportAsset(*options); };
+    return [options](const std::string&) {
+        const std::string companion = companionOf(options->output);
+        return withOutputs({{options->output}, {companion, content::kJson}},
+                           [&] { return exportAsset(*options); });
+    };
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include "cli/documents.h"
 #include "cli/field_rows.h"
 #include "cli/job.h"
+#include "cli/outputs.h"
+#include "core/base/content_kind.h"
 #include "core/base/file.h"
 #include "core/base/stopwatch.h"
 #include "core/groom/file/project_file.h"
@@ -70,7 +72,10 @@ JobRun declare(CLI::App& job) {
         if (listing->count() == 0 && input->count() * script->count() * output->count() == 0)
             throw CLI::RequiredError("groom, --script and -o");
     });
-    return [options](const std::string&) { return options->list ? list() : replay(*options); };
+    return [options](const std::string&) {
+        if (options->list) return list();
+        return withOutputs({{options->output, content::kProject}}, [&] { return replay(*options); });
+    };
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 
 #include "cli/documents.h"
 #include "cli/job.h"
+#include "cli/outputs.h"
+#include "core/base/content_kind.h"
 #include "core/base/log.h"
 #include "core/geometry/selection.h"
 #include "core/groom/file/project_file.h"
@@ -114,7 +116,9 @@ JobRun declare(CLI::App& job) {
     job.add_option("--particle", options->particle, "Where a Cinema 4D ribbon's particles are")
         ->check(CLI::IsMember({"edge", "centre"}));
     job.add_option("-o,--output", options->output, "Project to write")->required();
-    return [options](const std::string&) { return import(*options); };
+    return [options](const std::string&) {
+        return withOutputs({{options->output, content::kProject}}, [&] { return import(*options); });
+    };
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "cli/field_rows.h"
 #include "cli/job.h"
+#include "cli/outputs.h"
 #include "core/base/file.h"
 #include "core/groom/file/fields.h"
 #include "core/operations/script.h"
@@ -121,7 +122,7 @@ Result<Report> write(const std::string& output) {
 JobRun declare(CLI::App& job) {
     const auto output = std::make_shared<std::string>();
     job.add_option("-o,--output", *output, "Markdown file to write")->required();
-    return [output](const std::string&) { return write(*output); };
+    return [output](const std::string&) { return withOutputs({{*output}}, [&] { return write(*output); }); };
 }
 
 }  // namespace

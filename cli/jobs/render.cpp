@@ -9,8 +9,10 @@
 #include "cli/backend.h"
 #include "cli/documents.h"
 #include "cli/job.h"
+#include "cli/outputs.h"
 #include "cli/progress.h"
 #include "cli/vectors.h"
+#include "core/base/content_kind.h"
 #include "core/render/exr.h"
 #include "core/render/png.h"
 #include "core/render/webp.h"
@@ -411,7 +413,13 @@ JobRun declare(CLI::App& job) {
     job.add_option("-o,--output", options->output, "PNG to write; of several pictures each gets its number")
         ->required();
     job.final_callback([options, device] { options->chooseDevice = device->count() > 0; });
-    return [options](const std::string&) { return renderToFile(*options); };
+    return [options](const std::string&) {
+        return withOutputs({{options->output, content::kPng},
+                            {options->exr},
+                            {options->animation},
+                            {options->strip, content::kPng}},
+                           [&] { return renderToFile(*options); });
+    };
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 #include "cli/documents.h"
 #include "cli/field_rows.h"
 #include "cli/job.h"
+#include "cli/outputs.h"
+#include "core/base/content_kind.h"
 #include "core/base/file.h"
 #include "core/groom/file/project_file.h"
 #include "core/groom/file/settings_json.h"
@@ -141,7 +143,10 @@ JobRun declare(CLI::App& job) {
         if (listing->count() == 0 && input->count() * output->count() == 0)
             throw CLI::RequiredError("groom and -o");
     });
-    return [options](const std::string&) { return options->list ? list() : set(*options); };
+    return [options](const std::string&) {
+        if (options->list) return list();
+        return withOutputs({{options->output, content::kProject}}, [&] { return set(*options); });
+    };
 }
 
 }  // namespace

@@ -10,7 +10,9 @@
 #include "cli/documents.h"
 #include "cli/job.h"
 #include "cli/motions.h"
+#include "cli/outputs.h"
 #include "cli/progress.h"
+#include "core/base/content_kind.h"
 #include "core/base/log.h"
 #include "core/groom/file/project_file.h"
 #include "core/simulation/frame_record.h"
@@ -275,7 +277,10 @@ JobRun declare(CLI::App& job) {
     job.add_option("--against", options->against,
                    "Record of the same groom and frames to tell the distance from");
     job.add_option("-o,--output", options->output, "Project to write with the hair as it ends");
-    return [options](const std::string&) { return simulate(*options); };
+    return [options](const std::string&) {
+        return withOutputs({{options->output, content::kProject}, {options->record, content::kFrames}},
+                           [&] { return simulate(*options); });
+    };
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include "cli/documents.h"
 #include "cli/job.h"
+#include "cli/outputs.h"
+#include "core/base/content_kind.h"
 #include "core/editing/sphere_fit.h"
 #include "core/groom/file/project_file.h"
 
@@ -64,7 +66,9 @@ JobRun declare(CLI::App& job) {
     job.add_option("--seed", options->seed, "fit: of the places where the skin is looked at");
     job.add_flag("--replace", options->replace, "Remove the spheres that are there");
     job.add_option("-o,--output", options->output, "Project to write")->required();
-    return [options](const std::string&) { return placeSpheres(*options); };
+    return [options](const std::string&) {
+        return withOutputs({{options->output, content::kProject}}, [&] { return placeSpheres(*options); });
+    };
 }
 
 }  // namespace

@@ -3,18 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <memory>
 #include <system_error>
 
-#ifdef _WIN32
-#include <io.h>
-#include <process.h>
-#else
-#include <unistd.h>
-#endif
+#include "core/base/write_rules.h"
 
 namespace hairloom {
 namespace {
@@ -37,23 +31,6 @@ std::string systemMessage(int code) {
     return std::generic_category().message(code);
 }
 
-bool flushToDisk(std::FILE* file) {
-    if (std::fflush(file) != 0) return false;
-#ifdef _WIN32
-    return _commit(_fileno(file)) == 0;
-#else
-    return fsync(fileno(file)) == 0;
-#endif
-}
-
-int processId() {
-#ifdef _WIN32
-    return _getpid();
-#else
-    return getpid();
-#endif
-}
-
 template <class Container>
 Result<Container> readWhole(const std::filesystem::path& path, std::uint64_t maxBytes) {
     const std::string name = path.string();
@@ -61,6 +38,9 @@ Result<Container> readWhole(const std::filesystem::path& path, std::uint64_t max
     const auto status = std::filesystem::status(path, code);
     if (!std::filesystem::exists(status)) return failIn(name, {}, "no such file", "expected a readable file");
     if (std::filesystem::is_directory(status)) return failIn(name, {}, "is a folder", "expected a file");
+    // Opening a FIFO waits for somebody to write to it.
+    if (!std::filesystem::is_regular_file(status))
+        return failIn(name, {}, "is a device or a FIFO", "expected a file");
     const FileHandle file = openFile(path, "rb");
     if (!file) return failIn(name, {}, fmt::format("cannot be read: {}", systemMessage(errno)));
     const std::uint64_t size = std::filesystem::file_size(path, code);
@@ -70,6 +50,7 @@ Result<Container> readWhole(const std::filesystem::path& path, std::uint64_t max
         return failIn(name, {}, fmt::format("is {} bytes long", size),
                       fmt::format("expected at most {}", maxBytes));
     }
+    noteInput(path);
     Container content(static_cast<std::size_t>(size), typename Container::value_type{});
     const std::size_t got = std::fread(content.data(), 1, content.size(), file.get());
     if (got != content.size()) {
@@ -89,55 +70,12 @@ Result<std::string> readTextFile(const std::filesystem::path& path, std::uint64_
 }
 
 std::vector<std::byte> readBeginning(const std::filesystem::path& path, std::size_t count) {
+    std::error_code code;
+    if (!std::filesystem::is_regular_file(path, code)) return {};
     std::vector<std::byte> bytes(count);
     const FileHandle file = openFile(path, "rb");
     bytes.resize(file ? std::fread(bytes.data(), 1, count, file.get()) : 0);
     return bytes;
-}
-
-std::filesystem::path temporaryBeside(const std::filesystem::path& path) {
-    static std::atomic<unsigned> serial{0};
-    std::filesystem::path temporary = path;
-    temporary += fmt::format(".{}-{}.part", processId(), serial++);
-    return temporary;
-}
-
-Status writeFileAtomically(const std::filesystem::path& path, std::span<const std::byte> bytes) {
-    const std::filesystem::path temporary = temporaryBeside(path);
-    const auto giveUp = [&](const std::string& why) {
-        std::error_code ignored;
-        std::filesystem::remove(temporary, ignored);
-        return failIn(path.string(), {}, "cannot be written: " + why,
-                      "expected a writable folder with free space");
-    };
-    FileHandle file = openFile(temporary, "wb");
-    if (!file) return giveUp(systemMessage(errno));
-    if (std::fwrite(bytes.data(), 1, bytes.size(), file.get()) != bytes.size())
-        return giveUp(systemMessage(errno));
-    if (!flushToDisk(file.get())) return giveUp(systemMessage(errno));
-    file.reset();
-    std::error_code code;
-    std::filesystem::rename(temporary, path, code);
-    if (code) return giveUp(code.message());
-    return {};
-}
-
-Status writeFileAtomically(const std::filesystem::path& path, std::string_view text) {
-    return writeFileAtomically(path, std::as_bytes(std::span(text.data(), text.size())));
-}
-
-Result<std::vector<std::string>> writeFiles(const std::filesystem::path& folder,
-                                            const std::vector<std::pair<std::string, std::string>>& files) {
-    std::error_code code;
-    std::filesystem::create_directories(folder, code);
-    if (code) return failIn(folder.string(), {}, "the folder cannot be made: " + code.message());
-    std::vector<std::string> names;
-    for (const auto& [name, text] : files) {
-        if (auto status = writeFileAtomically(folder / name, text); !status)
-            return tl::unexpected(status.error());
-        names.push_back(name);
-    }
-    return names;
 }
 
 Status ByteReader::seek(std::uint64_t offset, std::string_view what) {

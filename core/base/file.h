@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Whole files in and out, and a reader that treats every count as hostile. All binary data is little-endian.
+// Whole files in, and a reader that treats every count as hostile; output_file.h writes. All binary data is
+// little-endian.
 
 #include <bit>
 #include <cstddef>
@@ -15,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/output_file.h"
 #include "core/base/result.h"
 
 namespace hairloom {
@@ -30,19 +32,6 @@ Result<std::string> readTextFile(const std::filesystem::path& path,
 
 /// The first bytes of a file, at most `count` of them; none where it cannot be read.
 std::vector<std::byte> readBeginning(const std::filesystem::path& path, std::size_t count);
-
-/// Writes a temporary file beside `path`, flushes it to the disk and renames it: readers see the old content
-/// or the new one, never a part. On error nothing is left under either name.
-Status writeFileAtomically(const std::filesystem::path& path, std::span<const std::byte> bytes);
-Status writeFileAtomically(const std::filesystem::path& path, std::string_view text);
-
-/// Makes the folder where it is missing and writes texts under names in it, each as writeFileAtomically()
-/// does; the names, in order. Stops at the first error.
-Result<std::vector<std::string>> writeFiles(const std::filesystem::path& folder,
-                                            const std::vector<std::pair<std::string, std::string>>& files);
-
-/// A name beside `path` that no other writer uses, for content that is renamed to `path` when it is whole.
-std::filesystem::path temporaryBeside(const std::filesystem::path& path);
 
 /// Reads plain values from a block of memory; never past its end.
 class ByteReader {

@@ -77,7 +77,7 @@ Status writeWords(const std::filesystem::path& path, Words words) {
     words.push_back(static_cast<std::uint32_t>(hashBytes(std::as_bytes(std::span(words)))));
     std::error_code failure;
     std::filesystem::create_directories(path.parent_path(), failure);
-    return writeFileAtomically(path, std::as_bytes(std::span(words)));
+    return writeFileAtomically(path, std::as_bytes(std::span(words)), Replacing::Anything);
 }
 
 struct Entry {

@@ -6,10 +6,11 @@
 #include <array>
 #include <cstring>
 #include <fstream>
-#include <system_error>
 
+#include "core/base/content_kind.h"
 #include "core/base/file.h"
 #include "core/base/hash.h"
+#include "core/base/write_rules.h"
 
 namespace hairloom {
 namespace {
@@ -57,23 +58,10 @@ void appendMoved(std::vector<Vec3f>& values, std::span<const Vec3f> posed_ws, st
 }  // namespace
 
 struct FrameRecorder::Impl {
-    std::filesystem::path path;
-    std::filesystem::path temporary;
-    std::ofstream file;
+    OutputFile file;
     Header header;
     std::vector<Vec3f> scalpRest;
     std::vector<Vec3f> sphereRest;
-
-    ~Impl() {
-        if (!file.is_open()) return;
-        file.close();
-        std::error_code ignored;
-        std::filesystem::remove(temporary, ignored);
-    }
-
-    tl::unexpected<Error> writeError() const {
-        return failIn(path.string(), {}, "cannot be written", "expected a writable folder with free space");
-    }
 };
 
 FrameRecorder::FrameRecorder(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -83,17 +71,16 @@ FrameRecorder::~FrameRecorder() = default;
 
 Result<FrameRecorder> FrameRecorder::open(const std::filesystem::path& path, const Groom& groom,
                                           float framesPerSecond) {
-    auto impl = std::make_unique<Impl>();
-    impl->path = path;
-    impl->temporary = temporaryBeside(path);
+    auto file = OutputFile::open(path, content::kFrames);
+    if (!file) return tl::unexpected(file.error());
+    auto impl = std::make_unique<Impl>(Impl{std::move(*file), {}, {}, {}});
     impl->header = headerFor(groom);
     impl->header.framesPerSecond = framesPerSecond;
     if (groom.scalp) impl->scalpRest.assign(groom.scalp->positions().begin(), groom.scalp->positions().end());
     for (const CollisionSphere& sphere : groom.spheres) impl->sphereRest.push_back(sphere.centre);
-    impl->file.open(impl->temporary, std::ios::binary | std::ios::trunc);
     const Header unfinished;
-    if (!impl->file.write(reinterpret_cast<const char*>(&unfinished), sizeof(unfinished)))
-        return impl->writeError();
+    if (auto status = impl->file.write(std::as_bytes(std::span(&unfinished, 1))); !status)
+        return tl::unexpected(status.error());
     return FrameRecorder(std::move(impl));
 }
 
@@ -104,25 +91,16 @@ Status FrameRecorder::add(std::span<const Vec3f> positions_ws, const HeadPose& p
     appendMoved(values, pose.sphereCentres_ws, impl_->sphereRest, pose.head_ws);
     const auto bytes = std::as_bytes(std::span(values));
     const std::uint64_t hash = hashBytes(bytes);
-    impl_->file.write(reinterpret_cast<const char*>(&hash), sizeof(hash));
-    impl_->file.write(reinterpret_cast<const char*>(bytes.data()),
-                      static_cast<std::streamsize>(bytes.size()));
-    if (!impl_->file) return impl_->writeError();
+    if (auto status = impl_->file.write(std::as_bytes(std::span(&hash, 1))); !status) return status;
+    if (auto status = impl_->file.write(bytes); !status) return status;
     ++impl_->header.frames;
     return {};
 }
 
 Status FrameRecorder::finish() {
-    impl_->file.seekp(0);
-    impl_->file.write(reinterpret_cast<const char*>(&impl_->header), sizeof(Header));
-    impl_->file.flush();
-    if (!impl_->file) return impl_->writeError();
-    impl_->file.close();
-    std::error_code code;
-    std::filesystem::rename(impl_->temporary, impl_->path, code);
-    if (!code) return {};
-    std::filesystem::remove(impl_->temporary, code);
-    return impl_->writeError();
+    const auto header = std::as_bytes(std::span(&impl_->header, 1));
+    if (auto status = impl_->file.writeAt(0, header); !status) return status;
+    return impl_->file.finish();
 }
 
 Result<RecordedFrame> readFrame(const std::filesystem::path& path, const Groom& groom, std::uint64_t index) {
@@ -130,6 +108,7 @@ Result<RecordedFrame> readFrame(const std::filesystem::path& path, const Groom& 
     std::ifstream file(path, std::ios::binary);
     Header header;
     if (!file) return failIn(name, {}, "cannot be read", "expected a record of frames");
+    noteInput(path);
     if (!file.read(reinterpret_cast<char*>(&header), sizeof(header)) || header.magic != kMagic) {
         return failIn(name, Byte{0}, "is no record of frames",
                       "expected a file that simulate --record wrote");

@@ -100,6 +100,7 @@ StartPage::StartPage(DocumentFiles& files, const Preferences& preferences, QWidg
     connect(&preferences_, &Preferences::recentFilesChanged, this, &StartPage::fillRecent);
     fillRecent();
     fillRecoveries();
+    fillLeftOvers();
 }
 
 void StartPage::fillRecent() {
@@ -135,6 +136,41 @@ void StartPage::fillRecoveries() {
         });
         recoveries_->addWidget(row);
     }
+}
+
+void StartPage::fillLeftOvers() {
+    QStringList folders;
+    for (const QString& path : preferences_.recentFiles()) folders += QFileInfo(path).path();
+    folders.removeDuplicates();
+    for (const QString& folder : folders) {
+        for (const LeftOver& leftOver : findLeftOvers(folder.toStdString())) addLeftOver(leftOver);
+    }
+}
+
+void StartPage::addLeftOver(const LeftOver& leftOver) {
+    auto* row = new QWidget;
+    auto* layout = new QHBoxLayout(row);
+    layout->setContentsMargins(0, 0, 0, 0);
+    const QString target = QString::fromStdString(leftOver.target);
+    const QString file = QString::fromStdString(leftOver.file.string());
+    const QString size = QLocale().formattedDataSize(static_cast<qint64>(leftOver.bytes));
+    auto* label = dim(
+        leftOver.whole
+            ? tr("%1 may be torn: the program was ended while it wrote. %2 has all of it.").arg(target, file)
+            : tr("A program was ended while it wrote %1, and left %2.").arg(target, size));
+    label->setToolTip(file);
+    auto* remove = new QPushButton(tr("Remove"));
+    remove->setObjectName("removeLeftOver");
+    remove->setToolTip(tr("Deletes what was left; %1 stays as it is").arg(target));
+    layout->addWidget(label, 1);
+    layout->addWidget(remove);
+    connect(remove, &QPushButton::clicked, row, [row, label, leftOver] {
+        if (const auto removed = removeLeftOver(leftOver); !removed)
+            label->setText(QString::fromStdString(removed.error().message()));
+        else
+            row->deleteLater();
+    });
+    recoveries_->addWidget(row);
 }
 
 }  // namespace hairloom::editor

@@ -5,6 +5,7 @@
 #include <QVBoxLayout>
 #include <QWidget>
 
+#include "core/base/output_file.h"
 #include "editor/document/autosave.h"
 #include "editor/document/preferences.h"
 #include "editor/shell/files.h"
@@ -23,6 +24,9 @@ class StartPage : public QWidget {
   private:
     void fillRecent();
     void fillRecoveries();
+    /// Files that killed runs left beside recent ones.
+    void fillLeftOvers();
+    void addLeftOver(const LeftOver& leftOver);
 
     DocumentFiles& files_;
     const Preferences& preferences_;

@@ -27,14 +27,6 @@ class FileTest : public testing::Test {
     fs::path folder;
 };
 
-TEST_F(FileTest, WritesReplacesAndLeavesNoTemporaryFile) {
-    const fs::path path = folder / "a.txt";
-    ASSERT_TRUE(writeFileAtomically(path, std::string_view("first")));
-    ASSERT_TRUE(writeFileAtomically(path, std::string_view("second")));
-    EXPECT_EQ(readTextFile(path).value(), "second");
-    EXPECT_EQ(filesInFolder(), 1u);
-}
-
 // Names are UTF-8 in `char` on every system; the last of these needs two units of UTF-16.
 TEST_F(FileTest, NamesOutsideAsciiNameTheSameFileAsTheirCharacters) {
     for (const std::u8string& name :
@@ -46,17 +38,6 @@ TEST_F(FileTest, NamesOutsideAsciiNameTheSameFileAsTheirCharacters) {
     }
     EXPECT_EQ(filesInFolder(), 3u);
     EXPECT_FALSE(readFile(folder / "\xC3(\xF0\x9F\x92"));  // not UTF-8
-}
-
-TEST_F(FileTest, FailedWriteLeavesNothing) {
-    const auto status = writeFileAtomically(folder / "missing" / "a.txt", std::string_view("x"));
-    ASSERT_FALSE(status);
-    EXPECT_NE(status.error().message().find("cannot be written"), std::string::npos);
-    EXPECT_EQ(filesInFolder(), 0u);
-
-    fs::create_directories(folder / "taken");
-    EXPECT_FALSE(writeFileAtomically(folder / "taken", std::string_view("x")));
-    EXPECT_EQ(filesInFolder(), 1u);
 }
 
 TEST_F(FileTest, ReadingNamesWhatIsWrong) {

@@ -17,6 +17,7 @@
 #include "editor/dialogs/shortcut_dialog.h"
 #include "editor/fields/number_box.h"
 #include "editor/panels/panel.h"
+#include "editor/shell/start_page.h"
 #include "importers/strands.h"
 #include "tests/editor/window_fixture.h"
 
@@ -52,6 +53,36 @@ TEST_F(ShellTest, WhatIsSavedOpensAgainWithTheSameHash) {
     EXPECT_EQ(hash(), before);
     EXPECT_EQ(document().path(), inFolder("a.hairloom"));
     EXPECT_EQ(parts().preferences.recentFiles().value(0), inFolder("a.hairloom"));
+}
+
+TEST_F(ShellTest, WhatAKilledRunLeftBesideRecentFilesIsOfferedForRemoval) {
+    openSampleHair("short");
+    ASSERT_TRUE(window->saveTo(inFolder("a.hairloom")));
+    const QString left = inFolder(".a.hairloom.0123456789abc.hairloom-part");
+    QFile file(left);
+    ASSERT_TRUE(file.open(QIODevice::WriteOnly));
+    file.write("half");
+    file.close();
+    StartPage page(files(), parts().preferences);
+    auto* remove = page.findChild<QPushButton*>("removeLeftOver");
+    ASSERT_TRUE(remove);
+    EXPECT_TRUE(QFileInfo::exists(left));
+    remove->click();
+    EXPECT_FALSE(QFileInfo::exists(left));
+    EXPECT_TRUE(QFileInfo::exists(inFolder("a.hairloom")));
+}
+
+TEST_F(ShellTest, SavingOverAFileOfAnotherKindIsRefused) {
+    openSampleHair("short");
+    QFile file(inFolder("notes.hairloom"));
+    ASSERT_TRUE(file.open(QIODevice::WriteOnly));
+    file.write("my notes");
+    file.close();
+    EXPECT_FALSE(window->saveTo(file.fileName()));
+    EXPECT_TRUE(window->statusLine().message().contains("is text"))
+        << window->statusLine().message().toStdString();
+    ASSERT_TRUE(file.open(QIODevice::ReadOnly));
+    EXPECT_EQ(file.readAll(), "my notes");
 }
 
 TEST_F(ShellTest, UnreadableFileIsReportedAndChangesNothing) {

@@ -235,6 +235,7 @@ TEST_F(StrandWriters, EveryTargetOfEveryFormatIsWrittenAndReadBackByContent) {
     for (const StrandWriter& writer : strandWriters()) {
         ASSERT_FALSE(writer.targets.empty()) << writer.name;
         for (const ExportTarget& target : writer.targets) {
+            fs::remove(folder / "any.name");
             const auto report = writer.write(groom, folder / "any.name", target.options);
             ASSERT_TRUE(report) << target.name << ": " << report.error().message();
             EXPECT_EQ(report->strands, 2u) << target.name;

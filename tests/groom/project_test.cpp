@@ -176,12 +176,12 @@ TEST(Project, TruncatedAnywhereIsRefused) {
     }
     for (const std::size_t length :
          {std::size_t{0}, std::size_t{7}, std::size_t{31}, whole.size() / 2, whole.size() - 1}) {
-        ASSERT_TRUE(writeFileAtomically(path, std::span(whole).first(length)));
+        ASSERT_TRUE(writeFileAtomically(path, std::span(whole).first(length), Replacing::Anything));
         EXPECT_FALSE(loadProject(path));
     }
     auto longer = whole;
     longer.push_back(std::byte{0});
-    ASSERT_TRUE(writeFileAtomically(path, longer));
+    ASSERT_TRUE(writeFileAtomically(path, longer, Replacing::Anything));
     EXPECT_THAT(loadError(path), HasSubstr("follow the last array"));
 }
 
@@ -210,11 +210,12 @@ TEST(Project, NamesThePlaceOfDamage) {
     const std::size_t place = text.find(std::string_view(reinterpret_cast<const char*>(&x), 4), 2048);
     ASSERT_NE(place, std::string_view::npos);
     bytes[place + 5] ^= std::byte{4};
-    ASSERT_TRUE(writeFileAtomically(path, bytes));
+    ASSERT_TRUE(writeFileAtomically(path, bytes, Replacing::Anything));
     EXPECT_THAT(loadError(path),
                 HasSubstr(fmt::format("@{}: array '", place / kArchiveAlignment * kArchiveAlignment)));
     EXPECT_THAT(loadError(path), HasSubstr("does not match its checksum"));
-    ASSERT_TRUE(writeFileAtomically(path, std::string_view("v 0 0 0\n")));
+    ASSERT_TRUE(writeFileAtomically(path, std::as_bytes(std::span(std::string_view("v 0 0 0\n"))),
+                                    Replacing::Anything));
     EXPECT_THAT(loadError(path), HasSubstr("is no Hairloom file"));
 }
 
@@ -260,7 +261,7 @@ TEST(HostileProject, VersionsAndKindsAreNamed) {
     EXPECT_THAT(other.error(), HasSubstr("/kind is 'cache'; expected 'project'"));
     auto bytes = Forger(folder).sealed();
     bytes[8] = std::byte{9};
-    ASSERT_TRUE(writeFileAtomically(other.path, bytes));
+    ASSERT_TRUE(writeFileAtomically(other.path, bytes, Replacing::Anything));
     EXPECT_THAT(loadError(other.path),
                 HasSubstr("container is version 9; this program reads versions up to 1"));
 }

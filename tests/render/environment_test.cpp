@@ -49,10 +49,11 @@ TEST(Exr, DamagedFilesAreErrors) {
                          })));
     const auto whole = readFile(kFile).value();
     for (std::size_t length = 0; length < whole.size(); length += 7) {
-        ASSERT_TRUE(writeFileAtomically(kFile, std::span(whole).first(length)));
+        ASSERT_TRUE(writeFileAtomically(kFile, std::span(whole).first(length), Replacing::Anything));
         EXPECT_FALSE(readExr(kFile)) << length << " of " << whole.size() << " bytes";
     }
-    ASSERT_TRUE(writeFileAtomically(kFile, std::string_view("no picture")));
+    ASSERT_TRUE(writeFileAtomically(kFile, std::as_bytes(std::span(std::string_view("no picture"))),
+                                    Replacing::Anything));
     EXPECT_FALSE(readExr(kFile));
     std::filesystem::remove(kFile);
     EXPECT_FALSE(readExr(kFile));

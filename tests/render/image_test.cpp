@@ -86,7 +86,8 @@ TEST(Png, AnimationsHoldTheirFrames) {
 
 TEST(Png, DamagedOnesAreErrors) {
     const auto path = std::filesystem::path(testing::TempDir()) / "hairloom-bad.png";
-    ASSERT_TRUE(writeFileAtomically(path, std::string_view("no picture")));
+    ASSERT_TRUE(writeFileAtomically(path, std::as_bytes(std::span(std::string_view("no picture"))),
+                                    Replacing::Anything));
     EXPECT_FALSE(readPng(path));
     EXPECT_FALSE(readPng(path.string() + ".not-there"));
     std::filesystem::remove(path);

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/finite_numbers.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+
+namespace hairloom::cli {
+namespace {
+
+/// Reads the whole text as one decimal number; hexadecimal, blanks and words are none.
+bool isFinite(const std::string& text) {
+    const char* const begin = text.data() + (text.starts_with('+') ? 1 : 0);
+    double value = 0;
+    const auto [end, code] = std::from_chars(begin, text.data() + text.size(), value);
+    return code == std::errc() && end == text.data() + text.size() &&
+           std::isfinite(static_cast<float>(value));
+}
+
+}  // namespace
+
+void refuseNumbersThatAreNone(CLI::App& job) {
+    const CLI::Validator finite(
+        [](std::string& text) {
+            return isFinite(text) ? std::string() : fmt::format("'{}' is no finite number", text);
+        },
+        "");
+    for (CLI::Option* option : job.get_options()) {
+        const std::string type = option->get_type_name();
+        const bool number = type.starts_with("FLOAT") || type.starts_with("INT") || type.starts_with("UINT");
+        // In front of the checks of ranges, which take what is no number for 0.
+        if (number && option->get_delimiter() == '\0') option->check(finite);
+    }
+}
+
+}  // namespace hairloom::cli

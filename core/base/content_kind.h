@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What a file holds, told from how it begins: a writer replaces only what is of the kind that it writes.
+
+#include <cstddef>
+#include <span>
+#include <string_view>
+
+namespace hairloom {
+
+namespace content {
+inline constexpr std::string_view kEmpty = "empty";
+inline constexpr std::string_view kProject = "a Hairloom project";
+inline constexpr std::string_view kJson = "JSON";
+inline constexpr std::string_view kPng = "a PNG picture";
+inline constexpr std::string_view kFrames = "a record of frames";
+}  // namespace content
+
+/// Bytes from the start of a file that tell its kind.
+inline constexpr std::size_t kContentKindBytes = 4096;
+
+/// The kind in words that fit behind "is": one of content's, "an OBJ file", "text", "of no known kind" …
+std::string_view contentKind(std::span<const std::byte> beginning);
+
+}  // namespace hairloom

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What output_file.cpp needs of the system: the state of a name, and a temporary file that takes its place.
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "core/base/result.h"
+
+namespace hairloom {
+
+/// What a name stands for; links are followed.
+struct FileState {
+    bool exists = false;
+    bool folder = false;
+    std::string_view device;  ///< "a device", "a FIFO", "a socket", or empty
+    bool readOnly = false;
+    std::pair<std::uint64_t, std::uint64_t> identity;  ///< volume and number of the file
+    std::uint64_t bytes = 0;
+    std::int64_t changed = 0;   ///< time of the last change of content, in the system's ticks
+    std::int64_t accessed = 0;  ///< time of the last access
+
+    bool sameContent(const FileState& other) const {
+        return identity == other.identity && bytes == other.bytes && changed == other.changed;
+    }
+};
+FileState fileState(const std::filesystem::path& path);
+
+/// The name behind symbolic links, which need not exist. Errors: a circle, a link in a folder for all that
+/// somebody else laid there.
+Result<std::filesystem::path> followLinks(const std::filesystem::path& path);
+
+/// ".NAME.RANDOM.hairloom-part", or "….hairloom-whole" while the target is written in place.
+inline constexpr std::string_view kPartSuffix = ".hairloom-part";
+inline constexpr std::string_view kWholeSuffix = ".hairloom-whole";
+
+/// Its file is open, locked against findLeftOvers() and known to the handler of signals, until it is gone.
+class TemporaryFile {
+  public:
+    /// In the folder of `target`, a name without links. Errors: another process writes the same target.
+    static Result<TemporaryFile> create(const std::filesystem::path& target);
+    TemporaryFile(TemporaryFile&&) noexcept;
+    TemporaryFile& operator=(TemporaryFile&&) noexcept;
+    /// Takes the file away, unless it has taken the target's place.
+    ~TemporaryFile();
+
+    Status write(std::span<const std::byte> bytes);
+    Status writeAt(std::uint64_t offset, std::span<const std::byte> bytes);
+    /// Whether the target has the same bytes.
+    bool equalsTarget() const;
+    /// Takes the target's place, which exists or not. A file that is replaced was last accessed at
+    /// `accessed`.
+    Status replaceTarget(std::int64_t accessed);
+
+  private:
+    struct Impl;
+    explicit TemporaryFile(std::unique_ptr<Impl> impl);
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Straight into a device or FIFO.
+Status writeThrough(const std::filesystem::path& path, std::span<const std::byte> bytes);
+
+/// Whether a process has the file open for writing as TemporaryFile does.
+bool isBeingWritten(const std::filesystem::path& temporary);
+
+}  // namespace hairloom
