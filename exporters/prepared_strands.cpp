@@ -9,6 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/geometry/closest_point.h"
 #include "core/geometry/curve.h"
+#include "exporters/compare_attributes.h"
 
 namespace hairloom {
 namespace {
@@ -111,6 +112,7 @@ class Preparer {
         if (judged == Usability::CoincidentPoints) coincident_.add(strand);
         const bool resample = target_ != 0 && points.size() != target_;
         if (resample) resampled_.add(strand);
+        result_.isResampled = result_.isResampled || resample;
         const std::size_t count = resample ? target_ : points.size();
         if (resample) {
             for (const Vec3f& point : resampleEvenly(points, count)) addPosition(point);
@@ -253,6 +255,21 @@ Result<PreparedStrands> prepareStrands(const Groom& groom, const StrandExportOpt
     return prepared;
 }
 
+std::vector<Vec2f> rootUvs(const Groom& groom, const PreparedStrands& strands) {
+    const auto stored = groom.strandAttributes.view<Vec2f>(attribute::kRootUv);
+    const auto bindings = groom.rootBindings();
+    const bool onScalp =
+        groom.scalp && !groom.scalp->cornerUvs().empty() && bindings.size() == groom.strandCount();
+    std::vector<Vec2f> uvs;
+    for (const std::uint32_t source : strands.sources) {
+        if (stored.size() == groom.strandCount())
+            uvs.push_back(stored[source]);
+        else if (onScalp)
+            uvs.push_back(groom.scalp->uvAt(bindings[source].triangle, bindings[source].barycentric));
+    }
+    return uvs;
+}
+
 Result<ExportReport> writeAndCompare(const Groom& groom, PreparedStrands prepared,
                                      const StrandExportOptions& options, const std::filesystem::path& path,
                                      std::span<const std::byte> bytes) {
@@ -281,6 +298,7 @@ Result<ExportReport> writeAndCompare(const Groom& groom, PreparedStrands prepare
             strandError(groom.strand(prepared.sources[strand]), readBack->groom.strand(strand));
         report.maxErrorMm = std::max(report.maxErrorMm, error * 1000.0);
     }
+    compareAttributes(groom, prepared, readBack->groom, report);
     report.findings = std::move(prepared.findings);
     judgeRoots(groom, prepared, report.findings);
     report.findings.insert(report.findings.end(), readBack->warnings.begin(), readBack->warnings.end());

@@ -18,6 +18,7 @@ struct PreparedStrands {
     std::vector<float> thickness;           ///< per point, diameter in units of the file
     std::vector<float> transparency;        ///< per point, or empty
     std::vector<Vec3f> colours;             ///< per point, or empty
+    bool isResampled = false;               ///< some strand has other points than the groom's
     std::vector<Finding> findings;
 
     std::size_t strandCount() const { return sources.size(); }
@@ -27,6 +28,10 @@ struct PreparedStrands {
 /// Errors: options out of range, nothing to write.
 Result<PreparedStrands> prepareStrands(const Groom& groom, const StrandExportOptions& options,
                                        std::uint32_t pointsPerStrand);
+
+/// Of the strands that are written: the groom's own, else those of their roots on the scalp; empty where
+/// neither is known.
+std::vector<Vec2f> rootUvs(const Groom& groom, const PreparedStrands& strands);
 
 /// Writes the file, reads it back and measures how far it is from the groom.
 Result<ExportReport> writeAndCompare(const Groom& groom, PreparedStrands prepared,

@@ -13,9 +13,20 @@ nlohmann::json toJson(const ExportReport& report) {
                             {"where", finding.where},
                             {"fix", finding.fix}});
     }
-    return {{"format", report.format},           {"strands", report.strands},
-            {"points", report.points},           {"bytes", report.bytes},
-            {"max_error_mm", report.maxErrorMm}, {"findings", std::move(findings)}};
+    nlohmann::json attributes = nlohmann::json::array();
+    for (const ComparedAttribute& attribute : report.attributes)
+        attributes.push_back({{"name", attribute.name}, {"max_error", attribute.maxError}});
+    nlohmann::json leftBehind = nlohmann::json::array();
+    for (const LeftBehind& left : report.leftBehind)
+        leftBehind.push_back({{"what", left.what}, {"fix", left.fix}});
+    return {{"attributes", std::move(attributes)},
+            {"left_behind", std::move(leftBehind)},
+            {"format", report.format},
+            {"strands", report.strands},
+            {"points", report.points},
+            {"bytes", report.bytes},
+            {"max_error_mm", report.maxErrorMm},
+            {"findings", std::move(findings)}};
 }
 
 }  // namespace hairloom

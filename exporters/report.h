@@ -11,6 +11,18 @@
 
 namespace hairloom {
 
+/// An attribute that the file has, and how far its values are from the groom's; units of the attribute.
+struct ComparedAttribute {
+    std::string name;
+    double maxError = 0;
+};
+
+/// Something authored that the file cannot have, and what to do about it.
+struct LeftBehind {
+    std::string what;
+    std::string fix;
+};
+
 struct ExportReport {
     std::string format;       ///< name of the format, as importStrands tells it
     std::size_t strands = 0;  ///< in the file
@@ -18,10 +30,13 @@ struct ExportReport {
     std::uint64_t bytes = 0;  ///< size of the file
     /// Largest distance of a point of the groom from its strand in the file, read back; millimetres.
     double maxErrorMm = 0;
+    std::vector<ComparedAttribute> attributes;
+    std::vector<LeftBehind> leftBehind;
     std::vector<Finding> findings;
 };
 
-/// Keys: format, strands, points, bytes, max_error_mm, findings (severity, what, where, fix).
+/// Keys: format, strands, points, bytes, max_error_mm, attributes (name, max_error), left_behind (what, fix),
+/// findings (severity, what, where, fix).
 nlohmann::json toJson(const ExportReport& report);
 
 }  // namespace hairloom

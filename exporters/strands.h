@@ -31,11 +31,12 @@ struct ExportTarget {
 
 /// A format that hair is written in. One file NAME_writer.cpp of this folder: nameWriter() says what it is.
 struct StrandWriter {
-    std::string name;                   ///< as `--format` has it; the suffix of its files, too
-    std::string label;                  ///< "TressFX .tfx"
-    std::string carries;                ///< in words: what else than positions
-    std::string limits;                 ///< in words
+    std::string name;     ///< as `--format` has it: the suffix of its files and, behind a hyphen, for whom
+    std::string label;    ///< "TressFX .tfx"
+    std::string carries;  ///< in words: what else than positions
+    std::string limits;   ///< in words
     std::vector<ExportTarget> targets;  ///< at least one
+    std::string suffix() const { return name.substr(0, name.find('-')); }
     /// Replaces `path` atomically, reads the file back and compares. Strands that no consumer could use
     /// (fewer than two points, not finite, of no length) are left out and reported. Errors: nothing left to
     /// write, a limit of the format that options cannot mend, a file that cannot be written or does not read

@@ -47,23 +47,13 @@ Result<std::uint32_t> choosePoints(const Groom& groom, const StrandExportOptions
                 "TressFX can have 4, 8, 16, 32 or 64");
 }
 
-std::vector<Vec2f> rootUvs(const Groom& groom, PreparedStrands& strands) {
-    const auto stored = groom.strandAttributes.view<Vec2f>(attribute::kRootUv);
-    std::vector<Vec2f> uvs(strands.strandCount(), Vec2f::Zero());
-    if (stored.size() == groom.strandCount()) {
-        for (std::size_t i = 0; i < uvs.size(); ++i) uvs[i] = stored[strands.sources[i]];
-        return uvs;
-    }
-    const auto bindings = groom.rootBindings();
-    if (groom.scalp && !groom.scalp->cornerUvs().empty() && bindings.size() == groom.strandCount()) {
-        for (std::size_t i = 0; i < uvs.size(); ++i) {
-            const SurfacePoint& root = bindings[strands.sources[i]];
-            uvs[i] = groom.scalp->uvAt(root.triangle, root.barycentric);
-        }
-        return uvs;
-    }
+/// Loaders read root UVs wherever the header says that they are: there are always some.
+std::vector<Vec2f> rootUvsOrZeros(const Groom& groom, PreparedStrands& strands) {
+    std::vector<Vec2f> uvs = rootUvs(groom, strands);
+    if (!uvs.empty()) return uvs;
     strands.findings.push_back({Severity::Warning, "root UVs are missing; all are (0, 0)", "root UVs",
                                 "bind the strands to a scalp with UVs to colour them by its texture"});
+    uvs.resize(strands.strandCount(), Vec2f::Zero());
     return uvs;
 }
 
@@ -135,7 +125,7 @@ Result<ExportReport> writeTfx(const Groom& groom, const std::filesystem::path& p
     }
     addLimits(*strands);
     TfxSections sections;
-    sections.uvs = rootUvs(groom, *strands);
+    sections.uvs = rootUvsOrZeros(groom, *strands);
     const auto scales = groom.strandAttributes.view<float>("thickness_scale");
     if (scales.size() == groom.strandCount()) {
         for (const std::uint32_t source : strands->sources) sections.thicknessScale.push_back(scales[source]);

@@ -8,6 +8,17 @@
 
 namespace hairloom {
 
+/// Named values of strands or points, element after element.
+struct RawAttribute {
+    enum class Type : std::uint8_t { Number, Whole, Flag, Index };
+    std::string name;
+    bool perPoint = false;
+    Type type = Type::Number;
+    std::uint32_t components = 1;     ///< 1 … 4 of numbers, else 1
+    std::vector<float> numbers;       ///< of Number
+    std::vector<std::int32_t> whole;  ///< of the others
+};
+
 struct RawStrands {
     std::string format;
     std::vector<std::uint32_t> offsets{0};  ///< as in Groom
@@ -23,7 +34,13 @@ struct RawStrands {
     std::optional<Vec3f> defaultColour;  ///< linear RGB for all points
     bool rootFirst = true;               ///< false where the format does not say which end is the root
     bool mirrorZ = false;                ///< the file is left-handed by a negated Z
-    std::vector<DroppedStrand> dropped;  ///< what the reader itself had to leave out
+    std::vector<RawAttribute> attributes;      ///< what else the file has; no two of one name and domain
+    std::vector<std::string> groupNames;       ///< of the attribute "group"
+    std::vector<std::vector<Vec3f>> frames;    ///< `positions` at each time where the strands move
+    float framesPerSecond = 0;                 ///< of them
+    std::optional<float> statedMetresPerUnit;  ///< where the file says it; goes before the option
+    std::optional<UpAxis> statedUp;            ///< as well
+    std::vector<DroppedStrand> dropped;        ///< what the reader itself had to leave out
     std::vector<Finding> warnings;
 };
 

@@ -53,11 +53,17 @@ class Cleaner {
         const std::size_t strands = raw_.offsets.size() - 1;
         std::uint32_t begin = 0;
         offsets_.reserve(strands + 1);
+        const bool follows = !raw_.attributes.empty() || !raw_.frames.empty();
         for (std::size_t strand = 0; strand < strands; ++strand) {
             const std::uint32_t end = raw_.offsets[strand + 1];
+            const std::size_t before = offsets_.size();
             keep(strand, begin, end);
+            if (follows && offsets_.size() > before)
+                keptStrands_.push_back(static_cast<std::uint32_t>(strand));
+            keptPoints_.resize(follows ? written_ : 0);
             begin = end;
         }
+        gatherAttributes();
         raw_.positions.resize(written_);
         for (auto* values : {&raw_.thickness, &raw_.transparency}) {
             if (!values->empty()) values->resize(written_);
@@ -98,8 +104,34 @@ class Cleaner {
         offsets_.push_back(static_cast<std::uint32_t>(written_));
     }
 
+    void gatherAttributes() {
+        for (RawAttribute& attribute : raw_.attributes) {
+            const auto& kept = attribute.perPoint ? keptPoints_ : keptStrands_;
+            gather(attribute.numbers, attribute.components, kept);
+            gather(attribute.whole, 1, kept);
+        }
+        for (std::vector<Vec3f>& frame : raw_.frames) {
+            gather(frame, 1, keptPoints_);
+            for (Vec3f& position : frame) position = toMetresYUp(position, options_, raw_.mirrorZ);
+        }
+    }
+
+    template <class T>
+    static void gather(std::vector<T>& values, std::size_t components, std::span<const std::uint32_t> kept) {
+        if (values.empty()) return;
+        for (std::size_t i = 0; i < kept.size(); ++i) {
+            for (std::size_t c = 0; c < components; ++c)
+                values[i * components + c] = values[kept[i] * components + c];
+        }
+        values.resize(kept.size() * components);
+    }
+
     /// Moves a point to the next free place, which is never behind its own.
     void place(std::uint32_t point, const Vec3f& position) {
+        if (!raw_.attributes.empty() || !raw_.frames.empty()) {
+            keptPoints_.resize(written_);
+            keptPoints_.push_back(point);
+        }
         raw_.positions[written_] = position;
         if (!raw_.thickness.empty()) raw_.thickness[written_] = raw_.thickness[point];
         if (!raw_.transparency.empty()) raw_.transparency[written_] = raw_.transparency[point];
@@ -125,6 +157,7 @@ class Cleaner {
     RawStrands& raw_;
     const StrandImportOptions& options_;
     std::vector<std::uint32_t> offsets_{0};
+    std::vector<std::uint32_t> keptStrands_, keptPoints_;  ///< of the file, where attributes follow them
     std::size_t written_ = 0;
     std::size_t repairedStrands_ = 0;
     std::size_t repairedPoints_ = 0;
@@ -136,6 +169,17 @@ void reverseRun(std::vector<T>& values, std::size_t begin, std::size_t end) {
     if (values.empty()) return;
     std::reverse(values.begin() + static_cast<std::ptrdiff_t>(begin),
                  values.begin() + static_cast<std::ptrdiff_t>(end));
+}
+
+void reverseAttribute(RawAttribute& attribute, std::size_t begin, std::size_t end) {
+    if (!attribute.perPoint) return;
+    reverseRun(attribute.whole, begin, end);
+    if (attribute.components == 1) return reverseRun(attribute.numbers, begin, end);
+    for (std::size_t low = begin, high = end; low + 1 < high; ++low, --high) {
+        for (std::size_t c = 0; c < attribute.components; ++c)
+            std::swap(attribute.numbers[low * attribute.components + c],
+                      attribute.numbers[(high - 1) * attribute.components + c]);
+    }
 }
 
 /// Turns strands so that the end nearer to the scalp comes first. Strands whose ends are about equally near
@@ -166,6 +210,8 @@ void orientToScalp(RawStrands& raw, const ScalpMesh& scalp) {
         reverseRun(raw.thickness, begin, end);
         reverseRun(raw.transparency, begin, end);
         reverseRun(raw.colours, begin, end);
+        for (RawAttribute& attribute : raw.attributes) reverseAttribute(attribute, begin, end);
+        for (std::vector<Vec3f>& frame : raw.frames) reverseRun(frame, begin, end);
     }
     if (turned > 0) {
         raw.warnings.push_back(
@@ -191,6 +237,67 @@ void takeThickness(RawStrands& raw, Groom& groom, float metresPerUnit) {
     }
 }
 
+template <class Vector>
+CowArray<Vector> vectorsOf(const std::vector<float>& numbers) {
+    constexpr auto kComponents = static_cast<std::size_t>(Vector::RowsAtCompileTime);
+    std::vector<Vector> values(numbers.size() / kComponents);
+    for (std::size_t i = 0; i < values.size(); ++i)
+        values[i] = Eigen::Map<const Vector>(&numbers[i * kComponents]);
+    return CowArray<Vector>(std::move(values));
+}
+
+AttributeData dataOf(RawAttribute& attribute) {
+    switch (attribute.type) {
+        case RawAttribute::Type::Whole:
+            return CowArray<std::int32_t>(std::move(attribute.whole));
+        case RawAttribute::Type::Index:
+            return CowArray<std::uint32_t>({attribute.whole.begin(), attribute.whole.end()});
+        case RawAttribute::Type::Flag:
+            return CowArray<std::uint8_t>({attribute.whole.begin(), attribute.whole.end()});
+        default:
+            break;
+    }
+    switch (attribute.components) {
+        case 2:
+            return vectorsOf<Vec2f>(attribute.numbers);
+        case 3:
+            return vectorsOf<Vec3f>(attribute.numbers);
+        case 4:
+            return vectorsOf<Vec4f>(attribute.numbers);
+        default:
+            return CowArray<float>(std::move(attribute.numbers));
+    }
+}
+
+/// A name that means something else here gets another.
+std::string importedName(const RawAttribute& attribute) {
+    constexpr std::array kPointNames{attribute::kPosition, attribute::kRadius, attribute::kPointColour,
+                                     attribute::kTransparency, attribute::kDye};
+    constexpr std::array kStrandNames{
+        attribute::kRootTriangle, attribute::kRootBarycentric, attribute::kRootUv,
+        attribute::kFrozen,       attribute::kSelected,        attribute::kHidden,
+        attribute::kLayer,        attribute::kStrandColour,    attribute::kDye};
+    const auto among = [&](const auto& names) {
+        return std::ranges::find(names, attribute.name) != names.end();
+    };
+    // Groups, guides and ids have been given their types by adoptAttributes().
+    const bool given =
+        attribute.type == RawAttribute::Type::Index || attribute.type == RawAttribute::Type::Flag;
+    const bool adopted = attribute.name == attribute::kGroup || attribute.name == attribute::kGuide ||
+                         attribute.name == attribute::kStrandId;
+    const bool taken = attribute.perPoint ? among(kPointNames) : among(kStrandNames) || (adopted && !given);
+    return taken ? attribute.name + "_of_file" : attribute.name;
+}
+
+void takeAttributes(RawStrands& raw, Groom& groom) {
+    for (RawAttribute& attribute : raw.attributes) {
+        AttributeSet& set = attribute.perPoint ? groom.pointAttributes : groom.strandAttributes;
+        std::string name = importedName(attribute);
+        set.set(name, dataOf(attribute));
+    }
+    groom.groupNames = std::move(raw.groupNames);
+}
+
 Groom makeFrom(RawStrands& raw, float metresPerUnit) {
     Groom groom = makeGroom(std::move(raw.offsets), std::move(raw.positions));
     takeThickness(raw, groom, metresPerUnit);
@@ -200,8 +307,23 @@ Groom makeFrom(RawStrands& raw, float metresPerUnit) {
     if (!raw.rootUvs.empty()) groom.strandAttributes.set(attribute::kRootUv, std::move(raw.rootUvs));
     if (!raw.thicknessScale.empty())
         groom.strandAttributes.set("thickness_scale", std::move(raw.thicknessScale));
+    takeAttributes(raw, groom);
     if (raw.defaultColour) groom.material.rootColour = groom.material.tipColour = *raw.defaultColour;
     return groom;
+}
+
+/// The options with the unit and axis that the file itself states.
+StrandImportOptions stated(RawStrands& raw, StrandImportOptions options) {
+    if (raw.statedMetresPerUnit) {
+        const float unit = *raw.statedMetresPerUnit;
+        if (options.metresPerUnit != 1.0f && std::abs(options.metresPerUnit / unit - 1) > 1e-4f) {
+            raw.warnings.push_back(fileNote(
+                fmt::format("the file states its unit, {} m; the one asked for is not used", unit), "unit"));
+        }
+        options.metresPerUnit = unit;
+    }
+    if (raw.statedUp) options.up = *raw.statedUp;
+    return options;
 }
 
 /// Attribute values that no consumer could use become the nearest that they can.
@@ -226,6 +348,8 @@ void repairAttributes(RawStrands& raw) {
     repairValues(raw.transparency, "transparency", raw.warnings, 0.0f, finiteNumber);
     repairValues(raw.thicknessScale, "strand thickness", raw.warnings, 1.0f, finiteNumber);
     repairValues(raw.colours, "colours", raw.warnings, Vec3f(Vec3f::Ones()), finite);
+    for (RawAttribute& attribute : raw.attributes)
+        repairValues(attribute.numbers, attribute.name, raw.warnings, 0.0f, finiteNumber);
     repairValues(raw.rootUvs, "root UVs", raw.warnings, Vec2f(Vec2f::Zero()), finite);
 }
 
@@ -250,12 +374,13 @@ bool looksLikeStrandFile(std::span<const std::byte> bytes) {
 }
 
 Result<ImportedStrands> importStrandsFromMemory(const std::string& file, std::span<const std::byte> bytes,
-                                                const StrandImportOptions& options) {
-    if (!(options.metresPerUnit > 0) || !std::isfinite(options.metresPerUnit)) {
-        return fail(fmt::format("{} metres per unit", options.metresPerUnit), "expected a positive number");
+                                                const StrandImportOptions& asked) {
+    if (!(asked.metresPerUnit > 0) || !std::isfinite(asked.metresPerUnit)) {
+        return fail(fmt::format("{} metres per unit", asked.metresPerUnit), "expected a positive number");
     }
-    auto raw = readRaw(file, bytes, options);
+    auto raw = readRaw(file, bytes, asked);
     if (!raw) return tl::unexpected(raw.error());
+    const StrandImportOptions options = stated(*raw, asked);
     Cleaner(*raw, options).run();
     std::sort(raw->dropped.begin(), raw->dropped.end(),
               [](const DroppedStrand& a, const DroppedStrand& b) { return a.strand < b.strand; });
@@ -277,6 +402,8 @@ Result<ImportedStrands> importStrandsFromMemory(const std::string& file, std::sp
     result.dropped = std::move(raw->dropped);
     result.warnings = std::move(raw->warnings);
     result.groom = makeFrom(*raw, options.metresPerUnit);
+    result.frames = std::move(raw->frames);
+    result.framesPerSecond = raw->framesPerSecond;
     return result;
 }
 

@@ -38,6 +38,7 @@ struct StrandImportOptions {
     UpAxis up = UpAxis::Y;       ///< axis of the file that points up; Z up becomes (x, z, −y)
     RibbonOrder ribbonOrder = RibbonOrder::Detect;
     RibbonParticle ribbonParticle = RibbonParticle::FirstEdge;
+    bool frames = false;               ///< ImportedStrands::frames, too, for the formats that have them
     std::uint32_t ribbonSegments = 0;  ///< segments of each ribbon, n − 1; 0 finds it from the faces
     /// Where given, the end of a strand nearer to this mesh is its root, for the formats that do not say
     /// which end is (OBJ). It must be in metres and Y up. The groom is not bound to it; that is
@@ -66,6 +67,9 @@ struct ImportedStrands {
     Groom groom;
     std::string format;  ///< "Yuksel hair", "TressFX 4", "TressFX 3", "OBJ lines", "Cinema 4D hair OBJ"
     std::vector<DroppedStrand> dropped;
+    /// Positions of all points at each time of a file whose strands move, where the options ask for them.
+    std::vector<std::vector<Vec3f>> frames;
+    float framesPerSecond = 0;  ///< of frames
     /// What was mended, ignored or looks wrong; never Error.
     std::vector<Finding> warnings;
 };

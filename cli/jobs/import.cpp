@@ -10,6 +10,7 @@
 #include "core/base/log.h"
 #include "core/geometry/selection.h"
 #include "core/groom/file/project_file.h"
+#include "core/simulation/frame_record.h"
 #include "importers/strands.h"
 
 namespace hairloom::cli {
@@ -25,6 +26,8 @@ struct ImportOptions {
     std::uint32_t segments = 0;
     std::string order = "auto";
     std::string particle = "edge";
+    std::string record;
+    float framesPerSecond = 0;
     std::string output;
 };
 
@@ -37,6 +40,7 @@ StrandImportOptions strandOptions(const ImportOptions& options) {
     StrandImportOptions strands;
     if (!options.unit.empty()) strands.metresPerUnit = metresPerUnit(options.unit);
     strands.up = options.up == "z" ? UpAxis::Z : UpAxis::Y;
+    strands.frames = !options.record.empty();
     strands.ribbonSegments = options.segments;
     strands.ribbonOrder = kOrders.at(options.order);
     strands.ribbonParticle =
@@ -48,6 +52,22 @@ StrandImportOptions strandOptions(const ImportOptions& options) {
 Report bindingReport(std::vector<float> distances) {
     std::sort(distances.begin(), distances.end());
     return Report{{"median_mm", distances[distances.size() / 2] * 1e3}, {"max_mm", distances.back() * 1e3}};
+}
+
+/// The positions of every time of the file as frames of a record, which render and simulate --against read.
+Status recordFrames(const ImportOptions& options, const ImportedStrands& imported) {
+    if (imported.frames.empty())
+        return failIn(options.file, {}, "has one time only", "expected strands that move for --record");
+    constexpr float kUsualRate = 24;
+    const float rate = options.framesPerSecond > 0    ? options.framesPerSecond
+                       : imported.framesPerSecond > 0 ? imported.framesPerSecond
+                                                      : kUsualRate;
+    auto recorder = FrameRecorder::open(options.record, imported.groom, rate);
+    if (!recorder) return tl::unexpected(recorder.error());
+    for (const auto& frame : imported.frames) {
+        if (auto status = recorder->add(frame, {}); !status) return status;
+    }
+    return recorder->finish();
 }
 
 Result<Report> import(const ImportOptions& options) {
@@ -92,6 +112,12 @@ Result<Report> import(const ImportOptions& options) {
                          triangulation.error().message());
         }
     }
+    if (!options.record.empty()) {
+        if (auto recorded = recordFrames(options, *imported); !recorded)
+            return tl::unexpected(recorded.error());
+        report["record"] = options.record;
+        report["frames"] = imported->frames.size();
+    }
     if (auto saved = saveProject(groom, options.output); !saved) return tl::unexpected(saved.error());
     report["output"] = options.output;
     return report;
@@ -115,9 +141,15 @@ JobRun declare(CLI::App& job) {
         ->check(CLI::IsMember({"auto", "interleaved", "edges", "around"}));
     job.add_option("--particle", options->particle, "Where a Cinema 4D ribbon's particles are")
         ->check(CLI::IsMember({"edge", "centre"}));
+    auto* record = job.add_option("--record", options->record,
+                                  "Keep strands that move (Alembic, USD) as a record of frames, too");
+    job.add_option("--fps", options->framesPerSecond, "Frames per second of the record; 0 as the file says")
+        ->check(CLI::Range(0.0, 1000.0))
+        ->needs(record);
     job.add_option("-o,--output", options->output, "Project to write")->required();
     return [options](const std::string&) {
-        return withOutputs({{options->output, content::kProject}}, [&] { return import(*options); });
+        return withOutputs({{options->output, content::kProject}, {options->record, content::kFrames}},
+                           [&] { return import(*options); });
     };
 }
 

@@ -121,7 +121,7 @@ void ExportDialog::takeTarget(int index) {
 
 void ExportDialog::choosePath() {
     const StrandWriter& writer = *choices()[static_cast<std::size_t>(target_->currentIndex())].writer;
-    const QString suffix = "." + QString::fromStdString(writer.name);
+    const QString suffix = "." + QString::fromStdString(writer.suffix());
     const QString name = QFileInfo(document_.title()).completeBaseName() + suffix;
     const QString path = QFileDialog::getSaveFileName(this, windowTitle(), name, "*" + suffix);
     if (!path.isEmpty()) exportTo(path);

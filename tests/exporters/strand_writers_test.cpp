@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/base/file.h"
 #include "exporters/strands.h"
@@ -227,6 +228,65 @@ TEST_F(StrandWriters, FailuresLeaveTheOldFile) {
     EXPECT_FALSE(writeTfx(helices({8}), path, options));
     EXPECT_FALSE(writeHair(helices({8}), folder / "missing" / "a.hair"));
     EXPECT_EQ(readFile(path).value(), before);
+}
+
+TEST_F(StrandWriters, AlembicAndUsdCarryEveryAttribute) {
+    Groom groom = decorated({2, 5, 64, 7});
+    groom.strandAttributes.set(attribute::kStrandId, std::vector<std::uint32_t>{4, 9, 2, 7});
+    groom.strandAttributes.set(attribute::kGuide, std::vector<std::uint8_t>{1, 0, 0, 1});
+    groom.strandAttributes.set(attribute::kGroup, std::vector<std::uint32_t>{0, 1, 1, 0});
+    groom.groupNames = {"group 3", "group 8"};
+    groom.strandAttributes.set("temperature", std::vector<Vec3f>(4, Vec3f(1, 2, 3)));
+    for (int k = 0; k < 3; ++k)
+        groom.strandAttributes.set("groom_closest_guides_" + std::to_string(k),
+                                   std::vector<std::int32_t>{0, 3, k, 0});
+    groom.strandAttributes.set("groom_guide_weights", std::vector<Vec3f>(4, Vec3f(0.5f, 0.3f, 0.2f)));
+    groom.pointAttributes.set("wetness", std::vector<float>(groom.pointCount(), 0.25f));
+    for (const std::string format : {"abc", "abc-unreal", "usda"}) {
+        const fs::path path = folder / ("a." + strandWriter(format).suffix());
+        for (const UpAxis up : {UpAxis::Y, UpAxis::Z}) {
+            StrandExportOptions options;
+            options.metresPerUnit = 0.01f;
+            options.up = up;
+            const auto report = strandWriter(format).write(groom, path, options);
+            ASSERT_TRUE(report) << report.error().message();
+            EXPECT_EQ(report->format, format == "usda" ? "USD" : "Alembic");
+            EXPECT_LT(report->maxErrorMm, 0.001);
+            std::set<std::string> carried;
+            for (const ComparedAttribute& compared : report->attributes) {
+                carried.insert(compared.name);
+                EXPECT_LT(compared.maxError, compared.name == attribute::kRadius ? 1e-9 : 1e-30)
+                    << compared.name;
+            }
+            for (const auto& [name, data] : groom.strandAttributes.all())
+                EXPECT_TRUE(carried.contains(name)) << name;
+            for (const auto& [name, data] : groom.pointAttributes.all()) {
+                EXPECT_TRUE(name == attribute::kPosition || carried.contains(name)) << name;
+            }
+            StrandImportOptions importing;
+            importing.metresPerUnit = 0.01f;
+            importing.up = up;
+            EXPECT_EQ(importStrands(path, importing)->groom.groupNames, groom.groupNames);
+        }
+    }
+}
+
+TEST_F(StrandWriters, WhatAFormatCannotCarryIsListedWithWhatToDo) {
+    Groom groom = decorated({8, 8});
+    groom.strandAttributes.set(attribute::kGuide, std::vector<std::uint8_t>{1, 0});
+    groom.interpolation.followPerGuide = 5;
+    const auto report = writeHair(groom, folder / "a.hair");
+    ASSERT_TRUE(report);
+    std::string left;
+    for (const LeftBehind& one : report->leftBehind) {
+        left += one.what + "\n";
+        EXPECT_FALSE(one.fix.empty());
+    }
+    EXPECT_THAT(left, HasSubstr("\"guide\" of strands"));
+    EXPECT_THAT(left, HasSubstr("5 follow hairs"));
+    const auto json = toJson(*report);
+    EXPECT_EQ(json["left_behind"].size(), report->leftBehind.size());
+    EXPECT_EQ(json["attributes"].size(), report->attributes.size());
 }
 
 TEST_F(StrandWriters, EveryTargetOfEveryFormatIsWrittenAndReadBackByContent) {

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Alembic curves with the attributes of Unreal's groom schema, version 1.5.
+
+#include "exporters/alembic_curves.h"
+
+namespace hairloom {
+namespace {
+
+Result<ExportReport> write(const Groom& groom, const std::filesystem::path& path,
+                           const StrandExportOptions& options) {
+    return writeAlembic(groom, path, options, true);
+}
+
+}  // namespace
+
+StrandWriter abcUnrealWriter() {
+    StrandExportOptions centimetres;
+    centimetres.metresPerUnit = 0.01f;
+    return {"abc-unreal",
+            "Alembic .abc for Unreal's groom importer",
+            "what abc carries, and Unreal's groom schema 1.5: widths, closest guides and their weights, "
+            "version and tool",
+            "Unreal takes units for centimetres",
+            {{"Unreal groom", ".abc in centimetres, Y up; turn it by 90° about X in Unreal's import",
+              centimetres}},
+            write};
+}
+
+}  // namespace hairloom

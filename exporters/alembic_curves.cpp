@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exporters/alembic_curves.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "exporters/exported_attributes.h"
+#include "exporters/ogawa_builder.h"
+
+namespace hairloom {
+namespace {
+
+constexpr const char* kCurveSchema = "schema=AbcGeom_Curve_v2;schemaBaseType=AbcGeom_GeomBase_v1";
+constexpr const char* kCurveObject =
+    "schema=AbcGeom_Curve_v2;schemaBaseType=AbcGeom_GeomBase_v1;schemaObjTitle=AbcGeom_Curve_v2:.geom";
+constexpr const char* kXformSchema = "schema=AbcGeom_Xform_v3";
+constexpr const char* kXformObject = "schema=AbcGeom_Xform_v3;schemaObjTitle=AbcGeom_Xform_v3:.xform";
+
+template <class T>
+std::span<const std::byte> bytesOf(const std::vector<T>& values) {
+    return std::as_bytes(std::span(values));
+}
+
+/// "arrayExtent=1;geoScope=uni;…" as AbcGeom writes it of a parameter of curves.
+std::string parameter(std::string_view scope, std::string_view pod, std::uint32_t podExtent = 1,
+                      std::uint32_t arrayExtent = 1, std::string_view interpretation = {}) {
+    return fmt::format("arrayExtent={};geoScope={};{}isGeomParam=true;podExtent={};podName={}", arrayExtent,
+                       scope, interpretation.empty() ? "" : fmt::format("interpretation={};", interpretation),
+                       podExtent, pod);
+}
+
+class CurvesWriter {
+  public:
+    CurvesWriter(const Groom& groom, const PreparedStrands& strands, bool unreal)
+        : groom_(groom), strands_(strands), unreal_(unreal) {}
+
+    std::span<const std::byte> write() {
+        const AlembicChild hair{
+            "hair", kCurveObject,
+            alembicObject(file_, metadata_, objectOf(".geom", geometry(), kCurveSchema), {})};
+        const AlembicChild root{"groom", kXformObject,
+                                alembicObject(file_, metadata_, objectOf(".xform", transform(), kXformSchema),
+                                              std::span(&hair, 1))};
+        const std::uint64_t top = alembicObject(file_, metadata_, 0, std::span(&root, 1));
+        return finishAlembic(file_, metadata_, top,
+                             "_ai_AlembicVersion=Alembic 1.8.3;_ai_Application=Hairloom");
+    }
+
+  private:
+    AlembicCompound compound() { return AlembicCompound(file_, metadata_); }
+
+    std::uint64_t objectOf(const std::string& name, const AlembicCompound& inside,
+                           const std::string& metadata) {
+        AlembicCompound properties = compound();
+        properties.compound(name, inside, metadata);
+        return properties.write();
+    }
+
+    AlembicCompound transform() {
+        AlembicCompound xform = compound();
+        const std::uint8_t inherits = 1;
+        xform.scalar(".inherits", AlembicType::Bool, 1, std::as_bytes(std::span(&inherits, 1)));
+        if (!unreal_) return xform;
+        AlembicCompound parameters = compound();
+        const auto text = [&](const std::string& name, const std::string& value) {
+            parameters.scalar(name, AlembicType::Text, 1,
+                              std::as_bytes(std::span(value.c_str(), value.size() + 1)));
+        };
+        const auto version = [&](const std::string& name, std::int16_t value) {
+            parameters.scalar(name, AlembicType::Int16, 1, std::as_bytes(std::span(&value, 1)));
+        };
+        version("groom_version_major", 1);
+        version("groom_version_minor", 5);
+        text("groom_tool", "Hairloom");
+        text("groom_properties", "");
+        xform.compound(".arbGeomParams", parameters);
+        return xform;
+    }
+
+    AlembicCompound geometry() {
+        AlembicCompound curves = compound();
+        Box3f bounds;
+        for (const Vec3f& position : strands_.positions) bounds.extend(position);
+        std::array<double, 6> box{};
+        for (int axis = 0; axis < 3; ++axis) {
+            box[static_cast<std::size_t>(axis)] = double{bounds.min()[axis]};
+            box[static_cast<std::size_t>(axis) + 3] = double{bounds.max()[axis]};
+        }
+        curves.scalar(".selfBnds", AlembicType::Double, 6, std::as_bytes(std::span(box)),
+                      "interpretation=box");
+        curves.array("P", AlembicType::Float, 3, bytesOf(strands_.positions),
+                     "geoScope=vtx;interpretation=point");
+        std::vector<std::int32_t> counts(strands_.strandCount());
+        for (std::size_t s = 0; s < counts.size(); ++s)
+            counts[s] = static_cast<std::int32_t>(strands_.offsets[s + 1] - strands_.offsets[s]);
+        curves.array("nVertices", AlembicType::Int32, 1, bytesOf(counts));
+        // Polylines, and no basis: Blender looks at the basis alone, and takes half the points of any other.
+        constexpr std::array<std::uint8_t, 4> kLinear{1, 0, 0, 0};
+        curves.scalar("curveBasisAndType", AlembicType::Uint8, 4, std::as_bytes(std::span(kLinear)));
+        curves.array("width", AlembicType::Float, 1, bytesOf(strands_.thickness),
+                     parameter("vtx", "float32_t"));
+        AlembicCompound parameters = compound();
+        addParameters(parameters);
+        curves.compound(".arbGeomParams", parameters);
+        return curves;
+    }
+
+    void addParameters(AlembicCompound& out) {
+        std::array<const ExportedAttribute*, 3> closest{};
+        const std::vector<ExportedAttribute> attributes = exportedAttributes(groom_, strands_);
+        for (const ExportedAttribute& attribute : attributes) {
+            if (const auto k = closestGuidesIndex(attribute.name); k && unreal_)
+                closest[*k] = &attribute;
+            else
+                addParameter(out, attribute);
+        }
+        if (!unreal_) return;
+        out.array("groom_width", AlembicType::Float, 1, bytesOf(strands_.thickness),
+                  parameter("vtx", "float32_t"));
+        addClosestGuides(out, closest);
+    }
+
+    static void addParameter(AlembicCompound& out, const ExportedAttribute& attribute) {
+        const std::string_view scope = attribute.perPoint ? "vtx" : "uni";
+        if (attribute.type == ExportedAttribute::Type::Number) {
+            const std::uint32_t extent = attribute.components;
+            const std::string_view meaning = attribute.isColour ? "rgb" : extent == 2 ? "vector" : "";
+            out.array(attribute.name, AlembicType::Float, extent, bytesOf(attribute.numbers),
+                      parameter(scope, "float32_t", extent, 1, meaning));
+        } else if (attribute.name == "groom_guide") {
+            // As Unreal has it.
+            const std::vector<std::int16_t> flags(attribute.whole.begin(), attribute.whole.end());
+            out.array(attribute.name, AlembicType::Int16, 1, bytesOf(flags), parameter(scope, "int16_t"));
+        } else if (attribute.type == ExportedAttribute::Type::Flag) {
+            const std::vector<std::uint8_t> flags(attribute.whole.begin(), attribute.whole.end());
+            out.array(attribute.name, AlembicType::Uint8, 1, bytesOf(flags), parameter(scope, "uint8_t"));
+        } else {
+            out.array(attribute.name, AlembicType::Int32, 1, bytesOf(attribute.whole),
+                      parameter(scope, "int32_t"));
+        }
+    }
+
+    /// What Unreal's schema keeps as three whole numbers is three attributes of Hairloom.
+    static std::optional<std::size_t> closestGuidesIndex(std::string_view name) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (name == fmt::format("groom_closest_guides_{}", k)) return k;
+        }
+        return std::nullopt;
+    }
+
+    static void addClosestGuides(AlembicCompound& out,
+                                 const std::array<const ExportedAttribute*, 3>& guides) {
+        const auto isThere = [](const ExportedAttribute* guide) {
+            return guide != nullptr && !guide->whole.empty();
+        };
+        if (!std::ranges::all_of(guides, isThere)) return;
+        std::vector<std::int32_t> numbers;
+        for (std::size_t strand = 0; strand < guides[0]->whole.size(); ++strand) {
+            for (const ExportedAttribute* guide : guides) numbers.push_back(guide->whole[strand]);
+        }
+        out.array("groom_closest_guides", AlembicType::Int32, 1, bytesOf(numbers),
+                  parameter("uni", "int32_t", 1, 3));
+    }
+
+    const Groom& groom_;
+    const PreparedStrands& strands_;
+    bool unreal_;
+    OgawaBuilder file_;
+    std::vector<std::string> metadata_;
+};
+
+}  // namespace
+
+Result<ExportReport> writeAlembic(const Groom& groom, const std::filesystem::path& path,
+                                  const StrandExportOptions& options, bool unreal) {
+    auto strands = prepareStrands(groom, options, options.pointsPerStrand);
+    if (!strands) return tl::unexpected(inFile(strands.error(), path.string()));
+    CurvesWriter writer(groom, *strands, unreal);
+    const auto bytes = writer.write();
+    return writeAndCompare(groom, std::move(*strands), options, path, bytes);
+}
+
+}  // namespace hairloom

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exporters/compare_attributes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace hairloom {
+namespace {
+
+template <class T>
+double difference(const T& a, const T& b) {
+    if constexpr (std::is_arithmetic_v<T>) {
+        return std::abs(static_cast<double>(a) - static_cast<double>(b));
+    } else {
+        return static_cast<double>((a - b).cwiseAbs().maxCoeff());
+    }
+}
+
+/// The largest difference, or nothing where the file has no such values. `sources` are the groom's elements
+/// in order.
+std::optional<double> largestDifference(const AttributeData& authored, const AttributeSet& read,
+                                        std::string_view name, const std::vector<std::uint32_t>& sources) {
+    return std::visit(
+        [&]<class T>(const CowArray<T>& array) -> std::optional<double> {
+            const auto values = read.view<T>(name);
+            if (values.size() != sources.size()) return std::nullopt;
+            double largest = 0;
+            for (std::size_t i = 0; i < values.size(); ++i)
+                largest = std::max(largest, difference(array[sources[i]], values[i]));
+            return largest;
+        },
+        authored);
+}
+
+/// What a person authored, as against a tool's state and what follows from other things.
+bool isAuthored(std::string_view name) {
+    return name != attribute::kPosition && name != attribute::kSelected && name != attribute::kHidden &&
+           name != attribute::kRootTriangle && name != attribute::kRootBarycentric;
+}
+
+void compareSet(const AttributeSet& authored, std::size_t elements, const AttributeSet& read,
+                const std::vector<std::uint32_t>& sources, const std::string& of, ExportReport& report) {
+    for (const auto& [name, data] : authored.all()) {
+        if (!isAuthored(name) || sizeOf(data) != elements) continue;
+        if (const auto largest = largestDifference(data, read, name, sources)) {
+            report.attributes.push_back({name, *largest});
+        } else {
+            report.leftBehind.push_back({fmt::format("attribute \"{}\" of {}", name, of),
+                                         "export to Alembic as well, or keep the project"});
+        }
+    }
+}
+
+void tellSettings(const Groom& groom, ExportReport& report) {
+    const auto leave = [&](std::string what, std::string fix) {
+        report.leftBehind.push_back({std::move(what), std::move(fix)});
+    };
+    if (groom.interpolation.followPerGuide > 0)
+        leave(fmt::format("{} follow hairs of each strand", groom.interpolation.followPerGuide),
+              "interpolate in the other program, or grow strands in their place");
+    if (groom.layers.size() > 1) leave(fmt::format("{} layers", groom.layers.size()), "keep the project");
+    if (!groom.spheres.empty())
+        leave(fmt::format("{} collision spheres", groom.spheres.size()),
+              "place colliders in the other program");
+    leave("material and settings of the simulation", "keep the project; `info` and `set --list` show them");
+}
+
+}  // namespace
+
+void compareAttributes(const Groom& groom, const PreparedStrands& prepared, const Groom& readBack,
+                       ExportReport& report) {
+    compareSet(groom.strandAttributes, groom.strandCount(), readBack.strandAttributes, prepared.sources,
+               "strands", report);
+    std::vector<std::uint32_t> points;
+    if (!prepared.isResampled) {
+        for (const std::uint32_t source : prepared.sources) {
+            for (std::uint32_t p = groom.offsets[source]; p < groom.offsets[source + 1]; ++p)
+                points.push_back(p);
+        }
+    }
+    // Of resampled strands, no value of the file is that of a point.
+    compareSet(groom.pointAttributes, groom.pointCount(),
+               prepared.isResampled ? AttributeSet() : readBack.pointAttributes, points, "points", report);
+    tellSettings(groom, report);
+}
+
+}  // namespace hairloom

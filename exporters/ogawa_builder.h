@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Writes Ogawa, the container of Alembic files, and the objects and properties in it as AbcCoreOgawa of
+// Alembic 1.8 does.
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/base/file.h"
+
+namespace hairloom {
+
+/// A file from its leaves to its root: what refers to something comes after it.
+class OgawaBuilder {
+  public:
+    OgawaBuilder();
+    /// A block; its reference, with the bit of data. Empty blocks take no room.
+    std::uint64_t data(std::span<const std::byte> bytes);
+    /// A block of a sample: a digest, which readers use to tell samples apart, and the bytes.
+    std::uint64_t sample(std::span<const std::byte> bytes);
+    std::uint64_t group(std::span<const std::uint64_t> children);
+    /// The whole file.
+    std::span<const std::byte> finish(std::uint64_t root);
+
+  private:
+    ByteWriter out_;
+    std::vector<std::byte> file_;
+};
+
+/// Names as docs of AbcCoreOgawa number them.
+enum class AlembicType : std::uint8_t {
+    Bool = 0,
+    Uint8 = 1,
+    Int16 = 4,
+    Int32 = 6,
+    Float = 10,
+    Double = 11,
+    Text = 12
+};
+
+/// Properties that are written one after another, and the block of headers that names them.
+class AlembicCompound {
+  public:
+    explicit AlembicCompound(OgawaBuilder& file, std::vector<std::string>& metadata)
+        : file_(file), metadata_(metadata) {}
+
+    /// A value, or a few that belong together: `extent` of them.
+    void scalar(const std::string& name, AlembicType type, std::uint32_t extent,
+                std::span<const std::byte> bytes, const std::string& metadata = {});
+    /// An array of elements of `extent` numbers.
+    void array(const std::string& name, AlembicType type, std::uint32_t extent,
+               std::span<const std::byte> bytes, const std::string& metadata = {});
+    void compound(const std::string& name, const AlembicCompound& inside, const std::string& metadata = {});
+    /// Its group.
+    std::uint64_t write() const;
+
+  private:
+    void header(const std::string& name, std::uint32_t bits, bool sampled, const std::string& metadata);
+
+    OgawaBuilder& file_;
+    std::vector<std::string>& metadata_;
+    ByteWriter headers_;
+    std::vector<std::uint64_t> parts_;
+};
+
+/// The number of a text of metadata in the table of a file, added where it is new. Texts have at most 254
+/// bytes, and a file at most 254 of them.
+std::uint32_t alembicMetadata(std::vector<std::string>& table, const std::string& text);
+
+/// An object below another.
+struct AlembicChild {
+    std::string name;
+    std::string metadata;
+    std::uint64_t group = 0;
+};
+std::uint64_t alembicObject(OgawaBuilder& file, std::vector<std::string>& metadata, std::uint64_t properties,
+                            std::span<const AlembicChild> children);
+
+/// The archive around the top object.
+std::span<const std::byte> finishAlembic(OgawaBuilder& file, const std::vector<std::string>& metadata,
+                                         std::uint64_t top, const std::string& about);
+
+}  // namespace hairloom

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// USD as text: one BasisCurves of polylines, whose widths and attributes have a value a point or a curve.
+
+#include <fmt/format.h>
+
+#include <iterator>
+
+#include "exporters/exported_attributes.h"
+
+namespace hairloom {
+namespace {
+
+/// "[(1, 2, 3), …]", or "[1, 2, …]" of single numbers, as short as reads back to the same bits.
+template <class T>
+void writeNumbers(std::string& out, std::span<const T> numbers, std::size_t components) {
+    const auto to = std::back_inserter(out);
+    out += '[';
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        const std::size_t c = i % components;
+        if (i > 0) out += ", ";
+        if (components > 1 && c == 0) out += '(';
+        fmt::format_to(to, "{}", numbers[i]);
+        if (components > 1 && c + 1 == components) out += ')';
+    }
+    out += ']';
+}
+
+std::string_view typeOf(const ExportedAttribute& attribute) {
+    if (attribute.name == "groom_guide") return "bool";
+    if (attribute.type == ExportedAttribute::Type::Flag) return "uchar";
+    if (attribute.type == ExportedAttribute::Type::Whole) return "int";
+    if (attribute.isColour) return "color3f";
+    if (attribute.name == "groom_root_uv") return "texCoord2f";
+    constexpr std::array<std::string_view, 5> kFloats{"", "float", "float2", "float3", "float4"};
+    return kFloats[attribute.components];
+}
+
+/// USD's names have letters, digits, underscores and colons.
+std::string usdName(const std::string& name) {
+    std::string valid;
+    for (const char c : name) {
+        const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+        valid += plain ? c : '_';
+    }
+    return valid.empty() || (valid[0] >= '0' && valid[0] <= '9') ? "_" + valid : valid;
+}
+
+void writeAttribute(std::string& out, const ExportedAttribute& attribute) {
+    out += fmt::format("        {}[] primvars:{} = ", typeOf(attribute), usdName(attribute.name));
+    if (attribute.type == ExportedAttribute::Type::Number)
+        writeNumbers(out, std::span<const float>(attribute.numbers), attribute.components);
+    else
+        writeNumbers(out, std::span<const std::int32_t>(attribute.whole), 1);
+    out += fmt::format(" (\n            interpolation = \"{}\"\n        )\n",
+                       attribute.perPoint ? "vertex" : "uniform");
+}
+
+std::string usdaText(const Groom& groom, const PreparedStrands& strands, const StrandExportOptions& options) {
+    std::string out = fmt::format(
+        "#usda 1.0\n(\n    defaultPrim = \"groom\"\n    doc = \"Hairloom\"\n    metersPerUnit = {}\n    "
+        "upAxis = \"{}\"\n)\n\n"
+        "def Xform \"groom\"\n{{\n    def BasisCurves \"hair\"\n    {{\n"
+        "        uniform token type = \"linear\"\n        uniform token wrap = \"nonperiodic\"\n",
+        options.metresPerUnit, options.up == UpAxis::Z ? "Z" : "Y");
+    std::vector<std::int32_t> counts(strands.strandCount());
+    for (std::size_t s = 0; s < counts.size(); ++s)
+        counts[s] = static_cast<std::int32_t>(strands.offsets[s + 1] - strands.offsets[s]);
+    Box3f bounds;
+    for (const Vec3f& position : strands.positions) bounds.extend(position);
+    const std::array<Vec3f, 2> extent{bounds.min(), bounds.max()};
+    const auto numbersOf = [](std::span<const Vec3f> values) {
+        return std::span<const float>(values[0].data(), values.size() * 3);
+    };
+    out += "        float3[] extent = ";
+    writeNumbers(out, numbersOf(extent), 3);
+    out += "\n        int[] curveVertexCounts = ";
+    writeNumbers(out, std::span<const std::int32_t>(counts), 1);
+    out += "\n        point3f[] points = ";
+    writeNumbers(out, numbersOf(strands.positions), 3);
+    out += "\n        float[] widths = ";
+    writeNumbers(out, std::span<const float>(strands.thickness), 1);
+    out += " (\n            interpolation = \"vertex\"\n        )\n";
+    for (const ExportedAttribute& attribute : exportedAttributes(groom, strands))
+        writeAttribute(out, attribute);
+    return out + "    }\n}\n";
+}
+
+Result<ExportReport> writeUsda(const Groom& groom, const std::filesystem::path& path,
+                               const StrandExportOptions& options) {
+    auto strands = prepareStrands(groom, options, options.pointsPerStrand);
+    if (!strands) return tl::unexpected(inFile(strands.error(), path.string()));
+    const std::string text = usdaText(groom, *strands, options);
+    return writeAndCompare(groom, std::move(*strands), options, path, std::as_bytes(std::span(text)));
+}
+
+}  // namespace
+
+StrandWriter usdaWriter() {
+    StrandExportOptions blender, maya;
+    blender.up = UpAxis::Z;
+    maya.metresPerUnit = 0.01f;
+    return {"usda",
+            "USD .usda",
+            "width and colour of each point; root UV, id, group and guide flag of each strand; attributes of "
+            "any name",
+            "none",
+            {{"Houdini, USD", ".usda in metres, Y up", {}},
+             {"Blender, USD", ".usda in metres, Z up", blender},
+             {"Maya, USD", ".usda in centimetres, Y up", maya}},
+            writeUsda};
+}
+
+}  // namespace hairloom
