@@ -60,7 +60,7 @@ void tellSettings(const Groom& groom, ExportReport& report) {
     };
     if (groom.interpolation.followPerGuide > 0)
         leave(fmt::format("{} follow hairs of each strand", groom.interpolation.followPerGuide),
-              "interpolate in the other program, or grow strands in their place");
+              "export the hairs instead of the guides, or interpolate in the other program");
     if (groom.layers.size() > 1) leave(fmt::format("{} layers", groom.layers.size()), "keep the project");
     if (!groom.spheres.empty())
         leave(fmt::format("{} collision spheres", groom.spheres.size()),

@@ -307,12 +307,17 @@ class Appender {
         } else if (!(isCached_ && controls == cachedControls_ && form.order == cachedOrder_ &&
                      form.knots.empty())) {
             auto evaluated = evaluateCurve(form, controls);
+            isPolyline_ = !evaluated;
             if (!evaluated) {
-                notePolyline(where.curve, evaluated.error());
+                if (polylines_ == 0)
+                    firstPolyline_ = fmt::format("curve {}: {}; {}", where.curve, evaluated.error().problem,
+                                                 evaluated.error().expected);
                 evaluated = evaluateCurve({CurveBasis::Linear, CurveWrap::Open, form.order, {}}, controls);
             }
             evaluated_ = std::move(*evaluated);
         }
+        // Writers put curves of two points among cubic ones: their control points are all there is to go by.
+        if (isPolyline_ && controls != 1) ++polylines_;
         isCached_ = controls != 1 && form.knots.empty();
         cachedControls_ = controls;
         cachedOrder_ = form.order;
@@ -325,12 +330,6 @@ class Appender {
         }
         strands_.offsets.push_back(static_cast<std::uint32_t>(strands_.positions.size()));
         return {};
-    }
-
-    /// Writers put curves of two points among cubic ones: their control points are all there is to go by.
-    void notePolyline(std::size_t curve, const Error& why) {
-        if (polylines_++ > 0) return;
-        firstPolyline_ = fmt::format("curve {}: {}; {}", curve, why.problem, why.expected);
     }
 
     void addFrame(std::size_t frame, const CurvePoint& point, std::size_t controls) {
@@ -363,6 +362,7 @@ class Appender {
     std::vector<CurvePoint> evaluated_;
     std::size_t polylines_ = 0;
     std::string firstPolyline_;
+    bool isPolyline_ = false;
     bool isCached_ = false;
     std::uint32_t cachedControls_ = 0, cachedOrder_ = 0;
 };

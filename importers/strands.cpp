@@ -269,24 +269,32 @@ AttributeData dataOf(RawAttribute& attribute) {
     }
 }
 
+/// Whether the values are what Hairloom itself means by the name.
+bool isAsMeantHere(const RawAttribute& attribute) {
+    const bool isNumber = attribute.type == RawAttribute::Type::Number;
+    if (attribute.name == attribute::kTransparency || attribute.name == attribute::kDye)
+        return isNumber && attribute.components == 1;
+    if (attribute.name == attribute::kStrandColour) return isNumber && attribute.components == 3;
+    // Groups, guides and ids have been given their types by adoptAttributes().
+    const bool adopted = attribute.name == attribute::kGroup || attribute.name == attribute::kGuide ||
+                         attribute.name == attribute::kStrandId;
+    return adopted &&
+           (attribute.type == RawAttribute::Type::Index || attribute.type == RawAttribute::Type::Flag);
+}
+
 /// A name that means something else here gets another.
 std::string importedName(const RawAttribute& attribute) {
     constexpr std::array kPointNames{attribute::kPosition, attribute::kRadius, attribute::kPointColour,
                                      attribute::kTransparency, attribute::kDye};
     constexpr std::array kStrandNames{
-        attribute::kRootTriangle, attribute::kRootBarycentric, attribute::kRootUv,
-        attribute::kFrozen,       attribute::kSelected,        attribute::kHidden,
-        attribute::kLayer,        attribute::kStrandColour,    attribute::kDye};
+        attribute::kRootTriangle, attribute::kRootBarycentric, attribute::kRootUv, attribute::kFrozen,
+        attribute::kSelected,     attribute::kHidden,          attribute::kLayer,  attribute::kStrandColour,
+        attribute::kDye,          attribute::kGroup,           attribute::kGuide,  attribute::kStrandId};
     const auto among = [&](const auto& names) {
         return std::ranges::find(names, attribute.name) != names.end();
     };
-    // Groups, guides and ids have been given their types by adoptAttributes().
-    const bool given =
-        attribute.type == RawAttribute::Type::Index || attribute.type == RawAttribute::Type::Flag;
-    const bool adopted = attribute.name == attribute::kGroup || attribute.name == attribute::kGuide ||
-                         attribute.name == attribute::kStrandId;
-    const bool taken = attribute.perPoint ? among(kPointNames) : among(kStrandNames) || (adopted && !given);
-    return taken ? attribute.name + "_of_file" : attribute.name;
+    const bool known = attribute.perPoint ? among(kPointNames) : among(kStrandNames);
+    return known && !isAsMeantHere(attribute) ? attribute.name + "_of_file" : attribute.name;
 }
 
 void takeAttributes(RawStrands& raw, Groom& groom) {

@@ -20,7 +20,7 @@ struct ExportOptions {
     std::string format;
     std::string what = "guides";
     std::string unit;
-    std::string up = "y";
+    std::string up;
     std::uint32_t points = 0;
     std::string output;
 };
@@ -37,10 +37,11 @@ std::string companionOf(const std::string& output) {
 Result<Report> exportAsset(const ExportOptions& options) {
     const auto groom = loadDocument(options.input);
     if (!groom) return tl::unexpected(groom.error());
-    StrandExportOptions exporting;
-    exporting.metresPerUnit = metresPerUnit(options.unit);
-    exporting.up = options.up == "z" ? UpAxis::Z : UpAxis::Y;
-    exporting.pointsPerStrand = options.points;
+    // What is not said is as the format's first consumer wants it.
+    StrandExportOptions exporting = strandWriter(options.format).targets.front().options;
+    if (!options.unit.empty()) exporting.metresPerUnit = metresPerUnit(options.unit);
+    if (!options.up.empty()) exporting.up = options.up == "z" ? UpAxis::Z : UpAxis::Y;
+    if (options.points > 0) exporting.pointsPerStrand = options.points;
     const auto what = options.what == "hairs" ? ExportedHair::hairs : ExportedHair::guides;
     const auto written = exportHair(*groom, what, strandWriter(options.format), options.output, exporting);
     if (!written) return tl::unexpected(written.error());

@@ -114,7 +114,8 @@ TEST(CurveEvaluation, WeightsAddUpToOne) {
         for (const CurveWrap wrap : {CurveWrap::Open, CurveWrap::Periodic, CurveWrap::Pinned}) {
             const CurveForm form{basis, wrap, 4, {}};
             const std::uint32_t controls = wrap == CurveWrap::Periodic ? 9 : 10;
-            for (const CurvePoint& point : evaluateCurve(form, controls).value()) {
+            const auto points = evaluateCurve(form, controls).value();
+            for (const CurvePoint& point : points) {
                 double sum = 0;
                 for (std::uint32_t k = 0; k < point.count; ++k) sum += point.weight[k];
                 EXPECT_NEAR(sum, 1, 1e-12);

@@ -87,7 +87,7 @@ TEST(Usd, DamageIsSaidWithItsLine) {
     EXPECT_THAT(readText(wrong).error().message(), HasSubstr("hair.usda"));
     wrong = whole;
     wrong.replace(wrong.find("(2, 0, 0)"), 9, "(2, 0)   ");
-    EXPECT_THAT(readText(wrong).error().message(), HasSubstr("hair.usda:17: an element of 2 numbers"));
+    EXPECT_THAT(readText(wrong).error().message(), HasSubstr("hair.usda:18: an element of 2 numbers"));
     EXPECT_FALSE(readText("#usda 1.0\n" + std::string(100000, '(')));
 }
 
