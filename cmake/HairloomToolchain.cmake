@@ -53,5 +53,9 @@ if(HAIRLOOM_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
     # Without the first it keeps nothing that uses a precompiled header, whose content it compares anyway; with the others it finds
     # what another checkout has compiled.
     set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND}" -E env CCACHE_SLOPPINESS=pch_defines,time_macros
-        "CCACHE_BASEDIR=${CMAKE_SOURCE_DIR}" CCACHE_NOHASHDIR=1 "${HAIRLOOM_CCACHE}")
+        "CCACHE_BASEDIR=${CMAKE_SOURCE_DIR}" CCACHE_NOHASHDIR=1)
+    if(CMAKE_HOST_UNIX)
+        list(APPEND CMAKE_CXX_COMPILER_LAUNCHER sh "${CMAKE_SOURCE_DIR}/cmake/ccache.sh")
+    endif()
+    list(APPEND CMAKE_CXX_COMPILER_LAUNCHER "${HAIRLOOM_CCACHE}")
 endif()
