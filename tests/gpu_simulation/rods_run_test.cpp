@@ -205,7 +205,7 @@ TEST_F(RodRun, SleepsAndWakes) {
     for (int s = 0; s < 64; ++s) {
         // Two blocks, a metre apart.
         const Float3 root{s < 32 ? 0.0f : 1.0f, 0.1f, 0.001f * static_cast<float>(s)};
-        strands.addStraight(root, {0.0f, -1.0f, 0.0f}, 0.02f, 8);
+        strands.add(root, {0.0f, -1.0f, 0.0f}, 0.02f, 8);
     }
     SimulationSettings s = rods();
     s.sleepDelay = 0.1f;
