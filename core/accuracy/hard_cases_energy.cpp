@@ -169,6 +169,7 @@ void windThatIsNoNumber(HardCaseRun& caseRun) {
 
     // A strand that does break is put back and reported: explicit Euler with real hair's stiffness.
     SimulationSettings breaking = caseRun.settings();
+    breaking.strandModel = runtime::StrandModel::springs;
     breaking.integrator = runtime::Integrator::explicitEuler;
     breaking.angularStiffness = 0.99f;
     breaking.lengthIterations = 0;

@@ -69,7 +69,7 @@ TEST_F(Cli, SimulateWarnsOfStepsThatAreTooLong) {
 TEST_F(Cli, StabilityWritesItsCasesAndMaps) {
     const auto report =
         runJson("stability -o out --integrators rk4 --cells 4 --steps 200 --steps-at-rest 8000");
-    EXPECT_EQ(report["cases"].size(), 25u);
+    EXPECT_EQ(report["cases"].size(), 26u);
     EXPECT_EQ(report["cases"][8]["integrator"], "rk4");
     EXPECT_TRUE(report["cases"][8]["mark"].is_number());
     EXPECT_EQ(report["maps"].size(), 2u);

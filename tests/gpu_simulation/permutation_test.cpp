@@ -137,7 +137,7 @@ TEST_F(Permutation, RodsOfAllPointCountsShareAKernel) {
     EXPECT_THAT(key.defines(), testing::HasSubstr("HAIR_RODS 1"));
     EXPECT_THAT(key.defines(), testing::HasSubstr("HAIR_WIND 0"));
     EXPECT_EQ(key.defines(), keyOf(512, StrandStorage::buffers).defines());
-    EXPECT_EQ(key.defines(), keyOf(2, StrandStorage::wisps).defines());
+    EXPECT_EQ(key.defines(), keyOf(3, StrandStorage::wisps).defines());
     scene.settings.windSpeed = 3.0f;
     EXPECT_THAT(keyOf(16, StrandStorage::threads).defines(), testing::HasSubstr("HAIR_WIND 1"));
     scene.settings.strandModel = runtime::StrandModel::springs;
