@@ -15,6 +15,7 @@
 #include "importers/child_process.h"
 #include "importers/length_unit.h"
 #include "importers/mesh_format.h"
+#include "importers/mesh_reader_program.h"
 #include "importers/obj_mesh.h"
 #include "importers/ply_mesh.h"
 #include "importers/raw_scene.h"
@@ -61,11 +62,6 @@ bool startsWithUtf16Mark(const std::vector<std::byte>& bytes) {
     if (bytes.size() < 2) return false;
     const auto first = std::to_integer<int>(bytes[0]), second = std::to_integer<int>(bytes[1]);
     return (first == 0xff && second == 0xfe) || (first == 0xfe && second == 0xff);
-}
-
-std::filesystem::path meshReaderProgram() {
-    if (const char* named = std::getenv("HAIRLOOM_MESH_READER"); named && *named) return named;
-    return programFolder() / "hairloom-mesh-reader";
 }
 
 Result<RawScene> readInChild(const std::filesystem::path& path, MeshFormat format) {
@@ -153,6 +149,11 @@ Result<ImportedScene> finishScene(RawScene raw, MeshFormat format, const MeshImp
 }
 
 }  // namespace
+
+std::filesystem::path meshReaderProgram() {
+    if (const char* named = std::getenv("HAIRLOOM_MESH_READER"); named && *named) return named;
+    return programFolder() / "hairloom-mesh-reader";
+}
 
 Result<ImportedScene> importScene(const std::filesystem::path& path, const MeshImportOptions& options) {
     assert(!options.metresPerUnit || *options.metresPerUnit > 0);

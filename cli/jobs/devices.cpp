@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <memory>
+
 #include "cli/job.h"
 #include "core/gpu/device.h"
+#include "importers/reader_security.h"
 
 namespace hairloom::cli {
 namespace {
@@ -28,8 +31,25 @@ Result<Report> devices() {
     return Report{{"devices", std::move(rows)}};
 }
 
-JobRun declare(CLI::App&) {
-    return [](const std::string&) { return devices(); };
+/// "true" and "false" as such, numbers as numbers.
+Report valueOf(const std::string& text) {
+    const Report value = Report::parse(text, nullptr, false);
+    return value.is_discarded() ? Report(text) : value;
+}
+
+Result<Report> security() {
+    const auto found = readerSecurity();
+    if (!found) return tl::unexpected(found.error());
+    Report rows;
+    for (const auto& [name, value] : *found) rows[name] = valueOf(value);
+    return Report{{"security", std::move(rows)}};
+}
+
+JobRun declare(CLI::App& job) {
+    const auto asksSecurity = std::make_shared<bool>(false);
+    job.add_flag("--security", *asksSecurity,
+                 "Say instead what the process that parses foreign meshes cannot do here, found by trying");
+    return [asksSecurity](const std::string&) { return *asksSecurity ? security() : devices(); };
 }
 
 }  // namespace

@@ -6,8 +6,8 @@
 
 namespace hairloom {
 
-/// The scene of an STL, FBX, glTF or GLB file, or assimp's reason why not. May throw, crash or never
-/// return on damaged files; nothing of the result is validated.
+/// The scene of an STL or FBX file, of glTF or GLB of version 1, or assimp's reason why not. May throw, crash
+/// or never return on damaged files; nothing of the result is validated.
 Result<RawScene> readWithAssimp(const char* file, MeshFormat format);
 
 }  // namespace hairloom

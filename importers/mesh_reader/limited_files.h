@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// The only files that assimp gets to see: the one asked for, and regular files of sane size that it names.
+// Assimp's way to files: the one asked for, and what LimitedFolder allows.
 
 #include <assimp/DefaultIOSystem.h>
 
 #include <string>
+
+#include "importers/mesh_reader/limited_folder.h"
 
 namespace hairloom {
 
@@ -25,6 +27,7 @@ class LimitedFiles : public Assimp::DefaultIOSystem {
 
     std::string path_;
     std::string alias_;
+    LimitedFolder folder_;
 };
 
 }  // namespace hairloom

@@ -6,7 +6,7 @@
 # Qt, assimp and OpenMesh, which take longest, are unpacked from the folder ARCHIVES where it has them.
 set -euo pipefail
 here=$(dirname "$(readlink -f "$0")")
-libraries=(headers fmtlib spdlog highway tbb png tinyexr googletest assimp openmesh)
+libraries=(headers fmtlib spdlog highway tbb png tinyexr googletest tinygltf assimp openmesh)
 if [ "$1" = --without-qt ]; then shift; else libraries+=(qtbase); fi
 mkdir -p "$1"
 root=$(readlink -f "$1")
@@ -102,6 +102,8 @@ build_tinyexr() {
 }
 
 build_googletest() { cmake_install googletest /usr/src/googletest -DBUILD_GMOCK=ON; }
+
+build_tinygltf() { ln -sfn /usr/include/tiny_gltf.h "$root/include/"; }
 
 build_minizip() {
     source_of zlib

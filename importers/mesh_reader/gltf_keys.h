@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Keys of glTF's animations as tracks, which are linear.
+
+#include "core/animation/clip.h"
+#include "importers/mesh_reader/gltf_file.h"
+
+namespace tinygltf {
+struct Animation;
+struct AnimationChannel;
+}  // namespace tinygltf
+
+namespace hairloom {
+
+/// Largest difference between a cubic spline and the straight pieces that it becomes: metres, factors, and
+/// components of a quaternion of unit length.
+inline constexpr float kCubicTolerance = 1e-5f;
+
+/// The track of `channel` that the source moves. A step becomes two keys that follow each other as closely as
+/// numbers do, a cubic spline as many straight pieces as it takes, at most 64 between two keys. Keys that do
+/// not come later than the one before are left out. Errors: accessors that do not fit one another, an
+/// interpolation that is none.
+Status readKeys(const GltfFile& file, const tinygltf::Animation& animation,
+                const tinygltf::AnimationChannel& source, Channel& channel);
+
+}  // namespace hairloom
