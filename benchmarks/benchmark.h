@@ -24,6 +24,8 @@ struct Options {
     std::optional<int> repetitions;      ///< of each measurement, 1 or more
     std::vector<std::uint32_t> strands;  ///< ascending
     std::vector<std::uint32_t> hairs;
+    std::vector<std::string> grooms;  ///< samples by their names without " sample", or project files
+    std::optional<std::uint32_t> frames;
     bool quick = false;                                           ///< to see that it works
     std::optional<std::pair<std::uint32_t, std::uint32_t>> size;  ///< pixels of all pictures
     std::optional<std::uint32_t> device;                          ///< GPU, by its index in `devices`

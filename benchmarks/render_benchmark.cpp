@@ -103,7 +103,7 @@ struct CombedHead : Subject {
 class SampleHead : public Subject {
   public:
     static Result<std::unique_ptr<SampleHead>> make(const Groom& groom) {
-        auto scene = GroomScene::make(groom, nullptr, nullptr, {}, {});
+        auto scene = GroomScene::make(groom, {}, {});
         if (!scene) return tl::unexpected(scene.error());
         return std::unique_ptr<SampleHead>(new SampleHead(std::move(*scene)));
     }

@@ -8,7 +8,7 @@ GpuBackend::GpuBackend(std::unique_ptr<gpu::Device> device)
       kernels_(
           std::make_shared<gpu_simulation::KernelLibrary>(*device_, gpu_simulation::userKernelFolder())) {}
 
-Result<std::unique_ptr<GpuBackend>> GpuBackend::make(gpu::Backend backend,
+Result<std::unique_ptr<GpuBackend>> GpuBackend::make(std::optional<gpu::Backend> backend,
                                                      std::optional<std::uint32_t> index) {
     gpu::DeviceOptions options;
     options.backend = backend;
@@ -16,6 +16,23 @@ Result<std::unique_ptr<GpuBackend>> GpuBackend::make(gpu::Backend backend,
     auto device = gpu::createDevice(options);
     if (!device) return tl::unexpected(device.error());
     return std::unique_ptr<GpuBackend>(new GpuBackend(std::move(*device)));
+}
+
+Result<JobEngine> chooseJobEngine(const std::string& wish, std::optional<gpu::Backend> backend,
+                                  std::optional<std::uint32_t> index, const Groom& groom) {
+    if (wish == "cpu") return JobEngine{{EngineKind::cpu, "asked for"}, nullptr};
+    auto made = GpuBackend::make(backend, index);
+    if (!made && wish == "gpu") return tl::unexpected(made.error());
+    if (!made) return JobEngine{{EngineKind::cpu, "there is no GPU: " + made.error().message()}, nullptr};
+    JobEngine engine;
+    engine.choice = chooseEngine(wish == "gpu" ? EngineWish::gpu : EngineWish::automatic, &(*made)->device(),
+                                 (*made)->kernels(), groom, EngineMemory::ofUser());
+    if (engine.choice.kind == EngineKind::gpu) {
+        engine.gpu = std::move(*made);
+    } else if (wish == "gpu") {
+        return fail(engine.choice.why, "expected a groom that the engine on a GPU can run, or --engine cpu");
+    }
+    return engine;
 }
 
 }  // namespace hairloom::cli

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/gpu_simulation/gpu_engine_method.h"
+#include "core/scene/engine_choice.h"
 
 namespace hairloom::cli {
 
@@ -18,8 +19,9 @@ inline const std::map<std::string, gpu::Backend> kGpuBackends{{"vulkan", gpu::Ba
 /// A device and the kernels on it; outlives what simulates on it.
 class GpuBackend {
   public:
-    /// By the index in `devices`, or the best. Errors: there is none.
-    static Result<std::unique_ptr<GpuBackend>> make(gpu::Backend backend, std::optional<std::uint32_t> index);
+    /// By the index in `devices`, or the best, of one graphics API or any. Errors: there is none.
+    static Result<std::unique_ptr<GpuBackend>> make(std::optional<gpu::Backend> backend,
+                                                    std::optional<std::uint32_t> index);
 
     gpu::Device& device() { return *device_; }
     const std::shared_ptr<gpu_simulation::KernelLibrary>& kernels() const { return kernels_; }
@@ -32,5 +34,14 @@ class GpuBackend {
     std::unique_ptr<gpu::Device> device_;
     std::shared_ptr<gpu_simulation::KernelLibrary> kernels_;
 };
+
+/// What moves the hair of a job.
+struct JobEngine {
+    EngineChoice choice;
+    std::unique_ptr<GpuBackend> gpu;  ///< null on the CPU
+};
+/// `wish` as --engine has it. Errors: a GPU was asked for and there is none, or it cannot run the groom.
+Result<JobEngine> chooseJobEngine(const std::string& wish, std::optional<gpu::Backend> backend,
+                                  std::optional<std::uint32_t> index, const Groom& groom);
 
 }  // namespace hairloom::cli

@@ -9,6 +9,8 @@
 #include "cli/backend.h"
 #include "cli/documents.h"
 #include "cli/job.h"
+#include "cli/live_shots.h"
+#include "cli/motions.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
 #include "cli/vectors.h"
@@ -41,6 +43,10 @@ struct RenderJobOptions {
     std::optional<float> headAbsorption;
     std::optional<float> shadowBlur;
     std::string record;
+    std::string motion;
+    std::string character;
+    std::string wind;
+    std::string engine;
     std::vector<std::string> hiddenGroups;
     std::uint64_t frame = 0;
     std::vector<std::uint64_t> frames;  ///< first, last, step
@@ -124,10 +130,20 @@ Result<render::RenderOptions> pictureOptions(const RenderJobOptions& options, co
 
 Result<GroomScene> loadScene(const RenderJobOptions& options, const Groom& groom, std::uint64_t number,
                              const ViewFile& view) {
-    if (options.record.empty()) return GroomScene::make(groom, nullptr, nullptr, view, options.hiddenGroups);
+    auto scene = GroomScene::make(groom, view, options.hiddenGroups);
+    if (!scene || options.record.empty()) return scene;
     const auto frame = readFrame(options.record, groom, number);
     if (!frame) return tl::unexpected(frame.error());
-    return GroomScene::make(groom, &frame->positions_ws, &frame->pose, view, options.hiddenGroups);
+    std::vector<Vec3f> velocities;
+    if (number > 0) {
+        const auto before = readFrame(options.record, groom, number - 1);
+        if (!before) return tl::unexpected(before.error());
+        for (std::size_t p = 0; p < frame->positions_ws.size(); ++p) {
+            velocities.push_back((frame->positions_ws[p] - before->positions_ws[p]) * frame->framesPerSecond);
+        }
+    }
+    scene->pose(frame->positions_ws, velocities, frame->pose);
+    return scene;
 }
 
 /// One picture of a sequence.
@@ -232,23 +248,25 @@ Report reportOf(const render::Picture& picture, const RenderJobOptions& options)
 /// Pictures after one another, with the camera and lights of the first.
 class Photographer {
   public:
+    /// `live`: moves the hair; null: it rests, or a record has moved it.
     Photographer(const RenderJobOptions& options, gpu::Device& device, const Groom& groom,
-                 const ViewFile& view, const render::RenderOptions& how)
-        : options_(options), device_(device), groom_(groom), view_(view), how_(how) {}
+                 const ViewFile& view, const render::RenderOptions& how, LiveShots* live)
+        : options_(options), device_(device), groom_(groom), view_(view), how_(how), live_(live) {}
 
     Result<render::Picture> take(const Shot& shot) {
-        if (!scene_ || shot.frame != frame_) {
+        if (!live_ && (!scene_ || shot.frame != frame_)) {
             auto loaded = loadScene(options_, groom_, shot.frame, view_);
             if (!loaded) return tl::unexpected(loaded.error());
             scene_ = std::move(*loaded);
             frame_ = shot.frame;
         }
-        render::RenderScene scene = scene_->scene();
+        const GroomScene& shown = live_ ? live_->scene() : *scene_;
+        render::RenderScene scene = shown.scene();
         if (!camera_) {
             const auto named = render::parseView(options_.camera);
             if (!named) return tl::unexpected(named.error());
             const float aspect = static_cast<float>(how_.width) / static_cast<float>(how_.height);
-            camera_ = view_.camera.value_or(render::frame(*named, scene_->subject(), aspect));
+            camera_ = view_.camera.value_or(render::frame(*named, shown.subject(), aspect));
             lights_ = view_.hasLights ? view_.lights : render::studioLights(*camera_);
         }
         scene.camera = *camera_;
@@ -259,6 +277,7 @@ class Photographer {
             scene.background = Vec3f::Zero();
         }
         scene.background = view_.background.value_or(scene.background);
+        if (live_) return live_->take(shot.frame, scene, how_);
         return render::renderPicture(device_, scene, how_);
     }
 
@@ -268,6 +287,7 @@ class Photographer {
     const Groom& groom_;
     const ViewFile& view_;
     const render::RenderOptions& how_;
+    LiveShots* live_;
     std::optional<GroomScene> scene_;
     std::uint64_t frame_ = 0;
     std::optional<render::Camera> camera_;
@@ -281,6 +301,34 @@ Status writePictures(const RenderJobOptions& options, const render::Picture& pic
     };
     if (auto written = render::writePng(name(options.output), picture.image); !written) return written;
     return options.exr.empty() ? Status{} : render::writeExr(name(options.exr), picture.linear);
+}
+
+/// Hair that moves while pictures of it are taken.
+struct Playing {
+    std::unique_ptr<HeadMotion> motion;
+    std::unique_ptr<LiveShots> shots;  ///< null where nothing was asked to move
+    EngineChoice engine;
+};
+
+Result<Playing> play(const RenderJobOptions& options, GpuBackend& gpu, Groom& groom, const ViewFile& view) {
+    Playing playing;
+    if (options.motion.empty()) return playing;
+    if (auto set = setWind(groom, options.wind); !set) return tl::unexpected(set.error());
+    auto motion = makeMotion(options.motion, options.character, groom);
+    if (!motion) return tl::unexpected(motion.error());
+    playing.motion = std::move(*motion);
+    const auto wish = options.engine == "gpu"   ? EngineWish::gpu
+                      : options.engine == "cpu" ? EngineWish::cpu
+                                                : EngineWish::automatic;
+    playing.engine = chooseEngine(wish, &gpu.device(), gpu.kernels(), groom, EngineMemory::ofUser());
+    if (wish == EngineWish::gpu && playing.engine.kind != EngineKind::gpu) return fail(playing.engine.why);
+    auto scene = GroomScene::make(groom, view, options.hiddenGroups);
+    if (!scene) return tl::unexpected(scene.error());
+    auto made = LiveShots::make(gpu.device(), gpu.kernels(), std::move(*scene), *playing.motion,
+                                playing.engine.kind);
+    if (!made) return tl::unexpected(made.error());
+    playing.shots = std::move(*made);
+    return playing;
 }
 
 Result<Report> renderToFile(const RenderJobOptions& options) {
@@ -302,13 +350,15 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
         const auto status = applyMaterial(findSamples(programFolder()), options.material, *groom);
         if (!status) return tl::unexpected(status.error());
     }
-    gpu::DeviceOptions deviceOptions;
-    if (options.chooseDevice) deviceOptions.index = options.device;
-    if (options.backend != "any") deviceOptions.backend = kGpuBackends.at(options.backend);
-    const auto device = gpu::createDevice(deviceOptions);
+    std::optional<gpu::Backend> backend;
+    if (options.backend != "any") backend = kGpuBackends.at(options.backend);
+    const auto device = GpuBackend::make(
+        backend, options.chooseDevice ? std::optional(options.device) : std::nullopt);
     if (!device) return tl::unexpected(device.error());
 
-    Photographer photographer(options, **device, *groom, view, *how);
+    const auto playing = play(options, **device, *groom, view);
+    if (!playing) return tl::unexpected(playing.error());
+    Photographer photographer(options, (*device)->device(), *groom, view, *how, playing->shots.get());
     std::vector<render::Image> images;
     Report report;
     std::optional<Progress> progress;
@@ -319,6 +369,10 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
         if (auto written = writePictures(options, *picture, i); !written)
             return tl::unexpected(written.error());
         if (i == 0) report = reportOf(*picture, options);
+        if (i == 0 && playing->shots) {
+            report["engine"] = engineName(playing->engine.kind);
+            report["why"] = playing->engine.why;
+        }
         if (!options.animation.empty() || !options.strip.empty()) images.push_back(picture->image);
         if (progress) progress->done(i + 1);
     }
@@ -392,11 +446,25 @@ JobRun declare(CLI::App& job) {
                    "Times the picture is drawn, each moved by part of a pixel, and averaged")
         ->check(CLI::Range(1, 1024));
     auto* record = job.add_option("--record", options->record, "Frames that simulate --record wrote");
-    auto* frame = job.add_option("--frame", options->frame, "Frame of the record, from 0")->needs(record);
+    auto* motion =
+        job.add_option("--motion", options->motion,
+                       "Simulate the hair while it is drawn, on a head that moves like that: none, spin, nod, "
+                       "clip:NAME or a file of keys F.json")
+            ->excludes(record);
+    job.add_option("--character", options->character,
+                   "File with the skeleton and clips, instead of the one the scalp came from")
+        ->needs(motion);
+    job.add_option("--wind", options->wind, "Velocity of the air X,Y,Z in m/s, instead of the groom's own")
+        ->needs(motion);
+    job.add_option("--engine", options->engine,
+                   "What moves strands: the CPU, the GPU that draws them, or whichever was measured to be faster")
+        ->check(CLI::IsMember({"auto", "cpu", "gpu"}))
+        ->needs(motion);
+    auto* frame = job.add_option("--frame", options->frame,
+                                 "Frame of the record, from 0, or of 1/60 s of the simulation");
     auto* frames =
-        job.add_option("--frames", options->frames, "Frames of the record, FIRST,LAST[,STEP]: a picture each")
+        job.add_option("--frames", options->frames, "Such frames FIRST,LAST[,STEP]: a picture each")
             ->delimiter(',')
-            ->needs(record)
             ->excludes(frame);
     job.add_option("--turntable", options->turntable, "Pictures of one turn of the camera around the hair")
         ->check(CLI::Range(1, 10'000))
@@ -412,7 +480,14 @@ JobRun declare(CLI::App& job) {
         ->check(CLI::IsMember({"any", "vulkan", "d3d11"}));
     job.add_option("-o,--output", options->output, "PNG to write; of several pictures each gets its number")
         ->required();
-    job.final_callback([options, device] { options->chooseDevice = device->count() > 0; });
+    job.final_callback([options, device, frame, frames] {
+        options->chooseDevice = device->count() > 0;
+        const bool moves = !options->record.empty() || !options->motion.empty();
+        for (const CLI::Option* option : {frame, frames}) {
+            if (option->count() > 0 && !moves)
+                throw CLI::RequiresError(option->get_name(), "--record or --motion");
+        }
+    });
     return [options](const std::string&) {
         return withOutputs({{options->output, content::kPng},
                             {options->exr},

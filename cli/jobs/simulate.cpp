@@ -27,6 +27,7 @@ struct SimulateOptions {
     std::string input;
     std::uint64_t frames = 60;
     float framesPerSecond = 60;
+    std::string engine;
     std::string backend = "cpu";
     std::optional<std::uint32_t> device;
     std::string model;
@@ -182,6 +183,17 @@ Result<Report> sagOf(const Groom& groom, const SimulateOptions& options) {
     return report;
 }
 
+/// What --engine says, and where it says nothing --backend.
+Result<JobEngine> engineOf(const SimulateOptions& options, const Groom& groom) {
+    if (options.engine.empty() && options.backend == "cpu")
+        return JobEngine{{EngineKind::cpu, "no other was asked for"}, nullptr};
+    if (options.engine == "auto" && options.method != "strands")
+        return JobEngine{{EngineKind::cpu, "only the strand engine runs on a GPU"}, nullptr};
+    std::optional<gpu::Backend> backend;
+    if (options.backend != "cpu") backend = kGpuBackends.at(options.backend);
+    return chooseJobEngine(options.engine.empty() ? "gpu" : options.engine, backend, options.device, groom);
+}
+
 Result<Report> simulate(const SimulateOptions& options) {
     auto groom = loadDocument(options.input);
     if (!groom) return tl::unexpected(groom.error());
@@ -191,13 +203,9 @@ Result<Report> simulate(const SimulateOptions& options) {
     if (!motion) return tl::unexpected(motion.error());
     HeadPose pose = (*motion)->poseAt(0);
     SimulationOptions methodOptions = methodOf(options);
-    std::unique_ptr<GpuBackend> gpu;
-    if (options.backend != "cpu") {
-        auto made = GpuBackend::make(kGpuBackends.at(options.backend), options.device);
-        if (!made) return tl::unexpected(made.error());
-        gpu = std::move(*made);
-        methodOptions.backend = gpu->engine();
-    }
+    const auto engine = engineOf(options, *groom);
+    if (!engine) return tl::unexpected(engine.error());
+    if (engine->gpu) methodOptions.backend = engine->gpu->engine();
     auto simulation = Simulation::make(*groom, pose, methodOptions);
     if (!simulation) return tl::unexpected(simulation.error());
     const Report advice = adviceReport(*groom, 1.0f / options.framesPerSecond);
@@ -232,7 +240,9 @@ Result<Report> simulate(const SimulateOptions& options) {
     Report report = statsReport(*groom, simulation->stats());
     report["advice"] = advice;
     report["method"] = options.method;
-    report["device"] = gpu ? Report(gpu->deviceName()) : Report();
+    report["engine"] = engineName(engine->choice.kind);
+    report["why"] = engine->choice.why;
+    report["device"] = engine->gpu ? Report(engine->gpu->deviceName()) : Report();
     if (comparison) comparison->report(report);
     if (recorder) {
         if (auto finished = recorder->finish(); !finished) return tl::unexpected(finished.error());
@@ -251,7 +261,11 @@ JobRun declare(CLI::App& job) {
     job.add_option("groom", options->input, "Project or hair file")->required();
     job.add_option("--frames", options->frames, "Frames to simulate")->check(CLI::Range(1, 1'000'000));
     job.add_option("--fps", options->framesPerSecond, "Frames per second")->check(CLI::Range(10.0, 1000.0));
-    job.add_option("--backend", options->backend, "What runs it")
+    job.add_option("--engine", options->engine,
+                   "What moves strands: the CPU, a GPU, or whichever was measured to be faster")
+        ->check(CLI::IsMember({"auto", "cpu", "gpu"}));
+    job.add_option("--backend", options->backend,
+                   "Graphics API of the GPU; alone it asks for the engine there, too")
         ->check(CLI::IsMember({"cpu", "vulkan", "d3d11"}));
     job.add_option("--device", options->device, "GPU to use, by its index in `devices`");
     job.add_option("--model", options->model, "What a strand is, instead of the groom's own")

@@ -31,6 +31,7 @@ class Actor {
     const ScalpMesh& mesh() const { return *mesh_; }
     const Skeleton& skeleton() const { return skeleton_; }
     const std::vector<Clip>& clips() const { return clips_; }
+    const SkinWeights& skin() const { return skin_; }
     /// Error: no clip of that name, listing those there are.
     Result<std::uint32_t> findClip(std::string_view name) const;
 

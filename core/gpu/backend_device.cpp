@@ -8,12 +8,14 @@ namespace hairloom::gpu {
 Result<BufferPtr> BackendDevice::createBuffer(const BufferDesc& desc, std::span<const std::byte> content) {
     if (auto status = checkAlive(); !status) return tl::unexpected(status.error());
     if (auto status = checkDesc(info(), desc, content.size()); !status) return tl::unexpected(status.error());
+    traffic_.toDevice += content.size();
     return makeBuffer(desc, content);
 }
 
 Result<TexturePtr> BackendDevice::createTexture(const TextureDesc& desc, std::span<const std::byte> content) {
     if (auto status = checkAlive(); !status) return tl::unexpected(status.error());
     if (auto status = checkDesc(info(), desc, content.size()); !status) return tl::unexpected(status.error());
+    traffic_.toDevice += content.size();
     return makeTexture(desc, content);
 }
 
@@ -34,6 +36,7 @@ Result<std::unique_ptr<CommandList>> BackendDevice::createCommandList() {
 Result<SubmissionPtr> BackendDevice::submit(std::unique_ptr<CommandList> list) {
     if (auto status = checkAlive(); !status) return tl::unexpected(status.error());
     if (list == nullptr) return fail("no command list to submit");
+    traffic_.toDevice += static_cast<const CheckedList&>(*list).uploadedBytes();
     return start(*list);
 }
 
@@ -48,6 +51,7 @@ void BackendDevice::waitForAll() {
 
 Status BackendDevice::readMapped(const BufferPtr& buffer, std::uint64_t offset, std::span<std::byte> target) {
     if (auto status = checkReadMapped(buffer, offset, target.size()); !status) return status;
+    traffic_.fromDevice += target.size();
     return copyMapped(*buffer, offset, target);
 }
 

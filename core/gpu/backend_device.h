@@ -6,12 +6,13 @@
 #include <deque>
 #include <functional>
 
-#include "core/gpu/device.h"
+#include "core/gpu/checked_list.h"
 
 namespace hairloom::gpu {
 
 class BackendDevice : public Device {
   public:
+    Traffic traffic() const final { return traffic_; }
     Result<BufferPtr> createBuffer(const BufferDesc& desc, std::span<const std::byte> content) final;
     Result<TexturePtr> createTexture(const TextureDesc& desc, std::span<const std::byte> content) final;
     Result<std::unique_ptr<SwapChain>> createSwapChain(const SwapChainDesc& desc) final;
@@ -28,7 +29,7 @@ class BackendDevice : public Device {
     virtual Result<std::unique_ptr<SwapChain>> makeSwapChain(const SwapChainDesc& desc) = 0;
     /// The list calls `whenClosed` once, when it is submitted or destroyed.
     virtual Result<std::unique_ptr<CommandList>> makeCommandList(std::function<void()> whenClosed) = 0;
-    /// Ends the list and starts its work, which goes to keep().
+    /// Ends the list, which derives from CheckedList, and starts its work, which goes to keep().
     virtual Result<SubmissionPtr> start(CommandList& list) = 0;
     virtual Status copyMapped(const Buffer& buffer, std::uint64_t offset, std::span<std::byte> target) = 0;
     virtual Status checkAlive() const = 0;
@@ -44,6 +45,7 @@ class BackendDevice : public Device {
 
     std::shared_ptr<bool> listOpen_ = std::make_shared<bool>(false);
     std::deque<SubmissionPtr> running_;
+    Traffic traffic_;
 };
 
 }  // namespace hairloom::gpu

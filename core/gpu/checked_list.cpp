@@ -135,6 +135,7 @@ void CheckedList::setConstants(std::uint32_t slot, std::span<const std::byte> by
         return wrong("constants of 1 to 65536 bytes are possible");
     }
     if (error_) return;
+    uploadedBytes_ += bytes.size();
     const auto staged = stageConstants(slot, bytes);
     if (!staged) return wrong(staged.error());
     bind({&*staged, 1});
@@ -249,6 +250,7 @@ void CheckedList::updateBuffer(const BufferPtr& target, std::uint64_t offset,
         return wrong(outside("updateBuffer", target));
     }
     keep(target);
+    uploadedBytes_ += bytes.size();
     recordUpdate(target, offset, bytes);
 }
 

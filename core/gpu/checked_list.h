@@ -75,6 +75,9 @@ class CheckedList : public CommandList {
     void copyTextureToBuffer(const TexturePtr& source, const BufferPtr& target,
                              std::uint64_t targetOffset) final;
 
+    /// Of updates and constants.
+    std::uint64_t uploadedBytes() const { return uploadedBytes_; }
+
   protected:
     enum class PassKind { None, Graphics, Compute };
 
@@ -138,6 +141,7 @@ class CheckedList : public CommandList {
     Viewport viewport_;
     ScissorRect scissor_;
     std::map<ShaderRegister, Binding> bound_;
+    std::uint64_t uploadedBytes_ = 0;
 };
 
 }  // namespace hairloom::gpu

@@ -135,10 +135,17 @@ class SwapChain {
     virtual Status present() = 0;
 };
 
+/// Bytes that have crossed between program and device since the device was made: content of resources, updates
+/// and constants one way, what was read the other.
+struct Traffic {
+    std::uint64_t toDevice = 0, fromDevice = 0;
+};
+
 class Device {
   public:
     virtual ~Device() = default;
     virtual const DeviceInfo& info() const = 0;
+    virtual Traffic traffic() const = 0;
 
     /// Errors of all create functions: a description outside the device's limits (named), out of memory,
     /// device lost. `content` is empty or covers the whole resource; without it the content is undefined.

@@ -59,6 +59,7 @@ class ValidationDevice final : public Device {
     void loseDevice(std::uint64_t calls) { submissionsLeft_ = calls; }
 
     const DeviceInfo& info() const override { return inner_->info(); }
+    Traffic traffic() const override { return inner_->traffic(); }
     Result<BufferPtr> createBuffer(const BufferDesc& desc, std::span<const std::byte> content) override;
     Result<TexturePtr> createTexture(const TextureDesc& desc, std::span<const std::byte> content) override;
     Result<SamplerPtr> createSampler(const SamplerDesc& desc) override;

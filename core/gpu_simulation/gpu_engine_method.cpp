@@ -33,6 +33,11 @@ class GpuEngineMethod final : public StrandMethod {
     void readPositions(std::span<runtime::Float3> positions_ws) const override {
         keep(engine_.readPositions(positions_ws));
     }
+    bool readVelocities(std::span<runtime::Float3> velocities_ws) const override {
+        const Status read = engine_.readVelocities(velocities_ws);
+        keep(read);
+        return read.has_value();
+    }
     double stepMilliseconds() const override { return milliseconds_; }
     std::uint32_t restoredStrands() const override { return restored_; }
     std::uint32_t guardedStrands() const override { return guarded_; }

@@ -67,8 +67,9 @@ std::vector<std::array<float, 2>> samplesOf(const runtime::FollowView& view) {
 
 struct GpuFollowHairs::Impl {
     shaders::FollowConstants constants;
-    std::vector<shaders::FollowPlane> planes;  // with the turns of the last frame
-    gpu::BufferPtr samples, radii, bindings, planeBuffer, rows, hairs;
+    std::vector<shaders::FollowPlane> planes;
+    std::vector<shaders::float4> frames;  // of the last frame: two a guide, the second its turn
+    gpu::BufferPtr samples, radii, bindings, planeBuffer, frameBuffer, rows, hairs;
     gpu::ComputePipelinePtr wisps, sums;
 
     Status makeBuffers(gpu::Device& device, const runtime::FollowView& view);
@@ -95,6 +96,8 @@ Status GpuFollowHairs::Impl::makeBuffers(gpu::Device& device, const runtime::Fol
          makeBuffer<shaders::FollowBinding>(device, "hair bindings", Usage::ShaderRead, all.size(), all));
     keep(planeBuffer,
          makeBuffer<shaders::FollowPlane>(device, "root planes", Usage::ShaderRead, planes.size(), planes));
+    keep(frameBuffer,
+         makeBuffer<shaders::float4>(device, "turns of guides", Usage::ShaderRead, frames.size(), frames));
     const Usage both = Usage::ShaderRead | Usage::UnorderedAccess;
     keep(rows, makeBuffer<shaders::float4>(device, "wisps", both, planes.size() * kRows * points, {}));
     keep(hairs, makeBuffer<shaders::float4>(device, "follow hairs", both, all.size() * points, {}));
@@ -109,7 +112,9 @@ Result<GpuFollowHairs> GpuFollowHairs::make(gpu::Device& device, const runtime::
     impl->constants.hairs = static_cast<std::uint32_t>(view.guides.size());
     impl->constants.points = view.pointsPerHair;
     for (const runtime::RootPlane& plane : view.rootPlanes_ss)
-        impl->planes.push_back({quad(plane.x), quad(plane.y), quad(plane.normal), {0, 0, 0, 1}});
+        impl->planes.push_back({quad(plane.x), quad(plane.y), quad(plane.normal)});
+    for (std::size_t g = 0; g < impl->planes.size(); ++g)
+        impl->frames.insert(impl->frames.end(), {{}, {0, 0, 0, 1}});
     if (auto made = impl->makeBuffers(device, view); !made) return tl::unexpected(made.error());
     auto wisps = compiledKernel(device, "follow_wisps");
     if (!wisps) return tl::unexpected(wisps.error());
@@ -139,14 +144,15 @@ void GpuFollowHairs::record(gpu::CommandList& list, const FollowInput& input) {
     Impl& impl = *impl_;
     assert(input.rootRotations_ws.empty() || input.rootRotations_ws.size() == impl.planes.size());
     bool turned = false;
-    for (std::size_t g = 0; g < impl.planes.size(); ++g) {
+    for (std::size_t g = 0; input.roots_ws == nullptr && g < impl.planes.size(); ++g) {
         runtime::Quat turn = input.rootRotations_ws.empty() ? runtime::Quat{} : input.rootRotations_ws[g];
         if (!runtime::normalize(turn)) turn = {};
-        shaders::float4& kept = impl.planes[g].turn;
+        shaders::float4& kept = impl.frames[2 * g + 1];
         turned = turned || kept.x != turn.x || kept.y != turn.y || kept.z != turn.z || kept.w != turn.w;
         kept = {turn.x, turn.y, turn.z, turn.w};
     }
-    if (turned) list.updateBuffer(impl.planeBuffer, 0, std::as_bytes(std::span(impl.planes)));
+    if (turned) list.updateBuffer(impl.frameBuffer, 0, std::as_bytes(std::span(impl.frames)));
+    const gpu::BufferPtr& frames = input.roots_ws != nullptr ? input.roots_ws : impl.frameBuffer;
     shaders::FollowConstants constants = impl.constants;
     constants.wispSpread = input.wispSpread;
     constants.hasVelocities = input.velocities_ws != nullptr ? 1 : 0;
@@ -164,12 +170,14 @@ void GpuFollowHairs::record(gpu::CommandList& list, const FollowInput& input) {
         list.endPass();
     };
     using gpu::Binding;
-    const std::array<Binding, 6> ofWisps{Binding::read(0, input.positions_ws), Binding::read(1, velocities),
+    const std::array<Binding, 7> ofWisps{Binding::read(0, input.positions_ws), Binding::read(1, velocities),
                                          Binding::read(2, impl.planeBuffer),   Binding::read(3, impl.samples),
-                                         Binding::read(4, impl.radii),         Binding::write(0, impl.rows)};
+                                         Binding::read(4, impl.radii),         Binding::read(5, frames),
+                                         Binding::write(0, impl.rows)};
     run(impl.wisps, "wisps", ofWisps, (constants.guides + kGuidesPerGroup - 1) / kGuidesPerGroup, 1);
-    const std::array<Binding, 4> ofHairs{Binding::read(0, impl.rows), Binding::read(1, impl.planeBuffer),
-                                         Binding::read(2, impl.bindings), Binding::write(0, impl.hairs)};
+    const std::array<Binding, 5> ofHairs{Binding::read(0, impl.rows), Binding::read(1, impl.planeBuffer),
+                                         Binding::read(2, impl.bindings), Binding::read(3, frames),
+                                         Binding::write(0, impl.hairs)};
     const std::uint32_t groups = (constants.hairs * constants.points + kPointsPerGroup - 1) / kPointsPerGroup;
     run(impl.sums, "follow hairs", ofHairs, std::min(groups, kMaxGroups),
         (groups + kMaxGroups - 1) / kMaxGroups);

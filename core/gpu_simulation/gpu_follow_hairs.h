@@ -18,6 +18,8 @@ struct FollowInput {
     /// Per guide, as runtime::GuideMotion has them; may be empty.
     std::span<const runtime::Quat> rootRotations_ws;
     float wispSpread = 0.15f;  ///< s/m
+    /// In place of those rotations: two float4 a guide, the second the rotation, as GpuHead writes them.
+    gpu::BufferPtr roots_ws = {};
 };
 
 class GpuFollowHairs {

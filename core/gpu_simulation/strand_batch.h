@@ -42,6 +42,7 @@ struct StrandBatch {
     std::uint32_t slots = 0;
     // Made with the batch; names as in runtime/shaders/storage.hlsli.
     gpu::BufferPtr rest, segments, blockCounts, firstPoints, rootsTo, state, roots;
+    gpu::BufferPtr strandOfSlot;  ///< once the device finds roots itself
     // Null while what needs them is off.
     gpu::BufferPtr bend, targets, curves, energyTanks, rests, gathered, scratch;
     // Of rods, as in runtime/shaders/rod_storage.hlsli; null for springs.

@@ -17,7 +17,6 @@ using gpu::Usage;
 using runtime::Effect;
 using runtime::Float3;
 
-constexpr std::size_t kReportWords = 4;
 constexpr std::size_t kMaxSubmissionsInFlight = 2;
 /// Floats a point that a kernel of StrandStorage::buffers works in: see storage.hlsli.
 constexpr std::array<std::size_t, 3> kScratchPlanes{5, 11, 20};
@@ -100,7 +99,7 @@ Status StrandEngine::Impl::makeBuffers() {
         return Status();
     };
     const std::size_t points = shape->offsets.back();
-    if (auto made = make(reportBuffer, "report", kReportWords, 4); !made) return made;
+    if (auto made = make(reportBuffer, "report", StrandEngine::kReportWords, 4); !made) return made;
     if (auto made = make(places, "places", points, sizeof(shaders::float4)); !made) return made;
     if (options.velocities) {
         if (auto made = make(velocities, "velocities", points, sizeof(shaders::float4)); !made) return made;
@@ -250,7 +249,7 @@ Status StrandEngine::setSettings(const runtime::SimulationSettings& settings) {
 Status StrandEngine::step(const runtime::FrameInput& input) {
     auto list = impl_->device.createCommandList();
     if (!list) return tl::unexpected(list.error());
-    if (auto recorded = impl_->record(**list, input); !recorded) return recorded;
+    if (auto recorded = impl_->record(**list, input, nullptr); !recorded) return recorded;
     auto submission = impl_->device.submit(std::move(*list));
     if (!submission) return tl::unexpected(submission.error());
     impl_->submissionsInFlight.push_back(std::move(*submission));
@@ -261,7 +260,12 @@ Status StrandEngine::step(const runtime::FrameInput& input) {
 }
 
 Status StrandEngine::record(gpu::CommandList& list, const runtime::FrameInput& input) {
-    return impl_->record(list, input);
+    return impl_->record(list, input, nullptr);
+}
+
+Status StrandEngine::record(gpu::CommandList& list, const runtime::FrameInput& input,
+                            const DeviceRoots& roots) {
+    return impl_->record(list, input, &roots);
 }
 
 const runtime::SimulationSettings& StrandEngine::settings() const {
@@ -278,6 +282,15 @@ gpu::BufferPtr StrandEngine::positions_ws() const {
 }
 gpu::BufferPtr StrandEngine::velocities_ws() const {
     return impl_->velocities;
+}
+gpu::BufferPtr StrandEngine::reportWords() const {
+    return impl_->reportBuffer;
+}
+float StrandEngine::substep() const {
+    return impl_->substep;
+}
+const runtime::RestShape& StrandEngine::restShape() const {
+    return *impl_->shape;
 }
 const runtime::EffectPlan& StrandEngine::plan() const {
     return impl_->run.plan;

@@ -46,6 +46,14 @@ struct FrameReport {
     std::uint32_t rejectedWinds = 0;
 };
 
+/// Roots that the device itself has found (GpuHead), in place of FrameInput::roots_ws.
+struct DeviceRoots {
+    gpu::BufferPtr frames_ws;         ///< two float4 a strand: place; rotation since rest
+    runtime::Float3 min_ws, max_ws;   ///< a box that holds all places
+    float motion = 0.0f;              ///< metres; no root goes farther in the frame
+    bool moved = true;                ///< false: all are where they were in the last frame
+};
+
 class StrandEngine {
   public:
     /// Strands at rest. `device` outlives the engine. Errors: those of runtime::Engine::make, settings
@@ -71,6 +79,9 @@ class StrandEngine {
     /// Records the frame into the caller's list, outside a pass; the list has to be submitted before anything
     /// else is asked of the engine.
     Status record(gpu::CommandList& list, const runtime::FrameInput& input);
+    /// Likewise; the roots are what the list has written into their buffer before, those of `input` are not
+    /// read.
+    Status record(gpu::CommandList& list, const runtime::FrameInput& input, const DeviceRoots& roots);
 
     std::uint32_t strandCount() const;
     std::uint32_t pointCount() const;
@@ -79,6 +90,14 @@ class StrandEngine {
     gpu::BufferPtr positions_ws() const;
     /// Likewise, m/s; null unless asked for.
     gpu::BufferPtr velocities_ws() const;
+
+    /// Words of the last recorded frame, for who reads them later: reportFrom() makes a report of them.
+    gpu::BufferPtr reportWords() const;
+    static constexpr std::size_t kReportWords = 4;
+    /// `substep`: seconds of one in that frame. Without times.
+    static FrameReport reportFrom(std::span<const std::uint32_t, kReportWords> words, float substep);
+    float substep() const;  ///< seconds, of the last recorded frame; 0 before the first
+    const runtime::RestShape& restShape() const;
 
     /// The plan that the last frame ran by.
     const runtime::EffectPlan& plan() const;

@@ -7,7 +7,9 @@
 
 #include "core/base/parallel.h"
 #include "core/gpu_simulation/bend_reduction.h"
+#include "core/gpu_simulation/compiled_kernel.h"
 #include "core/gpu_simulation/strand_engine_impl.h"
+#include "runtime/shaders/live_types.h"
 #include "runtime/src/checks.h"
 
 namespace hairloom::gpu_simulation {
@@ -48,7 +50,7 @@ std::vector<bool> StrandEngine::Impl::takeRoots(const runtime::FrameInput& input
         const Float3 p = root.position;
         low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
         high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-        if (p == roots[s].position && root.rotation == roots[s].rotation) continue;
+        if (!rootsOfDevice && p == roots[s].position && root.rotation == roots[s].rotation) continue;
         const float way = length(p - roots[s].position);
         if (way <= wanted.teleportDistance) rootMotion = std::max(rootMotion, way);
         roots[s] = root;
@@ -56,7 +58,55 @@ std::vector<bool> StrandEngine::Impl::takeRoots(const runtime::FrameInput& input
     }
     rootsMin_ws = low;
     rootsMax_ws = high;
+    rootsOfDevice = false;
     return moved;
+}
+
+/// The same of roots that are on the device; whether they have moved.
+bool StrandEngine::Impl::takeRoots(const DeviceRoots& given) {
+    rejectedRoots = 0;
+    rootMotion = std::min(given.motion, wanted.teleportDistance);
+    rootsMin_ws = given.min_ws;
+    rootsMax_ws = given.max_ws;
+    const bool moved = given.moved || !rootsOfDevice;
+    rootsOfDevice = true;
+    return moved;
+}
+
+/// Puts the places of the frame's roots in the order of the slots.
+Status StrandEngine::Impl::gatherRoots(gpu::CommandList& list, const DeviceRoots& given) {
+    if (rootRows == nullptr) {
+        auto made = compiledKernel(device, "root_rows");
+        if (!made) return tl::unexpected(made.error());
+        rootRows = std::move(*made);
+    }
+    gpu::PassDesc pass;
+    pass.name = "roots of slots";
+    for (StrandBatch& batch : batches) {
+        if (batch.strandOfSlot != nullptr) continue;
+        std::vector<std::uint32_t> strands;
+        for (std::size_t slot = 0; slot < batch.slots; ++slot) {
+            const runtime::Block& block = shape->blocks[batch.blocks[slot / runtime::kBlockLanes]];
+            strands.push_back(block.strandOfLane[slot % runtime::kBlockLanes]);
+        }
+        auto made = makeBuffer<std::uint32_t>(device, "strands of slots", gpu::Usage::ShaderRead,
+                                              strands.size(), strands);
+        if (!made) return tl::unexpected(made.error());
+        batch.strandOfSlot = std::move(*made);
+    }
+    list.beginPass(pass);
+    list.setPipeline(rootRows);
+    for (const StrandBatch& batch : batches) {
+        const shaders::RootRowConstants constants{batch.slots, given.moved ? 1.0f : 0.0f, 0, 0};
+        list.setConstants(0, gpu::bytesOf(constants));
+        const std::array<Binding, 3> bound{Binding::read(0, given.frames_ws),
+                                           Binding::read(1, batch.strandOfSlot),
+                                           Binding::write(0, batch.rootsTo)};
+        list.bind(bound);
+        list.dispatch((batch.slots + HAIRLOOM_LIVE_GROUP - 1) / HAIRLOOM_LIVE_GROUP);
+    }
+    list.endPass();
+    return {};
 }
 
 /// `moved` may be empty: none has.
@@ -251,11 +301,13 @@ void StrandEngine::Impl::dispatch(gpu::CommandList& list, const StrandBatch& bat
                   (groups + HAIRLOOM_GROUP_ROW - 1) / HAIRLOOM_GROUP_ROW);
 }
 
-Status StrandEngine::Impl::record(gpu::CommandList& list, const runtime::FrameInput& input) {
+Status StrandEngine::Impl::record(gpu::CommandList& list, const runtime::FrameInput& input,
+                                  const DeviceRoots* deviceRoots) {
     if (!(input.dt > 0.0f) || !std::isfinite(input.dt)) return {};
     known.reset();
     const Float3 lowBefore = rootsMin_ws, highBefore = rootsMax_ws;
-    const std::vector<bool> moved = takeRoots(input);
+    const bool found = deviceRoots != nullptr;
+    const std::vector<bool> moved = found ? std::vector<bool>(1, takeRoots(*deviceRoots)) : takeRoots(input);
     runtime::takeSpheres(wanted, shape->longestStrand, spheresBefore, input.spheres, frameSpheres);
     const Float3 low{std::min(rootsMin_ws.x, lowBefore.x), std::min(rootsMin_ws.y, lowBefore.y),
                      std::min(rootsMin_ws.z, lowBefore.z)};
@@ -271,7 +323,10 @@ Status StrandEngine::Impl::record(gpu::CommandList& list, const runtime::FrameIn
     list.updateBuffer(reportBuffer, 0, std::as_bytes(std::span(kNothing)));
     // Roots that rest are there already, once the device knows that they do.
     const bool moves = std::ranges::find(moved, true) != moved.end();
-    if (substep == 0.0f || moves || rootsMoved) uploadRoots(list, moved);
+    if (substep == 0.0f || moves || rootsMoved) {
+        if (!found) uploadRoots(list, moved);
+        if (auto gathered = found ? gatherRoots(list, *deviceRoots) : Status(); !gathered) return gathered;
+    }
     rootsMoved = moves;
     uploadChanges(list);
     uploadSpheres(list);

@@ -48,6 +48,8 @@ struct StrandEngine::Impl {
     bool wakeAll = false;
     bool rodsFresh = false;   ///< the device has places of rods, and nothing else yet
     bool rootsMoved = false;  ///< in the last frame, as the device knows
+    bool rootsOfDevice = false;  ///< `roots` are of an earlier frame: the device found them itself since
+    gpu::ComputePipelinePtr rootRows;  ///< puts roots of the device in order, once there are some
 
     std::deque<gpu::SubmissionPtr> submissionsInFlight;
     std::optional<runtime::State> known;  ///< what was read since the last frame
@@ -68,8 +70,10 @@ struct StrandEngine::Impl {
                runtime::Float3 low, runtime::Float3 high);
     Result<bool> kernelsFor(const Run& next, bool wait);
     // strand_engine_frame.cpp
-    Status record(gpu::CommandList& list, const runtime::FrameInput& input);
+    Status record(gpu::CommandList& list, const runtime::FrameInput& input, const DeviceRoots* deviceRoots);
     std::vector<bool> takeRoots(const runtime::FrameInput& input);
+    bool takeRoots(const DeviceRoots& given);
+    Status gatherRoots(gpu::CommandList& list, const DeviceRoots& given);
     void uploadRoots(gpu::CommandList& list, const std::vector<bool>& moved);
     void uploadSpheres(gpu::CommandList& list);
     void uploadBend(gpu::CommandList& list, float h);

@@ -206,7 +206,7 @@ Status StrandEngine::Impl::writeState(const runtime::State& given) {
         }
     }
     uploadRoots(**list, {});
-    rootsMoved = false;
+    rootsMoved = rootsOfDevice = false;
     auto submission = device.submit(std::move(*list));
     if (!submission) return tl::unexpected(submission.error());
     spheresBefore = state.spheres;
@@ -254,16 +254,21 @@ Status StrandEngine::reset(std::span<const RootFrame> roots_ws) {
     return impl_->writeState(state);
 }
 
-Result<FrameReport> StrandEngine::report() {
+FrameReport StrandEngine::reportFrom(std::span<const std::uint32_t, kReportWords> words, float substep) {
     FrameReport report;
-    const auto bytes = impl_->readTogether({impl_->reportBuffer});
-    if (!bytes) return tl::unexpected(bytes.error());
-    std::array<std::uint32_t, 4> words{};
-    std::memcpy(words.data(), bytes->data(), sizeof(words));
-    if (impl_->substep > 0.0f) report.fastest = std::sqrt(std::bit_cast<float>(words[0])) / impl_->substep;
+    if (substep > 0.0f) report.fastest = std::sqrt(std::bit_cast<float>(words[0])) / substep;
     report.restoredStrands = words[1];
     report.asleep = words[2];
     report.guardedStrands = words[3];
+    return report;
+}
+
+Result<FrameReport> StrandEngine::report() {
+    const auto bytes = impl_->readTogether({impl_->reportBuffer});
+    if (!bytes) return tl::unexpected(bytes.error());
+    std::array<std::uint32_t, kReportWords> words{};
+    std::memcpy(words.data(), bytes->data(), sizeof(words));
+    FrameReport report = reportFrom(words, impl_->substep);
     report.kernelMilliseconds = impl_->kernelMilliseconds;
     report.rejectedRoots = impl_->rejectedRoots;
     report.rejectedSpheres = impl_->frameSpheres.rejected;

@@ -260,12 +260,32 @@ Status DeviceScene::replaceMesh(std::size_t mesh, std::span<const Vec3f> positio
     const auto bounds = finiteBounds(positions_ws, "mesh vertex");
     if (!bounds) return tl::unexpected(bounds.error());
     m.bounds_ws = *bounds;
+    m.devicePositions = m.deviceNormals = nullptr;
     m.positions_ws.assign(positions_ws.begin(), positions_ws.end());
     if (normals_ws.empty()) {
         m.normals_ws = averagedNormals(positions_ws, m.indices);
     } else {
         m.normals_ws.assign(normals_ws.begin(), normals_ws.end());
     }
+    return {};
+}
+
+Status DeviceScene::replaceMesh(std::size_t mesh, gpu::BufferPtr positions_ws, gpu::BufferPtr normals_ws,
+                                const Box3f& bounds_ws) {
+    if (mesh >= meshes.size()) return fail(fmt::format("mesh {} of {}", mesh, meshes.size()));
+    MeshOnDevice& m = meshes[mesh];
+    if (m.indices.empty()) return {};
+    const std::uint64_t needed = std::uint64_t{m.vertexCount} * 3 * sizeof(float);
+    for (const gpu::BufferPtr& buffer : {positions_ws, normals_ws}) {
+        if (buffer != nullptr && buffer->desc().size >= needed) continue;
+        return fail("a buffer that cannot hold this mesh",
+                    fmt::format("{} bytes, of 3 floats a vertex", needed));
+    }
+    if (bounds_ws.isEmpty()) return fail("vertices on the device without their bounds");
+    m.bounds_ws = bounds_ws;
+    m.positions_ws.clear();
+    m.devicePositions = std::move(positions_ws);
+    m.deviceNormals = std::move(normals_ws);
     return {};
 }
 
@@ -299,17 +319,11 @@ Status DeviceScene::replacePointDyes(std::size_t group, std::span<const float> d
 }
 
 Status DeviceScene::replaceStrands(std::size_t group, gpu::BufferPtr positions_ws,
-                                   std::uint32_t floatsPerPoint, const Box3f& bounds_ws) {
+                                   std::uint32_t floatsPerPoint, const Box3f& bounds_ws,
+                                   std::span<const Vec3f> sample_ws) {
     if (group >= groups.size()) return fail(fmt::format("group {} of {} of strands", group, groups.size()));
     StrandGroup& g = groups[group];
-    std::uint32_t longest = 0;
-    for (const DrawBatch& batch : batches) {
-        if (batch.group != group) continue;
-        for (std::uint32_t i = 0; i < batch.strandCount(); ++i) {
-            longest = std::max(longest, batch.segmentsBefore[i + 1] - batch.segmentsBefore[i] + 1);
-        }
-    }
-    const std::uint64_t needed = std::uint64_t{longest} * g.strandCount * floatsPerPoint * sizeof(float);
+    const std::uint64_t needed = std::uint64_t{g.pointCount} * floatsPerPoint * sizeof(float);
     if (positions_ws == nullptr || (floatsPerPoint != 3 && floatsPerPoint != 4) ||
         positions_ws->desc().size < needed || !has(positions_ws->desc().usage, gpu::Usage::ShaderRead)) {
         return fail("a buffer that cannot hold these strands",
@@ -318,7 +332,7 @@ Status DeviceScene::replaceStrands(std::size_t group, gpu::BufferPtr positions_w
     if (bounds_ws.isEmpty()) return fail("positions on the device without their bounds");
     g.bounds_ws = bounds_ws;
     g.positions_ws.clear();
-    g.sample_ws.clear();
+    g.sample_ws.assign(sample_ws.begin(), sample_ws.end());
     g.devicePositions = std::move(positions_ws);
     g.floatsPerPoint = floatsPerPoint;
     return {};

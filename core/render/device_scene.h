@@ -62,7 +62,7 @@ struct StrandGroup {
     bool hasPointDyes = false;
     std::vector<float> pointDyes;      ///< waiting for their upload
     std::vector<Vec3f> positions_ws;   ///< waiting for their upload
-    gpu::BufferPtr devicePositions;    ///< in place of the batches' own: particle * strandCount + strand
+    gpu::BufferPtr devicePositions;    ///< of all points, in place of the batches' own
     std::uint32_t floatsPerPoint = 3;  ///< of devicePositions: 3 or 4
     Box3f bounds_ws;
     double length = 0;  ///< metres of all strands together, where they stood when they were set
@@ -88,10 +88,14 @@ struct MeshOnDevice {
     std::size_t vertexCount = 0;
     std::vector<Vec3f> positions_ws, normals_ws;  ///< waiting for their upload
     gpu::BufferPtr positions, normals, indexBuffer, albedo;
+    gpu::BufferPtr devicePositions, deviceNormals;  ///< in place of its own
     Box3f bounds_ws;
     bool matte = false;
     float area = 0;  ///< m², where it stood when it was set
     Vec3f meanAlbedo = Vec3f::Zero();
+
+    const gpu::BufferPtr& drawnPositions() const { return devicePositions ? devicePositions : positions; }
+    const gpu::BufferPtr& drawnNormals() const { return devicePositions ? deviceNormals : normals; }
 };
 
 class DeviceScene {
@@ -100,10 +104,12 @@ class DeviceScene {
 
     Status replaceMesh(std::size_t mesh, std::span<const Vec3f> positions_ws,
                        std::span<const Vec3f> normals_ws);
+    Status replaceMesh(std::size_t mesh, gpu::BufferPtr positions_ws, gpu::BufferPtr normals_ws,
+                       const Box3f& bounds_ws);
     Status replaceStrands(std::size_t group, std::span<const Vec3f> positions_ws);
     Status replacePointDyes(std::size_t group, std::span<const float> dyes);
     Status replaceStrands(std::size_t group, gpu::BufferPtr positions_ws, std::uint32_t floatsPerPoint,
-                          const Box3f& bounds_ws);
+                          const Box3f& bounds_ws, std::span<const Vec3f> sample_ws);
 
     /// Makes room for curves of that fineness, `twice` for their light with shadows and without, and for what
     /// their points see of the `sky`; nothing happens when there is.

@@ -19,7 +19,7 @@ shaders::CurveConstants curveConstants(const RendererState& state, const DrawBat
     c.strandCount = batch.strandCount(state.detail);
     c.subdivisions = state.detail.subdivisions;
     c.floatsPerPoint = own ? 3 : group.floatsPerPoint;
-    c.strandMajor = own ? 0 : static_cast<std::uint32_t>(group.strandCount);
+    c.firstPoint = own ? 0 : static_cast<std::uint32_t>(batch.firstPoint);
     c.rootRadius = material.radius;
     c.tipScale = material.tipScale;
     c.radiusVariation = material.radiusVariation;

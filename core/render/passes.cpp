@@ -253,7 +253,7 @@ void drawStrips(gpu::CommandList& list, const RendererState& state, std::optiona
 void drawMeshes(gpu::CommandList& list, const RendererState& state, std::optional<bool> matte) {
     for (const MeshOnDevice& mesh : state.scene.meshes) {
         if (mesh.indices.empty() || (matte && *matte != mesh.matte)) continue;
-        bind(list, {Binding::read(0, mesh.positions), Binding::read(1, mesh.normals),
+        bind(list, {Binding::read(0, mesh.drawnPositions()), Binding::read(1, mesh.drawnNormals()),
                     Binding::read(2, mesh.indexBuffer), Binding::read(3, mesh.albedo)});
         list.draw(static_cast<std::uint32_t>(mesh.indices.size()));
     }

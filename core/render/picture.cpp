@@ -66,11 +66,16 @@ Result<gpu::TexturePtr> makeTarget(gpu::Device& device, const RenderOptions& opt
 }  // namespace
 
 Result<Picture> renderPicture(gpu::Device& device, const RenderScene& scene, const RenderOptions& options) {
+    if (auto status = check(options, device.info()); !status) return tl::unexpected(status.error());
+    Renderer renderer(device);
+    if (auto status = renderer.setScene(scene); !status) return tl::unexpected(status.error());
+    return renderPicture(device, renderer, options);
+}
+
+Result<Picture> renderPicture(gpu::Device& device, Renderer& renderer, const RenderOptions& options) {
     HAIRLOOM_PROFILE("render picture");
     const auto failed = [](const Error& error) { return tl::unexpected(error); };
-    if (auto status = check(options, device.info()); !status) return failed(status.error());
-    Renderer renderer(device);
-    if (auto status = renderer.setScene(scene); !status) return failed(status.error());
+    renderer.restart();
     const auto target = makeTarget(device, options);
     if (!target) return failed(target.error());
     PassSums sums;

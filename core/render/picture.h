@@ -29,4 +29,8 @@ struct Picture {
 /// named), and whatever the device reports.
 Result<Picture> renderPicture(gpu::Device& device, const RenderScene& scene, const RenderOptions& options);
 
+/// What a renderer of that device shows now, its average begun anew.
+class Renderer;
+Result<Picture> renderPicture(gpu::Device& device, Renderer& renderer, const RenderOptions& options);
+
 }  // namespace hairloom::render

@@ -72,7 +72,7 @@ void dispatchMeshes(gpu::CommandList& list, RendererState& state, const Mat4f& c
         raster.slices = slices;
         list.setConstants(1, gpu::bytesOf(meshConstants(clipFromWorld, mesh.matte)));
         list.setConstants(2, gpu::bytesOf(raster));
-        bind(list, {Binding::read(0, mesh.positions), Binding::read(1, mesh.normals),
+        bind(list, {Binding::read(0, mesh.drawnPositions()), Binding::read(1, mesh.drawnNormals()),
                     Binding::read(2, mesh.indexBuffer), Binding::read(3, mesh.albedo)});
         list.dispatch(row, (triangles + row - 1) / row, slices);
     }

@@ -113,10 +113,20 @@ Status Renderer::setStrandPositions(std::size_t group, std::span<const Vec3f> po
     return {};
 }
 
-Status Renderer::setStrandPositions(std::size_t group, gpu::BufferPtr positions_ws,
-                                    std::uint32_t floatsPerPoint, const Box3f& bounds_ws) {
+Status Renderer::setMeshPositions(std::size_t mesh, gpu::BufferPtr positions_ws, gpu::BufferPtr normals_ws,
+                                  const Box3f& bounds_ws) {
     auto status =
-        parts_->state.scene.replaceStrands(group, std::move(positions_ws), floatsPerPoint, bounds_ws);
+        parts_->state.scene.replaceMesh(mesh, std::move(positions_ws), std::move(normals_ws), bounds_ws);
+    if (!status) return status;
+    parts_->changes.add(Changes::head());
+    return {};
+}
+
+Status Renderer::setStrandPositions(std::size_t group, gpu::BufferPtr positions_ws,
+                                    std::uint32_t floatsPerPoint, const Box3f& bounds_ws,
+                                    std::span<const Vec3f> sample_ws) {
+    auto status = parts_->state.scene.replaceStrands(group, std::move(positions_ws), floatsPerPoint,
+                                                     bounds_ws, sample_ws);
     if (!status) return status;
     parts_->changes.add(Changes::geometry());
     return {};

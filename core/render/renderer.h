@@ -41,13 +41,17 @@ class Renderer {
     /// One position a vertex of RenderScene::meshes[mesh]. Without normals they are averaged from the faces.
     Status setMeshPositions(std::size_t mesh, std::span<const Vec3f> positions_ws,
                             std::span<const Vec3f> normals_ws = {});
+    /// The same from buffers that the device itself writes, three floats a vertex.
+    Status setMeshPositions(std::size_t mesh, gpu::BufferPtr positions_ws, gpu::BufferPtr normals_ws,
+                            const Box3f& bounds_ws);
     /// One position a point of RenderScene::strands[group], strand after strand as its offsets say.
     Status setStrandPositions(std::size_t group, std::span<const Vec3f> positions_ws);
-    /// The same from a buffer that the device itself writes: point p of strand s is at element p * strands +
-    /// s, of 3 or 4 floats (a fourth is ignored). Call it again whenever the content has changed. `bounds_ws`
-    /// holds all points: light and depth are fitted to it.
+    /// The same from a buffer that the device itself writes, in the same order, 3 or 4 floats a point (a
+    /// fourth is ignored). Call it again whenever the content has changed. `bounds_ws` holds all points: depth
+    /// is fitted to it, and light to `sample_ws`, points in which the hair is, or the bounds where it is
+    /// empty.
     Status setStrandPositions(std::size_t group, gpu::BufferPtr positions_ws, std::uint32_t floatsPerPoint,
-                              const Box3f& bounds_ws);
+                              const Box3f& bounds_ws, std::span<const Vec3f> sample_ws = {});
     /// One share of the dye a point, where RenderStrands::pointDyes had some.
     Status setPointDyes(std::size_t group, std::span<const float> dyes);
     Status setMaterial(std::size_t group, const StrandShading& material);

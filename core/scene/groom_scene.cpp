@@ -8,6 +8,7 @@
 
 #include "core/animation/root_motion.h"
 #include "core/base/file.h"
+#include "core/base/parallel.h"
 #include "core/geometry/selection.h"
 #include "core/groom/file/json_reader.h"
 #include "core/groom/move_strands.h"
@@ -152,15 +153,14 @@ std::vector<float> radiiOfShown(const Groom& groom, const HairMaterial& material
     return radii;
 }
 
-std::vector<Quatf> rootRotations(const Groom& rest, const Groom& posed, const FollowBindings& bindings) {
-    const std::vector<SurfacePoint> all = rest.rootBindings();
-    if (!rest.scalp || all.empty()) return {};
-    std::vector<SurfacePoint> roots;
-    for (const std::uint32_t strand : bindings.guideStrands) roots.push_back(all[strand]);
+/// How the scalp has turned at the root of each strand.
+std::vector<Quatf> rootRotations(const Groom& rest, const Groom& posed, const HeadPose& pose) {
+    const std::vector<SurfacePoint> roots = rest.rootBindings();
+    if (!rest.scalp || roots.empty())
+        return std::vector<Quatf>(rest.strandCount(), Quatf(pose.head_ws.linear()));
     std::vector<Quatf> rotations;
-    for (const auto& transform : rootTransforms(*rest.scalp, posed.scalp->positions(), roots)) {
+    for (const auto& transform : rootTransforms(*rest.scalp, posed.scalp->positions(), roots))
         rotations.emplace_back(transform.linear());
-    }
     return rotations;
 }
 
@@ -214,12 +214,10 @@ Result<ViewFile> readViewFile(const std::string& path) {
     return view;
 }
 
-Result<GroomScene> GroomScene::make(const Groom& groom, const std::vector<Vec3f>* positions_ws,
-                                    const HeadPose* pose, const ViewFile& view,
+Result<GroomScene> GroomScene::make(const Groom& groom, const ViewFile& view,
                                     const std::vector<std::string>& hiddenGroups) {
     GroomScene scene;
-    scene.rest_ = groom;
-    scene.posed_ = pose ? posedGroom(groom, *positions_ws, *pose) : groom;
+    scene.rest_ = scene.posed_ = groom;
     scene.material_ = strandShading(groom, view);
     // The view's radius goes before the points' own.
     if (view.rootRadius || view.tipScale) {
@@ -249,19 +247,24 @@ Result<GroomScene> GroomScene::make(const Groom& groom, const std::vector<Vec3f>
     for (std::size_t hair = 0; hair <= bindings->hairCount(); ++hair) {
         scene.hairOffsets_.push_back(static_cast<std::uint32_t>(hair * bindings->pointsPerHair));
     }
+    scene.follow_.emplace(groom, *bindings);
+    auto made = runtime::FollowHairs::make(scene.follow_->view());
+    if (!made.hairs) return fail(made.error);
+    scene.followHairs_ = std::move(made.hairs);
     scene.bindings_ = std::move(*bindings);
     if (scene.material_.look) {
         auto weights = weightsOfFollowHairs(groom, *scene.bindings_);
         if (!weights) return tl::unexpected(weights.error());
         scene.weights_ = std::move(*weights);
     }
-    if (auto status = scene.makeFollowHairs(); !status) return tl::unexpected(status.error());
+    scene.makeFollowHairs({}, {});
     return scene;
 }
 
-Status GroomScene::pose(std::span<const Vec3f> positions_ws, const HeadPose& pose) {
+void GroomScene::pose(std::span<const Vec3f> positions_ws, std::span<const Vec3f> velocities_ws,
+                      const HeadPose& pose) {
     posed_ = posedGroom(rest_, positions_ws, pose);
-    return bindings_ ? makeFollowHairs() : Status();
+    if (bindings_) makeFollowHairs(velocities_ws, pose);
 }
 
 void GroomScene::moveStrands(std::span<const std::uint32_t> strands, std::span<const Vec3f> points_ws) {
@@ -286,11 +289,23 @@ bool GroomScene::setDye(const Groom& groom) {
     return true;
 }
 
-Status GroomScene::makeFollowHairs() {
-    const std::vector<Vec3f> guides_ws = guidePositions(posed_, *bindings_);
-    const std::vector<Quatf> rotations = rootRotations(rest_, posed_, *bindings_);
-    hairPositions_ws_.resize(bindings_->hairCount() * bindings_->pointsPerHair);
-    return evaluateFollowHairs(*bindings_, {guides_ws, {}, rotations}, {}, hairPositions_ws_);
+void GroomScene::makeFollowHairs(std::span<const Vec3f> velocities_ws, const HeadPose& pose) {
+    const auto asEngine = [](std::span<const Vec3f> values) {
+        static_assert(sizeof(Vec3f) == sizeof(runtime::Float3));
+        return std::span(reinterpret_cast<const runtime::Float3*>(values.data()), values.size());
+    };
+    static_assert(sizeof(Quatf) == sizeof(runtime::Quat));
+    const std::vector<Quatf> rotations = rootRotations(rest_, posed_, pose);
+    hairPositions_ws_.resize(follow_->hairCount() * follow_->pointsPerHair());
+    runtime::GuideMotion guides;
+    guides.positions_ws = asEngine(posed_.positions());
+    guides.velocities_ws = asEngine(velocities_ws);
+    guides.rootRotations_ws = {reinterpret_cast<const runtime::Quat*>(rotations.data()), rotations.size()};
+    runtime::Host host;
+    host.parallelFor = parallelFor;
+    followHairs_->evaluate(
+        guides, {reinterpret_cast<runtime::Float3*>(hairPositions_ws_.data()), hairPositions_ws_.size()},
+        host);
 }
 
 render::RenderScene GroomScene::scene() const {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/groom/groom.h"
-#include "core/interpolation/follow_hairs.h"
+#include "core/interpolation/strand_follow.h"
 #include "core/render/picture.h"
 #include "core/shading/melanin.h"
 #include "core/simulation/motion.h"
@@ -57,15 +57,15 @@ struct StreakAndDyeWeights {
 /// Owns the arrays that a RenderScene looks at.
 class GroomScene {
   public:
-    /// The groom at rest, or where the frame of a record has it. Follow hairs are made where the groom asks
-    /// for some. Groups of the head are hidden as facesOfGroups names them.
-    static Result<GroomScene> make(const Groom& groom, const std::vector<Vec3f>* positions_ws,
-                                   const HeadPose* pose, const ViewFile& view,
+    /// The groom at rest. Follow hairs are made where the groom asks for some. Groups of the head are hidden as
+    /// facesOfGroups names them.
+    static Result<GroomScene> make(const Groom& groom, const ViewFile& view,
                                    const std::vector<std::string>& hiddenGroups);
 
-    /// Moves it to where a frame of a simulation of the same groom has it; points in the groom's order.
-    /// Error: follow hairs that cannot be made.
-    Status pose(std::span<const Vec3f> positions_ws, const HeadPose& pose);
+    /// Moves it to where a frame of a simulation of the same groom has it; points in the groom's order, with
+    /// their velocities in m/s, by which wisps widen, or none.
+    void pose(std::span<const Vec3f> positions_ws, std::span<const Vec3f> velocities_ws,
+              const HeadPose& pose);
     /// Puts the points of some strands elsewhere, one strand after the other; the rest stays. Not where there
     /// are follow hairs, which are bound to guides at rest: these take make() anew.
     void moveStrands(std::span<const std::uint32_t> strands, std::span<const Vec3f> points_ws);
@@ -81,17 +81,23 @@ class GroomScene {
     /// Meshes and strands; camera and lights are the caller's. Valid while this object lives and is not
     /// moved.
     render::RenderScene scene() const;
+    const Groom& rest() const { return rest_; }
+    /// Of the follow hairs that are drawn; null where the strands themselves are.
+    const StrandFollow* follow() const { return follow_ ? &*follow_ : nullptr; }
 
     /// What a picture should show: the hair, and below it enough of the head; all of the mesh that is drawn
     /// where there is no hair.
     Box3f subject() const;
 
   private:
-    Status makeFollowHairs();
+    void makeFollowHairs(std::span<const Vec3f> velocities_ws, const HeadPose& pose);
 
     Groom rest_;
     Groom posed_;
-    std::optional<FollowBindings> bindings_;  ///< where the groom asks for follow hairs
+    // Where the groom asks for follow hairs.
+    std::optional<FollowBindings> bindings_;
+    std::optional<StrandFollow> follow_;
+    std::optional<runtime::FollowHairs> followHairs_;
     std::vector<std::uint32_t> indices_;      ///< of the head's triangles that are drawn
     std::vector<Vec3f> triangleAlbedo_;       ///< of these: skin, tinted by hair where the scalp is
     std::vector<std::uint32_t>

@@ -124,6 +124,10 @@ class ProjectiveMethod : public AlternativeMethod {
     void readPositions(std::span<runtime::Float3> positions_ws) const override {
         solver_.readPositions(positions_ws);
     }
+    bool readVelocities(std::span<runtime::Float3> velocities_ws) const override {
+        solver_.readVelocities(velocities_ws);
+        return true;
+    }
 
   protected:
     void place(const SceneInput& scene, const HeadPose& pose) override { solver_.reset(scene.rootsAt(pose)); }

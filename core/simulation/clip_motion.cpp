@@ -21,8 +21,10 @@ class ClipMotion : public HeadMotion {
             pose.sphereCentres_ws.push_back(transforms[s] * spheres_[s].centre);
         }
         pose.scalpPositions_ws = std::move(posed.positions_ws);
+        pose.bones_ws = std::move(posed.boneMatrices_ws);
         return pose;
     }
+    const SkinWeights* skin() const override { return &actor_->skin(); }
 
   private:
     std::shared_ptr<const Actor> actor_;

@@ -55,6 +55,11 @@ class EngineMethod : public StrandMethod {
     void readPositions(std::span<runtime::Float3> positions_ws) const override {
         engine_.readPositions(positions_ws);
     }
+    bool readVelocities(std::span<runtime::Float3> velocities_ws) const override {
+        return engine_.readVelocities(velocities_ws);
+    }
+    std::shared_ptr<const runtime::State> state() const override { return engine_.state(); }
+    bool setState(const runtime::State& state) override { return engine_.setState(state); }
     double stepMilliseconds() const override { return milliseconds_; }
     std::uint32_t restoredStrands() const override { return engine_.lastStep().restoredStrands; }
     std::uint32_t guardedStrands() const override { return engine_.lastStep().guardedStrands; }

@@ -144,6 +144,7 @@ Result<RecordedFrame> readFrame(const std::filesystem::path& path, const Groom& 
     }
 
     RecordedFrame frame;
+    frame.framesPerSecond = header.framesPerSecond;
     const auto pointsEnd = values.begin() + static_cast<std::ptrdiff_t>(header.points);
     const auto verticesEnd = pointsEnd + static_cast<std::ptrdiff_t>(header.vertices);
     frame.positions_ws.assign(values.begin(), pointsEnd);

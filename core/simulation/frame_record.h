@@ -18,6 +18,7 @@ namespace hairloom {
 struct RecordedFrame {
     std::vector<Vec3f> positions_ws;
     HeadPose pose;
+    float framesPerSecond = 60;  ///< of the record
 };
 
 /// Writes frames as they come into a temporary file; `finish` puts it under the name asked for. A recorder

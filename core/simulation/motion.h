@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/animation/skinning.h"
 #include "core/base/math.h"
 #include "core/base/result.h"
 #include "core/groom/groom.h"
@@ -19,6 +20,8 @@ struct HeadPose {
     std::vector<Vec3f>
         scalpPositions_ws;  ///< per vertex of the groom's scalp; empty: the scalp moves with head_ws
     std::vector<Vec3f> sphereCentres_ws;  ///< per collision sphere; empty: spheres move with head_ws
+    /// Of the scalp's skin, from the head at rest to the world; empty where no skeleton moves it.
+    std::vector<Eigen::Affine3f> bones_ws;
     std::optional<Vec3f> wind_ws;         ///< m/s, in place of the groom's mean wind
 };
 
@@ -27,6 +30,8 @@ class HeadMotion {
     virtual ~HeadMotion() = default;
     /// The pose at `time` ≥ 0 seconds. Const and safe on any number of threads.
     virtual HeadPose poseAt(float time) const = 0;
+    /// The scalp's, whose bones the poses name; null where it moves without. Lives as long as this.
+    virtual const SkinWeights* skin() const { return nullptr; }
 };
 
 /// The rigid motions that need no skeleton: "none"; "spin" (one turn a second about the vertical through the

@@ -19,6 +19,17 @@ runtime::Quat toQuat(const Quatf& q) {
 
 }  // namespace
 
+std::vector<runtime::Sphere> spheresAt(std::span<const CollisionSphere> spheres, const HeadPose& pose) {
+    // A pose of other spheres carries none of these by their bones.
+    const bool byBone = pose.sphereCentres_ws.size() == spheres.size();
+    std::vector<runtime::Sphere> placed(spheres.size());
+    for (std::size_t s = 0; s < placed.size(); ++s) {
+        const Vec3f centre_ws = byBone ? pose.sphereCentres_ws[s] : Vec3f(pose.head_ws * spheres[s].centre);
+        placed[s] = {toFloat3(centre_ws), spheres[s].radius};
+    }
+    return placed;
+}
+
 Result<SceneInput> SceneInput::make(const Groom& groom) {
     if (groom.strandCount() == 0) return fail("the groom has no strands", "expected strands to simulate");
     for (const Finding& finding : validate(groom)) {
@@ -55,13 +66,7 @@ std::vector<runtime::RootFrame> SceneInput::rootsAt(const HeadPose& pose) const 
 }
 
 std::vector<runtime::Sphere> SceneInput::spheresAt(const HeadPose& pose) const {
-    std::vector<runtime::Sphere> spheres(groom_.spheres.size());
-    for (std::size_t s = 0; s < spheres.size(); ++s) {
-        const Vec3f centre_ws = pose.sphereCentres_ws.empty() ? Vec3f(pose.head_ws * groom_.spheres[s].centre)
-                                                              : pose.sphereCentres_ws[s];
-        spheres[s] = {toFloat3(centre_ws), groom_.spheres[s].radius};
-    }
-    return spheres;
+    return hairloom::spheresAt(groom_.spheres, pose);
 }
 
 runtime::RootFrame SceneInput::headAt(const HeadPose& pose) const {

@@ -9,6 +9,9 @@
 
 namespace hairloom {
 
+/// Of collision spheres in a pose; metres, world.
+std::vector<runtime::Sphere> spheresAt(std::span<const CollisionSphere> spheres, const HeadPose& pose);
+
 class SceneInput {
   public:
     /// Errors: no strands, a groom that validate() finds errors in.

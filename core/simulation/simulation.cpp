@@ -96,6 +96,24 @@ std::span<const Vec3f> Simulation::positions_ws() const {
     return impl_->positions_ws;
 }
 
+std::vector<Vec3f> Simulation::velocities_ws() const {
+    std::vector<Vec3f> velocities(impl_->stats.frames > 0 ? impl_->positions_ws.size() : 0);
+    const std::span values(reinterpret_cast<runtime::Float3*>(velocities.data()), velocities.size());
+    if (velocities.empty() || !impl_->method->readVelocities(values)) return {};
+    return velocities;
+}
+
+std::shared_ptr<const runtime::State> Simulation::state() const {
+    return impl_->method->state();
+}
+
+bool Simulation::setState(const runtime::State& state, double time) {
+    if (!impl_->method->setState(state)) return false;
+    impl_->time = time;
+    impl_->readPositions();
+    return true;
+}
+
 Status Simulation::status() const {
     return impl_->method->status();
 }

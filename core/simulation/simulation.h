@@ -14,6 +14,10 @@
 #include "core/simulation/motion.h"
 #include "hairloom/alternatives/hair_volume.h"
 
+namespace hairloom::runtime {
+struct State;
+}
+
 namespace hairloom {
 
 /// What an effect is doing and what it costs.
@@ -77,6 +81,13 @@ class Simulation {
 
     /// Points in the order of the groom's points; metres, world space.
     std::span<const Vec3f> positions_ws() const;
+    /// m/s after the last step, likewise; read when asked. Empty before it, and where the method knows none.
+    std::vector<Vec3f> velocities_ws() const;
+    /// What changes from step to step, for another simulation of the same strands to go on from; null for a
+    /// method that cannot tell.
+    std::shared_ptr<const runtime::State> state() const;
+    /// At `time` seconds. False, and nothing is changed, where it cannot go on from there.
+    bool setState(const runtime::State& state, double time);
     SimulationStats stats() const;
     /// What went wrong outside of the strands, such as a device that was lost; the frames since then are
     /// void.

@@ -28,6 +28,8 @@ class StrandMethod {
     /// Advances to `pose`; `input` holds its roots and spheres.
     virtual void step(const SceneInput& scene, const HeadPose& pose, const runtime::FrameInput& input) = 0;
     virtual void readPositions(std::span<runtime::Float3> positions_ws) const = 0;
+    /// m/s, in the order of the points. False, and nothing is written, where the method knows none.
+    virtual bool readVelocities(std::span<runtime::Float3>) const { return false; }
     /// Of the last step.
     virtual double stepMilliseconds() const = 0;
     /// The first thing that went wrong outside of the strands: a device that was lost, say.
@@ -36,6 +38,11 @@ class StrandMethod {
     virtual std::uint32_t restoredStrands() const { return 0; }
     /// Strands whose speeds the last step took back because no force explains them.
     virtual std::uint32_t guardedStrands() const { return 0; }
+    /// All that changes from step to step, for another engine to go on from (runtime::Engine::state()); null
+    /// where it cannot be had.
+    virtual std::shared_ptr<const runtime::State> state() const { return nullptr; }
+    /// False, and nothing is changed, where it cannot go on from there.
+    virtual bool setState(const runtime::State&) { return false; }
     virtual runtime::Measurements measure() const = 0;
     virtual std::uint64_t stateHash() const = 0;
     /// With the mean time of each since the start.

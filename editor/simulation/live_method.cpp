@@ -4,16 +4,6 @@
 namespace hairloom::editor {
 namespace {
 
-std::vector<runtime::Sphere> spheresAt(const std::vector<CollisionSphere>& spheres, const HeadPose& pose) {
-    std::vector<runtime::Sphere> placed;
-    for (std::size_t s = 0; s < spheres.size(); ++s) {
-        const bool byBone = pose.sphereCentres_ws.size() == spheres.size();
-        const Vec3f centre = byBone ? pose.sphereCentres_ws[s] : Vec3f(pose.head_ws * spheres[s].centre);
-        placed.push_back({{centre.x(), centre.y(), centre.z()}, spheres[s].radius});
-    }
-    return placed;
-}
-
 class LiveMethod : public StrandMethod {
   public:
     LiveMethod(std::unique_ptr<StrandMethod> engine, std::shared_ptr<LiveParameters> parameters)
@@ -29,6 +19,11 @@ class LiveMethod : public StrandMethod {
     void readPositions(std::span<runtime::Float3> positions_ws) const override {
         engine_->readPositions(positions_ws);
     }
+    bool readVelocities(std::span<runtime::Float3> velocities_ws) const override {
+        return engine_->readVelocities(velocities_ws);
+    }
+    std::shared_ptr<const runtime::State> state() const override { return engine_->state(); }
+    bool setState(const runtime::State& state) override { return engine_->setState(state); }
     double stepMilliseconds() const override { return engine_->stepMilliseconds(); }
     Status status() const override { return engine_->status(); }
     std::uint32_t restoredStrands() const override { return engine_->restoredStrands(); }

@@ -40,6 +40,7 @@ void apply(const Eigen::Isometry3f& offset, HeadPose& pose) {
     pose.head_ws = offset * pose.head_ws;
     for (Vec3f& position : pose.scalpPositions_ws) position = offset * position;
     for (Vec3f& centre : pose.sphereCentres_ws) centre = offset * centre;
+    for (Eigen::Affine3f& bone : pose.bones_ws) bone = offset * bone;
 }
 
 }  // namespace
@@ -349,6 +350,7 @@ void Player::run() {
         simulation->step(kFrameTime, pose->head);
         const auto points = simulation->positions_ws();
         pose->positions_ws.assign(points.begin(), points.end());
+        pose->velocities_ws = simulation->velocities_ws();
         auto frame = std::make_shared<PlayedFrame>();
         frame->before = std::exchange(before, pose);
         frame->pose = std::move(pose);

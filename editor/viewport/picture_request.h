@@ -16,7 +16,8 @@ namespace hairloom::editor {
 
 /// Where hair and head are at a moment of the simulation.
 struct HairPose {
-    std::vector<Vec3f> positions_ws;  ///< per point of the groom
+    std::vector<Vec3f> positions_ws;   ///< per point of the groom
+    std::vector<Vec3f> velocities_ws;  ///< likewise, m/s; empty at rest
     HeadPose head;
 };
 

@@ -189,15 +189,15 @@ Status RenderWork::takeScene(const PictureRequest& request, bool draft) {
 }
 
 Status RenderWork::replaceScene(const PictureRequest& request, bool draft) {
-    auto made = GroomScene::make(draft ? withoutFollowHairs(*request.groom) : *request.groom, nullptr,
-                                 nullptr, viewOf(request), {});
+    auto made = GroomScene::make(draft ? withoutFollowHairs(*request.groom) : *request.groom,
+                                 viewOf(request), {});
     if (!made) return tl::unexpected(made.error());
     scene_ = std::move(*made);
     draft_ = draft;
     hairShown_ = request.showHair;
     headShown_ = request.showHead;
     if (request.pose && request.pose->positions_ws.size() == request.groom->pointCount()) {
-        if (auto posed = scene_->pose(request.pose->positions_ws, request.pose->head); !posed) return posed;
+        scene_->pose(request.pose->positions_ws, request.pose->velocities_ws, request.pose->head);
     }
     render::RenderScene shown = scene_->scene();
     if (!request.showHair) shown.strands.clear();
@@ -211,9 +211,11 @@ Status RenderWork::replaceScene(const PictureRequest& request, bool draft) {
 
 Status RenderWork::movePoints(const PictureRequest& request) {
     const bool posed = request.pose && request.pose->positions_ws.size() == request.groom->pointCount();
-    auto moved = posed ? scene_->pose(request.pose->positions_ws, request.pose->head)
-                       : scene_->pose(request.groom->positions(), {});
-    if (!moved) return moved;
+    if (posed) {
+        scene_->pose(request.pose->positions_ws, request.pose->velocities_ws, request.pose->head);
+    } else {
+        scene_->pose(request.groom->positions(), {}, {});
+    }
     const render::RenderScene shown = scene_->scene();
     if (request.showHead && !shown.meshes.empty()) {
         const render::RenderMesh& mesh = shown.meshes.front();

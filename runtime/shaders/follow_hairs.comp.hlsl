@@ -5,6 +5,7 @@
 StructuredBuffer<float4> gRows : register(t0);
 StructuredBuffer<FollowPlane> gPlanes : register(t1);
 StructuredBuffer<FollowBinding> gBindings : register(t2);
+StructuredBuffer<float4> gFrames : register(t3);  // of guides: place; rotation since rest
 RWStructuredBuffer<float4> gHairs : register(u0);  // hair after hair, world, w 1
 
 [numthreads(64, 1, 1)]
@@ -15,7 +16,7 @@ void main(uint3 thread : SV_DispatchThreadID) {
     const uint p = at % gFollow.points;
     const FollowBinding hair = gBindings[at / gFollow.points];
     const FollowPlane plane = gPlanes[hair.guides.x];
-    const float3 along = rotate(plane.turn, plane.x.xyz * hair.shift.x + plane.y.xyz * hair.shift.y +
+    const float3 along = rotate(gFrames[2 * hair.guides.x + 1], plane.x.xyz * hair.shift.x + plane.y.xyz * hair.shift.y +
                                                 plane.normal.xyz * hair.shift.z);
     const float3 roots = gRows[rowOf(hair.guides.x, 0, 0)].xyz * hair.roots.x +
                          gRows[rowOf(hair.guides.y, 0, 0)].xyz * hair.roots.y +

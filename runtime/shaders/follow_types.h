@@ -18,10 +18,9 @@ struct FollowConstants {
     uint unused0, unused1, unused2;
 };
 
-/// The root plane of a guide at rest, and how its scalp has turned since.
+/// The root plane of a guide at rest.
 struct FollowPlane {
     float4 x, y, normal;
-    float4 turn;
 };
 
 /// A hair's share of each row that it is summed from; runtime::FollowView has the formula.
@@ -34,7 +33,7 @@ struct FollowBinding {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(FollowConstants) == 32 && sizeof(FollowPlane) == 64 && sizeof(FollowBinding) == 80);
+static_assert(sizeof(FollowConstants) == 32 && sizeof(FollowPlane) == 48 && sizeof(FollowBinding) == 80);
 static_assert(offsetof(FollowBinding, shift) == 48);
 }  // namespace hairloom::shaders
 #endif

@@ -7,6 +7,7 @@ StructuredBuffer<float4> gVelocities : register(t1);  // likewise, m/s
 StructuredBuffer<FollowPlane> gPlanes : register(t2);
 StructuredBuffer<float2> gSamples : register(t3);     // of each guide and point of a hair: point, share of the next
 StructuredBuffer<float> gRadii : register(t4);        // per point, m
+StructuredBuffer<float4> gFrames : register(t5);      // of guides: place; rotation since rest
 RWStructuredBuffer<float4> gRows : register(u0);
 
 /// Both ends exactly, and a share of 0 or 1 leaves out the point that it takes nothing of.
@@ -46,16 +47,17 @@ void main(uint3 thread : SV_DispatchThreadID) {
     const uint guide = thread.x;
     if (guide >= gFollow.guides) return;
     const FollowPlane plane = gPlanes[guide];
+    const float4 turn = gFrames[2 * guide + 1];
     const uint first = guide * gFollow.points, last = gFollow.points - 1;
-    float3 normal = rotate(plane.turn, plane.x.xyz);
-    float3 tangent = rotate(plane.turn, plane.normal.xyz);
+    float3 normal = rotate(turn, plane.x.xyz);
+    float3 tangent = rotate(turn, plane.normal.xyz);
     float3 before = placeAt(first), here = before;
     [loop] for (uint p = 0; p <= last; ++p) {
         // A point's tangent joins its neighbours.
         const float3 after = p < last ? placeAt(first + p + 1) : here;
         carry(after - before, tangent, normal);
-        const float3 x = p == 0 ? rotate(plane.turn, plane.x.xyz) : normal;
-        const float3 y = p == 0 ? rotate(plane.turn, plane.y.xyz) : cross(tangent, normal);
+        const float3 x = p == 0 ? rotate(turn, plane.x.xyz) : normal;
+        const float3 y = p == 0 ? rotate(turn, plane.y.xyz) : cross(tangent, normal);
         const float3 velocity = velocityAt(first + p);
         const float sigma = gFollow.wispSpread * float(p) / float(last), radius = gRadii[p];
         const float xi = 1.0 + sigma * sqrt(dot(velocity, velocity));  // Eq. 22

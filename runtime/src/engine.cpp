@@ -52,6 +52,14 @@ bool Engine::addVelocities(std::span<const Float3> changes_ws) {
     return true;
 }
 
+std::shared_ptr<const State> Engine::state() const {
+    return std::make_shared<const State>(impl_->state_);
+}
+
+bool Engine::setState(const State& state) {
+    return impl_->setState(state);
+}
+
 std::uint32_t Engine::strandCount() const {
     return impl_->strandCount();
 }

@@ -82,6 +82,17 @@ std::string Engine::Impl::setSettings(const SimulationSettings& settings) {
     return {};
 }
 
+bool Engine::Impl::setState(const State& state) {
+    if (state.planes.size() != state_.planes.size() || state.roots.size() != state_.roots.size() ||
+        state.rests.size() != state_.rests.size())
+        return false;
+    state_ = state;
+    makeRods();
+    wind_.given = false;
+    replan({}, {}, state_.rootsMin_ws, state_.rootsMax_ws, 0.0f);
+    return true;
+}
+
 void Engine::Impl::replan(std::span<const Sphere> spheres, std::span<const Float3> sphereMotion,
                           Float3 rootsMin_ws, Float3 rootsMax_ws, float frameTime) {
     const float h = frameTime > 0.0f ? frameTime / static_cast<float>(settings_.substeps) : state_.substep;

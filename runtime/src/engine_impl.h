@@ -27,6 +27,7 @@ struct Engine::Impl {
 
     void reset(std::span<const RootFrame> roots_ws);
     std::string setSettings(const SimulationSettings& settings);
+    bool setState(const State& state);
     void step(const FrameInput& input);
     void addVelocities(std::span<const Float3> changes_ws);
     std::size_t effectBytes(Effect effect) const;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <map>
 #include <thread>
@@ -17,6 +18,7 @@ namespace {
 struct Options {
     std::string style = "shoulder";
     std::string backend;
+    std::string engine = "auto";
     Size size{720, 720};
     float wind = 4;
     bool guides = false;
@@ -50,9 +52,13 @@ Status show(const Options& options, const std::filesystem::path& programFolder) 
     const std::string title = fmt::format("Hairloom: {}, {}", options.style, gpu::toString(info.backend));
     const auto window = Window::open(title, options.size);
     if (!window) return tl::unexpected(window.error());
-    const auto made = Show::make(**device, **window, *groom, options.wind);
+    const auto wish = std::ranges::find(engineWishNames(), options.engine) - engineWishNames().begin();
+    const auto made =
+        Show::make(**device, **window, *groom, options.wind, static_cast<EngineWish>(wish));
     if (!made) return tl::unexpected(made.error());
     fmt::print("{} on {}\n", gpu::toString(info.backend), info.name);
+    fmt::print("simulated on the {}: {}\n", (*made)->engine().kind == EngineKind::gpu ? "GPU" : "CPU",
+               (*made)->engine().why);
     const auto begin = std::chrono::steady_clock::now();
     for (std::uint64_t shown = 1; (*window)->handleEvents(); ++shown) {
         if (auto status = (*made)->showNext(); !status) return status;
@@ -76,6 +82,9 @@ int run(int argc, char** argv) {
     program
         .add_option("--backend", options.backend, "Graphics API; the system's own where this is not given")
         ->check(CLI::IsMember({"vulkan", "d3d11"}));
+    program.add_option("--engine", options.engine,
+                       "What moves the hair: the CPU, the GPU, or whichever was measured to be faster")
+        ->check(CLI::IsMember({"auto", "gpu", "cpu"}));
     program.add_option("--width", options.size.width, "Pixels")->check(CLI::Range(64, 8192));
     program.add_option("--height", options.size.height, "Pixels")->check(CLI::Range(64, 8192));
     program.add_option("--wind", options.wind, "Metres per second")->check(CLI::Range(0, 50));

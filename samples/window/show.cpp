@@ -14,15 +14,18 @@ Groom inWind(Groom groom, float windSpeed) {
 }  // namespace
 
 Result<std::unique_ptr<Show>> Show::make(gpu::Device& device, const Window& window, const Groom& calm,
-                                         float windSpeed) {
+                                         float windSpeed, EngineWish wish) {
     const Groom groom = inWind(calm, windSpeed);
     auto motion = makeRigidMotion("spin", groom);
     if (!motion) return tl::unexpected(motion.error());
-    auto simulation = Simulation::make(groom, (*motion)->poseAt(0));
-    if (!simulation) return tl::unexpected(simulation.error());
-    auto scene = GroomScene::make(groom, nullptr, nullptr, {}, {});
+    auto scene = GroomScene::make(groom, {}, {});
     if (!scene) return tl::unexpected(scene.error());
-    std::unique_ptr<Show> show(new Show(window, std::move(*simulation), std::move(*motion), std::move(*scene),
+    const auto kernels =
+        std::make_shared<gpu_simulation::KernelLibrary>(device, gpu_simulation::userKernelFolder());
+    EngineChoice engine = chooseEngine(wish, &device, kernels, groom, EngineMemory::ofUser());
+    auto hair = LiveHair::make(device, kernels, std::move(*scene), **motion, engine.kind);
+    if (!hair) return tl::unexpected(hair.error());
+    std::unique_ptr<Show> show(new Show(window, std::move(*motion), std::move(*hair), std::move(engine),
                                         render::Renderer(device)));
     if (auto status = show->openSwapChain(device); !status) return tl::unexpected(status.error());
     return show;
@@ -34,8 +37,8 @@ Status Show::openSwapChain(gpu::Device& device) {
     auto chain = device.createSwapChain({window_.native(), size_.width, size_.height, true});
     if (!chain) return tl::unexpected(chain.error());
     chain_ = std::move(*chain);
-    render::RenderScene scene = scene_.scene();
-    scene.camera = render::frame(render::View::ThreeQuarter, scene_.subject(), 1.0f);
+    render::RenderScene scene = hair_.scene().scene();
+    scene.camera = render::frame(render::View::ThreeQuarter, hair_.scene().subject(), 1.0f);
     scene.lights = render::studioLights(scene.camera);
     return renderer_.setScene(scene);
 }
@@ -47,30 +50,8 @@ Status Show::followWindow() {
     return chain_->resize(now.width, now.height);
 }
 
-Status Show::moveHair() {
-    ++pictures_;
-    const HeadPose pose = motion_->poseAt(kFrame * static_cast<float>(pictures_));
-    simulation_.step(kFrame, pose);
-    if (auto status = simulation_.status(); !status) return status;
-    if (auto status = scene_.pose(simulation_.positions_ws(), pose); !status) return status;
-    const render::RenderScene moved = scene_.scene();
-    for (std::size_t i = 0; i < moved.meshes.size(); ++i) {
-        const render::RenderMesh& mesh = moved.meshes[i];
-        if (auto status = renderer_.setMeshPositions(i, mesh.positions_ws, mesh.normals_ws); !status) {
-            return status;
-        }
-    }
-    for (std::size_t i = 0; i < moved.strands.size(); ++i) {
-        if (auto status = renderer_.setStrandPositions(i, moved.strands[i].positions_ws); !status) {
-            return status;
-        }
-    }
-    return {};
-}
-
 Status Show::showNext() {
     if (auto status = followWindow(); !status) return status;
-    if (auto status = moveHair(); !status) return status;
     render::RenderOptions options;
     options.width = size_.width;
     options.height = size_.height;
@@ -82,10 +63,12 @@ Status Show::showNext() {
     options.detail = 0.5f;
     auto list = device_->createCommandList();
     if (!list) return tl::unexpected(list.error());
+    if (auto status = hair_.record(**list, renderer_, kFrame); !status) return status;
     if (auto status = renderer_.record(**list, options, chain_->backBuffer()); !status) return status;
     auto submission = device_->submit(std::move(*list));
     if (!submission) return tl::unexpected(submission.error());
-    // The device works on one picture while the CPU moves the hair of the next.
+    hair_.submitted(*submission);
+    // The device works on one picture while the next is recorded.
     if (last_) {
         if (auto status = last_->wait(); !status) return status;
     }

@@ -9,9 +9,7 @@ StructuredBuffer<float> gRadii : register(t2);
 RWStructuredBuffer<CurvePoint> gResult : register(u0);
 
 float3 pointOf(StrandHeader strand, uint k) {
-    const uint element =
-        gCurve.strandMajor > 0 ? k * gCurve.strandMajor + strand.source : strand.firstPoint + k;
-    const uint at = element * gCurve.floatsPerPoint;
+    const uint at = (gCurve.firstPoint + strand.firstPoint + k) * gCurve.floatsPerPoint;
     return float3(gPositions[at], gPositions[at + 1u], gPositions[at + 2u]);
 }
 

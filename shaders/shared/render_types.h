@@ -62,8 +62,7 @@ struct CurveConstants {
     uint strandCount;
     uint subdivisions;    // curve segments per given segment
     uint floatsPerPoint;  // of the positions
-    uint strandMajor;  // 0: points of a strand one after the other; else point p of strand s of the group at
-                       // element p * strandMajor + s
+    uint firstPoint;      // of the batch, in the positions
     float rootRadius;  // metres
     float tipScale;    // radius at the tip by that at the root
     float radiusVariation;  // random spread from strand to strand, a part of the radius

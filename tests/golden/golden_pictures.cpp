@@ -136,7 +136,7 @@ Result<render::Image> Painter::draw(const Case& which) {
     ViewFile view;
     view.fibre.model = which.model;
     view.fibre.scattering = which.scattering;
-    const auto scene = GroomScene::make(groom, nullptr, nullptr, view, {});
+    const auto scene = GroomScene::make(groom, view, {});
     if (!scene) return tl::unexpected(scene.error());
     render::RenderScene shown = scene->scene();
     shown.camera = render::frame(render::View::ThreeQuarter, scene->subject(), 1);

@@ -306,7 +306,7 @@ TEST_F(RendererTest, PositionsOnTheDeviceGiveTheSamePicture) {
         for (std::size_t s = 0; s < strands; ++s) {
             for (std::size_t p = 0; p < points; ++p) {
                 for (int c = 0; c < 3; ++c) {
-                    content[(p * strands + s) * floats + static_cast<std::size_t>(c)] =
+                    content[(s * points + p) * floats + static_cast<std::size_t>(c)] =
                         head.strands.positions[s * points + p][c];
                 }
             }
@@ -333,6 +333,9 @@ TEST_F(RendererTest, PositionsOnTheDeviceGiveTheSamePicture) {
         double sum = 0;
         for (std::size_t i = 0; i < here.size(); ++i) sum += std::abs(here[i] - there[i]);
         EXPECT_LT(sum / static_cast<double>(here.size()), 1.0);
+        // And with the points that they are fitted to not at all.
+        ASSERT_TRUE(renderer.setStrandPositions(0, buffer, floats, bounds, head.strands.positions));
+        EXPECT_EQ(pixels(renderer, options), fresh(scene, options));
         EXPECT_FALSE(renderer.setStrandPositions(0, buffer, 5, bounds));
         EXPECT_FALSE(renderer.setStrandPositions(0, buffer, floats, Box3f()));
         EXPECT_FALSE(renderer.setStrandPositions(1, buffer, floats, bounds));

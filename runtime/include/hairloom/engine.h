@@ -54,6 +54,9 @@ struct StepReport {
     std::uint32_t guardedStrands = 0;
 };
 
+/// What changes from step to step (src/state.h): for those who go on elsewhere, as the engine on a GPU does.
+struct State;
+
 class Engine {
   public:
     struct Result;
@@ -85,6 +88,12 @@ class Engine {
     /// in m/s per point, in the order of make(). Those of clamped points and those that are not finite are
     /// left out. Strands that are changed wake up. Before the first step it does nothing.
     bool addVelocities(std::span<const Float3> changes_ws);
+
+    /// A copy.
+    std::shared_ptr<const State> state() const;
+    /// Goes on from the state of another engine of as many strands of as many points; places and velocities are
+    /// kept, and the rest as far as both engines keep it. False, and nothing is changed, for other strands.
+    bool setState(const State& state);
 
     std::uint32_t strandCount() const;
     std::uint32_t pointCount() const;

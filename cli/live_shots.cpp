@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/live_shots.h"
+
+namespace hairloom::cli {
+namespace {
+
+constexpr float kFrame = 1.0f / 60;  // seconds
+
+}  // namespace
+
+Result<std::unique_ptr<LiveShots>> LiveShots::make(gpu::Device& device,
+                                                   std::shared_ptr<gpu_simulation::KernelLibrary> kernels,
+                                                   GroomScene scene, const HeadMotion& motion,
+                                                   EngineKind engine) {
+    auto live = LiveHair::make(device, std::move(kernels), std::move(scene), motion, engine);
+    if (!live) return tl::unexpected(live.error());
+    return std::unique_ptr<LiveShots>(new LiveShots(device, std::move(*live)));
+}
+
+Result<render::Picture> LiveShots::take(std::uint64_t frame, const render::RenderScene& scene,
+                                        const render::RenderOptions& how) {
+    if (!shown_) {
+        if (auto set = renderer_.setScene(scene); !set) return tl::unexpected(set.error());
+        shown_ = true;
+    }
+    if (auto set = renderer_.setCamera(scene.camera); !set) return tl::unexpected(set.error());
+    gpu::SubmissionPtr last;
+    for (; frame_ < frame; ++frame_) {
+        auto list = device_.createCommandList();
+        if (!list) return tl::unexpected(list.error());
+        if (auto moved = live_.record(**list, renderer_, kFrame); !moved) return tl::unexpected(moved.error());
+        auto submission = device_.submit(std::move(*list));
+        if (!submission) return tl::unexpected(submission.error());
+        live_.submitted(*submission);
+        // No more than a frame ahead of the device.
+        if (last) {
+            if (auto done = last->wait(); !done) return tl::unexpected(done.error());
+        }
+        last = std::move(*submission);
+    }
+    return render::renderPicture(device_, renderer_, how);
+}
+
+}  // namespace hairloom::cli
