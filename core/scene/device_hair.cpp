@@ -231,6 +231,20 @@ void DeviceHair::recordTelling(gpu::CommandList& list) {
         list.copyBuffer(buffer, 0, free->buffer, at, bytes);
         at += bytes;
     }
+    free->tellsPositions = tellsPositions_;
+    if (!tellsPositions_) return;
+    if (free->positions == nullptr) {
+        gpu::BufferDesc desc;
+        desc.name = "told positions";
+        desc.size = engine_.positions_ws()->desc().size;
+        desc.usage = Usage::None;
+        desc.memory = gpu::MemoryKind::ReadBack;
+        auto made = device_->createBuffer(desc);
+        free->tellsPositions = made.has_value();
+        if (!made) return;
+        free->positions = std::move(*made);
+    }
+    list.copyBuffer(engine_.positions_ws(), 0, free->positions, 0, free->positions->desc().size);
 }
 
 void DeviceHair::submitted(gpu::SubmissionPtr submission) {
@@ -251,6 +265,13 @@ void DeviceHair::listen() {
     for (Telling* telling : done) {
         std::vector<std::byte> bytes(static_cast<std::size_t>(telling->buffer->desc().size));
         if (device_->readMapped(telling->buffer, 0, bytes)) take(*telling, bytes);
+        told_.positions_ws.clear();
+        if (telling->tellsPositions) {
+            std::vector<shaders::float4> points(engine_.pointCount());
+            if (device_->readMapped(telling->positions, 0, std::as_writable_bytes(std::span(points)))) {
+                for (const shaders::float4& p : points) told_.positions_ws.emplace_back(p.x, p.y, p.z);
+            }
+        }
         telling->submission = nullptr;
         telling->frame = 0;
     }

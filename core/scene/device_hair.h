@@ -23,6 +23,7 @@ struct DeviceFrame {
     double kineticEnergy = 0;   ///< joules
     std::uint64_t nanCount = 0;
     std::uint64_t restoredStrands = 0, guardedStrands = 0;  ///< of all frames that were told of
+    std::vector<Vec3f> positions_ws;  ///< in the order of the groom's points, where they are told; else empty
 };
 
 class DeviceHair {
@@ -37,6 +38,9 @@ class DeviceHair {
     /// From the next frame on, or from when their kernel is ready.
     Status setSettings(const runtime::SimulationSettings& settings);
     void setSpheres(std::vector<CollisionSphere> spheres) { spheres_ = std::move(spheres); }
+
+    /// Whether frames from the next on tell where all strands are: for marks that are drawn on them.
+    void setTellsPositions(bool on) { tellsPositions_ = on; }
 
     /// Records a frame of `dt` seconds that ends on `pose`, outside a pass; `time`: seconds at its end.
     Status record(gpu::CommandList& list, float dt, double time, const HeadPose& pose);
@@ -60,7 +64,8 @@ class DeviceHair {
   private:
     /// A frame on its way back.
     struct Telling {
-        gpu::BufferPtr buffer;
+        gpu::BufferPtr buffer, positions;
+        bool tellsPositions = false;
         gpu::SubmissionPtr submission;  ///< null: the slot is free, or its list is being recorded
         std::uint64_t frame = 0;
         float substep = 0;
@@ -88,7 +93,7 @@ class DeviceHair {
     gpu_simulation::GpuHead head_;
     std::optional<gpu_simulation::GpuFollowHairs> follow_;
     std::vector<CollisionSphere> spheres_;
-    bool skinned_ = false;
+    bool skinned_ = false, tellsPositions_ = false;
     float reach_ = 0;  ///< metres that hair gets away from its root
     std::uint32_t drawnPointCount_ = 0, sampleCount_ = 0, sampleStep_ = 1;
     std::vector<Vec3f> restSample_;

@@ -99,6 +99,14 @@ PreferencesDialog::PreferencesDialog(Preferences& preferences, QWidget* parent) 
     form->addRow(tr("Pen pressure"), curve);
     form->addRow(QString(), new CurveView(preferences));
 
+    auto* simulateOn = choice<SimulateOn>(
+        {tr("Automatic"), tr("GPU"), tr("CPU")}, preferences.simulateOn(),
+        tr("What moves the hair while it plays. Automatic: whichever was measured to be faster with such a "
+           "hairstyle. Changing it goes on from where the hair is."),
+        [&preferences](SimulateOn value) { preferences.setSimulateOn(value); });
+    simulateOn->setObjectName("simulateOn");
+    form->addRow(tr("Simulate hair on"), simulateOn);
+
     auto* autosave = new QSpinBox;
     autosave->setObjectName("autosave");
     autosave->setRange(0, 60);

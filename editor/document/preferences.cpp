@@ -25,6 +25,7 @@ Preferences::Preferences(QObject* parent)
       unit_(readChoice("unit", DisplayUnit::Centimetre, 4)),
       orbitStyle_(readChoice("orbitStyle", OrbitStyle::Maya, 2)),
       tabletCurve_(std::clamp(QSettings().value("tabletCurve", 1.0).toDouble(), 0.25, 4.0)),
+      simulateOn_(readChoice("simulateOn", SimulateOn::Automatic, 3)),
       autosaveMinutes_(std::clamp(QSettings().value("autosaveMinutes", 3).toInt(), 0, 60)) {}
 
 template <class T>
@@ -50,6 +51,9 @@ void Preferences::setOrbitStyle(OrbitStyle style) {
 }
 void Preferences::setTabletCurve(double exponent) {
     store("tabletCurve", tabletCurve_, std::clamp(exponent, 0.25, 4.0));
+}
+void Preferences::setSimulateOn(SimulateOn where) {
+    store("simulateOn", simulateOn_, where);
 }
 void Preferences::setAutosaveMinutes(int minutes) {
     store("autosaveMinutes", autosaveMinutes_, std::clamp(minutes, 0, 60));

@@ -9,6 +9,7 @@ namespace hairloom::editor {
 
 enum class OrbitStyle { Maya, Blender };
 enum class Theme { Dark, Light };
+enum class SimulateOn { Automatic, Gpu, Cpu };
 enum class DisplayUnit { Metre, Centimetre, Millimetre, Inch };
 
 class Preferences : public QObject {
@@ -28,6 +29,9 @@ class Preferences : public QObject {
     /// Exponent that takes the pressure of a pen to that of a brush, 0.25 … 4; above 1 is harder to press.
     double tabletCurve() const { return tabletCurve_; }
     void setTabletCurve(double exponent);
+    /// Where hair is simulated while it plays; Automatic: where it was measured to be faster.
+    SimulateOn simulateOn() const { return simulateOn_; }
+    void setSimulateOn(SimulateOn where);
     /// Minutes between copies for crash recovery, 0 … 60; 0 never.
     int autosaveMinutes() const { return autosaveMinutes_; }
     void setAutosaveMinutes(int minutes);
@@ -49,6 +53,7 @@ class Preferences : public QObject {
     DisplayUnit unit_;
     OrbitStyle orbitStyle_;
     double tabletCurve_;
+    SimulateOn simulateOn_;
     int autosaveMinutes_;
 };
 

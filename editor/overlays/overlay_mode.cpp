@@ -17,6 +17,7 @@ const std::vector<OverlayMode>& overlayModes() {
 std::span<const Vec3f> shownPositions(const OverlayView& view) {
     const Groom& groom = view.groom;
     const auto& pose = view.viewport.pose();
+    view.viewport.wantPositions();
     if (pose && pose->positions_ws.size() == groom.pointCount()) return pose->positions_ws;
     return groom.positions();
 }

@@ -75,6 +75,11 @@ MainWindow::MainWindow()
         const Tool* tool = viewport_->tool();
         status_->setHint(tool ? tool->hint() : QString());
     });
+    static_assert(static_cast<int>(SimulateOn::Cpu) == static_cast<int>(EngineWish::cpu));
+    const auto chooseEngine = [this] { player_.setEngine(static_cast<EngineWish>(preferences_.simulateOn())); };
+    player_.setLive(viewport_->live());
+    chooseEngine();
+    connect(&preferences_, &Preferences::changed, this, chooseEngine);
     connect(&tools_, &ToolBox::activeChanged, viewport_, &Viewport::setTool);
     connect(&player_, &Player::frameReady, this, [this] {
         const auto& frame = player_.frame();

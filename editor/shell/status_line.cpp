@@ -18,6 +18,7 @@ StatusLine::StatusLine(QtDocument& document, const Preferences& preferences, Tas
       message_(new QLabel),
       counts_(new QLabel),
       frameTime_(new QLabel),
+      engine_(new QLabel),
       device_(new QLabel),
       progress_(new QProgressBar),
       cancel_(new QToolButton) {
@@ -38,6 +39,8 @@ StatusLine::StatusLine(QtDocument& document, const Preferences& preferences, Tas
     addWidget(cancel_);
     addPermanentWidget(counts_);
     addPermanentWidget(frameTime_);
+    engine_->setObjectName("engine");
+    addPermanentWidget(engine_);
     addPermanentWidget(device_);
     progress_->hide();
     cancel_->hide();
@@ -65,6 +68,7 @@ StatusLine::StatusLine(QtDocument& document, const Preferences& preferences, Tas
     connect(&tasks_, &Tasks::failed, this, [this](const QString& text) { say(text, true); });
     connect(&player_, &Player::failed, this, [this](const QString& text) { say(text, true); });
     connect(cancel_, &QToolButton::clicked, &tasks_, &Tasks::cancel);
+    connect(&player_, &Player::engineChanged, this, &StatusLine::showEngine);
     connect(&document_, &QtDocument::changed, this, &StatusLine::showCounts);
     connect(&viewport_, &Viewport::failed, this, [this](const QString& text) { say(text, true); });
     connect(&viewport_, &Viewport::drawn, this, [this](const PictureReport& report) {
@@ -106,6 +110,14 @@ void StatusLine::showCounts() {
     if (counts == counted_) return;
     counted_ = counts;
     counts_->setText(tr("%L1 strands   %L2 points").arg(groom.strandCount()).arg(groom.pointCount()));
+}
+
+void StatusLine::showEngine() {
+    const auto& engine = player_.engine();
+    engine_->setText(!engine ? QString() : engine->kind == EngineKind::gpu ? tr("hair on the GPU") : tr("hair on the CPU"));
+    engine_->setToolTip(!engine ? QString()
+                                : tr("What simulates the hair: %1. Edit ▸ Preferences chooses")
+                                      .arg(QString::fromStdString(engine->why)));
 }
 
 void StatusLine::showWork() {

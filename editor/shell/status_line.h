@@ -33,6 +33,7 @@ class StatusLine : public QStatusBar {
   private:
     void say(const QString& text, bool isWarning);
     void showCounts();
+    void showEngine();
     void showWork();
 
     QtDocument& document_;
@@ -44,6 +45,7 @@ class StatusLine : public QStatusBar {
     QLabel* message_;
     QLabel* counts_;
     QLabel* frameTime_;
+    QLabel* engine_;
     QLabel* device_;
     QProgressBar* progress_;
     QToolButton* cancel_;

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editor/simulation/player.h"
 
-#include <QElapsedTimer>
+#include <algorithm>
 #include <chrono>
 #include <optional>
 
 #include "core/editing/document.h"
 #include "core/simulation/clip_motion.h"
 #include "core/simulation/effect_switch.h"
-#include "core/simulation/engine_control.h"
-#include "editor/simulation/live_method.h"
+#include "editor/simulation/live_engine.h"
 
 namespace hairloom::editor {
 namespace {
@@ -50,7 +49,11 @@ struct Player::WorkerRequests {
     bool stop = false;
     bool playing = false;
     int steps = 0;
-    bool restart = true;  ///< simulation and motion are made anew from `groom`
+    bool restart = true;     ///< simulation and motion are made anew from `groom`
+    bool regroomed = false;  ///< the strands of `groom` stand elsewhere or are others in looks; they go on
+    std::shared_ptr<LiveLink> live;
+    EngineWish wish = EngineWish::cpu;
+    bool wishChanged = false;
     std::shared_ptr<const Groom> groom;
     std::shared_ptr<HeadMotion> motion;
     Eigen::Isometry3f offset = Eigen::Isometry3f::Identity();
@@ -105,6 +108,7 @@ void Player::capture() {
     if (captured_) return;
     captured_ = true;
     auto groom = std::make_shared<const Groom>(document_.groom());
+    capturedOffsets_.assign(groom->offsets.view().begin(), groom->offsets.view().end());
     auto made = motionOf(motion_, actor_, *groom);
     std::shared_ptr<HeadMotion> motion;
     if (made) motion = std::move(*made);
@@ -136,6 +140,7 @@ void Player::reset() {
         requests.playing = false;
         requests.steps = 0;
         requests.restart = true;
+        requests.regroomed = false;
         requests.groom.reset();
         requests.motion.reset();
         requests.offset.setIdentity();
@@ -232,6 +237,18 @@ void Player::computePlanPreview(const Groom& groom, const QStringList& leftOut) 
     });
 }
 
+void Player::setLive(std::shared_ptr<LiveLink> live) {
+    request([&](WorkerRequests& requests) { requests.live = std::move(live); });
+}
+
+void Player::setEngine(EngineWish wish) {
+    request([&](WorkerRequests& requests) {
+        if (wish == requests.wish || !requests.live) return;
+        requests.wish = wish;
+        requests.wishChanged = true;
+    });
+}
+
 void Player::setHeadOffset(const Eigen::Isometry3f& offset) {
     request([&](WorkerRequests& requests) { requests.offset = offset; });
 }
@@ -242,6 +259,14 @@ void Player::documentChanged(editing::Part parts) {
         outdatePlanPreview();
     if (contains(parts, editing::kHairParts | editing::kScalpParts)) {
         if (!captured_) return;
+        const bool sameStrands = std::ranges::equal(groom.offsets.view(), capturedOffsets_);
+        if (playing_ && sameStrands && !contains(parts, editing::kScalpParts)) {
+            request([&](WorkerRequests& requests) {
+                requests.groom = std::make_shared<const Groom>(groom);
+                requests.regroomed = true;
+            });
+            return;
+        }
         const bool play = playing_ && groom.strandCount() > 0;
         reset();
         if (play) this->play();
@@ -261,25 +286,127 @@ void Player::documentChanged(editing::Part parts) {
     });
 }
 
-void Player::run() {
-    const auto parameters = std::make_shared<LiveParameters>();
-    std::optional<Simulation> simulation;
+/// What the thread has of its own.
+struct Player::Playing {
+    std::unique_ptr<LiveEngine> engine;
+    EngineChoice choice;
+    bool deviceFailed = false;  ///< until another wish
     std::shared_ptr<const Groom> groom;
     std::shared_ptr<HeadMotion> motion;
     std::shared_ptr<const HairPose> before;
     double time = 0;
-    quint64 epoch = 0;
+};
+
+void Player::refuse(const Error& error) {
+    QMetaObject::invokeMethod(this, [this, words = QString::fromStdString(error.message())] {
+        pause();
+        Q_EMIT failed(words);
+    });
+}
+
+void Player::tell(const EngineChoice& choice) {
+    QMetaObject::invokeMethod(this, [this, choice] {
+        if (engine_ == choice) return;
+        engine_ = choice;
+        Q_EMIT engineChanged();
+    });
+}
+
+bool Player::prepare(Playing& playing, const WorkerRequests& taken) {
+    if (taken.wishChanged) playing.deviceFailed = false;
+    const bool begins = taken.restart || !playing.engine;
+    if (!begins && !taken.regroomed && !taken.wishChanged) return true;
+    LiveStart start;
+    if (begins) {
+        playing.engine.reset();
+        playing.before.reset();
+        playing.time = 0;
+    } else {
+        start.state = playing.engine->state();
+    }
+    if (!playing.groom || !playing.motion) return false;
+    auto tried = std::make_shared<Groom>(*playing.groom);
+    tried->simulation = without(tried->simulation, taken.leftOut);
+    tried->spheres = without(std::move(tried->spheres), taken.leftOut);
+    start.groom = tried;
+    start.motion = playing.motion;
+    start.pose = playing.motion->poseAt(static_cast<float>(playing.time));
+    apply(taken.offset, start.pose);
+
+    EngineChoice choice{EngineKind::cpu, "asked for"};
+    if (playing.deviceFailed) {
+        choice = playing.choice;
+    } else if (taken.wish != EngineWish::cpu) {
+        choice = taken.live->post([&](LiveWork* work) {
+                               return work ? work->choose(taken.wish, *tried)
+                                           : EngineChoice{EngineKind::cpu, "there is no graphics device"};
+                           }).get();
+    }
+    // The other engine goes first: the device has room for one hairstyle more.
+    playing.engine.reset();
+    if (choice.kind == EngineKind::gpu) {
+        auto made = makeDeviceEngine(taken.live, start);
+        if (made) playing.engine = std::move(*made);
+        if (!made) choice = {EngineKind::cpu, made.error().message()};
+    }
+    if (!playing.engine) {
+        auto made = makeCpuEngine(start, playing.time);
+        if (!made) {
+            refuse(made.error());
+            return false;
+        }
+        playing.engine = std::move(*made);
+    }
+    playing.choice = choice;
+    tell(choice);
+    return true;
+}
+
+void Player::advance(Playing& playing, WorkerRequests& taken) {
+    const auto begin = std::chrono::steady_clock::now();
+    LiveChanges changes;
+    if (taken.settings) changes.settings = without(*taken.settings, taken.leftOut);
+    if (taken.spheres) changes.spheres = without(std::move(*taken.spheres), taken.leftOut);
+    playing.time += static_cast<double>(kFrameTime);
+    auto pose = std::make_shared<HairPose>();
+    pose->head = playing.motion->poseAt(static_cast<float>(playing.time));
+    apply(taken.offset, pose->head);
+    Status refused;
+    auto stepped = playing.engine->step(kFrameTime, playing.time, std::move(changes), *pose, refused);
+    if (!stepped && playing.choice.kind == EngineKind::gpu) {
+        // A device that was lost takes the motion of the hair along, and nothing else.
+        playing.deviceFailed = true;
+        playing.choice = {EngineKind::cpu, "the device failed: " + stepped.error().message()};
+        WorkerRequests again = taken;
+        again.regroomed = true;
+        Q_EMIT failed(tr("The GPU stopped simulating (%1); the CPU goes on")
+                          .arg(QString::fromStdString(stepped.error().message())));
+        if (!prepare(playing, again)) return;
+        stepped = playing.engine->step(kFrameTime, playing.time, {}, *pose, refused);
+    }
+    if (!stepped) refused = stepped;
+    if (!refused) refuse(refused.error());
+    auto frame = std::make_shared<PlayedFrame>();
+    frame->before = std::exchange(playing.before, pose);
+    frame->pose = std::move(pose);
+    frame->time = playing.time;
+    const double clock =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+    const double device = playing.engine->milliseconds();
+    frame->milliseconds = device > 0 ? device : clock;
+    frame->stats = playing.engine->stats();
+    deliver(std::move(frame), taken.epoch);
+}
+
+void Player::run() {
+    Playing playing;
     auto due = std::chrono::steady_clock::now();
     while (true) {
-        Eigen::Isometry3f offset;
-        std::optional<runtime::SimulationSettings> settings;
-        std::optional<std::vector<CollisionSphere>> spheres;
-        QStringList leftOut;
-        bool restart = false;
+        WorkerRequests taken;
         {
             std::unique_lock lock(mutex_);
             wake_.wait(lock, [&] {
-                const bool letGo = requests_->restart && simulation;
+                const bool letGo = requests_->restart && playing.engine;
                 return requests_->stop || requests_->playing || requests_->steps > 0 || letGo ||
                        requests_->planPreview;
             });
@@ -287,78 +414,31 @@ void Player::run() {
                 wake_.wait_until(lock, due, [this] { return requests_->stop; });
             }
             if (requests_->stop) return;
-            leftOut = requests_->leftOut;
             if (requests_->planPreview) {
                 const auto planPreview = std::exchange(requests_->planPreview, nullptr);
+                const QStringList leftOut = requests_->leftOut;
                 lock.unlock();
                 computePlanPreview(*planPreview, leftOut);
                 continue;
             }
             if (!requests_->playing && requests_->steps == 0) {
-                if (requests_->restart) {
-                    simulation.reset();
-                    groom.reset();
-                    motion.reset();
-                }
+                if (requests_->restart) playing = {};
                 continue;
             }
             if (requests_->steps > 0) --requests_->steps;
-            restart = std::exchange(requests_->restart, false);
-            offset = requests_->offset;
-            groom = requests_->groom;
-            motion = requests_->motion;
-            epoch = requests_->epoch;
-            settings = std::exchange(requests_->settings, std::nullopt);
-            spheres = std::exchange(requests_->spheres, std::nullopt);
+            taken = *requests_;
+            requests_->restart = requests_->regroomed = requests_->wishChanged = false;
+            requests_->settings.reset();
+            requests_->spheres.reset();
         }
-        const auto begin = std::chrono::steady_clock::now();
-        due = begin + std::chrono::microseconds(16'667);
-        const auto refuse = [this](const Error& error) {
-            QMetaObject::invokeMethod(this, [this, words = QString::fromStdString(error.message())] {
-                pause();
-                Q_EMIT failed(words);
-            });
-        };
-        if (restart || !simulation) {
-            simulation.reset();
-            time = 0;
-            if (!groom || !motion) continue;
-            SimulationOptions options;
-            options.backend = liveMethod(parameters);
-            Groom tried = *groom;
-            tried.simulation = without(tried.simulation, leftOut);
-            auto made = Simulation::make(tried, motion->poseAt(0), options);
-            if (!made) {
-                request([](WorkerRequests& requests) { requests.playing = false; });
-                refuse(made.error());
-                continue;
-            }
-            simulation.emplace(std::move(*made));
-            parameters->spheres = without(groom->spheres, leftOut);
-            before.reset();
+        due = std::chrono::steady_clock::now() + std::chrono::microseconds(16'667);
+        playing.groom = taken.groom;
+        playing.motion = taken.motion;
+        if (prepare(playing, taken)) {
+            advance(playing, taken);
+        } else if (playing.groom && playing.motion) {
+            request([](WorkerRequests& requests) { requests.playing = false; });
         }
-        if (settings) {
-            if (auto taken = setEngineSettings(*parameters->engine, without(*settings, leftOut)); !taken) {
-                refuse(taken.error());
-            }
-        }
-        if (spheres) parameters->spheres = without(std::move(*spheres), leftOut);
-        time += static_cast<double>(kFrameTime);
-        auto pose = std::make_shared<HairPose>();
-        pose->head = motion->poseAt(static_cast<float>(time));
-        apply(offset, pose->head);
-        simulation->step(kFrameTime, pose->head);
-        const auto points = simulation->positions_ws();
-        pose->positions_ws.assign(points.begin(), points.end());
-        pose->velocities_ws = simulation->velocities_ws();
-        auto frame = std::make_shared<PlayedFrame>();
-        frame->before = std::exchange(before, pose);
-        frame->pose = std::move(pose);
-        frame->time = time;
-        frame->milliseconds =
-            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-        frame->stats = simulation->stats();
-        deliver(std::move(frame), epoch);
     }
 }
 

@@ -12,8 +12,10 @@
 #include <thread>
 
 #include "core/animation/actor.h"
+#include "core/scene/engine_choice.h"
 #include "core/simulation/simulation.h"
 #include "editor/document/qt_document.h"
+#include "editor/viewport/live_link.h"
 #include "editor/viewport/picture_request.h"
 
 namespace hairloom::editor {
@@ -23,7 +25,7 @@ struct PlayedFrame {
     std::shared_ptr<const HairPose> pose;
     std::shared_ptr<const HairPose> before;  ///< the frame before; null for the first
     double time = 0;                         ///< seconds since the start
-    double milliseconds = 0;                 ///< of the step
+    double milliseconds = 0;                 ///< of the step, where it runs
     SimulationStats stats;
 };
 
@@ -62,6 +64,13 @@ class Player : public QObject {
     /// What runs and what it costs: of the last frame, else what would run, without times. Empty without
     /// hair.
     std::vector<EffectReport> effects() const;
+    /// Where the hair is drawn, for simulating it there; null: the CPU simulates. Before anything plays.
+    void setLive(std::shared_ptr<LiveLink> live);
+    /// What moves the hair: from the next frame on, which goes on from where hair is.
+    void setEngine(EngineWish wish);
+    /// What moves it now or did last, and why; nothing before anything has played.
+    const std::optional<EngineChoice>& engine() const { return engine_; }
+
     /// What would run is looked for, strand by strand, only while somebody watches.
     void setPlanPreviewActive(bool watched);
 
@@ -75,11 +84,18 @@ class Player : public QObject {
     void motionsChanged();
     /// effects() has changed while nothing played.
     void planPreviewChanged();
+    void engineChanged();
     void failed(const QString& problem);
 
   private:
     struct WorkerRequests;
+    struct Playing;
     void run();
+    /// The engine goes on, or begins; false: nothing can.
+    bool prepare(Playing& playing, const WorkerRequests& taken);
+    void advance(Playing& playing, WorkerRequests& taken);
+    void tell(const EngineChoice& choice);
+    void refuse(const Error& error);
     /// Gives the thread the groom as it is now. Not before it is needed: strokes pay for copies that are
     /// held.
     void capture();
@@ -97,6 +113,8 @@ class Player : public QObject {
     bool playing_ = false;
     bool captured_ = false;  ///< the thread has the groom as it is now
     std::shared_ptr<const PlayedFrame> frame_;
+    std::optional<EngineChoice> engine_;
+    std::vector<std::uint32_t> capturedOffsets_;  ///< of the strands that the thread has
     quint64 epoch_ = 0;  ///< frames of earlier ones are dropped
 
     QStringList leftOut_;

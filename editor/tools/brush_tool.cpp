@@ -60,8 +60,8 @@ QString BrushTool::hint() const {
 }
 
 void BrushTool::activate() {
-    // Brushes work on the hair as it is authored.
-    if (player_.hasFrame()) player_.reset();
+    // Brushes work on the hair as it is authored; while it plays, that is where it comes to rest.
+    if (player_.hasFrame() && !player_.isPlaying()) player_.reset();
 }
 
 void BrushTool::hover(const Pointer& pointer) {

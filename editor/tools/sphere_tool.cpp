@@ -25,7 +25,7 @@ class SphereTool : public Tool {
     const ToolInfo& info() const override { return info_; }
 
     void activate() override {
-        if (player_.hasFrame()) player_.reset();
+        if (player_.hasFrame() && !player_.isPlaying()) player_.reset();
     }
 
     void press(const Pointer& pointer) override {

@@ -19,6 +19,8 @@ struct HairPose {
     std::vector<Vec3f> positions_ws;   ///< per point of the groom
     std::vector<Vec3f> velocities_ws;  ///< likewise, m/s; empty at rest
     HeadPose head;
+    /// The device moves the hair itself (LiveWork): positions, where there are any, are of a frame or two ago.
+    bool onDevice = false;
 };
 
 /// Strands that have moved since a groom was handed over, so that a stroke hands over what it touches and no

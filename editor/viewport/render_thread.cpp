@@ -12,7 +12,7 @@
 namespace hairloom::editor {
 namespace {
 
-Status takeBoth(gpu::Device& device, RenderWork& work, std::optional<RenderWork>& other, float& split,
+Status takeBoth(gpu::Device& device, const LiveWork& live, RenderWork& work, std::optional<RenderWork>& other, float& split,
                 PictureRequest request) {
     split = request.split;
     if (!request.other) {
@@ -23,7 +23,7 @@ Status takeBoth(gpu::Device& device, RenderWork& work, std::optional<RenderWork>
     left.groom = std::exchange(request.other, nullptr);
     left.other.reset();
     left.quality = request.otherQuality;
-    if (!other) other.emplace(device);
+    if (!other) other.emplace(device, &live);
     if (auto taken = other->take(std::move(left)); !taken) return taken;
     return work.take(std::move(request));
 }
@@ -50,7 +50,7 @@ Result<std::pair<QImage, PictureReport>> drawBoth(RenderWork& work, std::optiona
 
 /// All frames of a picture, with a renderer of its own.
 Result<QImage> drawAlone(gpu::Device& device, PictureRequest request) {
-    RenderWork work(device);
+    RenderWork work(device, nullptr);
     if (auto taken = work.take(std::move(request)); !taken) return tl::unexpected(taken.error());
     QImage picture;
     while (!work.isComplete()) {
@@ -65,6 +65,11 @@ Result<QImage> drawAlone(gpu::Device& device, PictureRequest request) {
 
 RenderThread::RenderThread(QObject* parent) : QObject(parent) {
     qRegisterMetaType<PictureReport>();
+    live_ = std::make_shared<LiveLink>([this] {
+        // Not between the thread's look for jobs and its sleep.
+        { const std::lock_guard lock(mutex_); }
+        wake_.notify_all();
+    });
     thread_ = std::thread([this] { run(); });
 }
 
@@ -125,12 +130,14 @@ void RenderThread::run() {
             ended_ = true;
         }
         windowTaken_.notify_all();
+        live_->close();
         QMetaObject::invokeMethod(this, [this, problem = QString::fromStdString(device.error().message())] {
             Q_EMIT deviceReady({}, false, problem);
         });
         return;
     }
-    RenderWork work(**device);
+    LiveWork live(**device);
+    RenderWork work(**device, &live);
     std::optional<RenderWork> other;  // the look to compare with
     float split = 0.5f;
     const gpu::DeviceInfo& info = (*device)->info();
@@ -145,8 +152,14 @@ void RenderThread::run() {
             std::unique_lock lock(mutex_);
             const bool complete = work.isComplete() && (!other || other->isComplete());
             idle_ = !next_ && complete;
-            wake_.wait(lock, [&] { return stop_ || next_ || windowChanged_ || !complete || !side_.empty(); });
+            wake_.wait(lock, [&] { return stop_ || next_ || windowChanged_ || !complete || !side_.empty() || live_->hasJobs(); });
             if (stop_) break;
+            if (live_->hasJobs()) {
+                lock.unlock();
+                live_->run(&live);
+                lock.lock();
+                if (!next_ && !windowChanged_ && complete && side_.empty()) continue;
+            }
             if (windowChanged_) {
                 const auto taken = work.setWindow(window_);
                 windowChanged_ = false;
@@ -166,7 +179,7 @@ void RenderThread::run() {
             }
         }
         Status ready;
-        if (request) ready = takeBoth(**device, work, other, split, std::move(*request));
+        if (request) ready = takeBoth(**device, live, work, other, split, std::move(*request));
         if (ready) {
             auto drawn = drawBoth(work, other, split);
             if (drawn) {
@@ -179,6 +192,7 @@ void RenderThread::run() {
         other.reset();
         Q_EMIT failed(QString::fromStdString(ready.error().message()));
     }
+    live_->close();
     const std::lock_guard lock(mutex_);
     ended_ = true;
     windowTaken_.notify_all();

@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "core/gpu/device.h"
+#include "editor/viewport/live_link.h"
 #include "editor/viewport/picture_request.h"
 
 namespace hairloom::editor {
@@ -35,6 +36,9 @@ class RenderThread : public QObject {
     /// Pictures go to this window from now on; to no window where it is empty. Waits until that is so: a
     /// window may be destroyed after it has been taken away.
     void setWindow(std::optional<gpu::NativeWindow> window);
+
+    /// For who simulates on the device; may outlive this.
+    const std::shared_ptr<LiveLink>& live() const { return live_; }
 
   Q_SIGNALS:
     /// The device has been found, or `problem` says why there is none. `wantsWindow`: it can show pictures by
@@ -59,6 +63,7 @@ class RenderThread : public QObject {
     bool idle_ = true;
     bool stop_ = false;
     bool ended_ = false;
+    std::shared_ptr<LiveLink> live_;
     std::thread thread_;
 };
 

@@ -111,7 +111,8 @@ void straighten(QImage& image) {
 
 }  // namespace
 
-RenderWork::RenderWork(gpu::Device& device) : device_(device), renderer_(device) {}
+RenderWork::RenderWork(gpu::Device& device, const LiveWork* live)
+    : device_(device), live_(live), renderer_(device) {}
 
 Status RenderWork::setWindow(const std::optional<gpu::NativeWindow>& window) {
     swapChain_.reset();
@@ -143,7 +144,10 @@ void RenderWork::takeMoves(PictureRequest& request) {
 
 Status RenderWork::take(PictureRequest request) {
     takeMoves(request);
-    const bool draft = request.moving && needsDraft_ && request.groom->interpolation.followPerGuide > 0;
+    // What the device makes itself is never too slow to move.
+    const bool onDevice = request.pose && request.pose->onDevice;
+    const bool draft =
+        request.moving && needsDraft_ && !onDevice && request.groom->interpolation.followPerGuide > 0;
     if (auto taken = takeScene(request, draft); !taken) return taken;
     if (auto set = renderer_.setCamera(request.camera); !set) return set;
     if (auto set = renderer_.setLights(lightsOf(request)); !set) return set;
@@ -196,7 +200,8 @@ Status RenderWork::replaceScene(const PictureRequest& request, bool draft) {
     draft_ = draft;
     hairShown_ = request.showHair;
     headShown_ = request.showHead;
-    if (request.pose && request.pose->positions_ws.size() == request.groom->pointCount()) {
+    if (!showsLive(request) && request.pose &&
+        request.pose->positions_ws.size() == request.groom->pointCount()) {
         scene_->pose(request.pose->positions_ws, request.pose->velocities_ws, request.pose->head);
     }
     render::RenderScene shown = scene_->scene();
@@ -206,10 +211,21 @@ Status RenderWork::replaceScene(const PictureRequest& request, bool draft) {
     shown.lights = lightsOf(request);
     shown.background = request.background;
     shown.environment = environmentOf(request);
-    return renderer_.setScene(shown);
+    if (auto set = renderer_.setScene(shown); !set || !showsLive(request)) return set;
+    return live_->show(renderer_, !shown.strands.empty(), !shown.meshes.empty());
+}
+
+/// The hair that the request shows is simulated on the device, and that of scene_.
+bool RenderWork::showsLive(const PictureRequest& request) const {
+    return request.pose && request.pose->onDevice && live_ && live_->fits(*scene_);
 }
 
 Status RenderWork::movePoints(const PictureRequest& request) {
+    if (showsLive(request)) {
+        const render::RenderScene shown = scene_->scene();
+        return live_->show(renderer_, request.showHair && !shown.strands.empty(),
+                           request.showHead && !shown.meshes.empty());
+    }
     const bool posed = request.pose && request.pose->positions_ws.size() == request.groom->pointCount();
     if (posed) {
         scene_->pose(request.pose->positions_ws, request.pose->velocities_ws, request.pose->head);

@@ -9,14 +9,15 @@
 #include "core/gpu/device.h"
 #include "core/render/renderer.h"
 #include "core/scene/groom_scene.h"
+#include "editor/viewport/live_work.h"
 #include "editor/viewport/picture_request.h"
 
 namespace hairloom::editor {
 
 class RenderWork {
   public:
-    /// `device` outlives it.
-    explicit RenderWork(gpu::Device& device);
+    /// Both outlive it. `live`: hair that is simulated on the device, for requests that show it; may be null.
+    RenderWork(gpu::Device& device, const LiveWork* live);
 
     Status setWindow(const std::optional<gpu::NativeWindow>& window);
     /// Takes what differs from the last request to the device.
@@ -38,6 +39,7 @@ class RenderWork {
     Status takeScene(const PictureRequest& request, bool draft);
     Status replaceScene(const PictureRequest& request, bool draft);
     Status movePoints(const PictureRequest& request);
+    bool showsLive(const PictureRequest& request) const;
     Status moveStrands(const PictureRequest& request, const StrandMoves& moves);
     Status showMaterial(const PictureRequest& request);
     Status showDye(const PictureRequest& request);
@@ -47,6 +49,7 @@ class RenderWork {
     Result<QImage> readBack() const;
 
     gpu::Device& device_;
+    const LiveWork* live_;
     render::Renderer renderer_;
     std::optional<gpu::NativeWindow> window_;
     std::unique_ptr<gpu::SwapChain> swapChain_;  ///< null: pictures are read back from target_

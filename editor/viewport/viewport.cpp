@@ -299,7 +299,7 @@ void Viewport::documentChanged(editing::Part parts) {
     } else {
         noteMoved(document_.movedStrands());
     }
-    if (contains(parts, editing::kHairParts) && pose_ &&
+    if (contains(parts, editing::kHairParts) && pose_ && !pose_->onDevice &&
         pose_->positions_ws.size() != document_.groom().pointCount()) {
         pose_.reset();
     }
@@ -345,7 +345,9 @@ void Viewport::post() {
     // The copy shares its arrays with the document.
     if (anew) groom_ = std::make_shared<const Groom>(document_.groom());
     Marks marks;
+    positionsWanted_ = false;
     for (const auto& draw : marks_) draw(marks);
+    live()->setWantsPositions(positionsWanted_);
     if (tool_) tool_->draw(marks);
     PictureRequest request;
     request.groom = groom_;

@@ -57,6 +57,11 @@ class Viewport : public QWidget {
     void setReference(const QImage& image, double opacity);
     const QImage& reference() const { return reference_; }
 
+    /// For who simulates on the device that draws.
+    const std::shared_ptr<LiveLink>& live() const { return renderer_.live(); }
+    /// Called while marks are drawn, by those on strands.
+    void wantPositions() const { positionsWanted_ = true; }
+
     /// A picture of something else, made when nothing else is to be drawn; sidePictureReady() brings it.
     void requestSidePicture(const QString& name, PictureRequest request) {
         renderer_.postSide(name, std::move(request));
@@ -172,6 +177,7 @@ class Viewport : public QWidget {
     QPointF last_px_;
     double pressure_ = 1;
     bool framed_ = false;
+    mutable bool positionsWanted_ = false;
 };
 
 }  // namespace hairloom::editor

@@ -18,7 +18,7 @@ void main(uint3 thread : SV_DispatchThreadID, uint3 inGroup : SV_GroupThreadID) 
     }
     GroupMemoryBarrierWithGroupSync();
     float3 least = float3(1e30, 1e30, 1e30), greatest = -least;
-    for (uint i = thread.x; i < gExtent.points; i += gExtent.threads) {
+    [loop] for (uint i = thread.x; i < gExtent.points; i += gExtent.threads) {
         const float3 p = gPoints[i].xyz;
         // What is no number is in no box.
         if (!(dot(p, p) < 1e12)) continue;
@@ -36,6 +36,6 @@ void main(uint3 thread : SV_DispatchThreadID, uint3 inGroup : SV_GroupThreadID) 
         InterlockedMin(gBox[inGroup.x], gLeast[inGroup.x]);
         InterlockedMax(gBox[3 + inGroup.x], gGreatest[inGroup.x]);
     }
-    for (uint s = thread.x; s < gExtent.samples; s += gExtent.threads)
+    [loop] for (uint s = thread.x; s < gExtent.samples; s += gExtent.threads)
         gSamples[s] = gPoints[s * gExtent.sampleStep];
 }

@@ -45,7 +45,7 @@ void main(uint3 thread : SV_DispatchThreadID, uint3 inGroup : SV_GroupThreadID, 
                 InterlockedAdd(gEnergy, microjoules(0.5 * rest.mass * speed * speed));
                 const float own = lerp(gMeasure.collisionRadiusAtRoot, gMeasure.collisionRadiusAtTip, rest.along);
                 float deepest = 0.0;
-                for (uint s = 0; s < gMeasure.spheres; ++s) {
+                [loop] for (uint s = 0; s < gMeasure.spheres; ++s) {
                     const float3 from = here - gSpheres[s].xyz;
                     deepest = max(deepest, gSpheres[s].w + own - sqrt(dot(from, from)));
                 }

@@ -7,7 +7,9 @@ namespace {
 VkBufferUsageFlags usageFlags(const BufferDesc& desc) {
     VkBufferUsageFlags flags = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
     const bool typed = desc.typedFormat != Format::Unknown;
-    if (has(desc.usage, Usage::Constant)) flags |= VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
+    // As storage on a software device: withConstantsInStorage().
+    if (has(desc.usage, Usage::Constant))
+        flags |= VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
     if (has(desc.usage, Usage::ShaderRead)) {
         flags |= typed ? VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT : VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
     }

@@ -139,8 +139,14 @@ Result<std::shared_ptr<ShaderImpl>> ShaderImpl::create(const ContextPtr& context
     for (const ReflectedBinding& b : result->bindings) {
         result->uses.push_back({toRegister(b.binding), shapeOf(b.type), 0});
     }
+    if (context->info.type == DeviceType::Cpu) {
+        words = withConstantsInStorage(words);
+        for (ReflectedBinding& b : result->bindings) {
+            if (b.type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER) b.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+        }
+    }
     auto info = make<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
-    info.codeSize = desc.spirv.size();
+    info.codeSize = words.size() * sizeof(std::uint32_t);
     info.pCode = words.data();
     const VkResult r = vkCreateShaderModule(context->device, &info, nullptr, &result->handle);
     if (r != VK_SUCCESS) return context->failed(r, "creating shader '" + desc.name + "'");

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
+#include <set>
 
 namespace hairloom::gpu::vulkan {
 namespace {
@@ -17,7 +19,7 @@ enum Op : std::uint32_t {
     kVariable = 59,
     kDecorate = 71
 };
-enum Decoration : std::uint32_t { kBlock = 2, kBufferBlock = 3, kBinding = 33 };
+enum Decoration : std::uint32_t { kBlock = 2, kBufferBlock = 3, kNonWritable = 24, kBinding = 33 };
 enum StorageClass : std::uint32_t { kUniformConstant = 0, kUniform = 2, kStorageBuffer = 12 };
 constexpr std::uint32_t kMagic = 0x07230203;
 constexpr std::uint32_t kDimBuffer = 5;
@@ -52,6 +54,18 @@ void readInstruction(Module& module, std::uint32_t op, std::span<const std::uint
         if (w[2] == kBinding && w.size() >= 4) module.bindings[w[1]] = w[3];
         if (w[2] == kBufferBlock) module.bufferBlocks[w[1]] = true;
     }
+}
+
+Result<Module> readModule(std::span<const std::uint32_t> words) {
+    if (words.size() < 5 || words[0] != kMagic) return fail("not SPIR-V", "the magic number 0x07230203");
+    Module module;
+    for (std::size_t at = 5; at < words.size();) {
+        const std::uint32_t length = words[at] >> 16u;
+        if (length == 0 || length > words.size() - at) return fail("truncated SPIR-V");
+        readInstruction(module, words[at] & 0xffffu, words.subspan(at, length));
+        at += length;
+    }
+    return module;
 }
 
 Result<VkDescriptorType> descriptorType(const Module& module, const Module::Variable& variable) {
@@ -104,14 +118,9 @@ std::uint32_t toBinding(const ShaderRegister& shaderRegister) {
 
 Result<std::vector<ReflectedBinding>> reflect(std::span<const std::uint32_t> words,
                                               VkShaderStageFlags stage) {
-    if (words.size() < 5 || words[0] != kMagic) return fail("not SPIR-V", "the magic number 0x07230203");
-    Module module;
-    for (std::size_t at = 5; at < words.size();) {
-        const std::uint32_t length = words[at] >> 16u;
-        if (length == 0 || length > words.size() - at) return fail("truncated SPIR-V");
-        readInstruction(module, words[at] & 0xffffu, words.subspan(at, length));
-        at += length;
-    }
+    const auto read = readModule(words);
+    if (!read) return tl::unexpected(read.error());
+    const Module& module = *read;
     std::vector<ReflectedBinding> result;
     for (const auto& variable : module.variables) {
         const bool resource = variable.storage == kUniformConstant || variable.storage == kUniform ||
@@ -121,6 +130,33 @@ Result<std::vector<ReflectedBinding>> reflect(std::span<const std::uint32_t> wor
         const auto type = descriptorType(module, variable);
         if (!type) return tl::unexpected(type.error());
         result.push_back({binding->second, *type, stage});
+    }
+    return result;
+}
+
+std::vector<std::uint32_t> withConstantsInStorage(std::span<const std::uint32_t> words) {
+    const auto module = readModule(words);
+    if (!module) return {words.begin(), words.end()};
+    std::set<std::uint32_t> variables, structs;
+    for (const auto& variable : module->variables) {
+        const auto type = descriptorType(*module, variable);
+        const bool bound = module->bindings.contains(variable.id);
+        if (variable.storage != kUniform || !bound || !type || *type != VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER)
+            continue;
+        variables.insert(variable.id);
+        structs.insert(module->types.at(variable.pointerType).pointee);
+    }
+    std::vector<std::uint32_t> result(words.begin(), words.begin() + 5);
+    for (std::size_t at = 5; at < words.size();) {
+        const std::uint32_t length = words[at] >> 16u;
+        const auto instruction = words.subspan(at, length);
+        const std::size_t begin = result.size();
+        result.insert(result.end(), instruction.begin(), instruction.end());
+        at += length;
+        if ((instruction[0] & 0xffffu) != kDecorate || length < 3) continue;
+        if (instruction[2] == kBlock && structs.contains(instruction[1])) result[begin + 2] = kBufferBlock;
+        if (instruction[2] == kBinding && variables.contains(instruction[1]))
+            result.insert(result.end(), {(3u << 16u) | kDecorate, instruction[1], kNonWritable});
     }
     return result;
 }

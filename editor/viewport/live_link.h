@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// From the thread that plays to the render thread, which owns the device: jobs that are done between pictures, in the order in
+// which they were given.
+
+#include <atomic>
+#include <deque>
+#include <functional>
+#include <future>
+#include <memory>
+#include <mutex>
+#include <type_traits>
+
+#include "editor/viewport/live_work.h"
+
+namespace hairloom::editor {
+
+class LiveLink {
+  public:
+    /// The result of `job`, which is called with null once there is no device.
+    template <class Job>
+    auto post(Job job) {
+        using Value = std::invoke_result_t<Job, LiveWork*>;
+        auto task = std::make_shared<std::packaged_task<Value(LiveWork*)>>(std::move(job));
+        auto value = task->get_future();
+        add([task](LiveWork* work) { (*task)(work); });
+        return value;
+    }
+
+    /// Whether marks show where strands are: frames tell it then.
+    bool wantsPositions() const { return wantsPositions_; }
+    void setWantsPositions(bool on) { wantsPositions_ = on; }
+
+    // For the render thread.
+    /// `wake` is called, on any thread, when there is a job.
+    explicit LiveLink(std::function<void()> wake) : wake_(std::move(wake)) {}
+    bool hasJobs() const { return jobCount_ > 0; }
+    void run(LiveWork* work);
+    /// From now on jobs are called at once, with null.
+    void close();
+
+  private:
+    using Job = std::function<void(LiveWork*)>;
+    void add(Job job);
+
+    mutable std::mutex mutex_;
+    std::function<void()> wake_;
+    std::deque<Job> jobs_;
+    bool closed_ = false;
+    std::atomic<bool> wantsPositions_ = false;
+    std::atomic<std::size_t> jobCount_ = 0;  ///< told without the lock, which add() holds while it wakes
+};
+
+}  // namespace hairloom::editor

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Hair that plays in the window, on either engine.
+#include <QLabel>
+
+#include "tests/editor/resident_memory.h"
+#include "tests/editor/window_fixture.h"
+#include "tests/scene/small_head.h"
+
+namespace hairloom::editor {
+namespace {
+
+class LiveTest : public WindowTest {
+  protected:
+    LiveTest() : WindowTest(true) {}
+    void SetUp() override {
+        WindowTest::SetUp();
+        window->resize(640, 420);
+        drawQuickly();
+        Groom small = smallHead();
+        small.simulation.windSpeed = 4;
+        document().open(small, {}, "small");
+    }
+    void simulateOn(SimulateOn where) { parts().preferences.setSimulateOn(where); }
+    bool played(double seconds) {
+        return QTest::qWaitFor(
+            [&] {
+                const auto& frame = parts().player.frame();
+                return frame && frame->time > seconds;
+            },
+            60'000);
+    }
+    double now() { return parts().player.frame() ? parts().player.frame()->time : 0; }
+    EngineKind engine() { return parts().player.engine()->kind; }
+};
+
+TEST_F(LiveTest, EnginesChangeWhileItPlays) {
+    ASSERT_TRUE(parts().player.setMotion("nod"));
+    trigger("play.toggle");
+    ASSERT_TRUE(played(0.1));
+    EXPECT_EQ(engine(), EngineKind::cpu);
+    // What tests draw with is a software device as a rule.
+    EXPECT_FALSE(parts().player.engine()->why.empty());
+    EXPECT_FALSE(parts().player.frame()->pose->onDevice);
+    for (const auto& [where, kind] : {std::pair{SimulateOn::Gpu, EngineKind::gpu},
+                                      {SimulateOn::Cpu, EngineKind::cpu},
+                                      {SimulateOn::Gpu, EngineKind::gpu}}) {
+        const double before = now();
+        simulateOn(where);
+        ASSERT_TRUE(played(before + 0.3)) << "it goes on from where it was";
+        EXPECT_EQ(engine(), kind);
+        EXPECT_EQ(parts().player.frame()->pose->onDevice, kind == EngineKind::gpu);
+        auto* label = window->findChild<QLabel*>("engine");
+        ASSERT_TRUE(label);
+        EXPECT_EQ(label->text(), kind == EngineKind::gpu ? "hair on the GPU" : "hair on the CPU");
+    }
+    EXPECT_GT(parts().player.frame()->stats.fastestMmPerSecond, 10) << "told of a frame or two ago";
+    EXPECT_EQ(parts().player.frame()->stats.nanCount, 0u);
+    EXPECT_FALSE(parts().player.effects().empty());
+    trigger("play.reset");
+    EXPECT_FALSE(viewport().pose());
+}
+
+TEST_F(LiveTest, EditsArriveWhileItPlays) {
+    for (const SimulateOn where : {SimulateOn::Gpu, SimulateOn::Cpu}) {
+        simulateOn(where);
+        trigger("play.toggle");
+        ASSERT_TRUE(played(0.1));
+        double before = now();
+        trigger("tool.comb");
+        EXPECT_TRUE(parts().player.isPlaying()) << "a brush may be taken up";
+        const std::uint64_t authored = hash();
+        const QPoint middle(viewport().width() / 2, viewport().height() / 2);
+        drag({middle, middle + QPoint(20, 5), middle + QPoint(60, 20)});
+        EXPECT_NE(hash(), authored);
+        ASSERT_TRUE(played(before + 0.2)) << "it goes on from where it was";
+        before = now();
+        document().undo();
+        EXPECT_EQ(hash(), authored);
+        ASSERT_TRUE(played(before + 0.2));
+        before = now();
+        Groom calm = groom();
+        calm.simulation.windSpeed = 0;
+        calm.spheres.clear();
+        change("Calm", calm);
+        ASSERT_TRUE(played(before + 0.2));
+        EXPECT_TRUE(parts().player.isPlaying());
+        trigger("play.reset");
+        document().undo();
+    }
+}
+
+TEST_F(LiveTest, MemoryStaysFlat) {
+    if (residentMegabytes() == 0) GTEST_SKIP() << "the system does not tell";
+    int pictures = 0;
+    QObject::connect(&viewport(), &Viewport::drawn, window.get(), [&pictures] { ++pictures; });
+    for (const SimulateOn where : {SimulateOn::Cpu, SimulateOn::Gpu}) {
+        simulateOn(where);
+        ASSERT_TRUE(parts().player.setMotion("nod"));
+        trigger("play.toggle");
+        const auto drawn = [&](int count) {
+            pictures = 0;
+            return QTest::qWaitFor([&] { return pictures >= count; }, 240'000);
+        };
+        // Shaders of what is new are compiled at first.
+        ASSERT_TRUE(drawn(60));
+        const double before = residentMegabytes();
+        ASSERT_TRUE(drawn(300));
+        EXPECT_LT(residentMegabytes() - before, 20) << "MB in 300 pictures";
+        trigger("play.reset");
+    }
+}
+
+}  // namespace
+}  // namespace hairloom::editor
