@@ -118,6 +118,43 @@ TEST_F(RenderJob, SequencesAreNumberedAndJoined) {
     EXPECT_EQ(run("render hair.hairloom -o x.png --record wind.frames --frames 3,0").exitCode, 1);
 }
 
+TEST_F(RenderJob, HairIsSimulatedWhileItIsDrawnOnEitherEngine) {
+    const auto cpu = picture("--motion nod --wind 3,0,0 --frame 6 --engine cpu");
+    EXPECT_EQ(cpu["engine"], "cpu");
+    EXPECT_EQ(cpu["why"], "asked for");
+    const std::string onCpu = readText(folder / "hair.png");
+    const auto gpu = picture("--motion nod --wind 3,0,0 --frames 0,6,6 --engine gpu");
+    EXPECT_EQ(gpu["engine"], "gpu");
+    EXPECT_EQ(gpu["pictures"], 2);
+    EXPECT_NE(readText(folder / "hair_0000.png"), readText(folder / "hair_0001.png"));
+    EXPECT_NE(onCpu, readText(folder / "hair_0000.png"));
+    EXPECT_EQ(run("render hair.hairloom -o x.png --engine gpu").exitCode, 2) << "nothing moves";
+    EXPECT_EQ(run("render hair.hairloom -o x.png --frames 0,3").exitCode, 2);
+
+    const auto simulated = runJson("simulate hair.hairloom --frames 2 --engine gpu");
+    EXPECT_EQ(simulated["engine"], "gpu");
+    EXPECT_FALSE(simulated["device"].is_null());
+    const auto automatic = runJson("simulate hair.hairloom --frames 2 --engine auto --method lattice");
+    EXPECT_EQ(automatic["engine"], "cpu");
+    EXPECT_THAT(automatic["why"].get<std::string>(), HasSubstr("strand engine"));
+}
+
+TEST_F(RenderJob, BenchPlaysAsTheEditorDoes) {
+    const auto report =
+        runJson("bench live --grooms hair.hairloom --size 64x36 --frames 2 --markdown live.md");
+    ASSERT_EQ(report["rows"].size(), 2u);
+    for (const auto& row : report["rows"]) {
+        for (const char* name : {"simulate_ms", "follow_ms", "shadow_ms", "shade_ms", "draw_ms", "frame_ms", "wall_ms"})
+            EXPECT_GE(row[name].get<double>(), 0) << name;
+        EXPECT_GT(row["hairs"].get<int>(), 0);
+        EXPECT_GT(row["bytes_to_device"].get<double>(), 0);
+    }
+    EXPECT_EQ(report["rows"][0]["engine"], "gpu");
+    EXPECT_LT(report["rows"][0]["bytes_from_device"].get<double>(), 64'000);
+    EXPECT_EQ(report["rows"][1]["engine"], "cpu");
+    EXPECT_THAT(readText(folder / "live.md"), HasSubstr("| hair.hairloom | gpu |"));
+}
+
 TEST_F(RenderJob, BenchMeasuresEachPass) {
     const auto report = runJson("bench render --hairs 40 --size 32x32 --repeat 2 --markdown table.md");
     std::set<std::string> names;
