@@ -5,7 +5,7 @@
 
 #include <iterator>
 
-#include "exporters/exported_attributes.h"
+#include "exporters/usd_curves.h"
 
 namespace hairloom {
 namespace {
@@ -25,28 +25,8 @@ void writeNumbers(std::string& out, std::span<const T> numbers, std::size_t comp
     out += ']';
 }
 
-std::string_view typeOf(const ExportedAttribute& attribute) {
-    if (attribute.name == "groom_guide") return "bool";
-    if (attribute.type == ExportedAttribute::Type::Flag) return "uchar";
-    if (attribute.type == ExportedAttribute::Type::Whole) return "int";
-    if (attribute.isColour) return "color3f";
-    if (attribute.name == "groom_root_uv") return "texCoord2f";
-    constexpr std::array<std::string_view, 5> kFloats{"", "float", "float2", "float3", "float4"};
-    return kFloats[attribute.components];
-}
-
-/// USD's names have letters, digits, underscores and colons.
-std::string usdName(const std::string& name) {
-    std::string valid;
-    for (const char c : name) {
-        const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-        valid += plain ? c : '_';
-    }
-    return valid.empty() || (valid[0] >= '0' && valid[0] <= '9') ? "_" + valid : valid;
-}
-
 void writeAttribute(std::string& out, const ExportedAttribute& attribute) {
-    out += fmt::format("        {}[] primvars:{} = ", typeOf(attribute), usdName(attribute.name));
+    out += fmt::format("        {}[] primvars:{} = ", usdTypeOf(attribute), usdName(attribute.name));
     if (attribute.type == ExportedAttribute::Type::Number)
         writeNumbers(out, std::span<const float>(attribute.numbers), attribute.components);
     else
@@ -62,12 +42,8 @@ std::string usdaText(const Groom& groom, const PreparedStrands& strands, const S
         "def Xform \"groom\"\n{{\n    def BasisCurves \"hair\"\n    {{\n"
         "        uniform token type = \"linear\"\n        uniform token wrap = \"nonperiodic\"\n",
         options.metresPerUnit, options.up == UpAxis::Z ? "Z" : "Y");
-    std::vector<std::int32_t> counts(strands.strandCount());
-    for (std::size_t s = 0; s < counts.size(); ++s)
-        counts[s] = static_cast<std::int32_t>(strands.offsets[s + 1] - strands.offsets[s]);
-    Box3f bounds;
-    for (const Vec3f& position : strands.positions) bounds.extend(position);
-    const std::array<Vec3f, 2> extent{bounds.min(), bounds.max()};
+    const std::vector<std::int32_t> counts = curveVertexCounts(strands);
+    const std::array<Vec3f, 2> extent = extentOf(strands);
     const auto numbersOf = [](std::span<const Vec3f> values) {
         return std::span<const float>(values[0].data(), values.size() * 3);
     };
@@ -96,17 +72,12 @@ Result<ExportReport> writeUsda(const Groom& groom, const std::filesystem::path& 
 }  // namespace
 
 StrandWriter usdaWriter() {
-    StrandExportOptions blender, maya;
-    blender.up = UpAxis::Z;
-    maya.metresPerUnit = 0.01f;
     return {"usda",
             "USD .usda",
             "width and colour of each point; root UV, id, group and guide flag of each strand; attributes of "
             "any name",
             "none",
-            {{"Houdini, USD", ".usda in metres, Y up", {}},
-             {"Blender, USD", ".usda in metres, Z up", blender},
-             {"Maya, USD", ".usda in centimetres, Y up", maya}},
+            usdTargets(".usda"),
             writeUsda};
 }
 

@@ -9,9 +9,8 @@
 #include <fstream>
 
 #include "core/base/file.h"
-#include "core/base/parallel.h"
-#include "core/geometry/closest_point.h"
 #include "importers/raw_strands.h"
+#include "importers/strand_roots.h"
 #include "importers/strand_size.h"
 
 namespace hairloom {
@@ -163,62 +162,6 @@ class Cleaner {
     std::size_t repairedPoints_ = 0;
     std::uint32_t firstRepaired_ = 0;
 };
-
-template <class T>
-void reverseRun(std::vector<T>& values, std::size_t begin, std::size_t end) {
-    if (values.empty()) return;
-    std::reverse(values.begin() + static_cast<std::ptrdiff_t>(begin),
-                 values.begin() + static_cast<std::ptrdiff_t>(end));
-}
-
-void reverseAttribute(RawAttribute& attribute, std::size_t begin, std::size_t end) {
-    if (!attribute.perPoint) return;
-    reverseRun(attribute.whole, begin, end);
-    if (attribute.components == 1) return reverseRun(attribute.numbers, begin, end);
-    for (std::size_t low = begin, high = end; low + 1 < high; ++low, --high) {
-        for (std::size_t c = 0; c < attribute.components; ++c)
-            std::swap(attribute.numbers[low * attribute.components + c],
-                      attribute.numbers[(high - 1) * attribute.components + c]);
-    }
-}
-
-/// Turns strands so that the end nearer to the scalp comes first. Strands whose ends are about equally near
-/// (curls, bangs that touch the face) follow the majority of the file.
-void orientToScalp(RawStrands& raw, const ScalpMesh& scalp) {
-    constexpr float kClear = 2.0f;  ///< an end is nearer when the other is this many times as far
-    const SurfaceTree tree(scalp);
-    const std::size_t strands = raw.offsets.size() - 1;
-    std::vector<std::int8_t> votes(strands);
-    parallelFor(strands, 256, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t strand = begin; strand < end; ++strand) {
-            const float first = tree.closest(raw.positions[raw.offsets[strand]]).distance;
-            const float last = tree.closest(raw.positions[raw.offsets[strand + 1] - 1]).distance;
-            if (last * kClear < first) votes[strand] = -1;
-            if (first * kClear < last) votes[strand] = 1;
-        }
-    });
-    std::int64_t sum = 0;
-    for (const std::int8_t vote : votes) sum += vote;
-    std::size_t turned = 0;
-    for (std::size_t strand = 0; strand < strands; ++strand) {
-        const bool turn = votes[strand] < 0 || (votes[strand] == 0 && sum < 0);
-        if (!turn) continue;
-        ++turned;
-        const std::size_t begin = raw.offsets[strand];
-        const std::size_t end = raw.offsets[strand + 1];
-        reverseRun(raw.positions, begin, end);
-        reverseRun(raw.thickness, begin, end);
-        reverseRun(raw.transparency, begin, end);
-        reverseRun(raw.colours, begin, end);
-        for (RawAttribute& attribute : raw.attributes) reverseAttribute(attribute, begin, end);
-        for (std::vector<Vec3f>& frame : raw.frames) reverseRun(frame, begin, end);
-    }
-    if (turned > 0) {
-        raw.warnings.push_back(
-            fileNote(fmt::format("{} strands were turned: their last point is nearer to the scalp", turned),
-                     "strands"));
-    }
-}
 
 void takeThickness(RawStrands& raw, Groom& groom, float metresPerUnit) {
     if (!raw.thickness.empty()) {
@@ -399,8 +342,11 @@ Result<ImportedStrands> importStrandsFromMemory(const std::string& file, std::sp
                                   dropReasonName(raw->dropped.front().reason)),
                       "expected strands of two or more finite points");
     }
-    if (!raw->rootFirst && options.scalp && options.scalp->triangleCount() > 0)
-        orientToScalp(*raw, *options.scalp);
+    if (options.scalp && options.scalp->triangleCount() > 0) {
+        if (!raw->rootFirst) orientToScalp(*raw, *options.scalp);
+        if (auto near = checkRootDistance(*raw, *options.scalp, options.metresPerUnit); !near)
+            return tl::unexpected(inFile(near.error(), file));
+    }
     repairAttributes(*raw);
     if (auto finding = implausibleSize(raw->offsets, raw->positions, options.metresPerUnit)) {
         raw->warnings.push_back(std::move(*finding));

@@ -331,14 +331,21 @@ class Reader {
     RawStrands strands_;
 };
 
-bool isUsda(std::span<const std::byte> bytes) {
-    constexpr std::string_view kStart = "#usda";
-    return bytes.size() >= kStart.size() && std::memcmp(bytes.data(), kStart.data(), kStart.size()) == 0;
+bool beginsWith(std::span<const std::byte> bytes, std::string_view start) {
+    return bytes.size() >= start.size() && std::memcmp(bytes.data(), start.data(), start.size()) == 0;
+}
+bool isUsdc(std::span<const std::byte> bytes) {
+    return beginsWith(bytes, "PXR-USDC");
+}
+bool isUsd(std::span<const std::byte> bytes) {
+    return beginsWith(bytes, "#usda") || isUsdc(bytes);
 }
 
 Result<RawStrands> readUsd(const std::string& file, std::span<const std::byte> bytes,
                            const StrandImportOptions& options) {
-    const auto stage = readUsda(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    const auto stage = isUsdc(bytes)
+                           ? readUsdc(file, bytes)
+                           : readUsda(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     if (!stage) return tl::unexpected(stage.error());
     return Reader(*stage, file, options.frames).run();
 }
@@ -346,7 +353,7 @@ Result<RawStrands> readUsd(const std::string& file, std::span<const std::byte> b
 }  // namespace
 
 StrandReader usdReader() {
-    return {{"USD .usda", {"usda", "usd"}}, Recognition::Signature, isUsda, readUsd};
+    return {{"USD .usda or .usdc", {"usda", "usdc", "usd"}}, Recognition::Signature, isUsd, readUsd};
 }
 
 }  // namespace hairloom

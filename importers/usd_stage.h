@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -47,5 +48,7 @@ struct UsdStage {
 
 /// A layer of text. Errors with the line.
 Result<UsdStage> readUsda(const std::string& file, std::string_view text);
+/// A binary layer. Errors with the byte.
+Result<UsdStage> readUsdc(const std::string& file, std::span<const std::byte> bytes);
 
 }  // namespace hairloom

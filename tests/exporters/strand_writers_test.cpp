@@ -242,7 +242,7 @@ TEST_F(StrandWriters, AlembicAndUsdCarryEveryAttribute) {
                                    std::vector<std::int32_t>{0, 3, k, 0});
     groom.strandAttributes.set("groom_guide_weights", std::vector<Vec3f>(4, Vec3f(0.5f, 0.3f, 0.2f)));
     groom.pointAttributes.set("wetness", std::vector<float>(groom.pointCount(), 0.25f));
-    for (const std::string format : {"abc", "abc-unreal", "usda"}) {
+    for (const std::string format : {"abc", "abc-unreal", "usda", "usdc"}) {
         const fs::path path = folder / ("a." + strandWriter(format).suffix());
         for (const UpAxis up : {UpAxis::Y, UpAxis::Z}) {
             StrandExportOptions options;
@@ -250,7 +250,7 @@ TEST_F(StrandWriters, AlembicAndUsdCarryEveryAttribute) {
             options.up = up;
             const auto report = strandWriter(format).write(groom, path, options);
             ASSERT_TRUE(report) << report.error().message();
-            EXPECT_EQ(report->format, format == "usda" ? "USD" : "Alembic");
+            EXPECT_EQ(report->format, format.starts_with("usd") ? "USD" : "Alembic");
             EXPECT_LT(report->maxErrorMm, 0.001);
             std::set<std::string> carried;
             for (const ComparedAttribute& compared : report->attributes) {

@@ -120,13 +120,30 @@ TEST(StrandsLines, KeepTheOrderTheyAreListedIn) {
     EXPECT_EQ(imported->groom.strand(2).back(), Vec3f(0, 0.2f, 0));
 }
 
-TEST(StrandsLines, TheScalpDecidesTheRoot) {
+TEST(StrandsLines, MostRootsAtTheOtherEndTurnTheWholeFile) {
     const ScalpMesh scalp = plate(0);
     StrandImportOptions options;
     options.scalp = &scalp;
-    const auto imported = read("v 0 0.001 0\nv 0 .1 0\nv 0 .2 0\nl 1 2 3\nl 3 2 1\n", options);
-    ASSERT_TRUE(imported) << imported.error().message();
-    for (std::size_t s = 0; s < 2; ++s) EXPECT_EQ(imported->groom.strand(s).front(), Vec3f(0, 0.001f, 0));
+    const std::string vertices = "v 0 0.001 0\nv 0 .1 0\nv 0 .2 0\n";
+    const auto turned = read(vertices + "l 3 2 1\nl 3 2 1\nl 3 2 1\n", options);
+    ASSERT_TRUE(turned) << turned.error().message();
+    for (std::size_t s = 0; s < 3; ++s) EXPECT_EQ(turned->groom.strand(s).front(), Vec3f(0, 0.001f, 0));
+    // A few that touch the head with their tips say nothing against the file's order.
+    const auto kept = read(vertices + "l 1 2 3\nl 3 2 1\nl 1 2 3\n", options);
+    ASSERT_TRUE(kept);
+    EXPECT_EQ(kept->groom.strand(1).front(), Vec3f(0, 0.2f, 0));
+    EXPECT_EQ(kept->groom.strand(2).front(), Vec3f(0, 0.001f, 0));
+}
+
+TEST(StrandsLines, RootsMetresOffTheHeadAreAnErrorWithTheUnitThatFits) {
+    const ScalpMesh scalp = plate(0);
+    StrandImportOptions options;
+    options.scalp = &scalp;
+    const auto far = read("v 1 300 0\nv 1 400 0\nl 1 2\n", options);
+    ASSERT_FALSE(far);
+    EXPECT_THAT(far.error().message(), HasSubstr("m from the head (median); with the unit mm"));
+    options.metresPerUnit = 0.001f;
+    EXPECT_TRUE(read("v 1 300 0\nv 1 400 0\nl 1 2\n", options));
 }
 
 TEST(StrandsLines, TwoPointLinesAreChainedInAnyOrderAndDirection) {

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "core/base/file.h"
 #include "importers/strands.h"
 #include "tests/support/source_dir.h"
@@ -120,6 +122,34 @@ TEST_F(UsdData, BlendersCurvesAreThoseOfItsAlembicFiles) {
         EXPECT_EQ(usd.strandAttributes.view<std::uint8_t>(attribute::kGuide)[10], 1u);
         EXPECT_FLOAT_EQ(usd.strandAttributes.view<Vec2f>(attribute::kRootUv)[1].x(), 0.083333336f);
         EXPECT_FLOAT_EQ(usd.strandAttributes.view<float>("strand_length")[11], 1);
+    }
+}
+
+TEST_F(UsdData, BlendersBinaryFilesAreThoseOfItsText) {
+    for (const std::string type : {"poly", "catmull_rom", "bezier", "nurbs"}) {
+        const Groom binary = read("blender/synthetic_" + type + ".usdc");
+        const Groom text = read("blender/synthetic_" + type + ".usda");
+        ASSERT_EQ(binary.strandCount(), text.strandCount());
+        EXPECT_TRUE(std::ranges::equal(binary.positions(), text.positions())) << type;
+        EXPECT_EQ(binary.strandAttributes.all().size(), text.strandAttributes.all().size());
+        EXPECT_EQ(binary.pointAttributes.all().size(), text.pointAttributes.all().size());
+        EXPECT_TRUE(std::ranges::equal(binary.pointAttributes.view<float>(attribute::kRadius),
+                                       text.pointAttributes.view<float>(attribute::kRadius)));
+    }
+}
+
+TEST_F(UsdData, DamagedBinaryFilesAreReadOrRefused) {
+    auto bytes = readFile(folder / "blender/synthetic_nurbs.usdc");
+    ASSERT_TRUE(bytes);
+    for (std::size_t end = 0; end < bytes->size(); end += 7)
+        static_cast<void>(importStrandsFromMemory("cut", std::span(*bytes).first(end)));
+    for (std::size_t at = 8; at < bytes->size(); ++at) {
+        for (const int flipped : {0xff, 0x80, 0x01}) {
+            std::vector<std::byte> damaged = *bytes;
+            damaged[at] ^= static_cast<std::byte>(flipped);
+            const auto imported = importStrandsFromMemory("damaged", damaged);
+            EXPECT_TRUE(imported || !imported.error().problem.empty());
+        }
     }
 }
 

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exporters/usd_curves.h"
+
+namespace hairloom {
+
+std::string_view usdTypeOf(const ExportedAttribute& attribute) {
+    if (attribute.name == "groom_guide") return "bool";
+    if (attribute.type == ExportedAttribute::Type::Flag) return "uchar";
+    if (attribute.type == ExportedAttribute::Type::Whole) return "int";
+    if (attribute.isColour) return "color3f";
+    if (attribute.name == "groom_root_uv") return "texCoord2f";
+    constexpr std::array<std::string_view, 5> kFloats{"", "float", "float2", "float3", "float4"};
+    return kFloats[attribute.components];
+}
+
+std::string usdName(const std::string& name) {
+    std::string valid;
+    for (const char c : name) {
+        const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+        valid += plain ? c : '_';
+    }
+    return valid.empty() || (valid[0] >= '0' && valid[0] <= '9') ? "_" + valid : valid;
+}
+
+std::vector<std::int32_t> curveVertexCounts(const PreparedStrands& strands) {
+    std::vector<std::int32_t> counts(strands.strandCount());
+    for (std::size_t s = 0; s < counts.size(); ++s)
+        counts[s] = static_cast<std::int32_t>(strands.offsets[s + 1] - strands.offsets[s]);
+    return counts;
+}
+
+std::array<Vec3f, 2> extentOf(const PreparedStrands& strands) {
+    Box3f bounds;
+    for (const Vec3f& position : strands.positions) bounds.extend(position);
+    return {bounds.min(), bounds.max()};
+}
+
+std::vector<ExportTarget> usdTargets(const std::string& suffix) {
+    StrandExportOptions blender, maya;
+    blender.up = UpAxis::Z;
+    maya.metresPerUnit = 0.01f;
+    return {{"Houdini, USD", suffix + " in metres, Y up", {}},
+            {"Blender, USD", suffix + " in metres, Z up", blender},
+            {"Maya, USD", suffix + " in centimetres, Y up", maya}};
+}
+
+}  // namespace hairloom

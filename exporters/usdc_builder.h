@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Writes binary USD (crate version 0.8): prims and attributes become tokens, paths, fields and specs. The
+// layout is that of OpenUSD's pxr/usd/sdf/crateFile.cpp. Nothing is packed: where the format asks for LZ4,
+// blocks hold literals alone.
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "core/base/file.h"
+
+namespace hairloom {
+
+/// A value as a field has it.
+struct UsdcRep {
+    std::uint64_t bits = 0;
+};
+
+class UsdcBuilder {
+  public:
+    using Fields = std::vector<std::pair<std::string, UsdcRep>>;
+
+    UsdcBuilder();
+
+    UsdcRep token(const std::string& text);
+    UsdcRep tokens(std::span<const std::string> texts);
+    UsdcRep number(double value);
+    /// What a prim is (def) and whether an attribute may change in time.
+    UsdcRep definition() const;
+    UsdcRep uniform() const;
+    UsdcRep ints(std::span<const std::int32_t> values);
+    UsdcRep bytes(std::span<const std::uint8_t> values, bool areBools);
+    /// Elements of 1 to 4 numbers.
+    UsdcRep floats(std::span<const float> values, std::uint32_t components);
+
+    /// Paths in the order of a walk from the root: the root itself first, children behind their parent, the
+    /// properties of a prim last of its children. `depth` is 0 of the root; "points" of a property.
+    void root(const Fields& fields);
+    void prim(std::uint32_t depth, const std::string& name, const Fields& fields);
+    void attribute(std::uint32_t depth, const std::string& name, const Fields& fields);
+
+    std::span<const std::byte> finish();
+
+  private:
+    struct Path {
+        std::uint32_t depth, token, type, fieldSet;
+    };
+    std::uint32_t tokenIndex(const std::string& text);
+    template <class T>
+    UsdcRep array(std::uint8_t type, std::span<const T> values);
+    void add(std::uint32_t depth, const std::string& name, std::uint32_t type, const Fields& fields);
+    /// Of the written paths: where the next sibling stands, as the format says it.
+    std::vector<std::int32_t> jumps() const;
+
+    ByteWriter out_;
+    std::vector<std::string> tokens_;
+    std::unordered_map<std::string, std::uint32_t> tokenIndices_;
+    std::vector<std::uint32_t> fieldTokens_, fieldSets_;
+    std::vector<std::uint64_t> fieldValues_;
+    std::vector<Path> paths_;
+    std::vector<std::byte> file_;
+};
+
+}  // namespace hairloom
