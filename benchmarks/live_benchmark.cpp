@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <map>
 
 #include "benchmarks/benchmark.h"
 #include "benchmarks/sample_hair.h"
@@ -32,6 +33,7 @@ struct Row {
     double simulate = 0, follow = 0, shadow = 0, shade = 0, draw = 0, wall = 0;
     double toDevice = 0, fromDevice = 0;
     double pointBytes = 0;  ///< of all points that are drawn, once
+    std::map<std::string, double> passes;  ///< on the device, ms
 
     double frame() const { return simulate + follow + shadow + shade + draw; }
 };
@@ -52,27 +54,29 @@ Groom manyHairs() {
     return groom;
 }
 
-Result<std::vector<Sample>> groomsOf(const Options& options) {
-    const auto& known = samples();
-    std::vector<Sample> grooms;
-    for (const std::string& name : options.grooms) {
-        if (name == kMany) {
-            grooms.push_back({name, manyHairs()});
-            continue;
-        }
-        if (!known) return tl::unexpected(known.error());
-        const auto sample = std::ranges::find(*known, name + " sample", &Sample::name);
-        if (sample != known->end()) {
-            grooms.push_back(*sample);
-            continue;
-        }
+Result<Sample> groomOf(const std::string& name) {
+    if (name == kMany) return Sample{name, manyHairs()};
+    if (std::filesystem::exists(name)) {
         auto opened = loadDocument(name);
         if (!opened) return tl::unexpected(opened.error());
-        grooms.push_back({name, std::move(*opened)});
+        return Sample{name, std::move(*opened)};
     }
-    if (!options.grooms.empty()) return grooms;
+    const auto& known = samples();
     if (!known) return tl::unexpected(known.error());
-    grooms = *known;
+    const auto sample = std::ranges::find(*known, name + " sample", &Sample::name);
+    if (sample == known->end())
+        return fail(fmt::format("there is no hairstyle '{}'", name), "expected a sample, a file, or 100000x16");
+    return *sample;
+}
+
+Result<std::vector<Sample>> groomsOf(const Options& options) {
+    if (options.grooms.empty()) return samples();
+    std::vector<Sample> grooms;
+    for (const std::string& name : options.grooms) {
+        auto groom = groomOf(name);
+        if (!groom) return tl::unexpected(groom.error());
+        grooms.push_back(std::move(*groom));
+    }
     return grooms;
 }
 
@@ -106,9 +110,13 @@ class Loop {
         auto live = LiveHair::make(device_, kernels_, std::move(*scene), **motion, engine);
         if (!live) return tl::unexpected(live.error());
         if (auto status = setUp(live->scene()); !status) return tl::unexpected(status.error());
-        row_ = {sample.name, engine};
+        row_ = {};
+        row_.groom = sample.name;
+        row_.engine = engine;
         if (auto status = play(*live, kWarmUp); !status) return tl::unexpected(status.error());
-        row_ = {sample.name, engine};
+        row_ = {};
+        row_.groom = sample.name;
+        row_.engine = engine;
         const gpu::Traffic before = device_.traffic();
         const Stopwatch watch;
         if (auto status = play(*live, frames); !status) return tl::unexpected(status.error());
@@ -119,6 +127,7 @@ class Loop {
         for (double* sum : {&row_.simulate, &row_.follow, &row_.shadow, &row_.shade, &row_.draw, &row_.wall,
                             &row_.toDevice, &row_.fromDevice})
             *sum /= frames;
+        for (auto& [name, milliseconds] : row_.passes) milliseconds /= frames;
         const render::RenderScene drawn = live->scene().scene();
         row_.hairs = drawn.strands.front().offsets.size() - 1;
         row_.pointBytes = static_cast<double>(drawn.strands.front().positions_ws.size_bytes());
@@ -166,7 +175,10 @@ class Loop {
     Status add(gpu::Submission& submission) {
         const auto times = submission.passTimes();
         if (!times) return tl::unexpected(times.error());
-        for (const gpu::PassTime& time : *times) sumOf(time.name) += time.milliseconds;
+        for (const gpu::PassTime& time : *times) {
+            sumOf(time.name) += time.milliseconds;
+            row_.passes[time.name] += time.milliseconds;
+        }
         return {};
     }
 
@@ -206,7 +218,8 @@ Report reportOf(const Row& row) {
                   {"wall_ms", row.wall},
                   {"bytes_to_device", row.toDevice},
                   {"bytes_from_device", row.fromDevice},
-                  {"point_bytes", row.pointBytes}};
+                  {"point_bytes", row.pointBytes},
+                  {"passes", row.passes}};
 }
 
 std::string markdownOf(const std::vector<Row>& rows, const Options& options, const gpu::DeviceInfo& device) {
