@@ -16,14 +16,17 @@ Result<ExportReport> write(const Groom& groom, const std::filesystem::path& path
 StrandWriter abcWriter() {
     StrandExportOptions centimetres;
     centimetres.metresPerUnit = 0.01f;
+    StrandExportOptions unity;
+    unity.limits = unityLimits();
     return {"abc",
             "Alembic .abc",
             "width and colour of each point; root UV, id, group and guide flag of each strand; attributes of "
             "any name",
             "none",
-            {{"Blender, Alembic", ".abc in metres, Y up, as Blender takes every Alembic file", {}},
-             {"Houdini, Alembic", ".abc in metres, Y up", {}},
-             {"Maya, Alembic", ".abc in centimetres, Y up", centimetres}},
+            {{"blender", "Blender, Alembic", ".abc in metres, Y up, as Blender takes every Alembic file", {}},
+             {"houdini", "Houdini, Alembic", ".abc in metres, Y up", {}},
+             {"maya", "Maya, Alembic", ".abc in centimetres, Y up", centimetres},
+             {"unity", "Unity hair", ".abc in metres, Y up; 3 to 128 points, at most 65,536 strands", unity}},
             write};
 }
 

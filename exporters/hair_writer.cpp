@@ -83,19 +83,19 @@ Result<ExportReport> writeHair(const Groom& groom, const std::filesystem::path& 
 }  // namespace
 
 StrandWriter hairWriter() {
-    const auto points = [](std::uint32_t count) {
-        StrandExportOptions options;
-        options.pointsPerStrand = count;
-        return options;
-    };
-    return {"hair",
-            "Yuksel .hair",
-            "width, transparency and colour of each point",
-            "at most 65,535 segments a strand",
-            {{"Yuksel .hair", ".hair in metres, Y up; strands keep their points", points(0)},
-             {"Jolt Physics", ".hair in metres, Y up; 32 points a strand, as Jolt advises", points(32)},
-             {"Unity hair", ".hair in metres, Y up; at most 128 points and 64k strands", points(0)}},
-            writeHair};
+    StrandExportOptions jolt, unity;
+    jolt.pointsPerStrand = 32;
+    jolt.limits = {"Jolt Physics", 0, 32, 2, false};
+    unity.limits = unityLimits();
+    return {
+        "hair",
+        "Yuksel .hair",
+        "width, transparency and colour of each point",
+        "at most 65,535 segments a strand",
+        {{"plain", "Yuksel .hair", ".hair in metres, Y up; strands keep their points", {}},
+         {"jolt", "Jolt Physics", ".hair in metres, Y up; 32 points a strand, as Jolt advises", jolt},
+         {"unity", "Unity hair", ".hair in metres, Y up; 3 to 128 points, at most 65,536 strands", unity}},
+        writeHair};
 }
 
 }  // namespace hairloom

@@ -218,6 +218,37 @@ void judgeRoots(const Groom& groom, const PreparedStrands& prepared, std::vector
          floating ? "bind the strands to the scalp" : ""});
 }
 
+/// What the target takes less of than there is, with the option that mends it.
+void judgeLimits(const TargetLimits& limits, PreparedStrands& prepared) {
+    Tally tooMany, tooFew, coincident;
+    for (std::size_t strand = 0; strand < prepared.strandCount(); ++strand) {
+        const std::uint32_t begin = prepared.offsets[strand], end = prepared.offsets[strand + 1];
+        if (limits.points > 0 && end - begin > limits.points) tooMany.add(prepared.sources[strand]);
+        if (end - begin < limits.fewestPoints) tooFew.add(prepared.sources[strand]);
+        if (!limits.refusesCoincident) continue;
+        const auto points = std::span(prepared.positions).subspan(begin, end - begin);
+        if (std::ranges::adjacent_find(points) != points.end()) coincident.add(prepared.sources[strand]);
+    }
+    const auto say = [&](std::string what, std::string where, std::string fix) {
+        prepared.findings.push_back({Severity::Error, std::move(what), std::move(where), std::move(fix)});
+    };
+    if (tooMany.count > 0)
+        say(fmt::format("{} takes at most {} points a strand; {} have more", limits.program, limits.points,
+                        tooMany.count),
+            tooMany.where(), fmt::format("export with --points {}", limits.points));
+    if (tooFew.count > 0)
+        say(fmt::format("{} wants {} points a strand or more; {} have fewer", limits.program,
+                        limits.fewestPoints, tooFew.count),
+            tooFew.where(), fmt::format("export with --points {}", limits.fewestPoints));
+    if (coincident.count > 0)
+        say(fmt::format("{} takes none of the strands when a segment of one has no length", limits.program),
+            coincident.where(), "export with --points, which spaces points evenly");
+    if (limits.strands > 0 && prepared.strandCount() > limits.strands)
+        say(fmt::format("{} takes at most {} strands; there are {}", limits.program, limits.strands,
+                        prepared.strandCount()),
+            "strands", "export guides, or the groom in parts");
+}
+
 double distanceToPolyline(const Vec3f& point, std::span<const Vec3f> polyline) {
     float best = (point - polyline[0]).squaredNorm();
     for (std::size_t i = 1; i < polyline.size(); ++i) {
@@ -252,7 +283,12 @@ Result<PreparedStrands> prepareStrands(const Groom& groom, const StrandExportOpt
     auto prepared = Preparer(groom, options, pointsPerStrand).run();
     if (prepared.sources.empty())
         return fail("the groom has no usable strand", "expected at least one to write");
+    judgeLimits(options.limits, prepared);
     return prepared;
+}
+
+TargetLimits unityLimits() {
+    return {"Unity", 65536, 128, 3, true};
 }
 
 std::vector<Vec2f> rootUvs(const Groom& groom, const PreparedStrands& strands) {

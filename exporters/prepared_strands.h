@@ -29,6 +29,9 @@ struct PreparedStrands {
 Result<PreparedStrands> prepareStrands(const Groom& groom, const StrandExportOptions& options,
                                        std::uint32_t pointsPerStrand);
 
+/// Of Unity's hair (com.unity.demoteam.hair).
+TargetLimits unityLimits();
+
 /// Of the strands that are written: the groom's own, else those of their roots on the scalp; empty where
 /// neither is known.
 std::vector<Vec2f> rootUvs(const Groom& groom, const PreparedStrands& strands);

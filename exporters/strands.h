@@ -15,15 +15,26 @@
 
 namespace hairloom {
 
+/// What a program takes at most; 0 where it sets no limit.
+struct TargetLimits {
+    std::string program;  ///< "Unity", for messages; empty without limits
+    std::size_t strands = 0;
+    std::uint32_t points = 0;        ///< of a strand
+    std::uint32_t fewestPoints = 0;  ///< of a strand
+    bool refusesCoincident = false;  ///< one segment of no length and it takes none of the strands
+};
+
 struct StrandExportOptions {
     float metresPerUnit = 1.0f;  ///< > 0; metres in one unit of the file
     UpAxis up = UpAxis::Y;       ///< axis of the file that points up; Z up becomes (x, −z, y)
     std::uint32_t pointsPerStrand =
-        0;  ///< resamples every strand evenly to so many; 0 keeps what the format allows
+        0;                ///< resamples every strand evenly to so many; 0 keeps what the format allows
+    TargetLimits limits;  ///< what goes beyond them is a finding with its fix
 };
 
 /// A program that reads a format, and what it wants of a file.
 struct ExportTarget {
+    std::string program;  ///< as `--target` has it: "blender"
     std::string name;
     std::string note;
     StrandExportOptions options;
@@ -45,6 +56,12 @@ struct StrandWriter {
                                   const StrandExportOptions& options);
 };
 const std::vector<StrandWriter>& strandWriters();
+/// Programs of all writers as `--target` has them, each once, in order of name.
+std::vector<std::string> exportPrograms();
+/// What the program wants of a format; null where it does not read that.
+const ExportTarget* findTarget(const StrandWriter& writer, std::string_view program);
+/// The writer of the format that the program reads best; there must be one.
+const StrandWriter& preferredWriter(std::string_view program);
 /// The writer of that name; there must be one.
 const StrandWriter& strandWriter(std::string_view name);
 

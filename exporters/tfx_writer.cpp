@@ -148,13 +148,14 @@ StrandWriter tfxWriter() {
     unreal.metresPerUnit = 0.01f;
     unreal.up = UpAxis::Z;
     unreal.pointsPerStrand = 16;
-    return {"tfx",
-            "TressFX .tfx",
-            "root UV and thickness factor of each strand, colour and transparency of each point",
-            "4, 8, 16, 32 or 64 points on every strand",
-            {{"TressFX", ".tfx version 4, metres, Y up; strands resampled to 4, 8, 16, 32 or 64", {}},
-             {"TressFX for Unreal", ".tfx in centimetres, Z up, 16 points a strand", unreal}},
-            writeTfx};
+    return {
+        "tfx",
+        "TressFX .tfx",
+        "root UV and thickness factor of each strand, colour and transparency of each point",
+        "4, 8, 16, 32 or 64 points on every strand",
+        {{"tressfx", "TressFX", ".tfx version 4, metres, Y up; strands resampled to 4, 8, 16, 32 or 64", {}},
+         {"tressfx-unreal", "TressFX for Unreal", ".tfx in centimetres, Z up, 16 points a strand", unreal}},
+        writeTfx};
 }
 
 }  // namespace hairloom

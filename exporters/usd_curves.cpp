@@ -39,9 +39,9 @@ std::vector<ExportTarget> usdTargets(const std::string& suffix) {
     StrandExportOptions blender, maya;
     blender.up = UpAxis::Z;
     maya.metresPerUnit = 0.01f;
-    return {{"Houdini, USD", suffix + " in metres, Y up", {}},
-            {"Blender, USD", suffix + " in metres, Z up", blender},
-            {"Maya, USD", suffix + " in centimetres, Y up", maya}};
+    return {{"houdini", "Houdini, USD", suffix + " in metres, Y up", {}},
+            {"blender", "Blender, USD", suffix + " in metres, Z up", blender},
+            {"maya", "Maya, USD", suffix + " in centimetres, Y up", maya}};
 }
 
 }  // namespace hairloom

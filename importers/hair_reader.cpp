@@ -141,16 +141,18 @@ Result<RawStrands> readHair(const std::string& file, std::span<const std::byte> 
 
     if (raw.offsets.back() < header->points) {
         raw.warnings.push_back(
-            fileWarning(fmt::format("{} points belong to no strand", header->points - raw.offsets.back()),
-                        "header", "they were left out; write the file again with counts that agree"));
+            Finding{Severity::Error,
+                    fmt::format("{} points belong to no strand", header->points - raw.offsets.back()),
+                    "header", "they were left out; write the file again with counts that agree"});
     }
     if (arrays & ~kKnownBits) {
         raw.warnings.push_back(
             fileWarning(fmt::format("array bits {:#x} are not known", arrays & ~kKnownBits), "header",
                         "what they announce was left out"));
     } else if (reader.remaining() > 0) {
-        raw.warnings.push_back(fileWarning(fmt::format("{} bytes follow the last array", reader.remaining()),
-                                           "end of file", "they were left out"));
+        raw.warnings.push_back(
+            Finding{Severity::Error, fmt::format("{} bytes follow the last array", reader.remaining()),
+                    "end of file", "they were left out; write the file again with counts that agree"});
     }
     return raw;
 }

@@ -134,6 +134,30 @@ Status checkLayout(const Layout& layout, std::uint64_t size, const std::string& 
     return checkOverlaps(std::move(present), file);
 }
 
+/// Bytes that no section has, which are the rest of what the file holds when a count in its header is too
+/// small. Writers align sections: a few bytes are none.
+std::vector<Finding> findGaps(const Layout& layout, std::uint64_t size) {
+    constexpr std::uint64_t kAlignment = 16;
+    std::vector<Section> present;
+    for (const Section& section :
+         {layout.positions, layout.strandUvs, layout.pointUvs, layout.thickness, layout.colours}) {
+        if (section.offset != 0) present.push_back(section);
+    }
+    std::ranges::sort(present, {}, &Section::offset);
+    std::vector<Finding> gaps;
+    for (std::size_t i = 0; i < present.size(); ++i) {
+        const std::uint64_t end = present[i].offset + present[i].bytes;
+        const std::uint64_t next = i + 1 < present.size() ? present[i + 1].offset : size;
+        if (next - end < kAlignment) continue;
+        gaps.push_back({Severity::Error,
+                        fmt::format("{} bytes behind the {} belong to nothing; the header tells of {} "
+                                    "strands of {} vertices",
+                                    next - end, present[i].name, layout.strands, layout.pointsPerStrand),
+                        fmt::format("byte {}", end), "correct the counts in the header, or write it anew"});
+    }
+    return gaps;
+}
+
 /// The section's bytes; its place was checked.
 std::span<const std::byte> sectionBytes(std::span<const std::byte> bytes, const Section& section) {
     return bytes.subspan(static_cast<std::size_t>(section.offset), static_cast<std::size_t>(section.bytes));
@@ -206,6 +230,10 @@ Result<RawStrands> readVersion(const std::string& file, std::span<const std::byt
     RawStrands raw = readSections(bytes, layout);
     raw.format = Header::kFormat;
     raw.mirrorZ = Header::kLeftHanded;
+    // Version 3 has further sections, which are not known here.
+    if (!raw.mirrorZ) {
+        for (Finding& gap : findGaps(layout, bytes.size())) raw.warnings.push_back(std::move(gap));
+    }
     if (raw.mirrorZ) raw.warnings.push_back(fileNote("version 3 is left-handed; Z was negated", "positions"));
     if (bothEndsImmovable(*header, layout, bytes)) {
         raw.warnings.push_back(

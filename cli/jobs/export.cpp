@@ -18,6 +18,7 @@ namespace {
 struct ExportOptions {
     std::string input;
     std::string format;
+    std::string target;
     std::string what = "guides";
     std::string unit;
     std::string up;
@@ -34,16 +35,38 @@ std::string companionOf(const std::string& output) {
     return file ? output + ".report.json" : std::string();
 }
 
+/// Format and target as they were asked for; where one is not said, as the other has it best.
+struct Asked {
+    const StrandWriter* writer;
+    const ExportTarget* target;
+};
+Result<Asked> findAsked(const ExportOptions& options) {
+    if (options.format.empty() && options.target.empty())
+        return fail("neither --format nor --target is given", "expected one of them");
+    const StrandWriter& writer =
+        options.format.empty() ? preferredWriter(options.target) : strandWriter(options.format);
+    if (options.target.empty()) return Asked{&writer, &writer.targets.front()};
+    const ExportTarget* const target = findTarget(writer, options.target);
+    if (target != nullptr) return Asked{&writer, target};
+    std::string formats;
+    for (const StrandWriter& other : strandWriters()) {
+        if (findTarget(other, options.target) != nullptr)
+            formats += (formats.empty() ? "" : ", ") + other.name;
+    }
+    return fail(fmt::format("{} does not read {}", options.target, options.format), "expected " + formats);
+}
+
 Result<Report> exportAsset(const ExportOptions& options) {
+    const auto asked = findAsked(options);
+    if (!asked) return tl::unexpected(asked.error());
     const auto groom = loadDocument(options.input);
     if (!groom) return tl::unexpected(groom.error());
-    // What is not said is as the format's first consumer wants it.
-    StrandExportOptions exporting = strandWriter(options.format).targets.front().options;
+    StrandExportOptions exporting = asked->target->options;
     if (!options.unit.empty()) exporting.metresPerUnit = metresPerUnit(options.unit);
     if (!options.up.empty()) exporting.up = options.up == "z" ? UpAxis::Z : UpAxis::Y;
     if (options.points > 0) exporting.pointsPerStrand = options.points;
     const auto what = options.what == "hairs" ? ExportedHair::hairs : ExportedHair::guides;
-    const auto written = exportHair(*groom, what, strandWriter(options.format), options.output, exporting);
+    const auto written = exportHair(*groom, what, *asked->writer, options.output, exporting);
     if (!written) return tl::unexpected(written.error());
     const Report report = toJson(*written);
     const std::string companion = companionOf(options.output);
@@ -73,8 +96,12 @@ JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<ExportOptions>();
     job.add_option("groom", options->input, "Groom to export")->required();
     job.add_option("--format", options->format, "What to write. " + formatsInWords())
-        ->required()
         ->check(CLI::IsMember(formatNames()));
+    job.add_option(
+           "--target", options->target,
+           "Program to write for: sets unit, axis, points and limits, and the format where that is not "
+           "said")
+        ->check(CLI::IsMember(exportPrograms()));
     job.add_option("--what", options->what,
                    "guides: the strands of the groom; hairs: the follow hairs that pictures show, at rest")
         ->check(CLI::IsMember({"guides", "hairs"}));

@@ -128,8 +128,10 @@ void ExportDialog::choosePath() {
 }
 
 void ExportDialog::exportTo(const QString& path) {
-    const StrandWriter& writer = *choices()[static_cast<std::size_t>(target_->currentIndex())].writer;
+    const Choice& choice = choices()[static_cast<std::size_t>(target_->currentIndex())];
+    const StrandWriter& writer = *choice.writer;
     StrandExportOptions options;
+    options.limits = choice.target->options.limits;
     options.metresPerUnit = static_cast<float>(unit_->currentData().toDouble());
     options.up = up_->currentIndex() == 1 ? UpAxis::Z : UpAxis::Y;
     options.pointsPerStrand = static_cast<std::uint32_t>(points_->value());
@@ -159,14 +161,19 @@ void ExportDialog::showReport() {
             .arg(static_cast<double>(report_.bytes) / 1e6, 0, 'f', 1)
             .arg(report_.maxErrorMm, 0, 'g', 3));
     findings_->clear();
-    if (report_.findings.empty()) findings_->addTopLevelItem(new QTreeWidgetItem({tr("Nothing to mend")}));
-    for (const Finding& finding : report_.findings) {
-        auto* item =
-            new QTreeWidgetItem({QString::fromStdString(finding.what), QString::fromStdString(finding.where),
-                                 QString::fromStdString(finding.fix)});
+    const auto add = [&](const std::string& what, const QString& where, const std::string& fix) {
+        auto* item = new QTreeWidgetItem({QString::fromStdString(what), where, QString::fromStdString(fix)});
         for (int c = 0; c < 3; ++c) item->setToolTip(c, item->text(c));
         findings_->addTopLevelItem(item);
-    }
+    };
+    for (const LeftBehind& left : report_.leftBehind) add(left.what, tr("left behind"), left.fix);
+    for (const Finding& finding : report_.findings)
+        add(finding.what, QString::fromStdString(finding.where), finding.fix);
+    for (const ComparedAttribute& attribute : report_.attributes)
+        add(attribute.name, tr("attribute"),
+            tr("carried, to %1").arg(attribute.maxError, 0, 'g', 3).toStdString());
+    if (findings_->topLevelItemCount() == 0)
+        findings_->addTopLevelItem(new QTreeWidgetItem({tr("Nothing to mend")}));
     wrapRows(*findings_);
 }
 

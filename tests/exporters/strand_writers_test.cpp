@@ -304,6 +304,28 @@ TEST_F(StrandWriters, EveryTargetOfEveryFormatIsWrittenAndReadBackByContent) {
     }
 }
 
+TEST_F(StrandWriters, TargetsSetWhatTheirProgramWantsAndNameWhatItDoesNotTake) {
+    for (const char* const program : {"blender", "houdini", "jolt", "maya", "tressfx", "unity", "unreal"})
+        EXPECT_NE(findTarget(preferredWriter(program), program), nullptr) << program;
+    EXPECT_EQ(preferredWriter("unreal").name, "abc-unreal");
+    EXPECT_EQ(findTarget(strandWriter("tfx"), "blender"), nullptr);
+    const Groom groom = decorated({2, 5, 200, 7});
+    const StrandWriter& writer = preferredWriter("unity");
+    StrandExportOptions options = findTarget(writer, "unity")->options;
+    const auto fixes = [&] {
+        const auto report = writer.write(groom, folder / ("u." + writer.suffix()), options);
+        EXPECT_TRUE(report);
+        std::vector<std::string> found;
+        for (const Finding& finding : report->findings) {
+            if (finding.severity == Severity::Error) found.push_back(finding.fix);
+        }
+        return found;
+    };
+    EXPECT_EQ(fixes(), (std::vector<std::string>{"export with --points 128", "export with --points 3"}));
+    options.pointsPerStrand = 16;
+    EXPECT_TRUE(fixes().empty()) << "the fix helps";
+}
+
 TEST_F(StrandWriters, ReportAsJson) {
     const auto report = writeTfx(helices({8}), folder / "a.tfx");
     ASSERT_TRUE(report);

@@ -180,5 +180,20 @@ TEST(StrandsUnits, NamesTheUnitThatWouldFit) {
         EXPECT_EQ(warning.severity, Severity::Info) << warning.what;
 }
 
+TEST(StrandsTfx, HalfTheCountLeavesAGapThatIsTold) {
+    Bytes bytes = fullTfx4(8, 4);
+    const auto whole = read(bytes);
+    ASSERT_TRUE(whole);
+    EXPECT_TRUE(std::ranges::none_of(whole->warnings,
+                                     [](const Finding& f) { return f.severity == Severity::Error; }));
+    const std::uint32_t half = 4;
+    std::memcpy(bytes.data() + 4, &half, sizeof half);
+    const auto halved = read(bytes);
+    ASSERT_TRUE(halved);
+    const auto gap = std::ranges::find(halved->warnings, Severity::Error, &Finding::severity);
+    ASSERT_NE(gap, halved->warnings.end());
+    EXPECT_THAT(gap->what, testing::HasSubstr("belong to nothing; the header tells of 4 strands of 4"));
+}
+
 }  // namespace
 }  // namespace hairloom
