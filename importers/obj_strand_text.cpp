@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The statements of a Wavefront OBJ that concern strands: v, l, f and curves of degree 1.
+// The statements of a Wavefront OBJ that concern strands: v, l, f and curves.
 
 #include <fmt/format.h>
 
 #include <limits>
+#include <optional>
 
+#include "importers/curve_evaluation.h"
 #include "importers/obj_text.h"
 #include "importers/raw_strands.h"
 
@@ -20,6 +22,8 @@ class Parser {
             rest_ = lines_.rest();
             if (auto status = statement(lines_.keyword()); !status) return tl::unexpected(status.error());
         }
+        endCurve();
+        placeEvaluated();
         return std::move(obj_);
     }
 
@@ -30,6 +34,9 @@ class Parser {
         if (keyword == "f") return face();
         if (keyword == "curv") return curve();
         if (keyword == "deg") degree();
+        if (keyword == "cstype") type();
+        if (keyword == "parm") parameters();
+        if (keyword == "end") endCurve();
         return {};
     }
 
@@ -53,6 +60,12 @@ class Parser {
             return wrong("more than 4,294,967,295 vertices", "expected fewer");
         }
         obj_.vertices.push_back(position);
+        // x y z w of a rational curve; six numbers are a colour.
+        const auto weight = parseNumber(takeWord(rest_));
+        if (weight && takeWord(rest_).empty()) {
+            weights_.resize(obj_.vertices.size(), 1.0f);
+            weights_.back() = static_cast<float>(*weight);
+        }
         return {};
     }
 
@@ -91,34 +104,133 @@ class Parser {
         return status;
     }
 
-    void degree() { degree_ = static_cast<float>(parseNumber(takeWord(rest_)).value_or(0)); }
+    void degree() {
+        const auto number = parseWhole(takeWord(rest_));
+        degree_ = number && *number >= 1 && *number < 100 ? static_cast<std::uint32_t>(*number) : 0;
+    }
 
-    /// A curve of degree 1 passes through its control points; others do not, so their points are no strand.
-    Status curve() {
-        if (degree_ != 1.0f) {
-            if (!skippedCurves_) {
-                obj_.warnings.push_back(fileWarning(fmt::format("curves of degree {} were left out", degree_),
-                                                    fmt::format("line {}", lines_.number()),
-                                                    "export them as polylines or with degree 1"));
-            }
-            skippedCurves_ = true;
-            return {};
+    void type() {
+        std::string_view word = takeWord(rest_);
+        isRational_ = word == "rat";
+        type_ = isRational_ ? takeWord(rest_) : word;
+    }
+
+    /// Knots of a B-spline; the name of their direction stands before them.
+    void parameters() {
+        takeWord(rest_);
+        for (std::string_view word = takeWord(rest_); !word.empty(); word = takeWord(rest_)) {
+            if (const auto knot = parseNumber(word)) knots_.push_back(*knot);
         }
+    }
+
+    /// A curve of degree 1 passes through its control points; others are evaluated at their `end`, when their
+    /// knots are known.
+    Status curve() {
+        endCurve();
         for (int end = 0; end < 2; ++end) {
             if (!parseNumber(takeWord(rest_)))
                 return wrong("a curve has no range", "expected two numbers after curv");
         }
-        auto status = indices("curve", obj_.lineIndices);
-        endLine();
-        return status;
+        if (degree_ == 1) {
+            auto status = indices("curve", obj_.lineIndices);
+            endLine();
+            return status;
+        }
+        curveLine_ = lines_.number();
+        return indices("curve", controls_);
     }
+
+    /// What evaluateCurve() takes; the knots of Bézier pieces that follow each other are `bezierKnots`.
+    std::optional<CurveForm> form(std::vector<double>& bezierKnots) const {
+        const auto count = static_cast<std::uint32_t>(controls_.size());
+        CurveForm form{CurveBasis::Nurbs, CurveWrap::Open, degree_ + 1, {}};
+        if (type_ == "cardinal") {
+            form.basis = CurveBasis::CatmullRom;
+        } else if (type_ == "bezier") {
+            if (degree_ == 0 || (count - 1) % degree_ != 0) return std::nullopt;
+            const std::uint32_t pieces = (count - 1) / degree_;
+            for (std::uint32_t knot = 0; knot <= pieces; ++knot)
+                bezierKnots.insert(bezierKnots.end(), degree_, knot);
+            bezierKnots.insert(bezierKnots.begin(), 0);
+            bezierKnots.push_back(pieces);
+            form.knots = bezierKnots;
+        } else if (type_ == "bspline") {
+            // Writers in the wild leave knots out or give the wrong number of them.
+            if (knots_.size() == controls_.size() + form.order) form.knots = knots_;
+        } else {
+            return std::nullopt;
+        }
+        return form;
+    }
+
+    Vec3f pointOf(const CurvePoint& point) const {
+        Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+        double weights = 0;
+        for (std::uint32_t k = 0; k < point.count; ++k) {
+            const std::uint32_t vertex = controls_[point.index[k]];
+            const double weight =
+                point.weight[k] * (isRational_ && vertex < weights_.size() ? double{weights_[vertex]} : 1.0);
+            sum += weight * obj_.vertices[vertex].cast<double>();
+            weights += weight;
+        }
+        return (weights != 0 ? Eigen::Vector3d(sum / weights) : sum).cast<float>();
+    }
+
+    void endCurve() {
+        if (controls_.empty()) return;
+        std::vector<double> bezierKnots;
+        const auto known = form(bezierKnots);
+        const auto points = known ? evaluateCurve(*known, static_cast<std::uint32_t>(controls_.size()))
+                                  : Result<std::vector<CurvePoint>>(fail(""));
+        if (points) {
+            evaluated_.push_back(
+                {obj_.lineIndices.size(), obj_.lineIndices.size() + points->size(), evaluatedPoints_.size()});
+            for (const CurvePoint& point : *points) evaluatedPoints_.push_back(pointOf(point));
+            obj_.lineIndices.resize(obj_.lineIndices.size() + points->size());
+        } else {
+            if (!saidPolyline_)
+                obj_.warnings.push_back(fileWarning(
+                    fmt::format(
+                        "a curve of type '{}', degree {} and {} control points became a line through these",
+                        shortened(type_), degree_, controls_.size()),
+                    fmt::format("line {}", curveLine_), "export curves as bezier, bspline or cardinal"));
+            saidPolyline_ = true;
+            obj_.lineIndices.insert(obj_.lineIndices.end(), controls_.begin(), controls_.end());
+        }
+        endLine();
+        controls_.clear();
+        knots_.clear();
+    }
+
+    /// Points on curves stand behind the file's own vertices, to which indices count back while it is read.
+    void placeEvaluated() {
+        const auto first = static_cast<std::uint32_t>(obj_.vertices.size());
+        for (const Evaluated& curve : evaluated_) {
+            for (std::size_t i = curve.begin; i < curve.end; ++i)
+                obj_.lineIndices[i] = first + static_cast<std::uint32_t>(curve.point + i - curve.begin);
+        }
+        obj_.vertices.insert(obj_.vertices.end(), evaluatedPoints_.begin(), evaluatedPoints_.end());
+    }
+
+    /// Line indices that are to name evaluated points from `point` on.
+    struct Evaluated {
+        std::size_t begin, end, point;
+    };
 
     std::string file_;
     ObjLines lines_;
     std::string_view rest_;  ///< of the statement, behind the words read
     ObjStrandText obj_;
-    float degree_ = 0;
-    bool skippedCurves_ = false;
+    std::string type_ = "bspline";
+    bool isRational_ = false;
+    std::uint32_t degree_ = 1;
+    std::vector<float> weights_;           ///< of vertices that have one; 1 of those behind
+    std::vector<std::uint32_t> controls_;  ///< of the curve that is open
+    std::vector<double> knots_;
+    std::uint64_t curveLine_ = 0;
+    std::vector<Evaluated> evaluated_;
+    std::vector<Vec3f> evaluatedPoints_;
+    bool saidPolyline_ = false;
 };
 
 }  // namespace

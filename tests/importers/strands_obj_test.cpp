@@ -162,6 +162,36 @@ TEST(StrandsLines, TwoPointLinesAreChainedInAnyOrderAndDirection) {
     EXPECT_EQ(descending->groom.strand(0).front(), Vec3f(0, 0.3f, 0));
 }
 
+TEST(StrandsLines, CurvesOfAnyDegreeAreEvaluated) {
+    const std::string vertices = "v 0 0 0\nv 0 1 0\nv 1 1 0\nv 1 0 0\n";
+    // A parabola: (t², 1 − (1 − t)²) of its three control points, at even steps of t.
+    const auto parabola = read(vertices + "cstype bezier\ndeg 2\ncurv 0 1 -4 -3 -2\nparm u 0 1\nend\n");
+    ASSERT_TRUE(parabola) << parabola.error().message();
+    ASSERT_EQ(parabola->groom.strand(0).size(), 3u);
+    EXPECT_LT((parabola->groom.strand(0)[1] - Vec3f(0.25f, 0.75f, 0)).norm(), 1e-6f);
+    // The same cubic as Bézier and as B-spline with the knots of one.
+    const auto bezier = read(vertices + "cstype bezier\ndeg 3\ncurv 0 1 1 2 3 4\nparm u 0 1\nend\n");
+    const auto spline = read(vertices +
+                             "cstype bspline\ndeg 3\ncurv 0 1 1 2 3 4\nparm u 0 0 0 0 1 1 1 1\nend\n"
+                             "v 9 9 9\nv 9 9 8\nl -1 -2\n");
+    ASSERT_TRUE(bezier && spline);
+    ASSERT_EQ(bezier->groom.strand(0).size(), 4u);
+    for (std::size_t i = 0; i < 4; ++i)
+        EXPECT_LT((bezier->groom.strand(0)[i] - spline->groom.strand(0)[i]).norm(), 1e-6f);
+    EXPECT_LT((bezier->groom.strand(0)[1] - Vec3f(7 / 27.0f, 2 / 3.0f, 0)).norm(), 1e-6f);
+    EXPECT_EQ(spline->groom.strand(1).front(), Vec3f(9, 9, 8)) << "indices of the file stay its own";
+    // Two points of a circle's quarter and the corner between them at √½.
+    const auto arc = read(
+        "v 1 0 0 1\nv 1 1 0 0.70710678\nv 0 1 0 1\ncstype rat bezier\ndeg 2\n"
+        "curv 0 1 1 2 3\nend\n");
+    ASSERT_TRUE(arc);
+    for (const Vec3f& point : arc->groom.strand(0)) EXPECT_NEAR(point.norm(), 1, 1e-6f);
+    const auto taylor = read(vertices + "cstype taylor\ndeg 3\ncurv 0 1 1 2 3 4\nend\n");
+    ASSERT_TRUE(taylor);
+    EXPECT_EQ(taylor->groom.strand(0)[1], Vec3f(0, 1, 0));
+    EXPECT_THAT(taylor->warnings.front().what, HasSubstr("type 'taylor'"));
+}
+
 TEST(StrandsLines, BranchesAndLoopsAreDropped) {
     const std::string vertices = "v 0 0 0\nv 0 .1 0\nv 0 .2 0\nv 0 .3 0\nv .1 0 0\nv .1 .1 0\n";
     const auto branch = read(vertices + "l 1 2\nl 2 3\nl 2 4\nl 5 6\n");
