@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Exports grooms in every format, has each file judged by a program that is not Hairloom, and writes what came out as
+the table of docs/exchange.md. Fails where a judge finds other counts, or a point farther than 0.001 mm."""
+import argparse
+import json
+import math
+import os
+import subprocess
+import sys
+
+import plain_readers
+
+CLOSE_MM = 0.001
+
+# format, what comes in, what a judge makes of what goes out
+ROWS = [
+    ("abc", "curves of every basis, animated", "Blender"),
+    ("abc-unreal", "as abc, Unreal's groom schema", "Blender"),
+    ("usda", "BasisCurves, NurbsCurves, animated", "Pixar's usd-core"),
+    ("usdc", "as usda", "Pixar's usd-core"),
+    ("hair", "yes", "a reader of its own page"),
+    ("tfx", "versions 3 and 4", "a reader of its own page"),
+]
+
+
+def run(cli, *words):
+    done = subprocess.run([cli, *words, "--json"], capture_output=True, text=True)
+    if done.returncode != 0:
+        raise RuntimeError(f"{' '.join(words)}: {done.stderr.strip()}")
+    return json.loads(done.stdout)
+
+
+def read_usd(path):
+    from pxr import Usd, UsdGeom, UsdValidation
+    stage = Usd.Stage.Open(path)
+    validators = UsdValidation.ValidationRegistry().GetOrLoadAllValidators()
+    problems = UsdValidation.ValidationContext(validators).Validate(stage)
+    if problems:
+        raise ValueError(problems[0].GetErrorAsString())
+    strands = []
+    for prim in stage.Traverse():
+        if not prim.IsA(UsdGeom.BasisCurves):
+            continue
+        curves = UsdGeom.BasisCurves(prim)
+        points = curves.GetPointsAttr().Get()
+        counts = list(curves.GetCurveVertexCountsAttr().Get())
+        # Pixar's library adds nothing up by itself.
+        widths = curves.GetWidthsAttr().Get()
+        if len(widths) != len(points):
+            raise ValueError(f"{len(widths)} widths for {len(points)} points")
+        for primvar in UsdGeom.PrimvarsAPI(prim).GetPrimvars():
+            expected = {"vertex": len(points), "uniform": len(counts)}.get(primvar.GetInterpolation())
+            if expected is not None and len(primvar.Get()) != expected:
+                raise ValueError(f"{primvar.GetName()} has {len(primvar.Get())} values")
+        scale = UsdGeom.GetStageMetersPerUnit(stage)
+        strands += plain_readers.split([tuple(scale * c for c in p) for p in points], counts)
+    return strands
+
+
+def read_blender(path):
+    judge = os.path.join(os.path.dirname(__file__), "blender_judge.py")
+    done = subprocess.run([sys.executable, judge, path], capture_output=True, text=True)
+    lines = [line for line in done.stdout.splitlines() if line.startswith("CURVES")]
+    if not lines:
+        raise ValueError(f"Blender ended with {done.returncode}: {done.stderr.strip()[-200:]}")
+    return json.loads(lines[0][len("CURVES"):])
+
+
+def worst_mm(found, expected):
+    if [len(strand) for strand in found] != [len(strand) for strand in expected]:
+        raise ValueError(f"{len(found)} strands of {sum(map(len, found))} points; expected {len(expected)} of "
+                         f"{sum(map(len, expected))}")
+    return max((1000 * math.dist(a, b) for f, e in zip(found, expected) for a, b in zip(f, e)), default=0)
+
+
+def has_blender():
+    return subprocess.run([sys.executable, "-c", "import bpy"], capture_output=True).returncode == 0
+
+
+def judged(row, groom, folder, cli, blender):
+    """Error in mm by the judge, and the report of the export."""
+    name, _, judge = row
+    path = os.path.join(folder, f"{os.path.basename(groom)}.{name}.{name.split('-')[0]}")
+    words = ["export", groom, "--format", name, "--unit", "m", "--up", "y", "--force", "-o", path]
+    # The same points in all formats: TressFX has 16 on every strand.
+    report = run(cli, *words, "--points", "16")
+    if judge == "Blender" and not blender:
+        return None, report
+    truth = os.path.join(folder, f"{os.path.basename(groom)}.truth.hair")
+    run(cli, "export", groom, "--format", "hair", "--points", "16", "--force", "-o", truth)
+    read = {"Blender": read_blender, "Pixar's usd-core": read_usd}.get(judge)
+    if read is None:
+        read = plain_readers.read_hair if name == "hair" else plain_readers.read_tfx
+    return worst_mm(read(path), plain_readers.read_hair(truth)), report
+
+
+def main():
+    options = argparse.ArgumentParser(description=__doc__)
+    options.add_argument("--cli", required=True)
+    options.add_argument("--table", help="page whose table is written anew")
+    options.add_argument("-o", "--output", required=True)
+    options.add_argument("grooms", nargs="+")
+    asked = options.parse_args()
+    os.makedirs(asked.output, exist_ok=True)
+    blender = has_blender()
+    if not blender:
+        print("skipped: Blender's judgement, since its module bpy is not there for this Python")
+    failed, lines = 0, []
+    for row in ROWS:
+        name, comes_in, judge = row
+        errors, own, carried = [], [], set()
+        for groom in asked.grooms:
+            try:
+                error, report = judged(row, groom, asked.output, asked.cli, blender)
+            except (RuntimeError, ValueError) as problem:
+                print(f"FAILED {name} {groom}: {problem}")
+                failed += 1
+                continue
+            if error is not None:
+                errors.append(error)
+            own.append(report["max_error_mm"])
+            carried |= {attribute["name"] for attribute in report["attributes"]}
+        verdict = f"{max(errors):.2g} mm" if errors else "not judged"
+        if errors and max(errors) > CLOSE_MM:
+            failed += 1
+        print(f"{name}: {judge}: {verdict}")
+        lines.append(f"| `{name}` | {comes_in} | yes | {', '.join(sorted(carried)) or 'widths'} | {judge} | {verdict} |")
+    lines += ["| OBJ lines, curves | degrees 1 to 7, rational or not | – | – | tests | – |",
+              "| OBJ of Cinema 4D | ribbons of three orders | – | – | tests | – |"]
+    if asked.table and not failed:
+        text = open(asked.table).read()
+        begin, end = text.index("| format |"), text.index("<!-- end of the table -->")
+        head = "| format | in | out | attributes of the samples | judged by | farthest point |\n|---|---|---|---|---|---|\n"
+        with open(asked.table, "w") as page:
+            page.write(text[:begin] + head + "\n".join(lines) + "\n" + text[end:])
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Yuksel .hair and TressFX 4 read as their pages say, by nothing of Hairloom's: a list of strands of (x, y, z)."""
+import struct
+
+
+def read_hair(path):
+    data = open(path, "rb").read()
+    magic, strands, points, bits, segments = struct.unpack_from("<4sIIII", data, 0)
+    if magic != b"HAIR" or not bits & 2:
+        raise ValueError("no .hair file with points")
+    at = 128
+    counts = [segments] * strands
+    if bits & 1:
+        counts = struct.unpack_from(f"<{strands}H", data, at)
+        at += 2 * strands
+    if sum(counts) + strands != points:
+        raise ValueError(f"strands of {sum(counts) + strands} points; the head says {points}")
+    values = struct.unpack_from(f"<{3 * points}f", data, at)
+    return split([values[3 * i:3 * i + 3] for i in range(points)], [count + 1 for count in counts])
+
+
+def read_tfx(path):
+    data = open(path, "rb").read()
+    version, strands, vertices, positions, uvs = struct.unpack_from("<fIIII", data, 0)
+    if version != 4.0:
+        raise ValueError(f"version {version}")
+    if uvs != positions + 16 * strands * vertices or uvs + 8 * strands > len(data):
+        raise ValueError("sections leave a gap or go beyond the end")
+    values = struct.unpack_from(f"<{4 * strands * vertices}f", data, positions)
+    points = [values[4 * i:4 * i + 3] for i in range(strands * vertices)]
+    return split(points, [vertices] * strands)
+
+
+def split(points, counts):
+    strands, at = [], 0
+    for count in counts:
+        strands.append(points[at:at + count])
+        at += count
+    if at != len(points):
+        raise ValueError(f"curves of {at} points; there are {len(points)}")
+    return strands
