@@ -61,6 +61,21 @@ Result<QImage> drawAlone(gpu::Device& device, PictureRequest request) {
     return picture;
 }
 
+/// A device and what the thread has on it.
+struct DeviceWork {
+    explicit DeviceWork(std::unique_ptr<gpu::Device> made)
+        : device(std::move(made)), live(*device), work(*device, &live) {}
+
+    bool isComplete() const { return work.isComplete() && (!other || other->isComplete()); }
+    /// It refuses all, and will.
+    bool isLost() const { return !device->createCommandList(); }
+
+    std::unique_ptr<gpu::Device> device;
+    LiveWork live;
+    RenderWork work;
+    std::optional<RenderWork> other;  ///< the look to compare with
+};
+
 }  // namespace
 
 RenderThread::RenderThread(QObject* parent) : QObject(parent) {
@@ -136,11 +151,9 @@ void RenderThread::run() {
         });
         return;
     }
-    LiveWork live(**device);
-    RenderWork work(**device, &live);
-    std::optional<RenderWork> other;  // the look to compare with
+    auto on = std::make_unique<DeviceWork>(std::move(*device));
     float split = 0.5f;
-    const gpu::DeviceInfo& info = (*device)->info();
+    const gpu::DeviceInfo& info = on->device->info();
     const bool wantsWindow = info.presents && info.type != gpu::DeviceType::Cpu;
     // By way of the event loop: listeners may connect after the constructor.
     QMetaObject::invokeMethod(this, [this, name = QString::fromStdString(info.name), wantsWindow] {
@@ -150,18 +163,20 @@ void RenderThread::run() {
         std::optional<PictureRequest> request;
         {
             std::unique_lock lock(mutex_);
-            const bool complete = work.isComplete() && (!other || other->isComplete());
+            const bool complete = on->isComplete();
             idle_ = !next_ && complete;
-            wake_.wait(lock, [&] { return stop_ || next_ || windowChanged_ || !complete || !side_.empty() || live_->hasJobs(); });
+            wake_.wait(lock, [&] {
+                return stop_ || next_ || windowChanged_ || !complete || !side_.empty() || live_->hasJobs();
+            });
             if (stop_) break;
             if (live_->hasJobs()) {
                 lock.unlock();
-                live_->run(&live);
+                live_->run(&on->live);
                 lock.lock();
                 if (!next_ && !windowChanged_ && complete && side_.empty()) continue;
             }
             if (windowChanged_) {
-                const auto taken = work.setWindow(window_);
+                const auto taken = on->work.setWindow(window_);
                 windowChanged_ = false;
                 lock.unlock();
                 windowTaken_.notify_all();
@@ -172,25 +187,35 @@ void RenderThread::run() {
             if (!request && complete) {
                 auto asked = side_.extract(side_.begin());
                 lock.unlock();
-                if (auto picture = drawAlone(**device, std::move(asked.mapped()))) {
+                if (auto picture = drawAlone(*on->device, std::move(asked.mapped()))) {
                     Q_EMIT sidePictureReady(asked.key(), *picture);
                 }
                 continue;
             }
         }
         Status ready;
-        if (request) ready = takeBoth(**device, live, work, other, split, std::move(*request));
+        if (request) ready = takeBoth(*on->device, on->live, on->work, on->other, split, std::move(*request));
         if (ready) {
-            auto drawn = drawBoth(work, other, split);
+            auto drawn = drawBoth(on->work, on->other, split);
             if (drawn) {
                 Q_EMIT pictureReady(drawn->first, drawn->second);
                 continue;
             }
             ready = tl::unexpected(drawn.error());
         }
-        work.forget();
-        other.reset();
+        on->work.forget();
+        on->other.reset();
         Q_EMIT failed(QString::fromStdString(ready.error().message()));
+        if (!on->isLost()) continue;
+        // Another one, or the same begun anew; what was drawn is drawn again.
+        auto another = gpu::createDevice();
+        if (!another) continue;
+        on = std::make_unique<DeviceWork>(std::move(*another));
+        {
+            const std::lock_guard lock(mutex_);
+            windowChanged_ = window_.has_value();
+        }
+        Q_EMIT deviceReplaced();
     }
     live_->close();
     const std::lock_guard lock(mutex_);

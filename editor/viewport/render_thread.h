@@ -49,6 +49,8 @@ class RenderThread : public QObject {
     /// The window cannot be drawn to; pictures are read back instead.
     void windowRefused(const QString& problem);
     void failed(const QString& problem);
+    /// The device was lost, and there is another that has nothing yet: what was asked for has to be again.
+    void deviceReplaced();
 
   private:
     void run();

@@ -91,6 +91,10 @@ Viewport::Viewport(QtDocument& document, const Preferences& preferences, QWidget
         handOverAll();
         Q_EMIT failed(problem);
     });
+    connect(&renderer_, &RenderThread::deviceReplaced, this, [this] {
+        handOverAll();
+        redraw();
+    });
     connect(&document_, &QtDocument::changed, this, &Viewport::documentChanged);
     connect(&document_, &QtDocument::replaced, this, [this] {
         pose_.reset();

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Hair that plays in the window, on either engine.
+#include <QDir>
 #include <QLabel>
 
+#include "core/gpu/validation.h"
+#include "editor/simulation/player.h"
 #include "tests/editor/resident_memory.h"
 #include "tests/editor/window_fixture.h"
 #include "tests/scene/small_head.h"
@@ -52,6 +55,10 @@ TEST_F(LiveTest, EnginesChangeWhileItPlays) {
         auto* label = window->findChild<QLabel*>("engine");
         ASSERT_TRUE(label);
         EXPECT_EQ(label->text(), kind == EngineKind::gpu ? "hair on the GPU" : "hair on the CPU");
+        QDir().mkpath(HAIRLOOM_SCREENSHOTS);
+        if (kind == EngineKind::gpu) {
+            EXPECT_TRUE(onScreen().save(HAIRLOOM_SCREENSHOTS "/live-gpu.png"));
+        }
     }
     EXPECT_GT(parts().player.frame()->stats.fastestMmPerSecond, 10) << "told of a frame or two ago";
     EXPECT_EQ(parts().player.frame()->stats.nanCount, 0u);
@@ -86,6 +93,40 @@ TEST_F(LiveTest, EditsArriveWhileItPlays) {
         EXPECT_TRUE(parts().player.isPlaying());
         trigger("play.reset");
         document().undo();
+    }
+}
+
+TEST_F(LiveTest, ADeviceThatIsLostLeavesTheCpu) {
+    gpu::DeviceOptions options;
+    options.validation = true;
+    auto device = gpu::createDevice(options);
+    ASSERT_TRUE(device) << device.error().message();
+    LiveWork work(**device);
+    const auto link = std::make_shared<LiveLink>([] {});
+    QTimer jobs;
+    QObject::connect(&jobs, &QTimer::timeout, [&] { link->run(&work); });
+    jobs.start(1);
+    {
+        Player player(document());
+        QString problem;
+        QObject::connect(&player, &Player::failed, window.get(), [&](const QString& said) { problem = said; });
+        player.setLive(link);
+        player.setEngine(EngineWish::gpu);
+        player.play();
+        const auto plays = [&](double seconds) {
+            return QTest::qWaitFor([&] { return player.frame() && player.frame()->time > seconds; }, 60'000);
+        };
+        ASSERT_TRUE(plays(0.1));
+        EXPECT_EQ(player.engine()->kind, EngineKind::gpu);
+        gpu::validationOf(**device)->loseDevice(2);
+        const double before = player.frame()->time;
+        ASSERT_TRUE(plays(before + 0.3));
+        EXPECT_TRUE(problem.contains("the CPU goes on")) << problem.toStdString();
+        EXPECT_EQ(player.engine()->kind, EngineKind::cpu);
+        EXPECT_FALSE(player.engine()->why.empty());
+        EXPECT_TRUE(player.isPlaying());
+        EXPECT_EQ(player.frame()->stats.nanCount, 0u);
+        link->close();
     }
 }
 

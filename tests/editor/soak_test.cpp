@@ -119,6 +119,7 @@ class SoakTest : public WindowTest {
         parts().tasks.cancel();
         finishWork();
         viewport().setComparison({});
+        viewport().setTurntable(false);
         drawQuickly();
         document().open(smallHead(), {}, "small");
         viewport().frameAll();
