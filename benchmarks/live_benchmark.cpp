@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The editor's loop without its window: hair on a nodding head in wind, moved and drawn as the viewport does while
-// something moves, by the engine on the GPU and by the one on the CPU.
+// The editor's loop without its window: hair on a nodding head in wind, moved and drawn as the viewport does
+// while something moves, by the engine on the GPU and by the one on the CPU.
 
 #include <fmt/format.h>
 
@@ -32,7 +32,7 @@ struct Row {
     std::uint64_t hairs = 0;
     double simulate = 0, follow = 0, shadow = 0, shade = 0, draw = 0, wall = 0;
     double toDevice = 0, fromDevice = 0;
-    double pointBytes = 0;  ///< of all points that are drawn, once
+    double pointBytes = 0;                 ///< of all points that are drawn, once
     std::map<std::string, double> passes;  ///< on the device, ms
 
     double frame() const { return simulate + follow + shadow + shade + draw; }
@@ -65,7 +65,8 @@ Result<Sample> groomOf(const std::string& name) {
     if (!known) return tl::unexpected(known.error());
     const auto sample = std::ranges::find(*known, name + " sample", &Sample::name);
     if (sample == known->end())
-        return fail(fmt::format("there is no hairstyle '{}'", name), "expected a sample, a file, or 100000x16");
+        return fail(fmt::format("there is no hairstyle '{}'", name),
+                    "expected a sample, a file, or 100000x16");
     return *sample;
 }
 
@@ -224,12 +225,16 @@ Report reportOf(const Row& row) {
 
 std::string markdownOf(const std::vector<Row>& rows, const Options& options, const gpu::DeviceInfo& device) {
     std::string text = fmt::format("`{}`\n\n{}, {}\n\n", options.commandLine, device.name, device.driver);
-    text += "| hairstyle | engine | hairs | simulate | follow | shadow | shade | draw | frame ms | wall ms | to device "
-            "KB | from device KB |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+    text +=
+        "| hairstyle | engine | hairs | simulate | follow | shadow | shade | draw | frame ms | wall ms | to "
+        "device "
+        "KB | from device KB |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n";
     for (const Row& row : rows) {
-        text += fmt::format("| {} | {} | {} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {:.2f} | {:.2f} | {:.1f} | {:.1f} |\n",
-                            row.groom, engineName(row.engine), row.hairs, row.simulate, row.follow, row.shadow,
-                            row.shade, row.draw, row.frame(), row.wall, row.toDevice / 1000, row.fromDevice / 1000);
+        text += fmt::format(
+            "| {} | {} | {} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {:.2f} | {:.2f} | {:.1f} | {:.1f} "
+            "|\n",
+            row.groom, engineName(row.engine), row.hairs, row.simulate, row.follow, row.shadow, row.shade,
+            row.draw, row.frame(), row.wall, row.toDevice / 1000, row.fromDevice / 1000);
     }
     return text;
 }
@@ -252,8 +257,8 @@ Result<Outcome> run(const Options& options) {
     Loop loop(**device, kernels, viewportOptions(size));
     std::vector<Row> rows;
     Outcome outcome;
-    outcome.report = Report{{"name", "live"},       {"device", info.name},  {"driver", info.driver},
-                            {"width", size.first},  {"height", size.second}, {"frames", frames}};
+    outcome.report = Report{{"name", "live"},      {"device", info.name},   {"driver", info.driver},
+                            {"width", size.first}, {"height", size.second}, {"frames", frames}};
     Report all = Report::array();
     for (const Sample& groom : *grooms) {
         for (const EngineKind engine : {EngineKind::gpu, EngineKind::cpu}) {
@@ -272,10 +277,11 @@ Result<Outcome> run(const Options& options) {
 }  // namespace
 
 Benchmark liveBenchmark() {
-    return {"live",
-            "the editor's loop without a window: hair moved and drawn by the engine on the GPU and on the CPU",
-            {"--quick", "--device", "--size", "--grooms", "--frames", "--markdown"},
-            run};
+    return {
+        "live",
+        "the editor's loop without a window: hair moved and drawn by the engine on the GPU and on the CPU",
+        {"--quick", "--device", "--size", "--grooms", "--frames", "--markdown"},
+        run};
 }
 
 }  // namespace hairloom::benchmarks

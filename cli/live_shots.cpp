@@ -28,7 +28,8 @@ Result<render::Picture> LiveShots::take(std::uint64_t frame, const render::Rende
     for (; frame_ < frame; ++frame_) {
         auto list = device_.createCommandList();
         if (!list) return tl::unexpected(list.error());
-        if (auto moved = live_.record(**list, renderer_, kFrame); !moved) return tl::unexpected(moved.error());
+        if (auto moved = live_.record(**list, renderer_, kFrame); !moved)
+            return tl::unexpected(moved.error());
         auto submission = device_.submit(std::move(*list));
         if (!submission) return tl::unexpected(submission.error());
         live_.submitted(*submission);

@@ -17,7 +17,8 @@ class LiveShots {
 
     /// Strands at rest.
     const GroomScene& scene() const { return live_.scene(); }
-    /// After so many frames of 1/60 s, not fewer than at the last call; `scene` says camera, lights and background.
+    /// After so many frames of 1/60 s, not fewer than at the last call; `scene` says camera, lights and
+    /// background.
     Result<render::Picture> take(std::uint64_t frame, const render::RenderScene& scene,
                                  const render::RenderOptions& how);
 

@@ -116,9 +116,10 @@ JobRun declare(CLI::App& job) {
                                   of("--hairs", "numbers of hairs, instead of 3100,9300,18300,100000"))
                        ->delimiter(',')
                        ->check(CLI::Range(1, 1'000'000)));
-    some.push_back(job.add_option("--grooms", options->measuring.grooms,
-                                  of("--grooms", "samples by name, project files, or 100000x16, with commas between"))
-                       ->delimiter(','));
+    some.push_back(
+        job.add_option("--grooms", options->measuring.grooms,
+                       of("--grooms", "samples by name, project files, or 100000x16, with commas between"))
+            ->delimiter(','));
     some.push_back(job.add_option("--frames", options->measuring.frames, of("--frames", "frames of each row"))
                        ->check(CLI::Range(1, 100'000)));
     some.push_back(job.add_option("--size", options->size, of("--size", "pixels WxH of all pictures")));

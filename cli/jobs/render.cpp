@@ -324,8 +324,8 @@ Result<Playing> play(const RenderJobOptions& options, GpuBackend& gpu, Groom& gr
     if (wish == EngineWish::gpu && playing.engine.kind != EngineKind::gpu) return fail(playing.engine.why);
     auto scene = GroomScene::make(groom, view, options.hiddenGroups);
     if (!scene) return tl::unexpected(scene.error());
-    auto made = LiveShots::make(gpu.device(), gpu.kernels(), std::move(*scene), *playing.motion,
-                                playing.engine.kind);
+    auto made =
+        LiveShots::make(gpu.device(), gpu.kernels(), std::move(*scene), *playing.motion, playing.engine.kind);
     if (!made) return tl::unexpected(made.error());
     playing.shots = std::move(*made);
     return playing;
@@ -352,8 +352,8 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
     }
     std::optional<gpu::Backend> backend;
     if (options.backend != "any") backend = kGpuBackends.at(options.backend);
-    const auto device = GpuBackend::make(
-        backend, options.chooseDevice ? std::optional(options.device) : std::nullopt);
+    const auto device =
+        GpuBackend::make(backend, options.chooseDevice ? std::optional(options.device) : std::nullopt);
     if (!device) return tl::unexpected(device.error());
 
     const auto playing = play(options, **device, *groom, view);
@@ -447,17 +447,19 @@ JobRun declare(CLI::App& job) {
         ->check(CLI::Range(1, 1024));
     auto* record = job.add_option("--record", options->record, "Frames that simulate --record wrote");
     auto* motion =
-        job.add_option("--motion", options->motion,
-                       "Simulate the hair while it is drawn, on a head that moves like that: none, spin, nod, "
-                       "clip:NAME or a file of keys F.json")
+        job.add_option(
+               "--motion", options->motion,
+               "Simulate the hair while it is drawn, on a head that moves like that: none, spin, nod, "
+               "clip:NAME or a file of keys F.json")
             ->excludes(record);
     job.add_option("--character", options->character,
                    "File with the skeleton and clips, instead of the one the scalp came from")
         ->needs(motion);
     job.add_option("--wind", options->wind, "Velocity of the air X,Y,Z in m/s, instead of the groom's own")
         ->needs(motion);
-    job.add_option("--engine", options->engine,
-                   "What moves strands: the CPU, the GPU that draws them, or whichever was measured to be faster")
+    job.add_option(
+           "--engine", options->engine,
+           "What moves strands: the CPU, the GPU that draws them, or whichever was measured to be faster")
         ->check(CLI::IsMember({"auto", "cpu", "gpu"}))
         ->needs(motion);
     auto* frame = job.add_option("--frame", options->frame,

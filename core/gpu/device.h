@@ -135,8 +135,8 @@ class SwapChain {
     virtual Status present() = 0;
 };
 
-/// Bytes that have crossed between program and device since the device was made: content of resources, updates
-/// and constants one way, what was read the other.
+/// Bytes that have crossed between program and device since the device was made: content of resources,
+/// updates and constants one way, what was read the other.
 struct Traffic {
     std::uint64_t toDevice = 0, fromDevice = 0;
 };

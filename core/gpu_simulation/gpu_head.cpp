@@ -112,8 +112,8 @@ Status GpuHead::makeBuffers(gpu::Device& device, const HeadAtRest& head) {
          makeBuffer<float>(device, "normals at rest", Usage::ShaderRead, floats, floatsOf(normals)));
     keep(boneOf_,
          makeBuffer<shaders::uint4>(device, "bones of vertices", Usage::ShaderRead, boneOf.size(), boneOf));
-    keep(weights_,
-         makeBuffer<shaders::float4>(device, "weights of vertices", Usage::ShaderRead, weights.size(), weights));
+    keep(weights_, makeBuffer<shaders::float4>(device, "weights of vertices", Usage::ShaderRead,
+                                               weights.size(), weights));
     keep(rootsAtRest_,
          makeBuffer<shaders::HeadRoot>(device, "roots at rest", Usage::ShaderRead, roots.size(), roots));
     keep(positions_, makeBuffer<float>(device, "head", kReadWrite, floats, floatsOf(positions)));
@@ -136,7 +136,8 @@ Result<GpuHead> GpuHead::make(gpu::Device& device, const HeadAtRest& head) {
     made.measure(head);
     if (auto buffers = made.makeBuffers(device, head); !buffers) return tl::unexpected(buffers.error());
     made.roots_.frames_ws = made.frames_;
-    for (auto& [kernel, name] : {std::pair{&made.vertexKernel_, "head_vertices"}, {&made.rootKernel_, "head_roots"}}) {
+    for (auto& [kernel, name] :
+         {std::pair{&made.vertexKernel_, "head_vertices"}, {&made.rootKernel_, "head_roots"}}) {
         auto compiled = compiledKernel(device, name);
         if (!compiled) return tl::unexpected(compiled.error());
         *kernel = std::move(*compiled);
@@ -180,17 +181,17 @@ void GpuHead::record(gpu::CommandList& list, std::span<const Eigen::Affine3f> bo
     }
     list.updateBuffer(bonesBuffer_, 0, std::as_bytes(std::span(rows)));
     const Quatf turn = Quatf(bones_.front().linear()).normalized();
-    shaders::HeadConstants constants{vertexCount_, skinned_ ? 1u : 0u, bound_ ? 1u : 0u, 0,
-                                     {turn.x(), turn.y(), turn.z(), turn.w()}};
+    shaders::HeadConstants constants{
+        vertexCount_, skinned_ ? 1u : 0u, bound_ ? 1u : 0u, 0, {turn.x(), turn.y(), turn.z(), turn.w()}};
     gpu::PassDesc pass;
     pass.name = "head";
     list.beginPass(pass);
     if (vertexCount_ > 0) {
         list.setPipeline(vertexKernel_);
-        const std::array<Binding, 7> bound{
-            Binding::read(0, bonesBuffer_), Binding::read(1, rest_),       Binding::read(2, restNormals_),
-            Binding::read(3, boneOf_),      Binding::read(4, weights_),    Binding::write(0, positions_),
-            Binding::write(1, normals_)};
+        const std::array<Binding, 7> bound{Binding::read(0, bonesBuffer_), Binding::read(1, rest_),
+                                           Binding::read(2, restNormals_), Binding::read(3, boneOf_),
+                                           Binding::read(4, weights_),     Binding::write(0, positions_),
+                                           Binding::write(1, normals_)};
         list.bind(bound);
         list.setConstants(0, gpu::bytesOf(constants));
         list.dispatch(groupsOf(vertexCount_));

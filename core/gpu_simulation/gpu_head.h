@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// A head that moves on the device: its vertices on their bones (linear blend skinning), and the roots of strands on
-// them. Bones go up each frame, nothing comes back.
+// A head that moves on the device: its vertices on their bones (linear blend skinning), and the roots of
+// strands on them. Bones go up each frame, nothing comes back.
 
 #include <span>
 #include <vector>
@@ -14,7 +14,7 @@ namespace hairloom::gpu_simulation {
 
 /// What a head is at rest. Nothing of the spans is kept.
 struct HeadAtRest {
-    const ScalpMesh* mesh = nullptr;  ///< null: roots alone
+    const ScalpMesh* mesh = nullptr;    ///< null: roots alone
     const SkinWeights* skin = nullptr;  ///< of its vertices; null: all go with the first bone
     std::span<const Vec3f> roots;       ///< first points of the strands
     /// Of these; empty: roots go with the first bone, rigidly. Read where there is a skin.
@@ -26,8 +26,8 @@ class GpuHead {
     /// Errors: what the device says.
     static Result<GpuHead> make(gpu::Device& device, const HeadAtRest& head);
 
-    /// Records vertices and roots of this moment, outside a pass. `bones_ws`: from the head at rest to the world, as
-    /// many as the skin has, or one. Before the first record() all is at rest.
+    /// Records vertices and roots of this moment, outside a pass. `bones_ws`: from the head at rest to the
+    /// world, as many as the skin has, or one. Before the first record() all is at rest.
     void record(gpu::CommandList& list, std::span<const Eigen::Affine3f> bones_ws);
 
     /// Of the last record(), in the form that StrandEngine takes; valid while this lives.
@@ -45,9 +45,10 @@ class GpuHead {
 
     std::uint32_t vertexCount_ = 0, rootCount_ = 0, boneCount_ = 1;
     bool skinned_ = false, bound_ = false;
-    std::vector<Eigen::Affine3f> bones_;       // of the last frame; one that stays at rest stands last
+    std::vector<Eigen::Affine3f> bones_;          // of the last frame; one that stays at rest stands last
     std::vector<Box3f> vertexBoxes_, rootBoxes_;  // at rest, of what each bone has a share of
-    gpu::BufferPtr bonesBuffer_, rest_, restNormals_, boneOf_, weights_, rootsAtRest_, positions_, normals_, frames_;
+    gpu::BufferPtr bonesBuffer_, rest_, restNormals_, boneOf_, weights_, rootsAtRest_, positions_, normals_,
+        frames_;
     gpu::ComputePipelinePtr vertexKernel_, rootKernel_;
     DeviceRoots roots_;
     Box3f bounds_;

@@ -48,10 +48,10 @@ struct FrameReport {
 
 /// Roots that the device itself has found (GpuHead), in place of FrameInput::roots_ws.
 struct DeviceRoots {
-    gpu::BufferPtr frames_ws;         ///< two float4 a strand: place; rotation since rest
-    runtime::Float3 min_ws, max_ws;   ///< a box that holds all places
-    float motion = 0.0f;              ///< metres; no root goes farther in the frame
-    bool moved = true;                ///< false: all are where they were in the last frame
+    gpu::BufferPtr frames_ws;        ///< two float4 a strand: place; rotation since rest
+    runtime::Float3 min_ws, max_ws;  ///< a box that holds all places
+    float motion = 0.0f;             ///< metres; no root goes farther in the frame
+    bool moved = true;               ///< false: all are where they were in the last frame
 };
 
 class StrandEngine {

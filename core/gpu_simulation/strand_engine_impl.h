@@ -46,8 +46,8 @@ struct StrandEngine::Impl {
     bool curvesVoid = false;    ///< the kept curves fit other settings
     bool tensionsVoid = false;  ///< those on the device are of a plan that is over
     bool wakeAll = false;
-    bool rodsFresh = false;   ///< the device has places of rods, and nothing else yet
-    bool rootsMoved = false;  ///< in the last frame, as the device knows
+    bool rodsFresh = false;      ///< the device has places of rods, and nothing else yet
+    bool rootsMoved = false;     ///< in the last frame, as the device knows
     bool rootsOfDevice = false;  ///< `roots` are of an earlier frame: the device found them itself since
     gpu::ComputePipelinePtr rootRows;  ///< puts roots of the device in order, once there are some
 

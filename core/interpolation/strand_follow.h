@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Follow hairs of a whole groom frame after frame: bindings name guides by their strands, so that what moves all
-// strands, on whatever device, hands over all its points as they are.
+// Follow hairs of a whole groom frame after frame: bindings name guides by their strands, so that what moves
+// all strands, on whatever device, hands over all its points as they are.
 
 #include <span>
 #include <vector>

@@ -47,9 +47,9 @@ class Renderer {
     /// One position a point of RenderScene::strands[group], strand after strand as its offsets say.
     Status setStrandPositions(std::size_t group, std::span<const Vec3f> positions_ws);
     /// The same from a buffer that the device itself writes, in the same order, 3 or 4 floats a point (a
-    /// fourth is ignored). Call it again whenever the content has changed. `bounds_ws` holds all points: depth
-    /// is fitted to it, and light to `sample_ws`, points in which the hair is, or the bounds where it is
-    /// empty.
+    /// fourth is ignored). Call it again whenever the content has changed. `bounds_ws` holds all points:
+    /// depth is fitted to it, and light to `sample_ws`, points in which the hair is, or the bounds where it
+    /// is empty.
     Status setStrandPositions(std::size_t group, gpu::BufferPtr positions_ws, std::uint32_t floatsPerPoint,
                               const Box3f& bounds_ws, std::span<const Vec3f> sample_ws = {});
     /// One share of the dye a point, where RenderStrands::pointDyes had some.

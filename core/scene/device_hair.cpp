@@ -15,8 +15,8 @@ using gpu::Binding;
 using gpu::Usage;
 using gpu_simulation::makeBuffer;
 
-constexpr std::size_t kTellings = 4;         // frames under way, and one to record into
-constexpr std::uint32_t kMaxSample = 1024;   // points
+constexpr std::size_t kTellings = 4;        // frames under way, and one to record into
+constexpr std::uint32_t kMaxSample = 1024;  // points
 constexpr std::uint32_t kExtentThreads = 64 * 256;
 constexpr std::uint32_t kMaxGroups = 65535;  // of one dimension, on every device
 constexpr float kSlack = 0.01f;              // metres around where hair was seen
@@ -117,7 +117,8 @@ Status DeviceHair::makeBuffers() {
     keep(measuredRest_, makeBuffer<shaders::MeasuredPoint>(*device_, "points measured", Usage::ShaderRead,
                                                            points.size(), points));
     keep(measures_, makeBuffer<std::uint32_t>(*device_, "measures", kReadWrite, HAIRLOOM_MEASURE_WORDS, {}));
-    keep(extent_, makeBuffer<std::uint32_t>(*device_, "extent of hair", kReadWrite, HAIRLOOM_EXTENT_WORDS, {}));
+    keep(extent_,
+         makeBuffer<std::uint32_t>(*device_, "extent of hair", kReadWrite, HAIRLOOM_EXTENT_WORDS, {}));
     keep(samples_, makeBuffer<shaders::float4>(*device_, "sample of hair", kReadWrite, sampleCount_, {}));
     tellings_.resize(kTellings);
     for (Telling& telling : tellings_) {
@@ -129,7 +130,8 @@ Status DeviceHair::makeBuffers() {
         keep(telling.buffer, device_->createBuffer(desc));
     }
     recording_ = tellings_.size();
-    for (auto& [kernel, name] : {std::pair{&measureKernel_, "strands_measure"}, {&extentKernel_, "hair_extent"}}) {
+    for (auto& [kernel, name] :
+         {std::pair{&measureKernel_, "strands_measure"}, {&extentKernel_, "hair_extent"}}) {
         auto compiled = gpu_simulation::compiledKernel(*device_, name);
         if (!compiled) return tl::unexpected(compiled.error());
         *kernel = std::move(*compiled);
@@ -190,11 +192,13 @@ void DeviceHair::recordMeasures(gpu::CommandList& list, std::span<const runtime:
         sphereBuffer_ = std::move(*made);
     }
     constexpr std::array<shaders::float4, 1> kNone{};
-    list.updateBuffer(sphereBuffer_, 0, spheres.empty() ? std::as_bytes(std::span(kNone)) : std::as_bytes(spheres));
+    list.updateBuffer(sphereBuffer_, 0,
+                      spheres.empty() ? std::as_bytes(std::span(kNone)) : std::as_bytes(spheres));
     constexpr std::array<std::uint32_t, HAIRLOOM_MEASURE_WORDS> kNothing{};
     list.updateBuffer(measures_, 0, std::as_bytes(std::span(kNothing)));
     const runtime::SimulationSettings& settings = engine_.settings();
-    const shaders::MeasureConstants constants{engine_.pointCount(), static_cast<std::uint32_t>(spheres.size()),
+    const shaders::MeasureConstants constants{engine_.pointCount(),
+                                              static_cast<std::uint32_t>(spheres.size()),
                                               settings.collisionRadiusRoot, settings.collisionRadiusTip};
     const std::array<Binding, 5> bound{
         Binding::read(0, engine_.positions_ws()), Binding::read(1, engine_.velocities_ws()),
@@ -297,7 +301,8 @@ void DeviceHair::take(const Telling& telling, std::span<const std::byte> bytes) 
     told_.restoredStrands = restored + told_.report.restoredStrands;
     told_.guardedStrands = guarded + told_.report.guardedStrands;
     told_.maxStretch = std::max(told_.maxStretch, static_cast<double>(std::bit_cast<float>(measures[0])));
-    told_.maxPenetration = std::max(told_.maxPenetration, static_cast<double>(std::bit_cast<float>(measures[1])));
+    told_.maxPenetration =
+        std::max(told_.maxPenetration, static_cast<double>(std::bit_cast<float>(measures[1])));
     told_.report.fastest = std::bit_cast<float>(measures[2]);
     told_.nanCount += measures[3];
     told_.kineticEnergy = 1e-6 * (4294967296.0 * measures[5] + measures[4]);
@@ -353,9 +358,10 @@ Box3f DeviceHair::hairBounds() const {
 std::vector<Vec3f> DeviceHair::hairSample() const {
     std::vector<Vec3f> sample = places_.sample;
     if (placesBefore_.sample.size() != sample.size() || places_.frame <= placesBefore_.frame) return sample;
-    const float ahead = static_cast<float>(frame_ - places_.frame) /
-                        static_cast<float>(places_.frame - placesBefore_.frame);
-    for (std::size_t i = 0; i < sample.size(); ++i) sample[i] += ahead * (sample[i] - placesBefore_.sample[i]);
+    const float ahead =
+        static_cast<float>(frame_ - places_.frame) / static_cast<float>(places_.frame - placesBefore_.frame);
+    for (std::size_t i = 0; i < sample.size(); ++i)
+        sample[i] += ahead * (sample[i] - placesBefore_.sample[i]);
     return sample;
 }
 
@@ -382,7 +388,8 @@ Status DeviceHair::writeState(const runtime::State& state) {
 }
 
 Status DeviceHair::readPositions(std::span<Vec3f> positions_ws) {
-    return engine_.readPositions({reinterpret_cast<runtime::Float3*>(positions_ws.data()), positions_ws.size()});
+    return engine_.readPositions(
+        {reinterpret_cast<runtime::Float3*>(positions_ws.data()), positions_ws.size()});
 }
 
 }  // namespace hairloom

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Hair and head that move on the device and are drawn there: bones and spheres go up, strands, follow hairs and head
-// are moved by kernels, and the renderer draws what they write. No point crosses in either direction. What is told of a frame
-// comes back a frame or two later, when the device has long been done with it.
+// Hair and head that move on the device and are drawn there: bones and spheres go up, strands, follow hairs
+// and head are moved by kernels, and the renderer draws what they write. No point crosses in either
+// direction. What is told of a frame comes back a frame or two later, when the device has long been done with
+// it.
 
 #include <deque>
 
@@ -28,9 +29,9 @@ struct DeviceFrame {
 
 class DeviceHair {
   public:
-    /// Strands at rest on `start`. `device` outlives it. `skin`: of the scalp, whose bones the poses name; null: it
-    /// moves rigidly. Kernels that are missing are waited for at first, later made beside the frames. Errors: a groom
-    /// that cannot be simulated, settings without kernels, what the device says.
+    /// Strands at rest on `start`. `device` outlives it. `skin`: of the scalp, whose bones the poses name;
+    /// null: it moves rigidly. Kernels that are missing are waited for at first, later made beside the
+    /// frames. Errors: a groom that cannot be simulated, settings without kernels, what the device says.
     static Result<DeviceHair> make(gpu::Device& device,
                                    std::shared_ptr<gpu_simulation::KernelLibrary> kernels,
                                    const GroomScene& scene, const SkinWeights* skin, const HeadPose& start);

@@ -27,10 +27,10 @@ std::string keyOf(const gpu::DeviceInfo& device, const Groom& groom) {
     const std::uint64_t hairs =
         groom.interpolation.followPerGuide > 0 ? std::uint64_t{groom.interpolation.followPerGuide} : 1;
     const auto size = [](std::uint64_t count) { return std::bit_width(count); };
-    const char* const model =
-        groom.simulation.strandModel == runtime::StrandModel::rods ? "rods" : "springs";
+    const char* const model = groom.simulation.strandModel == runtime::StrandModel::rods ? "rods" : "springs";
     return fmt::format("{} | {} | {} | points 2^{}, hairs of each 2^{}, substeps {}", device.name,
-                       device.driver, model, size(groom.pointCount()), size(hairs), groom.simulation.substeps);
+                       device.driver, model, size(groom.pointCount()), size(hairs),
+                       groom.simulation.substeps);
 }
 
 Result<double> cpuMilliseconds(const Groom& groom, const HeadMotion& motion) {
@@ -73,7 +73,8 @@ Result<double> gpuMilliseconds(gpu::Device& device,
 }
 
 Result<EngineTimes> measure(gpu::Device& device,
-                            const std::shared_ptr<gpu_simulation::KernelLibrary>& kernels, const Groom& groom) {
+                            const std::shared_ptr<gpu_simulation::KernelLibrary>& kernels,
+                            const Groom& groom) {
     const auto motion = makeRigidMotion("nod", groom);
     if (!motion) return tl::unexpected(motion.error());
     const auto gpu = gpuMilliseconds(device, kernels, groom, **motion);
@@ -127,12 +128,11 @@ void EngineMemory::keep(const std::string& key, const EngineTimes& times) const 
     std::error_code failure;
     std::filesystem::create_directories(file_.parent_path(), failure);
     const std::string text = all.dump(1);
-    static_cast<void>(
-        writeFileAtomically(file_, std::as_bytes(std::span(text)), Replacing::Anything));
+    static_cast<void>(writeFileAtomically(file_, std::as_bytes(std::span(text)), Replacing::Anything));
 }
 
-EngineChoice chooseEngine(EngineWish wish, gpu::Device* device, const Groom& groom, const EngineMemory& memory,
-                          const std::function<Result<EngineTimes>()>& measure) {
+EngineChoice chooseEngine(EngineWish wish, gpu::Device* device, const Groom& groom,
+                          const EngineMemory& memory, const std::function<Result<EngineTimes>()>& measure) {
     if (wish == EngineWish::cpu) return {EngineKind::cpu, "asked for"};
     if (const std::string why = obstacle(device, groom); !why.empty()) return {EngineKind::cpu, why};
     if (wish == EngineWish::gpu) return {EngineKind::gpu, "asked for"};

@@ -32,8 +32,8 @@ struct EngineTimes {
     double cpu = 0, gpu = 0;
 };
 
-/// What was measured in earlier runs, by device and size of the hairstyle. A file that cannot be read or written costs
-/// a measurement, nothing else.
+/// What was measured in earlier runs, by device and size of the hairstyle. A file that cannot be read or
+/// written costs a measurement, nothing else.
 class EngineMemory {
   public:
     /// Empty: nothing is kept.
@@ -48,15 +48,15 @@ class EngineMemory {
     std::filesystem::path file_;
 };
 
-/// Automatic is the GPU where the device is one and was measured to be faster with a hairstyle of that size, at first
-/// use and then from memory. A wish for a GPU that cannot be fulfilled is the CPU, and `why` says what stands in the
-/// way. `device` may be null: there is none.
+/// Automatic is the GPU where the device is one and was measured to be faster with a hairstyle of that size,
+/// at first use and then from memory. A wish for a GPU that cannot be fulfilled is the CPU, and `why` says
+/// what stands in the way. `device` may be null: there is none.
 EngineChoice chooseEngine(EngineWish wish, gpu::Device* device,
                           const std::shared_ptr<gpu_simulation::KernelLibrary>& kernels, const Groom& groom,
                           const EngineMemory& memory);
 
 /// The same with a measurement of the caller's, which may fail.
-EngineChoice chooseEngine(EngineWish wish, gpu::Device* device, const Groom& groom, const EngineMemory& memory,
-                          const std::function<Result<EngineTimes>()>& measure);
+EngineChoice chooseEngine(EngineWish wish, gpu::Device* device, const Groom& groom,
+                          const EngineMemory& memory, const std::function<Result<EngineTimes>()>& measure);
 
 }  // namespace hairloom

@@ -57,8 +57,8 @@ struct StreakAndDyeWeights {
 /// Owns the arrays that a RenderScene looks at.
 class GroomScene {
   public:
-    /// The groom at rest. Follow hairs are made where the groom asks for some. Groups of the head are hidden as
-    /// facesOfGroups names them.
+    /// The groom at rest. Follow hairs are made where the groom asks for some. Groups of the head are hidden
+    /// as facesOfGroups names them.
     static Result<GroomScene> make(const Groom& groom, const ViewFile& view,
                                    const std::vector<std::string>& hiddenGroups);
 
@@ -98,8 +98,8 @@ class GroomScene {
     std::optional<FollowBindings> bindings_;
     std::optional<StrandFollow> follow_;
     std::optional<runtime::FollowHairs> followHairs_;
-    std::vector<std::uint32_t> indices_;      ///< of the head's triangles that are drawn
-    std::vector<Vec3f> triangleAlbedo_;       ///< of these: skin, tinted by hair where the scalp is
+    std::vector<std::uint32_t> indices_;  ///< of the head's triangles that are drawn
+    std::vector<Vec3f> triangleAlbedo_;   ///< of these: skin, tinted by hair where the scalp is
     std::vector<std::uint32_t>
         hairOffsets_;  ///< of follow hairs; empty where the strands themselves are drawn
     std::vector<Vec3f> hairPositions_ws_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Hair that moves and is drawn frame after frame, by the engine on the CPU or by the one on the GPU, behind one face.
+// Hair that moves and is drawn frame after frame, by the engine on the CPU or by the one on the GPU, behind
+// one face.
 
 #include <optional>
 
@@ -12,22 +13,21 @@ namespace hairloom {
 
 class LiveHair {
   public:
-    /// The scene's groom at rest on the motion's first pose. Device and motion outlive it. Errors: as for simulations and
-    /// DeviceHair.
-    static Result<LiveHair> make(gpu::Device& device,
-                                 std::shared_ptr<gpu_simulation::KernelLibrary> kernels, GroomScene scene,
-                                 const HeadMotion& motion, EngineKind engine);
+    /// The scene's groom at rest on the motion's first pose. Device and motion outlive it. Errors: as for
+    /// simulations and DeviceHair.
+    static Result<LiveHair> make(gpu::Device& device, std::shared_ptr<gpu_simulation::KernelLibrary> kernels,
+                                 GroomScene scene, const HeadMotion& motion, EngineKind engine);
 
     EngineKind engine() const { return gpu_ ? EngineKind::gpu : EngineKind::cpu; }
-    /// The other engine goes on from where hair is, as fast as it is; waits for the device. An error leaves all as it
-    /// was.
+    /// The other engine goes on from where hair is, as fast as it is; waits for the device. An error leaves
+    /// all as it was.
     Status setEngine(EngineKind engine);
 
     /// For Renderer::setScene(), before frames are recorded.
     const GroomScene& scene() const { return scene_; }
 
-    /// Moves hair and head on by `dt` seconds and hands them to a renderer that has the scene; what the GPU does of it is
-    /// recorded, outside a pass.
+    /// Moves hair and head on by `dt` seconds and hands them to a renderer that has the scene; what the GPU
+    /// does of it is recorded, outside a pass.
     Status record(gpu::CommandList& list, render::Renderer& renderer, float dt);
     /// The list of the last record() went to the device.
     void submitted(const gpu::SubmissionPtr& submission);

@@ -22,7 +22,7 @@ struct HeadPose {
     std::vector<Vec3f> sphereCentres_ws;  ///< per collision sphere; empty: spheres move with head_ws
     /// Of the scalp's skin, from the head at rest to the world; empty where no skeleton moves it.
     std::vector<Eigen::Affine3f> bones_ws;
-    std::optional<Vec3f> wind_ws;         ///< m/s, in place of the groom's mean wind
+    std::optional<Vec3f> wind_ws;  ///< m/s, in place of the groom's mean wind
 };
 
 class HeadMotion {

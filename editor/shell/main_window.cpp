@@ -76,7 +76,9 @@ MainWindow::MainWindow()
         status_->setHint(tool ? tool->hint() : QString());
     });
     static_assert(static_cast<int>(SimulateOn::Cpu) == static_cast<int>(EngineWish::cpu));
-    const auto chooseEngine = [this] { player_.setEngine(static_cast<EngineWish>(preferences_.simulateOn())); };
+    const auto chooseEngine = [this] {
+        player_.setEngine(static_cast<EngineWish>(preferences_.simulateOn()));
+    };
     player_.setLive(viewport_->live());
     chooseEngine();
     connect(&preferences_, &Preferences::changed, this, chooseEngine);

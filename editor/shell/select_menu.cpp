@@ -76,7 +76,8 @@ void MainWindow::addSelectActions() {
         },
         true);
     add(
-        {"select.show", tr("&Show all"), "", tr("Shows the strands that were hidden"), QKeySequence("Ctrl+Alt+H")},
+        {"select.show", tr("&Show all"), "", tr("Shows the strands that were hidden"),
+         QKeySequence("Ctrl+Alt+H")},
         [](const editing::Model& model, const Strands&) { return editing::showStrands(model); }, false);
     menu->addSeparator();
     add(

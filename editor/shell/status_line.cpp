@@ -114,7 +114,9 @@ void StatusLine::showCounts() {
 
 void StatusLine::showEngine() {
     const auto& engine = player_.engine();
-    engine_->setText(!engine ? QString() : engine->kind == EngineKind::gpu ? tr("hair on the GPU") : tr("hair on the CPU"));
+    engine_->setText(!engine                           ? QString()
+                     : engine->kind == EngineKind::gpu ? tr("hair on the GPU")
+                                                       : tr("hair on the CPU"));
     engine_->setToolTip(!engine ? QString()
                                 : tr("What simulates the hair: %1. Edit ▸ Preferences chooses")
                                       .arg(QString::fromStdString(engine->why)));

@@ -40,7 +40,11 @@ class DeviceEngine final : public LiveEngine {
     }
 
     Status step(float dt, double time, LiveChanges changes, HairPose& pose, Status&) override {
-        LiveStep step{dt, time, pose.head, std::move(changes.settings), std::move(changes.spheres),
+        LiveStep step{dt,
+                      time,
+                      pose.head,
+                      std::move(changes.settings),
+                      std::move(changes.spheres),
                       link_->wantsPositions()};
         underWay_.push_back(link_->post([step = std::move(step)](LiveWork* work) -> Told {
             if (!work) return {fail("the device is gone"), {}};
@@ -111,7 +115,8 @@ Result<std::unique_ptr<LiveEngine>> makeCpuEngine(const LiveStart& start, double
     options.backend = liveMethod(parameters);
     auto made = Simulation::make(*start.groom, start.pose, options);
     if (!made) return tl::unexpected(made.error());
-    if (start.state && !made->setState(*start.state, time)) return fail("the hair has other strands than before");
+    if (start.state && !made->setState(*start.state, time))
+        return fail("the hair has other strands than before");
     return std::make_unique<CpuEngine>(std::move(*made), parameters);
 }
 

@@ -18,8 +18,9 @@ struct LiveChanges {
 class LiveEngine {
   public:
     virtual ~LiveEngine() = default;
-    /// Advances by `dt` seconds to the head of `pose`, and writes there where strands are. `time`: seconds at the end. An
-    /// error is the end of this engine; `refused` is what of the changes it does not take, and leaves all as it was.
+    /// Advances by `dt` seconds to the head of `pose`, and writes there where strands are. `time`: seconds at
+    /// the end. An error is the end of this engine; `refused` is what of the changes it does not take, and
+    /// leaves all as it was.
     virtual Status step(float dt, double time, LiveChanges changes, HairPose& pose, Status& refused) = 0;
     /// Since the start, as far as it is known by now.
     virtual SimulationStats stats() const = 0;
@@ -29,8 +30,8 @@ class LiveEngine {
     virtual std::shared_ptr<const runtime::State> state() = 0;
 };
 
-/// At rest on `start.pose`, or from its state, `time` seconds after the beginning; the settings are the groom's. Errors: as
-/// for simulations, and what the device says.
+/// At rest on `start.pose`, or from its state, `time` seconds after the beginning; the settings are the
+/// groom's. Errors: as for simulations, and what the device says.
 Result<std::unique_ptr<LiveEngine>> makeCpuEngine(const LiveStart& start, double time);
 /// `link` outlives it as far as it has a device.
 Result<std::unique_ptr<LiveEngine>> makeDeviceEngine(std::shared_ptr<LiveLink> link, const LiveStart& start);

@@ -337,10 +337,12 @@ bool Player::prepare(Playing& playing, const WorkerRequests& taken) {
     if (playing.deviceFailed) {
         choice = playing.choice;
     } else if (taken.wish != EngineWish::cpu) {
-        choice = taken.live->post([&](LiveWork* work) {
-                               return work ? work->choose(taken.wish, *tried)
-                                           : EngineChoice{EngineKind::cpu, "there is no graphics device"};
-                           }).get();
+        choice = taken.live
+                     ->post([&](LiveWork* work) {
+                         return work ? work->choose(taken.wish, *tried)
+                                     : EngineChoice{EngineKind::cpu, "there is no graphics device"};
+                     })
+                     .get();
     }
     // The other engine goes first: the device has room for one hairstyle more.
     playing.engine.reset();

@@ -115,7 +115,7 @@ class Player : public QObject {
     std::shared_ptr<const PlayedFrame> frame_;
     std::optional<EngineChoice> engine_;
     std::vector<std::uint32_t> capturedOffsets_;  ///< of the strands that the thread has
-    quint64 epoch_ = 0;  ///< frames of earlier ones are dropped
+    quint64 epoch_ = 0;                           ///< frames of earlier ones are dropped
 
     QStringList leftOut_;
     std::vector<EffectReport> planPreview_;

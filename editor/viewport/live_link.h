@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// From the thread that plays to the render thread, which owns the device: jobs that are done between pictures, in the order in
-// which they were given.
+// From the thread that plays to the render thread, which owns the device: jobs that are done between
+// pictures, in the order in which they were given.
 
 #include <atomic>
 #include <deque>

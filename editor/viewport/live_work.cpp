@@ -19,7 +19,8 @@ std::size_t verticesOf(const GroomScene& scene) {
 
 const std::shared_ptr<gpu_simulation::KernelLibrary>& LiveWork::kernels() {
     if (!kernels_) {
-        kernels_ = std::make_shared<gpu_simulation::KernelLibrary>(device_, gpu_simulation::userKernelFolder());
+        kernels_ =
+            std::make_shared<gpu_simulation::KernelLibrary>(device_, gpu_simulation::userKernelFolder());
     }
     return kernels_;
 }
@@ -64,8 +65,8 @@ Status LiveWork::step(const LiveStep& step) {
     const runtime::EffectPlan& plan = hair_->engine().plan();
     for (std::uint32_t index = 0; index < runtime::kEffectCount; ++index) {
         const auto effect = static_cast<runtime::Effect>(index);
-        told_.effects.push_back({runtime::effectName(effect), plan.on(effect), reasonAlone(plan.why(effect)), 0,
-                                 hair_->engine().effectBytes(effect)});
+        told_.effects.push_back({runtime::effectName(effect), plan.on(effect), reasonAlone(plan.why(effect)),
+                                 0, hair_->engine().effectBytes(effect)});
     }
     return {};
 }
@@ -80,7 +81,8 @@ void LiveWork::time(gpu::SubmissionPtr submission) {
         double sum = 0;
         for (const gpu::PassTime& pass : *times) sum += pass.milliseconds;
         constexpr double kShare = 0.1;
-        told_.milliseconds = told_.milliseconds > 0 ? told_.milliseconds + kShare * (sum - told_.milliseconds) : sum;
+        told_.milliseconds =
+            told_.milliseconds > 0 ? told_.milliseconds + kShare * (sum - told_.milliseconds) : sum;
     }
 }
 

@@ -48,7 +48,9 @@ class LiveWork {
 
     /// Whether a renderer that shows this scene can show the hair that plays.
     bool fits(const GroomScene& scene) const;
-    Status show(render::Renderer& renderer, bool hair, bool head) const { return hair_->show(renderer, hair, head); }
+    Status show(render::Renderer& renderer, bool hair, bool head) const {
+        return hair_->show(renderer, hair, head);
+    }
 
   private:
     const std::shared_ptr<gpu_simulation::KernelLibrary>& kernels();

@@ -12,8 +12,8 @@
 namespace hairloom::editor {
 namespace {
 
-Status takeBoth(gpu::Device& device, const LiveWork& live, RenderWork& work, std::optional<RenderWork>& other, float& split,
-                PictureRequest request) {
+Status takeBoth(gpu::Device& device, const LiveWork& live, RenderWork& work, std::optional<RenderWork>& other,
+                float& split, PictureRequest request) {
     split = request.split;
     if (!request.other) {
         other.reset();

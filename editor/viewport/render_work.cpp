@@ -193,8 +193,8 @@ Status RenderWork::takeScene(const PictureRequest& request, bool draft) {
 }
 
 Status RenderWork::replaceScene(const PictureRequest& request, bool draft) {
-    auto made = GroomScene::make(draft ? withoutFollowHairs(*request.groom) : *request.groom,
-                                 viewOf(request), {});
+    auto made =
+        GroomScene::make(draft ? withoutFollowHairs(*request.groom) : *request.groom, viewOf(request), {});
     if (!made) return tl::unexpected(made.error());
     scene_ = std::move(*made);
     draft_ = draft;

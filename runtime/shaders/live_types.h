@@ -14,7 +14,7 @@ namespace hairloom::shaders {
 #define HAIRLOOM_LIVE_GROUP 64
 /// Words of what hair_extent.comp.hlsl reduces: least and greatest x, y, z as orderedFloat().
 #define HAIRLOOM_EXTENT_WORDS 6
-/// Words of what strands_measure.comp.hlsl reduces: StrandMeasures.
+/// Words of what strands_measure.comp.hlsl reduces, which says what they are.
 #define HAIRLOOM_MEASURE_WORDS 8
 
 struct HeadConstants {

@@ -53,8 +53,7 @@ Status show(const Options& options, const std::filesystem::path& programFolder) 
     const auto window = Window::open(title, options.size);
     if (!window) return tl::unexpected(window.error());
     const auto wish = std::ranges::find(engineWishNames(), options.engine) - engineWishNames().begin();
-    const auto made =
-        Show::make(**device, **window, *groom, options.wind, static_cast<EngineWish>(wish));
+    const auto made = Show::make(**device, **window, *groom, options.wind, static_cast<EngineWish>(wish));
     if (!made) return tl::unexpected(made.error());
     fmt::print("{} on {}\n", gpu::toString(info.backend), info.name);
     fmt::print("simulated on the {}: {}\n", (*made)->engine().kind == EngineKind::gpu ? "GPU" : "CPU",
@@ -82,8 +81,9 @@ int run(int argc, char** argv) {
     program
         .add_option("--backend", options.backend, "Graphics API; the system's own where this is not given")
         ->check(CLI::IsMember({"vulkan", "d3d11"}));
-    program.add_option("--engine", options.engine,
-                       "What moves the hair: the CPU, the GPU, or whichever was measured to be faster")
+    program
+        .add_option("--engine", options.engine,
+                    "What moves the hair: the CPU, the GPU, or whichever was measured to be faster")
         ->check(CLI::IsMember({"auto", "gpu", "cpu"}));
     program.add_option("--width", options.size.width, "Pixels")->check(CLI::Range(64, 8192));
     program.add_option("--height", options.size.height, "Pixels")->check(CLI::Range(64, 8192));

@@ -25,8 +25,8 @@ Result<std::unique_ptr<Show>> Show::make(gpu::Device& device, const Window& wind
     EngineChoice engine = chooseEngine(wish, &device, kernels, groom, EngineMemory::ofUser());
     auto hair = LiveHair::make(device, kernels, std::move(*scene), **motion, engine.kind);
     if (!hair) return tl::unexpected(hair.error());
-    std::unique_ptr<Show> show(new Show(window, std::move(*motion), std::move(*hair), std::move(engine),
-                                        render::Renderer(device)));
+    std::unique_ptr<Show> show(
+        new Show(window, std::move(*motion), std::move(*hair), std::move(engine), render::Renderer(device)));
     if (auto status = show->openSwapChain(device); !status) return tl::unexpected(status.error());
     return show;
 }

@@ -144,7 +144,8 @@ TEST_F(RenderJob, BenchPlaysAsTheEditorDoes) {
         runJson("bench live --grooms hair.hairloom --size 64x36 --frames 2 --markdown live.md");
     ASSERT_EQ(report["rows"].size(), 2u);
     for (const auto& row : report["rows"]) {
-        for (const char* name : {"simulate_ms", "follow_ms", "shadow_ms", "shade_ms", "draw_ms", "frame_ms", "wall_ms"})
+        for (const char* name :
+             {"simulate_ms", "follow_ms", "shadow_ms", "shade_ms", "draw_ms", "frame_ms", "wall_ms"})
             EXPECT_GE(row[name].get<double>(), 0) << name;
         EXPECT_GT(row["hairs"].get<int>(), 0);
         EXPECT_GT(row["bytes_to_device"].get<double>(), 0);

@@ -109,7 +109,8 @@ TEST_F(LiveTest, ADeviceThatIsLostLeavesTheCpu) {
     {
         Player player(document());
         QString problem;
-        QObject::connect(&player, &Player::failed, window.get(), [&](const QString& said) { problem = said; });
+        QObject::connect(&player, &Player::failed, window.get(),
+                         [&](const QString& said) { problem = said; });
         player.setLive(link);
         player.setEngine(EngineWish::gpu);
         player.play();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A person who tries everything in no order: clicks, drags, wheels, keys, menus, controls. Nothing ends the program, the hair
-// stays sound, and memory stays flat. `./dev soak` does it for long.
+// A person who tries everything in no order: clicks, drags, wheels, keys, menus, controls. Nothing ends the
+// program, the hair stays sound, and memory stays flat. `./dev soak` does it for long.
 #include <QAbstractButton>
 #include <QApplication>
 #include <QComboBox>
@@ -87,7 +87,8 @@ class SoakTest : public WindowTest {
                 break;
             case 6:
             case 7: {
-                QAction* action = actions_[static_cast<std::size_t>(below(static_cast<int>(actions_.size())))];
+                QAction* action =
+                    actions_[static_cast<std::size_t>(below(static_cast<int>(actions_.size())))];
                 if (action->isEnabled()) action->trigger();
                 break;
             }
@@ -142,8 +143,7 @@ TEST_F(SoakTest, RandomActionsLeaveTheWindowSound) {
         startOver();
         megabytes = residentMegabytes();
         if (early == 0 && done >= actions / 4) early = megabytes;
-        if (actions > kRound)
-            std::printf("%d actions, %.0f MB\n", done, megabytes), std::fflush(stdout);
+        if (actions > kRound) std::printf("%d actions, %.0f MB\n", done, megabytes), std::fflush(stdout);
     }
     // Shaders of what was not seen before are compiled once.
     EXPECT_LT(megabytes, early + 200);

@@ -20,13 +20,23 @@ class NamedDevice : public gpu::Device {
     }
     const gpu::DeviceInfo& info() const override { return info_; }
     gpu::Traffic traffic() const override { return {}; }
-    Result<gpu::BufferPtr> createBuffer(const gpu::BufferDesc&, std::span<const std::byte>) override { return no(); }
-    Result<gpu::TexturePtr> createTexture(const gpu::TextureDesc&, std::span<const std::byte>) override { return no(); }
+    Result<gpu::BufferPtr> createBuffer(const gpu::BufferDesc&, std::span<const std::byte>) override {
+        return no();
+    }
+    Result<gpu::TexturePtr> createTexture(const gpu::TextureDesc&, std::span<const std::byte>) override {
+        return no();
+    }
     Result<gpu::SamplerPtr> createSampler(const gpu::SamplerDesc&) override { return no(); }
     Result<gpu::ShaderPtr> createShader(const gpu::ShaderDesc&) override { return no(); }
-    Result<gpu::GraphicsPipelinePtr> createGraphicsPipeline(const gpu::GraphicsPipelineDesc&) override { return no(); }
-    Result<gpu::ComputePipelinePtr> createComputePipeline(const gpu::ComputePipelineDesc&) override { return no(); }
-    Result<std::unique_ptr<gpu::SwapChain>> createSwapChain(const gpu::SwapChainDesc&) override { return no(); }
+    Result<gpu::GraphicsPipelinePtr> createGraphicsPipeline(const gpu::GraphicsPipelineDesc&) override {
+        return no();
+    }
+    Result<gpu::ComputePipelinePtr> createComputePipeline(const gpu::ComputePipelineDesc&) override {
+        return no();
+    }
+    Result<std::unique_ptr<gpu::SwapChain>> createSwapChain(const gpu::SwapChainDesc&) override {
+        return no();
+    }
     Result<std::unique_ptr<gpu::CommandList>> createCommandList() override { return no(); }
     Result<gpu::SubmissionPtr> submit(std::unique_ptr<gpu::CommandList>) override { return no(); }
     Status readMapped(const gpu::BufferPtr&, std::uint64_t, std::span<std::byte>) override { return no(); }

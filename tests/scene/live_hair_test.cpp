@@ -86,8 +86,8 @@ TEST_F(LiveHairTest, BothEnginesMoveAndDrawAlike) {
     const Groom groom = smallHead();
     const auto rigid = makeRigidMotion("nod", groom).value();
     const SkinnedNod skinned(groom);
-    for (const HeadMotion* motion : {static_cast<const HeadMotion*>(rigid.get()),
-                                     static_cast<const HeadMotion*>(&skinned)}) {
+    for (const HeadMotion* motion :
+         {static_cast<const HeadMotion*>(rigid.get()), static_cast<const HeadMotion*>(&skinned)}) {
         const auto cpu = stageOf(groom, *motion, EngineKind::cpu);
         const auto gpu = stageOf(groom, *motion, EngineKind::gpu);
         play(*cpu, 16);

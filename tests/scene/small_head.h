@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// A ball with a few guides on its upper half and hairs around each, small enough for a software device to move and draw.
+// A ball with a few guides on its upper half and hairs around each, small enough for a software device to
+// move and draw.
 
 #include "core/geometry/shapes.h"
 #include "core/groom/groom.h"
@@ -17,7 +18,8 @@ inline Groom smallHead(std::uint32_t points = 8) {
     for (std::uint32_t t = 0; t < ball->triangleCount(); ++t) {
         const Triangle& corners = ball->triangles()[t];
         const Vec3f centre =
-            (ball->positions()[corners[0]] + ball->positions()[corners[1]] + ball->positions()[corners[2]]) / 3;
+            (ball->positions()[corners[0]] + ball->positions()[corners[1]] + ball->positions()[corners[2]]) /
+            3;
         if (centre.y() < 0.03f) continue;
         scalp.push_back(t);
         roots.push_back({t, Vec3f::Constant(1.0f / 3)});

@@ -30,10 +30,10 @@ std::uint32_t toBinding(const ShaderRegister& shaderRegister);
 /// otherwise.
 Result<std::vector<ReflectedBinding>> reflect(std::span<const std::uint32_t> words, VkShaderStageFlags stage);
 
-/// The module with its constant buffers as storage buffers that nobody writes, at the same bindings. Mesa's software device
-/// (seen in 22.3) compiles a shader anew whenever it is bound or its constants change, for the values of those that branches
-/// depend on, and keeps all it has compiled: seconds and megabytes with each frame. Of storage it does not know the values.
-/// For modules that reflect() takes.
+/// The module with its constant buffers as storage buffers that nobody writes, at the same bindings. Mesa's
+/// software device (seen in 22.3) compiles a shader anew whenever it is bound or its constants change, for
+/// the values of those that branches depend on, and keeps all it has compiled: seconds and megabytes with
+/// each frame. Of storage it does not know the values. For modules that reflect() takes.
 std::vector<std::uint32_t> withConstantsInStorage(std::span<const std::uint32_t> words);
 
 }  // namespace hairloom::gpu::vulkan

@@ -50,7 +50,8 @@ struct StepReport {
     /// Strands with a point that was no number, or farther from its root than any hair; they were put back to
     /// rest.
     std::uint32_t restoredStrands = 0;
-    /// Rods whose speeds no force explains: more energy than before on a head at rest. It was taken out of them.
+    /// Rods whose speeds no force explains: more energy than before on a head at rest. It was taken out of
+    /// them.
     std::uint32_t guardedStrands = 0;
 };
 
@@ -91,8 +92,9 @@ class Engine {
 
     /// A copy.
     std::shared_ptr<const State> state() const;
-    /// Goes on from the state of another engine of as many strands of as many points; places and velocities are
-    /// kept, and the rest as far as both engines keep it. False, and nothing is changed, for other strands.
+    /// Goes on from the state of another engine of as many strands of as many points; places and velocities
+    /// are kept, and the rest as far as both engines keep it. False, and nothing is changed, for other
+    /// strands.
     bool setState(const State& state);
 
     std::uint32_t strandCount() const;
