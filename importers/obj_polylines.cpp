@@ -25,7 +25,8 @@ struct Node {
 
 class Chains {
   public:
-    Chains(const ObjStrandText& obj, RawStrands& raw) : obj_(obj), raw_(raw), nodes_(obj.vertices.size()) {}
+    Chains(const ObjStrandText& obj, RawStrands& raw, std::vector<std::uint32_t>& vertices)
+        : obj_(obj), raw_(raw), vertices_(vertices), nodes_(obj.vertices.size()) {}
 
     void addSegment(std::uint32_t from, std::uint32_t to) {
         if (from == to) return;
@@ -108,6 +109,7 @@ class Chains {
         std::uint32_t current = end;
         while (current != kNone) {
             raw_.positions.push_back(obj_.vertices[current]);
+            vertices_.push_back(current);
             const auto& neighbours = nodes_[current].neighbours;
             const std::uint32_t next = neighbours[0] != previous ? neighbours[0] : neighbours[1];
             previous = current;
@@ -118,12 +120,14 @@ class Chains {
 
     const ObjStrandText& obj_;
     RawStrands& raw_;
+    std::vector<std::uint32_t>& vertices_;
     std::vector<Node> nodes_;
 };
 
 }  // namespace
 
-Result<RawStrands> strandsFromLines(const std::string& file, const ObjStrandText& obj) {
+Result<RawStrands> strandsFromLines(const std::string& file, const ObjStrandText& obj,
+                                    std::vector<std::uint32_t>& vertices) {
     RawStrands raw;
     raw.format = "OBJ lines";
     raw.rootFirst = false;
@@ -132,7 +136,7 @@ Result<RawStrands> strandsFromLines(const std::string& file, const ObjStrandText
         return std::span(obj.lineIndices)
             .subspan(obj.lineOffsets[index], obj.lineOffsets[index + 1] - obj.lineOffsets[index]);
     };
-    Chains chains(obj, raw);
+    Chains chains(obj, raw, vertices);
     std::size_t segments = 0;
     std::size_t points = 0;
     for (std::size_t i = 0; i < lineCount; ++i) {
@@ -154,6 +158,7 @@ Result<RawStrands> strandsFromLines(const std::string& file, const ObjStrandText
             continue;
         }
         for (const std::uint32_t index : indices) raw.positions.push_back(obj.vertices[index]);
+        vertices.insert(vertices.end(), indices.begin(), indices.end());
         raw.offsets.push_back(static_cast<std::uint32_t>(raw.positions.size()));
         raw.sourceIndices.push_back(strand++);
     }

@@ -2,15 +2,17 @@
 // Strands of a Wavefront OBJ: lines where there are any, otherwise faces as Cinema 4D ribbons.
 
 #include <algorithm>
+#include <cstring>
 
 #include "importers/raw_strands.h"
 
 namespace hairloom {
 namespace {
 
-/// Text of any kind. Anything but white space and comments may stand before the first vertex.
+/// Text of any kind but PLY's. Anything but white space and comments may stand before the first vertex.
 bool isText(std::span<const std::byte> bytes) {
     const auto start = bytes.first(std::min<std::size_t>(bytes.size(), 4096));
+    if (start.size() >= 3 && std::memcmp(start.data(), "ply", 3) == 0) return false;
     return std::none_of(start.begin(), start.end(), [](std::byte b) { return b == std::byte{0}; });
 }
 
@@ -24,7 +26,8 @@ Result<RawStrands> readObj(const std::string& file, std::span<const std::byte> b
                       "expected an OBJ file with lines or hair ribbons");
     }
     const bool hasLines = obj->lineOffsets.size() > 1;
-    auto raw = hasLines ? strandsFromLines(file, *obj) : strandsFromRibbons(file, *obj, options);
+    std::vector<std::uint32_t> vertices;
+    auto raw = hasLines ? strandsFromLines(file, *obj, vertices) : strandsFromRibbons(file, *obj, options);
     if (raw) raw->warnings.insert(raw->warnings.begin(), obj->warnings.begin(), obj->warnings.end());
     return raw;
 }

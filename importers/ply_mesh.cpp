@@ -6,96 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 
-#include "importers/obj_text.h"
+#include "importers/ply_rows.h"
 
 namespace hairloom {
 namespace {
-
-/// Hands out the body's numbers one after another, whatever the encoding.
-class Numbers {
-  public:
-    Numbers(std::string file, std::span<const std::byte> bytes, const PlyHeader& header)
-        : file_(std::move(file)),
-          text_(reinterpret_cast<const char*>(bytes.data()), bytes.size()),
-          position_(header.bodyOffset),
-          line_(header.lines + 1),
-          encoding_(header.encoding) {}
-
-    std::uint64_t remaining() const { return text_.size() - position_; }
-
-    Result<double> next(PlyType type) {
-        return encoding_ == PlyEncoding::Text ? nextWord() : nextBinary(type);
-    }
-
-    tl::unexpected<Error> wrong(std::string problem, std::string expected = {}) const {
-        const Place place = encoding_ == PlyEncoding::Text ? Place(Line{line_}) : Place(Byte{position_});
-        return failIn(file_, place, std::move(problem), std::move(expected));
-    }
-
-  private:
-    Result<double> nextWord() {
-        while (position_ < text_.size() && isBlank(text_[position_])) line_ += text_[position_++] == '\n';
-        const std::size_t begin = position_;
-        while (position_ < text_.size() && !isBlank(text_[position_])) ++position_;
-        const std::string_view word = text_.substr(begin, position_ - begin);
-        if (word.empty()) return wrong("the file ends early");
-        const auto number = parseNumber(word);
-        if (!number) return wrong(fmt::format("'{}' is no number", shortened(word)));
-        return *number;
-    }
-
-    static bool isBlank(char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; }
-
-    Result<double> nextBinary(PlyType type) {
-        const std::size_t size = sizeOf(type);
-        if (remaining() < size) return wrong("the file ends early");
-        std::array<char, 8> bytes{};
-        std::memcpy(bytes.data(), text_.data() + position_, size);
-        if (encoding_ == PlyEncoding::BigEndian) std::reverse(bytes.begin(), bytes.begin() + size);
-        position_ += size;
-        switch (type) {
-            case PlyType::Int8:
-                return as<std::int8_t>(bytes);
-            case PlyType::Uint8:
-                return as<std::uint8_t>(bytes);
-            case PlyType::Int16:
-                return as<std::int16_t>(bytes);
-            case PlyType::Uint16:
-                return as<std::uint16_t>(bytes);
-            case PlyType::Int32:
-                return as<std::int32_t>(bytes);
-            case PlyType::Uint32:
-                return as<std::uint32_t>(bytes);
-            case PlyType::Float32:
-                return as<float>(bytes);
-            case PlyType::Float64:
-                return as<double>(bytes);
-        }
-        return wrong("a value of no known type");
-    }
-
-    template <class T>
-    static double as(const std::array<char, 8>& bytes) {
-        T value;
-        std::memcpy(&value, bytes.data(), sizeof value);
-        return static_cast<double>(value);
-    }
-
-    std::string file_;
-    std::string_view text_;
-    std::size_t position_;
-    std::uint64_t line_;
-    PlyEncoding encoding_;
-};
-
-/// The properties of one row. Single values are at their property's index; lists are kept where they are
-/// wanted.
-struct Row {
-    std::vector<double> values;
-    std::vector<std::vector<double>> lists;
-};
 
 class PlyReader {
   public:
@@ -113,10 +28,7 @@ class PlyReader {
   private:
     Status readElement(const PlyElement& element) {
         if (element.properties.empty()) return {};
-        if (element.count > numbers_.remaining()) {
-            return numbers_.wrong(fmt::format("{} rows of '{}' are promised", element.count, element.name),
-                                  fmt::format("only {} bytes are left", numbers_.remaining()));
-        }
+        if (auto status = numbers_.checkCount(element); !status) return status;
         const bool isVertex = element.name == "vertex", isFace = element.name == "face";
         if (isVertex) {
             if (auto status = findVertexProperties(element); !status) return status;
@@ -124,38 +36,12 @@ class PlyReader {
         if (isFace) {
             if (auto status = findFaceProperties(element); !status) return status;
         }
-        Row row{std::vector<double>(element.properties.size()),
-                std::vector<std::vector<double>>(element.properties.size())};
+        PlyRow row;
         for (std::uint64_t index = 0; index < element.count; ++index) {
-            if (auto status = readRow(element, row); !status) return status;
+            if (auto status = numbers_.row(element, row); !status) return status;
             if (isVertex) addVertex(row);
             if (!isFace) continue;
             if (auto status = addFace(row); !status) return status;
-        }
-        return {};
-    }
-
-    Status readRow(const PlyElement& element, Row& row) {
-        for (std::size_t index = 0; index < element.properties.size(); ++index) {
-            const PlyProperty& property = element.properties[index];
-            if (!property.listSize) {
-                const auto value = numbers_.next(property.type);
-                if (!value) return tl::unexpected(value.error());
-                row.values[index] = *value;
-                continue;
-            }
-            const auto count = numbers_.next(*property.listSize);
-            if (!count) return tl::unexpected(count.error());
-            if (!(*count >= 0) || *count > static_cast<double>(numbers_.remaining())) {
-                return numbers_.wrong(fmt::format("a list of {} values", *count),
-                                      fmt::format("only {} bytes are left", numbers_.remaining()));
-            }
-            row.lists[index].clear();
-            for (double entry = 0; entry < *count; ++entry) {
-                const auto value = numbers_.next(property.type);
-                if (!value) return tl::unexpected(value.error());
-                row.lists[index].push_back(*value);
-            }
         }
         return {};
     }
@@ -182,7 +68,7 @@ class PlyReader {
         return {};
     }
 
-    void addVertex(const Row& row) {
+    void addVertex(const PlyRow& row) {
         const auto at = [&](const std::optional<std::size_t>& index) {
             return static_cast<float>(row.values[*index]);
         };
@@ -191,7 +77,7 @@ class PlyReader {
         if (hasUvs_) uvs_.emplace_back(at(uv_[0]), at(uv_[1]));
     }
 
-    Status addFace(const Row& row) {
+    Status addFace(const PlyRow& row) {
         PolygonSoup& soup = scene_.soup;
         const std::vector<double>& indices = row.lists[*indices_];
         if (indices.size() < 3) {
@@ -242,7 +128,7 @@ class PlyReader {
         for (const std::uint32_t corner : soup.corners) soup.normals.push_back(normals_[corner].normalized());
     }
 
-    Numbers numbers_;
+    PlyRows numbers_;
     const PlyHeader& header_;
     RawScene scene_;
     std::array<std::optional<std::size_t>, 3> position_, normal_;

@@ -84,7 +84,9 @@ Result<ObjStrandText> parseObjStrands(const std::string& file, std::string_view 
 Result<RawStrands> strandsFromRibbons(const std::string& file, const ObjStrandText& obj,
                                       const StrandImportOptions& options);
 
-/// Lines into strands; those of two points that share vertices are chained.
-Result<RawStrands> strandsFromLines(const std::string& file, const ObjStrandText& obj);
+/// Lines into strands; those of two points that share vertices are chained. `vertices` gets the vertex of
+/// each point.
+Result<RawStrands> strandsFromLines(const std::string& file, const ObjStrandText& obj,
+                                    std::vector<std::uint32_t>& vertices);
 
 }  // namespace hairloom

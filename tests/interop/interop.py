@@ -20,6 +20,7 @@ ROWS = [
     ("usdc", "as usda", "Pixar's usd-core"),
     ("hair", "yes", "a reader of its own page"),
     ("tfx", "versions 3 and 4", "a reader of its own page"),
+    ("ply", "lists of vertices, edges", "a reader of its own page"),
 ]
 
 
@@ -90,7 +91,7 @@ def judged(row, groom, folder, cli, blender):
     run(cli, "export", groom, "--format", "hair", "--points", "16", "--force", "-o", truth)
     read = {"Blender": read_blender, "Pixar's usd-core": read_usd}.get(judge)
     if read is None:
-        read = plain_readers.read_hair if name == "hair" else plain_readers.read_tfx
+        read = getattr(plain_readers, "read_" + name)
     return worst_mm(read(path), plain_readers.read_hair(truth)), report
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Yuksel .hair and TressFX 4 read as their pages say, by nothing of Hairloom's: a list of strands of (x, y, z)."""
+"""Yuksel .hair, TressFX 4 and PLY read as their pages say, by nothing of Hairloom's: a list of strands of (x, y, z)."""
 import struct
 
 
@@ -29,6 +29,22 @@ def read_tfx(path):
     values = struct.unpack_from(f"<{4 * strands * vertices}f", data, positions)
     points = [values[4 * i:4 * i + 3] for i in range(strands * vertices)]
     return split(points, [vertices] * strands)
+
+
+def read_ply(path):
+    data = open(path, "rb").read()
+    head, body = data.split(b"end_header\n", 1)
+    counts = {words[1]: int(words[2]) for words in map(str.split, head.decode().splitlines()) if words[0] == "element"}
+    floats = head.count(b"property float")
+    points = [struct.unpack_from("<3f", body, 4 * floats * i) for i in range(counts["vertex"])]
+    strands, at = [], 4 * floats * counts["vertex"]
+    for _ in range(counts["strand"]):
+        count, = struct.unpack_from("<I", body, at)
+        strands.append([points[i] for i in struct.unpack_from(f"<{count}I", body, at + 4)])
+        at += 4 + 4 * count
+    if at != len(body):
+        raise ValueError(f"{len(body) - at} bytes follow the last strand")
+    return strands
 
 
 def split(points, counts):

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Strands of a PLY: lists of vertices in an element "strand", "line", "polyline" or "curve", or else edges,
+// which are chained. Other values of vertices come along by their names.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include "importers/curve_set.h"
+#include "importers/ply_rows.h"
+
+namespace hairloom {
+namespace {
+
+bool isPly(std::span<const std::byte> bytes) {
+    return bytes.size() >= 4 && std::memcmp(bytes.data(), "ply", 3) == 0 &&
+           (bytes[3] == std::byte{'\n'} || bytes[3] == std::byte{'\r'});
+}
+
+class Reader {
+  public:
+    Reader(const std::string& file, std::span<const std::byte> bytes, const PlyHeader& header)
+        : file_(file), rows_(file, bytes, header), header_(header) {}
+
+    Result<RawStrands> run() {
+        for (const PlyElement& element : header_.elements) {
+            if (element.properties.empty()) continue;
+            if (auto status = rows_.checkCount(element); !status) return tl::unexpected(status.error());
+            if (auto status = readElement(element); !status) return tl::unexpected(status.error());
+        }
+        if (lines_.lineOffsets.size() < 2)
+            return failIn(file_, {}, "is a PLY without strands", "expected an element of strands or edges");
+        const auto count = lines_.vertices.size();
+        if (std::ranges::any_of(lines_.lineIndices, [&](std::uint32_t index) { return index >= count; }))
+            return failIn(file_, {}, "a strand names a vertex that there is not",
+                          fmt::format("there are {}", count));
+        std::vector<std::uint32_t> vertices;
+        auto raw = strandsFromLines(file_, lines_, vertices);
+        if (!raw) return raw;
+        raw->format = "PLY strands";
+        raw->rootFirst = !hasEdges_;
+        for (const RawAttribute& attribute : attributes_) {
+            RawAttribute& added = raw->attributes.emplace_back(attribute);
+            added.numbers.clear();
+            for (const std::uint32_t vertex : vertices) added.numbers.push_back(attribute.numbers[vertex]);
+        }
+        takeColours(*raw);
+        adoptAttributes(*raw);
+        return raw;
+    }
+
+  private:
+    Status readElement(const PlyElement& element) {
+        constexpr std::array<std::string_view, 5> kLists{"strand", "strands", "line", "polyline", "curve"};
+        const bool isVertex = element.name == "vertex";
+        const bool isList = std::ranges::find(kLists, element.name) != kLists.end();
+        const bool isEdge = element.name == "edge";
+        if (isVertex) {
+            if (!lines_.vertices.empty() || !columns_.empty())
+                return rows_.wrong("vertices stand in two elements");
+            if (auto status = findProperties(element); !status) return status;
+        }
+        const auto list = element.find({"vertex_indices", "vertex_index", "indices"});
+        const auto from = element.find({"vertex1"}), to = element.find({"vertex2"});
+        if (isList && (!list || !element.properties[*list].listSize))
+            return rows_.wrong(fmt::format("'{}' has no vertex indices", element.name),
+                               "expected 'property list TYPE TYPE vertex_indices'");
+        if (isEdge && (!from || !to)) return rows_.wrong("edges without vertex1 and vertex2");
+        PlyRow row;
+        for (std::uint64_t index = 0; index < element.count; ++index) {
+            if (auto status = rows_.row(element, row); !status) return status;
+            if (isVertex) addVertex(row);
+            if (isList) {
+                if (auto status = addLine(row.lists[*list]); !status) return status;
+            } else if (isEdge) {
+                hasEdges_ = true;
+                if (auto status = addLine(std::array{row.values[*from], row.values[*to]}); !status)
+                    return status;
+            }
+        }
+        return {};
+    }
+
+    Status findProperties(const PlyElement& element) {
+        position_ = {element.find({"x"}), element.find({"y"}), element.find({"z"})};
+        if (!position_[0] || !position_[1] || !position_[2])
+            return rows_.wrong("vertices without x, y and z");
+        for (std::size_t index = 0; index < element.properties.size(); ++index) {
+            const PlyProperty& property = element.properties[index];
+            if (property.listSize || std::ranges::find(position_, std::optional(index)) != position_.end())
+                continue;
+            RawAttribute attribute;
+            attribute.name =
+                property.name == "thickness" || property.name == "diameter" ? "width" : property.name;
+            attribute.perPoint = true;
+            const bool known =
+                std::ranges::find(attributes_, attribute.name, &RawAttribute::name) != attributes_.end();
+            if (known) continue;
+            attributes_.push_back(std::move(attribute));
+            columns_.push_back(
+                {index, property.name == "radius" ? 2.0 : 1.0, property.type == PlyType::Uint8});
+            if (property.name == "radius") attributes_.back().name = "width";
+        }
+        return {};
+    }
+
+    void addVertex(const PlyRow& row) {
+        const auto at = [&](std::size_t axis) { return static_cast<float>(row.values[*position_[axis]]); };
+        lines_.vertices.emplace_back(at(0), at(1), at(2));
+        for (std::size_t k = 0; k < columns_.size(); ++k)
+            attributes_[k].numbers.push_back(
+                static_cast<float>(columns_[k].factor * row.values[columns_[k].index]));
+    }
+
+    template <class Indices>
+    Status addLine(const Indices& indices) {
+        for (const double index : indices) {
+            if (!(index >= 0) || index > 4294967294.0 || index != std::floor(index))
+                return rows_.wrong(fmt::format("a strand names vertex {}", index),
+                                   "expected an index from 0");
+            lines_.lineIndices.push_back(static_cast<std::uint32_t>(index));
+        }
+        lines_.lineOffsets.push_back(static_cast<std::uint32_t>(lines_.lineIndices.size()));
+        return {};
+    }
+
+    /// Red, green and blue, bytes or 0 … 1, are the points' colour.
+    void takeColours(RawStrands& raw) const {
+        std::array<std::size_t, 3> channels{};
+        constexpr std::array<std::string_view, 3> kNames{"red", "green", "blue"};
+        for (std::size_t c = 0; c < 3; ++c) {
+            const auto found = std::ranges::find(raw.attributes, kNames[c], &RawAttribute::name);
+            if (found == raw.attributes.end()) return;
+            channels[c] = static_cast<std::size_t>(found - raw.attributes.begin());
+        }
+        const float scale = columns_[channels[0]].isByte ? 1 / 255.0f : 1.0f;
+        for (std::size_t point = 0; point < raw.positions.size(); ++point)
+            raw.colours.emplace_back(scale * Vec3f(raw.attributes[channels[0]].numbers[point],
+                                                   raw.attributes[channels[1]].numbers[point],
+                                                   raw.attributes[channels[2]].numbers[point]));
+        std::erase_if(raw.attributes, [&](const RawAttribute& attribute) {
+            return std::ranges::find(kNames, attribute.name) != kNames.end();
+        });
+    }
+
+    struct Column {
+        std::size_t index;
+        double factor;
+        bool isByte;
+    };
+
+    const std::string& file_;
+    PlyRows rows_;
+    const PlyHeader& header_;
+    ObjStrandText lines_;
+    std::array<std::optional<std::size_t>, 3> position_;
+    std::vector<Column> columns_;           ///< of `attributes_`
+    std::vector<RawAttribute> attributes_;  ///< of vertices
+    bool hasEdges_ = false;
+};
+
+Result<RawStrands> readPly(const std::string& file, std::span<const std::byte> bytes,
+                           const StrandImportOptions&) {
+    const auto header = readPlyHeader(file, bytes);
+    if (!header) return tl::unexpected(header.error());
+    return Reader(file, bytes, *header).run();
+}
+
+}  // namespace
+
+StrandReader plyReader() {
+    return {{"PLY strands", {"ply"}}, Recognition::Guess, isPly, readPly};
+}
+
+}  // namespace hairloom
