@@ -134,7 +134,7 @@ PictureRequest smallPicture(const std::shared_ptr<const Groom>& groom) {
 Status sceneTakes(Rounds& rounds, bool whole) {
     auto device = gpu::createDevice();
     if (!device) return tl::unexpected(device.error());
-    RenderWork work(**device);
+    RenderWork work(**device, nullptr);
     auto groom = std::make_shared<const Groom>(desk().document().groom());
     auto moves = std::make_shared<StrandMoves>();
     for (std::uint32_t s = 0; s < groom->strandCount(); s += 20) {
