@@ -55,6 +55,13 @@ constexpr std::array kAllowed{
 
 constexpr std::uint32_t kLowHalf = 0;  // of a little-endian argument
 
+/// Sanitizers make system calls of their own.
+#if defined(HAIRLOOM_ADDRESS_SANITIZER) || defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kSanitized = true;
+#else
+constexpr bool kSanitized = false;
+#endif
+
 constexpr sock_filter load(std::size_t offset) {
     return BPF_STMT(BPF_LD | BPF_W | BPF_ABS, static_cast<std::uint32_t>(offset));
 }
@@ -87,10 +94,7 @@ void allowOutputs(std::vector<sock_filter>& filter, long call) {
 }
 
 bool limitSystemCalls() {
-#if defined(HAIRLOOM_ADDRESS_SANITIZER) || defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    return false;
-#else
-    if (kArchitecture == 0) return false;
+    if (kSanitized || kArchitecture == 0) return false;
     std::vector<sock_filter> filter{load(offsetof(seccomp_data, arch)), skipUnlessEqual(kArchitecture, 1),
                                     BPF_JUMP(BPF_JMP | BPF_JA, 1, 0, 0), end(SECCOMP_RET_KILL_PROCESS),
                                     load(offsetof(seccomp_data, nr))};
@@ -109,7 +113,6 @@ bool limitSystemCalls() {
     filter.push_back(end(SECCOMP_RET_ERRNO | EPERM));
     sock_fprog program{static_cast<unsigned short>(filter.size()), filter.data()};
     return prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) == 0;
-#endif
 }
 
 int landlockVersion() {
