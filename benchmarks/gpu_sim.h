@@ -14,7 +14,10 @@
 namespace hairloom::benchmarks {
 
 struct GpuBenchRow {
+    std::string hair;  ///< a sample's name, or "rods" or "springs" of the made-up head
     std::uint32_t strands = 0;
+    std::uint32_t points = 0;  ///< of all strands
+    std::uint32_t substeps = 0;
     std::string leftOut;  ///< an effect, or "nothing"
     std::string layout;
     GpuFrameCost gpu;
@@ -27,8 +30,10 @@ struct GpuBench {
     std::string device, driver, date;
     Machine machine;
     double copyBandwidth = 0;       ///< GB/s
-    std::vector<GpuBenchRow> rows;  ///< Figure 27: every effect, the first layout
-    std::vector<GpuBenchRow> effects, layouts;
+    std::vector<GpuBenchRow> samples;
+    std::vector<GpuBenchRow> rows;     ///< Figure 27: rods, every effect
+    std::vector<GpuBenchRow> effects;  ///< rods
+    std::vector<GpuBenchRow> layouts;  ///< rods, then springs in each layout
     std::optional<double> crossesOne,
         crossesAll;  ///< strands from which the GPU is faster than one, all threads
 };

@@ -6,11 +6,16 @@
 
 #include <chrono>
 
-#include "core/accuracy/step_cost.h"
+#include "benchmarks/sample_hair.h"
 #include "core/gpu_simulation/kernel_library.h"
 
 namespace hairloom::benchmarks {
 namespace {
+
+using scenes::ActiveForces;
+
+constexpr std::uint32_t kPoints = 16;
+constexpr runtime::StrandModel kRods = runtime::StrandModel::rods;
 
 struct Extent {
     std::vector<std::uint32_t> strands{100, 200, 300, 1'000, 3'000, 10'000, 30'000, 100'000};
@@ -38,28 +43,30 @@ class Rows {
               std::make_shared<gpu_simulation::KernelLibrary>(device, gpu_simulation::userKernelFolder())),
           seconds_(seconds) {}
 
-    Result<GpuBenchRow> measure(std::uint32_t strands, LeftOut leftOut, const NamedLayout& layout) {
-        GpuStepScene scene;
-        scene.strands = strands;
-        scene.leftOut = leftOut;
-        scene.layout = layout.options;
-        auto run = GpuStepRun::make(device_, kernels_, scene);
-        if (!run) return tl::unexpected(run.error());
-        const auto frames = run->framesFor(seconds_);
-        if (!frames) return tl::unexpected(frames.error());
-        // While the kernel was made, in the first of these frames, the device rested.
-        if (auto fast = bringToSpeed(device_, seconds_); !fast) return tl::unexpected(fast.error());
-        const auto cost = run->cost(*frames);
-        if (!cost) return tl::unexpected(cost.error());
-        GpuBenchRow row;
-        row.strands = strands;
-        row.leftOut = leftOutName(leftOut);
-        row.layout = layout.name;
-        row.gpu = *cost;
-        const double bytes = static_cast<double>(run->engine().frameBytes());
-        row.bytes = bytes / run->work();
-        const double milliseconds = cost->device > 0.0 ? cost->device : cost->wall;
-        row.bandwidth = bytes * 1e-6 / milliseconds;
+    Result<GpuBenchRow> measure(std::uint32_t strands, LeftOut leftOut, runtime::StrandModel model,
+                                const NamedLayout& layout) {
+        const auto forces =
+            leftOut == LeftOut::collision ? ActiveForces::gravity : ActiveForces::windAndSpheres;
+        auto row = measure(turningHead(strands, kPoints, forces), settingsWithout(leftOut, model), layout);
+        if (!row) return row;
+        row->hair = model == runtime::StrandModel::rods ? "rods" : "springs";
+        row->leftOut = leftOutName(leftOut);
+        return row;
+    }
+
+    Result<GpuBenchRow> measure(const Sample& sample) {
+        auto strands = nodding(sample.groom);
+        if (!strands) return tl::unexpected(strands.error());
+        auto row = measure(std::move(*strands), sample.groom.simulation, layouts().front());
+        if (!row) return row;
+        row->hair = sample.name;
+        row->leftOut = leftOutName(LeftOut::nothing);
+        for (const bool allThreads : {false, true}) {
+            auto again = nodding(sample.groom);
+            if (!again) return tl::unexpected(again.error());
+            StepRun run(std::move(*again), sample.groom.simulation, allThreads);
+            (allThreads ? row->cpuAll : row->cpuOne) = run.milliseconds(run.framesFor(seconds_));
+        }
         return row;
     }
 
@@ -74,6 +81,29 @@ class Rows {
     }
 
   private:
+    Result<GpuBenchRow> measure(std::unique_ptr<MovingStrands> strands,
+                                const runtime::SimulationSettings& settings, const NamedLayout& layout) {
+        auto run = GpuStepRun::make(device_, kernels_, std::move(strands), settings, layout.options);
+        if (!run) return tl::unexpected(run.error());
+        const auto frames = run->framesFor(seconds_);
+        if (!frames) return tl::unexpected(frames.error());
+        // While the kernel was made, in the first of these frames, the device rested.
+        if (auto fast = bringToSpeed(device_, seconds_); !fast) return tl::unexpected(fast.error());
+        const auto cost = run->cost(*frames);
+        if (!cost) return tl::unexpected(cost.error());
+        GpuBenchRow row;
+        row.strands = run->engine().strandCount();
+        row.points = run->engine().pointCount();
+        row.substeps = settings.substeps;
+        row.layout = layout.name;
+        row.gpu = *cost;
+        const double bytes = static_cast<double>(run->engine().frameBytes());
+        row.bytes = bytes / run->work();
+        const double milliseconds = cost->device > 0.0 ? cost->device : cost->wall;
+        row.bandwidth = bytes * 1e-6 / milliseconds;
+        return row;
+    }
+
     gpu::Device& device_;
     std::shared_ptr<gpu_simulation::KernelLibrary> kernels_;
     double seconds_;
@@ -82,7 +112,7 @@ class Rows {
 Status measureFigure(Rows& rows, const Extent& extent, GpuBench& bench) {
     std::vector<double> counts, gpu, one, all;
     for (const std::uint32_t strands : extent.strands) {
-        auto row = rows.measure(strands, LeftOut::nothing, rows.layouts().front());
+        auto row = rows.measure(strands, LeftOut::nothing, kRods, rows.layouts().front());
         if (!row) return tl::unexpected(row.error());
         row->cpuOne = rows.onCpu(strands, false);
         row->cpuAll = rows.onCpu(strands, true);
@@ -101,12 +131,15 @@ Status measureDetails(Rows& rows, const Extent& extent, GpuBench& bench) {
     const auto layouts = rows.layouts();
     for (const std::uint32_t strands : extent.details) {
         for (const LeftOut leftOut : kLeftOut) {
-            auto row = rows.measure(strands, leftOut, layouts.front());
+            auto row = rows.measure(strands, leftOut, kRods, layouts.front());
             if (!row) return tl::unexpected(row.error());
             bench.effects.push_back(std::move(*row));
         }
+        auto rods = rows.measure(strands, LeftOut::nothing, kRods, layouts.front());
+        if (!rods) return tl::unexpected(rods.error());
+        bench.layouts.push_back(std::move(*rods));
         for (const NamedLayout& layout : layouts) {
-            auto row = rows.measure(strands, LeftOut::nothing, layout);
+            auto row = rows.measure(strands, LeftOut::nothing, runtime::StrandModel::springs, layout);
             if (!row) return tl::unexpected(row.error());
             bench.layouts.push_back(std::move(*row));
         }
@@ -132,6 +165,13 @@ Result<GpuBench> measureAll(const Options& options) {
     if (!bandwidth) return tl::unexpected(bandwidth.error());
     bench.copyBandwidth = *bandwidth;
     Rows rows(**device, extent.seconds);
+    const auto& hair = samples();
+    if (!hair) return tl::unexpected(hair.error());
+    for (const Sample& sample : *hair) {
+        auto row = rows.measure(sample);
+        if (!row) return tl::unexpected(row.error());
+        bench.samples.push_back(std::move(*row));
+    }
     if (auto status = measureFigure(rows, extent, bench); !status) return tl::unexpected(status.error());
     if (auto status = measureDetails(rows, extent, bench); !status) return tl::unexpected(status.error());
     return bench;

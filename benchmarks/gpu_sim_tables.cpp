@@ -23,7 +23,10 @@ std::string orDash(const std::optional<double>& value, const char* unit) {
 }
 
 Report rowReport(const GpuBenchRow& row) {
-    return Report{{"strands", row.strands},
+    return Report{{"hair", row.hair},
+                  {"strands", row.strands},
+                  {"points", row.points},
+                  {"substeps", row.substeps},
                   {"left_out", row.leftOut},
                   {"layout", row.layout},
                   {"gpu_ms", row.gpu.device},
@@ -45,8 +48,8 @@ using Out = std::back_insert_iterator<std::string>;
 
 void csvRows(const std::vector<GpuBenchRow>& rows, const char* table, Out out) {
     for (const GpuBenchRow& row : rows) {
-        fmt::format_to(out, "{},{},16,8,{},\"{}\",{:.6g},{:.6g},{:.6g},{},{},{:.6g},{:.6g}\n", table,
-                       row.strands, row.leftOut, row.layout, row.gpu.device, row.gpu.wall, row.gpu.together,
+        fmt::format_to(out, "{},{},{},{},{},{},\"{}\",{:.6g},{:.6g},{:.6g},{},{},{:.6g},{:.6g}\n", table,
+                       row.hair, row.strands, row.points, row.substeps, row.leftOut, row.layout, row.gpu.device, row.gpu.wall, row.gpu.together,
                        orNothing(row.cpuOne), orNothing(row.cpuAll), row.bytes, row.bandwidth);
     }
 }
@@ -94,6 +97,7 @@ Report reportOf(const GpuBench& bench) {
                   {"copy_gb_per_s", bench.copyBandwidth},
                   {"crosses_one_thread", orNull(bench.crossesOne)},
                   {"crosses_all_threads", orNull(bench.crossesAll)},
+                  {"samples", rowsReport(bench.samples)},
                   {"rows", rowsReport(bench.rows)},
                   {"effects", rowsReport(bench.effects)},
                   {"layouts", rowsReport(bench.layouts)}};
@@ -106,8 +110,9 @@ std::string csvOf(const GpuBench& bench) {
                    bench.device, bench.driver, bench.date, bench.machine.processor, bench.machine.threads,
                    bench.copyBandwidth);
     fmt::format_to(out,
-                   "table,strands,points,substeps,left_out,layout,gpu_ms,gpu_wall_ms,gpu_together_ms,"
+                   "table,hair,strands,points,substeps,left_out,layout,gpu_ms,gpu_wall_ms,gpu_together_ms,"
                    "cpu_one_thread_ms,cpu_all_threads_ms,bytes_per_particle_substep,gb_per_s\n");
+    csvRows(bench.samples, "samples", out);
     csvRows(bench.rows, "figure", out);
     csvRows(bench.effects, "effects", out);
     csvRows(bench.layouts, "layouts", out);
@@ -121,8 +126,8 @@ std::string markdownOf(const GpuBench& bench, const std::string& command) {
         out,
         "# Measured on a GPU\n\nWritten by `{}` on {}. docs/gpu-simulation.md says what is measured.\n\n"
         "Device: {}, driver {}; it copies {:.0f} GB/s (read and written). Processor: {}, {} threads.\n\n"
-        "Strands of 16 points, 8 substeps, every effect, ten spheres; ms a frame. The GPU's wall clock "
-        "passes below one thread at {} strands, below all threads at {}.\n\n"
+        "Strands of 16 points with the default settings, every effect, ten spheres; ms a frame. The GPU's wall "
+        "clock passes below one thread at {} strands, below all threads at {}.\n\n"
         "| strands | GPU | GPU, wall | GPU, frames together | CPU, one thread | CPU, all threads | "
         "bytes a particle and substep | share of the copy's bandwidth |\n|---|---|---|---|---|---|---|---|\n",
         command, bench.date, bench.device, bench.driver, bench.copyBandwidth, bench.machine.processor,
@@ -132,17 +137,25 @@ std::string markdownOf(const GpuBench& bench, const std::string& command) {
                        row.gpu.device, row.gpu.wall, row.gpu.together, orDash(row.cpuOne, ""),
                        orDash(row.cpuAll, ""), row.bytes, 100.0 * row.bandwidth / bench.copyBandwidth);
     }
+    fmt::format_to(out,
+                   "\n## The samples\n\nOn a nodding head, with their own settings; ms a frame.\n\n"
+                   "| sample | strands | points | substeps | GPU | GPU, wall | CPU, one thread | CPU, all threads |\n"
+                   "|---|---|---|---|---|---|---|---|\n");
+    for (const GpuBenchRow& row : bench.samples) {
+        fmt::format_to(out, "| {} | {} | {} | {} | {:.3g} | {:.3g} | {} | {} |\n", row.hair, row.strands, row.points,
+                       row.substeps, row.gpu.device, row.gpu.wall, orDash(row.cpuOne, ""), orDash(row.cpuAll, ""));
+    }
     effectRows(bench, out);
-    fmt::format_to(out, "\n## Layouts\n\n| strands | layout | GPU, ms |\n|---|---|---|\n");
+    fmt::format_to(out, "\n## Layouts\n\n| strands | model | layout | GPU, ms |\n|---|---|---|---|\n");
     for (const GpuBenchRow& row : bench.layouts)
-        fmt::format_to(out, "| {} | {} | {:.3g} |\n", row.strands, row.layout, row.gpu.device);
+        fmt::format_to(out, "| {} | {} | {} | {:.3g} |\n", row.strands, row.hair, row.layout, row.gpu.device);
     return text;
 }
 
 std::string figureOf(const GpuBench& bench) {
     Plot plot;
     plot.title = "A frame of simulation against the number of guides";
-    plot.note = fmt::format("16 points, 8 substeps, every effect, ten spheres. {}; {}, {} threads; {}",
+    plot.note = fmt::format("16 points, default settings, every effect, ten spheres. {}; {}, {} threads; {}",
                             bench.device, bench.machine.processor, bench.machine.threads, bench.date);
     plot.x = {.title = "guides", .scale = Scale::Logarithmic};
     plot.y = {.title = "time", .unit = "ms", .scale = Scale::Logarithmic};

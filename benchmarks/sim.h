@@ -79,7 +79,6 @@ struct SimulationBench {
 
 /// Of the guides of Table 3: the thesis does not say; its Figure 5 has 10 segments.
 inline constexpr std::uint32_t kThesisSegments = 30;
-inline constexpr std::uint32_t kThesisSubsteps = 8;
 
 /// The tables as Markdown; `command` is how they were made.
 std::string markdownOf(const SimulationBench& bench, const std::string& command);

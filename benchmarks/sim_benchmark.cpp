@@ -159,7 +159,7 @@ class Bench {
         column.whole = {fmt::format("Table 3, step and interpolation, {}", setup), "ms", {}};
         StepRun run({.strands = column.guides,
                      .points = kThesisSegments + 1,
-                     .substeps = kThesisSubsteps,
+                     .model = runtime::StrandModel::springs,
                      .byStage = true});
         const scenes::Lawn lawn(column.guides, column.neighbours + 1, kThesisSegments + 1, 0.0f);
         auto made = runtime::FollowHairs::make(lawn.view());
@@ -231,8 +231,11 @@ class Bench {
 
     void measureOverheads() {
         for (const std::uint32_t strands : {kGuides, kMoreStrands}) {
-            StepRun engine({.strands = strands, .points = kPoints, .activeForces = ActiveForces::nothing});
-            BareIntegrator bare(strands, kPoints, 8);
+            StepRun engine({.strands = strands,
+                            .points = kPoints,
+                            .activeForces = ActiveForces::nothing,
+                            .model = runtime::StrandModel::springs});
+            BareIntegrator bare(strands, kPoints);
             const std::uint32_t frames = engine.framesFor(0.5 * seconds_);
             bare.milliseconds(frames);
             // In turns, so that what else the machine does falls on both.

@@ -72,12 +72,13 @@ void writeSamples(const SimulationBench& bench, Out out) {
 
 void writeSteps(const SimulationBench& bench, Out out) {
     fmt::format_to(out,
-                   "\n## A step\n\nNanoseconds per particle and substep, strands of 16 points, 8 substeps; "
+                   "\n## A step\n\nNanoseconds per particle and substep, strands of 16 points with the default settings; "
                    "milliseconds are of a whole frame.\n\n| strands | scene | threads | ns | ms a frame "
                    "|\n|---|---|---|---|---|\n");
     for (const StepCosts& costs : bench.steps) {
         const double work =
-            static_cast<double>(costs.scene.strands) * costs.scene.points * costs.scene.substeps * 1e-6;
+            static_cast<double>(costs.scene.strands) * costs.scene.points * costs.scene.settings().substeps *
+            1e-6;
         fmt::format_to(out, "| {} | {} | {} | {} | {} |\n", costs.scene.strands,
                        nameOf(costs.scene.activeForces), costs.threads, spread(costs.step),
                        shortened(costs.step.median() * work));
@@ -124,7 +125,7 @@ void writeThesis(const SimulationBench& bench, Out out) {
         "\n## Table 3 of the thesis\n\nMilliseconds per frame on one thread: Rünz 2012, Section 7.2 "
         "(Core i7-920), then this machine, then how many times faster. {} segments a guide, {} substeps, "
         "wind and ten spheres.\n\n| |",
-        kThesisSegments, kThesisSubsteps);
+        kThesisSegments, runtime::kSpringSubsteps);
     std::string rule = "|---|";
     for (const ThesisCosts& column : bench.thesis) {
         fmt::format_to(out, " {} guides, {} neighbours |", column.guides, column.neighbours);

@@ -11,11 +11,12 @@ out=$(cd "$1" && pwd)
 pictures=${2:+$(cd "$2" && pwd)}
 cli=${HAIRLOOM_CLI:-$top/build/release/bin/hairloom-cli}
 
+# measure NAME OPTION…
 measure() {
     local name=$1
+    shift
     "$cli" accuracy "$out/$name.hairloom" -o "$out/$name" --motion clip:nod_and_turn --wind "$wind" \
-        --frames 60 --fps 30 --integrators verlet,velocityVerlet,leapfrog,explicitEuler,implicitEuler,rk4 \
-        --substeps 1,2,4,8,16,32 --iterations 1,2 --points 8,16,24 --repeat 3
+        --frames 60 --fps 30 --points 8,16,24 --repeat 3 "$@"
     [ -z "$pictures" ] || cp "$out/$name/work_precision.svg" "$pictures/accuracy-$name.svg"
 }
 
@@ -24,10 +25,11 @@ for style in short shoulder long; do
     # shellcheck source=/dev/null
     . "samples/hairstyles/$style.conf"
     samples/make_hairstyle.sh --project-only "$style" "$out"
-    measure "$style"
+    measure "$style" --substeps 1,2,3,4,8,16 --vary strandModel=rods,springs
     if [ "$style" = shoulder ]; then
-        "$cli" set "$out/shoulder.hairloom" simulation.angularStiffness=0.1 simulation.bendDampingTime=0 \
-            -o "$out/shoulder-soft.hairloom"
-        measure shoulder-soft
+        "$cli" set "$out/shoulder.hairloom" simulation.strandModel=springs simulation.angularStiffness=0.1 \
+            simulation.bendDampingTime=0 -o "$out/shoulder-soft.hairloom"
+        measure shoulder-soft --integrators verlet,velocityVerlet,leapfrog,explicitEuler,implicitEuler,rk4 \
+            --substeps 1,2,4,8,16,32 --iterations 1,2
     fi
 done

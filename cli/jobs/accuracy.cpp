@@ -55,15 +55,16 @@ Result<GridAxis> parseVariation(const std::string& text) {
 }
 
 Result<std::vector<GridAxis>> axesOf(const AccuracyOptions& options, const Groom& groom) {
+    const bool springs = groom.simulation.strandModel == runtime::StrandModel::springs;
     const std::string own = nameOf(groom.simulation.integrator);
     const auto orElse = [](const std::vector<std::string>& given, const std::vector<std::string>& otherwise) {
         return given.empty() ? otherwise : given;
     };
-    std::vector<std::pair<std::string_view, std::vector<std::string>>> wanted{
-        {"integrator", orElse(options.integrators, {own})},
-        {"substeps", orElse(options.substeps, {"1", "2", "4", "8", "16", "32"})},
-        {"lengthIterations", orElse(options.iterations, {"1", "2"})},
-        {kPointsAxis, orElse(options.points, pointsToTry(groom))}};
+    std::vector<std::pair<std::string_view, std::vector<std::string>>> wanted;
+    if (springs) wanted.emplace_back("integrator", orElse(options.integrators, {own}));
+    wanted.emplace_back("substeps", orElse(options.substeps, {"1", "2", "4", "8", "16", "32"}));
+    if (springs) wanted.emplace_back("lengthIterations", orElse(options.iterations, {"1", "2"}));
+    wanted.emplace_back(kPointsAxis, orElse(options.points, pointsToTry(groom)));
     if (!options.threadCounts.empty()) wanted.emplace_back(kThreadsAxis, options.threadCounts);
     std::vector<GridAxis> axes;
     for (const auto& [field, values] : wanted) {
@@ -114,8 +115,11 @@ Report frontReport(const WorkPrecision& result) {
 }
 
 Result<Report> accuracy(const AccuracyOptions& options, const std::string& commandLine) {
-    const auto scene = openMovingGroom(options.motion);
+    auto scene = openMovingGroom(options.motion);
     if (!scene) return tl::unexpected(scene.error());
+    // Rods have neither integrators nor corrections of length.
+    if (!options.integrators.empty() || !options.iterations.empty())
+        scene->groom.simulation.strandModel = runtime::StrandModel::springs;
     auto axes = axesOf(options, scene->groom);
     if (!axes) return tl::unexpected(axes.error());
     WorkPrecisionOptions measuring;
@@ -164,9 +168,9 @@ JobRun declare(CLI::App& job) {
     const auto list = [&](const char* name, std::vector<std::string>& values, const char* does) {
         job.add_option(name, values, does)->delimiter(',');
     };
-    list("--integrators", options->integrators, "Integrators to try, instead of the groom's own");
-    list("--substeps", options->substeps, "Steps per frame to try");
-    list("--iterations", options->iterations, "Corrections of length per substep to try");
+    list("--integrators", options->integrators, "Integrators of springs to try, instead of the groom's own; makes strands springs");
+    list("--substeps", options->substeps, "Steps in 1/60 s to try");
+    list("--iterations", options->iterations, "Corrections of length per substep of springs to try; makes strands springs");
     list("--points", options->points,
          "Points per strand to try, instead of the groom's, a half and a quarter");
     list("--thread-counts", options->threadCounts, "Numbers of threads to try, instead of --threads alone");

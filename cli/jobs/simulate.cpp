@@ -81,7 +81,7 @@ class RecordComparison {
 
 /// The settings of the groom with what the command line says instead.
 Status overrideSettings(Groom& groom, const SimulateOptions& options) {
-    if (options.substeps > 0) groom.simulation.substeps = options.substeps;
+    const runtime::StrandModel own = groom.simulation.strandModel;
     const auto names = runtime::integratorNames();
     if (const auto chosen = std::ranges::find(names, options.integrator); chosen != names.end()) {
         groom.simulation.integrator = static_cast<runtime::Integrator>(chosen - names.begin());
@@ -89,6 +89,9 @@ Status overrideSettings(Groom& groom, const SimulateOptions& options) {
     }
     if (options.model == "rods") groom.simulation.strandModel = runtime::StrandModel::rods;
     if (options.model == "springs") groom.simulation.strandModel = runtime::StrandModel::springs;
+    if (groom.simulation.strandModel == runtime::StrandModel::springs && own == runtime::StrandModel::rods)
+        groom.simulation.substeps = std::max(groom.simulation.substeps, runtime::kSpringSubsteps);
+    if (options.substeps > 0) groom.simulation.substeps = options.substeps;
     return setWind(groom, options.wind);
 }
 
@@ -225,7 +228,7 @@ Result<Report> simulate(const SimulateOptions& options) {
         simulation->step(1.0f / options.framesPerSecond, pose);
         if (const auto status = simulation->status(); !status) return tl::unexpected(status.error());
         if (recorder) {
-            if (auto added = recorder->add(simulation->positions_ws(), pose); !added) {
+            if (auto added = recorder->add(simulation->positions_ws(), inWorld(pose)); !added) {
                 return tl::unexpected(added.error());
             }
         }
@@ -249,7 +252,7 @@ Result<Report> simulate(const SimulateOptions& options) {
         report["record"] = options.record;
     }
     if (!options.output.empty()) {
-        const Groom moved = posedGroom(*groom, simulation->positions_ws(), pose);
+        const Groom moved = posedGroom(*groom, simulation->positions_ws(), inWorld(pose));
         if (auto saved = saveProject(moved, options.output); !saved) return tl::unexpected(saved.error());
         report["output"] = options.output;
     }
@@ -272,8 +275,8 @@ JobRun declare(CLI::App& job) {
         ->check(CLI::IsMember({"rods", "springs"}));
     job.add_option("--integrator", options->integrator, "How springs are advanced; makes strands springs")
         ->check(CLI::IsMember(runtime::integratorNames()));
-    job.add_option("--substeps", options->substeps, "Steps per frame, instead of the groom's own")
-        ->check(CLI::Range(1, 64));
+    job.add_option("--substeps", options->substeps, "Steps in 1/60 s, instead of the groom's own (springs of a groom of rods: 8 at least)")
+        ->check(CLI::Range(1u, runtime::kMaxSubsteps));
     job.add_option("--wind", options->wind, "Velocity of the air X,Y,Z in m/s, instead of the groom's own");
     job.add_option("--motion", options->motion,
                    "How the head moves: none, spin, nod, clip:NAME or a file of keys F.json");

@@ -107,8 +107,10 @@ constexpr std::string_view nameOf(ActiveForces activeForces) {
     return "straight hair, wind and ten spheres";
 }
 
-inline runtime::SimulationSettings settingsFor(ActiveForces activeForces) {
+inline runtime::SimulationSettings settingsFor(ActiveForces activeForces, runtime::StrandModel model) {
     runtime::SimulationSettings s;
+    s.strandModel = model;
+    if (model == runtime::StrandModel::springs) s.substeps = runtime::kSpringSubsteps;
     s.sleepSpeed = 0.0f;
     if (hasSpheres(activeForces)) {
         s.windSpeed = 4.0f;

@@ -25,7 +25,8 @@ std::vector<GridAxis> axesOf(const Groom& groom) {
     const runtime::SimulationSettings& own = groom.simulation;
     std::set<double> substeps{1, 2, 4, 8, 16, 32, static_cast<double>(own.substeps)};
     std::vector<GridAxis> axes{{"substeps", {substeps.begin(), substeps.end()}}};
-    if (own.lengthMethod == runtime::LengthMethod::constraint && own.lengthIterations > 0) {
+    const bool springs = own.strandModel == runtime::StrandModel::springs;
+    if (springs && own.lengthMethod == runtime::LengthMethod::constraint && own.lengthIterations > 0) {
         std::set<double> iterations{1, 2, static_cast<double>(own.lengthIterations)};
         axes.push_back({"lengthIterations", {iterations.begin(), iterations.end()}});
     }

@@ -99,6 +99,7 @@ Result<EffectCosts> measureEffectCosts(const Groom& groom, const HeadMotion& mot
     const std::size_t total = 1 + (1 + static_cast<std::size_t>(offCount)) * options.repeats;
     std::size_t done = 1;
     const auto runOnce = [&](Variant& variant) -> Status {
+        if (options.cancelled && options.cancelled()) return fail("measuring the effects was cancelled");
         auto result = runScene(variant.hair, poses, options.time, {});
         if (!result) return tl::unexpected(result.error());
         variant.times.push_back(result->millisecondsPerFrame);

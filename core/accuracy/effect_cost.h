@@ -16,6 +16,7 @@ struct EffectCostOptions {
     SceneTime time;             ///< stepsPerFrame is 1
     std::uint32_t repeats = 5;  ///< timed runs with and without each effect, ≥ 1
     std::function<void(std::size_t done, std::size_t total)> progress;
+    std::function<bool()> cancelled;  ///< asked between runs; true ends them with an error
 };
 
 struct EffectCost {
@@ -39,7 +40,7 @@ struct EffectCosts {
 };
 
 /// Which effects this scene calls for, after its last frame, and what they cost. Errors: those of
-/// Simulation::make.
+/// Simulation::make, and being cancelled.
 Result<EffectCosts> measureEffectCosts(const Groom& groom, const HeadMotion& motion,
                                        const EffectCostOptions& options);
 

@@ -85,29 +85,6 @@ class Copies {
     gpu::ComputePipelinePtr kernel_;
 };
 
-runtime::SimulationSettings settingsOf(const GpuStepScene& scene) {
-    runtime::SimulationSettings s = scenes::settingsFor(scene.activeForces);
-    s.substeps = scene.substeps;
-    switch (scene.leftOut) {
-        case LeftOut::nothing:
-        case LeftOut::collision:
-            break;
-        case LeftOut::wind:
-            s.airDrag = 0.0f;
-            break;
-        case LeftOut::angular:
-            s.angularStiffness = 0.0f;
-            break;
-        case LeftOut::length:
-            s.lengthIterations = 0;
-            break;
-        case LeftOut::damping:
-            s.dampingTime = 0.0f;
-            break;
-    }
-    return s;
-}
-
 }  // namespace
 
 /// Gives a GPU work for a while. What is copied stays in its caches beside the hair.
@@ -148,6 +125,28 @@ const char* leftOutName(LeftOut effect) {
     return kNames[static_cast<std::size_t>(effect)];
 }
 
+runtime::SimulationSettings settingsWithout(LeftOut effect, runtime::StrandModel model) {
+    runtime::SimulationSettings s = scenes::settingsFor(scenes::ActiveForces::windAndSpheres, model);
+    switch (effect) {
+        case LeftOut::nothing:
+        case LeftOut::collision:
+            break;
+        case LeftOut::wind:
+            s.airDrag = 0.0f;
+            break;
+        case LeftOut::angular:
+            s.angularStiffness = 0.0f;
+            break;
+        case LeftOut::length:
+            s.lengthIterations = 0;
+            break;
+        case LeftOut::damping:
+            s.dampingTime = 0.0f;
+            break;
+    }
+    return s;
+}
+
 std::vector<NamedLayout> measuredLayouts(gpu::DeviceType type) {
     std::vector<NamedLayout> layouts{{"chosen", {}},
                                      {"lanes, 1 strand a group", {StrandStorage::lanes, true, 1, 1}},
@@ -174,21 +173,23 @@ std::vector<NamedLayout> measuredLayouts(gpu::DeviceType type) {
     return layouts;
 }
 
-GpuStepRun::GpuStepRun(const GpuStepScene& scene, scenes::HeadOfHair head,
-                       gpu_simulation::StrandEngine engine, std::shared_ptr<const KeptBusy> busy)
-    : scene_(scene), head_(std::move(head)), engine_(std::move(engine)), busy_(std::move(busy)) {}
+GpuStepRun::GpuStepRun(std::unique_ptr<MovingStrands> strands, gpu_simulation::StrandEngine engine,
+                       std::shared_ptr<const KeptBusy> busy)
+    : strands_(std::move(strands)), engine_(std::move(engine)), busy_(std::move(busy)) {}
 
 Result<GpuStepRun> GpuStepRun::make(gpu::Device& device,
                                     std::shared_ptr<gpu_simulation::KernelLibrary> kernels,
-                                    const GpuStepScene& scene) {
-    scenes::HeadOfHair head(scene.strands, scene.points, isStraight(scene.activeForces));
+                                    std::unique_ptr<MovingStrands> strands,
+                                    const runtime::SimulationSettings& settings,
+                                    const gpu_simulation::LayoutOptions& layout) {
     gpu_simulation::EngineOptions options;
-    options.layout = scene.layout;
-    auto engine = gpu_simulation::StrandEngine::make(device, std::move(kernels), head.view(),
-                                                     settingsOf(scene), options);
+    options.layout = layout;
+    auto engine = gpu_simulation::StrandEngine::make(device, std::move(kernels), strands->view(), settings,
+                                                     options);
     if (!engine) return tl::unexpected(engine.error());
     std::vector<runtime::RootFrame> roots;
-    head.placeRoots(0.0, roots);
+    std::vector<runtime::Sphere> spheres;
+    strands->move(0.0, roots, spheres);
     if (auto placed = engine->reset(roots); !placed) return tl::unexpected(placed.error());
     std::shared_ptr<const KeptBusy> busy;
     if (device.info().type != gpu::DeviceType::Cpu) {
@@ -196,17 +197,16 @@ Result<GpuStepRun> GpuStepRun::make(gpu::Device& device,
         if (!made) return tl::unexpected(made.error());
         busy = std::move(*made);
     }
-    return GpuStepRun(scene, std::move(head), std::move(*engine), std::move(busy));
+    return GpuStepRun(std::move(strands), std::move(*engine), std::move(busy));
 }
 
 void GpuStepRun::nextFrame() {
     time_ += static_cast<double>(kFrame);
-    head_.placeRoots(time_, roots_);
+    strands_->move(time_, roots_, spheres_);
     input_.dt = kFrame;
     input_.time = time_;
     input_.roots_ws = roots_;
-    if (hasSpheres(scene_.activeForces) && scene_.leftOut != LeftOut::collision)
-        input_.spheres = head_.spheres;
+    input_.spheres = spheres_;
 }
 
 /// One frame at a time. `device` takes what the device's clock says, where it is asked for.
@@ -289,7 +289,7 @@ Result<std::uint32_t> GpuStepRun::framesFor(double seconds) {
 }
 
 double GpuStepRun::work() const {
-    return static_cast<double>(engine_.pointCount()) * scene_.substeps;
+    return static_cast<double>(engine_.pointCount()) * substepsIn(engine_.settings(), kFrame);
 }
 
 Result<double> copyBandwidth(gpu::Device& device) {

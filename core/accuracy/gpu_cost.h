@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// What a frame of the strand engine costs on a GPU, on the scenes of benchmark_scenes.h, and which share of
-// it falls to each effect. Roots and spheres are made before the clock starts, as in step_cost.h.
+// What a frame of the strand engine costs on a GPU, and which share of it falls to each effect. Roots and spheres are made before the clock starts, as in step_cost.h.
 
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "core/accuracy/benchmark_scenes.h"
+#include "core/accuracy/step_cost.h"
 #include "core/gpu_simulation/strand_engine.h"
 
 namespace hairloom {
@@ -18,6 +17,8 @@ enum class LeftOut { nothing, wind, collision, angular, length, damping };
 inline constexpr LeftOut kLeftOut[] = {LeftOut::nothing, LeftOut::wind,   LeftOut::collision,
                                        LeftOut::angular, LeftOut::length, LeftOut::damping};
 const char* leftOutName(LeftOut effect);
+/// All that acts on a head of hair but that.
+runtime::SimulationSettings settingsWithout(LeftOut effect, runtime::StrandModel model);
 
 /// How a scene is laid out on the device, by name.
 struct NamedLayout {
@@ -27,15 +28,6 @@ struct NamedLayout {
 /// Those worth measuring on such a device, its own first: a driver that compiles for a CPU takes minutes for
 /// unrolled loops.
 std::vector<NamedLayout> measuredLayouts(gpu::DeviceType type);
-
-struct GpuStepScene {
-    std::uint32_t strands = 0;
-    std::uint32_t points = 16;
-    std::uint32_t substeps = 8;
-    scenes::ActiveForces activeForces = scenes::ActiveForces::windAndSpheres;
-    LeftOut leftOut = LeftOut::nothing;
-    gpu_simulation::LayoutOptions layout;
-};
 
 /// Milliseconds a frame, medians.
 struct GpuFrameCost {
@@ -52,7 +44,9 @@ class GpuStepRun {
     /// Errors: those of StrandEngine::make.
     static Result<GpuStepRun> make(gpu::Device& device,
                                    std::shared_ptr<gpu_simulation::KernelLibrary> kernels,
-                                   const GpuStepScene& scene);
+                                   std::unique_ptr<MovingStrands> strands,
+                                   const runtime::SimulationSettings& settings,
+                                   const gpu_simulation::LayoutOptions& layout);
 
     /// Of `frames` ≥ 1 frames of 1/60 s. For its own clock a GPU copies memory while a frame is recorded: one
     /// that is left without work for most of the time clocks itself down.
@@ -65,18 +59,18 @@ class GpuStepRun {
     double work() const;
 
   private:
-    GpuStepRun(const GpuStepScene& scene, scenes::HeadOfHair head, gpu_simulation::StrandEngine engine,
+    GpuStepRun(std::unique_ptr<MovingStrands> strands, gpu_simulation::StrandEngine engine,
                std::shared_ptr<const KeptBusy> busy);
     void nextFrame();
     Result<std::vector<double>> wallOf(std::uint32_t frames, std::vector<double>* device);
     Result<std::vector<double>> deviceOf(std::uint32_t frames, double wall);
     Result<std::vector<double>> togetherOf(std::uint32_t frames);
 
-    GpuStepScene scene_;
-    scenes::HeadOfHair head_;
+    std::unique_ptr<MovingStrands> strands_;
     gpu_simulation::StrandEngine engine_;
     std::shared_ptr<const KeptBusy> busy_;  // null where the device is the CPU
     std::vector<runtime::RootFrame> roots_;
+    std::vector<runtime::Sphere> spheres_;
     runtime::FrameInput input_;
     double time_ = 0.0;
 };

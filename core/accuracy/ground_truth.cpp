@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
+#include <cmath>
 
 namespace hairloom {
 namespace {
@@ -13,9 +15,12 @@ constexpr std::uint32_t kFewestSubsteps = 4;
 constexpr std::uint32_t kLengthIterations = 4;
 
 /// An exact run has neither of these: sleep lets go of the motion, and few Newton steps of the length.
-runtime::SimulationSettings converged(runtime::SimulationSettings settings, std::uint32_t substeps) {
+runtime::SimulationSettings converged(runtime::SimulationSettings settings, const SceneTime& time,
+                                      std::uint32_t substeps) {
     settings.integrator = runtime::Integrator::verlet;
-    settings.substeps = substeps;
+    const float partsPerSecond = time.framesPerSecond * static_cast<float>(time.stepsPerFrame);
+    const float usual = std::ceil(static_cast<float>(substeps) * partsPerSecond * runtime::kUsualFrame);
+    settings.substeps = std::min(static_cast<std::uint32_t>(usual), runtime::kMaxSubsteps);
     settings.sleepSpeed = 0;
     if (settings.lengthIterations > 0) settings.lengthIterations = kLengthIterations;
     return settings;
@@ -23,7 +28,7 @@ runtime::SimulationSettings converged(runtime::SimulationSettings settings, std:
 
 Result<Trajectory> run(SceneHair hair, std::span<const HeadPose> poses, const SceneTime& time,
                        const Followed& followed, std::uint32_t substeps) {
-    hair.groom.simulation = converged(hair.groom.simulation, substeps);
+    hair.groom.simulation = converged(hair.groom.simulation, time, substeps);
     auto result = runScene(hair, poses, time, followed);
     if (!result) return tl::unexpected(result.error());
     if (!result->trajectory.finite) {
@@ -36,7 +41,7 @@ Result<Trajectory> run(SceneHair hair, std::span<const HeadPose> poses, const Sc
 
 std::string EngineConverged::description() const {
     return fmt::format(
-        "the engine itself (single precision, position Verlet) with {} to {} substeps in each of {} parts of "
+        "the engine itself (single precision; springs by position Verlet) with {} to {} substeps in each of {} parts of "
         "a "
         "frame, {} Newton steps for length and no sleep",
         2 * kFewestSubsteps, maxSubsteps_, kStepsPerFrame, kLengthIterations);

@@ -59,10 +59,9 @@ class EngineConverged : public GroundTruthSource {
 /// substeps doubled until its points move by less than `toleranceMm`, and is left as it is at the most
 /// substeps. Strands run in parallel, each for itself: the same bits for any number of threads.
 ///
-/// A strand with a step that could not be solved, at its finest resolution, is left out. It leaves out what
-/// docs/engine.md says the reference leaves out: sleep, maximal extension on coil springs, and the energy
-/// tank that bounds how far held curves turn. What the scene has of it stands in the notes, and with it how
-/// far the converged engine is from the reference.
+/// A strand with a step that could not be solved, at its finest resolution, is left out. It leaves out sleep
+/// and the maximal extension of coil springs. What the scene has of it stands in the notes, and with it how far
+/// the converged engine is from the reference.
 class ReferenceConverged : public GroundTruthSource {
   public:
     struct Options {

@@ -24,8 +24,9 @@ constexpr const char* kLengthsAfterBending =
 /// fastest wave, where waves no longer resonate with the step (docs/stability.md).
 constexpr double kMargin = 0.3;
 
-/// Fewest substeps within the integrator's stable region, at least those of the settings; 64 where none are.
+/// Fewest substeps, from kSpringSubsteps on, within the integrator's stable region; kMaxSubsteps where none are.
 std::uint32_t substepsFor(const StrandSet& strands, runtime::SimulationSettings settings, float frame) {
+    settings.substeps = runtime::kSpringSubsteps;
     while (settings.substeps < kMaxSubsteps &&
            runtime::stableRegion(strands.view(), settings, frame).factor > kMargin)
         ++settings.substeps;
@@ -66,7 +67,7 @@ void HardCaseRun::frame(float dt) {
     if (over()) return;
     time_ += static_cast<double>(dt);
     engine_->step({dt, time_, roots_, spheres_});
-    substeps_ += settings().substeps;
+    substeps_ += substepsIn(settings(), dt);
     inspect();
 }
 

@@ -11,6 +11,9 @@ namespace {
 using runtime::Float3;
 
 constexpr float kSegment = 0.012f;  // metres
+constexpr const char* kCurved = "the pulls of curved springs are not those of an energy, and feed the hair";
+constexpr const char* kUneven =
+    "springs hold lengths after they have bent, and with masses this uneven the two undo each other's work";
 
 /// Points down and a little aside, with steps of these lengths in metres.
 std::vector<Float3> strandOf(const std::vector<float>& segments, float x) {
@@ -58,6 +61,7 @@ void coincidentNeighbours(HardCaseRun& caseRun) {
 }
 
 void foldedBack(HardCaseRun& caseRun) {
+    if (!caseRun.method().rods()) caseRun.disclaim(kCurved);
     StrandSet strands;
     std::vector<float> segments(15, kSegment);
     for (std::size_t s = 8; s < segments.size(); ++s) segments[s] = -kSegment;
@@ -80,6 +84,7 @@ void longStrand(HardCaseRun& caseRun) {
 }
 
 void smallCurls(HardCaseRun& caseRun) {
+    if (!caseRun.method().rods()) caseRun.disclaim(kCurved);
     constexpr float kRadius = 0.002f, kPitch = 0.006f;
     constexpr int kPointsPerTurn = 12, kTurns = 5;
     StrandSet strands;
@@ -123,6 +128,7 @@ void smallAndLarge(HardCaseRun& caseRun) {
 }
 
 void massRatio(HardCaseRun& caseRun) {
+    if (!caseRun.method().rods()) caseRun.disclaim(kUneven);
     StrandSet strands = tuft();
     for (std::uint32_t s = 0; s < strands.count(); ++s) {
         for (std::uint32_t p = 0; p < 16; ++p) {

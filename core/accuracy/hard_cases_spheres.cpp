@@ -8,8 +8,11 @@
 namespace hairloom::hardcases {
 namespace {
 
-constexpr const char* kPressedAlong =
-    "a rod cannot shorten: what a sphere pushes along the strand leaves it more slowly than half a second";
+constexpr const char* kRinged =
+    "the pushes of spheres that lie evenly around a point cancel each other, and it stays between them";
+
+constexpr const char* kFoundLate =
+    "a point that a substep itself presses into a sphere meets it a substep later, some tenths of a millimetre inside";
 
 using runtime::Float3;
 using runtime::Sphere;
@@ -43,7 +46,7 @@ void pointAtCentre(HardCaseRun& caseRun) {
 }
 
 void overlappingSpheres(HardCaseRun& caseRun) {
-    if (caseRun.method().rods()) caseRun.disclaim(kPressedAlong);
+    if (caseRun.method().rods()) caseRun.disclaim(kRinged);
     caseRun.start(oneDown());
     const Float3 point = caseRun.positions()[8];
     leaveSpheres(caseRun,
@@ -79,7 +82,7 @@ void rootThroughSphere(HardCaseRun& caseRun) {
 }
 
 void shrinkingSphere(HardCaseRun& caseRun) {
-    if (caseRun.method().rods()) caseRun.disclaim(kPressedAlong);
+    if (caseRun.method().rods()) caseRun.disclaim(kFoundLate);
     caseRun.start(oneDown());
     const auto sphereOf = [](float radius) { return Sphere{{0.01f, 0.0f, 0.0f}, radius}; };
     caseRun.setSpheres({sphereOf(0.04f)});

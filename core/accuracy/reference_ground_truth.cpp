@@ -16,8 +16,6 @@ namespace {
 constexpr std::uint32_t kStepsPerFrame = 4;
 constexpr std::uint32_t kFirstSubsteps = 2;
 constexpr std::uint32_t kEngineSubsteps = 16;  // of the converged engine that the notes compare with
-/// A joint that turns less at rest is straight.
-constexpr double kStraight = 1e-3;
 
 /// The poses of a run as all strands see them.
 struct SceneFrames {
@@ -105,7 +103,6 @@ StrandScene strandScene(const Groom& groom, const SceneFrames& frames, std::uint
 /// One strand's outcome.
 struct StrandGroundTruth {
     Result<reference::Convergence> motion = fail("not run");
-    bool curved = false;
 };
 
 StrandGroundTruth converge(const Groom& groom, const SceneFrames& frames, std::uint32_t strand,
@@ -114,12 +111,6 @@ StrandGroundTruth converge(const Groom& groom, const SceneFrames& frames, std::u
     StrandGroundTruth groundTruth;
     groundTruth.motion =
         reference::converged(scene.strand, groom.simulation, {&scene.start, 1}, scene.frames, goal);
-    if (const auto solver = reference::Solver::make(scene.strand, groom.simulation)) {
-        const reference::StrandShape& shape = solver->shape(0);
-        for (std::size_t j = std::max<std::size_t>(shape.firstFree, 1); j < shape.bend.size(); ++j)
-            groundTruth.curved =
-                groundTruth.curved || (shape.stiffness[j] > 0 && shape.bend[j].norm() > kStraight);
-    }
     return groundTruth;
 }
 
@@ -163,8 +154,7 @@ std::string detailOf(const std::vector<StrandGroundTruth>& strands, double toler
 }
 
 /// What the scene asks for and the reference leaves out.
-std::vector<std::string> notesOf(const runtime::SimulationSettings& settings, std::size_t curved,
-                                 std::size_t strands) {
+std::vector<std::string> notesOf(const runtime::SimulationSettings& settings) {
     std::vector<std::string> notes;
     if (settings.sleepSpeed > 0) {
         notes.push_back(
@@ -173,8 +163,9 @@ std::vector<std::string> notesOf(const runtime::SimulationSettings& settings, st
                         "that it would still have gone counts as error.",
                         settings.sleepSpeed));
     }
-    const bool springs = settings.lengthMethod != runtime::LengthMethod::constraint;
-    if (springs && settings.lengthIterations > 0) {
+    const bool springs = settings.strandModel == runtime::StrandModel::springs;
+    const bool coils = settings.lengthMethod != runtime::LengthMethod::constraint;
+    if (springs && coils && settings.lengthIterations > 0) {
         notes.push_back(
             fmt::format("The reference lets coil springs stretch as far as they will, the engine by {} of "
                         "their length at "
@@ -182,7 +173,7 @@ std::vector<std::string> notesOf(const runtime::SimulationSettings& settings, st
                         settings.maximalExtension));
     }
     const bool gusts = settings.windKind != runtime::WindKind::uniform && settings.windGustiness > 0;
-    if (gusts && settings.windSpeed > 0 && settings.airDrag > 0) {
+    if (springs && gusts && settings.windSpeed > 0 && settings.airDrag > 0) {
         notes.push_back(
             fmt::format("The engine reads gusts at the root and the tip of a strand at the ends of frames "
                         "and goes evenly between, "
@@ -190,15 +181,6 @@ std::vector<std::string> notesOf(const runtime::SimulationSettings& settings, st
                         "gusts ({} m) errors "
                         "hold that difference.",
                         settings.windGustSize));
-    }
-    if (curved > 0 && settings.angularMethod == runtime::AngularMethod::implicit) {
-        notes.push_back(
-            fmt::format("{} of {} strands are curved or carry their weight at rest. The engine turns their "
-                        "curves only as far "
-                        "as an energy tank pays, the reference turns them freely: position Verlet comes to a "
-                        "motion of its "
-                        "own there, and its errors do not go to zero.",
-                        curved, strands));
     }
     return notes;
 }
@@ -240,17 +222,15 @@ Result<GroundTruth> ReferenceConverged::compute(const SceneHair& hair, const Hea
     }
     if (solved.empty())
         return fail("the reference could not solve any strand", "expected a motion and a groom without NaN");
-    std::size_t curved = 0;
     for (const StrandGroundTruth& strand : solved) {
         last.push_back(&strand.motion->positions_ws);
         before.push_back(&strand.motion->coarser_ws);
-        curved += strand.curved;
     }
     groundTruth.trajectory = trajectoryOf(hair, time, groundTruth.followed, last);
     groundTruth.uncertaintyMm =
         compare(trajectoryOf(hair, time, groundTruth.followed, before), groundTruth.trajectory).rmsMm;
     groundTruth.detail = detailOf(solved, options_.toleranceMm);
-    groundTruth.notes = notesOf(hair.groom.simulation, curved, solved.size());
+    groundTruth.notes = notesOf(hair.groom.simulation);
     if (solved.size() < strands.size()) {
         groundTruth.notes.push_back(fmt::format(
             "The reference could not solve every step of {} of {} strands, which are left out of the "
@@ -261,7 +241,7 @@ Result<GroundTruth> ReferenceConverged::compute(const SceneHair& hair, const Hea
     const auto engine = EngineConverged(kEngineSubsteps).compute(hair, motion, time, groundTruth.followed);
     if (!engine) return tl::unexpected(engine.error());
     groundTruth.notes.push_back(
-        fmt::format("The engine (position Verlet) with its own steps refined until that changed {:.2g} mm is "
+        fmt::format("The engine with its own steps refined until that changed {:.2g} mm is "
                     "{:.3g} mm from "
                     "the reference (root mean square). What is not explained by the former is what model and "
                     "precision of "

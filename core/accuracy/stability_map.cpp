@@ -44,6 +44,7 @@ StrandSet mappedStrand() {
 
 SimulationSettings mappedSettings(Integrator integrator, MappedForce force, double stiffness) {
     SimulationSettings s;
+    s.strandModel = runtime::StrandModel::springs;
     s.integrator = integrator;
     s.substeps = 1;
     s.dampingTime = 0.0f;

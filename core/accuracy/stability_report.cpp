@@ -117,7 +117,8 @@ std::string stabilityMarkdown(const std::vector<StabilityResult>& results) {
         for (std::size_t k = 0; k < integrators.size(); ++k) {
             const StabilityResult& r = results[i + k];
             text += fmt::format(" {}", verdict(r));
-            if (!r.failedAt && r.substeps != runtime::SimulationSettings{}.substeps)
+            if (!r.failedAt && r.substeps != runtime::SimulationSettings{}.substeps &&
+                r.substeps != runtime::kSpringSubsteps)
                 text += fmt::format(" ({} substeps)", r.substeps);
             if (r.claimed && !r.pass) text += fmt::format(": {}", decidingThreshold(r));
             text += " |";

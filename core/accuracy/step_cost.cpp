@@ -40,8 +40,8 @@ double milliseconds(std::uint64_t nanoseconds) {
 
 class TurningHead : public MovingStrands {
   public:
-    explicit TurningHead(const StepScene& scene)
-        : head_(scene.strands, scene.points, isStraight(scene.activeForces)), acting_(scene.activeForces) {}
+    TurningHead(std::uint32_t strands, std::uint32_t points, scenes::ActiveForces activeForces)
+        : head_(strands, points, isStraight(activeForces)), acting_(activeForces) {}
 
     runtime::StrandsView view() const override { return head_.view(); }
     void move(double time, std::vector<runtime::RootFrame>& roots,
@@ -55,13 +55,12 @@ class TurningHead : public MovingStrands {
     scenes::ActiveForces acting_;
 };
 
-runtime::SimulationSettings settingsOf(const StepScene& scene) {
-    runtime::SimulationSettings settings = scenes::settingsFor(scene.activeForces);
-    settings.substeps = scene.substeps;
-    return settings;
-}
-
 }  // namespace
+
+std::unique_ptr<MovingStrands> turningHead(std::uint32_t strands, std::uint32_t points,
+                                           scenes::ActiveForces activeForces) {
+    return std::make_unique<TurningHead>(strands, points, activeForces);
+}
 
 StepRun::StepRun(std::unique_ptr<MovingStrands> strands, const runtime::SimulationSettings& settings,
                  bool allThreads, bool byStage)
@@ -77,7 +76,8 @@ StepRun::StepRun(std::unique_ptr<MovingStrands> strands, const runtime::Simulati
 }
 
 StepRun::StepRun(const StepScene& scene)
-    : StepRun(std::make_unique<TurningHead>(scene), settingsOf(scene), scene.allThreads, scene.byStage) {}
+    : StepRun(turningHead(scene.strands, scene.points, scene.activeForces),
+              scene.settings(), scene.allThreads, scene.byStage) {}
 
 double StepRun::milliseconds(std::uint32_t frames) {
     std::vector<double> whole;
@@ -111,8 +111,8 @@ double StepRun::work() const {
     return static_cast<double>(engine_->pointCount()) * substeps_;
 }
 
-BareIntegrator::BareIntegrator(std::uint32_t strands, std::uint32_t points, std::uint32_t substeps)
-    : substeps_(substeps), head_(strands, points), shape_(runtime::makeRestShape(head_.view())) {
+BareIntegrator::BareIntegrator(std::uint32_t strands, std::uint32_t points)
+    : head_(strands, points), shape_(runtime::makeRestShape(head_.view())) {
     state_.planes.assign(shape_->planeFloats * runtime::kStatePlanes, 0.0f);
     state_.roots.assign(shape_->blocks.size() * runtime::kRootRows * runtime::kBlockLanes, 0.0f);
     head_.placeRoots(0.0, roots_);
@@ -128,7 +128,7 @@ BareIntegrator::BareIntegrator(std::uint32_t strands, std::uint32_t points, std:
 void BareIntegrator::enterFrame(std::size_t block, runtime::LaneFrame& lanes) {
     using runtime::kBlockLanes;
     float* const rows = state_.roots.data() + block * runtime::kRootRows * kBlockLanes;
-    const float share = 1.0f / static_cast<float>(substeps_);
+    const float share = 1.0f / static_cast<float>(runtime::kSpringSubsteps);
     for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
         const runtime::RootFrame& to = roots_[shape_->blocks[block].strandOfLane[lane]];
         const float now[runtime::kRootRows] = {to.position.x, to.position.y, to.position.z, to.rotation.x,
@@ -151,8 +151,8 @@ double BareIntegrator::milliseconds(std::uint32_t frames) {
     const runtime::Stage verlet = stages[static_cast<std::size_t>(runtime::StageId::verlet)];
     const std::uint32_t clamped = runtime::SimulationSettings{}.clampedPoints;
     runtime::SubstepContext context;
-    context.count = substeps_;
-    context.h = kFrame / static_cast<float>(substeps_);
+    context.count = runtime::kSpringSubsteps;
+    context.h = kFrame / static_cast<float>(runtime::kSpringSubsteps);
     std::vector<double> times;
     for (std::uint32_t f = 0; f < frames; ++f) {
         time_ += static_cast<double>(kFrame);
@@ -163,7 +163,7 @@ double BareIntegrator::milliseconds(std::uint32_t frames) {
                 runtime::viewOf({*shape_, state_, bend_, evaluation_, 0}, b, clamped);
             runtime::LaneFrame lanes;
             enterFrame(b, lanes);
-            for (context.index = 0; context.index < substeps_; ++context.index) {
+            for (context.index = 0; context.index < runtime::kSpringSubsteps; ++context.index) {
                 moveRoots(view, lanes, context);
                 verlet(view, lanes, context);
             }

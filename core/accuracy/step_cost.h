@@ -17,9 +17,11 @@ struct StepScene {
     std::uint32_t strands = 0;
     std::uint32_t points = 16;
     scenes::ActiveForces activeForces = scenes::ActiveForces::windAndSpheres;
-    std::uint32_t substeps = 8;
+    runtime::StrandModel model = runtime::StrandModel::rods;  ///< with its usual substeps
     bool allThreads = false;  ///< those of parallelFor; else one
     bool byStage = false;     ///< with a clock around each stage of each block, which costs a little itself
+
+    runtime::SimulationSettings settings() const { return scenes::settingsFor(activeForces, model); }
 };
 
 /// Strands, and where their roots and the spheres are over time.
@@ -31,6 +33,10 @@ class MovingStrands {
     virtual void move(double time, std::vector<runtime::RootFrame>& roots,
                       std::vector<runtime::Sphere>& spheres) const = 0;
 };
+
+/// scenes::HeadOfHair.
+std::unique_ptr<MovingStrands> turningHead(std::uint32_t strands, std::uint32_t points,
+                                           scenes::ActiveForces activeForces);
 
 /// A scene that runs on from measurement to measurement.
 class StepRun {
@@ -68,13 +74,13 @@ class StepRun {
 /// an engine around them. What an engine with every effect off does beyond this is its overhead.
 class BareIntegrator {
   public:
-    BareIntegrator(std::uint32_t strands, std::uint32_t points, std::uint32_t substeps);
+    /// With the usual substeps of springs.
+    BareIntegrator(std::uint32_t strands, std::uint32_t points);
     double milliseconds(std::uint32_t frames);
 
   private:
     void enterFrame(std::size_t block, runtime::LaneFrame& lanes);
 
-    std::uint32_t substeps_;
     scenes::HeadOfHair head_;
     std::shared_ptr<const runtime::RestShape> shape_;
     runtime::State state_;

@@ -151,6 +151,7 @@ void noteValuesWithoutEffect(std::size_t axisIndex, WorkPrecision& result) {
 
 /// Kelvin-Voigt damping of bending is part of position Verlet's implicit solve alone.
 void noteIntegratorsWithoutBendDamping(WorkPrecision& result) {
+    if (result.settings.strandModel == runtime::StrandModel::rods) return;
     if (!(result.settings.bendDampingTime > 0) || !(result.settings.angularStiffness > 0)) return;
     const auto axis = findAxis(result.options.axes, "integrator");
     const double own = static_cast<double>(result.settings.integrator);

@@ -38,6 +38,7 @@ class GpuEngineMethod final : public StrandMethod {
         keep(read);
         return read.has_value();
     }
+    bool measuresFromOrigin() const override { return true; }
     double stepMilliseconds() const override { return milliseconds_; }
     std::uint32_t restoredStrands() const override { return restored_; }
     std::uint32_t guardedStrands() const override { return guarded_; }

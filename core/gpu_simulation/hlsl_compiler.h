@@ -13,10 +13,6 @@
 
 namespace hairloom::gpu_simulation {
 
-/// A line of `defines` by which SPIR-V has each sum and product rounded as it is written, where a driver
-/// would fuse them; for Direct3D it changes nothing.
-inline constexpr const char* kRoundsEach = "#define HAIRLOOM_ROUNDS_EACH 1\n";
-
 /// Compiles `defines`, lines of #define, followed by the file `path` of shaders::sources(), from which the
 /// files that it includes come as well. May be called from several threads at a time. Errors: what the
 /// compiler says, or that the program has none for this backend.

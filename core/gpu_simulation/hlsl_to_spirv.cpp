@@ -5,7 +5,6 @@
 #include <glslang/SPIRV/GlslangToSpv.h>
 #include <glslang/build_info.h>
 
-#include <algorithm>
 #include <array>
 
 #include "core/gpu_simulation/hlsl_targets.h"
@@ -48,33 +47,6 @@ void describe(glslang::TShader& shader) {
     shader.setHlslIoMapping(true);
 }
 
-// Words of SPIR-V (its specification, Section 2.3).
-constexpr std::size_t kHeaderWords = 5;
-constexpr std::uint32_t kOpTypeVoid = 19, kOpTypeForwardPointer = 39, kOpDecorate = 71, kNoContraction = 42;
-
-/// Operations on floats that a driver may fuse: sums, products and their like, on vectors and matrices too.
-bool mayFuse(std::uint32_t op) {
-    constexpr std::array<std::uint32_t, 13> kOps{127, 129, 131, 133, 136, 140, 142,
-                                                 143, 144, 145, 146, 147, 148};
-    return std::ranges::find(kOps, op) != kOps.end();
-}
-
-/// The module in which each of them is rounded as it is written. Decorations stand before the first type.
-std::vector<std::uint32_t> roundingEach(const std::vector<std::uint32_t>& words) {
-    std::vector<std::uint32_t> decorations;
-    std::size_t types = words.size();
-    for (std::size_t at = kHeaderWords; at < words.size(); at += words[at] >> 16u) {
-        const std::uint32_t op = words[at] & 0xffffu;
-        if (op >= kOpTypeVoid && op <= kOpTypeForwardPointer) types = std::min(types, at);
-        if (mayFuse(op))
-            decorations.insert(decorations.end(), {3u << 16u | kOpDecorate, words[at + 2], kNoContraction});
-    }
-    std::vector<std::uint32_t> result = words;
-    result.insert(result.begin() + static_cast<std::ptrdiff_t>(types), decorations.begin(),
-                  decorations.end());
-    return result;
-}
-
 }  // namespace
 
 Result<std::vector<std::uint32_t>> compileToSpirv(const std::string& path, const std::string& text) {
@@ -99,7 +71,7 @@ Result<std::vector<std::uint32_t>> compileToSpirv(const std::string& path, const
     glslang::SpvOptions options;
     glslang::GlslangToSpv(*program.getIntermediate(EShLangCompute), words, &options);
     if (words.empty()) return fail(fmt::format("shader '{}' became no SPIR-V", path));
-    return text.find(kRoundsEach) == std::string::npos ? words : roundingEach(words);
+    return words;
 }
 
 std::uint64_t spirvCompilerVersion() {

@@ -5,7 +5,6 @@
 
 #include <cctype>
 
-#include "core/gpu_simulation/hlsl_compiler.h"
 #include "runtime/shaders/simulation_types.h"
 
 namespace hairloom::gpu_simulation {
@@ -28,8 +27,8 @@ std::uint32_t evaluationOf(Integrator integrator) {
 }
 
 /// A block is a work group, and each of its strands a thread's.
-void takeThreads(BatchShape& shape, StrandStorage storage) {
-    shape.storage = storage;
+void takeBuffers(BatchShape& shape) {
+    shape.storage = StrandStorage::buffers;
     shape.strands = runtime::kBlockLanes;
     shape.perThread = 1;
     shape.wave = 0;
@@ -68,16 +67,12 @@ std::string KernelKey::defines() const {
         "#define HAIR_STRANDS {}\n#define HAIR_TOGETHER {}\n"
         "#define HAIR_PER_THREAD {}\n#define HAIR_WAVE {}\n"
         "#define HAIR_CLAMPED {}\n#define HAIR_EVALUATION {}\n#define HAIR_BEND {}\n#define HAIR_TARGETS {}\n"
-        "#define HAIR_CURVES {}\n#define HAIR_TENSIONS {}\n#define HAIR_COUPLED {}\n#define HAIR_SPHERES "
-        "{}\n#define HAIR_WIND {}\n#define HAIR_SLEEP {}\n"
-        "#define HAIR_VELOCITIES {}\n#define HAIR_STAGES {}\n{}",
+        "#define HAIR_TENSIONS {}\n#define HAIR_SPHERES {}\n#define HAIR_WIND {}\n#define HAIR_SLEEP {}\n"
+        "#define HAIR_VELOCITIES {}\n#define HAIR_STAGES {}\n",
         shape.points, flag(shape.exact), flag(shape.unrolled), static_cast<std::uint32_t>(shape.storage),
         shape.strands, flag(shape.together), shape.perThread, shape.wave, clampedPoints, evaluation, bend,
-        flag(targets), flag(curves), flag(tensions), flag(coupled), static_cast<std::uint32_t>(spheres),
-        flag(wind), flag(sleep), flag(velocities), stages,
-        // Without damping that system keeps the energy but for rounding, and fused it rounds forces apart
-        // from what they do.
-        coupled ? kRoundsEach : "");
+        flag(targets), flag(tensions), static_cast<std::uint32_t>(spheres), flag(wind), flag(sleep),
+        flag(velocities), stages);
 }
 
 KernelKey keyFor(const runtime::EffectPlan& plan, const runtime::SimulationSettings& settings,
@@ -89,7 +84,7 @@ KernelKey keyFor(const runtime::EffectPlan& plan, const runtime::SimulationSetti
     key.velocities = velocities;
     key.rods = settings.strandModel == runtime::StrandModel::rods;
     if (key.rods) {
-        takeThreads(key.shape, StrandStorage::buffers);
+        takeBuffers(key.shape);
         key.spheres = sourceFor(plan, spheres);
         key.wind = plan.on(Effect::wind);
         key.stages = callsOf(plan);
@@ -103,11 +98,7 @@ KernelKey keyFor(const runtime::EffectPlan& plan, const runtime::SimulationSetti
     key.evaluation = evaluationOf(settings.integrator);
     if (plan.on(Effect::angular)) key.bend = plan.factored() ? 2 : 1;
     key.targets = plan.on(Effect::torsion);
-    key.curves = plan.keepsCurves();
     key.tensions = plan.keepsTensions();
-    key.coupled = plan.on(Effect::coupling);
-    // That system is solved point after point.
-    if (key.coupled && shape.storage == StrandStorage::lanes) takeThreads(key.shape, StrandStorage::threads);
     key.spheres = sourceFor(plan, spheres);
     key.wind = plan.on(Effect::wind);
     key.stages = callsOf(plan);

@@ -45,9 +45,7 @@ struct KernelKey {
     std::uint32_t evaluation = 0;  ///< arrays of the integrator: none, start and rate, those of RK4
     std::uint32_t bend = 0;        ///< none, stiffness, factors
     bool targets = false;
-    bool curves = false;
     bool tensions = false;  ///< are kept from substep to substep
-    bool coupled = false;   ///< bending and lengths are one system
     SphereSource spheres = SphereSource::none;
     bool wind = false;
     bool sleep = false;

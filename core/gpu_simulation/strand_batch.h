@@ -44,7 +44,7 @@ struct StrandBatch {
     gpu::BufferPtr rest, segments, blockCounts, firstPoints, rootsTo, state, roots;
     gpu::BufferPtr strandOfSlot;  ///< once the device finds roots itself
     // Null while what needs them is off.
-    gpu::BufferPtr bend, targets, curves, energyTanks, rests, gathered, scratch;
+    gpu::BufferPtr bend, targets, rests, gathered, scratch;
     // Of rods, as in runtime/shaders/rod_storage.hlsli; null for springs.
     gpu::BufferPtr rodRest, rodMasses, curvedBlocks, rodState;
     KernelKey key;

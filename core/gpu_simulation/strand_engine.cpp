@@ -20,7 +20,6 @@ using runtime::Float3;
 constexpr std::size_t kMaxSubmissionsInFlight = 2;
 /// Floats a point that a kernel of StrandStorage::buffers works in: see storage.hlsli.
 constexpr std::array<std::size_t, 3> kScratchPlanes{5, 11, 20};
-constexpr std::size_t kCoupledPlanes = 29;
 /// Of angular springs, a point.
 std::size_t bendFloats(const KernelKey& key) {
     if (key.bend < 2) return key.bend;
@@ -31,7 +30,7 @@ std::size_t scratchPlanes(const KernelKey& key) {
         const bool contacts = key.spheres != SphereSource::none;
         return HAIRLOOM_ROD_WORK_PLANES + (contacts ? HAIRLOOM_ROD_CONTACT_PLANES : 0);
     }
-    return key.coupled ? kCoupledPlanes : kScratchPlanes[key.evaluation];
+    return kScratchPlanes[key.evaluation];
 }
 constexpr Usage kReadWrite = Usage::ShaderRead | Usage::UnorderedAccess;
 
@@ -122,14 +121,12 @@ Status StrandEngine::Impl::makeBuffers() {
 /// The buffers that the plan needs, and no others.
 Status StrandEngine::Impl::allocate() {
     Status status;
-    /// Of `count` floats, or none: the first `voids` of them kNoCurve, the others 0.
-    const auto have = [&](gpu::BufferPtr& buffer, const char* name, std::size_t count, std::size_t bytes,
-                          std::size_t voids = 0) {
+    /// Of `count` floats that are 0, or none.
+    const auto have = [&](gpu::BufferPtr& buffer, const char* name, std::size_t count, std::size_t bytes) {
         if (!status || (buffer == nullptr ? count == 0 : buffer->desc().size == count * 4)) return false;
         buffer = nullptr;
         if (count == 0) return false;
-        std::vector<float> content(count);
-        std::fill_n(content.begin(), voids, runtime::kNoCurve);
+        const std::vector<float> content(count);
         gpu::BufferDesc desc;
         desc.name = name;
         desc.size = count * 4;
@@ -150,8 +147,6 @@ Status StrandEngine::Impl::allocate() {
         bool fresh = have(batch.bend, "angular springs", plane * bendFloats(key), key.bend == 1 ? 4 : 16);
         fresh |= have(batch.targets, "rest directions", key.targets ? plane * 4 : 0, 16);
         if (fresh) bendSubstep = 0.0f;
-        have(batch.curves, "curves", key.curves ? plane * 3 : 0, 4);
-        have(batch.energyTanks, "tanks", key.curves ? std::size_t{batch.slots} * 2 : 0, 4, batch.slots);
         const bool gathers = key.sleep && sharesBlocks(key.shape.storage);
         have(batch.gathered, "gathered", gathers ? batch.blocks.size() : 0, 4);
         have(batch.rests, "rests", key.sleep ? batch.blocks.size() * 2 : 0, 4);
@@ -176,9 +171,6 @@ StrandEngine::Impl::Run StrandEngine::Impl::runFor(const runtime::SimulationSett
     planInput.longestPointCount = shape->longestPointCount;
     planInput.longestStrand = shape->longestStrand;
     planInput.straight = shape->straight;
-    planInput.maxCurvature = shape->maxCurvature;
-    planInput.massRatio = shape->massRatio;
-    planInput.substep = input.dt / static_cast<float>(settings.substeps);
     planInput.rootsMin_ws = low;
     planInput.rootsMax_ws = high;
     planInput.rootMotion = rootMotion;
@@ -213,11 +205,10 @@ Result<bool> StrandEngine::Impl::kernelsFor(const Run& next, bool wait) {
 Status StrandEngine::Impl::adopt(const Run& next) {
     if (run.settings != next.settings) {
         bendSubstep = 0.0f;
-        curvesVoid = wakeAll = true;
+        restsVoid = wakeAll = true;
         if (auto taken = takeRods(next.settings); !taken) return taken;
     }
     if (adopted && !run.plan.keepsTensions() && next.plan.keepsTensions()) tensionsVoid = true;
-    if (run.plan.on(Effect::coupling) != next.plan.on(Effect::coupling)) bendSubstep = 0.0f;
     run = next;
     adopted = true;
     return allocate();
@@ -310,11 +301,7 @@ std::size_t StrandEngine::effectBytes(Effect effect) const {
                  {batch.bend, batch.rodRest, batch.rodMasses, batch.curvedBlocks, batch.rodState})
                 add(buffer);
         }
-        if (effect == Effect::torsion) {
-            add(batch.targets);
-            add(batch.curves);
-            add(batch.energyTanks);
-        }
+        if (effect == Effect::torsion) add(batch.targets);
         if (effect == Effect::sleep) {
             add(batch.rests);
             add(batch.gathered);
@@ -335,8 +322,7 @@ std::size_t StrandEngine::volumeBytes() const {
 std::size_t StrandEngine::frameBytes() const {
     std::size_t bytes = 0;
     for (const StrandBatch& batch : impl_->batches) {
-        for (const auto& changing :
-             {batch.state, batch.roots, batch.curves, batch.energyTanks, batch.rodState}) {
+        for (const auto& changing : {batch.state, batch.roots, batch.rodState}) {
             if (changing != nullptr) bytes += 2 * static_cast<std::size_t>(changing->desc().size);
         }
         bytes += static_cast<std::size_t>(batch.rootsTo->desc().size);

@@ -107,7 +107,7 @@ class StrandEngine {
     std::size_t effectBytes(runtime::Effect effect) const;
     /// Of hair against hair.
     std::size_t volumeBytes() const;
-    /// Bytes of particles, roots and curves that a substep reads or writes, of all strands, where they are
+    /// Bytes of particles and roots that a substep reads or writes, of all strands, where they are
     /// not kept in threads: each frame's is shared by its substeps.
     std::size_t frameBytes() const;
 

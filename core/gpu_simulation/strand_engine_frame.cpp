@@ -109,6 +109,30 @@ Status StrandEngine::Impl::gatherRoots(gpu::CommandList& list, const DeviceRoots
     return {};
 }
 
+/// Measures what is known of the last frame from the origin of this one. What sleeps wakes, to write its places anew.
+void StrandEngine::Impl::moveOrigin(gpu::CommandList& list, std::array<double, 3> next_ws) {
+    if (!runtime::isFinite(next_ws)) next_ws = origin_ws.value_or(std::array<double, 3>{});
+    const Float3 shift = runtime::shiftOfOrigin(origin_ws.value_or(next_ws), next_ws);
+    origin_ws = next_ws;
+    if (shift == Float3{}) return;
+    for (RootFrame& root : roots) root.position = root.position + shift;
+    for (runtime::Sphere& sphere : spheresBefore) sphere.center_ws = sphere.center_ws + shift;
+    rootsMin_ws = rootsMin_ws + shift;
+    rootsMax_ws = rootsMax_ws + shift;
+    for (const StrandBatch& batch : batches) {
+        std::vector<float> positions(std::size_t{batch.slots} * 3);
+        for (std::size_t slot = 0; slot < batch.slots; ++slot) {
+            const runtime::Block& block = shape->blocks[batch.blocks[slot / runtime::kBlockLanes]];
+            const Float3 at = roots[block.strandOfLane[slot % runtime::kBlockLanes]].position;
+            positions[slot] = at.x;
+            positions[batch.slots + slot] = at.y;
+            positions[2 * std::size_t{batch.slots} + slot] = at.z;
+        }
+        list.updateBuffer(batch.roots, 0, bytesOfVector(positions));
+    }
+    restsVoid = wakeAll = rootsMoved = true;
+}
+
 /// `moved` may be empty: none has.
 void StrandEngine::Impl::uploadRoots(gpu::CommandList& list, const std::vector<bool>& moved) {
     for (const StrandBatch& batch : batches) {
@@ -163,7 +187,6 @@ void StrandEngine::Impl::uploadBend(gpu::CommandList& list, float h) {
     runtime::Bend bend;
     bend.factored = run.plan.factored();
     bend.targets = run.plan.on(Effect::torsion);
-    bend.coupled = run.plan.on(Effect::coupling);
     bend.planes = runtime::Floats(shape->planeFloats * bend.planeCount(), 0.0f);
     parallelFor(shape->blocks.size(), kBlocksPerJob, [&](std::size_t first, std::size_t end) {
         for (std::size_t b = first; b < end; ++b) runtime::fillBend(*shape, run.settings, h, b, bend);
@@ -190,7 +213,7 @@ void StrandEngine::Impl::uploadBend(gpu::CommandList& list, float h) {
     }
 }
 
-/// What other settings and plans do to the state: kept curves or tensions are void, and nothing sleeps.
+/// What other settings and plans do to the state: kept tensions are void, and nothing sleeps.
 void StrandEngine::Impl::uploadChanges(gpu::CommandList& list) {
     if (tensionsVoid) {
         for (const StrandBatch& batch : batches) {
@@ -200,18 +223,13 @@ void StrandEngine::Impl::uploadChanges(gpu::CommandList& list) {
         }
         tensionsVoid = false;
     }
-    if (!curvesVoid) return;
+    if (!restsVoid) return;
     for (const StrandBatch& batch : batches) {
-        if (batch.energyTanks != nullptr) {
-            const std::vector<float> none(batch.slots, runtime::kNoCurve);
-            list.updateBuffer(batch.energyTanks, 0, bytesOfVector(none));
-        }
-        if (batch.rests != nullptr) {
-            const std::vector<float> awake(batch.blocks.size() * 2, 0.0f);
-            list.updateBuffer(batch.rests, 0, bytesOfVector(awake));
-        }
+        if (batch.rests == nullptr) continue;
+        const std::vector<float> awake(batch.blocks.size() * 2, 0.0f);
+        list.updateBuffer(batch.rests, 0, bytesOfVector(awake));
     }
-    curvesVoid = false;
+    restsVoid = false;
 }
 
 shaders::SimulationConstants StrandEngine::Impl::constants(const runtime::SubstepContext& context,
@@ -246,8 +264,8 @@ shaders::SimulationConstants StrandEngine::Impl::constants(const runtime::Subste
     c.windKind = static_cast<std::uint32_t>(wind.kind);
     c.wind = toFloat4(wind.mean, wind.strength);
     const double time = std::isfinite(input.time) ? input.time : 0.0;
-    const auto from = runtime::windPhases(wind, time - static_cast<double>(input.dt));
-    const auto to = runtime::windPhases(wind, time);
+    const auto from = runtime::windPhases(wind, time - static_cast<double>(input.dt), *origin_ws);
+    const auto to = runtime::windPhases(wind, time, *origin_ws);
     static_assert(runtime::kWindModes == HAIRLOOM_WIND_MODES);
     for (std::size_t m = 0; m < runtime::kWindModes; ++m) {
         c.windAmplitudes[m] = toFloat4(wind.modes[m].amplitude, from[m]);
@@ -284,8 +302,8 @@ void StrandEngine::Impl::dispatch(gpu::CommandList& list, const StrandBatch& bat
     write(3, reportBuffer);
     write(4, places);
     const bool inBuffers = batch.key.shape.storage == StrandStorage::buffers;
-    write(5, rods ? batch.rodState : batch.curves);
-    write(6, rods ? velocities : batch.energyTanks);
+    write(5, batch.rodState);
+    write(6, rods ? velocities : nullptr);
     write(7, inBuffers ? batch.scratch : velocities);
     write(8, rods ? nullptr : inBuffers ? velocities : batch.gathered);
     list.bind(bindings);
@@ -305,6 +323,7 @@ Status StrandEngine::Impl::record(gpu::CommandList& list, const runtime::FrameIn
                                   const DeviceRoots* deviceRoots) {
     if (!(input.dt > 0.0f) || !std::isfinite(input.dt)) return {};
     known.reset();
+    moveOrigin(list, input.origin_ws);
     const Float3 lowBefore = rootsMin_ws, highBefore = rootsMax_ws;
     const bool found = deviceRoots != nullptr;
     const std::vector<bool> moved = found ? std::vector<bool>(1, takeRoots(*deviceRoots)) : takeRoots(input);
@@ -315,7 +334,7 @@ Status StrandEngine::Impl::record(gpu::CommandList& list, const runtime::FrameIn
                       std::max(rootsMax_ws.z, highBefore.z)};
     if (auto chosen = choose(input, low, high); !chosen) return chosen;
     movingSpheres.clear();
-    if (run.plan.on(Effect::collision)) moveSpheres(frameSpheres, run.settings.substeps, movingSpheres);
+    if (run.plan.on(Effect::collision)) moveSpheres(frameSpheres, substepsIn(run.settings, input.dt), movingSpheres);
     const runtime::SubstepContext context =
         runtime::substepContext(run.settings, run.plan, input.dt, movingSpheres);
 

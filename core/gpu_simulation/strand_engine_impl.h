@@ -42,8 +42,9 @@ struct StrandEngine::Impl {
     std::vector<runtime::Sphere> spheresBefore;
     std::vector<runtime::MovingSphere> movingSpheres;
     float substep = 0.0f;       ///< seconds of the last one; 0 before the first
+    std::optional<std::array<double, 3>> origin_ws;  ///< of the last frame; none before the first
     float bendSubstep = 0.0f;   ///< that the springs' buffers are for; 0: none
-    bool curvesVoid = false;    ///< the kept curves fit other settings
+    bool restsVoid = false;     ///< other settings: nothing sleeps
     bool tensionsVoid = false;  ///< those on the device are of a plan that is over
     bool wakeAll = false;
     bool rodsFresh = false;      ///< the device has places of rods, and nothing else yet
@@ -74,6 +75,7 @@ struct StrandEngine::Impl {
     std::vector<bool> takeRoots(const runtime::FrameInput& input);
     bool takeRoots(const DeviceRoots& given);
     Status gatherRoots(gpu::CommandList& list, const DeviceRoots& given);
+    void moveOrigin(gpu::CommandList& list, std::array<double, 3> next_ws);
     void uploadRoots(gpu::CommandList& list, const std::vector<bool>& moved);
     void uploadSpheres(gpu::CommandList& list);
     void uploadBend(gpu::CommandList& list, float h);

@@ -20,8 +20,7 @@ using runtime::RootFrame;
 /// Of a batch, in the order in which takeBatch() takes them.
 std::vector<gpu::BufferPtr> changingBuffers(const StrandBatch& batch) {
     std::vector<gpu::BufferPtr> buffers;
-    for (const auto& buffer :
-         {batch.state, batch.roots, batch.curves, batch.energyTanks, batch.rodState, batch.rests}) {
+    for (const auto& buffer : {batch.state, batch.roots, batch.rodState, batch.rests}) {
         if (buffer != nullptr) buffers.push_back(buffer);
     }
     return buffers;
@@ -76,13 +75,6 @@ void StrandEngine::Impl::takeBatch(const StrandBatch& batch, std::span<const std
                        state.tensions, 1);
     }
     rowsToBlocks(batch, take(batch.roots), runtime::kRootRows, state.roots.data());
-    if (batch.curves != nullptr) {
-        planesOfBlocks(*shape, batch, take(batch.curves), state.curves, 3);
-        const std::vector<float> energyTanks = take(batch.energyTanks);
-        const std::span<const float> all = energyTanks;
-        rowsToBlocks(batch, all.first(batch.slots), 1, state.energyTanks.data());
-        rowsToBlocks(batch, all.subspan(batch.slots), 1, state.motions.data());
-    }
     if (batch.rodState != nullptr) {
         const std::vector<float> rods = take(batch.rodState);
         const std::size_t planes = std::size_t{batch.shape.points} * batch.slots * runtime::kRodStatePlanes;
@@ -116,11 +108,6 @@ Result<runtime::State> StrandEngine::Impl::readState() {
         state.rods.assign(shape->planeFloats * runtime::kRodStatePlanes, 0.0f);
         state.rodLanes.assign(shape->blocks.size() * runtime::kRodLaneRows * kBlockLanes, 0.0f);
     }
-    if (std::ranges::any_of(batches, [](const StrandBatch& batch) { return batch.curves != nullptr; })) {
-        state.curves.assign(shape->planeFloats * 3, 0.0f);
-        state.energyTanks.assign(shape->blocks.size() * kBlockLanes, runtime::kNoCurve);
-        state.motions.assign(shape->blocks.size() * kBlockLanes, 0.0f);
-    }
     if (run.plan.keepsTensions()) state.tensions.assign(shape->planeFloats, 0.0f);
     std::vector<gpu::BufferPtr> buffers;
     for (const StrandBatch& batch : batches) {
@@ -135,6 +122,7 @@ Result<runtime::State> StrandEngine::Impl::readState() {
     state.rootsMin_ws = rootsMin_ws;
     state.rootsMax_ws = rootsMax_ws;
     state.substep = substep;
+    state.origin_ws = origin_ws;
     known = state;
     return state;
 }
@@ -152,20 +140,6 @@ Status StrandEngine::Impl::writeBatch(gpu::CommandList& list, const StrandBatch&
     moving.resize(std::size_t{batch.shape.points} * batch.slots * kDevicePlanes, 0.0f);
     send(batch.state, moving);
     send(batch.roots, rowsOfBatch(batch, state.roots.data(), runtime::kRootRows));
-    if (batch.curves != nullptr) {
-        std::vector<float> energyTanks(std::size_t{batch.slots} * 2, 0.0f);
-        std::fill_n(energyTanks.begin(), batch.slots, runtime::kNoCurve);
-        if (!state.curves.empty()) {
-            send(batch.curves, planesOfBatch(*shape, batch, state.curves, 3));
-            const std::vector<float> kept = rowsOfBatch(batch, state.energyTanks.data(), 1);
-            const std::vector<float> motions = rowsOfBatch(batch, state.motions.data(), 1);
-            std::ranges::copy(kept, energyTanks.begin());
-            std::ranges::copy(motions, energyTanks.begin() + batch.slots);
-        } else {
-            send(batch.curves, std::vector<float>(std::size_t{batch.shape.points} * batch.slots * 3, 0.0f));
-        }
-        send(batch.energyTanks, energyTanks);
-    }
     if (batch.rodState != nullptr) sendRods(list, batch, state);
     if (batch.rests != nullptr) {
         std::vector<float> rests;
@@ -211,6 +185,7 @@ Status StrandEngine::Impl::writeState(const runtime::State& given) {
     if (!submission) return tl::unexpected(submission.error());
     spheresBefore = state.spheres;
     substep = state.substep;
+    origin_ws = state.origin_ws;
     runtime::Float3 low{1e30f, 1e30f, 1e30f}, high{-1e30f, -1e30f, -1e30f};
     for (const RootFrame& root : roots) {
         const Float3 p = root.position;

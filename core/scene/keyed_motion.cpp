@@ -13,12 +13,14 @@ namespace {
 
 constexpr double kAnyTime = 1e6;       // seconds
 constexpr double kAnyPlace = 1e6;      // metres
+/// Metres between origins of poses: near the world's there is no other.
+constexpr double kOriginGrid = 64;
 constexpr double kAnyTurn = 1e6;       // degrees
 constexpr double kFastestWind = 1000;  // m/s, as the engine takes
 
 struct Key {
     float time;
-    Vec3f translation;
+    Vec3d translation;
     Vec3f axis;
     float radians;
 };
@@ -47,18 +49,19 @@ class KeyedMotion : public HeadMotion {
         HeadPose pose;
         const auto [k, share] = between(keys_, time);
         const Key& from = keys_[k];
-        Vec3f translation = from.translation;
+        Vec3d translation = from.translation;
         Quatf rotation = rotationOf(from);
         if (linear_ && share > 0) {
             const Key& to = keys_[k + 1];
-            translation += (to.translation - from.translation) * share;
+            translation += (to.translation - from.translation) * static_cast<double>(share);
             // About one axis a turn keeps all its degrees, above 180 too; else the shorter way.
             rotation =
                 from.axis == to.axis
                     ? Quatf(Eigen::AngleAxisf(from.radians + (to.radians - from.radians) * share, from.axis))
                     : rotation.slerp(share, rotationOf(to));
         }
-        pose.head_ws = Eigen::Translation3f(translation) * rotation;
+        pose.origin_ws = (translation / kOriginGrid).array().round() * kOriginGrid;
+        pose.head_ws = Eigen::Translation3f((translation - pose.origin_ws).cast<float>()) * rotation;
         if (!wind_.empty()) {
             const auto [w, windShare] = between(wind_, time);
             pose.wind_ws = wind_[w].velocity;
@@ -85,8 +88,8 @@ void expectAscending(JsonReader& reader, std::string_view member, const std::vec
 }
 
 Key readKey(JsonReader reader) {
-    Key key{static_cast<float>(reader.number("t", 0, kAnyTime, "s")), Vec3f::Zero(), Vec3f::UnitY(), 0};
-    if (reader.has("translate")) key.translation = reader.vector("translate", -kAnyPlace, kAnyPlace, "m");
+    Key key{static_cast<float>(reader.number("t", 0, kAnyTime, "s")), Vec3d::Zero(), Vec3f::UnitY(), 0};
+    if (reader.has("translate")) key.translation = reader.exactVector("translate", -kAnyPlace, kAnyPlace, "m");
     if (reader.has("degrees"))
         key.radians = radians(static_cast<float>(reader.number("degrees", -kAnyTurn, kAnyTurn, "degrees")));
     if (reader.has("axis")) {

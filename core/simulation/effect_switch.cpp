@@ -26,6 +26,8 @@ constexpr Switch kSwitches[] = {{"damping", "dampingTime"},
 }  // namespace
 
 std::string turnEffectOff(runtime::SimulationSettings& settings, std::string_view effect) {
+    // Rods have no other length.
+    if (effect == "length" && settings.strandModel == runtime::StrandModel::rods) return {};
     runtime::SimulationSettings changed = settings;
     std::string how;
     for (const Switch& entry : kSwitches) {
@@ -41,8 +43,7 @@ std::string turnEffectOff(runtime::SimulationSettings& settings, std::string_vie
     return how;
 }
 
-bool canTurnOff(std::string_view effect) {
-    runtime::SimulationSettings settings;
+bool canTurnOff(runtime::SimulationSettings settings, std::string_view effect) {
     return effect == kCollisionEffect || !turnEffectOff(settings, effect).empty();
 }
 

@@ -10,12 +10,12 @@
 namespace hairloom {
 
 /// What turns `effect`, named as in EffectReport, off: "simulation.windSpeed=0". Empty, and nothing changed,
-/// where no setting does, as for torsion, coupling and continuous collision, which follow from the hair's
+/// where no setting does, as for torsion and continuous collision, which follow from the hair's
 /// shape and its speed, and for collision, which goes with the spheres.
 std::string turnEffectOff(runtime::SimulationSettings& settings, std::string_view effect);
 
 /// Whether there is a way to turn it off: by a setting, or by taking the spheres away.
-bool canTurnOff(std::string_view effect);
+bool canTurnOff(runtime::SimulationSettings settings, std::string_view effect);
 
 inline constexpr std::string_view kCollisionEffect = "collision";
 

@@ -36,9 +36,9 @@ class EngineMethod : public StrandMethod {
         milliseconds_ = report.milliseconds;
         ++frames_;
         for (std::uint32_t stage = 0; stage < runtime::kStageCount; ++stage) {
-            if (const auto effect = runtime::stageEffect(static_cast<StageId>(stage))) {
-                effectMilliseconds_[static_cast<std::size_t>(*effect)] += report.stageMilliseconds[stage];
-            }
+            const auto effect = runtime::stageEffect(static_cast<StageId>(stage));
+            (effect ? effectMilliseconds_[static_cast<std::size_t>(*effect)] : solveMilliseconds_) +=
+                report.stageMilliseconds[stage];
         }
         if (!volume_) return;
         const std::uint64_t begin = host_.nanoseconds();
@@ -60,6 +60,7 @@ class EngineMethod : public StrandMethod {
     }
     std::shared_ptr<const runtime::State> state() const override { return engine_.state(); }
     bool setState(const runtime::State& state) override { return engine_.setState(state); }
+    bool measuresFromOrigin() const override { return true; }
     double stepMilliseconds() const override { return milliseconds_; }
     std::uint32_t restoredStrands() const override { return engine_.lastStep().restoredStrands; }
     std::uint32_t guardedStrands() const override { return engine_.lastStep().guardedStrands; }
@@ -75,6 +76,8 @@ class EngineMethod : public StrandMethod {
                                reasonAlone(engine_.plan().why(effect)), effectMilliseconds_[index] / frames,
                                engine_.effectBytes(effect)});
         }
+        effects.push_back({"solve", true, "on, moves the strands: all that no other row counts",
+                           solveMilliseconds_ / frames, 0});
         if (volume_) {
             effects.push_back(
                 {"hair-hair", true, "on, asked for", volumeMilliseconds_ / frames, volume_->bytes()});
@@ -87,7 +90,7 @@ class EngineMethod : public StrandMethod {
     std::optional<runtime::HairVolume> volume_;
     runtime::Host host_;
     std::uint64_t frames_ = 0;
-    double milliseconds_ = 0, volumeMilliseconds_ = 0;
+    double milliseconds_ = 0, volumeMilliseconds_ = 0, solveMilliseconds_ = 0;
     std::array<double, runtime::kEffectCount> effectMilliseconds_{};
 };
 

@@ -69,6 +69,15 @@ Vec3f pivotOf(const Groom& groom) {
 
 }  // namespace
 
+HeadPose inWorld(HeadPose pose) {
+    const Vec3f origin = pose.origin_ws.cast<float>();
+    pose.head_ws.pretranslate(origin);
+    for (Vec3f& position : pose.scalpPositions_ws) position += origin;
+    for (Vec3f& centre : pose.sphereCentres_ws) centre += origin;
+    pose.origin_ws.setZero();
+    return pose;
+}
+
 Result<std::unique_ptr<HeadMotion>> makeRigidMotion(std::string_view name, const Groom& groom) {
     if (name == "none") return std::make_unique<RestMotion>();
     if (name == "spin") return std::make_unique<TurnMotion>(pivotOf(groom), Vec3f::UnitY(), spinAngle);

@@ -16,6 +16,8 @@ namespace hairloom {
 
 /// Where head and collision spheres are at one time; metres, world space.
 struct HeadPose {
+    /// Metres, in the world: all places of the pose are measured from here, so that they keep their digits far away.
+    Vec3d origin_ws = Vec3d::Zero();
     Eigen::Isometry3f head_ws = Eigen::Isometry3f::Identity();  ///< carries what no scalp vertex carries
     std::vector<Vec3f>
         scalpPositions_ws;  ///< per vertex of the groom's scalp; empty: the scalp moves with head_ws
@@ -24,6 +26,9 @@ struct HeadPose {
     std::vector<Eigen::Affine3f> bones_ws;
     std::optional<Vec3f> wind_ws;  ///< m/s, in place of the groom's mean wind
 };
+
+/// The same measured from the origin of the world.
+HeadPose inWorld(HeadPose pose);
 
 class HeadMotion {
   public:

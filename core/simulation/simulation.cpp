@@ -32,7 +32,9 @@ struct Simulation::Impl {
     double time = 0;
     std::vector<Vec3f> positions_ws;
     SimulationStats stats;
-    double milliseconds = 0;  ///< of all steps
+    Vec3f origin_ws = Vec3f::Zero();  ///< that the method measures from
+    double milliseconds = 0;     ///< of all steps
+    std::uint64_t substeps = 0;  ///< likewise
 
     void readPositions();
     void gather();
@@ -41,6 +43,8 @@ struct Simulation::Impl {
 void Simulation::Impl::readPositions() {
     static_assert(sizeof(Vec3f) == sizeof(runtime::Float3));
     method->readPositions({reinterpret_cast<runtime::Float3*>(positions_ws.data()), positions_ws.size()});
+    if (origin_ws.isZero()) return;
+    for (Vec3f& position : positions_ws) position += origin_ws;
 }
 
 void Simulation::Impl::gather() {
@@ -63,9 +67,11 @@ Result<Simulation> Simulation::make(const Groom& groom, const HeadPose& start,
     if (!scene) return tl::unexpected(scene.error());
     auto method = makeMethod(*scene, options);
     if (!method) return tl::unexpected(method.error());
-    auto impl = std::unique_ptr<Impl>(new Impl{std::move(*scene), std::move(*method), 0, {}, {}, 0});
+    auto impl = std::unique_ptr<Impl>(new Impl{std::move(*scene), std::move(*method), 0, {}, {}, {}, 0, 0});
     impl->positions_ws.resize(groom.pointCount());
-    impl->method->reset(impl->scene, start);
+    const HeadPose pose = impl->method->measuresFromOrigin() ? start : inWorld(start);
+    impl->origin_ws = pose.origin_ws.cast<float>();
+    impl->method->reset(impl->scene, pose);
     impl->readPositions();
     return Simulation(std::move(impl));
 }
@@ -75,9 +81,11 @@ Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 Simulation::~Simulation() = default;
 
-void Simulation::step(float dt, const HeadPose& pose) {
+void Simulation::step(float dt, const HeadPose& given) {
     HAIRLOOM_PROFILE("simulation step");
     impl_->time += static_cast<double>(dt);
+    const HeadPose pose = impl_->method->measuresFromOrigin() ? given : inWorld(given);
+    impl_->origin_ws = pose.origin_ws.cast<float>();
     const auto roots = impl_->scene.rootsAt(pose);
     const auto spheres = impl_->scene.spheresAt(pose);
     runtime::FrameInput input;
@@ -85,10 +93,12 @@ void Simulation::step(float dt, const HeadPose& pose) {
     input.time = impl_->time;
     input.roots_ws = roots;
     input.spheres = spheres;
+    input.origin_ws = {pose.origin_ws.x(), pose.origin_ws.y(), pose.origin_ws.z()};
     if (pose.wind_ws)
         input.wind_ws = runtime::Float3{pose.wind_ws->x(), pose.wind_ws->y(), pose.wind_ws->z()};
     impl_->method->step(impl_->scene, pose, input);
     impl_->readPositions();
+    impl_->substeps += substepsIn(impl_->scene.groom().simulation, dt);
     impl_->gather();
 }
 
@@ -122,7 +132,7 @@ SimulationStats Simulation::stats() const {
     SimulationStats stats = impl_->stats;
     const double frames = static_cast<double>(std::max<std::uint64_t>(stats.frames, 1));
     const double particleSubsteps = static_cast<double>(impl_->positions_ws.size()) *
-                                    static_cast<double>(impl_->scene.groom().simulation.substeps) * frames;
+                                    static_cast<double>(impl_->substeps);
     stats.millisecondsPerFrame = impl_->milliseconds / frames;
     stats.nanosecondsPerParticleSubstep = impl_->milliseconds * 1e6 / particleSubsteps;
     stats.stateHash = impl_->method->stateHash();

@@ -27,9 +27,12 @@ class StrandMethod {
     virtual void reset(const SceneInput& scene, const HeadPose& pose) = 0;
     /// Advances to `pose`; `input` holds its roots and spheres.
     virtual void step(const SceneInput& scene, const HeadPose& pose, const runtime::FrameInput& input) = 0;
+    /// Measured from the origin of the last step, where measuresFromOrigin(), else from that of the world.
     virtual void readPositions(std::span<runtime::Float3> positions_ws) const = 0;
     /// m/s, in the order of the points. False, and nothing is written, where the method knows none.
     virtual bool readVelocities(std::span<runtime::Float3>) const { return false; }
+    /// Takes poses whose places are measured from an origin of theirs.
+    virtual bool measuresFromOrigin() const { return false; }
     /// Of the last step.
     virtual double stepMilliseconds() const = 0;
     /// The first thing that went wrong outside of the strands: a device that was lost, say.

@@ -7,9 +7,11 @@
 #include <QTreeWidget>
 #include <QVBoxLayout>
 
+#include "core/accuracy/effect_cost.h"
 #include "core/editing/document.h"
 #include "core/editing/settings_commands.h"
 #include "core/simulation/effect_switch.h"
+#include "editor/document/tasks.h"
 #include "editor/fields/field.h"
 #include "editor/panels/panel.h"
 #include "editor/panels/stability_gauge.h"
@@ -17,15 +19,19 @@
 namespace hairloom::editor {
 namespace {
 
+constexpr std::uint32_t kMeasuredFrames = 20, kMeasuredRuns = 5;
+
 enum Column { kName, kMs, kMb, kWhy, kColumns };
 
 class EffectsPanel : public QWidget {
   public:
-    EffectsPanel(QtDocument& document, Player& player)
+    EffectsPanel(QtDocument& document, Player& player, Tasks& tasks)
         : document_(document),
           player_(player),
+          tasks_(tasks),
           table_(new QTreeWidget),
           note_(new QLabel),
+          measure_(new QPushButton(tr("Measure on and off"))),
           trial_(new QWidget) {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
@@ -35,7 +41,9 @@ class EffectsPanel : public QWidget {
         note_->setWordWrap(true);
         layout->addWidget(table_, 1);
         layout->addWidget(note_);
+        layout->addWidget(measure_);
         layout->addWidget(trial_);
+        makeMeasure();
         makeTrial();
         const auto refreshSeen = [this] {
             if (isVisible()) refresh();
@@ -43,6 +51,11 @@ class EffectsPanel : public QWidget {
         connect(&player_, &Player::frameReady, this, refreshSeen);
         connect(&player_, &Player::planPreviewChanged, this, refreshSeen);
         connect(table_, &QTreeWidget::itemChanged, this, &EffectsPanel::takeCheck);
+        connect(&document_, &QtDocument::changed, this, [this](editing::Part parts) {
+            if (contains(parts, editing::Part::Physics | editing::kHairParts | editing::Part::Spheres))
+                outdated_ = true;
+        });
+        connect(&document_, &QtDocument::replaced, this, [this] { costs_.reset(); });
         refresh();
     }
 
@@ -69,6 +82,67 @@ class EffectsPanel : public QWidget {
         table_->setToolTip(
             tr("Milliseconds a frame, summed over threads; megabytes of its own; and why it runs or "
                "does not. Untick an effect to try the hair without it."));
+    }
+
+    void makeMeasure() {
+        measure_->setObjectName("effectsMeasure");
+        measure_->setToolTip(
+            tr("Runs the hair with and without each effect, on the processor, and shows what each adds to a "
+               "frame: the only way to price effects that share one solve"));
+        connect(measure_, &QPushButton::clicked, this, &EffectsPanel::measure);
+    }
+
+    /// Each effect on and off, while the head moves as it does in the view.
+    void measure() {
+        const QString name = player_.motion() == "none" ? QStringLiteral("nod") : player_.motion();
+        auto motion = player_.makeMotion(name);
+        if (!motion) return;
+        const auto groom = std::make_shared<const Groom>(document_.groom());
+        const std::shared_ptr<const HeadMotion> moves = std::move(*motion);
+        outdated_ = false;
+        tasks_.run<EffectCosts>(
+            tr("Measuring effects"),
+            [groom, moves](TaskControl& control) {
+                EffectCostOptions options;
+                options.time.frames = kMeasuredFrames;
+                options.repeats = kMeasuredRuns;
+                options.progress = [&](std::size_t done, std::size_t total) {
+                    control.setProgress(static_cast<float>(done) / static_cast<float>(total));
+                };
+                options.cancelled = [&] { return control.isCancelled(); };
+                return measureEffectCosts(*groom, *moves, options);
+            },
+            [this](EffectCosts costs) {
+                costs_ = std::move(costs);
+                refresh();
+            });
+    }
+
+    const EffectCost* costOf(const std::string& effect) const {
+        if (!costs_) return nullptr;
+        const auto found = std::ranges::find(costs_->effects, effect, &EffectCost::name);
+        return found != costs_->effects.end() && found->costMilliseconds ? &*found : nullptr;
+    }
+
+    /// What an effect adds to a frame; else, in a run, what its own stages take.
+    void showMilliseconds(QTreeWidgetItem& item, const EffectReport& effect, bool measured) const {
+        item.setText(kMs, QStringLiteral("–"));
+        item.setToolTip(kMs, {});
+        if (!effect.on) return;
+        if (const EffectCost* cost = costOf(effect.name)) {
+            const Quartiles& ms = *cost->costMilliseconds;
+            const bool lost = ms.q1 <= 0 && ms.q3 >= 0;
+            item.setText(kMs, lost ? tr("≈ 0") : QString::number(ms.median, 'f', 3));
+            item.setToolTip(kMs, tr("%1 ms a frame with it, %2 without; half of the runs lie between %3 and %4")
+                                     .arg(costs_->milliseconds.median, 0, 'f', 2)
+                                     .arg(cost->millisecondsOff->median, 0, 'f', 2)
+                                     .arg(ms.q1, 0, 'f', 3)
+                                     .arg(ms.q3, 0, 'f', 3));
+        } else if (measured && effect.milliseconds > 0) {
+            item.setText(kMs, QString::number(effect.milliseconds, 'f', 3));
+        } else if (measured) {
+            item.setToolTip(kMs, tr("Part of the strands' one solve; Measure on and off tells its price"));
+        }
     }
 
     void makeTrial() {
@@ -107,13 +181,25 @@ class EffectsPanel : public QWidget {
         player_.setLeftOut(leftOut);
     }
 
+    QString words(bool nothing) const {
+        if (nothing) return tr("Place hair to see what its simulation would run.");
+        if (costs_) {
+            const QString age = outdated_ ? tr(" before the last change") : QString();
+            return tr("On and off, of %1 ms a frame on the processor, measured%2.")
+                .arg(costs_->milliseconds.median, 0, 'f', 2)
+                .arg(age);
+        }
+        const auto& frame = player_.frame();
+        return frame ? tr("Mean of %L1 frames").arg(frame->stats.frames)
+                     : tr("What would run; play (Space) to see what it costs.");
+    }
+
     void refresh() {
         filling_ = true;
         const std::vector<EffectReport> effects = player_.effects();
         const auto& frame = player_.frame();
-        note_->setText(frame              ? tr("Mean of %L1 frames").arg(frame->stats.frames)
-                       : !effects.empty() ? tr("What would run; play (Space) to see what it costs.")
-                                          : tr("Place hair to see what its simulation would run."));
+        note_->setText(words(effects.empty()));
+        measure_->setVisible(!effects.empty());
         while (table_->topLevelItemCount() > static_cast<int>(effects.size()))
             delete table_->takeTopLevelItem(0);
         while (table_->topLevelItemCount() < static_cast<int>(effects.size()))
@@ -131,7 +217,8 @@ class EffectsPanel : public QWidget {
         const bool leftOut = player_.leftOut().contains(name);
         item.setText(kName, labelOf(name));
         item.setData(kName, Qt::UserRole, name);
-        const bool switchable = canTurnOff(effect.name) && (effect.on || leftOut);
+        const bool known = canTurnOff(document_.groom().simulation, effect.name);
+        const bool switchable = known && (effect.on || leftOut);
         if (switchable) {
             item.setFlags(item.flags() | Qt::ItemIsUserCheckable);
             item.setCheckState(kName, leftOut ? Qt::Unchecked : Qt::Checked);
@@ -139,10 +226,10 @@ class EffectsPanel : public QWidget {
             item.setFlags(item.flags() & ~Qt::ItemIsUserCheckable);
             item.setData(kName, Qt::CheckStateRole, {});
         }
-        item.setToolTip(kName, canTurnOff(effect.name) ? tr("Untick to try the hair without it")
-                                                       : tr("Follows from the hair's shape and speed"));
+        item.setToolTip(kName, known ? tr("Untick to try the hair without it")
+                                     : tr("Follows from the hair's shape and speed"));
         const QString none = QStringLiteral("–");
-        item.setText(kMs, effect.on && measured ? QString::number(effect.milliseconds, 'f', 3) : none);
+        showMilliseconds(item, effect, measured);
         item.setText(kMb,
                      effect.on ? QString::number(static_cast<double>(effect.bytes) / 1e6, 'f', 1) : none);
         item.setText(kWhy, leftOut ? tr("left out for a try") : QString::fromStdString(effect.why));
@@ -156,10 +243,14 @@ class EffectsPanel : public QWidget {
 
     QtDocument& document_;
     Player& player_;
+    Tasks& tasks_;
     QTreeWidget* table_;
     QLabel* note_;
+    QPushButton* measure_;
     QWidget* trial_;
     bool filling_ = false;
+    std::optional<EffectCosts> costs_;
+    bool outdated_ = false;  ///< `costs_` are of the document before its last change
 };
 
 }  // namespace
@@ -174,7 +265,7 @@ PanelInfo effectsPanel() {
             [](const PanelParts& parts) -> QWidget* {
                 return scrolled(column(
                     {heading(QObject::tr("Stability")), new StabilityGauge(parts.document, parts.preferences),
-                     heading(QObject::tr("Effects")), new EffectsPanel(parts.document, parts.player)}));
+                     heading(QObject::tr("Effects")), new EffectsPanel(parts.document, parts.player, parts.tasks)}));
             }};
 }
 

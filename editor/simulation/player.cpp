@@ -109,7 +109,7 @@ void Player::capture() {
     captured_ = true;
     auto groom = std::make_shared<const Groom>(document_.groom());
     capturedOffsets_.assign(groom->offsets.view().begin(), groom->offsets.view().end());
-    auto made = motionOf(motion_, actor_, *groom);
+    auto made = makeMotion(motion_);
     std::shared_ptr<HeadMotion> motion;
     if (made) motion = std::move(*made);
     request([&](WorkerRequests& requests) {
@@ -154,8 +154,12 @@ void Player::reset() {
     if (planPreviewOutdated_) outdatePlanPreview();
 }
 
+Result<std::unique_ptr<HeadMotion>> Player::makeMotion(const QString& name) const {
+    return motionOf(name, actor_, document_.groom());
+}
+
 Status Player::setMotion(const QString& name) {
-    const auto made = motionOf(name, actor_, document_.groom());
+    const auto made = makeMotion(name);
     if (!made) return tl::unexpected(made.error());
     const bool play = playing_;
     motion_ = name;
@@ -276,7 +280,7 @@ void Player::documentChanged(editing::Part parts) {
     std::shared_ptr<HeadMotion> motion;
     if (contains(parts, editing::Part::Spheres)) {
         // Clips carry spheres along by their bones.
-        if (auto made = motionOf(motion_, actor_, groom)) motion = std::move(*made);
+        if (auto made = makeMotion(motion_)) motion = std::move(*made);
     }
     request([&](WorkerRequests& requests) {
         if (contains(parts, editing::Part::Physics)) requests.settings = groom.simulation;

@@ -51,6 +51,8 @@ class Player : public QObject {
     /// none, spin, nod or clip:NAME. Starts anew. An error leaves the motion as it was.
     Status setMotion(const QString& name);
     const QString& motion() const { return motion_; }
+    /// One that setMotion() takes, for this document. Errors: no such motion.
+    Result<std::unique_ptr<HeadMotion>> makeMotion(const QString& name) const;
     /// Names that setMotion() takes for this document.
     QStringList motions() const;
     /// The character with skeleton and clips; null where the head came without.

@@ -21,12 +21,7 @@ HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {
 namespace HWY_NAMESPACE {
 
-/// Seconds in which curves that lag arrive, and the speed in metres per second above which they wait.
-inline constexpr float kLeakTime = 2.0f;
-inline constexpr float kLeakSpeed = 0.0015f;
-
-/// Cosine of the turn, 162°, behind which a frame's normal follows from rounding: joints there keep their
-/// curves.
+/// Cosine of the turn, 162°, beyond which a normal is carried with care.
 inline constexpr float kFold = -0.95f;
 
 /// What a strip of strands works with in a substep, point after point, in LaneFrame::solver. A joint and the
@@ -34,14 +29,12 @@ inline constexpr float kFold = -0.95f;
 struct Strip {
     struct alignas(64) Point {
         Lanes3 direction;  ///< of the segment at the start of the substep, by its rest length
-        Lanes3 ahead;   ///< what the joint pulls against q of the way on, reversed, before its curve changes
-        Lanes3 held;    ///< the curve of the joint, turned with the root
-        Lanes3 change;  ///< from there to the curve of today's frame; of curved hair
+        Lanes3 ahead;  ///< what the joint pulls against q of the way on, reversed
+        Lanes upper;   ///< of the system of lengths, as it is eliminated
+        Lanes tension;  ///< likewise
 
-        // Each takes the place of what is no longer needed by then: strips of long strands stay small.
-        Lanes3& right() { return ahead; }    ///< right side of the system of bending
-        Lanes& upper() { return held.x; }    ///< of the system of lengths, as it is eliminated
-        Lanes& tension() { return held.y; }  ///< likewise
+        /// Right side of the system of bending; takes the place of `ahead`.
+        Lanes3& right() { return ahead; }
     };
     Point* points;
 
@@ -77,50 +70,18 @@ HWY_INLINE void readSegments(const BlockView& block, const Rows& rows, const Lan
     }
 }
 
-/// Share of the change that the tank pays, and what that leaves in it. Turning by the share α changes the
-/// energy by ½ α² size − α gain.
-HWY_INLINE V spendEnergyTank(const BlockView& block, const SubstepContext& context, std::size_t lane, V gain,
-                             V size) {
-    const V zero = hn::Zero(D()), one = all(1.0f);
-    const V squared = all(context.h * context.h), slow = all(kLeakSpeed * kLeakSpeed);
-    const V energyTank = hn::Load(D(), block.energyTank + lane);
-    const auto fresh = energyTank < zero;
-    const V saved = hn::Max(energyTank, zero) * squared;
-    const V maximum = (gain + hn::Sqrt(gain * gain + (size + size) * saved)) / hn::Max(size, all(1e-30f));
-    const V maxLeak = all(std::fmin(context.h / kLeakTime, 1.0f));
-    const V leak = maxLeak * hn::Max(one - hn::Load(D(), block.motion + lane) / slow, zero);
-    V part = hn::Max(hn::Min(maximum, one), leak);
-    part = hn::IfThenElse(fresh, one, part);
-    const V gained = part * (gain - all(0.5f) * part * size) / squared;
-    const V kept = hn::Max(hn::Max(energyTank, zero) + gained, zero) * all(context.velocityShare);
-    hn::Store(hn::IfThenElse(fresh, zero, kept), D(), block.energyTank + lane);
-    return part;
-}
-
-/// Energy that the joints of a strip gain and pay where their curves change by the share 1.
-struct Turning {
-    V gain, size;
-    V sharpest;  ///< least cosine of a turn
-};
-
-/// The joints' changes and what they pull against. With `kFolds`, joints behind a fold keep their curves.
+/// Takes the joints' curves, in the frames at `previous`, off what they pull against; returns the least cosine
+/// of a turn. Without `kFolds` it is right only where that is above kFold.
 template <bool kFolds, class Rows>
-HWY_INLINE Turning measureTurning(const BlockView& block, const Rows& rows, const LaneFrame& lanes,
-                                  std::size_t lane, Strip& strip) {
-    const V zero = hn::Zero(D()), one = all(1.0f);
-    const M3 turn = matrixOf(load4(lanes.turn, lane));
+HWY_INLINE V takeCurves(const BlockView& block, const Rows& rows, const LaneFrame& lanes, std::size_t lane,
+                        Strip& strip) {
     V3 behind = rootDirection(block, lanes, lane), normal = rootNormal(block, lanes, lane);
-    Turning turning{zero, zero, one};
-    auto known = hn::Not(noLane());
+    V sharpest = all(1.0f);
     const auto carry = [&](V3 tangent) HWY_ATTR {
         const V along = dot(behind, tangent);
-        if constexpr (kFolds) {
-            normal = carryNormal(normal, behind, tangent, along);
-            known = hn::AndNot(along < all(kFold), known);
-        } else {
-            normal = carryOpenNormal(normal, behind, tangent, along);
-            turning.sharpest = hn::Min(turning.sharpest, along);
-        }
+        normal = kFolds ? carryNormal(normal, behind, tangent, along)
+                        : carryOpenNormal(normal, behind, tangent, along);
+        sharpest = hn::Min(sharpest, along);
         behind = tangent;
     };
     Strip::Point* at = strip.points;
@@ -128,38 +89,10 @@ HWY_INLINE Turning measureTurning(const BlockView& block, const Rows& rows, cons
         carry(load3(at->direction));
     auto row = rows.at(block.firstFree - 1);
     for (const Strip::Point* const end = strip.points + (block.points - 1); at < end; ++at, row.advance()) {
-        const V3 tangent = load3(at->direction);
-        const V3 held = rotate(turn, row.curve());
-        const V3 goal = fromFrame(behind, normal, row.target());
-        V3 change = goal - held;
-        if constexpr (kFolds) change = onlyWhere(known, change);
-        const V stiffness = row.stiffness();
-        const V3 off = tangent - behind - held;
-        turning.gain = hn::MulAdd(dot(off, change), stiffness, turning.gain);
-        turning.size = hn::MulAdd(dot(change, change), stiffness, turning.size);
-        store3(held, at->held);
-        store3(change, at->change);
-        store3(load3(at->ahead) + held, at->ahead);
-        carry(tangent);
+        store3(load3(at->ahead) + fromFrame(behind, normal, row.target()), at->ahead);
+        carry(load3(at->direction));
     }
-    return turning;
-}
-
-/// Turns the curves that the joints hold with the root, and finds how far they go on towards those of the
-/// frames at `previous`; the share of each joint's change. The pulls leave out what turning a curve does to
-/// the frame's own strand, so curves that simply followed would feed energy into curly hair without end. They
-/// follow as far as the strand's tank lasts: it holds what earlier turning took out of the springs, so that
-/// no energy comes from nowhere (passivity by energy tanks, as Duindam and Stramigioli 2004). While the
-/// strand rests, curves that lag creep home.
-template <class Rows>
-HWY_INLINE V followFrames(const BlockView& block, const Rows& rows, const LaneFrame& lanes,
-                          const SubstepContext& context, std::size_t lane, Strip& strip) {
-    Turning turning = measureTurning<false>(block, rows, lanes, lane, strip);
-    if (HWY_UNLIKELY(!hn::AllFalse(D(), turning.sharpest < all(kFold)))) {
-        readSegments(block, rows, lanes, context, lane, strip);
-        turning = measureTurning<true>(block, rows, lanes, lane, strip);
-    }
-    return spendEnergyTank(block, context, lane, turning.gain, turning.size);
+    return sharpest;
 }
 
 /// What the segments pull with, read root to tip: the gradient of the bending energy by a segment's outer
@@ -170,11 +103,15 @@ class SegmentPulls {
   public:
     template <class Rows>
     HWY_INLINE SegmentPulls(const BlockView& block, const Rows& rows, const LaneFrame& lanes,
-                            const SubstepContext& context, std::size_t lane, Strip& strip)
-        : share_(hn::Zero(D())) {
+                            const SubstepContext& context, std::size_t lane, Strip& strip) {
         readSegments(block, rows, lanes, context, lane, strip);
-        if constexpr (kShape == Shape::curved)
-            share_ = followFrames(block, rows, lanes, context, lane, strip);
+        if constexpr (kShape == Shape::curved) {
+            const V sharpest = takeCurves<false>(block, rows, lanes, lane, strip);
+            if (HWY_UNLIKELY(!hn::AllFalse(D(), sharpest < all(kFold)))) {
+                readSegments(block, rows, lanes, context, lane, strip);
+                takeCurves<true>(block, rows, lanes, lane, strip);
+            }
+        }
         const std::size_t first = block.firstFree - 1;
         push_ = jointPush(rows.at(first), strip.points[first]);
     }
@@ -195,16 +132,9 @@ class SegmentPulls {
     /// A joint's pull, reversed.
     template <class Row>
     HWY_INLINE V3 jointPush(const Row& row, const Strip::Point& point) const {
-        V3 off = load3(point.ahead);
-        if constexpr (kShape == Shape::curved) {
-            const V3 change = load3(point.change);
-            row.setCurve(mulAdd(change, share_, load3(point.held)));
-            off = mulAdd(change, share_, off);
-        }
-        return off * row.stiffness();
+        return load3(point.ahead) * row.stiffness();
     }
 
-    V share_;  // of curved hair
     V3 push_;
 };
 

@@ -84,22 +84,6 @@ HWY_INLINE V3 backAlong(V3 offset, V3 relative, V squared, V reach) {
     return select(onPath, offset + relative * s, offset);
 }
 
-/// Distance from a sphere's centre, as a share of the reach, below which points leave it sideways.
-inline constexpr float kDeep = 0.6f;
-
-/// The part of a point's offset from a sphere's centre across the segment before it; any direction across,
-/// where there is none. Along their strand its own length would hold them back.
-HWY_INLINE V3 acrossStrand(V3 offset, V3 edge) {
-    const V zero = hn::Zero(D()), tiny = all(1e-18f);
-    const V squared = dot(edge, edge);
-    const V3 across = offset - edge * (dot(offset, edge) / hn::Max(squared, tiny));
-    const V3 level{edge.z, zero, zero - edge.x};
-    const auto upright = dot(level, level) <= squared * all(1e-6f);
-    const V3 other = select(upright, {edge.y, zero, zero}, level);
-    const auto centred = dot(across, across) <= squared * all(1e-8f);
-    return select(squared > tiny, select(centred, other, across), offset);
-}
-
 /// The point of the circle in which the contact's sphere and another one meet that is nearest to `at`, from
 /// the other's centre; `meet` is false where they do not meet in a circle.
 HWY_INLINE V3 nearestOfCircle(V3 at, const Contact& contact, V3 centre, V reach, hn::Mask<D>& meet) {
@@ -172,7 +156,7 @@ class Contacts {
           overlaps_(context, spheres, near),
           near_(near),
           in_{block, lanes, context, spheres, collisionRadii, roots_},
-          deepest_(context.lengthIterations > 0 ? kDeep * kDeep : 0.0f) {
+          deepest_(context.lengthIterations > 0 ? static_cast<float>(HAIRLOOM_DEEP_IN_SPHERE * HAIRLOOM_DEEP_IN_SPHERE) : 0.0f) {
         const V step = all(static_cast<float>(context.index + 1));
         for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth)
             store3(load3(lanes.root, lane) + load3(lanes.rootDisplacement, lane) * step, roots_, lane);
@@ -304,7 +288,7 @@ class Contacts {
     Overlaps overlaps_;
     NearPoints& near_;
     const NearInput in_;
-    const float deepest_;  ///< square of kDeep; 0 where no length holds a point back
+    const float deepest_;  ///< square of HAIRLOOM_DEEP_IN_SPHERE; 0 where no length holds a point back
     alignas(64) float roots_[3][kBlockLanes];
     std::size_t touchCount_ = 0;
 };

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Backward Euler: a direct solve along each strand. Nothing is fused: the energy of coupled strands, which
-// are solved with the same system, drifts where forces and moves round otherwise (docs/gpu-simulation.md).
+// Backward Euler: a direct solve along each strand.
 #if defined(HAIRLOOM_RUNTIME_IMPLICIT_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HAIRLOOM_RUNTIME_IMPLICIT_INL_H
 #undef HAIRLOOM_RUNTIME_IMPLICIT_INL_H
@@ -27,7 +26,7 @@ HWY_INLINE V3 operator*(const S3& s, V3 v) {
             s.xz * v.x + s.yz * v.y + s.zz * v.z};
 }
 HWY_INLINE V3 operator*(const M3& m, V3 v) {
-    return {dotRoundingEach(m.x, v), dotRoundingEach(m.y, v), dotRoundingEach(m.z, v)};
+    return {dot(m.x, v), dot(m.y, v), dot(m.z, v)};
 }
 HWY_INLINE V3 transposedTimes(const M3& m, V3 v) {
     return m.x * v.x + m.y * v.y + m.z * v.z;
@@ -202,12 +201,12 @@ HWY_INLINE void factorPoint(StrandSystem& system, std::uint32_t first, std::uint
     M3 lower{zero3(), zero3(), zero3()};
     if (p > first) {
         lower = multiply(coupling, system.points[p - 1].inverse);
-        diagonal = {diagonal.xx - dotRoundingEach(lower.x, coupling.x),
-                    diagonal.xy - dotRoundingEach(lower.x, coupling.y),
-                    diagonal.xz - dotRoundingEach(lower.x, coupling.z),
-                    diagonal.yy - dotRoundingEach(lower.y, coupling.y),
-                    diagonal.yz - dotRoundingEach(lower.y, coupling.z),
-                    diagonal.zz - dotRoundingEach(lower.z, coupling.z)};
+        diagonal = {diagonal.xx - dot(lower.x, coupling.x),
+                    diagonal.xy - dot(lower.x, coupling.y),
+                    diagonal.xz - dot(lower.x, coupling.z),
+                    diagonal.yy - dot(lower.y, coupling.y),
+                    diagonal.yz - dot(lower.y, coupling.z),
+                    diagonal.zz - dot(lower.z, coupling.z)};
     }
     system.points[p].inverse = inverseOf(diagonal);
     system.points[p].lower = lower;

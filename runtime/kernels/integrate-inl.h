@@ -138,12 +138,12 @@ void rk4Stage(const BlockView& block, LaneFrame&, const SubstepContext&) {
     });
 }
 
-float fastestOf(const BlockView& block, float h) {
+float fastestOf(const BlockView& block) {
     // Bits of numbers that are not negative have the order of the numbers; what is no number comes after.
     using Bits = hn::RebindToUnsigned<D>;
     const auto bitsOfSquare = [](V3 v) HWY_ATTR { return hn::BitCast(Bits(), dot(v, v)); };
     // Squares of places farther than this from their root leave single precision.
-    const V maximum = all(1e12f), rate = all(1.0f / (h * h));
+    const V maximum = all(1e12f);
     V ofAll = hn::Zero(D());
     for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
         auto fastest = hn::Zero(Bits()), farthest = hn::Zero(Bits());
@@ -155,9 +155,7 @@ float fastestOf(const BlockView& block, float h) {
         }
         const V squared = hn::BitCast(D(), fastest);
         const auto sound = hn::And(squared < maximum, hn::BitCast(D(), farthest) < maximum);
-        const V counted = hn::IfThenElse(sound, squared, all(HUGE_VALF));
-        if (block.motion) hn::Store(counted * rate, D(), block.motion + lane);
-        ofAll = hn::Max(ofAll, counted);
+        ofAll = hn::Max(ofAll, hn::IfThenElse(sound, squared, all(HUGE_VALF)));
     }
     return laneMax(ofAll);
 }

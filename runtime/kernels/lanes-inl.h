@@ -87,7 +87,7 @@ HWY_INLINE V3 operator*(V3 a, V s) {
 /// planes have.
 HWY_INLINE BlockView localCopy(const BlockView& given) {
     BlockView block = given;
-    for (Planes* const planes : {&block.position, &block.previous, &block.curve, &block.start, &block.rate})
+    for (Planes* const planes : {&block.position, &block.previous, &block.start, &block.rate})
         planes->pitch = given.pitch;
     block.rest.pitch = block.target.pitch = given.pitch;
     return block;
@@ -111,11 +111,6 @@ HWY_INLINE V lerp(V a, V b, V t) {
 HWY_INLINE V dot(V3 a, V3 b) {
     return hn::MulAdd(a.z, b.z, hn::MulAdd(a.y, b.y, a.x * b.x));
 }
-/// The same with each product and sum rounded, for systems whose forces and moves must match to the last
-/// digit.
-HWY_INLINE V dotRoundingEach(V3 a, V3 b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
 HWY_INLINE V3 cross(V3 a, V3 b) {
     return {hn::NegMulAdd(a.z, b.y, a.y * b.z), hn::NegMulAdd(a.x, b.z, a.z * b.x),
             hn::NegMulAdd(a.y, b.x, a.x * b.y)};
@@ -135,23 +130,6 @@ HWY_INLINE V3 rotate(V4 q, V3 v) {
 struct M3 {
     V3 x, y, z;
 };
-HWY_INLINE V3 rotate(const M3& m, V3 v) {
-    return {dot(m.x, v), dot(m.y, v), dot(m.z, v)};
-}
-/// Of a rotation of unit length.
-HWY_INLINE M3 matrixOf(V4 q) {
-    const V one = all(1.0f);
-    const V x = q.x + q.x, y = q.y + q.y, z = q.z + q.z;
-    return {{one - (q.y * y + q.z * z), q.x * y - q.w * z, q.x * z + q.w * y},
-            {q.x * y + q.w * z, one - (q.x * x + q.z * z), q.y * z - q.w * x},
-            {q.x * z - q.w * y, q.y * z + q.w * x, one - (q.x * x + q.y * y)}};
-}
-
-/// First b, then a.
-HWY_INLINE V4 multiply(V4 a, V4 b) {
-    return {a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y, a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
-            a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
-}
 
 /// Zero in the other lanes.
 HWY_INLINE V3 onlyWhere(hn::Mask<D> which, V3 v) {

@@ -107,8 +107,8 @@ class LengthElimination {
         const V whole = hn::Max(own, all(0.25f)) * (innerMass + outerMass_);
         inverse_ = one / hn::NegMulAdd(above * uncut, inverse_, whole);
         right_ = hn::MulAdd(above, right_, error) * inverse_;
-        store(upper, (&point + 1)->upper());
-        store(right_, point.tension());
+        store(upper, (&point + 1)->upper);
+        store(right_, point.tension);
         outer_ = place;
         outerMass_ = innerMass;
         wanted_ = wanted;
@@ -129,7 +129,7 @@ HWY_INLINE void applyTension(const BlockView& block, const Rows& rows, const Sub
     float* at = moving.x + block.firstFree * kBlockLanes + lane;
     auto row = rows.at(block.firstFree - 1);
     Strip::Point* point = strip.points + (block.firstFree - 1);
-    V lambda = load(point->tension()), innerMass = row.inverseMass();
+    V lambda = load(point->tension), innerMass = row.inverseMass();
     V3 inner = load3(point->direction) * lambda;
     V excess = hn::Zero(D());
     const auto keep = [&](V mass) HWY_ATTR {
@@ -146,7 +146,7 @@ HWY_INLINE void applyTension(const BlockView& block, const Rows& rows, const Sub
         if constexpr (kKept) keep(mass);
         row.advance();
         ++point;
-        lambda = hn::MulAdd(load(point->upper()), lambda, load(point->tension()));
+        lambda = hn::MulAdd(load(point->upper), lambda, load(point->tension));
         const V3 outer = load3(point->direction) * lambda;
         move(outer - inner, mass);
         inner = outer;
@@ -266,10 +266,7 @@ void bendAndProject(const BlockView& given, LaneFrame& lanes, const SubstepConte
         }
         bendAndProjectStrip<kShape>(block, rows, lanes, context, lane, strip);
         if (context.index + 1 < context.count) continue;
-        for (std::size_t p = 0; p + 1 < block.points; ++p) {
-            planes.at(p).setTension(rows.at(p).tension());
-            if constexpr (kCurved) planes.at(p).setCurve(rows.at(p).curve());
-        }
+        for (std::size_t p = 0; p + 1 < block.points; ++p) planes.at(p).setTension(rows.at(p).tension());
     }
 }
 

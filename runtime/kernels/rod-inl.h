@@ -110,6 +110,7 @@ class RodStrip {
         const V calm = hn::NegMulAdd(turn, all(static_cast<float>(HAIRLOOM_ROD_BLEND_SLOPE)),
                                      all(static_cast<float>(HAIRLOOM_ROD_BLEND_END)));
         blend_ = all(most) * hn::Min(hn::Max(calm, hn::Zero(D())), all(1.0f));
+        velocityAhead_ = blend_ * all(1.0f / context_.stepRatio + 2.0f);
         step_ = h * (all(1.0f) - blend_ / ratio);
         inverseStep_ = all(1.0f) / step_;
         damped_ = all(1.0f) + all(context_.bendDampingTime) * inverseStep_;
@@ -167,9 +168,10 @@ class RodStrip {
             point.increment = u;
             point.rotation = rodTurned(old, u);
             point.displacement = outer;
-            position = mad3(rodRotate(point.rotation, along), length, position);
-            aim(point, node, oldTangent, position);
-            if constexpr (kContacts) meet(point, node, position, j + 1);
+            const V3 tangent = rodRotate(point.rotation, along);
+            position = mad3(tangent, length, position);
+            aim(point, node, tangent, position);
+            if constexpr (kContacts) meet(point, node, tangent, position, j + 1);
 
             const V3 strain = load3(rod_.strain, i), wanted = blendStrain(strain, i), axis = axisOf(i);
             const V4 last = rodOfStrain(strain);
@@ -213,21 +215,21 @@ class RodStrip {
         return extrapolated * dampingShare_;
     }
 
-    /// Where inertia, gravity and air take a node.
+    /// Where inertia, gravity and air take a node, which the prediction has at `position`.
     void aim(RodPoint& point, std::size_t node, V3 tangent, V3 position) const {
-        const V3 now = load3(rod_.velocity, node);
-        const V3 velocity = mad3(now - load3(rod_.velocityBefore, node), blend_, now);
+        const V3 now = load3(rod_.velocity, node), faster = now - load3(rod_.velocityBefore, node);
+        const V3 velocity = mad3(faster, blend_, now);
         V3 change = mad3(all3(context_.gravity), step_, velocity);
         V rate = all(context_.rootDamping);
         change = mad3(rootDisplacement_, all(context_.rootDamping / context_.h) * step_, change);
         if (context_.air != Air::none) {
-            V3 flow = zero3() - velocity, air = zero3();
-            if (context_.air == Air::moving) {
+            V3 air = zero3();
+            if (context_.air == Air::moving)
                 air = windAt(*context_.wind, context_.windPhases, position + rootPosition());
-                flow = air - velocity;
-            }
             // Hair takes on the air's velocity at the rate airDrag · sin of its angle to the tangent (Rünz
-            // 2012, Section 3.3).
+            // 2012, Section 3.3); velocity and tangent are predicted for the end of the substep, so that the
+            // scheme keeps its order.
+            const V3 flow = air - mad3(faster, velocityAhead_, now);
             const V all2 = dot(flow, flow), parallel = dot(flow, tangent);
             const V sine = hn::Sqrt(hn::Max(negMad(parallel, parallel, all2), hn::Zero(D())) /
                                     hn::Max(all2, all(1e-30f)));
@@ -244,12 +246,12 @@ class RodStrip {
                     load3(lanes_.root, lane_));
     }
 
-    void meet(RodPoint& point, std::size_t node, V3 position, std::uint32_t p) const {
+    void meet(RodPoint& point, std::size_t node, V3 tangent, V3 position, std::uint32_t p) const {
         const float along = static_cast<float>(p) / static_cast<float>(segments_);
         const float radius = context_.collisionRadiusAtRoot +
                              along * (context_.collisionRadiusAtTip - context_.collisionRadiusAtRoot);
         point.contact = contactOf(lanes_, rootPosition(),
-                                  {position, point.displacement, load3(rod_.velocity, node), point.weight,
+                                  {position, point.displacement, tangent, load3(rod_.velocity, node), point.weight,
                                    hn::Load(D(), rod_.load + node), step_, radius},
                                   context_);
     }
@@ -388,6 +390,7 @@ class RodStrip {
     RodPoint* points_;
     std::uint32_t first_, segments_;
     V blend_, step_, inverseStep_;
+    V velocityAhead_;          ///< share of the last change of velocity that is expected again
     V damped_, dampingShare_;  ///< 1 + τ/h, and the part of it that is damping
     V3 rootDisplacement_, inDisplacement_;
     V4 inner_;  ///< rotation of the segment before the first free one

@@ -10,6 +10,7 @@
 #include "hwy/highway.h"
 #include "kernels/lanes-inl.h"
 #include "kernels/rod_math-inl.h"
+#include "kernels/spheres-inl.h"
 #include "src/kernels.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -53,6 +54,7 @@ struct RodContact {
 struct RodNode {
     V3 position;      ///< predicted, relative to the root at the end of the substep
     V3 displacement;  ///< predicted, world
+    V3 tangent;       ///< predicted, of the segment before it, world
     V3 velocity;      ///< of the last substep, world
     V weight;         ///< m/(h² D)
     V load;           ///< force of its contacts in the last substep
@@ -60,17 +62,26 @@ struct RodNode {
     float radius;     ///< metres that it keeps from spheres
 };
 
-HWY_INLINE void meetSphere(const MovingSphere& sphere, V3 root, const RodNode& node,
+HWY_INLINE void meetSphere(const MovingSphere& sphere, Float3 centre_ws, V3 root, const RodNode& node,
                            const SubstepContext& context, RodContact& contact) {
     const V3 step = all3(sphere.step);
-    const V3 centre = all3(sphere.from_ws + sphere.step * static_cast<float>(context.index + 1)) - root;
     const V reach = all(sphere.radius + node.radius);
-    const V3 to = node.position - centre;
-    const V distance = hn::Sqrt(hn::Max(dot(to, to), all(1e-18f)));
+    const V3 to = node.position - (all3(centre_ws) - root);
+    const V squared = dot(to, to);
+    const V distance = hn::Sqrt(hn::Max(squared, all(1e-18f)));
     V3 n = to * (all(1.0f) / distance);
     V depth = reach - distance;
     const V3 way = node.displacement - step, from = to - way;
     const V c = mad(reach, hn::Neg(reach), dot(from, from));
+    const auto deep = distance < reach * all(static_cast<float>(HAIRLOOM_DEEP_IN_SPHERE));
+    if (HWY_UNLIKELY(!hn::AllFalse(D(), deep))) {
+        const V3 across = acrossStrand(to, node.tangent);
+        const V3 out = across * (all(1.0f) / hn::Sqrt(hn::Max(dot(across, across), all(1e-18f))));
+        const V along = dot(to, node.tangent);
+        const V surface = hn::Sqrt(hn::Max(negMad(along, along, reach * reach), hn::Zero(D())));
+        n = select(deep, out, n);
+        depth = hn::IfThenElse(deep, surface - dot(out, to), depth);
+    }
     // What a contact holds is inside by a little, and stays held while the prediction lifts it off.
     auto held = hn::Or(depth > hn::Zero(D()), c < hn::Zero(D()));
     if (context.sweeps) {
@@ -105,7 +116,16 @@ HWY_INLINE RodContact contactOf(const LaneFrame& lanes, V3 root, const RodNode& 
     for (V& number : contact.hessian) number = hn::Zero(D());
     contact.gradient = zero3();
     contact.twiceEnergy = contact.touching = hn::Zero(D());
-    for (const MovingSphere& sphere : lanes.touchable) meetSphere(sphere, root, node, context, contact);
+    // Most nodes are neither inside a sphere nor come out of one or past it, by far more than rounding.
+    const V3 position_ws = node.position + root;
+    const V way = hn::Sqrt(dot(node.displacement, node.displacement));
+    for (const MovingSphere& sphere : lanes.touchable) {
+        const Float3 centre_ws = sphere.from_ws + sphere.step * static_cast<float>(context.index + 1);
+        const V3 to = position_ws - all3(centre_ws);
+        const V farthest = way + all(1.001f * (sphere.radius + node.radius + sphere.way));
+        if (HWY_LIKELY(hn::AllTrue(D(), dot(to, to) > farthest * farthest))) continue;
+        meetSphere(sphere, centre_ws, root, node, context, contact);
+    }
     return contact;
 }
 

@@ -38,11 +38,6 @@ void moveRoots(const BlockView& block, LaneFrame& lanes, const SubstepContext& c
             hn::Sqrt(mixed.x * mixed.x + mixed.y * mixed.y + mixed.z * mixed.z + mixed.w * mixed.w);
         const V inverse = all(1.0f) / norm;
         const V4 now{mixed.x * inverse, mixed.y * inverse, mixed.z * inverse, mixed.w * inverse};
-        if (block.curve.x) {
-            const V4 last = context.index == 0 ? from : load4(lanes.rotation, lane);
-            store4(multiply(now, {hn::Neg(last.x), hn::Neg(last.y), hn::Neg(last.z), last.w}), lanes.turn,
-                   lane);
-        }
         store4(now, lanes.rotation, lane);
 
         const V3 step = load3(lanes.rootDisplacement, lane);

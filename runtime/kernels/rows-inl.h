@@ -55,8 +55,6 @@ class PlaneRows {
         HWY_INLINE V lower1() const { return one(block_->lower1); }
         HWY_INLINE V lower2() const { return one(block_->lower2); }
         HWY_INLINE V3 target() const { return load3(block_->target, at_); }
-        HWY_INLINE V3 curve() const { return load3(block_->curve, at_); }
-        HWY_INLINE void setCurve(V3 curve) const { store3(curve, block_->curve, at_); }
         HWY_INLINE V tension() const { return one(block_->tension); }
         HWY_INLINE void setTension(V tension) const { hn::Store(tension, D(), block_->tension + at_); }
 
@@ -85,12 +83,12 @@ struct CopiedPoint {
     Lanes halfLength, inverseLength, inverseMass, stiffness, inverseDiagonal, lower1, lower2, tension;
 };
 struct CopiedCurvedPoint : CopiedPoint {
-    Lanes3 target, curve;
+    Lanes3 target;
 };
 static_assert(sizeof(CopiedCurvedPoint) == kCopiedRows * kWidth * sizeof(float));
 
 /// The same in a copy for the time of a frame, in which all that belongs to a point lies side by side: one
-/// address serves for all of it. With `kCurved` targets and curves as well; straight hair keeps less of the
+/// address serves for all of it. With `kCurved` targets as well; straight hair keeps less of the
 /// first-level cache busy without.
 template <bool kCurved>
 class CopiedRows {
@@ -109,8 +107,6 @@ class CopiedRows {
         HWY_INLINE V lower1() const { return load(point_->lower1); }
         HWY_INLINE V lower2() const { return load(point_->lower2); }
         HWY_INLINE V3 target() const { return load3(point_->target); }
-        HWY_INLINE V3 curve() const { return load3(point_->curve); }
-        HWY_INLINE void setCurve(V3 curve) const { store3(curve, point_->curve); }
         HWY_INLINE V tension() const { return load(point_->tension); }
         HWY_INLINE void setTension(V tension) const { store(tension, point_->tension); }
 
@@ -128,10 +124,7 @@ class CopiedRows {
             store(from.lower1(), point_->lower1);
             store(from.lower2(), point_->lower2);
             store(from.tension(), point_->tension);
-            if constexpr (kCurved) {
-                store3(from.target(), point_->target);
-                store3(from.curve(), point_->curve);
-            }
+            if constexpr (kCurved) store3(from.target(), point_->target);
         }
 
       private:

@@ -41,6 +41,19 @@ HWY_INLINE Direction directionOf(V3 offset) {
     return {{offset.x, offset.y + centred, offset.z}, inverse, squared * inverse};
 }
 
+/// The part of a point's offset from a sphere's centre across the segment before it; any direction across,
+/// where there is none. Along their strand its own length would hold them back.
+HWY_INLINE V3 acrossStrand(V3 offset, V3 edge) {
+    const V zero = hn::Zero(D()), tiny = all(1e-18f);
+    const V squared = dot(edge, edge);
+    const V3 across = offset - edge * (dot(offset, edge) / hn::Max(squared, tiny));
+    const V3 level{edge.z, zero, zero - edge.x};
+    const auto upright = dot(level, level) <= squared * all(1e-6f);
+    const V3 other = select(upright, {edge.y, zero, zero}, level);
+    const auto centred = dot(across, across) <= squared * all(1e-8f);
+    return select(squared > tiny, select(centred, other, across), offset);
+}
+
 /// Collision radius at each point ("pearls" in the thesis), growing linearly to the tip.
 HWY_INLINE void fillCollisionRadii(const BlockView& block, const SubstepContext& context,
                                    float* collisionRadii) {

@@ -14,7 +14,6 @@
 #include "kernels/bend-inl.h"
 #include "kernels/collide-inl.h"
 #include "kernels/continuous_collision-inl.h"
-#include "kernels/coupled-inl.h"
 #include "kernels/implicit-inl.h"
 #include "kernels/integrate-inl.h"
 #include "kernels/length-inl.h"
@@ -99,10 +98,6 @@ Stage stageOf(StageId id) {
             return bendBack<Shape::curved>;
         case StageId::angularStraight:
             return bendBack<Shape::straight>;
-        case StageId::coupled:
-            return bendCoupled<Shape::curved>;
-        case StageId::coupledStraight:
-            return bendCoupled<Shape::straight>;
         case StageId::length:
             return projectLength<LengthProjection::positions>;
         case StageId::lengthNow:
@@ -143,9 +138,6 @@ constexpr std::size_t solverFloats(StageId id) {
         case StageId::implicitSpring:
         case StageId::implicitSpringBend:
             return kSystem;
-        case StageId::coupled:
-        case StageId::coupledStraight:
-            return kStrip + kSystem + sizeof(CoupledSegment) / sizeof(float);
         default:
             return 0;
     }

@@ -68,20 +68,6 @@ float3 backAlong(float3 offset, float3 relative, float squared, float reach) {
     return moving && steep && s >= -1.0 && s <= 0.0 ? offset + relative * s : offset;
 }
 
-/// Distance from a sphere's centre, as a share of the reach, below which points leave it sideways.
-#define DEEP 0.6
-
-/// The part of a point's offset from a sphere's centre across the segment before it; any direction across,
-/// where there is none. Along their strand its own length would hold points back.
-float3 acrossStrand(float3 offset, float3 edge) {
-    const float squared = dot(edge, edge);
-    const float3 across = offset - edge * (dot(offset, edge) / max(squared, 1e-18));
-    const float3 level = float3(edge.z, 0.0, -edge.x);
-    const float3 other = dot(level, level) <= squared * 1e-6 ? float3(edge.y, 0.0, 0.0) : level;
-    const bool centred = dot(across, across) <= squared * 1e-8;
-    return squared > 1e-18 ? (centred ? other : across) : offset;
-}
-
 /// The point of the circle in which the contact's sphere and another one meet that is nearest to `at`, from
 /// the other's centre; `meet` is false where they do not meet in a circle.
 float3 nearestOfCircle(float3 at, Contact contact, float3 centre, float reach, out bool meet) {
@@ -176,7 +162,7 @@ Touch touchSpheres(bool backward, uint p, float3 at, float3 before, float3 inner
             contact.step = gSpheres[k].step.xyz;
             contact.from = offset;
             if (backward) contact.from = backAlong(offset, at - before - contact.step, squared, contact.reach);
-            if (gFrame.lengthIterations > 0u && squared < reachSquared * (DEEP * DEEP)) {
+            if (gFrame.lengthIterations > 0u && squared < reachSquared * (HAIRLOOM_DEEP_IN_SPHERE * HAIRLOOM_DEEP_IN_SPHERE)) {
                 result.asks = result.asks || !knowsInner;
                 contact.from = acrossStrand(offset, at - inner);
             }

@@ -54,17 +54,10 @@ void loadState() {
 #if HAIR_BEND
         gStiff[k] = stiffness(p);
 #endif
-#if HAIR_CURVES
-        setCurve(k, savedCurve(p));
-#endif
 #if HAIR_TENSIONS
         gTension[k] = savedTension(p);
 #endif
     }
-#if HAIR_CURVES
-    gEnergyTank = gEnergyTanks[gSlot];
-    gMotion = gEnergyTanks[gFrame.slots + gSlot];
-#endif
 }
 
 void saveState() {
@@ -72,19 +65,10 @@ void saveState() {
         const uint p = pointOf(k);
         savePosition(p, gPosition[k]);
         savePrevious(p, gPrevious[k]);
-#if HAIR_CURVES
-        saveCurve(p, curve(k));
-#endif
 #if HAIR_TENSIONS
         saveTension(p, gTension[k]);
 #endif
     }
-#if HAIR_CURVES
-    ONLY_POINT(0) {
-        gEnergyTanks[gSlot] = gEnergyTank;
-        gEnergyTanks[gFrame.slots + gSlot] = gMotion;
-    }
-#endif
 }
 
 /// See serial_strand.hlsli.
@@ -94,11 +78,6 @@ void placeAtRest() {
         EACH_OWN_POINT(i) if (p == pointOf(i)) gPosition[i] = gPrevious[i] = at;
         at += rotate(gRootsTo[2 * gSlot + 1], restVector(p));
     }
-#if HAIR_CURVES
-    EACH_OWN_POINT(c) setCurve(c, float3(0, 0, 0));
-    gEnergyTank = HAIRLOOM_NO_CURVE;
-    gMotion = 0.0;
-#endif
 #if HAIR_TENSIONS
     EACH_OWN_POINT(t) gTension[t] = 0.0;
 #endif
@@ -122,9 +101,6 @@ void finishStrand(uint strands) {
     GroupMemoryBarrierWithGroupSync();
     const bool lost = gStrandLost[gStrand] != 0u;
     maximum = lost ? 0u : gStrandFastest[gStrand];
-#if HAIR_CURVES
-    gMotion = asfloat(maximum) * (1.0 / (gFrame.h * gFrame.h));
-#endif
     if (lost) placeAtRest();
     ONLY_POINT(0) {
         if (lost) {

@@ -142,22 +142,6 @@ float2 sumOfStrand(float2 own) {
 
 LANE_VALUE(float3, position, setPosition, gPosition)
 LANE_VALUE(float3, previous, setPrevious, gPrevious)
-#if HAIR_CURVES && HAIR_WAVE
-// Wanted once a substep: in registers they would be in the way. Without waves the memory of the group is what is short.
-groupshared float gHeldCurves[3 * POINTS_PER_THREAD * HAIR_THREADS];
-float3 curve(uint k) {
-    const uint x = 3 * k * HAIR_THREADS + gPlace;
-    return float3(gHeldCurves[x], gHeldCurves[x + HAIR_THREADS], gHeldCurves[x + 2 * HAIR_THREADS]);
-}
-void setCurve(uint k, float3 v) {
-    const uint x = 3 * k * HAIR_THREADS + gPlace;
-    gHeldCurves[x] = v.x;
-    gHeldCurves[x + HAIR_THREADS] = v.y;
-    gHeldCurves[x + 2 * HAIR_THREADS] = v.z;
-}
-#elif HAIR_CURVES
-LANE_VALUE(float3, curve, setCurve, gCurve)
-#endif
 #if HAIR_TENSIONS
 LANE_VALUE(float, tension, setTension, gTension)
 #endif

@@ -2,23 +2,17 @@
 // Angular springs of a strand spread over threads; bend.hlsli is the same, point after point.
 
 #if HAIR_TARGETS
-/// The normals that the segments before the thread's joints have, carried from the root; `known` is false where the strand
-/// folds before it. A step along the strand takes a normal n to n − a (t·n); in a wave threads hand normals on, else each goes
+/// The normals that the segments before the thread's joints have, carried from the root. A step along the strand takes a normal n to n − a (t·n); in a wave threads hand normals on, else each goes
 /// all the way. `inner` is the direction before the thread's first point, `tangents` are those after its points.
-void walkNormal(float3 inner, float3 tangents[POINTS_PER_THREAD], out float3 normals[POINTS_PER_THREAD], out bool known[POINTS_PER_THREAD]) {
+void walkNormal(float3 inner, float3 tangents[POINTS_PER_THREAD], out float3 normals[POINTS_PER_THREAD]) {
     float3 turns[POINTS_PER_THREAD];
-    Float4s ways;  // w: 1 where the strand folds
     EACH_OWN_POINT(i) {
         const float3 before = INNER_OF(tangents, i, inner);
-        const float cosine = dot(before, tangents[i]);
-        turns[i] = (before + tangents[i]) * (1.0 / max(1.0 + cosine, 1e-6));
-        ways[i] = float4(tangents[i], cosine < FOLD ? 1.0 : 0.0);
+        turns[i] = (before + tangents[i]) * (1.0 / max(1.0 + dot(before, tangents[i]), 1e-6));
     }
 #if HAIR_WAVE
-    bool folds = false;
     float3 end = rootNormal(), further[POINTS_PER_THREAD];  // behind the thread's points; how it goes on from one before them
     EACH_OWN_POINT(n) {
-        folds = folds || ways[n].w != 0.0;
         end -= turns[n] * dot(tangents[n], end);
         further[n] = gThread == 0 ? float3(0, 0, 0) : turns[n];
     }
@@ -28,24 +22,21 @@ void walkNormal(float3 inner, float3 tangents[POINTS_PER_THREAD], out float3 nor
         EACH_OWN_POINT(m) end -= further[m] * dot(tangents[m], end);
     }
     const float3 before = WaveReadLaneAt(end, gInner);
-    const uint foldsBefore = WaveActiveBallot(folds).x & ((1u << gLane) - (1u << gFirst));
-    float4 here = float4(gThread == 0 ? rootNormal() : before, foldsBefore != 0u ? 1.0 : 0.0);
+    float3 here = gThread == 0 ? rootNormal() : before;
 #else
-    exchange(ways, toFloat4s(turns));
-    float4 start = float4(rootNormal(), 0), here = start;  // w: folds before it
+    exchange(toFloat4s(tangents), toFloat4s(turns));
+    float3 start = rootNormal(), here = start;
     EACH for (uint thread = 0; thread + 1 < STRAND_THREADS; ++thread) {
         EACH_OWN_POINT(n) {
-            const float4 to = loadPoint(thread * POINTS_PER_THREAD + n);
-            start.xyz -= loadPointSecond(thread * POINTS_PER_THREAD + n).xyz * dot(to.xyz, start.xyz);
-            start.w += to.w;
+            const uint p = thread * POINTS_PER_THREAD + n;
+            start -= loadPointSecond(p).xyz * dot(loadPoint(p).xyz, start);
         }
         if (thread + 1 == gThread) here = start;
     }
 #endif
     EACH_OWN_POINT(k) {
-        normals[k] = here.xyz;
-        known[k] = here.w == 0.0;
-        here -= float4(turns[k] * dot(tangents[k], here.xyz), -ways[k].w);
+        normals[k] = here;
+        here -= turns[k] * dot(tangents[k], here);
     }
 }
 #endif
@@ -69,8 +60,7 @@ void measurePulls(bool frames, bool exact, out float3 pulls[POINTS_PER_THREAD]) 
     if (frames) {
         // Springs may stretch: a frame needs directions of unit length.
         float3 normals[POINTS_PER_THREAD];
-        bool known[POINTS_PER_THREAD];
-        walkNormal(unitBefore, units, normals, known);
+        walkNormal(unitBefore, units, normals);
         EACH_OWN_POINT(f) pulls[f] -= fromFrame(INNER_OF(units, f, unitBefore), normals[f], target(pointOf(f)));
     }
 #endif
@@ -135,44 +125,18 @@ void solveBend(inout float3 sides[POINTS_PER_THREAD]) {
 #endif
 }
 
-#if HAIR_CURVES
-/// Turns the curves that the thread's joints hold towards those of their frames at `previous`, as far as the strand's tank
-/// lasts. As walkNormal() has them: the directions.
-void followFrames(float3 inner, float3 tangents[POINTS_PER_THREAD], out float3 curves[POINTS_PER_THREAD]) {
-    float3 normals[POINTS_PER_THREAD], changes[POINTS_PER_THREAD];
-    bool known[POINTS_PER_THREAD];
-    walkNormal(inner, tangents, normals, known);
-    float2 joints = float2(0, 0);
-    const float4 turn = turnNow();
-    EACH_OWN_POINT(i) {
-        const float3 before = INNER_OF(tangents, i, inner);
-        const float3 was = curve(i), held = rotate(turn, was);
-        changes[i] = fromFrame(before, normals[i], target(pointOf(i))) - held;
-        if (!known[i] || !hasJoint(i)) changes[i] = float3(0, 0, 0);
-        joints += float2(dot((tangents[i] - before - held) * gStiff[i], changes[i]),
-                         dot(changes[i], changes[i]) * gStiff[i]);
-        curves[i] = hasJoint(i) ? held : was;
-    }
-    const float2 sums = sumOfStrand(joints);
-    const float share = takeShare(sums.x, sums.y);
-    EACH_OWN_POINT(k) {
-        curves[k] += changes[k] * share;
-        setCurve(k, curves[k]);
-    }
-}
-#endif
 
 /// Angular springs after position Verlet: see bend.hlsli.
-void bendBack() {
+void bendBack(bool frames) {
     exchange(toFloat4s(gPrevious));
     const float3 before = loadInner().xyz, after = loadOuter().xyz;
     float3 tangents[POINTS_PER_THREAD], moved[POINTS_PER_THREAD], aheads[POINTS_PER_THREAD], pulls[POINTS_PER_THREAD], sides[POINTS_PER_THREAD];
     EACH_OWN_POINT(i) tangents[i] = (OUTER_OF(gPrevious, i, after) - gPrevious[i]) * gInverseLength[i];
     float3 inner = (gPrevious[0] - before) * gInverseLengthBefore;
     if (gThread == 0) inner = rootTangent();
-#if HAIR_CURVES
-    float3 curves[POINTS_PER_THREAD];
-    followFrames(inner, tangents, curves);
+#if HAIR_TARGETS
+    float3 normals[POINTS_PER_THREAD];
+    if (frames) walkNormal(inner, tangents, normals);
 #endif
     // Where the segments will point. Told after the frames, for which the registers are wanted.
     EACH_OWN_POINT(d) moved[d] = gPosition[d] - gPrevious[d];
@@ -186,8 +150,8 @@ void bendBack() {
     if (gThread != 0) innerAhead += (moved[0] - movedBefore) * (gInverseLengthBefore * gFrame.substep.bendRate);
     EACH_OWN_POINT(j) {
         pulls[j] = aheads[j] - INNER_OF(aheads, j, innerAhead);
-#if HAIR_CURVES
-        pulls[j] -= curves[j];
+#if HAIR_TARGETS
+        if (frames) pulls[j] -= fromFrame(INNER_OF(tangents, j, inner), normals[j], target(pointOf(j)));
 #endif
         pulls[j] = hasJoint(j) ? pulls[j] * gStiff[j] : float3(0, 0, 0);
     }
@@ -211,6 +175,8 @@ void bendBack() {
     solveBend(sides);
     EACH_OWN_POINT(m) gPosition[m] += sides[m];
 }
-void stageAngular() { bendBack(); }
-void stageAngularStraight() { bendBack(); }
+#if HAIR_TARGETS
+void stageAngular() { bendBack(true); }
+#endif
+void stageAngularStraight() { bendBack(false); }
 #endif

@@ -199,7 +199,7 @@ uint leaveOwn(SphereSet set, bool backward, uint ready, bool knowsInner, float3 
             settles[i] = touches && squared < reachSquared;
             float3 at = ats[i], before = befores[i];
             if (backward) contact.from = backAlong(offset, at - before - contact.step, squared, contact.reach);
-            if (settles[i] && gFrame.lengthIterations > 0u && squared < reachSquared * (DEEP * DEEP)) {
+            if (settles[i] && gFrame.lengthIterations > 0u && squared < reachSquared * (HAIRLOOM_DEEP_IN_SPHERE * HAIRLOOM_DEEP_IN_SPHERE)) {
                 if (knowsInner) {
                     contact.from = acrossStrand(offset, at - inners[i]);
                 } else {

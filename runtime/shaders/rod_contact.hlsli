@@ -76,6 +76,7 @@ void findReachableSpheres() {
 struct RodNode {
     float3 position;      // predicted, relative to the root at the end of the substep
     float3 displacement;  // predicted, world
+    float3 tangent;       // predicted, of the segment before it, world
     float3 velocity;      // of the last substep, world
     float weight;         // m/(h² D)
     float load;           // force of its contacts in the last substep
@@ -94,6 +95,12 @@ void meetSphere(uint k, float3 origin, RodNode node, float timeStep, inout RodCo
     const float distance = sqrt(max(squared, 1e-18));
     float3 n = to * (1.0 / distance);
     float depth = reach - distance;
+    if (distance < reach * HAIRLOOM_DEEP_IN_SPHERE) {
+        const float3 across = acrossStrand(to, node.tangent);
+        n = across * (1.0 / sqrt(max(dot(across, across), 1e-18)));
+        const float along = dot(to, node.tangent);
+        depth = sqrt(max(negMad(along, along, reach * reach), 0.0)) - dot(n, to);
+    }
     const float3 from = to - moved;
     const float outside = mad(reach, -reach, dot(from, from));
     // What a contact holds is inside by a little, and stays held while the prediction lifts it off.

@@ -8,6 +8,7 @@
 
 static float gStepRatio;         // of this substep
 static float gBlend;             // c of the time scheme
+static float gVelocityAhead;     // share of the last change of velocity that is expected again
 static float gTimeStep, gInverseTimeStep;
 static float gDamped, gDampingShare;  // 1 + τ/h, and the part of it that is damping
 static float gTwist;             // (C − B)/B where twist counts
@@ -38,6 +39,7 @@ void openRodStep() {
     float most = 0.0;
     if (gStepRatio < HAIRLOOM_ROD_LONGEST_RATIO) most = gStepRatio * gStepRatio / (1.0 + 2.0 * gStepRatio);
     gBlend = most * min(max(negMad(largestTurn(), HAIRLOOM_ROD_BLEND_SLOPE, HAIRLOOM_ROD_BLEND_END), 0.0), 1.0);
+    gVelocityAhead = gBlend * (1.0 / gStepRatio + 2.0);
     gTimeStep = gFrame.h * (1.0 - gBlend / gStepRatio);
     gInverseTimeStep = 1.0 / gTimeStep;
     gDamped = 1.0 + gRod.bendDampingTime * gInverseTimeStep;
@@ -56,11 +58,10 @@ void openRodStep() {
     gStill = moved <= 0.0 && gRod.conservative != 0u;
 }
 
-/// Where inertia, gravity and air take a node; w: its weight m/(h² D).
+/// Where inertia, gravity and air take a node, which the prediction has at `position`; w: its weight m/(h² D).
 float4 aim(uint node, float3 tangent, float3 position) {
-    const float3 now = velocity(node);
-    const float3 faster = mad3(now - velocityBefore(node), gBlend, now);
-    float3 change = mad3(gRod.gravity.xyz, gTimeStep, faster);
+    const float3 now = velocity(node), faster = now - velocityBefore(node);
+    float3 change = mad3(gRod.gravity.xyz, gTimeStep, mad3(faster, gBlend, now));
     float rate = gRod.rootDamping;
     change = mad3(gRootDisplacement, gRod.rootDamping / gFrame.h * gTimeStep, change);
     if (gRod.gravity.w > 0.0) {
@@ -68,8 +69,9 @@ float4 aim(uint node, float3 tangent, float3 position) {
 #if HAIR_WIND
         air = windAt(position + rootAtEnd(), gFrame.substeps - 1 - gSubstep);
 #endif
-        // Hair takes on the air's velocity at the rate airDrag · sin of its angle to the tangent (Rünz 2012, Section 3.3).
-        const float3 flow = air - faster;
+        // Hair takes on the air's velocity at the rate airDrag · sin of its angle to the tangent (Rünz 2012, Section 3.3);
+        // velocity and tangent are predicted for the end of the substep, so that the scheme keeps its order.
+        const float3 flow = air - mad3(faster, gVelocityAhead, now);
         const float all2 = dot(flow, flow), parallel = dot(flow, tangent);
         const float drag = sqrt(max(negMad(parallel, parallel, all2), 0.0) / max(all2, 1e-30)) * gRod.gravity.w;
         rate += drag;
@@ -81,10 +83,11 @@ float4 aim(uint node, float3 tangent, float3 position) {
 }
 
 #if HAIR_SPHERES
-RodContact meet(uint node, float3 position, float3 moved, float weight) {
+RodContact meet(uint node, float3 tangent, float3 position, float3 moved, float weight) {
     RodNode met;
     met.position = position;
     met.displacement = moved;
+    met.tangent = tangent;
     met.velocity = velocity(node);
     met.weight = weight;
     met.load = load(node);
@@ -109,8 +112,9 @@ void predict() {
         const float along = segmentLength(j);
         outer = mad3(rodTangentChange(u, oldTangent), along, outer);
         const float4 q = rodTurned(old, u);
-        position = mad3(rodRotate(q, rest.xyz), along, position);
-        const float4 aimed = aim(j + 1, oldTangent, position);
+        const float3 tangent = rodRotate(q, rest.xyz);
+        position = mad3(tangent, along, position);
+        const float4 aimed = aim(j + 1, tangent, position);
 
         // Damping pulls to the strain extrapolated from the last two substeps (Kelvin-Voigt), elasticity to none.
         const float3 last = strain(j), axis = twistAxis(j);
@@ -131,7 +135,7 @@ void predict() {
         setTarget(j, aimed);
 #if HAIR_SPHERES
         if (gReachable != 0u) {
-            const RodContact met = meet(j + 1, position, outer, aimed.w);
+            const RodContact met = meet(j + 1, tangent, position, outer, aimed.w);
             gObjective += met.twiceEnergy;
             gStartObjective += twiceEnergyAt(met, gInDisplacement - outer);
             setContact(j, met);

@@ -10,7 +10,6 @@
 #define HAIR_EVALUATION 0
 #define HAIR_BEND 0
 #define HAIR_TARGETS 0
-#define HAIR_CURVES 0
 #include "simulation_types.h"
 #include "rod_types.h"
 #include "math.hlsli"

@@ -9,7 +9,6 @@ float4 rotationBetween(float4 from, float4 to, float t) {
 
 #if HAIR_STORAGE == 3
 // What the root carries in each of as many substeps as the strand has threads, of which each makes one.
-groupshared float4 gTurns[HAIR_THREADS];
 groupshared float3 gTangents[HAIR_THREADS];
 #if HAIR_TARGETS
 groupshared float3 gNormals[HAIR_THREADS];
@@ -22,13 +21,8 @@ void carryRoot() {
     const float4 to = gRootsTo[2 * gSlot + 1];
     float4 from = to;
     if (!gTeleported) from = float4(rootRow(3), rootRow(4), rootRow(5), rootRow(6));
-    const uint substep = gSubstep + gThread;
-    const float share = 1.0 / float(gFrame.substeps);
-    const float4 now = rotationBetween(from, to, float(substep + 1) * share);
-    float4 before = from;
-    if (substep > 0) before = rotationBetween(from, to, float(substep) * share);
+    const float4 now = rotationBetween(from, to, float(gSubstep + gThread + 1) / float(gFrame.substeps));
     GroupMemoryBarrierWithGroupSync();
-    gTurns[gPlace] = multiply(now, conjugate(before));
     gTangents[gPlace] = rotate(now, restVector(0) * inverseLength(0));
 #if HAIR_TARGETS
     gNormals[gPlace] = rotate(now, target(POINTS - 1));
@@ -39,8 +33,6 @@ uint placeOfSubstep() { return gPlace - gThread + gSubstep % STRAND_THREADS; }
 void turnRoot() {
     if (gSubstep % STRAND_THREADS == 0) carryRoot();
 }
-/// From the rotation a substep ago to that of now.
-float4 turnNow() { return gTurns[placeOfSubstep()]; }
 /// The direction and the normal that the root carries, before the first segment.
 float3 rootTangent() { return gTangents[placeOfSubstep()]; }
 float3 firstSegment() { return rootTangent() * gRootLength; }
@@ -50,7 +42,6 @@ float3 rootNormal() { return gNormals[placeOfSubstep()]; }
 #else
 static float4 gRotationFrom, gRotationTo;
 static float4 gRotation;     // of now
-static float4 gTurn;         // from the rotation a substep ago to that of now
 static float4 gRootSegment;  // the first at rest; w: 1/length
 #if HAIR_TARGETS
 static float3 gNormalAtRest;
@@ -66,12 +57,9 @@ void setRotations(float4 from, float4 to) {
 }
 
 void turnRoot() {
-    const float4 now = rotationBetween(gRotationFrom, gRotationTo, float(gSubstep + 1) / float(gFrame.substeps));
-    gTurn = multiply(now, conjugate(gRotation));
-    gRotation = now;
+    gRotation = rotationBetween(gRotationFrom, gRotationTo, float(gSubstep + 1) / float(gFrame.substeps));
 }
 
-float4 turnNow() { return gTurn; }
 float3 firstSegment() { return rotate(gRotation, gRootSegment.xyz); }
 /// The direction and the normal that the root carries, before the first segment.
 float3 rootTangent() { return rotate(gRotation, gRootSegment.xyz * gRootSegment.w); }
@@ -97,9 +85,6 @@ void enterFrame() {
         ALL_POINTS(p) {
             setPosition(p, rotate(turn, position(p)));
             setPrevious(p, rotate(turn, previous(p)));
-#if HAIR_CURVES
-            setCurve(p, rotate(turn, curve(p)));
-#endif
 #if HAIR_RODS
             turnRodAlong(p, turn);
 #endif

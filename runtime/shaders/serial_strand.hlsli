@@ -6,17 +6,10 @@ void loadState() {
     EACH for (uint p = 0; p < POINTS; ++p) {
         setPosition(p, savedPosition(p));
         setPrevious(p, savedPrevious(p));
-#if HAIR_CURVES
-        setCurve(p, savedCurve(p));
-#endif
 #if HAIR_TENSIONS
         setTension(p, savedTension(p));
 #endif
     }
-#endif
-#if HAIR_CURVES
-    gEnergyTank = gEnergyTanks[gSlot];
-    gMotion = gEnergyTanks[gFrame.slots + gSlot];
 #endif
 }
 
@@ -25,17 +18,10 @@ void saveState() {
     EACH for (uint p = 0; p < POINTS; ++p) {
         savePosition(p, position(p));
         savePrevious(p, previous(p));
-#if HAIR_CURVES
-        saveCurve(p, curve(p));
-#endif
 #if HAIR_TENSIONS
         saveTension(p, tension(p));
 #endif
     }
-#endif
-#if HAIR_CURVES
-    gEnergyTanks[gSlot] = gEnergyTank;
-    gEnergyTanks[gFrame.slots + gSlot] = gMotion;
 #endif
 }
 
@@ -46,17 +32,10 @@ void placeAtRest() {
         setPosition(p, at);
         setPrevious(p, at);
         at += rotate(gRootsTo[2 * gSlot + 1], restVector(p));
-#if HAIR_CURVES
-        setCurve(p, float3(0, 0, 0));
-#endif
 #if HAIR_TENSIONS
         setTension(p, 0.0);
 #endif
     }
-#if HAIR_CURVES
-    gEnergyTank = HAIRLOOM_NO_CURVE;
-    gMotion = 0.0;
-#endif
 #if HAIR_RODS
     placeRodAtRest();
 #endif
@@ -90,9 +69,6 @@ void writePlace(uint p) {
 void finishStrand(uint block, uint lane) {
     bool sound;
     float maximum = fastest(sound);
-#if HAIR_CURVES
-    gMotion = maximum * (1.0 / (gFrame.h * gFrame.h));
-#endif
     if (!sound) {
         placeAtRest();
         maximum = 0.0;

@@ -17,8 +17,9 @@ namespace hairloom::shaders {
 #define HAIRLOOM_GROUP_STRANDS 32
 /// Threads of a work group of one strand: the first takes it, as in the thesis' listing, which has 30 others.
 #define HAIRLOOM_WISP_THREADS 32
-/// In a tank: the curves of the strand are void.
-#define HAIRLOOM_NO_CURVE (-1.0)
+
+/// Distance from a sphere's centre, as a share of the reach, below which a point leaves it across its strand.
+#define HAIRLOOM_DEEP_IN_SPHERE 0.6
 
 /// As many work groups as a dispatch has along one axis.
 #define HAIRLOOM_GROUP_ROW 65535

@@ -63,10 +63,6 @@ StructuredBuffer<float4> gFactors : register(t2);
 #if HAIR_TARGETS
 StructuredBuffer<float4> gTargets : register(t3);
 #endif
-#if HAIR_CURVES
-RWStructuredBuffer<float> gCurves : register(u5);    // x y z
-RWStructuredBuffer<float> gEnergyTanks : register(u6);     // tank, greatest squared speed
-#endif
 #if HAIR_SLEEP
 RWStructuredBuffer<float> gRests : register(u2);     // per work group: seconds at rest, 1 when asleep
 #endif
@@ -137,9 +133,6 @@ uint slotOf(uint plane, uint p) {
 
 BUFFER_ARRAY(float3, savedPosition, savePosition, gState, 0)
 BUFFER_ARRAY(float3, savedPrevious, savePrevious, gState, 3)
-#if HAIR_CURVES
-BUFFER_ARRAY(float3, savedCurve, saveCurve, gCurves, 0)
-#endif
 #if HAIR_TENSIONS
 float savedTension(uint p) { return gState[slotOf(6, p)]; }
 void saveTension(uint p, float v) { gState[slotOf(6, p)] = v; }
@@ -150,8 +143,6 @@ void saveTension(uint p, float v) { gState[slotOf(6, p)] = v; }
 #define setPosition savePosition
 #define previous savedPrevious
 #define setPrevious savePrevious
-#define curve savedCurve
-#define setCurve saveCurve
 #define tension savedTension
 #define setTension saveTension
 RWStructuredBuffer<float> gScratch : register(u7);
@@ -177,9 +168,6 @@ void setPrevious(uint p, float3 v) { gShared[sharedSlot(3, p)] = v.x; gShared[sh
 #else
 LOCAL_ARRAY(float3, position, setPosition, gPositions)
 LOCAL_ARRAY(float3, previous, setPrevious, gPreviouses)
-#endif
-#if HAIR_CURVES
-LOCAL_ARRAY(float3, curve, setCurve, gCurve)
 #endif
 #if HAIR_TENSIONS
 LOCAL_ARRAY(float, tension, setTension, gTension)

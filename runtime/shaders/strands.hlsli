@@ -9,8 +9,7 @@
 //   HAIR_CLAMPED     1, 2: clamped points
 //   HAIR_EVALUATION  0; 1: integrators that evaluate forces elsewhere; 2: RK4
 //   HAIR_BEND        0; 1: with stiffness; 2: with the factors of the strand's matrix
-//   HAIR_TARGETS     1: rest directions; HAIR_CURVES 1: kept from substep to substep; HAIR_TENSIONS likewise
-//   HAIR_COUPLED     1: bending and lengths are one system; not with HAIR_STORAGE 3
+//   HAIR_TARGETS     1: rest directions; HAIR_TENSIONS 1: kept from substep to substep
 //   HAIR_SPHERES     0; 1: in a constant buffer; 2: in a buffer
 //   HAIR_WIND, HAIR_SLEEP, HAIR_VELOCITIES
 #include "simulation_types.h"
@@ -22,7 +21,6 @@
 #include "springs.hlsli"
 #include "bend.hlsli"
 #include "length.hlsli"
-#include "coupled.hlsli"
 #include "collide.hlsli"
 #include "sleeping.hlsli"
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "hairloom/presets.h"
 #include "src/state.h"
@@ -14,10 +13,6 @@ namespace {
 /// Stiffness beyond which the matrix of a strand no longer fits single precision, as a multiple of the
 /// masses. There a strand of 32 segments sags by less than a ten-thousandth of what it falls in a substep.
 constexpr double kStiffest = 1e7;
-/// The same where the matrix is factored in single precision.
-constexpr double kStiffestCoupled = 1e5;
-/// Radians by which a strand's own weight may turn it in all: softer hair carries a share of its weight only.
-constexpr double kMaxHeld = std::numbers::pi;
 /// What keeps the fastest waves of curved hair from ringing on, whose pulls are not quite those of an energy.
 constexpr float kMinCurvedRate = 0.25f;
 /// The same where lengths are held by a step of their own, which does not leave the trapezoidal rule its
@@ -56,8 +51,7 @@ class StrandBend {
           block_(shape.blocks[index]),
           size_(planeSize(block_)),
           rest_(shape.planes.data() + block_.firstPlane * kRestPlanes),
-          lane_(lane),
-          rootRotation_(shape.restRoots[block_.strandOfLane[lane]].rotation) {}
+          lane_(lane) {}
 
     /// κ of each joint, in square metres per square second and unit mass; the system has the masses plus
     /// `share`·K, which is bounded at `stiffest` times the masses where that is not 0.
@@ -90,22 +84,20 @@ class StrandBend {
     double kappa(std::uint32_t joint) const { return kappa_[joint]; }
 
     /// What joint j adds to the direction of its inner segment, in the frame carried to that segment (x along
-    /// it): its rest curve, less what the strand's own weight bends it by. The slot of the tip has the normal
-    /// that the root carries, in the root's frame.
-    void writeTargets(bool held, float* x, float* y, float* z) {
+    /// it): its rest curve. The slot of the tip has the normal that the root carries, in the root's frame.
+    void writeTargets(float* x, float* y, float* z) {
         const auto write = [&](std::uint32_t p, Double3 v) {
             const std::size_t i = at(p);
             x[i] = static_cast<float>(v.x);
             y[i] = static_cast<float>(v.y);
             z[i] = static_cast<float>(v.z);
         };
-        measureWeight(held);
         Double3 inner = direction(0);
         Double3 normal = anyNormal(inner);
         write(block_.points - 1, normal);
         for (std::uint32_t j = 0; j + 1 < block_.points; ++j) {
             const Double3 outer = direction(j);
-            const Double3 curve = outer - bent_[j] - inner;
+            const Double3 curve = outer - inner;
             write(j, {dotOf(curve, inner), dotOf(curve, normal), dotOf(curve, crossOf(inner, normal))});
             const double turn = dotOf(outer, normal) / std::max(1.0 + dotOf(inner, outer), 1e-9);
             normal = normal - (inner + outer) * turn;
@@ -137,25 +129,6 @@ class StrandBend {
 
   private:
     static constexpr double kNoLength = 1e-9;
-
-    /// H/κ of docs/engine.md: how far each joint bends under the weight beyond it, in the rest shape.
-    void measureWeight(bool held) {
-        const double carried = held ? static_cast<double>(settings_.restGravity) : 0.0;
-        const Float3 down = rotate(conjugate(rootRotation_), settings_.gravity);
-        const Double3 gravity = Double3{down.x, down.y, down.z} * carried;
-        Double3 moment{};
-        double beyond = 0.0, turning = 0.0;
-        for (std::uint32_t j = block_.points - 1; j-- > 0;) {
-            const Double3 d = direction(j);
-            beyond += mass(j + 1);
-            moment = moment + gravity * (lengthOf(j) * beyond);
-            moment = moment - d * dotOf(moment, d);
-            bent_[j] = kappa_[j] > 0.0 ? moment * (1.0 / kappa_[j]) : Double3{};
-            turning += std::sqrt(dotOf(bent_[j], bent_[j]));
-        }
-        if (!(turning > kMaxHeld)) return;
-        for (std::uint32_t j = 0; j + 1 < block_.points; ++j) bent_[j] = bent_[j] * (kMaxHeld / turning);
-    }
 
     std::uint32_t firstJoint() const { return settings_.clampedPoints - 1; }
     double lengthOf(std::uint32_t s) const { return static_cast<double>(rest_[3 * size_ + at(s)]); }
@@ -194,17 +167,15 @@ class StrandBend {
     std::size_t size_;
     const float* rest_;
     std::uint32_t lane_;
-    Quat rootRotation_;
     std::array<double, kMaxPoints> kappa_;
-    std::array<Double3, kMaxPoints> bent_;
 };
 
 }  // namespace
 
-float bendRate(const SimulationSettings& settings, float h, bool curved, bool coupled) {
+float bendRate(const SimulationSettings& settings, float h, bool curved) {
     const float damping = settings.dampingTime > 0.0f ? 1.0f / settings.dampingTime : 0.0f;
     const float lost = 1.0f - std::exp(-h * (damping + settings.airDrag));
-    const float minimum = curved ? kMinCurvedRate : coupled ? 0.0f : kMinRate;
+    const float minimum = curved ? kMinCurvedRate : kMinRate;
     return std::max(settings.bendDampingTime / h, minimum) + 0.25f * lost;
 }
 
@@ -219,9 +190,8 @@ void fillBend(const RestShape& shape, const SimulationSettings& settings, float 
     const bool backward = settings.integrator == Integrator::implicitEuler;
     const double share =
         backward ? step
-                 : step * (0.25 + static_cast<double>(bendRate(settings, h, bend.targets, bend.coupled)));
-    const bool held = settings.restGravity > 0.0f;
-    const double stiffest = !bend.factored ? 0.0 : bend.coupled ? kStiffestCoupled : kStiffest;
+                 : step * (0.25 + static_cast<double>(bendRate(settings, h, bend.targets)));
+    const double stiffest = bend.factored ? kStiffest : 0.0;
     for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
         StrandBend strand(shape, settings, index, lane);
         strand.fillStiffness(share, stiffest, flexion);
@@ -232,7 +202,7 @@ void fillBend(const RestShape& shape, const SimulationSettings& settings, float 
             strand.writeFactors(share, plane, plane + size, plane + 2 * size);
             plane += 3 * size;
         }
-        if (bend.targets) strand.writeTargets(held, plane, plane + size, plane + 2 * size);
+        if (bend.targets) strand.writeTargets(plane, plane + size, plane + 2 * size);
     }
 }
 

@@ -35,7 +35,7 @@ void Engine::Impl::runBlock(std::size_t block, LaneFrame& lanes, const Frame& fr
     const std::uint32_t own =
         strands < kBlockLanes ? (1u << strands) - 1 : ~0u;  // lanes past the last repeat it
     report.guarded = static_cast<std::uint32_t>(std::popcount(lanes.guarded & own));
-    report.fastest = frame.kernels->fastest(blockView, frame.context.h);
+    report.fastest = frame.kernels->fastest(blockView);
     if (!std::isfinite(report.fastest)) restoreStrands(block, blockView);
     rest(block, blockView, frame);
 }
@@ -81,13 +81,13 @@ void Engine::Impl::rest(std::size_t block, const BlockView& blockView, const Fra
     std::copy_n(blockView.position.z(), floats, blockView.previous.z());
 }
 
-/// A cut turns the strand along rigidly: places, velocities and curves.
+/// A cut turns the strand along rigidly: places and velocities.
 void Engine::Impl::turnAlong(const BlockView& view, std::uint32_t lane, Quat turn) {
     for (std::uint32_t p = 0; p < view.points; ++p) {
         const std::size_t i = std::size_t{p} * kBlockLanes + lane;
         const RodView& rod = view.rod;
-        for (const Planes& planes : {view.position, view.previous, view.curve, rod.increment,
-                                     rod.displacement, rod.velocity, rod.velocityBefore}) {
+        for (const Planes& planes : {view.position, view.previous, rod.increment, rod.displacement,
+                                     rod.velocity, rod.velocityBefore}) {
             if (!planes.x) continue;
             const Float3 turned = rotate(turn, Float3{planes.x[i], planes.y()[i], planes.z()[i]});
             planes.x[i] = turned.x;
@@ -118,11 +118,11 @@ void Engine::Impl::teleportLanes(const BlockView& view, float* rows, const float
 }
 
 /// Keeps the spheres that can touch the block's rods in this frame.
-void Engine::Impl::touchSpheres(std::size_t block, LaneFrame& lanes) const {
+void Engine::Impl::touchSpheres(std::size_t block, const SubstepContext& context, LaneFrame& lanes) const {
     lanes.touchable.clear();
     if (rods_.planes.empty() || !plan_.on(Effect::collision)) return;
     const float hair = hairReach(settings_, shape_->longestStrand);
-    const auto substeps = static_cast<float>(settings_.substeps);
+    const auto substeps = static_cast<float>(context.count);
     for (const MovingSphere& sphere : movingSpheres_) {
         const Float3 middle = sphere.from_ws + sphere.step * (0.5f * substeps);
         const float reach = hair + sphere.radius + 0.5f * substeps * length(sphere.step);
@@ -157,7 +157,7 @@ void Engine::Impl::enterFrame(std::size_t block, const BlockView& view, LaneFram
     std::copy_n(rows + 3 * kBlockLanes, 4 * kBlockLanes, lanes.rotationFrom[0]);
     std::copy_n(next + 3 * kBlockLanes, 4 * kBlockLanes, lanes.rotationTo[0]);
     std::copy_n(next, kRootRows * kBlockLanes, rows);
-    touchSpheres(block, lanes);
+    touchSpheres(block, frame.context, lanes);
 }
 
 void Engine::Impl::openSubstep(SubstepContext& context, const Frame& frame) {

@@ -13,8 +13,6 @@ namespace hairloom::runtime {
 namespace {
 
 constexpr std::size_t kBlocksPerJob = 4;
-/// Seconds; what the plan assumes before the first frame.
-constexpr float kUsualFrame = 1.0f / 60.0f;
 
 RootBounds noRoots() {
     RootBounds bounds;
@@ -63,6 +61,7 @@ void Engine::Impl::reset(std::span<const RootFrame> roots_ws) {
     state_.spheres.clear();
     state_.substep = 0.0f;
     state_.fastest = 0.0f;
+    state_.origin_ws.reset();
     FrameInput here;
     here.roots_ws = roots_ws;
     takeRoots(here);
@@ -76,7 +75,6 @@ std::string Engine::Impl::setSettings(const SimulationSettings& settings) {
     scratch_ = {};
     wind_ = {makeWind(settings), false};
     bend_.substep = 0.0f;
-    std::fill(state_.energyTanks.begin(), state_.energyTanks.end(), kNoCurve);
     state_.rests.assign(shape_->blocks.size(), {});
     replan({}, {}, state_.rootsMin_ws, state_.rootsMax_ws, 0.0f);
     return {};
@@ -95,14 +93,10 @@ bool Engine::Impl::setState(const State& state) {
 
 void Engine::Impl::replan(std::span<const Sphere> spheres, std::span<const Float3> sphereMotion,
                           Float3 rootsMin_ws, Float3 rootsMax_ws, float frameTime) {
-    const float h = frameTime > 0.0f ? frameTime / static_cast<float>(settings_.substeps) : state_.substep;
     FrameOutlook planInput{strandCount(),         shape_->longestPointCount,
                            shape_->longestStrand, shape_->straight,
                            rootsMin_ws,           rootsMax_ws,
                            rootMotion_,           state_.fastest};
-    planInput.maxCurvature = shape_->maxCurvature;
-    planInput.massRatio = shape_->massRatio;
-    planInput.substep = h > 0.0f ? h : kUsualFrame / static_cast<float>(settings_.substeps);
     planInput.restTime = 1e30f;
     for (std::size_t b = 0; b < state_.rests.size(); ++b) {
         if (state_.rests[b].asleep) planInput.asleep += shape_->blocks[b].strands;
@@ -139,16 +133,6 @@ void Engine::Impl::allocateForPlan() {
         bend_.planes = Floats(angular ? shape_->planeFloats * bend_.planeCount() : 0, 0.0f);
         bend_.substep = 0.0f;
     }
-    if (plan_.on(Effect::coupling) != bend_.coupled) {
-        bend_.coupled = plan_.on(Effect::coupling);
-        bend_.substep = 0.0f;
-    }
-    const bool curves = plan_.keepsCurves();
-    if (curves == state_.curves.empty()) {
-        state_.curves = Floats(curves ? shape_->planeFloats * 3 : 0, 0.0f);
-        state_.energyTanks = Floats(curves ? shape_->blocks.size() * kBlockLanes : 0, kNoCurve);
-        state_.motions = Floats(curves ? shape_->blocks.size() * kBlockLanes : 0, 0.0f);
-    }
     if (plan_.keepsTensions() == state_.tensions.empty())
         state_.tensions = Floats(plan_.keepsTensions() ? shape_->planeFloats : 0, 0.0f);
     evaluationPlanes_ = settings_.integrator == Integrator::verlet ? 0
@@ -160,6 +144,22 @@ void Engine::Impl::allocateForPlan() {
     const std::size_t jobs = (shape_->blocks.size() + kBlocksPerJob - 1) / kBlocksPerJob;
     scratch_.grow(host_.parallelFor ? scratchPieces(jobs) : 1,
                   solverFloats(plan_.stages(), shape_->longestPointCount, kernels()));
+}
+
+/// Measures what is known of the last frame from the origin of this one.
+void Engine::Impl::moveOrigin(std::array<double, 3> origin_ws) {
+    if (!isFinite(origin_ws)) origin_ws = state_.origin_ws.value_or(std::array<double, 3>{});
+    const Float3 shift = shiftOfOrigin(state_.origin_ws.value_or(origin_ws), origin_ws);
+    state_.origin_ws = origin_ws;
+    if (shift == Float3{}) return;
+    for (std::size_t b = 0; b < shape_->blocks.size(); ++b) {
+        float* const rows = state_.roots.data() + b * kRootRows * kBlockLanes;
+        const float parts[] = {shift.x, shift.y, shift.z};
+        for (std::size_t i = 0; i < 3 * kBlockLanes; ++i) rows[i] += parts[i / kBlockLanes];
+    }
+    for (Sphere& sphere : state_.spheres) sphere.center_ws = sphere.center_ws + shift;
+    state_.rootsMin_ws = state_.rootsMin_ws + shift;
+    state_.rootsMax_ws = state_.rootsMax_ws + shift;
 }
 
 /// Keeps the roots that the frame ends on, their box and how far they go. What is no root stays where it was.
@@ -238,17 +238,17 @@ Engine::Impl::Frame Engine::Impl::makeFrame(const FrameInput& input) {
     frame.windy = plan_.on(Effect::wind);
     if (frame.windy) {
         const double time = std::isfinite(input.time) ? input.time : 0.0;
-        frame.windFrom = windPhases(wind_.wind, time - static_cast<double>(input.dt));
-        frame.windTo = windPhases(wind_.wind, time);
+        frame.windFrom = windPhases(wind_.wind, time - static_cast<double>(input.dt), *state_.origin_ws);
+        frame.windTo = windPhases(wind_.wind, time, *state_.origin_ws);
     }
     frame.context.stepRatio = state_.substep > 0.0f ? h / state_.substep : kRodFirstRatio;
     frame.context.conservative = !frame.windy;
     if (frame.windy) {
         frame.context.wind = &wind_.wind;
         const double time = std::isfinite(input.time) ? input.time : 0.0;
-        for (std::uint32_t i = 0; i < settings_.substeps; ++i) {
-            const double left = static_cast<double>(settings_.substeps - 1 - i) * static_cast<double>(h);
-            frame.windPhases[i] = windPhases(wind_.wind, time - left);
+        for (std::uint32_t i = 0; i < frame.context.count; ++i) {
+            const double left = static_cast<double>(frame.context.count - 1 - i) * static_cast<double>(h);
+            frame.windPhases[i] = windPhases(wind_.wind, time - left, *state_.origin_ws);
         }
     }
     frame.rescale = state_.substep > 0.0f ? h / state_.substep : 1.0f;
@@ -264,6 +264,7 @@ void Engine::Impl::step(const FrameInput& input) {
     const std::uint64_t begin = host_.nanoseconds ? host_.nanoseconds() : 0;
     report_ = {};
 
+    moveOrigin(input.origin_ws);
     const Float3 lowBefore = state_.rootsMin_ws, highBefore = state_.rootsMax_ws;
     takeRoots(input);
     const Float3 low = state_.rootsMin_ws, high = state_.rootsMax_ws;
@@ -276,7 +277,7 @@ void Engine::Impl::step(const FrameInput& input) {
            {std::max(high.x, highBefore.x), std::max(high.y, highBefore.y), std::max(high.z, highBefore.z)},
            input.dt);
     if (plan_.on(Effect::collision)) {
-        moveSpheres(spheres_, settings_.substeps, movingSpheres_);
+        moveSpheres(spheres_, substepsIn(settings_, input.dt), movingSpheres_);
         if (!rods_.planes.empty()) scratch_.reserveSpheres(movingSpheres_.size());
     } else {
         movingSpheres_ = {};

@@ -49,7 +49,8 @@ struct Engine::Impl {
     void runBlock(std::size_t block, LaneFrame& lanes, const Frame& frame);
     static void turnAlong(const BlockView& view, std::uint32_t lane, Quat turn);
     void teleportLanes(const BlockView& view, float* rows, const float* next) const;
-    void touchSpheres(std::size_t block, LaneFrame& lanes) const;
+    void moveOrigin(std::array<double, 3> origin_ws);
+    void touchSpheres(std::size_t block, const SubstepContext& context, LaneFrame& lanes) const;
     void enterFrame(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame);
     static void openSubstep(SubstepContext& context, const Frame& frame);
     void runStages(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame);

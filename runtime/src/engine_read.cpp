@@ -117,8 +117,7 @@ std::size_t Engine::Impl::effectBytes(Effect effect) const {
         case Effect::angular:
             return (bend_.planes.size() + state_.tensions.size()) * sizeof(float) - targets + rods_.bytes();
         case Effect::torsion:
-            return targets +
-                   (state_.curves.size() + state_.energyTanks.size() + state_.motions.size()) * sizeof(float);
+            return targets;
         case Effect::wind:
             return plan_.on(effect) ? sizeof(Wind) : 0;
         case Effect::collision:
@@ -127,7 +126,6 @@ std::size_t Engine::Impl::effectBytes(Effect effect) const {
         case Effect::gravity:
         case Effect::drag:
         case Effect::length:
-        case Effect::coupling:
         case Effect::collisionRadius:
         case Effect::continuousCollision:
         case Effect::sleep:

@@ -113,9 +113,6 @@ EffectPlan planFrame(const SimulationSettings& settings, const FrameOutlook& pla
     scene.longestPointCount = planInput.longestPointCount;
     scene.longestStrand = planInput.longestStrand;
     scene.straight = planInput.straight;
-    scene.maxCurvature = planInput.maxCurvature;
-    scene.massRatio = planInput.massRatio;
-    scene.substep = planInput.substep;
     scene.rootsMin_ws = planInput.rootsMin_ws;
     scene.rootsMax_ws = planInput.rootsMax_ws;
     scene.spheres = spheres;
@@ -129,24 +126,31 @@ EffectPlan planFrame(const SimulationSettings& settings, const FrameOutlook& pla
     for (const Float3& motion : sphereMotion)
         sphereDisplacement = std::max(sphereDisplacement, length(motion));
     // Within a frame hair may gain what gravity and air give, and a whip of its own.
-    const float h = frameTime / static_cast<float>(settings.substeps);
+    const auto substeps = static_cast<float>(substepsIn(settings, frameTime));
+    const float h = frameTime / substeps;
     const float pushed = (length(settings.gravity) + settings.airDrag * length(wind.wind.mean)) * frameTime;
     scene.fastest = 16.0f * planInput.fastest * h + pushed * h +
-                    (planInput.rootMotion + sphereDisplacement) / static_cast<float>(settings.substeps);
+                    (planInput.rootMotion + sphereDisplacement) / substeps;
     scene.asleep = planInput.asleep;
     scene.restTime = planInput.restTime;
     return plan(scene);
 }
 
+Float3 shiftOfOrigin(const std::array<double, 3>& from_ws, const std::array<double, 3>& to_ws) {
+    return {static_cast<float>(from_ws[0] - to_ws[0]), static_cast<float>(from_ws[1] - to_ws[1]),
+            static_cast<float>(from_ws[2] - to_ws[2])};
+}
+
 SubstepContext substepContext(const SimulationSettings& settings, const EffectPlan& plan, float dt,
                               std::span<const MovingSphere> spheres) {
-    const float h = dt / static_cast<float>(settings.substeps);
+    const std::uint32_t substeps = substepsIn(settings, dt);
+    const float h = dt / static_cast<float>(substeps);
     const auto oscillation = [&](float hertz) {
         const float turns = 2.0f * std::numbers::pi_v<float> * hertz * h;
         return turns * turns;
     };
     SubstepContext context;
-    context.count = settings.substeps;
+    context.count = substeps;
     context.h = h;
     context.velocityShare = shareLeft(h, settings.dampingTime);
     context.gravityStep = settings.gravity * (h * h);
@@ -155,7 +159,7 @@ SubstepContext substepContext(const SimulationSettings& settings, const EffectPl
     context.dragShare = decays ? 1.0f - std::exp(-settings.airDrag * h) : settings.airDrag * h;
     context.springStep = oscillation(settings.springFrequency);
     context.penaltyStep = oscillation(settings.penaltyFrequency);
-    context.bendRate = bendRate(settings, h, plan.on(Effect::torsion), plan.on(Effect::coupling));
+    context.bendRate = bendRate(settings, h, plan.on(Effect::torsion));
     context.tensionShare = 1.0f - shareLeft(h, kTensionTime);
     context.lengthIterations = settings.lengthIterations;
     context.maximalExtension = settings.maximalExtension;

@@ -48,14 +48,16 @@ struct FrameOutlook {
     float fastest = 0.0f;             ///< m/s, greatest speed of a point at the end of the last frame
     std::uint32_t asleep = 0;         ///< strands
     float restTime = 0.0f;            ///< seconds
-    // Of the rest shape.
-    float maxCurvature = 0.0f;
-    float massRatio = 1.0f;
-    float substep = 0.0f;  ///< seconds
 };
 /// The plan of a frame of `frameTime` seconds.
 EffectPlan planFrame(const SimulationSettings& settings, const FrameOutlook& planInput, const FrameWind& wind,
                      std::span<const Sphere> spheres, std::span<const Float3> sphereMotion, float frameTime);
+
+/// By how much numbers grow that were measured from one origin and are now measured from another.
+Float3 shiftOfOrigin(const std::array<double, 3>& from_ws, const std::array<double, 3>& to_ws);
+inline bool isFinite(const std::array<double, 3>& place) {
+    return std::isfinite(place[0]) && std::isfinite(place[1]) && std::isfinite(place[2]);
+}
 
 /// Of the first substep of a frame of `dt` seconds.
 SubstepContext substepContext(const SimulationSettings& settings, const EffectPlan& plan, float dt,

@@ -90,12 +90,6 @@ struct BlockView {
     /// What a joint adds to its inner segment's direction, in the frame carried there (x along the segment);
     /// at the tip's slot the normal carried by the root, in the root's frame. Null for straight hair.
     ConstPlanes target;
-    // Of implicit angular springs of curved hair, null otherwise.
-    Planes curve;  ///< what each joint adds to its inner segment's direction now, world
-    float* energyTank =
-        nullptr;  ///< of each lane: energy that turning curves have saved; below 0 when `curve` is void
-    float* motion =
-        nullptr;  ///< of each lane: greatest squared speed of a point at the end of the last frame
     /// Of implicit angular springs beside the length constraint, null otherwise: the tension of each segment
     /// in the last substep, times h²; in metres, for masses of mean 1.
     float* tension = nullptr;
@@ -156,13 +150,14 @@ struct MovingSphere {
     Float3 from_ws;  ///< centre at the start of the frame
     Float3 step;     ///< the centre's way in one substep
     float radius;
+    float way = length(step);  ///< metres in one substep
 };
 
 /// What the strands move through.
 enum class Air : std::uint32_t { none, still, moving };
 inline constexpr std::size_t kAirCount = 3;
 
-inline constexpr std::size_t kCopiedRows = 14;
+inline constexpr std::size_t kCopiedRows = 11;
 inline constexpr std::size_t kMaxCopied = 64;
 
 /// What the strands of a block go through in one frame; one of an engine's Scratch (src/scratch.h).
@@ -172,8 +167,6 @@ struct alignas(64) LaneFrame {
     float rotationFrom[4][kBlockLanes];      ///< x, y, z, w
     float rotationTo[4][kBlockLanes];        ///< by the first substep on the side of rotationFrom
     float rotation[4][kBlockLanes];          ///< of now; kept by the stage `roots`
-    /// From the rotation of a substep ago to that of now; likewise, where there is BlockView::curve.
-    float turn[4][kBlockLanes];
     float windRoot[2][3]
                   [kBlockLanes];  ///< the air's way in one substep at start and end of the frame, at the root
     float windTip[2][3][kBlockLanes];
@@ -249,8 +242,7 @@ struct Kernels {
                        const float* to);
     /// Greatest squared displacement of a free point in the last substep, square metres; infinite where a
     /// point is no number or has left the range of sound places.
-    /// Keeps each lane's in `motion`.
-    float (*fastest)(const BlockView& block, float h);
+    float (*fastest)(const BlockView& block);
     /// Makes the rotations in a block's rows of roots `next` unit length, and adds the roots to `bounds`;
     /// `before` are those of the last frame. False, and nothing else, where a root is no place: not finite,
     /// or too far away. A way whose square is above `cut` is none. With `sound` roots it neither looks nor

@@ -6,9 +6,7 @@
 #include <cmath>
 #include <initializer_list>
 #include <limits>
-#include <numbers>
 
-#include "hairloom/presets.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -73,25 +71,6 @@ Decision decideTorsion(const PlanInput& scene, bool angular, bool held) {
     if (scene.settings.angularMethod == AngularMethod::flexion) return {false, Reason::noFrames, 0.0f};
     if (scene.straight && !held) return {false, Reason::straightHair, 0.0f};
     return {true, Reason::curvedHair, 0.0f};
-}
-
-/// Masses or lengths that differ more along a strand are solved with its bending.
-constexpr float kMaxMassRatio = 100.0f;
-/// ω²h² of bending times the square of the curve, above which a step of bending and one of lengths undo each
-/// other.
-constexpr float kTightestCurl = 4.0f;
-
-Decision decideCoupling(const PlanInput& scene, bool possible) {
-    const SimulationSettings& s = scene.settings;
-    if (!possible) return {false, Reason::lengthsFree, 0.0f};
-    if (!(s.bendDampingTime > 0.0f)) return {true, Reason::undamped, 0.0f};
-    if (scene.massRatio > kMaxMassRatio) return {true, Reason::unevenMasses, scene.massRatio};
-    const double stiffness = bendingStiffnessOf(static_cast<double>(greatestStiffness(s)));
-    const double h = static_cast<double>(scene.substep);
-    const double curl = stiffness * h * h * static_cast<double>(scene.maxCurvature);
-    if (curl > static_cast<double>(kTightestCurl))
-        return {true, Reason::tightCurls, static_cast<float>(std::sqrt(curl) / (2.0 * std::numbers::pi))};
-    return {false, Reason::evenHair, 0.0f};
 }
 
 Decision decideCollisionRadius(const SimulationSettings& s, bool collision) {
@@ -163,13 +142,10 @@ class Planner {
         const float stiffest = greatestStiffness(s_);
         const bool stiff = stiffest > 0.0f;
         decide(Effect::angular, {stiff, stiff ? Reason::authored : Reason::zeroStiffness, stiffest});
-        const bool held = stiff && gravity > 0.0f && s_.restGravity > 0.0f;
+        const bool held = rods() && gravity > 0.0f && s_.restGravity > 0.0f;
         decide(Effect::torsion, decideTorsion(scene_, stiff, held));
-        const bool coupled = !rods() && stiff && implicitly() && !coils() && s_.lengthIterations > 0;
-        decide(Effect::coupling, decideCoupling(scene_, coupled));
         decideCollision();
-        plan_.keepsCurves_ = !rods() && on(Effect::torsion) && implicitly();
-        plan_.keepsTensions_ = coupled;
+        plan_.keepsTensions_ = !rods() && stiff && implicitly() && !coils() && s_.lengthIterations > 0;
         plan_.factored_ = !rods() && stiff && s_.angularMethod != AngularMethod::flexion &&
                           (implicitly() || (s_.integrator == Integrator::implicitEuler && !coils()));
     }
@@ -237,11 +213,8 @@ class Planner {
             case Integrator::verlet:
                 listForces();
                 add(StageId::verlet);
-                if (on(Effect::coupling)) {
-                    add(on(Effect::torsion) ? StageId::coupled : StageId::coupledStraight);
-                } else if (on(Effect::angular) && implicitly()) {
+                if (on(Effect::angular) && implicitly())
                     add(on(Effect::torsion) ? StageId::angular : StageId::angularStraight);
-                }
                 break;
             case Integrator::velocityVerlet:
                 add(StageId::open);
@@ -283,7 +256,7 @@ class Planner {
     }
 
     void listConstraints() {
-        const bool held = !coils() && s_.lengthIterations > 0 && !on(Effect::coupling);
+        const bool held = !coils() && s_.lengthIterations > 0;
         // Tension along the segments at the start of the substep is more exact, but pumps the leapfrog and
         // outruns what the backward Euler step has damped.
         const bool now = s_.integrator == Integrator::leapfrog || s_.integrator == Integrator::implicitEuler;

@@ -35,7 +35,6 @@ std::string quantity(Effect effect, float value) {
             text << "up to " << value << " mm";
             break;
         case Effect::torsion:
-        case Effect::coupling:
         case Effect::collision:
         case Effect::continuousCollision:
         case Effect::sleep:
@@ -85,21 +84,8 @@ std::string words(Effect effect, const Decision& decision) {
             return "hair is straight";
         case Reason::curvedHair:
             return "hair is curved or carries its weight";
-        case Reason::lengthsFree:
-            return "not with implicit angular springs and the length constraint";
         case Reason::byRods:
             return "rods have no other length";
-        case Reason::evenHair:
-            return "bending is damped, hair is even and has no tight curls";
-        case Reason::undamped:
-            return "bending is undamped";
-        case Reason::unevenMasses:
-            text << "masses or segments differ " << std::setprecision(4) << decision.value
-                 << " times along a strand";
-            return text.str();
-        case Reason::tightCurls:
-            text << "curls spring back " << std::setprecision(2) << decision.value << " times in a substep";
-            return text.str();
         case Reason::noCollision:
             return "no collision";
         case Reason::zeroRadius:
@@ -166,8 +152,6 @@ constexpr StageWords kStages[kStageCount] = {
     {"implicitSpringBend", "integration", std::nullopt},
     {"angular", "angular forces", Effect::angular},
     {"angularStraight", "angular forces", Effect::angular},
-    {"coupled", "angular forces", Effect::coupling},
-    {"coupledStraight", "angular forces", Effect::coupling},
     {"length", "linear forces", Effect::length},
     {"lengthNow", "linear forces", Effect::length},
     {"springLimit", "post-processing", Effect::length},
@@ -188,7 +172,6 @@ const char* effectName(Effect effect) {
                                                   "length",
                                                   "angular",
                                                   "torsion",
-                                                  "coupling",
                                                   "collision",
                                                   "collisionRadius",
                                                   "continuousCollision",

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "hairloom/settings.h"
 
+#include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <sstream>
 
@@ -22,7 +24,7 @@ constexpr double kLargestCount = 4294967295.0;
 constexpr Field<S> kFields[] = {
     choiceField<&S::strandModel>("strandModel", "what a strand is: an elastic rod, or masses and springs with the methods below", kModels),
     choiceField<&S::integrator>("integrator", "how motion is advanced", kIntegrators),
-    field<&S::substeps>("substeps", "", 1, kMaxSubsteps, "steps per frame: more is stiffer, more exact and slower"),
+    field<&S::substeps>("substeps", "", 1, kMaxSubsteps, "steps in 1/60 s: more is more exact and slower"),
     field<&S::dampingTime>("dampingTime", "s", 0, 100, "time in which motion falls to 1/e: lower is calmer, 0 is undamped"),
     field<&S::teleportDistance>("teleportDistance", "m", 0.01, 10000, "a root that moves farther in a frame carries its strand along"),
     field<&S::sleepSpeed>("sleepSpeed", "m/s", 0, 1, "slower strands fall asleep: 0 keeps all awake"),
@@ -37,7 +39,7 @@ constexpr Field<S> kFields[] = {
     rampField<&S::angularCurve>("angularCurve", "share of the stiffness from root to tip, by keys [place, share]: lower is looser there"),
     field<&S::torsionRatio>("torsionRatio", "", 0.01, 100, "torsional over bending stiffness of rods: 0.75 is a round fibre"),
     field<&S::bendDampingTime>("bendDampingTime", "s", 0, 1, "waves faster than this fade: 0 rings on"),
-    field<&S::restGravity>("restGravity", "", 0, 1, "share of gravity that the authored shape already carries: 0 sags from there"),
+    field<&S::restGravity>("restGravity", "", 0, 1, "share of gravity that the authored shape of rods already carries: 0 sags from there"),
     field<&S::gravity>("gravity", "m/s²", -1000, 1000, "acceleration of everything"),
     field<&S::airDrag>("airDrag", "1/s", 0, 1000, "rate at which hair takes on the speed of the air: 0 feels no wind"),
     choiceField<&S::windKind>("windKind", "how the wind varies in space and time", kWindKinds),
@@ -56,7 +58,16 @@ constexpr Field<S> kFields[] = {
 };
 // clang-format on
 
+/// A frame that is longer by this share of a substep, as clocks jitter, needs no other one.
+constexpr double kJitter = 0.05;
+
 }  // namespace
+
+std::uint32_t substepsIn(const SimulationSettings& settings, float dt) {
+    const double usual = static_cast<double>(dt) / static_cast<double>(kUsualFrame);
+    const double count = std::ceil(static_cast<double>(settings.substeps) * usual - kJitter);
+    return static_cast<std::uint32_t>(std::clamp(count, 1.0, static_cast<double>(kMaxSubsteps)));
+}
 
 float greatestStiffness(const S& settings) {
     return settings.angularStiffness * settings.angularCurve.greatest();

@@ -180,7 +180,7 @@ double airLimit(Integrator integrator) {
 }
 
 StableRegion regionOf(const FastestWaves& waves, const S& s, double frameTime) {
-    const double h = frameTime / s.substeps;
+    const double h = frameTime / substepsIn(s, static_cast<float>(frameTime));
     const bool solves = s.integrator == Integrator::implicitEuler;
     StableRegion region;
     region.step = h;

@@ -127,34 +127,6 @@ void fillInverseMasses(const StrandsView& strands, std::uint32_t strand, const B
     }
 }
 
-/// Takes in how tightly a strand curls and how uneven it is, from its rest planes.
-void measureHardness(const Block& block, std::uint32_t lane, const float* planes, RestShape& shape) {
-    const std::size_t size = planeSize(block);
-    const auto at = [&](std::size_t plane, std::uint32_t p) {
-        return static_cast<double>(planes[plane * size + std::size_t{p} * kBlockLanes + lane]);
-    };
-    double heaviest = 0.0, lightest = 1e30, longest = 0.0, shortest = 1e30;
-    for (std::uint32_t p = 0; p < block.points; ++p) {
-        heaviest = std::max(heaviest, at(5, p));
-        lightest = std::min(lightest, at(5, p));
-        if (p + 1 == block.points || !(at(4, p) > 0.0)) continue;
-        longest = std::max(longest, at(3, p));
-        shortest = std::min(shortest, at(3, p));
-        if (p == 0 || !(at(4, p - 1) > 0.0)) continue;
-        double curve = 0.0;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const double part = at(axis, p) * at(4, p) - at(axis, p - 1) * at(4, p - 1);
-            curve += part * part;
-        }
-        const double own = 0.5 * (at(3, p) + at(3, p - 1)), turns = at(4, p) + at(4, p - 1);
-        const double light = std::max({at(5, p - 1), at(5, p), at(5, p + 1)}) / at(5, p);
-        const double curl = curve * turns * turns * light / (own * own);
-        shape.maxCurvature = std::max(shape.maxCurvature, static_cast<float>(std::min(curl, 1e30)));
-    }
-    const double ratio = std::max(heaviest / lightest, longest > 0.0 ? longest / shortest : 1.0);
-    shape.massRatio = std::max(shape.massRatio, static_cast<float>(ratio));
-}
-
 void fillRestPlanes(const StrandsView& strands, const Block& block, RestShape& shape) {
     const std::size_t size = planeSize(block);
     float* const planes = shape.planes.data() + block.firstPlane * kRestPlanes;
@@ -176,7 +148,6 @@ void fillRestPlanes(const StrandsView& strands, const Block& block, RestShape& s
             planes[4 * size + i] = l > 1e-9f ? 1.0f / l : 0.0f;
             total += l;
         }
-        measureHardness(block, lane, planes, shape);
         shape.longestStrand = std::max(shape.longestStrand, total);
     }
     shape.longestPointCount = std::max(shape.longestPointCount, block.points);
@@ -225,7 +196,6 @@ std::shared_ptr<const RestShape> makeRestShape(const StrandsView& strands) {
 std::uint64_t State::hash() const {
     std::uint64_t hash = 0xcbf29ce484222325ull;
     hash = mix(hash, planes.data(), planes.size() * sizeof(float));
-    hash = mix(hash, curves.data(), curves.size() * sizeof(float));
     hash = mix(hash, tensions.data(), tensions.size() * sizeof(float));
     hash = mix(hash, rods.data(), rods.size() * sizeof(float));
     hash = mix(hash, rodLanes.data(), rodLanes.size() * sizeof(float));
@@ -261,11 +231,6 @@ BlockView viewOf(const Arrays& arrays, std::size_t index, std::uint32_t clampedP
         }
         if (arrays.bend.targets) view.target = {plane, size};
     }
-    if (!arrays.state.curves.empty()) {
-        view.curve = three(arrays.state.curves.data() + block.firstPlane * 3);
-        view.energyTank = arrays.state.energyTanks.data() + index * kBlockLanes;
-        view.motion = arrays.state.motions.data() + index * kBlockLanes;
-    }
     if (!arrays.state.tensions.empty()) view.tension = arrays.state.tensions.data() + block.firstPlane;
     if (!arrays.evaluation.empty()) {
         float* plane = arrays.evaluation.data() + block.firstPlane * arrays.evaluationPlanes;
@@ -288,15 +253,6 @@ void placeAtRest(const RestShape& shape, State& state, std::size_t index, std::u
     const float* roots = state.roots.data() + index * kRootRows * kBlockLanes;
     const auto row = [&](std::size_t r) { return roots[r * kBlockLanes + lane]; };
     const Quat rotation{row(3), row(4), row(5), row(6)};
-    if (!state.energyTanks.empty()) {
-        state.energyTanks[index * kBlockLanes + lane] = kNoCurve;
-        state.motions[index * kBlockLanes + lane] = 0.0f;
-        float* const curves = state.curves.data() + block.firstPlane * 3;
-        for (std::size_t plane = 0; plane < 3; ++plane) {
-            for (std::uint32_t p = 0; p < block.points; ++p)
-                curves[plane * size + std::size_t{p} * kBlockLanes + lane] = 0.0f;
-        }
-    }
     if (!state.tensions.empty()) {
         float* const tensions = state.tensions.data() + block.firstPlane;
         for (std::uint32_t p = 0; p < block.points; ++p) tensions[std::size_t{p} * kBlockLanes + lane] = 0.0f;

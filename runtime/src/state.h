@@ -2,10 +2,12 @@
 #pragma once
 // The arrays of one engine: the rest shape, made once, and the state, which every step changes.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <new>
+#include <optional>
 #include <vector>
 
 #include "src/kernels.h"
@@ -46,9 +48,6 @@ struct RestShape {
     std::uint32_t longestPointCount = 0;
     float longestStrand = 0.0f;  ///< metres
     bool straight = true;        ///< no strand bends at rest
-    /// Greatest (κ/B) (1/l_{j−1} + 1/l_j)² |c_j|² over a mass beside the joint (docs/engine.md), in 1/m⁴.
-    float maxCurvature = 0.0f;
-    float massRatio = 1.0f;  ///< greatest ratio of two masses or lengths of a strand
 
     std::size_t bytes() const;
 };
@@ -73,9 +72,6 @@ struct Rest {
 struct State {
     Floats planes;  ///< per block: position x, y, z, previous x, y, z
     Floats roots;   ///< per block: position x, y, z, rotation x, y, z, w of each lane at the last frame's end
-    Floats curves;  ///< per block: x, y, z of BlockView::curve; empty unless they are needed
-    Floats energyTanks;               ///< of each lane, BlockView::tank
-    Floats motions;                   ///< of each lane, BlockView::motion; empty where `curves` is
     Floats tensions;                  ///< per block: BlockView::tension; empty unless it is needed
     Floats rods;                      ///< per block: what RodView says; empty for springs
     Floats rodLanes;                  ///< per block: RodView::turn and energy
@@ -84,6 +80,7 @@ struct State {
     Float3 rootsMin_ws, rootsMax_ws;  ///< box of the last frame's roots
     float substep = 0.0f;             ///< seconds of the last substep; 0 before the first
     float fastest = 0.0f;             ///< m/s, greatest speed of a point at the end of the last frame
+    std::optional<std::array<double, 3>> origin_ws;  ///< of the last frame; none before the first
 
     std::uint64_t hash() const;
 };
@@ -94,14 +91,11 @@ struct Bend {
         planes;  ///< per block: stiffness, then 3 of the factors, then 3 of the targets where there are any
     bool factored = false;
     bool targets = false;
-    bool coupled = false;  ///< the rate is that of coupled strands
     float substep = 0.0f;  ///< seconds that `planes` was made for; 0 for not yet
 
     std::size_t planeCount() const { return 1u + (factored ? 3u : 0u) + (targets ? 3u : 0u); }
 };
 
-/// In a tank: the curves of the strand are void.
-inline constexpr float kNoCurve = -1.0f;
 inline constexpr std::size_t kRestPlanes = 6;
 inline constexpr std::size_t kStatePlanes = 6;
 /// Planes of integrators that evaluate forces: start, rate; RK4 also kick, sum and sumRate.
@@ -126,6 +120,6 @@ void fillBend(const RestShape& shape, const SimulationSettings& settings, float 
               Bend& bend);
 
 /// q of docs/engine.md, "Integrators": what keeps the implicit angular springs stable and fades fast waves.
-float bendRate(const SimulationSettings& settings, float h, bool curved, bool coupled);
+float bendRate(const SimulationSettings& settings, float h, bool curved);
 
 }  // namespace hairloom::runtime

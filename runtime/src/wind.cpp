@@ -74,13 +74,18 @@ Wind makeWind(const SimulationSettings& settings, const WindInput& input) {
     return wind;
 }
 
-std::array<float, kWindModes> windPhases(const Wind& wind, double time) {
+std::array<float, kWindModes> windPhases(const Wind& wind, double time,
+                                         const std::array<double, 3>& origin_ws) {
     std::array<float, kWindModes> phases{};
     for (std::size_t m = 0; m < kWindModes; ++m) {
         // Whole turns go before the product: it may leave the range of a double, or have no fraction left.
         const double rate = static_cast<double>(wind.modes[m].turnsPerSecond);
         const double past = rate == 0.0 ? 0.0 : std::remainder(time, 1.0 / rate) * rate;
-        const double turns = static_cast<double>(wind.modes[m].turns) - past;
+        const Float3 wave = wind.modes[m].waveVector;
+        double turns = static_cast<double>(wind.modes[m].turns) - past;
+        const double waves[] = {static_cast<double>(wave.x), static_cast<double>(wave.y),
+                                static_cast<double>(wave.z)};
+        for (std::size_t k = 0; k < 3; ++k) turns += std::remainder(waves[k] * origin_ws[k], 1.0);
         phases[m] = static_cast<float>(turns - std::round(turns));
     }
     return phases;

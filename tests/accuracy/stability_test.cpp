@@ -12,6 +12,7 @@
 #include "core/accuracy/stability_report.h"
 #include "hairloom/stable.h"
 #include "tests/accuracy/xml_check.h"
+#include "tests/support/spring_settings.h"
 
 namespace hairloom {
 
@@ -52,22 +53,25 @@ TEST(HardCaseTable, HasItsCasesByNumber) {
 
 class HardCaseTest : public testing::TestWithParam<HardCase> {};
 
-/// The settings that a game gets without choosing any have to hold every case.
-TEST_P(HardCaseTest, TheDefaultIntegratorHolds) {
-    // What springs leave of a storm is what rods are for.
-    if (GetParam().number == 26) GTEST_SKIP() << "springs do not claim it";
+TEST_P(HardCaseTest, OfSpringsPositionVerletHolds) {
     const StabilityResult result = runHardCase(GetParam(), springsWith(Integrator::verlet), quick());
+    // Curves, masses that differ 10,000 times, energy without damping and storms are what rods are for.
+    if (std::ranges::count(std::vector<std::uint32_t>{3, 10, 14, 17, 26}, GetParam().number) > 0) {
+        EXPECT_FALSE(result.claimed);
+        return;
+    }
     EXPECT_TRUE(result.claimed) << result.limit;
     EXPECT_TRUE(result.pass) << told(result);
     EXPECT_FALSE(result.thresholds.empty());
-    EXPECT_EQ(result.substeps, runtime::SimulationSettings{}.substeps);
+    EXPECT_EQ(result.substeps, runtime::springSettings().substeps);
 }
 
+/// The settings that a game gets without choosing any.
 TEST_P(HardCaseTest, RodsHoldWithTwoSubsteps) {
     const StabilityResult result = runHardCase(GetParam(), kRods, quick());
     if (GetParam().number == 5 || GetParam().number == 22) {
         // Not claimed; nothing is lost, and the hair comes to rest, even so.
-        EXPECT_THAT(result.limit, HasSubstr("cannot shorten"));
+        EXPECT_FALSE(result.claimed);
         for (const StabilityThreshold& m : result.thresholds)
             EXPECT_TRUE(m.met() || m.what == "penetration") << told(result);
         return;
@@ -105,7 +109,7 @@ TEST(HardCaseLimits, EveryIntegratorMeetsItsClaims) {
     }
 }
 
-TEST(HardCaseLimits, EnergyIsClaimedForCoupledBendingAlone) {
+TEST(HardCaseLimits, RestIsClaimedForPositionVerletAlone) {
     const auto claims = [](Integrator integrator) {
         const StabilityResult r = runHardCase(hardCases()[14], springsWith(integrator), quick());
         const auto rest = std::ranges::find(r.thresholds, "time to rest", &StabilityThreshold::what);

@@ -219,8 +219,8 @@ TEST_F(Cli, EffectsReportReasonAndCost) {
     std::map<std::string, nlohmann::json> effects;
     for (const auto& effect : report["effects"]) effects[effect["name"]] = effect;
     EXPECT_TRUE(effects.at("length")["on"].get<bool>());
-    EXPECT_GT(effects.at("length")["ms_off"], 0.0);
-    EXPECT_EQ(effects.at("length")["turned_off_by"], "simulation.lengthIterations=0");
+    EXPECT_GT(effects.at("angular")["ms_off"], 0.0);
+    EXPECT_EQ(effects.at("angular")["turned_off_by"], "simulation.angularStiffness=0");
     EXPECT_FALSE(effects.at("wind")["on"].get<bool>());
     EXPECT_EQ(effects.at("wind")["why"], "off, zero speed");
     EXPECT_TRUE(effects.at("wind")["ms_on"].is_null());
@@ -404,7 +404,7 @@ TEST_F(Cli, BenchComparesTheEngineWithTheThesis) {
     EXPECT_NEAR(printed, 33.2929, 1e-6);
     const std::string tables = readText(folder / "tables.md");
     EXPECT_THAT(tables, HasSubstr("## Table 3 of the thesis"));
-    EXPECT_THAT(tables, HasSubstr("| angular forces | angular |"));
+    EXPECT_THAT(tables, HasSubstr("| integration | rod |"));
     EXPECT_THAT(tables, HasSubstr("--repeat 2"));
     EXPECT_EQ(run("bench io --quick").exitCode, 1) << "of sim alone";
 }

@@ -4,6 +4,7 @@
 // device are held against.
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <random>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "core/gpu_simulation/strand_engine.h"
 #include "runtime/src/rods.h"
 #include "runtime/src/scratch.h"
+#include "tests/support/spring_settings.h"
 
 namespace hairloom::gpu_simulation::test {
 
@@ -21,7 +23,8 @@ inline constexpr float kStep = 1.0f / 480.0f;
 
 /// Strands, a state of theirs, and the frame that goes on from it.
 struct Scene {
-    runtime::SimulationSettings settings;
+    runtime::SimulationSettings settings = runtime::springSettings();  ///< whose substeps are kStep long
+    std::uint32_t substeps = 0;                                        ///< of the frame
     std::vector<std::uint32_t> offsets{0};
     std::vector<Float3> positions;
     std::vector<runtime::RootFrame> roots;  ///< at the end of the frame
@@ -32,7 +35,7 @@ struct Scene {
     runtime::StrandsView view() const { return {offsets, positions}; }
     runtime::FrameInput input() const {
         runtime::FrameInput input;
-        input.dt = kStep * static_cast<float>(settings.substeps);
+        input.dt = kStep * static_cast<float>(substeps);
         input.time = 0.7;
         input.roots_ws = roots;
         input.spheres = spheres;
@@ -161,6 +164,8 @@ inline Scene makeScene(const runtime::SimulationSettings& settings, Hair hair, s
                        std::span<const std::uint32_t> points, float maximum = 0.002f) {
     Scene scene;
     scene.settings = settings;
+    scene.substeps = settings.substeps;
+    scene.settings.substeps = static_cast<std::uint32_t>(std::lround(runtime::kUsualFrame / kStep));
     Dice dice(seed);
     addStrands(scene, hair, 64, points, dice);
     scene.shape = runtime::makeRestShape(scene.view());
@@ -209,15 +214,12 @@ struct CpuFrame {
         planInput.longestPointCount = shape.longestPointCount;
         planInput.longestStrand = shape.longestStrand;
         planInput.straight = shape.straight;
-        planInput.maxCurvature = shape.maxCurvature;
-        planInput.massRatio = shape.massRatio;
-        planInput.substep = kStep;
         planInput.rootsMin_ws = {-1.0f, -1.0f, -1.0f};
         planInput.rootsMax_ws = {1.0f, 1.0f, 1.0f};
         planInput.fastest = std::numeric_limits<float>::infinity();
         plan = runtime::planFrame(scene.settings, planInput, wind, spheres.usable, spheres.motion, dt);
         if (plan.on(runtime::Effect::collision))
-            runtime::moveSpheres(spheres, scene.settings.substeps, moving);
+            runtime::moveSpheres(spheres, scene.substeps, moving);
         context = runtime::substepContext(scene.settings, plan, dt, moving);
     }
 };
@@ -231,7 +233,7 @@ inline void fillLanes(const Scene& scene, std::size_t b, runtime::LaneFrame& lan
         for (std::size_t k = 0; k < 3; ++k) {
             lanes.root[k][lane] = rows[k * runtime::kBlockLanes + lane];
             lanes.rootDisplacement[k][lane] =
-                (ends[k] - lanes.root[k][lane]) * (1.0f / static_cast<float>(scene.settings.substeps));
+                (ends[k] - lanes.root[k][lane]) * (1.0f / static_cast<float>(scene.substeps));
         }
         for (std::size_t k = 0; k < 4; ++k) {
             lanes.rotationFrom[k][lane] = rows[(3 + k) * runtime::kBlockLanes + lane];
@@ -260,14 +262,8 @@ inline runtime::State runOnCpu(const Scene& scene) {
     runtime::Bend bend;
     bend.factored = frame.plan.factored();
     bend.targets = frame.plan.on(runtime::Effect::torsion);
-    bend.coupled = frame.plan.on(runtime::Effect::coupling);
     if (frame.plan.on(runtime::Effect::angular))
         bend.planes.assign(shape.planeFloats * bend.planeCount(), 0.0f);
-    if (frame.plan.keepsCurves()) {
-        state.curves.assign(shape.planeFloats * 3, 0.0f);
-        state.energyTanks.assign(shape.blocks.size() * runtime::kBlockLanes, runtime::kNoCurve);
-        state.motions.assign(shape.blocks.size() * runtime::kBlockLanes, 0.0f);
-    }
     if (frame.plan.keepsTensions()) state.tensions.assign(shape.planeFloats, 0.0f);
     const bool rods = scene.settings.strandModel == runtime::StrandModel::rods;
     runtime::RodRest rodRest;

@@ -4,6 +4,7 @@
 
 #include "tests/gpu_simulation/cpu_frame.h"
 #include "tests/gpu_simulation/gpu_simulation_fixture.h"
+#include "tests/support/spring_settings.h"
 
 namespace hairloom::gpu_simulation {
 namespace {
@@ -14,7 +15,7 @@ class Volume : public GpuSimulationTest {
   protected:
     /// Nothing acts but the volume.
     static runtime::SimulationSettings calm() {
-        runtime::SimulationSettings s;
+        runtime::SimulationSettings s = runtime::springSettings();
         s.gravity = {};
         s.dampingTime = s.airDrag = s.angularStiffness = s.sleepSpeed = 0.0f;
         s.lengthIterations = 0;

@@ -18,18 +18,18 @@ TEST_P(HardCases, DeviceMeetsTheCpusHardCases) {
     quick.freeSeconds = 2.0;
     quick.storms = 2;
     quick.integrators = {runtime::Integrator::verlet};
-    if (!runHardCase(hardCase, springsWith(runtime::Integrator::verlet), quick).pass)
+    if (!runHardCase(hardCase, kRods, quick).pass)
         GTEST_SKIP() << "the CPU does not hold it either";
     StabilityOptions onDevice = quick;
     onDevice.engines = gpuHardCaseEngines(*device(), library());
-    const StabilityResult result = runHardCase(hardCase, springsWith(runtime::Integrator::verlet), onDevice);
+    const StabilityResult result = runHardCase(hardCase, kRods, onDevice);
     EXPECT_TRUE(result.pass) << result.number << " " << result.name << ": " << result.closest().what << " "
                              << result.closest().worst << " " << result.closest().unit << ", mark "
                              << result.closest().threshold;
 }
 
 constexpr std::size_t kCases = 26;
-INSTANTIATE_TEST_SUITE_P(Verlet, HardCases, testing::Range(std::size_t{0}, kCases));
+INSTANTIATE_TEST_SUITE_P(Rods, HardCases, testing::Range(std::size_t{0}, kCases));
 
 /// The list above is as long as theirs.
 TEST(HardCaseList, IsWhole) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstring>
 #include <thread>
 
@@ -14,6 +15,7 @@
 #include "runtime/shaders/simulation_types.h"
 #include "shaders/shaders.h"
 #include "tests/gpu_simulation/gpu_simulation_fixture.h"
+#include "tests/support/spring_settings.h"
 
 namespace hairloom::shaders {
 std::span<const Shader> table_test_gpu_simulation();  // NOLINT(readability-identifier-naming)
@@ -23,6 +25,7 @@ namespace hairloom::gpu_simulation {
 namespace {
 
 using runtime::SimulationSettings;
+using runtime::springSettings;
 using testing::Contains;
 using testing::IsSupersetOf;
 using testing::Not;
@@ -59,11 +62,18 @@ class Permutation : public GpuSimulationTest {
         return names;
     }
 
-    StrandSet strands = tuft(6);
+    StrandSet strands = curved(tuft(6));
+
+  private:
+    static StrandSet curved(StrandSet set) {
+        for (std::size_t p = 0; p < set.points.size(); ++p)
+            set.points[p].z += 0.004f * std::sin(1.3f * static_cast<float>(p));
+        return set;
+    }
 };
 
 SimulationSettings withoutAll() {
-    SimulationSettings s;
+    SimulationSettings s = springSettings();
     s.gravity = {};
     s.dampingTime = 0.0f;
     s.airDrag = 0.0f;
@@ -74,8 +84,7 @@ SimulationSettings withoutAll() {
 }
 
 TEST_F(Permutation, WhatIsOffHasNoBufferAndIsNotRead) {
-    const std::vector<std::string> ofEffects{"angular springs", "rest directions", "curves",
-                                             "tanks",           "rests",           "spheres",
+    const std::vector<std::string> ofEffects{"angular springs", "rest directions", "rests",   "spheres",
                                              "waking spheres",  "scratch",         "gathered"};
     StrandEngine engine = engineOf(strands.view(), withoutAll(), options());
     const std::vector<std::string> used = usedBy(engine);
@@ -89,26 +98,25 @@ TEST_F(Permutation, WhatIsOffHasNoBufferAndIsNotRead) {
 }
 
 TEST_F(Permutation, BuffersComeAndGoWithTheirEffects) {
-    SimulationSettings s;
+    SimulationSettings s = springSettings();
     StrandEngine engine = engineOf(strands.view(), s, options());
-    const std::vector<std::string> curved{"angular springs", "rest directions", "curves", "tanks", "rests"};
+    const std::vector<std::string> curved{"angular springs", "rest directions", "rests"};
     EXPECT_THAT(usedBy(engine), IsSupersetOf(curved));
     EXPECT_GT(engine.effectBytes(runtime::Effect::torsion), 0u);
-    // Straight hair that carries no weight at rest needs no frames.
-    s.restGravity = 0.0f;
+    // Hair that does not bend needs no frames.
+    s.angularStiffness = 0.0f;
     ASSERT_TRUE(engine.setSettings(s));
     const auto used = usedBy(engine);
-    EXPECT_THAT(used, Contains("angular springs"));
-    EXPECT_THAT(used, Not(Contains("curves")));
-    EXPECT_THAT(livingNames(), Not(Contains("curves")));
-    EXPECT_EQ(engine.effectBytes(runtime::Effect::torsion), 0u);
+    EXPECT_THAT(used, Not(Contains("angular springs")));
+    EXPECT_THAT(used, Not(Contains("rest directions")));
+    EXPECT_THAT(livingNames(), Not(Contains("rest directions")));
 }
 
 TEST_F(Permutation, RodsHaveBuffersAndAKernelOfTheirOwn) {
     const std::vector<std::string> ofRods{"rods", "rods at rest", "masses of rods", "curved blocks",
                                           "scratch"};
-    const std::vector<std::string> ofSprings{"angular springs", "rest directions", "curves", "tanks"};
-    SimulationSettings s;
+    const std::vector<std::string> ofSprings{"angular springs", "rest directions"};
+    SimulationSettings s = springSettings();
     s.strandModel = runtime::StrandModel::rods;
     StrandEngine engine = engineOf(strands.view(), s, options());
     const auto used = usedBy(engine);
@@ -158,37 +166,27 @@ TEST_F(Permutation, ManySpheresStandInABuffer) {
 
 TEST_F(Permutation, KernelsOfTheProgramAreThoseOfDefaultPlans) {
     KernelLibrary own(*device(), {});
-    SimulationSettings s;
     runtime::PlanInput scene;
-    scene.settings = s;
     scene.strandCount = 1;
     scene.longestPointCount = 16;
     scene.longestStrand = 1.0f;
-    scene.fastest = std::numeric_limits<float>::infinity();
     const runtime::Sphere sphere{{}, 0.1f};
+    const BatchShape threads{16, true, true, StrandStorage::threads};
     std::vector<std::string> asked;
     for (const float wind : {0.0f, 3.0f}) {
         for (const std::size_t spheres : {0u, 1u}) {
             scene.settings.windSpeed = wind;
             scene.spheres = {&sphere, spheres};
-            const BatchShape threads{16, true, true, StrandStorage::threads};
-            asked.push_back(keyFor(runtime::plan(scene), scene.settings, threads, spheres, false).defines());
-            if (device()->info().backend == gpu::Backend::Direct3D11) continue;
-            // In waves of 32; few strands with a point a thread, many with two.
-            for (const std::uint32_t perThread : {1u, 2u}) {
-                const std::uint32_t ofGroup = perThread == 1 ? 2 : 16;
-                const BatchShape lanes{16, true, true, StrandStorage::lanes, ofGroup, true, perThread, 32};
-                asked.push_back(
-                    keyFor(runtime::plan(scene), scene.settings, lanes, spheres, false).defines());
-            }
+            const runtime::EffectPlan plan = runtime::plan(scene);
+            for (const bool velocities : {false, true})
+                asked.push_back(keyFor(plan, scene.settings, threads, spheres, velocities).defines());
         }
     }
     std::vector<std::string> built;
     for (const shaders::Source& source : shaders::sources()) {
         if (!source.path.ends_with(".comp.hlsl")) continue;
-        // Direct3D has none with lanes.
         const std::string name = std::filesystem::path(source.path).stem().string();
-        if (shaders::find(name) == nullptr) continue;
+        ASSERT_NE(shaders::find(name), nullptr) << name;
         std::string defines;
         for (std::size_t at = 0; at < source.text.size();) {
             const std::size_t end = source.text.find('\n', at) + 1;
@@ -267,7 +265,7 @@ TEST_F(Permutation, PlansChangeWithoutWaiting) {
 }
 
 TEST_F(Permutation, BackwardEulerIsRefusedInWords) {
-    SimulationSettings s;
+    SimulationSettings s = springSettings();
     s.integrator = runtime::Integrator::implicitEuler;
     const auto made = StrandEngine::make(*device(), library(), strands.view(), s, options());
     ASSERT_FALSE(made);

@@ -13,11 +13,13 @@
 #include "core/simulation/reference/solver.h"
 #include "tests/gpu_simulation/cpu_frame.h"
 #include "tests/gpu_simulation/gpu_simulation_fixture.h"
+#include "tests/support/spring_settings.h"
 
 namespace hairloom::gpu_simulation::test {
 
 using Eigen::Vector3d;
 using runtime::SimulationSettings;
+using runtime::springSettings;
 using Places = std::vector<Vector3d>;  // of one strand
 
 inline constexpr double kSubstep = static_cast<double>(test::kStep);
@@ -63,7 +65,7 @@ inline Scene sceneFor(const SimulationSettings& settings, Hair rest, bool nasty,
 }
 
 inline SimulationSettings nothing() {
-    SimulationSettings s;
+    SimulationSettings s = springSettings();
     s.substeps = 1;
     // Explicit springs bend without damping.
     s.dampingTime = s.bendDampingTime = s.airDrag = s.angularStiffness = s.sleepSpeed = 0.0f;

@@ -25,6 +25,7 @@ constexpr float kFrame = 1.0f / 60.0f;
 SimulationSettings rods() {
     SimulationSettings s;
     s.strandModel = runtime::StrandModel::rods;
+    s.substeps = 8;
     return s;
 }
 
@@ -352,6 +353,23 @@ TEST_F(RodRun, StandsFiftyStorms) {
             ASSERT_LE(measured->maxStretch, 1e-3);
         }
     }
+}
+
+TEST_F(RodRun, OriginsThatMoveChangeNothing) {
+    const StrandSet strands = curls(40, 16);
+    SimulationSettings settings = rods();
+    settings.windSpeed = 2.0f;
+    Both both(strands, settings, options());
+    for (int f = 1; f <= 40; ++f) {
+        const double walk = 0.02 * f, origin = 1e4 + std::floor(walk / 0.25) * 0.25;
+        const auto x = static_cast<float>(1e4 + walk - origin);
+        const std::vector<runtime::Sphere> spheres{{{x, 0.0f, 0.0f}, 0.085f}};
+        const auto roots = strands.roots({x, 0.0f, 0.0f});
+        runtime::FrameInput input{kFrame, f / 60.0, roots, spheres};
+        input.origin_ws = {origin, 0.0, 0.0};
+        both.step(input);
+    }
+    EXPECT_LE(both.meanDistance(), 1e-4);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "hairloom/engine.h"
 #include "tests/gpu_simulation/cpu_frame.h"
 #include "tests/gpu_simulation/gpu_simulation_fixture.h"
+#include "tests/support/spring_settings.h"
 
 namespace hairloom::gpu_simulation {
 namespace {
@@ -18,6 +19,7 @@ using runtime::Float3;
 using runtime::Measurements;
 using runtime::RootFrame;
 using runtime::SimulationSettings;
+using runtime::springSettings;
 
 constexpr float kFrame = 1.0f / 60.0f;
 
@@ -49,7 +51,7 @@ INSTANTIATE_TEST_SUITE_P(Layouts, EachLayout, testing::ValuesIn(kHeldLayouts),
 /// as a whole does not, and no bound is broken.
 TEST_P(EachLayout, EveryEffectStaysWithTheCpu) {
     const scenes::HeadOfHair head(64, 16);
-    const SimulationSettings settings = scenes::settingsFor(scenes::ActiveForces::windAndSpheres);
+    const SimulationSettings settings = scenes::settingsFor(scenes::ActiveForces::windAndSpheres, runtime::StrandModel::springs);
     StrandEngine gpu = engineOf(head.view(), settings, options(GetParam()));
     runtime::Engine cpu = *runtime::Engine::make(head.view(), settings).engine;
     std::vector<RootFrame> roots;
@@ -82,7 +84,7 @@ TEST_P(EachLayout, EveryEffectStaysWithTheCpu) {
 /// Where a strand is kept between substeps, and whether loops are unrolled, is nothing that the hair notices.
 TEST_F(WholeRun, LayoutsAgree) {
     const scenes::HeadOfHair head(40, 8);
-    const SimulationSettings settings = scenes::settingsFor(scenes::ActiveForces::windAndSpheres);
+    const SimulationSettings settings = scenes::settingsFor(scenes::ActiveForces::windAndSpheres, runtime::StrandModel::springs);
     std::vector<Float3> first;
     for (const LayoutOptions layout :
          {LayoutOptions{StrandStorage::threads, false}, LayoutOptions{StrandStorage::threads, true},
@@ -118,7 +120,7 @@ TEST_F(WholeRun, ManyPointCountsAndFrameTimes) {
     test::Dice dice(3);
     constexpr std::uint32_t kPoints[] = {2, 3, 5, 70};
     test::addStrands(scene, test::Hair::curled, 70, kPoints, dice);
-    SimulationSettings settings;
+    SimulationSettings settings = springSettings();
     settings.substeps = 2;
     // Uneven segments: bending and lengths are solved as one system, which multiplies what rounding makes of
     // lengths by 2,000 and more.
@@ -143,7 +145,7 @@ TEST_F(WholeRun, ManyPointCountsAndFrameTimes) {
 
 /// A hinged strand without damping swings as the double-precision reference says.
 TEST_F(WholeRun, SwingsAsTheReferenceSays) {
-    SimulationSettings s;
+    SimulationSettings s = springSettings();
     s.integrator = runtime::Integrator::rk4;
     s.substeps = 32;
     s.clampedPoints = 1;
@@ -177,7 +179,7 @@ TEST_P(EachLayout, SleepsAndWakes) {
         const Float3 root{s < 32 ? 0.0f : 1.0f, 0.1f, 0.001f * static_cast<float>(s)};
         strands.add(root, {0.0f, -1.0f, 0.0f}, 0.02f, 8);
     }
-    SimulationSettings s;
+    SimulationSettings s = springSettings();
     s.sleepDelay = 0.1f;
     StrandEngine engine = engineOf(strands.view(), s, options(GetParam()));
     std::vector<RootFrame> roots = strands.roots();
@@ -202,7 +204,7 @@ TEST_P(EachLayout, SleepsAndWakes) {
 /// spheres and winds that are none are left out.
 TEST_P(EachLayout, TeleportsAndRestoredStrands) {
     StrandSet strands = tuft(6);
-    SimulationSettings s;
+    SimulationSettings s = springSettings();
     s.gravity = {};
     s.restGravity = 0.0f;
     StrandEngine engine = engineOf(strands.view(), s, options(GetParam()));
@@ -234,7 +236,7 @@ TEST_P(EachLayout, TeleportsAndRestoredStrands) {
 /// Equal input, equal bits; and a state that was read goes on as if nothing had been.
 TEST_F(WholeRun, StatesCanBeTakenAndPutBack) {
     const scenes::HeadOfHair head(40, 5);
-    const SimulationSettings settings = scenes::settingsFor(scenes::ActiveForces::windAndSpheres);
+    const SimulationSettings settings = scenes::settingsFor(scenes::ActiveForces::windAndSpheres, runtime::StrandModel::springs);
     std::vector<RootFrame> roots;
     const auto run = [&](StrandEngine& engine, int first, int last) {
         for (int f = first; f <= last; ++f) {

@@ -5,6 +5,7 @@
 
 #include "tests/runtime/strand_fixture.h"
 #include "tests/simulation/elastica.h"
+#include "tests/support/spring_settings.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -20,7 +21,7 @@ float settingOf(double B) {
 /// All by default but that the strand's shape carries no gravity, is equally stiff everywhere and may not
 /// fall asleep on its way down.
 SimulationSettings cantilever(double B) {
-    SimulationSettings s;
+    SimulationSettings s = springSettings();
     s.angularStiffness = settingOf(B);
     s.angularCurve = {};
     s.restGravity = 0.0f;
@@ -113,7 +114,7 @@ TEST(Cantilever, APresetBehavesTheSameWithAnyNumberOfSegments) {
     for (const float stiffness : {0.3f, 0.6f, 0.9f}) {
         SimulationSettings s = cantilever(0.0);
         s.angularStiffness = stiffness;
-        s.angularCurve = SimulationSettings{}.angularCurve;
+        s.angularCurve = springSettings().angularCurve;
         const Float3 fine = tipAtRest(s, 32);
         for (const std::uint32_t segments : {8u, 16u}) {
             const float apart = length(tipAtRest(s, segments) - fine) / kLength;

@@ -3,6 +3,7 @@
 #include <random>
 
 #include "tests/runtime/strand_fixture.h"
+#include "tests/support/spring_settings.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -48,7 +49,7 @@ TEST(Collision, PointAtTheCentreLeavesUpwardsByBothRadii) {
 TEST(Collision, AStrandStraightThroughACentreLeavesSideways) {
     Strands strands;
     strands.add({0.0f, 0.3f, 0.0f}, {0.0f, -1.0f, 0.0f}, 0.012f, 16);
-    SimulationSettings s;
+    SimulationSettings s = springSettings();
     const std::vector<Sphere> spheres{{strands.points[8], 0.02f}};
     for (const CollisionResponse response : {CollisionResponse::radial, CollisionResponse::backward}) {
         s.collisionResponse = response;
@@ -116,7 +117,7 @@ TEST(Collision, FrictionIsCoulombs) {
 
 TEST(Collision, InvalidSpheresAreIgnored) {
     const Strands strands = tuft(4);
-    SimulationSettings s;
+    SimulationSettings s = springSettings();
     Engine with = makeEngine(strands, s), without = makeEngine(strands, s);
     const float nan = std::nanf("");
     const std::vector<Sphere> bad{
@@ -450,7 +451,7 @@ TEST(Collision, ThePenaltyForceLeavesPointsJustOutsideAlone) {
 
 /// Hair and spheres that move through it, slowly and fast; the strands all in one engine or each in its own.
 std::vector<Float3> swept(const Strands& strands, CollisionResponse response) {
-    SimulationSettings s;
+    SimulationSettings s = springSettings();
     s.collisionResponse = response;
     s.restitution = 0.2f;
     s.teleportDistance = 10.0f;

@@ -5,21 +5,22 @@
 #include "tests/runtime/instruction_sets.h"
 #include "tests/runtime/strand_fixture.h"
 #include "tests/runtime/threads.h"
+#include "tests/support/spring_settings.h"
 
 namespace hairloom::runtime {
 namespace {
 
 SimulationSettings everything() {
-    SimulationSettings s;
+    SimulationSettings s = springSettings();
     s.windSpeed = 6.0f;
     s.restitution = 0.2f;
     return s;
 }
 
-/// As everything(), with bending and lengths as one system.
-SimulationSettings coupled() {
+/// As everything(), for rods.
+SimulationSettings rods() {
     SimulationSettings s = everything();
-    s.bendDampingTime = 0.0f;
+    s.strandModel = StrandModel::rods;
     return s;
 }
 
@@ -52,7 +53,7 @@ TEST(Determinism, SameBitsForAnyNumberOfThreadsAndOrder) {
 /// Those that round a product and a sum once agree with each other, and so do those that round each.
 TEST(Determinism, SameBitsForEveryInstructionSetThatRoundsAlike) {
     const Strands strands = tuft(50, true);
-    for (const SimulationSettings& s : {everything(), coupled()}) {
+    for (const SimulationSettings& s : {everything(), rods()}) {
         std::optional<std::uint64_t> expected[2];
         forEveryInstructionSet([&] {
             const std::uint64_t hash = hashAfterMotion(strands, s);
@@ -85,7 +86,7 @@ TEST(Determinism, SameBitsWhetherStagesAreTimedOrNot) {
     Host clock;
     clock.nanoseconds = [] { return std::uint64_t{0}; };
     for (int which = 0; which < 12; ++which) {
-        SimulationSettings s;
+        SimulationSettings s = springSettings();
         s.lengthIterations = which % 2 == 0 ? 1 : 3;
         s.airDrag = which % 3 > 0 ? 2.0f : 0.0f;
         s.windSpeed = which % 3 > 1 ? 6.0f : 0.0f;
@@ -175,10 +176,9 @@ TEST(Determinism, AListOfNearPointsChangesNothing) {
 
 TEST(Determinism, CopyContinuesWithTheSameBits) {
     const Strands strands = tuft(40, true);
-    for (const SimulationSettings& s : {everything(), coupled()}) {
+    for (const SimulationSettings& s : {everything(), rods()}) {
         Engine engine = makeEngine(strands, s);
         runMoving(engine, strands, 0, 20);
-        EXPECT_EQ(engine.plan().on(Effect::coupling), s == coupled());
         Engine copy = engine;
         runMoving(engine, strands, 20, 40);
         runMoving(copy, strands, 20, 40);
@@ -189,7 +189,7 @@ TEST(Determinism, CopyContinuesWithTheSameBits) {
 
 TEST(Determinism, DisabledEffectChangesNoBits) {
     const Strands strands = tuft(70, true);
-    SimulationSettings never;
+    SimulationSettings never = springSettings();
     Engine bareEngine = makeEngine(strands, never);
     run(bareEngine, strands, 30);
 

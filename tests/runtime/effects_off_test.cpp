@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "tests/runtime/strand_fixture.h"
+#include "tests/support/spring_settings.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -68,7 +69,6 @@ std::vector<Case> cases() {
              s.springFrequency = 20.0f;
          }},
         {Effect::angular, same, [](S& s) { s.angularStiffness = 0.0f; }, bending},
-        {Effect::torsion, same, [](S& s) { s.restGravity = 0.0f; }},
         {.effect = Effect::collision,
          .on = same,
          .off = same,
@@ -116,7 +116,7 @@ void runCase(Engine& engine, const Strands& strands, const Case& c, const Sphere
 }
 
 SimulationSettings base(Integrator integrator) {
-    SimulationSettings s;
+    SimulationSettings s = springSettings();
     s.integrator = integrator;
     s.angularStiffness = 0.001f;
     s.substeps = 12;

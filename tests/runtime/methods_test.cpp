@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/runtime/strand_fixture.h"
+#include "tests/support/spring_settings.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -128,7 +129,7 @@ TEST(Integrators, AllComeToRestInTheSameShape) {
 
 TEST(Integrators, CanBeChangedInMidRun) {
     const Strands strands = tuft(10);
-    SimulationSettings s;
+    SimulationSettings s = springSettings();
     Engine engine = makeEngine(strands, s);
     for (int round = 0; round < 4; ++round) {
         for (const Integrator integrator : kIntegrators) {
@@ -147,9 +148,9 @@ TEST(Integrators, CanBeChangedInMidRun) {
 struct Sleeping {
     Strands strands = tuft(40);
     SimulationSettings settings;
-    Engine engine = makeEngine(strands, settings);
+    Engine engine;
 
-    Sleeping() {
+    explicit Sleeping(const SimulationSettings& s) : settings(s), engine(makeEngine(strands, settings)) {
         run(engine, strands, 900);
         EXPECT_EQ(engine.measure().asleep, 40u);
         EXPECT_THAT(engine.plan().stages(), testing::IsEmpty());
@@ -162,27 +163,36 @@ struct Sleeping {
     }
 };
 
-TEST(Sleep, LeavesStrandsAtRestAloneUntilSomethingMovesThem) {
+class Sleep : public testing::TestWithParam<StrandModel> {
+  protected:
+    static SimulationSettings settings() {
+        return GetParam() == StrandModel::rods ? SimulationSettings{} : springSettings();
+    }
+};
+INSTANTIATE_TEST_SUITE_P(Models, Sleep, testing::Values(StrandModel::rods, StrandModel::springs),
+                         [](const auto& model) { return model.param == StrandModel::rods ? "rods" : "springs"; });
+
+TEST_P(Sleep, LeavesStrandsAtRestAloneUntilSomethingMovesThem) {
     {
-        Sleeping hair;
+        Sleeping hair(settings());
         const std::uint64_t hash = hair.engine.stateHash();
         run(hair.engine, hair.strands, 100);
         EXPECT_EQ(hair.engine.stateHash(), hash) << "asleep, nothing drifts";
     }
     {
-        Sleeping hair;
+        Sleeping hair(settings());
         const auto roots = hair.strands.roots({0.001f, 0.0f, 0.0f});
         EXPECT_EQ(hair.asleepAfter({1.0f / 60.0f, 0.0, roots, {}}), 0u) << "roots";
     }
     {
-        Sleeping hair;
+        Sleeping hair(settings());
         hair.settings.windSpeed = 1.0f;
         ASSERT_EQ(hair.engine.setSettings(hair.settings), "");
         run(hair.engine, hair.strands, 1);
         EXPECT_EQ(hair.engine.measure().asleep, 0u) << "settings and wind";
     }
     {
-        Sleeping hair;
+        Sleeping hair(settings());
         const auto roots = hair.strands.roots();
         const std::vector<Sphere> far{{{9.0f, 0.0f, 0.0f}, 0.1f}}, near{{{0.05f, 0.0f, 0.0f}, 0.1f}};
         EXPECT_EQ(hair.asleepAfter({1.0f / 60.0f, 0.0, roots, far}), 40u) << "far sphere";
@@ -190,8 +200,8 @@ TEST(Sleep, LeavesStrandsAtRestAloneUntilSomethingMovesThem) {
     }
 }
 
-TEST(Sleep, ComesBackAfterAPush) {
-    Sleeping hair;
+TEST_P(Sleep, ComesBackAfterAPush) {
+    Sleeping hair(settings());
     const std::vector<Float3> push(hair.engine.pointCount(), Float3{0.1f, 0.0f, 0.0f});
     hair.engine.addVelocities(push);
     run(hair.engine, hair.strands, 1);
@@ -200,9 +210,9 @@ TEST(Sleep, ComesBackAfterAPush) {
     EXPECT_EQ(hair.engine.measure().asleep, 40u) << "the last block is not full";
 }
 
-TEST(Sleep, CanBeTurnedOff) {
+TEST(NoSleep, IsASetting) {
     const Strands strands = tuft(5);
-    SimulationSettings s;
+    SimulationSettings s = springSettings();
     s.sleepSpeed = 0.0f;
     Engine engine = makeEngine(strands, s);
     run(engine, strands, 600);
@@ -212,7 +222,7 @@ TEST(Sleep, CanBeTurnedOff) {
 
 TEST(Recovery, ExplodedStrandsAreResetToRestAndReported) {
     const Strands strands = tuft(5);
-    SimulationSettings s;
+    SimulationSettings s = springSettings();
     s.integrator = Integrator::explicitEuler;
     s.lengthMethod = LengthMethod::springs;
     s.lengthIterations = 0;

@@ -5,6 +5,7 @@
 
 #include "hairloom/presets.h"
 #include "tests/runtime/strand_fixture.h"
+#include "tests/support/spring_settings.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -23,7 +24,7 @@ PlanInput sceneOf(const SimulationSettings& settings) {
 }
 
 TEST(Plan, DefaultSceneSaysWhatRunsAndWhy) {
-    const EffectPlan p = plan(sceneOf({}));
+    const EffectPlan p = plan(sceneOf(springSettings()));
     EXPECT_THAT(p.stages(),
                 ElementsAre(StageId::roots, StageId::damping, StageId::drag, StageId::gravity,
                             StageId::verlet, StageId::angular, StageId::length, StageId::extension));
@@ -44,7 +45,7 @@ TEST(Plan, WithoutEffectsOnlyTheIntegratorRuns) {
 }
 
 TEST(Plan, WindReplacesStillAir) {
-    SimulationSettings s;
+    SimulationSettings s = springSettings();
     s.windSpeed = 3.0f;
     const EffectPlan p = plan(sceneOf(s));
     EXPECT_THAT(p.stages(),
@@ -56,38 +57,8 @@ TEST(Plan, WindReplacesStillAir) {
     EXPECT_EQ(plan(sceneOf(s)).why(Effect::wind), "wind: off, air drag is zero, so hair does not feel air");
 }
 
-TEST(Plan, StiffBendingIsCoupledWithLengths) {
-    const auto planOf = [](auto&& change) {
-        PlanInput scene = sceneOf({});
-        change(scene);
-        return plan(scene);
-    };
-    const EffectPlan usual = plan(sceneOf({}));
-    EXPECT_EQ(usual.why(Effect::coupling),
-              "coupling: off, bending is damped, hair is even and has no tight curls");
-    const EffectPlan undamped = planOf([](PlanInput& s) { s.settings.bendDampingTime = 0.0f; });
-    EXPECT_EQ(undamped.why(Effect::coupling), "coupling: on, bending is undamped");
-    EXPECT_THAT(undamped.stages(),
-                ElementsAre(StageId::roots, StageId::damping, StageId::drag, StageId::gravity,
-                            StageId::verlet, StageId::coupled, StageId::extension));
-    EXPECT_EQ(planOf([](PlanInput& s) { s.massRatio = 1000.0f; }).why(Effect::coupling),
-              "coupling: on, masses or segments differ 1000 times along a strand");
-    const auto curled = [](PlanInput& s) {
-        s.substep = 0.002f;
-        // ω²h² |c|² = 16, that is, two thirds of a turn.
-        s.maxCurvature = static_cast<float>(
-            16.0 / (bendingStiffnessOf(static_cast<double>(s.settings.angularStiffness)) * 0.002 * 0.002));
-    };
-    EXPECT_EQ(planOf(curled).why(Effect::coupling),
-              "coupling: on, curls spring back 0.64 times in a substep");
-    EXPECT_FALSE(planOf([&](PlanInput& s) {
-                     curled(s);
-                     s.settings.integrator = Integrator::rk4;
-                 }).on(Effect::coupling));
-}
-
 TEST(Plan, SpheresCountOnlyWithinReach) {
-    PlanInput scene = sceneOf({});
+    PlanInput scene = sceneOf(springSettings());
     const std::vector<Sphere> spheres{{{0.0f, -0.5f, 0.0f}, 0.25f}, {{5.0f, 0.0f, 0.0f}, 0.25f}};
     scene.spheres = std::span(spheres).first(1);
     EXPECT_EQ(plan(scene).why(Effect::collision), "collision: on, 1 sphere within reach");
@@ -99,7 +70,7 @@ TEST(Plan, SpheresCountOnlyWithinReach) {
 }
 
 TEST(Plan, ARigidStrandOnlyMovesItsRoots) {
-    PlanInput scene = sceneOf({});
+    PlanInput scene = sceneOf(springSettings());
     scene.longestPointCount = 2;
     EXPECT_THAT(plan(scene).stages(), ElementsAre(StageId::roots));
     EXPECT_EQ(plan(scene).why(Effect::gravity), "gravity: off, no point of any strand is free");

@@ -5,6 +5,7 @@
 #include "tests/runtime/allocations.h"
 #include "tests/runtime/strand_fixture.h"
 #include "tests/runtime/threads.h"
+#include "tests/support/spring_settings.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -146,7 +147,7 @@ TEST(Projective, AnAcceleratingRootIsGravityAtAnAngle) {
 
 TEST(Projective, LengthIsExactThroughViolentMotion) {
     const Strands strands = tuft(30, true);
-    SimulationSettings s;
+    SimulationSettings s = springSettings();
     s.windSpeed = 30.0f;
     s.angularStiffness = 0.05f;
     ProjectiveEquations sticks = makeSticks(strands, s);
@@ -161,7 +162,7 @@ TEST(Projective, LengthIsExactThroughViolentMotion) {
 
 TEST(Projective, AuthoredShapeComesBackAndTurnsWithTheRoot) {
     const Strands strands = tuft(5);
-    SimulationSettings s;
+    SimulationSettings s = springSettings();
     s.gravity = {};
     s.airDrag = 0.0f;
     s.dampingTime = 0.1f;
@@ -197,7 +198,7 @@ TEST(Projective, WithoutTorqueAStickKeepsItsDirectionWhileItsRootTurns) {
 
 TEST(Projective, RigidHairMovesAsItsRootDoes) {
     const Strands strands = tuft(3);
-    SimulationSettings s;
+    SimulationSettings s = springSettings();
     s.angularStiffness = 1.0f;
     s.angularCurve = {};
     ProjectiveEquations sticks = makeSticks(strands, s);
@@ -242,7 +243,7 @@ TEST(Projective, NoStepSizeLiftsAStickAboveWhereItStarted) {
 
 TEST(Projective, TipsLeaveSpheresAndSticksKeepTheirLength) {
     const Strands strands = tuft(40);
-    SimulationSettings s;
+    SimulationSettings s = springSettings();
     s.angularStiffness = 0.02f;
     s.collisionRadiusRoot = s.collisionRadiusTip = 0.002f;
     ProjectiveEquations sticks = makeSticks(strands, s);
@@ -305,7 +306,7 @@ TEST(Projective, AtThePoleAStickStaysSoundAndComesBack) {
 
 TEST(Projective, SameBitsForAnyNumberOfThreads) {
     const Strands strands = tuft(80, true);
-    SimulationSettings s;
+    SimulationSettings s = springSettings();
     s.windSpeed = 8.0f;
     std::vector<std::vector<Float3>> results;
     for (const Host& host : {Host{}, hostWithThreads(1), hostWithThreads(5), hostWithThreads(3, true)}) {
@@ -321,7 +322,7 @@ TEST(Projective, SameBitsForAnyNumberOfThreads) {
 
 TEST(Projective, AStepAllocatesNothing) {
     const Strands strands = tuft(50);
-    SimulationSettings s;
+    SimulationSettings s = springSettings();
     s.windSpeed = 8.0f;
     ProjectiveEquations sticks = makeSticks(strands, s);
     const std::vector<Sphere> spheres{{{0.08f, 0.02f, 0.0f}, 0.07f}};
@@ -335,7 +336,7 @@ TEST(Projective, AStepAllocatesNothing) {
 TEST(Projective, NonFiniteInputIsRejected) {
     const float nan = std::numeric_limits<float>::quiet_NaN(), huge = 1e38f;
     const Strands strands = tuft(4);
-    SimulationSettings s;
+    SimulationSettings s = springSettings();
     s.windSpeed = 8.0f;
     s.angularStiffness = 1.0f;
     s.angularCurve = Ramp::straight(1.0f, 0.0f);
@@ -362,7 +363,7 @@ TEST(Projective, NonFiniteInputIsRejected) {
 
 TEST(Projective, RefusesWhatTheEngineRefuses) {
     const Strands strands = tuft(2);
-    SimulationSettings s;
+    SimulationSettings s = springSettings();
     s.airDrag = -1.0f;
     EXPECT_EQ(ProjectiveEquations::make(strands.view(), s).error, "airDrag is -1 1/s; expected 0 to 1000");
     Strands torn = tuft(2);

@@ -340,6 +340,64 @@ TEST(Rods, GoOnFromWhereSpringsWere) {
     EXPECT_EQ(engine.lastStep().restoredStrands, 0u);
 }
 
+/// As long as frames are no coarser than the root's own motion.
+TEST(Rods, FrameRatesAgree) {
+    Strands strands = Helix{8e-3, 20e-3, 4, 12}.strand();
+    strands.add({0.05f, 0.0f, 0.0f}, {0.8f, -0.6f, 0.0f}, 0.015f, 16);
+    const auto endOf = [&](int framesPerSecond) {
+        Engine engine = makeEngine(strands, rods());
+        for (int f = 1; f <= 3 * framesPerSecond / 2; ++f) {
+            const double t = static_cast<double>(f) / framesPerSecond;
+            const auto swing = static_cast<float>(std::sin(2.0 * std::numbers::pi * t));
+            const auto roots =
+                strands.roots({0.03f * swing, 0.0f, 0.0f}, turnAbout({0.0f, 1.0f, 0.0f}, 0.3f * swing));
+            engine.step({1.0f / static_cast<float>(framesPerSecond), t, roots});
+        }
+        return positionsOf(engine);
+    };
+    const std::vector<Float3> fine = endOf(240);
+    for (const int framesPerSecond : {24, 30, 60, 144})
+        EXPECT_LT(rmsBetween(endOf(framesPerSecond), fine), 1e-3) << framesPerSecond;
+}
+
+TEST(Rods, MoveAlikeWhereverTheirOriginIs) {
+    const Strands strands = tuft(40);
+    SimulationSettings s = rods(0.3f);
+    s.windSpeed = 4.0f;
+    s.windFrequency = 0.0f;
+    const std::vector<Sphere> spheres{{{0.1f, 0.02f, 0.0f}, 0.05f}};
+    // Walks ten kilometres away, with places measured from an origin that follows every few frames.
+    const auto walked = [&](bool follows, double start) {
+        Engine engine = makeEngine(strands, s);
+        for (int f = 1; f <= 120; ++f) {
+            const double walk = 0.02 * f;
+            const double origin = start + (follows ? std::floor(walk / 0.25) * 0.25 : 0.0);
+            const auto x = static_cast<float>(start + walk - origin);
+            std::vector<Sphere> near = spheres;
+            near.front().center_ws.x += x;
+            FrameInput input{1.0f / 60.0f, f / 60.0, {}, near};
+            const auto roots = strands.roots({x, 0.0f, 0.0f});
+            input.roots_ws = roots;
+            input.origin_ws = {origin, 0.0, 0.0};
+            engine.step(input);
+        }
+        std::vector<Float3> places = positionsOf(engine);
+        const auto last = static_cast<float>(follows ? 0.02 * 120 - std::floor(0.02 * 120 / 0.25) * 0.25 : 2.4);
+        for (Float3& place : places) place.x -= last;
+        return places;
+    };
+    const std::vector<Float3> still = walked(false, 0.0);
+    EXPECT_LT(rmsBetween(walked(true, 0.0), still), 1e-4);
+    // A mean flow without waves is the same everywhere; eddies that stand still are not.
+    SimulationSettings calm = s;
+    calm.windGustiness = 0.0f;
+    std::swap(s, calm);
+    const std::vector<Float3> here = walked(true, 0.0);
+    EXPECT_LT(rmsBetween(walked(true, 1e4), here), 1e-6);
+    std::swap(s, calm);
+    EXPECT_GT(rmsBetween(walked(true, 1e4), still), 1e-3) << "the wind is that of the place";
+}
+
 TEST(Rods, OneCurlAmongStraightStrandsChangesNoneOfThem) {
     Strands straight;
     for (int i = 0; i < 64; ++i)

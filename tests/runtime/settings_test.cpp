@@ -113,5 +113,18 @@ TEST(Ramps, ThatAreNotSoundAreRefused) {
     }
 }
 
+TEST(Settings, SubstepsKeepTheStepWhateverTheFrame) {
+    SimulationSettings s;
+    s.substeps = 2;
+    EXPECT_EQ(substepsIn(s, 1.0f / 60.0f), 2u);
+    EXPECT_EQ(substepsIn(s, 1.0f / 59.9f), 2u) << "clocks jitter";
+    EXPECT_EQ(substepsIn(s, 1.0f / 30.0f), 4u);
+    EXPECT_EQ(substepsIn(s, 1.0f / 24.0f), 5u);
+    EXPECT_EQ(substepsIn(s, 1.0f / 240.0f), 1u);
+    EXPECT_EQ(substepsIn(s, 1.0f), 120u);
+    EXPECT_EQ(substepsIn(s, 1e9f), kMaxSubsteps);
+    EXPECT_EQ(substepsIn(s, 1e-9f), 1u);
+}
+
 }  // namespace
 }  // namespace hairloom::runtime

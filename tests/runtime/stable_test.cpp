@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "tests/runtime/strand_fixture.h"
+#include "tests/support/spring_settings.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -91,7 +92,7 @@ TEST(Stable, DefaultsAreStableWithWhateverHair) {
 }
 
 TEST(Stable, OffersSubstepsWhereTheySuffice) {
-    SimulationSettings s;
+    SimulationSettings s = springSettings();
     s.integrator = Integrator::velocityVerlet;
     const Strands strands = straight(16, 0.006f);
     const StableAdvice advice = adviseStability(strands.view(), s, 1.0f / 60.0f);
@@ -116,7 +117,7 @@ TEST(Stable, OffersSubstepsWhereTheySuffice) {
 TEST(Stable, OffersImplicitMethodsWhereSubstepsDoNotSuffice) {
     for (const Integrator integrator :
          {Integrator::velocityVerlet, Integrator::leapfrog, Integrator::rk4, Integrator::explicitEuler}) {
-        SimulationSettings s;
+        SimulationSettings s = springSettings();
         s.integrator = integrator;
         s.dampingTime = 0.0f;
         const Strands strands = straight(32, 0.0003f);
@@ -154,7 +155,7 @@ double swingAfter(Integrator integrator, double wave, double kept) {
 TEST(Stable, LimitsWithDampingAreThoseOfTheRecursion) {
     const double h = 1.0 / 480.0;
     for (const Integrator integrator : {Integrator::verlet, Integrator::explicitEuler}) {
-        SimulationSettings s;
+        SimulationSettings s = springSettings();
         s.integrator = integrator;
         s.dampingTime = 0.1f;
         const double limit = stableLimit(s, h), kept = std::exp(-h / 0.1);

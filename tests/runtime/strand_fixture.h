@@ -11,6 +11,7 @@
 
 #include "core/accuracy/strand_set.h"
 #include "hairloom/engine.h"
+#include "tests/support/spring_settings.h"
 
 namespace hairloom::runtime {
 
@@ -27,7 +28,7 @@ using Strands = StrandSet;
 
 /// Nothing acts but inertia and the length constraint.
 inline SimulationSettings bare() {
-    SimulationSettings s;
+    SimulationSettings s = springSettings();
     s.gravity = {};
     s.airDrag = 0.0f;
     s.angularStiffness = 0.0f;

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "tests/runtime/strand_fixture.h"
+#include "tests/support/spring_settings.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -13,7 +14,7 @@ struct Double3 {
 };
 
 SimulationSettings blowing(WindKind kind) {
-    SimulationSettings s;
+    SimulationSettings s = springSettings();
     s.windKind = kind;
     s.windDirection = {0.8f, 0.0f, 0.4f};
     s.windSpeed = 5.0f;
@@ -170,7 +171,7 @@ TEST(Wind, TheInputReplacesTheFlowAndTheVehicleOpposesItsActor) {
 /// Free points 1 cm beside their roots, in `direction` from them, so light that they take on the air's speed.
 struct Vane {
     Strands strands;
-    SimulationSettings settings;
+    SimulationSettings settings = springSettings();
 
     explicit Vane(SimulationSettings s, Float3 direction = {0.0f, 1.0f, 0.0f}) : settings(s) {
         const SimulationSettings still = bare();
@@ -269,7 +270,7 @@ TEST(Wind, InvalidWindIsIgnoredAndCounted) {
 
 /// Whole turns are left out before they can overflow, and time keeps its fraction for centuries.
 TEST(Wind, PhasesAreSoundAtAnyTime) {
-    SimulationSettings s;
+    SimulationSettings s = springSettings();
     s.windSpeed = 150.0f;
     s.windGustSize = 0.01f;
     s.windFrequency = 20.0f;

@@ -80,35 +80,5 @@ TEST(Elastica, ExactDirectionBendsAlike) {
                 tipError(16, stiffness, runtime::AngularMethod::smallAngle), 1e-7);
 }
 
-TEST(Elastica, RestGravityKeepsTheAuthoredShape) {
-    const double L = 0.2;
-    for (const auto bendingForce : {reference::BendingForce::framesHeld, reference::BendingForce::gradient})
-        for (const auto method : {runtime::AngularMethod::smallAngle, runtime::AngularMethod::exact}) {
-            runtime::SimulationSettings s = bareSettings();
-            s.angularStiffness = 0.9f;
-            s.restGravity = 1.0f;
-            s.angularMethod = method;
-            for (const std::uint32_t clamped : {1u, 2u}) {
-                s.clampedPoints = clamped;
-                reference::Strands strands = straightStrand(16, L, Vec3d(1.0, 0.4, 0.2).normalized());
-                for (std::size_t p = 0; p <= 16; ++p) {
-                    const double turn = 0.5 * static_cast<double>(p);
-                    strands.restPositions_ss[p] += 0.02 * Vec3d(0.0, std::sin(turn), 1.0 - std::cos(turn));
-                }
-                strands.rootRotations_ss = {
-                    reference::Quaterniond(Eigen::AngleAxisd(0.7, Vec3d(0.3, 0.2, 1.0).normalized()))};
-                reference::Solver solver = solverOf(strands, s, bendingForce);
-                const std::vector<Vec3d> rest = solver.positions_ws();
-                reference::Frame frame = stillFrame(0.1);
-                frame.roots_ws = {{rest.front(), strands.rootRotations_ss.front()}};
-                const reference::StepReport report = solver.step(frame, {64, 4});
-                EXPECT_EQ(report.failed, 0u);
-                const std::vector<Vec3d> now = solver.positions_ws();
-                for (std::size_t p = 0; p < rest.size(); ++p)
-                    EXPECT_NEAR((now[p] - rest[p]).norm(), 0.0, 1e-11) << p << ", clamped " << clamped;
-            }
-        }
-}
-
 }  // namespace
 }  // namespace hairloom

@@ -10,6 +10,7 @@
 
 #include "core/simulation/reference/converge.h"
 #include "tests/simulation/engine_run.h"
+#include "tests/support/spring_settings.h"
 
 namespace hairloom {
 namespace {
@@ -46,13 +47,6 @@ reference::Strands wavy() {
     return helixStrand(12, 0.25, 0.01, 1.0);
 }
 
-/// The defaults, but that the rest shape carries no weight: then straight hair has no curves to hold.
-runtime::SimulationSettings uncarried() {
-    runtime::SimulationSettings s;
-    s.restGravity = 0.0f;
-    return s;
-}
-
 TEST(EngineConverges, ChainsInAllIntegrators) {
     // With lengths held as constraints no method is of a higher order than 2. Those that give the air a
     // velocity from before the kick are of order 1.
@@ -80,7 +74,7 @@ TEST(EngineConverges, ChainsInAllIntegrators) {
 }
 
 TEST(EngineConverges, StraightRodsWithoutBendDamping) {
-    runtime::SimulationSettings s = uncarried();
+    runtime::SimulationSettings s = runtime::springSettings();
     s.bendDampingTime = 0.0f;
     const Swing scene = swing(straight(), 60);
     const auto verlet = errorsOf(scene, s, Integrator::verlet, 32);
@@ -95,7 +89,7 @@ TEST(EngineConverges, TheDefaultMethodWithBendDamping) {
     // Damping of bending and the constraint of length are solved one after the other, which lets the order
     // come down to 1 only where h is well below bendDampingTime.
     for (const auto& strands : {straight(), wavy()}) {
-        const auto errors = errorsOf(swing(strands, 60), uncarried(), Integrator::verlet, 64);
+        const auto errors = errorsOf(swing(strands, 60), runtime::springSettings(), Integrator::verlet, 64);
         for (std::size_t i = 1; i < errors.size(); ++i) EXPECT_LT(errors[i], errors[i - 1]) << i;
         EXPECT_LT(errors[2], 1.6)
             << "8 substeps, the default; 3.5 without the tension in the step of bending";
@@ -104,7 +98,7 @@ TEST(EngineConverges, TheDefaultMethodWithBendDamping) {
 }
 
 TEST(EngineConverges, HairWhoseStiffnessFollowsACurve) {
-    runtime::SimulationSettings s = uncarried();
+    runtime::SimulationSettings s = runtime::springSettings();
     s.angularStiffness = 0.6f;
     const runtime::Ramp::Key keys[] = {{0, 0.3f}, {0.3f, 1}, {0.5f, 0.1f}, {1, 0.6f}};
     s.angularCurve = runtime::Ramp::of(keys);
@@ -118,20 +112,9 @@ TEST(EngineConverges, HairWhoseStiffnessFollowsACurve) {
     EXPECT_GT(rmsMm(groundTruthOf(scene, s), groundTruthOf(scene, even)), 5 * errors.back());
 }
 
-TEST(EngineConverges, CurvesThatCarryWeightKeepADifference) {
-    // The one part of the model that the reference has not: the tank that bounds how far curves turn.
-    runtime::SimulationSettings s = uncarried();
-    s.restGravity = 1.0f;
-    const auto errors = errorsOf(swing(straight(), 60), s, Integrator::verlet, 64);
-    for (std::size_t i = 1; i < errors.size(); ++i) EXPECT_LT(errors[i], errors[i - 1]) << i;
-    EXPECT_GT(errors[5], 1.0) << "it converges elsewhere";
-    const auto hanging = straightStrand(12, 0.25, -Vec3d::UnitY());
-    EXPECT_LT(errorsOf(swing(hanging, 60), s, Integrator::verlet, 32).back(), 0.2) << "no weight to carry";
-}
-
 TEST(EngineConverges, OnlyPositionVerletDampsBending) {
     const Swing scene = swing(straight(), 60);
-    runtime::SimulationSettings s = uncarried();
+    runtime::SimulationSettings s = runtime::springSettings();
     const double damped = errorsOf(scene, s, Integrator::velocityVerlet, 16).back();
     s.bendDampingTime = 0.0f;
     const double undamped = errorsOf(scene, s, Integrator::velocityVerlet, 16).back();

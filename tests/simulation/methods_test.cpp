@@ -9,6 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/simulation/simulation.h"
 #include "core/simulation/strand_method.h"
+#include "tests/support/spring_settings.h"
 
 namespace hairloom {
 namespace {
@@ -103,7 +104,7 @@ TEST(Methods, AlternativesDoNotDependOnThreads) {
 }
 
 TEST(Methods, TheLatticeTakesAirAndGravityFromTheSettings) {
-    runtime::SimulationSettings settings;
+    runtime::SimulationSettings settings = runtime::springSettings();
     settings.gravity = {1, 2, 3};
     settings.airDrag = 7;
     settings.windDirection = {0, 0, 0.5f};

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/simulation/reference/solver.h"
+#include "tests/support/spring_settings.h"
 
 namespace hairloom::test {
 
@@ -29,7 +30,7 @@ inline reference::Strands straightStrand(std::size_t segments, double length,
 
 /// Nothing acts: no damping, no bending, no air; gravity as it is, inextensible, hinged at the root.
 inline runtime::SimulationSettings bareSettings() {
-    runtime::SimulationSettings s;
+    runtime::SimulationSettings s = runtime::springSettings();
     s.dampingTime = 0.0f;
     s.bendDampingTime = 0.0f;
     s.clampedPoints = 1;

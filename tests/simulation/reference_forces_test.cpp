@@ -36,7 +36,7 @@ TEST(ReferenceShape, MassesAndStiffnessAreThoseOfAUniformRod) {
     s.clampedPoints = 2;
     s.angularStiffness = 0.5f;
     const std::vector<Vec3d> edges{{0.1, 0, 0}, {0.1, 0, 0}, {0.2, 0, 0}, {0.4, 0, 0}};
-    const reference::StrandShape shape = reference::makeShape(edges, {}, s, Vec3d::Zero());
+    const reference::StrandShape shape = reference::makeShape(edges, {}, s);
     // h = 0.05, 0.1, 0.15, 0.3, 0.2, of mean 0.16
     const double mean = 0.16;
     EXPECT_NEAR(shape.masses[0], 0.05 / mean, 1e-12);
@@ -49,12 +49,12 @@ TEST(ReferenceShape, MassesAndStiffnessAreThoseOfAUniformRod) {
 
     s.angularCurve = runtime::Ramp::straight(1.0f, 0.5f);  // s = 0.5 · (1 − ½ · 3/4) at joint 3
     const double authored = 0.5 * (1.0 - 0.5 * 0.75);
-    EXPECT_NEAR(reference::makeShape(edges, {}, s, Vec3d::Zero()).stiffness[3],
+    EXPECT_NEAR(reference::makeShape(edges, {}, s).stiffness[3],
                 B * authored / (1.0 - authored) / mean / 0.3, 1e-12);
 
     const runtime::Ramp::Key keys[] = {{0, 0.25f}, {0.375f, 1}, {0.875f, 0.5f}, {1, 0}};
     s.angularCurve = runtime::Ramp::of(keys);
-    const auto curved = reference::makeShape(edges, {}, s, Vec3d::Zero());
+    const auto curved = reference::makeShape(edges, {}, s);
     const double shares[] = {0.25 + 0.75 * (0.25 / 0.375), 1.0 - 0.5 * (0.125 / 0.5),
                              1.0 - 0.5 * (0.375 / 0.5)};
     const double spans[] = {0.05, 0.15, 0.3};
@@ -75,7 +75,7 @@ TEST(ReferenceForces, AreReciprocal) {
         s.lengthMethod = runtime::LengthMethod::springs;
         s.gravity = {0, 0, 0};
         const reference::StrandShape shape =
-            reference::makeShape(edgesOf(randomChain(random, 9, 0.02)), {}, s, Vec3d::Zero());
+            reference::makeShape(edgesOf(randomChain(random, 9, 0.02)), {}, s);
         const std::vector<Vec3d> x = randomChain(random, 9, 0.02), v = randomChain(random, 9, 0.5);
         std::vector<Vec3d> force(9, Vec3d::Zero());
         const reference::Surroundings around{0.0, reference::Quaterniond::Identity(), Vec3d::Zero(), {}};
@@ -103,7 +103,7 @@ TEST(ReferenceForces, AreTheGradientOfTheirEnergyWhereFramesDoNotCount) {
         s.lengthMethod = runtime::LengthMethod::springs;
         const reference::Physics physics(s);
         const reference::StrandShape shape =
-            reference::makeShape(edgesOf(straightStrand(6, 0.12).restPositions_ss), {}, s, Vec3d::Zero());
+            reference::makeShape(edgesOf(straightStrand(6, 0.12).restPositions_ss), {}, s);
         std::vector<Vec3d> x = randomChain(random, 7, 0.02);
         x[1] = Vec3d(0.02, 0, 0);
         const reference::Surroundings around{0.0, reference::Quaterniond::Identity(), Vec3d::Zero(), {}};
@@ -137,8 +137,7 @@ TEST(ReferenceForces, WholeGradientOfACurledStrandIsThatOfItsEnergy) {
             s.angularMethod = method;
             const reference::Physics physics(s, reference::BendingForce::gradient);
             const std::vector<Vec3d> rest = randomChain(random, 8, 0.02);
-            const reference::StrandShape shape = reference::makeShape(edgesOf(rest), {}, s, physics.gravity,
-                                                                      reference::BendingForce::gradient);
+            const reference::StrandShape shape = reference::makeShape(edgesOf(rest), {}, s);
             std::vector<Vec3d> x = randomChain(random, 8, 0.02);
             if (clamped == 2) x[1] = rest[1];
             const reference::Surroundings around{0.0, reference::Quaterniond::Identity(), Vec3d::Zero(), {}};
@@ -170,7 +169,7 @@ TEST(ReferenceForces, RestShapeInAnyPlaceBearsNoForce) {
     for (const auto method : {runtime::AngularMethod::smallAngle, runtime::AngularMethod::exact,
                               runtime::AngularMethod::flexion}) {
         s.angularMethod = method;
-        const reference::StrandShape shape = reference::makeShape(edgesOf(rest), {}, s, Vec3d::Zero());
+        const reference::StrandShape shape = reference::makeShape(edgesOf(rest), {}, s);
         const reference::Quaterniond turn(Eigen::AngleAxisd(2.0, Vec3d(1.0, 2.0, -0.5).normalized()));
         std::vector<Vec3d> x;
         for (const Vec3d& p : rest) x.push_back(Vec3d(0.3, 1.7, 0.2) + turn * p);
@@ -211,7 +210,7 @@ TEST(ReferenceLengths, ProjectionsReachTheConstraintAlongItsGradients) {
     std::mt19937 random(9);
     const runtime::SimulationSettings s = bareSettings();
     const reference::StrandShape shape =
-        reference::makeShape(edgesOf(straightStrand(10, 0.2).restPositions_ss), {}, s, Vec3d::Zero());
+        reference::makeShape(edgesOf(straightStrand(10, 0.2).restPositions_ss), {}, s);
     std::vector<Vec3d> x = randomChain(random, 11, 0.02), v = randomChain(random, 11, 1.0);
     EXPECT_TRUE(reference::projectLengths(shape, x));
     EXPECT_LT(reference::largestStretch(shape, x), 1e-12);

@@ -10,6 +10,7 @@
 #include "core/simulation/reference/forces.h"
 #include "hairloom/engine.h"
 #include "tests/simulation/reference_fixture.h"
+#include "tests/support/spring_settings.h"
 
 namespace hairloom {
 namespace {
@@ -98,7 +99,6 @@ double gainOfCurl(reference::BendingForce bendingForce) {
     s.clampedPoints = 2;
     s.angularStiffness = 0.3f;
     s.angularMethod = runtime::AngularMethod::exact;
-    s.restGravity = 1.0f;
     reference::Solver solver = solverOf(helixStrand(16, 0.2, 0.005, 4.0), s, bendingForce);
     std::vector<Vec3d> push(17, Vec3d::Zero());
     for (std::size_t p = 0; p < push.size(); ++p) push[p].z() = 0.5 * static_cast<double>(p) / 16.0;
@@ -348,7 +348,7 @@ TEST(ReferenceConverged, SaysHowFarItGot) {
 }
 
 TEST(ReferenceMake, RefusesUnsupportedSettings) {
-    runtime::SimulationSettings s;
+    runtime::SimulationSettings s = runtime::springSettings();
     EXPECT_TRUE(reference::Solver::make(straightStrand(3, 0.1), s));
     EXPECT_FALSE(reference::Solver::make(straightStrand(3, 0.0), s));
     reference::Strands masses = straightStrand(3, 0.1);

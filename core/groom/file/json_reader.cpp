@@ -180,19 +180,23 @@ std::uint64_t JsonReader::count(std::string_view key, std::uint64_t min, std::ui
 }
 
 Vec3f JsonReader::vector(std::string_view key, double min, double max, std::string_view unit) {
+    return exactVector(key, min, max, unit).cast<float>();
+}
+
+Vec3d JsonReader::exactVector(std::string_view key, double min, double max, std::string_view unit) {
     const json* value = member(key);
-    if (!value) return Vec3f::Zero();
-    Vec3f result = Vec3f::Zero();
+    if (!value) return Vec3d::Zero();
+    Vec3d result = Vec3d::Zero();
     bool good = value->is_array() && value->size() == 3;
     for (std::size_t i = 0; good && i < 3; ++i) {
         const json& part = (*value)[i];
         good = part.is_number() && withinRange(part.get<double>(), min, max);
-        if (good) result[static_cast<Eigen::Index>(i)] = part.get<float>();
+        if (good) result[static_cast<Eigen::Index>(i)] = part.get<double>();
     }
     if (good) return result;
     complain(key, "is no such vector",
              "expected an array of three numbers from " + rangeText(min, max, unit));
-    return Vec3f::Zero();
+    return Vec3d::Zero();
 }
 
 std::vector<std::string> JsonReader::strings(std::string_view key) {

@@ -39,6 +39,8 @@ class JsonReader {
     double number(std::string_view key, double min, double max, std::string_view unit = {});
     std::uint64_t count(std::string_view key, std::uint64_t min, std::uint64_t max);
     Vec3f vector(std::string_view key, double min, double max, std::string_view unit = {});
+    /// The same where single precision has too few digits.
+    Vec3d exactVector(std::string_view key, double min, double max, std::string_view unit = {});
     std::vector<std::string> strings(std::string_view key);
     /// An array of at most `most` numbers.
     std::vector<double> numbers(std::string_view key, double min, double max, std::size_t maximum,

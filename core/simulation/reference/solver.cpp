@@ -102,15 +102,15 @@ Result<Solver> Solver::make(const Strands& strands, const runtime::SimulationSet
         }
         std::span<const double> masses(strands.pointMasses);
         if (!masses.empty()) masses = masses.subspan(first, end - first);
-        const Vec3d gravityAtRest = root.rotation.conjugate() * solver.physics_.gravity;
         Strand strand;
         strand.root = root;
         if (solver.physics_.rods) {
             strand.shape = makeBody(std::move(edges), masses, settings);
             strand.rod.emplace();
-            strand.rod->shape = makeRodShape(strand.shape, settings, gravityAtRest);
+            strand.rod->shape =
+                makeRodShape(strand.shape, settings, root.rotation.conjugate() * solver.physics_.gravity);
         } else {
-            strand.shape = makeShape(std::move(edges), masses, settings, gravityAtRest, bendingForce);
+            strand.shape = makeShape(std::move(edges), masses, settings);
         }
         solver.strands_.push_back(std::move(strand));
         solver.restRoots_.push_back(root);

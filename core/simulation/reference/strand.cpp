@@ -61,41 +61,12 @@ void setStiffness(StrandShape& shape, const std::vector<double>& h,
     }
 }
 
-/// k of addFrameForces() at joint j, in the rest shape.
-Vec3d restArc(const StrandShape& shape, std::size_t j) {
-    if (j == 0 || j >= shape.segments()) return Vec3d::Zero();
-    const Vec3d a = shape.edges[j - 1].normalized(), b = shape.edges[j].normalized();
-    return a.cross(b) / (1.0 + a.dot(b));
-}
-
-/// c_j, less the bending H_j/κ_j in which the authored shape carries `gravity`. Where the frames turn, what
-/// addFrameForces() adds takes part in the balance.
-void setBend(StrandShape& shape, const Vec3d& gravity, BendingForce bendingForce) {
-    const std::size_t n = shape.segments();
-    const bool framesTurn = bendingForce == BendingForce::gradient;
-    Vec3d moment = Vec3d::Zero();
-    double massBeyond = 0.0, twistBeyond = 0.0, turning = 0.0;
-    std::vector<Vec3d> bending(n, Vec3d::Zero());
-    for (std::size_t j = n; j-- > 0;) {
-        const Vec3d direction = shape.edges[j] / shape.lengths[j];
-        massBeyond += shape.masses[j + 1];
-        Vec3d carried = moment + gravity * (massBeyond * shape.lengths[j]);
-        if (framesTurn && j + 1 < n) {
-            const Vec3d& bend = shape.bend[j + 1];
-            carried += bend.cross(moment).cross(direction) + twistBeyond * restArc(shape, j + 1);
-            twistBeyond -= moment.dot(direction.cross(bend));
-            carried += twistBeyond * restArc(shape, j);
-        }
-        moment = across(direction, carried);
-        shape.bend[j] = j == 0 ? direction : Vec3d(direction - shape.edges[j - 1] / shape.lengths[j - 1]);
-        if (!(shape.stiffness[j] > 0.0)) continue;
-        bending[j] = moment / shape.stiffness[j];
-        shape.bend[j] -= bending[j];
-        turning += bending[j].norm();
+/// c_j.
+void setBend(StrandShape& shape) {
+    for (std::size_t j = 0; j < shape.segments(); ++j) {
+        shape.bend[j] = shape.edges[j] / shape.lengths[j];
+        if (j > 0) shape.bend[j] -= shape.edges[j - 1] / shape.lengths[j - 1];
     }
-    // Hair that its weight would turn by more than half a turn carries a share of it only.
-    const double carriedShare = std::min(1.0, std::numbers::pi / std::max(turning, 1e-300));
-    for (std::size_t j = 0; j < n; ++j) shape.bend[j] += (1.0 - carriedShare) * bending[j];
 }
 
 }  // namespace
@@ -155,13 +126,12 @@ StrandShape makeBody(std::vector<Vec3d> edges, std::span<const double> authoredM
 }
 
 StrandShape makeShape(std::vector<Vec3d> edges, std::span<const double> authoredMasses,
-                      const runtime::SimulationSettings& settings, const Vec3d& gravityAtRest,
-                      BendingForce bendingForce) {
+                      const runtime::SimulationSettings& settings) {
     StrandShape shape = makeBody(std::move(edges), authoredMasses, settings);
     const std::size_t n = shape.segments();
     const std::vector<double> h = shares(shape.lengths);
     setStiffness(shape, h, settings);
-    setBend(shape, gravityAtRest * static_cast<double>(settings.restGravity), bendingForce);
+    setBend(shape);
 
     const double squared = squaredFrequency(static_cast<double>(settings.springFrequency));
     for (std::size_t j = 0; j < n; ++j) {

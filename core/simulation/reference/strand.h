@@ -73,10 +73,8 @@ struct StrandShape {
 StrandShape makeBody(std::vector<Vec3d> edges, std::span<const double> authoredMasses,
                      const runtime::SimulationSettings& settings);
 /// With the springs of StrandModel::springs.
-/// `gravityAtRest` is gravity turned into the root's frame of the rest pose.
 StrandShape makeShape(std::vector<Vec3d> edges, std::span<const double> authoredMasses,
-                      const runtime::SimulationSettings& settings, const Vec3d& gravityAtRest,
-                      BendingForce bendingForce = BendingForce::framesHeld);
+                      const runtime::SimulationSettings& settings);
 
 /// The part of v across the unit vector t.
 inline Vec3d across(const Vec3d& t, const Vec3d& v) {

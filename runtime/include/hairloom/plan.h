@@ -22,13 +22,12 @@ enum class Effect : std::uint32_t {
     length,    ///< length constraint or coil springs, with maximal extension
     angular,   ///< angular or flexion springs
     torsion,   ///< frames carried along the strands, for angular springs of hair that is not straight
-    coupling,  ///< angular springs and lengths solved as one system along each strand
     collision,
     collisionRadius,      ///< distance that points keep from spheres
     continuousCollision,  ///< collisions between the positions of two substeps
     sleep,                ///< strands at rest are left out
 };
-inline constexpr std::uint32_t kEffectCount = 12;
+inline constexpr std::uint32_t kEffectCount = 11;
 const char* effectName(Effect effect);
 
 /// A pass over one block of strands. A substep runs the plan's stages in their order; an integrator that
@@ -69,8 +68,6 @@ enum class StageId : std::uint32_t {
     // After it.
     angular,              ///< angular springs, implicitly, with frames (Eq. 4)
     angularStraight,      ///< the same for straight hair: no frames
-    coupled,              ///< angular springs and length constraint, one system along each strand
-    coupledStraight,      ///< the same for straight hair: no frames
     length,               ///< length constraint, Newton steps along the gradients at the start of the substep
     lengthNow,            ///< the same along the gradients of now
     springLimit,          ///< maximal extension by velocities (Bridson et al. 2003)
@@ -94,9 +91,6 @@ struct PlanInput {
     std::uint32_t longestPointCount = 0;   ///< of any strand
     float longestStrand = 0.0f;            ///< metres, at rest
     bool straight = false;                 ///< every strand is straight
-    float maxCurvature = 0.0f;             ///< RestShape::maxCurvature
-    float massRatio = 1.0f;                ///< RestShape::massRatio
-    float substep = 0.0f;                  ///< seconds
     Float3 rootsMin_ws, rootsMax_ws;       ///< box of all roots over the frame
     std::span<const Sphere> spheres;       ///< at the end of the frame
     std::span<const Float3> sphereMotion;  ///< each sphere's way during the frame; empty when they rest
@@ -125,12 +119,7 @@ enum class Reason : std::uint32_t {
     noFrames,
     straightHair,
     curvedHair,
-    lengthsFree,
     byRods,
-    evenHair,
-    undamped,
-    unevenMasses,
-    tightCurls,
     noCollision,
     zeroRadius,
     slowEnough,
@@ -162,9 +151,7 @@ class EffectPlan {
     std::span<const StageId> stages() const { return {stages_.data(), stageCount_}; }
     /// Angular springs are solved as one system along each strand.
     bool factored() const { return factored_; }
-    /// So are those of curved hair, whose joints keep their curves from substep to substep.
-    bool keepsCurves() const { return keepsCurves_; }
-    /// So are they where lengths are held, and segments keep their tension from substep to substep.
+    /// They are, where lengths are held, and segments keep their tension from substep to substep.
     bool keepsTensions() const { return keepsTensions_; }
 
   private:
@@ -175,7 +162,6 @@ class EffectPlan {
     std::array<StageId, kMaxStages> stages_{};
     std::size_t stageCount_ = 0;
     bool factored_ = false;
-    bool keepsCurves_ = false;
     bool keepsTensions_ = false;
 };
 

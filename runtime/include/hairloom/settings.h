@@ -61,11 +61,12 @@ enum class CollisionResponse : std::uint32_t {
 
 /// Units, ranges and meanings stand in fieldsOf(); a value outside is refused by Engine::make, not clamped.
 struct SimulationSettings {
-    StrandModel strandModel = StrandModel::springs;
+    StrandModel strandModel = StrandModel::rods;
 
     // --- Time ---
     Integrator integrator = Integrator::verlet;
-    std::uint32_t substeps = 8;
+    /// In a frame of 1/60 s; frames of another length take as many as keep the step (substepsIn).
+    std::uint32_t substeps = 2;
     /// Does not depend on the frame rate or the substeps.
     float dampingTime = 0.5f;
     /// Also of spheres. What moves farther carries its strand along rigidly instead of whipping it.
@@ -92,7 +93,7 @@ struct SimulationSettings {
     float torsionRatio = 0.75f;
     /// Kelvin-Voigt.
     float bendDampingTime = 0.03f;
-    /// At 1 hair keeps its authored shape as far as its stiffness can carry it.
+    /// Of rods and projective equations. At 1 hair keeps its authored shape as far as its stiffness can carry it.
     float restGravity = 1.0f;
 
     // --- Air and gravity ---
@@ -124,7 +125,14 @@ struct SimulationSettings {
 /// In the order in which a panel shows them; each member stands there once.
 std::span<const Field<SimulationSettings>> fieldsOf(const SimulationSettings&);
 
-inline constexpr std::uint32_t kMaxSubsteps = 64;  ///< of a frame
+/// Of a usual frame, from which on the methods of StrandModel::springs are of use.
+inline constexpr std::uint32_t kSpringSubsteps = 8;
+inline constexpr float kUsualFrame = 1.0f / 60.0f;  ///< seconds
+inline constexpr std::uint32_t kMaxSubsteps = 256;  ///< of a frame, whatever its length
+
+/// Substeps of a frame of `dt` seconds: no longer than those of a usual frame, so that motion does not depend
+/// on the frame rate; at most kMaxSubsteps.
+std::uint32_t substepsIn(const SimulationSettings& settings, float dt);
 
 /// Of angularStiffness anywhere along a strand, 0…1.
 float greatestStiffness(const SimulationSettings& settings);

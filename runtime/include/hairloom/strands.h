@@ -3,6 +3,7 @@
 // What the engine is given: strands at rest once, poses of their roots and spheres each frame. Views only;
 // the caller owns the arrays and the engine keeps none of them.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -51,6 +52,10 @@ struct FrameInput {
     /// m/s, of an actor that the caller does not move in world space; WindKind::vehicle blows against it.
     /// Ignored unless finite and within 1000 m/s.
     Float3 actorVelocity_ws{};
+    /// Metres, in the world: where roots, spheres and what is read are measured from, so that hair moves alike wherever a
+    /// character stands. Another origin than in the frame before changes the numbers and moves nothing; one that is not
+    /// finite is that of the frame before. Roots of reset() are measured from the origin of the frame that follows.
+    std::array<double, 3> origin_ws{};
 };
 
 }  // namespace hairloom::runtime

@@ -43,7 +43,8 @@ struct WindInput {
 /// changes.
 Wind makeWind(const SimulationSettings& settings, const WindInput& input = {});
 
-/// Phase of each mode at that time, in turns, −0.5…0.5.
-std::array<float, kWindModes> windPhases(const Wind& wind, double time);
+/// Phase of each mode at that time, in turns, −0.5…0.5, for places that are measured from `origin_ws`, metres.
+std::array<float, kWindModes> windPhases(const Wind& wind, double time,
+                                         const std::array<double, 3>& origin_ws = {});
 
 }  // namespace hairloom::runtime

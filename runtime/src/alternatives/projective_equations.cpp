@@ -202,9 +202,10 @@ void ProjectiveEquations::runStrand(std::uint32_t strand, const Frame& frame) {
     const Float3 rootTo = airAt(wind_, frame.windTo, to.position);
     const Float3 tipFrom = airAt(wind_, frame.windFrom, from.position + tip);
     const Float3 tipTo = airAt(wind_, frame.windTo, to.position + tip);
-    const float count = static_cast<float>(settings_.substeps), h = dt / count;
+    const std::uint32_t substeps = substepsIn(settings_, dt);
+    const float count = static_cast<float>(substeps), h = dt / count;
     const float decay = settings_.dampingTime > 0.0f ? std::exp(-h / settings_.dampingTime) : 1.0f;
-    for (std::uint32_t i = 0; i < settings_.substeps; ++i) {
+    for (std::uint32_t i = 0; i < substeps; ++i) {
         const float share = static_cast<float>(i + 1) / count;
         runSubstep(strand, {between(from, to, share), root.velocity, settings_.gravity - acceleration,
                             lerp(rootFrom, rootTo, share), lerp(tipFrom, tipTo, share), share, h, decay});
