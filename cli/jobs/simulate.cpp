@@ -14,6 +14,7 @@
 #include "cli/progress.h"
 #include "core/base/content_kind.h"
 #include "core/base/log.h"
+#include "core/editing/penetration.h"
 #include "core/groom/file/project_file.h"
 #include "core/simulation/frame_record.h"
 #include "core/simulation/sag.h"
@@ -150,6 +151,19 @@ Report statsReport(const Groom& groom, const SimulationStats& stats) {
     return report;
 }
 
+/// How deep the points are in the head that they grow on; null without one, and for hair that is lost.
+void reportInsideMesh(const Groom& moved, Report& report) {
+    report["max_mesh_penetration_mm"] = report["share_inside_mesh"] = {};
+    const auto finite = [](const Vec3f& position) { return position.allFinite(); };
+    if (!moved.scalp || !std::ranges::all_of(moved.positions(), finite)) return;
+    const Skin skin(moved.scalp);
+    const editing::Penetration inside =
+        editing::penetrationOf(moved.offsets.view(), moved.positions(), {}, &skin);
+    report["max_mesh_penetration_mm"] = 1e3 * static_cast<double>(inside.worst);
+    report["share_inside_mesh"] =
+        static_cast<double>(inside.points) / static_cast<double>(std::max<std::size_t>(moved.pointCount(), 1));
+}
+
 Report sagReport(const Groom& groom, const Sag& sag) {
     constexpr double kHolds = 1;  // mm
     constexpr std::size_t kNamed = 20;
@@ -251,8 +265,9 @@ Result<Report> simulate(const SimulateOptions& options) {
         if (auto finished = recorder->finish(); !finished) return tl::unexpected(finished.error());
         report["record"] = options.record;
     }
+    const Groom moved = posedGroom(*groom, simulation->positions_ws(), inWorld(pose));
+    reportInsideMesh(moved, report);
     if (!options.output.empty()) {
-        const Groom moved = posedGroom(*groom, simulation->positions_ws(), inWorld(pose));
         if (auto saved = saveProject(moved, options.output); !saved) return tl::unexpected(saved.error());
         report["output"] = options.output;
     }

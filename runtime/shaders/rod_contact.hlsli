@@ -132,11 +132,9 @@ RodContact contactOf(float3 origin, RodNode node, float timeStep) {
     RodContact c;
     c.diagonal = c.others = c.gradient = float3(0, 0, 0);
     c.twiceEnergy = c.touching = 0.0;
-    uint left = gReachable;
-    [loop] while (left != 0u) {
-        const uint bit = firstbitlow(left);
-        left &= left - 1u;
-        [loop] for (uint k = bit; k < gFrame.sphereCount; k += 32u) meetSphere(k, origin, node, timeStep, c);
+    // All strands of a group look at the same sphere at a time: one read of a constant serves them.
+    [loop] for (uint k = 0; k < gFrame.sphereCount; ++k) {
+        if ((gReachable & (1u << (k & 31u))) != 0u) meetSphere(k, origin, node, timeStep, c);
     }
     return c;
 }

@@ -155,6 +155,17 @@ TEST_F(Cli, ClipOfTheSampleHeadMovesTheHair) {
     EXPECT_THAT(unknown.errors, HasSubstr("nod_and_turn")) << "the clips there are";
 }
 
+TEST_F(Cli, HairThatFallsThroughTheHeadIsSeen) {
+    runJson(createArguments());
+    const auto standing = runJson("simulate hair.hairloom --frames 1");
+    EXPECT_LT(standing["max_mesh_penetration_mm"], 1);
+    EXPECT_LT(standing["share_inside_mesh"], 0.01);
+    const auto fallen = runJson("simulate hair.hairloom --frames 60");  // among no spheres
+    EXPECT_GT(fallen["max_mesh_penetration_mm"], 5);
+    EXPECT_GT(fallen["share_inside_mesh"], 0.05);
+    EXPECT_LT(fallen["share_inside_mesh"], 1);
+}
+
 TEST_F(Cli, OtherMethodsReportAndRecordAlike) {
     runJson(createArguments());
     const std::string scene = "simulate hair.hairloom --frames 10 --fps 30 --motion nod ";
