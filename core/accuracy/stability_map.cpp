@@ -24,7 +24,9 @@ using runtime::SimulationSettings;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kGrowth = 3.0;
 constexpr std::uint32_t kPoints = 9;
-constexpr float kSegment = 0.02f;
+constexpr float kSegment = 0.01f;
+/// A longer step is several.
+constexpr double kLongestStep = 1.0 / 60;
 /// Metres that the push moves the strand in a step: far above rounding, far below a segment.
 constexpr double kPush = 2e-4;
 constexpr double kStrongest = 1000.0;  // m/s², of gravity
@@ -166,7 +168,7 @@ StabilityProbe probeStability(Integrator integrator, MappedForce force, double h
 
 StabilityMap mapStability(Integrator integrator, MappedForce force, std::uint32_t cells,
                           std::uint32_t steps) {
-    StabilityMap map{integrator, force, steps, logarithmic(5e-5, 2e-2, cells), stiffnessRows(force, cells),
+    StabilityMap map{integrator, force, steps, logarithmic(5e-5, kLongestStep, cells), stiffnessRows(force, cells),
                      {}};
     map.limit = theoreticalLimit(integrator, force, steps);
     map.probes.resize(map.stepSeconds.size() * map.stiffnesses.size());

@@ -26,7 +26,7 @@ struct StabilityProbe {
     double omegaStep = 0.0;     ///< ω h of the strand's fastest wave
 };
 
-/// Pushes a straight strand of 8 segments of 2 cm, all equally stiff, for one step of `h` seconds, and lets
+/// Pushes a straight strand of 8 segments of 1 cm, all equally stiff, for one step of `h` seconds, and lets
 /// it swing for `steps` more, at least 8. Stable: the swing does not grow to more than thrice what it began
 /// with. `stiffness`: springFrequency in Hz for coils, angularStiffness for angular springs.
 StabilityProbe probeStability(runtime::Integrator integrator, MappedForce force, double h, double stiffness,

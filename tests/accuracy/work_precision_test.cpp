@@ -205,7 +205,7 @@ TEST(EffectCosts, EveryEffectReportsReasonAndCost) {
     for (const EffectCost& effect : costs->effects) {
         EXPECT_FALSE(effect.why.empty()) << effect.name;
         const bool follows = effect.name == "torsion" || effect.name == "length" ||
-                             effect.name == "continuousCollision";
+                             effect.name == "continuousCollision" || effect.name == "solve";
         EXPECT_EQ(effect.on && !follows, effect.costMilliseconds.has_value()) << effect.name;
         EXPECT_EQ(effect.on && !follows, !effect.turnedOffBy.empty()) << effect.name;
         on += effect.on;

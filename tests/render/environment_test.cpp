@@ -14,7 +14,11 @@
 namespace hairloom::render {
 namespace {
 
-const std::filesystem::path kFile = std::filesystem::path(testing::TempDir()) / "hairloom-environment.exr";
+/// Of the test's own: others may run beside it.
+std::filesystem::path ownFile() {
+    const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
+    return std::filesystem::path(testing::TempDir()) / ("hairloom-environment-" + name + ".exr");
+}
 constexpr double kCircle = 2 * 3.14159265358979323846;
 
 LinearImage lit(std::uint32_t width, std::uint32_t height,
@@ -30,39 +34,42 @@ LinearImage lit(std::uint32_t width, std::uint32_t height,
 }
 
 TEST(Exr, ComesBackAsItWent) {
+    const auto file = ownFile();
     Random random(3);
     const LinearImage image = lit(37, 19, [&](auto, auto) {
         return Vec3f(random.uniform(0, 500), random.uniform(), -random.uniform());
     });
-    ASSERT_TRUE(writeExr(kFile, image));
-    const auto read = readExr(kFile);
+    ASSERT_TRUE(writeExr(file, image));
+    const auto read = readExr(file);
     ASSERT_TRUE(read) << read.error().message();
     EXPECT_EQ(read->width, 37u);
     EXPECT_EQ(read->height, 19u);
     EXPECT_EQ(read->rgba, image.rgba);
-    std::filesystem::remove(kFile);
+    std::filesystem::remove(file);
 }
 
 TEST(Exr, DamagedFilesAreErrors) {
-    ASSERT_TRUE(writeExr(kFile, lit(16, 8, [](auto x, auto y) {
+    const auto file = ownFile();
+    ASSERT_TRUE(writeExr(file, lit(16, 8, [](auto x, auto y) {
                              return Vec3f(static_cast<float>(x), static_cast<float>(y), 1);
                          })));
-    const auto whole = readFile(kFile).value();
+    const auto whole = readFile(file).value();
     for (std::size_t length = 0; length < whole.size(); length += 7) {
-        ASSERT_TRUE(writeFileAtomically(kFile, std::span(whole).first(length), Replacing::Anything));
-        EXPECT_FALSE(readExr(kFile)) << length << " of " << whole.size() << " bytes";
+        ASSERT_TRUE(writeFileAtomically(file, std::span(whole).first(length), Replacing::Anything));
+        EXPECT_FALSE(readExr(file)) << length << " of " << whole.size() << " bytes";
     }
-    ASSERT_TRUE(writeFileAtomically(kFile, std::as_bytes(std::span(std::string_view("no picture"))),
+    ASSERT_TRUE(writeFileAtomically(file, std::as_bytes(std::span(std::string_view("no picture"))),
                                     Replacing::Anything));
-    EXPECT_FALSE(readExr(kFile));
-    std::filesystem::remove(kFile);
-    EXPECT_FALSE(readExr(kFile));
+    EXPECT_FALSE(readExr(file));
+    std::filesystem::remove(file);
+    EXPECT_FALSE(readExr(file));
 }
 
 TEST(Environment, AnEvenSkyFromAFileIsOneRadiance) {
+    const auto file = ownFile();
     const Vec3f sky(12.5f, 3, 0.25f);
-    ASSERT_TRUE(writeExr(kFile, lit(128, 64, [&](auto, auto) { return Vec3f(sky); })));
-    const auto image = readExr(kFile);
+    ASSERT_TRUE(writeExr(file, lit(128, 64, [&](auto, auto) { return Vec3f(sky); })));
+    const auto image = readExr(file);
     ASSERT_TRUE(image) << image.error().message();
     const auto environment = Environment::fromImage(*image);
     ASSERT_TRUE(environment);
@@ -71,7 +78,7 @@ TEST(Environment, AnEvenSkyFromAFileIsOneRadiance) {
         const Vec3f d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
         EXPECT_TRUE(environment->radiance(d).isApprox(sky, 2e-3f));
     }
-    std::filesystem::remove(kFile);
+    std::filesystem::remove(file);
 }
 
 /// Skies as Environment::gradient() has them, brighter above.
