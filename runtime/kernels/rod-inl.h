@@ -344,6 +344,8 @@ class RodStrip {
                 touched = hn::Max(touched, point.contact.touching);
                 const V3 force = point.contact.force(moved - point.displacement);
                 load = hn::Sqrt(dot(force, force)) * normalShare;
+                load = hn::IfThenElse(point.contact.touching > all(1.0f), hn::Neg(load), load);
+                load = hn::IfThenElseZero(dot(force, point.contact.normal) > hn::Zero(D()), load);
             }
             hn::Store(load, D(), rod_.load + node);
         }

@@ -22,7 +22,8 @@ struct RodContact {
     V hessian[6];  ///< xx, xy, xz, yy, yz, zz
     V3 gradient;
     V twiceEnergy;
-    V touching;  ///< 1 where there is any
+    V touching;  ///< 1 where there is any, 2 where friction gives way at one
+    V3 normal;   ///< sum of their normals
 
     HWY_INLINE V3 times(V3 x) const {
         return {mad(hessian[0], x.x, mad(hessian[1], x.y, hessian[2] * x.z)),
@@ -57,7 +58,7 @@ struct RodNode {
     V3 tangent;       ///< predicted, of the segment before it, world
     V3 velocity;      ///< of the last substep, world
     V weight;         ///< m/(h² D)
-    V load;           ///< force of its contacts in the last substep
+    V load;           ///< force of its contacts in the last substep; negative where it slid
     V step;           ///< seconds of the time scheme
     float radius;     ///< metres that it keeps from spheres
 };
@@ -83,7 +84,9 @@ HWY_INLINE void meetSphere(const MovingSphere& sphere, Float3 centre_ws, V3 root
         depth = hn::IfThenElse(deep, surface - dot(out, to), depth);
     }
     // What a contact holds is inside by a little, and stays held while the prediction lifts it off.
-    auto held = hn::Or(depth > hn::Zero(D()), c < hn::Zero(D()));
+    const V touches = hn::IfThenElse(hn::Abs(node.load) > hn::Zero(D()),
+                                     all(-static_cast<float>(HAIRLOOM_ROD_CONTACT_REACH)), hn::Zero(D()));
+    auto held = hn::Or(depth > touches, c < hn::Zero(D()));
     if (context.sweeps) {
         // What would pass the sphere meets it where it comes in.
         const V a = dot(way, way), b = dot(from, way);
@@ -100,13 +103,18 @@ HWY_INLINE void meetSphere(const MovingSphere& sphere, Float3 centre_ws, V3 root
     const V approach = dot(n, step * all(1.0f / context.h) - node.velocity);
     depth = mad(hn::Max(approach, hn::Zero(D())) * node.step, all(context.restitution), depth);
     const V k = hn::IfThenElseZero(held, node.weight * all(static_cast<float>(HAIRLOOM_ROD_CONTACT)));
-    // Coulomb, with the force of the last substep and at most what stops the node.
+    // Coulomb, with the force of the last substep and at most what stops the node. What was stuck has hardly
+    // moved: where it gives way it slides by what the force beyond friction does to its own mass.
     const V3 moved = node.displacement - step;
     const V3 slip = negMad3(n, dot(n, moved), moved);
-    const V size = hn::Sqrt(dot(slip, slip));
-    const V grip = hn::Min(node.load * all(context.friction) / hn::Max(size, all(1e-12f)), k);
+    const V size = hn::Sqrt(dot(slip, slip)), most = hn::Abs(node.load) * all(context.friction);
+    const V excess = hn::Max(hn::MulSub(k, size, most), hn::Zero(D())) / node.weight;
+    const V slid = hn::IfThenElse(node.load < hn::Zero(D()), size, hn::Max(size, excess));
+    const V grip = hn::Min(most / hn::Max(slid, all(1e-12f)), k);
     contact.add(k, hn::IfThenElseZero(held, grip), n, depth, slip);
-    contact.touching = hn::IfThenElse(held, all(1.0f), contact.touching);
+    contact.normal = contact.normal + onlyWhere(held, n);
+    const V how = hn::IfThenElse(grip < k, all(2.0f), all(1.0f));
+    contact.touching = hn::IfThenElse(held, hn::Max(contact.touching, how), contact.touching);
 }
 
 /// Of all spheres that the block can touch.
@@ -114,7 +122,7 @@ HWY_INLINE RodContact contactOf(const LaneFrame& lanes, V3 root, const RodNode& 
                                 const SubstepContext& context) {
     RodContact contact;
     for (V& number : contact.hessian) number = hn::Zero(D());
-    contact.gradient = zero3();
+    contact.gradient = contact.normal = zero3();
     contact.twiceEnergy = contact.touching = hn::Zero(D());
     // Most nodes are neither inside a sphere nor come out of one or past it, by far more than rounding.
     const V3 position_ws = node.position + root;
@@ -122,7 +130,8 @@ HWY_INLINE RodContact contactOf(const LaneFrame& lanes, V3 root, const RodNode& 
     for (const MovingSphere& sphere : lanes.touchable) {
         const Float3 centre_ws = sphere.from_ws + sphere.step * static_cast<float>(context.index + 1);
         const V3 to = position_ws - all3(centre_ws);
-        const V farthest = way + all(1.001f * (sphere.radius + node.radius + sphere.way));
+        const V farthest = way + all(1.001f * (sphere.radius + node.radius + sphere.way) +
+                                     static_cast<float>(HAIRLOOM_ROD_CONTACT_REACH));
         if (HWY_LIKELY(hn::AllTrue(D(), dot(to, to) > farthest * farthest))) continue;
         meetSphere(sphere, centre_ws, root, node, context, contact);
     }

@@ -8,13 +8,15 @@ struct RodContact {
     float3 others;    // xy, xz, yz
     float3 gradient;
     float twiceEnergy;
-    float touching;   // 1 where there is any
+    float touching;   // 1 where there is any, 2 where friction gives way at one
+    float3 normal;    // sum of their normals
 };
 
 #define CONTACT_PLANE HAIRLOOM_ROD_WORK_PLANES
 BUFFER_ARRAY(float3, contactDiagonal, setContactDiagonal, gScratch, CONTACT_PLANE)
 BUFFER_ARRAY(float3, contactOthers, setContactOthers, gScratch, CONTACT_PLANE + 3)
 BUFFER_ARRAY(float3, contactGradient, setContactGradient, gScratch, CONTACT_PLANE + 6)
+BUFFER_ARRAY(float3, contactNormal, setContactNormal, gScratch, CONTACT_PLANE + 11)
 RodContact contact(uint j) {
     RodContact result;
     result.diagonal = contactDiagonal(j);
@@ -22,6 +24,7 @@ RodContact contact(uint j) {
     result.gradient = contactGradient(j);
     result.twiceEnergy = gScratch[slotOf(CONTACT_PLANE + 9, j)];
     result.touching = gScratch[slotOf(CONTACT_PLANE + 10, j)];
+    result.normal = contactNormal(j);
     return result;
 }
 void setContact(uint j, RodContact c) {
@@ -30,6 +33,7 @@ void setContact(uint j, RodContact c) {
     setContactGradient(j, c.gradient);
     gScratch[slotOf(CONTACT_PLANE + 9, j)] = c.twiceEnergy;
     gScratch[slotOf(CONTACT_PLANE + 10, j)] = c.touching;
+    setContactNormal(j, c.normal);
 }
 
 float3 hessianTimes(RodContact c, float3 x) {
@@ -79,7 +83,7 @@ struct RodNode {
     float3 tangent;       // predicted, of the segment before it, world
     float3 velocity;      // of the last substep, world
     float weight;         // m/(h² D)
-    float load;           // force of its contacts in the last substep
+    float load;           // force of its contacts in the last substep; negative where it slid
     float radius;         // metres that it keeps from spheres
 };
 
@@ -91,7 +95,8 @@ void meetSphere(uint k, float3 origin, RodNode node, float timeStep, inout RodCo
     const float3 moved = node.displacement - step;
     const float squared = dot(to, to);
     const float a = dot(moved, moved), farthest = reach + sqrt(a);
-    if (squared > 1.0001 * farthest * farthest) return;
+    const float near = farthest + HAIRLOOM_ROD_CONTACT_REACH;
+    if (squared > 1.0001 * near * near) return;
     const float distance = sqrt(max(squared, 1e-18));
     float3 n = to * (1.0 / distance);
     float depth = reach - distance;
@@ -104,7 +109,7 @@ void meetSphere(uint k, float3 origin, RodNode node, float timeStep, inout RodCo
     const float3 from = to - moved;
     const float outside = mad(reach, -reach, dot(from, from));
     // What a contact holds is inside by a little, and stays held while the prediction lifts it off.
-    bool held = depth > 0.0 || outside < 0.0;
+    bool held = depth > (node.load != 0.0 ? -HAIRLOOM_ROD_CONTACT_REACH : 0.0) || outside < 0.0;
     if (gRod.sweeps != 0u) {
         // What would pass the sphere meets it where it comes in.
         const float b = dot(from, moved);
@@ -120,17 +125,22 @@ void meetSphere(uint k, float3 origin, RodNode node, float timeStep, inout RodCo
     const float approach = dot(n, step * (1.0 / gFrame.h) - node.velocity);
     depth = mad(max(approach, 0.0) * timeStep, gFrame.substep.restitution, depth);
     const float stiffness = node.weight * HAIRLOOM_ROD_CONTACT;
-    // Coulomb, with the force of the last substep and at most what stops the node.
+    // Coulomb, with the force of the last substep and at most what stops the node. What was stuck has hardly
+    // moved: where it gives way it slides by what the force beyond friction does to its own mass.
     const float3 slip = negMad3(n, dot(n, moved), moved);
-    const float grip = min(node.load * gFrame.substep.friction / max(sqrt(dot(slip, slip)), 1e-12), stiffness);
+    const float most = abs(node.load) * gFrame.substep.friction;
+    float slid = sqrt(dot(slip, slip));
+    if (node.load >= 0.0) slid = max(slid, (stiffness * slid - most) / node.weight);
+    const float grip = min(most / max(slid, 1e-12), stiffness);
     addContact(c, stiffness, grip, n, depth, slip);
-    c.touching = 1.0;
+    c.normal += n;
+    c.touching = max(c.touching, grip < stiffness ? 2.0 : 1.0);
 }
 
 /// Of all spheres that the strand can touch.
 RodContact contactOf(float3 origin, RodNode node, float timeStep) {
     RodContact c;
-    c.diagonal = c.others = c.gradient = float3(0, 0, 0);
+    c.diagonal = c.others = c.gradient = c.normal = float3(0, 0, 0);
     c.twiceEnergy = c.touching = 0.0;
     // All strands of a group look at the same sphere at a time: one read of a constant serves them.
     [loop] for (uint k = 0; k < gFrame.sphereCount; ++k) {

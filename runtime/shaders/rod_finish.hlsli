@@ -44,7 +44,8 @@ void finishRodStep() {
             const RodContact met = contact(j);
             touched = max(touched, met.touching);
             const float3 force = forceOf(met, moved - predictedDisplacement(j));
-            pressed = sqrt(dot(force, force)) * normalShare;
+            if (dot(force, met.normal) > 0.0) pressed = sqrt(dot(force, force)) * normalShare;
+            if (met.touching > 1.0) pressed = -pressed;
         }
 #endif
         setLoad(node, pressed);
