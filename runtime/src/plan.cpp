@@ -88,7 +88,7 @@ Decision decideContinuousCollision(const PlanInput& scene, bool collision, float
     if (!std::isfinite(scene.fastest)) return {true, Reason::speedUnknown, 0.0f};
     // A slower point that passes cuts at most 0.8 % of the radius.
     if (scene.fastest < 0.25f * smallestSphere) return {false, Reason::slowEnough, 0.0f};
-    return {true, Reason::fast, scene.fastest};
+    return {true, Reason::fast, 1000.0f * scene.fastest};
 }
 
 Decision decideSleep(const PlanInput& scene) {
