@@ -16,6 +16,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/base/descriptor_posix.h"
 #include "importers/child_watch.h"
 
 extern char** environ;
@@ -26,23 +27,6 @@ namespace {
 std::string systemMessage(int code) {
     return std::generic_category().message(code);
 }
-
-class Descriptor {
-  public:
-    explicit Descriptor(int number = -1) : number_(number) {}
-    Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
-    Descriptor& operator=(Descriptor&& other) noexcept {
-        std::swap(number_, other.number_);
-        return *this;
-    }
-    ~Descriptor() {
-        if (number_ >= 0) close(number_);
-    }
-    int number() const { return number_; }
-
-  private:
-    int number_;
-};
 
 /// Kills and collects the child when it goes out of scope.
 class Child {

@@ -17,6 +17,7 @@
 #include <system_error>
 #include <vector>
 
+#include "core/base/descriptor_posix.h"
 #include "core/base/output_file.h"
 #include "core/base/temporary_file.h"
 
@@ -31,24 +32,6 @@ constexpr std::size_t kCopyBytes = std::size_t{1} << 20u;
 tl::unexpected<Error> systemError(int code = errno) {
     return fail(std::generic_category().message(code));
 }
-
-class Descriptor {
-  public:
-    explicit Descriptor(int number = -1) : number_(number) {}
-    Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
-    Descriptor& operator=(Descriptor&& other) noexcept {
-        std::swap(number_, other.number_);
-        return *this;
-    }
-    ~Descriptor() {
-        if (number_ >= 0) ::close(number_);
-    }
-    int number() const { return number_; }
-    explicit operator bool() const { return number_ >= 0; }
-
-  private:
-    int number_;
-};
 
 /// Names that a signal's handler takes away. A slot is written before its file is made and cleared after it
 /// is gone: removing a name that is not there does no harm.

@@ -16,6 +16,7 @@
 
 #include "importers/mesh_reader/assimp_skeleton.h"
 #include "importers/mesh_reader/limited_files.h"
+#include "importers/mesh_reader/scene_parts.h"
 
 namespace hairloom {
 namespace {
@@ -108,14 +109,6 @@ class Converter {
             name = source_.mMaterials[mesh.mMaterialIndex]->GetName().C_Str();
         if (name.empty()) name = fmt::format("material {}", mesh.mMaterialIndex);
         return indexOf(name, materials_, scene_.soup.materialNames);
-    }
-
-    static std::uint32_t indexOf(const std::string& name,
-                                 std::unordered_map<std::string, std::uint32_t>& indices,
-                                 std::vector<std::string>& names) {
-        const auto [entry, added] = indices.try_emplace(name, static_cast<std::uint32_t>(names.size()));
-        if (added) names.push_back(name);
-        return entry->second;
     }
 
     /// Depth first, children in the file's order.

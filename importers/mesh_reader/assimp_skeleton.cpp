@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "importers/mesh_reader/scene_parts.h"
+
 namespace hairloom {
 namespace {
 
@@ -30,22 +32,6 @@ Track<T> toTrack(const Key* keys, unsigned count, double ticksPerSecond) {
         track.values.push_back(toVec(keys[index].mValue));
     }
     return track;
-}
-
-/// What stands for a track that the file does not have: the rest transform's part.
-void fillFromRest(Channel& channel, const Eigen::Affine3f& rest) {
-    if (channel.translation.times.empty()) channel.translation = {{0.0f}, {rest.translation()}};
-    if (channel.rotation.times.empty() || channel.scale.times.empty()) {
-        Mat3f rotation, scale;
-        rest.computeRotationScaling(&rotation, &scale);
-        if (channel.rotation.times.empty()) channel.rotation = {{0.0f}, {Quatf(rotation)}};
-        if (channel.scale.times.empty()) channel.scale = {{0.0f}, {scale.diagonal()}};
-    }
-}
-
-template <class T>
-float lastTime(const Track<T>& track) {
-    return track.times.empty() ? 0.0f : track.times.back();
 }
 
 unsigned depth(const aiNode* node) {
@@ -214,8 +200,7 @@ Clip SkeletonBuilder::convertClip(const aiAnimation& animation) const {
         channel.translation = toTrack<Vec3f>(source.mPositionKeys, source.mNumPositionKeys, rate);
         channel.rotation = toTrack<Quatf>(source.mRotationKeys, source.mNumRotationKeys, rate);
         channel.scale = toTrack<Vec3f>(source.mScalingKeys, source.mNumScalingKeys, rate);
-        clip.duration = std::max({clip.duration, lastTime(channel.translation), lastTime(channel.rotation),
-                                  lastTime(channel.scale)});
+        clip.duration = std::max(clip.duration, lastTime(channel));
         fillFromRest(channel, local);
         if (found->second == source_.mRootNode) {
             for (Vec3f& value : channel.translation.values) value = toWorld_ * value;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "importers/mesh_reader/gltf_keys.h"
+#include "importers/mesh_reader/scene_parts.h"
 #include "importers/mesh_reader/tinygltf.h"
 
 namespace hairloom {
@@ -28,22 +29,6 @@ Eigen::Affine3f localOf(const tinygltf::Node& node) {
     if (node.scale.size() == 3)
         local.scale(Eigen::Map<const Eigen::Vector3d>(node.scale.data()).cast<float>());
     return local;
-}
-
-/// What stands for a track that the file does not have: the rest transform's part.
-void fillFromRest(Channel& channel, const Eigen::Affine3f& rest) {
-    if (channel.translation.times.empty()) channel.translation = {{0.0f}, {rest.translation()}};
-    if (channel.rotation.times.empty() || channel.scale.times.empty()) {
-        Mat3f rotation, scale;
-        rest.computeRotationScaling(&rotation, &scale);
-        if (channel.rotation.times.empty()) channel.rotation = {{0.0f}, {Quatf(rotation)}};
-        if (channel.scale.times.empty()) channel.scale = {{0.0f}, {scale.diagonal()}};
-    }
-}
-
-template <class T>
-float lastTime(const Track<T>& track) {
-    return track.times.empty() ? 0.0f : track.times.back();
 }
 
 tl::unexpected<Error> noNode(const char* what, int node) {
@@ -296,8 +281,7 @@ Result<Clip> GltfNodes::convertClip(std::size_t number) const {
     for (std::size_t node = 0; node < channelOfNode.size(); ++node) {
         if (channelOfNode[node] == SIZE_MAX) continue;
         Channel& channel = clip.channels[channelOfNode[node]];
-        clip.duration = std::max({clip.duration, lastTime(channel.translation), lastTime(channel.rotation),
-                                  lastTime(channel.scale)});
+        clip.duration = std::max(clip.duration, lastTime(channel));
         fillFromRest(channel, localOf(file_->model().nodes[node]));
     }
     return clip;

@@ -11,6 +11,7 @@
 
 #include "importers/mesh_reader/gltf_draco.h"
 #include "importers/mesh_reader/gltf_nodes.h"
+#include "importers/mesh_reader/scene_parts.h"
 #include "importers/mesh_reader/tinygltf.h"
 
 namespace hairloom {
@@ -186,14 +187,6 @@ class Converter {
     }
 
   private:
-    static std::uint32_t indexOf(const std::string& name,
-                                 std::unordered_map<std::string, std::uint32_t>& indices,
-                                 std::vector<std::string>& names) {
-        const auto [entry, added] = indices.try_emplace(name, static_cast<std::uint32_t>(names.size()));
-        if (added) names.push_back(name);
-        return entry->second;
-    }
-
     /// Materials in the order of their first use; several of one name are one.
     std::uint32_t materialOf(const tinygltf::Primitive& primitive) {
         std::string name = "default";

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "hairloom/presets.h"
+#include "src/double3.h"
 #include "src/state.h"
 
 namespace hairloom::runtime {
@@ -21,20 +22,6 @@ constexpr float kMinRate = 0.02f;
 /// 2 − √2: how much nearer the ends of two unit segments come when they turn by 90°.
 constexpr double kShortening = 0.585786437626905;
 
-struct Double3 {
-    double x = 0.0, y = 0.0, z = 0.0;
-
-    friend Double3 operator+(Double3 a, Double3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-    friend Double3 operator-(Double3 a, Double3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-    friend Double3 operator*(Double3 a, double s) { return {a.x * s, a.y * s, a.z * s}; }
-};
-double dotOf(Double3 a, Double3 b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-Double3 crossOf(Double3 a, Double3 b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
 /// A unit vector across a, or along x where a has no length.
 Double3 anyNormal(Double3 a) {
     const Double3 axis = std::abs(a.x) > std::abs(a.z) ? Double3{-a.y, a.x, 0.0} : Double3{0.0, -a.z, a.y};
@@ -189,8 +176,7 @@ void fillBend(const RestShape& shape, const SimulationSettings& settings, float 
     const bool flexion = settings.angularMethod == AngularMethod::flexion;
     const bool backward = settings.integrator == Integrator::implicitEuler;
     const double share =
-        backward ? step
-                 : step * (0.25 + static_cast<double>(bendRate(settings, h, bend.targets)));
+        backward ? step : step * (0.25 + static_cast<double>(bendRate(settings, h, bend.targets)));
     const double stiffest = bend.factored ? kStiffest : 0.0;
     for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
         StrandBend strand(shape, settings, index, lane);

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "hairloom/presets.h"
+#include "src/double3.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -23,19 +24,6 @@ constexpr double kStableShare = 0.05;
 /// A strain, in radians, that counts as none.
 constexpr double kStraight = 1e-4;
 
-struct Double3 {
-    double x = 0.0, y = 0.0, z = 0.0;
-
-    friend Double3 operator+(Double3 a, Double3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-    friend Double3 operator-(Double3 a, Double3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-    friend Double3 operator*(Double3 a, double s) { return {a.x * s, a.y * s, a.z * s}; }
-};
-double dotOf(Double3 a, Double3 b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-Double3 crossOf(Double3 a, Double3 b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
 double lengthOf(Double3 a) {
     return std::sqrt(dotOf(a, a));
 }

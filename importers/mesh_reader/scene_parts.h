@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What both readers of scenes, assimp's and the one of glTF 2, do alike.
+
+#include <cstdint>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "importers/raw_scene.h"
+
+namespace hairloom {
+
+/// What stands for a track that the file does not have: the rest transform's part.
+void fillFromRest(Channel& channel, const Eigen::Affine3f& rest);
+
+/// Seconds of the last key; 0 where there is none.
+float lastTime(const Channel& channel);
+
+/// Index of a name in `names`, at whose end it is put when it is new.
+std::uint32_t indexOf(const std::string& name, std::unordered_map<std::string, std::uint32_t>& indices,
+                      std::vector<std::string>& names);
+
+}  // namespace hairloom
