@@ -54,7 +54,7 @@ void compareSet(const AttributeSet& authored, std::size_t elements, const Attrib
     }
 }
 
-void tellSettings(const Groom& groom, ExportReport& report) {
+void reportSettings(const Groom& groom, ExportReport& report) {
     const auto leave = [&](std::string what, std::string fix) {
         report.leftBehind.push_back({std::move(what), std::move(fix)});
     };
@@ -84,7 +84,7 @@ void compareAttributes(const Groom& groom, const PreparedStrands& prepared, cons
     // Of resampled strands, no value of the file is that of a point.
     compareSet(groom.pointAttributes, groom.pointCount(),
                prepared.isResampled ? AttributeSet() : readBack.pointAttributes, points, "points", report);
-    tellSettings(groom, report);
+    reportSettings(groom, report);
 }
 
 }  // namespace hairloom

@@ -288,7 +288,7 @@ class Reader {
         }
         if (samples < 2) return {};
         if (!frames_) {
-            tellOfFrames(samples);
+            reportFrames(samples);
             return {};
         }
         const AlembicTimes& times = archive_.times(points.timeSampling);
@@ -306,8 +306,8 @@ class Reader {
         return {};
     }
 
-    void tellOfFrames(std::uint32_t samples) {
-        if (std::exchange(toldOfFrames_, true)) return;
+    void reportFrames(std::uint32_t samples) {
+        if (std::exchange(framesReported_, true)) return;
         strands_.warnings.push_back(
             fileNote(fmt::format("the hair moves: {} samples in time; the first was taken", samples), "time",
                      "import --record keeps all as a record of frames"));
@@ -407,7 +407,7 @@ class Reader {
     const AlembicArchive& archive_;
     const std::string& file_;
     bool frames_;
-    bool toldOfFrames_ = false;
+    bool framesReported_ = false;
     std::vector<CurveSet> curves_;
     RawStrands strands_;
 };

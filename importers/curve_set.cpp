@@ -246,7 +246,7 @@ class Appender {
         for (CurveAttribute& part : parts_) {
             const Scope scope = scopeOf(part, sizes_);
             if (scope == Scope::Unknown || part.count() == 0) {
-                if (part.count() > 0) tellLeftOut(part);
+                if (part.count() > 0) reportLeftOut(part);
                 open.emplace_back(SIZE_MAX, scope);
                 continue;
             }
@@ -285,7 +285,7 @@ class Appender {
                 if (wanted.perPoint) spread(strands_.attributes[i], strands_.offsets);
                 return i;
             }
-            tellLeftOut(part);
+            reportLeftOut(part);
             return SIZE_MAX;
         }
         pad(wanted, strands, points);
@@ -293,7 +293,7 @@ class Appender {
         return strands_.attributes.size() - 1;
     }
 
-    void tellLeftOut(const CurveAttribute& part) {
+    void reportLeftOut(const CurveAttribute& part) {
         strands_.warnings.push_back(
             fileWarning(fmt::format("{} has {} values, which fit {} curves of {} points in no way", part.name,
                                     part.count(), sizes_.curves, sizes_.points),

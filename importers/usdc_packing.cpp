@@ -13,7 +13,7 @@ namespace {
 /// More than curve files have; the packed form of so many that are alike takes a kilobyte a million.
 constexpr std::uint64_t kMaxIntegers = std::uint64_t{1} << 28u;
 /// One byte of LZ4 stands for at most 255 of what it packs.
-constexpr std::uint64_t kMostPerByte = 255;
+constexpr std::uint64_t kMaxPerByte = 255;
 
 tl::unexpected<Error> damaged() {
     return fail("packed bytes are damaged", "expected blocks of LZ4");
@@ -69,7 +69,7 @@ T valueAt(std::span<const std::byte> bytes, std::size_t at) {
 template <class T, class Quarter, class Half>
 Result<std::vector<T>> unpackIntegers(std::span<const std::byte> packed, std::uint64_t count) {
     if (count == 0) return std::vector<T>();
-    if (count > packed.size() * kMostPerByte * 4 || count > kMaxIntegers)
+    if (count > packed.size() * kMaxPerByte * 4 || count > kMaxIntegers)
         return fail(fmt::format("{} whole numbers in {} bytes", count, packed.size()),
                     "expected a count that they bear out");
     const std::size_t codes = static_cast<std::size_t>((count * 2 + 7) / 8);
@@ -101,7 +101,7 @@ Result<std::vector<T>> unpackIntegers(std::span<const std::byte> packed, std::ui
 Result<std::vector<std::byte>> unpackBytes(std::span<const std::byte> packed, std::uint64_t size) {
     if (packed.empty()) return damaged();
     std::vector<std::byte> out;
-    out.reserve(static_cast<std::size_t>(std::min(size, packed.size() * kMostPerByte)));
+    out.reserve(static_cast<std::size_t>(std::min(size, packed.size() * kMaxPerByte)));
     const auto blocks = std::to_integer<unsigned>(packed.front());
     packed = packed.subspan(1);
     if (blocks == 0) {

@@ -52,7 +52,8 @@ Report caseReport(const StabilityResult& result) {
     row["pass"] = result.pass;
     row["measured"] = m.what;
     row["worst"] = numberOrNull(m.worst);
-    row["mark"] = m.threshold;
+    row["threshold"] = m.threshold;
+    row["mark"] = m.threshold;  // as it was called before
     row["unit"] = m.unit;
     row["failed_at"] = result.failedAt ? Report(*result.failedAt) : Report();
     row["limit"] = result.limit;

@@ -62,7 +62,7 @@ class HardCaseRun {
     /// Strands that are put back to rest are part of the case.
     void allowRestored(bool on) { restoredAllowed_ = on; }
 
-    /// Another mark.
+    /// Another threshold.
     void expect(const std::string& what, const std::string& unit, double worst, double threshold);
     /// Another that is about energy: not claimed by every integrator (StabilityThreshold::claimed).
     void expectEnergy(const std::string& what, const std::string& unit, double worst, double threshold);

@@ -45,7 +45,7 @@ constexpr HardCase kCases[] = {
 };
 // clang-format on
 
-/// Share of its mark; what is no number or may not happen at all is beyond every share.
+/// Share of its threshold; what is no number or may not happen at all is beyond every share.
 double share(const StabilityThreshold& m) {
     if (m.met()) return m.threshold > 0.0 ? m.worst / m.threshold : 0.0;
     return m.threshold > 0.0 && std::isfinite(m.worst) ? m.worst / m.threshold

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// The hard cases: scenes that make strand engines fail, each with every integrator and the marks that it has
-// to meet. docs/stability.md has what came out.
+// The hard cases: scenes that make strand engines fail, each with every integrator and the thresholds that it
+// has to meet. docs/stability.md has what came out.
 //
 // The settings are the defaults but for the integrator and what a case is about. Where theory
 // (runtime/stable.h) says that an integrator needs shorter substeps, it gets them, up to 64 a frame; where
@@ -20,7 +20,7 @@
 
 namespace hairloom {
 
-/// One thing measured, held to a mark.
+/// One thing measured, held to a threshold.
 struct StabilityThreshold {
     std::string what;
     std::string unit = {};   ///< "" for a pure number
@@ -31,7 +31,7 @@ struct StabilityThreshold {
     /// other's work, and hair may tremble.
     bool claimed = true;
 
-    /// What is no number does not meet any mark.
+    /// What is no number does not meet any threshold.
     bool met() const { return worst <= threshold; }
 };
 
@@ -41,13 +41,13 @@ struct StabilityResult {
     std::string family;
     std::string integrator;      ///< StabilityMethod::name
     std::uint32_t substeps = 0;  ///< a frame
-    bool claimed = true;         ///< not where `limit` says why a mark may be missed
-    bool pass = false;           ///< every mark is met
+    bool claimed = true;         ///< not where `limit` says why a threshold may be missed
+    bool pass = false;           ///< every threshold is met
     std::vector<StabilityThreshold> thresholds;
     std::string limit;  ///< why the case, or what it misses of it, is not claimed; empty where it is
     std::optional<std::uint64_t> failedAt;  ///< substep in which a strand broke; absent where none did
 
-    /// The mark that is missed farthest, or met by the least.
+    /// The threshold that is missed farthest, or met by the least.
     const StabilityThreshold& closest() const;
 };
 

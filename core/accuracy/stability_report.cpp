@@ -38,7 +38,7 @@ const char* meaningOf(int number) {
 
 void addCases(const std::vector<StabilityResult>& results, HtmlReport& page) {
     std::vector<std::vector<std::string>> rows{
-        {"case", "scene", "integrator", "substeps", "result", "deciding mark"}};
+        {"case", "scene", "integrator", "substeps", "result", "deciding threshold"}};
     std::vector<bool> strong;
     for (const StabilityResult& r : results) {
         rows.push_back({fmt::format("{} {}", r.number, r.name), meaningOf(r.number), r.integrator,
@@ -91,7 +91,8 @@ std::string verdict(const StabilityResult& result) {
 
 std::string stabilityCsv(const std::vector<StabilityResult>& results) {
     std::string text =
-        "number,case,family,integrator,substeps,claimed,pass,measured,worst,mark,unit,failed_at,limit\r\n";
+        "number,case,family,integrator,substeps,claimed,pass,measured,worst,threshold,unit,failed_at,"
+        "limit\r\n";
     for (const StabilityResult& r : results) {
         for (const StabilityThreshold& m : r.thresholds) {
             text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\r\n", r.number, quoted(r.name),

@@ -16,11 +16,11 @@ namespace hairloom {
 /// decidingThreshold().
 std::string verdict(const StabilityResult& result);
 
-/// "time to rest 6 of 5 s": the mark that decides.
+/// "time to rest 6 of 5 s": the threshold that decides.
 std::string decidingThreshold(const StabilityResult& result);
 
-/// One line per mark after a head line, RFC 4180: number, case, family, integrator, substeps, claimed, pass,
-/// measured, worst, mark, unit, failed_at, limit.
+/// One line per threshold after a head line, RFC 4180: number, case, family, integrator, substeps, claimed,
+/// pass, measured, worst, threshold, unit, failed_at, limit.
 std::string stabilityCsv(const std::vector<StabilityResult>& results);
 
 /// A table for docs/stability.md: a row per case, a column per integrator.

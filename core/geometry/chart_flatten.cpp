@@ -56,8 +56,8 @@ std::optional<std::vector<Vec2d>> tryFlatten(Mesh mesh, const ChartPiece& piece,
 }
 
 std::vector<Vec2d> layTriangle(const ChartPiece& piece) {
-    const auto place = [&](std::size_t i) { return piece.positions[piece.triangles[0][i]]; };
-    const Vec3d ab = place(1) - place(0), ac = place(2) - place(0);
+    const auto position = [&](std::size_t i) { return piece.positions[piece.triangles[0][i]]; };
+    const Vec3d ab = position(1) - position(0), ac = position(2) - position(0);
     const double along = ac.dot(ab.normalized());
     return {{0, 0}, {ab.norm(), 0}, {along, ab.cross(ac).norm() / ab.norm()}};
 }

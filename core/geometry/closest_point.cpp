@@ -38,8 +38,8 @@ Vec3d barycentricsOf(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d
 
 double angleAt(const ScalpMesh& mesh, const Triangle& t, std::uint32_t vertex) {
     const std::size_t i = t[0] == vertex ? 0 : t[1] == vertex ? 1 : 2;
-    const auto place = [&](std::size_t k) -> Vec3d { return mesh.positions()[t[k % 3]].cast<double>(); };
-    const Vec3d a = place(i + 1) - place(i), b = place(i + 2) - place(i);
+    const auto position = [&](std::size_t k) -> Vec3d { return mesh.positions()[t[k % 3]].cast<double>(); };
+    const Vec3d a = position(i + 1) - position(i), b = position(i + 2) - position(i);
     return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 

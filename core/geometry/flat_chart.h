@@ -38,7 +38,7 @@ std::pair<FaceSet, FaceSet> splitFaces(const ScalpMesh& mesh, const FaceSet& fac
 /// else Tutte's on a circle. Nothing if rounding folds even these.
 std::optional<std::vector<Vec2d>> flattenDisc(const ChartPiece& piece);
 
-/// Segments in the plane by place.
+/// Segments in the plane by position.
 class SegmentGrid {
   public:
     using Segment = std::array<Vec2d, 2>;

@@ -98,7 +98,7 @@ std::vector<std::uint32_t> weld(const PolygonSoup& soup, RepairedTriangles& mesh
     return vertexOf;
 }
 
-/// The corners of face f without those that repeat their predecessor's place.
+/// The corners of face f without those that repeat their predecessor's position.
 void distinctCorners(const PolygonSoup& soup, std::size_t f, const std::vector<std::uint32_t>& vertexOf,
                      std::vector<std::uint32_t>& corners) {
     corners.clear();

@@ -14,7 +14,7 @@ namespace hairloom {
 /// Triangles on their way to a ScalpMesh; every triangle remembers the corners of the soup it was cut from.
 struct RepairedTriangles {
     std::vector<Vec3f> positions;               ///< per vertex
-    std::vector<std::uint32_t> sourceVertices;  ///< per vertex, first soup vertex at this place
+    std::vector<std::uint32_t> sourceVertices;  ///< per vertex, first soup vertex at this position
     std::vector<Triangle> triangles;            ///< vertex indices
     std::vector<Triangle> sourceCorners;        ///< per triangle, index into PolygonSoup::corners
     std::vector<std::uint32_t> sourceFaces;     ///< per triangle, face of the soup

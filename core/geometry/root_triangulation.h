@@ -11,8 +11,8 @@
 namespace hairloom {
 
 /// Triangles of root indices, counter-clockwise seen from outside. Each chart is triangulated by itself, so
-/// none bridges a hole of the selection or joins two pieces. Roots that share a place keep one as a vertex;
-/// the others are listed in `coincident` with the root they fall on.
+/// none bridges a hole of the selection or joins two pieces. Roots that share a position keep one as a
+/// vertex; the others are listed in `coincident` with the root they fall on.
 struct RootTriangulation {
     std::vector<Triangle> triangles;
     struct Coincident {

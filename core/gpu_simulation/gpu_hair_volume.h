@@ -3,8 +3,8 @@
 // Hair against hair through a volume (runtime/alternatives/hair_volume.h) between the frames of strands on a
 // GPU. The grid is laid out on the device, from the box of the points there.
 //
-// Differs from the runtime's: places and pressures are in single precision, and velocities of a sum are whole
-// numbers of up to 23 bits; sums are exact and equal in any order all the same.
+// Differs from the runtime's: positions and pressures are in single precision, and velocities of a sum are
+// whole numbers of up to 23 bits; sums are exact and equal in any order all the same.
 
 #include <array>
 #include <span>

@@ -43,15 +43,15 @@ runtime::Float3 toFloat3(const Vec3f& v) {
 void GpuHead::measure(const HeadAtRest& head) {
     vertexBoxes_.assign(boneCount_ + 1, {});
     rootBoxes_.assign(boneCount_ + 1, {});
-    const auto addVertex = [&](std::vector<Box3f>& boxes, std::uint32_t vertex, const Vec3f& place) {
-        if (!skinned_) return void(boxes[0].extend(place));
+    const auto addVertex = [&](std::vector<Box3f>& boxes, std::uint32_t vertex, const Vec3f& position) {
+        if (!skinned_) return void(boxes[0].extend(position));
         float sum = 0;
         for (std::size_t slot = 0; slot < 4; ++slot) {
             const float weight = head.skin->weights[vertex][slot];
-            if (weight > 0) boxes[head.skin->bones[vertex][slot]].extend(place);
+            if (weight > 0) boxes[head.skin->bones[vertex][slot]].extend(position);
             sum += weight;
         }
-        if (sum == 0) boxes[boneCount_].extend(place);
+        if (sum == 0) boxes[boneCount_].extend(position);
     };
     for (std::uint32_t v = 0; v < vertexCount_; ++v) addVertex(vertexBoxes_, v, head.mesh->positions()[v]);
     for (std::size_t r = 0; r < head.roots.size(); ++r) {
@@ -155,7 +155,7 @@ void GpuHead::follow(std::span<const Eigen::Affine3f> bones_ws) {
     for (std::size_t b = 0; b < now.size() && !isFirst; ++b) {
         if (now[b].matrix() == bones_[b].matrix()) continue;
         roots_.moved = true;
-        // The way of a point is a convex function of its place, so that none goes farther than a corner.
+        // The way of a point is a convex function of its position, so that none goes farther than a corner.
         for (int i = 0; i < 8 && !rootBoxes_[b].isEmpty(); ++i) {
             const Vec3f corner = cornerOf(rootBoxes_[b], i);
             roots_.motion = std::max(roots_.motion, (now[b] * corner - bones_[b] * corner).norm());

@@ -49,7 +49,7 @@ struct KernelKey {
     SphereSource spheres = SphereSource::none;
     bool wind = false;
     bool sleep = false;
-    bool velocities = false;  ///< are written as well as places
+    bool velocities = false;  ///< are written as well as positions
     bool rods = false;        ///< a thread per strand, whose numbers stay in buffers
     std::string stages;       ///< of a substep, as calls
 

@@ -99,7 +99,7 @@ Status StrandEngine::Impl::makeBuffers() {
     };
     const std::size_t points = shape->offsets.back();
     if (auto made = make(reportBuffer, "report", StrandEngine::kReportWords, 4); !made) return made;
-    if (auto made = make(places, "places", points, sizeof(shaders::float4)); !made) return made;
+    if (auto made = make(positions, "positions", points, sizeof(shaders::float4)); !made) return made;
     if (options.velocities) {
         if (auto made = make(velocities, "velocities", points, sizeof(shaders::float4)); !made) return made;
     }
@@ -166,7 +166,7 @@ StrandEngine::Impl::Run StrandEngine::Impl::runFor(const runtime::SimulationSett
                                                    Float3 high) {
     Run next{settings, {runtime::makeWind(settings), run.wind.given}, {}};
     rejectedWinds = runtime::takeWind(settings, input, next.wind);
-    runtime::FrameOutlook planInput;
+    runtime::FramePlanInput planInput;
     planInput.strandCount = static_cast<std::uint32_t>(shape->restRoots.size());
     planInput.longestPointCount = shape->longestPointCount;
     planInput.longestStrand = shape->longestStrand;
@@ -269,7 +269,7 @@ std::uint32_t StrandEngine::pointCount() const {
     return impl_->shape->offsets.back();
 }
 gpu::BufferPtr StrandEngine::positions_ws() const {
-    return impl_->places;
+    return impl_->positions;
 }
 gpu::BufferPtr StrandEngine::velocities_ws() const {
     return impl_->velocities;
@@ -327,7 +327,7 @@ std::size_t StrandEngine::frameBytes() const {
         }
         bytes += static_cast<std::size_t>(batch.rootsTo->desc().size);
     }
-    return bytes + static_cast<std::size_t>(impl_->places->desc().size);
+    return bytes + static_cast<std::size_t>(impl_->positions->desc().size);
 }
 
 }  // namespace hairloom::gpu_simulation

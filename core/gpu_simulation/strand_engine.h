@@ -24,7 +24,7 @@ namespace hairloom::gpu_simulation {
 
 struct EngineOptions {
     LayoutOptions layout;
-    bool velocities = false;  ///< written each frame beside the places
+    bool velocities = false;  ///< written each frame beside the positions
     /// While a plan's kernel is being made, the frame waits for it. Else the last plan goes on until it is
     /// ready, with the settings that it was made from.
     bool waitForKernels = true;
@@ -48,8 +48,8 @@ struct FrameReport {
 
 /// Roots that the device itself has found (GpuHead), in place of FrameInput::roots_ws.
 struct DeviceRoots {
-    gpu::BufferPtr frames_ws;        ///< two float4 a strand: place; rotation since rest
-    runtime::Float3 min_ws, max_ws;  ///< a box that holds all places
+    gpu::BufferPtr frames_ws;        ///< two float4 a strand: position; rotation since rest
+    runtime::Float3 min_ws, max_ws;  ///< a box that holds all positions
     float motion = 0.0f;             ///< metres; no root goes farther in the frame
     bool moved = true;               ///< false: all are where they were in the last frame
 };

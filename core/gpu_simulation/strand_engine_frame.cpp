@@ -51,8 +51,8 @@ std::vector<bool> StrandEngine::Impl::takeRoots(const runtime::FrameInput& input
         low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
         high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
         if (!rootsOfDevice && p == roots[s].position && root.rotation == roots[s].rotation) continue;
-        const float way = length(p - roots[s].position);
-        if (way <= wanted.teleportDistance) rootMotion = std::max(rootMotion, way);
+        const float distance = length(p - roots[s].position);
+        if (distance <= wanted.teleportDistance) rootMotion = std::max(rootMotion, distance);
         roots[s] = root;
         moved[s] = true;
     }
@@ -73,7 +73,7 @@ bool StrandEngine::Impl::takeRoots(const DeviceRoots& given) {
     return moved;
 }
 
-/// Puts the places of the frame's roots in the order of the slots.
+/// Puts the positions of the frame's roots in the order of the slots.
 Status StrandEngine::Impl::gatherRoots(gpu::CommandList& list, const DeviceRoots& given) {
     if (rootRows == nullptr) {
         auto made = compiledKernel(device, "root_rows");
@@ -109,7 +109,8 @@ Status StrandEngine::Impl::gatherRoots(gpu::CommandList& list, const DeviceRoots
     return {};
 }
 
-/// Measures what is known of the last frame from the origin of this one. What sleeps wakes, to write its places anew.
+/// Measures what is known of the last frame from the origin of this one. What sleeps wakes, to write its
+/// positions anew.
 void StrandEngine::Impl::moveOrigin(gpu::CommandList& list, std::array<double, 3> next_ws) {
     if (!runtime::isFinite(next_ws)) next_ws = origin_ws.value_or(std::array<double, 3>{});
     const Float3 shift = runtime::shiftOfOrigin(origin_ws.value_or(next_ws), next_ws);
@@ -120,15 +121,15 @@ void StrandEngine::Impl::moveOrigin(gpu::CommandList& list, std::array<double, 3
     rootsMin_ws = rootsMin_ws + shift;
     rootsMax_ws = rootsMax_ws + shift;
     for (const StrandBatch& batch : batches) {
-        std::vector<float> positions(std::size_t{batch.slots} * 3);
+        std::vector<float> rootPositions(std::size_t{batch.slots} * 3);
         for (std::size_t slot = 0; slot < batch.slots; ++slot) {
             const runtime::Block& block = shape->blocks[batch.blocks[slot / runtime::kBlockLanes]];
             const Float3 at = roots[block.strandOfLane[slot % runtime::kBlockLanes]].position;
-            positions[slot] = at.x;
-            positions[batch.slots + slot] = at.y;
-            positions[2 * std::size_t{batch.slots} + slot] = at.z;
+            rootPositions[slot] = at.x;
+            rootPositions[batch.slots + slot] = at.y;
+            rootPositions[2 * std::size_t{batch.slots} + slot] = at.z;
         }
-        list.updateBuffer(batch.roots, 0, bytesOfVector(positions));
+        list.updateBuffer(batch.roots, 0, bytesOfVector(rootPositions));
     }
     restsVoid = wakeAll = rootsMoved = true;
 }
@@ -300,7 +301,7 @@ void StrandEngine::Impl::dispatch(gpu::CommandList& list, const StrandBatch& bat
     write(1, batch.roots);
     write(2, batch.rests);
     write(3, reportBuffer);
-    write(4, places);
+    write(4, positions);
     const bool inBuffers = batch.key.shape.storage == StrandStorage::buffers;
     write(5, batch.rodState);
     write(6, rods ? velocities : nullptr);
@@ -334,7 +335,8 @@ Status StrandEngine::Impl::record(gpu::CommandList& list, const runtime::FrameIn
                       std::max(rootsMax_ws.z, highBefore.z)};
     if (auto chosen = choose(input, low, high); !chosen) return chosen;
     movingSpheres.clear();
-    if (run.plan.on(Effect::collision)) moveSpheres(frameSpheres, substepsIn(run.settings, input.dt), movingSpheres);
+    if (run.plan.on(Effect::collision))
+        moveSpheres(frameSpheres, substepsIn(run.settings, input.dt), movingSpheres);
     const runtime::SubstepContext context =
         runtime::substepContext(run.settings, run.plan, input.dt, movingSpheres);
 

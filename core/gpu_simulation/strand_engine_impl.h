@@ -25,7 +25,7 @@ struct StrandEngine::Impl {
     runtime::RodRest rodRest;  ///< empty for springs
     std::vector<StrandBatch> batches;
     std::optional<GpuHairVolume> volume;
-    gpu::BufferPtr reportBuffer, places, velocities;
+    gpu::BufferPtr reportBuffer, positions, velocities;
     gpu::BufferPtr waking, spheres;  // null while sleep, or many spheres, are off
 
     runtime::SimulationSettings wanted;
@@ -41,11 +41,11 @@ struct StrandEngine::Impl {
     runtime::FrameSpheres frameSpheres;
     std::vector<runtime::Sphere> spheresBefore;
     std::vector<runtime::MovingSphere> movingSpheres;
-    float substep = 0.0f;       ///< seconds of the last one; 0 before the first
+    float substep = 0.0f;                            ///< seconds of the last one; 0 before the first
     std::optional<std::array<double, 3>> origin_ws;  ///< of the last frame; none before the first
-    float bendSubstep = 0.0f;   ///< that the springs' buffers are for; 0: none
-    bool restsVoid = false;     ///< other settings: nothing sleeps
-    bool tensionsVoid = false;  ///< those on the device are of a plan that is over
+    float bendSubstep = 0.0f;                        ///< that the springs' buffers are for; 0: none
+    bool restsVoid = false;                          ///< other settings: nothing sleeps
+    bool tensionsVoid = false;                       ///< those on the device are of a plan that is over
     bool wakeAll = false;
     bool rodsFresh = false;      ///< the device has places of rods, and nothing else yet
     bool rootsMoved = false;     ///< in the last frame, as the device knows

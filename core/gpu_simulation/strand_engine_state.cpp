@@ -164,12 +164,12 @@ Status StrandEngine::Impl::writeState(const runtime::State& given) {
     for (const StrandBatch& batch : batches) {
         if (auto status = writeBatch(**list, batch, state); !status) return status;
     }
-    std::vector<Float3> positions(shape->offsets.back());
-    runtime::readPositions(*shape, state, positions);
+    std::vector<Float3> points_ws(shape->offsets.back());
+    runtime::readPositions(*shape, state, points_ws);
     std::vector<shaders::float4> quads;
-    quads.reserve(positions.size());
-    for (const Float3& p : positions) quads.push_back({p.x, p.y, p.z, 1.0f});
-    (*list)->updateBuffer(places, 0, std::as_bytes(std::span(quads)));
+    quads.reserve(points_ws.size());
+    for (const Float3& p : points_ws) quads.push_back({p.x, p.y, p.z, 1.0f});
+    (*list)->updateBuffer(positions, 0, std::as_bytes(std::span(quads)));
     for (std::size_t b = 0; b < shape->blocks.size(); ++b) {
         for (std::uint32_t lane = 0; lane < shape->blocks[b].strands; ++lane) {
             const auto row = [&](std::size_t r) {
@@ -273,7 +273,7 @@ Result<runtime::Measurements> StrandEngine::measure() {
 
 Status StrandEngine::readPositions(std::span<Float3> positions_ws) {
     assert(positions_ws.size() == pointCount());
-    const auto bytes = impl_->readTogether({impl_->places});
+    const auto bytes = impl_->readTogether({impl_->positions});
     if (!bytes) return tl::unexpected(bytes.error());
     for (std::size_t p = 0; p < positions_ws.size(); ++p)
         std::memcpy(&positions_ws[p], bytes->data() + p * sizeof(shaders::float4), sizeof(Float3));

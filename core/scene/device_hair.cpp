@@ -15,7 +15,7 @@ using gpu::Binding;
 using gpu::Usage;
 using gpu_simulation::makeBuffer;
 
-constexpr std::size_t kTellings = 4;        // frames under way, and one to record into
+constexpr std::size_t kReadbacks = 4;       // frames under way, and one to record into
 constexpr std::uint32_t kMaxSample = 1024;  // points
 constexpr std::uint32_t kExtentThreads = 64 * 256;
 constexpr std::uint32_t kMaxGroups = 65535;  // of one dimension, on every device
@@ -103,7 +103,7 @@ Result<DeviceHair> DeviceHair::make(gpu::Device& device,
         hair.restSample_.push_back(drawn[i]);
     hair.sampleCount_ = static_cast<std::uint32_t>(hair.restSample_.size());
     if (auto made = hair.makeBuffers(); !made) return tl::unexpected(made.error());
-    hair.forgetPlaces(start);
+    hair.forgetSeen(start);
     return hair;
 }
 
@@ -120,16 +120,16 @@ Status DeviceHair::makeBuffers() {
     keep(extent_,
          makeBuffer<std::uint32_t>(*device_, "extent of hair", kReadWrite, HAIRLOOM_EXTENT_WORDS, {}));
     keep(samples_, makeBuffer<shaders::float4>(*device_, "sample of hair", kReadWrite, sampleCount_, {}));
-    tellings_.resize(kTellings);
-    for (Telling& telling : tellings_) {
+    readbacks_.resize(kReadbacks);
+    for (Readback& readback : readbacks_) {
         gpu::BufferDesc desc;
         desc.name = "told of a frame";
         desc.size = kReportBytes + kMeasureBytes + kExtentBytes + sampleCount_ * sizeof(shaders::float4);
         desc.usage = Usage::None;
         desc.memory = gpu::MemoryKind::ReadBack;
-        keep(telling.buffer, device_->createBuffer(desc));
+        keep(readback.buffer, device_->createBuffer(desc));
     }
-    recording_ = tellings_.size();
+    recording_ = readbacks_.size();
     for (auto& [kernel, name] :
          {std::pair{&measureKernel_, "strands_measure"}, {&extentKernel_, "hair_extent"}}) {
         auto compiled = gpu_simulation::compiledKernel(*device_, name);
@@ -178,7 +178,7 @@ Status DeviceHair::record(gpu::CommandList& list, float dt, double time, const H
     }
     recordMeasures(list, spheres);
     recordExtent(list);
-    recordTelling(list);
+    recordReadback(list);
     return {};
 }
 
@@ -220,10 +220,10 @@ void DeviceHair::recordExtent(gpu::CommandList& list) {
     dispatch(list, "extent", extentKernel_, bound, gpu::bytesOf(whole), groups);
 }
 
-void DeviceHair::recordTelling(gpu::CommandList& list) {
-    const auto free = std::ranges::find_if(tellings_, [](const Telling& t) { return t.frame == 0; });
-    recording_ = static_cast<std::size_t>(free - tellings_.begin());
-    if (free == tellings_.end()) return;  // the device is far behind: this frame is not told of
+void DeviceHair::recordReadback(gpu::CommandList& list) {
+    const auto free = std::ranges::find_if(readbacks_, [](const Readback& t) { return t.frame == 0; });
+    recording_ = static_cast<std::size_t>(free - readbacks_.begin());
+    if (free == readbacks_.end()) return;  // the device is far behind: this frame is not told of
     free->frame = frame_;
     free->substep = engine_.substep();
     std::uint64_t at = 0;
@@ -235,8 +235,8 @@ void DeviceHair::recordTelling(gpu::CommandList& list) {
         list.copyBuffer(buffer, 0, free->buffer, at, bytes);
         at += bytes;
     }
-    free->tellsPositions = tellsPositions_;
-    if (!tellsPositions_) return;
+    free->hasPositions = readsPositions_;
+    if (!readsPositions_) return;
     if (free->positions == nullptr) {
         gpu::BufferDesc desc;
         desc.name = "told positions";
@@ -244,7 +244,7 @@ void DeviceHair::recordTelling(gpu::CommandList& list) {
         desc.usage = Usage::None;
         desc.memory = gpu::MemoryKind::ReadBack;
         auto made = device_->createBuffer(desc);
-        free->tellsPositions = made.has_value();
+        free->hasPositions = made.has_value();
         if (!made) return;
         free->positions = std::move(*made);
     }
@@ -252,36 +252,36 @@ void DeviceHair::recordTelling(gpu::CommandList& list) {
 }
 
 void DeviceHair::submitted(gpu::SubmissionPtr submission) {
-    if (recording_ < tellings_.size()) tellings_[recording_].submission = std::move(submission);
-    recording_ = tellings_.size();
+    if (recording_ < readbacks_.size()) readbacks_[recording_].submission = std::move(submission);
+    recording_ = readbacks_.size();
 }
 
 /// Takes what has come back, in the order of frames.
 void DeviceHair::listen() {
     // A list that was never submitted tells nothing.
-    if (recording_ < tellings_.size()) tellings_[recording_].frame = 0;
-    recording_ = tellings_.size();
-    std::vector<Telling*> done;
-    for (Telling& telling : tellings_) {
-        if (telling.submission != nullptr && telling.submission->isDone()) done.push_back(&telling);
+    if (recording_ < readbacks_.size()) readbacks_[recording_].frame = 0;
+    recording_ = readbacks_.size();
+    std::vector<Readback*> done;
+    for (Readback& readback : readbacks_) {
+        if (readback.submission != nullptr && readback.submission->isDone()) done.push_back(&readback);
     }
-    std::ranges::sort(done, {}, &Telling::frame);
-    for (Telling* telling : done) {
-        std::vector<std::byte> bytes(static_cast<std::size_t>(telling->buffer->desc().size));
-        if (device_->readMapped(telling->buffer, 0, bytes)) take(*telling, bytes);
-        told_.positions_ws.clear();
-        if (telling->tellsPositions) {
+    std::ranges::sort(done, {}, &Readback::frame);
+    for (Readback* readback : done) {
+        std::vector<std::byte> bytes(static_cast<std::size_t>(readback->buffer->desc().size));
+        if (device_->readMapped(readback->buffer, 0, bytes)) take(*readback, bytes);
+        latest_.positions_ws.clear();
+        if (readback->hasPositions) {
             std::vector<shaders::float4> points(engine_.pointCount());
-            if (device_->readMapped(telling->positions, 0, std::as_writable_bytes(std::span(points)))) {
-                for (const shaders::float4& p : points) told_.positions_ws.emplace_back(p.x, p.y, p.z);
+            if (device_->readMapped(readback->positions, 0, std::as_writable_bytes(std::span(points)))) {
+                for (const shaders::float4& p : points) latest_.positions_ws.emplace_back(p.x, p.y, p.z);
             }
         }
-        telling->submission = nullptr;
-        telling->frame = 0;
+        readback->submission = nullptr;
+        readback->frame = 0;
     }
 }
 
-void DeviceHair::take(const Telling& telling, std::span<const std::byte> bytes) {
+void DeviceHair::take(const Readback& readback, std::span<const std::byte> bytes) {
     std::array<std::uint32_t, gpu_simulation::StrandEngine::kReportWords> report{};
     std::array<std::uint32_t, HAIRLOOM_MEASURE_WORDS> measures{};
     std::array<std::uint32_t, HAIRLOOM_EXTENT_WORDS> extent{};
@@ -295,43 +295,43 @@ void DeviceHair::take(const Telling& telling, std::span<const std::byte> bytes) 
     copy(extent.data(), sizeof(extent));
     copy(sample.data(), sample.size() * sizeof(shaders::float4));
 
-    const std::uint64_t restored = told_.restoredStrands, guarded = told_.guardedStrands;
-    told_.frame = telling.frame;
-    told_.report = gpu_simulation::StrandEngine::reportFrom(report, telling.substep);
-    told_.restoredStrands = restored + told_.report.restoredStrands;
-    told_.guardedStrands = guarded + told_.report.guardedStrands;
-    told_.maxStretch = std::max(told_.maxStretch, static_cast<double>(std::bit_cast<float>(measures[0])));
-    told_.maxPenetration =
-        std::max(told_.maxPenetration, static_cast<double>(std::bit_cast<float>(measures[1])));
-    told_.report.fastest = std::bit_cast<float>(measures[2]);
-    told_.nanCount += measures[3];
-    told_.kineticEnergy = 1e-6 * (4294967296.0 * measures[5] + measures[4]);
-    if (telling.frame < placesSince_) return;
-    Places places;
-    places.frame = telling.frame;
+    const std::uint64_t restored = latest_.restoredStrands, guarded = latest_.guardedStrands;
+    latest_.frame = readback.frame;
+    latest_.report = gpu_simulation::StrandEngine::reportFrom(report, readback.substep);
+    latest_.restoredStrands = restored + latest_.report.restoredStrands;
+    latest_.guardedStrands = guarded + latest_.report.guardedStrands;
+    latest_.maxStretch = std::max(latest_.maxStretch, static_cast<double>(std::bit_cast<float>(measures[0])));
+    latest_.maxPenetration =
+        std::max(latest_.maxPenetration, static_cast<double>(std::bit_cast<float>(measures[1])));
+    latest_.report.fastest = std::bit_cast<float>(measures[2]);
+    latest_.nanCount += measures[3];
+    latest_.kineticEnergy = 1e-6 * (4294967296.0 * measures[5] + measures[4]);
+    if (readback.frame < seenSince_) return;
+    SeenHair seen;
+    seen.frame = readback.frame;
     for (int axis = 0; axis < 3; ++axis) {
-        places.box.min()[axis] = fromOrdered(extent[static_cast<std::size_t>(axis)]);
-        places.box.max()[axis] = fromOrdered(extent[static_cast<std::size_t>(axis) + 3]);
+        seen.box.min()[axis] = fromOrdered(extent[static_cast<std::size_t>(axis)]);
+        seen.box.max()[axis] = fromOrdered(extent[static_cast<std::size_t>(axis) + 3]);
     }
-    if (places.box.isEmpty() || !places.box.min().allFinite() || !places.box.max().allFinite()) return;
+    if (seen.box.isEmpty() || !seen.box.min().allFinite() || !seen.box.max().allFinite()) return;
     for (const shaders::float4& p : sample) {
         const Vec3f point(p.x, p.y, p.z);
-        places.sample.push_back(places.box.contains(point) ? point : places.box.center());
+        seen.sample.push_back(seen.box.contains(point) ? point : seen.box.center());
     }
-    placesBefore_ = std::move(places_);
-    places_ = std::move(places);
+    seenBefore_ = std::move(seen_);
+    seen_ = std::move(seen);
 }
 
 /// Hair stands at rest on `pose`: what earlier frames tell is of elsewhere.
-void DeviceHair::forgetPlaces(const HeadPose& pose) {
-    placesSince_ = frame_ + 1;
-    placesBefore_ = {};
-    places_ = {};
-    places_.frame = frame_;
+void DeviceHair::forgetSeen(const HeadPose& pose) {
+    seenSince_ = frame_ + 1;
+    seenBefore_ = {};
+    seen_ = {};
+    seen_.frame = frame_;
     if (skinned_ && !pose.bones_ws.empty()) return;  // where it may be at all is known
     for (const Vec3f& p : restSample_) {
-        places_.sample.push_back(pose.head_ws * p);
-        places_.box.extend(places_.sample.back());
+        seen_.sample.push_back(pose.head_ws * p);
+        seen_.box.extend(seen_.sample.back());
     }
 }
 
@@ -340,28 +340,27 @@ Box3f DeviceHair::hairBounds() const {
     const Vec3f reach = Vec3f::Constant(reach_);
     const Box3f possible(Vec3f(roots.min_ws.x, roots.min_ws.y, roots.min_ws.z) - reach,
                          Vec3f(roots.max_ws.x, roots.max_ws.y, roots.max_ws.z) + reach);
-    if (places_.box.isEmpty()) return possible;
+    if (seen_.box.isEmpty()) return possible;
     // Since it was seen hair has gone on about as far as in the frames before.
-    Box3f box = places_.box;
+    Box3f box = seen_.box;
     float step = 0;
-    if (placesBefore_.sample.size() == places_.sample.size()) {
-        for (std::size_t i = 0; i < places_.sample.size(); ++i)
-            step = std::max(step, (places_.sample[i] - placesBefore_.sample[i]).norm());
-        step /= static_cast<float>(std::max<std::uint64_t>(places_.frame - placesBefore_.frame, 1));
+    if (seenBefore_.sample.size() == seen_.sample.size()) {
+        for (std::size_t i = 0; i < seen_.sample.size(); ++i)
+            step = std::max(step, (seen_.sample[i] - seenBefore_.sample[i]).norm());
+        step /= static_cast<float>(std::max<std::uint64_t>(seen_.frame - seenBefore_.frame, 1));
     }
-    const float late = static_cast<float>(frame_ - places_.frame);
+    const float late = static_cast<float>(frame_ - seen_.frame);
     const Vec3f around = Vec3f::Constant(kSlack + 1.5f * step * late);
     box = Box3f(box.min() - around, box.max() + around).intersection(possible);
     return box.isEmpty() ? possible : box;
 }
 
 std::vector<Vec3f> DeviceHair::hairSample() const {
-    std::vector<Vec3f> sample = places_.sample;
-    if (placesBefore_.sample.size() != sample.size() || places_.frame <= placesBefore_.frame) return sample;
+    std::vector<Vec3f> sample = seen_.sample;
+    if (seenBefore_.sample.size() != sample.size() || seen_.frame <= seenBefore_.frame) return sample;
     const float ahead =
-        static_cast<float>(frame_ - places_.frame) / static_cast<float>(places_.frame - placesBefore_.frame);
-    for (std::size_t i = 0; i < sample.size(); ++i)
-        sample[i] += ahead * (sample[i] - placesBefore_.sample[i]);
+        static_cast<float>(frame_ - seen_.frame) / static_cast<float>(seen_.frame - seenBefore_.frame);
+    for (std::size_t i = 0; i < sample.size(); ++i) sample[i] += ahead * (sample[i] - seenBefore_.sample[i]);
     return sample;
 }
 
@@ -381,9 +380,9 @@ Result<std::shared_ptr<const runtime::State>> DeviceHair::readState() {
 }
 
 Status DeviceHair::writeState(const runtime::State& state) {
-    placesSince_ = frame_ + 1;
-    placesBefore_ = {};
-    places_ = {};
+    seenSince_ = frame_ + 1;
+    seenBefore_ = {};
+    seen_ = {};
     return engine_.writeState(state);
 }
 

@@ -41,7 +41,7 @@ class DeviceHair {
     void setSpheres(std::vector<CollisionSphere> spheres) { spheres_ = std::move(spheres); }
 
     /// Whether frames from the next on tell where all strands are: for marks that are drawn on them.
-    void setTellsPositions(bool on) { tellsPositions_ = on; }
+    void setReadsPositions(bool on) { readsPositions_ = on; }
 
     /// Records a frame of `dt` seconds that ends on `pose`, outside a pass; `time`: seconds at its end.
     Status record(gpu::CommandList& list, float dt, double time, const HeadPose& pose);
@@ -51,7 +51,7 @@ class DeviceHair {
     Status show(render::Renderer& renderer, bool hair, bool head) const;
 
     /// The latest that has come back; never waits.
-    const DeviceFrame& told() const { return told_; }
+    const DeviceFrame& latestFrame() const { return latest_; }
     const gpu_simulation::StrandEngine& engine() const { return engine_; }
 
     // These wait for the device.
@@ -64,9 +64,9 @@ class DeviceHair {
 
   private:
     /// A frame on its way back.
-    struct Telling {
+    struct Readback {
         gpu::BufferPtr buffer, positions;
-        bool tellsPositions = false;
+        bool hasPositions = false;
         gpu::SubmissionPtr submission;  ///< null: the slot is free, or its list is being recorded
         std::uint64_t frame = 0;
         float substep = 0;
@@ -79,10 +79,10 @@ class DeviceHair {
     std::vector<Eigen::Affine3f> bonesOf(const HeadPose& pose) const;
     void recordMeasures(gpu::CommandList& list, std::span<const runtime::Sphere> spheres);
     void recordExtent(gpu::CommandList& list);
-    void recordTelling(gpu::CommandList& list);
+    void recordReadback(gpu::CommandList& list);
     void listen();
-    void take(const Telling& telling, std::span<const std::byte> bytes);
-    void forgetPlaces(const HeadPose& pose);
+    void take(const Readback& readback, std::span<const std::byte> bytes);
+    void forgetSeen(const HeadPose& pose);
     /// Where hair may be at the end of the last recorded frame, by what was told of earlier ones.
     Box3f hairBounds() const;
     std::vector<Vec3f> hairSample() const;
@@ -94,26 +94,26 @@ class DeviceHair {
     gpu_simulation::GpuHead head_;
     std::optional<gpu_simulation::GpuFollowHairs> follow_;
     std::vector<CollisionSphere> spheres_;
-    bool skinned_ = false, tellsPositions_ = false;
+    bool skinned_ = false, readsPositions_ = false;
     float reach_ = 0;  ///< metres that hair gets away from its root
     std::uint32_t drawnPointCount_ = 0, sampleCount_ = 0, sampleStep_ = 1;
     std::vector<Vec3f> restSample_;
 
     gpu::BufferPtr measuredRest_, measures_, sphereBuffer_, extent_, samples_;
     gpu::ComputePipelinePtr measureKernel_, extentKernel_;
-    std::vector<Telling> tellings_;
+    std::vector<Readback> readbacks_;
     std::size_t recording_ = 0;  ///< of tellings_, whose list is open or on its way; their number: none
     std::uint64_t frame_ = 0;
-    std::uint64_t placesSince_ = 0;  ///< frames before it tell nothing of where hair is now
+    std::uint64_t seenSince_ = 0;  ///< frames before it tell nothing of where hair is now
 
-    DeviceFrame told_;
+    DeviceFrame latest_;
     /// Hair in a frame: its box, and some of its points.
-    struct Places {
+    struct SeenHair {
         std::uint64_t frame = 0;
         Box3f box;
         std::vector<Vec3f> sample;
     };
-    Places places_, placesBefore_;
+    SeenHair seen_, seenBefore_;
 };
 
 }  // namespace hairloom

@@ -22,16 +22,16 @@
 namespace hairloom {
 namespace {
 
-constexpr double kAnyPlace = 1e6;  // metres
+constexpr double kMaxCoordinate = 1e6;  // metres
 
 render::Camera readCamera(JsonReader reader) {
     render::Camera camera;
-    camera.eye_ws = reader.vector("eye", -kAnyPlace, kAnyPlace, "m");
-    camera.target_ws = reader.vector("target", -kAnyPlace, kAnyPlace, "m");
+    camera.eye_ws = reader.vector("eye", -kMaxCoordinate, kMaxCoordinate, "m");
+    camera.target_ws = reader.vector("target", -kMaxCoordinate, kMaxCoordinate, "m");
     if (reader.has("up")) camera.up_ws = reader.vector("up", -1, 1);
     if (reader.has("orthographic_height")) {
         camera.orthographicHeight =
-            static_cast<float>(reader.number("orthographic_height", 1e-4, kAnyPlace, "m"));
+            static_cast<float>(reader.number("orthographic_height", 1e-4, kMaxCoordinate, "m"));
     } else {
         camera.verticalFov = static_cast<float>(reader.number("fov_y_deg", 1, 150, "degrees"));
     }
@@ -73,10 +73,10 @@ Status readLight(JsonReader& reader, const std::filesystem::path& folder, ViewFi
     }
     if (kind == 1) {
         light.kind = render::LightKind::point;
-        light.position_ws = reader.vector("position", -kAnyPlace, kAnyPlace, "m");
+        light.position_ws = reader.vector("position", -kMaxCoordinate, kMaxCoordinate, "m");
         light.intensity = reader.vector("intensity", 0, kAnyRadiance);
     } else {
-        light.toLight_ws = reader.vector("to_light", -kAnyPlace, kAnyPlace);
+        light.toLight_ws = reader.vector("to_light", -kMaxCoordinate, kMaxCoordinate);
         light.irradiance = reader.vector("irradiance", 0, kAnyRadiance);
     }
     if (reader.has("shadow")) light.castsShadow = reader.boolean("shadow");

@@ -11,8 +11,8 @@
 namespace hairloom {
 namespace {
 
-constexpr double kAnyTime = 1e6;       // seconds
-constexpr double kAnyPlace = 1e6;      // metres
+constexpr double kAnyTime = 1e6;        // seconds
+constexpr double kMaxCoordinate = 1e6;  // metres
 /// Metres between origins of poses: near the world's there is no other.
 constexpr double kOriginGrid = 64;
 constexpr double kAnyTurn = 1e6;       // degrees
@@ -89,11 +89,12 @@ void expectAscending(JsonReader& reader, std::string_view member, const std::vec
 
 Key readKey(JsonReader reader) {
     Key key{static_cast<float>(reader.number("t", 0, kAnyTime, "s")), Vec3d::Zero(), Vec3f::UnitY(), 0};
-    if (reader.has("translate")) key.translation = reader.exactVector("translate", -kAnyPlace, kAnyPlace, "m");
+    if (reader.has("translate"))
+        key.translation = reader.exactVector("translate", -kMaxCoordinate, kMaxCoordinate, "m");
     if (reader.has("degrees"))
         key.radians = radians(static_cast<float>(reader.number("degrees", -kAnyTurn, kAnyTurn, "degrees")));
     if (reader.has("axis")) {
-        const Vec3f axis = reader.vector("axis", -kAnyPlace, kAnyPlace);
+        const Vec3f axis = reader.vector("axis", -kMaxCoordinate, kMaxCoordinate);
         if (!(axis.norm() > 0) && reader.ok())
             reader.complain("axis", "has no direction", "a vector that is not zero");
         key.axis = axis.norm() > 0 ? Vec3f(axis.normalized()) : Vec3f(Vec3f::UnitY());

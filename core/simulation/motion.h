@@ -16,7 +16,8 @@ namespace hairloom {
 
 /// Where head and collision spheres are at one time; metres, world space.
 struct HeadPose {
-    /// Metres, in the world: all places of the pose are measured from here, so that they keep their digits far away.
+    /// Metres, in the world: all positions of the pose are measured from here, so that they keep their digits
+    /// far away.
     Vec3d origin_ws = Vec3d::Zero();
     Eigen::Isometry3f head_ws = Eigen::Isometry3f::Identity();  ///< carries what no scalp vertex carries
     std::vector<Vec3f>

@@ -31,7 +31,7 @@ class StrandMethod {
     virtual void readPositions(std::span<runtime::Float3> positions_ws) const = 0;
     /// m/s, in the order of the points. False, and nothing is written, where the method knows none.
     virtual bool readVelocities(std::span<runtime::Float3>) const { return false; }
-    /// Takes poses whose places are measured from an origin of theirs.
+    /// Takes poses whose positions are measured from an origin of theirs.
     virtual bool measuresFromOrigin() const { return false; }
     /// Of the last step.
     virtual double stepMilliseconds() const = 0;

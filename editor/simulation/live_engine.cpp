@@ -46,30 +46,30 @@ class DeviceEngine final : public LiveEngine {
                       std::move(changes.settings),
                       std::move(changes.spheres),
                       link_->wantsPositions()};
-        underWay_.push_back(link_->post([step = std::move(step)](LiveWork* work) -> Told {
+        underWay_.push_back(link_->post([step = std::move(step)](LiveWork* work) -> Stepped {
             if (!work) return {fail("the device is gone"), {}};
             const Status stepped = work->step(step);
-            return {stepped, work->told()};
+            return {stepped, work->report()};
         }));
         ++frames_;
         // The render thread draws one frame while the next one comes.
         while (underWay_.size() > 1 || isDone(underWay_.front())) {
-            Told told = underWay_.front().get();
+            Stepped done = underWay_.front().get();
             underWay_.pop_front();
-            if (!told.status) return told.status;
-            told_ = std::move(told.told);
+            if (!done.status) return done.status;
+            report_ = std::move(done.report);
             if (underWay_.empty()) break;
         }
         pose.onDevice = true;
-        pose.positions_ws = told_.frame.positions_ws;
+        pose.positions_ws = report_.frame.positions_ws;
         return {};
     }
 
     SimulationStats stats() const override {
         SimulationStats stats;
-        const DeviceFrame& frame = told_.frame;
+        const DeviceFrame& frame = report_.frame;
         stats.frames = frames_;
-        stats.millisecondsPerFrame = told_.milliseconds;
+        stats.millisecondsPerFrame = report_.milliseconds;
         stats.maxStretch = frame.maxStretch;
         stats.maxPenetrationMm = 1e3 * frame.maxPenetration;
         stats.energy = frame.kineticEnergy;
@@ -78,10 +78,10 @@ class DeviceEngine final : public LiveEngine {
         stats.guardedStrands = frame.guardedStrands;
         stats.restingStrands = frame.report.asleep;
         stats.fastestMmPerSecond = 1e3 * static_cast<double>(frame.report.fastest);
-        stats.effects = told_.effects;
+        stats.effects = report_.effects;
         return stats;
     }
-    double milliseconds() const override { return told_.milliseconds; }
+    double milliseconds() const override { return report_.milliseconds; }
 
     std::shared_ptr<const runtime::State> state() override {
         auto read = link_->post([](LiveWork* work) -> Result<std::shared_ptr<const runtime::State>> {
@@ -93,17 +93,17 @@ class DeviceEngine final : public LiveEngine {
     }
 
   private:
-    struct Told {
+    struct Stepped {
         Status status;
-        LiveTold told;
+        LiveReport report;
     };
-    static bool isDone(const std::future<Told>& told) {
-        return told.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    static bool isDone(const std::future<Stepped>& done) {
+        return done.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
     }
 
     std::shared_ptr<LiveLink> link_;
-    std::deque<std::future<Told>> underWay_;
-    LiveTold told_;
+    std::deque<std::future<Stepped>> underWay_;
+    LiveReport report_;
     std::uint64_t frames_ = 0;
 };
 

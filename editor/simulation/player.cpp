@@ -308,7 +308,7 @@ void Player::refuse(const Error& error) {
     });
 }
 
-void Player::tell(const EngineChoice& choice) {
+void Player::setEngineShown(const EngineChoice& choice) {
     QMetaObject::invokeMethod(this, [this, choice] {
         if (engine_ == choice) return;
         engine_ = choice;
@@ -364,7 +364,7 @@ bool Player::prepare(Playing& playing, const WorkerRequests& taken) {
         playing.engine = std::move(*made);
     }
     playing.choice = choice;
-    tell(choice);
+    setEngineShown(choice);
     return true;
 }
 

@@ -96,7 +96,7 @@ class Player : public QObject {
     /// The engine goes on, or begins; false: nothing can.
     bool prepare(Playing& playing, const WorkerRequests& taken);
     void advance(Playing& playing, WorkerRequests& taken);
-    void tell(const EngineChoice& choice);
+    void setEngineShown(const EngineChoice& choice);
     void refuse(const Error& error);
     /// Gives the thread the groom as it is now. Not before it is needed: strokes pay for copies that are
     /// held.

@@ -32,7 +32,7 @@ EngineChoice LiveWork::choose(EngineWish wish, const Groom& groom) {
 Status LiveWork::start(const LiveStart& start) {
     hair_.reset();
     timed_.clear();
-    told_ = {};
+    report_ = {};
     const auto scene = GroomScene::make(*start.groom, {}, {});
     if (!scene) return tl::unexpected(scene.error());
     auto made = DeviceHair::make(device_, kernels(), *scene, start.motion->skin(), start.pose);
@@ -52,7 +52,7 @@ Status LiveWork::step(const LiveStep& step) {
         if (auto set = hair_->setSettings(*step.settings); !set) return set;
     }
     if (step.spheres) hair_->setSpheres(*step.spheres);
-    hair_->setTellsPositions(step.wantsPositions);
+    hair_->setReadsPositions(step.wantsPositions);
     auto list = device_.createCommandList();
     if (!list) return tl::unexpected(list.error());
     if (auto recorded = hair_->record(**list, step.dt, step.time, step.pose); !recorded) return recorded;
@@ -60,13 +60,13 @@ Status LiveWork::step(const LiveStep& step) {
     if (!submission) return tl::unexpected(submission.error());
     hair_->submitted(*submission);
     time(std::move(*submission));
-    told_.frame = hair_->told();
-    told_.effects.clear();
+    report_.frame = hair_->latestFrame();
+    report_.effects.clear();
     const runtime::EffectPlan& plan = hair_->engine().plan();
     for (std::uint32_t index = 0; index < runtime::kEffectCount; ++index) {
         const auto effect = static_cast<runtime::Effect>(index);
-        told_.effects.push_back({runtime::effectName(effect), plan.on(effect), reasonAlone(plan.why(effect)),
-                                 0, hair_->engine().effectBytes(effect)});
+        report_.effects.push_back({runtime::effectName(effect), plan.on(effect),
+                                   reasonAlone(plan.why(effect)), 0, hair_->engine().effectBytes(effect)});
     }
     return {};
 }
@@ -81,8 +81,8 @@ void LiveWork::time(gpu::SubmissionPtr submission) {
         double sum = 0;
         for (const gpu::PassTime& pass : *times) sum += pass.milliseconds;
         constexpr double kShare = 0.1;
-        told_.milliseconds =
-            told_.milliseconds > 0 ? told_.milliseconds + kShare * (sum - told_.milliseconds) : sum;
+        report_.milliseconds =
+            report_.milliseconds > 0 ? report_.milliseconds + kShare * (sum - report_.milliseconds) : sum;
     }
 }
 

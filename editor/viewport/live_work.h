@@ -27,7 +27,7 @@ struct LiveStep {
 };
 
 /// What has come back of frames, a frame or two late.
-struct LiveTold {
+struct LiveReport {
     DeviceFrame frame;
     std::vector<EffectReport> effects;  ///< without times
     double milliseconds = 0;            ///< of a frame on the device, mean of the last ones; 0: not known yet
@@ -44,7 +44,7 @@ class LiveWork {
     void stop() { hair_.reset(); }
     /// Waits for the device. Null where nothing plays.
     Result<std::shared_ptr<const runtime::State>> readState();
-    const LiveTold& told() const { return told_; }
+    const LiveReport& report() const { return report_; }
 
     /// Whether a renderer that shows this scene can show the hair that plays.
     bool fits(const GroomScene& scene) const;
@@ -61,7 +61,7 @@ class LiveWork {
     std::optional<DeviceHair> hair_;
     std::size_t drawnPoints_ = 0, vertices_ = 0;
     std::deque<gpu::SubmissionPtr> timed_;  ///< whose times have not been read
-    LiveTold told_;
+    LiveReport report_;
 };
 
 }  // namespace hairloom::editor

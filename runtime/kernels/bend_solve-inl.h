@@ -29,9 +29,9 @@ inline constexpr float kFold = -0.95f;
 struct Strip {
     struct alignas(64) Point {
         Lanes3 direction;  ///< of the segment at the start of the substep, by its rest length
-        Lanes3 ahead;  ///< what the joint pulls against q of the way on, reversed
-        Lanes upper;   ///< of the system of lengths, as it is eliminated
-        Lanes tension;  ///< likewise
+        Lanes3 ahead;      ///< what the joint pulls against q of the way on, reversed
+        Lanes upper;       ///< of the system of lengths, as it is eliminated
+        Lanes tension;     ///< likewise
 
         /// Right side of the system of bending; takes the place of `ahead`.
         Lanes3& right() { return ahead; }
@@ -70,8 +70,8 @@ HWY_INLINE void readSegments(const BlockView& block, const Rows& rows, const Lan
     }
 }
 
-/// Takes the joints' curves, in the frames at `previous`, off what they pull against; returns the least cosine
-/// of a turn. Without `kFolds` it is right only where that is above kFold.
+/// Takes the joints' curves, in the frames at `previous`, off what they pull against; returns the least
+/// cosine of a turn. Without `kFolds` it is right only where that is above kFold.
 template <bool kFolds, class Rows>
 HWY_INLINE V takeCurves(const BlockView& block, const Rows& rows, const LaneFrame& lanes, std::size_t lane,
                         Strip& strip) {
@@ -227,10 +227,10 @@ void bendBack(const BlockView& given, LaneFrame& lanes, const SubstepContext& co
         } else {
             pullStrip<kShape, false>(block, rows, lanes, context, lane, strip);
         }
-        float* place = block.position.x + (block.points - 1) * kBlockLanes + lane;
+        float* at = block.position.x + (block.points - 1) * kBlockLanes + lane;
         const auto move = [&](const auto&, const Strip::Point&, V3 delta) HWY_ATTR {
-            store3(load3(place, block.pitch) + delta, place, block.pitch);
-            place -= kBlockLanes;
+            store3(load3(at, block.pitch) + delta, at, block.pitch);
+            at -= kBlockLanes;
         };
         finishBend(block, rows, strip, move, move);
     }

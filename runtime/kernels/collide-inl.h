@@ -26,13 +26,14 @@ namespace HWY_NAMESPACE {
 struct Contact {
     hn::Mask<D> touching;
     V3 centre;  ///< relative to the roots
-    V3 step;    ///< the sphere's way in one substep
+    V3 step;    ///< the sphere's displacement in one substep
     V reach;    ///< of the sphere and of the strand
     V3 from;    ///< from the centre into the direction in which the point is placed; any length
 };
 
 /// Places the points on their spheres (Eq. 21, to which the centre is added) and gives them the impulse with
-/// restitution (Eq. 20) and Coulomb friction, both relative to the sphere. Returns the places, of all lanes.
+/// restitution (Eq. 20) and Coulomb friction, both relative to the sphere. Returns the positions, of all
+/// lanes.
 HWY_INLINE V3 respond(const BlockView& block, const SubstepContext& context, std::size_t i,
                       const Contact& contact) {
     const V zero = hn::Zero(D());
@@ -62,10 +63,10 @@ HWY_INLINE V3 respond(const BlockView& block, const SubstepContext& context, std
     return placed;
 }
 
-/// From the centre to the place p_b where the way of this substep entered the sphere: the s < 0 that solves
-/// |p + s·v − c| = reach, with v relative to the sphere. Where that way does not begin outside, the place is
-/// p_a, or a point that hardly moves would leave along any chord; likewise where the way enters flatter than
-/// 1 in 20, as the place would follow from rounding.
+/// From the centre to the position p_b where the way of this substep entered the sphere: the s < 0 that
+/// solves |p + s·v − c| = reach, with v relative to the sphere. Where that way does not begin outside, the
+/// position is p_a, or a point that hardly moves would leave along any chord; likewise where the way enters
+/// flatter than 1 in 20, as the position would follow from rounding.
 HWY_INLINE V3 backAlong(V3 offset, V3 relative, V squared, V reach) {
     const V zero = hn::Zero(D()), one = all(1.0f);
     const V a = dot(relative, relative);
@@ -156,7 +157,9 @@ class Contacts {
           overlaps_(context, spheres, near),
           near_(near),
           in_{block, lanes, context, spheres, collisionRadii, roots_},
-          deepest_(context.lengthIterations > 0 ? static_cast<float>(HAIRLOOM_DEEP_IN_SPHERE * HAIRLOOM_DEEP_IN_SPHERE) : 0.0f) {
+          deepest_(context.lengthIterations > 0
+                       ? static_cast<float>(HAIRLOOM_DEEP_IN_SPHERE * HAIRLOOM_DEEP_IN_SPHERE)
+                       : 0.0f) {
         const V step = all(static_cast<float>(context.index + 1));
         for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth)
             store3(load3(lanes.root, lane) + load3(lanes.rootDisplacement, lane) * step, roots_, lane);
@@ -343,10 +346,10 @@ HWY_INLINE void push(const BlockView& block, Points points, V3 centre, float rad
         if (HWY_LIKELY(hn::AllFalse(D(), inside))) continue;
         const Direction direction = directionOf(offset);
         const V depth = hn::Max(reach - direction.length, hn::Zero(D()));
-        const V3 way = direction.from * (direction.inverse * depth * stiffness);
-        // A point just outside keeps its place whatever its neighbours do: rounding makes of its length less
-        // than the reach.
-        store3(load3(block.previous, i) - select(inside, way, zero3()), block.previous, i);
+        const V3 push = direction.from * (direction.inverse * depth * stiffness);
+        // A point just outside keeps its position whatever its neighbours do: rounding makes of its length
+        // less than the reach.
+        store3(load3(block.previous, i) - select(inside, push, zero3()), block.previous, i);
     }
 }
 

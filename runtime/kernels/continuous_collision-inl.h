@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Collisions between the places of two substeps, with spheres that fast points would pass.
+// Collisions between the positions of two substeps, with spheres that fast points would pass.
 #if defined(HAIRLOOM_RUNTIME_CONTINUOUS_COLLISION_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HAIRLOOM_RUNTIME_CONTINUOUS_COLLISION_INL_H
 #undef HAIRLOOM_RUNTIME_CONTINUOUS_COLLISION_INL_H
@@ -81,14 +81,14 @@ HWY_INLINE float farthestInSubstep(const BlockView& block) {
 
 /// Both in one pass.
 HWY_INLINE Farthest farthestOfBoth(const BlockView& block, const NearPoints& near) {
-    const ConstPlanes places{near.places, nearPlane(block)};
+    const ConstPlanes positions{near.positions, nearPlane(block)};
     V ofSubstep = hn::Zero(D()), ofList = hn::Zero(D());
     for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
         V inSubstep = hn::Zero(D()), fromList = hn::Zero(D());
         for (std::uint32_t p = block.firstFree; p < block.points; ++p) {
             const std::size_t i = std::size_t{p} * kBlockLanes + lane;
             const V3 at = load3(block.position, i);
-            const V3 moved = at - load3(block.previous, i), left = at - load3(places, i);
+            const V3 moved = at - load3(block.previous, i), left = at - load3(positions, i);
             inSubstep = hn::Max(inSubstep, dot(moved, moved));
             fromList = hn::Max(fromList, dot(left, left));
         }

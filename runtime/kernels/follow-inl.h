@@ -122,13 +122,13 @@ HWY_INLINE auto coordinatePattern(std::size_t k) {
     return hn::SetTableIndices(D(), coordinates);
 }
 
-/// A place over and over, x y z x y z …, in three registers.
-class RepeatedPlace {
+/// A position over and over, x y z x y z …, in three registers.
+class RepeatedPosition {
   public:
-    HWY_INLINE RepeatedPlace()
+    HWY_INLINE RepeatedPosition()
         : first_(coordinatePattern(0)), second_(coordinatePattern(1)), third_(coordinatePattern(2)) {}
 
-    /// `place` is x y z 0, aligned.
+    /// `position` is x y z 0, aligned.
     HWY_INLINE V3 of(const float* place) const {
         const D d;
         if constexpr (kWidth < 4) {
@@ -144,8 +144,8 @@ class RepeatedPlace {
     decltype(coordinatePattern(0)) first_, second_, third_;
 };
 
-/// A constant over the hair, x y z 0: the shift onto the scalp, and what brings the shape's root to its place
-/// in the root triangle.
+/// A constant over the hair, x y z 0: the shift onto the scalp, and what brings the shape's root to its
+/// position in the root triangle.
 HWY_INLINE void shiftOf(const GuideRows& guides, const HairBinding& hair, float* shift) {
     const hn::CappedTag<float, 4> d;
     const float* frame = guides.frames + hair.guides[0] * kFrameFloats;
@@ -204,7 +204,7 @@ HWY_INLINE void storeFirst(V v, std::size_t count, float* to) {
 
 void sumRows(const GuideRows& guides, std::span<const HairBinding> hairs, float* positions) {
     const D d;
-    const RepeatedPlace repeated;
+    const RepeatedPosition repeated;
     const std::size_t floats = std::size_t{guides.points} * 3;
     for (const HairBinding& hair : hairs) {
         const RowSum sum(guides, hair);

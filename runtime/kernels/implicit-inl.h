@@ -55,10 +55,10 @@ HWY_INLINE S3 inverseOf(const S3& s) {
             third};
 }
 
-/// Closes a step of backward Euler whose displacement is `rate`.
-HWY_INLINE void finishImplicit(const BlockView& block, std::size_t i, V3 rate) {
+/// Closes a step of backward Euler whose displacement is `stepDisplacement`.
+HWY_INLINE void finishImplicit(const BlockView& block, std::size_t i, V3 stepDisplacement) {
     const V3 start = load3(block.start, i);
-    store3(start + rate, block.position, i);
+    store3(start + stepDisplacement, block.position, i);
     store3(start, block.previous, i);
 }
 
@@ -68,7 +68,7 @@ HWY_INLINE void finishClamped(const BlockView& block) {
     for (std::size_t i = 0; i < end; i += kWidth) {
         const V3 start = load3(block.start, i);
         store3(start, block.previous, i);
-        store3(start + load3(block.rate, i), block.position, i);
+        store3(start + load3(block.stepDisplacement, i), block.position, i);
     }
 }
 
@@ -84,14 +84,15 @@ void advanceFree(const BlockView& block, LaneFrame&, const SubstepContext&) {
 /// displacement that the forces left, so that d = u + h² f/M + δ with (M + h² K) δ = −h² K of it.
 void advanceImplicitBend(const BlockView& block, LaneFrame& lanes, const SubstepContext&) {
     if (block.points <= block.firstFree) return finishClamped(block);
-    const auto rateAt = [&](std::size_t i)
-                            HWY_ATTR { return load3(block.position, i) - load3(block.previous, i); };
+    const auto stepDisplacementAt = [&](std::size_t i) HWY_ATTR {
+        return load3(block.position, i) - load3(block.previous, i);
+    };
     Strip strip(lanes);
     for (std::uint32_t lane = 0; lane < block.lanes; lane += kWidth) {
-        V3 behind = zero3(), from = rateAt(lane);
+        V3 behind = zero3(), from = stepDisplacementAt(lane);
         const auto jointPull = [&](std::uint32_t j) HWY_ATTR {
             const std::size_t i = std::size_t{j} * kBlockLanes + lane;
-            const V3 to = rateAt(i + kBlockLanes);
+            const V3 to = stepDisplacementAt(i + kBlockLanes);
             const V3 turning = (to - from) * hn::Load(D(), block.inverseLength + i);
             const V3 pull = (turning - behind) * hn::Load(D(), block.stiffness + i);
             from = to;
@@ -110,7 +111,7 @@ void advanceImplicitBend(const BlockView& block, LaneFrame& lanes, const Substep
         reduceBend(block, rows, strip, forceOf);
         std::size_t i = std::size_t{block.points - 1} * kBlockLanes + lane;
         const auto finish = [&](const auto&, const Strip::Point&, V3 delta) HWY_ATTR {
-            finishImplicit(block, i, rateAt(i) + delta);
+            finishImplicit(block, i, stepDisplacementAt(i) + delta);
             i -= kBlockLanes;
         };
         finishBend(block, rows, strip, finish, finish);
@@ -201,12 +202,9 @@ HWY_INLINE void factorPoint(StrandSystem& system, std::uint32_t first, std::uint
     M3 lower{zero3(), zero3(), zero3()};
     if (p > first) {
         lower = multiply(coupling, system.points[p - 1].inverse);
-        diagonal = {diagonal.xx - dot(lower.x, coupling.x),
-                    diagonal.xy - dot(lower.x, coupling.y),
-                    diagonal.xz - dot(lower.x, coupling.z),
-                    diagonal.yy - dot(lower.y, coupling.y),
-                    diagonal.yz - dot(lower.y, coupling.z),
-                    diagonal.zz - dot(lower.z, coupling.z)};
+        diagonal = {diagonal.xx - dot(lower.x, coupling.x), diagonal.xy - dot(lower.x, coupling.y),
+                    diagonal.xz - dot(lower.x, coupling.z), diagonal.yy - dot(lower.y, coupling.y),
+                    diagonal.yz - dot(lower.y, coupling.z), diagonal.zz - dot(lower.z, coupling.z)};
     }
     system.points[p].inverse = inverseOf(diagonal);
     system.points[p].lower = lower;
@@ -256,15 +254,15 @@ void advanceImplicitSpring(const BlockView& block, LaneFrame& lanes, const Subst
                                 couplingOf(bend.coupling1, inner),
                                 bend.coupling2};
             V3 right = (load3(block.position, i) - load3(block.previous, i)) * mass;
-            if (p == first) right = right - row.coupling * load3(block.rate, i - kBlockLanes);
+            if (p == first) right = right - row.coupling * load3(block.stepDisplacement, i - kBlockLanes);
             if (kAngular && p < first + 2 && p >= 2)
-                right = right - load3(block.rate, i - 2 * kBlockLanes) * bend.coupling2;
+                right = right - load3(block.stepDisplacement, i - 2 * kBlockLanes) * bend.coupling2;
             factorPoint(system, first, p, row);
             system.points[p].right = right;
             inner = outer;
         }
-        solveSystem(system, first, block.points, [&](std::uint32_t p, V3 rate) {
-            finishImplicit(block, std::size_t{p} * kBlockLanes + lane, rate);
+        solveSystem(system, first, block.points, [&](std::uint32_t p, V3 stepDisplacement) {
+            finishImplicit(block, std::size_t{p} * kBlockLanes + lane, stepDisplacement);
         });
     }
     finishClamped(block);

@@ -87,7 +87,7 @@ HWY_INLINE V3 operator*(V3 a, V s) {
 /// planes have.
 HWY_INLINE BlockView localCopy(const BlockView& given) {
     BlockView block = given;
-    for (Planes* const planes : {&block.position, &block.previous, &block.start, &block.rate})
+    for (Planes* const planes : {&block.position, &block.previous, &block.start, &block.stepDisplacement})
         planes->pitch = given.pitch;
     block.rest.pitch = block.target.pitch = given.pitch;
     return block;

@@ -49,34 +49,35 @@ HWY_NOINLINE void cutTensions(const BlockView& block, const Rows& rows) {
 /// Goldenthal et al. 2007; with displacements, RATTLE, Andersen 1983), so momentum travels along the whole
 /// strand in one step. Collapsed segments keep a diagonal of at least ¼ of their masses': no overshoot.
 ///
-/// Tension of places acts along the gradient at the start of the substep (SHAKE, Ryckaert et al. 1977), which
-/// keeps the order and the energy of the integrator; only that of segments that turn by more than 60° in a
-/// substep acts along the gradient of now.
+/// Tension of positions acts along the gradient at the start of the substep (SHAKE, Ryckaert et al. 1977),
+/// which keeps the order and the energy of the integrator; only that of segments that turn by more than 60°
+/// in a substep acts along the gradient of now.
 ///
 /// This eliminates segments, tip to root: the points outer to a segment first.
 template <LengthProjection kProjection>
 class LengthElimination {
   public:
     HWY_INLINE LengthElimination() {
-        outer_ = outerRate_ = wanted_ = zero3();
+        outer_ = outerDisplacement_ = wanted_ = zero3();
         outerMass_ = right_ = inverse_ = hn::Zero(D());
     }
 
-    /// The last point of the strands, behind which nothing pulls; `rate` is its way in the substep.
+    /// The last point of the strands, behind which nothing pulls; `stepDisplacement` is its displacement in
+    /// the substep.
     template <class Row>
-    HWY_INLINE void open(const Row& row, Strip::Point& point, V3 place, V3 rate) {
+    HWY_INLINE void open(const Row& row, Strip::Point& point, V3 position, V3 stepDisplacement) {
         store3(zero3(), point.direction);
-        outer_ = place;
-        outerRate_ = rate;
+        outer_ = position;
+        outerDisplacement_ = stepDisplacement;
         outerMass_ = row.inverseMass();
     }
 
-    /// A segment from its inner point at `place`. Strip::Point::direction is the gradient at the start where
-    /// tension acts along that, and becomes the one along which it acts.
+    /// A segment from its inner point at `position`. Strip::Point::direction is the gradient at the start
+    /// where tension acts along that, and becomes the one along which it acts.
     template <bool kClamped, class Row>
-    HWY_INLINE void take(const Row& row, Strip::Point& point, V3 place, V3 rate) {
+    HWY_INLINE void take(const Row& row, Strip::Point& point, V3 position, V3 stepDisplacement) {
         const V one = all(1.0f);
-        const V3 wanted = (outer_ - place) * row.inverseLength();
+        const V3 wanted = (outer_ - position) * row.inverseLength();
         const V squared = dot(wanted, wanted);
         // Of the outer segment; few registers are left for it.
         const V above = dot(wanted, load3((&point + 1)->direction)) * outerMass_;
@@ -95,8 +96,8 @@ class LengthElimination {
             store3(acting, point.direction);
         }
         if constexpr (kProjection == LengthProjection::displacements) {
-            error = dot(wanted, outerRate_ - rate);
-            outerRate_ = rate;
+            error = dot(wanted, outerDisplacement_ - stepDisplacement);
+            outerDisplacement_ = stepDisplacement;
         } else {
             error = hn::MulSub(squared, row.halfLength(), row.halfLength());
         }
@@ -109,13 +110,13 @@ class LengthElimination {
         right_ = hn::MulAdd(above, right_, error) * inverse_;
         store(upper, (&point + 1)->upper);
         store(right_, point.tension);
-        outer_ = place;
+        outer_ = position;
         outerMass_ = innerMass;
         wanted_ = wanted;
     }
 
   private:
-    V3 outer_, outerRate_;  // of the outer point
+    V3 outer_, outerDisplacement_;  // of the outer point
     V outerMass_;
     V3 wanted_;  // of the outer segment
     V right_, inverse_;
@@ -175,20 +176,22 @@ HWY_INLINE void reduceLengths(const BlockView& block, const Rows& rows, std::siz
     if constexpr (kProjection == LengthProjection::positions) readStart(block, rows, lane, strip);
     LengthElimination<kProjection> lengths;
     std::size_t i = (block.points - 1) * kBlockLanes + lane;
-    const auto rateAt = [&](V3 place) HWY_ATTR {
-        return kProjection == LengthProjection::displacements ? place - load3(block.previous, i) : zero3();
+    const auto stepDisplacementAt = [&](V3 position) HWY_ATTR {
+        return kProjection == LengthProjection::displacements ? position - load3(block.previous, i) : zero3();
     };
-    V3 place = load3(block.position, i);
-    lengths.open(rows.at(block.points - 1), strip.points[block.points - 1], place, rateAt(place));
+    V3 position = load3(block.position, i);
+    lengths.open(rows.at(block.points - 1), strip.points[block.points - 1], position,
+                 stepDisplacementAt(position));
     for (std::size_t s = block.points - 1; s-- > block.firstFree;) {
         i -= kBlockLanes;
-        place = load3(block.position, i);
-        lengths.template take<false>(rows.at(s), strip.points[s], place, rateAt(place));
+        position = load3(block.position, i);
+        lengths.template take<false>(rows.at(s), strip.points[s], position, stepDisplacementAt(position));
     }
     i -= kBlockLanes;
-    place = load3(block.position, i);
+    position = load3(block.position, i);
     const std::size_t clamped = block.firstFree - 1;
-    lengths.template take<true>(rows.at(clamped), strip.points[clamped], place, rateAt(place));
+    lengths.template take<true>(rows.at(clamped), strip.points[clamped], position,
+                                stepDisplacementAt(position));
 }
 
 template <LengthProjection kProjection, bool kKept = false>
@@ -227,10 +230,10 @@ HWY_INLINE void bendAndProjectStrip(const BlockView& block, const Rows& rows, co
     LengthElimination<LengthProjection::positions> lengths;
     float* at = block.position.x + (block.points - 1) * kBlockLanes + lane;
     const auto move = [&](V3 delta) HWY_ATTR {
-        const V3 place = load3(at, block.pitch) + delta;
-        store3(place, at, block.pitch);
+        const V3 position = load3(at, block.pitch) + delta;
+        store3(position, at, block.pitch);
         at -= kBlockLanes;
-        return place;
+        return position;
     };
     finishBend(
         block, rows, strip,

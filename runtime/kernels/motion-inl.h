@@ -33,7 +33,7 @@ HWY_INLINE AirDisplacement airDisplacement(const LaneFrame& lanes, const Substep
 }
 
 /// Hair takes on the air's velocity at the rate airDrag · sin of its angle to the tangent (Rünz 2012,
-/// Section 3.3). The share of `flow`, the air's way past a point, that it gains: the root of
+/// Section 3.3). The share of `flow`, the air's displacement past a point, that it gains: the root of
 /// share² · sin². The square of the share divides what stands below, which is known before what stands above.
 HWY_INLINE V blownShare(V3 flow, V3 tangent, V inverseShareSquared) {
     const V both = dot(flow, flow) * dot(tangent, tangent);
@@ -42,8 +42,8 @@ HWY_INLINE V blownShare(V3 flow, V3 tangent, V inverseShareSquared) {
     return hn::Sqrt(across / hn::MulAdd(both, inverseShareSquared, all(1e-30f)));
 }
 
-/// What moveFree() finds and leaves in `previous`: the place of a substep ago or the way since; or it makes
-/// the move.
+/// What moveFree() finds and leaves in `previous`: the position of a substep ago or the way since; or it
+/// makes the move.
 enum class Motion { position, displacement, integrated };
 
 /// In this order: slows motion relative to the moving root, so that damping acts on velocity alone and leaves
@@ -69,23 +69,24 @@ void moveFree(const BlockView& given, LaneFrame& lanes, const SubstepContext& co
         for (std::uint32_t p = block.firstFree; p < block.points; ++p) {
             const std::size_t i = std::size_t{p} * kBlockLanes + lane;
             const V3 position = load3(block.position, i);
-            V3 way = load3(block.previous, i);
-            if constexpr (kFrom == Motion::position) way = position - way;
-            if constexpr (kDamped) way = mulAdd(way, kept, lostStep);
+            V3 displacement = load3(block.previous, i);
+            if constexpr (kFrom == Motion::position) displacement = position - displacement;
+            if constexpr (kDamped) displacement = mulAdd(displacement, kept, lostStep);
             if constexpr (kAir != Air::none) {
                 V3 flow = zero3();
                 if constexpr (kAir == Air::moving)
                     flow = mulAdd(air.slope, all(fractionAlong[p]), air.atRoot);
-                flow = flow - way;
-                way = mulAdd(flow, blownShare(flow, position - parent, inverseShareSquared), way);
+                flow = flow - displacement;
+                displacement =
+                    mulAdd(flow, blownShare(flow, position - parent, inverseShareSquared), displacement);
                 parent = position;
             }
-            if constexpr (kHeavy) way = way + gravity;
-            if constexpr (kTo == Motion::displacement) store3(way, block.previous, i);
-            if constexpr (kTo == Motion::position) store3(position - way, block.previous, i);
+            if constexpr (kHeavy) displacement = displacement + gravity;
+            if constexpr (kTo == Motion::displacement) store3(displacement, block.previous, i);
+            if constexpr (kTo == Motion::position) store3(position - displacement, block.previous, i);
             if constexpr (kTo == Motion::integrated) {
                 const V3 start = position - step;
-                store3(start + way, block.position, i);
+                store3(start + displacement, block.position, i);
                 store3(start, block.previous, i);
             }
         }

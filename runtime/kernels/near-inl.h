@@ -83,7 +83,7 @@ HWY_INLINE float fastestSphere(const NearInput& in) {
 }
 
 /// Metres by which rounding can move a sphere relative to a root.
-HWY_INLINE float roundingOfPlaces(const NearInput& in) {
+HWY_INLINE float roundingOfPositions(const NearInput& in) {
     V maximum = hn::Zero(D());
     for (std::uint32_t lane = 0; lane < in.block.lanes; lane += kWidth) {
         const V3 root = load3(in.roots, lane);
@@ -123,7 +123,7 @@ HWY_INLINE void findNear(const NearInput& in, NearPoints& near) {
     near.substep = in.context.index;
     near.step = fastestSphere(in);
     near.margin = marginFor(in, near.step);
-    const float wider = near.margin + roundingOfPlaces(in);
+    const float wider = near.margin + roundingOfPositions(in);
     NearPoints::Pair* last = near.pairs;
     near.made =
         forEachPart(in.block, [&](std::uint32_t lane, std::uint32_t begin, std::uint32_t end) HWY_ATTR {
@@ -134,17 +134,17 @@ HWY_INLINE void findNear(const NearInput& in, NearPoints& near) {
         });
     if (!near.made) return;
     near.pairCount = static_cast<std::uint32_t>(last - near.pairs);
-    const Planes places{near.places, nearPlane(in.block)};
+    const Planes positions{near.positions, nearPlane(in.block)};
     const std::size_t end = std::size_t{in.block.points} * kBlockLanes;
     for (std::size_t i = std::size_t{in.block.firstFree} * kBlockLanes; i < end; i += kWidth)
-        store3(load3(in.block.position, i), places, i);
+        store3(load3(in.block.position, i), positions, i);
 }
 
 /// Square of the farthest that a free point is from where it was when the list was made, square metres.
 HWY_INLINE float farthestFromList(const BlockView& block, const NearPoints& near) {
-    const ConstPlanes places{near.places, nearPlane(block)};
+    const ConstPlanes positions{near.positions, nearPlane(block)};
     return maxOfBlock(block, [&](std::size_t i) HWY_ATTR {
-        const V3 moved = load3(block.position, i) - load3(places, i);
+        const V3 moved = load3(block.position, i) - load3(positions, i);
         return dot(moved, moved);
     });
 }

@@ -52,14 +52,14 @@ void moveRoots(const BlockView& block, LaneFrame& lanes, const SubstepContext& c
 }
 
 /// As usableWithin(), for each lane.
-HWY_INLINE hn::Mask<D> usableRoots(V3 place, V squaredRotation) {
-    const auto near = dot(place, place) <= all(kFarthest * kFarthest);
+HWY_INLINE hn::Mask<D> usableRoots(V3 position, V squaredRotation) {
+    const auto near = dot(position, position) <= all(kFarthest * kFarthest);
     return hn::And(near, hn::And(squaredRotation > all(1e-12f), squaredRotation <= all(FLT_MAX)));
 }
 
 bool takeRoots(const float* before, float* next, bool sound, float teleportDistanceSquared,
                RootBounds& bounds) {
-    const Planes places{next, kBlockLanes};
+    const Planes positions{next, kBlockLanes};
     const auto rotationAt = [&](std::size_t lane) HWY_ATTR {
         const float* const at = next + 3 * kBlockLanes + lane;
         return V4{hn::Load(D(), at), hn::Load(D(), at + kBlockLanes), hn::Load(D(), at + 2 * kBlockLanes),
@@ -69,7 +69,7 @@ bool takeRoots(const float* before, float* next, bool sound, float teleportDista
     if (!sound) {
         auto usable = hn::Not(noLane());
         for (std::size_t lane = 0; lane < kBlockLanes; lane += kWidth)
-            usable = hn::And(usable, usableRoots(load3(places, lane), squareOf(rotationAt(lane))));
+            usable = hn::And(usable, usableRoots(load3(positions, lane), squareOf(rotationAt(lane))));
         if (!hn::AllTrue(D(), usable)) return false;
     }
     for (std::size_t lane = 0; lane < kBlockLanes; lane += kWidth) {
@@ -80,12 +80,14 @@ bool takeRoots(const float* before, float* next, bool sound, float teleportDista
                    lane);
             hn::Store(q.w * inverse, D(), next + 6 * kBlockLanes + lane);
         }
-        const V3 place = load3(places, lane), way = place - load3(ConstPlanes{before, kBlockLanes}, lane);
+        const V3 position = load3(positions, lane),
+                 displacement = position - load3(ConstPlanes{before, kBlockLanes}, lane);
         const V3 low = load3(bounds.low, lane), high = load3(bounds.high, lane);
-        store3({hn::Min(low.x, place.x), hn::Min(low.y, place.y), hn::Min(low.z, place.z)}, bounds.low, lane);
-        store3({hn::Max(high.x, place.x), hn::Max(high.y, place.y), hn::Max(high.z, place.z)}, bounds.high,
-               lane);
-        const V squared = dot(way, way);
+        store3({hn::Min(low.x, position.x), hn::Min(low.y, position.y), hn::Min(low.z, position.z)},
+               bounds.low, lane);
+        store3({hn::Max(high.x, position.x), hn::Max(high.y, position.y), hn::Max(high.z, position.z)},
+               bounds.high, lane);
+        const V squared = dot(displacement, displacement);
         const auto inPlace = squared <= all(teleportDistanceSquared);
         bounds.anyTeleported = bounds.anyTeleported || !hn::AllTrue(D(), inPlace);
         const V counted = hn::IfThenElseZero(inPlace, squared);

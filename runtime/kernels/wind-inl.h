@@ -17,14 +17,14 @@ HWY_BEFORE_NAMESPACE();
 namespace hairloom::runtime {
 namespace HWY_NAMESPACE {
 
-/// Velocity of the air at one place: the mean flow and its gusts or eddies.
-HWY_INLINE V3 windAt(const Wind& wind, const float* phases, V3 place_ws) {
+/// Velocity of the air at one position: the mean flow and its gusts or eddies.
+HWY_INLINE V3 windAt(const Wind& wind, const float* phases, V3 position_ws) {
     const V3 mean = all3(wind.mean);
     if (wind.kind == WindKind::uniform) return mean;
     V waves = hn::Zero(D());
     V3 eddies = zero3();
     for (std::uint32_t m = 0; m < kWindModes; ++m) {
-        const V wave = sineOfTurns(dot(place_ws, all3(wind.modes[m].waveVector)) + all(phases[m]));
+        const V wave = sineOfTurns(dot(position_ws, all3(wind.modes[m].waveVector)) + all(phases[m]));
         waves = waves + wave;
         eddies = eddies + all3(wind.modes[m].amplitude) * wave;
     }

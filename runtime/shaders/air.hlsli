@@ -6,7 +6,7 @@ void stageGravity() {
 }
 
 /// Hair takes on the air's velocity at the rate airDrag · sin of its angle to the tangent (Rünz 2012, Section
-/// 3.3). `atRoot` and `atTip` are the air's way in one substep.
+/// 3.3). `atRoot` and `atTip` are the air's displacement in one substep.
 void takeAir(float3 atRoot, float3 atTip) {
     INNER_POSITIONS
     MOVED_POINTS(p) {
@@ -33,13 +33,13 @@ float windPhase(uint m, uint end) { return end == 0 ? gFrame.windAmplitudes[m].w
 groupshared float4 gWinds[4 * HAIR_STRANDS];  // of each strand at root and tip, at the start and the end
 float3 windHere(uint tip, uint end) { return gWinds[4 * gStrand + 2 * end + tip].xyz; }
 
-/// A thread each for both places and both ends.
+/// A thread each for both positions and both ends.
 void sampleWind() {
     exchangePositions();
     const bool atTip = (gThread & 1u) != 0u;
-    const float3 place = atTip ? gRoot + loadPoint(POINTS - 1).xyz : gRoot;
-    const float3 way = windAt(place, (gThread >> 1) & 1u) * gFrame.h;
-    if (gThread < 4) gWinds[4 * gStrand + gThread] = float4(way, 0);
+    const float3 position_ws = atTip ? gRoot + loadPoint(POINTS - 1).xyz : gRoot;
+    const float3 displacement = windAt(position_ws, (gThread >> 1) & 1u) * gFrame.h;
+    if (gThread < 4) gWinds[4 * gStrand + gThread] = float4(displacement, 0);
     GroupMemoryBarrierWithGroupSync();
 }
 #else

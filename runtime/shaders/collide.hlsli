@@ -25,13 +25,13 @@
 /// What a point touches.
 struct Contact {
     float3 centre;  // relative to the root
-    float3 step;    // the sphere's way in one substep
+    float3 step;    // the sphere's displacement in one substep
     float reach;    // of the sphere and of the strand
     float3 from;    // from the centre into the direction in which the point is placed; any length
 };
 
 /// Places a point on its sphere (Eq. 21, to which the centre is added) and gives it the impulse with
-/// restitution (Eq. 20) and Coulomb friction, both relative to the sphere. `at` and `before` are its place now
+/// restitution (Eq. 20) and Coulomb friction, both relative to the sphere. `at` and `before` are its position now
 /// and a substep ago.
 void respond(Contact contact, inout float3 at, inout float3 before) {
     const Direction direction = directionOf(contact.from);
@@ -51,7 +51,7 @@ void respond(Contact contact, inout float3 at, inout float3 before) {
     before = at - (after + contact.step);
 }
 
-/// From the centre to the place p_b where the way of this substep entered the sphere: the s < 0 that solves
+/// From the centre to the position p_b where the way of this substep entered the sphere: the s < 0 that solves
 /// |p + s·v − c| = reach. Where that way does not begin outside, or enters flatter than 1 in 20, it is p_a.
 float3 backAlong(float3 offset, float3 relative, float squared, float reach) {
     const float a = dot(relative, relative);
@@ -115,7 +115,7 @@ void settle(Contact contact, uint first, uint end, float collisionRadius, float3
     }
 }
 
-/// Whether a place lies in one of the spheres but `own`.
+/// Whether a position lies in one of the spheres but `own`.
 bool insideOthers(float3 at, uint own, uint first, uint end, float collisionRadius, float3 root, float step) {
     bool inside = false;
     EACH_SPHERE(first, end) {
@@ -129,13 +129,13 @@ bool insideOthers(float3 at, uint own, uint first, uint end, float collisionRadi
 
 /// What one substep of collisions does to a point.
 struct Touch {
-    float3 at, before;  // its place now and a substep ago
+    float3 at, before;  // its position now and a substep ago
     bool touched;
-    bool asks;          // for the place of the point before it, which is not known
+    bool asks;          // for the position of the point before it, which is not known
 };
 
 /// One point against the spheres first … end − 1 of a set that it or its strand is near to by `near`. Only spheres in
-/// which it is at the start count: one that another pushes it into is settled. `inner` is the place of the point
+/// which it is at the start count: one that another pushes it into is settled. `inner` is the position of the point
 /// before it.
 Touch touchSpheres(bool backward, uint p, float3 at, float3 before, float3 inner, bool knowsInner, uint first, uint end,
                    uint2 near, float3 root, float step) {
@@ -245,16 +245,16 @@ void stagePenalty() {
     FREE_POINTS(p) {
         const float collisionRadius = collisionRadiusAt(pointOf(p));
         const float3 at = position(p);
-        float3 way = float3(0, 0, 0);
+        float3 push = float3(0, 0, 0);
         [loop] for (uint k = 0; k < gFrame.sphereCount; ++k) {
             const float reach = gSpheres[k].from.w + collisionRadius;
             const float3 offset = at - (sphereCentre(k, step) - root);
             if (dot(offset, offset) < reach * reach) {
                 const Direction direction = directionOf(offset);
-                way += direction.unit * (max(reach - direction.size, 0.0) * gFrame.substep.penaltyStep);
+                push += direction.unit * (max(reach - direction.size, 0.0) * gFrame.substep.penaltyStep);
             }
         }
-        setPrevious(p, previous(p) - way);
+        setPrevious(p, previous(p) - push);
     }
 }
 #endif

@@ -4,6 +4,6 @@
 
 cbuffer Follow : register(b0) { FollowConstants gFollow; };
 
-// Of each guide four rows of `points`: places, and of its wisp the centres and both axes.
+// Of each guide four rows of `points`: positions, and of its wisp the centres and both axes.
 #define FOLLOW_ROWS 4
 uint rowOf(uint guide, uint row, uint p) { return (guide * FOLLOW_ROWS + row) * gFollow.points + p; }

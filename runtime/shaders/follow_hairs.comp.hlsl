@@ -5,7 +5,7 @@
 StructuredBuffer<float4> gRows : register(t0);
 StructuredBuffer<FollowPlane> gPlanes : register(t1);
 StructuredBuffer<FollowBinding> gBindings : register(t2);
-StructuredBuffer<float4> gFrames : register(t3);  // of guides: place; rotation since rest
+StructuredBuffer<float4> gFrames : register(t3);  // of guides: position; rotation since rest
 RWStructuredBuffer<float4> gHairs : register(u0);  // hair after hair, world, w 1
 
 [numthreads(64, 1, 1)]

@@ -29,7 +29,7 @@ struct FollowBinding {
     float4 weights;  ///< of the three guides' points; w: of the wisp's centre
     float4 roots;    ///< of the three guides' roots, less `weights`; w unused
     float4 shift;    ///< along the axes of the own guide's root plane; w unused
-    float4 wisp;     ///< x, y: place in the wisp's cross-section; z, w unused
+    float4 wisp;     ///< x, y: position in the wisp's cross-section; z, w unused
 };
 
 #ifdef __cplusplus

@@ -2,21 +2,21 @@
 // The wisp around each guide (Rünz 2012, Section 4.2): a thread walks its guide from root to tip.
 #include "follow.hlsli"
 
-StructuredBuffer<float4> gPlaces : register(t0);      // of guides, m
+StructuredBuffer<float4> gPositions : register(t0);      // of guides, m
 StructuredBuffer<float4> gVelocities : register(t1);  // likewise, m/s
 StructuredBuffer<FollowPlane> gPlanes : register(t2);
 StructuredBuffer<float2> gSamples : register(t3);     // of each guide and point of a hair: point, share of the next
 StructuredBuffer<float> gRadii : register(t4);        // per point, m
-StructuredBuffer<float4> gFrames : register(t5);      // of guides: place; rotation since rest
+StructuredBuffer<float4> gFrames : register(t5);      // of guides: position; rotation since rest
 RWStructuredBuffer<float4> gRows : register(u0);
 
 /// Both ends exactly, and a share of 0 or 1 leaves out the point that it takes nothing of.
-float3 placeAt(uint sample) {
+float3 positionAt(uint sample) {
     const uint p = asuint(gSamples[sample].x);
     const float share = gSamples[sample].y;
-    if (share == 0.0) return gPlaces[p].xyz;
-    if (share == 1.0) return gPlaces[p + 1].xyz;
-    return gPlaces[p].xyz + (gPlaces[p + 1].xyz - gPlaces[p].xyz) * share;
+    if (share == 0.0) return gPositions[p].xyz;
+    if (share == 1.0) return gPositions[p + 1].xyz;
+    return gPositions[p].xyz + (gPositions[p + 1].xyz - gPositions[p].xyz) * share;
 }
 float3 velocityAt(uint sample) {
     if (gFollow.hasVelocities == 0u) return float3(0, 0, 0);
@@ -51,10 +51,10 @@ void main(uint3 thread : SV_DispatchThreadID) {
     const uint first = guide * gFollow.points, last = gFollow.points - 1;
     float3 normal = rotate(turn, plane.x.xyz);
     float3 tangent = rotate(turn, plane.normal.xyz);
-    float3 before = placeAt(first), here = before;
+    float3 before = positionAt(first), here = before;
     [loop] for (uint p = 0; p <= last; ++p) {
         // A point's tangent joins its neighbours.
-        const float3 after = p < last ? placeAt(first + p + 1) : here;
+        const float3 after = p < last ? positionAt(first + p + 1) : here;
         carry(after - before, tangent, normal);
         const float3 x = p == 0 ? rotate(turn, plane.x.xyz) : normal;
         const float3 y = p == 0 ? rotate(turn, plane.y.xyz) : cross(tangent, normal);

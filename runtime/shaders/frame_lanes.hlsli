@@ -10,23 +10,23 @@ groupshared uint gStrandLost[HAIR_STRANDS];
 
 /// Gives the thread its place in the group. Which threads a wave has is the device's own business, so that with HAIR_WAVE waves
 /// take places as they come.
-void takePlaceInGroup(uint index) {
-    gPlace = gLane = index;
+void setThreadInGroup(uint index) {
+    gThreadInGroup = gLane = index;
 #if HAIR_WAVE
-    gPlace = gLane = WaveGetLaneIndex();
+    gThreadInGroup = gLane = WaveGetLaneIndex();
 #if HAIR_THREADS > HAIR_WAVE
     if (index == 0) gWaves = 0u;
     GroupMemoryBarrierWithGroupSync();
     uint wave = 0u;
     if (gLane == 0) InterlockedAdd(gWaves, 1u, wave);
-    gPlace += WaveReadLaneFirst(wave) * HAIR_WAVE;
+    gThreadInGroup += WaveReadLaneFirst(wave) * HAIR_WAVE;
 #endif
 #endif
 }
 
 /// Who the thread is.
 void enterLane(uint group) {
-    gStrand = gPlace / STRAND_THREADS;
+    gStrand = gThreadInGroup / STRAND_THREADS;
     gThread = gLane % STRAND_THREADS;
     gFirst = gLane - gThread;
 #if !HAIR_WAVE
@@ -112,12 +112,12 @@ void finishStrand(uint strands) {
     GroupMemoryBarrierWithGroupSync();
 }
 
-void writePlaces() {
+void writePositions() {
     const uint first = gFirstPoints[gSlot];
     if (first == 0xffffffffu) return;
     const float3 root = gRootsTo[2 * gSlot].xyz;
     ALL_POINTS(k) {
-        gPlaces[first + pointOf(k)] = float4(root + gPosition[k], 1.0);
+        gPositions_ws[first + pointOf(k)] = float4(root + gPosition[k], 1.0);
 #if HAIR_VELOCITIES
         gVelocities[first + pointOf(k)] = float4((gPosition[k] - gPrevious[k]) * (1.0 / gFrame.h), 0.0);
 #endif
@@ -125,13 +125,13 @@ void writePlaces() {
 }
 
 [numthreads(HAIR_THREADS, 1, 1)]
-void main(uint3 place : SV_GroupID, uint index : SV_GroupIndex) {
-    const uint group = place.y * HAIRLOOM_GROUP_ROW + place.x;
+void main(uint3 groupId : SV_GroupID, uint index : SV_GroupIndex) {
+    const uint group = groupId.y * HAIRLOOM_GROUP_ROW + groupId.x;
     if (group >= gFrame.groups) return;
-    takePlaceInGroup(index);
+    setThreadInGroup(index);
     enterLane(group);
     const uint block = group * HAIR_STRANDS / HAIRLOOM_GROUP_STRANDS, strands = gBlocks[block].y;
-    if (gPlace == 0) {
+    if (gThreadInGroup == 0) {
         gGroup = group;
         gGroupMoved = gGroupFastest = gGroupRestored = gGroupNear = 0u;
 #if !HAIR_WAVE
@@ -146,7 +146,7 @@ void main(uint3 place : SV_GroupID, uint index : SV_GroupIndex) {
 #endif
     GroupMemoryBarrierWithGroupSync();
 #if HAIR_SLEEP
-    if (slept && sleepsOn(block, gPlace, strands, rested)) return;
+    if (slept && sleepsOn(block, gThreadInGroup, strands, rested)) return;
 #endif
     loadState();
 #if HAIR_SPHERES
@@ -157,7 +157,7 @@ void main(uint3 place : SV_GroupID, uint index : SV_GroupIndex) {
     enterFrame();
     if (gFrame.rescale != 1.0) rescaleMotion();
 #if HAIR_SLEEP
-    lookAtRoots(block, gPlace);
+    lookAtRoots(block, gThreadInGroup);
 #endif
     GroupMemoryBarrierWithGroupSync();
     runSubsteps();
@@ -165,9 +165,9 @@ void main(uint3 place : SV_GroupID, uint index : SV_GroupIndex) {
     // From the memory of the group, so that nothing that was worked out for loadState() is kept in registers through the substeps.
     enterLane(gGroup);
     saveState();
-    writePlaces();
+    writePositions();
     ONLY_POINT(0) leaveFrame();
-    if (gPlace == 0) {
+    if (gThreadInGroup == 0) {
         if (gGroupRestored == 0u) InterlockedMax(gReport[REPORT_FASTEST], gGroupFastest);
 #if HAIR_SLEEP
         judgeBlock(block, strands, rested);

@@ -57,7 +57,7 @@ void main(uint3 group : SV_GroupID, uint lane : SV_GroupIndex) {
     if (runs) {
         saveState();
         leaveFrame();
-        EACH for (uint q = 0; q < POINTS; ++q) writePlace(q);
+        EACH for (uint q = 0; q < POINTS; ++q) writePosition(q);
         if (lane == 0 && gGroupRestored == 0u) InterlockedMax(gReport[REPORT_FASTEST], gGroupFastest);
     }
 }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // A work group for each wisp (Rünz 2012, Section 6.1): its first thread takes the strand, which stays in the memory of
-// the group, through the frame; the others wait for it, then write its places.
+// the group, through the frame; the others wait for it, then write its positions.
 
 #include "serial_strand.hlsli"
 
 [numthreads(1, HAIR_THREADS, 1)]
-void main(uint3 place : SV_GroupID, uint lane : SV_GroupIndex) {
-    const uint group = place.y * HAIRLOOM_GROUP_ROW + place.x;
+void main(uint3 groupId : SV_GroupID, uint lane : SV_GroupIndex) {
+    const uint group = groupId.y * HAIRLOOM_GROUP_ROW + groupId.x;
     if (group >= gFrame.groups) return;
     gSlot = group;
     gStrand = 0;
@@ -44,5 +44,5 @@ void main(uint3 place : SV_GroupID, uint lane : SV_GroupIndex) {
 #endif
     }
     GroupMemoryBarrierWithGroupSync();
-    [loop] for (uint q = lane; q < POINTS; q += HAIR_THREADS) writePlace(q);
+    [loop] for (uint q = lane; q < POINTS; q += HAIR_THREADS) writePosition(q);
 }

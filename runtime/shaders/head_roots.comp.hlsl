@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Roots of strands on a head that has moved: a thread a root. A root turns with its triangle, about its own place.
+// Roots of strands on a head that has moved: a thread a root. A root turns with its triangle, about its own position.
 #include "live_types.h"
 
 cbuffer Constants : register(b0) { HeadConstants gHead; };
@@ -7,10 +7,10 @@ StructuredBuffer<float4> gBones : register(t0);
 StructuredBuffer<HeadRoot> gRoots : register(t1);
 StructuredBuffer<float> gRest : register(t2);       // three a vertex
 StructuredBuffer<float> gPositions : register(t3);  // likewise, of now
-RWStructuredBuffer<float4> gFrames : register(u0);  // two a root: place, w 1; rotation since rest
+RWStructuredBuffer<float4> gFrames : register(u0);  // two a root: position, w 1; rotation since rest
 
 float3 restOf(uint v) { return float3(gRest[3 * v], gRest[3 * v + 1], gRest[3 * v + 2]); }
-float3 placeOf(uint v) { return float3(gPositions[3 * v], gPositions[3 * v + 1], gPositions[3 * v + 2]); }
+float3 positionOf(uint v) { return float3(gPositions[3 * v], gPositions[3 * v + 1], gPositions[3 * v + 2]); }
 
 /// Rows: along the first edge, the normal, across. False where the triangle is flat.
 bool frameOf(float3 a, float3 b, float3 c, out float3 along, out float3 normal, out float3 across) {
@@ -52,7 +52,7 @@ void main(uint3 thread : SV_DispatchThreadID) {
         return;
     }
     const float3 a = restOf(root.corners.x), b = restOf(root.corners.y), c = restOf(root.corners.z);
-    const float3 p = placeOf(root.corners.x), q = placeOf(root.corners.y), r = placeOf(root.corners.z);
+    const float3 p = positionOf(root.corners.x), q = positionOf(root.corners.y), r = positionOf(root.corners.z);
     float3 x = float3(1, 0, 0), y = float3(0, 1, 0), z = float3(0, 0, 1);
     float3 along, normal, across, alongNow, normalNow, acrossNow;
     const bool isFrame = frameOf(a, b, c, along, normal, across);

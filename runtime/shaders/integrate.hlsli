@@ -19,10 +19,10 @@ void stageVerlet() {
 }
 
 #if HAIR_EVALUATION >= 1
-/// The next evaluation of forces is at `place`, with the displacement `moving` for velocity.
-void setEvaluationState(uint p, float3 place, float3 moving) {
-    setPosition(p, place);
-    setPrevious(p, place - moving);
+/// The next evaluation of forces is at `here`, with the displacement `moving` for velocity.
+void setEvaluationState(uint p, float3 here, float3 moving) {
+    setPosition(p, here);
+    setPrevious(p, here - moving);
 }
 
 /// What the forces have added since setEvaluationState().
@@ -31,16 +31,16 @@ float3 takeKick(uint p, float3 moving) {
 }
 
 /// Keeps where the substep starts, relative to the root at its end, and the displacement of the last one;
-/// that of a clamped point is its way in this substep. Forces are evaluated after the share `way` of it.
-void open(float way) {
+/// that of a clamped point is its displacement in this substep. Forces are evaluated after `share` of it.
+void open(float share) {
     ALL_POINTS(p) {
         const float3 here = position(p);
         const float3 before = previous(p);
         const float3 moving = here - before;
         const float3 from = pointOf(p) < FIRST_FREE ? before : here - gRootDisplacement;
         setStart(p, from);
-        setRate(p, moving);
-        setEvaluationState(p, from + moving * way, moving);
+        setStepDisplacement(p, moving);
+        setEvaluationState(p, from + moving * share, moving);
     }
 }
 void stageOpen() { open(0.0); }
@@ -49,7 +49,7 @@ void stageOpenHalfway() { open(0.5); }
 /// Explicit Euler (Eq. 7): the way of the old velocity.
 void stageExplicitEuler() {
     ALL_POINTS(p) {
-        const float3 moving = rate(p);
+        const float3 moving = stepDisplacement(p);
         setEvaluationState(p, start(p) + moving, moving + takeKick(p, moving));
     }
 }
@@ -57,7 +57,7 @@ void stageExplicitEuler() {
 /// Drift-kick-drift: the second half drift after the kick halfway.
 void stageLeapfrog() {
     ALL_POINTS(p) {
-        const float3 moving = rate(p);
+        const float3 moving = stepDisplacement(p);
         const float3 after = moving + takeKick(p, moving);
         setEvaluationState(p, start(p) + (moving + after) * 0.5, after);
     }
@@ -66,7 +66,7 @@ void stageLeapfrog() {
 /// Velocity Verlet (Eq. 12), first half kick and drift.
 void stageVerletDrift() {
     ALL_POINTS(p) {
-        const float3 moving = rate(p);
+        const float3 moving = stepDisplacement(p);
         const float3 half_ = moving + takeKick(p, moving) * 0.5;
         setEvaluationState(p, start(p) + half_, half_);
     }
@@ -76,60 +76,60 @@ void stageVerletDrift() {
 /// end of the step; `start` keeps it.
 void stageVerletEvaluationState() {
     ALL_POINTS(p) {
-        const float3 place = position(p);
-        const float3 half_ = place - previous(p);
-        const float3 predicted = half_ + half_ - rate(p);
-        setRate(p, half_);
+        const float3 here = position(p);
+        const float3 half_ = here - previous(p);
+        const float3 predicted = half_ + half_ - stepDisplacement(p);
+        setStepDisplacement(p, half_);
         setStart(p, predicted);
-        setEvaluationState(p, place, predicted);
+        setEvaluationState(p, here, predicted);
     }
 }
 
 /// Velocity Verlet, second half kick.
 void stageVerletKick() {
     ALL_POINTS(p)
-        setEvaluationState(p, position(p), rate(p) + takeKick(p, start(p)) * 0.5);
+        setEvaluationState(p, position(p), stepDisplacement(p) + takeKick(p, start(p)) * 0.5);
 }
 #endif
 
 #if HAIR_EVALUATION >= 2
 /// The classical Runge-Kutta method. With A_k what the forces give at slope k, the velocities are u, u + A₁/2,
-/// u + A₂/2 and u + A₃, so the places need only sums of A.
+/// u + A₂/2 and u + A₃, so the positions need only sums of A.
 void stageRungeKutta1() {
     ALL_POINTS(p) {
-        const float3 moving = rate(p);
+        const float3 moving = stepDisplacement(p);
         const float3 added = takeKick(p, moving);
         setKick(p, added);
         setSum(p, added);
-        setSumRate(p, added);
+        setStepDisplacementSum(p, added);
         setEvaluationState(p, start(p) + moving * 0.5, moving + added * 0.5);
     }
 }
 void stageRungeKutta2() {
     ALL_POINTS(p) {
-        const float3 moving = rate(p), here = moving + kick(p) * 0.5;
+        const float3 moving = stepDisplacement(p), here = moving + kick(p) * 0.5;
         const float3 added = takeKick(p, here);
         setKick(p, added);
         setSum(p, sum(p) + added);
-        setSumRate(p, sumRate(p) + added + added);
+        setStepDisplacementSum(p, stepDisplacementSum(p) + added + added);
         setEvaluationState(p, start(p) + here * 0.5, moving + added * 0.5);
     }
 }
 void stageRungeKutta3() {
     ALL_POINTS(p) {
-        const float3 moving = rate(p), here = moving + kick(p) * 0.5;
+        const float3 moving = stepDisplacement(p), here = moving + kick(p) * 0.5;
         const float3 added = takeKick(p, here);
         setKick(p, added);
         setSum(p, sum(p) + added);
-        setSumRate(p, sumRate(p) + added + added);
+        setStepDisplacementSum(p, stepDisplacementSum(p) + added + added);
         setEvaluationState(p, start(p) + here, moving + added);
     }
 }
 void stageRungeKutta4() {
     ALL_POINTS(p) {
-        const float3 moving = rate(p);
+        const float3 moving = stepDisplacement(p);
         const float3 added = takeKick(p, moving + kick(p));
-        setEvaluationState(p, start(p) + moving + sum(p) * (1.0 / 6.0), moving + (sumRate(p) + added) * (1.0 / 6.0));
+        setEvaluationState(p, start(p) + moving + sum(p) * (1.0 / 6.0), moving + (stepDisplacementSum(p) + added) * (1.0 / 6.0));
     }
 }
 #endif

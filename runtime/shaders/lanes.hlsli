@@ -9,7 +9,7 @@
 #define HAIR_THREADS (STRAND_THREADS * HAIR_STRANDS)
 
 static uint gThread;    // of the strand's; its points may lie past the strand's last one where strands share a batch
-static uint gPlace;     // in the work group
+static uint gThreadInGroup;
 static uint gLane;      // in the wave, with HAIR_WAVE, else in the work group
 static uint gFirst;     // lane of the strand's first point
 static uint gInner;     // lane of the points before, or this one's own

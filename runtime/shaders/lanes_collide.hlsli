@@ -33,7 +33,7 @@ uint takeSphere(inout SphereBits spheres) {
 }
 #endif
 
-/// The spheres of a set that a place can lie in while it is nearer than `slack` to where the thread's first point was when the
+/// The spheres of a set that a position can lie in while it is nearer than `slack` to where the thread's first point was when the
 /// list was made, less what spheres have gone since the start of the frame.
 struct NearList {
     SphereBits spheres;
@@ -57,10 +57,10 @@ struct SphereSet {
 float3 centreOf(SphereSet set, uint k) { return sphereCentre(set.first + k, set.step) - set.root; }
 float reachOf(SphereSet set, uint k, float collisionRadius) { return gSpheres[set.first + k].from.w + collisionRadius; }
 
-bool listHolds(SphereSet set, float3 place) {
-    const float3 way = place + set.root - gNear.from_ws;
+bool listHolds(SphereSet set, float3 position) {
+    const float3 offset = position + set.root - gNear.from_ws;
     const float left = gNear.slack - gFrame.sphereDisplacement * set.step;
-    return left > 0.0 && dot(way, way) < left * left;
+    return left > 0.0 && dot(offset, offset) < left * left;
 }
 
 /// Makes the thread's list anew where it does not hold for one of its points: for ways twice as long as at the speed of now to the
@@ -232,13 +232,13 @@ void collideWith(SphereSet set, bool backward) {
     uint asking = leaveOwn(set, backward, (1u << POINTS_PER_THREAD) - 1u, false, inners);
     // Round by round those go whose inner point has gone.
     [loop] while (anyLane(asking != 0u)) {
-        Float4s places = toFloat4s(gPosition);
-        EACH_OWN_POINT(i) places[i].w = (asking & 1u << i) != 0u ? 1.0 : 0.0;
-        exchangeLast(places[POINTS_PER_THREAD - 1]);
+        Float4s positions = toFloat4s(gPosition);
+        EACH_OWN_POINT(i) positions[i].w = (asking & 1u << i) != 0u ? 1.0 : 0.0;
+        exchangeLast(positions[POINTS_PER_THREAD - 1]);
         const float4 before = loadInner();
         uint ready = 0u;
         EACH_OWN_POINT(k) {
-            const float4 inner = INNER_OF(places, k, before);
+            const float4 inner = INNER_OF(positions, k, before);
             inners[k] = inner.xyz;
             if ((asking & 1u << k) != 0u && inner.w == 0.0) ready |= 1u << k;
         }

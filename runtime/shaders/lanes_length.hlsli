@@ -93,9 +93,9 @@ void stageExtension() {
         wrong = wrong || (isFree(i) && isWrong(edge, INNER_OF(gLength, i, before.w)));
     }
     if (!anyLane(wrong)) return;
-    Float4s places = toFloat4s(gPosition);
-    EACH_OWN_POINT(l) places[l].w = gLength[l];
-    exchange(places);
+    Float4s positions = toFloat4s(gPosition);
+    EACH_OWN_POINT(l) positions[l].w = gLength[l];
+    exchange(positions);
     bool moves = false;
     float4 parent = loadPoint(FIRST_FREE - 1);
     [loop] for (uint p = FIRST_FREE; p < POINTS; ++p) {
@@ -103,7 +103,7 @@ void stageExtension() {
         moves = moves || isWrong(own.xyz - parent.xyz, parent.w);
         parent = float4(withinExtension(parent.xyz, own.xyz, parent.w), own.w);
         EACH_OWN_POINT(k) {
-            if (moves && p == pointOf(k)) takePlace(k, parent.xyz);
+            if (moves && p == pointOf(k)) moveTo(k, parent.xyz);
         }
     }
 }

@@ -43,12 +43,12 @@ void stageFlexion() {
 /// Each segment moves both its points, root to tip: each thread goes all the way and keeps its own.
 void stageSpringLimit() {
     [loop] for (uint n = 0; n < gFrame.lengthIterations; ++n) {
-        Float4s places = toFloat4s(gPosition), masses;
+        Float4s positions = toFloat4s(gPosition), masses;
         EACH_OWN_POINT(i) {
-            places[i].w = gLength[i];
+            positions[i].w = gLength[i];
             masses[i] = float4(gInverseMass[i], 0, 0, 0);
         }
-        exchange(places, masses);
+        exchange(positions, masses);
         float3 own[POINTS_PER_THREAD] = gPosition;
         float3 from = loadPoint(FIRST_FREE - 1).xyz;
         float length = loadPoint(FIRST_FREE - 1).w, inner = 0.0;

@@ -50,11 +50,11 @@ float3 withinExtension(float3 parent, float3 here, float rest) {
 }
 
 /// The move counts as velocity only where that slows the point relative to its root: it never adds energy.
-void takePlace(uint p, float3 place) {
+void moveTo(uint p, float3 to) {
     const float3 here = position(p), before = previous(p);
-    const float3 move = place - here, moving = here - before - gRootDisplacement;
+    const float3 move = to - here, moving = here - before - gRootDisplacement;
     const float braking = -dot(moving, move) / (dot(move, move) + 1e-30);
-    setPosition(p, place);
+    setPosition(p, to);
     setPrevious(p, before + move * (1.0 - min(max(braking, 0.0), 1.0)));
 }
 
@@ -125,9 +125,9 @@ void stageExtension() {
     EACH for (uint p = FIRST_FREE; p < POINTS; ++p) {
         const float rest = segmentLength(p - 1);
         const float3 here = position(p);
-        const float3 place = withinExtension(parent, here, rest);
-        if (isWrong(here - parent, rest)) takePlace(p, place);
-        parent = place;
+        const float3 to = withinExtension(parent, here, rest);
+        if (isWrong(here - parent, rest)) moveTo(p, to);
+        parent = to;
     }
 }
 #endif

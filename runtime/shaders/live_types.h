@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the kernels around a frame of strands share with the program: the head and its roots before it, what is
-// measured of hair after it. Metres, seconds; positions in world space unless they are said to be at rest.
+// What the kernels around a frame of strands share with the program: the head and its roots before it, what
+// is measured of hair after it. Metres, seconds; positions in world space unless they are said to be at rest.
 #ifndef HAIRLOOM_LIVE_TYPES_H
 #define HAIRLOOM_LIVE_TYPES_H
 #include "types.h"
@@ -25,7 +25,7 @@ struct HeadConstants {
     float4 turn;  ///< of the first bone, as a quaternion; for roots that are not bound
 };
 
-/// A root of a strand at rest: x, y, z its place, and where on the head it is.
+/// A root of a strand at rest: x, y, z its position, and where on the head it is.
 struct HeadRoot {
     float4 rest;
     float4 barycentric;  ///< w unused

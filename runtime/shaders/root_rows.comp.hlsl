@@ -3,7 +3,7 @@
 #include "live_types.h"
 
 cbuffer Constants : register(b0) { RootRowConstants gRows; };
-StructuredBuffer<float4> gFrames : register(t0);      // of strands: place; rotation
+StructuredBuffer<float4> gFrames : register(t0);      // of strands: position; rotation
 StructuredBuffer<uint> gStrandOfSlot : register(t1);
 RWStructuredBuffer<float4> gRootsTo : register(u0);   // of slots, as in storage.hlsli
 

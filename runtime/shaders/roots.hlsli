@@ -23,21 +23,21 @@ void carryRoot() {
     if (!gTeleported) from = float4(rootRow(3), rootRow(4), rootRow(5), rootRow(6));
     const float4 now = rotationBetween(from, to, float(gSubstep + gThread + 1) / float(gFrame.substeps));
     GroupMemoryBarrierWithGroupSync();
-    gTangents[gPlace] = rotate(now, restVector(0) * inverseLength(0));
+    gTangents[gThreadInGroup] = rotate(now, restVector(0) * inverseLength(0));
 #if HAIR_TARGETS
-    gNormals[gPlace] = rotate(now, target(POINTS - 1));
+    gNormals[gThreadInGroup] = rotate(now, target(POINTS - 1));
 #endif
     GroupMemoryBarrierWithGroupSync();
 }
-uint placeOfSubstep() { return gPlace - gThread + gSubstep % STRAND_THREADS; }
+uint threadOfSubstep() { return gThreadInGroup - gThread + gSubstep % STRAND_THREADS; }
 void turnRoot() {
     if (gSubstep % STRAND_THREADS == 0) carryRoot();
 }
 /// The direction and the normal that the root carries, before the first segment.
-float3 rootTangent() { return gTangents[placeOfSubstep()]; }
+float3 rootTangent() { return gTangents[threadOfSubstep()]; }
 float3 firstSegment() { return rootTangent() * gRootLength; }
 #if HAIR_TARGETS
-float3 rootNormal() { return gNormals[placeOfSubstep()]; }
+float3 rootNormal() { return gNormals[threadOfSubstep()]; }
 #endif
 #else
 static float4 gRotationFrom, gRotationTo;
@@ -77,9 +77,9 @@ void enterFrame() {
     float4 rotationFrom = float4(rootRow(3), rootRow(4), rootRow(5), rootRow(6));
     const float3 to = gRootsTo[2 * gSlot].xyz;
     const float4 turnedTo = gRootsTo[2 * gSlot + 1];
-    const float3 way = to - from;
+    const float3 displacement = to - from;
     // A cut carries the strand along rigidly.
-    const bool teleported = !(dot(way, way) <= gFrame.teleportDistance * gFrame.teleportDistance);
+    const bool teleported = !(dot(displacement, displacement) <= gFrame.teleportDistance * gFrame.teleportDistance);
     if (teleported) {
         const float4 turn = multiply(turnedTo, conjugate(rotationFrom));
         ALL_POINTS(p) {

@@ -25,7 +25,7 @@ void saveState() {
 #endif
 }
 
-/// Puts the strand to its rest place on the root of the end of the frame, without speed.
+/// Puts the strand to its rest position on the root of the end of the frame, without speed.
 void placeAtRest() {
     float3 at = float3(0, 0, 0);
     EACH for (uint p = 0; p < POINTS; ++p) {
@@ -56,10 +56,10 @@ float fastest(out bool sound) {
     return maximum;
 }
 
-void writePlace(uint p) {
+void writePosition(uint p) {
     const uint first = gFirstPoints[gSlot];
     if (first == 0xffffffffu) return;
-    gPlaces[first + p] = float4(gRootsTo[2 * gSlot].xyz + position(p), 1.0);
+    gPositions_ws[first + p] = float4(gRootsTo[2 * gSlot].xyz + position(p), 1.0);
 #if HAIR_VELOCITIES
     gVelocities[first + p] = float4((position(p) - previous(p)) * (1.0 / gFrame.h), 0.0);
 #endif

@@ -68,7 +68,7 @@ struct SimulationConstants {
 /// A collision sphere in one frame.
 struct SphereConstants {
     float4 from;  ///< centre at the start of the frame; w: radius
-    float4 step;  ///< the centre's way in one substep; w unused
+    float4 step;  ///< the centre's displacement in one substep; w unused
 };
 
 #ifdef __cplusplus

@@ -2,8 +2,8 @@
 // Coil and flexion springs, and maximal extension by velocities.
 
 /// The impulse along a segment that would leave its bounds; `weights` of its ends together.
-float3 limitImpulse(float3 way, float rest, float weights) {
-    const Direction edge = edgeOf(way);
+float3 limitImpulse(float3 edgeVector, float rest, float weights) {
+    const Direction edge = edgeOf(edgeVector);
     const float wrong = edge.size - min(max(edge.size, rest * (1.0 - gFrame.substep.maximalExtension)),
                                         rest * (1.0 + gFrame.substep.maximalExtension));
     return edge.unit * (wrong / weights);

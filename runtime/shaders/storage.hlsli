@@ -23,7 +23,7 @@ StructuredBuffer<float4> gRootsTo : register(t6);    // position, 1 where it mov
 RWStructuredBuffer<float> gState : register(u0);     // position x y z, previous x y z, tension
 RWStructuredBuffer<float> gRoots : register(u1);     // position, rotation at the end of the last frame
 RWStructuredBuffer<uint> gReport : register(u3);     // see the indices below
-RWStructuredBuffer<float4> gPlaces : register(u4);   // world, in the caller's order, w 1
+RWStructuredBuffer<float4> gPositions_ws : register(u4);  // in the caller's order, w 1
 
 #define REPORT_FASTEST 0   // bits of the greatest squared displacement of a substep
 #define REPORT_RESTORED 1  // strands put back to rest
@@ -105,7 +105,7 @@ uint ownOf(uint p) { return p; }
 
 /// What the strand goes through in the frame.
 static float3 gRoot;        // at the start of the frame, world
-static float3 gRootDisplacement;    // its way in one substep
+static float3 gRootDisplacement;    // its displacement in one substep
 static uint gSubstep;
 
 uint slotOf(uint plane, uint p) {
@@ -183,16 +183,16 @@ SCRATCH_ARRAY(work, setWork, gWork, 0)
 #define INNER_POSITIONS
 #define INNER_POSITION(p) position(p - 1)
 #endif
-// Of integrators that evaluate forces elsewhere than at the last place; displacements in one substep but for
-// `start`, a place.
+// Of integrators that evaluate forces elsewhere than at the last position; displacements in one substep but for
+// `start`, a position.
 #if HAIR_EVALUATION >= 1
 SCRATCH_ARRAY(start, setStart, gStarts, 5)
-SCRATCH_ARRAY(rate, setRate, gRates, 8)
+SCRATCH_ARRAY(stepDisplacement, setStepDisplacement, gStepDisplacements, 8)
 #endif
 #if HAIR_EVALUATION >= 2
 SCRATCH_ARRAY(kick, setKick, gKicks, 11)
 SCRATCH_ARRAY(sum, setSum, gSums, 14)
-SCRATCH_ARRAY(sumRate, setSumRate, gSumRates, 17)
+SCRATCH_ARRAY(stepDisplacementSum, setStepDisplacementSum, gStepDisplacementSums, 17)
 #endif
 
 float3 restVector(uint p) { return gRest[slotOf(0, p)].xyz; }

@@ -5,7 +5,7 @@
 #include "live_types.h"
 
 cbuffer Constants : register(b0) { MeasureConstants gMeasure; };
-StructuredBuffer<float4> gPlaces : register(t0);
+StructuredBuffer<float4> gPositions : register(t0);
 StructuredBuffer<float4> gVelocities : register(t1);
 StructuredBuffer<MeasuredPoint> gRest : register(t2);
 StructuredBuffer<float4> gSpheres : register(t3);  // centre, radius
@@ -29,14 +29,14 @@ void main(uint3 thread : SV_DispatchThreadID, uint3 inGroup : SV_GroupThreadID, 
     GroupMemoryBarrierWithGroupSync();
     const uint i = group.y * (65535u * HAIRLOOM_LIVE_GROUP) + thread.x;
     if (i < gMeasure.points) {
-        const float3 here = gPlaces[i].xyz, velocity = gVelocities[i].xyz;
+        const float3 here = gPositions[i].xyz, velocity = gVelocities[i].xyz;
         const MeasuredPoint rest = gRest[i];
         const float speed = sqrt(dot(velocity, velocity));
         if (!(dot(here, here) < 1e12) || !(speed < 1e12)) {
             InterlockedAdd(gBad, 1u);
         } else {
             if (rest.segment > 1e-9) {
-                const float3 chord = here - gPlaces[i - 1].xyz;
+                const float3 chord = here - gPositions[i - 1].xyz;
                 const float stretch = abs(sqrt(dot(chord, chord)) / rest.segment - 1.0);
                 if (stretch < 1e12) InterlockedMax(gStretch, asuint(stretch));
             }

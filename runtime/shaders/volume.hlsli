@@ -5,7 +5,7 @@
 
 cbuffer Volume : register(b0) { VolumeConstants gVolume; };
 
-// Words of gBox: least and greatest place of all points and greatest component of a velocity as numbers that sort
+// Words of gBox: least and greatest position of all points and greatest component of a velocity as numbers that sort
 // like their values, and how many points count.
 #define BOX_LOW 0
 #define BOX_HIGH 3

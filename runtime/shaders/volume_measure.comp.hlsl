@@ -15,12 +15,12 @@ void main(uint3 thread : SV_DispatchThreadID, uint lane : SV_GroupIndex) {
     if (at.counts) {
         const float3 here = float3(gState[planeSlot(0, at)], gState[planeSlot(1, at)], gState[planeSlot(2, at)]);
         const float3 before = float3(gState[planeSlot(3, at)], gState[planeSlot(4, at)], gState[planeSlot(5, at)]);
-        const float3 place = rootOf(at) + here;
+        const float3 position = rootOf(at) + here;
         const float3 velocity = (here - before) / gVolume.h;
-        if (takesPart(place, velocity)) {
+        if (takesPart(position, velocity)) {
             [unroll] for (uint axis = 0; axis < 3; ++axis) {
-                InterlockedMin(gGroupBox[BOX_LOW + axis], sortable(place[axis]));
-                InterlockedMax(gGroupBox[BOX_HIGH + axis], sortable(place[axis]));
+                InterlockedMin(gGroupBox[BOX_LOW + axis], sortable(position[axis]));
+                InterlockedMax(gGroupBox[BOX_HIGH + axis], sortable(position[axis]));
                 InterlockedMax(gGroupBox[BOX_FASTEST], asuint(min(abs(velocity[axis]), FASTEST)));
             }
             InterlockedAdd(gGroupBox[BOX_POINTS], 1u);

@@ -29,6 +29,6 @@ uint planeSlot(uint plane, Point at) {
 float3 rootOf(Point at) {
     return float3(gRoots[at.slot], gRoots[gVolume.slots + at.slot], gRoots[2 * gVolume.slots + at.slot]);
 }
-bool takesPart(float3 place, float3 velocity) {
-    return isSound(place) && isSound(velocity) && all(abs(place) <= FARTHEST);
+bool takesPart(float3 position, float3 velocity) {
+    return isSound(position) && isSound(velocity) && all(abs(position) <= FARTHEST);
 }

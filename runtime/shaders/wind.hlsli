@@ -11,14 +11,14 @@ float sineOfTurns(float turns) {
     return 0.775 * parabola + 0.225 * parabola * abs(parabola);
 }
 
-/// Velocity of the air at one place.
-float3 windAt(float3 place_ws, uint moment) {
+/// Velocity of the air at one position.
+float3 windAt(float3 position_ws, uint moment) {
     const float3 mean = gFrame.wind.xyz;
     if (gFrame.windKind == WIND_UNIFORM) return mean;
     float waves = 0.0;
     float3 eddies = float3(0, 0, 0);
     [loop] for (uint m = 0; m < HAIRLOOM_WIND_MODES; ++m) {
-        const float wave = sineOfTurns(dot(place_ws, gFrame.windWaves[m].xyz) + windPhase(m, moment));
+        const float wave = sineOfTurns(dot(position_ws, gFrame.windWaves[m].xyz) + windPhase(m, moment));
         waves += wave;
         eddies += gFrame.windAmplitudes[m].xyz * wave;
     }

@@ -19,7 +19,7 @@ std::string validationError(const StrandsView& strands);
 /// Adds a line to text when the value is not in low…high.
 void refuseOutside(std::string& text, const char* name, double value, double low, double high);
 
-/// Makes the rotation one of unit length; false where the root is no place.
+/// Makes the rotation one of unit length; false where the root is no position.
 inline bool usable(RootFrame& root) {
     return isFinite(root.position) && normalize(root.rotation);
 }
@@ -30,7 +30,7 @@ inline bool usableWithin(RootFrame& root, float limit) {
     return dot(root.position, root.position) <= limit * limit && normalize(root.rotation);
 }
 
-/// Linear in place, normalised linear in rotation. share 0…1; both rotations of unit length.
+/// Linear in position, normalised linear in rotation. share 0…1; both rotations of unit length.
 RootFrame between(const RootFrame& from, const RootFrame& to, float share);
 
 }  // namespace hairloom::runtime

@@ -50,9 +50,9 @@ void Engine::Impl::restoreStrands(std::size_t block, const BlockView& blockView)
             const auto at = [&](const Planes& planes) {
                 return Float3{planes.x[i], planes.y()[i], planes.z()[i]};
             };
-            const Float3 place = at(blockView.position), moved = place - at(blockView.previous);
+            const Float3 position = at(blockView.position), moved = position - at(blockView.previous);
             // As Kernels::fastest has it: comparisons with what is no number are false.
-            sound = sound && dot(place, place) < kFarthest * kFarthest &&
+            sound = sound && dot(position, position) < kFarthest * kFarthest &&
                     dot(moved, moved) < kFarthest * kFarthest;
         }
         if (sound) continue;
@@ -81,7 +81,7 @@ void Engine::Impl::rest(std::size_t block, const BlockView& blockView, const Fra
     std::copy_n(blockView.position.z(), floats, blockView.previous.z());
 }
 
-/// A cut turns the strand along rigidly: places and velocities.
+/// A cut turns the strand along rigidly: positions and velocities.
 void Engine::Impl::turnAlong(const BlockView& view, std::uint32_t lane, Quat turn) {
     for (std::uint32_t p = 0; p < view.points; ++p) {
         const std::size_t i = std::size_t{p} * kBlockLanes + lane;
@@ -102,15 +102,15 @@ void Engine::Impl::turnAlong(const BlockView& view, std::uint32_t lane, Quat tur
 void Engine::Impl::teleportLanes(const BlockView& view, float* rows, const float* next) const {
     const float cut = settings_.teleportDistance * settings_.teleportDistance;
     for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
-        const auto place = [&](const float* from) {
+        const auto position = [&](const float* from) {
             return Float3{from[lane], from[kBlockLanes + lane], from[2 * kBlockLanes + lane]};
         };
         const auto rotation = [&](const float* from) {
             const float* const at = from + 3 * kBlockLanes + lane;
             return Quat{at[0], at[kBlockLanes], at[2 * kBlockLanes], at[3 * kBlockLanes]};
         };
-        const Float3 way = place(next) - place(rows);
-        if (dot(way, way) <= cut) continue;
+        const Float3 displacement = position(next) - position(rows);
+        if (dot(displacement, displacement) <= cut) continue;
         turnAlong(view, lane, rotation(next) * conjugate(rotation(rows)));
         for (std::size_t r = 0; r < kRootRows; ++r)
             rows[r * kBlockLanes + lane] = next[r * kBlockLanes + lane];
@@ -128,9 +128,10 @@ void Engine::Impl::touchSpheres(std::size_t block, const SubstepContext& context
         const float reach = hair + sphere.radius + 0.5f * substeps * length(sphere.step);
         for (std::uint32_t lane = 0; lane < shape_->blocks[block].strands; ++lane) {
             const Float3 root{lanes.root[0][lane], lanes.root[1][lane], lanes.root[2][lane]};
-            const Float3 way{lanes.rootDisplacement[0][lane], lanes.rootDisplacement[1][lane],
-                             lanes.rootDisplacement[2][lane]};
-            if (length(root + way * (0.5f * substeps) - middle) > reach + 0.5f * substeps * length(way))
+            const Float3 displacement{lanes.rootDisplacement[0][lane], lanes.rootDisplacement[1][lane],
+                                      lanes.rootDisplacement[2][lane]};
+            if (length(root + displacement * (0.5f * substeps) - middle) >
+                reach + 0.5f * substeps * length(displacement))
                 continue;
             lanes.touchable.push_back(sphere);
             break;
@@ -138,7 +139,7 @@ void Engine::Impl::touchSpheres(std::size_t block, const SubstepContext& context
     }
 }
 
-/// Fills the lanes' way through the frame and keeps its end for the next.
+/// Fills the lanes' displacement through the frame and keeps its end for the next.
 void Engine::Impl::enterFrame(std::size_t block, const BlockView& view, LaneFrame& lanes,
                               const Frame& frame) {
     float* const rows = state_.roots.data() + block * kRootRows * kBlockLanes;

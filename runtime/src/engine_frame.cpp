@@ -93,10 +93,10 @@ bool Engine::Impl::setState(const State& state) {
 
 void Engine::Impl::replan(std::span<const Sphere> spheres, std::span<const Float3> sphereMotion,
                           Float3 rootsMin_ws, Float3 rootsMax_ws, float frameTime) {
-    FrameOutlook planInput{strandCount(),         shape_->longestPointCount,
-                           shape_->longestStrand, shape_->straight,
-                           rootsMin_ws,           rootsMax_ws,
-                           rootMotion_,           state_.fastest};
+    FramePlanInput planInput{strandCount(),         shape_->longestPointCount,
+                             shape_->longestStrand, shape_->straight,
+                             rootsMin_ws,           rootsMax_ws,
+                             rootMotion_,           state_.fastest};
     planInput.restTime = 1e30f;
     for (std::size_t b = 0; b < state_.rests.size(); ++b) {
         if (state_.rests[b].asleep) planInput.asleep += shape_->blocks[b].strands;
@@ -191,7 +191,7 @@ void Engine::Impl::takeRoots(const FrameInput& input) {
     state_.rootsMax_ws = {maximum(bounds.high[0]), maximum(bounds.high[1]), maximum(bounds.high[2])};
 }
 
-/// Puts the block's roots that are no places back to those of the last frame.
+/// Puts the block's roots that are no positions back to those of the last frame.
 void Engine::Impl::repairRoots(std::size_t block) {
     const float* const rows = state_.roots.data() + block * kRootRows * kBlockLanes;
     float* const next = nextRoots_.data() + block * kRootRows * kBlockLanes;

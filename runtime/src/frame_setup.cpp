@@ -32,10 +32,10 @@ void findWaking(float hair, std::span<const Sphere> before, FrameSpheres& sphere
         const Sphere now = i < spheres.usable.size() ? spheres.usable[i] : Sphere{};
         if (then.center_ws == now.center_ws && then.radius == now.radius) continue;
         const bool moved = then.radius > 0.0f && now.radius > 0.0f;
-        const float way = moved ? length(now.center_ws - then.center_ws) : 0.0f;
+        const float distance = moved ? length(now.center_ws - then.center_ws) : 0.0f;
         for (const Sphere& sphere : {then, now}) {
             if (sphere.radius > 0.0f)
-                spheres.waking.push_back({sphere.center_ws, hair + sphere.radius + way});
+                spheres.waking.push_back({sphere.center_ws, hair + sphere.radius + distance});
         }
     }
 }
@@ -105,8 +105,9 @@ std::uint32_t takeWind(const SimulationSettings& settings, const FrameInput& inp
     return rejected;
 }
 
-EffectPlan planFrame(const SimulationSettings& settings, const FrameOutlook& planInput, const FrameWind& wind,
-                     std::span<const Sphere> spheres, std::span<const Float3> sphereMotion, float frameTime) {
+EffectPlan planFrame(const SimulationSettings& settings, const FramePlanInput& planInput,
+                     const FrameWind& wind, std::span<const Sphere> spheres,
+                     std::span<const Float3> sphereMotion, float frameTime) {
     PlanInput scene;
     scene.settings = settings;
     scene.strandCount = planInput.strandCount;
@@ -129,8 +130,8 @@ EffectPlan planFrame(const SimulationSettings& settings, const FrameOutlook& pla
     const auto substeps = static_cast<float>(substepsIn(settings, frameTime));
     const float h = frameTime / substeps;
     const float pushed = (length(settings.gravity) + settings.airDrag * length(wind.wind.mean)) * frameTime;
-    scene.fastest = 16.0f * planInput.fastest * h + pushed * h +
-                    (planInput.rootMotion + sphereDisplacement) / substeps;
+    scene.fastest =
+        16.0f * planInput.fastest * h + pushed * h + (planInput.rootMotion + sphereDisplacement) / substeps;
     scene.asleep = planInput.asleep;
     scene.restTime = planInput.restTime;
     return plan(scene);

@@ -17,7 +17,7 @@ namespace hairloom::runtime {
 /// The spheres of a frame. Those that cannot be used stay in their place at radius 0.
 struct FrameSpheres {
     std::vector<Sphere> usable;
-    std::vector<Float3> motion;  ///< each one's way during the frame; none for a cut
+    std::vector<Float3> motion;  ///< each one's displacement during the frame; none for a cut
     std::uint32_t rejected = 0;  ///< not finite or without radius
     /// Around a root within `radius` of which a sphere that has changed since the last frame may touch the
     /// hair: what sleeps there wakes up.
@@ -38,7 +38,7 @@ struct FrameWind {
 std::uint32_t takeWind(const SimulationSettings& settings, const FrameInput& input, FrameWind& wind);
 
 /// What is known about the hair when a frame begins.
-struct FrameOutlook {
+struct FramePlanInput {
     std::uint32_t strandCount = 0;
     std::uint32_t longestPointCount = 0;
     float longestStrand = 0.0f;  ///< metres
@@ -50,13 +50,14 @@ struct FrameOutlook {
     float restTime = 0.0f;            ///< seconds
 };
 /// The plan of a frame of `frameTime` seconds.
-EffectPlan planFrame(const SimulationSettings& settings, const FrameOutlook& planInput, const FrameWind& wind,
-                     std::span<const Sphere> spheres, std::span<const Float3> sphereMotion, float frameTime);
+EffectPlan planFrame(const SimulationSettings& settings, const FramePlanInput& planInput,
+                     const FrameWind& wind, std::span<const Sphere> spheres,
+                     std::span<const Float3> sphereMotion, float frameTime);
 
 /// By how much numbers grow that were measured from one origin and are now measured from another.
 Float3 shiftOfOrigin(const std::array<double, 3>& from_ws, const std::array<double, 3>& to_ws);
-inline bool isFinite(const std::array<double, 3>& place) {
-    return std::isfinite(place[0]) && std::isfinite(place[1]) && std::isfinite(place[2]);
+inline bool isFinite(const std::array<double, 3>& position) {
+    return std::isfinite(position[0]) && std::isfinite(position[1]) && std::isfinite(position[2]);
 }
 
 /// Of the first substep of a frame of `dt` seconds.

@@ -8,8 +8,8 @@
 // bits, and so do all that have not (SSE4 and before, plain C++).
 //
 // Forces add a·h² to a point's displacement by taking it from `previous`; integrators that evaluate forces
-// elsewhere put that place into `position` and the displacement that counts as velocity there into `previous`
-// first.
+// elsewhere put that position into `position` and the displacement that counts as velocity there into
+// `previous` first.
 //
 // Positions are relative to the strand's own root, which keeps single precision where hair needs it;
 // `previous` is the position one substep ago relative to the root of now, so position − previous is the world
@@ -97,9 +97,9 @@ struct BlockView {
     const float* inverseDiagonal = nullptr;
     const float* lower1 = nullptr;  ///< to the point before
     const float* lower2 = nullptr;  ///< to the one before that
-    // Of integrators that evaluate forces elsewhere than at the last place, null otherwise; each is a
-    // displacement in one substep but for `start`, a place.
-    Planes start, rate, kick, sum, sumRate;
+    // Of integrators that evaluate forces elsewhere than at the last position, null otherwise; each is a
+    // displacement in one substep but for `start`, a position.
+    Planes start, stepDisplacement, kick, sum, stepDisplacementSum;
     RodView rod;
 };
 
@@ -140,7 +140,7 @@ struct NearPoints {
     float step;                 ///< metres in a substep that a sphere moves relative to a root, at most
     Pair pairs[kMaxPairs + 1];  ///< those of a point in the order of spheres
     /// Where the points were when the list was made, relative to their roots.
-    alignas(64) float places[3 * (kMaxPoints * kBlockLanes + kPlanePadding)];
+    alignas(64) float positions[3 * (kMaxPoints * kBlockLanes + kPlanePadding)];
     Touch touches[kMaxPairs + 1];     ///< of one substep; written before it is known whether it stays
     std::uint64_t overlaps[64];       ///< of each sphere: those that can overlap it in this frame, as bits
     std::uint64_t overlapsKnown = 0;  ///< which of them are filled
@@ -148,7 +148,7 @@ struct NearPoints {
 
 struct MovingSphere {
     Float3 from_ws;  ///< centre at the start of the frame
-    Float3 step;     ///< the centre's way in one substep
+    Float3 step;     ///< the centre's displacement in one substep
     float radius;
     float way = length(step);  ///< metres in one substep
 };
@@ -163,14 +163,14 @@ inline constexpr std::size_t kMaxCopied = 64;
 /// What the strands of a block go through in one frame; one of an engine's Scratch (src/scratch.h).
 struct alignas(64) LaneFrame {
     float root[3][kBlockLanes];              ///< at the start of the frame, world
-    float rootDisplacement[3][kBlockLanes];  ///< the root's way in one substep
+    float rootDisplacement[3][kBlockLanes];  ///< the root's displacement in one substep
     float rotationFrom[4][kBlockLanes];      ///< x, y, z, w
     float rotationTo[4][kBlockLanes];        ///< by the first substep on the side of rotationFrom
     float rotation[4][kBlockLanes];          ///< of now; kept by the stage `roots`
-    float windRoot[2][3]
-                  [kBlockLanes];  ///< the air's way in one substep at start and end of the frame, at the root
+    float windRoot[2][3][kBlockLanes];  ///< the air's displacement in one substep at start and end of the
+                                        ///< frame, at the root
     float windTip[2][3][kBlockLanes];
-    NearPoints near;                      ///< kept by the stage `collision`
+    NearPoints near;            ///< kept by the stage `collision`
     std::uint32_t guarded = 0;  ///< of rods: a bit for each lane whose speeds were taken back in this frame
     std::vector<MovingSphere> touchable;  ///< of rods: spheres that can reach the block in this frame
     /// Of strands of at most kMaxCopied points: what the pass of bending and lengths reads of them, in its
@@ -212,13 +212,13 @@ inline constexpr float kUnsweptShare = 0.25f;
 
 using Stage = void (*)(const BlockView& block, LaneFrame& lanes, const SubstepContext& context);
 
-inline constexpr std::size_t kRootRows = 7;  ///< of a block's roots: place x, y, z, rotation x, y, z, w
+inline constexpr std::size_t kRootRows = 7;  ///< of a block's roots: position x, y, z, rotation x, y, z, w
 
-/// Box and longest way of many roots, lane by lane.
+/// Box and longest displacement of many roots, lane by lane.
 struct alignas(64) RootBounds {
     float low[3][kBlockLanes], high[3][kBlockLanes];  ///< world
     float longest[kBlockLanes];                       ///< square metres, of those that are no cuts
-    bool anyTeleported = false;                       ///< set by a way that is one
+    bool anyTeleported = false;                       ///< set by a displacement that is one
 };
 
 struct Kernels {
@@ -241,12 +241,12 @@ struct Kernels {
     void (*sampleWind)(const BlockView& block, LaneFrame& lanes, float h, const Wind& wind, const float* from,
                        const float* to);
     /// Greatest squared displacement of a free point in the last substep, square metres; infinite where a
-    /// point is no number or has left the range of sound places.
+    /// point is no number or has left the range of sound positions.
     float (*fastest)(const BlockView& block);
     /// Makes the rotations in a block's rows of roots `next` unit length, and adds the roots to `bounds`;
-    /// `before` are those of the last frame. False, and nothing else, where a root is no place: not finite,
-    /// or too far away. A way whose square is above `cut` is none. With `sound` roots it neither looks nor
-    /// changes.
+    /// `before` are those of the last frame. False, and nothing else, where a root is no position: not
+    /// finite, or too far away. A displacement whose square is above `cut` is none. With `sound` roots it
+    /// neither looks nor changes.
     bool (*takeRoots)(const float* before, float* next, bool sound, float cut, RootBounds& bounds);
     const char* target;  ///< name of the instruction set
     bool fuses;          ///< MulAdd rounds once

@@ -197,7 +197,7 @@ StableRegion regionOf(const FastestWaves& waves, const S& s, double frameTime) {
         const bool along = angularForces(s) && s.angularMethod != AngularMethod::exact;
         consider(Stiff::coils, std::hypot(waves.coils, along ? waves.bending : 0.0), limit);
     }
-    // What is under tension swings too. The length constraint pulls by places, whatever the integrator, so
+    // What is under tension swings too. The length constraint pulls by positions, whatever the integrator, so
     // that there explicit Euler amplifies nothing; position Verlet and implicit Euler are left out, as their
     // constraint holds at any step.
     const bool tense = s.integrator != Integrator::verlet && !solves;

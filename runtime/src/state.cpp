@@ -21,15 +21,15 @@ std::size_t unitOf(std::size_t count) {
 /// Orders strands so that those of a block lie close, and those of each of its vectors closer still: what
 /// acts on a few strands at one place then stops few vectors. Halves them across the longest side of their
 /// box, again and again.
-void orderByPlace(std::span<std::uint32_t> strands, std::span<const Float3> places) {
+void orderByPosition(std::span<std::uint32_t> strands, std::span<const Float3> positions) {
     const std::size_t unit = unitOf(strands.size());
     if (strands.size() <= unit) {
         std::sort(strands.begin(), strands.end());
         return;
     }
-    Float3 low = places[strands[0]], high = low;
+    Float3 low = positions[strands[0]], high = low;
     for (const std::uint32_t s : strands) {
-        const Float3 p = places[s];
+        const Float3 p = positions[s];
         low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
         high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
     }
@@ -40,11 +40,11 @@ void orderByPlace(std::span<std::uint32_t> strands, std::span<const Float3> plac
     const std::size_t half = std::max((strands.size() + unit) / (2 * unit), std::size_t{1}) * unit;
     std::nth_element(strands.begin(), strands.begin() + static_cast<std::ptrdiff_t>(half), strands.end(),
                      [&](std::uint32_t a, std::uint32_t b) {
-                         const float atA = places[a].*longest, atB = places[b].*longest;
+                         const float atA = positions[a].*longest, atB = positions[b].*longest;
                          return atA != atB ? atA < atB : a < b;
                      });
-    orderByPlace(strands.first(half), places);
-    orderByPlace(strands.subspan(half), places);
+    orderByPosition(strands.first(half), positions);
+    orderByPosition(strands.subspan(half), positions);
 }
 
 /// Segments that turn by less, in radians, count as straight.
@@ -79,12 +79,12 @@ std::vector<Block> groupStrands(const StrandsView& strands) {
     std::stable_sort(order.begin(), order.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return kind[a] < kind[b]; });
     // Where strands touch things, rather than where they grow.
-    std::vector<Float3> places(count);
+    std::vector<Float3> positions(count);
     for (std::uint32_t s = 0; s < count; ++s)
-        places[s] = strands.restPositions_ss[strands.offsets[s] + pointsOf(s) / 4];
+        positions[s] = strands.restPositions_ss[strands.offsets[s] + pointsOf(s) / 4];
     for (std::size_t first = 0, end = 0; first < count; first = end) {
         while (end < count && kind[order[end]] == kind[order[first]]) ++end;
-        orderByPlace(std::span(order).subspan(first, end - first), places);
+        orderByPosition(std::span(order).subspan(first, end - first), positions);
     }
     std::vector<Block> blocks;
     std::size_t plane = 0;
@@ -235,11 +235,11 @@ BlockView viewOf(const Arrays& arrays, std::size_t index, std::uint32_t clampedP
     if (!arrays.evaluation.empty()) {
         float* plane = arrays.evaluation.data() + block.firstPlane * arrays.evaluationPlanes;
         view.start = three(plane);
-        view.rate = three(plane + 3 * size);
+        view.stepDisplacement = three(plane + 3 * size);
         if (arrays.evaluationPlanes == kRungeKuttaPlanes) {
             view.kick = three(plane + 6 * size);
             view.sum = three(plane + 9 * size);
-            view.sumRate = three(plane + 12 * size);
+            view.stepDisplacementSum = three(plane + 12 * size);
         }
     }
     return view;

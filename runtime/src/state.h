@@ -98,7 +98,8 @@ struct Bend {
 
 inline constexpr std::size_t kRestPlanes = 6;
 inline constexpr std::size_t kStatePlanes = 6;
-/// Planes of integrators that evaluate forces: start, rate; RK4 also kick, sum and sumRate.
+/// Planes of integrators that evaluate forces: start, stepDisplacement; RK4 also kick, sum and
+/// stepDisplacementSum.
 inline constexpr std::size_t kEvaluationPlanes = 6;
 inline constexpr std::size_t kRungeKuttaPlanes = 15;
 

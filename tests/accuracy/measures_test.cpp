@@ -108,7 +108,7 @@ TEST(Hair, SamplesAreSeededOrderedAndKeepTheirAttributes) {
 }
 
 /// Without forces hair stays where it is carried, whatever its points: material points of coarse and fine
-/// strands are the same places.
+/// strands are the same positions.
 TEST(Hair, MaterialPointsDoNotDependOnTheNumberOfPoints) {
     Groom groom = straightHair(3, 9);
     groom.simulation.gravity = {};
@@ -214,8 +214,7 @@ TEST(GroundTruth, TheReferenceSaysWhatItLeavesOut) {
     EXPECT_EQ(groundTruth->trajectory.points_ws.size(), 3u * 2u * 2u);
     EXPECT_THAT(groundTruth->detail, HasSubstr("0 of 2 strands converged"));
     EXPECT_THAT(groundTruth->detail, HasSubstr("last doubling moved"));
-    for (const char* const note :
-         {"does not sleep", "coil springs", "The engine"})
+    for (const char* const note : {"does not sleep", "coil springs", "The engine"})
         EXPECT_THAT(groundTruth->notes, testing::Contains(HasSubstr(note)));
     groom.simulation.angularStiffness = 1;
     EXPECT_FALSE(source.compute(sampleStrands(groom, 3, 1), **motion, time, {{0}, {1}}).has_value());

@@ -31,7 +31,7 @@ StabilityOptions quick() {
     return options;
 }
 
-std::string told(const StabilityResult& r) {
+std::string describe(const StabilityResult& r) {
     std::string text;
     for (const StabilityThreshold& m : r.thresholds) {
         if (!m.met())
@@ -61,7 +61,7 @@ TEST_P(HardCaseTest, OfSpringsPositionVerletHolds) {
         return;
     }
     EXPECT_TRUE(result.claimed) << result.limit;
-    EXPECT_TRUE(result.pass) << told(result);
+    EXPECT_TRUE(result.pass) << describe(result);
     EXPECT_FALSE(result.thresholds.empty());
     EXPECT_EQ(result.substeps, runtime::springSettings().substeps);
 }
@@ -73,11 +73,11 @@ TEST_P(HardCaseTest, RodsHoldWithTwoSubsteps) {
         // Not claimed; nothing is lost, and the hair comes to rest, even so.
         EXPECT_FALSE(result.claimed);
         for (const StabilityThreshold& m : result.thresholds)
-            EXPECT_TRUE(m.met() || m.what == "penetration") << told(result);
+            EXPECT_TRUE(m.met() || m.what == "penetration") << describe(result);
         return;
     }
     EXPECT_TRUE(result.claimed) << result.limit;
-    EXPECT_TRUE(result.pass) << told(result);
+    EXPECT_TRUE(result.pass) << describe(result);
     EXPECT_EQ(result.substeps, 2u);
 }
 
@@ -97,15 +97,15 @@ TEST(HardCaseLimits, UnclaimedCasesReportReasonAndLimit) {
     EXPECT_THAT(verdict(tiny), HasSubstr("limit, at substep"));
 }
 
-/// What is promised is kept: a case that fails has its reason in theory, or at the marks of energy and rest
-/// that the integrator does not claim.
+/// What is promised is kept: a case that fails has its reason in theory, or at the thresholds of energy and
+/// rest that the integrator does not claim.
 TEST(HardCaseLimits, EveryIntegratorMeetsItsClaims) {
     StabilityOptions options = quick();
     options.stepsAtRest = 10'000;
     options.freeSeconds = 15.0;
     for (const StabilityResult& r : runHardCases(allStabilityMethods(), options)) {
         EXPECT_EQ(r.claimed, r.limit.empty()) << r.number << " " << r.integrator;
-        EXPECT_TRUE(r.pass || !r.claimed) << r.number << " " << r.integrator << ": " << told(r);
+        EXPECT_TRUE(r.pass || !r.claimed) << r.number << " " << r.integrator << ": " << describe(r);
     }
 }
 

@@ -71,7 +71,7 @@ TEST_F(Cli, StabilityWritesItsCasesAndMaps) {
         runJson("stability -o out --integrators rk4 --cells 4 --steps 200 --steps-at-rest 8000");
     EXPECT_EQ(report["cases"].size(), 26u);
     EXPECT_EQ(report["cases"][8]["integrator"], "rk4");
-    EXPECT_TRUE(report["cases"][8]["mark"].is_number());
+    EXPECT_TRUE(report["cases"][8]["threshold"].is_number());
     EXPECT_EQ(report["maps"].size(), 2u);
     for (const char* file : {"report.html", "cases.csv", "cases.json", "cases.md", "stability-rk4-coils.svg"})
         EXPECT_TRUE(fs::exists(folder / "out" / file)) << file;

@@ -17,16 +17,16 @@ namespace {
 
 using testing::HasSubstr;
 
-std::vector<Vec3f> placesOf(const ScalpMesh& mesh, const std::vector<SurfacePoint>& roots) {
-    std::vector<Vec3f> places;
-    for (const SurfacePoint& root : roots) places.push_back(mesh.pointAt(root.triangle, root.barycentric));
-    return places;
+std::vector<Vec3f> positionsOf(const ScalpMesh& mesh, const std::vector<SurfacePoint>& roots) {
+    std::vector<Vec3f> positions;
+    for (const SurfacePoint& root : roots) positions.push_back(mesh.pointAt(root.triangle, root.barycentric));
+    return positions;
 }
 
-float bruteForceMinimum(const std::vector<Vec3f>& places) {
+float bruteForceMinimum(const std::vector<Vec3f>& positions) {
     float nearest = std::numeric_limits<float>::infinity();
-    for (std::size_t i = 0; i < places.size(); ++i)
-        for (std::size_t j = 0; j < i; ++j) nearest = std::min(nearest, (places[i] - places[j]).norm());
+    for (std::size_t i = 0; i < positions.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j) nearest = std::min(nearest, (positions[i] - positions[j]).norm());
     return nearest;
 }
 
@@ -113,7 +113,7 @@ TEST(PlaceRandom, MaskThinsInProportion) {
     ASSERT_TRUE(placement);
     // Density x on [0, 1]: a quarter of the roots lie left of the middle, and the mean of x is 2/3.
     double left = 0, sum = 0;
-    for (const Vec3f& p : placesOf(mesh, placement->roots)) {
+    for (const Vec3f& p : positionsOf(mesh, placement->roots)) {
         left += p.x() < 0;
         sum += p.x() + 0.5;
     }
@@ -123,11 +123,11 @@ TEST(PlaceRandom, MaskThinsInProportion) {
 
 void expectMaximal(const ScalpMesh& mesh, const FaceSet& faces, const Placement& placement, int samples) {
     expectOnFaces(faces, placement.roots);
-    const std::vector<Vec3f> places = placesOf(mesh, placement.roots);
+    const std::vector<Vec3f> positions = positionsOf(mesh, placement.roots);
     EXPECT_GT(placement.radius, 0);
-    EXPECT_GE(bruteForceMinimum(places), placement.radius);
-    EXPECT_EQ(bruteForceMinimum(places), minimumRootDistance(mesh, placement.roots));
-    EXPECT_LE(widestGap(mesh, faces, places, samples), placement.radius * 1.001f);
+    EXPECT_GE(bruteForceMinimum(positions), placement.radius);
+    EXPECT_EQ(bruteForceMinimum(positions), minimumRootDistance(mesh, placement.roots));
+    EXPECT_LE(widestGap(mesh, faces, positions, samples), placement.radius * 1.001f);
 }
 
 TEST(PlaceDarts, TheSetIsMaximalOnFacesOfAnySize) {
@@ -234,7 +234,7 @@ TEST(PlaceDarts, MaskWidensTheSpacing) {
     ASSERT_TRUE(placement);
     EXPECT_EQ(placement->roots.size(), 1000u);
     std::vector<Vec3f> dense, sparse;
-    for (const Vec3f& p : placesOf(mesh, placement->roots)) {
+    for (const Vec3f& p : positionsOf(mesh, placement->roots)) {
         if (p.x() < -0.25f) dense.push_back(p);
         if (p.x() > 0.25f) sparse.push_back(p);
     }
@@ -243,7 +243,7 @@ TEST(PlaceDarts, MaskWidensTheSpacing) {
     EXPECT_NEAR(static_cast<double>(dense.size()) / static_cast<double>(sparse.size()), 4, 0.6);
     // Nothing grows where the mask is 0.
     for (std::size_t v = 0; v < mask.size(); ++v) mask[v] = mesh.positions()[v].x() > 0.05f ? 0.0f : 1.0f;
-    for (const Vec3f& p : placesOf(mesh, placeDarts(mesh, test::allFaces(mesh), request)->roots))
+    for (const Vec3f& p : positionsOf(mesh, placeDarts(mesh, test::allFaces(mesh), request)->roots))
         EXPECT_LE(p.x(), 0.1f);
     mask.assign(mask.size(), 0.0f);
     EXPECT_FALSE(placeDarts(mesh, test::allFaces(mesh), request));

@@ -69,7 +69,7 @@ TEST(ScalpMesh, SphereHasRadialNormalsAndTheAreaOfASphere) {
     EXPECT_EQ(repairsOf(mesh, "missing normals computed"), 2562u);
 }
 
-TEST(ScalpMesh, WeldsEqualPlacesAndBothZeros) {
+TEST(ScalpMesh, WeldsEqualPositionsAndBothZeros) {
     PolygonSoup soup;
     soup.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, -0.0f}, {1, 1, 0}, {-0.0f, 1, 0}};
     addFace(soup, {0, 1, 2});

@@ -52,21 +52,21 @@ Eigen::MatrixXd beam(Eigen::Index points, Eigen::Index first, Eigen::Index end, 
 Eigen::VectorXf solvedByLanes(const std::vector<shaders::float4>& quads, Eigen::VectorXf side) {
     const auto points = static_cast<std::uint32_t>(side.size()), steps = reductionSteps(points);
     for (std::uint32_t step = 0; step < steps; ++step) {
-        const Eigen::VectorXf told = side;
+        const Eigen::VectorXf exchanged = side;
         const std::uint32_t apart = 2u << step;
         for (std::uint32_t p = 0; p < points; ++p) {
             const std::uint32_t pair = p & ~1u, last = points - 1;
             const std::uint32_t before = pair >= apart ? pair - apart : pair;
             const std::uint32_t after = pair + apart <= last ? pair + apart : pair;
             const shaders::float4 by = quads[p * (steps + 1) + step];
-            side[p] += told[before] * by.x + told[std::min(before + 1, last)] * by.y + told[after] * by.z +
-                       told[std::min(after + 1, last)] * by.w;
+            side[p] += exchanged[before] * by.x + exchanged[std::min(before + 1, last)] * by.y +
+                       exchanged[after] * by.z + exchanged[std::min(after + 1, last)] * by.w;
         }
     }
-    const Eigen::VectorXf told = side;
+    const Eigen::VectorXf exchanged = side;
     for (std::uint32_t p = 0; p < points; ++p) {
         const shaders::float4 by = quads[p * (steps + 1) + steps];
-        side[p] = told[p] * by.x + told[std::min(p ^ 1u, points - 1)] * by.y;
+        side[p] = exchanged[p] * by.x + exchanged[std::min(p ^ 1u, points - 1)] * by.y;
     }
     return side;
 }

@@ -118,8 +118,8 @@ inline void fillSpareLanes(const runtime::RestShape& shape, runtime::State& stat
     }
 }
 
-/// Moves every point of the state off its rest place and gives it a speed. Nasty states have points in one
-/// place, folds by 180° and a point that flies at 500 m/s.
+/// Moves every point of the state off its rest position and gives it a speed. Nasty states have points in one
+/// position, folds by 180° and a point that flies at 500 m/s.
 /// Others are off by up to `most` metres along each axis, and move in proportion, at 3 m/s for 2 mm.
 inline void disturb(Scene& scene, Hair hair, Dice& dice, float maximum = 0.002f) {
     const std::vector<Seat> seats = seatsOf(*scene.shape);
@@ -134,12 +134,13 @@ inline void disturb(Scene& scene, Hair hair, Dice& dice, float maximum = 0.002f)
             const Float3 moved = dice.inside(3.0f * kStep * maximum / 0.002f);
             const bool odd = hair == Hair::nasty && p > 2;
             for (std::size_t k = 0; k < 3; ++k) {
-                float& place = planes[k * size + i];
-                place += k == 0 ? shift.x : k == 1 ? shift.y : shift.z;
-                if (odd && (p + strand) % 7 == 0) place = planes[k * size + before];
-                if (odd && (p + strand) % 7 == 3) place = planes[k * size + before - runtime::kBlockLanes];
+                float& position = planes[k * size + i];
+                position += k == 0 ? shift.x : k == 1 ? shift.y : shift.z;
+                if (odd && (p + strand) % 7 == 0) position = planes[k * size + before];
+                if (odd && (p + strand) % 7 == 3) position = planes[k * size + before - runtime::kBlockLanes];
                 const float way = k == 0 ? moved.x : k == 1 ? moved.y : moved.z;
-                planes[(3 + k) * size + i] = place - (odd && (p + strand) % 11 == 0 ? 500.0f * kStep : way);
+                planes[(3 + k) * size + i] =
+                    position - (odd && (p + strand) % 11 == 0 ? 500.0f * kStep : way);
             }
         }
     }
@@ -179,8 +180,8 @@ inline Scene makeScene(const runtime::SimulationSettings& settings, Hair hair, s
         scene.roots.push_back({root.position + dice.inside(0.002f), dice.turn(0.02f)});
     for (std::size_t b = 0; b < shape.blocks.size(); ++b) {
         for (std::uint32_t lane = 0; lane < runtime::kBlockLanes; ++lane) {
-            const Float3 place = shape.restRoots[shape.blocks[b].strandOfLane[lane]].position;
-            const float rows[] = {place.x, place.y, place.z, 0.0f, 0.0f, 0.0f, 1.0f};
+            const Float3 position = shape.restRoots[shape.blocks[b].strandOfLane[lane]].position;
+            const float rows[] = {position.x, position.y, position.z, 0.0f, 0.0f, 0.0f, 1.0f};
             for (std::size_t r = 0; r < runtime::kRootRows; ++r)
                 state.roots[(b * runtime::kRootRows + r) * runtime::kBlockLanes + lane] = rows[r];
             runtime::placeAtRest(shape, state, b, lane);
@@ -209,7 +210,7 @@ struct CpuFrame {
         runtime::takeSpheres(scene.settings, shape.longestStrand, scene.state.spheres, scene.spheres,
                              spheres);
         wind.wind = runtime::makeWind(scene.settings);
-        runtime::FrameOutlook planInput;
+        runtime::FramePlanInput planInput;
         planInput.strandCount = 64;
         planInput.longestPointCount = shape.longestPointCount;
         planInput.longestStrand = shape.longestStrand;
@@ -218,8 +219,7 @@ struct CpuFrame {
         planInput.rootsMax_ws = {1.0f, 1.0f, 1.0f};
         planInput.fastest = std::numeric_limits<float>::infinity();
         plan = runtime::planFrame(scene.settings, planInput, wind, spheres.usable, spheres.motion, dt);
-        if (plan.on(runtime::Effect::collision))
-            runtime::moveSpheres(spheres, scene.substeps, moving);
+        if (plan.on(runtime::Effect::collision)) runtime::moveSpheres(spheres, scene.substeps, moving);
         context = runtime::substepContext(scene.settings, plan, dt, moving);
     }
 };
@@ -246,10 +246,10 @@ inline void fillLanes(const Scene& scene, std::size_t b, runtime::LaneFrame& lan
 inline bool isSound(const runtime::BlockView& view, std::uint32_t lane) {
     for (std::uint32_t p = 0; p < view.points; ++p) {
         const std::size_t i = std::size_t{p} * runtime::kBlockLanes + lane;
-        const Float3 place{view.position.x[i], view.position.y()[i], view.position.z()[i]};
+        const Float3 position{view.position.x[i], view.position.y()[i], view.position.z()[i]};
         const Float3 before{view.previous.x[i], view.previous.y()[i], view.previous.z()[i]};
-        const Float3 moved = place - before;
-        if (!(dot(place, place) < 1e12f) || !(dot(moved, moved) < 1e12f)) return false;
+        const Float3 moved = position - before;
+        if (!(dot(position, position) < 1e12f) || !(dot(moved, moved) < 1e12f)) return false;
     }
     return true;
 }
@@ -318,8 +318,8 @@ inline runtime::State runOnCpu(const Scene& scene) {
 
 /// How far two states are from each other.
 struct Distance {
-    /// Of each strand the greatest of a place or a displacement, metres; where they are greater than a metre,
-    /// the share of it.
+    /// Of each strand the greatest of a position or a displacement, metres; where they are greater than a
+    /// metre, the share of it.
     std::vector<double> strands;
     std::size_t lost = 0;  ///< points that are a number in one state only
 };
@@ -338,10 +338,10 @@ inline Distance distanceOf(const Scene& scene, const runtime::State& a, const ru
             float maximum = 1.0f;
             for (std::uint32_t p = 0; p < block.points; ++p) {
                 const std::size_t i = std::size_t{p} * runtime::kBlockLanes + lane;
-                const Float3 place = at(a, 0, i), other = at(b, 0, i);
-                const Float3 moved = place - at(a, 3, i), otherMoved = other - at(b, 3, i);
-                if (isFinite(place) != isFinite(other)) ++distance.lost;
-                greatest = std::max({greatest, static_cast<double>(length(place - other)),
+                const Float3 position = at(a, 0, i), other = at(b, 0, i);
+                const Float3 moved = position - at(a, 3, i), otherMoved = other - at(b, 3, i);
+                if (isFinite(position) != isFinite(other)) ++distance.lost;
+                greatest = std::max({greatest, static_cast<double>(length(position - other)),
                                      static_cast<double>(length(moved - otherMoved))});
                 maximum = std::max({maximum, length(other), length(otherMoved)});
             }

@@ -36,8 +36,8 @@ class Follow : public GpuSimulationTest {
         runtime::FollowHairs::make(view).hairs->evaluate(motion, wanted);
         double maximum = 0.0;
         for (std::size_t p = 0; p < points; ++p) {
-            const Float3 place{found[p].x, found[p].y, found[p].z};
-            maximum = std::max(maximum, static_cast<double>(length(place - wanted[p])));
+            const Float3 position{found[p].x, found[p].y, found[p].z};
+            maximum = std::max(maximum, static_cast<double>(length(position - wanted[p])));
             EXPECT_EQ(found[p].w, 1.0f);
         }
         return maximum;

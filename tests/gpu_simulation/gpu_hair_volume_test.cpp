@@ -51,14 +51,15 @@ TEST_F(Volume, ChangesVelocitiesAsTheRuntimesDoes) {
          {std::pair(1u << 18u, StrandStorage::threads), std::pair(600u, StrandStorage::lanes)}) {
         settings.maxNodes = nodes;
         const runtime::State without = after(hair, {}, storage), with = after(hair, settings, storage);
-        std::vector<Float3> places(hair.positions.size()), before(places), wanted(places), found(places);
-        runtime::readPositions(*hair.shape, without, places);
+        std::vector<Float3> positions(hair.positions.size()), before(positions), wanted(positions),
+            found(positions);
+        runtime::readPositions(*hair.shape, without, positions);
         runtime::readVelocities(*hair.shape, without, before);
         runtime::readVelocities(*hair.shape, with, found);
         wanted = before;
         auto volume = runtime::HairVolume::make(settings);
         ASSERT_TRUE(volume.volume);
-        volume.volume->apply(places, wanted, hair.input().dt);
+        volume.volume->apply(positions, wanted, hair.input().dt);
         double changed = 0.0;
         for (std::size_t s = 0; s + 1 < hair.offsets.size(); ++s) {
             for (std::uint32_t p = hair.offsets[s] + 2; p < hair.offsets[s + 1]; ++p) {

@@ -18,13 +18,12 @@ TEST_P(HardCases, DeviceMeetsTheCpusHardCases) {
     quick.freeSeconds = 2.0;
     quick.storms = 2;
     quick.integrators = {runtime::Integrator::verlet};
-    if (!runHardCase(hardCase, kRods, quick).pass)
-        GTEST_SKIP() << "the CPU does not hold it either";
+    if (!runHardCase(hardCase, kRods, quick).pass) GTEST_SKIP() << "the CPU does not hold it either";
     StabilityOptions onDevice = quick;
     onDevice.engines = gpuHardCaseEngines(*device(), library());
     const StabilityResult result = runHardCase(hardCase, kRods, onDevice);
     EXPECT_TRUE(result.pass) << result.number << " " << result.name << ": " << result.closest().what << " "
-                             << result.closest().worst << " " << result.closest().unit << ", mark "
+                             << result.closest().worst << " " << result.closest().unit << ", threshold "
                              << result.closest().threshold;
 }
 

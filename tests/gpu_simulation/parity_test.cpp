@@ -40,11 +40,12 @@ struct Case {
     std::function<void(SimulationSettings&)> change;
     bool spheres = false;
     /// Metres, and of what moves by more than a metre its share. Most stages add and multiply numbers of the
-    /// size of a strand, so that they round to 1e-8 of it; stiff systems and places on spheres amplify that.
+    /// size of a strand, so that they round to 1e-8 of it; stiff systems and positions on spheres amplify
+    /// that.
     double tolerance = 2e-7;
     double nastyTolerance = 2e-5;
     /// Strands of a nasty state in which rounding may decide a branch: whether a way enters a sphere steeply,
-    /// a place on a sphere lies in it, or a segment has turned by more than 60°.
+    /// a position on a sphere lies in it, or a segment has turned by more than 60°.
     std::ptrdiff_t mayDiffer = 3;
     /// Metres that points of random states are off along each axis. At four times that the system of the
     /// lengths is all but singular for a strand in a few hundred, and its result is what rounding makes of

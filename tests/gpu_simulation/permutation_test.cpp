@@ -52,7 +52,7 @@ class Permutation : public GpuSimulationTest {
         for (const gpu::RecordedWork& work : watched().record()) {
             if (work.kind != gpu::RecordedWork::Kind::Dispatch) continue;
             for (const auto* list : {&work.reads, &work.writes}) {
-                // "buffer 'places'"
+                // "buffer 'positions'"
                 for (const std::string& resource : *list) {
                     const std::size_t quote = resource.find('\'') + 1;
                     names.push_back(resource.substr(quote, resource.rfind('\'') - quote));
@@ -88,7 +88,7 @@ TEST_F(Permutation, WhatIsOffHasNoBufferAndIsNotRead) {
                                              "waking spheres",  "scratch",         "gathered"};
     StrandEngine engine = engineOf(strands.view(), withoutAll(), options());
     const std::vector<std::string> used = usedBy(engine);
-    EXPECT_THAT(used, IsSupersetOf({"state", "roots", "places"}));
+    EXPECT_THAT(used, IsSupersetOf({"state", "roots", "positions"}));
     for (const std::string& name : ofEffects) {
         EXPECT_THAT(used, Not(Contains(name)));
         EXPECT_THAT(livingNames(), Not(Contains(name)));

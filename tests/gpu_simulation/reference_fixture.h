@@ -20,14 +20,14 @@ namespace hairloom::gpu_simulation::test {
 using Eigen::Vector3d;
 using runtime::SimulationSettings;
 using runtime::springSettings;
-using Places = std::vector<Vector3d>;  // of one strand
+using Positions = std::vector<Vector3d>;  // of one strand
 
 inline constexpr double kSubstep = static_cast<double>(test::kStep);
 inline constexpr std::uint32_t kReferencePoints[] = {12};
 
 /// Places relative to the root, and displacements in the last substep.
 struct Strand {
-    Places places, moved;
+    Positions positions, moved;
 };
 
 inline std::vector<Strand> strandsOf(const Scene& scene, const runtime::State& state) {
@@ -43,7 +43,7 @@ inline std::vector<Strand> strandsOf(const Scene& scene, const runtime::State& s
                     const float* const v = planes + plane * size + i;
                     return Vector3d(v[0], v[size], v[2 * size]);
                 };
-                strand.places.push_back(at(0));
+                strand.positions.push_back(at(0));
                 strand.moved.push_back(at(0) - at(3));
             }
         }
@@ -83,12 +83,12 @@ class Bodies {
           solver_(reference::Solver::make(reference::strandsOf(scene.view()), settings).value()) {}
 
     const reference::StrandShape& shape(std::size_t s) const { return solver_.shape(s); }
-    /// Forces by the unit of mass at places relative to the root, for displacements in a substep, m/s².
-    Places forces(std::size_t s, const Places& places, const Places& moved,
-                  const reference::Physics& physics) const {
-        Places x, v, force(places.size(), Vector3d::Zero());
-        for (std::size_t p = 0; p < places.size(); ++p) {
-            x.push_back(root(s) + places[p]);
+    /// Forces by the unit of mass at positions relative to the root, for displacements in a substep, m/s².
+    Positions forces(std::size_t s, const Positions& positions, const Positions& moved,
+                     const reference::Physics& physics) const {
+        Positions x, v, force(positions.size(), Vector3d::Zero());
+        for (std::size_t p = 0; p < positions.size(); ++p) {
+            x.push_back(root(s) + positions[p]);
             v.emplace_back(moved[p] / kSubstep);
         }
         const auto spheres = spheresNow();
@@ -96,20 +96,20 @@ class Bodies {
         return force;
     }
     /// And what they add to the displacement.
-    Places added(std::size_t s, const Places& places, const Places& moved,
-                 const reference::Physics& physics) const {
-        Places force = forces(s, places, moved, physics);
+    Positions added(std::size_t s, const Positions& positions, const Positions& moved,
+                    const reference::Physics& physics) const {
+        Positions force = forces(s, positions, moved, physics);
         for (std::size_t p = 0; p < force.size(); ++p) force[p] *= kSubstep * kSubstep / shape(s).masses[p];
         return force;
     }
-    /// Minus the derivative of the forces by the places, rows and columns of x, y and z of all points.
-    Eigen::MatrixXd stiffness(std::size_t s, const Places& places) const;
+    /// Minus the derivative of the forces by the positions, rows and columns of x, y and z of all points.
+    Eigen::MatrixXd stiffness(std::size_t s, const Positions& positions) const;
     const SimulationSettings& settings() const { return settings_; }
 
   private:
     Vector3d root(std::size_t s) const {
-        const runtime::Float3 place = scene_.roots[s].position;
-        return {place.x, place.y, place.z};
+        const runtime::Float3 position = scene_.roots[s].position;
+        return {position.x, position.y, position.z};
     }
     std::vector<reference::SphereNow> spheresNow() const {
         std::vector<reference::SphereNow> spheres;
@@ -128,7 +128,7 @@ class Bodies {
     reference::Solver solver_;
 };
 
-inline Eigen::MatrixXd Bodies::stiffness(std::size_t s, const Places& places) const {
+inline Eigen::MatrixXd Bodies::stiffness(std::size_t s, const Positions& positions) const {
     class Dense final : public reference::BlockSink {
       public:
         explicit Dense(Eigen::Index points) : matrix(Eigen::MatrixXd::Zero(3 * points, 3 * points)) {}
@@ -137,27 +137,27 @@ inline Eigen::MatrixXd Bodies::stiffness(std::size_t s, const Places& places) co
         }
         Eigen::MatrixXd matrix;
     };
-    Dense sink(static_cast<Eigen::Index>(places.size()));
+    Dense sink(static_cast<Eigen::Index>(positions.size()));
     reference::Physics physics(settings_);
     physics.bendDampingTime = 0.0;
-    Places x;
-    for (const Vector3d& place : places) x.emplace_back(root(s) + place);
-    const Places rest(places.size(), Vector3d::Zero());
+    Positions x;
+    for (const Vector3d& position : positions) x.emplace_back(root(s) + position);
+    const Positions rest(positions.size(), Vector3d::Zero());
     reference::addDerivatives(physics, shape(s), x, rest, around({}), 1.0, 0.0, sink);
     return sink.matrix;
 }
 
-inline double farthest(const Places& a, const Places& b, std::size_t first) {
+inline double farthest(const Positions& a, const Positions& b, std::size_t first) {
     double maximum = 0.0;
     for (std::size_t p = first; p < a.size(); ++p) maximum = std::max(maximum, (a[p] - b[p]).norm());
     return maximum;
 }
 
 /// What hold() may compare.
-inline Places placesOf(const Strand&, const Strand& after) {
-    return after.places;
+inline Positions positionsOf(const Strand&, const Strand& after) {
+    return after.positions;
 }
-inline Places movesOf(const Strand&, const Strand& after) {
+inline Positions movesOf(const Strand&, const Strand& after) {
     return after.moved;
 }
 
@@ -165,8 +165,8 @@ class Reference : public GpuSimulationTest {
   protected:
     /// What the device and the CPU make of a substep, against `truth` of each strand before it; `of` picks
     /// what is compared.
-    void hold(const Scene& scene, const std::function<Places(std::size_t, const Strand&)>& groundTruth,
-              const std::function<Places(const Strand&, const Strand&)>& of, double share) {
+    void hold(const Scene& scene, const std::function<Positions(std::size_t, const Strand&)>& groundTruth,
+              const std::function<Positions(const Strand&, const Strand&)>& of, double share) {
         const std::vector<Strand> before = strandsOf(scene, scene.state);
         const std::vector<Strand> cpu = strandsOf(scene, test::runOnCpu(scene));
         for (const LayoutOptions& layout : kHeldLayouts) {
@@ -177,7 +177,7 @@ class Reference : public GpuSimulationTest {
             const std::vector<Strand> gpu = strandsOf(scene, engine.readState().value());
             const std::size_t first = scene.settings.clampedPoints;
             for (std::size_t s = 0; s < before.size(); ++s) {
-                const Places exact = groundTruth(s, before[s]);
+                const Positions exact = groundTruth(s, before[s]);
                 const double off = farthest(of(before[s], gpu[s]), exact, first);
                 const double offOnCpu = farthest(of(before[s], cpu[s]), exact, first);
                 double size = 0.0;

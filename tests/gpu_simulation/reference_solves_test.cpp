@@ -17,15 +17,16 @@ using Eigen::VectorXd;
 
 constexpr double kStepSquared = kSubstep * kSubstep;
 
-Places sumOf(const Places& a, const Places& b, double share = 1.0) {
-    Places sum = a;
+Positions sumOf(const Positions& a, const Positions& b, double share = 1.0) {
+    Positions sum = a;
     for (std::size_t p = 0; p < a.size(); ++p) sum[p] += b[p] * share;
     return sum;
 }
 
-VectorXd stacked(const Places& places) {
-    VectorXd all(3 * static_cast<Index>(places.size()));
-    for (std::size_t p = 0; p < places.size(); ++p) all.segment<3>(3 * static_cast<Index>(p)) = places[p];
+VectorXd stacked(const Positions& positions) {
+    VectorXd all(3 * static_cast<Index>(positions.size()));
+    for (std::size_t p = 0; p < positions.size(); ++p)
+        all.segment<3>(3 * static_cast<Index>(p)) = positions[p];
     return all;
 }
 
@@ -42,9 +43,9 @@ struct BendSystem {
         const double rate = std::max(static_cast<double>(settings.bendDampingTime) / kSubstep, minimum);
         reference::Physics physics(settings);
         physics.bendDampingTime = 0.0;
-        const MatrixXd stiffness = bodies.stiffness(s, before.places);
-        const Places still(before.places.size(), Vector3d::Zero());
-        const VectorXd force = stacked(bodies.forces(s, before.places, still, physics));
+        const MatrixXd stiffness = bodies.stiffness(s, before.positions);
+        const Positions still(before.positions.size(), Vector3d::Zero());
+        const VectorXd force = stacked(bodies.forces(s, before.positions, still, physics));
         const VectorXd ahead = force - stiffness * stacked(before.moved) * rate;
         first = 3 * static_cast<Index>(settings.clampedPoints);
         const Index rows = force.size() - first;
@@ -75,43 +76,43 @@ TEST_F(ReferenceSolves, ImplicitSpringsByADenseMatrix) {
             const auto groundTruth = [&](std::size_t s, const Strand& before) {
                 const BendSystem system(bodies, s, before, hair == Hair::curled);
                 const VectorXd move = system.matrix.ldlt().solve(system.right);
-                Places x = sumOf(before.places, before.moved);
+                Positions x = sumOf(before.positions, before.moved);
                 for (std::size_t p = settings.clampedPoints; p < x.size(); ++p)
                     x[p] += move.segment<3>(3 * static_cast<Index>(p) - system.first);
                 return x;
             };
-            hold(scene, groundTruth, placesOf, 0.0);
+            hold(scene, groundTruth, positionsOf, 0.0);
         }
     }
 }
 
 /// Where a substep ends.
 struct Ended {
-    Places places, moved;
+    Positions positions, moved;
 };
-/// Displacements that forces add at places, for displacements that stand for velocity.
-using Kick = std::function<Places(const Places& places, const Places& moved)>;
+/// Displacements that forces add at positions, for displacements that stand for velocity.
+using Kick = std::function<Positions(const Positions& positions, const Positions& moved)>;
 
 // Equations 7 to 12 of Rünz 2012 and the classical Runge-Kutta method, for displacements u = v h and a h².
-Ended explicitEuler(const Kick& kick, const Places& x, const Places& u) {
+Ended explicitEuler(const Kick& kick, const Positions& x, const Positions& u) {
     return {sumOf(x, u), sumOf(u, kick(x, u))};
 }
-Ended leapfrog(const Kick& kick, const Places& x, const Places& u) {
-    const Places half = sumOf(x, u, 0.5), after = sumOf(u, kick(half, u));
+Ended leapfrog(const Kick& kick, const Positions& x, const Positions& u) {
+    const Positions half = sumOf(x, u, 0.5), after = sumOf(u, kick(half, u));
     return {sumOf(half, after, 0.5), after};
 }
-Ended velocityVerlet(const Kick& kick, const Places& x, const Places& u) {
-    const Places half = sumOf(u, kick(x, u), 0.5), end = sumOf(x, half);
-    const Places predicted = sumOf(sumOf(half, half), u, -1.0);
+Ended velocityVerlet(const Kick& kick, const Positions& x, const Positions& u) {
+    const Positions half = sumOf(u, kick(x, u), 0.5), end = sumOf(x, half);
+    const Positions predicted = sumOf(sumOf(half, half), u, -1.0);
     return {end, sumOf(half, kick(end, predicted), 0.5)};
 }
-Ended rungeKutta(const Kick& kick, const Places& x, const Places& u) {
-    const Places a1 = kick(x, u), u2 = sumOf(u, a1, 0.5);
-    const Places a2 = kick(sumOf(x, u, 0.5), u2), u3 = sumOf(u, a2, 0.5);
-    const Places a3 = kick(sumOf(x, u2, 0.5), u3), u4 = sumOf(u, a3);
-    const Places a4 = kick(sumOf(x, u3), u4);
-    const auto mean = [](const Places& k1, const Places& k2, const Places& k3, const Places& k4) {
-        Places sum = k1;
+Ended rungeKutta(const Kick& kick, const Positions& x, const Positions& u) {
+    const Positions a1 = kick(x, u), u2 = sumOf(u, a1, 0.5);
+    const Positions a2 = kick(sumOf(x, u, 0.5), u2), u3 = sumOf(u, a2, 0.5);
+    const Positions a3 = kick(sumOf(x, u2, 0.5), u3), u4 = sumOf(u, a3);
+    const Positions a4 = kick(sumOf(x, u3), u4);
+    const auto mean = [](const Positions& k1, const Positions& k2, const Positions& k3, const Positions& k4) {
+        Positions sum = k1;
         for (std::size_t p = 0; p < sum.size(); ++p) sum[p] = (k1[p] + 2.0 * (k2[p] + k3[p]) + k4[p]) / 6.0;
         return sum;
     };
@@ -121,7 +122,7 @@ Ended rungeKutta(const Kick& kick, const Places& x, const Places& u) {
 struct Rule {
     const char* name;
     runtime::Integrator integrator;
-    Ended (*step)(const Kick& kick, const Places& x, const Places& u);
+    Ended (*step)(const Kick& kick, const Positions& x, const Positions& u);
 };
 
 void PrintTo(const Rule& printed, std::ostream* out) {
@@ -149,16 +150,16 @@ TEST_P(ReferenceIntegrators, StepAsTheirFormulas) {
     const Bodies bodies(scene, settings);
     const reference::Physics physics(settings);
     const auto ended = [&](std::size_t s, const Strand& before) {
-        const auto kick = [&](const Places& places, const Places& moved) {
-            Places added = bodies.added(s, places, moved, physics);
+        const auto kick = [&](const Positions& positions, const Positions& moved) {
+            Positions added = bodies.added(s, positions, moved, physics);
             for (std::size_t p = 0; p < settings.clampedPoints; ++p) added[p].setZero();
             return added;
         };
-        return GetParam().step(kick, before.places, before.moved);
+        return GetParam().step(kick, before.positions, before.moved);
     };
-    const auto places = [&](std::size_t s, const Strand& before) { return ended(s, before).places; };
+    const auto positions = [&](std::size_t s, const Strand& before) { return ended(s, before).positions; };
     const auto moved = [&](std::size_t s, const Strand& before) { return ended(s, before).moved; };
-    hold(scene, places, placesOf, 1e-5);
+    hold(scene, positions, positionsOf, 1e-5);
     hold(scene, moved, movesOf, 1e-4);
 }
 INSTANTIATE_TEST_SUITE_P(Rules, ReferenceIntegrators, testing::ValuesIn(kRules),

@@ -75,10 +75,10 @@ TEST_P(ReferenceForces, AreThoseOfTheModel) {
             // Position Verlet lets the air's share decay exactly.
             physics.airDrag = -std::expm1(-static_cast<double>(settings.airDrag) * kSubstep) / kSubstep;
             const auto groundTruth = [&](std::size_t s, const Strand& before) {
-                return bodies.added(s, before.places, before.moved, physics);
+                return bodies.added(s, before.positions, before.moved, physics);
             };
             const auto added = [](const Strand& before, const Strand& after) {
-                Places result;
+                Positions result;
                 for (std::size_t p = 0; p < after.moved.size(); ++p)
                     result.emplace_back(after.moved[p] - before.moved[p]);
                 return result;
@@ -92,7 +92,7 @@ INSTANTIATE_TEST_SUITE_P(Forces, ReferenceForces, testing::ValuesIn(kForces),
 
 /// One Newton step on all lengths of a strand (docs/engine.md, "After the integration"), densely, by
 /// pivoting.
-Places heldInDouble(const Scene& scene, std::size_t s, const Places& start, Places x) {
+Positions heldInDouble(const Scene& scene, std::size_t s, const Positions& start, Positions x) {
     const std::size_t n = x.size() - 1, first = scene.settings.clampedPoints - 1, rows = n - first;
     std::vector<double> masses(x.size(), 0.0), lengths(n);
     for (std::size_t j = 0; j < n; ++j) {
@@ -107,7 +107,7 @@ Places heldInDouble(const Scene& scene, std::size_t s, const Places& start, Plac
     double mean = 0.0;
     for (const double m : masses) mean += m / static_cast<double>(masses.size());
     const auto weight = [&](std::size_t p) { return p <= first ? 0.0 : mean / masses[p]; };
-    Places wanted(n), acting(n);
+    Positions wanted(n), acting(n);
     Eigen::VectorXd wrong(rows);
     for (std::size_t j = first; j < n; ++j) {
         const Vector3d edge = x[j + 1] - x[j], before = (start[j + 1] - start[j]) / lengths[j];
@@ -143,11 +143,11 @@ TEST_F(Reference, LengthsInDoublePrecision) {
             settings.clampedPoints = clamped;
             const Scene scene = sceneFor(settings, hair, false, 0, 0.0005f);
             const auto groundTruth = [&](std::size_t s, const Strand& before) {
-                Places x = before.places;
+                Positions x = before.positions;
                 for (std::size_t p = clamped; p < x.size(); ++p) x[p] += before.moved[p];
-                return heldInDouble(scene, s, before.places, x);
+                return heldInDouble(scene, s, before.positions, x);
             };
-            hold(scene, groundTruth, placesOf, 0.0);
+            hold(scene, groundTruth, positionsOf, 0.0);
         }
     }
 }
@@ -165,7 +165,7 @@ TEST_F(Reference, SpheresInDoublePrecision) {
     const auto groundTruth = [&](std::size_t s, const Strand& before) {
         const runtime::Float3 root = scene.roots[s].position;
         const Vector3d centre = centre_ws - Vector3d(root.x, root.y, root.z);
-        Places x = before.places;
+        Positions x = before.positions;
         for (std::size_t p = settings.clampedPoints; p < x.size(); ++p) {
             x[p] += before.moved[p];
             const Vector3d offset = x[p] - centre;
@@ -180,7 +180,7 @@ TEST_F(Reference, SpheresInDoublePrecision) {
         }
         return x;
     };
-    hold(scene, groundTruth, placesOf, 0.0);
+    hold(scene, groundTruth, positionsOf, 0.0);
     EXPECT_GT(touched, 10u);
 }
 

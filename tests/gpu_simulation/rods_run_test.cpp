@@ -84,14 +84,14 @@ class RodRun : public GpuSimulationTest {
             cpu.step(input);
         }
         std::vector<Float3> onGpu() {
-            std::vector<Float3> places(gpu.pointCount());
-            EXPECT_TRUE(gpu.readPositions(places));
-            return places;
+            std::vector<Float3> positions(gpu.pointCount());
+            EXPECT_TRUE(gpu.readPositions(positions));
+            return positions;
         }
         std::vector<Float3> onCpu() const {
-            std::vector<Float3> places(cpu.pointCount());
-            cpu.readPositions(places);
-            return places;
+            std::vector<Float3> positions(cpu.pointCount());
+            cpu.readPositions(positions);
+            return positions;
         }
         double farthest() { return RodRun::farthest(onGpu(), onCpu()); }
         double meanDistance() {
@@ -298,15 +298,15 @@ TEST_F(RodRun, PushesBetweenFrames) {
     Both both(strands, rods(), with);
     auto volume = runtime::HairVolume::make(*with.hairHair);
     ASSERT_TRUE(volume.volume);
-    std::vector<Float3> places(both.cpu.pointCount()), before(places), after(places);
+    std::vector<Float3> positions(both.cpu.pointCount()), before(positions), after(positions);
     for (int f = 0; f < 10; ++f) {
         const double time = f * static_cast<double>(kFrame);
         const auto roots = strands.roots({}, turned(time));
         both.step({kFrame, time, roots, {}});
-        both.cpu.readPositions(places);
+        both.cpu.readPositions(positions);
         both.cpu.readVelocities(before);
         after = before;
-        volume.volume->apply(places, after, kFrame);
+        volume.volume->apply(positions, after, kFrame);
         for (std::size_t p = 0; p < after.size(); ++p) after[p] = after[p] - before[p];
         both.cpu.addVelocities(after);
     }
@@ -314,8 +314,8 @@ TEST_F(RodRun, PushesBetweenFrames) {
     EXPECT_LE(both.farthest(), 2e-4);
 }
 
-/// Whatever comes, places are numbers and segments keep their lengths. Strands without any stiffness may be
-/// put back to rest, as on the CPU: what their rotation about themselves is, only rounding says.
+/// Whatever comes, positions are numbers and segments keep their lengths. Strands without any stiffness may
+/// be put back to rest, as on the CPU: what their rotation about themselves is, only rounding says.
 TEST_F(RodRun, StandsFiftyStorms) {
     test::Dice dice(99);
     const StrandSet strands = curls(36, 14);

@@ -21,7 +21,7 @@ struct Case {
     const char* name;
     std::function<void(SimulationSettings&)> change;
     bool spheres = false;
-    /// Metres that a strand may be off after eight substeps. Single precision rounds a strand's places to
+    /// Metres that a strand may be off after eight substeps. Single precision rounds a strand's positions to
     /// 2e-8 of its 0.2 m; what damps nothing, or is soft, lets that grow. A contact's stiffness is 300 m/h².
     double tolerance = 2e-7;
 };
@@ -74,7 +74,7 @@ SimulationSettings settingsOf(const Case& what, std::uint32_t substeps) {
     return s;
 }
 
-/// What a rod remembers besides places: greatest difference of a number of its rotations, and of a speed.
+/// What a rod remembers besides positions: greatest difference of a number of its rotations, and of a speed.
 struct Memory {
     double rotation = 0.0, speed = 0.0;
 };
@@ -99,12 +99,12 @@ Memory memoryOf(const Scene& scene, const runtime::State& a, const runtime::Stat
 
 /// Greatest error of a segment's length, metres.
 double stretchOf(const Scene& scene, const runtime::State& state) {
-    std::vector<Float3> places(scene.positions.size());
-    runtime::readPositions(*scene.shape, state, places);
+    std::vector<Float3> positions(scene.positions.size());
+    runtime::readPositions(*scene.shape, state, positions);
     double greatest = 0.0;
     for (std::size_t s = 0; s + 1 < scene.offsets.size(); ++s) {
         for (std::uint32_t p = scene.offsets[s]; p + 1 < scene.offsets[s + 1]; ++p) {
-            const float now = length(places[p + 1] - places[p]);
+            const float now = length(positions[p + 1] - positions[p]);
             const float atRest = length(scene.positions[p + 1] - scene.positions[p]);
             greatest = std::max(greatest, static_cast<double>(std::abs(now - atRest)));
         }

@@ -180,7 +180,7 @@ TEST(StrandsUnits, NamesTheUnitThatWouldFit) {
         EXPECT_EQ(warning.severity, Severity::Info) << warning.what;
 }
 
-TEST(StrandsTfx, HalfTheCountLeavesAGapThatIsTold) {
+TEST(StrandsTfx, HalfTheCountLeavesAGapThatIsReported) {
     Bytes bytes = fullTfx4(8, 4);
     const auto whole = read(bytes);
     ASSERT_TRUE(whole);

@@ -72,11 +72,11 @@ TEST(Determinism, InstructionSetsThatRoundOtherwiseStayNear) {
     forEveryInstructionSet([&] {
         Engine engine = makeEngine(strands, everything());
         runMoving(engine, strands, 0, 2);
-        std::vector<Float3> places(engine.pointCount());
-        engine.readPositions(places);
-        if (best.empty()) best = places;
-        for (std::size_t p = 0; p < places.size(); ++p)
-            ASSERT_LT(length(places[p] - best[p]), 1e-5f) << Engine::instructionSet() << " point " << p;
+        std::vector<Float3> positions(engine.pointCount());
+        engine.readPositions(positions);
+        if (best.empty()) best = positions;
+        for (std::size_t p = 0; p < positions.size(); ++p)
+            ASSERT_LT(length(positions[p] - best[p]), 1e-5f) << Engine::instructionSet() << " point " << p;
     });
 }
 
@@ -144,7 +144,7 @@ TEST(Determinism, SeparateStagesPassTheDisplacementOn) {
     EXPECT_EQ(
         singles({roots, verlet, continuousCollision, collision}),
         (std::vector<Stage>{alone(roots), opens(verlet), alone(continuousCollision), alone(collision)}));
-    // What stands between them reads places.
+    // What stands between them reads positions.
     EXPECT_EQ(singles({damping, gravity, springs, verlet}),
               (std::vector<Stage>{alone(damping), alone(gravity), alone(springs), opens(verlet)}));
 }

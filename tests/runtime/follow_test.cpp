@@ -306,10 +306,10 @@ TEST(FollowHairs, SameBitsForEveryInstructionSetThatRoundsAlike) {
         const FollowScene scene = tangled(points);
         std::vector<Float3> expected[2];
         forEveryInstructionSet([&] {
-            const std::vector<Float3> places = scene.evaluate();
+            const std::vector<Float3> positions = scene.evaluate();
             std::vector<Float3>& first = expected[kernels().fuses ? 1 : 0];
-            if (first.empty()) first = places;
-            EXPECT_TRUE(sameBits(places, first)) << points;
+            if (first.empty()) first = positions;
+            EXPECT_TRUE(sameBits(positions, first)) << points;
         });
     }
 }

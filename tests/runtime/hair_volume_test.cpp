@@ -118,7 +118,7 @@ TEST(HairVolume, VelocitiesWithinACellConvergeToTheirMean) {
 }
 
 TEST(HairVolume, FrictionDecaysByItsRateForAnyFrameTime) {
-    // All points at one place: the grid's velocity is their mean, 0, and each decays by exp(−rate · t).
+    // All points at one position: the grid's velocity is their mean, 0, and each decays by exp(−rate · t).
     for (const float dt : {0.3f, 0.1f, 0.01f}) {
         Points points{{{0.013f, 0.02f, 0.031f}, {0.013f, 0.02f, 0.031f}}, {{1, 2, 0}, {-1, -2, 0}}};
         HairVolume volume = makeVolume(frictionOnly(4.0f));

@@ -47,7 +47,7 @@ float farthestFromRigid(const Lattice& lattice, const Strands& strands, const Ro
     return maximum;
 }
 
-TEST(Lattice, RigidPlacesAreRigidToRounding) {
+TEST(Lattice, RigidPosesAreRigidToRounding) {
     const Strands strands = cap();
     Lattice lattice = makeLattice(strands);
     const RootFrame head{{0.3f, 1.6f, -0.4f}, kTurn};

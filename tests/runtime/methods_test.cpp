@@ -62,7 +62,7 @@ TEST(CoilSprings, NeverPassTheirMaximalExtension) {
             maximum = std::max(maximum, engine.measure().maxStretch);
         }
         EXPECT_GT(maximum, 0.05) << "it should have been pulled";
-        // Root to tip by places the bound is exact; passes of impulses approach it.
+        // Root to tip by positions the bound is exact; passes of impulses approach it.
         EXPECT_LT(maximum, method == LengthMethod::springs ? 0.1001 : 0.25);
     }
 }
@@ -170,7 +170,9 @@ class Sleep : public testing::TestWithParam<StrandModel> {
     }
 };
 INSTANTIATE_TEST_SUITE_P(Models, Sleep, testing::Values(StrandModel::rods, StrandModel::springs),
-                         [](const auto& model) { return model.param == StrandModel::rods ? "rods" : "springs"; });
+                         [](const auto& model) {
+                             return model.param == StrandModel::rods ? "rods" : "springs";
+                         });
 
 TEST_P(Sleep, LeavesStrandsAtRestAloneUntilSomethingMovesThem) {
     {

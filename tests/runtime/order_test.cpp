@@ -37,7 +37,7 @@ SimulationSettings smoothScene(Integrator integrator, AngularMethod method, floa
 
 /// Root mean squares over the points, in metres and metres per second.
 struct Error {
-    double places = 0.0, speeds = 0.0;
+    double positions = 0.0, speeds = 0.0;
 };
 
 double distance(std::span<const Float3> a, const Eigen::Matrix3Xd& b) {
@@ -60,9 +60,9 @@ Error errorAfter(const SimulationSettings& settings, double time, int steps) {
     engine.readVelocities(velocities);
 
     // Position Verlet keeps the velocity of half a step ago. Strands at rest have equal last two places,
-    // which is at rest half a step before the start, up to a place that differs by a h²/8. So its clock
-    // runs half a step ahead: after n steps the places are those at (n + ½) h, the velocities those at n h.
-    // All others start at rest at 0.
+    // which is at rest half a step before the start, up to a position that differs by a h²/8. So its clock
+    // runs half a step ahead: after n steps the positions are those at (n + ½) h, the velocities those at n
+    // h. All others start at rest at 0.
     const double ahead = settings.integrator == Integrator::verlet ? 0.5 * time / steps : 0.0;
     const test::SmoothStrand model(settings, {0.6, 0.0, 0.8}, static_cast<double>(kSegment), kPoints);
     const auto later = model.afterRest(time + ahead, kFineSteps), now = model.afterRest(time, kFineSteps);
@@ -89,21 +89,21 @@ class Order : public testing::TestWithParam<OrderCase> {};
 TEST_P(Order, IsThatOfTheTextbook) {
     const OrderCase& c = GetParam();
     const SimulationSettings settings = smoothScene(c.integrator, c.method, c.airDrag);
-    std::vector<double> places, speeds;
+    std::vector<double> positions, speeds;
     for (int halving = 0; halving < 3; ++halving) {
         const Error error = errorAfter(settings, c.time, c.steps << halving);
-        places.push_back(error.places);
+        positions.push_back(error.positions);
         speeds.push_back(error.speeds);
     }
-    EXPECT_GT(places.back(), c.floor) << "rounding would be measured";
-    EXPECT_LT(places.front(), 0.05) << "too coarse for an order to show";
-    for (std::size_t i = 1; i < places.size(); ++i) {
-        const double ofPlaces = std::log2(places[i - 1] / places[i]);
+    EXPECT_GT(positions.back(), c.floor) << "rounding would be measured";
+    EXPECT_LT(positions.front(), 0.05) << "too coarse for an order to show";
+    for (std::size_t i = 1; i < positions.size(); ++i) {
+        const double ofPositions = std::log2(positions[i - 1] / positions[i]);
         const double ofSpeeds = std::log2(speeds[i - 1] / speeds[i]);
-        std::printf("order %.2f of places, %.2f of speeds\n", ofPlaces, ofSpeeds);
-        EXPECT_NEAR(ofPlaces, c.order, 0.25) << places[i - 1] << " m, then " << places[i];
-        // Speeds show their order one halving later than places.
-        if (i + 1 == places.size()) {
+        std::printf("order %.2f of places, %.2f of speeds\n", ofPositions, ofSpeeds);
+        EXPECT_NEAR(ofPositions, c.order, 0.25) << positions[i - 1] << " m, then " << positions[i];
+        // Speeds show their order one halving later than positions.
+        if (i + 1 == positions.size()) {
             EXPECT_NEAR(ofSpeeds, c.order, 0.25) << speeds[i - 1] << " m/s, then " << speeds[i];
         }
     }

@@ -95,7 +95,7 @@ TEST(Physics, AirDragReachesItsTerminalSpeedForAnyFrameTime) {
         engine.step({dt, 0.0, roots, {}});
         std::vector<Float3> v(2);
         engine.readVelocities(v);
-        // From rest, broadside: v = u(1 − exp(−airDrag·t)), while the point has hardly left its place.
+        // From rest, broadside: v = u(1 − exp(−airDrag·t)), while the point has hardly left its position.
         EXPECT_NEAR(v[1].z, 5.0f * (1.0f - std::exp(-20.0f * dt)), 0.15f) << dt;
     }
 }

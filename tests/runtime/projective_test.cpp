@@ -16,7 +16,7 @@ ProjectiveEquations makeSticks(const Strands& strands, const SimulationSettings&
     return std::move(*made.engine);
 }
 
-std::vector<Float3> placesOf(const ProjectiveEquations& sticks) {
+std::vector<Float3> positionsOf(const ProjectiveEquations& sticks) {
     std::vector<Float3> positions(sticks.pointCount());
     sticks.readPositions(positions);
     return positions;
@@ -57,15 +57,15 @@ double measuredPeriod(Float3 sideways, float tilt) {
     s.dampingTime = 0.05f;
     ProjectiveEquations sticks = makeSticks(strands, s);
     run(sticks, strands, 300);
-    EXPECT_NEAR(dot(placesOf(sticks)[1], sideways), 0.25f * std::sin(0.05f), 2e-5f);
+    EXPECT_NEAR(dot(positionsOf(sticks)[1], sideways), 0.25f * std::sin(0.05f), 2e-5f);
     s.gravity = down * 9.81f;
     s.dampingTime = 0.0f;
     EXPECT_EQ(sticks.setSettings(s), "");
     std::vector<double> crossings;
-    float before = dot(placesOf(sticks)[1], sideways);
+    float before = dot(positionsOf(sticks)[1], sideways);
     for (int f = 0; f < 900; ++f) {
         run(sticks, strands, 1, 1.0f / 180.0f);
-        const float now = dot(placesOf(sticks)[1], sideways);
+        const float now = dot(positionsOf(sticks)[1], sideways);
         if (before > 0.0f && now <= 0.0f)
             crossings.push_back((f + static_cast<double>(before / (before - now))) / 180.0);
         before = now;
@@ -102,7 +102,7 @@ TEST(Projective, SideWindHoldsAStickAtItsClosedFormAngle) {
         run(sticks, strands, 1200);
         const double r = 3.0 * wind / 9.81;
         const double sine = (std::sqrt(1.0 + 4.0 * r * r) - 1.0) / (2.0 * r);
-        const Float3 tip = placesOf(sticks)[1];
+        const Float3 tip = positionsOf(sticks)[1];
         EXPECT_NEAR(static_cast<double>(tip.y), -0.1 * std::sqrt(1.0 - sine * sine), 2e-5) << wind;
         EXPECT_NEAR(static_cast<double>(tip.x), 0.06 * sine, 2e-5) << wind;
         EXPECT_NEAR(static_cast<double>(tip.z), 0.08 * sine, 2e-5) << wind;
@@ -123,12 +123,12 @@ TEST(Projective, ASteadyPullBendsByItsClosedFormAngle) {
     s.dampingTime = 0.2f;
     ProjectiveEquations sagging = makeSticks(strands, s);
     run(sagging, strands, 300);
-    EXPECT_NEAR(static_cast<double>(placesOf(sagging)[1].y), -l * std::sin(angle), 1e-6);
+    EXPECT_NEAR(static_cast<double>(positionsOf(sagging)[1].y), -l * std::sin(angle), 1e-6);
     EXPECT_GT(angle, 0.05);
     s.restGravity = 1.0f;
     ProjectiveEquations hung = makeSticks(strands, s);
     run(hung, strands, 300);
-    EXPECT_NEAR(placesOf(hung)[1].y, 0.0f, 1e-7f);
+    EXPECT_NEAR(positionsOf(hung)[1].y, 0.0f, 1e-7f);
 }
 
 TEST(Projective, AnAcceleratingRootIsGravityAtAnAngle) {
@@ -141,7 +141,7 @@ TEST(Projective, AnAcceleratingRootIsGravityAtAnAngle) {
         const float t = static_cast<float>(f) / 60.0f;
         sticks.step({1.0f / 60.0f, 0.0, strands.roots({2.0f * t * t, 0.0f, 0.0f}), {}});
     }
-    const std::vector<Float3> now = placesOf(sticks);
+    const std::vector<Float3> now = positionsOf(sticks);
     EXPECT_NEAR((now[1] - now[0]).x / (now[1] - now[0]).y, 4.0f / 9.81f, 5e-3f);
 }
 
@@ -156,7 +156,7 @@ TEST(Projective, LengthIsExactThroughViolentMotion) {
         const auto roots = strands.roots({0.3f * std::sin(static_cast<float>(f)), 0.0f, 0.0f},
                                          turnAbout({0.0f, 1.0f, 0.0f}, static_cast<float>(f)));
         sticks.step({1.0f / 60.0f, f / 60.0, roots, spheres});
-        ASSERT_LT(worstStretch(strands, placesOf(sticks)), 2e-5) << f;
+        ASSERT_LT(worstStretch(strands, positionsOf(sticks)), 2e-5) << f;
     }
 }
 
@@ -174,7 +174,7 @@ TEST(Projective, AuthoredShapeComesBackAndTurnsWithTheRoot) {
     }
     const auto worst = [&] {
         float maximum = 0.0f;
-        const std::vector<Float3> now = placesOf(sticks);
+        const std::vector<Float3> now = positionsOf(sticks);
         for (std::size_t i = 0; i < now.size(); ++i)
             maximum = std::max(maximum, length(now[i] - rotate(turn, strands.points[i])));
         return maximum;
@@ -192,7 +192,7 @@ TEST(Projective, WithoutTorqueAStickKeepsItsDirectionWhileItsRootTurns) {
             const auto roots = strands.roots({}, turnAbout(axis, 0.02f * static_cast<float>(f)));
             sticks.step({1.0f / 60.0f, 0.0, roots, {}});
         }
-        EXPECT_LT(length(placesOf(sticks)[1] - Float3{0.1f, 0.0f, 0.0f}), 3e-4f) << axis.x << axis.y;
+        EXPECT_LT(length(positionsOf(sticks)[1] - Float3{0.1f, 0.0f, 0.0f}), 3e-4f) << axis.x << axis.y;
     }
 }
 
@@ -213,7 +213,7 @@ TEST(Projective, RigidHairMovesAsItsRootDoes) {
     const Quat turn = turnAbout({0.0f, 1.0f, 0.0f}, 0.01f);
     std::vector<Float3> velocities(sticks.pointCount());
     sticks.readVelocities(velocities);
-    const std::vector<Float3> now = placesOf(sticks);
+    const std::vector<Float3> now = positionsOf(sticks);
     for (std::size_t i = 0; i < now.size(); ++i) {
         const Float3 arm = rotate(turn, strands.points[i]);
         EXPECT_LT(length(now[i] - arm - Float3{0.25f, 0.0f, 0.0f}), 1e-6f) << i;
@@ -229,7 +229,7 @@ TEST(Projective, NoStepSizeLiftsAStickAboveWhereItStarted) {
         s.substeps = 1;
         s.gravity = {4.0f, -9.81f, 7.0f};
         ProjectiveEquations sticks = makeSticks(strands, s);
-        const auto potential = [&] { return -static_cast<double>(dot(s.gravity, placesOf(sticks)[1])); };
+        const auto potential = [&] { return -static_cast<double>(dot(s.gravity, positionsOf(sticks)[1])); };
         const double start = potential();
         for (int f = 0; f < 400; ++f) {
             run(sticks, strands, 1, dt);
@@ -250,7 +250,7 @@ TEST(Projective, TipsLeaveSpheresAndSticksKeepTheirLength) {
     const std::vector<Sphere> spheres{{{0.08f, 0.005f, 0.0f}, 0.07f}};
     const auto deepest = [&] {
         float maximum = -1.0f;
-        for (const Float3& p : placesOf(sticks)) {
+        for (const Float3& p : positionsOf(sticks)) {
             maximum = std::max(maximum, 0.072f - length(p - spheres[0].center_ws));
         }
         return maximum;
@@ -258,7 +258,7 @@ TEST(Projective, TipsLeaveSpheresAndSticksKeepTheirLength) {
     ASSERT_GT(deepest(), 0.02f) << "the sphere should stand in the hair";
     for (int f = 0; f < 120; ++f) sticks.step({1.0f / 60.0f, 0.0, strands.roots(), spheres});
     EXPECT_LT(deepest(), 1e-5f);
-    EXPECT_LT(worstStretch(strands, placesOf(sticks)), 2e-5);
+    EXPECT_LT(worstStretch(strands, positionsOf(sticks)), 2e-5);
 }
 
 TEST(Projective, AStickThatRestedOnASphereStartsFromRest) {
@@ -269,11 +269,11 @@ TEST(Projective, AStickThatRestedOnASphereStartsFromRest) {
     ProjectiveEquations sticks = makeSticks(strands, s);
     const std::vector<Sphere> spheres{{{0.1f, -0.05f, 0.0f}, 0.05f}};
     for (int f = 0; f < 120; ++f) sticks.step({1.0f / 60.0f, 0.0, strands.roots(), spheres});
-    EXPECT_NEAR(length(placesOf(sticks)[1] - spheres[0].center_ws), 0.05f, 1e-5f);
-    const float before = placesOf(sticks)[1].y;
+    EXPECT_NEAR(length(positionsOf(sticks)[1] - spheres[0].center_ws), 0.05f, 1e-5f);
+    const float before = positionsOf(sticks)[1].y;
     sticks.step({1.0f / 60.0f, 0.0, strands.roots(), {}});
     // ½ · (3/2) g t² and a little for the steps' sizes: a free fall, not two seconds' speed.
-    EXPECT_NEAR(before - placesOf(sticks)[1].y, 0.75f * 9.81f / 3600.0f, 4e-4f);
+    EXPECT_NEAR(before - positionsOf(sticks)[1].y, 0.75f * 9.81f / 3600.0f, 4e-4f);
 }
 
 TEST(Projective, PushBeyondThePoleTakesTheShorterArc) {
@@ -297,11 +297,11 @@ TEST(Projective, AtThePoleAStickStaysSoundAndComesBack) {
     s.dampingTime = 0.3f;
     ProjectiveEquations sticks = makeSticks(strands, s);
     run(sticks, strands, 600);
-    EXPECT_LT(length(placesOf(sticks)[1] - Float3{0.0f, 0.0f, 0.03f}), 1e-5f);
+    EXPECT_LT(length(positionsOf(sticks)[1] - Float3{0.0f, 0.0f, 0.03f}), 1e-5f);
     s.gravity = {50.0f, 0.0f, 0.0f};
     ASSERT_EQ(sticks.setSettings(s), "");
     run(sticks, strands, 600);
-    EXPECT_LT(length(placesOf(sticks)[1] - Float3{0.03f, 0.0f, 0.0f}), 1e-5f);
+    EXPECT_LT(length(positionsOf(sticks)[1] - Float3{0.03f, 0.0f, 0.0f}), 1e-5f);
 }
 
 TEST(Projective, SameBitsForAnyNumberOfThreads) {
@@ -315,7 +315,7 @@ TEST(Projective, SameBitsForAnyNumberOfThreads) {
             const auto roots = strands.roots({0.02f * std::sin(static_cast<float>(f)), 0.0f, 0.0f});
             sticks.step({1.0f / 60.0f, f / 60.0, roots, {}});
         }
-        results.push_back(placesOf(sticks));
+        results.push_back(positionsOf(sticks));
     }
     for (const auto& result : results) EXPECT_TRUE(result == results[0]);
 }
@@ -354,7 +354,7 @@ TEST(Projective, NonFiniteInputIsRejected) {
     const double clocks[] = {std::numeric_limits<double>::quiet_NaN(), 1e308, -1e308};
     for (int f = 0; f < 60; ++f) {
         sticks.step({times[f % 6], clocks[f % 3], roots, spheres});
-        ASSERT_LT(worstStretch(strands, placesOf(sticks)), 2e-5) << f;
+        ASSERT_LT(worstStretch(strands, positionsOf(sticks)), 2e-5) << f;
         std::vector<Float3> velocities(sticks.pointCount());
         sticks.readVelocities(velocities);
         for (const Float3& v : velocities) ASSERT_TRUE(isFinite(v));
@@ -372,7 +372,7 @@ TEST(Projective, RefusesWhatTheEngineRefuses) {
     Strands doubled = oneStick({0.0f, -1.0f, 0.0f}, 0.0f);
     ProjectiveEquations sticks = makeSticks(doubled, {});
     run(sticks, doubled, 10);
-    EXPECT_EQ(placesOf(sticks)[1], Float3{});
+    EXPECT_EQ(positionsOf(sticks)[1], Float3{});
 }
 
 }  // namespace

@@ -366,7 +366,7 @@ TEST(Rods, MoveAlikeWhereverTheirOriginIs) {
     s.windSpeed = 4.0f;
     s.windFrequency = 0.0f;
     const std::vector<Sphere> spheres{{{0.1f, 0.02f, 0.0f}, 0.05f}};
-    // Walks ten kilometres away, with places measured from an origin that follows every few frames.
+    // Walks ten kilometres away, with positions measured from an origin that follows every few frames.
     const auto walked = [&](bool follows, double start) {
         Engine engine = makeEngine(strands, s);
         for (int f = 1; f <= 120; ++f) {
@@ -381,10 +381,11 @@ TEST(Rods, MoveAlikeWhereverTheirOriginIs) {
             input.origin_ws = {origin, 0.0, 0.0};
             engine.step(input);
         }
-        std::vector<Float3> places = positionsOf(engine);
-        const auto last = static_cast<float>(follows ? 0.02 * 120 - std::floor(0.02 * 120 / 0.25) * 0.25 : 2.4);
-        for (Float3& place : places) place.x -= last;
-        return places;
+        std::vector<Float3> positions = positionsOf(engine);
+        const auto last =
+            static_cast<float>(follows ? 0.02 * 120 - std::floor(0.02 * 120 / 0.25) * 0.25 : 2.4);
+        for (Float3& position : positions) position.x -= last;
+        return positions;
     };
     const std::vector<Float3> still = walked(false, 0.0);
     EXPECT_LT(rmsBetween(walked(true, 0.0), still), 1e-4);

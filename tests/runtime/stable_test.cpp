@@ -139,7 +139,7 @@ TEST(Stable, KnowsThatDragIsStiffForForces) {
     EXPECT_TRUE(stableRegion(straight(8, 0.02f).view(), s, 1.0f / 60.0f).stable());
 }
 
-/// Largest place of a damped oscillator of ω h = `wave` after many substeps, relative to the start, as
+/// Largest position of a damped oscillator of ω h = `wave` after many substeps, relative to the start, as
 /// position Verlet and explicit Euler take it with the share `kept` of the velocity.
 double swingAfter(Integrator integrator, double wave, double kept) {
     double x = 1.0, u = 0.0, maximum = 0.0;

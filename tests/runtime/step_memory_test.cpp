@@ -131,13 +131,13 @@ TEST(SavedState, ResumesWithTheSameBits) {
         slept = slept || saved.measure().asleep > 0;
         original.steps(engine, part.frames / 2, kNear, part.wind, part.still);
         const std::uint64_t end = engine.stateHash();
-        const std::vector<Float3> places = positionsOf(engine);
+        const std::vector<Float3> positions = positionsOf(engine);
         const std::uint32_t asleep = engine.measure().asleep;
         engine = saved;
         original = here;
         original.steps(engine, part.frames / 2, kNear, part.wind, part.still);
         EXPECT_EQ(engine.stateHash(), end);
-        EXPECT_EQ(positionsOf(engine), places);
+        EXPECT_EQ(positionsOf(engine), positions);
         EXPECT_EQ(engine.measure().asleep, asleep);
     }
     EXPECT_TRUE(slept) << "the save should hold strands at rest";

@@ -25,8 +25,8 @@ inline Swing swing(const reference::Strands& strands, std::size_t frames) {
         const double t = static_cast<double>(f) * static_cast<double>(kFrameTime);
         const double angle = 0.5 * std::pow(std::sin(0.5 * kTau * t), 2.0);
         const Eigen::Quaterniond turn(Eigen::AngleAxisd(angle, Vec3d::UnitZ()));
-        const Vec3d place(0.1 * std::sin(angle), 0.1 * (1.0 - std::cos(angle)), 0.0);
-        result.frames.push_back({static_cast<double>(kFrameTime), t, {reference::Root{place, turn}}, {}});
+        const Vec3d position(0.1 * std::sin(angle), 0.1 * (1.0 - std::cos(angle)), 0.0);
+        result.frames.push_back({static_cast<double>(kFrameTime), t, {reference::Root{position, turn}}, {}});
     }
     return result;
 }

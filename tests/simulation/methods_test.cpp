@@ -134,9 +134,9 @@ TEST(SceneInput, TheHeadIsTheMotionOfItsRoots) {
 
 /// Points that take velocities, without forces of their own.
 struct FreePoints {
-    std::vector<runtime::Float3> places, speeds;
-    std::size_t pointCount() const { return places.size(); }
-    void readPositions(std::span<runtime::Float3> into) const { std::ranges::copy(places, into.begin()); }
+    std::vector<runtime::Float3> positions, speeds;
+    std::size_t pointCount() const { return positions.size(); }
+    void readPositions(std::span<runtime::Float3> into) const { std::ranges::copy(positions, into.begin()); }
     void readVelocities(std::span<runtime::Float3> into) const { std::ranges::copy(speeds, into.begin()); }
     void addVelocities(std::span<const runtime::Float3> changes) {
         for (std::size_t p = 0; p < speeds.size(); ++p) speeds[p] = speeds[p] + changes[p];

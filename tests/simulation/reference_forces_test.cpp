@@ -49,8 +49,8 @@ TEST(ReferenceShape, MassesAndStiffnessAreThoseOfAUniformRod) {
 
     s.angularCurve = runtime::Ramp::straight(1.0f, 0.5f);  // s = 0.5 · (1 − ½ · 3/4) at joint 3
     const double authored = 0.5 * (1.0 - 0.5 * 0.75);
-    EXPECT_NEAR(reference::makeShape(edges, {}, s).stiffness[3],
-                B * authored / (1.0 - authored) / mean / 0.3, 1e-12);
+    EXPECT_NEAR(reference::makeShape(edges, {}, s).stiffness[3], B * authored / (1.0 - authored) / mean / 0.3,
+                1e-12);
 
     const runtime::Ramp::Key keys[] = {{0, 0.25f}, {0.375f, 1}, {0.875f, 0.5f}, {1, 0}};
     s.angularCurve = runtime::Ramp::of(keys);
@@ -160,7 +160,7 @@ TEST(ReferenceForces, WholeGradientOfACurledStrandIsThatOfItsEnergy) {
     }
 }
 
-TEST(ReferenceForces, RestShapeInAnyPlaceBearsNoForce) {
+TEST(ReferenceForces, RestShapeAnywhereBearsNoForce) {
     std::mt19937 random(11);
     runtime::SimulationSettings s = bareSettings();
     s.angularStiffness = 0.6f;

@@ -179,9 +179,9 @@ TEST(ReferenceAir, GustsAreTheWavesOfTheWind) {
     s.windSpeed = 3.0f;
     s.windGustiness = 0.5f;
     const reference::Physics physics(s);
-    // At its time and place a wave moves with its phase speed.
+    // At its time and position a wave moves with its phase speed.
     const runtime::Wind wind = runtime::makeWind(s);
-    const Vec3d place(0.3, 1.2, -0.4);
+    const Vec3d position(0.3, 1.2, -0.4);
     for (const double time : {0.0, 0.7, 31.0}) {
         const auto phases = runtime::windPhases(wind, time);
         Vec3d sum(static_cast<double>(wind.mean.x), static_cast<double>(wind.mean.y),
@@ -189,17 +189,19 @@ TEST(ReferenceAir, GustsAreTheWavesOfTheWind) {
         for (std::size_t m = 0; m < phases.size(); ++m) {
             const auto& mode = wind.modes[m];
             const auto& k = mode.waveVector;
-            const double turns = static_cast<double>(phases[m]) + static_cast<double>(k.x) * place.x() +
-                                 static_cast<double>(k.y) * place.y() + static_cast<double>(k.z) * place.z();
+            const double turns = static_cast<double>(phases[m]) + static_cast<double>(k.x) * position.x() +
+                                 static_cast<double>(k.y) * position.y() +
+                                 static_cast<double>(k.z) * position.z();
             const double wave = std::sin(kTau * turns);
             sum += wave * Vec3d(static_cast<double>(mode.amplitude.x), static_cast<double>(mode.amplitude.y),
                                 static_cast<double>(mode.amplitude.z));
         }
-        EXPECT_NEAR((reference::airVelocity(physics, place, time) - sum).norm(), 0.0, 1e-5);
+        EXPECT_NEAR((reference::airVelocity(physics, position, time) - sum).norm(), 0.0, 1e-5);
     }
 }
 
-/// What the engine's strands are told of the air at a place is what the reference has there, for every kind.
+/// What the engine's strands are told of the air at a position is what the reference has there, for every
+/// kind.
 TEST(ReferenceAir, EveryKindOfWindIsTheEngines) {
     for (const runtime::WindKind kind : {runtime::WindKind::uniform, runtime::WindKind::gusting,
                                          runtime::WindKind::turbulent, runtime::WindKind::vehicle}) {

@@ -123,7 +123,7 @@ TEST_F(RodNumbers, Cantilevers) {
     }
 }
 
-/// Table 6: places of the tip, at times.
+/// Table 6: positions of the tip, at times.
 using Way = std::vector<Vec3d>;
 
 Way wayOf(const Json& row, double until) {
@@ -232,11 +232,11 @@ double growthAcross(double curvature, double weight, double torsionRatio) {
     s.torsionRatio = static_cast<float>(torsionRatio);
     s.dampingTime = 0.02f;
     reference::Strands strands = straightStrand(kSegments, kLength);
-    Vec3d place = Vec3d::Zero();
+    Vec3d position = Vec3d::Zero();
     for (int p = 0; p <= kSegments; ++p) {
-        strands.restPositions_ss[static_cast<std::size_t>(p)] = place;
+        strands.restPositions_ss[static_cast<std::size_t>(p)] = position;
         const double angle = curvature / kSegments * p;
-        place += kLength / kSegments * Vec3d(std::sin(angle), -std::cos(angle), 0.0);
+        position += kLength / kSegments * Vec3d(std::sin(angle), -std::cos(angle), 0.0);
     }
     reference::Solver solver = solverOf(strands, s);
     EXPECT_LT(comeToRest(solver), 1e-6);

@@ -109,8 +109,8 @@ double pushOut(const Physics& physics, const StrandShape& shape, std::span<const
 
 /// Moves the points from `moved` to the surfaces, with their lengths. Where that would take them too far they
 /// stay at `x`, which has its lengths.
-void resolvePlaces(const Physics& physics, const StrandShape& shape, std::span<const SphereNow> spheres,
-                   const std::vector<Vec3d>& moved, std::vector<Vec3d>& x) {
+void resolvePositions(const Physics& physics, const StrandShape& shape, std::span<const SphereNow> spheres,
+                      const std::vector<Vec3d>& moved, std::vector<Vec3d>& x) {
     std::vector<Vec3d> next = moved;
     const double maximum =
         kMaxGain * std::max(pushOut(physics, shape, spheres, x, false), largestChange(x, moved));
@@ -142,7 +142,7 @@ ContactReport resolveContacts(const Physics& physics, const StrandShape& shape, 
     std::vector<Vec3d> moved = state.x;
     for (std::size_t p = shape.firstFree; p < shape.points(); ++p)
         moved[p] += 0.5 * h * (state.v[p] - before[p]);
-    resolvePlaces(physics, shape, spheres, moved, state.x);
+    resolvePositions(physics, shape, spheres, moved, state.x);
     if (physics.lengthHeld) projectVelocities(shape, state.x, state.v);
     report.penetration = pushOut(physics, shape, spheres, state.x, false);
     report.approach = fastestApproach(contacts, state.v);

@@ -195,7 +195,7 @@ std::vector<Quaterniond> carriedFrames(const StrandShape& shape, const std::vect
     return frames;
 }
 
-Vec3d airVelocity(const Physics& physics, const Vec3d& place, double time) {
+Vec3d airVelocity(const Physics& physics, const Vec3d& position, double time) {
     const runtime::Wind& wind = physics.wind;
     const Vec3d mean = toDouble(wind.mean);
     if (!physics.windy || wind.kind == runtime::WindKind::uniform)
@@ -203,7 +203,7 @@ Vec3d airVelocity(const Physics& physics, const Vec3d& place, double time) {
     double waves = 0.0;
     Vec3d eddies = Vec3d::Zero();
     for (const runtime::WindMode& mode : wind.modes) {
-        const double turns = toDouble(mode.waveVector).dot(place) + static_cast<double>(mode.turns) -
+        const double turns = toDouble(mode.waveVector).dot(position) + static_cast<double>(mode.turns) -
                              static_cast<double>(mode.turnsPerSecond) * time;
         const double wave = std::sin(2.0 * std::numbers::pi * turns);
         waves += wave;
@@ -259,7 +259,7 @@ Potentials potentials(const Physics& physics, const StrandShape& shape, const st
 }
 
 void addDerivatives(const Physics& physics, const StrandShape& shape, const std::vector<Vec3d>& x,
-                    const std::vector<Vec3d>& v, const Surroundings& around, double place, double speed,
+                    const std::vector<Vec3d>& v, const Surroundings& around, double position, double speed,
                     BlockSink& sink) {
     for (std::size_t p = shape.firstFree; p < shape.points(); ++p) {
         double rate = physics.dampingRate;
@@ -268,16 +268,16 @@ void addDerivatives(const Physics& physics, const StrandShape& shape, const std:
         if (physics.penalty) {
             forEachSphereAround(physics, shape, x[p], p, around, [&](const Inside& in) {
                 const double bulge = in.distance > 0.0 ? in.reach / in.distance : 1.0;
-                block += place * physics.penaltyStiffness *
+                block += position * physics.penaltyStiffness *
                          (Matrix3d::Identity() -
                           bulge * (Matrix3d::Identity() - in.normal * in.normal.transpose()));
             });
         }
         sink.add(p, p, shape.masses[p] * block);
     }
-    if (physics.angularSprings) addAngularBlocks(shape, place + speed * physics.bendDampingTime, sink);
+    if (physics.angularSprings) addAngularBlocks(shape, position + speed * physics.bendDampingTime, sink);
     forEachSpring(physics, shape, [&](std::size_t p, std::size_t q, double stiffness, double rest) {
-        addSpringBlocks(shape, x, p, q, place * stiffness, rest, sink);
+        addSpringBlocks(shape, x, p, q, position * stiffness, rest, sink);
     });
 }
 

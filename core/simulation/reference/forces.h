@@ -20,7 +20,7 @@ std::vector<Quaterniond> carriedFrames(const StrandShape& shape, const std::vect
                                        const Quaterniond& rotation);
 
 /// Velocity of the air, m/s.
-Vec3d airVelocity(const Physics& physics, const Vec3d& place, double time);
+Vec3d airVelocity(const Physics& physics, const Vec3d& position, double time);
 
 /// Force on each point (that on clamped points is of no use), divided by the unit of mass: m/s².
 void addForces(const Physics& physics, const StrandShape& shape, const std::vector<Vec3d>& x,
@@ -29,8 +29,8 @@ void addForces(const Physics& physics, const StrandShape& shape, const std::vect
 Potentials potentials(const Physics& physics, const StrandShape& shape, const std::vector<Vec3d>& x,
                       const Quaterniond& rotation);
 
-/// Takes −∂force_p/∂x_q · place − ∂force_p/∂v_q · speed, a block for each pair of free points within two of
-/// each other.
+/// Takes −∂force_p/∂x_q · position − ∂force_p/∂v_q · speed, a block for each pair of free points within two
+/// of each other.
 class BlockSink {
   public:
     virtual ~BlockSink() = default;
@@ -41,7 +41,7 @@ class BlockSink {
 /// count as constant, and angular springs as those of the small-angle method: a Newton iteration with these
 /// converges linearly, to the same solution.
 void addDerivatives(const Physics& physics, const StrandShape& shape, const std::vector<Vec3d>& x,
-                    const std::vector<Vec3d>& v, const Surroundings& around, double place, double speed,
+                    const std::vector<Vec3d>& v, const Surroundings& around, double position, double speed,
                     BlockSink& sink);
 
 }  // namespace hairloom::reference

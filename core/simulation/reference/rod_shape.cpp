@@ -16,14 +16,14 @@ namespace {
 /// Stiffer hair counts as this stiff: it does not bend visibly.
 constexpr double kStiffest = 1e3 * runtime::kHairBendingStiffness;
 /// Radians that the carried weight bends a strand by at most.
-constexpr double kMostHeld = 2.5;
+constexpr double kMaxHeld = 2.5;
 /// What is searched for ends there, in powers of two of radians, after so many halvings.
-constexpr double kLeastHeldPower = -9.0;
+constexpr double kMinHeldPower = -9.0;
 constexpr int kHalvings = 8;
 /// Share of a vertex' stiffness without which a held shape still has to be stable.
 constexpr double kSpareShare = 0.05;
 /// |vec p| that the carried weight makes at most; beyond about 0.7 more turning carries less.
-constexpr double kMostBent = 0.6;
+constexpr double kMaxBend = 0.6;
 
 /// B/l̄ over the mass of a point.
 double stiffnessOf(const StrandShape& body, const runtime::SimulationSettings& settings, std::size_t j) {
@@ -70,7 +70,7 @@ struct Vertex {
             const Vec3d last = v;
             v += slope.partialPivLu().solve(wanted - moment(v));
             if (!v.allFinite()) return last;
-            if (v.norm() > kMostBent) v *= kMostBent / v.norm();
+            if (v.norm() > kMaxBend) v *= kMaxBend / v.norm();
             if ((v - last).norm() < 1e-14) break;
         }
         return v;
@@ -166,8 +166,8 @@ void hold(const StrandShape& body, const Load& load, RodShape& rod) {
         unload(body, load, rod);
         return stable(body, load, rod);
     };
-    if (holds(kMostHeld)) return;
-    double low = kLeastHeldPower, high = std::log2(kMostHeld);
+    if (holds(kMaxHeld)) return;
+    double low = kMinHeldPower, high = std::log2(kMaxHeld);
     for (int halving = 0; halving < kHalvings; ++halving) {
         const double middle = 0.5 * (low + high);
         (holds(std::exp2(middle)) ? low : high) = middle;

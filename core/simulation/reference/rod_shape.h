@@ -25,9 +25,10 @@ struct RodShape {
     }
 };
 
-/// `gravityAtRest` is gravity turned into the root's frame of the rest pose. The unloaded shape is the one that hangs in the authored shape under
-/// `restGravity` of its weight. Where that weight would bend it too far, or could let it swing round or
-/// buckle, the vertices that it bends most are stiffer than the settings say: it stands for the hair around.
+/// `gravityAtRest` is gravity turned into the root's frame of the rest pose. The unloaded shape is the one
+/// that hangs in the authored shape under `restGravity` of its weight. Where that weight would bend it too
+/// far, or could let it swing round or buckle, the vertices that it bends most are stiffer than the settings
+/// say: it stands for the hair around.
 RodShape makeRodShape(const StrandShape& body, const runtime::SimulationSettings& settings,
                       const Vec3d& gravityAtRest);
 

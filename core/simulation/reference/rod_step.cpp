@@ -17,7 +17,7 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr std::size_t kBlock =
-    9;  // unknowns of a free segment: λ, its turn, then the place of its outer point
+    9;  // unknowns of a free segment: λ, its turn, then the position of its outer point
 constexpr std::size_t kBand = 11;
 constexpr int kMaxIterations = 60;
 constexpr double kConverged = 1e-12;  // radians and mean segments
@@ -242,15 +242,15 @@ class RodStep {
 
             add(r + 6, r, one);
             if (!last) add(r + 6, r + kBlock, -one);
-            Eigen::Matrix3d place = Eigen::Matrix3d::Zero(), speed = Eigen::Matrix3d::Zero();
+            Eigen::Matrix3d position = Eigen::Matrix3d::Zero(), speed = Eigen::Matrix3d::Zero();
             for (const Stage& each : stages_) {
-                place += each.forces[j - first_].place;
+                position += each.forces[j - first_].place;
                 speed += each.forces[j - first_].speed;
             }
             const double share = h_ * h_ / static_cast<double>(stages_.size());
             add(r + 6, r + 6,
                 body_.masses[j + 1] * h_ * h_ * pace * pace * one +
-                    share * (place.cast<Complex>() + pace * speed.cast<Complex>()));
+                    share * (position.cast<Complex>() + pace * speed.cast<Complex>()));
         }
         return matrix.factor();
     }

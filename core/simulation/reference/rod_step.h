@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// One step of an elastic rod, in maximal coordinates: places x of the points, rotations Q of the segments,
+// One step of an elastic rod, in maximal coordinates: positions x of the points, rotations Q of the segments,
 // and multipliers λ of the constraints that tie them,
 //   m_p ẍ_p = f_p − λ_{p−1} + λ_p,    x_{j+1} − x_j = l_j Q_j t_j,    g_j − g_{j+1} = l_j Q_j t_j × λ_j,
 // with the moment g_j = Q_{j−1} (w + [v]×) K_j (e_j + τ ė_j) of a vertex, (w, v) = p_j (rod_shape.h).
@@ -13,7 +13,7 @@
 
 namespace hairloom::reference {
 
-/// What a rod has beside the places and speeds of its points.
+/// What a rod has beside the positions and speeds of its points.
 struct RodMotion {
     std::vector<Quaterniond> rotation;  ///< Q_j
     std::vector<Vec3d> spin;            ///< rad/s in the last step, where the next one starts its search

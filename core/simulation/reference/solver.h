@@ -64,8 +64,8 @@ struct StepOptions {
     std::uint32_t substeps = 64;  ///< per frame, above 0
     /// 1, 2 or 4. 4 is five steps of order 2, one of them backwards in time (Suzuki 1990). Frames with
     /// spheres that respond by impulses are of order 1 either way; 4 takes steps of order 2 in them. 1, the
-    /// implicit Euler method, brings strands to rest sooner, and leaves the place of rest as it is. Of rods:
-    /// 1, 2 or 3 stages of Radau IIA collocation, which damp what is too fast for a step.
+    /// implicit Euler method, brings strands to rest sooner, and leaves the position of rest as it is. Of
+    /// rods: 1, 2 or 3 stages of Radau IIA collocation, which damp what is too fast for a step.
     int order = 4;
 };
 
@@ -90,7 +90,7 @@ struct Energy {
 
 class Solver {
   public:
-    /// Strands at rest in their rest places. Errors: settings out of range, angularStiffness 1 (no finite
+    /// Strands at rest in their rest positions. Errors: settings out of range, angularStiffness 1 (no finite
     /// stiffness), offsets that do not fit, a strand of fewer than 2 points, a segment without length, a
     /// value that is no number, masses that are not above 0.
     static Result<Solver> make(const Strands& strands, const runtime::SimulationSettings& settings,

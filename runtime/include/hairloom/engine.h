@@ -61,7 +61,7 @@ struct State;
 class Engine {
   public:
     struct Result;
-    /// Strands at rest in their rest places. Errors, in words: settings out of range, offsets that do not
+    /// Strands at rest in their rest positions. Errors, in words: settings out of range, offsets that do not
     /// match the points, a strand of fewer than 2 or more than kMaxPoints points, a rest position or rotation
     /// that is no number.
     static Result make(const StrandsView& strands, const SimulationSettings& settings, Host host = {});
@@ -92,9 +92,9 @@ class Engine {
 
     /// A copy.
     std::shared_ptr<const State> state() const;
-    /// Goes on from the state of another engine of as many strands of as many points; places and velocities
-    /// are kept, and the rest as far as both engines keep it. False, and nothing is changed, for other
-    /// strands.
+    /// Goes on from the state of another engine of as many strands of as many points; positions and
+    /// velocities are kept, and the rest as far as both engines keep it. False, and nothing is changed, for
+    /// other strands.
     bool setState(const State& state);
 
     std::uint32_t strandCount() const;

@@ -92,7 +92,7 @@ class FollowHairs {
     std::unique_ptr<Impl> impl_;
 };
 
-/// A place along a guide: between point `segment` and the next.
+/// A position along a guide: between point `segment` and the next.
 struct GuideSample {
     std::uint32_t segment;
     float share;

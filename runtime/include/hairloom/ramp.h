@@ -49,8 +49,8 @@ struct Ramp {
         while (next + 1 < count && static_cast<Real>(keys[next].at) <= x) ++next;
         const Key &before = keys[next - 1], &after = keys[next];
         const Real from = static_cast<Real>(before.at), low = static_cast<Real>(before.value);
-        const Real way = (x - from) / (static_cast<Real>(after.at) - from);
-        return low + (static_cast<Real>(after.value) - low) * way;
+        const Real share = (x - from) / (static_cast<Real>(after.at) - from);
+        return low + (static_cast<Real>(after.value) - low) * share;
     }
     float greatest() const {
         float maximum = 0.0f;

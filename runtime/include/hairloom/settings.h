@@ -41,7 +41,7 @@ enum class LengthMethod : std::uint32_t {
 enum class AngularMethod : std::uint32_t {
     implicit,    ///< angular springs (Eq. 4), solved together along a strand; explicit integrators take
                  ///< `smallAngle`
-    smallAngle,  ///< angular springs as forces towards the rest place
+    smallAngle,  ///< angular springs as forces towards the rest position
     exact,       ///< angular springs as forces across the segment
     flexion,     ///< springs between every second point; they have several rest shapes
 };
@@ -93,7 +93,8 @@ struct SimulationSettings {
     float torsionRatio = 0.75f;
     /// Kelvin-Voigt.
     float bendDampingTime = 0.03f;
-    /// Of rods and projective equations. At 1 hair keeps its authored shape as far as its stiffness can carry it.
+    /// Of rods and projective equations. At 1 hair keeps its authored shape as far as its stiffness can carry
+    /// it.
     float restGravity = 1.0f;
 
     // --- Air and gravity ---

@@ -12,7 +12,7 @@
 
 namespace hairloom::runtime {
 
-/// A place and an orientation.
+/// A position and an orientation.
 struct RootFrame {
     Float3 position;
     Quat rotation;  ///< need not be exactly of unit length
@@ -52,9 +52,10 @@ struct FrameInput {
     /// m/s, of an actor that the caller does not move in world space; WindKind::vehicle blows against it.
     /// Ignored unless finite and within 1000 m/s.
     Float3 actorVelocity_ws{};
-    /// Metres, in the world: where roots, spheres and what is read are measured from, so that hair moves alike wherever a
-    /// character stands. Another origin than in the frame before changes the numbers and moves nothing; one that is not
-    /// finite is that of the frame before. Roots of reset() are measured from the origin of the frame that follows.
+    /// Metres, in the world: where roots, spheres and what is read are measured from, so that hair moves
+    /// alike wherever a character stands. Another origin than in the frame before changes the numbers and
+    /// moves nothing; one that is not finite is that of the frame before. Roots of reset() are measured from
+    /// the origin of the frame that follows.
     std::array<double, 3> origin_ws{};
 };
 

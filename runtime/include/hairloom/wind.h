@@ -16,7 +16,7 @@ struct WindMode {
     Float3
         amplitude;  ///< m/s; across waveVector, so that the field has no divergence. Not of WindKind::gusting
     Float3 waveVector;     ///< turns per metre
-    float turnsPerSecond;  ///< Hz, at a fixed place: that of the drift with the mean flow is part of it
+    float turnsPerSecond;  ///< Hz, at a fixed position: that of the drift with the mean flow is part of it
     float turns;           ///< phase at time 0, 0…1
 };
 
@@ -43,7 +43,8 @@ struct WindInput {
 /// changes.
 Wind makeWind(const SimulationSettings& settings, const WindInput& input = {});
 
-/// Phase of each mode at that time, in turns, −0.5…0.5, for places that are measured from `origin_ws`, metres.
+/// Phase of each mode at that time, in turns, −0.5…0.5, for positions that are measured from `origin_ws`,
+/// metres.
 std::array<float, kWindModes> windPhases(const Wind& wind, double time,
                                          const std::array<double, 3>& origin_ws = {});
 

@@ -30,7 +30,7 @@ Spline splineAt(float cells, std::uint32_t nodes) {
             {0.5f * (0.5f - t) * (0.5f - t), 0.75f - t * t, 0.5f * (0.5f + t) * (0.5f + t)}};
 }
 
-/// body(node, weight) for the 27 control points around a place.
+/// body(node, weight) for the 27 control points around a position.
 template <class Body>
 void forControlPoints(Float3 cells, std::uint32_t nodes, const Body& body) {
     const Spline x = splineAt(cells.x, nodes), y = splineAt(cells.y, nodes), z = splineAt(cells.z, nodes);
@@ -177,10 +177,10 @@ void Lattice::advance(const RootFrame& from, const RootFrame& to, bool teleporte
         Node& node = nodes_[i];
         const Float3 before = node.headVelocity;
         if (!teleported) {
-            const Float3 way =
+            const Float3 displacement =
                 travel + rotate(to.rotation, node.rest_ss) - rotate(from.rotation, node.rest_ss);
-            const float speed = length(way) / h;
-            node.headVelocity = way * (kFastest / std::max(speed, kFastest) / h);
+            const float speed = length(displacement) / h;
+            node.headVelocity = displacement * (kFastest / std::max(speed, kFastest) / h);
         }
         node.velocity = node.velocity + before - node.headVelocity;
         const Float3 air = (settings_.wind - node.headVelocity) * settings_.airDrag;

@@ -30,10 +30,10 @@ Float3 lerp(Float3 a, Float3 b, float t) {
     return a + (b - a) * t;
 }
 
-Float3 airAt(const Wind& wind, const std::array<float, kWindModes>& phases, Float3 place_ws) {
+Float3 airAt(const Wind& wind, const std::array<float, kWindModes>& phases, Float3 position_ws) {
     Float3 sum = wind.mean;
     for (std::size_t m = 0; m < kWindModes; ++m) {
-        const float turns = dot(place_ws, wind.modes[m].waveVector) + phases[m];
+        const float turns = dot(position_ws, wind.modes[m].waveVector) + phases[m];
         sum = sum + wind.modes[m].amplitude * std::sin(2.0f * kPi * turns);
     }
     return sum;
@@ -228,11 +228,11 @@ void ProjectiveEquations::runSubstep(std::uint32_t strand, const Substep& subste
             turnStick(stick, motion, frame, forcesOn(p, frame, along, substep));
             collide(p, frame, along, substep);
         }
-        const Float3 place =
+        const Float3 position =
             positions_[p - 1] + rotate(frame, polarOf(stick, motion).direction) * stick.length;
         velocities_[p] =
-            substep.rootVelocity + bounded((place - positions_[p]) * (1.0f / substep.h), kFastest);
-        positions_[p] = place;
+            substep.rootVelocity + bounded((position - positions_[p]) * (1.0f / substep.h), kFastest);
+        positions_[p] = position;
         frame = carriedFrame(stick, motion, frame);
     }
 }

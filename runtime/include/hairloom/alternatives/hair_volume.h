@@ -29,10 +29,10 @@ struct HairVolumeSettings {
 /// velocities, changes velocities. Each point has the mass 1.
 ///
 /// Density and momentum are summed into nodes with trilinear weights, in 64-bit integers, so that the result
-/// does not depend on the order or the number of threads. A weight is a whole number of 2⁻²⁴ (a place in its
-/// cell counts to 1/256 of the cell); the eight weights of a point add up to 1 exactly. The unit of velocity
-/// is a power of two, as fine as the number of points and the fastest of them allow before a sum of all could
-/// leave 62 bits: nothing overflows. Components above 1000 m/s count as 1000 m/s in the sums.
+/// does not depend on the order or the number of threads. A weight is a whole number of 2⁻²⁴ (a position in
+/// its cell counts to 1/256 of the cell); the eight weights of a point add up to 1 exactly. The unit of
+/// velocity is a power of two, as fine as the number of points and the fastest of them allow before a sum of
+/// all could leave 62 bits: nothing overflows. Components above 1000 m/s count as 1000 m/s in the sums.
 ///
 /// Repulsion: acceleration −∇p with the pressure p = repulsion · max(0, density/targetDensity − 1), by
 /// central differences. A push moves no point farther than half a cell in dt. Friction: each

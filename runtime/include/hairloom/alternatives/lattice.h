@@ -34,11 +34,11 @@ struct LatticeSettings {
 /// system that hangs on the head, and hair that follows it through uniform quadratic B-splines, as in the
 /// paper: each point is moved by 27 control points, smoothly, and affine deformations come through exactly.
 ///
-/// A control point of mass 1 is attached to its rest place on the head by a spring whose frequency goes from
-/// rootFrequency to tipFrequency with the mean place along the strands of the hair around it (rootFrequency
-/// where there is none), and coupled to its six neighbours. The springs act on displacements from the rigidly
-/// moved rest shape, so rigid motion deforms nothing; gravity acts by its turn against the head, because the
-/// authored shape already hangs in it.
+/// A control point of mass 1 is attached to its rest position on the head by a spring whose frequency goes
+/// from rootFrequency to tipFrequency with the mean place along the strands of the hair around it
+/// (rootFrequency where there is none), and coupled to its six neighbours. The springs act on displacements
+/// from the rigidly moved rest shape, so rigid motion deforms nothing; gravity acts by its turn against the
+/// head, because the authored shape already hangs in it.
 ///
 /// Stability: an implicit Euler step, which is linear here, by conjugate gradients. They start from no motion
 /// against the head and minimise the energy of the step, so that after any number of iterations the lattice
@@ -60,8 +60,8 @@ class Lattice {
     /// Undeformed and without speed, with the head here.
     void reset(const RootFrame& head_ws);
     /// Advances by dt seconds to this pose of the head; what it was before moves there evenly. A dt that is
-    /// not above 0 changes nothing, others count as 10⁻⁶…1000 s; a head that is no place within 1e6 m stays
-    /// where it was.
+    /// not above 0 changes nothing, others count as 10⁻⁶…1000 s; a head that is no position within 1e6 m
+    /// stays where it was.
     void step(const RootFrame& head_ws, float dt);
     // Calls that are given arrays return false, and do nothing, where one has the wrong size.
 
@@ -87,14 +87,14 @@ class Lattice {
         Float3 rest_ss;       ///< metres
         float attachment;     ///< ω², 1/s²
         float scale;          ///< inverse diagonal of the step's matrix
-        Float3 displacement;  ///< from the rigidly moved rest place, metres, world axes
+        Float3 displacement;  ///< from the rigidly moved rest position, metres, world axes
         Float3 velocity;      ///< against the head, m/s
-        Float3 headVelocity;  ///< of the rigidly moved rest place over the last substep, m/s
+        Float3 headVelocity;  ///< of the rigidly moved rest position over the last substep, m/s
         Float3 change, residual, direction, image;  ///< of the conjugate gradients
     };
     struct Point {
         Float3 rest_ss;  ///< metres
-        Float3 cells;    ///< place in the lattice: control point i stands at i
+        Float3 cells;    ///< position in the lattice: control point i stands at i
     };
     Lattice() = default;
 

@@ -42,7 +42,7 @@ namespace hairloom::runtime {
 class ProjectiveEquations {
   public:
     struct Result;
-    /// Strands at rest in their rest places. Errors, in words, as Engine::make.
+    /// Strands at rest in their rest positions. Errors, in words, as Engine::make.
     static Result make(const StrandsView& strands, const SimulationSettings& settings, Host host = {});
 
     // Calls that are given arrays return false, and do nothing, where one has the wrong size.
@@ -52,7 +52,7 @@ class ProjectiveEquations {
     /// From the next step on; empty, or why they are refused.
     std::string setSettings(const SimulationSettings& settings);
     /// Advances by input.dt. A dt that is not above 0 changes nothing, one above 1000 s counts as 1000 s;
-    /// roots that are no place within 1e6 m stay where they were; spheres that are none are left out.
+    /// roots that are no position within 1e6 m stay where they were; spheres that are none are left out.
     /// Allocates only for more spheres than ever before.
     bool step(const FrameInput& input);
 
