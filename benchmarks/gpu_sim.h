@@ -29,7 +29,7 @@ struct GpuBenchRow {
 struct GpuBench {
     std::string device, driver, date;
     Machine machine;
-    double copyBandwidth = 0;       ///< GB/s
+    double copyBandwidth = 0;  ///< GB/s
     std::vector<GpuBenchRow> samples;
     std::vector<GpuBenchRow> rows;     ///< Figure 27: rods, every effect
     std::vector<GpuBenchRow> effects;  ///< rods

@@ -49,8 +49,9 @@ using Out = std::back_insert_iterator<std::string>;
 void csvRows(const std::vector<GpuBenchRow>& rows, const char* table, Out out) {
     for (const GpuBenchRow& row : rows) {
         fmt::format_to(out, "{},{},{},{},{},{},\"{}\",{:.6g},{:.6g},{:.6g},{},{},{:.6g},{:.6g}\n", table,
-                       row.hair, row.strands, row.points, row.substeps, row.leftOut, row.layout, row.gpu.device, row.gpu.wall, row.gpu.together,
-                       orNothing(row.cpuOne), orNothing(row.cpuAll), row.bytes, row.bandwidth);
+                       row.hair, row.strands, row.points, row.substeps, row.leftOut, row.layout,
+                       row.gpu.device, row.gpu.wall, row.gpu.together, orNothing(row.cpuOne),
+                       orNothing(row.cpuAll), row.bytes, row.bandwidth);
     }
 }
 
@@ -126,7 +127,8 @@ std::string markdownOf(const GpuBench& bench, const std::string& command) {
         out,
         "# Measured on a GPU\n\nWritten by `{}` on {}. docs/gpu-simulation.md says what is measured.\n\n"
         "Device: {}, driver {}; it copies {:.0f} GB/s (read and written). Processor: {}, {} threads.\n\n"
-        "Strands of 16 points with the default settings, every effect, ten spheres; ms a frame. The GPU's wall "
+        "Strands of 16 points with the default settings, every effect, ten spheres; ms a frame. The GPU's "
+        "wall "
         "clock passes below one thread at {} strands, below all threads at {}.\n\n"
         "| strands | GPU | GPU, wall | GPU, frames together | CPU, one thread | CPU, all threads | "
         "bytes a particle and substep | share of the copy's bandwidth |\n|---|---|---|---|---|---|---|---|\n",
@@ -137,13 +139,15 @@ std::string markdownOf(const GpuBench& bench, const std::string& command) {
                        row.gpu.device, row.gpu.wall, row.gpu.together, orDash(row.cpuOne, ""),
                        orDash(row.cpuAll, ""), row.bytes, 100.0 * row.bandwidth / bench.copyBandwidth);
     }
-    fmt::format_to(out,
-                   "\n## The samples\n\nOn a nodding head, with their own settings; ms a frame.\n\n"
-                   "| sample | strands | points | substeps | GPU | GPU, wall | CPU, one thread | CPU, all threads |\n"
-                   "|---|---|---|---|---|---|---|---|\n");
+    fmt::format_to(
+        out,
+        "\n## The samples\n\nOn a nodding head, with their own settings; ms a frame.\n\n"
+        "| sample | strands | points | substeps | GPU | GPU, wall | CPU, one thread | CPU, all threads |\n"
+        "|---|---|---|---|---|---|---|---|\n");
     for (const GpuBenchRow& row : bench.samples) {
-        fmt::format_to(out, "| {} | {} | {} | {} | {:.3g} | {:.3g} | {} | {} |\n", row.hair, row.strands, row.points,
-                       row.substeps, row.gpu.device, row.gpu.wall, orDash(row.cpuOne, ""), orDash(row.cpuAll, ""));
+        fmt::format_to(out, "| {} | {} | {} | {} | {:.3g} | {:.3g} | {} | {} |\n", row.hair, row.strands,
+                       row.points, row.substeps, row.gpu.device, row.gpu.wall, orDash(row.cpuOne, ""),
+                       orDash(row.cpuAll, ""));
     }
     effectRows(bench, out);
     fmt::format_to(out, "\n## Layouts\n\n| strands | model | layout | GPU, ms |\n|---|---|---|---|\n");

@@ -72,13 +72,13 @@ void writeSamples(const SimulationBench& bench, Out out) {
 
 void writeSteps(const SimulationBench& bench, Out out) {
     fmt::format_to(out,
-                   "\n## A step\n\nNanoseconds per particle and substep, strands of 16 points with the default settings; "
+                   "\n## A step\n\nNanoseconds per particle and substep, strands of 16 points with the "
+                   "default settings; "
                    "milliseconds are of a whole frame.\n\n| strands | scene | threads | ns | ms a frame "
                    "|\n|---|---|---|---|---|\n");
     for (const StepCosts& costs : bench.steps) {
-        const double work =
-            static_cast<double>(costs.scene.strands) * costs.scene.points * costs.scene.settings().substeps *
-            1e-6;
+        const double work = static_cast<double>(costs.scene.strands) * costs.scene.points *
+                            costs.scene.settings().substeps * 1e-6;
         fmt::format_to(out, "| {} | {} | {} | {} | {} |\n", costs.scene.strands,
                        nameOf(costs.scene.activeForces), costs.threads, spread(costs.step),
                        shortened(costs.step.median() * work));

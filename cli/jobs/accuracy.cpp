@@ -168,9 +168,11 @@ JobRun declare(CLI::App& job) {
     const auto list = [&](const char* name, std::vector<std::string>& values, const char* does) {
         job.add_option(name, values, does)->delimiter(',');
     };
-    list("--integrators", options->integrators, "Integrators of springs to try, instead of the groom's own; makes strands springs");
+    list("--integrators", options->integrators,
+         "Integrators of springs to try, instead of the groom's own; makes strands springs");
     list("--substeps", options->substeps, "Steps in 1/60 s to try");
-    list("--iterations", options->iterations, "Corrections of length per substep of springs to try; makes strands springs");
+    list("--iterations", options->iterations,
+         "Corrections of length per substep of springs to try; makes strands springs");
     list("--points", options->points,
          "Points per strand to try, instead of the groom's, a half and a quarter");
     list("--thread-counts", options->threadCounts, "Numbers of threads to try, instead of --threads alone");

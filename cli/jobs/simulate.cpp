@@ -160,8 +160,8 @@ void reportInsideMesh(const Groom& moved, Report& report) {
     const editing::Penetration inside =
         editing::penetrationOf(moved.offsets.view(), moved.positions(), {}, &skin);
     report["max_mesh_penetration_mm"] = 1e3 * static_cast<double>(inside.worst);
-    report["share_inside_mesh"] =
-        static_cast<double>(inside.points) / static_cast<double>(std::max<std::size_t>(moved.pointCount(), 1));
+    report["share_inside_mesh"] = static_cast<double>(inside.points) /
+                                  static_cast<double>(std::max<std::size_t>(moved.pointCount(), 1));
 }
 
 Report sagReport(const Groom& groom, const Sag& sag) {
@@ -290,7 +290,8 @@ JobRun declare(CLI::App& job) {
         ->check(CLI::IsMember({"rods", "springs"}));
     job.add_option("--integrator", options->integrator, "How springs are advanced; makes strands springs")
         ->check(CLI::IsMember(runtime::integratorNames()));
-    job.add_option("--substeps", options->substeps, "Steps in 1/60 s, instead of the groom's own (springs of a groom of rods: 8 at least)")
+    job.add_option("--substeps", options->substeps,
+                   "Steps in 1/60 s, instead of the groom's own (springs of a groom of rods: 8 at least)")
         ->check(CLI::Range(1u, runtime::kMaxSubsteps));
     job.add_option("--wind", options->wind, "Velocity of the air X,Y,Z in m/s, instead of the groom's own");
     job.add_option("--motion", options->motion,

@@ -184,8 +184,8 @@ Result<GpuStepRun> GpuStepRun::make(gpu::Device& device,
                                     const gpu_simulation::LayoutOptions& layout) {
     gpu_simulation::EngineOptions options;
     options.layout = layout;
-    auto engine = gpu_simulation::StrandEngine::make(device, std::move(kernels), strands->view(), settings,
-                                                     options);
+    auto engine =
+        gpu_simulation::StrandEngine::make(device, std::move(kernels), strands->view(), settings, options);
     if (!engine) return tl::unexpected(engine.error());
     std::vector<runtime::RootFrame> roots;
     std::vector<runtime::Sphere> spheres;

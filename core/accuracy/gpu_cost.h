@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// What a frame of the strand engine costs on a GPU, and which share of it falls to each effect. Roots and spheres are made before the clock starts, as in step_cost.h.
+// What a frame of the strand engine costs on a GPU, and which share of it falls to each effect. Roots and
+// spheres are made before the clock starts, as in step_cost.h.
 
 #include <memory>
 #include <optional>

@@ -41,7 +41,8 @@ Result<Trajectory> run(SceneHair hair, std::span<const HeadPose> poses, const Sc
 
 std::string EngineConverged::description() const {
     return fmt::format(
-        "the engine itself (single precision; springs by position Verlet) with {} to {} substeps in each of {} parts of "
+        "the engine itself (single precision; springs by position Verlet) with {} to {} substeps in each of "
+        "{} parts of "
         "a "
         "frame, {} Newton steps for length and no sleep",
         2 * kFewestSubsteps, maxSubsteps_, kStepsPerFrame, kLengthIterations);

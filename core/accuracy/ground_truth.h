@@ -60,8 +60,8 @@ class EngineConverged : public GroundTruthSource {
 /// substeps. Strands run in parallel, each for itself: the same bits for any number of threads.
 ///
 /// A strand with a step that could not be solved, at its finest resolution, is left out. It leaves out sleep
-/// and the maximal extension of coil springs. What the scene has of it stands in the notes, and with it how far
-/// the converged engine is from the reference.
+/// and the maximal extension of coil springs. What the scene has of it stands in the notes, and with it how
+/// far the converged engine is from the reference.
 class ReferenceConverged : public GroundTruthSource {
   public:
     struct Options {

@@ -24,7 +24,8 @@ constexpr const char* kLengthsAfterBending =
 /// fastest wave, where waves no longer resonate with the step (docs/stability.md).
 constexpr double kMargin = 0.3;
 
-/// Fewest substeps, from kSpringSubsteps on, within the integrator's stable region; kMaxSubsteps where none are.
+/// Fewest substeps, from kSpringSubsteps on, within the integrator's stable region; kMaxSubsteps where none
+/// are.
 std::uint32_t substepsFor(const StrandSet& strands, runtime::SimulationSettings settings, float frame) {
     settings.substeps = runtime::kSpringSubsteps;
     while (settings.substeps < kMaxSubsteps &&

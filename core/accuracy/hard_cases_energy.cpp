@@ -71,7 +71,8 @@ void reversingStorm(HardCaseRun& caseRun) {
 
 void freeSwing(HardCaseRun& caseRun) {
     if (!caseRun.method().rods())
-        caseRun.disclaim("springs hold lengths after they have bent, which does not keep energy without damping");
+        caseRun.disclaim(
+            "springs hold lengths after they have bent, which does not keep energy without damping");
     SimulationSettings settings;
     settings.dampingTime = 0.0f;
     settings.bendDampingTime = 0.0f;

@@ -12,7 +12,8 @@ constexpr const char* kRinged =
     "the pushes of spheres that lie evenly around a point cancel each other, and it stays between them";
 
 constexpr const char* kFoundLate =
-    "a point that a substep itself presses into a sphere meets it a substep later, some tenths of a millimetre inside";
+    "a point that a substep itself presses into a sphere meets it a substep later, some tenths of a "
+    "millimetre inside";
 
 using runtime::Float3;
 using runtime::Sphere;

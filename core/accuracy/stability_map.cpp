@@ -168,8 +168,8 @@ StabilityProbe probeStability(Integrator integrator, MappedForce force, double h
 
 StabilityMap mapStability(Integrator integrator, MappedForce force, std::uint32_t cells,
                           std::uint32_t steps) {
-    StabilityMap map{integrator, force, steps, logarithmic(5e-5, kLongestStep, cells), stiffnessRows(force, cells),
-                     {}};
+    StabilityMap map{
+        integrator, force, steps, logarithmic(5e-5, kLongestStep, cells), stiffnessRows(force, cells), {}};
     map.limit = theoreticalLimit(integrator, force, steps);
     map.probes.resize(map.stepSeconds.size() * map.stiffnesses.size());
     parallelFor(map.probes.size(), 4, [&](std::size_t begin, std::size_t end) {

@@ -76,8 +76,8 @@ StepRun::StepRun(std::unique_ptr<MovingStrands> strands, const runtime::Simulati
 }
 
 StepRun::StepRun(const StepScene& scene)
-    : StepRun(turningHead(scene.strands, scene.points, scene.activeForces),
-              scene.settings(), scene.allThreads, scene.byStage) {}
+    : StepRun(turningHead(scene.strands, scene.points, scene.activeForces), scene.settings(),
+              scene.allThreads, scene.byStage) {}
 
 double StepRun::milliseconds(std::uint32_t frames) {
     std::vector<double> whole;

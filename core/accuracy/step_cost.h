@@ -18,8 +18,8 @@ struct StepScene {
     std::uint32_t points = 16;
     scenes::ActiveForces activeForces = scenes::ActiveForces::windAndSpheres;
     runtime::StrandModel model = runtime::StrandModel::rods;  ///< with its usual substeps
-    bool allThreads = false;  ///< those of parallelFor; else one
-    bool byStage = false;     ///< with a clock around each stage of each block, which costs a little itself
+    bool allThreads = false;                                  ///< those of parallelFor; else one
+    bool byStage = false;  ///< with a clock around each stage of each block, which costs a little itself
 
     runtime::SimulationSettings settings() const { return scenes::settingsFor(activeForces, model); }
 };

@@ -33,8 +33,8 @@ struct Simulation::Impl {
     std::vector<Vec3f> positions_ws;
     SimulationStats stats;
     Vec3f origin_ws = Vec3f::Zero();  ///< that the method measures from
-    double milliseconds = 0;     ///< of all steps
-    std::uint64_t substeps = 0;  ///< likewise
+    double milliseconds = 0;          ///< of all steps
+    std::uint64_t substeps = 0;       ///< likewise
 
     void readPositions();
     void gather();
@@ -131,8 +131,8 @@ Status Simulation::status() const {
 SimulationStats Simulation::stats() const {
     SimulationStats stats = impl_->stats;
     const double frames = static_cast<double>(std::max<std::uint64_t>(stats.frames, 1));
-    const double particleSubsteps = static_cast<double>(impl_->positions_ws.size()) *
-                                    static_cast<double>(impl_->substeps);
+    const double particleSubsteps =
+        static_cast<double>(impl_->positions_ws.size()) * static_cast<double>(impl_->substeps);
     stats.millisecondsPerFrame = impl_->milliseconds / frames;
     stats.nanosecondsPerParticleSubstep = impl_->milliseconds * 1e6 / particleSubsteps;
     stats.stateHash = impl_->method->stateHash();

@@ -133,11 +133,12 @@ class EffectsPanel : public QWidget {
             const Quartiles& ms = *cost->costMilliseconds;
             const bool lost = ms.q1 <= 0 && ms.q3 >= 0;
             item.setText(kMs, lost ? tr("≈ 0") : QString::number(ms.median, 'f', 3));
-            item.setToolTip(kMs, tr("%1 ms a frame with it, %2 without; half of the runs lie between %3 and %4")
-                                     .arg(costs_->milliseconds.median, 0, 'f', 2)
-                                     .arg(cost->millisecondsOff->median, 0, 'f', 2)
-                                     .arg(ms.q1, 0, 'f', 3)
-                                     .arg(ms.q3, 0, 'f', 3));
+            item.setToolTip(kMs,
+                            tr("%1 ms a frame with it, %2 without; half of the runs lie between %3 and %4")
+                                .arg(costs_->milliseconds.median, 0, 'f', 2)
+                                .arg(cost->millisecondsOff->median, 0, 'f', 2)
+                                .arg(ms.q1, 0, 'f', 3)
+                                .arg(ms.q3, 0, 'f', 3));
         } else if (measured && effect.milliseconds > 0) {
             item.setText(kMs, QString::number(effect.milliseconds, 'f', 3));
         } else if (measured) {
@@ -263,9 +264,10 @@ PanelInfo effectsPanel() {
             90,
             true,
             [](const PanelParts& parts) -> QWidget* {
-                return scrolled(column(
-                    {heading(QObject::tr("Stability")), new StabilityGauge(parts.document, parts.preferences),
-                     heading(QObject::tr("Effects")), new EffectsPanel(parts.document, parts.player, parts.tasks)}));
+                return scrolled(column({heading(QObject::tr("Stability")),
+                                        new StabilityGauge(parts.document, parts.preferences),
+                                        heading(QObject::tr("Effects")),
+                                        new EffectsPanel(parts.document, parts.player, parts.tasks)}));
             }};
 }
 

@@ -251,8 +251,8 @@ class RodStrip {
         const float radius = context_.collisionRadiusAtRoot +
                              along * (context_.collisionRadiusAtTip - context_.collisionRadiusAtRoot);
         point.contact = contactOf(lanes_, rootPosition(),
-                                  {position, point.displacement, tangent, load3(rod_.velocity, node), point.weight,
-                                   hn::Load(D(), rod_.load + node), step_, radius},
+                                  {position, point.displacement, tangent, load3(rod_.velocity, node),
+                                   point.weight, hn::Load(D(), rod_.load + node), step_, radius},
                                   context_);
     }
 

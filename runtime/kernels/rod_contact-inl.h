@@ -72,7 +72,7 @@ HWY_INLINE void meetSphere(const MovingSphere& sphere, Float3 centre_ws, V3 root
     const V distance = hn::Sqrt(hn::Max(squared, all(1e-18f)));
     V3 n = to * (all(1.0f) / distance);
     V depth = reach - distance;
-    const V3 way = node.displacement - step, from = to - way;
+    const V3 moved = node.displacement - step, from = to - moved;
     const V c = mad(reach, hn::Neg(reach), dot(from, from));
     const auto deep = distance < reach * all(static_cast<float>(HAIRLOOM_DEEP_IN_SPHERE));
     if (HWY_UNLIKELY(!hn::AllFalse(D(), deep))) {
@@ -89,12 +89,13 @@ HWY_INLINE void meetSphere(const MovingSphere& sphere, Float3 centre_ws, V3 root
     auto held = hn::Or(depth > touches, c < hn::Zero(D()));
     if (context.sweeps) {
         // What would pass the sphere meets it where it comes in.
-        const V a = dot(way, way), b = dot(from, way);
+        const V a = dot(moved, moved), b = dot(from, moved);
         const V discriminant = negMad(a, c, b * b);
-        const V first = (hn::Neg(b) - hn::Sqrt(hn::Max(discriminant, hn::Zero(D())))) / hn::Max(a, all(1e-30f));
+        const V first =
+            (hn::Neg(b) - hn::Sqrt(hn::Max(discriminant, hn::Zero(D())))) / hn::Max(a, all(1e-30f));
         const auto enters = hn::And(hn::And(c >= hn::Zero(D()), discriminant > hn::Zero(D())),
                                     hn::And(first >= hn::Zero(D()), first < all(1.0f)));
-        const V3 entry = mad3(way, first, from) * (all(1.0f) / reach);
+        const V3 entry = mad3(moved, first, from) * (all(1.0f) / reach);
         n = select(enters, entry, n);
         depth = hn::IfThenElse(enters, reach - dot(entry, to), depth);
         held = hn::Or(held, enters);
@@ -105,7 +106,6 @@ HWY_INLINE void meetSphere(const MovingSphere& sphere, Float3 centre_ws, V3 root
     const V k = hn::IfThenElseZero(held, node.weight * all(static_cast<float>(HAIRLOOM_ROD_CONTACT)));
     // Coulomb, with the force of the last substep and at most what stops the node. What was stuck has hardly
     // moved: where it gives way it slides by what the force beyond friction does to its own mass.
-    const V3 moved = node.displacement - step;
     const V3 slip = negMad3(n, dot(n, moved), moved);
     const V size = hn::Sqrt(dot(slip, slip)), most = hn::Abs(node.load) * all(context.friction);
     const V excess = hn::Max(hn::MulSub(k, size, most), hn::Zero(D())) / node.weight;
@@ -126,12 +126,12 @@ HWY_INLINE RodContact contactOf(const LaneFrame& lanes, V3 root, const RodNode& 
     contact.twiceEnergy = contact.touching = hn::Zero(D());
     // Most nodes are neither inside a sphere nor come out of one or past it, by far more than rounding.
     const V3 position_ws = node.position + root;
-    const V way = hn::Sqrt(dot(node.displacement, node.displacement));
+    const V displacement = hn::Sqrt(dot(node.displacement, node.displacement));
     for (const MovingSphere& sphere : lanes.touchable) {
         const Float3 centre_ws = sphere.from_ws + sphere.step * static_cast<float>(context.index + 1);
         const V3 to = position_ws - all3(centre_ws);
-        const V farthest = way + all(1.001f * (sphere.radius + node.radius + sphere.way) +
-                                     static_cast<float>(HAIRLOOM_ROD_CONTACT_REACH));
+        const V farthest = displacement + all(1.001f * (sphere.radius + node.radius + sphere.stepLength) +
+                                              static_cast<float>(HAIRLOOM_ROD_CONTACT_REACH));
         if (HWY_LIKELY(hn::AllTrue(D(), dot(to, to) > farthest * farthest))) continue;
         meetSphere(sphere, centre_ws, root, node, context, contact);
     }

@@ -23,8 +23,8 @@
 #define HAIRLOOM_ROD_ROUNDING 1.1920929e-7
 /// Stiffness of a contact over m/h².
 #define HAIRLOOM_ROD_CONTACT 300.0
-/// Metres outside a sphere within which a node stays in contact that was pressed in the last substep: how deep
-/// it is there, weight over stiffness, can be less than rounding.
+/// Metres outside a sphere within which a node stays in contact that was pressed in the last substep: how
+/// deep it is there, weight over stiffness, can be less than rounding.
 #define HAIRLOOM_ROD_CONTACT_REACH 5e-6
 
 #endif

@@ -65,12 +65,12 @@ void findReachableSpheres() {
     float hair = max(gFrame.substep.collisionRadiusAtRoot, gFrame.substep.collisionRadiusAtTip);
     [loop] for (uint j = 0; j + 1 < POINTS; ++j) hair += segmentLength(j);
     const float3 middle = gRoot + gRootDisplacement * (0.5 * count);
-    const float way = sqrt(dot(gRootDisplacement, gRootDisplacement));
+    const float rootStep = sqrt(dot(gRootDisplacement, gRootDisplacement));
     gReachable = 0u;
     [loop] for (uint k = 0; k < gFrame.sphereCount; ++k) {
         const float3 step = gSpheres[k].step.xyz;
         const float3 gap = middle - sphereCentre(k, 0.5 * count);
-        const float reach = hair + gSpheres[k].from.w + 0.5 * count * (sqrt(dot(step, step)) + way);
+        const float reach = hair + gSpheres[k].from.w + 0.5 * count * (sqrt(dot(step, step)) + rootStep);
         // A thousandth for what rounding takes.
         if (dot(gap, gap) <= 1.001 * reach * reach) gReachable |= 1u << (k & 31u);
     }

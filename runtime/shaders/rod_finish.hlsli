@@ -11,7 +11,7 @@ void slowRod(float share) {
 
 /// Takes the step: places, velocities, and what the next one starts from.
 void finishRodStep() {
-    float3 at = firstPlace();
+    float3 at = firstPosition();
     float turn = 0.0, energy = 0.0, kinetic = 0.0, size = 0.0, stiffness = 0.0, touched = 0.0;
     // The least that the normal part of a contact's force can be of it.
     const float normalShare = 1.0 / sqrt(1.0 + gFrame.substep.friction * gFrame.substep.friction);

@@ -21,7 +21,7 @@ static float gObjective, gStartObjective, gStiffnessSum;
 
 float3 rootAtEnd() { return mad3(gRootDisplacement, float(gSubstep + 1), gRoot); }
 /// Of the inner node of the first free segment, relative to the root.
-float3 firstPlace() {
+float3 firstPosition() {
 #if HAIR_CLAMPED > 1
     return rodRotate(gInner, restTangent(0)) * segmentLength(0);
 #else
@@ -98,7 +98,7 @@ RodContact meet(uint node, float3 tangent, float3 position, float3 moved, float 
 
 /// Repeats the last substep's rotations where gPredicts, and finds the objective there and where nothing turns.
 void predict() {
-    float3 outer = gInDisplacement, position = firstPlace();
+    float3 outer = gInDisplacement, position = firstPosition();
     float4 before = gInner;
     gObjective = gStartObjective = gStiffnessSum = 0.0;
     EACH_SEGMENT(j) {

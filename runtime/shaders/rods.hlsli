@@ -17,7 +17,7 @@ cbuffer Rods : register(b2) { RodConstants gRod; };
 #include "storage.hlsli"
 #include "rod_math.hlsli"
 #include "rod_storage.hlsli"
-#include "rod_places.hlsli"
+#include "rod_placement.hlsli"
 #include "roots.hlsli"
 #if HAIR_WIND
 /// At the end of the substep that has so many behind it.

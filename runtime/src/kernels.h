@@ -59,7 +59,7 @@ struct RodView {
     Planes displacement;        ///< of each point in the last substep, metres
     Planes velocity, velocityBefore;  ///< m/s, at the end of the last substep and of the one before
     Planes strain, strainBefore;      ///< likewise
-    float* load = nullptr;            ///< force of each point's contacts in the last substep, m²/s²; negative: it slid
+    float* load = nullptr;  ///< force of each point's contacts in the last substep, m²/s²; negative: it slid
     float* turn =
         nullptr;  ///< of each lane: most that a segment turned in the last substep, radians, or kRodNoStep
     float* energy = nullptr;  ///< of each lane, of motion, shape and weight, m³/s², or kRodNoEnergy
@@ -150,7 +150,7 @@ struct MovingSphere {
     Float3 from_ws;  ///< centre at the start of the frame
     Float3 step;     ///< the centre's displacement in one substep
     float radius;
-    float way = length(step);  ///< metres in one substep
+    float stepLength = length(step);  ///< metres in one substep
 };
 
 /// What the strands move through.

@@ -7,7 +7,6 @@
 #include <initializer_list>
 #include <limits>
 
-
 namespace hairloom::runtime {
 namespace {
 

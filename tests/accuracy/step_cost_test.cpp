@@ -16,9 +16,8 @@ using runtime::StageId;
 using scenes::ActiveForces;
 
 TEST(StepCost, WithAllEffectsOffRootsAndIntegratorAreLeft) {
-    StepRun run({.strands = 40,
-                 .activeForces = ActiveForces::nothing,
-                 .model = runtime::StrandModel::springs});
+    StepRun run(
+        {.strands = 40, .activeForces = ActiveForces::nothing, .model = runtime::StrandModel::springs});
     run.milliseconds(2);
     const auto stages = run.engine().plan().stages();
     ASSERT_EQ(stages.size(), 2u);

@@ -119,7 +119,7 @@ class Bodies {
         }
         return spheres;
     }
-    static reference::Surroundings around(std::span<const reference::SphereNow> spheres) {
+    static reference::Environment around(std::span<const reference::SphereNow> spheres) {
         return {0.7, Eigen::Quaterniond::Identity(), Vector3d::Zero(), spheres};
     }
 

@@ -51,7 +51,8 @@ INSTANTIATE_TEST_SUITE_P(Layouts, EachLayout, testing::ValuesIn(kHeldLayouts),
 /// as a whole does not, and no bound is broken.
 TEST_P(EachLayout, EveryEffectStaysWithTheCpu) {
     const scenes::HeadOfHair head(64, 16);
-    const SimulationSettings settings = scenes::settingsFor(scenes::ActiveForces::windAndSpheres, runtime::StrandModel::springs);
+    const SimulationSettings settings =
+        scenes::settingsFor(scenes::ActiveForces::windAndSpheres, runtime::StrandModel::springs);
     StrandEngine gpu = engineOf(head.view(), settings, options(GetParam()));
     runtime::Engine cpu = *runtime::Engine::make(head.view(), settings).engine;
     std::vector<RootFrame> roots;
@@ -84,7 +85,8 @@ TEST_P(EachLayout, EveryEffectStaysWithTheCpu) {
 /// Where a strand is kept between substeps, and whether loops are unrolled, is nothing that the hair notices.
 TEST_F(WholeRun, LayoutsAgree) {
     const scenes::HeadOfHair head(40, 8);
-    const SimulationSettings settings = scenes::settingsFor(scenes::ActiveForces::windAndSpheres, runtime::StrandModel::springs);
+    const SimulationSettings settings =
+        scenes::settingsFor(scenes::ActiveForces::windAndSpheres, runtime::StrandModel::springs);
     std::vector<Float3> first;
     for (const LayoutOptions layout :
          {LayoutOptions{StrandStorage::threads, false}, LayoutOptions{StrandStorage::threads, true},
@@ -236,7 +238,8 @@ TEST_P(EachLayout, TeleportsAndRestoredStrands) {
 /// Equal input, equal bits; and a state that was read goes on as if nothing had been.
 TEST_F(WholeRun, StatesCanBeTakenAndPutBack) {
     const scenes::HeadOfHair head(40, 5);
-    const SimulationSettings settings = scenes::settingsFor(scenes::ActiveForces::windAndSpheres, runtime::StrandModel::springs);
+    const SimulationSettings settings =
+        scenes::settingsFor(scenes::ActiveForces::windAndSpheres, runtime::StrandModel::springs);
     std::vector<RootFrame> roots;
     const auto run = [&](StrandEngine& engine, int first, int last) {
         for (int f = first; f <= last; ++f) {

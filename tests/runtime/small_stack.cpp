@@ -121,8 +121,8 @@ TEST(Stack, EveryStageRunsOnASmallOne) {
     std::size_t maximum = 0;
     Met met;
     const auto onSmall = [&](const Hair& hair, const SimulationSettings& settings) {
-        const std::size_t used =
-            runOnStack(kStackBytes, [&] { callEverything(hair.strands.view(), hair.strands, settings, met); });
+        const std::size_t used = runOnStack(
+            kStackBytes, [&] { callEverything(hair.strands.view(), hair.strands, settings, met); });
         ASSERT_GT(used, 0u);
         maximum = std::max(maximum, used);
     };

@@ -61,8 +61,8 @@ inline Strands tuft(std::uint32_t count, bool mixed = false) {
     Strands strands;
     for (std::uint32_t s = 0; s < count; ++s) {
         const float f = static_cast<float>(s);
-        strands.add({0.004f * f, 0.1f, 0.003f * std::sin(f)}, hangingAt(1.2f * std::sin(f * 1.7f) + 1.4f), 0.011f,
-                    mixed ? 2 + (s * 5) % 17 : 12);
+        strands.add({0.004f * f, 0.1f, 0.003f * std::sin(f)}, hangingAt(1.2f * std::sin(f * 1.7f) + 1.4f),
+                    0.011f, mixed ? 2 + (s * 5) % 17 : 12);
     }
     return strands;
 }

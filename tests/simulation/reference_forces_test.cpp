@@ -78,7 +78,7 @@ TEST(ReferenceForces, AreReciprocal) {
             reference::makeShape(edgesOf(randomChain(random, 9, 0.02)), {}, s);
         const std::vector<Vec3d> x = randomChain(random, 9, 0.02), v = randomChain(random, 9, 0.5);
         std::vector<Vec3d> force(9, Vec3d::Zero());
-        const reference::Surroundings around{0.0, reference::Quaterniond::Identity(), Vec3d::Zero(), {}};
+        const reference::Environment around{0.0, reference::Quaterniond::Identity(), Vec3d::Zero(), {}};
         reference::addForces(reference::Physics(s), shape, x, v, around, force);
         Vec3d sum = Vec3d::Zero();
         double largest = 0.0;
@@ -106,7 +106,7 @@ TEST(ReferenceForces, AreTheGradientOfTheirEnergyWhereFramesDoNotCount) {
             reference::makeShape(edgesOf(straightStrand(6, 0.12).restPositions_ss), {}, s);
         std::vector<Vec3d> x = randomChain(random, 7, 0.02);
         x[1] = Vec3d(0.02, 0, 0);
-        const reference::Surroundings around{0.0, reference::Quaterniond::Identity(), Vec3d::Zero(), {}};
+        const reference::Environment around{0.0, reference::Quaterniond::Identity(), Vec3d::Zero(), {}};
         std::vector<Vec3d> force(7, Vec3d::Zero());
         reference::addForces(physics, shape, x, std::vector<Vec3d>(7, Vec3d::Zero()), around, force);
         const auto energy = [&] {
@@ -140,7 +140,7 @@ TEST(ReferenceForces, WholeGradientOfACurledStrandIsThatOfItsEnergy) {
             const reference::StrandShape shape = reference::makeShape(edgesOf(rest), {}, s);
             std::vector<Vec3d> x = randomChain(random, 8, 0.02);
             if (clamped == 2) x[1] = rest[1];
-            const reference::Surroundings around{0.0, reference::Quaterniond::Identity(), Vec3d::Zero(), {}};
+            const reference::Environment around{0.0, reference::Quaterniond::Identity(), Vec3d::Zero(), {}};
             std::vector<Vec3d> force(8, Vec3d::Zero());
             reference::addForces(physics, shape, x, std::vector<Vec3d>(8, Vec3d::Zero()), around, force);
             for (std::size_t p = clamped; p < 8; ++p) {
@@ -174,7 +174,7 @@ TEST(ReferenceForces, RestShapeAnywhereBearsNoForce) {
         std::vector<Vec3d> x;
         for (const Vec3d& p : rest) x.push_back(Vec3d(0.3, 1.7, 0.2) + turn * p);
         std::vector<Vec3d> force(x.size(), Vec3d::Zero());
-        const reference::Surroundings around{0.0, turn, Vec3d::Zero(), {}};
+        const reference::Environment around{0.0, turn, Vec3d::Zero(), {}};
         reference::addForces(reference::Physics(s), shape, x, std::vector<Vec3d>(x.size(), Vec3d::Zero()),
                              around, force);
         for (const Vec3d& f : force) EXPECT_LT(f.norm(), 1e-8);

@@ -34,7 +34,7 @@ Tangent tangentOf(const Physics& physics, const StrandShape& shape, const std::v
 /// Eq. 4 as docs/engine.md has it: energy ½ κ_j |r_j|² with r_j = t_j − (t_{j−1} + F_{j−1} c_j), its gradient
 /// with F held. Kelvin-Voigt damping takes r_j where it will be after bendDampingTime at this speed.
 void addAngular(const Physics& physics, const StrandShape& shape, const std::vector<Vec3d>& x,
-                const std::vector<Vec3d>& v, const Surroundings& around, std::vector<Vec3d>& force) {
+                const std::vector<Vec3d>& v, const Environment& around, std::vector<Vec3d>& force) {
     const std::vector<Quaterniond> frames = carriedFrames(shape, x, around.rotation);
     const std::size_t first = shape.firstFree - 1;
     Tangent before{Vec3d::Zero(), Vec3d::Zero(), 1.0};
@@ -62,7 +62,7 @@ void addAngular(const Physics& physics, const StrandShape& shape, const std::vec
 /// from a to b with δa and δb twists by −k · (δa + δb), k = (a × b)/(1 + a·b) (Bergou et al. 2008). A twist ψ
 /// costs joint j the energy m_j ψ, m_j = −s_j · (t_{j−1} × C_j).
 void addFrameForces(const Physics& physics, const StrandShape& shape, const std::vector<Vec3d>& x,
-                    const Surroundings& around, std::vector<Vec3d>& force) {
+                    const Environment& around, std::vector<Vec3d>& force) {
     const std::vector<Quaterniond> frames = carriedFrames(shape, x, around.rotation);
     const std::size_t first = shape.firstFree - 1, n = shape.segments();
     const auto edge = [&](std::size_t j) -> Vec3d { return x[j + 1] - x[j]; };
@@ -120,7 +120,7 @@ struct Air {
 };
 
 Air airAt(const Physics& physics, const std::vector<Vec3d>& x, const std::vector<Vec3d>& v,
-          const Surroundings& around, std::size_t p) {
+          const Environment& around, std::size_t p) {
     const Vec3d lacking = airVelocity(physics, x[p], around.time) - v[p];
     const Vec3d e = x[p] - x[p - 1];
     const double both = lacking.norm() * e.norm();
@@ -136,7 +136,7 @@ struct Inside {
 
 template <class Visit>  // visit(Inside)
 void forEachSphereAround(const Physics& physics, const StrandShape& shape, const Vec3d& x, std::size_t p,
-                         const Surroundings& around, Visit&& visit) {
+                         const Environment& around, Visit&& visit) {
     for (const SphereNow& sphere : around.spheres) {
         const Vec3d offset = x - sphere.center;
         const double distance = offset.norm(), r = reach(physics, shape, p, sphere.radius);
@@ -217,7 +217,7 @@ Vec3d airVelocity(const Physics& physics, const Vec3d& position, double time) {
 }
 
 void addForces(const Physics& physics, const StrandShape& shape, const std::vector<Vec3d>& x,
-               const std::vector<Vec3d>& v, const Surroundings& around, std::vector<Vec3d>& force) {
+               const std::vector<Vec3d>& v, const Environment& around, std::vector<Vec3d>& force) {
     for (std::size_t p = shape.firstFree; p < shape.points(); ++p) {
         const double mass = shape.masses[p];
         force[p] += mass * (physics.gravity - physics.dampingRate * (v[p] - around.rootVelocity));
@@ -259,7 +259,7 @@ Potentials potentials(const Physics& physics, const StrandShape& shape, const st
 }
 
 void addDerivatives(const Physics& physics, const StrandShape& shape, const std::vector<Vec3d>& x,
-                    const std::vector<Vec3d>& v, const Surroundings& around, double position, double speed,
+                    const std::vector<Vec3d>& v, const Environment& around, double position, double speed,
                     BlockSink& sink) {
     for (std::size_t p = shape.firstFree; p < shape.points(); ++p) {
         double rate = physics.dampingRate;

@@ -24,7 +24,7 @@ Vec3d airVelocity(const Physics& physics, const Vec3d& position, double time);
 
 /// Force on each point (that on clamped points is of no use), divided by the unit of mass: m/s².
 void addForces(const Physics& physics, const StrandShape& shape, const std::vector<Vec3d>& x,
-               const std::vector<Vec3d>& v, const Surroundings& around, std::vector<Vec3d>& force);
+               const std::vector<Vec3d>& v, const Environment& around, std::vector<Vec3d>& force);
 
 Potentials potentials(const Physics& physics, const StrandShape& shape, const std::vector<Vec3d>& x,
                       const Quaterniond& rotation);
@@ -41,7 +41,7 @@ class BlockSink {
 /// count as constant, and angular springs as those of the small-angle method: a Newton iteration with these
 /// converges linearly, to the same solution.
 void addDerivatives(const Physics& physics, const StrandShape& shape, const std::vector<Vec3d>& x,
-                    const std::vector<Vec3d>& v, const Surroundings& around, double position, double speed,
+                    const std::vector<Vec3d>& v, const Environment& around, double position, double speed,
                     BlockSink& sink);
 
 }  // namespace hairloom::reference

@@ -47,7 +47,7 @@ void addContact(const Physics& physics, const StrandShape& body, std::size_t p, 
 }  // namespace
 
 PointForce pointForce(const Physics& physics, const StrandShape& body, std::size_t p, const Vec3d& x,
-                      const Vec3d& v, const Vec3d& tangent, const Surroundings& around, double h) {
+                      const Vec3d& v, const Vec3d& tangent, const Environment& around, double h) {
     PointForce result;
     const double mass = body.masses[p];
     result.force = mass * (physics.gravity - physics.dampingRate * (v - around.rootVelocity));

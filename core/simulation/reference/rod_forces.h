@@ -17,7 +17,7 @@ struct PointForce {
 
 /// `tangent` is that of the segment before point p; `h` the step that contacts are as stiff for.
 PointForce pointForce(const Physics& physics, const StrandShape& body, std::size_t p, const Vec3d& x,
-                      const Vec3d& v, const Vec3d& tangent, const Surroundings& around, double h);
+                      const Vec3d& v, const Vec3d& tangent, const Environment& around, double h);
 
 /// p of a vertex, on the side of another quaternion.
 Quaterniond relativeRotation(const Quaterniond& inner, const Quaterniond& outer, const Quaterniond& side);

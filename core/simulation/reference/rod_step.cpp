@@ -167,7 +167,7 @@ class RodStep {
         fillRates();
         for (std::size_t i = 0; i < stages_.size(); ++i) {
             Stage& stage = stages_[i];
-            const Surroundings around{stage.time, stage.root, stage.rootVelocity, stage.spheres};
+            const Environment around{stage.time, stage.root, stage.rootVelocity, stage.spheres};
             stage.moments.clear();
             stage.forces.clear();
             for (std::size_t j = first_; j < segments_; ++j) {

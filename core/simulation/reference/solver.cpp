@@ -220,8 +220,8 @@ void Solver::stepStrand(Strand& strand, const RootPath& path, const StepOptions&
 bool Solver::trySubstep(Strand& strand, const RootPath& path, double from, double to, double weight) const {
     const double within = from + weight * (to - from), h = (to - from) * path.dt;
     const std::vector<SphereNow> spheres = path.spheres(within);
-    const Surroundings around{path.endTime - (1.0 - within) * path.dt, path.rotation(within), path.velocity(),
-                              spheres};
+    const Environment around{path.endTime - (1.0 - within) * path.dt, path.rotation(within), path.velocity(),
+                             spheres};
     StrandState next = strand.state;
     const bool converged =
         substep(physics_, strand.shape, h, weight, around, path.clamped(strand.shape, to), next, strand.work);

@@ -98,7 +98,7 @@ struct SphereNow {
 };
 
 /// The world at one moment.
-struct Surroundings {
+struct Environment {
     double time;           ///< s, of the wind
     Quaterniond rotation;  ///< R, of the root less its rest rotation
     Vec3d rootVelocity;    ///< m/s

@@ -21,7 +21,7 @@ constexpr double kRounding = 1e-12;   // m; smaller corrections that no longer s
 class StepSolve {
   public:
     StepSolve(const Physics& physics, const StrandShape& shape, double h, double weight,
-              const Surroundings& around, const StrandState& state, std::vector<Vec3d>& x1, Workspace& work)
+              const Environment& around, const StrandState& state, std::vector<Vec3d>& x1, Workspace& work)
         : physics_(physics),
           shape_(shape),
           h_(h),
@@ -154,7 +154,7 @@ class StepSolve {
     const StrandShape& shape_;
     double h_;
     double weight_;
-    const Surroundings& around_;
+    const Environment& around_;
     const std::vector<Vec3d>&x0_, &v0_;
     std::vector<Vec3d>& x1_;
     Workspace& work_;
@@ -165,7 +165,7 @@ class StepSolve {
 }  // namespace
 
 bool substep(const Physics& physics, const StrandShape& shape, double h, double weight,
-             const Surroundings& around, const ClampedEnd& end, StrandState& state, Workspace& work) {
+             const Environment& around, const ClampedEnd& end, StrandState& state, Workspace& work) {
     std::vector<Vec3d> x1(shape.points());
     for (std::size_t p = 0; p < shape.points(); ++p)
         x1[p] = p < shape.firstFree ? end.x[p] : Vec3d(state.x[p] + h * state.v[p]);

@@ -29,6 +29,6 @@ struct Workspace {
 /// Advances by h ≠ 0 with w = `weight`; `around` is the world at the share w of the step. False when Newton's
 /// iteration does not converge: the state is then the best it had.
 bool substep(const Physics& physics, const StrandShape& shape, double h, double weight,
-             const Surroundings& around, const ClampedEnd& end, StrandState& state, Workspace& work);
+             const Environment& around, const ClampedEnd& end, StrandState& state, Workspace& work);
 
 }  // namespace hairloom::reference
