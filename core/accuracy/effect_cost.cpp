@@ -75,13 +75,17 @@ void fillIn(const Variants& variants, std::size_t effect, EffectCosts& costs) {
         differences.push_back(variants.asIs.times[round] - off.times[round]);
     }
     cost.costMilliseconds = quartiles(differences);
-    if (cost.costMilliseconds->q1 <= 0 && cost.costMilliseconds->q3 >= 0) {
+    if (lostInSpread(*cost.costMilliseconds)) {
         cost.note += cost.note.empty() ? "" : "; ";
         cost.note += "the cost is lost in the spread of the runs";
     }
 }
 
 }  // namespace
+
+bool lostInSpread(const Quartiles& cost) {
+    return cost.q1 <= 0 && cost.q3 >= 0;
+}
 
 Result<EffectCosts> measureEffectCosts(const Groom& groom, const HeadMotion& motion,
                                        const EffectCostOptions& options) {

@@ -34,6 +34,9 @@ struct EffectCost {
     std::string note;              ///< what else turning it off changed; may be empty
 };
 
+/// Whether zero lies between the quartiles of what an effect costs: the runs do not tell.
+bool lostInSpread(const Quartiles& cost);
+
 struct EffectCosts {
     Quartiles milliseconds;  ///< per frame, as the scene is
     std::vector<EffectCost> effects;

@@ -55,7 +55,10 @@ class EffectsPanel : public QWidget {
             if (contains(parts, editing::Part::Physics | editing::kHairParts | editing::Part::Spheres))
                 outdated_ = true;
         });
-        connect(&document_, &QtDocument::replaced, this, [this] { costs_.reset(); });
+        connect(&document_, &QtDocument::replaced, this, [this] {
+            costs_.reset();
+            ++documents_;
+        });
         refresh();
     }
 
@@ -99,8 +102,7 @@ class EffectsPanel : public QWidget {
         if (!motion) return;
         const auto groom = std::make_shared<const Groom>(document_.groom());
         const std::shared_ptr<const HeadMotion> moves = std::move(*motion);
-        outdated_ = false;
-        tasks_.run<EffectCosts>(
+        const bool began = tasks_.run<EffectCosts>(
             tr("Measuring effects"),
             [groom, moves](TaskControl& control) {
                 EffectCostOptions options;
@@ -112,10 +114,12 @@ class EffectsPanel : public QWidget {
                 options.cancelled = [&] { return control.isCancelled(); };
                 return measureEffectCosts(*groom, *moves, options);
             },
-            [this](EffectCosts costs) {
+            [this, document = documents_](EffectCosts costs) {
+                if (document != documents_) return;
                 costs_ = std::move(costs);
                 refresh();
             });
+        if (began) outdated_ = false;
     }
 
     const EffectCost* costOf(const std::string& effect) const {
@@ -131,8 +135,7 @@ class EffectsPanel : public QWidget {
         if (!effect.on) return;
         if (const EffectCost* cost = costOf(effect.name)) {
             const Quartiles& ms = *cost->costMilliseconds;
-            const bool lost = ms.q1 <= 0 && ms.q3 >= 0;
-            item.setText(kMs, lost ? tr("≈ 0") : QString::number(ms.median, 'f', 3));
+            item.setText(kMs, lostInSpread(ms) ? tr("≈ 0") : QString::number(ms.median, 'f', 3));
             item.setToolTip(kMs,
                             tr("%1 ms a frame with it, %2 without; half of the runs lie between %3 and %4")
                                 .arg(costs_->milliseconds.median, 0, 'f', 2)
@@ -251,7 +254,8 @@ class EffectsPanel : public QWidget {
     QWidget* trial_;
     bool filling_ = false;
     std::optional<EffectCosts> costs_;
-    bool outdated_ = false;  ///< `costs_` are of the document before its last change
+    std::uint32_t documents_ = 0;  ///< replaced so far
+    bool outdated_ = false;        ///< `costs_` are of the document before its last change
 };
 
 }  // namespace
