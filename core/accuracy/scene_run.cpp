@@ -114,6 +114,7 @@ SceneHair resampledHair(const SceneHair& hair, std::uint32_t points) {
     }
     result.groom.offsets = CowArray<std::uint32_t>(std::move(offsets));
     result.groom.pointAttributes = AttributeSet();
+    result.groom.operators.clear();  // their base shape has other points
     result.groom.pointAttributes.set(attribute::kPosition, std::move(positions));
     return result;
 }

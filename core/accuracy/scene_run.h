@@ -23,7 +23,7 @@ struct SceneHair {
 SceneHair sampleStrands(const Groom& groom, std::size_t count, std::uint64_t seed);
 
 /// The same strands with `points` ≥ 2 points each, evenly spaced by arc length. Point attributes other than
-/// the position go.
+/// the position go, and operators with them.
 SceneHair resampledHair(const SceneHair& hair, std::uint32_t points);
 
 /// How long, how often, and where the head is.

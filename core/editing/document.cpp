@@ -9,8 +9,10 @@
 #include <string_view>
 #include <utility>
 
+#include "core/editing/stack_commands.h"
 #include "core/groom/file/project_file.h"
 #include "core/operations/script.h"
+#include "core/operations/stack.h"
 
 namespace hairloom::editing {
 
@@ -21,6 +23,7 @@ struct Document::Observers {
 
 Document::Document(Groom groom) : observers_(std::make_shared<Observers>()) {
     model_.groom = std::move(groom);
+    model_.stackCache = std::make_shared<StackCache>();
 }
 
 Document::~Document() = default;
@@ -28,6 +31,8 @@ Document::~Document() = default;
 Result<std::unique_ptr<Document>> Document::open(const std::filesystem::path& path) {
     auto groom = loadProject(path);
     if (!groom) return tl::unexpected(groom.error());
+    if (auto status = completeOperators(path.string(), *groom); !status)
+        return tl::unexpected(status.error());
     return std::make_unique<Document>(std::move(*groom));
 }
 
@@ -56,6 +61,14 @@ void Document::changed(const Change& change) {
     notify(change);
 }
 
+std::unique_ptr<Command> Document::asOneStep(std::unique_ptr<Command> done, std::unique_ptr<Command> also) {
+    std::string name = done->name();
+    std::vector<std::unique_ptr<Command>> steps;
+    steps.push_back(std::move(done));
+    steps.push_back(std::move(also));
+    return std::make_unique<CommandGroup>(std::move(name), std::move(steps), true);
+}
+
 void Document::notify(const Change& change) {
     for (const auto& [key, observer] : observers_->list) observer(change);
 }
@@ -69,7 +82,15 @@ void Document::perform(std::unique_ptr<Command> command, std::string record) {
 
 Change Document::carryOut(std::unique_ptr<Command> command, std::string record) {
     if (record.empty()) record = command->record();
-    const Change change = command->exchange(model_);
+    Change change = command->exchange(model_);
+    const bool comesOrGoes =
+        contains(change.parts, Part::Strands) && !contains(change.parts, Part::Operators);
+    if (comesOrGoes && !model_.groom.operators.empty()) {
+        if (auto stack = stackAfterStrands(model_)) {
+            change.parts = change.parts | stack->exchange(model_).parts;
+            command = asOneStep(std::move(command), std::move(stack));
+        }
+    }
     history_.add(std::move(command), std::move(record));
     return change;
 }
@@ -118,7 +139,8 @@ Status Document::beginStroke(Stroke header) {
     auto session = StrokeSession::begin(model_, bounds_, skin(), field, std::move(header));
     if (!session) return tl::unexpected(session.error());
     stroke_ = std::move(*session);
-    strokeTouched_.assign(model_.groom.strandCount(), 0);
+    strokeStrands_ = model_.groom.strandCount();
+    strokeTouched_.assign(strokeStrands_, 0);
     return {};
 }
 
@@ -138,11 +160,29 @@ Stroke Document::endStroke() {
     Change change;
     auto command = stroke_->finish(change);
     Stroke drawn = stroke_->stroke();
+    const bool movesHair = stroke_->info().movesHair;
+    const bool comesOrGoes = model_.groom.strandCount() != strokeStrands_;
     stroke_.reset();
     if (!command) return drawn;
+    if (!model_.groom.operators.empty() && (movesHair || comesOrGoes)) {
+        if (auto stack =
+                comesOrGoes ? stackAfterStrands(model_) : stackAfterStroke(model_, strokeTouched())) {
+            change.parts = change.parts | stack->exchange(model_).parts;
+            change.strands = {};
+            command = asOneStep(std::move(command), std::move(stack));
+        }
+    }
     history_.add(std::move(command), toJson(drawn).dump());
     changed({change.parts | Part::History, change.strands});
     return drawn;
+}
+
+std::vector<std::uint32_t> Document::strokeTouched() const {
+    std::vector<std::uint32_t> strands;
+    for (std::uint32_t s = 0; s < strokeTouched_.size(); ++s) {
+        if (strokeTouched_[s]) strands.push_back(s);
+    }
+    return strands;
 }
 
 void Document::cancelStroke() {
@@ -184,14 +224,14 @@ Result<std::string> Document::script() const {
 }
 
 const Skin* Document::skin() const {
-    if (headData_.head != model_.groom.scalp) headData_ = {model_.groom.scalp, nullptr, nullptr};
-    if (headData_.head && !headData_.skin) headData_.skin = std::make_shared<const Skin>(headData_.head);
-    return headData_.skin.get();
+    const SkinField* const field = skinField();
+    return field ? &field->skin() : nullptr;
 }
 
 const SkinField* Document::skinField() const {
-    if (skin() && !headData_.field) headData_.field = std::make_shared<const SkinField>(headData_.skin);
-    return headData_.field.get();
+    const ScalpMesh* const known = skin_ ? &skin_->skin().mesh() : nullptr;
+    if (known != model_.groom.scalp.get()) skin_ = sharedSkin(model_.groom.scalp);
+    return skin_.get();
 }
 
 const StrandBounds& Document::bounds() const {

@@ -8,9 +8,9 @@
 #include <memory>
 
 #include "core/editing/history.h"
-#include "core/editing/skin_field.h"
 #include "core/editing/strand_bounds.h"
 #include "core/editing/stroke_session.h"
+#include "core/operations/skin_field.h"
 
 namespace hairloom::editing {
 
@@ -83,14 +83,8 @@ class Document {
     /// Always fits groom().
     const StrandBounds& bounds() const;
 
-    /// What is derived from a head, for another document with the same one.
-    struct HeadData {
-        std::shared_ptr<const ScalpMesh> head;
-        std::shared_ptr<const Skin> skin;
-        std::shared_ptr<const SkinField> field;
-    };
-    const HeadData& headData() const { return headData_; }
-    void setHeadData(HeadData data) { headData_ = std::move(data); }
+    /// The head's skin where it has been made: another document of the same head shares it while it is held.
+    std::shared_ptr<const SkinField> heldSkin() const { return skin_; }
     /// Ends the document and gives its groom.
     Groom takeGroom() &&;
 
@@ -98,6 +92,9 @@ class Document {
     void changed(const Change& change);  ///< renews what is derived, then notifies
     void notify(const Change& change);
     Change carryOut(std::unique_ptr<Command> command, std::string record);
+    /// Two that have been carried out.
+    static std::unique_ptr<Command> asOneStep(std::unique_ptr<Command> done, std::unique_ptr<Command> also);
+    std::vector<std::uint32_t> strokeTouched() const;
 
     Model model_;
     History history_;
@@ -105,10 +102,11 @@ class Document {
     std::uint64_t mergeKey_ = 0;    ///< of the step below
     std::uint64_t mergeState_ = 0;  ///< state of the history that a step of that key led to
     std::unique_ptr<StrokeSession> stroke_;
+    std::size_t strokeStrands_ = 0;            ///< strands when the stroke began
     std::vector<std::uint8_t> strokeTouched_;  ///< per strand, 1 for those that this stroke touched
     struct Observers;
     std::shared_ptr<Observers> observers_;
-    mutable HeadData headData_;
+    mutable std::shared_ptr<const SkinField> skin_;
     mutable StrandBounds bounds_;
     mutable bool boundsFit_ = false;
 };

@@ -3,11 +3,16 @@
 // What is edited, and which parts of it changed.
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/groom/groom.h"
+
+namespace hairloom {
+class StackCache;
+}
 
 namespace hairloom::editing {
 
@@ -29,6 +34,7 @@ enum class Part : std::uint32_t {
     Triangulation = 1u << 12u,  ///< of the roots
     History = 1u << 13u,        ///< what can be undone
     Dye = 1u << 14u,            ///< its mask, as it was painted
+    Operators = 1u << 15u,      ///< of the stack, or their settings
     Everything = 0xffffffffu,
 };
 constexpr Part operator|(Part a, Part b) {
@@ -60,6 +66,8 @@ struct Change {
 struct Model {
     Groom groom;
     std::vector<std::string> clipNames;  ///< animations of the character file; not saved, they are its own
+    /// What the operators made last; null where nobody wants it kept.
+    std::shared_ptr<StackCache> stackCache = nullptr;
 };
 
 }  // namespace hairloom::editing

@@ -9,7 +9,9 @@
 #include "core/editing/place.h"
 #include "core/editing/selection_commands.h"
 #include "core/editing/settings_commands.h"
+#include "core/editing/stack_commands.h"
 #include "core/groom/file/settings_json.h"
+#include "core/operations/stack.h"
 
 namespace hairloom::editing {
 namespace {
@@ -110,6 +112,48 @@ MakeCommand readTriangulate(JsonReader&) {
     return [](const Document& document) -> CommandResult { return triangulate(document.model()); };
 }
 
+MakeCommand readWholeStack(JsonReader& reader) {
+    return [operators = readOperators(reader)](const Document& document) {
+        return setOperators(document.model(), operators, "Operators");
+    };
+}
+
+Operator readOneOperator(JsonReader& reader) {
+    JsonReader part = reader.object("operator");
+    return readOperator(part);
+}
+
+std::size_t readIndex(JsonReader& reader, std::string_view name) {
+    return static_cast<std::size_t>(reader.count(name, 0, kMaxOperators));
+}
+
+MakeCommand readAddOperator(JsonReader& reader) {
+    return [at = readIndex(reader, "at"), one = readOneOperator(reader)](const Document& document) {
+        return addOperator(document.model(), at, one);
+    };
+}
+
+MakeCommand readSetOperator(JsonReader& reader) {
+    return [at = readIndex(reader, "at"), one = readOneOperator(reader)](const Document& document) {
+        return setOperator(document.model(), at, one, "Operator");
+    };
+}
+
+MakeCommand readMoveOperator(JsonReader& reader) {
+    return [at = readIndex(reader, "at"), to = readIndex(reader, "to")](const Document& document) {
+        return moveOperator(document.model(), at, to);
+    };
+}
+
+template <StackCommand (*Make)(const Model&, std::size_t)>
+MakeCommand readAtOperator(JsonReader& reader) {
+    return [at = readIndex(reader, "at")](const Document& document) { return Make(document.model(), at); };
+}
+
+MakeCommand readBake(JsonReader&) {
+    return [](const Document& document) { return bakeOperators(document.model()); };
+}
+
 constexpr RecordedOperation kOperations[] = {
     {"material", readSettingsStep<HairMaterial, setMaterial>},
     {"simulation", readSettingsStep<runtime::SimulationSettings, setPhysics>},
@@ -122,6 +166,13 @@ constexpr RecordedOperation kOperations[] = {
     {"density", readDensity},
     {"place", readPlace},
     {"triangulate", readTriangulate},
+    {"operators", readWholeStack},
+    {"add_operator", readAddOperator},
+    {"set_operator", readSetOperator},
+    {"move_operator", readMoveOperator},
+    {"copy_operator", readAtOperator<copyOperator>},
+    {"remove_operator", readAtOperator<removeOperator>},
+    {"bake_operators", readBake},
 };
 
 }  // namespace

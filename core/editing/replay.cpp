@@ -10,25 +10,27 @@
 namespace hairloom::editing {
 namespace {
 
-/// What the steps of one script share.
-using Shared = std::shared_ptr<Document::HeadData>;
+/// Held between the steps of one script, so that it is made once.
+using HeldSkin = std::shared_ptr<const SkinField>;
 
-Result<std::size_t> replayOn(Groom& groom, const Stroke& stroke, Document::HeadData& shared) {
+void hold(const Document& document, HeldSkin& held) {
+    if (document.heldSkin()) held = document.heldSkin();
+}
+
+Result<std::size_t> replayOn(Groom& groom, const Stroke& stroke, HeldSkin& held) {
     Document document(std::move(groom));
-    if (shared.head == document.groom().scalp) document.setHeadData(shared);
     auto touched = document.replay(stroke);
-    shared = document.headData();
+    hold(document, held);
     groom = std::move(document).takeGroom();
     return touched;
 }
 
-Result<std::size_t> performOn(Groom& groom, const MakeCommand& make, Document::HeadData& shared) {
+Result<std::size_t> performOn(Groom& groom, const MakeCommand& make, HeldSkin& held) {
     Document document(std::move(groom));
-    if (shared.head == document.groom().scalp) document.setHeadData(shared);
     auto command = make(document);
     const bool works = command.has_value();
     if (works) document.perform(std::move(*command));
-    shared = document.headData();
+    hold(document, held);
     groom = std::move(document).takeGroom();
     // How many strands a setting touches is nothing that a script reports.
     if (works) return 0;
@@ -38,20 +40,17 @@ Result<std::size_t> performOn(Groom& groom, const MakeCommand& make, Document::H
 }  // namespace
 
 std::vector<ScriptExtension> scriptExtensions() {
-    const Shared shared = std::make_shared<Document::HeadData>();
-    const auto readStrokeStep = [shared](JsonReader& reader) -> std::function<Result<std::size_t>(Groom&)> {
-        return
-            [shared, stroke = readStroke(reader)](Groom& groom) { return replayOn(groom, stroke, *shared); };
+    const auto held = std::make_shared<HeldSkin>();
+    const auto readStrokeStep = [held](JsonReader& reader) -> std::function<Result<std::size_t>(Groom&)> {
+        return [held, stroke = readStroke(reader)](Groom& groom) { return replayOn(groom, stroke, *held); };
     };
     std::vector<ScriptExtension> extensions{{"stroke", readStrokeStep}};
     for (const RecordedOperation& operation : recordedOperations()) {
-        extensions.push_back({operation.name,
-                              [shared, read = operation.read](
-                                  JsonReader& reader) -> std::function<Result<std::size_t>(Groom&)> {
-                                  return [shared, make = read(reader)](Groom& groom) {
-                                      return performOn(groom, make, *shared);
-                                  };
-                              }});
+        extensions.push_back(
+            {operation.name,
+             [held, read = operation.read](JsonReader& reader) -> std::function<Result<std::size_t>(Groom&)> {
+                 return [held, make = read(reader)](Groom& groom) { return performOn(groom, make, *held); };
+             }});
     }
     return extensions;
 }

@@ -89,6 +89,7 @@ Part differenceOf(const Groom& a, const Groom& b) {
         {Part::Physics, differs(a.simulation, b.simulation)},
         {Part::Material, differs(a.material, b.material)},
         {Part::Interpolation, differs(a.interpolation, b.interpolation)},
+        {Part::Operators, a.operators != b.operators || !a.operators.empty()},
         {Part::Layers, differs(a.layers, b.layers) || a.groupNames != b.groupNames},
         {Part::Triangulation, !sameTriangles(a, b)},
     };

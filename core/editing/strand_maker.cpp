@@ -167,6 +167,19 @@ void bindRoots(const Groom& groom, std::span<const SurfacePoint> roots, Attribut
     }
 }
 
+/// Operators act on new strands as on those beside them, so that these are made from the base shapes.
+TakenStrands makeBelowStack(const Groom& groom, const RootGrid& grid, std::span<const SurfacePoint> roots,
+                            float reach, const KeepOut& skin) {
+    Groom base = groom;
+    base.operators.clear();
+    base.pointAttributes.set(attribute::kPosition,
+                             groom.pointAttributes.all().find(attribute::kBasePosition)->second);
+    TakenStrands strands = makeStrands(base, grid, roots, reach, skin);
+    strands.pointData.set(attribute::kBasePosition,
+                          strands.pointData.all().find(attribute::kPosition)->second);
+    return strands;
+}
+
 }  // namespace
 
 RootGrid gridOfRoots(const Groom& groom, float cell) {
@@ -180,6 +193,7 @@ RootGrid gridOfRoots(const Groom& groom, float cell) {
 
 TakenStrands makeStrands(const Groom& groom, const RootGrid& grid, std::span<const SurfacePoint> roots,
                          float reach, const KeepOut& skin) {
+    if (!groom.operators.empty()) return makeBelowStack(groom, grid, roots, reach, skin);
     const Plan plan = planOf(groom, grid, roots, reach);
     TakenStrands strands;
     strands.indices.resize(roots.size());

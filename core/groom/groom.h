@@ -13,6 +13,7 @@
 #include "core/geometry/scalp_mesh.h"
 #include "core/groom/attributes.h"
 #include "core/groom/material.h"
+#include "core/groom/operator_stack.h"
 #include "hairloom/settings.h"
 
 namespace hairloom {
@@ -61,6 +62,9 @@ struct Groom {
     CowArray<std::uint32_t> offsets{std::vector<std::uint32_t>{0}};
     AttributeSet strandAttributes;
     AttributeSet pointAttributes;
+
+    /// What makes the positions out of attribute::kBasePosition, which is there where there are operators.
+    std::vector<Operator> operators;
 
     std::vector<Layer> layers{Layer{}};
     std::vector<std::string> groupNames;

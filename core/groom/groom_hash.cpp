@@ -2,6 +2,7 @@
 #include "core/groom/groom_hash.h"
 
 #include <bit>
+#include <nlohmann/json.hpp>
 
 #include "core/base/hash.h"
 #include "core/groom/file/fields.h"
@@ -58,6 +59,15 @@ void hashSettings(Hasher& hasher, const Groom& groom) {
     for (const Layer& layer : groom.layers) {
         hasher.text(layer.name);
         hasher.number((layer.visible ? 1u : 0u) | (layer.locked ? 2u : 0u));
+    }
+    hasher.number(groom.operators.size());
+    for (const Operator& one : groom.operators) {
+        hasher.text(one.op);
+        // In order of name: the order in which a file has them says nothing.
+        hasher.text(nlohmann::json::parse(one.settings).dump());
+        hasher.number(one.enabled ? 1 : 0);
+        hasher.real(static_cast<double>(one.weight));
+        hasher.number(one.number);
     }
     hasher.texts(groom.groupNames);
     hasher.number(groom.spheres.size());

@@ -27,6 +27,18 @@ void findLayers(const Groom& groom, std::vector<Finding>& findings) {
         {Severity::Error, "there are no layers", "layers", "add one; every groom has at least one"});
 }
 
+void findWeights(const Groom& groom, std::vector<Finding>& findings) {
+    Places places;
+    for (std::size_t i = 0; i < groom.operators.size(); ++i) {
+        if (!withinRange(static_cast<double>(groom.operators[i].weight), 0, 1)) places.other("operator", i);
+    }
+    places.report(findings, Severity::Error, "the weight of an operator is not within 0 to 1",
+                  "set it within its range");
+    if (groom.operators.size() > kMaxOperators)
+        findings.push_back({Severity::Error, fmt::format("there are {} operators", groom.operators.size()),
+                            "operators", fmt::format("keep {} at most", kMaxOperators)});
+}
+
 void findSettings(const Groom& groom, std::vector<Finding>& findings) {
     const auto report = [&](std::string_view which, const std::vector<std::string>& problems) {
         for (const std::string& problem : problems) {
@@ -57,6 +69,7 @@ std::vector<Finding> validateSettings(const Groom& groom) {
     std::vector<Finding> findings;
     findLayers(groom, findings);
     findSpheres(groom, findings);
+    findWeights(groom, findings);
     findSettings(groom, findings);
     return findings;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <array>
+#include <set>
 
 #include "core/groom/findings.h"
 #include "core/groom/point_dye.h"
@@ -12,7 +13,8 @@ struct KnownAttribute {
     std::string_view name;
     std::string_view type;
 };
-constexpr std::array<KnownAttribute, 5> kPointTypes = {{{attribute::kPosition, "float3"},
+constexpr std::array<KnownAttribute, 6> kPointTypes = {{{attribute::kPosition, "float3"},
+                                                        {attribute::kBasePosition, "float3"},
                                                         {attribute::kRadius, "float"},
                                                         {attribute::kPointDye, "float"},
                                                         {attribute::kPointColour, "float3"},
@@ -129,6 +131,26 @@ void findTriangulation(const Groom& groom, std::vector<Finding>& findings) {
                   "triangulate the roots again");
 }
 
+void findOperators(const Groom& groom, std::vector<Finding>& findings) {
+    Places places;
+    const auto hasArray = [&](std::string_view name) {
+        const auto found = groom.pointAttributes.all().find(name);
+        return found != groom.pointAttributes.all().end() && typeName(found->second) == "float3";
+    };
+    if (!groom.operators.empty() && !hasArray(attribute::kBasePosition))
+        places.named("point attribute 'base_position'");
+    std::set<std::uint32_t> numbers;
+    for (std::size_t i = 0; i < groom.operators.size(); ++i) {
+        const Operator& one = groom.operators[i];
+        if (one.op == kSculpt &&
+            (!numbers.insert(one.number).second || !hasArray(sculptAttribute(one.number))))
+            places.other("operator", i);
+    }
+    places.report(findings, Severity::Error,
+                  "the stack of operators lacks its base shape or the strokes of a sculpt",
+                  "remove the operators, or save the project again with the program that made it");
+}
+
 }  // namespace
 
 bool findStructure(const Groom& groom, std::vector<Finding>& findings) {
@@ -144,6 +166,7 @@ bool findStructure(const Groom& groom, std::vector<Finding>& findings) {
     if (!points || !strands) return false;
     const std::size_t before = findings.size();
     findShortStrands(groom, findings);
+    findOperators(groom, findings);
     findIndices(groom, attribute::kGroup, groom.groupNames.size(), "groups", findings);
     findIndices(groom, attribute::kLayer, groom.layers.size(), "layers", findings);
     if (groom.scalp) {

@@ -67,7 +67,10 @@ Result<std::size_t> dye(Groom& groom, const S& settings, const Region& region) {
 }
 
 Operation dyeOperation() {
-    return operation<S, dye>("dye", 100, "says which strands the material's dye colours, and how much");
+    Operation mask =
+        operation<S, dye>("dye", 100, "says which strands the material's dye colours, and how much");
+    mask.stacks = false;
+    return mask;
 }
 
 }  // namespace hairloom

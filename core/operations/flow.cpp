@@ -132,7 +132,7 @@ void layStrand(StrandEdit& strand, const S& settings) {
             const float turn = settings.bend > 0 ? 1 - std::exp(-step.length / settings.bend) : 1.0f;
             direction = unitOr(direction * (1 - turn) + next * turn, next);
             const float clearance = std::min(settings.clearance, 0.5f * step.arc);
-            strand.points[i] = placeOutside(skin, from, direction, step.length, clearance);
+            strand.points[i] = placeOutside(*strand.outside, from, direction, step.length, clearance);
             direction = unitOr(strand.points[i] - from, direction);
             sample = skin.at(strand.points[i]);
         } else {

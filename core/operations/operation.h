@@ -4,6 +4,7 @@
 // nameOperation()`, with the name of the file.
 
 #include <functional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -21,20 +22,36 @@ struct Operation {
     int order;                 ///< in lists: as hairstyles are mostly made, from lengths on
     RunOperation (*read)(JsonReader&);
     std::vector<FieldRow> (*fields)();
+    /// All members that `read` takes, with those that are absent at their defaults, as a JSON object.
+    std::string (*settings)(JsonReader&);
+    bool stacks = true;  ///< moves points of strands and changes nothing else, so that a stack may hold it
 };
 
 namespace operation_detail {
+
+inline Region readRegion(JsonReader& reader) {
+    Region region;
+    if (!reader.has("region")) return region;
+    JsonReader part = reader.object("region");
+    part.fields(region);
+    part.finish();
+    return region;
+}
+
+template <class S>
+std::string settings(JsonReader& reader) {
+    S settings;
+    reader.fields(settings);
+    nlohmann::ordered_json json = fieldsToJson(settings);
+    if (reader.has("region")) json["region"] = fieldsToJson(readRegion(reader));
+    return json.dump();
+}
 
 template <class S, Result<std::size_t> (*Apply)(Groom&, const S&, const Region&)>
 RunOperation read(JsonReader& reader) {
     S settings;
     reader.fields(settings);
-    Region region;
-    if (reader.has("region")) {
-        JsonReader part = reader.object("region");
-        part.fields(region);
-        part.finish();
-    }
+    const Region region = readRegion(reader);
     return [settings, region](Groom& groom) { return Apply(groom, settings, region); };
 }
 
@@ -43,7 +60,9 @@ RunOperation read(JsonReader& reader) {
 /// An operation that has the fields of S and a region.
 template <class S, Result<std::size_t> (*Apply)(Groom&, const S&, const Region&)>
 Operation operation(std::string_view name, int order, std::string_view meaning) {
-    return {name, meaning, order, &operation_detail::read<S, Apply>, &fieldRows<S>};
+    return {name,          meaning,
+            order,         &operation_detail::read<S, Apply>,
+            &fieldRows<S>, &operation_detail::settings<S>};
 }
 
 /// One of each file, in order of file name (hairloom_registry).

@@ -44,6 +44,29 @@ std::size_t changedStrands(const Groom& before, const Groom& after) {
     return changed + (old.size() - kept);
 }
 
+bool keepsSomeStrands(const Groom& groom) {
+    const auto frozen = groom.strandAttributes.view<std::uint8_t>(attribute::kFrozen);
+    return std::ranges::any_of(frozen, [](std::uint8_t value) { return value != 0; }) ||
+           std::ranges::any_of(groom.layers, &Layer::locked);
+}
+
+/// Where there are operators, which would make the points anew and drop what it did, it joins them.
+RunOperation onTopOfStack(Operator one, RunOperation run) {
+    return [one = std::move(one), run = std::move(run)](Groom& groom) -> Result<std::size_t> {
+        if (groom.operators.empty()) return run(groom);
+        // Operators act on all strands.
+        if (keepsSomeStrands(groom))
+            return fail(fmt::format("{}: frozen or locked strands in a hairstyle with operators", one.op),
+                        "unfreeze them, or bake the operators first (bake_operators)");
+        if (groom.operators.size() >= kMaxOperators)
+            return fail(fmt::format("{}: the hairstyle has {} operators", one.op, kMaxOperators),
+                        "bake some first (bake_operators)");
+        auto touched = run(groom);
+        if (touched) groom.operators.push_back(one);
+        return touched;
+    };
+}
+
 }  // namespace
 
 Result<Script> parseScript(const std::string& file, std::string_view text,
@@ -64,6 +87,12 @@ Result<Script> parseScript(const std::string& file, std::string_view text,
         const std::size_t own = operations().size();
         RunOperation run =
             chosen < own ? operations()[chosen].read(step) : extensions[chosen - own].read(step);
+        if (chosen < own && operations()[chosen].stacks) {
+            Operator one;
+            one.op = names[chosen];
+            one.settings = operations()[chosen].settings(step);
+            run = onTopOfStack(std::move(one), std::move(run));
+        }
         step.finish();
         script.steps.push_back({std::string(names[chosen]), std::move(run)});
     }

@@ -13,6 +13,7 @@ namespace hairloom {
 namespace {
 
 constexpr std::size_t kGrain = 64;
+constexpr std::size_t kPointsToScreen = 20'000;  ///< fewer are searched for faster than the field is measured
 constexpr Field<Region> kRegionFields[] = {
     field<&Region::point>("point", "m", -kAnywhere, kAnywhere, "a point of the plane that bounds the region"),
     field<&Region::normal>("normal", "", -kAnywhere, kAnywhere,
@@ -64,8 +65,13 @@ std::size_t editStrands(Groom& groom, const Region& region, const EditOptions& o
                         const std::function<void(StrandEdit&)>& edit) {
     const std::vector<std::uint32_t> strands = strandsToEdit(groom, region);
     if (strands.empty()) return 0;
-    std::optional<Skin> skin;
-    if (groom.scalp && (options.needsSkin || options.clearance >= 0)) skin.emplace(groom.scalp);
+    const bool usesSkin = options.needsSkin || options.clearance >= 0;
+    const std::shared_ptr<const SkinField> field = usesSkin ? sharedSkin(groom.scalp) : nullptr;
+    const Skin* const skin = field ? &field->skin() : nullptr;
+    std::optional<ScreenedSkin> screened;
+    if (field && strands.size() * groom.pointCount() >= kPointsToScreen * groom.strandCount())
+        screened.emplace(*field);
+    const SkinQuery* const outside = screened ? &*screened : static_cast<const SkinQuery*>(skin);
     const auto before = groom.positions();
     std::vector<Vec3f> after(before.begin(), before.end());
     std::atomic<std::size_t> changed{0};
@@ -76,11 +82,11 @@ std::size_t editStrands(Groom& groom, const Region& region, const EditOptions& o
             const std::size_t first = groom.offsets[s];
             const std::span<Vec3f> points = std::span(after).subspan(first, groom.offsets[s + 1] - first);
             measureSegments(points, lengths);
-            StrandEdit strand{points, lengths, s, idOf(groom, s), skin ? &*skin : nullptr};
+            StrandEdit strand{points, lengths, s, idOf(groom, s), skin, outside};
             edit(strand);
             if (skin && options.clearance >= 0) {
                 measureSegments(points, lengths);
-                keepOutside(points, lengths, *skin, options.clearance);
+                keepOutside(points, lengths, *outside, options.clearance);
             }
             changed += !std::equal(points.begin(), points.end(),
                                    before.begin() + static_cast<std::ptrdiff_t>(first));

@@ -9,7 +9,7 @@
 
 #include "core/base/random.h"
 #include "core/groom/file/fields.h"
-#include "core/operations/skin.h"
+#include "core/operations/skin_field.h"
 
 namespace hairloom {
 
@@ -30,8 +30,9 @@ struct StrandEdit {
     std::span<Vec3f> points;         ///< ≥ 2, root first
     std::span<const float> lengths;  ///< of the segments before the edit, metres
     std::size_t index;
-    std::uint32_t id;  ///< the strand's id attribute, else its index
-    const Skin* skin;  ///< null without a scalp
+    std::uint32_t id;          ///< the strand's id attribute, else its index
+    const Skin* skin;          ///< null without a scalp
+    const SkinQuery* outside;  ///< the same for what keeps hair outside
 
     /// Its own random sequence; strands draw alike whatever their order.
     Random random(std::uint64_t seed) const { return Random(seed, id); }

@@ -42,6 +42,7 @@ void replaceHair(Groom& groom, const Groom& hair) {
     groom.offsets = hair.offsets;
     groom.strandAttributes = hair.strandAttributes;
     groom.pointAttributes = hair.pointAttributes;
+    groom.operators = hair.operators;
     groom.groupNames = hair.groupNames;
     groom.triangulation = {};
     groom.scalpSelection = hair.scalpSelection;

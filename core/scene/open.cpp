@@ -7,6 +7,7 @@
 #include "core/base/log.h"
 #include "core/groom/file/project_file.h"
 #include "core/groom/file/settings_json.h"
+#include "core/operations/stack.h"
 #include "importers/length_unit.h"
 #include "importers/strands.h"
 
@@ -33,8 +34,15 @@ Result<ImportedScene> importSceneWithUnit(const std::string& path, const std::st
     return importSceneLoud(path, options);
 }
 
+Result<Groom> openProject(const std::string& path) {
+    auto groom = loadProject(path);
+    if (!groom) return groom;
+    if (auto status = completeOperators(path, *groom); !status) return tl::unexpected(status.error());
+    return groom;
+}
+
 Result<Groom> loadDocument(const std::string& path) {
-    if (looksLikeProject(path)) return loadProject(path);
+    if (looksLikeProject(path)) return openProject(path);
     auto imported = importStrands(path, {});
     if (!imported) return tl::unexpected(imported.error());
     logFindings(path, imported->warnings);
@@ -44,7 +52,7 @@ Result<Groom> loadDocument(const std::string& path) {
 Result<Opened> openAny(const std::string& path, const std::string& unit) {
     Opened opened;
     if (looksLikeProject(path)) {
-        auto groom = loadProject(path);
+        auto groom = openProject(path);
         if (!groom) return tl::unexpected(groom.error());
         opened.groom = std::move(*groom);
         opened.format = "hairloom";

@@ -11,7 +11,7 @@
 #include "core/geometry/placement.h"
 #include "core/geometry/selection.h"
 #include "core/groom/file/settings_json.h"
-#include "core/operations/script.h"
+#include "core/scene/hair_import.h"
 #include "core/scene/open.h"
 
 namespace hairloom {
@@ -121,7 +121,7 @@ Result<Groom> makeSample(const fs::path& samples, const std::string& name) {
     const std::string scriptFile = style.string() + ".json";
     const auto text = readTextFile(scriptFile);
     if (!text) return tl::unexpected(text.error());
-    const auto script = parseScript(scriptFile, *text);
+    const auto script = parseDocumentScript(scriptFile, *text);
     if (!script) return tl::unexpected(script.error());
     if (const auto outcome = runScript(*script, *groom); !outcome) return tl::unexpected(outcome.error());
     auto spheres = readSpheres((samples / "bust/spheres.json").string());

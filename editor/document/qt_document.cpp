@@ -57,9 +57,8 @@ QString QtDocument::title() const {
 void QtDocument::open(Groom groom, const QString& path, const QString& name) {
     auto opened = std::make_unique<editing::Document>(std::move(groom));
     // What a head costs to prepare is kept while the head stays.
-    if (opened->groom().scalp && opened->groom().scalp == editing_->headData().head) {
-        opened->setHeadData(editing_->headData());
-    }
+    const std::shared_ptr<const SkinField> held = editing_->heldSkin();
+    if (held && &held->skin().mesh() == opened->groom().scalp.get()) opened->skin();
     subscription_.reset();
     editing_ = std::move(opened);
     watch();

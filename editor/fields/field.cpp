@@ -6,6 +6,10 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/editing/stack_commands.h"
+#include "core/operations/script.h"
+#include "core/operations/stack.h"
+
 namespace hairloom::editor {
 namespace {
 
@@ -14,7 +18,7 @@ std::vector<Field> fieldsIn(S Groom::*section, editing::Part part) {
     std::vector<Field> fields;
     for (const runtime::Field<S>& described : fieldsOf(S{})) {
         if (described.components() == 0) continue;
-        Field field{described, labelOf(described.name), {}, part, {}, {}};
+        Field field{described, labelOf(described.name), {}, part, {}, {}, {}};
         for (std::uint32_t c = 0; c < field.components(); ++c)
             field.defaultValue[c] = defaultValue(described, c);
         field.value = [&described, section](const Groom& groom, std::uint32_t component) {
@@ -28,7 +32,79 @@ std::vector<Field> fieldsIn(S Groom::*section, editing::Part part) {
     return fields;
 }
 
+constexpr FieldInfo kWeight{"weight",         "", 0, 1, "share of what the operator does to strands",
+                            FieldKind::Float, {}};
+
+/// What fields of an operator share.
+struct OperatorAt {
+    std::size_t index;
+    std::string op;
+    SayError failed;
+
+    const Operator* in(const Groom& groom) const {
+        if (index >= groom.operators.size() || groom.operators[index].op != op) return nullptr;
+        return &groom.operators[index];
+    }
+    Field field(const FieldInfo& info) const {
+        Field field{info, labelOf(info.name), {}, editing::Part::Operators, {}, {}, {}};
+        const std::string name =
+            labelOf(QString::fromStdString(op)).toStdString() + ": " + field.label.toStdString();
+        field.step = [at = *this, name](const editing::Model& model,
+                                        const Groom& groom) -> std::unique_ptr<editing::Command> {
+            const Operator* changed = at.in(groom);
+            if (!changed) return nullptr;
+            auto made = editing::setOperator(model, at.index, *changed, name);
+            if (made) return std::move(*made);
+            at.failed(QString::fromStdString(made.error().message()));
+            return nullptr;
+        };
+        return field;
+    }
+};
+
+std::vector<Field> settingsFields(const OperatorAt& at, const std::vector<FieldRow>& rows, bool region) {
+    std::vector<Field> fields;
+    for (const FieldRow& row : rows) {
+        Field field = at.field(row.info);
+        for (std::uint32_t c = 0; c < field.components(); ++c)
+            field.defaultValue[c] = settingOf(newOperator(at.op), row.info, c, region);
+        field.value = [at, info = row.info, region](const Groom& groom, std::uint32_t component) {
+            const Operator* one = at.in(groom);
+            return one ? settingOf(*one, info, component, region) : 0;
+        };
+        field.set = [at, info = row.info, region](Groom& groom, double value, std::uint32_t component) {
+            return at.in(groom) && setSettingOf(groom.operators[at.index], info, value, component, region);
+        };
+        fields.push_back(std::move(field));
+    }
+    return fields;
+}
+
 }  // namespace
+
+std::vector<Field> operatorFields(const Groom& groom, std::size_t index, const SayError& failed) {
+    const OperatorAt at{index, groom.operators[index].op, failed};
+    const StackOperator* const known = findStackOperator(at.op);
+    std::vector<Field> fields = settingsFields(at, known->fields, false);
+    Field weight = at.field(kWeight);
+    weight.defaultValue[0] = 1;
+    weight.value = [at](const Groom& now, std::uint32_t) {
+        const Operator* one = at.in(now);
+        return one ? static_cast<double>(one->weight) : 1;
+    };
+    weight.set = [at](Groom& now, double value, std::uint32_t) {
+        if (!at.in(now) || !kWeight.holds(value)) return false;
+        now.operators[at.index].weight = static_cast<float>(value);
+        return true;
+    };
+    fields.insert(fields.begin(), std::move(weight));
+    return fields;
+}
+
+std::vector<Field> operatorRegionFields(const Groom& groom, std::size_t index, const SayError& failed) {
+    const OperatorAt at{index, groom.operators[index].op, failed};
+    return settingsFields(at, scriptRegionFields(), true);
+}
 
 QStringList Field::choiceLabels() const {
     QStringList labels;

@@ -22,6 +22,9 @@ struct Field : FieldInfo {
     /// False, and no change, where the value is not allowed.
     std::function<bool(Groom&, double value, std::uint32_t component)> set;
 
+    /// The step that gives the document what set() made of its groom; settings as a whole where it is empty.
+    std::function<std::unique_ptr<editing::Command>(const editing::Model&, const Groom&)> step;
+
     QStringList choiceLabels() const;
 };
 
@@ -30,6 +33,11 @@ std::vector<Field> simulationFields();
 std::vector<Field> materialFields();
 std::vector<Field> followHairFields();
 std::vector<Field> placementFields();
+/// Weight and settings of the operator at `index`, or those of its region. A complaint of an operator goes to
+/// `failed`.
+using SayError = std::function<void(const QString&)>;
+std::vector<Field> operatorFields(const Groom& groom, std::size_t index, const SayError& failed);
+std::vector<Field> operatorRegionFields(const Groom& groom, std::size_t index, const SayError& failed);
 
 /// The fields of these names, in that order. Each name is one of `all`.
 std::vector<Field> pick(const std::vector<Field>& all, const QStringList& names);

@@ -133,8 +133,10 @@ QWidget* FieldForm::makeVector(const Field& field) {
     for (std::uint32_t c = 0; c < 3; ++c) {
         auto* box = new QDoubleSpinBox;
         box->setRange(field.min, field.max);
-        box->setDecimals(2);
-        box->setSingleStep((field.max - field.min) / 200);
+        // Places anywhere in space are set to the millimetre.
+        const bool anywhere = field.max - field.min > 100;
+        box->setDecimals(anywhere ? 3 : 2);
+        box->setSingleStep(anywhere ? 0.005 : (field.max - field.min) / 200);
         box->setKeyboardTracking(false);
         box->setPrefix(QStringLiteral("XYZ").mid(static_cast<int>(c), 1) + ' ');
         box->setMinimumWidth(60);
@@ -186,6 +188,7 @@ void FieldForm::store(const Field& field, double value, std::uint32_t component)
     Groom groom = document_.groom();
     if (!field.set(groom, value, component)) return;
     document_.performMerged(interaction_, [&](const editing::Model& model) {
+        if (field.step) return field.step(model, groom);
         return editing::setSettings(model, groom, field.label.toStdString());
     });
 }

@@ -43,7 +43,7 @@ Result<DocumentFiles::Opened> DocumentFiles::openHead(const std::string& path) {
 }
 
 Result<DocumentFiles::Opened> DocumentFiles::openProject(const std::string& path) {
-    auto groom = loadProject(path);
+    auto groom = hairloom::openProject(path);
     if (!groom) return tl::unexpected(groom.error());
     Opened opened;
     opened.actor = actorOf(*groom);

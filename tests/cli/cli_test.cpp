@@ -300,6 +300,44 @@ TEST_F(Cli, AStrokeOfDyeIsReplayed) {
     EXPECT_TRUE(runJson("validate dyed.hairloom")["valid"].get<bool>());
 }
 
+TEST_F(Cli, AStackIsShownSetChangedAndBaked) {
+    runJson(createArguments());
+    EXPECT_TRUE(runJson("stack hair.hairloom")["operators"].empty());
+    std::ofstream(folder / "stack.json") << R"({"operators": [
+        {"op": "flow", "gravity": 0.9}, {"op": "clump", "weight": 0.5}, {"op": "noise", "enabled": false}]})";
+    const auto made = runJson("stack hair.hairloom --from stack.json -o styled.hairloom");
+    ASSERT_EQ(made["operators"].size(), 3u);
+    EXPECT_FLOAT_EQ(made["operators"][0]["gravity"], 0.9f);
+    EXPECT_TRUE(made["operators"][1].contains("spacing")) << "all settings are written out";
+    EXPECT_TRUE(runJson("validate styled.hairloom")["valid"].get<bool>());
+    // What the job prints is what it takes.
+    std::ofstream(folder / "again.json") << nlohmann::json{{"operators", made["operators"]}}.dump();
+    runJson("stack hair.hairloom --from again.json -o again.hairloom --threads 1");
+    EXPECT_EQ(readText(folder / "styled.hairloom"), readText(folder / "again.hairloom"));
+    // An empty stack leads back to the base shape.
+    std::ofstream(folder / "none.json") << R"({"operators": []})";
+    runJson("stack styled.hairloom --from none.json -o bare.hairloom");
+    EXPECT_EQ(readText(folder / "bare.hairloom"), readText(folder / "hair.hairloom"));
+    // Baked, the hair stays as it is.
+    runJson("stack styled.hairloom --bake -o baked.hairloom");
+    EXPECT_TRUE(runJson("stack baked.hairloom")["operators"].empty());
+    runJson("export styled.hairloom --format ply -o styled.ply");
+    runJson("export baked.hairloom --format ply -o baked.ply");
+    EXPECT_EQ(readText(folder / "styled.ply"), readText(folder / "baked.ply"));
+}
+
+TEST_F(Cli, AStackThatCannotBeIsRefusedWithItsPlace) {
+    runJson(createArguments());
+    std::ofstream(folder / "stack.json")
+        << R"({"operators": [{"op": "flow"}, {"op": "clump", "spacing": -1}]})";
+    const Outcome outcome = run("stack hair.hairloom --from stack.json -o out.hairloom");
+    EXPECT_EQ(outcome.exitCode, 1);
+    EXPECT_THAT(outcome.errors, StartsWith("error: stack.json"));
+    EXPECT_THAT(outcome.errors, HasSubstr("/operators/1/spacing"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "out.hairloom"));
+    EXPECT_EQ(run("stack hair.hairloom --bake").exitCode, 2) << "needs -o";
+}
+
 TEST_F(Cli, SettingsAreCheckedByNameAndRange) {
     runJson(createArguments());
     const auto set =

@@ -12,9 +12,11 @@
 #include "core/editing/selection_commands.h"
 #include "core/editing/settings_commands.h"
 #include "core/editing/sphere_commands.h"
+#include "core/editing/stack_commands.h"
 #include "core/geometry/selection.h"
 #include "core/groom/file/project_file.h"
 #include "core/groom/file/settings_json.h"
+#include "core/operations/stack.h"
 #include "tests/editing/editing_samples.h"
 
 namespace hairloom::editing {
@@ -225,8 +227,39 @@ std::unique_ptr<Command> anySettingsCommand(const Model& model, Random& random) 
     }
 }
 
+Operator anyOperator(Random& random) {
+    const auto& known = stackOperators();
+    Operator one = newOperator(known[random.below(static_cast<std::uint32_t>(known.size()))].name);
+    one.enabled = random.below(4) != 0;
+    one.weight = random.below(2) == 0 ? 1 : random.uniform();
+    return one;
+}
+
+StackCommand anyStackCommand(const Model& model, Random& random) {
+    const auto count = static_cast<std::uint32_t>(model.groom.operators.size());
+    if (count == 0 || (count < 6 && random.below(3) == 0))
+        return addOperator(model, random.below(count + 1), anyOperator(random));
+    const std::size_t index = random.below(count);
+    switch (random.below(12)) {
+        case 0:
+            return bakeOperators(model);
+        case 1:
+            return copyOperator(model, index);
+        case 2:
+        case 3:
+            return moveOperator(model, index, random.below(count));
+        case 4:
+            return setOperators(model, {anyOperator(random), model.groom.operators[index]}, "Operators");
+        case 5:
+        case 6:
+            return removeOperator(model, index);
+        default:
+            return setOperator(model, index, anyOperator(random), "Operator");
+    }
+}
+
 void anyEdit(Document& document, Random& random, std::uint64_t number) {
-    switch (random.below(9)) {
+    switch (random.below(10)) {
         case 0:
             document.undo();
             break;
@@ -248,6 +281,12 @@ void anyEdit(Document& document, Random& random, std::uint64_t number) {
         case 6:
             anyDrag(document, random, 1 + number);
             break;
+        case 7: {
+            auto command = anyStackCommand(document.model(), random);
+            ASSERT_TRUE(command) << command.error().message();
+            document.perform(std::move(*command));
+            break;
+        }
         default:
             anyStroke(document, random);
     }

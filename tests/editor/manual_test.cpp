@@ -108,6 +108,9 @@ TEST_F(ManualTest, GroomingSpheresMotionAndLook) {
     moveTo(onHead(0.08f, 0.10f, 0.05f));
     shootWindow("grooming");
     trigger("tool.view");
+    raise("operators");
+    find<QListWidget>("operators")->setCurrentRow(4);
+    shootWindow("operators");
     raise("view");
     raise("spheres");
     show("spheres", true);

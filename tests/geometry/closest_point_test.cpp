@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/geometry/shapes.h"
+#include "core/geometry/triangle_tree.h"
 #include "tests/geometry/test_meshes.h"
 
 namespace hairloom {
@@ -90,6 +92,75 @@ TEST(SurfaceTree, RaysHitTheNearSideOfASphere) {
     }
     EXPECT_FALSE(tree.firstHit(Vec3f(0, 0, -3), Vec3f::Zero()));
     EXPECT_FALSE(tree.firstHit(Vec3f(0, 0, -3), Vec3f(0, std::numeric_limits<float>::quiet_NaN(), 1)));
+}
+
+/// A ray between the triangles of a closed surface must not slip through; rays along axes and through corners
+/// and edges are those that might.
+TEST(SurfaceTree, RaysThroughCornersAndEdgesDoNotSlipThrough) {
+    const ScalpMesh mesh = test::meshOf(shapes::icosphere(3, 0.1f));
+    const SurfaceTree tree(mesh);
+    for (const Triangle& t : mesh.triangles()) {
+        const Vec3f a = mesh.positions()[t[0]], b = mesh.positions()[t[1]];
+        for (const Vec3f& target : {a, Vec3f((a + b) / 2)}) {
+            const Vec3f aside = target + Vec3f(0.05f, -0.02f, 0.03f);
+            for (const Vec3f& from : {Vec3f(Vec3f::Zero()), Vec3f(2 * target), Vec3f(1.7f * aside)}) {
+                const float slant = (from - target).normalized().dot(target.normalized());
+                if (std::abs(slant) < 0.3f) continue;  // past the rim one may miss
+                const auto hit = tree.firstHit(from, target - from);
+                ASSERT_TRUE(hit) << target.transpose() << " from " << from.transpose();
+                EXPECT_LE(hit->distance, (target - from).norm() + 1e-6f);
+                EXPECT_NEAR(
+                    (mesh.pointAt(hit->surface.triangle, hit->surface.barycentric) - hit->position).norm(), 0,
+                    1e-6);
+            }
+        }
+    }
+}
+
+/// Against all triangles: an independent intersection by the volumes of tetrahedra.
+TEST(SurfaceTree, RaysAgreeWithAllTriangles) {
+    const ScalpMesh mesh = test::meshOf(test::torusSoup(24, 12, 1, 0.4f));
+    const SurfaceTree tree(mesh);
+    Random random(11);
+    int hits = 0;
+    for (int i = 0; i < 1000; ++i) {
+        const Vec3f from = test::randomPoint(random, 2), direction = test::randomPoint(random, 1);
+        const Vec3d o = from.cast<double>(), far = o + 100 * direction.cast<double>().normalized();
+        double nearest = std::numeric_limits<double>::infinity();
+        for (const Triangle& t : mesh.triangles()) {
+            const auto corner = [&](std::size_t k) -> Vec3d { return mesh.positions()[t[k]].cast<double>(); };
+            const Vec3d a = corner(0), b = corner(1), c = corner(2);
+            const auto volume = [](const Vec3d& p, const Vec3d& q, const Vec3d& r, const Vec3d& s) {
+                return (q - p).cross(r - p).dot(s - p);
+            };
+            const double u = volume(o, far, a, b), v = volume(o, far, b, c), w = volume(o, far, c, a);
+            const double start = volume(a, b, c, o), end = volume(a, b, c, far);
+            if ((u > 0) != (v > 0) || (u > 0) != (w > 0) || start * end > 0) continue;
+            nearest = std::min(nearest, 100 * start / (start - end));
+        }
+        const auto hit = tree.firstHit(from, 3 * direction);
+        ASSERT_EQ(hit.has_value(), std::isfinite(nearest)) << i;
+        if (!hit) continue;
+        ++hits;
+        EXPECT_NEAR(hit->distance, nearest, 1e-5);
+    }
+    EXPECT_GT(hits, 100);
+}
+
+TEST(SurfaceTree, ManyTrianglesInOnePlaceAreAnswered) {
+    // Equal centres: the tree cannot part them by place.
+    PolygonSoup soup;
+    soup.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    std::vector<TriangleTree::Corners> same(1000, {soup.positions[0], soup.positions[1], soup.positions[2]});
+    same.push_back({Vec3f(0, 0, 2), Vec3f(0, 0, 2), Vec3f(0, 0, 2)});  // a point
+    same.push_back({Vec3f(0, 0, 3), Vec3f(1, 0, 3), Vec3f(2, 0, 3)});  // a line
+    const TriangleTree tree(same);
+    EXPECT_EQ(tree.closest(Vec3f(0.2f, 0.2f, 0.5f))->triangle, 0u) << "the least index";
+    EXPECT_NEAR(tree.closest(Vec3f(0.2f, 0.2f, 0.5f))->distance, 0.5, 1e-7);
+    EXPECT_EQ(tree.closest(Vec3f(0, 0, 1.9f))->triangle, 1000u);
+    EXPECT_EQ(tree.closest(Vec3f(1.2f, 0.1f, 3))->triangle, 1001u);
+    EXPECT_NEAR(tree.closest(Vec3f(1.2f, 0.1f, 3))->distance, 0.1, 1e-6);
+    EXPECT_EQ(tree.firstHit(Vec3f(0.2f, 0.2f, 5), Vec3f(0, 0, -1))->triangle, 0u);
 }
 
 TEST(SurfaceTree, EmptyMeshIsInfinitelyFar) {

@@ -122,6 +122,16 @@ std::vector<std::string> JsonReader::keys() const {
     return names;
 }
 
+std::string JsonReader::rest(std::span<const std::string_view> known) {
+    json others = json::object();
+    for (const std::string& name : keys()) {
+        if (std::ranges::find(known, name) != known.end()) continue;
+        asked_.emplace(name);
+        others[name] = (*value_)[name];
+    }
+    return others.dump();
+}
+
 const json* JsonReader::member(std::string_view key) {
     asked_.emplace(key);
     if (value_->is_object()) {

@@ -54,6 +54,8 @@ class JsonReader {
     std::vector<JsonReader> objects(std::string_view key);
     /// The names of all members, in order of name.
     std::vector<std::string> keys() const;
+    /// The members but these as a JSON object. Counts as asking for them.
+    std::string rest(std::span<const std::string_view> known);
 
     /// Every member of the object that fieldsOf(S) describes, by its name or its former one; absent ones keep
     /// their value.

@@ -7,6 +7,7 @@
 #include "core/base/profiler.h"
 #include "core/groom/file/archive.h"
 #include "core/groom/file/json_reader.h"
+#include "core/groom/file/operators_json.h"
 #include "core/groom/file/project_file.h"
 #include "core/groom/file/project_sections.h"
 #include "core/groom/file/settings_json.h"
@@ -25,6 +26,7 @@ void readLayers(JsonReader& head, Groom& groom) {
 }
 
 constexpr std::uint64_t kFirstWithPlacement = 2;  ///< version that has density and placement
+constexpr std::uint64_t kFirstWithOperators = 6;
 
 struct Counts {
     std::uint64_t version;
@@ -39,6 +41,7 @@ Counts readHead(JsonReader& head, Groom& groom, ScalpMeshParts& scalp) {
     constexpr std::uint64_t kMax = std::numeric_limits<std::uint32_t>::max();
     const Counts counts{version, head.count("strands", 0, kMax), head.count("points", 0, kMax)};
     readLayers(head, groom);
+    if (version >= kFirstWithOperators) groom.operators = readOperatorShapes(head);
     groom.groupNames = head.strings("groups");
     for (JsonReader& entry : head.objects("spheres")) groom.spheres.push_back(readSphere(entry));
     readSettings(head.object("material"), groom.material);

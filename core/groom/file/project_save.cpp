@@ -5,6 +5,7 @@
 #include "core/base/profiler.h"
 #include "core/groom/file/archive.h"
 #include "core/groom/file/json_reader.h"
+#include "core/groom/file/operators_json.h"
 #include "core/groom/file/project_file.h"
 #include "core/groom/file/project_sections.h"
 #include "core/groom/file/settings_json.h"
@@ -37,6 +38,7 @@ Json headOf(const Groom& groom) {
     head["strands"] = groom.strandCount();
     head["points"] = groom.pointCount();
     head["layers"] = layersToJson(groom);
+    head["operators"] = toJson(groom.operators);
     head["groups"] = groom.groupNames;
     head["spheres"] = toJson(groom.spheres);
     head["material"] = toJson(groom.material);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/editing/skin_field.h"
+#include "core/operations/skin_field.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,25 @@
 #include "tests/geometry/test_meshes.h"
 #include "tests/groom/groom_samples.h"
 
-namespace hairloom::editing {
+namespace hairloom {
 namespace {
+
+std::shared_ptr<const ScalpMesh> boxScalp() {
+    PolygonSoup box;
+    for (const float x : {-0.05f, 0.05f})
+        for (const float y : {-0.05f, 0.05f})
+            for (const float z : {-0.05f, 0.05f}) box.positions.emplace_back(x, y, z);
+    for (const auto& quad : {std::array<std::uint32_t, 4>{0, 1, 3, 2},
+                             {4, 6, 7, 5},
+                             {0, 4, 5, 1},
+                             {2, 3, 7, 6},
+                             {0, 2, 6, 4},
+                             {1, 5, 7, 3}}) {
+        box.corners.insert(box.corners.end(), quad.begin(), quad.end());
+        box.offsets.push_back(static_cast<std::uint32_t>(box.corners.size()));
+    }
+    return std::make_shared<const ScalpMesh>(test::meshOf(box));
+}
 
 TEST(SkinField, IsNearTheExactDistanceWhereItIsAskedFor) {
     const auto skin = std::make_shared<const Skin>(sphereScalp(0.09f, 4, Vec3f::Zero()));
@@ -44,21 +61,7 @@ TEST(SkinField, IsNearTheExactDistanceWhereItIsAskedFor) {
 }
 
 TEST(SkinField, MissesSharpEdgesByLessThanAThirdOfACell) {
-    PolygonSoup box;
-    for (const float x : {-0.05f, 0.05f})
-        for (const float y : {-0.05f, 0.05f})
-            for (const float z : {-0.05f, 0.05f}) box.positions.emplace_back(x, y, z);
-    for (const auto& quad : {std::array<std::uint32_t, 4>{0, 1, 3, 2},
-                             {4, 6, 7, 5},
-                             {0, 4, 5, 1},
-                             {2, 3, 7, 6},
-                             {0, 2, 6, 4},
-                             {1, 5, 7, 3}}) {
-        box.corners.insert(box.corners.end(), quad.begin(), quad.end());
-        box.offsets.push_back(static_cast<std::uint32_t>(box.corners.size()));
-    }
-    const auto mesh = std::make_shared<const ScalpMesh>(test::meshOf(box));
-    const auto skin = std::make_shared<const Skin>(mesh);
+    const auto skin = std::make_shared<const Skin>(boxScalp());
     ASSERT_LT(skin->at(Vec3f::Zero()).distance, 0);
     const SkinField field(skin);
     Random random(2);
@@ -107,6 +110,34 @@ TEST(SkinField, AnswersUpToADistanceAsItAnswersAtAll) {
     }
 }
 
+/// What a search could find is never nearer than the field says.
+TEST(SkinField, ScreensOutNoPointThatIsNear) {
+    const auto skin = std::make_shared<const Skin>(boxScalp());
+    const SkinField field(skin);
+    const ScreenedSkin screened(field);
+    Random random(9);
+    int spared = 0, searched = 0;
+    for (int i = 0; i < 20000; ++i) {
+        Vec3f point = test::randomPoint(random, i % 5 == 0 ? 0.3f : 0.06f);
+        if (i % 7 == 0) point = 0.002f * (point / 0.002f).array().round().matrix();
+        const float enough = random.uniform(0, 0.008f);
+        const SkinDistance exact = skin->distanceAt(point);
+        const SkinDistance answer = screened.distanceUpTo(point, enough);
+        EXPECT_EQ(screened.distanceAt(point).distance, exact.distance);
+        if (answer.distance == exact.distance && answer.outward == exact.outward) {
+            ++searched;
+        } else {
+            ++spared;
+            ASSERT_GT(answer.distance, enough);
+            ASSERT_LE(answer.distance, exact.distance + 1e-6f);
+        }
+    }
+    EXPECT_GT(spared, 2000);
+    EXPECT_GT(searched, 2000);
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_FALSE(screened.distanceUpTo(Vec3f(nan, 0, 0), 0.001f).distance < 0.001f);
+}
+
 TEST(SkinField, AnswersAlikeForAnyNumberOfThreadsAndOrder) {
     const auto skin = std::make_shared<const Skin>(sphereScalp(0.09f, 3, Vec3f::Zero()));
     constexpr std::size_t kPoints = 2000;
@@ -141,4 +172,4 @@ TEST(SkinField, GrowsItsCellsOnLargeMeshes) {
 }
 
 }  // namespace
-}  // namespace hairloom::editing
+}  // namespace hairloom

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// The distance to the skin, looked up instead of searched, so that a brush may ask for it a million times a
+// The distance to the skin, looked up instead of searched, so that an edit may ask for it a million times a
 // second.
 
 #include <atomic>
@@ -11,7 +11,7 @@
 
 #include "core/operations/skin.h"
 
-namespace hairloom::editing {
+namespace hairloom {
 
 /// Signed distances at the corners of cells near the skin, interpolated within them. A block of cells is
 /// measured when it is first asked for, so that a large mesh costs no more than the part that hair comes
@@ -30,9 +30,13 @@ class SkinField final : public SkinQuery {
 
     SkinDistance distanceAt(const Vec3f& point) const override;
     SkinDistance distanceUpTo(const Vec3f& point, float enough) const override;
+    /// A distance that the point's own is not below on a closed mesh, for tests whether it is above `enough`;
+    /// minus infinity deep inside.
+    float minimumAt(const Vec3f& point, float enough) const;
     /// Measures what lies near these faces ahead of time, in parallel.
     void prepare(std::span<const std::uint32_t> faces) const;
     float cell() const { return cell_; }
+    const Skin& skin() const { return *skin_; }
 
   private:
     static constexpr std::size_t kNoBlock = ~std::size_t{0};
@@ -72,4 +76,24 @@ class SkinField final : public SkinQuery {
     mutable std::vector<Block> blocks_;
 };
 
-}  // namespace hairloom::editing
+/// The skin's own answers without a search where the field shows that a point is far enough. What keeps hair
+/// outside a closed mesh gets the same bits from both.
+class ScreenedSkin final : public SkinQuery {
+  public:
+    explicit ScreenedSkin(const SkinField& field) : field_(field) {}
+    SkinDistance distanceAt(const Vec3f& point) const override { return field_.skin().distanceAt(point); }
+    SkinDistance distanceUpTo(const Vec3f& point, float enough) const override {
+        const float minimum = field_.minimumAt(point, enough);
+        if (minimum > enough) return {minimum, Vec3f::UnitY()};
+        return field_.skin().distanceAt(point);
+    }
+
+  private:
+    const SkinField& field_;
+};
+
+/// The skin of a head with its field, made once while anyone holds it: making it takes longer than most
+/// edits. Null for null.
+std::shared_ptr<const SkinField> sharedSkin(const std::shared_ptr<const ScalpMesh>& scalp);
+
+}  // namespace hairloom

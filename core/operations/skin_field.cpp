@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/editing/skin_field.h"
+#include "core/operations/skin_field.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <mutex>
 
 #include "core/base/parallel.h"
 
-namespace hairloom::editing {
+namespace hairloom {
 namespace {
 
 constexpr int kCells = 4;  ///< of a block, along each axis
@@ -17,6 +18,9 @@ constexpr std::size_t kValues = std::size_t{kCorners} * kCorners * kCorners;
 constexpr float kSlopeless =
     0.2f;  ///< on the ridge between two sides of the skin the interpolated slope vanishes
 constexpr double kMaxBlocks = 2e6;
+constexpr float kMostBetween = 0.8661f;  ///< cells; by which interpolation between true distances may err
+constexpr float kRounding = 1e-6f;       ///< metres
+constexpr float kNever = -std::numeric_limits<float>::infinity();
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
 float halfDiagonal(float cell) {
@@ -55,6 +59,18 @@ struct Cell {
     float alongZ() const {
         return mix(mix(c001, c101, x), mix(c011, c111, x), y) -
                mix(mix(c000, c100, x), mix(c010, c110, x), y);
+    }
+
+    /// What the distance is not below, whatever the skin looks like: no corner lies nearer than the way to
+    /// it allows.
+    float minimum(float size) const {
+        const float xs[] = {x * x, (1 - x) * (1 - x)}, ys[] = {y * y, (1 - y) * (1 - y)},
+                    zs[] = {z * z, (1 - z) * (1 - z)};
+        const float corners[] = {c000, c100, c010, c110, c001, c101, c011, c111};
+        float best = kNever;
+        for (std::size_t i = 0; i < kCellCorners; ++i)
+            best = std::max(best, corners[i] - size * std::sqrt(xs[i & 1] + ys[i >> 1 & 1] + zs[i >> 2]));
+        return best;
     }
 
   private:
@@ -172,6 +188,33 @@ SkinDistance SkinField::distanceUpTo(const Vec3f& point, float enough) const {
     return interpolated(place, point, enough);
 }
 
+float SkinField::minimumAt(const Vec3f& point, float enough) const {
+    const Place place = locate(point);
+    if (place.block == kNoBlock) return beyondTable(point).distance;
+    const float centre = centreDistance(place.block);
+    if (centre < -(halfDiagonal(cell_) + kReach)) return kNever;
+    // The distance falls by no more than the way.
+    const float fromCentre = centre - (point - centreOf(place.block)).norm() - kRounding;
+    if (fromCentre > enough) return fromCentre;
+    const Cell cell = cellAt(corners(place.block) + place.corner, place.inCell);
+    if (const float minimum = cell.value() - kMostBetween * cell_ - kRounding; minimum > enough)
+        return minimum;
+    return cell.minimum(cell_) - kRounding;
+}
+
+std::shared_ptr<const SkinField> sharedSkin(const std::shared_ptr<const ScalpMesh>& scalp) {
+    static std::mutex mutex;
+    static std::weak_ptr<const SkinField> last;
+    if (!scalp) return nullptr;
+    const std::scoped_lock lock(mutex);
+    auto field = last.lock();
+    if (field && &field->skin().mesh() == scalp.get()) return field;
+    // Not by make_shared: what `last` keeps would hold its memory.
+    field.reset(new SkinField(std::make_shared<const Skin>(scalp)));
+    last = field;
+    return field;
+}
+
 void SkinField::prepare(std::span<const std::uint32_t> faces) const {
     std::vector<std::size_t> near;
     const float side = cell_ * kCells;
@@ -198,4 +241,4 @@ void SkinField::prepare(std::span<const std::uint32_t> faces) const {
     });
 }
 
-}  // namespace hairloom::editing
+}  // namespace hairloom

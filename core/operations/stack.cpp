@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/operations/stack.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/base/parallel.h"
+#include "core/base/profiler.h"
+#include "core/groom/file/operators_json.h"
+#include "core/operations/length_constraint.h"
+#include "core/operations/sculpt.h"
+
+namespace hairloom {
+namespace {
+
+constexpr std::size_t kGrain = 256;
+
+std::vector<std::string_view> stackNames() {
+    std::vector<std::string_view> names;
+    for (const StackOperator& known : stackOperators()) names.push_back(known.name);
+    return names;
+}
+
+const Operation& operationOf(std::string_view name) {
+    return *std::ranges::find(operations(), name, &Operation::name);
+}
+
+template <class T>
+std::span<const T> valuesOf(const AttributeData& data) {
+    return std::get<CowArray<T>>(data).view();
+}
+
+/// Calls body(points of a strand: first, count) for all strands, on several threads.
+template <class Body>
+void forEachStrand(const Groom& groom, const Body& body) {
+    parallelFor(groom.strandCount(), kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t s = begin; s < end; ++s) {
+            const std::size_t count = groom.offsets[s + 1] - groom.offsets[s];
+            if (count >= 2) body(groom.offsets[s], count);
+        }
+    });
+}
+
+AttributeData sculpted(const Groom& groom, const Operator& one, const AttributeData& input) {
+    const auto from = valuesOf<Vec3f>(input);
+    const auto offsets = groom.pointAttributes.view<Vec3f>(sculptAttribute(one.number));
+    std::vector<Vec3f> to(from.begin(), from.end());
+    forEachStrand(groom, [&](std::size_t first, std::size_t count) {
+        applySculpt(from.subspan(first, count), offsets.subspan(first, count), one.weight,
+                    std::span(to).subspan(first, count));
+    });
+    return CowArray<Vec3f>(std::move(to));
+}
+
+/// A share of the way from one shape to another; segments get a length between those that they have there.
+AttributeData blended(const Groom& groom, const AttributeData& before, const AttributeData& after,
+                      float weight) {
+    const auto from = valuesOf<Vec3f>(before);
+    const auto to = valuesOf<Vec3f>(after);
+    std::vector<Vec3f> between(from.begin(), from.end());
+    forEachStrand(groom, [&](std::size_t first, std::size_t count) {
+        const auto a = from.subspan(first, count), b = to.subspan(first, count);
+        if (std::ranges::equal(a, b)) return;
+        const auto points = std::span(between).subspan(first, count);
+        std::vector<float> lengths(count - 1);
+        for (std::size_t i = 0; i < count; ++i) points[i] = a[i] + weight * (b[i] - a[i]);
+        for (std::size_t i = 0; i + 1 < count; ++i) {
+            const float was = (a[i + 1] - a[i]).norm();
+            lengths[i] = was + weight * ((b[i + 1] - b[i]).norm() - was);
+        }
+        restoreLengthsByDirection(points, lengths);
+    });
+    return CowArray<Vec3f>(std::move(between));
+}
+
+/// All settings, or those of the region, which may be left out where it is the default.
+nlohmann::ordered_json settingsWithRegion(const Operator& one, bool region) {
+    nlohmann::ordered_json all = nlohmann::ordered_json::parse(one.settings);
+    if (!region) return all;
+    return all.contains("region") ? all["region"] : fieldsToJson(Region{});
+}
+
+}  // namespace
+
+const std::vector<StackOperator>& stackOperators() {
+    static const std::vector<StackOperator> kKnown = [] {
+        std::vector<StackOperator> known;
+        for (const Operation& operation : operations()) {
+            if (operation.stacks)
+                known.push_back({operation.name, operation.meaning, operation.fields(), true});
+        }
+        known.push_back({kSculpt, "holds brush strokes", {}, false});
+        return known;
+    }();
+    return kKnown;
+}
+
+const StackOperator* findStackOperator(std::string_view name) {
+    const auto found = std::ranges::find(stackOperators(), name, &StackOperator::name);
+    return found == stackOperators().end() ? nullptr : &*found;
+}
+
+Operator newOperator(std::string_view name) {
+    const nlohmann::json json{{"op", name}};
+    JsonReader reader(json, {});
+    return readOperator(reader);
+}
+
+Operator readOperator(JsonReader& reader) {
+    const auto names = stackNames();
+    const std::string_view name = names[reader.choice("op", names)];
+    Operator one = readOperatorHead(reader);
+    if (name != kSculpt) one.settings = operationOf(name).settings(reader);
+    reader.finish();
+    return one;
+}
+
+std::vector<Operator> readOperators(JsonReader& reader) {
+    std::vector<Operator> operators;
+    for (JsonReader& entry : reader.objects("operators")) operators.push_back(readOperator(entry));
+    if (operators.size() > kMaxOperators)
+        reader.complain("operators", fmt::format("has {} entries", operators.size()),
+                        fmt::format("expected at most {}", kMaxOperators));
+    return operators;
+}
+
+Status completeOperators(const std::string& file, Groom& groom) {
+    if (groom.operators.empty()) return {};
+    const nlohmann::json json{{"operators", toJson(groom.operators)}};
+    JsonReader reader(json, file);
+    auto complete = readOperators(reader);
+    if (auto status = reader.status(); !status) return status;
+    groom.operators = std::move(complete);
+    return {};
+}
+
+double settingOf(const Operator& one, const FieldInfo& field, std::uint32_t component, bool region) {
+    const nlohmann::ordered_json value = settingsWithRegion(one, region).at(field.name);
+    if (value.is_array()) return value.at(component).get<double>();
+    return value.is_boolean() ? (value.get<bool>() ? 1 : 0) : value.get<double>();
+}
+
+bool setSettingOf(Operator& one, const FieldInfo& field, double value, std::uint32_t component, bool region) {
+    if (!field.holds(value)) return false;
+    nlohmann::ordered_json all = nlohmann::ordered_json::parse(one.settings);
+    nlohmann::ordered_json part = settingsWithRegion(one, region);
+    nlohmann::ordered_json& member = part.at(field.name);
+    if (field.kind == FieldKind::Bool) {
+        member = value != 0;
+    } else if (field.isWhole()) {
+        member = value < runtime::kMaxSeed ? static_cast<std::uint64_t>(value) : ~std::uint64_t{0};
+    } else {
+        (member.is_array() ? member.at(component) : member) = readableDecimal(static_cast<float>(value));
+    }
+    if (region) {
+        all["region"] = part;
+    } else {
+        all = part;
+    }
+    one.settings = all.dump();
+    return true;
+}
+
+std::size_t StackCache::bytes() const {
+    std::size_t bytes = 0;
+    for (const Level& level : levels_) bytes += level.key.capacity() + sizeOf(level.output) * sizeof(Vec3f);
+    return bytes;
+}
+
+/// One evaluation.
+class StackRun {
+  public:
+    StackRun(const Groom& groom, StackCache& cache) : groom_(groom), cache_(cache), work_(groom) {
+        work_.operators.clear();
+        work_.strandAttributes.erase(attribute::kFrozen);
+        for (Layer& layer : work_.layers) layer.locked = false;
+        const Version ids = groom.strandAttributes.version(attribute::kStrandId);
+        if (cache.scalp_ != groom.scalp || cache.offsets_ != groom.offsets.version() || cache.ids_ != ids)
+            cache.levels_.clear();
+        if (cache.scalp_ != groom.scalp || !cache.skin_) cache.skin_ = sharedSkin(groom.scalp);
+        cache.scalp_ = groom.scalp;
+        cache.offsets_ = groom.offsets.version();
+        cache.ids_ = ids;
+        // Behind a shorter stack nothing is of use.
+        if (cache.levels_.size() > groom.operators.size()) cache.levels_.resize(groom.operators.size());
+    }
+
+    Result<AttributeData> run(std::size_t count) {
+        const auto base = groom_.pointAttributes.all().find(attribute::kBasePosition);
+        if (base == groom_.pointAttributes.all().end())
+            return fail("the operators have no base shape", "validate says what else is missing");
+        AttributeData shape = base->second;
+        for (std::size_t i = 0; i < std::min(count, groom_.operators.size()); ++i) {
+            const Operator& one = groom_.operators[i];
+            if (!one.enabled || !(one.weight > 0)) continue;
+            if (cache_.levels_.size() <= i) cache_.levels_.resize(i + 1);
+            StackCache::Level& level = cache_.levels_[i];
+            const std::string key = keyOf(one);
+            if (level.key != key || level.input != versionOf(shape)) {
+                auto made = apply(one, shape);
+                if (!made) {
+                    Error error = made.error();
+                    error.problem = fmt::format("operator {}: {}", i, error.problem);
+                    return tl::unexpected(std::move(error));
+                }
+                level = {key, versionOf(shape), std::move(*made)};
+            }
+            shape = level.output;
+        }
+        return shape;
+    }
+
+  private:
+    std::string keyOf(const Operator& one) const {
+        const Version strokes =
+            one.op == kSculpt ? groom_.pointAttributes.version(sculptAttribute(one.number)) : 0;
+        return fmt::format("{} {} {} {}", one.op, one.weight, strokes, one.settings);
+    }
+
+    Result<AttributeData> apply(const Operator& one, const AttributeData& input) {
+        HAIRLOOM_PROFILE("operations: operator");
+        if (one.op == kSculpt) return sculpted(groom_, one, input);
+        const auto json = parseJson({}, one.settings);
+        if (!json) return tl::unexpected(json.error());
+        JsonReader reader(*json, {});
+        const RunOperation edit = operationOf(one.op).read(reader);
+        reader.finish();
+        if (auto status = reader.status(); !status) return tl::unexpected(status.error());
+        work_.pointAttributes = {};
+        work_.pointAttributes.set(attribute::kPosition, input);
+        if (const auto touched = edit(work_); !touched) return tl::unexpected(touched.error());
+        const AttributeData output = work_.pointAttributes.all().find(attribute::kPosition)->second;
+        return one.weight < 1 ? blended(groom_, input, output, one.weight) : output;
+    }
+
+    const Groom& groom_;
+    StackCache& cache_;
+    Groom work_;
+};
+
+Result<AttributeData> evaluateStack(const Groom& groom, StackCache& cache, std::size_t count) {
+    HAIRLOOM_PROFILE("operations: stack");
+    return StackRun(groom, cache).run(count);
+}
+
+}  // namespace hairloom

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Runs the operators of a groom (core/groom/operator_stack.h). An operator acts on all strands of its region,
+// frozen and locked ones too: these keep brushes away, and would fall back to the base shape else.
+
+#include <limits>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/operations/operation.h"
+
+namespace hairloom {
+
+/// What a stack may hold, in the order of lists: operations that move points and nothing else, and the
+/// sculpt.
+struct StackOperator {
+    std::string_view name;
+    std::string_view meaning;
+    std::vector<FieldRow> fields;
+    bool hasRegion;
+};
+const std::vector<StackOperator>& stackOperators();
+/// The one of that name, or null.
+const StackOperator* findStackOperator(std::string_view name);
+
+/// With its defaults. `name` is one of stackOperators().
+Operator newOperator(std::string_view name);
+
+/// An operator as scripts have it, with all settings and the region written out. Complaints are the reader's:
+/// an unknown name or member, a value out of range.
+Operator readOperator(JsonReader& reader);
+/// The member "operators", with at most kMaxOperators of them.
+std::vector<Operator> readOperators(JsonReader& reader);
+/// The same for those of a groom that was loaded from `file`: settings that it lacks get their defaults.
+/// Error: the first that does not hold, with its JSON path.
+Status completeOperators(const std::string& file, Groom& groom);
+
+/// A setting of an operator whose settings are complete. `region` names one of scriptRegionFields().
+double settingOf(const Operator& one, const FieldInfo& field, std::uint32_t component, bool region = false);
+/// False, and no change, where the field does not hold the value.
+bool setSettingOf(Operator& one, const FieldInfo& field, double value, std::uint32_t component,
+                  bool region = false);
+
+/// What the operators made last. One thread at a time.
+class StackCache {
+  public:
+    /// Bytes held.
+    std::size_t bytes() const;
+
+  private:
+    friend class StackRun;
+    struct Level {
+        std::string key;
+        Version input = 0;
+        AttributeData output;
+    };
+    std::shared_ptr<const void> scalp_;      ///< that the levels were made with
+    std::shared_ptr<const SkinField> skin_;  ///< kept for the next run
+    Version offsets_ = 0, ids_ = 0;
+    std::vector<Level> levels_;
+};
+
+inline constexpr std::size_t kWholeStack = std::numeric_limits<std::size_t>::max();
+
+/// The positions that the first `count` operators make of the groom's base shape; the base shape itself where
+/// none does anything. Only operators from the first that has changed since the cache was filled run. The
+/// same bits for any number of threads and any cache. Error: an operator that cannot work on this groom.
+Result<AttributeData> evaluateStack(const Groom& groom, StackCache& cache, std::size_t count = kWholeStack);
+
+}  // namespace hairloom

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The Operators panel: what it shows, what each of its buttons does, strokes on top, undo of all of it.
+#include <QListWidget>
+#include <QMenu>
+#include <QPushButton>
+
+#include "core/operations/stack.h"
+#include "editor/fields/number_box.h"
+#include "editor/tools/brush_tool.h"
+#include "tests/editor/window_fixture.h"
+
+namespace hairloom::editor {
+namespace {
+
+class OperatorsTest : public WindowTest {
+  protected:
+    void SetUp() override {
+        WindowTest::SetUp();
+        openSampleHair("short");
+        window->panel("operators")->raise();
+        QCoreApplication::processEvents();
+    }
+    QListWidget& list() { return *find<QListWidget>("operators"); }
+    QStringList rows() {
+        QStringList names;
+        for (int i = 0; i < list().count(); ++i) names += list().item(i)->text();
+        return names;
+    }
+    void choose(int row) {
+        list().setCurrentRow(row);
+        QCoreApplication::processEvents();
+    }
+    void click(const char* button) { find<QPushButton>(button)->click(); }
+    void add(const QString& name) {
+        for (QAction* action : find<QPushButton>("operatorAdd")->menu()->actions()) {
+            if (action->text() == name) return action->trigger();
+        }
+        ADD_FAILURE() << "no operator " << name.toStdString();
+    }
+    NumberBox* number(const char* field) {
+        auto* box = window->panel("operators")->findChild<NumberBox*>(field);
+        EXPECT_TRUE(box) << field;
+        return box;
+    }
+    /// The hair is what its operators make of its base shape.
+    void expectEvaluated() {
+        StackCache cache;
+        const auto shape = evaluateStack(groom(), cache);
+        ASSERT_TRUE(shape) << shape.error().message();
+        EXPECT_TRUE(std::ranges::equal(std::get<CowArray<Vec3f>>(*shape).view(), groom().positions()));
+        expectSound();
+    }
+    void undoAll() {
+        while (document().editing().canUndo()) trigger("edit.undo");
+    }
+};
+
+TEST_F(OperatorsTest, ASampleOpensWithItsStack) {
+    EXPECT_EQ(rows(), (QStringList{"Set length", "Flow", "Clump", "Noise", "Collide"}));
+    expectEvaluated();
+    EXPECT_FALSE(document().isModified());
+}
+
+TEST_F(OperatorsTest, ADragOfASliderIsOneStepThatTheHairFollows) {
+    const auto before = hash();
+    const Vec3f tip = groom().strand(7).back();
+    choose(2);
+    NumberBox* strength = number("strength");
+    EXPECT_NEAR(strength->value(), 0.7, 1e-6);
+    strength->slider().setSliderDown(true);
+    for (const int position : {100, 300, 0}) strength->slider().setValue(position);
+    strength->slider().setSliderDown(false);
+    ASSERT_EQ(number("strength"), strength) << "the slider outlives its drag";
+    EXPECT_EQ(document().stepCount(), 1);
+    EXPECT_NE(groom().strand(7).back(), tip);
+    expectEvaluated();
+    trigger("edit.undo");
+    EXPECT_EQ(hash(), before);
+    EXPECT_NEAR(strength->value(), 0.7, 1e-6) << "shows what undo brought back";
+}
+
+TEST_F(OperatorsTest, ButtonsDoWhatTheySayAndAreUndone) {
+    const auto before = hash();
+    choose(2);
+    add("Curl");
+    EXPECT_EQ(rows(), (QStringList{"Set length", "Flow", "Clump", "Curl", "Noise", "Collide"}));
+    EXPECT_EQ(list().currentRow(), 3) << "what was added is chosen";
+    EXPECT_TRUE(number("frequency"));
+    click("operatorUp");
+    EXPECT_EQ(list().currentRow(), 2) << "the choice goes along";
+    EXPECT_EQ(rows().at(2), "Curl");
+    click("operatorDown");
+    click("operatorCopy");
+    EXPECT_EQ(rows().count("Curl"), 2);
+    expectEvaluated();
+    const auto curled = hash();
+    list().item(3)->setCheckState(Qt::Unchecked);
+    EXPECT_FALSE(groom().operators[3].enabled);
+    EXPECT_NE(hash(), curled);
+    click("operatorRemove");
+    click("operatorRemove");
+    expectEvaluated();
+    click("operatorBake");
+    EXPECT_TRUE(rows().isEmpty());
+    EXPECT_TRUE(groom().operators.empty());
+    undoAll();
+    EXPECT_EQ(hash(), before);
+    EXPECT_EQ(list().count(), 5);
+}
+
+TEST_F(OperatorsTest, ButtonsOfAnEmptyStackDoNoHarm) {
+    click("operatorBake");
+    const auto baked = hash();
+    for (const char* button :
+         {"operatorUp", "operatorDown", "operatorCopy", "operatorRemove", "operatorBake"})
+        click(button);
+    EXPECT_EQ(hash(), baked);
+    EXPECT_EQ(document().stepCount(), 1);
+    add("Noise");
+    EXPECT_EQ(rows(), QStringList{"Noise"});
+    EXPECT_NE(hash(), baked);
+    undoAll();
+    choose(0);
+    click("operatorUp");
+    choose(list().count() - 1);
+    click("operatorDown");
+    EXPECT_FALSE(document().editing().canUndo()) << "nothing to exchange with";
+}
+
+TEST_F(OperatorsTest, BrushStrokesGoToASculptThatFollows) {
+    viewport().look(render::View::Back);
+    viewport().frameAll();
+    trigger("tool.comb");
+    dynamic_cast<BrushTool&>(*parts().tools.find("comb")).setRadius(0.04f);
+    const auto before = hash();
+    const float top = groom().scalp->bounds().max().y();
+    drag({at(Vec3f(0.02f, top - 0.06f, -0.1f)), at(Vec3f(0.02f, top - 0.1f, -0.11f)),
+          at(Vec3f(0.02f, top - 0.14f, -0.11f))});
+    ASSERT_NE(hash(), before);
+    EXPECT_EQ(rows().last(), "Sculpt");
+    expectEvaluated();
+    choose(5);
+    NumberBox* weight = number("weight");
+    weight->spinBox().setValue(0);
+    expectEvaluated();
+    const auto unsculpted = std::vector<Vec3f>(groom().positions().begin(), groom().positions().end());
+    undoAll();
+    EXPECT_EQ(hash(), before);
+    EXPECT_TRUE(std::ranges::equal(groom().positions(), unsculpted)) << "a weight of 0 takes all back";
+    EXPECT_EQ(list().count(), 5);
+}
+
+TEST_F(OperatorsTest, AnotherDocumentShowsItsOwn) {
+    choose(4);
+    openBust();
+    EXPECT_TRUE(rows().isEmpty());
+    EXPECT_FALSE(window->panel("operators")->findChild<NumberBox*>("weight"));
+    openSampleHair("long");
+    EXPECT_EQ(list().count(), 8);
+    EXPECT_EQ(rows().at(4), "Curl");
+}
+
+}  // namespace
+}  // namespace hairloom::editor
