@@ -7,6 +7,8 @@
 #include <cmath>
 #include <optional>
 
+#include "core/groom/file/fields.h"
+
 namespace hairloom {
 namespace {
 
@@ -54,25 +56,39 @@ void compareSet(const AttributeSet& authored, std::size_t elements, const Attrib
     }
 }
 
-void reportSettings(const Groom& groom, ExportReport& report) {
+template <class S>
+bool same(const S& a, const S& b) {
+    for (const auto& field : fieldsOf(a)) {
+        for (std::uint32_t c = 0; c < field.components(); ++c) {
+            if (field.get(a, c) != field.get(b, c)) return false;
+        }
+    }
+    return true;
+}
+
+void reportSettings(const Groom& groom, const ImportedStrands& readBack, ExportReport& report) {
+    const Groom& read = readBack.groom;
+    const bool carried = readBack.hasSettings;
     const auto leave = [&](std::string what, std::string fix) {
         report.leftBehind.push_back({std::move(what), std::move(fix)});
     };
-    if (groom.interpolation.followPerGuide > 0)
+    if (groom.interpolation.followPerGuide > 0 && !(carried && same(groom.interpolation, read.interpolation)))
         leave(fmt::format("{} follow hairs of each strand", groom.interpolation.followPerGuide),
               "export the hairs instead of the guides, or interpolate in the other program");
     if (groom.layers.size() > 1) leave(fmt::format("{} layers", groom.layers.size()), "keep the project");
-    if (!groom.spheres.empty())
+    if (!groom.spheres.empty() && !(carried && read.spheres.size() == groom.spheres.size()))
         leave(fmt::format("{} collision spheres", groom.spheres.size()),
               "place colliders in the other program");
-    leave("material and settings of the simulation", "keep the project; `info` and `set --list` show them");
+    if (!(carried && read.simulation == groom.simulation && same(read.material, groom.material)))
+        leave("material and settings of the simulation",
+              "keep the project; `info` and `set --list` show them");
 }
 
 }  // namespace
 
-void compareAttributes(const Groom& groom, const PreparedStrands& prepared, const Groom& readBack,
+void compareAttributes(const Groom& groom, const PreparedStrands& prepared, const ImportedStrands& readBack,
                        ExportReport& report) {
-    compareSet(groom.strandAttributes, groom.strandCount(), readBack.strandAttributes, prepared.sources,
+    compareSet(groom.strandAttributes, groom.strandCount(), readBack.groom.strandAttributes, prepared.sources,
                "strands", report);
     std::vector<std::uint32_t> points;
     if (!prepared.isResampled) {
@@ -83,8 +99,9 @@ void compareAttributes(const Groom& groom, const PreparedStrands& prepared, cons
     }
     // Of resampled strands, no value of the file is that of a point.
     compareSet(groom.pointAttributes, groom.pointCount(),
-               prepared.isResampled ? AttributeSet() : readBack.pointAttributes, points, "points", report);
-    reportSettings(groom, report);
+               prepared.isResampled ? AttributeSet() : readBack.groom.pointAttributes, points, "points",
+               report);
+    reportSettings(groom, readBack, report);
 }
 
 }  // namespace hairloom

@@ -334,7 +334,7 @@ Result<ExportReport> writeAndCompare(const Groom& groom, PreparedStrands prepare
             strandError(groom.strand(prepared.sources[strand]), readBack->groom.strand(strand));
         report.maxErrorMm = std::max(report.maxErrorMm, error * 1000.0);
     }
-    compareAttributes(groom, prepared, readBack->groom, report);
+    compareAttributes(groom, prepared, *readBack, report);
     report.findings = std::move(prepared.findings);
     judgeRoots(groom, prepared, report.findings);
     report.findings.insert(report.findings.end(), readBack->warnings.begin(), readBack->warnings.end());

@@ -47,13 +47,15 @@ struct StrandWriter {
     std::string carries;  ///< in words: what else than positions
     std::string limits;   ///< in words
     std::vector<ExportTarget> targets;  ///< at least one
-    std::string suffix() const { return name.substr(0, name.find('-')); }
+    std::string suffix() const { return ownSuffix.empty() ? name.substr(0, name.find('-')) : ownSuffix; }
     /// Replaces `path` atomically, reads the file back and compares. Strands that no consumer could use
     /// (fewer than two points, not finite, of no length) are left out and reported. Errors: nothing left to
     /// write, a limit of the format that options cannot mend, a file that cannot be written or does not read
     /// back.
     Result<ExportReport> (*write)(const Groom& groom, const std::filesystem::path& path,
                                   const StrandExportOptions& options);
+    std::string ownSuffix{};            ///< of its files, where that is not the name
+    bool generatesFollowHairs = false;  ///< the file tells how follow hairs come from guides
 };
 const std::vector<StrandWriter>& strandWriters();
 /// Programs of all writers as `--target` has them, each once, in order of name.

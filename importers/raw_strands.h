@@ -2,6 +2,7 @@
 #pragma once
 // What the readers of strand formats hand to importStrands: the file's own numbers, in its units and axes.
 
+#include <memory>
 #include <optional>
 
 #include "importers/strands.h"
@@ -40,7 +41,9 @@ struct RawStrands {
     float framesPerSecond = 0;                 ///< of them
     std::optional<float> statedMetresPerUnit;  ///< where the file says it; goes before the option
     std::optional<UpAxis> statedUp;            ///< as well
-    std::vector<DroppedStrand> dropped;        ///< what the reader itself had to leave out
+    /// Settings, material, interpolation and spheres, of a file that has them; no strands.
+    std::shared_ptr<const Groom> authored;
+    std::vector<DroppedStrand> dropped;  ///< what the reader itself had to leave out
     std::vector<Finding> warnings;
 };
 

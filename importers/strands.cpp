@@ -277,6 +277,14 @@ StrandImportOptions stated(RawStrands& raw, StrandImportOptions options) {
     return options;
 }
 
+void takeSettings(const Groom& authored, ImportedStrands& result) {
+    result.hasSettings = true;
+    result.groom.simulation = authored.simulation;
+    result.groom.material = authored.material;
+    result.groom.interpolation = authored.interpolation;
+    result.groom.spheres = authored.spheres;
+}
+
 /// Attribute values that no consumer could use become the nearest that they can.
 template <class T, class Usable>
 void repairValues(std::vector<T>& values, std::string_view name, std::vector<Finding>& warnings,
@@ -356,6 +364,7 @@ Result<ImportedStrands> importStrandsFromMemory(const std::string& file, std::sp
     result.dropped = std::move(raw->dropped);
     result.warnings = std::move(raw->warnings);
     result.groom = makeFrom(*raw, options.metresPerUnit);
+    if (raw->authored) takeSettings(*raw->authored, result);
     result.frames = std::move(raw->frames);
     result.framesPerSecond = raw->framesPerSecond;
     return result;

@@ -70,7 +70,9 @@ struct ImportedStrands {
     /// Positions of all points at each time of a file whose strands move, where the options ask for them.
     std::vector<std::vector<Vec3f>> frames;
     float framesPerSecond = 0;  ///< of frames
-    /// What was mended, ignored or looks wrong; Error where the file contradicts itself though it can be read.
+    bool hasSettings = false;   ///< settings, material, interpolation and spheres are the file's
+    /// What was mended, ignored or looks wrong; Error where the file contradicts itself though it can be
+    /// read.
     std::vector<Finding> warnings;
 };
 

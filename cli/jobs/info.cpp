@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
 #include <memory>
 
 #include "cli/documents.h"
 #include "cli/job.h"
+#include "core/base/file.h"
 #include "core/geometry/selection.h"
 #include "core/groom/file/project_file.h"
+#include "hairloom/asset.h"
 
 namespace hairloom::cli {
 namespace {
@@ -26,6 +30,25 @@ Report scalpReport(const Groom& groom) {
                   {"character", groom.characterFile}};
 }
 
+/// What an asset for games has that a groom has not; null for other files.
+Result<Report> assetReport(const std::string& path) {
+    const auto bytes = readFile(path);
+    if (!bytes) return tl::unexpected(bytes.error());
+    const auto opened = runtime::Asset::open(*bytes);
+    if (!opened.asset) return Report(nullptr);
+    const runtime::Asset& asset = *opened.asset;
+    Report sections = Report::array();
+    for (const runtime::AssetSection& section : asset.sections())
+        sections.push_back(
+            {{"kind", std::string(section.kind)}, {"records", section.count}, {"bytes", section.bytes}});
+    return Report{{"version", fmt::format("{}.{}", asset.major(), asset.minor())},
+                  {"bytes", asset.bytes()},
+                  {"follow_hairs", asset.hairCount()},
+                  {"bones", asset.bones.size()},
+                  {"greatest_error_mm", asset.greatestError() * 1e3},
+                  {"sections", std::move(sections)}};
+}
+
 Result<Report> info(const std::string& path, const std::string& unit) {
     const auto opened = openAny(path, unit);
     if (!opened) return tl::unexpected(opened.error());
@@ -43,6 +66,11 @@ Result<Report> info(const std::string& path, const std::string& unit) {
     report["version"] = opened->format == "hairloom" ? Report(kProjectVersion) : Report(nullptr);
     report["strand_attributes"] = attributeNames(groom.strandAttributes);
     report["point_attributes"] = attributeNames(groom.pointAttributes);
+    if (opened->format == "Hairloom runtime asset") {
+        const auto asset = assetReport(path);
+        if (!asset) return tl::unexpected(asset.error());
+        report["asset"] = *asset;
+    }
     if (groom.scalp) report["scalp"] = scalpReport(groom);
     return report;
 }

@@ -19,6 +19,7 @@ constexpr std::array kSignatures{
     Signature{"HAIRLOOM"sv, content::kProject},
     Signature{"HLFRAMES"sv, content::kFrames},
     Signature{"HAIR"sv, "a .hair file"},
+    Signature{"\x89HRT\r\n\x1a\n"sv, "a runtime asset"},
     Signature{"\0\0\x80\x40"sv, "a TressFX 4 file"},
     Signature{"\0\0\x40\x40"sv, "a TressFX 3 file"},
     Signature{"Ogawa\xff"sv, "an Alembic file"},

@@ -3,13 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "core/base/parallel.h"
-#include "core/base/random.h"
 #include "core/geometry/closest_point.h"
 #include "core/geometry/curve.h"
 #include "core/interpolation/follow_hairs.h"
+#include "hairloom/follow_recipe.h"
 
 namespace hairloom {
 namespace {
@@ -78,66 +77,8 @@ std::vector<Triangle> guideTriangles(const Groom& groom, const std::vector<std::
     return triangulation ? std::move(triangulation->triangles) : std::vector<Triangle>();
 }
 
-/// The triangles around each guide, with the running sum of their areas for drawing by area.
-struct Fans {
-    std::vector<std::uint32_t> offsets;  ///< per guide, into the others
-    std::vector<std::uint32_t> triangles;
-    std::vector<float> areas;  ///< running sum within the fan
-
-    Fans(std::size_t guides, const std::vector<Triangle>& all, std::span<const Vec3f> roots)
-        : offsets(guides + 1, 0) {
-        for (const Triangle& triangle : all) {
-            for (const std::uint32_t corner : triangle) ++offsets[corner + 1];
-        }
-        std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());
-        triangles.resize(offsets.back());
-        areas.resize(offsets.back());
-        std::vector<std::uint32_t> next(offsets.begin(), offsets.end() - 1);
-        for (std::uint32_t index = 0; index < all.size(); ++index) {
-            const auto& [a, b, c] = all[index];
-            const float area = (roots[b] - roots[a]).cross(roots[c] - roots[a]).norm();
-            for (const std::uint32_t corner : all[index]) {
-                const std::uint32_t place = next[corner]++;
-                triangles[place] = index;
-                areas[place] = (place > offsets[corner] ? areas[place - 1] : 0.0f) + area;
-            }
-        }
-    }
-
-    std::uint32_t draw(std::uint32_t guide, float uniform) const {
-        const auto begin = areas.begin() + offsets[guide];
-        const auto end = areas.begin() + offsets[guide + 1];
-        if (begin == end) return kNone;
-        const auto found = std::upper_bound(begin, end, uniform * *(end - 1));
-        return triangles[static_cast<std::size_t>(std::min(found, end - 1) - areas.begin())];
-    }
-};
-
-/// Uniform over the part of the triangle where the first corner has the largest weight: the three parts are
-/// equally large, and exchanging weights maps one onto another.
-Vec3f drawOwnThird(Random& random) {
-    float u = random.uniform();
-    float v = random.uniform();
-    if (u + v > 1) {
-        u = 1 - u;
-        v = 1 - v;
-    }
-    Vec3f weights(1 - u - v, u, v);
-    int largest = 0;
-    weights.maxCoeff(&largest);
-    std::swap(weights[0], weights[largest]);
-    return weights;
-}
-
-Vec2f drawInDisc(Random& random) {
-    const float radius = std::sqrt(random.uniform());
-    const float angle = random.uniform(0.0f, 2.0f * kPi);
-    return {radius * std::cos(angle), radius * std::sin(angle)};
-}
-
-float fade(float value, float begin, float end) {
-    const float t = std::clamp((value - begin) / (end - begin), 0.0f, 1.0f);
-    return t * t * (3.0f - 2.0f * t);
+runtime::Float3 toFloat3(const Vec3f& v) {
+    return {v.x(), v.y(), v.z()};
 }
 
 class Binder {
@@ -157,7 +98,7 @@ class Binder {
         }
         setFrames();
         setRadii();
-        triangles_ = guideTriangles(groom_, bindings_.guideStrands);
+        bindings_.triangles = guideTriangles(groom_, bindings_.guideStrands);
         setHairs();
         projectRoots();
     }
@@ -196,68 +137,43 @@ class Binder {
         }
     }
 
+    /// The engine draws them, here as in a game.
     void setHairs() {
-        const std::size_t hairs = bindings_.guideCount() * bindings_.followPerGuide;
-        bindings_.guides.resize(hairs);
-        bindings_.weights.resize(hairs);
-        bindings_.rootWeights.resize(hairs);
-        bindings_.wispOffsets.resize(hairs);
-        bindings_.blends.resize(hairs);
-        bindings_.rootShifts.assign(hairs, Vec3f::Zero());
-        if (hairs == 0) return;
-        const Fans fans(bindings_.guideCount(), triangles_, roots_);
-        const auto ids = groom_.strandAttributes.view<std::uint32_t>(attribute::kStrandId);
-        parallelFor(bindings_.guideCount(), 16, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t guide = begin; guide < end; ++guide) {
-                const std::uint32_t strand = bindings_.guideStrands[guide];
-                const std::uint64_t id = ids.size() == groom_.strandCount() ? ids[strand] : strand;
-                for (std::uint32_t number = 0; number < bindings_.followPerGuide; ++number) {
-                    Random random(settings_.seed, (id << 16u) | number);
-                    setHair(static_cast<std::uint32_t>(guide), number, fans, random);
-                }
-            }
-        });
-    }
-
-    void setHair(std::uint32_t guide, std::uint32_t number, const Fans& fans, Random& random) {
-        const std::size_t hair = std::size_t{guide} * bindings_.followPerGuide + number;
-        bindings_.wispOffsets[hair] = drawInDisc(random);
-        const std::uint32_t chosen = fans.draw(guide, random.uniform());
-        const Vec3f barycentric = drawOwnThird(random);
-        bindings_.guides[hair] = {guide, guide, guide};
-        bindings_.rootWeights[hair] = Vec3f::UnitX();
-        bindings_.weights[hair] = Vec3f::UnitX();
-        bindings_.blends[hair] = 0;
-        if (chosen == kNone) return;
-        Triangle corners = triangles_[chosen];
-        std::rotate(corners.begin(), std::find(corners.begin(), corners.end(), guide), corners.end());
-        bindings_.guides[hair] = {corners[0], corners[1], corners[2]};
-        bindings_.rootWeights[hair] = barycentric;
-        bindings_.weights[hair] = keepPartings(corners, barycentric);
-        bindings_.blends[hair] = settings_.blend;
-    }
-
-    /// Gives the share of guides that diverge from the first to the first.
-    Vec3f keepPartings(const Triangle& corners, Vec3f weights) const {
-        for (int other = 1; other < 3; ++other) {
-            const float given =
-                weights[other] * divergence(corners[0], corners[static_cast<std::size_t>(other)]);
-            weights[other] -= given;
-            weights[0] += given;
+        const auto stored = groom_.strandAttributes.view<std::uint32_t>(attribute::kStrandId);
+        bindings_.ids = bindings_.guideStrands;
+        if (stored.size() == groom_.strandCount()) {
+            for (std::uint32_t& id : bindings_.ids) id = stored[id];
         }
-        return weights;
-    }
-
-    /// 0 for guides that lie together, 1 for guides on two sides of a parting.
-    float divergence(std::uint32_t a, std::uint32_t b) const {
-        const Vec3f chordA = points(a).back() - roots_[a];
-        const Vec3f chordB = points(b).back() - roots_[b];
-        const float angle = std::atan2(chordA.cross(chordB).norm(), chordA.dot(chordB));
-        const float apart = (points(a).back() - points(b).back()).norm() - (roots_[a] - roots_[b]).norm();
-        const float length = 0.5f * (lengths_[a] + lengths_[b]);
-        const float spread = length > 0 ? apart / length : 0.0f;
-        return std::max(fade(degrees(angle), parting_.beginAngleDegrees, parting_.endAngleDegrees),
-                        fade(spread, parting_.beginSpread, parting_.endSpread));
+        for (const auto& [a, b, c] : bindings_.triangles)
+            bindings_.areas.push_back((roots_[b] - roots_[a]).cross(roots_[c] - roots_[a]).norm());
+        std::vector<runtime::Float3> roots, tips;
+        for (std::uint32_t guide = 0; guide < bindings_.guideCount(); ++guide) {
+            roots.push_back(toFloat3(roots_[guide]));
+            tips.push_back(toFloat3(points(guide).back()));
+        }
+        runtime::Host host;
+        host.parallelFor = parallelFor;
+        const runtime::DrawnHairs drawn = runtime::drawFollowHairs(
+            {settings_.seed,
+             bindings_.followPerGuide,
+             settings_.blend,
+             {parting_.beginAngleDegrees, parting_.endAngleDegrees, parting_.beginSpread, parting_.endSpread},
+             bindings_.ids,
+             roots,
+             tips,
+             lengths_,
+             bindings_.triangles,
+             bindings_.areas},
+            host);
+        bindings_.guides = drawn.guides;
+        bindings_.blends = drawn.blends;
+        for (std::size_t hair = 0; hair < drawn.guides.size(); ++hair) {
+            const runtime::Float3 &shares = drawn.weights[hair], &root = drawn.rootWeights[hair];
+            bindings_.weights.emplace_back(shares.x, shares.y, shares.z);
+            bindings_.rootWeights.emplace_back(root.x, root.y, root.z);
+            bindings_.wispOffsets.emplace_back(drawn.wispOffsets[hair][0], drawn.wispOffsets[hair][1]);
+        }
+        bindings_.rootShifts.assign(drawn.guides.size(), Vec3f::Zero());
     }
 
     void projectRoots() {
@@ -293,7 +209,6 @@ class Binder {
     std::vector<Vec3f> positions_;
     std::vector<Vec3f> roots_;
     std::vector<float> lengths_;
-    std::vector<Triangle> triangles_;
 };
 
 }  // namespace

@@ -30,6 +30,9 @@ struct FollowBindings {
     std::uint32_t pointsPerHair = 0;          ///< of every guide and every follow hair
     std::uint32_t followPerGuide = 0;         ///< hairs of each guide
     std::vector<std::uint32_t> guideStrands;  ///< strand of the groom of each guide
+    std::vector<std::uint32_t> ids;           ///< of each guide: what its hairs are drawn by
+    std::vector<Triangle> triangles;          ///< of guides: where hairs are drawn from
+    std::vector<float> areas;                 ///< of each triangle, twice its m²
     std::vector<Mat3f>
         rootFrames;  ///< per guide at rest: columns span the scalp's tangent plane; the third is its normal
     std::vector<float> radii;  ///< per point of a hair: r_0, metres, radius of a wisp at rest

@@ -12,7 +12,7 @@ Result<ExportReport> exportHair(const Groom& groom, ExportedHair what, const Str
     const std::uint32_t perGuide = groom.interpolation.followPerGuide;
     if (what == ExportedHair::guides || perGuide == 0) {
         auto report = writer.write(groom, path, options);
-        if (report && perGuide > 0) {
+        if (report && perGuide > 0 && !writer.generatesFollowHairs) {
             report->findings.push_back({Severity::Warning,
                                         fmt::format("{} follow hairs for each guide are left out", perGuide),
                                         "interpolation", "export hairs to write what pictures show"});

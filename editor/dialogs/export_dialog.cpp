@@ -154,11 +154,11 @@ void ExportDialog::exportTo(const QString& path) {
 
 void ExportDialog::showReport() {
     summary_->setText(
-        tr("%1: %L2 strands, %L3 points, %4 MB. Farthest point of the file from the hair: %5 mm.")
+        tr("%1: %L2 strands, %L3 points, %4. Farthest point of the file from the hair: %5 mm.")
             .arg(QString::fromStdString(report_.format))
             .arg(report_.strands)
             .arg(report_.points)
-            .arg(static_cast<double>(report_.bytes) / 1e6, 0, 'f', 1)
+            .arg(locale().formattedDataSize(static_cast<qint64>(report_.bytes), 1, QLocale::DataSizeSIFormat))
             .arg(report_.maxErrorMm, 0, 'g', 3));
     findings_->clear();
     const auto add = [&](const std::string& what, const QString& where, const std::string& fix) {

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The runtime asset .hairrt (docs/formats/runtime.md): what hairloom's library for games plays.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/parallel.h"
+#include "core/groom/file/fields.h"
+#include "core/interpolation/follow_hairs.h"
+#include "exporters/asset_scalp.h"
+#include "exporters/prepared_strands.h"
+#include "hairloom/asset.h"
+#include "hairloom/follow_recipe.h"
+
+namespace hairloom {
+namespace {
+
+/// Half the diameters where they are not what the material says; else empty.
+std::vector<std::uint16_t> ownRadii(const Groom& groom, const PreparedStrands& strands) {
+    std::vector<std::uint16_t> radii;
+    bool own = false;
+    for (std::size_t s = 0; s < strands.strandCount(); ++s) {
+        const std::uint32_t first = strands.offsets[s], last = strands.offsets[s + 1] - 1;
+        for (std::uint32_t p = first; p <= last; ++p) {
+            const float radius = 0.5f * strands.thickness[p] / asset::kRadiusStep;
+            const float t = static_cast<float>(p - first) / static_cast<float>(last - first);
+            const float usual = groom.material.rootRadius * (1.0f + t * (groom.material.tipScale - 1.0f)) /
+                                asset::kRadiusStep;
+            own = own || std::abs(radius - usual) > 1.0f;
+            radii.push_back(static_cast<std::uint16_t>(std::lround(std::clamp(radius, 0.0f, 65535.0f))));
+        }
+    }
+    return own ? radii : std::vector<std::uint16_t>();
+}
+
+/// How follow hairs come from the strands that are written.
+struct FollowSections {
+    std::optional<FollowBindings> bindings;
+    std::vector<asset::Guide> guides;
+    std::vector<asset::GuideTriangle> triangles;
+    std::vector<std::int8_t> shifts;
+    std::vector<asset::FarRootShift> farShifts;
+    asset::Recipe recipe{};
+};
+
+/// Farther from where the runtime's direction leads, a root has its own shift: at the border of the scalp,
+/// say.
+constexpr float kFarRoot = 0.00025f;
+
+/// Of each hair's root along the one direction that the runtime knows; the step between two of them.
+float addShifts(const FollowBindings& bindings, FollowSections& sections) {
+    std::vector<runtime::RootPlane> planes;
+    for (const Mat3f& frame : bindings.rootFrames) {
+        const auto column = [&](int c) { return runtime::Float3{frame(0, c), frame(1, c), frame(2, c)}; };
+        planes.push_back({column(0), column(1), column(2)});
+    }
+    std::vector<float> along;
+    float largest = 0;
+    for (std::size_t hair = 0; hair < bindings.hairCount(); ++hair) {
+        const Vec3f &root = bindings.rootWeights[hair], &given = bindings.rootShifts[hair];
+        const runtime::Float3 shift{given.x(), given.y(), given.z()};
+        const runtime::Float3 direction =
+            runtime::shiftDirection(planes, bindings.guides[hair], {root.x(), root.y(), root.z()});
+        along.push_back(runtime::dot(direction, shift));
+        if (runtime::length(shift - direction * along.back()) > kFarRoot) {
+            const auto steps = [](float metres) {
+                return static_cast<std::int16_t>(
+                    std::lround(std::clamp(metres / asset::kFarShiftStep, -32767.0f, 32767.0f)));
+            };
+            sections.farShifts.push_back(
+                {static_cast<std::uint32_t>(hair), {steps(shift.x), steps(shift.y), steps(shift.z)}, 0});
+            along.back() = 0;
+        }
+        largest = std::max(largest, std::abs(along.back()));
+    }
+    const float step = largest / 127.0f;
+    if (!(step > 0)) return 0;
+    for (const float distance : along)
+        sections.shifts.push_back(static_cast<std::int8_t>(std::lround(distance / step)));
+    return step;
+}
+
+Result<FollowSections> followSections(const Groom& groom, const PreparedStrands& strands) {
+    FollowSections sections;
+    const InterpolationSettings& settings = groom.interpolation;
+    if (settings.followPerGuide == 0) return sections;
+    auto bound = bindFollowHairs(groom, settings);
+    if (!bound) return tl::unexpected(bound.error());
+    std::vector<std::uint32_t> written(groom.strandCount(), 0xffffffffu);
+    for (std::uint32_t s = 0; s < strands.strandCount(); ++s) written[strands.sources[s]] = s;
+    const FollowBindings& bindings = *bound;
+    for (std::size_t g = 0; g < bindings.guideCount(); ++g) {
+        const std::uint32_t strand = written[bindings.guideStrands[g]];
+        if (strand == 0xffffffffu)
+            return fail(fmt::format("guide strand {} has no length", bindings.guideStrands[g]),
+                        "expected guides that can be simulated: remove it, or draw it anew");
+        const Mat3f& frame = bindings.rootFrames[g];
+        sections.guides.push_back({strand,
+                                   bindings.ids[g],
+                                   {frame(0, 2), frame(1, 2), frame(2, 2)},
+                                   {frame(0, 0), frame(1, 0), frame(2, 0)}});
+    }
+    for (std::size_t t = 0; t < bindings.triangles.size(); ++t)
+        sections.triangles.push_back({bindings.triangles[t], bindings.areas[t]});
+    const PartingSettings parting;
+    std::uint32_t points = 0;
+    for (const asset::Guide& guide : sections.guides)
+        points = std::max(points, strands.offsets[guide.strand + 1] - strands.offsets[guide.strand]);
+    const float step = addShifts(bindings, sections);
+    sections.recipe = {settings.seed,
+                       settings.followPerGuide,
+                       points,
+                       settings.wispRadiusRoot,
+                       settings.wispRadiusTip,
+                       settings.blend,
+                       step,
+                       parting.beginAngleDegrees,
+                       parting.endAngleDegrees,
+                       parting.beginSpread,
+                       parting.endSpread};
+    sections.bindings = std::move(*bound);
+    return sections;
+}
+
+/// Metres between the follow hairs that pictures show and those of the asset, at rest.
+Result<double> followError(const Groom& groom, const FollowBindings& bindings, const runtime::Asset& asset) {
+    const auto shown = bakeFollowHairs(groom, bindings);
+    if (!shown) return tl::unexpected(shown.error());
+    const auto strands = asset.strandsAtRest();
+    runtime::Host host;
+    host.parallelFor = parallelFor;
+    auto played = asset.followHairs(strands, host);
+    if (!played.hairs) return fail(played.error);
+    std::vector<Vec3f> positions(std::size_t{played.hairs->hairCount()} * played.hairs->pointsPerHair());
+    if (positions.size() != shown->pointCount()) return 0.0;
+    runtime::GuideMotion motion;
+    motion.positions_ws = strands.positions_ss;
+    played.hairs->evaluate(motion, {reinterpret_cast<runtime::Float3*>(positions.data()), positions.size()},
+                           host);
+    double largest = 0;
+    for (std::size_t i = 0; i < positions.size(); ++i)
+        largest = std::max(largest, double{(positions[i] - shown->positions()[i]).norm()});
+    return largest;
+}
+
+Status checkOptions(const StrandExportOptions& options) {
+    if (options.metresPerUnit != 1.0f || options.up != UpAxis::Y)
+        return fail("a runtime asset in another unit or axis",
+                    "it has metres, Y up: leave --unit and --up out");
+    return {};
+}
+
+Status checkPoints(const PreparedStrands& strands) {
+    for (std::size_t s = 0; s < strands.strandCount(); ++s) {
+        const std::uint32_t points = strands.offsets[s + 1] - strands.offsets[s];
+        if (points > runtime::kMaxPoints)
+            return fail(fmt::format("strand {} has {} points", strands.sources[s], points),
+                        fmt::format("expected {} or fewer: export with --points", runtime::kMaxPoints));
+    }
+    return {};
+}
+
+Finding gridFinding(const runtime::Asset& asset) {
+    return {Severity::Info,
+            fmt::format("points lie on grids, at most {:.2g} mm from where they were",
+                        asset.greatestError() * 1e3),
+            "points", ""};
+}
+
+/// What follows from bytes that are already the file's: the content as the runtime takes it.
+Status addFindings(const Groom& groom, const FollowSections& follow, const runtime::Asset& asset,
+                   ExportReport& report) {
+    report.findings.push_back(gridFinding(asset));
+    if (!follow.bindings) return {};
+    const auto error = followError(groom, *follow.bindings, asset);
+    if (!error) return tl::unexpected(error.error());
+    report.attributes.push_back({"follow hairs at rest", *error});
+    report.findings.push_back(
+        {Severity::Info,
+         fmt::format("{} follow hairs are drawn when the asset is loaded, at most {:.2g} mm "
+                     "from those of pictures",
+                     asset.hairCount(), *error * 1e3),
+         "follow hairs", ""});
+    return {};
+}
+
+Result<std::vector<std::byte>> buildAsset(const Groom& groom, PreparedStrands& strands,
+                                          const FollowSections& follow) {
+    const auto encoded = encodeStrands(strands.offsets, strands.positions);
+    if (!encoded) return tl::unexpected(encoded.error());
+    AssetBuilder builder;
+    builder.add<asset::Strand>(asset::kStrands, encoded->strands);
+    builder.add<std::byte>(asset::kResiduals, encoded->residuals);
+    const AssetScalp scalp = collectScalp(groom, strands.sources, builder);
+    builder.add<asset::Root>(asset::kRoots, scalp.roots);
+    builder.add<asset::ScalpVertex>(asset::kScalpVertices, scalp.vertices);
+    builder.add<asset::ScalpTriangle>(asset::kScalpTriangles, scalp.triangles);
+    builder.add<asset::Bone>(asset::kBones, scalp.bones);
+    builder.add<asset::Sphere>(asset::kSpheres, scalp.spheres);
+    strands.findings.insert(strands.findings.end(), scalp.findings.begin(), scalp.findings.end());
+    if (follow.bindings) {
+        builder.add<asset::Recipe>(asset::kRecipe, std::span(&follow.recipe, 1));
+        builder.add<asset::Guide>(asset::kGuides, follow.guides);
+        builder.add<asset::GuideTriangle>(asset::kGuideTriangles, follow.triangles);
+        builder.add<std::int8_t>(asset::kRootShifts, follow.shifts);
+        builder.add<asset::FarRootShift>(asset::kFarRootShifts, follow.farShifts);
+    }
+    builder.add<std::uint16_t>(asset::kRadii, ownRadii(groom, strands));
+    builder.addSettings("simulation", groom.simulation);
+    builder.addSettings("material", groom.material);
+    builder.addSettings("interpolation", groom.interpolation);
+    Box3f bounds;
+    for (const Vec3f& position : strands.positions) bounds.extend(position);
+    return builder.finish(bounds, static_cast<std::uint32_t>(strands.positions.size()));
+}
+
+Result<ExportReport> writeRuntime(const Groom& groom, const std::filesystem::path& path,
+                                  const StrandExportOptions& options) {
+    const auto here = [&](const Error& error) { return tl::unexpected(inFile(error, path.string())); };
+    if (auto status = checkOptions(options); !status) return here(status.error());
+    auto strands = prepareStrands(groom, options, options.pointsPerStrand);
+    if (!strands) return here(strands.error());
+    if (auto status = checkPoints(*strands); !status) return here(status.error());
+    const auto follow = followSections(groom, *strands);
+    if (!follow) return here(follow.error());
+    const auto bytes = buildAsset(groom, *strands, *follow);
+    if (!bytes) return here(bytes.error());
+    auto report = writeAndCompare(groom, std::move(*strands), options, path, *bytes);
+    if (!report) return report;
+    const auto opened = runtime::Asset::open(*bytes);
+    if (!opened.asset) return failIn(path.string(), Byte{opened.error.byte}, opened.error.words);
+    if (auto status = addFindings(groom, *follow, *opened.asset, *report); !status)
+        return here(status.error());
+    return report;
+}
+
+}  // namespace
+
+StrandWriter runtimeWriter() {
+    return {
+        "runtime",
+        "Hairloom runtime asset .hairrt",
+        "root bindings, the head's bones, spheres, settings, material and how follow hairs come from guides",
+        "512 points a strand",
+        {{"game",
+          "Game by Hairloom's runtime",
+          ".hairrt, metres, Y up; played by the library in runtime/",
+          {}}},
+        writeRuntime,
+        "hairrt",
+        true};
+}
+
+}  // namespace hairloom

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runtime assets, read as games read them: by runtime/.
+
+#include <algorithm>
+#include <cstring>
+
+#include "core/base/file.h"
+#include "core/groom/file/fields.h"
+#include "hairloom/asset.h"
+#include "importers/raw_strands.h"
+
+namespace hairloom {
+namespace {
+
+namespace asset = runtime::asset;
+
+bool isAsset(std::span<const std::byte> bytes) {
+    return bytes.size() >= asset::kMagic.size() &&
+           std::memcmp(bytes.data(), asset::kMagic.data(), asset::kMagic.size()) == 0;
+}
+
+template <class S>
+void readSettings(const runtime::Asset& from, std::string_view group, S& settings) {
+    for (const Field<S>& field : fieldsOf(settings)) {
+        const asset::Setting* const setting = from.findSetting(std::string(group) + "." + field.name);
+        if (!setting) continue;
+        const auto values = from.valuesOf(*setting);
+        if (setting->kind == asset::ValueKind::numbers && values.size() == field.components()) {
+            for (std::uint32_t c = 0; c < values.size(); ++c) setFieldValue(settings, field, values[c], c);
+        } else if (setting->kind == asset::ValueKind::choice) {
+            const auto found = std::ranges::find(field.choices, from.choiceOf(*setting));
+            if (found != field.choices.end())
+                setFieldValue(settings, field, static_cast<double>(found - field.choices.begin()));
+        } else if (setting->kind == asset::ValueKind::seed && field.kind == FieldKind::Seed) {
+            runtime::member<std::uint64_t>(settings, field) =
+                static_cast<std::uint64_t>(values[0]) | static_cast<std::uint64_t>(values[1]) << 32u;
+        }
+    }
+}
+
+std::shared_ptr<const Groom> readAuthored(const runtime::Asset& from) {
+    auto authored = std::make_shared<Groom>();
+    authored->simulation = from.simulation();
+    readSettings(from, "material", authored->material);
+    readSettings(from, "interpolation", authored->interpolation);
+    for (const asset::Sphere& sphere : from.spheres) {
+        CollisionSphere read;
+        read.name = from.text(sphere.name);
+        read.centre = Vec3f(sphere.centre[0], sphere.centre[1], sphere.centre[2]);
+        read.radius = sphere.radius;
+        if (sphere.bone >= 0) read.bone = from.text(from.bones[static_cast<std::size_t>(sphere.bone)].name);
+        authored->spheres.push_back(std::move(read));
+    }
+    return authored;
+}
+
+/// Marks where some strands are guides and others not.
+void readGuides(const runtime::Asset& from, RawStrands& raw) {
+    if (from.guides.empty() || from.guides.size() == from.strands.size()) return;
+    RawAttribute guides;
+    guides.name = attribute::kGuide;
+    guides.type = RawAttribute::Type::Flag;
+    guides.whole.assign(from.strands.size(), 0);
+    for (const asset::Guide& guide : from.guides) guides.whole[guide.strand] = 1;
+    raw.attributes.push_back(std::move(guides));
+}
+
+Result<RawStrands> readRuntime(const std::string& file, std::span<const std::byte> given,
+                               const StrandImportOptions&) {
+    // Memory of whole files is aligned so; a piece of another buffer need not be.
+    struct alignas(asset::kAlignment) Piece {
+        std::byte bytes[asset::kAlignment];
+    };
+    std::vector<Piece> aligned;
+    std::span<const std::byte> bytes = given;
+    if (reinterpret_cast<std::uintptr_t>(given.data()) % asset::kAlignment != 0) {
+        aligned.resize(given.size() / sizeof(Piece) + 1);
+        std::memcpy(aligned.data(), given.data(), given.size());
+        bytes = std::as_bytes(std::span(aligned)).first(given.size());
+    }
+    const auto opened = runtime::Asset::open(bytes);
+    const auto refuse = [&](const runtime::AssetError& error) {
+        return failIn(file, Byte{error.byte}, error.words);
+    };
+    if (!opened.asset) return refuse(opened.error);
+    if (const auto problem = opened.asset->check()) return refuse(*problem);
+    const runtime::Asset& from = *opened.asset;
+    auto strands = from.strandsAtRest();
+    RawStrands raw;
+    raw.format = "Hairloom runtime asset";
+    raw.offsets = std::move(strands.offsets);
+    for (const runtime::Float3& p : strands.positions_ss) raw.positions.emplace_back(p.x, p.y, p.z);
+    for (const std::uint16_t radius : from.radii)
+        raw.thickness.push_back(2 * asset::kRadiusStep * static_cast<float>(radius));
+    raw.statedMetresPerUnit = 1.0f;
+    raw.statedUp = UpAxis::Y;
+    raw.authored = readAuthored(from);
+    readGuides(from, raw);
+    return raw;
+}
+
+}  // namespace
+
+StrandReader runtimeReader() {
+    return {{"Hairloom runtime asset", {"hairrt"}}, Recognition::Signature, isAsset, readRuntime};
+}
+
+}  // namespace hairloom

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Reads runtime assets (.hairrt) where they lie in memory: a mapped file, say. hairloom/asset_format.h has
+// the layout. Any damage is refused or harmless: no call reads outside of the bytes, whatever they hold.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hairloom/asset_format.h"
+#include "hairloom/follow.h"
+#include "hairloom/settings.h"
+#include "hairloom/strands.h"
+
+namespace hairloom::runtime {
+
+struct AssetError {
+    enum class Kind { damaged, newer, misaligned };
+    Kind kind = Kind::damaged;
+    std::uint64_t byte = 0;  ///< of the file, near which it is wrong
+    std::string words;       ///< "section STRD ends at byte 900; the file has 800"
+};
+
+/// A section as the table has it.
+struct AssetSection {
+    std::string_view kind;
+    std::uint64_t offset, bytes;
+    std::uint32_t count;
+};
+
+/// A view: the bytes must outlive it. Copies are cheap, and const calls are safe on any number of threads.
+class Asset {
+  public:
+    struct Result;
+    /// Looks at header and table alone. `bytes` is the whole file, at a multiple of asset::kAlignment.
+    static Result open(std::span<const std::byte> bytes);
+    /// Compares all checksums, then as checkContent(). Nothing where all is well.
+    std::optional<AssetError> check() const;
+    /// Whether counts and indices fit each other, so that the calls below may be made. Time: one look at each
+    /// record.
+    std::optional<AssetError> checkContent() const;
+
+    std::uint16_t major() const { return header().major; }
+    std::uint16_t minor() const { return header().minor; }
+    std::uint64_t bytes() const { return bytes_.size(); }
+    /// Also those whose kinds are not known here.
+    std::vector<AssetSection> sections() const;
+    Float3 boundsMin_ss() const;
+    Float3 boundsMax_ss() const;
+    std::uint32_t strandCount() const { return static_cast<std::uint32_t>(strands.size()); }
+    std::uint32_t pointCount() const { return header().points; }
+    std::uint32_t hairCount() const;
+
+    // All that follows is to be called only where checkContent() finds nothing wrong.
+
+    struct Strands {
+        std::vector<std::uint32_t> offsets;
+        std::vector<Float3> positions_ss;
+    };
+    Strands strandsAtRest() const;
+    /// Of the coarsest grid: no point lies farther from where it was authored; metres.
+    double greatestError() const;
+    /// A field that the asset does not name keeps its default; one that is not known here, or whose value is
+    /// out of range, is left out.
+    SimulationSettings simulation() const;
+    /// The setting of that name, "material.rootColour"; null where there is none.
+    const asset::Setting* findSetting(std::string_view name) const;
+    std::span<const double> valuesOf(const asset::Setting& setting) const;
+    std::string_view nameOf(const asset::Setting& setting) const;
+    /// Of a setting of kind choice: its name.
+    std::string_view choiceOf(const asset::Setting& setting) const;
+    std::string_view text(asset::Text place) const;
+    /// A number of a setting, or `missing`.
+    double numberOf(std::string_view name, double missing) const;
+
+    /// Follow hairs, ready to be evaluated from all strands of strandsAtRest(). The error says why there are
+    /// none.
+    FollowHairs::Result followHairs(const Strands& strands, const Host& host = {}) const;
+
+    std::span<const asset::Strand> strands;
+    std::span<const std::byte> residuals;
+    std::span<const asset::Root> roots;  ///< one of each strand, or none
+    std::span<const asset::ScalpVertex> scalpVertices;
+    std::span<const asset::ScalpTriangle> scalpTriangles;
+    std::span<const asset::Bone> bones;
+    std::span<const asset::Sphere> spheres;
+    std::span<const asset::Recipe> recipe;  ///< one or none
+    std::span<const asset::Guide> guides;
+    std::span<const asset::GuideTriangle> guideTriangles;
+    std::span<const std::int8_t> rootShifts;  ///< one of each follow hair, or none
+    std::span<const asset::FarRootShift> farRootShifts;
+    std::span<const std::uint16_t> radii;  ///< one of each point, or none: as the material says
+    std::span<const asset::Setting> settings;
+    std::span<const double> values;
+    std::span<const char> texts;
+
+  private:
+    const asset::Header& header() const { return *reinterpret_cast<const asset::Header*>(bytes_.data()); }
+    std::span<const asset::Section> table() const;
+    std::uint64_t placeOf(const void* record) const;
+    template <class Record>
+    bool take(const asset::Section& section, std::string_view kind, std::span<const Record>& records,
+              std::string& problem);
+    std::optional<AssetError> takeSection(const asset::Section& section);
+    std::optional<AssetError> checkStrands() const;
+    std::optional<AssetError> checkScalp() const;
+    std::optional<AssetError> checkFollowHairs() const;
+    std::optional<AssetError> checkSettings() const;
+
+    std::span<const std::byte> bytes_;
+};
+
+struct Asset::Result {
+    std::optional<Asset> asset;
+    AssetError error;  ///< where there is no asset
+};
+
+}  // namespace hairloom::runtime

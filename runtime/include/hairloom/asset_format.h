@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The runtime asset (.hairrt) byte by byte, for who writes one; docs/formats/runtime.md has the same as
+// tables and says what each value means. All numbers are little-endian. hairloom/asset.h reads it.
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace hairloom::runtime::asset {
+
+static_assert(std::endian::native == std::endian::little, "assets are used in place, without swapping");
+
+/// As PNG's: a copy that changed line ends or lost the eighth bit is found out.
+inline constexpr std::array<char, 8> kMagic{'\x89', 'H', 'R', 'T', '\r', '\n', '\x1a', '\n'};
+/// A reader refuses another major version, and takes any minor one.
+inline constexpr std::uint16_t kMajor = 1, kMinor = 0;
+/// Sections begin at multiples of it, and so does the memory that the file lies in.
+inline constexpr std::size_t kAlignment = 16;
+inline constexpr std::uint32_t kMaxSections = 4096;
+
+struct Header {
+    std::array<char, 8> magic;
+    std::uint16_t major, minor;
+    std::uint32_t headerBytes;  ///< 64
+    std::uint64_t fileBytes;
+    std::uint32_t sections;
+    std::uint32_t tableChecksum;                ///< of the table of sections, which follows the header
+    std::array<float, 3> boundsMin, boundsMax;  ///< of all points at rest, metres
+    std::uint32_t points;                       ///< of all strands
+    std::uint32_t checksum;                     ///< of the header before this value
+};
+static_assert(sizeof(Header) == 64);
+
+/// A reader that does not know the section's kind must refuse the file.
+inline constexpr std::uint16_t kRequired = 1;
+
+struct Section {
+    std::array<char, 4> kind;
+    std::uint16_t recordBytes;  ///< of one of `count` records
+    std::uint16_t flags;
+    std::uint64_t offset, bytes;
+    std::uint32_t count;
+    std::uint32_t checksum;
+};
+static_assert(sizeof(Section) == 32);
+
+inline constexpr std::string_view kStrands = "STRD", kResiduals = "PNTS", kRoots = "ROOT",
+                                  kScalpVertices = "SVTX", kScalpTriangles = "STRI", kBones = "BONE",
+                                  kSpheres = "SPHR", kRecipe = "FLLW", kGuides = "GUID",
+                                  kGuideTriangles = "GTRI", kRootShifts = "SHFT", kFarRootShifts = "SHFX",
+                                  kRadii = "RADI", kSettings = "SETT", kValues = "VALS", kText = "TEXT";
+
+/// Finest and coarsest grid of a strand: 2^-24 and 2^-15 m.
+inline constexpr std::uint32_t kMaxGridBits = 24, kMinGridBits = 15;
+
+/// Point 0 lies at root / 2^gridBits metres, point 1 at (root + first) / 2^gridBits; point i > 1 lies where
+/// the segment before it would lead once more, and its residual farther. Residuals stand in the order of
+/// strands and points.
+struct Strand {
+    std::array<std::int32_t, 3> root, first;
+    std::uint16_t points;  ///< 2 … 512
+    std::uint8_t gridBits;
+    std::uint8_t residualBytes;  ///< 4: three of 10 bits in a u32, x lowest; 6: three i16; 12: three i32
+};
+static_assert(sizeof(Strand) == 28);
+
+/// The second and third barycentric coordinate as shares of 65,535.
+struct Root {
+    std::uint32_t triangle;
+    std::uint16_t b, c;
+};
+static_assert(sizeof(Root) == 8);
+
+inline constexpr std::uint16_t kNoBone = 0xffff;
+struct ScalpVertex {
+    std::array<float, 3> position;                ///< metres, at rest
+    std::uint32_t source;                         ///< vertex of the file that the head came from
+    std::array<std::uint16_t, 4> bones, weights;  ///< shares of 65,535; all 0 for what nothing moves
+};
+static_assert(sizeof(ScalpVertex) == 32);
+
+struct ScalpTriangle {
+    std::array<std::uint32_t, 3> vertices;
+    std::uint32_t source;  ///< triangle of the head
+};
+static_assert(sizeof(ScalpTriangle) == 16);
+
+/// A place in the section of text.
+struct Text {
+    std::uint32_t at, bytes;
+};
+
+struct Bone {
+    Text name;
+    std::uint32_t index;  ///< in the skeleton of the head's file
+    std::uint32_t unused;
+    std::array<float, 12> inverseBind;  ///< row by row: from the head at rest to the bone
+};
+static_assert(sizeof(Bone) == 64);
+
+struct Sphere {
+    std::array<float, 3> centre;
+    float radius;
+    std::int32_t bone;  ///< −1: goes with the head as a whole
+    Text name;
+    std::uint32_t unused;
+};
+static_assert(sizeof(Sphere) == 32);
+
+struct Recipe {
+    std::uint64_t seed;
+    std::uint32_t hairsPerGuide, pointsPerHair;
+    float radiusRoot, radiusTip, blend;
+    float shiftStep;  ///< metres that 1 in the section of root shifts stands for, along shiftDirection()
+    float beginAngle, endAngle, beginSpread, endSpread;
+};
+static_assert(sizeof(Recipe) == 48);
+
+struct Guide {
+    std::uint32_t strand, id;
+    std::array<float, 3> normal, axis;  ///< of the scalp at the root, of unit length and perpendicular
+};
+static_assert(sizeof(Guide) == 32);
+
+struct GuideTriangle {
+    std::array<std::uint32_t, 3> guides;
+    float area;  ///< in any unit
+};
+static_assert(sizeof(GuideTriangle) == 16);
+
+/// Instead of what the section of root shifts says of the hair: metres in units of kFarShiftStep, in the root
+/// plane of its own guide.
+struct FarRootShift {
+    std::uint32_t hair;
+    std::array<std::int16_t, 3> shift;
+    std::uint16_t unused;
+};
+static_assert(sizeof(FarRootShift) == 12);
+inline constexpr float kFarShiftStep = 0x1p-17f;
+
+enum class ValueKind : std::uint8_t { numbers = 0, choice = 1, seed = 2, ramp = 3 };
+/// "simulation.windSpeed" and its values: numbers; for a choice the place of its name in the text and its
+/// bytes; for a seed its lower and upper 32 bits; for a ramp position and value of each key.
+struct Setting {
+    std::uint32_t name;
+    std::uint16_t nameBytes;
+    ValueKind kind;
+    std::uint8_t count;
+    std::uint32_t firstValue;
+    std::uint32_t unused;
+};
+static_assert(sizeof(Setting) == 16);
+
+/// Metres that 1 in the section of radii stands for.
+inline constexpr float kRadiusStep = 0x1p-24f;
+
+/// CRC-32 as in zlib, PNG and gzip.
+std::uint32_t checksum(std::span<const std::byte> bytes);
+
+}  // namespace hairloom::runtime::asset

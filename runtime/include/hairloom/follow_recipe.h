@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Which guides each follow hair takes part of, drawn at random: by the seed, a guide's id and the hair's
+// number alone, so that an asset holds a few numbers in place of tens of thousands of hairs.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "hairloom/follow.h"
+#include "hairloom/host.h"
+#include "hairloom/math.h"
+
+namespace hairloom::runtime {
+
+/// Keeps a parting open: where two guides diverge, hairs between them follow the nearer one alone. The share
+/// of the farther guide fades between the two limits of either criterion.
+struct PartingLimits {
+    float beginAngleDegrees, endAngleDegrees;  ///< between the guides' directions from root to tip
+    float beginSpread, endSpread;  ///< how much farther apart the tips are than the roots, in strand lengths
+};
+
+struct FollowRecipe {
+    std::uint64_t seed = 1;
+    std::uint32_t hairsPerGuide = 0;
+    float blend = 0;  ///< 0 wisp … 1 root triangle
+    PartingLimits parting{};
+    std::span<const std::uint32_t> ids;  ///< of each guide: its hairs stay the same while others come and go
+    std::span<const Float3> roots_ss, tips_ss;                ///< of each guide
+    std::span<const float> lengths;                           ///< of each guide, metres
+    std::span<const std::array<std::uint32_t, 3>> triangles;  ///< of guides
+    std::span<const float> areas;                             ///< of each triangle, in any unit
+};
+
+/// As FollowView has them. Hair h of guide g is g · hairsPerGuide + h.
+struct DrawnHairs {
+    std::vector<std::array<std::uint32_t, 3>> guides;
+    std::vector<Float3> weights, rootWeights;
+    std::vector<std::array<float, 2>> wispOffsets;
+    std::vector<float> blends;
+};
+
+/// Triangles must name guides that there are. The same bits for any number of threads.
+DrawnHairs drawFollowHairs(const FollowRecipe& recipe, const Host& host = {});
+
+/// The direction in which a hair's root is put onto the scalp: the mean of its guides' normals, in the root
+/// plane of its own guide. Of unit length.
+Float3 shiftDirection(std::span<const RootPlane> planes_ss, const std::array<std::uint32_t, 3>& guides,
+                      Float3 rootWeights);
+
+}  // namespace hairloom::runtime

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Hair for tests of the runtime asset, and files of it in memory.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/base/file.h"
+#include "core/geometry/scalp_mesh.h"
+#include "core/groom/groom.h"
+#include "exporters/strands.h"
+#include "hairloom/asset.h"
+
+namespace hairloom::test {
+
+/// A folder of the running test's own.
+class AssetTest : public testing::Test {
+  protected:
+    void SetUp() override {
+        const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+        folder = std::filesystem::path(testing::TempDir()) /
+                 (std::string("hairloom-asset-") + info->test_suite_name() + "-" + info->name());
+        std::filesystem::remove_all(folder);
+        std::filesystem::create_directories(folder);
+    }
+    void TearDown() override { std::filesystem::remove_all(folder); }
+
+    /// The file of that groom; the test fails where it cannot be written.
+    std::vector<std::byte> written(const Groom& groom, ExportReport* report = nullptr) const {
+        const auto path = folder / "a.hairrt";
+        const auto made = strandWriter("runtime").write(groom, path, {});
+        EXPECT_TRUE(made) << made.error().message();
+        if (!made) return {};
+        if (report) *report = *made;
+        return readFile(path).value();
+    }
+
+    std::filesystem::path folder;
+};
+
+/// Strand s has counts[s] points on a helix that hangs from (1 cm · s, 1.7 m, 0).
+inline Groom helices(const std::vector<std::uint32_t>& counts) {
+    std::vector<std::uint32_t> offsets{0};
+    std::vector<Vec3f> positions;
+    for (std::size_t s = 0; s < counts.size(); ++s) {
+        for (std::uint32_t i = 0; i < counts[s]; ++i) {
+            const float t = static_cast<float>(i) / static_cast<float>(counts[s] - 1);
+            positions.emplace_back(0.01f * static_cast<float>(s) + 0.02f * std::cos(4 * t), 1.7f - 0.2f * t,
+                                   0.02f * std::sin(4 * t));
+        }
+        offsets.push_back(static_cast<std::uint32_t>(positions.size()));
+    }
+    return makeGroom(std::move(offsets), std::move(positions));
+}
+
+/// Strands on a dome of 2 · side² triangles, 10 cm wide; `copies` roots in each `step`-th of them.
+inline Groom dome(std::uint32_t side, std::uint32_t step, std::uint32_t points, float length,
+                  std::uint32_t copies = 1) {
+    PolygonSoup soup;
+    const auto vertex = [&](std::uint32_t x, std::uint32_t z) { return z * (side + 1) + x; };
+    for (std::uint32_t z = 0; z <= side; ++z) {
+        for (std::uint32_t x = 0; x <= side; ++x) {
+            const float u = 0.1f * (static_cast<float>(x) / static_cast<float>(side) - 0.5f);
+            const float v = 0.1f * (static_cast<float>(z) / static_cast<float>(side) - 0.5f);
+            soup.positions.emplace_back(u, 1.6f + std::sqrt(0.01f - u * u - v * v), v);
+        }
+    }
+    const auto face = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+        soup.corners.insert(soup.corners.end(), {a, b, c});
+        soup.offsets.push_back(static_cast<std::uint32_t>(soup.corners.size()));
+    };
+    for (std::uint32_t z = 0; z < side; ++z) {
+        for (std::uint32_t x = 0; x < side; ++x) {
+            face(vertex(x, z), vertex(x, z + 1), vertex(x + 1, z + 1));
+            face(vertex(x, z), vertex(x + 1, z + 1), vertex(x + 1, z));
+        }
+    }
+    auto mesh = std::make_shared<const ScalpMesh>(ScalpMesh::make(soup).value());
+    FaceSet all;
+    std::vector<SurfacePoint> roots;
+    for (std::uint32_t t = 0; t < mesh->triangleCount(); ++t) {
+        all.push_back(t);
+        for (std::uint32_t c = 0; t % step == 0 && c < copies; ++c) {
+            const float share = 0.7f * static_cast<float>(c) / static_cast<float>(copies);
+            roots.push_back({t, Vec3f(0.8f - share, share, 0.2f)});
+        }
+    }
+    return growStraight(mesh, all, roots, length, points).value();
+}
+
+}  // namespace hairloom::test

@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The runtime asset: what it carries and how exactly, how large it is, and what damage does to it.
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <random>
+
+#include "core/base/parallel.h"
+#include "core/groom/file/fields.h"
+#include "core/interpolation/follow_hairs.h"
+#include "hairloom/engine.h"
+#include "tests/exporters/asset_samples.h"
+
+namespace hairloom::test {
+namespace {
+
+namespace format = runtime::asset;
+using runtime::Asset;
+using runtime::AssetError;
+using testing::HasSubstr;
+
+class RuntimeAsset : public AssetTest {};
+
+/// Values that are none of the defaults, as far as the fields hold them.
+template <class S>
+S otherThanDefault() {
+    S settings;
+    for (const auto& field : fieldsOf(settings)) {
+        for (std::uint32_t c = 0; c < field.components(); ++c) {
+            if (field.kind == FieldKind::Seed)
+                runtime::member<std::uint64_t>(settings, field) = 0xfedcba9876543210u;
+            else if (!setFieldValue(
+                         settings, field,
+                         field.isWhole() ? field.get(settings, c) + 1 : 0.25 * field.min + 0.75 * field.max,
+                         c))
+                setFieldValue(settings, field, field.min, c);
+        }
+    }
+    return settings;
+}
+
+template <class S>
+void expectSame(const S& a, const S& b) {
+    for (const auto& field : fieldsOf(a)) {
+        for (std::uint32_t c = 0; c < field.components(); ++c)
+            EXPECT_EQ(field.get(a, c), field.get(b, c)) << field.name;
+    }
+}
+
+/// What can be had of an asset whose content is sound; says nothing but must not leave the bytes.
+std::size_t useAll(const Asset& asset) {
+    const auto strands = asset.strandsAtRest();
+    std::size_t sum = strands.positions_ss.size();
+    for (const format::Setting& setting : asset.settings)
+        sum += asset.nameOf(setting).size() + asset.valuesOf(setting).size();
+    for (const format::Bone& bone : asset.bones) sum += asset.text(bone.name).size();
+    for (const format::Sphere& sphere : asset.spheres) sum += asset.text(sphere.name).size();
+    if (const auto made = asset.followHairs(strands); made.hairs) sum += made.hairs->hairCount();
+    const auto engine = runtime::Engine::make({strands.offsets, strands.positions_ss}, asset.simulation());
+    return sum + (engine.engine ? engine.engine->pointCount() : engine.error.size());
+}
+
+/// A copy that may be changed, at an aligned place.
+class Bytes {
+  public:
+    explicit Bytes(std::span<const std::byte> bytes)
+        : pieces_(bytes.size() / sizeof(Piece) + 1), size_(bytes.size()) {
+        std::memcpy(pieces_.data(), bytes.data(), bytes.size());
+    }
+    std::span<std::byte> span() { return {reinterpret_cast<std::byte*>(pieces_.data()), size_}; }
+    format::Header& header() { return *reinterpret_cast<format::Header*>(pieces_.data()); }
+    std::span<format::Section> table() {
+        return {reinterpret_cast<format::Section*>(pieces_.data() + sizeof(format::Header) / sizeof(Piece)),
+                header().sections};
+    }
+    /// Checksums as if all were meant so.
+    void seal() {
+        for (format::Section& section : table())
+            section.checksum = format::checksum(span().subspan(section.offset, section.bytes));
+        header().tableChecksum = format::checksum(std::as_bytes(table()));
+        header().checksum = format::checksum(span().first(sizeof(format::Header) - 4));
+    }
+
+  private:
+    struct alignas(16) Piece {
+        std::byte bytes[16];
+    };
+    std::vector<Piece> pieces_;
+    std::size_t size_;
+};
+
+Groom whole() {
+    Groom groom = dome(4, 2, 12, 0.1f);
+    groom.interpolation.followPerGuide = 6;
+    groom.simulation.windSpeed = 3;
+    groom.spheres = {{"skull", Vec3f(0, 1.6f, 0), 0.09f, ""}};
+    return groom;
+}
+
+TEST_F(RuntimeAsset, PointsAreWithinTheErrorThatIsStated) {
+    for (const float scale : {0.001f, 1.0f, 20.0f}) {
+        Groom groom = helices({2, 3, 17, 64, 512});
+        for (Vec3f& p : groom.pointAttributes.edit<Vec3f>(attribute::kPosition)) p *= scale;
+        ExportReport report;
+        const auto bytes = written(groom, &report);
+        const auto opened = Asset::open(bytes);
+        ASSERT_TRUE(opened.asset) << opened.error.words;
+        EXPECT_FALSE(opened.asset->check());
+        const double stated = opened.asset->greatestError();
+        EXPECT_LE(stated, 0.00005);
+        const auto strands = opened.asset->strandsAtRest();
+        ASSERT_EQ(strands.positions_ss.size(), groom.pointCount());
+        double largest = 0;
+        for (std::size_t p = 0; p < groom.pointCount(); ++p) {
+            const auto& at = strands.positions_ss[p];
+            largest = std::max(largest, double{(Vec3f(at.x, at.y, at.z) - groom.positions()[p]).norm()});
+        }
+        EXPECT_LE(largest, stated + 4e-6 * double{scale}) << "rounding to floats is on top";
+        EXPECT_NEAR(report.maxErrorMm, largest * 1e3, 1e-6);
+    }
+}
+
+TEST_F(RuntimeAsset, StraightHairStaysStraightForTheEngine) {
+    const auto bytes = written(dome(6, 1, 24, 0.35f));
+    const auto opened = Asset::open(bytes);
+    ASSERT_TRUE(opened.asset);
+    const auto strands = opened.asset->strandsAtRest();
+    runtime::SimulationSettings settings;
+    settings.restGravity = 0;  // what holds shape against gravity turns straight hair, too
+    const auto made = runtime::Engine::make({strands.offsets, strands.positions_ss}, settings);
+    ASSERT_TRUE(made.engine) << made.error;
+    EXPECT_EQ(made.engine->plan().reason(runtime::Effect::torsion), runtime::Reason::straightHair);
+}
+
+TEST_F(RuntimeAsset, CarriesEverySettingAndSphere) {
+    Groom groom = helices({4, 9});
+    groom.simulation = otherThanDefault<runtime::SimulationSettings>();
+    const runtime::Ramp::Key keys[] = {{0, 0.5f}, {0.25f, 1}, {1, 0.125f}};
+    groom.simulation.angularCurve = runtime::Ramp::of(keys);
+    ASSERT_TRUE(validate(groom.simulation).empty());
+    groom.material = otherThanDefault<HairMaterial>();
+    groom.interpolation = otherThanDefault<InterpolationSettings>();
+    groom.interpolation.followPerGuide = 3;
+    groom.spheres = {{"left", Vec3f(1, 2, 3), 0.25f, ""}, {"right", Vec3f(-1, 2, 3), 0.5f, "no such bone"}};
+    ExportReport report;
+    written(groom, &report);
+    const auto back = importStrands(folder / "a.hairrt");
+    ASSERT_TRUE(back) << back.error().message();
+    EXPECT_TRUE(back->hasSettings);
+    EXPECT_EQ(back->groom.simulation, groom.simulation);
+    expectSame(back->groom.material, groom.material);
+    expectSame(back->groom.interpolation, groom.interpolation);
+    ASSERT_EQ(back->groom.spheres.size(), 2u);
+    EXPECT_EQ(back->groom.spheres[0].name, "left");
+    EXPECT_EQ(back->groom.spheres[0].centre, Vec3f(1, 2, 3));
+    EXPECT_EQ(back->groom.spheres[1].bone, "") << "a bone that the head does not have";
+    const auto warned =
+        std::ranges::find_if(report.findings, [](const Finding& f) { return f.where == "sphere 'right'"; });
+    EXPECT_NE(warned, report.findings.end());
+    for (const LeftBehind& left : report.leftBehind)
+        EXPECT_THAT(left.what, HasSubstr("attribute")) << left.what;
+}
+
+TEST_F(RuntimeAsset, FollowHairsAreThoseOfPictures) {
+    const Groom groom = whole();
+    ExportReport report;
+    const auto bytes = written(groom, &report);
+    const auto opened = Asset::open(bytes);
+    ASSERT_TRUE(opened.asset);
+    const auto strands = opened.asset->strandsAtRest();
+    auto made = opened.asset->followHairs(strands);
+    ASSERT_TRUE(made.hairs) << made.error;
+    const auto shown = bakeFollowHairs(groom, bindFollowHairs(groom, groom.interpolation).value()).value();
+    std::vector<runtime::Float3> hairs(shown.pointCount());
+    ASSERT_EQ(made.hairs->hairCount(), shown.strandCount());
+    runtime::GuideMotion motion;
+    motion.positions_ws = strands.positions_ss;
+    ASSERT_TRUE(made.hairs->evaluate(motion, hairs));
+    for (std::size_t p = 0; p < hairs.size(); ++p)
+        ASSERT_LT((Vec3f(hairs[p].x, hairs[p].y, hairs[p].z) - shown.positions()[p]).norm(), 0.0003f) << p;
+    const auto compared =
+        std::ranges::find(report.attributes, "follow hairs at rest", &ComparedAttribute::name);
+    ASSERT_NE(compared, report.attributes.end());
+    EXPECT_GT(compared->maxError, 0.0);
+}
+
+TEST_F(RuntimeAsset, SomeStrandsAloneMayBeGuides) {
+    Groom groom = whole();
+    std::vector<std::uint8_t> guides(groom.strandCount(), 0);
+    guides[1] = guides[4] = guides[7] = guides[9] = 1;
+    groom.strandAttributes.set(attribute::kGuide, guides);
+    const auto bytes = written(groom);
+    const auto opened = Asset::open(bytes);
+    ASSERT_TRUE(opened.asset);
+    EXPECT_EQ(opened.asset->hairCount(), 24u);
+    EXPECT_TRUE(opened.asset->followHairs(opened.asset->strandsAtRest()).hairs);
+    EXPECT_EQ(importStrands(folder / "a.hairrt")->groom.guideCount(), 4u);
+}
+
+TEST_F(RuntimeAsset, StaysWithinItsSizes) {
+    Groom sparse = dome(12, 1, 24, 0.25f);
+    ASSERT_GE(sparse.strandCount(), 288u);
+    sparse.interpolation.followPerGuide = 104;
+    ExportReport report;
+    written(sparse, &report);
+    EXPECT_LE(report.bytes, 150'000u);
+    written(dome(50, 1, 16, 0.3f, 20), &report);
+    EXPECT_EQ(report.strands, 100'000u);
+    EXPECT_LE(report.bytes, 10'000'000u);
+}
+
+TEST_F(RuntimeAsset, ShortAndLonelyStrandsGoThrough) {
+    for (const auto& counts : {std::vector<std::uint32_t>{2}, {3}, {2, 2}, {512}}) {
+        Groom groom = helices(counts);
+        groom.interpolation.followPerGuide = counts.size() == 2 ? 5 : 0;
+        const auto bytes = written(groom);
+        const auto opened = Asset::open(bytes);
+        ASSERT_TRUE(opened.asset);
+        EXPECT_FALSE(opened.asset->check());
+        EXPECT_GT(useAll(*opened.asset), 0u);
+    }
+    const auto refused = [&](const Groom& groom) {
+        const auto report = strandWriter("runtime").write(groom, folder / "none.hairrt", {});
+        return report ? std::string("written") : report.error().message();
+    };
+    EXPECT_THAT(refused(Groom()), HasSubstr("no usable strand"));
+    EXPECT_THAT(refused(makeGroom({0, 1}, {Vec3f(0, 0, 0)})), HasSubstr("no usable strand"));
+    EXPECT_THAT(refused(helices({513})), HasSubstr("512 or fewer: export with --points"));
+    EXPECT_THAT(refused(makeGroom({0, 2}, {Vec3f(0, 0, 0), Vec3f(0, 1e8f, 0)})), HasSubstr("32 km"));
+    Groom lame = makeGroom({0, 2, 4}, {Vec3f(0, 0, 0), Vec3f(0, 1, 0), Vec3f(1, 0, 0), Vec3f(1, 0, 0)});
+    lame.interpolation.followPerGuide = 2;
+    EXPECT_THAT(refused(lame), HasSubstr("guide strand 1 has no length"));
+    StrandExportOptions inches;
+    inches.metresPerUnit = 0.0254f;
+    EXPECT_FALSE(strandWriter("runtime").write(helices({4}), folder / "none.hairrt", inches));
+    EXPECT_FALSE(std::filesystem::exists(folder / "none.hairrt"));
+}
+
+TEST_F(RuntimeAsset, WritesTheSameBytesTwice) {
+    const Groom groom = whole();
+    EXPECT_EQ(written(groom), written(groom));
+}
+
+TEST_F(RuntimeAsset, AnyChangedByteIsRefusedOrChangesNothing) {
+    const auto bytes = written(whole());
+    Bytes copy(bytes);
+    const auto before = Asset::open(copy.span()).asset->strandsAtRest();
+    std::size_t harmless = 0;
+    for (std::size_t at = 0; at < bytes.size(); ++at) {
+        const std::byte was = copy.span()[at];
+        copy.span()[at] ^= static_cast<std::byte>(1u << (at % 8));
+        const auto opened = Asset::open(copy.span());
+        const bool refused = !opened.asset || opened.asset->check();
+        if (!refused) {
+            ++harmless;
+            const auto strands = opened.asset->strandsAtRest();
+            ASSERT_TRUE(strands.positions_ss == before.positions_ss) << at;
+        }
+        copy.span()[at] = was;
+    }
+    EXPECT_LT(harmless, 15 * copy.table().size()) << "zeros between sections alone";
+}
+
+TEST_F(RuntimeAsset, DamageThatNoChecksumFindsIsRefusedOrHarmless) {
+    const auto bytes = written(whole());
+    std::mt19937 random(7);
+    std::size_t refused = 0, used = 0;
+    for (std::size_t at = 0; at < bytes.size(); ++at) {
+        for (const std::uint32_t value : {255u, 128u, static_cast<std::uint32_t>(random() % 255 + 1)}) {
+            Bytes copy(bytes);
+            copy.span()[at] ^= static_cast<std::byte>(value);
+            // Bytes of the header and the table are taken as they are; counts of sections among them.
+            if (copy.header().sections == bytes.size() || copy.header().sections > 64) continue;
+            bool lies = true;
+            for (const format::Section& section : copy.table())
+                lies =
+                    lies && section.offset <= bytes.size() && section.bytes <= bytes.size() - section.offset;
+            if (lies) copy.seal();
+            const auto opened = Asset::open(copy.span());
+            if (!opened.asset || opened.asset->check()) {
+                ++refused;
+            } else if (at % 7 == 0) {
+                used += useAll(*opened.asset) > 0 ? 1 : 0;
+            }
+        }
+    }
+    EXPECT_GT(refused, 100u);
+    EXPECT_GT(used, 100u);
+}
+
+TEST_F(RuntimeAsset, AnyEarlierEndIsRefusedWithItsPlace) {
+    const auto bytes = written(helices({5, 6}));
+    for (std::size_t size = 0; size < bytes.size(); ++size) {
+        Bytes copy({bytes.data(), size});
+        const auto opened = Asset::open(copy.span());
+        ASSERT_FALSE(opened.asset) << size;
+        EXPECT_FALSE(opened.error.words.empty());
+    }
+    Bytes copy(bytes);
+    EXPECT_EQ(Asset::open(copy.span().subspan(8)).error.kind, AssetError::Kind::misaligned);
+}
+
+TEST_F(RuntimeAsset, NewerFilesAreRefusedAndNewSectionsSkipped) {
+    const auto bytes = written(helices({5, 6}));
+    Bytes copy(bytes);
+    copy.header().minor = 9;
+    copy.seal();
+    EXPECT_TRUE(Asset::open(copy.span()).asset);
+    for (format::Section& section : copy.table()) {
+        if (std::string_view(section.kind.data(), 4) == format::kSettings)
+            section.kind = {'N', 'E', 'W', '!'};
+    }
+    copy.seal();
+    const auto skipped = Asset::open(copy.span());
+    ASSERT_TRUE(skipped.asset);
+    EXPECT_FALSE(skipped.asset->check());
+    EXPECT_EQ(skipped.asset->simulation(), runtime::SimulationSettings());
+    for (format::Section& section : copy.table()) {
+        if (section.kind[0] == 'N') section.flags = format::kRequired;
+    }
+    copy.seal();
+    EXPECT_EQ(Asset::open(copy.span()).error.kind, AssetError::Kind::newer);
+    copy.header().major = 2;
+    copy.seal();
+    const auto newer = Asset::open(copy.span());
+    EXPECT_EQ(newer.error.kind, AssetError::Kind::newer);
+    EXPECT_EQ(newer.error.byte, 8u);
+    EXPECT_THAT(newer.error.words, HasSubstr("version 2"));
+}
+
+TEST_F(RuntimeAsset, ChecksumsAreThoseOfZlib) {
+    const std::string_view text = "123456789";
+    EXPECT_EQ(format::checksum(std::as_bytes(std::span(text))), 0xcbf43926u);
+}
+
+}  // namespace
+}  // namespace hairloom::test

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A reader of runtime assets that knows nothing but the tables of docs/formats/runtime.md.
+
+#include <gmock/gmock.h>
+
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "tests/exporters/asset_samples.h"
+#include "tests/support/source_dir.h"
+
+namespace hairloom::test {
+namespace {
+
+struct PageField {
+    std::size_t byte;
+    std::string type;
+    std::size_t count;
+};
+/// Of the header, the table and each kind of section: its fields by name.
+using Page = std::map<std::string, std::map<std::string, PageField>>;
+
+std::string trimmed(const std::string& text) {
+    const std::size_t first = text.find_first_not_of(" `"), last = text.find_last_not_of(" `");
+    return first == std::string::npos ? std::string() : text.substr(first, last - first + 1);
+}
+
+Page readPage() {
+    std::ifstream file(sourceDir() / "docs/formats/runtime.md");
+    Page page;
+    std::string heading;
+    for (std::string line; std::getline(file, line);) {
+        if (line.rfind("## ", 0) == 0) heading = line.substr(3);
+        std::vector<std::string> columns;
+        std::stringstream cells(line);
+        for (std::string cell; std::getline(cells, cell, '|');) columns.push_back(trimmed(cell));
+        if (columns.size() < 5 || columns[1].find_first_not_of("0123456789") != std::string::npos ||
+            columns[1].empty())
+            continue;
+        PageField field{std::stoul(columns[1]), columns[2], 1};
+        if (const std::size_t bracket = field.type.find('['); bracket != std::string::npos) {
+            field.count = std::stoul(field.type.substr(bracket + 1));
+            field.type.resize(bracket);
+        }
+        page[heading][columns[3]] = field;
+    }
+    return page;
+}
+
+std::size_t sizeOfType(const std::string& type) {
+    return std::stoul(type.substr(1)) / 8;
+}
+
+double valueAt(const std::byte* at, const std::string& type) {
+    const auto as = [&]<class T>(T value) {
+        std::memcpy(&value, at, sizeof value);
+        return static_cast<double>(value);
+    };
+    if (type == "u8") return as(std::uint8_t{});
+    if (type == "u16") return as(std::uint16_t{});
+    if (type == "i16") return as(std::int16_t{});
+    if (type == "u32") return as(std::uint32_t{});
+    if (type == "i32") return as(std::int32_t{});
+    if (type == "u64") return as(std::uint64_t{});
+    if (type == "f32") return as(float{});
+    ADD_FAILURE() << "the page has the type " << type;
+    return 0;
+}
+
+class PageReader {
+  public:
+    PageReader(const Page& page, std::span<const std::byte> bytes) : page_(page), bytes_(bytes) {
+        const std::size_t first = static_cast<std::size_t>(header("headerBytes"));
+        for (std::size_t s = 0; s < static_cast<std::size_t>(header("sections")); ++s) {
+            const std::size_t record = first + s * recordBytes("table");
+            std::string kind;
+            for (std::size_t c = 0; c < 4; ++c) kind += static_cast<char>(value(record, "table", "kind", c));
+            sections_[kind] = record;
+        }
+    }
+    double header(const std::string& name, std::size_t i = 0) const { return value(0, "header", name, i); }
+    std::size_t count(const std::string& kind) const { return table(kind, "count"); }
+    std::size_t table(const std::string& kind, const std::string& name) const {
+        const auto found = sections_.find(kind);
+        return found == sections_.end() ? 0 : static_cast<std::size_t>(value(found->second, "table", name));
+    }
+    double record(const std::string& kind, std::size_t r, const std::string& name, std::size_t i = 0) const {
+        return value(table(kind, "offset") + r * recordBytes(kind), kind, name, i);
+    }
+    const std::byte* at(const std::string& kind) const { return bytes_.data() + table(kind, "offset"); }
+    /// As the tables of the page have it.
+    std::size_t recordBytes(const std::string& kind) const {
+        std::size_t end = 0;
+        for (const auto& [name, field] : page_.at(kind))
+            end = std::max(end, field.byte + field.count * sizeOfType(field.type));
+        return end;
+    }
+    std::string text(double at, double bytes) const {
+        return {reinterpret_cast<const char*>(this->at("TEXT")) + static_cast<std::size_t>(at),
+                static_cast<std::size_t>(bytes)};
+    }
+
+  private:
+    double value(std::size_t record, const std::string& kind, const std::string& name,
+                 std::size_t i = 0) const {
+        const PageField& field = page_.at(kind).at(name);
+        EXPECT_LT(i, field.count);
+        return valueAt(bytes_.data() + record + field.byte + i * sizeOfType(field.type), field.type);
+    }
+
+    const Page& page_;
+    std::span<const std::byte> bytes_;
+    std::map<std::string, std::size_t> sections_;
+};
+
+/// As the page says of residualBytes.
+std::int64_t residual(const std::byte* at, int bytes, int axis) {
+    if (bytes == 4) {
+        const auto bits = (static_cast<std::uint32_t>(valueAt(at, "u32")) >> (10 * axis)) & 1023u;
+        return bits < 512 ? static_cast<std::int64_t>(bits) : static_cast<std::int64_t>(bits) - 1024;
+    }
+    return static_cast<std::int64_t>(bytes == 6 ? valueAt(at + 2 * axis, "i16")
+                                                : valueAt(at + 4 * axis, "i32"));
+}
+
+std::vector<Vec3f> positionsBy(const PageReader& reader) {
+    std::vector<Vec3f> positions;
+    const std::byte* next = reader.at("PNTS");
+    for (std::size_t s = 0; s < reader.count("STRD"); ++s) {
+        const int bytes = static_cast<int>(reader.record("STRD", s, "residualBytes"));
+        const double step = std::ldexp(1.0, -static_cast<int>(reader.record("STRD", s, "gridBits")));
+        const auto points = static_cast<std::size_t>(reader.record("STRD", s, "points"));
+        std::vector<std::array<double, 3>> q(points);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            q[0][axis] = reader.record("STRD", s, "root", axis);
+            q[1][axis] = q[0][axis] + reader.record("STRD", s, "first", axis);
+            for (std::size_t i = 2; i < points; ++i)
+                q[i][axis] = 2 * q[i - 1][axis] - q[i - 2][axis] +
+                             static_cast<double>(residual(next + (i - 2) * static_cast<std::size_t>(bytes),
+                                                          bytes, static_cast<int>(axis)));
+        }
+        next += (points - 2) * static_cast<std::size_t>(bytes);
+        for (const auto& [x, y, z] : q)
+            positions.emplace_back(static_cast<float>(x * step), static_cast<float>(y * step),
+                                   static_cast<float>(z * step));
+    }
+    return positions;
+}
+
+class RuntimePage : public AssetTest {};
+
+TEST_F(RuntimePage, IsEnoughToReadAFileBy) {
+    Groom groom = dome(4, 2, 12, 0.1f);
+    groom.interpolation.followPerGuide = 6;
+    groom.simulation.windSpeed = 3.5f;
+    groom.spheres = {{"skull", Vec3f(0, 1.6f, 0.25f), 0.09f, ""}};
+    groom.pointAttributes.edit<Vec3f>(attribute::kPosition)[5] +=
+        Vec3f(0.03f, 0, 0);                                                         // residuals of six bytes
+    groom.pointAttributes.edit<Vec3f>(attribute::kPosition)[15] += Vec3f(3, 0, 0);  // and of twelve
+    groom.pointAttributes.set(attribute::kRadius, std::vector<float>(groom.pointCount(), 0x1p-14f));
+    const auto bytes = written(groom);
+    const auto opened = runtime::Asset::open(bytes);
+    ASSERT_TRUE(opened.asset);
+    const Page page = readPage();
+    const PageReader reader(page, bytes);
+
+    EXPECT_EQ(reader.header("magic", 0), 0x89);
+    EXPECT_EQ(reader.header("major"), 1);
+    EXPECT_EQ(reader.header("fileBytes"), static_cast<double>(bytes.size()));
+    for (const auto& section : opened.asset->sections()) {
+        const std::string kind(section.kind);
+        EXPECT_EQ(reader.count(kind), section.count) << kind;
+        EXPECT_EQ(reader.table(kind, "offset") % 16, 0u);
+        if (page.contains(kind))
+            EXPECT_EQ(reader.recordBytes(kind), reader.table(kind, "recordBytes")) << kind;
+        else
+            EXPECT_THAT(kind, testing::AnyOf("PNTS", "SHFT", "RADI", "VALS", "TEXT"));
+    }
+    const auto positions = positionsBy(reader);
+    const auto strands = opened.asset->strandsAtRest();
+    ASSERT_EQ(positions.size(), strands.positions_ss.size());
+    EXPECT_EQ(reader.header("points"), static_cast<double>(positions.size()));
+    std::set<double> residualBytes;
+    for (std::size_t s = 0; s < reader.count("STRD"); ++s)
+        residualBytes.insert(reader.record("STRD", s, "residualBytes"));
+    EXPECT_EQ(residualBytes, (std::set<double>{4, 6, 12}));
+    for (std::size_t p = 0; p < positions.size(); ++p) {
+        const auto& at = strands.positions_ss[p];
+        ASSERT_EQ(positions[p], Vec3f(at.x, at.y, at.z)) << p;
+        ASSERT_LT((positions[p] - groom.positions()[p]).norm(), 0.00005f);
+        ASSERT_EQ(valueAt(reader.at("RADI") + 2 * p, "u16") * 0x1p-24, 0x1p-14);
+    }
+    for (std::size_t s = 0; s < reader.count("ROOT"); ++s) {
+        const double b = reader.record("ROOT", s, "b") / 65535, c = reader.record("ROOT", s, "c") / 65535;
+        const auto triangle = static_cast<std::size_t>(reader.record("ROOT", s, "triangle"));
+        Vec3f root = Vec3f::Zero();
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+            const auto vertex = static_cast<std::size_t>(reader.record("STRI", triangle, "vertices", corner));
+            const double share = corner == 0 ? 1 - b - c : corner == 1 ? b : c;
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                root[static_cast<int>(axis)] +=
+                    static_cast<float>(share * reader.record("SVTX", vertex, "position", axis));
+        }
+        EXPECT_LT((root - groom.strand(s).front()).norm(), 1e-5f);
+    }
+    EXPECT_EQ(reader.text(reader.record("SPHR", 0, "nameAt"), reader.record("SPHR", 0, "nameBytes")),
+              "skull");
+    EXPECT_EQ(reader.record("SPHR", 0, "centre", 2), 0.25);
+    EXPECT_EQ(reader.record("SPHR", 0, "bone"), -1);
+    EXPECT_EQ(reader.record("FLLW", 0, "hairsPerGuide"), 6);
+    EXPECT_EQ(reader.record("FLLW", 0, "pointsPerHair"), 12);
+    std::map<std::string, double> settings;
+    for (std::size_t s = 0; s < reader.count("SETT"); ++s) {
+        const auto first = static_cast<std::size_t>(reader.record("SETT", s, "firstValue"));
+        double value = 0;
+        std::memcpy(&value, reader.at("VALS") + 8 * first, sizeof value);
+        settings[reader.text(reader.record("SETT", s, "nameAt"), reader.record("SETT", s, "nameBytes"))] =
+            value;
+    }
+    EXPECT_EQ(settings.at("simulation.windSpeed"), 3.5);
+    EXPECT_EQ(settings.at("interpolation.followPerGuide"), 6);
+}
+
+}  // namespace
+}  // namespace hairloom::test
