@@ -110,6 +110,13 @@ Measurements measureState(const RestShape& shape, const State& state, const Simu
     return result;
 }
 
+std::uint32_t Engine::asleep() const {
+    std::uint32_t strands = 0;
+    for (std::size_t b = 0; b < impl_->state_.rests.size(); ++b)
+        strands += impl_->state_.rests[b].asleep ? impl_->shape_->blocks[b].strands : 0;
+    return strands;
+}
+
 std::size_t Engine::Impl::effectBytes(Effect effect) const {
     const std::size_t plane = shape_->planeFloats * sizeof(float);
     const std::size_t targets = bend_.targets ? 3 * plane : 0;

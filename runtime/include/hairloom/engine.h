@@ -108,6 +108,8 @@ class Engine {
     /// The plan of the last step, or of the strands at rest before the first.
     const EffectPlan& plan() const;
     const StepReport& lastStep() const;
+    /// Strands that sleep; unlike measure(), at no cost to speak of.
+    std::uint32_t asleep() const;
     Measurements measure() const;
     /// Memory that exists because of this effect; 0 while it is off.
     std::size_t effectBytes(Effect effect) const;

@@ -1,0 +1,165 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef HAIRLOOM_HAIRLOOM_H
+#define HAIRLOOM_HAIRLOOM_H
+/* Plays runtime assets (.hairrt) in a game: C99. hairloom/hairloom.hpp is the same for C++17.
+ *
+ * An asset is a view of a file in memory. An instance is one character's hair: it is made from an asset,
+ * stepped once a frame, and read. Metres, seconds, Y up, right-handed; matrices are three rows of four, row
+ * by row, and take columns (x, y, z, 1).
+ *
+ * No call throws, keeps state of its own, or reads beyond the sizes that it is given. Calls on different
+ * instances may run at the same time; calls on one may not. Every call that can fail returns a code and,
+ * where `error` is not null, says in words what was wrong. A call that fails changes nothing. Of a thread's
+ * stack a call takes at most 64 KB. */
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum hl_code {
+    HL_OK = 0,
+    HL_DAMAGED = 1,    /* the asset is damaged, or none */
+    HL_NEWER = 2,      /* the asset is of a version that this library does not know */
+    HL_WRONG_SIZE = 3, /* an array or a struct has another size than is needed */
+    HL_BAD_VALUE = 4,  /* a number out of range or not finite, a null pointer, an unknown name */
+    HL_NO_MEMORY = 5
+} hl_code;
+
+#define HL_NO_PLACE UINT64_MAX
+typedef struct hl_error {
+    hl_code code;
+    uint64_t byte;   /* of the asset, near which it is damaged; HL_NO_PLACE where that is not what is wrong */
+    char words[232]; /* ends in 0 */
+} hl_error;
+
+/* --- Assets --- */
+
+/* The caller's; holds no memory of its own. Do not look inside. */
+typedef struct hl_asset {
+    uint64_t inside[40];
+} hl_asset;
+
+typedef struct hl_asset_info {
+    uint32_t major, minor;
+    uint32_t guides, guide_points;   /* strands that are simulated, and points of all of them */
+    uint32_t hairs, points_per_hair; /* follow hairs; 0 where there are none */
+    uint32_t bones, spheres;
+    uint32_t scalp_vertices;            /* of the head, that roots need; 0 where roots move rigidly */
+    float bounds_min[3], bounds_max[3]; /* of all guides at rest */
+    float greatest_error;               /* metres, of a point at rest */
+    /* Bytes that an instance holds at most: on one thread, ... */
+    size_t guides_memory;
+    size_t hairs_memory;  /* ... what HL_HAIRS adds, ... */
+    size_t thread_memory; /* ... and each further thread of the machine where there are hl_jobs */
+} hl_asset_info;
+
+/* Looks at header and table of the file alone. `bytes` begin at a multiple of 16 and outlive the asset. */
+hl_code hl_asset_open(hl_asset* asset, const void* bytes, size_t size, hl_error* error);
+/* Compares all checksums and looks at every record. hl_instance_make does the second by itself. */
+hl_code hl_asset_check(const hl_asset* asset, hl_error* error);
+/* Of an asset whose content is sound; looks at every record. */
+hl_code hl_asset_describe(const hl_asset* asset, hl_asset_info* info, hl_error* error);
+
+typedef struct hl_bone {
+    const char* name; /* UTF-8, does not end in 0 */
+    size_t name_bytes;
+    uint32_t index;         /* in the skeleton of the file that the head came from */
+    float inverse_bind[12]; /* from the head at rest to the bone */
+} hl_bone;
+/* Bones by whose numbers hl_frame takes matrices, `bone` from 0. */
+hl_code hl_asset_bone(const hl_asset* asset, uint32_t bone, hl_bone* out, hl_error* error);
+/* The vertex of the head's file of each scalp vertex. */
+hl_code hl_asset_scalp_sources(const hl_asset* asset, uint32_t* vertices, size_t count, hl_error* error);
+/* Numbers of a setting: "simulation.windSpeed", "material.rootColour". `written` says how many there are,
+ * also where `count` is too small. Choices have none. */
+hl_code hl_asset_numbers(const hl_asset* asset, const char* name, double* values, size_t count,
+                         size_t* written, hl_error* error);
+
+/* --- Instances --- */
+
+typedef struct hl_instance hl_instance;
+
+/* Lends threads. Calls body(context, begin, end) for pieces of [0, count) of about `grain` elements and
+ * returns when all are done. */
+typedef struct hl_jobs {
+    void* user;
+    void (*parallel_for)(void* user, size_t count, size_t grain,
+                         void (*body)(void* context, size_t begin, size_t end), void* context);
+} hl_jobs;
+
+enum { HL_GUIDES = 0, HL_HAIRS = 1 };
+
+/* A copy of what it needs: the asset may go afterwards. `what` is HL_GUIDES, or HL_HAIRS to read follow hairs
+ * as well. `jobs` may be null: all on the calling thread. All memory is asked for here and at the first
+ * frames of new effects or more spheres, none by other steps. At rest on the head at rest until it is reset
+ * or stepped. */
+hl_code hl_instance_make(const hl_asset* asset, uint32_t what, const hl_jobs* jobs, hl_instance** out,
+                         hl_error* error);
+void hl_instance_free(hl_instance* instance); /* null is allowed */
+
+/* Where the head is at the end of a frame. Begin with hl_frame_init(); what stays 0 or null is not there.
+ * Roots follow, the first of these that is there: `roots`, `scalp`, `bones`, `head`. Spheres follow
+ * `spheres`, else `bones`, else `head`. A matrix or root that is not finite leaves its strands where they
+ * were. */
+typedef struct hl_frame {
+    size_t size;       /* sizeof(hl_frame), set by hl_frame_init() */
+    float dt;          /* seconds, 1e-6 or more; may change from frame to frame */
+    double time;       /* seconds at the end of the frame; drives gusts alone */
+    const float* head; /* 12: from the head at rest to the world, rigid; null: the head at rest */
+    const float*
+        bones; /* 12 of each of the asset's bones: from the head at rest to the world (skinning matrices) */
+    size_t bone_count;
+    const float* scalp; /* 3 of each scalp vertex: where they are, world */
+    size_t scalp_count;
+    const float*
+        roots; /* 7 of each guide: position and unit quaternion x, y, z, w of its turn since rest, world */
+    size_t root_count;
+    const float* spheres; /* 4 of each: centre and radius, world. The asset's own where it is null */
+    size_t sphere_count;
+    const float* wind; /* 3: the mean wind, m/s, in place of the authored one; null: as authored */
+    double origin[3];  /* that roots, bones' results, spheres and what is read are measured from, world */
+} hl_frame;
+void hl_frame_init(hl_frame* frame);
+
+/* At rest on the frame's roots, without speed. dt is not looked at. */
+hl_code hl_instance_reset(hl_instance* instance, const hl_frame* frame, hl_error* error);
+hl_code hl_instance_step(hl_instance* instance, const hl_frame* frame, hl_error* error);
+
+/* Replaces a setting of the engine from the next step on: name without group, "windSpeed"; may ask for
+ * memory. */
+hl_code hl_instance_set(hl_instance* instance, const char* name, const double* values, size_t count,
+                        hl_error* error);
+
+typedef struct hl_instance_info {
+    uint32_t guides, guide_points, hairs, points_per_hair;
+    uint32_t asleep;   /* guides */
+    uint32_t restored; /* guides that the last step put back to rest because they were no numbers */
+    uint32_t left_roots, left_spheres; /* of the last step that were not finite */
+    size_t bytes;                      /* that the instance holds */
+} hl_instance_info;
+hl_code hl_instance_describe(const hl_instance* instance, hl_instance_info* info, hl_error* error);
+/* First point of each guide, and the number of all points: guides + 1. */
+hl_code hl_instance_offsets(const hl_instance* instance, uint32_t* offsets, size_t count, hl_error* error);
+/* Of all positions and speeds: equal for any number of threads. */
+uint64_t hl_instance_hash(const hl_instance* instance);
+
+/* Where a value of each point goes: at data, data + stride, ... Size and stride in bytes. Without data it is
+ * left out. */
+typedef struct hl_out {
+    void* data;
+    size_t bytes, stride;
+} hl_out;
+/* Guide after guide, or hair after hair, from root to tip: float[3] position, float[3] tangent of unit
+ * length, float radius. HL_WRONG_SIZE where one does not fit; nothing is written then. */
+hl_code hl_instance_read_guides(hl_instance* instance, hl_out positions, hl_out tangents, hl_out radii,
+                                hl_error* error);
+hl_code hl_instance_read_hairs(hl_instance* instance, hl_out positions, hl_out tangents, hl_out radii,
+                               hl_error* error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

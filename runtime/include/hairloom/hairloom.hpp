@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// hairloom.h for C++17: objects that clean up after themselves, and std::vector where a caller has no buffer
+// of its own. Nothing is thrown but what the standard library throws.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "hairloom/hairloom.h"
+
+namespace hairloom::game {
+
+/// Why the last call failed.
+struct Error : hl_error {
+    Error() : hl_error{} {}
+    std::string_view what() const { return words; }
+};
+
+/// A frame that begins empty; `head`, `bones` and the like point at what the caller keeps.
+struct Frame : hl_frame {
+    explicit Frame(float seconds = 1.0f / 60.0f) {
+        hl_frame_init(this);
+        dt = seconds;
+    }
+};
+
+/// Values of `components` floats each, one after another.
+inline hl_out tight(std::vector<float>& values, std::size_t components) {
+    return {values.data(), values.size() * sizeof(float), components * sizeof(float)};
+}
+inline constexpr hl_out kNothing{nullptr, 0, 0};
+
+class Asset {
+  public:
+    /// False where the bytes are refused. They outlive the asset and begin at a multiple of 16.
+    bool open(const void* bytes, std::size_t size, hl_error* error = nullptr) {
+        return hl_asset_open(&asset_, bytes, size, error) == HL_OK;
+    }
+    bool check(hl_error* error = nullptr) const { return hl_asset_check(&asset_, error) == HL_OK; }
+    /// All 0 where the content is damaged.
+    hl_asset_info describe(hl_error* error = nullptr) const {
+        hl_asset_info info{};
+        hl_asset_describe(&asset_, &info, error);
+        return info;
+    }
+    /// The first number of a setting, or `missing`.
+    double number(const char* name, double missing) const {
+        double values[32];
+        std::size_t count = 0;
+        return hl_asset_numbers(&asset_, name, values, 32, &count, nullptr) == HL_OK && count > 0 ? values[0]
+                                                                                                  : missing;
+    }
+    const hl_asset* get() const { return &asset_; }
+
+  private:
+    hl_asset asset_{};
+};
+
+class Instance {
+  public:
+    Instance() = default;
+    /// `what` is HL_GUIDES or HL_HAIRS. False where the asset is refused.
+    bool make(const Asset& asset, std::uint32_t what, const hl_jobs* jobs = nullptr,
+              hl_error* error = nullptr) {
+        hl_instance* made = nullptr;
+        const bool good = hl_instance_make(asset.get(), what, jobs, &made, error) == HL_OK;
+        if (good) instance_.reset(made);
+        return good;
+    }
+    bool reset(const hl_frame& frame, hl_error* error = nullptr) {
+        return hl_instance_reset(instance_.get(), &frame, error) == HL_OK;
+    }
+    bool step(const hl_frame& frame, hl_error* error = nullptr) {
+        return hl_instance_step(instance_.get(), &frame, error) == HL_OK;
+    }
+    bool set(const char* name, double value, hl_error* error = nullptr) {
+        return hl_instance_set(instance_.get(), name, &value, 1, error) == HL_OK;
+    }
+    hl_instance_info describe() const {
+        hl_instance_info info{};
+        hl_instance_describe(instance_.get(), &info, nullptr);
+        return info;
+    }
+    std::uint64_t hash() const { return hl_instance_hash(instance_.get()); }
+    /// Three floats of each point; resizes.
+    bool readGuides(std::vector<float>& positions, hl_error* error = nullptr) {
+        positions.resize(std::size_t{3} * describe().guide_points);
+        return hl_instance_read_guides(instance_.get(), tight(positions, 3), kNothing, kNothing, error) ==
+               HL_OK;
+    }
+    bool readHairs(std::vector<float>& positions, hl_error* error = nullptr) {
+        const hl_instance_info info = describe();
+        positions.resize(std::size_t{3} * info.hairs * info.points_per_hair);
+        return hl_instance_read_hairs(instance_.get(), tight(positions, 3), kNothing, kNothing, error) ==
+               HL_OK;
+    }
+    hl_instance* get() const { return instance_.get(); }
+
+  private:
+    struct Free {
+        void operator()(hl_instance* instance) const { hl_instance_free(instance); }
+    };
+    std::unique_ptr<hl_instance, Free> instance_;
+};
+
+}  // namespace hairloom::game

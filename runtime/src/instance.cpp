@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: MIT
+#include "src/instance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+
+#include "src/follow_kernels.h"
+#include "src/rods.h"
+#include "src/state.h"
+
+namespace hairloom::runtime {
+namespace {
+
+Refusal wrongSize(const std::string& what, std::size_t size, std::size_t wanted) {
+    return {HL_WRONG_SIZE, std::to_string(size) + " " + what + "; expected " + std::to_string(wanted)};
+}
+
+Float3 float3At(const float* values, std::size_t index) {
+    return {values[3 * index], values[3 * index + 1], values[3 * index + 2]};
+}
+
+Matrix34 matrixAt(const float* values, std::size_t index) {
+    Matrix34 matrix;
+    std::copy_n(values + 12 * index, 12, matrix.begin());
+    return matrix;
+}
+
+/// Whether a value of `size` bytes of each of `count` points fits.
+Outcome fits(const hl_out& out, const char* what, std::size_t count, std::size_t size) {
+    if (!out.data) return std::nullopt;
+    if (out.stride < size) return wrongSize(std::string("bytes of stride of ") + what, out.stride, size);
+    if (out.bytes < size || (count > 0 && (out.bytes - size) / out.stride < count - 1))
+        return Refusal{HL_WRONG_SIZE,
+                       std::to_string(out.bytes) + " bytes for " + std::to_string(count) + " " + what};
+    return std::nullopt;
+}
+
+template <class T>
+void store(const hl_out& out, std::size_t index, const T& value) {
+    std::memcpy(static_cast<char*>(out.data) + index * out.stride, &value, sizeof value);
+}
+
+/// Of unit length, from the neighbours of a point; upwards where they coincide.
+Float3 tangentAt(std::span<const Float3> strand, std::size_t p) {
+    const Float3 along = strand[std::min(p + 1, strand.size() - 1)] - strand[p > 0 ? p - 1 : 0];
+    const float size = length(along);
+    return size > 1e-12f && std::isfinite(size) ? along * (1 / size) : Float3{0, 1, 0};
+}
+
+float between(float root, float tip, std::size_t p, std::size_t points) {
+    return root + (tip - root) * static_cast<float>(p) / static_cast<float>(points - 1);
+}
+
+std::size_t bytesOf(const Engine& engine) {
+    std::size_t bytes = engine.baseBytes();
+    for (std::uint32_t effect = 0; effect < kEffectCount; ++effect)
+        bytes += engine.effectBytes(static_cast<Effect>(effect));
+    return bytes;
+}
+
+std::size_t rowFloatsOf(std::size_t points) {
+    return (points * 3 + kRowFloats - 1) / kRowFloats * kRowFloats;
+}
+
+/// As FollowHairs keeps them.
+std::size_t followBytes(std::size_t guides, std::size_t hairs, std::size_t points) {
+    return hairs * (sizeof(HairBinding) + points * sizeof(Float3)) + points * sizeof(float) +
+           guides * (sizeof(float) * (rowFloatsOf(points) * (1 + kWispRows) + kFrameFloats) +
+                     sizeof(RootPlane) + sizeof(std::size_t) + points * sizeof(GuideSample));
+}
+
+/// Of an instance beside its engine and follow hairs.
+std::size_t ownBytes(std::size_t strands, std::size_t points, bool hairs) {
+    return strands * (sizeof(RootFrame) + sizeof(Quat) + sizeof(std::uint32_t)) +
+           points * sizeof(Float3) * (hairs ? 2 : 1);
+}
+
+}  // namespace
+
+InstanceMemory instanceMemory(const Asset& asset) {
+    // Strands of one point count fill blocks; straight ones and others are apart, and the last of each has
+    // room to spare.
+    std::map<std::uint32_t, std::size_t> strandsOf;
+    std::uint32_t longest = 0;
+    for (const asset::Strand& strand : asset.strands) {
+        ++strandsOf[strand.points];
+        longest = std::max<std::uint32_t>(longest, strand.points);
+    }
+    std::size_t planeFloats = 0, blocks = 0;
+    for (const auto& [points, strands] : strandsOf) {
+        const std::size_t more = strands / kBlockLanes + std::min<std::size_t>(strands, 2);
+        blocks += more;
+        planeFloats += more * (std::size_t{points} * kBlockLanes + kPlanePadding);
+    }
+    const std::size_t solver = *std::ranges::max_element(kernels().solverFloats) * std::size_t{longest};
+    const std::size_t planes = kRestPlanes + kStatePlanes + kRodRestPlanes + kRodStatePlanes;
+    const std::size_t lanes =
+        (2 * kRootRows + kRodLaneRows) * kBlockLanes * sizeof(float) + sizeof(Block) + 1024;
+    const std::size_t guides =
+        planeFloats * planes * sizeof(float) + blocks * lanes +
+        asset.strands.size() * (sizeof(RootFrame) + sizeof(std::uint32_t)) + sizeof(LaneFrame) +
+        (solver + 4096) * sizeof(float) + asset.spheres.size() * 4 * sizeof(MovingSphere) +
+        ownBytes(asset.strandCount(), asset.pointCount(), false) + asset.radii.size() * sizeof(float) +
+        RootPoses::bytesFor(asset) + asset.spheres.size() * sizeof(asset::Sphere);
+    const std::size_t thread = sizeof(LaneFrame) + (solver + 4096) * sizeof(float);
+    if (asset.hairCount() == 0) return {guides, 0, thread};
+    return {guides,
+            followBytes(asset.strandCount(), asset.hairCount(), asset.recipe[0].pointsPerHair) +
+                ownBytes(asset.strandCount(), asset.pointCount(), true) -
+                ownBytes(asset.strandCount(), asset.pointCount(), false),
+            thread};
+}
+
+Instance::Result Instance::make(const Asset& asset, bool wantsHairs, Host host) {
+    Asset::Strands strands = asset.strandsAtRest();
+    Engine::Result made = Engine::make({strands.offsets, strands.positions_ss}, asset.simulation(), host);
+    if (!made.engine) return {std::nullopt, std::move(made.error)};
+    Instance instance(std::move(*made.engine), RootPoses(asset, strands), std::move(host));
+    instance.roots_.resize(asset.strands.size());
+    instance.turns_.resize(asset.strands.size());
+    instance.restSpheres_.assign(asset.spheres.begin(), asset.spheres.end());
+    instance.spheres_.resize(asset.spheres.size());
+    instance.scalp_.resize(asset.scalpVertices.size());
+    instance.positions_.resize(strands.positions_ss.size());
+    for (const std::uint16_t radius : asset.radii)
+        instance.radii_.own.push_back(static_cast<float>(radius) * asset::kRadiusStep);
+    instance.radii_.root = static_cast<float>(asset.numberOf("material.rootRadius", 0.00004));
+    instance.radii_.tip = instance.radii_.root * static_cast<float>(asset.numberOf("material.tipScale", 0.4));
+    if (wantsHairs && asset.hairCount() > 0) {
+        FollowHairs::Result hairs = asset.followHairs(strands, instance.host_);
+        if (!hairs.hairs) return {std::nullopt, std::move(hairs.error)};
+        instance.hairs_ = std::move(hairs.hairs);
+        instance.velocities_.resize(instance.positions_.size());
+        instance.hairPositions_.resize(std::size_t{instance.hairs_->hairCount()} *
+                                       instance.hairs_->pointsPerHair());
+    }
+    instance.offsets_ = std::move(strands.offsets);
+    instance.poses_.followHead(kIdentity34, instance.roots_);
+    instance.engine_.reset(instance.roots_);
+    return {std::move(instance), {}};
+}
+
+Outcome Instance::placeRoots(const hl_frame& frame) {
+    const Matrix34 head = frame.head ? matrixAt(frame.head, 0) : kIdentity34;
+    if (frame.roots) {
+        if (frame.root_count != roots_.size()) return wrongSize("roots", frame.root_count, roots_.size());
+        for (std::size_t s = 0; s < roots_.size(); ++s) {
+            const float* root = frame.roots + 7 * s;
+            roots_[s] = {{root[0], root[1], root[2]}, {root[3], root[4], root[5], root[6]}};
+        }
+        return std::nullopt;
+    }
+    if (frame.scalp) {
+        if (frame.scalp_count != scalp_.size())
+            return wrongSize("scalp vertices", frame.scalp_count, scalp_.size());
+        if (!poses_.hasScalp()) return Refusal{HL_BAD_VALUE, "the asset's roots stand on no scalp"};
+        for (std::size_t v = 0; v < scalp_.size(); ++v) scalp_[v] = float3At(frame.scalp, v);
+        poses_.followScalp(scalp_, roots_);
+        return std::nullopt;
+    }
+    if (frame.bones) {
+        if (frame.bone_count != poses_.boneCount())
+            return wrongSize("bones", frame.bone_count, poses_.boneCount());
+        if (poses_.hasScalp()) {
+            poses_.followBones({frame.bones, 12 * frame.bone_count}, head, roots_);
+            return std::nullopt;
+        }
+    }
+    poses_.followHead(head, roots_);
+    return std::nullopt;
+}
+
+Outcome Instance::placeSpheres(const hl_frame& frame, FrameInput& input) {
+    if (frame.spheres) {
+        if (frame.sphere_count > 4096) return wrongSize("spheres", frame.sphere_count, 4096);
+        if (spheres_.size() < frame.sphere_count) spheres_.resize(frame.sphere_count);
+        for (std::size_t s = 0; s < frame.sphere_count; ++s) {
+            const float* sphere = frame.spheres + 4 * s;
+            spheres_[s] = {{sphere[0], sphere[1], sphere[2]}, sphere[3]};
+        }
+        input.spheres = std::span(spheres_).first(frame.sphere_count);
+        return std::nullopt;
+    }
+    const Matrix34 head = frame.head ? matrixAt(frame.head, 0) : kIdentity34;
+    for (std::size_t s = 0; s < restSpheres_.size(); ++s) {
+        const asset::Sphere& sphere = restSpheres_[s];
+        const bool boned = frame.bones && sphere.bone >= 0;
+        const Matrix34 matrix = boned ? matrixAt(frame.bones, static_cast<std::size_t>(sphere.bone)) : head;
+        spheres_[s] = {transform(matrix, {sphere.centre[0], sphere.centre[1], sphere.centre[2]}),
+                       sphere.radius};
+    }
+    input.spheres = std::span(spheres_).first(restSpheres_.size());
+    return std::nullopt;
+}
+
+Outcome Instance::place(const hl_frame& frame, FrameInput& input) {
+    if (frame.size != sizeof(hl_frame)) return wrongSize("bytes of hl_frame", frame.size, sizeof(hl_frame));
+    if (frame.bones && frame.bone_count != poses_.boneCount())
+        return wrongSize("bones", frame.bone_count, poses_.boneCount());
+    // Last, since it is what read-outs look at: nothing is refused any more once it has begun to write.
+    if (Outcome refused = placeSpheres(frame, input)) return refused;
+    if (Outcome refused = placeRoots(frame)) return refused;
+    input.dt = frame.dt;
+    input.time = frame.time;
+    input.roots_ws = roots_;
+    if (frame.wind) input.wind_ws = float3At(frame.wind, 0);
+    input.origin_ws = {frame.origin[0], frame.origin[1], frame.origin[2]};
+    return std::nullopt;
+}
+
+Outcome Instance::reset(const hl_frame& frame) {
+    FrameInput input;
+    if (Outcome refused = place(frame, input)) return refused;
+    engine_.reset(roots_);
+    takeTurns();
+    return std::nullopt;
+}
+
+/// Roots that are no numbers stay where they were, and so does what is turned with them.
+void Instance::takeTurns() {
+    for (std::size_t s = 0; s < roots_.size(); ++s) {
+        Quat rotation = roots_[s].rotation;
+        if (isFinite(roots_[s].position) && normalize(rotation)) turns_[s] = roots_[s].rotation;
+    }
+}
+
+Outcome Instance::step(const hl_frame& frame) {
+    // Speeds of a shorter step are no numbers any more.
+    if (!(frame.dt >= 1e-6f) || !std::isfinite(frame.dt))
+        return Refusal{HL_BAD_VALUE, "dt is " + std::to_string(frame.dt) + "; expected 0.000001 s or more"};
+    FrameInput input;
+    if (Outcome refused = place(frame, input)) return refused;
+    engine_.step(input);
+    takeTurns();
+    return std::nullopt;
+}
+
+Outcome Instance::set(std::string_view name, std::span<const double> values) {
+    const auto* field = findField<SimulationSettings>(name);
+    const auto refuse = [&](const std::string& why) {
+        return Refusal{HL_BAD_VALUE, "setting '" + std::string(name) + "' " + why};
+    };
+    if (!field) return refuse("does not exist");
+    if (field->kind == FieldKind::Ramp) return refuse("is a curve");
+    if (values.size() != field->components())
+        return wrongSize("values of '" + std::string(name) + "'", values.size(), field->components());
+    SimulationSettings settings = engine_.settings();
+    for (std::uint32_t c = 0; c < values.size(); ++c) {
+        if (!setFieldValue(settings, *field, values[c], c))
+            return refuse("is " + std::to_string(values[c]) + "; expected " + std::to_string(field->min) +
+                          " to " + std::to_string(field->max));
+    }
+    if (const std::string why = engine_.setSettings(settings); !why.empty())
+        return Refusal{HL_BAD_VALUE, why};
+    return std::nullopt;
+}
+
+Outcome Instance::readGuides(const hl_out& positions, const hl_out& tangents, const hl_out& radii) {
+    const std::size_t points = positions_.size();
+    if (Outcome refused = fits(positions, "positions", points, sizeof(Float3))) return refused;
+    if (Outcome refused = fits(tangents, "tangents", points, sizeof(Float3))) return refused;
+    if (Outcome refused = fits(radii, "radii", points, sizeof(float))) return refused;
+    engine_.readPositions(positions_);
+    for (std::size_t s = 0; s + 1 < offsets_.size(); ++s) {
+        const std::size_t first = offsets_[s], count = offsets_[s + 1] - first;
+        const auto strand = std::span<const Float3>(positions_).subspan(first, count);
+        for (std::size_t p = 0; p < count; ++p) {
+            if (positions.data) store(positions, first + p, strand[p]);
+            if (tangents.data) store(tangents, first + p, tangentAt(strand, p));
+            if (radii.data)
+                store(
+                    radii, first + p,
+                    radii_.own.empty() ? between(radii_.root, radii_.tip, p, count) : radii_.own[first + p]);
+        }
+    }
+    return std::nullopt;
+}
+
+Outcome Instance::readHairs(const hl_out& positions, const hl_out& tangents, const hl_out& radii) {
+    if (!hairs_)
+        return Refusal{HL_BAD_VALUE, "the instance was made without follow hairs, or the asset has none"};
+    const std::size_t count = hairs_->pointsPerHair(), points = hairPositions_.size();
+    if (Outcome refused = fits(positions, "positions", points, sizeof(Float3))) return refused;
+    if (Outcome refused = fits(tangents, "tangents", points, sizeof(Float3))) return refused;
+    if (Outcome refused = fits(radii, "radii", points, sizeof(float))) return refused;
+    engine_.readPositions(positions_);
+    engine_.readVelocities(velocities_);
+    hairs_->evaluate({positions_, velocities_, turns_}, hairPositions_, host_);
+    const auto write = [&](std::size_t begin, std::size_t end) {
+        for (std::size_t hair = begin; hair < end; ++hair) {
+            const auto strand = std::span<const Float3>(hairPositions_).subspan(hair * count, count);
+            for (std::size_t p = 0; p < count; ++p) {
+                const std::size_t at = hair * count + p;
+                if (positions.data) store(positions, at, strand[p]);
+                if (tangents.data) store(tangents, at, tangentAt(strand, p));
+                if (radii.data) store(radii, at, between(radii_.root, radii_.tip, p, count));
+            }
+        }
+    };
+    constexpr std::size_t kHairsPerPiece = 512;
+    if (host_.parallelFor)
+        host_.parallelFor(hairs_->hairCount(), kHairsPerPiece, std::cref(write));
+    else
+        write(0, hairs_->hairCount());
+    return std::nullopt;
+}
+
+Outcome Instance::readOffsets(std::span<std::uint32_t> offsets) const {
+    if (offsets.size() != offsets_.size()) return wrongSize("offsets", offsets.size(), offsets_.size());
+    std::ranges::copy(offsets_, offsets.begin());
+    return std::nullopt;
+}
+
+hl_instance_info Instance::describe() const {
+    hl_instance_info info{};
+    info.guides = static_cast<std::uint32_t>(roots_.size());
+    info.guide_points = static_cast<std::uint32_t>(positions_.size());
+    info.hairs = hairs_ ? hairs_->hairCount() : 0;
+    info.points_per_hair = hairs_ ? hairs_->pointsPerHair() : 0;
+    const StepReport& report = engine_.lastStep();
+    info.asleep = engine_.asleep();
+    info.restored = report.restoredStrands;
+    info.left_roots = report.rejectedRoots;
+    info.left_spheres = report.rejectedSpheres;
+    info.bytes = sizeof(Instance) + bytesOf(engine_) + poses_.bytes() +
+                 ownBytes(roots_.size(), positions_.size(), hairs_.has_value()) +
+                 radii_.own.size() * sizeof(float) + restSpheres_.size() * sizeof(asset::Sphere) +
+                 spheres_.size() * sizeof(Sphere) + scalp_.size() * sizeof(Float3) +
+                 (hairs_ ? followBytes(roots_.size(), info.hairs, info.points_per_hair) : 0);
+    return info;
+}
+
+}  // namespace hairloom::runtime
