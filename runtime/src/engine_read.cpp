@@ -136,7 +136,9 @@ std::size_t Engine::Impl::effectBytes(Effect effect) const {
 
 std::size_t Engine::Impl::baseBytes() const {
     return shape_->bytes() +
-           (state_.planes.size() + state_.roots.size() + evaluation_.size()) * sizeof(float) +
+           (state_.planes.size() + state_.roots.size() + state_.rods.size() + state_.rodLanes.size() +
+            evaluation_.size()) *
+               sizeof(float) +
            (state_.spheres.size() + spheres_.usable.size()) * sizeof(Sphere) +
            state_.rests.size() * sizeof(Rest) + nextRoots_.size() * sizeof(float) +
            blockReports_.size() * sizeof(BlockReport) + scratch_.bytes();

@@ -122,6 +122,7 @@ Instance::Result Instance::make(const Asset& asset, bool wantsHairs, Host host) 
     instance.turns_.resize(asset.strands.size());
     instance.restSpheres_.assign(asset.spheres.begin(), asset.spheres.end());
     instance.spheres_.resize(asset.spheres.size());
+    instance.last_.bones.reserve(12 * asset.bones.size());
     instance.scalp_.resize(asset.scalpVertices.size());
     instance.positions_.resize(strands.positions_ss.size());
     for (const std::uint16_t radius : asset.radii)
@@ -215,6 +216,7 @@ Outcome Instance::reset(const hl_frame& frame) {
     if (Outcome refused = place(frame, input)) return refused;
     engine_.reset(roots_);
     takeTurns();
+    asleep_ = false;
     return std::nullopt;
 }
 
@@ -230,11 +232,38 @@ Outcome Instance::step(const hl_frame& frame) {
     // Speeds of a shorter step are no numbers any more.
     if (!(frame.dt >= 1e-6f) || !std::isfinite(frame.dt))
         return Refusal{HL_BAD_VALUE, "dt is " + std::to_string(frame.dt) + "; expected 0.000001 s or more"};
+    // Nothing wakes it: a step would leave every bit as it is.
+    if (asleep_ && asBefore(frame)) return std::nullopt;
     FrameInput input;
     if (Outcome refused = place(frame, input)) return refused;
     engine_.step(input);
     takeTurns();
+    remember(frame);
+    asleep_ = engine_.asleep() == engine_.strandCount();
     return std::nullopt;
+}
+
+bool Instance::asBefore(const hl_frame& frame) const {
+    const auto same = [](const float* given, const auto& known) {
+        return std::memcmp(given, known.data(), known.size() * sizeof(float)) == 0;
+    };
+    return last_.known && frame.size == sizeof(hl_frame) && !frame.roots && !frame.scalp && !frame.spheres &&
+           frame.dt == last_.dt && std::equal(last_.origin.begin(), last_.origin.end(), frame.origin) &&
+           same(frame.head ? frame.head : kIdentity34.data(), last_.head) &&
+           (frame.wind != nullptr) == last_.hasWind && (!frame.wind || same(frame.wind, last_.wind)) &&
+           (frame.bones ? frame.bone_count : 0) * 12 == last_.bones.size() &&
+           (!frame.bones || same(frame.bones, last_.bones));
+}
+
+void Instance::remember(const hl_frame& frame) {
+    last_.known = !frame.roots && !frame.scalp && !frame.spheres;
+    if (!last_.known) return;
+    last_.dt = frame.dt;
+    std::copy_n(frame.origin, 3, last_.origin.begin());
+    last_.head = frame.head ? matrixAt(frame.head, 0) : kIdentity34;
+    last_.hasWind = frame.wind != nullptr;
+    if (frame.wind) std::copy_n(frame.wind, 3, last_.wind.begin());
+    last_.bones.assign(frame.bones, frame.bones ? frame.bones + 12 * frame.bone_count : frame.bones);
 }
 
 Outcome Instance::set(std::string_view name, std::span<const double> values) {

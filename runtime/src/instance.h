@@ -56,6 +56,8 @@ class Instance {
     Outcome placeRoots(const hl_frame& frame);
     Outcome placeSpheres(const hl_frame& frame, FrameInput& input);
     void takeTurns();
+    bool asBefore(const hl_frame& frame) const;
+    void remember(const hl_frame& frame);
 
     Engine engine_;
     std::optional<FollowHairs> hairs_;
@@ -67,6 +69,16 @@ class Instance {
     std::vector<Sphere> spheres_;
     std::vector<RootFrame> roots_;
     std::vector<Quat> turns_;
+    /// What the last step was given, where all of it is a head or bones; hair that sleeps needs no other.
+    struct LastFrame {
+        bool known = false, hasWind = false;
+        float dt = 0;
+        std::array<double, 3> origin{};
+        Matrix34 head{};
+        std::array<float, 3> wind{};
+        std::vector<float> bones;
+    } last_;
+    bool asleep_ = false;
     std::vector<Float3> scalp_, positions_, velocities_, hairPositions_;
 };
 

@@ -93,6 +93,40 @@ TEST_F(RuntimeLibrary, GivesTheBitsOfTheEditorsSimulation) {
     }
 }
 
+TEST_F(RuntimeLibrary, SleepsForNothingAndWakesWithTheSameBits) {
+    Groom groom = hairOfADome();
+    groom.simulation.windSpeed = 0;
+    Instance hair;
+    ASSERT_TRUE(hair.make(opened(groom), HL_GUIDES));
+    const Groom asset = readBack();
+    auto simulation = Simulation::make(asset, HeadPose()).value();
+    std::array<float, 12> head{};
+    Frame frame(kFrame);
+    frame.head = head.data();
+    HeadPose pose;
+    bool slept = false;
+    for (int f = 1; f <= 400; ++f) {
+        if (f > 300) pose.head_ws.translation().x() = 0.001f * static_cast<float>(f - 300);
+        head = rows(pose.head_ws.matrix());
+        if (f == 1) {
+            ASSERT_TRUE(hair.reset(frame));
+        }
+        simulation.step(kFrame, pose);
+        frame.time += static_cast<double>(kFrame);
+        ASSERT_TRUE(hair.step(frame));
+        ASSERT_EQ(hair.hash(), simulation.stats().stateHash) << f;
+        slept = slept || (f == 300 && hair.describe().asleep == hair.describe().guides);
+    }
+    EXPECT_TRUE(slept);
+    EXPECT_EQ(hair.describe().asleep, 0u);
+    const std::uint64_t before = hair.hash();
+    ASSERT_TRUE(hair.set("windSpeed", 4));
+    for (int f = 0; f < 20; ++f) {
+        ASSERT_TRUE(hair.step(frame));
+    }
+    EXPECT_NE(hair.hash(), before);
+}
+
 /// Hair on the sample head, which has a skeleton and a clip.
 struct Character {
     std::shared_ptr<const Actor> actor;
@@ -345,7 +379,8 @@ TEST_F(RuntimeLibrary, NumbersThatAreNoneAndAnyStepAreSurvived) {
         std::vector<float> points;
         const auto sound = [&](const char* what) {
             ASSERT_TRUE(hair.readHairs(points));
-            for (const float value : points) ASSERT_TRUE(std::isfinite(value)) << what << " of model " << static_cast<int>(model);
+            for (const float value : points)
+                ASSERT_TRUE(std::isfinite(value)) << what << " of model " << static_cast<int>(model);
         };
         Frame frame;
         frame.head = none.data();
