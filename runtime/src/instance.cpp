@@ -95,7 +95,8 @@ InstanceMemory instanceMemory(const Asset& asset) {
         planeFloats += more * (std::size_t{points} * kBlockLanes + kPlanePadding);
     }
     const std::size_t solver = *std::ranges::max_element(kernels().solverFloats) * std::size_t{longest};
-    const std::size_t planes = kRestPlanes + kStatePlanes + kRodRestPlanes + kRodStatePlanes;
+    // Rods take more than springs with any integrator do; of angular springs they have stiffness and targets.
+    const std::size_t planes = kRestPlanes + kStatePlanes + kRodRestPlanes + kRodStatePlanes + 4;
     const std::size_t lanes =
         (2 * kRootRows + kRodLaneRows) * kBlockLanes * sizeof(float) + sizeof(Block) + 1024;
     const std::size_t guides =

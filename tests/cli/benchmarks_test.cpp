@@ -19,7 +19,7 @@ TEST(Benchmarks, AreNamedOnceAndSayWhatTheyMeasure) {
         EXPECT_TRUE(names.insert(benchmark.name).second) << benchmark.name;
         EXPECT_FALSE(benchmark.measures.empty()) << benchmark.name;
     }
-    for (const char* name : {"sim", "interpolate", "gpu-sim", "render", "place", "io", "brush"})
+    for (const char* name : {"sim", "interpolate", "gpu-sim", "render", "place", "io", "brush", "runtime"})
         EXPECT_TRUE(names.contains(name)) << name;
 }
 

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The runtime as a game has it, through hairloom.h and without threads: loading, memory, stepping, read-out,
+// crowds.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "benchmarks/measurement.h"
+#include "benchmarks/sample_hair.h"
+#include "benchmarks/temporary_file.h"
+#include "core/base/file.h"
+#include "exporters/strands.h"
+#include "hairloom/hairloom.hpp"
+
+namespace hairloom::benchmarks {
+namespace {
+
+constexpr std::size_t kCrowd = 50;
+constexpr int kFramesToSleep = 600;
+
+Status refused(const hl_error& error) {
+    return fail(error.words);
+}
+
+/// Strands that lie on a head of 10 cm, from its top outwards, and hang where it ends.
+Groom cap(std::uint32_t strands, std::uint32_t points, float length) {
+    std::vector<std::uint32_t> offsets{0};
+    std::vector<Vec3f> positions;
+    for (std::uint32_t s = 0; s < strands; ++s) {
+        const float around = 2.4f * static_cast<float>(s);
+        const float top = std::sqrt((static_cast<float>(s) + 0.5f) / static_cast<float>(strands));
+        for (std::uint32_t i = 0; i < points; ++i) {
+            const float t = static_cast<float>(i) / static_cast<float>(points - 1);
+            const float radius = 0.1f + 0.02f * t, angle = top + length * t / radius;
+            const float fallen = std::max(angle - 1.5f, 0.0f) * radius, turned = std::min(angle, 1.5f);
+            positions.emplace_back(radius * std::sin(turned) * std::cos(around),
+                                   1.6f + radius * std::cos(turned) - fallen,
+                                   radius * std::sin(turned) * std::sin(around));
+        }
+        offsets.push_back(static_cast<std::uint32_t>(positions.size()));
+    }
+    Groom groom = makeGroom(std::move(offsets), std::move(positions));
+    groom.spheres = {{"head", Vec3f(0, 1.6f, 0), 0.095f, ""}};
+    return groom;
+}
+
+struct Nod {
+    std::array<float, 12> head{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    game::Frame frame;
+
+    explicit Nod(float seconds, bool windy) {
+        const float angle = 0.35f * std::sin(7.85f * seconds), c = std::cos(angle), s = std::sin(angle);
+        head[5] = head[10] = c;
+        head[6] = -s;
+        head[9] = s;
+        head[7] = 1.6f * (1 - c);
+        head[11] = -1.6f * s;
+        frame.time = static_cast<double>(seconds);
+        frame.head = head.data();
+        frame.wind = windy ? kWind.data() : nullptr;
+    }
+    static constexpr std::array<float, 3> kWind{3, 0, 0};
+};
+
+/// One asset through everything.
+class Played {
+  public:
+    Played(Timings& timings, std::vector<Measurement>& memory, std::string name, std::vector<std::byte> bytes)
+        : timings_(timings), memory_(memory), name_(std::move(name)), bytes_(std::move(bytes)) {}
+
+    void measureLoading() {
+        timings_.measure("open, " + name_, [&](Rounds& rounds) -> Status {
+            while (rounds.next()) {
+                if (!asset_.open(bytes_.data(), bytes_.size(), &error_)) return refused(error_);
+            }
+            return {};
+        });
+        timings_.measure("check, " + name_, [&](Rounds& rounds) -> Status {
+            while (rounds.next()) {
+                if (!asset_.check(&error_)) return refused(error_);
+            }
+            return {};
+        });
+        timings_.measure("make an instance, " + name_, [&](Rounds& rounds) -> Status {
+            while (rounds.next()) {
+                if (!hair_.make(asset_, HL_HAIRS, nullptr, &error_)) return refused(error_);
+            }
+            return {};
+        });
+        if (!hair_.get()) return;
+        const double held = static_cast<double>(hair_.describe().bytes) / 1e3;
+        const hl_asset_info info = asset_.describe();
+        memory_.push_back({"file, " + name_, "KB", {static_cast<double>(bytes_.size()) / 1e3}});
+        memory_.push_back({"memory of an instance, " + name_, "KB", {held}});
+        memory_.push_back({"memory stated before, " + name_,
+                           "KB",
+                           {static_cast<double>(info.guides_memory + info.hairs_memory) / 1e3}});
+    }
+
+    void measureFrames() {
+        float seconds = 0;
+        timings_.measure("step nodding in wind, " + name_, [&](Rounds& rounds) -> Status {
+            while (rounds.next()) {
+                const Nod nod(seconds += 1 / 60.0f, true);
+                if (!hair_.step(nod.frame, &error_)) return refused(error_);
+            }
+            return {};
+        });
+        std::vector<float> points;
+        timings_.measure("read guides, " + name_, [&](Rounds& rounds) -> Status {
+            while (rounds.next()) {
+                if (!hair_.readGuides(points, &error_)) return refused(error_);
+            }
+            return {};
+        });
+        if (hair_.describe().hairs == 0) return;
+        timings_.measure("read " + std::to_string(hair_.describe().hairs) + " hairs, " + name_,
+                         [&](Rounds& rounds) -> Status {
+                             while (rounds.next()) {
+                                 if (!hair_.readHairs(points, &error_)) return refused(error_);
+                             }
+                             return {};
+                         });
+    }
+
+    /// Guides of `kCrowd` characters, each at its own time of the nod.
+    void measureCrowd() {
+        std::vector<game::Instance> crowd(kCrowd);
+        const auto step = [&](float seconds, bool resting) {
+            for (std::size_t c = 0; c < kCrowd; ++c) {
+                const Nod nod(resting ? 0 : seconds + 0.1f * static_cast<float>(c), !resting);
+                if (!crowd[c].step(nod.frame, &error_)) return false;
+            }
+            return true;
+        };
+        const std::string which = "crowd of " + std::to_string(kCrowd);
+        float seconds = 0;
+        bool resting = false;
+        timings_.measure(which + ", nodding in wind, " + name_, [&](Rounds& rounds) -> Status {
+            for (game::Instance& hair : crowd) {
+                if (!hair.get() && !hair.make(asset_, HL_GUIDES, nullptr, &error_)) return refused(error_);
+            }
+            while (rounds.next()) {
+                if (!step(seconds += 1 / 60.0f, false)) return refused(error_);
+            }
+            return {};
+        });
+        timings_.measure(which + ", asleep, " + name_, [&](Rounds& rounds) -> Status {
+            // Once is enough: they sleep on from repetition to repetition.
+            for (int f = 0; f < kFramesToSleep && !resting; ++f) {
+                if (f == 0 && !std::ranges::all_of(
+                                  crowd, [&](auto& hair) { return hair.set("windSpeed", 0, &error_); }))
+                    return refused(error_);
+                if (!step(0, true)) return refused(error_);
+            }
+            resting = true;
+            while (rounds.next()) {
+                if (!step(0, true)) return refused(error_);
+            }
+            return {};
+        });
+        if (!resting) return;
+        std::size_t asleep = 0, guides = 0;
+        for (const game::Instance& hair : crowd) {
+            asleep += hair.describe().asleep;
+            guides += hair.describe().guides;
+        }
+        memory_.push_back(
+            {"asleep of the crowd, " + name_,
+             "%",
+             {100 * static_cast<double>(asleep) / static_cast<double>(std::max<std::size_t>(guides, 1))}});
+    }
+
+  private:
+    Timings& timings_;
+    std::vector<Measurement>& memory_;
+    std::string name_;
+    std::vector<std::byte> bytes_;
+    game::Asset asset_;
+    game::Instance hair_;
+    game::Error error_;
+};
+
+Result<std::vector<std::byte>> exported(const Groom& groom) {
+    const TemporaryFile file("hairloom-runtime-benchmark");
+    const auto written = strandWriter("runtime").write(groom, file.path, {});
+    if (!written) return tl::unexpected(written.error());
+    return readFile(file.path);
+}
+
+Result<Outcome> run(const Options& options) {
+    const auto& hairstyles = samples();
+    if (!hairstyles) return tl::unexpected(hairstyles.error());
+    std::vector<std::pair<std::string, Groom>> grooms;
+    for (const Sample& sample : *hairstyles) grooms.emplace_back(sample.name, sample.groom);
+    grooms.emplace_back("300x24 with 30,000 hairs", cap(300, 24, 0.25f));
+    grooms.back().second.interpolation.followPerGuide = 100;
+    grooms.emplace_back(options.quick ? "1,000x16" : "100,000x16",
+                        cap(options.quick ? 1000 : 100'000, 16, 0.25f));
+    Timings timings(options);
+    std::vector<Measurement> memory;
+    for (auto& [name, groom] : grooms) {
+        auto bytes = exported(groom);
+        if (!bytes) return tl::unexpected(bytes.error());
+        Played played(timings, memory, name, std::move(*bytes));
+        played.measureLoading();
+        played.measureFrames();
+        if (name.starts_with("300x24")) played.measureCrowd();
+    }
+    auto outcome = timings.outcome("runtime");
+    if (!outcome) return outcome;
+    for (const Measurement& measurement : memory) outcome->report["rows"].push_back(rowOf(measurement));
+    return outcome;
+}
+
+}  // namespace
+
+Benchmark runtimeBenchmark() {
+    return {"runtime", "assets in a game: load, memory, step, read-out, crowds", {"--quick"}, run};
+}
+
+}  // namespace hairloom::benchmarks
