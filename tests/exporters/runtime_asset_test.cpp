@@ -13,6 +13,7 @@
 #include "core/interpolation/follow_hairs.h"
 #include "hairloom/engine.h"
 #include "tests/exporters/asset_samples.h"
+#include "tests/support/source_dir.h"
 
 namespace hairloom::test {
 namespace {
@@ -329,6 +330,27 @@ TEST_F(RuntimeAsset, NewerFilesAreRefusedAndNewSectionsSkipped) {
     EXPECT_EQ(newer.error.kind, AssetError::Kind::newer);
     EXPECT_EQ(newer.error.byte, 8u);
     EXPECT_THAT(newer.error.words, HasSubstr("version 2"));
+}
+
+/// A file of version 1.0 as it was first written: what reads it now reads what stood there then.
+TEST_F(RuntimeAsset, FilesOfTheFirstVersionAreStillRead) {
+    const auto path = sourceDir() / "tests/exporters/files/version_1.hairrt";
+    const auto bytes = readFile(path).value();
+    const auto opened = Asset::open(bytes);
+    ASSERT_TRUE(opened.asset) << opened.error.words;
+    ASSERT_FALSE(opened.asset->check());
+    const auto strands = opened.asset->strandsAtRest();
+    ASSERT_EQ(strands.positions_ss.size(), 192u);
+    EXPECT_EQ(opened.asset->strandCount(), 24u);
+    EXPECT_EQ(opened.asset->hairCount(), 120u);
+    EXPECT_EQ(opened.asset->bones.size(), 3u);
+    EXPECT_EQ(opened.asset->spheres.size(), 12u);
+    EXPECT_FLOAT_EQ(opened.asset->simulation().windSpeed, 2.5f);
+    EXPECT_FLOAT_EQ(opened.asset->simulation().dampingTime, 0.4f);
+    EXPECT_FLOAT_EQ(static_cast<float>(opened.asset->numberOf("material.eumelanin", 0)), 0.75f);
+    EXPECT_EQ(format::checksum(std::as_bytes(std::span(strands.positions_ss))), 0xf1169f99u);
+    const auto hairs = opened.asset->followHairs(strands);
+    ASSERT_TRUE(hairs.hairs) << hairs.error;
 }
 
 TEST_F(RuntimeAsset, ChecksumsAreThoseOfZlib) {
