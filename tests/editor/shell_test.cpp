@@ -2,7 +2,9 @@
 // Opening, saving, leaving, recovering, preferences, shortcuts.
 #include <QComboBox>
 #include <QDropEvent>
+#include <QFileInfo>
 #include <QKeySequenceEdit>
+#include <QLabel>
 #include <QMimeData>
 #include <QProgressBar>
 #include <QPushButton>
@@ -291,6 +293,23 @@ TEST_F(ShellTest, ExportIsReadBackAndReported) {
     dialog.exportTo(inFolder("hairs.hair"));
     finishWork();
     EXPECT_EQ(dialog.report().strands, 3 * full.strandCount());
+}
+
+TEST_F(ShellTest, AnAssetForGamesIsExportedWithItsSize) {
+    openSampleHair("short");
+    ExportDialog dialog(document(), parts().tasks, parts().messages);
+    dialog.findChild<QComboBox*>("target")->setCurrentText("Game by Hairloom's runtime");
+    dialog.exportTo(inFolder("hair.hairrt"));
+    finishWork();
+    EXPECT_EQ(dialog.report().strands, groom().strandCount());
+    EXPECT_LT(dialog.report().maxErrorMm, 0.05);
+    EXPECT_EQ(dialog.report().bytes, static_cast<std::uint64_t>(QFileInfo(inFolder("hair.hairrt")).size()));
+    const QString size = dialog.locale().formattedDataSize(static_cast<qint64>(dialog.report().bytes), 1,
+                                                           QLocale::DataSizeSIFormat);
+    const auto labels = dialog.findChildren<QLabel*>();
+    EXPECT_TRUE(std::ranges::any_of(labels, [&](const QLabel* label) {
+        return label->text().contains(size);
+    })) << size.toStdString();
 }
 
 TEST_F(ShellTest, ImportShowsTheStrandsBeforeTheyAreTakenAndBindsThemToTheHead) {
