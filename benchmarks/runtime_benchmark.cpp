@@ -89,6 +89,13 @@ class Played {
             return {};
         });
         if (!hair_.get()) return;
+        timings_.measure("copy an instance, " + name_, [&](Rounds& rounds) -> Status {
+            while (rounds.next()) {
+                game::Instance copy;
+                if (!copy.copy(hair_, &error_)) return refused(error_);
+            }
+            return {};
+        });
         const double held = static_cast<double>(hair_.describe().bytes) / 1e3;
         const hl_asset_info info = asset_.describe();
         memory_.push_back({"file, " + name_, "KB", {static_cast<double>(bytes_.size()) / 1e3}});
@@ -139,7 +146,11 @@ class Played {
         bool resting = false;
         timings_.measure(which + ", nodding in wind, " + name_, [&](Rounds& rounds) -> Status {
             for (game::Instance& hair : crowd) {
-                if (!hair.get() && !hair.make(asset_, HL_GUIDES, nullptr, &error_)) return refused(error_);
+                if (hair.get()) continue;
+                const bool first = &hair == &crowd.front();
+                if (!(first ? hair.make(asset_, HL_GUIDES, nullptr, &error_)
+                            : hair.copy(crowd.front(), &error_)))
+                    return refused(error_);
             }
             while (rounds.next()) {
                 if (!step(seconds += 1 / 60.0f, false)) return refused(error_);

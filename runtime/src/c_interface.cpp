@@ -182,6 +182,14 @@ hl_code hl_instance_make(const hl_asset* opened, uint32_t what, const hl_jobs* j
     });
 }
 
+hl_code hl_instance_copy(const hl_instance* instance, hl_instance** out, hl_error* error) {
+    if (!instance || !out) return nullRefused(error, "no instance or no place for its copy");
+    return guarded(error, [&] {
+        *out = new hl_instance(*instance);
+        return say(error, HL_OK, HL_NO_PLACE, "");
+    });
+}
+
 void hl_instance_free(hl_instance* instance) {
     delete instance;
 }

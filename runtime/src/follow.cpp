@@ -117,6 +117,10 @@ std::string validationError(const FollowView& view) {
     return {};
 }
 
+std::size_t rowFloatsOf(std::uint32_t points) {
+    return (std::size_t{points} * 3 + kRowFloats - 1) / kRowFloats * kRowFloats;
+}
+
 HairBinding packHair(const FollowView& view, std::size_t hair) {
     const float blend = view.blends[hair];
     const Float3 weights = view.weights[hair] * blend;
@@ -202,7 +206,7 @@ struct FollowHairs::Impl {
 
 FollowHairs::Impl::Impl(const FollowView& view)
     : points(view.pointsPerHair),
-      rowFloats((std::size_t{points} * 3 + kRowFloats - 1) / kRowFloats * kRowFloats),
+      rowFloats(rowFloatsOf(points)),
       guideOffsets(view.guideOffsets.begin(), view.guideOffsets.end()),
       rootPlanes(view.rootPlanes_ss.begin(), view.rootPlanes_ss.end()),
       firstSample(view.rootPlanes_ss.size(), kNoSamples),
@@ -250,6 +254,7 @@ void FollowHairs::Impl::fillGuides(const GuideMotion& motion, const GuideRows& r
 }
 
 FollowHairs::FollowHairs(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+FollowHairs::FollowHairs(const FollowHairs& other) : impl_(std::make_unique<Impl>(*other.impl_)) {}
 FollowHairs::FollowHairs(FollowHairs&&) noexcept = default;
 FollowHairs& FollowHairs::operator=(FollowHairs&&) noexcept = default;
 FollowHairs::~FollowHairs() = default;
@@ -264,6 +269,22 @@ std::uint32_t FollowHairs::hairCount() const {
 }
 std::uint32_t FollowHairs::pointsPerHair() const {
     return impl_->points;
+}
+
+std::size_t FollowHairs::bytes() const {
+    const Impl& impl = *impl_;
+    return impl.hairs.size() * sizeof(HairBinding) + impl.rootPlanes.size() * sizeof(RootPlane) +
+           impl.guideOffsets.size() * sizeof(std::uint32_t) + impl.firstSample.size() * sizeof(std::size_t) +
+           impl.samples.size() * sizeof(GuideSample) +
+           (impl.radii.size() + impl.positions.size() + impl.wisps.size() + impl.frames.size()) *
+               sizeof(float);
+}
+
+std::size_t FollowHairs::bytesFor(std::size_t guides, std::size_t hairs, std::uint32_t pointsPerHair) {
+    const std::size_t rows = rowFloatsOf(pointsPerHair) * (1 + kWispRows) + kFrameFloats;
+    return hairs * sizeof(HairBinding) + pointsPerHair * sizeof(float) + sizeof(std::uint32_t) +
+           guides * (rows * sizeof(float) + sizeof(RootPlane) + sizeof(std::uint32_t) + sizeof(std::size_t) +
+                     pointsPerHair * sizeof(GuideSample));
 }
 
 bool FollowHairs::evaluate(const GuideMotion& guides, std::span<Float3> hairs_ws, const Host& host) {

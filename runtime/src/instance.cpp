@@ -60,21 +60,14 @@ std::size_t bytesOf(const Engine& engine) {
     return bytes;
 }
 
-std::size_t rowFloatsOf(std::size_t points) {
-    return (points * 3 + kRowFloats - 1) / kRowFloats * kRowFloats;
-}
+/// More than a block's report takes.
+constexpr std::size_t kReportBytes = 1024;
 
-/// As FollowHairs keeps them.
-std::size_t followBytes(std::size_t guides, std::size_t hairs, std::size_t points) {
-    return hairs * (sizeof(HairBinding) + points * sizeof(Float3)) + points * sizeof(float) +
-           guides * (sizeof(float) * (rowFloatsOf(points) * (1 + kWispRows) + kFrameFloats) +
-                     sizeof(RootPlane) + sizeof(std::size_t) + points * sizeof(GuideSample));
-}
-
-/// Of an instance beside its engine and follow hairs.
-std::size_t ownBytes(std::size_t strands, std::size_t points, bool hairs) {
+/// Of an instance of `hairPoints` points of hairs, beside its engine and its FollowHairs.
+std::size_t ownBytes(std::size_t strands, std::size_t points, std::size_t hairPoints) {
+    const std::size_t velocities = hairPoints > 0 ? points : 0;
     return strands * (sizeof(RootFrame) + sizeof(Quat) + sizeof(std::uint32_t)) +
-           points * sizeof(Float3) * (hairs ? 2 : 1);
+           (points + velocities + hairPoints) * sizeof(Float3);
 }
 
 }  // namespace
@@ -98,19 +91,19 @@ InstanceMemory instanceMemory(const Asset& asset) {
     // Rods take more than springs with any integrator do; of angular springs they have stiffness and targets.
     const std::size_t planes = kRestPlanes + kStatePlanes + kRodRestPlanes + kRodStatePlanes + 4;
     const std::size_t lanes =
-        (2 * kRootRows + kRodLaneRows) * kBlockLanes * sizeof(float) + sizeof(Block) + 1024;
-    const std::size_t guides =
-        planeFloats * planes * sizeof(float) + blocks * lanes +
-        asset.strands.size() * (sizeof(RootFrame) + sizeof(std::uint32_t)) + sizeof(LaneFrame) +
-        (solver + 4096) * sizeof(float) + asset.spheres.size() * 4 * sizeof(MovingSphere) +
-        ownBytes(asset.strandCount(), asset.pointCount(), false) + asset.radii.size() * sizeof(float) +
-        RootPoses::bytesFor(asset) + asset.spheres.size() * sizeof(asset::Sphere);
-    const std::size_t thread = sizeof(LaneFrame) + (solver + 4096) * sizeof(float);
-    if (asset.hairCount() == 0) return {guides, 0, thread};
+        (2 * kRootRows + kRodLaneRows) * kBlockLanes * sizeof(float) + sizeof(Block) + kReportBytes;
+    const std::size_t thread = sizeof(LaneFrame) + (solver + kSolverPadding) * sizeof(float);
+    const std::size_t strands = asset.strandCount(), points = asset.pointCount(), hairs = asset.hairCount();
+    const std::size_t guides = planeFloats * planes * sizeof(float) + blocks * lanes +
+                               strands * (sizeof(RootFrame) + sizeof(std::uint32_t)) + thread +
+                               asset.spheres.size() * (sizeof(asset::Sphere) + 4 * sizeof(MovingSphere)) +
+                               ownBytes(strands, points, 0) + asset.radii.size() * sizeof(float) +
+                               RootPoses::bytesFor(asset);
+    if (hairs == 0) return {guides, 0, thread};
+    const std::uint32_t pointsPerHair = asset.recipe[0].pointsPerHair;
     return {guides,
-            followBytes(asset.strandCount(), asset.hairCount(), asset.recipe[0].pointsPerHair) +
-                ownBytes(asset.strandCount(), asset.pointCount(), true) -
-                ownBytes(asset.strandCount(), asset.pointCount(), false),
+            FollowHairs::bytesFor(strands, hairs, pointsPerHair) +
+                ownBytes(strands, points, hairs * pointsPerHair) - ownBytes(strands, points, 0),
             thread};
 }
 
@@ -124,7 +117,6 @@ Instance::Result Instance::make(const Asset& asset, bool wantsHairs, Host host) 
     instance.restSpheres_.assign(asset.spheres.begin(), asset.spheres.end());
     instance.spheres_.resize(asset.spheres.size());
     instance.last_.bones.reserve(12 * asset.bones.size());
-    instance.scalp_.resize(asset.scalpVertices.size());
     instance.positions_.resize(strands.positions_ss.size());
     for (const std::uint16_t radius : asset.radii)
         instance.radii_.own.push_back(static_cast<float>(radius) * asset::kRadiusStep);
@@ -155,11 +147,10 @@ Outcome Instance::placeRoots(const hl_frame& frame) {
         return std::nullopt;
     }
     if (frame.scalp) {
-        if (frame.scalp_count != scalp_.size())
-            return wrongSize("scalp vertices", frame.scalp_count, scalp_.size());
+        if (frame.scalp_count != poses_.scalpVertexCount())
+            return wrongSize("scalp vertices", frame.scalp_count, poses_.scalpVertexCount());
         if (!poses_.hasScalp()) return Refusal{HL_BAD_VALUE, "the asset's roots stand on no scalp"};
-        for (std::size_t v = 0; v < scalp_.size(); ++v) scalp_[v] = float3At(frame.scalp, v);
-        poses_.followScalp(scalp_, roots_);
+        poses_.followScalp({frame.scalp, 3 * frame.scalp_count}, roots_);
         return std::nullopt;
     }
     if (frame.bones) {
@@ -354,11 +345,10 @@ hl_instance_info Instance::describe() const {
     info.restored = report.restoredStrands;
     info.left_roots = report.rejectedRoots;
     info.left_spheres = report.rejectedSpheres;
-    info.bytes = sizeof(Instance) + bytesOf(engine_) + poses_.bytes() +
-                 ownBytes(roots_.size(), positions_.size(), hairs_.has_value()) +
+    info.bytes = sizeof(Instance) + bytesOf(engine_) + poses_.bytes() + (hairs_ ? hairs_->bytes() : 0) +
+                 ownBytes(roots_.size(), positions_.size(), hairPositions_.size()) +
                  radii_.own.size() * sizeof(float) + restSpheres_.size() * sizeof(asset::Sphere) +
-                 spheres_.size() * sizeof(Sphere) + scalp_.size() * sizeof(Float3) +
-                 (hairs_ ? followBytes(roots_.size(), info.hairs, info.points_per_hair) : 0);
+                 spheres_.size() * sizeof(Sphere);
     return info;
 }
 

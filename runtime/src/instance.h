@@ -79,7 +79,7 @@ class Instance {
         std::vector<float> bones;
     } last_;
     bool asleep_ = false;
-    std::vector<Float3> scalp_, positions_, velocities_, hairPositions_;
+    std::vector<Float3> positions_, velocities_, hairPositions_;
 };
 
 struct Instance::Result {

@@ -120,15 +120,20 @@ void RootPoses::followHead(const Matrix34& head, std::span<RootFrame> roots_ws) 
 void RootPoses::followBones(std::span<const float> bones, const Matrix34& head,
                             std::span<RootFrame> roots_ws) {
     for (std::size_t v = 0; v < posed_.size(); ++v) posed_[v] = skinned(vertices_[v], rest_[v], bones, head);
-    followScalp(posed_, roots_ws);
+    followPosed(roots_ws);
 }
 
-void RootPoses::followScalp(std::span<const Float3> vertices_ws, std::span<RootFrame> roots_ws) const {
+void RootPoses::followScalp(std::span<const float> vertices_ws, std::span<RootFrame> roots_ws) {
+    for (std::size_t v = 0; v < posed_.size(); ++v)
+        posed_[v] = {vertices_ws[3 * v], vertices_ws[3 * v + 1], vertices_ws[3 * v + 2]};
+    followPosed(roots_ws);
+}
+
+void RootPoses::followPosed(std::span<RootFrame> roots_ws) const {
     for (std::size_t s = 0; s < roots_ws.size(); ++s) {
         const asset::ScalpTriangle& triangle = triangles_[roots_[s].triangle];
-        Matrix34 turn = turnOf(frameOf(triangle, vertices_ws), frameOf(triangle, rest_));
-        const Float3 rest = pointOf(triangle, roots_[s], rest_),
-                     now = pointOf(triangle, roots_[s], vertices_ws);
+        Matrix34 turn = turnOf(frameOf(triangle, posed_), frameOf(triangle, rest_));
+        const Float3 rest = pointOf(triangle, roots_[s], rest_), now = pointOf(triangle, roots_[s], posed_);
         const Float3 moved = now - transform(turn, rest);
         turn[3] = moved.x;
         turn[7] = moved.y;

@@ -34,10 +34,12 @@ class RootPoses {
     void followHead(const Matrix34& head, std::span<RootFrame> roots_ws) const;
     /// `bones`: 12 of each; vertices that hang on none follow the head. Fills the place of posed vertices.
     void followBones(std::span<const float> bones, const Matrix34& head, std::span<RootFrame> roots_ws);
-    /// `vertices_ws`: of each vertex of the scalp.
-    void followScalp(std::span<const Float3> vertices_ws, std::span<RootFrame> roots_ws) const;
+    /// `vertices_ws`: 3 of each vertex of the scalp.
+    void followScalp(std::span<const float> vertices_ws, std::span<RootFrame> roots_ws);
 
   private:
+    void followPosed(std::span<RootFrame> roots_ws) const;
+
     std::vector<Float3> restRoots_;
     std::vector<asset::Root> roots_;  // empty without a scalp
     std::vector<asset::ScalpVertex> vertices_;

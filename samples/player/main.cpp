@@ -89,7 +89,7 @@ bool playCrowd(const hairloom::game::Asset& asset, const hl_asset_info& info, co
     std::vector<hairloom::game::Instance> crowd(static_cast<std::size_t>(options.crowd));
     std::size_t bytes = 0;
     for (hairloom::game::Instance& hair : crowd) {
-        if (!hair.make(asset, HL_GUIDES, nullptr, &error)) return false;
+        if (!(&hair == &crowd[0] ? hair.make(asset, HL_GUIDES, nullptr, &error) : hair.copy(crowd[0], &error))) return false;
         bytes += hair.describe().bytes;
         if (options.resting && !hair.set("windSpeed", 0, &error)) return false;
     }

@@ -271,6 +271,39 @@ TEST_F(RuntimeLibrary, StepsAndReadOutAskForNoMemoryAndWhatIsHeldWasSaidBefore) 
     }
 }
 
+TEST_F(RuntimeLibrary, CopiesRunOnWithTheSameBits) {
+    const Asset asset = opened(hairOfADome());
+    auto first = std::make_unique<Instance>();
+    ASSERT_TRUE(first->make(asset, HL_HAIRS));
+    Frame frame;
+    const auto run = [&](Instance& hair) {
+        for (int f = 0; f < 10; ++f) {
+            frame.time += 1 / 60.0;
+            ASSERT_TRUE(hair.step(frame));
+        }
+    };
+    run(*first);
+    Instance copy, again;
+    ASSERT_TRUE(copy.copy(*first));
+    const double time = frame.time;
+    run(*first);
+    const std::uint64_t later = first->hash();
+    std::vector<float> a, b;
+    ASSERT_TRUE(first->readHairs(a));
+    EXPECT_NE(copy.hash(), later);
+    first.reset();
+    ASSERT_TRUE(again.copy(copy));
+    frame.time = time;
+    run(copy);
+    EXPECT_EQ(copy.hash(), later);
+    ASSERT_TRUE(copy.readHairs(b));
+    EXPECT_EQ(a, b);
+    frame.time = time;
+    run(again);
+    EXPECT_EQ(again.hash(), later);
+    EXPECT_EQ(hl_instance_copy(nullptr, nullptr, nullptr), HL_BAD_VALUE);
+}
+
 TEST_F(RuntimeLibrary, ValuesGoWhereTheCallerWants) {
     const Asset asset = opened(hairOfADome());
     Instance hair;

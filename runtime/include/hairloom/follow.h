@@ -73,12 +73,18 @@ class FollowHairs {
     /// range, weights that do not sum to 1, anything that is not finite.
     static Result make(const FollowView& view);
 
+    /// A copy has memory of its own.
+    FollowHairs(const FollowHairs& other);
     FollowHairs(FollowHairs&&) noexcept;
     FollowHairs& operator=(FollowHairs&&) noexcept;
     ~FollowHairs();
 
     std::uint32_t hairCount() const;
     std::uint32_t pointsPerHair() const;
+    /// Memory that it holds.
+    std::size_t bytes() const;
+    /// At most, of as many guides and hairs.
+    static std::size_t bytesFor(std::size_t guides, std::size_t hairs, std::uint32_t pointsPerHair);
 
     /// Fills `hairs_ws` (hair after hair, pointsPerHair() each; metres). False, and nothing is written, where
     /// a size is not that of what make() was given. A point of a guide that is not finite makes that point of

@@ -72,6 +72,13 @@ class Instance {
         if (good) instance_.reset(made);
         return good;
     }
+    /// Another character of the same hair, in the same state.
+    bool copy(const Instance& other, hl_error* error = nullptr) {
+        hl_instance* made = nullptr;
+        const bool good = hl_instance_copy(other.get(), &made, error) == HL_OK;
+        if (good) instance_.reset(made);
+        return good;
+    }
     bool reset(const hl_frame& frame, hl_error* error = nullptr) {
         return hl_instance_reset(instance_.get(), &frame, error) == HL_OK;
     }
