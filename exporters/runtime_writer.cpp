@@ -124,7 +124,8 @@ Result<FollowSections> followSections(const Groom& groom, const PreparedStrands&
     return sections;
 }
 
-/// Metres between the follow hairs that pictures show and those of the asset, at rest.
+/// Metres between the follow hairs that pictures show and those of the asset, at rest; of resampled strands
+/// between the ends of the hairs.
 Result<double> followError(const Groom& groom, const FollowBindings& bindings, const runtime::Asset& asset) {
     const auto shown = bakeFollowHairs(groom, bindings);
     if (!shown) return tl::unexpected(shown.error());
@@ -133,15 +134,22 @@ Result<double> followError(const Groom& groom, const FollowBindings& bindings, c
     host.parallelFor = parallelFor;
     auto played = asset.followHairs(strands, host);
     if (!played.hairs) return fail(played.error);
-    std::vector<Vec3f> positions(std::size_t{played.hairs->hairCount()} * played.hairs->pointsPerHair());
-    if (positions.size() != shown->pointCount()) return 0.0;
+    const std::size_t points = played.hairs->pointsPerHair(), shownPoints = bindings.pointsPerHair;
+    std::vector<Vec3f> positions(played.hairs->hairCount() * points);
     runtime::GuideMotion motion;
     motion.positions_ws = strands.positions_ss;
     played.hairs->evaluate(motion, {reinterpret_cast<runtime::Float3*>(positions.data()), positions.size()},
                            host);
     double largest = 0;
-    for (std::size_t i = 0; i < positions.size(); ++i)
-        largest = std::max(largest, double{(positions[i] - shown->positions()[i]).norm()});
+    for (std::size_t hair = 0; hair < bindings.hairCount(); ++hair) {
+        const auto compare = [&](std::size_t p, std::size_t shownPoint) {
+            const Vec3f apart = positions[hair * points + p] - shown->strand(hair)[shownPoint];
+            largest = std::max(largest, double{apart.norm()});
+        };
+        compare(0, 0);
+        compare(points - 1, shownPoints - 1);
+        for (std::size_t p = 1; p < points && points == shownPoints; ++p) compare(p, p);
+    }
     return largest;
 }
 

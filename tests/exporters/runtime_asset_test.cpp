@@ -188,6 +188,19 @@ TEST_F(RuntimeAsset, FollowHairsAreThoseOfPictures) {
     EXPECT_GT(compared->maxError, 0.0);
 }
 
+TEST_F(RuntimeAsset, ResampledStrandsSayHowFarTheirHairsAreOff) {
+    StrandExportOptions options;
+    options.pointsPerStrand = 5;
+    const auto report = strandWriter("runtime").write(whole(), folder / "a.hairrt", options);
+    ASSERT_TRUE(report) << report.error().message();
+    EXPECT_EQ(report->points, 5 * report->strands);
+    const auto compared =
+        std::ranges::find(report->attributes, "follow hairs at rest", &ComparedAttribute::name);
+    ASSERT_NE(compared, report->attributes.end());
+    EXPECT_GT(compared->maxError, 0.0);
+    EXPECT_LT(compared->maxError, 0.0003);
+}
+
 TEST_F(RuntimeAsset, SomeStrandsAloneMayBeGuides) {
     Groom groom = whole();
     std::vector<std::uint8_t> guides(groom.strandCount(), 0);
