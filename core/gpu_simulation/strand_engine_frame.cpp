@@ -257,7 +257,8 @@ shaders::SimulationConstants StrandEngine::Impl::constants(const runtime::Subste
     c.slowSquared = slow * slow;
     c.sleepDelay = s.sleepDelay;
     c.groups = batch.slots / batch.key.shape.strands;
-    c.sphereDisplacement = c.unused = 0.0f;
+    c.firstShare = substep > 0.0f ? 1.0f : 0.5f;
+    c.sphereDisplacement = 0.0f;
     for (const runtime::MovingSphere& sphere : movingSpheres)
         c.sphereDisplacement = std::max(c.sphereDisplacement, length(sphere.step));
     c.gravityStep = toFloat4(context.gravityStep, 0.0f);

@@ -93,6 +93,14 @@ void moveFree(const BlockView& given, LaneFrame& lanes, const SubstepContext& co
     }
 }
 
+void startHalfway(const BlockView& block) {
+    const std::size_t end = std::size_t{block.points} * kBlockLanes;
+    for (std::size_t i = std::size_t{block.firstFree} * kBlockLanes; i < end; i += kWidth) {
+        const V3 from = load3(block.previous, i);
+        store3(mulAdd(load3(block.position, i) - from, all(0.5f), from), block.position, i);
+    }
+}
+
 // NOLINTNEXTLINE(google-readability-namespace-comments)
 }  // namespace HWY_NAMESPACE
 }  // namespace hairloom::runtime

@@ -180,6 +180,7 @@ Kernels makeTable() {
     table.bothCollisions[0] = bothCollisions<false>;
     table.bothCollisions[1] = bothCollisions<true>;
     table.rescale = rescale;
+    table.startHalfway = startHalfway;
     table.takeRoots = takeRoots;
     table.sampleWind = sampleWind;
     table.fastest = fastestOf;

@@ -8,12 +8,13 @@ void stageDamping() {
         setPrevious(p, previous(p) + (position(p) - previous(p) - gRootDisplacement) * (lost * freedom(p)));
 }
 
-/// Position Verlet (Rünz 2012, Eq. 10).
+/// Position Verlet (Rünz 2012, Eq. 10). From rest the first step is x₁ = x₀ + ½ a h².
 void stageVerlet() {
+    const float share = gSubstep == 0 ? gFrame.firstShare : 1.0;
     MOVED_POINTS(p) {
         const float3 here = position(p);
         const float3 from = here - gRootDisplacement;
-        setFreePosition(p, from + (here - previous(p)));
+        setFreePosition(p, from + (here - previous(p)) * share);
         setFreePrevious(p, from);
     }
 }

@@ -57,7 +57,7 @@ struct SimulationConstants {
     float sleepDelay;          ///< seconds
     uint groups;               ///< work groups of the batch, in rows of HAIRLOOM_GROUP_ROW
     float sphereDisplacement;  ///< metres; the longest way of a sphere in a substep
-    float unused;
+    float firstShare;  ///< of the ways of position Verlet in the frame's first substep: ½ from rest, else 1
     SubstepNumbers substep;
     float4 gravityStep;                          ///< g h², w unused
     float4 wind;                                 ///< mean velocity, m/s; w: strength of gusts

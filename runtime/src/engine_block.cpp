@@ -166,12 +166,19 @@ void Engine::Impl::openSubstep(SubstepContext& context, const Frame& frame) {
     if (context.index > 0) context.stepRatio = 1.0f;
 }
 
+/// Pass `i` of a substep.
+void Engine::Impl::runPass(std::size_t i, const BlockView& view, LaneFrame& lanes,
+                           const SubstepContext& context, const Frame& frame) {
+    frame.passes.calls[i](view, lanes, context);
+    if (frame.starts && context.index == 0 && i + 1 == frame.passes.moved) frame.kernels->startHalfway(view);
+}
+
 void Engine::Impl::runStages(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame) {
     SubstepContext context = frame.context;
     if (!host_.nanoseconds) {
         for (context.index = 0; context.index < context.count; ++context.index) {
             openSubstep(context, frame);
-            for (std::size_t i = 0; i < frame.passes.count; ++i) frame.passes.calls[i](view, lanes, context);
+            for (std::size_t i = 0; i < frame.passes.count; ++i) runPass(i, view, lanes, context, frame);
         }
         return;
     }
@@ -180,7 +187,7 @@ void Engine::Impl::runStages(std::size_t block, const BlockView& view, LaneFrame
     for (context.index = 0; context.index < context.count; ++context.index) {
         openSubstep(context, frame);
         for (std::size_t i = 0; i < frame.passes.count; ++i) {
-            frame.passes.calls[i](view, lanes, context);
+            runPass(i, view, lanes, context, frame);
             const std::uint64_t after = host_.nanoseconds();
             times[static_cast<std::size_t>(plan_.stages()[i])] += after - before;
             before = after;

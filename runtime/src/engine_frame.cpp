@@ -252,6 +252,7 @@ Engine::Impl::Frame Engine::Impl::makeFrame(const FrameInput& input) {
         }
     }
     frame.rescale = state_.substep > 0.0f ? h / state_.substep : 1.0f;
+    frame.starts = !(state_.substep > 0.0f);
     frame.newBend = plan_.on(Effect::angular) && bend_.substep != h;
     frame.kernels = &kernels();
     frame.passes = host_.nanoseconds ? singlePassesOf(plan_.stages(), *frame.kernels)

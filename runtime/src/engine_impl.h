@@ -53,6 +53,8 @@ struct Engine::Impl {
     void touchSpheres(std::size_t block, const SubstepContext& context, LaneFrame& lanes) const;
     void enterFrame(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame);
     static void openSubstep(SubstepContext& context, const Frame& frame);
+    static void runPass(std::size_t i, const BlockView& view, LaneFrame& lanes, const SubstepContext& context,
+                        const Frame& frame);
     void runStages(std::size_t block, const BlockView& view, LaneFrame& lanes, const Frame& frame);
     void restoreStrands(std::size_t block, const BlockView& view);
     void rest(std::size_t block, const BlockView& view, const Frame& frame);
@@ -87,6 +89,7 @@ struct Engine::Impl::Frame {
     /// Of rods: of the wind at the end of each substep.
     std::array<std::array<float, kWindModes>, kMaxSubsteps> windPhases;
     float rescale;  ///< new substep over old, 1 when equal
+    bool starts;    ///< the first since the hair was put at rest
     bool newBend;
     const Kernels* kernels;
     Passes passes;  ///< of the plan; single ones where there is a clock between its stages

@@ -236,6 +236,9 @@ struct Kernels {
     Stage bothCollisions[2];
     /// Multiplies every displacement by `factor`: the speed stays when the length of the substep changes.
     void (*rescale)(const BlockView& block, float factor);
+    /// Halves the ways that position Verlet has found: from rest the first step is x₁ = x₀ + ½ a h², and the
+    /// velocity that it keeps is that of the half step.
+    void (*startHalfway)(const BlockView& block);
     /// Fills windRoot and windTip, for substeps of h seconds, for the frame that begins at the phases `from`
     /// and ends at `to`.
     void (*sampleWind)(const BlockView& block, LaneFrame& lanes, float h, const Wind& wind, const float* from,
@@ -263,6 +266,7 @@ RodKernel rodKernel();
 struct Passes {
     std::array<Stage, kMaxStages> calls;
     std::size_t count = 0;
+    std::size_t moved = 0;  ///< calls up to position Verlet's, with it; 0 for other integrators
 };
 /// As few passes over the block as there are kernels for.
 Passes passesOf(std::span<const StageId> stages, const Kernels& kernels);

@@ -62,6 +62,7 @@ Passes passesOf(std::span<const StageId> stages, const Kernels& kernels) {
     Passes passes;
     for (StageReader reader(stages); !reader.atEnd();) {
         Stage pass = reader.takeMove(kernels);
+        if (pass) passes.moved = passes.count + 1;
         if (!pass) pass = reader.takeBendAndProject(kernels);
         if (!pass) pass = reader.takeBothCollisions(kernels);
         if (!pass) pass = kernels.stages[static_cast<std::size_t>(reader.take())];
@@ -81,6 +82,7 @@ Passes singlePassesOf(std::span<const StageId> stages, const Kernels& kernels) {
             passes.calls[passes.count++] =
                 move ? kernels.partsOfMove[i > first ? 1 : 0][id] : kernels.stages[id];
         }
+        if (move) passes.moved = passes.count;
     }
     return passes;
 }

@@ -23,7 +23,7 @@ constexpr double kLargestCount = 4294967295.0;
 // clang-format off
 constexpr Field<S> kFields[] = {
     choiceField<&S::strandModel>("strandModel", "what a strand is: an elastic rod, or masses and springs with the methods below", kModels),
-    choiceField<&S::integrator>("integrator", "how motion is advanced", kIntegrators),
+    choiceField<&S::integrator>("integrator", "how springs are advanced; with lengths held verlet, velocityVerlet and rk4 are of order 2, the others of 1", kIntegrators),
     field<&S::substeps>("substeps", "", 1, kMaxSubsteps, "steps in 1/60 s: more is more exact and slower"),
     field<&S::dampingTime>("dampingTime", "s", 0, 100, "time in which motion falls to 1/e: lower is calmer, 0 is undamped"),
     field<&S::teleportDistance>("teleportDistance", "m", 0.01, 10000, "a root that moves farther in a frame carries its strand along"),

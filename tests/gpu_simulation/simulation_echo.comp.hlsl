@@ -11,7 +11,7 @@ void main() {
     gResults[0] = asfloat(uint4(gFrame.slots, gFrame.substeps, gFrame.sphereCount, gFrame.lengthIterations));
     gResults[1] = asfloat(uint4(gFrame.wakingCount, gFrame.windKind, gFrame.wakeAll, asuint(gFrame.h)));
     gResults[2] = float4(gFrame.dt, gFrame.rescale, gFrame.teleportDistance, gFrame.slowSquared);
-    gResults[3] = float4(gFrame.sleepDelay, asfloat(gFrame.groups), gFrame.sphereDisplacement, gFrame.unused);
+    gResults[3] = float4(gFrame.sleepDelay, asfloat(gFrame.groups), gFrame.sphereDisplacement, gFrame.firstShare);
     const SubstepNumbers substep = gFrame.substep;
     gResults[4] = float4(substep.velocityShare, substep.dragShare, substep.springStep, substep.penaltyStep);
     gResults[5] = float4(substep.bendRate, substep.tensionShare, substep.maximalExtension, substep.collisionRadiusAtRoot);

@@ -82,6 +82,24 @@ TEST_P(EachLayout, EveryEffectStaysWithTheCpu) {
     EXPECT_NEAR(energyGpu, energyCpu, 0.05 * energyCpu);
 }
 
+/// Its first step from rest is ½ a h², so that free points fall as the closed form says.
+TEST_P(EachLayout, VerletStartsAtTheHalfStep) {
+    const scenes::HeadOfHair head(4, 8);
+    SimulationSettings settings = springSettings();
+    settings.lengthIterations = 0;
+    settings.angularStiffness = settings.airDrag = settings.dampingTime = 0.0f;
+    settings.substeps = 2;
+    StrandEngine gpu = engineOf(head.view(), settings, options(GetParam()));
+    std::vector<RootFrame> roots;
+    head.placeRoots(0.0, roots);
+    ASSERT_TRUE(gpu.reset(roots));
+    const std::vector<Float3> before = positionsOf(gpu);
+    for (int f = 1; f <= 6; ++f) ASSERT_TRUE(gpu.step({kFrame, f * static_cast<double>(kFrame), roots, {}}));
+    const std::vector<Float3> after = positionsOf(gpu);
+    for (std::size_t p = 2; p < 8; ++p)
+        EXPECT_NEAR(before[p].y - after[p].y, 0.5f * 9.81f * 0.01f, 1e-5f) << p;
+}
+
 /// Where a strand is kept between substeps, and whether loops are unrolled, is nothing that the hair notices.
 TEST_F(WholeRun, LayoutsAgree) {
     const scenes::HeadOfHair head(40, 8);

@@ -75,7 +75,9 @@ Float3 velocityAfterImpact(float friction, float restitution, Float3 sphereVeloc
     s.friction = friction;
     s.restitution = restitution;
     const float dt = 1e-3f;
+    // From rest the first step gives half of g h.
     s.gravity = {500.0f, -750.0f, 0.0f};
+    s.gravity = s.gravity * (4.0f / 3.5f);
     Engine engine = makeEngine(strands, s);
     const std::vector<RootFrame> roots = strands.roots();
     for (int f = 0; f < 4; ++f) engine.step({dt, 0.0, roots, {}});

@@ -29,7 +29,8 @@ struct FreePoints {
     /// Steps until the points move by `displacement` in each step of dt, then takes gravity away.
     void accelerate(Engine& engine, Float3 displacement, float dt) {
         constexpr int kSteps = 60;
-        settings.gravity = displacement * (1.0f / (kSteps * dt * dt));
+        // From rest the first step gives half of a h².
+        settings.gravity = displacement * (1.0f / ((kSteps - 0.5f) * dt * dt));
         EXPECT_EQ(engine.setSettings(settings), "");
         run(engine, strands, kSteps, dt);
         settings.gravity = {};

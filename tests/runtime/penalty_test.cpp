@@ -30,7 +30,8 @@ TEST(PenaltyForce, OfACentreActsUpwards) {
     run(engine, points.strands, 1, 1e-4f, std::vector<Sphere>{{FreePoints::position(engine), 0.1f}});
     const float omega = 2.0f * std::numbers::pi_v<float> * 100.0f;
     const Float3 moved = FreePoints::position(engine);
-    EXPECT_NEAR(moved.y, omega * omega * 0.1f * 1e-8f, 1e-6f);
+    // From rest: ½ a h².
+    EXPECT_NEAR(moved.y, 0.5f * omega * omega * 0.1f * 1e-8f, 1e-6f);
     EXPECT_NEAR(moved.x, 0.0f, 1e-9f);
 }
 

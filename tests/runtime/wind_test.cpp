@@ -195,7 +195,8 @@ struct Vane {
         if (rejected) *rejected = engine.lastStep().rejectedWinds;
         std::vector<Float3> v(2);
         engine.readVelocities(v);
-        return v[1] * (1.0f / (1.0f - std::exp(-20.0f * 1e-3f)));
+        // Position Verlet keeps the velocity of the half step.
+        return v[1] * (2.0f / (1.0f - std::exp(-20.0f * 1e-3f)));
     }
 };
 
