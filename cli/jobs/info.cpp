@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "cli/advice_report.h"
 #include "cli/documents.h"
 #include "cli/job.h"
 #include "core/base/file.h"
@@ -71,6 +72,7 @@ Result<Report> info(const std::string& path, const std::string& unit) {
         if (!asset) return tl::unexpected(asset.error());
         report["asset"] = *asset;
     }
+    report["advice"] = adviceReport(groom, runtime::kUsualFrame);
     if (groom.scalp) report["scalp"] = scalpReport(groom);
     return report;
 }

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "cli/advice_report.h"
 #include "cli/documents.h"
 #include "cli/field_rows.h"
 #include "cli/job.h"
@@ -95,7 +96,9 @@ Result<Report> set(const SetOptions& options) {
         ++changed;
     }
     if (auto saved = saveProject(*groom, options.output); !saved) return tl::unexpected(saved.error());
-    return Report{{"changed", changed}, {"output", options.output}};
+    return Report{{"changed", changed},
+                  {"advice", adviceReport(*groom, runtime::kUsualFrame)},
+                  {"output", options.output}};
 }
 
 Report presetRows() {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "cli/advice_report.h"
 #include "cli/backend.h"
 #include "cli/documents.h"
 #include "cli/job.h"
@@ -19,7 +20,6 @@
 #include "core/simulation/frame_record.h"
 #include "core/simulation/sag.h"
 #include "core/simulation/simulation.h"
-#include "hairloom/stable.h"
 
 namespace hairloom::cli {
 namespace {
@@ -94,29 +94,6 @@ Status overrideSettings(Groom& groom, const SimulateOptions& options) {
         groom.simulation.substeps = std::max(groom.simulation.substeps, runtime::kSpringSubsteps);
     if (options.substeps > 0) groom.simulation.substeps = options.substeps;
     return setWind(groom, options.wind);
-}
-
-/// What runtime/stable.h has to say of these settings; null where all is well. Warns as well.
-Report adviceReport(const Groom& groom, float frameTime) {
-    const auto positions = groom.positions();
-    static_assert(sizeof(Vec3f) == sizeof(runtime::Float3));
-    runtime::StrandsView strands;
-    strands.offsets = groom.offsets.view();
-    strands.restPositions_ss = {reinterpret_cast<const runtime::Float3*>(positions.data()), positions.size()};
-    const runtime::StableAdvice advice = runtime::adviseStability(strands, groom.simulation, frameTime);
-    if (advice.words.empty()) return {};
-    Report offers = Report::array();
-    std::string remedies;
-    for (const runtime::StableOffer& offer : advice.offers) {
-        offers.push_back(offer.words);
-        remedies += (remedies.empty() ? "; what helps: " : ", or ") + offer.words;
-    }
-    log::warning("{}{}", advice.words, remedies);
-    Report report;
-    report["words"] = advice.words;
-    report["factor"] = finiteOrNull(advice.region.factor);
-    report["offers"] = std::move(offers);
-    return report;
 }
 
 Report effectsReport(const std::vector<EffectReport>& effects) {

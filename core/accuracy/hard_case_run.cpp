@@ -42,7 +42,8 @@ void HardCaseRun::start(StrandSet strands, runtime::SimulationSettings settings,
     settings.integrator = method_.integrator;
     settings.substeps = method_.rods() ? kRodSubsteps : substepsFor(strands_, settings, longestFrame);
     const runtime::StableAdvice advice = runtime::adviseStability(strands_.view(), settings, longestFrame);
-    if (limit_.empty()) limit_ = advice.words;
+    // Whether hair comes to rest is what the cases measure.
+    if (limit_.empty() && !advice.region.stable()) limit_ = advice.words;
     engine_ = another(settings);
     roots_ = strands_.roots();
     engine_->reset(roots_);

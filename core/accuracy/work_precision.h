@@ -33,6 +33,8 @@ struct WorkPrecisionRun {
     TrajectoryError error = {};
     bool onFront = false;  ///< no other run is both as fast and as exact (median time, root mean square)
     std::uint64_t stateHash = 0;
+    /// Springs that would be on the front, but tremble where the head stands still: m/s, or 0.
+    double trembling = 0;
 };
 
 struct WorkPrecision {

@@ -49,7 +49,10 @@ Cells rowForPeople(const WorkPrecision& result, const WorkPrecisionRun& run) {
     }
     append(cells, {fmt::format("{:.4f}", run.milliseconds.median), fmt::format("{:.4f}", run.milliseconds.q1),
                    fmt::format("{:.4f}", run.milliseconds.q3), fmt::format("{:.4f}", run.error.rmsMm),
-                   fmt::format("{:.3f}", run.error.maxMm), run.onFront ? "on the front" : ""});
+                   fmt::format("{:.3f}", run.error.maxMm),
+                   run.onFront         ? "on the front"
+                   : run.trembling > 0 ? "trembles at rest"
+                                       : ""});
     return cells;
 }
 

@@ -85,7 +85,9 @@ void StabilityGauge::update() {
     const double margin = std::isfinite(factor) ? std::clamp(1 - factor, 0.0, 1.0) : 0;
     bar_->setValue(std::max(kMinShown, static_cast<int>(100 * margin)));
     const ThemeColours colours = themeColours(preferences_.theme());
-    const QColor colour = factor > 1 ? colours.bad : factor > 0.8 ? colours.caution : colours.good;
+    const QColor colour = factor > 1                                ? colours.bad
+                          : factor > 0.8 || advice_.rest.trembles() ? colours.caution
+                                                                    : colours.good;
     bar_->setStyleSheet(QStringLiteral("QProgressBar::chunk { background: %1; }").arg(colour.name()));
     words_->setText(!advice_.words.empty() ? QString::fromStdString(advice_.words)
                     : factor > 0 ? tr("Stable: at %1 % of the longest step").arg(100 * factor, 0, 'f', 0)

@@ -251,6 +251,47 @@ std::string wordsFor(const StableRegion& region, const S& s) {
     return words + "without damping it amplifies every wave";
 }
 
+/// Springs whose bending is solved, in the order in which they are offered.
+std::vector<StableOffer> implicitOffers(const S& settings) {
+    S constrained = settings;
+    constrained.integrator = Integrator::verlet;
+    constrained.angularMethod = AngularMethod::implicit;
+    constrained.lengthMethod = LengthMethod::constraint;
+    constrained.lengthIterations = std::max(constrained.lengthIterations, 1u);
+    S implicitly = settings;
+    implicitly.integrator = Integrator::implicitEuler;
+    if (implicitly.angularMethod == AngularMethod::flexion)
+        implicitly.angularMethod = AngularMethod::implicit;
+    return {{"angular springs solved implicitly and the length constraint, with verlet", constrained},
+            {"implicitEuler", implicitly}};
+}
+
+StableOffer rodsOffer(const S& settings) {
+    S rods = settings;
+    rods.strandModel = StrandModel::rods;
+    return {"elastic rods, stable at any step", rods};
+}
+
+/// Tries whether the hair comes to rest, and what would.
+void adviseRest(const StrandsView& strands, const S& settings, float frameTime, StableAdvice& advice) {
+    advice.rest = tryRest(strands, settings, frameTime);
+    if (!advice.rest.trembles()) return;
+    advice.words =
+        text("springs with %s tremble at rest: after %.0f s of still air %u of %u strands tried move",
+             nameOf(settings.integrator), kTrialSeconds, advice.rest.moving, advice.rest.strands) +
+        text(", at up to %.3g m/s; angular springs feed curled hair, and held lengths soft hair",
+             static_cast<double>(advice.rest.fastest));
+    advice.offers.push_back(rodsOffer(settings));
+    const FastestWaves waves = fastestWaves(strands, settings);
+    for (StableOffer& offer : implicitOffers(settings)) {
+        if (offer.settings == settings ||
+            regionOf(waves, offer.settings, static_cast<double>(frameTime)).factor > kMargin ||
+            tryRest(strands, offer.settings, frameTime).trembles())
+            continue;
+        advice.offers.push_back(std::move(offer));
+    }
+}
+
 }  // namespace
 
 FastestWaves fastestWaves(const StrandsView& strands, const SimulationSettings& settings) {
@@ -313,7 +354,10 @@ StableAdvice adviseStability(const StrandsView& strands, const SimulationSetting
     if (settings.strandModel == StrandModel::rods) return advice;
     const FastestWaves waves = fastestWaves(strands, settings);
     advice.region = regionOf(waves, settings, frame);
-    if (advice.region.stable()) return advice;
+    if (advice.region.stable()) {
+        adviseRest(strands, settings, frameTime, advice);
+        return advice;
+    }
     advice.words = wordsFor(advice.region, settings);
 
     const auto inside = [&](const S& candidate) {
@@ -326,26 +370,15 @@ StableAdvice adviseStability(const StrandsView& strands, const SimulationSetting
         advice.offers.push_back({text("%u substeps instead of %u", count, settings.substeps), finer});
         break;
     }
-    S implicitly = settings;
-    implicitly.integrator = Integrator::implicitEuler;
-    if (implicitly.angularMethod == AngularMethod::flexion)
-        implicitly.angularMethod = AngularMethod::implicit;
-    S constrained = settings;
-    constrained.integrator = Integrator::verlet;
-    constrained.angularMethod = AngularMethod::implicit;
-    constrained.lengthMethod = LengthMethod::constraint;
-    constrained.lengthIterations = std::max(constrained.lengthIterations, 1u);
-    std::string ways[] = {"angular springs solved implicitly and the length constraint, with verlet",
-                          "implicitEuler"};
-    const S* candidates[] = {&constrained, &implicitly};
-    for (std::size_t i = 0; i < 2; ++i) {
-        S candidate = *candidates[i];
-        if (candidate.collisionResponse == CollisionResponse::penalty && !inside(candidate)) {
-            candidate.collisionResponse = CollisionResponse::radial;
-            ways[i] += ", and collisions by places";
+    for (StableOffer& offer : implicitOffers(settings)) {
+        if (!inside(offer.settings) && offer.settings.collisionResponse == CollisionResponse::penalty) {
+            offer.settings.collisionResponse = CollisionResponse::radial;
+            offer.words += ", and collisions by places";
         }
-        if (inside(candidate)) advice.offers.push_back({ways[i], candidate});
+        if (inside(offer.settings) && !tryRest(strands, offer.settings, frameTime).trembles())
+            advice.offers.push_back(std::move(offer));
     }
+    advice.offers.push_back(rodsOffer(settings));
     return advice;
 }
 

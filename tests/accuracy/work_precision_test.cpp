@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <sstream>
 
@@ -101,6 +102,40 @@ TEST(WorkPrecision, WhatIsTooFarOffHasDivergedAndHasNoNumbers) {
     EXPECT_THAT(workPrecisionCsv(*result), HasSubstr("verlet,1,4,,,,,,,1,0\n"));
     const auto drawing = parseXml(svg(workPrecisionPlot(*result, {})));
     EXPECT_TRUE(drawing.has_value()) << "a chart of nothing is still a drawing";
+}
+
+/// Springs feed curls: with backward Euler these never come to rest.
+TEST(WorkPrecision, WhatTremblesAtRestIsNotRecommended) {
+    Groom groom = straightHair(6, 24);
+    std::vector<Vec3f> curls(groom.positions().begin(), groom.positions().end());
+    for (std::size_t p = 0; p < curls.size(); ++p) {
+        const float angle = 1.2f * static_cast<float>(p % 24);
+        curls[p] += 0.008f * Vec3f(0, std::sin(angle), 1 - std::cos(angle));
+    }
+    const auto offsets = groom.offsets.view();
+    groom = makeGroom({offsets.begin(), offsets.end()}, std::move(curls));
+    const auto motion = makeRigidMotion("nod", groom);
+    WorkPrecisionOptions options = smallGrid();
+    options.axes = {{"strandModel", {1}}, {"substeps", {8}}};
+    options.repeats = 1;
+    options.divergedAboveMm = 1e6;
+    groom.simulation.integrator = runtime::Integrator::implicitEuler;
+    groom.simulation.angularStiffness = 0.7f;
+    const auto result = measureWorkPrecision(groom, **motion, options, EngineConverged(8));
+    ASSERT_TRUE(result.has_value()) << result.error().message();
+    for (const WorkPrecisionRun& run : result->runs) {
+        EXPECT_FALSE(run.diverged);
+        EXPECT_FALSE(run.onFront);
+        EXPECT_GT(run.trembling, 0.005);
+    }
+    EXPECT_THAT(result->notes, Contains(HasSubstr("trembles where the head stands still")));
+    groom.simulation.strandModel = runtime::StrandModel::rods;
+    options.axes[0].values = {0};
+    const auto rods = measureWorkPrecision(groom, **motion, options, EngineConverged(8));
+    ASSERT_TRUE(rods.has_value());
+    EXPECT_TRUE(std::ranges::any_of(rods->runs, &WorkPrecisionRun::onFront));
+    EXPECT_TRUE(
+        std::ranges::all_of(rods->runs, [](const WorkPrecisionRun& run) { return run.trembling == 0; }));
 }
 
 TEST(WorkPrecision, SettingsWithoutEffectAreNamed) {

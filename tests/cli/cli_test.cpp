@@ -66,6 +66,24 @@ TEST_F(Cli, SimulateWarnsOfStepsThatAreTooLong) {
                 HasSubstr("warning: leapfrog is unstable"));
 }
 
+TEST_F(Cli, SetAndInfoWarnOfSpringsThatTremble) {
+    runJson(createArguments("", 7, 40));
+    EXPECT_TRUE(runJson("info hair.hairloom")["advice"].is_null());
+    std::ofstream(folder / "curl.json")
+        << R"({"hairloom_script": 1, "operations": [{"op": "curl", "radius": 0.01, "frequency": 40}]})";
+    runJson("groom hair.hairloom --script curl.json -o curls.hairloom");
+    EXPECT_TRUE(runJson("info curls.hairloom")["advice"].is_null()) << "rods come to rest";
+    const std::string set =
+        "set curls.hairloom simulation.strandModel=springs simulation.integrator=implicitEuler "
+        "simulation.substeps=8 -o springs.hairloom --force";
+    const auto advice = runJson(set)["advice"];
+    EXPECT_THAT(advice["words"].get<std::string>(), HasSubstr("tremble at rest"));
+    EXPECT_GT(advice["trembling_strands"].get<int>(), 0);
+    EXPECT_THAT(advice["offers"][0].get<std::string>(), HasSubstr("elastic rods"));
+    EXPECT_THAT(run(set).errors, HasSubstr("warning: springs with implicitEuler tremble"));
+    EXPECT_EQ(runJson("info springs.hairloom")["advice"], advice);
+}
+
 TEST_F(Cli, StabilityWritesItsCasesAndMaps) {
     const auto report =
         runJson("stability -o out --integrators rk4 --cells 4 --steps 200 --steps-at-rest 8000");

@@ -122,9 +122,10 @@ TEST(Stable, OffersImplicitMethodsWhereSubstepsDoNotSuffice) {
         s.dampingTime = 0.0f;
         const Strands strands = straight(32, 0.0003f);
         const StableAdvice advice = adviseStability(strands.view(), s, 1.0f / 60.0f);
-        ASSERT_EQ(advice.offers.size(), 2u);
+        ASSERT_EQ(advice.offers.size(), 3u);
         EXPECT_EQ(advice.offers[0].settings.integrator, Integrator::verlet);
         EXPECT_EQ(advice.offers[1].settings.integrator, Integrator::implicitEuler);
+        EXPECT_EQ(advice.offers[2].settings.strandModel, StrandModel::rods);
         EXPECT_EQ(std::isinf(advice.region.factor), integrator == Integrator::explicitEuler);
     }
 }
@@ -137,6 +138,83 @@ TEST(Stable, KnowsThatDragIsStiffForForces) {
     EXPECT_GT(stableRegion(straight(8, 0.02f).view(), s, 1.0f / 60.0f).factor, 1.0);
     s.integrator = Integrator::verlet;
     EXPECT_TRUE(stableRegion(straight(8, 0.02f).view(), s, 1.0f / 60.0f).stable());
+}
+
+/// Strands of 15 cm that turn by `turn` radians from root to tip, level where they grow.
+Strands curled(float turn, std::uint32_t count = 3) {
+    constexpr int kPoints = 24;
+    Strands strands;
+    for (std::uint32_t s = 0; s < count; ++s) {
+        std::vector<Float3> strand{{0.01f * static_cast<float>(s), 0.0f, 0.0f}};
+        for (int i = 1; i < kPoints; ++i) {
+            const float angle = 1.5f + turn * static_cast<float>(i - 1) / (kPoints - 2);
+            const Float3 way{std::sin(angle), -std::cos(angle), turn > 3.0f ? 0.3f : 0.0f};
+            strand.push_back(strand.back() + way * (0.15f / (kPoints - 1)));
+        }
+        strands.add(strand);
+    }
+    return strands;
+}
+
+/// Greatest speed in the last of ten seconds.
+float fastestAfterTenSeconds(const Strands& strands, const SimulationSettings& settings) {
+    Engine engine = makeEngine(strands, settings);
+    std::vector<Float3> velocities(engine.pointCount());
+    float fastest = 0.0f;
+    for (int f = 0; f < 600; ++f) {
+        run(engine, strands, 1);
+        engine.readVelocities(velocities);
+        for (const Float3& v : velocities)
+            if (f >= 540) fastest = std::max(fastest, length(v));
+    }
+    return fastest;
+}
+
+TEST(Stable, SaysWhichSpringsTrembleAndWhatDoesNot) {
+    for (const Integrator integrator : {Integrator::implicitEuler, Integrator::verlet}) {
+        for (const float turn : {0.0f, 0.2f, 16.0f}) {
+            SCOPED_TRACE(std::string(nameOf(integrator)) + " " + std::to_string(turn));
+            SimulationSettings s = springSettings();
+            s.integrator = integrator;
+            const Strands strands = curled(turn);
+            const StableAdvice advice = adviseStability(strands.view(), s, 1.0f / 60.0f);
+            EXPECT_TRUE(advice.region.stable());
+            EXPECT_EQ(advice.rest.strands, 3u);
+            const bool trembles = turn > 1.0f;
+            EXPECT_EQ(advice.rest.moving, trembles ? 3u : 0u);
+            EXPECT_EQ(!advice.words.empty(), trembles);
+            EXPECT_EQ(fastestAfterTenSeconds(strands, s) > 0.005f, trembles);
+            ASSERT_EQ(!advice.offers.empty(), trembles);
+            for (const StableOffer& offer : advice.offers)
+                EXPECT_LT(fastestAfterTenSeconds(strands, offer.settings), 0.005f) << offer.words;
+        }
+    }
+}
+
+TEST(Stable, OffersNothingThatTrembles) {
+    SimulationSettings s = springSettings();
+    s.integrator = Integrator::leapfrog;
+    s.substeps = 1;
+    const StableAdvice advice = adviseStability(curled(16.0f).view(), s, 1.0f / 60.0f);
+    EXPECT_FALSE(advice.region.stable());
+    for (std::size_t i = 0; i + 1 < advice.offers.size(); ++i)
+        EXPECT_EQ(advice.offers[i].settings.integrator, Integrator::leapfrog) << "of more substeps";
+    EXPECT_EQ(advice.offers.back().settings.strandModel, StrandModel::rods);
+}
+
+/// The one curl among straight hair is among those that are tried; hair that is not damped does not count.
+TEST(Stable, FindsTheStrandThatTrembles) {
+    Strands strands = curled(0.0f, 300);
+    const Strands curl = curled(16.0f, 1);
+    strands.add(curl.points);
+    SimulationSettings s = springSettings();
+    s.integrator = Integrator::implicitEuler;
+    EXPECT_EQ(tryRest(strands.view(), s, 1.0f / 60.0f).moving, 1u);
+    s.dampingTime = 0.0f;
+    EXPECT_FALSE(tryRest(curled(0.0f).view(), s, 1.0f / 60.0f).trembles());
+    // Nobody waits for a trial of hours.
+    s.substeps = kMaxSubsteps;
+    EXPECT_EQ(tryRest(straight(kMaxPoints, 0.001f).view(), s, 1.0f / 60.0f).strands, 0u);
 }
 
 /// Largest position of a damped oscillator of ω h = `wave` after many substeps, relative to the start, as

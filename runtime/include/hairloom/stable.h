@@ -3,8 +3,9 @@
 // Whether settings are stable before they are run: the fastest wave of the hair against the step that its
 // integrator can take, and what would help. docs/stability.md has the limits and how they were measured.
 //
-// Linear theory around the rest shape. Does not know: motion of roots, collisions other than penalty springs,
-// that angular springs as forces feed energy into curled hair at any step (docs/engine.md).
+// Steps: linear theory around the rest shape, which does not know motion of roots and collisions other than
+// penalty springs. Whether springs tremble at rest, as they do in curled hair at any step (docs/engine.md),
+// is tried on some strands.
 
 #include <string>
 #include <vector>
@@ -48,9 +49,24 @@ struct StableRegion {
     bool stable() const { return factor <= 1.0; }
 };
 
-/// Rods have no limit. Of substeps of frames of `frameTime` seconds, above 0. The forces that the integrator solves implicitly do
-/// not count.
+/// Rods have no limit. Of substeps of frames of `frameTime` seconds, above 0. The forces that the integrator
+/// solves implicitly do not count.
 StableRegion stableRegion(const StrandsView& strands, const SimulationSettings& settings, float frameTime);
+
+/// Springs of some strands, the most curved among them, left alone: no wind, no spheres, roots at rest.
+struct RestTrial {
+    std::uint32_t strands = 0;  ///< 0 for rods, and where the trial would take long
+    std::uint32_t moving = 0;   ///< of them, faster than kTrialSpeed after kTrialSeconds
+    float fastest = 0.0f;       ///< m/s
+
+    bool trembles() const { return moving > 0; }
+};
+inline constexpr double kTrialSeconds = 4.0;
+inline constexpr float kTrialSpeed = 0.005f;  ///< m/s
+
+/// Runs the engine; the same bits for the same input. Motion is damped in half a second or faster, so that
+/// hair which swings on because it is not damped does not count.
+RestTrial tryRest(const StrandsView& strands, const SimulationSettings& settings, float frameTime);
 
 /// Settings that are stable, and what is different about them.
 struct StableOffer {
@@ -60,9 +76,11 @@ struct StableOffer {
 
 struct StableAdvice {
     StableRegion region;
+    RestTrial rest;     ///< of settings inside their region
     std::string words;  ///< what is the matter; empty where all is well
-    /// Best first: more substeps, where 64 suffice, then methods without a limit. Each is a tenth inside its
-    /// own stable region; empty where all is well.
+    /// Best first: more substeps, where kMaxSubsteps suffice, then springs without a limit that come to rest,
+    /// a tenth inside their own stable region, then rods. Where hair trembles rods are first. Empty where all
+    /// is well.
     std::vector<StableOffer> offers;
 };
 StableAdvice adviseStability(const StrandsView& strands, const SimulationSettings& settings, float frameTime);

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/advice_report.h"
+
+#include "cli/documents.h"
+#include "core/base/log.h"
+#include "hairloom/stable.h"
+
+namespace hairloom::cli {
+
+Report adviceReport(const Groom& groom, float frameTime) {
+    const auto positions = groom.positions();
+    static_assert(sizeof(Vec3f) == sizeof(runtime::Float3));
+    runtime::StrandsView strands;
+    strands.offsets = groom.offsets.view();
+    strands.restPositions_ss = {reinterpret_cast<const runtime::Float3*>(positions.data()), positions.size()};
+    const runtime::StableAdvice advice = runtime::adviseStability(strands, groom.simulation, frameTime);
+    if (advice.words.empty()) return {};
+    Report offers = Report::array();
+    std::string remedies;
+    for (const runtime::StableOffer& offer : advice.offers) {
+        offers.push_back(offer.words);
+        remedies += (remedies.empty() ? "; what helps: " : ", or ") + offer.words;
+    }
+    log::warning("{}{}", advice.words, remedies);
+    Report report;
+    report["words"] = advice.words;
+    report["factor"] = finiteOrNull(advice.region.factor);
+    report["trembling_strands"] = advice.rest.moving;
+    report["tried_strands"] = advice.rest.strands;
+    report["offers"] = std::move(offers);
+    return report;
+}
+
+}  // namespace hairloom::cli
