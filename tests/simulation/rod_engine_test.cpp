@@ -33,7 +33,7 @@ std::vector<double> rodErrors(const Swing& scene, const runtime::SimulationSetti
 
 /// Each halving of the step divides the error by `factor` or more, down to what single precision leaves.
 void expectConvergence(const std::vector<double>& errors, double first, double factor) {
-    constexpr double kSinglePrecision = 0.02;  // mm
+    constexpr double kSinglePrecision = 0.01;  // mm
     EXPECT_LT(errors.front(), first);
     for (std::size_t i = 1; i < errors.size(); ++i)
         EXPECT_LT(errors[i], std::max(errors[i - 1] / factor, kSinglePrecision))
@@ -58,31 +58,31 @@ reference::Strands curl() {
 }
 
 TEST(RodsConverge, StraightHair) {
-    expectConvergence(rodErrors(swing(straight(), 40), rods()), 1.0, 3.0);
+    expectConvergence(rodErrors(swing(straight(), 40), rods()), 0.7, 3.8);
 }
 
 TEST(RodsConverge, Helix) {
-    expectConvergence(rodErrors(swing(helix(), 40), rods()), 1.0, 3.0);
+    expectConvergence(rodErrors(swing(helix(), 40), rods()), 0.7, 3.8);
 }
 
 TEST(RodsConverge, SoftHairThatCarriesItsWeight) {
     runtime::SimulationSettings soft = rods();
     soft.angularStiffness = 0.05f;
     soft.restGravity = 1.0f;
-    expectConvergence(rodErrors(swing(curl(), 40), soft), 0.2, 2.5);
+    expectConvergence(rodErrors(swing(curl(), 40), soft), 0.08, 2.4);
 }
 
 TEST(RodsConverge, SprungRoot) {
     runtime::SimulationSettings sprung = rods();
     sprung.clampedPoints = 1;
-    expectConvergence(rodErrors(swing(curl(), 40), sprung), 1.5, 3.0);
+    expectConvergence(rodErrors(swing(curl(), 40), sprung), 0.9, 3.4);
 }
 
-/// The angle of the air is that of the substep before: of first order.
+/// The angle of the air is that which the prediction has at the substep's end: of second order.
 TEST(RodsConverge, Wind) {
     runtime::SimulationSettings windy = rods();
     windy.windSpeed = 4.0f;
-    expectConvergence(rodErrors(swing(curl(), 40), windy), 4.0, 1.7);
+    expectConvergence(rodErrors(swing(curl(), 40), windy), 2.0, 2.9);
 }
 
 }  // namespace
