@@ -12,6 +12,7 @@
 #include "cli/motions.h"
 #include "cli/progress.h"
 #include "core/accuracy/work_precision_report.h"
+#include "core/scene/groom_scene.h"
 
 namespace hairloom::cli {
 namespace {
@@ -25,6 +26,7 @@ struct AccuracyOptions {
     GroundTruthOptions groundTruth;
     std::vector<std::string> integrators, substeps, iterations, points, threadCounts;
     std::vector<std::string> vary;  ///< FIELD=V1,V2,…
+    std::string view;               ///< view file; empty for none
 };
 
 /// The groom's own number of points, and a half and a quarter of it.
@@ -97,8 +99,21 @@ Report settingReport(const WorkPrecision& result, const WorkPrecisionRun& run) {
     return setting;
 }
 
+/// Of the view, in the middle of the hair, seen side-on; nothing without a view. Errors: a view that cannot
+/// be read, or says no camera or size.
+Result<std::optional<double>> pixelsPerMm(const std::string& file, const Groom& groom) {
+    if (file.empty()) return std::nullopt;
+    const auto view = readViewFile(file);
+    if (!view) return tl::unexpected(view.error());
+    if (!view->camera || !view->size || view->size->second == 0)
+        return failIn(file, {}, "the view has no camera or no size", "expected both, for errors in pixels");
+    const float metres = render::metresPerPixel(*view->camera, groom.bounds().center(),
+                                                static_cast<float>(view->size->second));
+    return 1e-3 / static_cast<double>(metres);
+}
+
 /// The fastest first.
-Report frontReport(const WorkPrecision& result) {
+Report frontReport(const WorkPrecision& result, std::optional<double> pixelsPerMm) {
     std::vector<const WorkPrecisionRun*> front;
     for (const WorkPrecisionRun& run : result.runs) {
         if (run.onFront) front.push_back(&run);
@@ -110,6 +125,7 @@ Report frontReport(const WorkPrecision& result) {
                               {"ms", run->milliseconds.median},
                               {"error_mm", run->error.rmsMm},
                               {"error_mm_max", run->error.maxMm}});
+        if (pixelsPerMm) rows.back()["error_px"] = run->error.rmsMm * *pixelsPerMm;
     }
     return rows;
 }
@@ -120,6 +136,8 @@ Result<Report> accuracy(const AccuracyOptions& options, const std::string& comma
     // Rods have neither integrators nor corrections of length.
     if (!options.integrators.empty() || !options.iterations.empty())
         scene->groom.simulation.strandModel = runtime::StrandModel::springs;
+    const auto scale = pixelsPerMm(options.view, scene->groom);
+    if (!scale) return tl::unexpected(scale.error());
     auto axes = axesOf(options, scene->groom);
     if (!axes) return tl::unexpected(axes.error());
     WorkPrecisionOptions measuring;
@@ -151,7 +169,7 @@ Result<Report> accuracy(const AccuracyOptions& options, const std::string& comma
     report["truth"] = result->groundTruthName;
     report["truth_detail"] = result->groundTruthDetail;
     report["truth_uncertainty_mm"] = result->groundTruthUncertaintyMm;
-    report["front"] = frontReport(*result);
+    report["front"] = frontReport(*result, *scale);
     report["notes"] = result->notes;
     report["output"] = options.output;
     report["files"] = *files;
@@ -177,6 +195,9 @@ JobRun declare(CLI::App& job) {
          "Points per strand to try, instead of the groom's, a half and a quarter");
     list("--thread-counts", options->threadCounts, "Numbers of threads to try, instead of --threads alone");
     job.add_option("--vary", options->vary, "Another setting to try, FIELD=VALUE,VALUE,…; may be repeated");
+    job.add_option("--view", options->view,
+                   "View file (docs/cli.md) with a camera and a size: errors in its pixels, too")
+        ->type_name("FILE");
     job.add_option("--repeat", options->repeats, "Timed runs of each setting")->check(CLI::Range(1, 1000));
     addGroundTruthOptions(job, options->groundTruth);
     job.add_option("--seed", options->seed, "Another seed draws other strands");

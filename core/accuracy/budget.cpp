@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <set>
 
 #include "core/accuracy/without_effect.h"
 #include "core/accuracy/work_precision.h"
@@ -14,30 +13,6 @@ namespace {
 
 constexpr std::array<std::string_view, 5> kMayGo = {"collisionRadius", "drag", "wind", "collision",
                                                     "angular"};
-
-std::uint32_t maxPoints(const Groom& groom) {
-    std::size_t maximum = 0;
-    for (std::size_t s = 0; s < groom.strandCount(); ++s) maximum = std::max(maximum, groom.strand(s).size());
-    return static_cast<std::uint32_t>(maximum);
-}
-
-std::vector<GridAxis> axesOf(const Groom& groom) {
-    const runtime::SimulationSettings& own = groom.simulation;
-    std::set<double> substeps{1, 2, 4, 8, 16, 32, static_cast<double>(own.substeps)};
-    std::vector<GridAxis> axes{{"substeps", {substeps.begin(), substeps.end()}}};
-    const bool springs = own.strandModel == runtime::StrandModel::springs;
-    if (springs && own.lengthMethod == runtime::LengthMethod::constraint && own.lengthIterations > 0) {
-        std::set<double> iterations{1, 2, static_cast<double>(own.lengthIterations)};
-        axes.push_back({"lengthIterations", {iterations.begin(), iterations.end()}});
-    }
-    constexpr std::uint32_t kFewest = 4;
-    const std::uint32_t points = maxPoints(groom);
-    std::set<double> counts{static_cast<double>(points)};
-    for (const std::uint32_t part : {2u, 4u})
-        counts.insert(std::max(points / part, std::min(points, kFewest)));
-    axes.push_back({std::string(kPointsAxis), {counts.begin(), counts.end()}});
-    return axes;
-}
 
 /// One way to run the scene: with all strands, for its time, and a sample of them, for its error.
 struct Candidate {
@@ -58,7 +33,7 @@ class Solver {
           poses_(posesOf(motion, options.time)),
           all_(sampleStrands(groom, groom.strandCount(), 0)),
           sample_(sampleStrands(groom, options.strands, options.seed)),
-          axes_(axesOf(groom)) {}
+          axes_(axesToTry(groom)) {}
 
     Result<Budget> solve() {
         const auto authored = timed(all_);

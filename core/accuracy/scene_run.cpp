@@ -119,6 +119,12 @@ SceneHair resampledHair(const SceneHair& hair, std::uint32_t points) {
     return result;
 }
 
+std::uint32_t maxPoints(const Groom& groom) {
+    std::size_t maximum = 0;
+    for (std::size_t s = 0; s < groom.strandCount(); ++s) maximum = std::max(maximum, groom.strand(s).size());
+    return static_cast<std::uint32_t>(maximum);
+}
+
 std::vector<HeadPose> posesOf(const HeadMotion& motion, const SceneTime& time) {
     std::vector<HeadPose> poses;
     const float stepsPerSecond = time.framesPerSecond * static_cast<float>(time.stepsPerFrame);

@@ -26,6 +26,9 @@ SceneHair sampleStrands(const Groom& groom, std::size_t count, std::uint64_t see
 /// the position go, and operators with them.
 SceneHair resampledHair(const SceneHair& hair, std::uint32_t points);
 
+/// Points of the strand that has most; 0 without strands.
+std::uint32_t maxPoints(const Groom& groom);
+
 /// How long, how often, and where the head is.
 struct SceneTime {
     std::uint32_t frames = 60;

@@ -74,10 +74,16 @@ class Counted {
     std::size_t total_, done_ = 0;
 };
 
+Status unlessCancelled(const WorkPrecisionOptions& options) {
+    if (options.cancelled && options.cancelled()) return fail("measuring was cancelled");
+    return {};
+}
+
 /// Where each run's hair goes; the first run of each setting, which also warms the caches.
 Status followAll(const GridHair& hair, std::span<const HeadPose> poses, const Trajectory& groundTruth,
                  const Followed& followed, WorkPrecision& result, Counted& counted) {
     for (WorkPrecisionRun& run : result.runs) {
+        if (auto status = unlessCancelled(result.options); !status) return status;
         const ThreadLimit limit = hair.limitThreads(run.values);
         const auto outcome = runScene(hair.at(run.values), poses, result.options.time, followed);
         if (!outcome) return tl::unexpected(outcome.error());
@@ -89,26 +95,6 @@ Status followAll(const GridHair& hair, std::span<const HeadPose> poses, const Tr
         }
         if (run.diverged) run.error = {};
         counted.add(run.diverged ? 1 + result.options.repeats : 1);
-    }
-    return {};
-}
-
-/// In rounds over all settings, so that a machine that warms up or is busy for a while treats them alike.
-Status timeAll(const GridHair& hair, std::span<const HeadPose> poses, WorkPrecision& result,
-               Counted& counted) {
-    std::vector<std::vector<double>> times(result.runs.size());
-    for (std::uint32_t round = 0; round < result.options.repeats; ++round) {
-        for (std::size_t r = 0; r < result.runs.size(); ++r) {
-            if (result.runs[r].diverged) continue;
-            const ThreadLimit limit = hair.limitThreads(result.runs[r].values);
-            const auto outcome = runScene(hair.at(result.runs[r].values), poses, result.options.time, {});
-            if (!outcome) return tl::unexpected(outcome.error());
-            times[r].push_back(outcome->millisecondsPerFrame);
-            counted.add();
-        }
-    }
-    for (std::size_t r = 0; r < result.runs.size(); ++r) {
-        if (!times[r].empty()) result.runs[r].milliseconds = quartiles(times[r]);
     }
     return {};
 }
@@ -138,30 +124,59 @@ Result<double> tremblingAtRest(SceneHair hair, const HeadPose& pose, const Follo
     return speed > static_cast<double>(runtime::kTrialSpeed) ? speed : 0.0;
 }
 
+/// Of the runs that neither diverge nor tremble.
+void markFront(WorkPrecision& result) {
+    std::vector<std::pair<double, double>> pairs;
+    for (const WorkPrecisionRun& run : result.runs) {
+        const double never = std::numeric_limits<double>::infinity();
+        const bool out = run.diverged || run.trembling > 0;
+        pairs.emplace_back(out ? never : run.milliseconds.median, out ? never : run.error.rmsMm);
+    }
+    const std::vector<bool> front = paretoFront(pairs);
+    for (std::size_t r = 0; r < result.runs.size(); ++r) result.runs[r].onFront = front[r];
+}
+
 /// What trembles at rest is not recommended: without it the front is found again.
 Status findFront(const GridHair& hair, const HeadPose& pose, const Followed& followed,
                  WorkPrecision& result) {
     std::set<std::size_t> calm;
-    for (;;) {
-        std::vector<std::pair<double, double>> pairs;
-        for (const WorkPrecisionRun& run : result.runs) {
-            const double never = std::numeric_limits<double>::infinity();
-            const bool out = run.diverged || run.trembling > 0;
-            pairs.emplace_back(out ? never : run.milliseconds.median, out ? never : run.error.rmsMm);
-        }
-        const std::vector<bool> front = paretoFront(pairs);
-        bool settled = true;
+    for (bool settled = false; !settled;) {
+        markFront(result);
+        settled = true;
         for (std::size_t r = 0; r < result.runs.size(); ++r) {
             WorkPrecisionRun& run = result.runs[r];
-            run.onFront = front[r];
-            if (!front[r] || !calm.insert(r).second) continue;
+            if (!run.onFront || !calm.insert(r).second) continue;
+            if (auto status = unlessCancelled(result.options); !status) return status;
             const auto speed = tremblingAtRest(hair.at(run.values), pose, followed);
             if (!speed) return tl::unexpected(speed.error());
             run.trembling = *speed;
             settled = settled && !(*speed > 0);
         }
-        if (settled) return {};
     }
+    return {};
+}
+
+/// In rounds over all settings, so that a machine that warms up or is busy for a while treats them alike.
+Status timeAll(const GridHair& hair, std::span<const HeadPose> poses, WorkPrecision& result,
+               Counted& counted) {
+    std::vector<std::vector<double>> times(result.runs.size());
+    for (std::uint32_t round = 0; round < result.options.repeats; ++round) {
+        for (std::size_t r = 0; r < result.runs.size(); ++r) {
+            if (result.runs[r].diverged) continue;
+            if (auto status = unlessCancelled(result.options); !status) return status;
+            const ThreadLimit limit = hair.limitThreads(result.runs[r].values);
+            const auto outcome = runScene(hair.at(result.runs[r].values), poses, result.options.time, {});
+            if (!outcome) return tl::unexpected(outcome.error());
+            times[r].push_back(outcome->millisecondsPerFrame);
+            counted.add();
+        }
+        for (std::size_t r = 0; r < result.runs.size(); ++r) {
+            if (!times[r].empty()) result.runs[r].milliseconds = quartiles(times[r]);
+        }
+        markFront(result);
+        if (result.options.partial) result.options.partial(result);
+    }
+    return {};
 }
 
 /// The hashes of all runs with one value of an axis, in the order of the other axes' values.
@@ -276,6 +291,24 @@ Status checkAxes(const std::vector<GridAxis>& axes) {
 }
 
 }  // namespace
+
+std::vector<GridAxis> axesToTry(const Groom& groom) {
+    const runtime::SimulationSettings& own = groom.simulation;
+    std::set<double> substeps{1, 2, 4, 8, 16, 32, static_cast<double>(own.substeps)};
+    std::vector<GridAxis> axes{{"substeps", {substeps.begin(), substeps.end()}}};
+    const bool springs = own.strandModel == runtime::StrandModel::springs;
+    if (springs && own.lengthMethod == runtime::LengthMethod::constraint && own.lengthIterations > 0) {
+        std::set<double> iterations{1, 2, static_cast<double>(own.lengthIterations)};
+        axes.push_back({"lengthIterations", {iterations.begin(), iterations.end()}});
+    }
+    constexpr std::uint32_t kFewest = 4;
+    const std::uint32_t points = maxPoints(groom);
+    std::set<double> counts{static_cast<double>(points)};
+    for (const std::uint32_t part : {2u, 4u})
+        counts.insert(std::max(points / part, std::min(points, kFewest)));
+    axes.push_back({std::string(kPointsAxis), {counts.begin(), counts.end()}});
+    return axes;
+}
 
 Result<WorkPrecision> measureWorkPrecision(const Groom& groom, const HeadMotion& motion,
                                            const WorkPrecisionOptions& options,

@@ -13,6 +13,12 @@
 
 namespace hairloom {
 
+/// What trades accuracy for time in every scene: substeps, corrections of length where strands are springs
+/// that have some, and points per strand; around what the groom has, and with it.
+std::vector<GridAxis> axesToTry(const Groom& groom);
+
+struct WorkPrecision;
+
 struct WorkPrecisionOptions {
     std::vector<GridAxis> axes;         ///< each combination of their values is run
     SceneTime time;                     ///< stepsPerFrame is 1
@@ -24,6 +30,9 @@ struct WorkPrecisionOptions {
     /// strand.
     double divergedAboveMm = 0;
     std::function<void(std::size_t done, std::size_t total)> progress;
+    /// Called after each round of timed runs with what is known by then.
+    std::function<void(const WorkPrecision&)> partial;
+    std::function<bool()> cancelled;  ///< asked between runs; true ends them with an error
 };
 
 struct WorkPrecisionRun {
@@ -53,7 +62,7 @@ struct WorkPrecision {
 };
 
 /// Errors: an axis that is neither a field nor named above, values out of its range (all of them checked
-/// before anything runs), a groom that cannot be simulated.
+/// before anything runs), a groom that cannot be simulated, being cancelled.
 Result<WorkPrecision> measureWorkPrecision(const Groom& groom, const HeadMotion& motion,
                                            const WorkPrecisionOptions& options,
                                            const GroundTruthSource& groundTruth);

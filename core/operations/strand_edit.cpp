@@ -43,6 +43,8 @@ bool editable(const Groom& groom, std::size_t strand) {
     return layer >= groom.layers.size() || !groom.layers[layer].locked;
 }
 
+}  // namespace
+
 std::vector<std::uint32_t> strandsToEdit(const Groom& groom, const Region& region) {
     std::vector<std::uint32_t> strands;
     for (std::size_t s = 0; s < groom.strandCount(); ++s) {
@@ -50,8 +52,6 @@ std::vector<std::uint32_t> strandsToEdit(const Groom& groom, const Region& regio
     }
     return strands;
 }
-
-}  // namespace
 
 std::span<const Field<Region>> fieldsOf(const Region&) {
     return kRegionFields;

@@ -46,6 +46,9 @@ struct EditOptions {
     bool needsSkin = false;  ///< edits use StrandEdit::skin; it is there also without a clearance
 };
 
+/// Of the region, those that are neither frozen nor on a locked layer; ascending.
+std::vector<std::uint32_t> strandsToEdit(const Groom& groom, const Region& region);
+
 /// Runs the edit over every strand of the region that is neither frozen nor on a locked layer, then keeps it
 /// out of the head. Returns the number of strands that changed; the positions keep their version when none
 /// did.

@@ -39,6 +39,14 @@ Result<View> parseView(std::string_view name) {
     return static_cast<View>(found - kNames.begin());
 }
 
+float metresPerPixel(const Camera& camera, const Vec3f& point_ws, float height_px) {
+    if (camera.isOrthographic()) return camera.orthographicHeight / height_px;
+    constexpr float kNearest = 1e-4f;
+    const Vec3f forward = (camera.target_ws - camera.eye_ws).normalized();
+    const float depth = std::max((point_ws - camera.eye_ws).dot(forward), kNearest);
+    return 2 * depth * std::tan(radians(camera.verticalFov) / 2) / height_px;
+}
+
 Camera frame(View view, const Box3f& bounds_ws, float aspect) {
     const Box3f box =
         bounds_ws.isEmpty() ? Box3f(Vec3f::Constant(-0.15f), Vec3f::Constant(0.15f)) : bounds_ws;

@@ -33,6 +33,10 @@ Camera frame(View view, const Box3f& bounds_ws, float aspect);
 /// Errors: not finite, no viewing direction, up along it, field of view out of range.
 Status check(const Camera& camera);
 
+/// Metres that a pixel covers at a point, in a picture `height_px` ≥ 1 pixels high. Points behind the eye
+/// count as close before it.
+float metresPerPixel(const Camera& camera, const Vec3f& point_ws, float height_px);
+
 /// Right-handed view space (-Z forward) from world space.
 Mat4f viewMatrix(const Camera& camera);
 /// Clip space with depth 0 (near) … 1 (far).

@@ -112,10 +112,7 @@ std::optional<QPointF> OrbitCamera::project(const Vec3f& point_ws, const QSizeF&
 }
 
 float OrbitCamera::metresPerPixel(const Vec3f& point_ws, const QSizeF& view_px) const {
-    const auto height = static_cast<float>(std::max(view_px.height(), 1.0));
-    if (orthographic_) return heightAtTarget() / height;
-    const float depth = std::max((point_ws - camera().eye_ws).dot(forward_ws()), 1e-4f);
-    return 2 * depth * halfTangent(kFov) / height;
+    return render::metresPerPixel(camera(), point_ws, static_cast<float>(std::max(view_px.height(), 1.0)));
 }
 
 }  // namespace hairloom::editor

@@ -45,6 +45,33 @@ Result<WorkPrecision> measureSmall(const WorkPrecisionOptions& options) {
     return measureWorkPrecision(groom, **motion, options, EngineConverged(8));
 }
 
+TEST(WorkPrecision, TellsWhatIsKnownAfterEachRound) {
+    WorkPrecisionOptions options = smallGrid();
+    std::vector<WorkPrecision> rounds;
+    options.partial = [&](const WorkPrecision& result) { rounds.push_back(result); };
+    const auto result = measureSmall(options);
+    ASSERT_TRUE(result.has_value()) << result.error().message();
+    ASSERT_EQ(rounds.size(), options.repeats);
+    for (const WorkPrecision& round : rounds) {
+        ASSERT_EQ(round.runs.size(), result->runs.size());
+        for (std::size_t r = 0; r < round.runs.size(); ++r) {
+            EXPECT_EQ(round.runs[r].error.rmsMm, result->runs[r].error.rmsMm);
+            EXPECT_GT(round.runs[r].milliseconds.median, 0);
+        }
+        EXPECT_TRUE(std::ranges::any_of(round.runs, &WorkPrecisionRun::onFront));
+    }
+}
+
+TEST(WorkPrecision, EndsWhenItIsCancelled) {
+    WorkPrecisionOptions options = smallGrid();
+    int asked = 0;
+    options.cancelled = [&] { return ++asked > 2; };
+    const auto result = measureSmall(options);
+    ASSERT_FALSE(result.has_value());
+    EXPECT_THAT(result.error().message(), HasSubstr("cancelled"));
+    EXPECT_EQ(asked, 3) << "nothing runs on";
+}
+
 TEST(WorkPrecision, MoreWorkIsMorePrecise) {
     std::size_t last = 0, total = 0;
     WorkPrecisionOptions options = smallGrid();

@@ -231,6 +231,20 @@ TEST_F(Cli, AccuracyMeasuresAGridAndWritesAReport) {
     EXPECT_THAT(readText(folder / "out" / "data.csv"),
                 StartsWith("integrator,substeps,lengthIterations,points,ms_median,"));
 
+    // 2 m away, 1000 pixels for 2 · 2 m · tan 15°: 1 mm is 0.933 pixels.
+    std::ofstream(folder / "view.json") << R"({"size": [1500, 1000], "camera": {"eye": [0, 1.7, 2.0],
+        "target": [0, 1.7, 0], "up": [0, 1, 0], "fov_y_deg": 30}})";
+    const auto seen = runJson(
+        "accuracy hair.hairloom -o seen --frames 4 --strands 10 --substeps 1 --points 6 --repeat 1 --view "
+        "view.json"
+        " --truth engine --truth-substeps 8");
+    for (const auto& point : seen["front"])
+        EXPECT_NEAR(point["error_px"].get<double>() / point["error_mm"].get<double>(), 0.933, 0.06);
+    std::ofstream(folder / "blind.json") << R"({"size": [1500, 1000]})";
+    const Outcome blind = run("accuracy hair.hairloom -o bad --view blind.json");
+    EXPECT_EQ(blind.exitCode, 1);
+    EXPECT_THAT(blind.errors, HasSubstr("blind.json: the view has no camera"));
+
     const auto engine = runJson(
         "accuracy hair.hairloom -o engine --frames 4 --strands 10 --substeps 4 --iterations 1 --points 6"
         " --repeat 1 --truth engine --truth-substeps 8");

@@ -158,6 +158,16 @@ TEST_F(ManualTest, GroomingSpheresMotionAndLook) {
     shoot(exporting, "export");
 }
 
+TEST_F(ManualTest, Accuracy) {
+    openSampleHair("shoulder");
+    showFromThreeQuarters();
+    raise("accuracy");
+    find<QPushButton>("accuracyMeasure")->click();
+    finishWork();
+    find<NumberBox>("accuracyPixels")->spinBox().setValue(0.5);
+    shootWindow("accuracy");
+}
+
 TEST_F(ManualTest, Dye) {
     openSampleHair("shoulder");
     Groom teal = groom();

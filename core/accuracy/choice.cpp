@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/accuracy/choice.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace hairloom {
+namespace {
+
+/// The run that `isBetter` prefers, of those that `may` be chosen and neither diverge nor tremble.
+template <class May, class Better>
+std::optional<std::size_t> best(const WorkPrecision& measured, const May& may, const Better& isBetter) {
+    std::optional<std::size_t> chosen;
+    for (std::size_t r = 0; r < measured.runs.size(); ++r) {
+        const WorkPrecisionRun& run = measured.runs[r];
+        if (run.diverged || run.trembling > 0 || !may(run)) continue;
+        if (!chosen || isBetter(run, measured.runs[*chosen])) chosen = r;
+    }
+    return chosen;
+}
+
+bool isCheaper(const WorkPrecisionRun& a, const WorkPrecisionRun& b) {
+    return a.milliseconds.median < b.milliseconds.median;
+}
+
+}  // namespace
+
+std::optional<std::size_t> runOf(const WorkPrecision& measured, const Groom& groom) {
+    const std::vector<GridAxis>& axes = measured.options.axes;
+    for (std::size_t r = 0; r < measured.runs.size(); ++r) {
+        bool same = true;
+        for (std::size_t a = 0; a < axes.size() && same; ++a) {
+            const double value = measured.runs[r].values[a];
+            if (axes[a].field == kPointsAxis) {
+                same = value == static_cast<double>(maxPoints(groom));
+            } else if (const auto* field = runtime::findField<runtime::SimulationSettings>(axes[a].field)) {
+                same = value == runtime::fieldValue(groom.simulation, *field);
+            }
+        }
+        if (same) return r;
+    }
+    return std::nullopt;
+}
+
+std::optional<std::size_t> nextStep(const WorkPrecision& measured, std::size_t from) {
+    const WorkPrecisionRun& now = measured.runs[from];
+    const auto isMoreExact = [&](const WorkPrecisionRun& run) {
+        return run.onFront && (now.diverged || run.error.rmsMm < now.error.rmsMm);
+    };
+    return best(measured, isMoreExact, isCheaper);
+}
+
+std::optional<std::size_t> cheapestWithinError(const WorkPrecision& measured, double rmsMm) {
+    return best(
+        measured, [&](const WorkPrecisionRun& run) { return run.error.rmsMm <= rmsMm; }, isCheaper);
+}
+
+std::optional<std::size_t> mostExactWithinTime(const WorkPrecision& measured, double milliseconds) {
+    return best(
+        measured, [&](const WorkPrecisionRun& run) { return run.milliseconds.median <= milliseconds; },
+        [](const WorkPrecisionRun& a, const WorkPrecisionRun& b) { return a.error.rmsMm < b.error.rmsMm; });
+}
+
+std::string describeRun(const WorkPrecision& measured, std::size_t run) {
+    std::string words;
+    for (std::size_t a = 0; a < measured.options.axes.size(); ++a) {
+        const GridAxis& axis = measured.options.axes[a];
+        const double value = measured.runs[run].values[a];
+        const std::string text = axisValueText(axis, value);
+        if (!words.empty()) words += ", ";
+        if (axis.field == kPointsAxis || axis.field == "substeps") {
+            const std::string_view unit = axis.field == kPointsAxis ? "point" : "substep";
+            words += fmt::format("{} {}{}", text, unit, value == 1 ? "" : "s");
+        } else {
+            words += fmt::format("{} {}", axis.field, text);
+        }
+    }
+    return words;
+}
+
+}  // namespace hairloom

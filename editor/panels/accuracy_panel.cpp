@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What accuracy costs: the diagram of this hair on this machine, in milliseconds and in pixels of the view,
+// and settings taken from it.
+#include <QLabel>
+#include <QPushButton>
+#include <QVBoxLayout>
+#include <algorithm>
+#include <cmath>
+
+#include "core/accuracy/choice.h"
+#include "core/editing/document.h"
+#include "core/editing/records.h"
+#include "core/editing/settings_commands.h"
+#include "core/groom/file/settings_json.h"
+#include "core/operations/resample.h"
+#include "editor/fields/number_box.h"
+#include "editor/panels/accuracy_plot.h"
+#include "editor/panels/panel.h"
+
+namespace hairloom::editor {
+namespace {
+
+constexpr std::uint32_t kFrames = 30;
+constexpr std::uint32_t kRepeats = 3;
+constexpr std::uint32_t kMostStrands = 4000;  ///< that run; times of more are in proportion
+constexpr std::size_t kTrueStrands = 12;      ///< that the reference solves
+constexpr double kTolerance_mm = 0.02;
+
+class AccuracyPanel : public QWidget {
+  public:
+    explicit AccuracyPanel(const PanelParts& parts)
+        : document_(parts.document),
+          player_(parts.player),
+          tasks_(parts.tasks),
+          messages_(parts.messages),
+          viewport_(parts.viewport),
+          plot_(new AccuracyPlot),
+          words_(new QLabel),
+          measure_(new QPushButton(tr("Measure"))),
+          chosenWords_(new QLabel),
+          adopt_(new QPushButton(tr("Adopt"))),
+          pixels_(new NumberBox(0.01, 100, false)),
+          milliseconds_(new NumberBox(0.01, 100, false)) {
+        auto* layout = new QVBoxLayout(this);
+        layout->setContentsMargins(0, 0, 0, 0);
+        layout->setSpacing(8);
+        words_->setObjectName("accuracyWords");
+        words_->setWordWrap(true);
+        layout->addWidget(words_);
+        layout->addWidget(plot_, 1);
+        addChoice(*layout, *pixels_, "accuracyPixels", tr("Cheapest within"), "px",
+                  tr("Chooses the cheapest setting whose error is at most so many pixels in this view"));
+        addChoice(*layout, *milliseconds_, "accuracyMs", tr("Most exact within"), "ms",
+                  tr("Chooses the most exact setting that takes at most so long a frame on this machine"));
+        adopt_->setObjectName("accuracyAdopt");
+        adopt_->setToolTip(
+            tr("Gives the document these settings, undoably. Another number of points makes the "
+               "hair as it is all there is: operators are gone"));
+        measure_->setObjectName("accuracyMeasure");
+        measure_->setToolTip(
+            tr("Runs this hair at a grid of settings, in the motion of the view or a nod, beside "
+               "a reference in double precision; half a minute or so"));
+        chosenWords_->setObjectName("accuracyChosen");
+        chosenWords_->setWordWrap(true);
+        layout->addWidget(chosenWords_);
+        layout->addWidget(adopt_);
+        layout->addWidget(measure_);
+        pixels_->setValue(1);
+        milliseconds_->setValue(4);
+        connect(measure_, &QPushButton::clicked, this, &AccuracyPanel::measure);
+        connect(adopt_, &QPushButton::clicked, this, &AccuracyPanel::adopt);
+        connect(plot_, &AccuracyPlot::clicked, this, [this](std::size_t run) { choose(run); });
+        connect(pixels_, &NumberBox::edited, this, [this](double px) {
+            if (measured_) choose(cheapestWithinError(*measured_, px / pixelsPerMm()));
+        });
+        connect(milliseconds_, &NumberBox::edited, this, [this](double ms) {
+            if (measured_) choose(mostExactWithinTime(*measured_, ms / timeScale()));
+        });
+        connect(&document_, &QtDocument::changed, this, [this](editing::Part changed) {
+            if (contains(changed, editing::Part::Physics | editing::kHairParts | editing::Part::Spheres)) {
+                outdated_ = !adopting_;
+                refresh();
+            }
+        });
+        connect(&document_, &QtDocument::replaced, this, [this] {
+            measured_.reset();
+            chosen_.reset();
+            ++documents_;
+            refresh();
+        });
+        refresh();
+    }
+
+  protected:
+    /// The camera may have moved.
+    void showEvent(QShowEvent*) override { refresh(); }
+    void enterEvent(QEnterEvent*) override { refresh(); }
+
+  private:
+    static void addChoice(QVBoxLayout& layout, NumberBox& box, const char* name, const QString& label,
+                          const QString& unit, const QString& tip) {
+        auto* row = new QHBoxLayout;
+        auto* words = new QLabel(label);
+        words->setBuddy(&box);
+        box.setObjectName(name);
+        box.setToolTip(tip);
+        box.setShown(1, unit, 2);
+        row->addWidget(words);
+        row->addWidget(&box, 1);
+        layout.addLayout(row);
+    }
+
+    /// Seen side-on, in the middle of the hair.
+    double pixelsPerMm() const {
+        const Box3f box = document_.groom().bounds();
+        if (box.isEmpty()) return 1;
+        const float metres = viewport_.camera().metresPerPixel(box.center(), viewport_.viewSize_px());
+        return metres > 0 ? 1e-3 / static_cast<double>(metres) : 1;
+    }
+    /// From the strands that ran to all there are.
+    double timeScale() const {
+        return static_cast<double>(measured_->groomStrands) / static_cast<double>(measured_->strands);
+    }
+    QString numbers(std::size_t run) const {
+        const WorkPrecisionRun& measured = measured_->runs[run];
+        if (measured.diverged) return tr("diverges");
+        return tr("%1 ms, %2 px (%3 mm)")
+            .arg(measured.milliseconds.median * timeScale(), 0, 'g', 3)
+            .arg(measured.error.rmsMm * pixelsPerMm(), 0, 'g', 2)
+            .arg(measured.error.rmsMm, 0, 'g', 2);
+    }
+    QString setting(std::size_t run) const { return QString::fromStdString(describeRun(*measured_, run)); }
+
+    void measure() {
+        const QString name = player_.motion() == "none" ? QStringLiteral("nod") : player_.motion();
+        auto motion = player_.makeMotion(name);
+        if (!motion) return messages_.warn(QString::fromStdString(motion.error().message()));
+        const auto groom = std::make_shared<const Groom>(document_.groom());
+        const std::shared_ptr<const HeadMotion> moves = std::move(*motion);
+        const auto keep = [this, document = documents_](const WorkPrecision& result) {
+            if (document != documents_) return;
+            measured_ = result;
+            refresh();
+        };
+        const bool began = tasks_.run<WorkPrecision>(
+            tr("Measuring accuracy"),
+            [this, groom, moves, keep](TaskControl& control) {
+                WorkPrecisionOptions options;
+                options.axes = axesToTry(*groom);
+                options.time.frames = kFrames;
+                options.strands = kMostStrands;
+                options.repeats = kRepeats;
+                options.progress = [&](std::size_t done, std::size_t total) {
+                    control.setProgress(static_cast<float>(done) / static_cast<float>(total));
+                };
+                options.partial = [&](const WorkPrecision& result) {
+                    QMetaObject::invokeMethod(
+                        this, [keep, result] { keep(result); }, Qt::QueuedConnection);
+                };
+                options.cancelled = [&] { return control.isCancelled(); };
+                ReferenceConverged::Options truth;
+                truth.strands = kTrueStrands;
+                truth.toleranceMm = kTolerance_mm;
+                return measureWorkPrecision(*groom, *moves, options, ReferenceConverged(truth));
+            },
+            keep);
+        if (!began) return;
+        outdated_ = false;
+        chosen_.reset();
+    }
+
+    void choose(std::optional<std::size_t> run) {
+        chosen_ = run;
+        refresh();
+    }
+
+    void adopt() {
+        if (!measured_ || !chosen_) return;
+        const WorkPrecisionRun& run = measured_->runs[*chosen_];
+        Groom groom = document_.groom();
+        applyValues(measured_->options.axes, run.values, groom.simulation);
+        const std::string name = "Adopt " + describeRun(*measured_, *chosen_);
+        const auto points = findAxis(measured_->options.axes, kPointsAxis);
+        adopting_ = true;
+        if (points && run.values[*points] != maxPoints(groom)) {
+            const ResampleSettings resampled{static_cast<std::uint32_t>(run.values[*points])};
+            if (auto touched = resample(groom, resampled); !touched) {
+                messages_.warn(QString::fromStdString(touched.error().message()));
+            } else {
+                const std::string record =
+                    "[" + editing::recordOf("resample", {{"points", resampled.points}}) + ", " +
+                    editing::recordOf("simulation", {{"settings", toJson(groom.simulation)}}) + "]";
+                document_.perform(
+                    editing::replaceGroom(document_.editing().model(), std::move(groom), name, record));
+            }
+        } else {
+            document_.perform(editing::setPhysics(document_.editing().model(), groom.simulation, name));
+        }
+        adopting_ = false;
+        refresh();
+    }
+
+    /// What going from one run to a more exact one means.
+    QString step(const WorkPrecisionRun& from, std::size_t to) const {
+        const WorkPrecisionRun& run = measured_->runs[to];
+        const double pixels = (from.error.rmsMm - run.error.rmsMm) * pixelsPerMm();
+        const double ms = (run.milliseconds.median - from.milliseconds.median) * timeScale();
+        const QString nearer = QString::number(pixels, 'g', 2), time = QString::number(std::abs(ms), 'g', 2);
+        return ms > 0 ? tr("The next step, %1, buys %2 px for %3 ms.").arg(setting(to), nearer, time)
+                      : tr("%1 is nearer by %2 px, and %3 ms cheaper.").arg(setting(to), nearer, time);
+    }
+
+    QString sentence() const {
+        if (document_.groom().strandCount() == 0) return tr("Place hair to see what its accuracy costs.");
+        if (!measured_)
+            return tr(
+                "How far is this hair from the truth, and what would be nearer? Measure it at other substeps "
+                "and points.");
+        QString text;
+        const auto now = runOf(*measured_, document_.groom());
+        if (now) {
+            text = tr("Now %1: %2.").arg(setting(*now), numbers(*now));
+            const WorkPrecisionRun& has = measured_->runs[*now];
+            if (const auto next = nextStep(*measured_, *now); next && !has.diverged) {
+                text += ' ' + step(has, *next);
+            } else if (!next) {
+                text += ' ' + tr("Nothing that was tried is nearer to the truth.");
+            }
+        }
+        if (measured_->strands < measured_->groomStrands)
+            text += ' ' + tr("Times are those of %L1 strands in proportion.").arg(measured_->strands);
+        if (outdated_) text += ' ' + tr("Measured before the last change.");
+        return text;
+    }
+
+    void refresh() {
+        words_->setText(sentence());
+        measure_->setEnabled(document_.groom().strandCount() > 0);
+        const bool any = measured_.has_value();
+        plot_->setVisible(any);
+        for (QWidget* control : {static_cast<QWidget*>(pixels_), static_cast<QWidget*>(milliseconds_)})
+            control->setEnabled(any);
+        adopt_->setEnabled(any && chosen_);
+        chosenWords_->setVisible(any);
+        if (!any) return;
+        chosenWords_->setText(chosen_ ? tr("Chosen: %1: %2").arg(setting(*chosen_), numbers(*chosen_))
+                                      : tr("Click a point, or set a limit"));
+        std::vector<AccuracyPoint> points;
+        for (std::size_t r = 0; r < measured_->runs.size(); ++r) {
+            const WorkPrecisionRun& run = measured_->runs[r];
+            const double scale = timeScale();
+            points.push_back({run.milliseconds.median * scale, run.milliseconds.q1 * scale,
+                              run.milliseconds.q3 * scale, run.error.rmsMm * pixelsPerMm(), run.diverged,
+                              run.onFront, setting(r)});
+        }
+        plot_->setPoints(std::move(points), "px");
+        plot_->setMarked(runOf(*measured_, document_.groom()), chosen_);
+    }
+
+    QtDocument& document_;
+    Player& player_;
+    Tasks& tasks_;
+    Messages& messages_;
+    Viewport& viewport_;
+    AccuracyPlot* plot_;
+    QLabel* words_;
+    QPushButton* measure_;
+    QLabel* chosenWords_;
+    QPushButton* adopt_;
+    NumberBox *pixels_, *milliseconds_;
+    std::optional<WorkPrecision> measured_;
+    std::optional<std::size_t> chosen_;
+    std::uint32_t documents_ = 0;  ///< replaced so far
+    bool outdated_ = false;        ///< `measured_` is of the document before its last change
+    bool adopting_ = false;
+};
+
+}  // namespace
+
+PanelInfo accuracyPanel() {
+    return {
+        "accuracy",
+        QObject::tr("Accuracy"),
+        "effects",
+        Qt::RightDockWidgetArea,
+        95,
+        true,
+        [](const PanelParts& parts) -> QWidget* {
+            return scrolled(column({heading(QObject::tr("What accuracy costs")), new AccuracyPanel(parts)}));
+        }};
+}
+
+}  // namespace hairloom::editor

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a measured grid offers, on grids that are made up.
+#include "core/accuracy/choice.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/accuracy/hair.h"
+
+namespace hairloom::test {
+namespace {
+
+/// Substeps 1, 2, 4, 8 with one number of points each, their times and errors; an error of 0 has diverged.
+WorkPrecision grid(const std::vector<std::pair<double, double>>& timesAndErrors) {
+    WorkPrecision made;
+    made.options.axes = {{"substeps", {}}, {std::string(kPointsAxis), {12}}};
+    std::vector<std::pair<double, double>> pairs;
+    double substeps = 1;
+    for (const auto& [ms, mm] : timesAndErrors) {
+        made.options.axes[0].values.push_back(substeps);
+        WorkPrecisionRun run;
+        run.values = {substeps, 12};
+        run.milliseconds = {ms, ms, ms};
+        run.diverged = mm == 0;
+        run.error.rmsMm = mm;
+        made.runs.push_back(run);
+        pairs.emplace_back(ms, run.diverged ? std::numeric_limits<double>::infinity() : mm);
+        substeps *= 2;
+    }
+    const std::vector<bool> front = paretoFront(pairs);
+    for (std::size_t r = 0; r < front.size(); ++r) made.runs[r].onFront = front[r];
+    return made;
+}
+
+TEST(Choice, FindsWhereTheGroomIs) {
+    const WorkPrecision measured = grid({{1, 8}, {2, 3}, {4, 1}});
+    Groom groom = straightHair(6, 12);
+    groom.simulation.substeps = 2;
+    EXPECT_EQ(runOf(measured, groom), 1u);
+    groom.simulation.substeps = 3;
+    EXPECT_FALSE(runOf(measured, groom)) << "was not measured";
+    groom = straightHair(6, 11);
+    groom.simulation.substeps = 2;
+    EXPECT_FALSE(runOf(measured, groom)) << "other points";
+}
+
+TEST(Choice, OffersWhatIsBetterAndNothingElse) {
+    // The third costs more than the second and is no nearer.
+    const WorkPrecision measured = grid({{1, 8}, {2, 3}, {4, 5}, {8, 1}});
+    EXPECT_EQ(nextStep(measured, 0), 1u);
+    EXPECT_EQ(nextStep(measured, 1), 3u) << "passes the one that buys nothing";
+    EXPECT_EQ(nextStep(measured, 2), 1u) << "cheaper and nearer";
+    EXPECT_FALSE(nextStep(measured, 3));
+    EXPECT_EQ(cheapestWithinError(measured, 5), 1u);
+    EXPECT_EQ(cheapestWithinError(measured, 1), 3u);
+    EXPECT_FALSE(cheapestWithinError(measured, 0.5));
+    EXPECT_EQ(mostExactWithinTime(measured, 7.9), 1u);
+    EXPECT_EQ(mostExactWithinTime(measured, 100), 3u);
+    EXPECT_FALSE(mostExactWithinTime(measured, 0.5));
+}
+
+TEST(Choice, NeverOffersWhatDiverged) {
+    const WorkPrecision measured = grid({{1, 0}, {2, 3}, {4, 0}});
+    EXPECT_EQ(cheapestWithinError(measured, 100), 1u);
+    EXPECT_EQ(mostExactWithinTime(measured, 100), 1u);
+    EXPECT_FALSE(mostExactWithinTime(measured, 1));
+    EXPECT_EQ(nextStep(measured, 0), 1u) << "from a setting that diverges";
+    EXPECT_FALSE(nextStep(measured, 1));
+}
+
+TEST(Choice, NeverOffersWhatTrembles) {
+    WorkPrecision measured = grid({{1, 1}, {2, 3}});
+    measured.runs[0].trembling = 0.02;
+    EXPECT_EQ(cheapestWithinError(measured, 100), 1u);
+    EXPECT_EQ(mostExactWithinTime(measured, 100), 1u);
+}
+
+TEST(Choice, SettingsInWords) {
+    const WorkPrecision measured = grid({{1, 8}, {2, 3}});
+    EXPECT_EQ(describeRun(measured, 0), "1 substep, 12 points");
+    EXPECT_EQ(describeRun(measured, 1), "2 substeps, 12 points");
+}
+
+TEST(Choice, TriesWhatTheGroomHasAndWhatIsAroundIt) {
+    Groom groom = straightHair(6, 13);
+    groom.simulation.substeps = 3;
+    auto axes = axesToTry(groom);
+    ASSERT_EQ(axes.size(), 2u);
+    EXPECT_EQ(axes[0].values, (std::vector<double>{1, 2, 3, 4, 8, 16, 32}));
+    EXPECT_EQ(axes[1].values, (std::vector<double>{4, 6, 13}));
+    groom.simulation.strandModel = runtime::StrandModel::springs;
+    axes = axesToTry(groom);
+    EXPECT_EQ(axes[1].field, "lengthIterations");
+}
+
+}  // namespace
+}  // namespace hairloom::test

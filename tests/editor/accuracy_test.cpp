@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The Accuracy panel as a new user walks it: measure, read, set a limit in pixels, adopt, undo.
+#include <QLabel>
+#include <QPushButton>
+
+#include "core/operations/resample.h"
+#include "editor/fields/number_box.h"
+#include "editor/panels/accuracy_plot.h"
+#include "tests/editor/window_fixture.h"
+
+namespace hairloom::editor {
+namespace {
+
+class AccuracyTest : public WindowTest {
+  protected:
+    void SetUp() override {
+        WindowTest::SetUp();
+        openSampleHair("short");
+        // Few strands and points: a grid that is measured in seconds.
+        Groom few = groom();
+        ASSERT_TRUE(resample(few, {12}));
+        std::vector<std::uint32_t> offsets(few.offsets.view().begin(), few.offsets.view().begin() + 201);
+        const std::vector<Vec3f> points(few.positions().begin(), few.positions().begin() + offsets.back());
+        few = makeGroom(offsets, points);
+        few.simulation = groom().simulation;  // no spheres: what slides over them converges slowly
+        document().open(few, {}, "few");
+        window->panel("accuracy")->raise();
+        QCoreApplication::processEvents();
+    }
+    QString words() { return find<QLabel>("accuracyWords")->text(); }
+    QString chosen() { return find<QLabel>("accuracyChosen")->text(); }
+    QPushButton& adopt() { return *find<QPushButton>("accuracyAdopt"); }
+    void measure() {
+        find<QPushButton>("accuracyMeasure")->click();
+        ASSERT_TRUE(parts().tasks.isBusy());
+        finishWork();
+    }
+};
+
+TEST_F(AccuracyTest, WhatTheNextStepBuysIsSaidAndAdopted) {
+    EXPECT_TRUE(words().contains("Measure"));
+    EXPECT_FALSE(adopt().isEnabled());
+    const auto before = hash();
+    measure();
+    EXPECT_EQ(hash(), before) << "measuring changes nothing";
+    EXPECT_TRUE(words().contains("Now 2 substeps, 12 points")) << words().toStdString();
+    EXPECT_TRUE(words().contains(" px")) << words().toStdString();
+    find<NumberBox>("accuracyMs")->spinBox().setValue(100);
+    ASSERT_TRUE(adopt().isEnabled());
+    const QString setting = chosen();
+    adopt().click();
+    EXPECT_TRUE(setting.contains(QString("%1 substep").arg(groom().simulation.substeps)))
+        << setting.toStdString();
+    EXPECT_NE(hash(), before);
+    EXPECT_TRUE(words().contains("Nothing that was tried is nearer")) << words().toStdString();
+    EXPECT_EQ(document().stepCount(), 1);
+    EXPECT_FALSE(words().contains("before the last change")) << "the adopted setting has been measured";
+    trigger("edit.undo");
+    EXPECT_EQ(hash(), before);
+    EXPECT_TRUE(words().contains("Now 2 substeps, 12 points"));
+}
+
+TEST_F(AccuracyTest, TheCheapestWithinALimitInPixelsMayHaveFewerPoints) {
+    const auto before = hash();
+    measure();
+    find<NumberBox>("accuracyPixels")->spinBox().setValue(100);
+    ASSERT_TRUE(chosen().contains("1 substep")) << chosen().toStdString();
+    adopt().click();
+    EXPECT_EQ(groom().simulation.substeps, 1u);
+    EXPECT_LT(groom().strand(0).size(), 12u);
+    EXPECT_EQ(document().stepCount(), 1);
+    expectSound();
+    const auto script = document().editing().script();
+    ASSERT_TRUE(script) << script.error().message();
+    EXPECT_NE(script->find("resample"), std::string::npos) << "a script can do it again";
+    trigger("edit.undo");
+    EXPECT_EQ(hash(), before);
+}
+
+TEST_F(AccuracyTest, APointOfTheDiagramIsChosenByAClick) {
+    measure();
+    auto* plot = find<AccuracyPlot>("accuracyPlot");
+    plot->resize(300, 220);
+    const QString none = chosen();
+    for (std::size_t run = 0; run < 3; ++run) {
+        QTest::mouseClick(plot, Qt::LeftButton, {}, plot->place_px(run).toPoint());
+        EXPECT_TRUE(adopt().isEnabled());
+        EXPECT_NE(chosen(), none);
+    }
+}
+
+TEST_F(AccuracyTest, AnotherDocumentAndACancelledRunLeaveNothing) {
+    find<QPushButton>("accuracyMeasure")->click();
+    parts().tasks.cancel();
+    finishWork();
+    EXPECT_FALSE(adopt().isEnabled());
+    measure();
+    Groom changed = groom();
+    changed.simulation.windSpeed = 3;
+    change("Wind", changed);
+    EXPECT_TRUE(words().contains("before the last change"));
+    openBust();
+    EXPECT_FALSE(adopt().isEnabled());
+    EXPECT_TRUE(words().contains("Place hair"));
+}
+
+}  // namespace
+}  // namespace hairloom::editor
