@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editor/fields/blocks.h"
 
-#include <QEvent>
 #include <QHeaderView>
 #include <QLabel>
 #include <QScrollArea>
@@ -18,29 +17,13 @@ QWidget* heading(const QString& text) {
     return label;
 }
 
-namespace {
-
-/// Scrolls up and down; as wide as its content needs, which may change.
-class PanelScroll : public QScrollArea {
-  public:
-    void fit() { setMinimumWidth(widget()->minimumSizeHint().width() + 12); }
-
-  protected:
-    bool eventFilter(QObject* watched, QEvent* event) override {
-        if (watched == widget() && event->type() == QEvent::LayoutRequest) fit();
-        return QScrollArea::eventFilter(watched, event);
-    }
-};
-
-}  // namespace
-
 QWidget* scrolled(QWidget* content) {
-    auto* area = new PanelScroll;
+    auto* area = new QScrollArea;
     area->setWidgetResizable(true);
     area->setFrameShape(QFrame::NoFrame);
     area->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
     area->setWidget(content);
-    area->fit();
+    area->setMinimumWidth(content->minimumSizeHint().width() + 12);
     return area;
 }
 

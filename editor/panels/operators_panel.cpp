@@ -15,6 +15,8 @@
 namespace hairloom::editor {
 namespace {
 
+/// What the widest settings need, of vectors: the view must not jump when an operator is chosen.
+constexpr int kWidth_px = 344;
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
 class OperatorsPanel : public QWidget {
@@ -24,6 +26,7 @@ class OperatorsPanel : public QWidget {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(8);
+        setMinimumWidth(kWidth_px);
         auto* first = new QHBoxLayout;
         first->addWidget(makeAddButton());
         first->addWidget(button("operatorBake", tr("Bake"),
