@@ -23,11 +23,14 @@ Result<render::Picture> LiveShots::take(std::uint64_t frame, const render::Rende
         if (auto set = renderer_.setScene(scene); !set) return tl::unexpected(set.error());
         shown_ = true;
     }
-    if (auto set = renderer_.setCamera(scene.camera); !set) return tl::unexpected(set.error());
+    if (auto set = renderer_.setCamera(scene.camera, true); !set) return tl::unexpected(set.error());
     gpu::SubmissionPtr last;
     for (; frame_ < frame; ++frame_) {
         auto list = device_.createCommandList();
         if (!list) return tl::unexpected(list.error());
+        if (how.surface && frame_ + 1 == frame) {
+            if (auto past = renderer_.recordPast(**list, how); !past) return tl::unexpected(past.error());
+        }
         if (auto moved = live_.record(**list, renderer_, kFrame); !moved)
             return tl::unexpected(moved.error());
         auto submission = device_.submit(std::move(*list));

@@ -16,7 +16,7 @@
 #include "cli/progress.h"
 #include "cli/vectors.h"
 #include "core/base/content_kind.h"
-#include "core/render/exr.h"
+#include "core/render/aov.h"
 #include "core/render/png.h"
 #include "core/render/webp.h"
 #include "core/scene/groom_scene.h"
@@ -58,6 +58,7 @@ struct RenderJobOptions {
     float exposure = 1;
     std::uint32_t passes = 8;
     std::string exr;
+    std::vector<std::string> aovs;
     std::string animation;
     std::string strip;
     std::uint32_t milliseconds = 40;
@@ -126,6 +127,7 @@ Result<render::RenderOptions> pictureOptions(const RenderJobOptions& options, co
     picture.transparency = kTransparency.at(transparency);
     picture.detail = options.detail;
     picture.exposure = options.exposure;
+    picture.surface = !options.aovs.empty();
     return picture;
 }
 
@@ -246,10 +248,20 @@ class Photographer {
         }
         scene.background = view_.background.value_or(scene.background);
         if (live_) return live_->take(shot.frame, scene, how_);
+        if (how_.surface && !options_.record.empty() && shot.frame > 0) return takeMoving(scene);
         return render::renderPicture(device_, scene, how_);
     }
 
   private:
+    /// With what has moved since the frame before.
+    Result<render::Picture> takeMoving(const render::RenderScene& scene) {
+        const auto before = loadScene(options_, groom_, frame_ - 1, view_);
+        if (!before) return tl::unexpected(before.error());
+        render::RenderScene past = before->scene();
+        past.camera = scene.camera;
+        return render::renderPicture(device_, past, scene, how_);
+    }
+
     const RenderJobOptions& options_;
     gpu::Device& device_;
     const Groom& groom_;
@@ -268,7 +280,10 @@ Status writePictures(const RenderJobOptions& options, const render::Picture& pic
         return many ? numbered(path, number) : std::filesystem::path(path);
     };
     if (auto written = render::writePng(name(options.output), picture.image); !written) return written;
-    return options.exr.empty() ? Status{} : render::writeExr(name(options.exr), picture.linear);
+    if (options.exr.empty()) return {};
+    const auto layers = render::aovLayers(options.aovs, picture.surface);
+    if (!layers) return tl::unexpected(layers.error());
+    return render::writeExr(name(options.exr), picture.linear, *layers);
 }
 
 /// Hair that moves while pictures of it are taken.
@@ -444,7 +459,15 @@ JobRun declare(CLI::App& job) {
     job.add_option("--strip", options->strip, "PNG to write all pictures side by side to");
     job.add_option("--milliseconds", options->milliseconds, "Of a picture in the animation")
         ->check(CLI::Range(1, 65'535));
-    job.add_option("--exr", options->exr, "OpenEXR to write linear light to, before exposure and tone curve");
+    auto* exr = job.add_option("--exr", options->exr,
+                               "OpenEXR to write linear light to, before exposure and tone curve");
+    job.add_option("--aov", options->aovs,
+                   "Layers of the OpenEXR besides: of what is nearest in each pixel depth, id of the hair, "
+                   "velocity since the frame before, albedo")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::IsMember(std::vector<std::string>(render::kAovNames.begin(), render::kAovNames.end())))
+        ->needs(exr);
     auto* device = job.add_option("--device", options->device, "GPU to use, by its index in `devices`");
     job.add_option("--backend", options->backend, "Graphics API; Direct3D 11 is on Windows only")
         ->check(CLI::IsMember({"any", "vulkan", "d3d11"}));

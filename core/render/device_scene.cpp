@@ -424,6 +424,12 @@ std::vector<Vec3f> DeviceScene::sample() const {
     return points;
 }
 
+std::uint32_t DeviceScene::strandsBefore(std::size_t group) const {
+    std::size_t count = 0;
+    for (std::size_t g = 0; g < group; ++g) count += groups[g].strandCount;
+    return static_cast<std::uint32_t>(count);
+}
+
 std::uint64_t DeviceScene::triangles() const {
     std::uint64_t count = 0;
     for (const MeshOnDevice& mesh : meshes) count += mesh.indices.size() / 3;

@@ -35,6 +35,9 @@ struct DrawBatch {
     gpu::BufferPtr curve, colour;                     ///< hold what `curveSubdivisions` calls for
     gpu::BufferPtr litColour;                         ///< the same without shadows, once it was asked for
     gpu::BufferPtr seen;                              ///< of the sky, once it was asked for
+    gpu::BufferPtr albedo, past;                      ///< and curves of a frame ago, likewise
+    std::uint32_t pastSubdivisions = 0;               ///< 0: none were recorded
+    std::uint32_t pastStrands = 0;                    ///< that were
     std::map<std::uint32_t, gpu::BufferPtr> indices;  ///< of the ribbons, by subdivisions
     gpu::BufferPtr patches;                           ///< of tessellated ribbons, once these were asked for
     std::vector<std::uint32_t> patchesBefore;         ///< each strand; then of all
@@ -89,6 +92,8 @@ struct MeshOnDevice {
     std::vector<Vec3f> positions_ws, normals_ws;  ///< waiting for their upload
     gpu::BufferPtr positions, normals, indexBuffer, albedo;
     gpu::BufferPtr devicePositions, deviceNormals;  ///< in place of its own
+    gpu::BufferPtr past;                            ///< positions a frame ago, once they were asked for
+    bool hasPast = false;                           ///< these were recorded
     Box3f bounds_ws;
     bool matte = false;
     float area = 0;  ///< m², where it stood when it was set
@@ -115,6 +120,8 @@ class DeviceScene {
     /// their points see of the `sky`; nothing happens when there is.
     Status prepareCurves(gpu::Device& device, std::uint32_t subdivisions, bool twice = false,
                          bool sky = false);
+    /// Makes room for what Pass::surface tells; nothing happens when there is. prepareCurves() comes before.
+    Status prepareSurface(gpu::Device& device);
     /// Bakes the tables of materials that have changed. `behind`: on another thread, while those that are
     /// there serve; only where there are some and hair varies in both or in neither. True: tables are new.
     Result<bool> prepareFibres(gpu::Device& device, bool behind);
@@ -130,6 +137,7 @@ class DeviceScene {
     Box3f meshBounds() const;
     Box3f hairBounds() const;
     std::uint64_t triangles() const;
+    std::uint32_t strandsBefore(std::size_t group) const;  ///< in all groups before that one
     std::vector<Vec3f> sample()
         const;  ///< of the points of all hair; corners of its bounds where only those are known
 

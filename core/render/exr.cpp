@@ -5,16 +5,13 @@
 
 #include <array>
 #include <cstring>
+#include <map>
 #include <memory>
 
 #include "core/base/file.h"
 
 namespace hairloom::render {
 namespace {
-
-// The library wants alphabetical order.
-constexpr std::array<const char*, 4> kNames{"A", "B", "G", "R"};
-constexpr std::array<std::size_t, 4> kPlaces{3, 2, 1, 0};
 
 constexpr std::uint64_t kMaxFileBytes = std::uint64_t{1} << 30u;
 constexpr int kMaxSide = 16384;
@@ -99,31 +96,42 @@ Result<LinearImage> readExr(const std::filesystem::path& path) {
     return image;
 }
 
-Status writeExr(const std::filesystem::path& path, const LinearImage& image) {
+Status writeExr(const std::filesystem::path& path, const LinearImage& image,
+                std::span<const ExrLayer> layers) {
     const std::size_t pixels = std::size_t{image.width} * image.height;
     if (pixels == 0 || image.rgba.size() != 4 * pixels)
         return failIn(path.string(), {}, "an image without pixels");
-    std::array<std::vector<float>, 4> planes;
-    std::array<unsigned char*, 4> pointers{};
-    std::array<EXRChannelInfo, 4> channels{};
-    std::array<int, 4> types{TINYEXR_PIXELTYPE_FLOAT, TINYEXR_PIXELTYPE_FLOAT, TINYEXR_PIXELTYPE_FLOAT,
-                             TINYEXR_PIXELTYPE_FLOAT};
-    for (std::size_t c = 0; c < 4; ++c) {
-        planes[c].resize(pixels);
-        for (std::size_t i = 0; i < pixels; ++i) planes[c][i] = image.rgba[4 * i + kPlaces[c]];
-        pointers[c] = reinterpret_cast<unsigned char*>(planes[c].data());
-        std::strncpy(channels[c].name, kNames[c], sizeof(channels[c].name) - 1);
+    // The library wants alphabetical order.
+    std::map<std::string, std::vector<float>> planes;
+    const auto split = [&](const std::string& prefix, std::string_view names, std::span<const float> values) {
+        for (std::size_t c = 0; c < names.size(); ++c) {
+            std::vector<float>& plane = planes[prefix + names[c]];
+            for (std::size_t i = c; i < values.size(); i += names.size()) plane.push_back(values[i]);
+        }
+    };
+    split("", "RGBA", image.rgba);
+    for (const ExrLayer& layer : layers) {
+        if (layer.values.size() != layer.channels.size() * pixels)
+            return failIn(path.string(), {}, "a layer '" + layer.name + "' of another size than the picture");
+        split(layer.name + ".", layer.channels, layer.values);
+    }
+    std::vector<unsigned char*> pointers;
+    std::vector<EXRChannelInfo> channels(planes.size());
+    std::vector<int> types(planes.size(), TINYEXR_PIXELTYPE_FLOAT);
+    for (auto& [name, plane] : planes) {
+        std::strncpy(channels[pointers.size()].name, name.c_str(), sizeof(EXRChannelInfo::name) - 1);
+        pointers.push_back(reinterpret_cast<unsigned char*>(plane.data()));
     }
     EXRHeader header;
     InitEXRHeader(&header);
-    header.num_channels = 4;
+    header.num_channels = static_cast<int>(planes.size());
     header.channels = channels.data();
     header.pixel_types = types.data();
     header.requested_pixel_types = types.data();
     header.compression_type = TINYEXR_COMPRESSIONTYPE_ZIP;
     EXRImage content;
     InitEXRImage(&content);
-    content.num_channels = 4;
+    content.num_channels = header.num_channels;
     content.images = pointers.data();
     content.width = static_cast<int>(image.width);
     content.height = static_cast<int>(image.height);

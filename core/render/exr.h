@@ -2,15 +2,26 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "core/base/result.h"
 #include "core/render/image.h"
 
 namespace hairloom::render {
 
-/// OpenEXR: the channels R, G, B and A as 32-bit floats, ZIP compressed. Writes the whole file or leaves what
-/// was there; the same image gives the same bytes.
-Status writeExr(const std::filesystem::path& path, const LinearImage& image);
+/// Channels beside those of the picture: NAME.C for each letter C of `channels`.
+struct ExrLayer {
+    std::string name;
+    std::string channels;
+    std::vector<float> values;  ///< one a channel, pixel after pixel, rows from the top
+};
+
+/// OpenEXR: the channels R, G, B and A and those of the layers as 32-bit floats, ZIP compressed. Writes the
+/// whole file or leaves what was there; the same content gives the same bytes.
+Status writeExr(const std::filesystem::path& path, const LinearImage& image,
+                std::span<const ExrLayer> layers = {});
 
 /// OpenEXR of one part in lines of pixels: R, G, B, and A where it is there (else 1), or Y as grey. Half and
 /// single floats, any compression that the library knows. Errors: not there, damaged, tiled, deep or of

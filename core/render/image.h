@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -18,6 +19,18 @@ struct LinearImage {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     std::vector<float> rgba;
+};
+
+/// What is nearest in the middle of a pixel; shaders::SurfacePixel is the same.
+struct SurfacePixel {
+    float depth = 0;                ///< metres along the view; infinite where nothing is
+    std::uint32_t strand = 0;       ///< among those drawn; kNoStrand on a mesh and where nothing is
+    float velocityX = 0;            ///< pixels that it has moved since a frame ago, to the right
+    float velocityY = 0;            ///< and down
+    std::array<float, 4> albedo{};  ///< linear RGB, and 0 where nothing is
+    static constexpr std::uint32_t kNoStrand = 0xffffffffu;
+
+    bool hasStrand() const { return strand != kNoStrand; }
 };
 
 }  // namespace hairloom::render

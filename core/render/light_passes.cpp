@@ -137,30 +137,34 @@ void recordSkySeen(gpu::CommandList& list, RendererState& state) {
     list.endPass();
 }
 
+void dispatchCurvePoints(gpu::CommandList& list, const RendererState& state, const DrawBatch& batch,
+                         shaders::ShadeConstants constants, const gpu::BufferPtr& target) {
+    const StrandShading& material = state.scene.groups[batch.group].material;
+    if (material.look) {
+        list.setConstants(2, gpu::bytesOf(lookConstants(*material.look)));
+        bind(list, {Binding::read(2, batch.pointDyes)});
+    }
+    const std::uint32_t points =
+        batch.curvePoints(batch.strandCount(state.detail), state.detail.subdivisions);
+    const Rows rows(points);
+    constants.count = points;
+    constants.rowThreads = rows.threads();
+    constants.subdivisions = state.detail.subdivisions;
+    list.setConstants(0, gpu::bytesOf(constants));
+    bind(list, {Binding::read(0, batch.curve), Binding::read(1, batch.headers),
+                Binding::read(3, batch.seen ? batch.seen : state.noSky), Binding::write(0, target)});
+    list.dispatch(rows.groups, rows.rows);
+}
+
 void recordShading(gpu::CommandList& list, RendererState& state) {
     list.beginPass({passName(Pass::shade), {}, {}});
     bindShadows(list, state);
     for (const DrawBatch& batch : state.scene.batches) {
         const StrandGroup& group = state.scene.groups[batch.group];
-        const char* const tube = group.material.look ? "tube_albedo_look.comp" : "tube_albedo.comp";
+        const char* const tube = group.material.look ? "hair_albedo_look.comp" : "hair_albedo.comp";
         list.setPipeline(state.pipelines.compute(group.material.tubes ? tube : group.fibre.shader()));
         if (!group.material.tubes) group.fibre.bind(list);
-        if (group.material.look) {
-            list.setConstants(2, gpu::bytesOf(lookConstants(*group.material.look)));
-            bind(list, {Binding::read(2, batch.pointDyes)});
-        }
-        auto constants = shadeConstants(state, group.material);
-        const std::uint32_t points =
-            batch.curvePoints(batch.strandCount(state.detail), state.detail.subdivisions);
-        const Rows rows(points);
-        constants.count = points;
-        constants.rowThreads = rows.threads();
-        constants.subdivisions = state.detail.subdivisions;
-        list.setConstants(0, gpu::bytesOf(constants));
-        bind(list, {Binding::read(0, batch.curve), Binding::read(1, batch.headers),
-                    Binding::read(3, batch.seen ? batch.seen : state.noSky),
-                    Binding::write(0, state.colourOf(batch))});
-        list.dispatch(rows.groups, rows.rows);
+        dispatchCurvePoints(list, state, batch, shadeConstants(state, group.material), state.colourOf(batch));
     }
     list.endPass();
 }

@@ -63,6 +63,8 @@ struct RenderOptions {
     /// Look-up tables of a material that has changed are baked on another thread, and frames show the old
     /// ones until then: for pictures that must come in time. Renderer::isSettled() says when they are there.
     bool bakeBehind = false;
+    /// What is nearest in each pixel is told as well: Renderer::surface().
+    bool surface = false;
     float exposure = 2;                  ///< factor before the tone curve
     bool transparentBackground = false;  ///< alpha is coverage; else 1 everywhere
 

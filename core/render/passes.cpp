@@ -56,11 +56,9 @@ std::array<float, 2> distances(const Camera& camera, const Box3f& box) {
 }
 
 /// Metres that a pixel is wide at distance 1, or anywhere without perspective.
-float pixelSpread(const RendererState& state) {
-    if (state.camera.isOrthographic()) {
-        return state.camera.orthographicHeight / static_cast<float>(state.options.height);
-    }
-    return 2 * std::tan(radians(state.camera.verticalFov) / 2) / static_cast<float>(state.options.height);
+float pixelSpread(const Camera& camera, const RenderOptions& options) {
+    if (camera.isOrthographic()) return camera.orthographicHeight / static_cast<float>(options.height);
+    return 2 * std::tan(radians(camera.verticalFov) / 2) / static_cast<float>(options.height);
 }
 
 /// Where hair begins in front of the camera and how deep it is: metres, or clip space's without perspective.
@@ -208,7 +206,7 @@ shaders::ViewConstants viewConstants(const RendererState& state, const Mat4f& cl
     shaders::ViewConstants view{};
     view.clipFromWorld = toShader(clipFromWorld);
     view.eye_ws = eyeOf(state.camera);
-    view.pixelSize = pixelSpread(state);
+    view.pixelSize = pixelSpread(state.camera, state.options);
     view.minWidth = 1;
     view.samples = state.samples;
     view.frame = number;
@@ -289,7 +287,8 @@ HairDetail detailOf(const RendererState& state) {
     constexpr float kMinShare = 1.0f / 64;
     const HairMeasure measure = state.scene.measure();
     const float distance = std::max(distances(state.camera, hair)[0], 1e-3f);
-    const float pixel = pixelSpread(state) * (state.camera.isOrthographic() ? 1.0f : distance);
+    const float pixel =
+        pixelSpread(state.camera, state.options) * (state.camera.isOrthographic() ? 1.0f : distance);
     detail.share = std::clamp(measure.diameter / pixel / state.options.detail, kMinShare, 2.0f);
     const float pieces = std::ceil(measure.segment / pixel / kPixelsPerSegment);
     detail.subdivisions =
@@ -297,21 +296,36 @@ HairDetail detailOf(const RendererState& state) {
     return detail;
 }
 
-Mat4f cameraMatrix(const RendererState& state, const Box3f& bounds_ws, float jitterX, float jitterY) {
-    const auto width = static_cast<float>(state.options.width);
-    const auto height = static_cast<float>(state.options.height);
-    const auto [nearest, farthest] = distances(state.camera, bounds_ws);
-    const float farPlane = farthest * 1.01f;
-    float nearPlane = std::clamp(nearest * 0.99f, farPlane * 1e-4f, farPlane * 0.9f);
+namespace {
+
+Mat4f matrixOf(const Camera& camera, const RenderOptions& options, const Box3f& bounds_ws, float jitterX,
+               float jitterY) {
+    const auto width = static_cast<float>(options.width);
+    const auto height = static_cast<float>(options.height);
+    const auto [nearest, farthest] = distances(camera, bounds_ws);
+    // Ribbons are at least a pixel wide and turned to the eye, which takes their edges out of the bounds.
+    const float pixel = pixelSpread(camera, options) * (camera.isOrthographic() ? 1.0f : farthest);
+    const float farPlane = farthest * 1.01f + pixel;
+    float nearPlane = std::clamp(nearest * 0.99f - pixel, farPlane * 1e-4f, farPlane * 0.9f);
     // What is behind an eye without perspective is seen as well.
-    if (state.camera.isOrthographic()) {
+    if (camera.isOrthographic()) {
         const float first = std::min(nearest, farPlane);
         nearPlane = first - 0.01f * (farPlane - first) - 1e-3f;
     }
-    Mat4f projection = projectionMatrix(state.camera, width / height, nearPlane, farPlane);
+    Mat4f projection = projectionMatrix(camera, width / height, nearPlane, farPlane);
     projection.row(0) += projection.row(3) * (2 * jitterX / width);
     projection.row(1) += projection.row(3) * (2 * jitterY / height);
-    return projection * viewMatrix(state.camera);
+    return projection * viewMatrix(camera);
+}
+
+}  // namespace
+
+Mat4f cameraMatrix(const RendererState& state, const Box3f& bounds_ws, float jitterX, float jitterY) {
+    return matrixOf(state.camera, state.options, bounds_ws, jitterX, jitterY);
+}
+
+Mat4f pastCameraMatrix(const RendererState& state) {
+    return matrixOf(state.pastCamera.value_or(state.camera), state.options, state.bounds(), 0, 0);
 }
 
 void recordFrame(gpu::CommandList& list, RendererState& state, std::uint32_t number) {

@@ -34,6 +34,7 @@ struct RendererState {
     Pipelines pipelines;
     DeviceScene scene;
     Camera camera;
+    std::optional<Camera> pastCamera;  ///< a frame ago, where places of then are known
     std::vector<Light> lights;
     Environment environment;
     Vec3f background = Vec3f::Zero();
@@ -89,6 +90,10 @@ void recordCurves(gpu::CommandList& list, RendererState& state);
 /// What each curve point sees of light from around.
 void recordSkySeen(gpu::CommandList& list, RendererState& state);
 void recordShading(gpu::CommandList& list, RendererState& state);
+/// What is nearest in each pixel.
+void recordSurface(gpu::CommandList& list, RendererState& state);
+/// Takes curves and head as they are for those of a frame ago; outside a pass.
+void recordPast(gpu::CommandList& list, RendererState& state);
 /// Head and hair in the samples of a frame, by kernels; then added to the sum.
 void recordRasterised(gpu::CommandList& list, RendererState& state, const Mat4f& clipFromWorld,
                       std::uint32_t number);
@@ -111,6 +116,12 @@ void drawStrips(gpu::CommandList& list, const RendererState& state, std::optiona
 /// `raster` says where to.
 void dispatchStrands(gpu::CommandList& list, const RendererState& state, shaders::RasterConstants raster,
                      float share = 1);
+/// A mesh by the kernel that is set, whose other registers are bound.
+void dispatchTriangles(gpu::CommandList& list, const RendererState& state, const MeshOnDevice& mesh,
+                       shaders::RasterConstants raster);
+/// A thread for each point of a batch's curves, by the kernel that is set and writes `target`.
+void dispatchCurvePoints(gpu::CommandList& list, const RendererState& state, const DrawBatch& batch,
+                         shaders::ShadeConstants constants, const gpu::BufferPtr& target);
 void fill(gpu::CommandList& list, RendererState& state, BufferId buffer, std::uint32_t value);
 /// Groups of so many threads that it takes for `threads`.
 constexpr std::uint32_t groupsFor(std::uint32_t threads, std::uint32_t group) {
@@ -137,6 +148,8 @@ HairDetail detailOf(const RendererState& state);
 
 /// Clip space of the camera with planes around `bounds_ws`, moved by parts of a pixel.
 Mat4f cameraMatrix(const RendererState& state, const Box3f& bounds_ws, float jitterX = 0, float jitterY = 0);
+/// The same of the camera a frame ago.
+Mat4f pastCameraMatrix(const RendererState& state);
 shaders::float4x4 toShader(const Mat4f& m);
 shaders::float4 toShader(const Vec3f& v, float w);
 /// The eye as ViewConstants and ShadeConstants have it: a place, or a direction without perspective.

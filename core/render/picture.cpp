@@ -6,6 +6,7 @@
 
 #include "core/base/profiler.h"
 #include "core/render/renderer.h"
+#include "shaders/shared/render_types.h"
 
 namespace hairloom::render {
 namespace {
@@ -72,6 +73,32 @@ Result<Picture> renderPicture(gpu::Device& device, const RenderScene& scene, con
     return renderPicture(device, renderer, options);
 }
 
+Result<Picture> renderPicture(gpu::Device& device, const RenderScene& past, const RenderScene& scene,
+                              const RenderOptions& options) {
+    if (auto status = check(options, device.info()); !status) return tl::unexpected(status.error());
+    RenderScene before = scene;
+    before.meshes = past.meshes;
+    before.strands = past.strands;
+    before.camera = past.camera;
+    Renderer renderer(device);
+    Status status = renderer.setScene(before);
+    if (!status) return tl::unexpected(status.error());
+    auto list = device.createCommandList();
+    if (!list) return tl::unexpected(list.error());
+    status = renderer.recordPast(**list, options);
+    if (status) {
+        if (auto submission = device.submit(std::move(*list)); !submission)
+            return tl::unexpected(submission.error());
+        status = renderer.setCamera(scene.camera);
+    }
+    for (std::size_t i = 0; status && i < scene.meshes.size(); ++i)
+        status = renderer.setMeshPositions(i, scene.meshes[i].positions_ws, scene.meshes[i].normals_ws);
+    for (std::size_t i = 0; status && i < scene.strands.size(); ++i)
+        status = renderer.setStrandPositions(i, scene.strands[i].positions_ws);
+    if (!status) return tl::unexpected(status.error());
+    return renderPicture(device, renderer, options);
+}
+
 Result<Picture> renderPicture(gpu::Device& device, Renderer& renderer, const RenderOptions& options) {
     HAIRLOOM_PROFILE("render picture");
     const auto failed = [](const Error& error) { return tl::unexpected(error); };
@@ -90,6 +117,13 @@ Result<Picture> renderPicture(gpu::Device& device, Renderer& renderer, const Ren
         return failed(status.error());
     const float share = 1 / static_cast<float>(options.frames);
     for (float& value : picture.linear.rgba) value *= share;
+    static_assert(sizeof(SurfacePixel) == sizeof(shaders::SurfacePixel));
+    if (renderer.surface() != nullptr) {
+        picture.surface.resize(values / 4);
+        const auto surface = std::as_writable_bytes(std::span(picture.surface));
+        if (auto status = device.readBuffer(renderer.surface(), 0, surface); !status)
+            return failed(status.error());
+    }
     picture.image = {options.width, options.height, std::vector<std::uint8_t>(values)};
     const auto shown = std::as_writable_bytes(std::span(picture.image.rgba));
     if (auto status = device.readTexture(*target, shown); !status) return failed(status.error());

@@ -16,6 +16,7 @@ namespace hairloom::render {
 struct Picture {
     Image image;
     LinearImage linear;
+    std::vector<SurfacePixel> surface;  ///< one a pixel, rows from the top, where the options have `surface`
     std::vector<gpu::PassTime> passes;  ///< those of one name added up over frames, in order of first use
     RenderPlan plan;
     std::string device;
@@ -28,6 +29,10 @@ struct Picture {
 /// out of range, indices or offsets outside the arrays, numbers that are not finite (the strand or vertex is
 /// named), and whatever the device reports.
 Result<Picture> renderPicture(gpu::Device& device, const RenderScene& scene, const RenderOptions& options);
+
+/// The same with velocities since `past`: meshes and strands as they were a frame ago, and its camera.
+Result<Picture> renderPicture(gpu::Device& device, const RenderScene& past, const RenderScene& scene,
+                              const RenderOptions& options);
 
 /// What a renderer of that device shows now, its average begun anew.
 class Renderer;

@@ -127,6 +127,14 @@ class Planner {
                                        facts_.look ? "colour or absorption changes from place to place"
                                                    : "all of a material's hair looks the same")
                          : "no hair");
+        pass(Pass::surface, options_.surface,
+             options_.surface ? "depth, strand, velocity and albedo of what is nearest in each pixel"
+                              : "nobody asked what is in each pixel");
+        buffer(BufferId::surfaceNearest, pixels(), 4, options_.surface, "depth in the middle of each pixel");
+        buffer(BufferId::surfaceItem, pixels(), 4, options_.surface,
+               "which of all points or triangles it is");
+        buffer(BufferId::surface, pixels(), sizeof(shaders::SurfacePixel), options_.surface,
+               "depth, strand, velocity and albedo");
         const bool kernels = options_.ribbons == Ribbons::compute;
         pass(Pass::nearest, kernels,
              kernels ? "what is in front in each sample" : "the device's rasteriser finds what is in front");
@@ -205,10 +213,10 @@ class Planner {
 
 const char* passName(Pass pass) {
     constexpr std::array<const char*, kPassCount> kNames{
-        "curves",         "head depth", "first hair",    "opacity layers", "sky head depth",
-        "sky first hair", "sky layers", "sky seen",      "shade",          "nearest",
-        "draw",           "blend",      "composite",     "accumulate",     "shadow blur",
-        "tone map",       "filter",     "overlay depth", "overlay",        "overlay on top"};
+        "curves",        "head depth", "first hair",    "opacity layers", "sky head depth", "sky first hair",
+        "sky layers",    "sky seen",   "shade",         "surface",        "nearest",        "draw",
+        "blend",         "composite",  "accumulate",    "shadow blur",    "tone map",       "filter",
+        "overlay depth", "overlay",    "overlay on top"};
     return kNames[static_cast<std::size_t>(pass)];
 }
 
@@ -239,7 +247,10 @@ const char* bufferName(BufferId buffer) {
                                                            "sum",
                                                            "sum without shadows",
                                                            "blur halfway",
-                                                           "blurred"};
+                                                           "blurred",
+                                                           "nearest surface",
+                                                           "surface numbers",
+                                                           "surface"};
     return kNames[static_cast<std::size_t>(buffer)];
 }
 

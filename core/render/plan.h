@@ -27,6 +27,7 @@ enum class Pass {
     skyLayers,
     skySeen,  ///< from each curve point
     shade,
+    surface,  ///< of what is nearest in each pixel: depth, strand, velocity, albedo
     nearest,  ///< where kernels rasterise: what is in front, before its light is drawn
     draw,
     blend,      ///< hair over head, in any order
@@ -67,14 +68,17 @@ enum class BufferId {
     skyFirst,     ///< the same three for light from around
     skyCounts,
     skyLayers,
-    nearest,      ///< depths of all samples as bits
-    light,        ///< of all samples
-    sum,          ///< of frames
-    litSum,       ///< the same without shadows, where these are blurred
-    blurHalfway,  ///< both, blurred along rows
-    blurred,      ///< in place of the sum
+    nearest,         ///< depths of all samples as bits
+    light,           ///< of all samples
+    sum,             ///< of frames
+    litSum,          ///< the same without shadows, where these are blurred
+    blurHalfway,     ///< both, blurred along rows
+    blurred,         ///< in place of the sum
+    surfaceNearest,  ///< depths in the middle of pixels, as bits
+    surfaceItem,     ///< of all points and triangles the number of what is there
+    surface,         ///< SurfacePixels
 };
-inline constexpr std::size_t kBufferCount = static_cast<std::size_t>(BufferId::blurred) + 1;
+inline constexpr std::size_t kBufferCount = static_cast<std::size_t>(BufferId::surface) + 1;
 const char* bufferName(BufferId buffer);
 
 /// What the plan looks at.

@@ -55,26 +55,15 @@ shaders::RasterConstants frameConstants(const RendererState& state, std::uint32_
 
 void dispatchMeshes(gpu::CommandList& list, RendererState& state, const Mat4f& clipFromWorld,
                     std::uint32_t phase) {
-    // So many groups that few large triangles keep a device busy as well.
-    constexpr std::uint32_t kWantedGroups = 1u << 15u;
-    constexpr std::uint32_t kMaxSlices = 64;
     list.setPipeline(state.pipelines.compute("mesh_raster.comp"));
     bindShadows(list, state);
     list.setConstants(0, gpu::bytesOf(lightsOfFrame(state)));
-    shaders::RasterConstants raster = frameConstants(state, phase);
+    const shaders::RasterConstants raster = frameConstants(state, phase);
     for (const MeshOnDevice& mesh : state.scene.meshes) {
-        const auto triangles = static_cast<std::uint32_t>(mesh.indices.size() / 3);
-        if (triangles == 0) continue;
-        const std::uint32_t row = std::min(triangles, kRowGroups);
-        const std::uint32_t slices = state.onCpu ? 1 : std::clamp(kWantedGroups / triangles, 1u, kMaxSlices);
-        raster.count = triangles;
-        raster.rowLength = row;
-        raster.slices = slices;
+        if (mesh.indices.empty()) continue;
         list.setConstants(1, gpu::bytesOf(meshConstants(clipFromWorld, mesh.matte)));
-        list.setConstants(2, gpu::bytesOf(raster));
-        bind(list, {Binding::read(0, mesh.drawnPositions()), Binding::read(1, mesh.drawnNormals()),
-                    Binding::read(2, mesh.indexBuffer), Binding::read(3, mesh.albedo)});
-        list.dispatch(row, (triangles + row - 1) / row, slices);
+        bind(list, {Binding::read(1, mesh.drawnNormals())});
+        dispatchTriangles(list, state, mesh, raster);
     }
 }
 
@@ -147,6 +136,21 @@ void dispatchStrands(gpu::CommandList& list, const RendererState& state, shaders
         bind(list, {Binding::read(0, batch.curve), Binding::read(1, state.colourOf(batch))});
         list.dispatch(rows.groups, rows.rows);
     }
+}
+
+void dispatchTriangles(gpu::CommandList& list, const RendererState& state, const MeshOnDevice& mesh,
+                       shaders::RasterConstants raster) {
+    // So many groups that few large triangles keep a device busy as well.
+    constexpr std::uint32_t kWantedGroups = 1u << 15u;
+    constexpr std::uint32_t kMaxSlices = 64;
+    const auto triangles = static_cast<std::uint32_t>(mesh.indices.size() / 3);
+    raster.count = triangles;
+    raster.rowLength = std::min(triangles, kRowGroups);
+    raster.slices = state.onCpu ? 1 : std::clamp(kWantedGroups / triangles, 1u, kMaxSlices);
+    list.setConstants(2, gpu::bytesOf(raster));
+    bind(list, {Binding::read(0, mesh.drawnPositions()), Binding::read(2, mesh.indexBuffer),
+                Binding::read(3, mesh.albedo)});
+    list.dispatch(raster.rowLength, (triangles + raster.rowLength - 1) / raster.rowLength, raster.slices);
 }
 
 void recordRasterised(gpu::CommandList& list, RendererState& state, const Mat4f& clipFromWorld,

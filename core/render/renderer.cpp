@@ -89,6 +89,7 @@ Status Renderer::setScene(const RenderScene& scene) {
     RendererState& state = parts_->state;
     parts_->changes = Changes::geometry();
     state.scene = {};
+    state.pastCamera.reset();
     if (auto status = check(scene); !status) return status;
     auto uploaded = DeviceScene::upload(parts_->device, scene);
     if (!uploaded) return tl::unexpected(uploaded.error());
@@ -151,9 +152,10 @@ Status Renderer::setMaterial(std::size_t group, const StrandShading& material) {
     return {};
 }
 
-Status Renderer::setCamera(const Camera& camera) {
+Status Renderer::setCamera(const Camera& camera, bool cut) {
     if (auto status = check(camera); !status) return status;
     parts_->state.camera = camera;
+    if (cut) parts_->state.pastCamera.reset();
     parts_->changes.add(Changes::looks());
     return {};
 }
@@ -224,8 +226,8 @@ Status Renderer::Parts::prepareTargets(bool presents) {
         changes.add(Changes::lights());
     }
     if (isNew->has(TargetId::skyHead) || isNew->has(BufferId::skyLayers)) changes.add(Changes::head());
-    changes.picture |=
-        isNew->has(TargetId::colour) || isNew->has(BufferId::nearest) || isNew->has(BufferId::sum);
+    changes.picture |= isNew->has(TargetId::colour) || isNew->has(BufferId::nearest) ||
+                       isNew->has(BufferId::sum) || isNew->has(BufferId::surface);
     return {};
 }
 
@@ -264,8 +266,9 @@ Status Renderer::Parts::prepare(const RenderOptions& options, bool presents) {
     if (resolved.ribbons == Ribbons::tessellated) {
         if (auto status = state.scene.preparePatches(device); !status) return status;
     }
-    return state.scene.prepareCurves(device, detail.subdivisions, state.plan.runs(Pass::shadowBlur),
-                                     state.plan.runs(Pass::skySeen));
+    auto status = state.scene.prepareCurves(device, detail.subdivisions, state.plan.runs(Pass::shadowBlur),
+                                            state.plan.runs(Pass::skySeen));
+    return status && state.plan.runs(Pass::surface) ? state.scene.prepareSurface(device) : status;
 }
 
 void Renderer::Parts::recordChanges(gpu::CommandList& list) {
@@ -282,6 +285,7 @@ void Renderer::Parts::recordChanges(gpu::CommandList& list) {
         recordShading(list, state);
         if (state.plan.runs(Pass::shadowBlur)) withoutShadows([&] { recordShading(list, state); });
     }
+    if (changes.picture && state.plan.runs(Pass::surface)) recordSurface(list, state);
     if (changes.picture) accumulated = 0;
     changes = Changes::placeholderTexture();
 }
@@ -314,6 +318,18 @@ Status Renderer::record(gpu::CommandList& list, const RenderOptions& options, co
     return p.state.pipelines.takeStatus();
 }
 
+Status Renderer::recordPast(gpu::CommandList& list, const RenderOptions& options) {
+    Parts& p = *parts_;
+    RenderOptions with = options;
+    with.surface = true;
+    if (auto status = p.prepare(with, false); !status) return status;
+    p.state.scene.recordUploads(list);
+    if (p.changes.curves && p.state.plan.runs(Pass::curves)) recordCurves(list, p.state);
+    render::recordPast(list, p.state);
+    p.changes.picture = true;
+    return p.state.pipelines.takeStatus();
+}
+
 std::uint32_t Renderer::accumulated() const {
     return parts_->changes.picture ? 0 : parts_->accumulated;
 }
@@ -324,6 +340,10 @@ bool Renderer::isSettled() const {
 
 const gpu::BufferPtr& Renderer::linearSum() const {
     return parts_->state.result();
+}
+
+const gpu::BufferPtr& Renderer::surface() const {
+    return parts_->state.targets[BufferId::surface];
 }
 
 Box3f Renderer::bounds() const {

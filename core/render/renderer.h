@@ -55,7 +55,8 @@ class Renderer {
     /// One share of the dye a point, where RenderStrands::pointDyes had some.
     Status setPointDyes(std::size_t group, std::span<const float> dyes);
     Status setMaterial(std::size_t group, const StrandShading& material);
-    Status setCamera(const Camera& camera);
+    /// `cut`: it has not moved there, and velocities tell nothing of it.
+    Status setCamera(const Camera& camera, bool cut = false);
     Status setLights(std::span<const Light> lights);
     void setEnvironment(const Environment& environment);
     void setBackground(const Vec3f& linear);
@@ -70,6 +71,10 @@ class Renderer {
     /// reports. Some errors only show when the list is submitted.
     Status record(gpu::CommandList& list, const RenderOptions& options, const gpu::TexturePtr& target);
 
+    /// Takes hair, head and camera as they stand for those of a frame ago, which SurfacePixel's velocity
+    /// counts from; without it, and after setScene(), it is 0. `options` as those of the next record().
+    Status recordPast(gpu::CommandList& list, const RenderOptions& options);
+
     /// Forgets the average, as after a change.
     void restart();
     /// Frames in the average, 0 before the first.
@@ -79,6 +84,10 @@ class Renderer {
     /// Sum of accumulated() frames: linear RGB before exposure, and coverage; four floats a pixel, the upper
     /// row first.
     const gpu::BufferPtr& linearSum() const;
+    /// shaders::SurfacePixel a pixel, the upper row first, of the middle of pixels that no average moves;
+    /// null where the options have no `surface`. Hair counts where its ribbon, at least a pixel wide, covers
+    /// that middle.
+    const gpu::BufferPtr& surface() const;
 
     Box3f bounds() const;  ///< of all meshes and strands
     std::uint64_t triangles() const;

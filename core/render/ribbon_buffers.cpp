@@ -66,7 +66,8 @@ Status DeviceScene::prepareCurves(gpu::Device& device, std::uint32_t subdivision
             gather(batch.curve, written(device, "curve points", count, sizeof(shaders::CurvePoint)));
             gather(batch.colour, written(device, "curve colours", count, sizeof(shaders::float4)));
             batch.curveSubdivisions = subdivisions;
-            batch.litColour = nullptr;
+            batch.litColour = batch.albedo = batch.past = nullptr;
+            batch.pastSubdivisions = 0;
         }
         const std::uint32_t maximum = batch.curvePoints(batch.strandCount(), batch.curveSubdivisions);
         if (!twice) {
@@ -89,6 +90,23 @@ Status DeviceScene::prepareCurves(gpu::Device& device, std::uint32_t subdivision
         desc.size = content.size() * sizeof(std::uint32_t);
         desc.usage = gpu::Usage::Index;
         gather(indices, device.createBuffer(desc, bytes(content)));
+    }
+    return gather.status();
+}
+
+Status DeviceScene::prepareSurface(gpu::Device& device) {
+    Gather gather;
+    for (DrawBatch& batch : batches) {
+        const std::uint32_t count = batch.curvePoints(batch.strandCount(), batch.curveSubdivisions);
+        if (batch.albedo == nullptr)
+            gather(batch.albedo, written(device, "curve albedo", count, sizeof(shaders::float4)));
+        if (batch.past == nullptr)
+            gather(batch.past,
+                   written(device, "curve points a frame ago", count, sizeof(shaders::CurvePoint)));
+    }
+    for (MeshOnDevice& mesh : meshes) {
+        if (mesh.past != nullptr || mesh.indices.empty()) continue;
+        gather(mesh.past, written(device, "mesh positions a frame ago", 3 * mesh.vertexCount, sizeof(float)));
     }
     return gather.status();
 }

@@ -49,7 +49,9 @@ struct StrandShading {
     /// Strands are round and have skin, shaded once a pixel: a wrapped diffuse term of the albedo or the
     /// look, and the first highlight.
     bool tubes = false;
-    FibreMaterial fibre;  ///< which model, and what the others than Kajiya-Kay take
+    Vec3f fibreColour =
+        Vec3f(0.21f, 0.115f, 0.06f);  ///< that much hair of these fibres has, for surfaces told
+    FibreMaterial fibre;              ///< which model, and what the others than Kajiya-Kay take
     /// For hair that does not look the same everywhere: in place of albedo and the two brightnesses, or of
     /// the fibre's absorption. Nothing: neither its shader nor its tables are used.
     std::optional<shading::StrandLook> look;

@@ -199,6 +199,9 @@ render::StrandShading strandShading(const Groom& groom, const ViewFile& view) {
     material.primaryShift = 2 * authored.scaleTiltDegrees;
     material.secondaryShift = -3 * authored.scaleTiltDegrees;
     material.fibre = fibreMaterial(authored, view.fibre);
+    material.fibreColour = shading::colourOfAbsorption(material.fibre.marschner.azimuthal.absorption,
+                                                       roughnessOf(authored, view.fibre))
+                               .cast<float>();
     material.tubes = authored.tubes;
     const bool isKajiya = view.fibre.model == render::ShadingModel::kajiya || authored.tubes;
     if (!isKajiya && view.fibre.saysColour()) {

@@ -19,6 +19,8 @@ Vec3d absorption(const Melanin& melanin);
 /// RGB per fibre radius that gives a volume of such hair the colour, linear 0…1, under all scattering: the
 /// fit of Chiang et al. 2016. `azimuthalRoughness` 0…1. 0 of a channel is taken as 0.001.
 Vec3d absorptionOfColour(const Vec3d& colour, double azimuthalRoughness);
+/// The other way.
+Vec3d colourOfAbsorption(const Vec3d& absorption, double azimuthalRoughness);
 /// It is (ln c · this)².
 double absorptionScale(double azimuthalRoughness);
 

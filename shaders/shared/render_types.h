@@ -227,6 +227,29 @@ struct RasterConstants {
 };
 #define HAIRLOOM_PHASE_NEAREST 0
 #define HAIRLOOM_PHASE_LIGHT 1
+// Where they tell what is nearest in the middle of a pixel: which of what has the least depth, and all about it.
+#define HAIRLOOM_PHASE_ITEM 2
+#define HAIRLOOM_PHASE_TELL 3
+
+#define HAIRLOOM_NO_STRAND 0xffffffff
+struct SurfacePixel {
+    float depth;      // metres along the view; infinite where nothing is
+    uint strand;      // number of the hair; HAIRLOOM_NO_STRAND on a mesh and where nothing is
+    float velocityX;  // pixels that it has moved since a frame ago, to the right
+    float velocityY;  // and down
+    float4 albedo;    // linear RGB; w: 0 where nothing is
+};
+
+// How to tell it.
+struct SurfaceConstants {
+    float4x4 clipFromWorld;
+    float4x4 pastClipFromWorld;  // of a frame ago
+    float4 forward_ws;           // times a place (x, y, z, 1): metres along the view
+    uint firstItem;              // number of a batch's first curve point or a mesh's first triangle among all
+    uint firstStrand;            // number of a group's first strand among all
+    uint pastStrands;            // of the batch whose places of a frame ago are known; of a mesh 1 or 0
+    uint unused0;
+};
 
 struct FillConstants {
     uint value;
@@ -371,6 +394,9 @@ static_assert(sizeof(LookConstants) == 144);
 static_assert(sizeof(MeshConstants) == 80);
 HAIRLOOM_OFFSET(RasterConstants, samplePositions, 64);
 static_assert(sizeof(RasterConstants) == 128);
+static_assert(sizeof(SurfacePixel) == 32);
+HAIRLOOM_OFFSET(SurfaceConstants, firstItem, 144);
+static_assert(sizeof(SurfaceConstants) == 160);
 static_assert(sizeof(FillConstants) == 16);
 static_assert(sizeof(ResolveConstants) == 32);
 static_assert(sizeof(PackConstants) == 32);

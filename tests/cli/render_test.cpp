@@ -11,6 +11,7 @@ namespace hairloom::test {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 class RenderJob : public CommandLineTest {
   protected:
@@ -137,6 +138,30 @@ TEST_F(RenderJob, HairIsSimulatedWhileItIsDrawnOnEitherEngine) {
     const auto automatic = runJson("simulate hair.hairloom --frames 2 --engine auto --method lattice");
     EXPECT_EQ(automatic["engine"], "cpu");
     EXPECT_THAT(automatic["why"].get<std::string>(), HasSubstr("strand engine"));
+}
+
+TEST_F(RenderJob, LayersOfAPictureAreInItsExr) {
+    const auto channels = [&](const std::string& name) {
+        const std::string text = readText(folder / name);
+        return text.substr(0, text.find("compression"));
+    };
+    picture("--exr hair.exr");
+    EXPECT_THAT(channels("hair.exr"), Not(HasSubstr("depth.Z")));
+    const auto report = picture("--exr hair.exr --aov depth,id,velocity,albedo");
+    for (const char* name : {"depth.Z", "id.X", "velocity.X", "velocity.Y", "albedo.B"})
+        EXPECT_THAT(channels("hair.exr"), HasSubstr(name));
+    EXPECT_TRUE(targets(report).contains("surface"));
+    EXPECT_EQ(run("render hair.hairloom -o x.png --aov depth").exitCode, 2) << "no EXR";
+    EXPECT_EQ(run("render hair.hairloom -o x.png --exr x.exr --aov light").exitCode, 2);
+
+    // Hair in wind moves in a record as in a simulation, and other places give other layers.
+    runJson("simulate hair.hairloom --frames 4 --wind 3,0,0 --record wind.frames");
+    picture("--record wind.frames --frame 0 --exr still.exr --aov velocity");
+    picture("--record wind.frames --frame 3 --exr moving.exr --aov velocity");
+    picture("--motion none --wind 3,0,0 --engine gpu --frame 4 --exr live.exr --aov velocity");
+    EXPECT_NE(readText(folder / "still.exr"), readText(folder / "moving.exr"));
+    EXPECT_GT(std::filesystem::file_size(folder / "live.exr"),
+              std::filesystem::file_size(folder / "still.exr"));
 }
 
 TEST_F(RenderJob, BenchPlaysAsTheEditorDoes) {

@@ -8,7 +8,7 @@
 
 #include "core/base/file.h"
 #include "core/base/random.h"
-#include "core/render/exr.h"
+#include "core/render/aov.h"
 #include "core/render/png.h"
 #include "core/render/tone_map.h"
 
@@ -110,6 +110,42 @@ TEST(Exr, RoundTripsUnchanged) {
     std::free(pixels);
     EXPECT_EQ(read, image.rgba);
     EXPECT_FALSE(writeExr(path, {}));
+    std::filesystem::remove(path);
+}
+
+// The same library takes the layers apart by their channels' names.
+TEST(Exr, LayersStandBesideThePicture) {
+    LinearImage image{5, 3, std::vector<float>(5 * 3 * 4, 0.25f)};
+    std::vector<SurfacePixel> surface(15);
+    for (std::uint32_t i = 0; i < 15; ++i) {
+        const auto value = static_cast<float>(i);
+        surface[i] = {
+            0.5f + value, i == 4 ? SurfacePixel::kNoStrand : 16'000'000 + i, value, -value, {value, 2, 3, 1}};
+    }
+    const std::vector<std::string> names{"velocity", "depth", "albedo", "id"};
+    auto layers = aovLayers(names, surface).value();
+    const auto path = std::filesystem::path(testing::TempDir()) / "hairloom-exr-layers.exr";
+    ASSERT_TRUE(writeExr(path, image, layers));
+    const auto layer = [&](const char* name) {
+        float* pixels = nullptr;
+        int width = 0, height = 0;
+        const char* error = nullptr;
+        EXPECT_EQ(LoadEXRWithLayer(&pixels, &width, &height, path.string().c_str(), name, &error), 0) << name;
+        std::vector<float> read(pixels, pixels + 4 * 15);
+        std::free(pixels);
+        return read;
+    };
+    EXPECT_EQ(layer("albedo")[4 * 7], 7.0f);
+    EXPECT_EQ(layer("albedo")[4 * 7 + 2], 3.0f);
+    // Layers of one channel fill all four.
+    EXPECT_EQ(layer("depth")[4 * 14], 14.5f);
+    EXPECT_EQ(layer("id")[4 * 14], 16'000'014.0f);
+    EXPECT_EQ(layer("id")[4 * 4], -1.0f);
+    EXPECT_EQ(readExr(path).value().rgba, image.rgba);
+    layers[0].values.pop_back();
+    EXPECT_FALSE(writeExr(path, image, layers));
+    surface[2].strand = 20'000'000;
+    EXPECT_FALSE(aovLayers(names, surface));
     std::filesystem::remove(path);
 }
 

@@ -1,3 +1,3 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #define HAIRLOOM_LOOK
-#include "shaders/render/tube_albedo.comp.hlsl"
+#include "shaders/render/hair_albedo.comp.hlsl"
