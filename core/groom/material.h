@@ -14,6 +14,12 @@ enum class ColourSource : std::uint32_t {
     colours,  ///< the colours that Kajiya-Kay shows: the hair is dyed
 };
 
+/// How much light fibres of Kajiya-Kay and Sadeghi send out.
+enum class EnergyRule : std::uint32_t {
+    bounded,    ///< no more than they get
+    published,  ///< as much as the published models, which may be more
+};
+
 /// Units, ranges and meanings stand in fieldsOf() (core/groom/file/fields.h).
 struct HairMaterial {
     float rootRadius = 0.00004f;
@@ -64,6 +70,8 @@ struct HairMaterial {
     float glintIntensity = 1.0f;
     float glintWidthDegrees = 10.0f;
     float glintNearDegrees = 30.0f, glintFarDegrees = 45.0f;
+
+    EnergyRule energy = EnergyRule::bounded;
 
     bool tubes = false;  ///< no model of hair is used
 

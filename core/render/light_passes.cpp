@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Curves, what they see of the sky, and shading: what stays while the scene does.
 #include <cmath>
+#include <limits>
 
 #include "core/render/passes.h"
 #include "core/render/shadow_maps.h"
@@ -81,6 +82,9 @@ shaders::ShadeConstants shadeConstants(const RendererState& state, const StrandS
     c.brightnessVariation = m.variation;
     c.fibreOpacity = m.opacity;
     c.albedo = toShader(m.albedo, 0);
+    c.bounded = m.bounded ? 1 : 0;
+    c.brightestTint =
+        m.bounded ? 1 / std::max(m.fibreColour.maxCoeff(), 1e-3f) : std::numeric_limits<float>::max();
     return c;
 }
 

@@ -150,6 +150,7 @@ render::FibreMaterial fibreMaterial(const HairMaterial& authored, const FibreVie
         fibre.sadeghi = sadeghiLike(shading::Marschner(m));
         controls.applyTo(fibre.sadeghi);
         paintLobes(authored, fibre.sadeghi);
+        fibre.sadeghi.bounded = authored.energy == EnergyRule::bounded;
         fibre.marschner = m;
     }
     return fibre;
@@ -203,6 +204,7 @@ render::StrandShading strandShading(const Groom& groom, const ViewFile& view) {
                                                        roughnessOf(authored, view.fibre))
                                .cast<float>();
     material.tubes = authored.tubes;
+    material.bounded = authored.energy == EnergyRule::bounded;
     const bool isKajiya = view.fibre.model == render::ShadingModel::kajiya || authored.tubes;
     if (!isKajiya && view.fibre.saysColour()) {
         material.variation = 0;

@@ -12,6 +12,7 @@ namespace hairloom {
 /// |---|---|
 /// | rootRadius, tipScale, radiusVariation, rootOpacity, tipOpacity, tubes | the same |
 /// | specular, shininess, scaleTiltDegrees | `primary…`, `secondary…`: Kajiya-Kay's two highlights |
+/// | energy | `bounded`, also of Sadeghi's lobes |
 /// | tipColour, colourVariation | `albedo`, `variation` |
 /// | indexOfRefraction, roughnesses, scaleTiltDegrees, eccentricity, r…, tt…, trt… | `fibre.marschner` |
 /// | those, tints, ttAzimuthalWidth, glints | `fibre.sadeghi`, from the Marschner fibre of the same hair |

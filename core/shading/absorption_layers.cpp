@@ -28,7 +28,7 @@ DualLayers bakeDualOf(std::uint32_t azimuth, std::uint32_t inclination, const Mo
                       makeTable(inclination, 2 * kAbsorptionLayers), makeTable(32, 2 * kAbsorptionLayers)};
     for (std::uint32_t first = 0; first < kAbsorptionLayers; first += 3) {
         const auto model = modelOf(absorptionsOf(first));
-        const DualScattering dual(model);
+        const DualScattering dual(model);  // which may look at the model
         const DualTables tables = bakeDual(dual, azimuth, inclination);
         const Table sky = bakeSky(dual, layers.sky.width);
         for (std::uint32_t c = 0; c < 3; ++c) {
@@ -57,6 +57,11 @@ DualLayers bakeDualOf(std::uint32_t azimuth, std::uint32_t inclination, const Mo
         }
     }
     return layers;
+}
+
+/// Bounded for hair that absorbs nothing.
+SadeghiLongitudinal longitudinalOf(const SadeghiParameters& model, const AzimuthalParameters& fibre) {
+    return {model, withAbsorption(model, fibre, Vec3d::Zero())};
 }
 
 }  // namespace
@@ -101,7 +106,8 @@ MarschnerLayers bakeMarschnerLayers(const MarschnerParameters& model, const Tabl
 
 SadeghiLayers bakeSadeghiLayers(const SadeghiParameters& model, const AzimuthalParameters& fibre,
                                 const TableSizes& sizes) {
-    SadeghiLayers layers{bakeSadeghi(model, sizes), makeTable(2, kAbsorptionLayers)};
+    SadeghiLayers layers{bakeSadeghi(model, longitudinalOf(model, fibre), sizes),
+                         makeTable(2, kAbsorptionLayers)};
     const TransmittedEnergies own = transmittedEnergies(fibre, fibre.absorption);
     for (std::uint32_t first = 0; first < kAbsorptionLayers; first += 3) {
         const TransmittedEnergies three = transmittedEnergies(fibre, absorptionsOf(first));
@@ -132,8 +138,11 @@ DualLayers bakeDualLayers(const SadeghiParameters& model, const AzimuthalParamet
     SadeghiParameters grey = model;
     for (SadeghiLobe* lobe : {&grey.r, &grey.tt, &grey.trt}) lobe->tint.setConstant(lobe->tint.mean());
     grey.r.colour.setConstant(grey.r.colour.mean());
-    return bakeDualOf(azimuth, inclination,
-                      [&](const Vec3d& absorptions) { return withAbsorption(grey, fibre, absorptions); });
+    // Of the hair that all layers serve, as the tables of single scattering.
+    const SadeghiLongitudinal longitudinal = longitudinalOf(model, fibre);
+    return bakeDualOf(azimuth, inclination, [&](const Vec3d& absorptions) {
+        return DualScattering(withAbsorption(grey, fibre, absorptions), longitudinal);
+    });
 }
 
 AverageScattering scatteringAcross(const Table& averages, const Vec3d& absorption) {

@@ -160,7 +160,8 @@ LayerLight beamInLayer(const AverageScattering& fibre, double before, double all
 }
 
 DualScattering::DualScattering(const Marschner& model) : marschner_(&model) {}
-DualScattering::DualScattering(const SadeghiParameters& model) : sadeghi_(model) {}
+DualScattering::DualScattering(const SadeghiParameters& model, SadeghiLongitudinal longitudinal)
+    : sadeghi_(model), longitudinal_(std::move(longitudinal)) {}
 
 struct DualScattering::Lobes {
     LobeRows rows{};
@@ -186,9 +187,8 @@ DualScattering::Lobes DualScattering::lobes(double thetaD) const {
         const SadeghiLobe& l = sadeghi_.lobe(lobe);
         lobes.shapes[index(lobe)] = {l.shift, l.width / std::sqrt(2 * kPi)};
         for (std::size_t i = 0; i <= kLast; ++i) {
-            // The area of M' over θ_o is twice the width.
-            const double n =
-                2 * l.width * sadeghiAzimuthal(sadeghi_, lobe, static_cast<double>(i) * kStep, 0.5);
+            const double n = longitudinal_->energy(lobe) *
+                             sadeghiAzimuthal(sadeghi_, lobe, static_cast<double>(i) * kStep, 0.5);
             const Vec3d light = l.light();
             for (std::size_t c = 0; c < 3; ++c) {
                 lobes.rows[index(lobe)][c][i] = static_cast<float>(n * light[static_cast<int>(c)]);
@@ -228,8 +228,7 @@ std::array<DualScattering::Moments, 3> DualScattering::moments(double thetaD) co
 
 double DualScattering::longitudinal(Lobe lobe, double thetaIn, double thetaOut) const {
     if (marschner_ != nullptr) return marschner_->longitudinalLobe(lobe)(thetaIn, thetaOut);
-    const SadeghiLobe& l = sadeghi_.lobe(lobe);
-    return unitHeightGauss(0.5 * (thetaIn + thetaOut) - l.shift, l.width) / (2 * l.width);
+    return (*longitudinal_)(lobe, thetaIn, thetaOut) / longitudinal_->energy(lobe);
 }
 
 double scatteringsOf(double x) {

@@ -15,6 +15,8 @@
 //
 // Angles in radians, colours linear RGB, 0 the azimuth back towards the light, as in marschner.h.
 
+#include <optional>
+
 #include "core/shading/sadeghi.h"
 
 namespace hairloom::shading {
@@ -54,7 +56,9 @@ class DualScattering {
   public:
     explicit DualScattering(const Marschner& model);
     /// Colours and intensities that would give more light than they get are taken as giving 0.995 of it.
-    explicit DualScattering(const SadeghiParameters& model);
+    explicit DualScattering(const SadeghiParameters& model)
+        : DualScattering(model, SadeghiLongitudinal(model)) {}
+    DualScattering(const SadeghiParameters& model, SadeghiLongitudinal longitudinal);
 
     /// N of all lobes, by φ as AzimuthalProfile::Grid.
     using Profile = std::array<std::array<float, AzimuthalProfile::kGridSize>, 3>;
@@ -76,6 +80,7 @@ class DualScattering {
 
     const Marschner* marschner_ = nullptr;
     SadeghiParameters sadeghi_;
+    std::optional<SadeghiLongitudinal> longitudinal_;  ///< of Sadeghi's
 };
 
 /// The mean number of scatterings of light that has been scattered at all, of Poisson's distribution with the

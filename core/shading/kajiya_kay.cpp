@@ -26,6 +26,10 @@ double kajiyaReflectance(double exponent) {
     return 2 * std::sqrt(std::numbers::pi) * std::exp(std::lgamma((n + 1) / 2) - std::lgamma(n / 2 + 1));
 }
 
+double kajiyaBound(double weights) {
+    return 1 / std::max(1.0, weights);
+}
+
 double evaluate(const KajiyaKay& model, const Vec3d& tangent, const Vec3d& toLight, const Vec3d& toView) {
     const double incoming = kajiyaDiffuse(tangent, toLight);
     const double diffuse = model.diffuse / kajiyaReflectance(0);

@@ -28,4 +28,8 @@ struct KajiyaKay {
 /// out over the whole sphere is at most (c_d + c_s) of what meets the fibre, from every direction.
 double evaluate(const KajiyaKay& model, const Vec3d& tangent, const Vec3d& toLight, const Vec3d& toView);
 
+/// The factor that keeps a fibre whose terms would send out `weights` of the light in all at 1: each term's
+/// weight over its own R_O, so that none sends out more than that from or towards any direction.
+double kajiyaBound(double weights);
+
 }  // namespace hairloom::shading

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // The artist-friendly model of Sadeghi et al. 2010 as Rünz 2012, section 5.3 has it: lobes that can be moved,
-// widened and coloured one by one, without Fresnel terms. Not energy conserving, by intention: a wider lobe
-// stays as bright. Angles as in marschner.h; colours linear RGB.
+// widened and coloured one by one, without Fresnel terms. As published it may send out more light than it
+// gets, by intention: a wider lobe stays as bright. Angles as in marschner.h; colours linear RGB.
 
 #include "core/shading/marschner.h"
 
@@ -28,6 +28,7 @@ struct SadeghiParameters {
     double glintWidth = 10 * kDegree;  ///< azimuthal
     /// Glints lie at ± an angle in this range, another one for each strand (thesis, section 5.3).
     double glintNear = 30 * kDegree, glintFar = 45 * kDegree;
+    bool bounded = true;  ///< as SadeghiLongitudinal says; false: as published
 
     bool operator==(const SadeghiParameters&) const = default;
     const SadeghiLobe& lobe(Lobe lobe) const { return lobe == Lobe::R ? r : lobe == Lobe::TT ? tt : trt; }
@@ -36,14 +37,43 @@ struct SadeghiParameters {
 /// exp(−π ν²/width²).
 double unitHeightGauss(double x, double width);
 
-/// M'_p of Eq. 52, with θ_h for the printed θ_d.
-double sadeghiLongitudinal(const SadeghiParameters& parameters, Lobe lobe, double thetaIn, double thetaOut);
+/// M'_p of Eq. 52, with θ_h for the printed θ_d. Where the parameters are bounded it is that of
+/// LongitudinalLobe times the energy that the printed one has across the fibre, so that a lobe sends out the
+/// same at any inclination; and all lobes are scaled alike where they would send out more than all light in
+/// their brightest channel, or towards a grazing view, where a tilt gathers light.
+class SadeghiLongitudinal {
+  public:
+    explicit SadeghiLongitudinal(const SadeghiParameters& parameters)
+        : SadeghiLongitudinal(parameters, parameters) {}
+    /// Bounded for the brightest hair that the same table serves.
+    SadeghiLongitudinal(const SadeghiParameters& parameters, const SadeghiParameters& brightest);
+
+    double operator()(Lobe lobe, double thetaIn, double thetaOut) const {
+        return factorIn(lobe, thetaIn) * factorOut(lobe, thetaOut) * gauss(lobe, 0.5 * (thetaIn + thetaOut));
+    }
+    double factorIn(Lobe lobe, double theta) const;
+    double factorOut(Lobe lobe, double theta) const;
+    double gauss(Lobe lobe, double thetaHalf) const;  ///< around the lobe's shift
+    /// ∫ M'_p cos²θ_o / cos²θ_d dθ_o of light across the fibre.
+    double energy(Lobe lobe) const { return energy_[index(lobe)]; }
+
+  private:
+    double towardsView(double thetaOut) const;
+
+    SadeghiParameters parameters_;
+    std::vector<LongitudinalLobe> lobes_;  ///< where it is bounded
+    std::array<double, 3> energy_{};
+    std::vector<double> views_;  ///< factors by θ_o, in the middles of equal steps over −π/2…π/2
+};
 /// N'_p of Eq. 53; `glint` 0…1 is the strand's place between glintNear and glintFar.
 double sadeghiAzimuthal(const SadeghiParameters& parameters, Lobe lobe, double phi, double glint);
 
 /// S' of Eq. 51, used as S.
 Vec3d evaluate(const SadeghiParameters& parameters, double thetaIn, double thetaOut, double phi,
                double glint);
+/// The same where many are asked for.
+Vec3d evaluate(const SadeghiLongitudinal& longitudinal, const SadeghiParameters& parameters, double thetaIn,
+               double thetaOut, double phi, double glint);
 
 /// The controls at which the lobes have place, width, colour and energy of Marschner's for light across the
 /// fibre: where an artist starts from. A fifth of TRT's energy goes into the glints.

@@ -62,6 +62,16 @@ Table bakeM(std::uint32_t size, const M& m) {
     return table;
 }
 
+/// factor(lobe, θ) at each place of a side.
+template <class Factor>
+std::array<std::vector<double>, 3> byLobe(std::uint32_t size, const Factor& factor) {
+    std::array<std::vector<double>, 3> result;
+    for (const Lobe lobe : kLobes) {
+        for (std::size_t i = 0; i < size; ++i) result[index(lobe)].push_back(factor(lobe, thetaOf(i, size)));
+    }
+    return result;
+}
+
 struct GridPlace {
     std::size_t low;
     float part;
@@ -106,13 +116,10 @@ std::array<double, 4> Table::sample(double u, double v) const {
 }
 
 Table bakeLongitudinal(const Marschner& model, std::uint32_t size) {
-    std::array<std::vector<double>, 3> in, out;
-    for (const Lobe lobe : kLobes) {
-        for (std::size_t i = 0; i < size; ++i) {
-            in[index(lobe)].push_back(model.longitudinalLobe(lobe).factorIn(thetaOf(i, size)));
-            out[index(lobe)].push_back(model.longitudinalLobe(lobe).factorOut(thetaOf(i, size)));
-        }
-    }
+    const auto in =
+        byLobe(size, [&](Lobe lobe, double theta) { return model.longitudinalLobe(lobe).factorIn(theta); });
+    const auto out =
+        byLobe(size, [&](Lobe lobe, double theta) { return model.longitudinalLobe(lobe).factorOut(theta); });
     return bakeM(size, [&](Lobe lobe, std::size_t x, std::size_t y, double thetaHalf) {
         const LongitudinalLobe& l = model.longitudinalLobe(lobe);
         if (std::abs(thetaHalf - l.tilt()) > 6 * l.width()) return 0.0;
@@ -120,10 +127,11 @@ Table bakeLongitudinal(const Marschner& model, std::uint32_t size) {
     });
 }
 
-Table bakeLongitudinal(const SadeghiParameters& model, std::uint32_t size) {
-    return bakeM(size, [&](Lobe lobe, std::size_t, std::size_t, double thetaHalf) {
-        const SadeghiLobe& l = model.lobe(lobe);
-        return unitHeightGauss(thetaHalf - l.shift, l.width);
+Table bakeLongitudinal(const SadeghiLongitudinal& model, std::uint32_t size) {
+    const auto in = byLobe(size, [&](Lobe lobe, double theta) { return model.factorIn(lobe, theta); });
+    const auto out = byLobe(size, [&](Lobe lobe, double theta) { return model.factorOut(lobe, theta); });
+    return bakeM(size, [&](Lobe lobe, std::size_t x, std::size_t y, double thetaHalf) {
+        return in[index(lobe)][x] * out[index(lobe)][y] * model.gauss(lobe, thetaHalf);
     });
 }
 
@@ -156,8 +164,13 @@ MarschnerTables bakeAzimuthal(const Marschner& model, const TableSizes& sizes) {
 }
 
 SadeghiTables bakeSadeghi(const SadeghiParameters& model, const TableSizes& sizes) {
+    return bakeSadeghi(model, SadeghiLongitudinal(model), sizes);
+}
+
+SadeghiTables bakeSadeghi(const SadeghiParameters& model, const SadeghiLongitudinal& longitudinal,
+                          const TableSizes& sizes) {
     SadeghiTables tables;
-    tables.longitudinal = bakeLongitudinal(model, sizes.longitudinal);
+    tables.longitudinal = bakeLongitudinal(longitudinal, sizes.longitudinal);
     tables.azimuthal = makeTable(sizes.azimuth, sizes.inclination);
     forRows(tables.azimuthal, [&](std::uint32_t y) {
         const double glint = coordinate(y, sizes.inclination);

@@ -33,7 +33,7 @@ struct TableSizes {
 /// M_R, M_TT, M_TRT, each times its factor and cos θ_i / cos²θ_d (Eq. 33 and 50), and 2|θ_d|/π in alpha, by
 /// (sin θ_i + 1)/2 and (sin θ_o + 1)/2. The N tables hold no cosine.
 Table bakeLongitudinal(const Marschner& model, std::uint32_t size);
-Table bakeLongitudinal(const SadeghiParameters& model, std::uint32_t size);
+Table bakeLongitudinal(const SadeghiLongitudinal& model, std::uint32_t size);
 
 /// By (cos φ + 1)/2 and 2|θ_d|/π.
 struct MarschnerTables {
@@ -50,6 +50,9 @@ struct SadeghiTables {
     Table azimuthal;  ///< N'_R, N'_TT, N'_TRT, 1 by (cos φ + 1)/2 and the strand's glint; `inclination` rows
 };
 SadeghiTables bakeSadeghi(const SadeghiParameters& model, const TableSizes& sizes = {});
+/// The same bounded as `longitudinal` is.
+SadeghiTables bakeSadeghi(const SadeghiParameters& model, const SadeghiLongitudinal& longitudinal,
+                          const TableSizes& sizes);
 
 /// Tables of dual scattering.
 struct DualTables {

@@ -51,6 +51,7 @@ const std::vector<Group>& groups() {
          kAll,
          true},
         {QT_TR_NOOP("Highlights"), {"specular", "shininess"}, kKajiya, true},
+        {QT_TR_NOOP("Energy"), {"energy"}, kKajiya | kSadeghi, false},
         {QT_TR_NOOP("Fibre optics"),
          {"indexOfRefraction", "longitudinalRoughness", "azimuthalRoughness"},
          kFibres,

@@ -45,6 +45,11 @@ void main(uint3 id : SV_DispatchThreadID) {
     // A fibre dims what passes it the more, the darker it is.
     const float3 passed = saturate(1.0 - gShade.fibreOpacity * (1.0 - 0.75 * sqrt(albedo)));
 
+    // What each term sends out in all; that of light between fibres lacks the half of a closed fibre's 1 / pi^2.
+    const float3 weights = gShade.primary.rgb + (gShade.diffuse + sparkle * gShade.secondary.rgb) * albedo +
+                           kPi * gShade.scattering * albedo * albedo;
+    const float bound = gShade.bounded != 0 ? kajiyaBound(weights) : 1.0;
+
     float3 colour = 0;
     for (uint i = 0; i < gShade.lightCount; ++i) {
         const LightConstants light = gShade.lights[i];
@@ -61,7 +66,7 @@ void main(uint3 id : SV_DispatchThreadID) {
         const float3 single = (gShade.diffuse * gShade.diffuseNormalisation * albedo + lobe1 + lobe2) * diffuse;
         // Light that has bounced between fibres before: an artist's term after Zinke et al. 2008, not derived.
         const float3 multiple = gShade.scattering * albedo * albedo * diffuse / kPi;
-        colour += irradianceOf(light, p.position_ws.xyz) * (single * direct + multiple * scattered);
+        colour += irradianceOf(light, p.position_ws.xyz) * (bound * (single * direct + multiple * scattered));
     }
     if (hasEnvironment(gShade)) {
         SkyInHair sky = openSky();

@@ -35,12 +35,14 @@ void main(uint3 id : SV_DispatchThreadID) {
 
     const float vary = 1.0 + gShade.brightnessVariation * (strand.random * 2.0 - 1.0);
 #ifdef HAIRLOOM_LOOK
-    const float3 tint = vary;
     const float3 absorption = lookAt(placeOf(strand, p.along));
+    const float3 white = exp(sqrt(absorption) / gLook.ownScale);  // times the colour that much such hair has
+    const float3 tint = gShade.bounded != 0 ? min(vary, min(white.x, min(white.y, white.z))) : vary;
 #else
     // A strand's own colour is known against the material's, whose absorption the tables hold.
     const float3 own = strand.albedo.w > 0 ? strand.albedo.rgb / max(gShade.albedo.rgb, 1e-3) : 1.0;
-    const float3 tint = own * (lerp(gShade.rootBrightness, gShade.tipBrightness, p.along) * vary);
+    const float3 tint =
+        min(own * (lerp(gShade.rootBrightness, gShade.tipBrightness, p.along) * vary), gShade.brightestTint);
     const float3 absorption = 0;
 #endif
     float3 colour = 0;

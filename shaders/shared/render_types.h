@@ -166,7 +166,9 @@ struct ShadeConstants {
     uint hasEnvironment;  // 1: there is light from around
     uint hasSkyMaps;      // 1: maps hold what of the sky is seen
     float fibreOpacity;
-    uint unused0, unused1, unused2;
+    uint bounded;        // 1: Kajiya-Kay sends out no more light than it gets
+    float brightestTint;  // of a strand of light in fibres: more would be whiter than white
+    uint unused0;
     uint count;  // of what a kernel works on: points of curves, or strands
     uint lightCount;
     uint rowThreads;    // of the dispatch

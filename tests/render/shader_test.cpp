@@ -214,6 +214,9 @@ TEST_F(ShaderTest, HairThatVariesAgreesWithTheReference) {
         const auto result =
             run(isMarschner ? "marschner_look_echo.comp" : "sadeghi_look_echo.comp", 2 * kCases, kCases / 64,
                 {gpu::Binding::read(0, buffer(given.cases))}, {}, &*tables, gpu::bytesOf(constants));
+        const shading::SadeghiLongitudinal longitudinal(
+            material.sadeghi,
+            shading::withAbsorption(material.sadeghi, material.marschner.azimuthal, Vec3d::Zero()));
         RelativeError single, multiple;
         for (std::uint32_t i = 0; i < kCases; ++i) {
             const auto& [in, out, phi] = given.angles[i];
@@ -229,11 +232,11 @@ TEST_F(ShaderTest, HairThatVariesAgreesWithTheReference) {
                 isMarschner
                     ? material.sadeghi
                     : shading::withAbsorption(material.sadeghi, material.marschner.azimuthal, absorption);
-            const shading::DualScattering dual =
-                isMarschner ? shading::DualScattering(marschner) : shading::DualScattering(sadeghi);
-            const Vec3d expected =
-                isMarschner ? marschner(in, out, phi)
-                            : shading::evaluate(sadeghi, in, out, phi, static_cast<double>(c.tangent.w));
+            const shading::DualScattering dual = isMarschner ? shading::DualScattering(marschner)
+                                                             : shading::DualScattering(sadeghi, longitudinal);
+            const Vec3d expected = isMarschner ? marschner(in, out, phi)
+                                               : shading::evaluate(longitudinal, sadeghi, in, out, phi,
+                                                                   static_cast<double>(c.tangent.w));
             single.add(result[2 * i], std::cos(in) * expected);
             multiple.add(result[2 * i + 1],
                          shading::multipleScattering(dual.at(0.5 * std::abs(out - in)), in, out, phi,

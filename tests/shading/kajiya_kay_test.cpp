@@ -65,6 +65,12 @@ TEST(KajiyaKay, LosesNoEnergyAcrossTheFibre) {
     }
 }
 
+TEST(KajiyaKay, TheBoundIsOneByTheExcess) {
+    EXPECT_EQ(kajiyaBound(0.2), 1);
+    EXPECT_EQ(kajiyaBound(1), 1);
+    EXPECT_DOUBLE_EQ(kajiyaBound(2.75), 1 / 2.75);
+}
+
 TEST(KajiyaKay, HighlightLiesOnTheMirrorCone) {
     const Vec3d tangent = Vec3d::UnitY();
     const Vec3d toLight = direction(0.7, 0);

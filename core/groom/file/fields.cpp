@@ -11,6 +11,7 @@ using I = InterpolationSettings;
 using P = PlacementSettings;
 
 constexpr const char* kColourSources[] = {"melanin", "colours"};
+constexpr const char* kEnergyRules[] = {"bounded", "published"};
 constexpr const char* kPlacementMethods[] = {"random", "poissonDisk"};
 
 // clang-format off
@@ -63,6 +64,7 @@ constexpr Field<M> kMaterialFields[] = {
     field<&M::glintWidthDegrees>("glintWidthDegrees", "°", 1, 90, "width of glints around the hair (Sadeghi)"),
     field<&M::glintNearDegrees>("glintNearDegrees", "°", 0, 180, "least angle of a strand's glints, which is random (Sadeghi)"),
     field<&M::glintFarDegrees>("glintFarDegrees", "°", 0, 180, "largest angle of a strand's glints (Sadeghi)"),
+    choiceField<&M::energy>("energy", "bounded: hair of Kajiya-Kay and Sadeghi sends out no more light than it gets; published: as their authors have it, bright hair up to three times as much", kEnergyRules),
     boolField<&M::tubes>("tubes", "true draws strands as round tubes with skin, as tentacles have"),
     field<&M::rootOpacity>("rootOpacity", "", 0, 1, "how opaque hair is at the root"),
     field<&M::tipOpacity>("tipOpacity", "", 0, 1, "how opaque hair is at the tip: lower fades out"),
