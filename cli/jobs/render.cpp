@@ -37,6 +37,7 @@ struct RenderJobOptions {
     std::string shading = "kajiya";
     std::string scatter = "dual";
     std::string shadow = "dom";
+    std::uint32_t shadowLights = render::RenderOptions().shadowLights;
     std::string antiAliasing = "auto";
     std::string ribbons = "auto";
     std::string transparency = "auto";
@@ -117,6 +118,7 @@ Result<render::RenderOptions> pictureOptions(const RenderJobOptions& options, co
     picture.filter = aa.filter;
     picture.frames = aa.once ? 1 : options.passes;
     picture.shadows = kShadows.at(options.shadow);
+    picture.shadowLights = options.shadowLights;
     picture.headAbsorption = options.headAbsorption.value_or(view.headAbsorption.value_or(0));
     picture.shadowBlur = options.shadowBlur.value_or(view.shadowBlur.value_or(0));
     picture.ribbons = kRibbons.at(options.ribbons);
@@ -399,6 +401,9 @@ JobRun declare(CLI::App& job) {
            "--shadow", options->shadow,
            "Shadows of hair: deep opacity maps, absorption by depth, opacity maps at fixed depths, none")
         ->check(CLI::IsMember(namesOf(kShadows)));
+    job.add_option("--shadow-lights", options->shadowLights,
+                   "Most lights with shadow maps; areas and bright parts of images are cut into as many")
+        ->check(CLI::Range(std::size_t{1}, render::kMaxLights));
     job.add_option(
            "--head-absorption", options->headAbsorption,
            "Light that hair behind the head gets fades with its depth there, per metre; 0: it gets none")

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/render/light.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -46,10 +44,15 @@ std::vector<Light> studioLights(const Camera& camera) {
 }
 
 Status check(std::span<const Light> lights) {
-    if (lights.size() > kMaxLights) {
-        return fail(fmt::format("{} lights", lights.size()), fmt::format("at most {}", kMaxLights));
-    }
     for (const Light& light : lights) {
+        if (!light.position_ws.allFinite() || !light.intensity.allFinite() || !light.radiance.allFinite() ||
+            !light.halfAcross_ws.allFinite() || !light.halfUp_ws.allFinite() ||
+            !light.facing_ws.allFinite()) {
+            return fail("a light with a number that is not finite");
+        }
+        const bool isArea = light.kind == LightKind::rectangle || light.kind == LightKind::disc;
+        if (isArea && !(light.halfAcross_ws.cross(light.halfUp_ws).norm() > 0))
+            return fail("an area that gives off light and has no size");
         if (!light.toLight_ws.allFinite() || !(light.toLight_ws.norm() > 0) ||
             !light.irradiance.allFinite()) {
             return fail("a light without a direction or with a colour that is not finite");

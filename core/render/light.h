@@ -8,7 +8,12 @@
 
 namespace hairloom::render {
 
-enum class LightKind { directional, point };
+enum class LightKind {
+    directional,
+    point,
+    rectangle,  ///< gives off light evenly from one side
+    disc,
+};
 
 struct Light {
     LightKind kind = LightKind::directional;
@@ -16,13 +21,20 @@ struct Light {
     Vec3f irradiance = Vec3f::Constant(3.14159265f);  ///< directional: linear RGB, perpendicular to the light
     Vec3f position_ws = Vec3f(0, 2, 2);               ///< point, metres
     Vec3f intensity = Vec3f::Constant(3.14159265f);   ///< point: linear RGB irradiance at a distance of 1 m
+    /// Of a point that is part of an area: unit, which way that faces; its light falls with the cosine. Zero:
+    /// none.
+    Vec3f facing_ws = Vec3f::Zero();
+    /// Rectangle and disc around position_ws: from the middle to the right and to the upper edge, as one sees
+    /// them whom they face.
+    Vec3f halfAcross_ws = Vec3f(0.5f, 0, 0), halfUp_ws = Vec3f(0, 0.5f, 0);
+    Vec3f radiance = Vec3f::Ones();  ///< linear RGB, likewise
     bool castsShadow = true;
 };
 
-/// At most this many lights in a scene.
-inline constexpr std::size_t kMaxLights = 3;
+/// At most this many lights are drawn one by one: cutLights().
+inline constexpr std::size_t kMaxLights = 16;
 
-/// Errors: too many, no direction, a number that is not finite.
+/// Errors: no direction, an area without one, a number that is not finite.
 Status check(std::span<const Light> lights);
 
 /// Key from the upper left, weaker fill from the right, rim from behind: as seen by the camera.

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/render/light_cut.h"
 #include "core/render/passes.h"
 #include "core/render/shadow_maps.h"
 #include "core/shading/kajiya_kay.h"
@@ -35,6 +36,16 @@ shaders::CurveConstants curveConstants(const RendererState& state, const DrawBat
 }
 
 }  // namespace
+
+void takeLights(RendererState& state, std::span<const Light> lights, const Environment& environment,
+                std::uint32_t shadowLights) {
+    const Box3f hair = state.scene.hairBounds();
+    const Box3f box = hair.isEmpty() ? state.bounds() : hair;
+    const Vec3f centre_ws = box.isEmpty() ? Vec3f(Vec3f::Zero()) : Vec3f(box.center());
+    LightCut cut = cutLights(lights, environment, centre_ws, {shadowLights, kMaxLights});
+    state.lights = std::move(cut.lights);
+    state.environment = std::move(cut.rest);
+}
 
 void setUpLights(RendererState& state) {
     shaders::ShadeConstants& shade = state.shade;

@@ -23,8 +23,7 @@ Status prepare(gpu::Device& device, const RenderScene& scene, const RenderOption
     auto uploaded = DeviceScene::upload(device, scene);
     if (!uploaded) return tl::unexpected(uploaded.error());
     state.scene = std::move(*uploaded);
-    state.lights = scene.lights;
-    state.environment = scene.environment;
+    takeLights(state, scene.lights, scene.environment, shadowLightsOf(options, device.info()));
     state.camera = scene.camera;
     state.options = options;
     state.detail.subdivisions = options.subdivisions;
@@ -32,7 +31,7 @@ Status prepare(gpu::Device& device, const RenderScene& scene, const RenderOption
     facts.meshes = state.scene.triangles() > 0;
     facts.hair = !state.scene.batches.empty();
     facts.environment = !state.environment.dark();
-    facts.lights = facts.shadowLights = static_cast<std::uint32_t>(scene.lights.size());
+    facts.lights = facts.shadowLights = static_cast<std::uint32_t>(state.lights.size());
     state.plan = planRender(facts, options, 1);
     if (const auto fitted = state.targets.fit(device, state.plan); !fitted)
         return tl::unexpected(fitted.error());

@@ -20,9 +20,11 @@ Status check(const RenderOptions& o, const gpu::DeviceInfo& device) {
     if (o.subdivisions < 1 || o.subdivisions > 64) {
         return fail(fmt::format("{} subdivisions", o.subdivisions), "1 to 64");
     }
-    if (o.shadowResolution < 64 || o.shadowResolution > 4096 || o.shadowResolution * kMaxLights > limit) {
+    if (o.shadowResolution < 64 || o.shadowResolution > 4096 || o.shadowResolution > limit)
         return fail(fmt::format("a shadow map of {} pixels", o.shadowResolution), "64 to 4096");
-    }
+    if (o.shadowLights < 1 || o.shadowLights > kMaxLights)
+        return fail(fmt::format("{} lights with shadows", o.shadowLights),
+                    fmt::format("1 to {}", kMaxLights));
     if (o.skyStrands < 64)
         return fail(fmt::format("{} strands in maps of the sky", o.skyStrands), "at least 64");
     if (!(o.headAbsorption >= 0 && o.headAbsorption <= kMaxHeadAbsorption)) {
@@ -42,6 +44,15 @@ Status check(const RenderOptions& o, const gpu::DeviceInfo& device) {
     }
     if (!(o.exposure > 0) || !(o.exposure < 1e6f)) return fail("an exposure that is not positive");
     return {};
+}
+
+std::uint32_t shadowLightsOf(const RenderOptions& options, const gpu::DeviceInfo& device) {
+    // Depths of heads lie side by side in a texture, two words a texel of opacity in a buffer.
+    const std::uint64_t side = options.shadowResolution;
+    const std::uint64_t room =
+        std::min<std::uint64_t>(device.maxTextureSize / side, device.maxBufferBytes / (8 * side * side));
+    return static_cast<std::uint32_t>(
+        std::clamp<std::uint64_t>(options.shadowLights, 1, std::max<std::uint64_t>(room, 1)));
 }
 
 Result<std::uint32_t> chooseSamples(const RenderOptions& options, const gpu::DeviceInfo& device) {

@@ -46,6 +46,9 @@ struct RenderOptions {
     std::uint32_t subdivisions = 2;  ///< curve segments per segment of a strand, 1…64
     std::uint32_t shadowResolution = 1024;  ///< pixels of a light's square shadow map, 64…4096
     Shadows shadows = Shadows::deepOpacity;
+    /// Most lights with shadow maps, parts of areas and of images among them, 1…16; fewer where the device
+    /// has no room for as many maps.
+    std::uint32_t shadowLights = 8;
     std::uint32_t skyStrands =
         8192;  ///< most strands that maps of the sky count, as so many more; at least 64
     /// Hair behind the head's first surface gets exp(−this · metres) of the light (thesis, 6.3), 1/m,
@@ -73,6 +76,9 @@ struct RenderOptions {
 inline constexpr float kMaxHeadAbsorption = 10'000;  ///< 1/m
 inline constexpr float kMaxShadowBlur = 32;          ///< pixels
 inline constexpr std::uint64_t kMaxPixels = std::uint64_t{64} << 20u;
+
+/// Shadow maps of this resolution that the device has room for, at most `shadowLights` of the options.
+std::uint32_t shadowLightsOf(const RenderOptions& options, const gpu::DeviceInfo& device);
 
 /// Errors: a size or number out of its range, or something that this device lacks.
 Status check(const RenderOptions& options, const gpu::DeviceInfo& device);

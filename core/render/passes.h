@@ -35,8 +35,8 @@ struct RendererState {
     DeviceScene scene;
     Camera camera;
     std::optional<Camera> pastCamera;  ///< a frame ago, where places of then are known
-    std::vector<Light> lights;
-    Environment environment;
+    std::vector<Light> lights;  ///< that are drawn, directional ones and points
+    Environment environment;    ///< the rest
     Vec3f background = Vec3f::Zero();
     OverlayOnDevice overlay;
     RenderOptions options;
@@ -79,6 +79,9 @@ struct RendererState {
 
 /// What is bound where a scene has nothing of the kind; made once.
 Status preparePlaceholders(gpu::Device& device, RendererState& state);
+/// Takes what is drawn of a scene's lights.
+void takeLights(RendererState& state, std::span<const Light> lights, const Environment& environment,
+                std::uint32_t shadowLights);
 /// The constants that follow from camera and lights.
 void setUpLights(RendererState& state);
 shaders::ShadeConstants shadeConstants(const RendererState& state, const StrandShading& material);

@@ -56,6 +56,9 @@ struct Renderer::Parts {
     gpu::Device& device;
     RendererState state;
     Changes changes;
+    std::vector<Light> lights;  ///< as they were given
+    Environment environment;
+    bool newLights = true;
     std::uint32_t accumulated = 0;
     float blurredBy = 0;  ///< what Pass::shadowBlur was last recorded for; 0: other frames
 
@@ -95,8 +98,9 @@ Status Renderer::setScene(const RenderScene& scene) {
     if (!uploaded) return tl::unexpected(uploaded.error());
     state.scene = std::move(*uploaded);
     state.camera = scene.camera;
-    state.lights = scene.lights;
-    state.environment = scene.environment;
+    parts_->lights = scene.lights;
+    parts_->environment = scene.environment;
+    parts_->newLights = true;
     state.background = scene.background;
     return {};
 }
@@ -162,14 +166,21 @@ Status Renderer::setCamera(const Camera& camera, bool cut) {
 
 Status Renderer::setLights(std::span<const Light> lights) {
     if (auto status = check(lights); !status) return status;
-    parts_->state.lights.assign(lights.begin(), lights.end());
-    parts_->changes.add(Changes::lights());
+    parts_->lights.assign(lights.begin(), lights.end());
+    parts_->newLights = true;
     return {};
 }
 
 void Renderer::setEnvironment(const Environment& environment) {
-    parts_->state.environment = environment;
-    parts_->changes.add(Changes::looks());
+    // Without bright parts, before and now, no shadow of a light changes.
+    if (parts_->environment.brightRoots.empty() && environment.brightRoots.empty() && !parts_->newLights &&
+        parts_->lights.size() <= parts_->state.lights.size()) {
+        parts_->state.environment = parts_->environment = environment;
+        parts_->changes.add(Changes::looks());
+        return;
+    }
+    parts_->environment = environment;
+    parts_->newLights = true;
 }
 
 void Renderer::setBackground(const Vec3f& linear) {
@@ -253,6 +264,12 @@ Status Renderer::Parts::prepare(const RenderOptions& options, bool presents) {
                                            [](const StrandGroup& group) { return group.material.tubes; });
     if (tubes && resolved.ribbons == Ribbons::compute) resolved.ribbons = Ribbons::strip;
     changes.add(compare(state.options, resolved));
+    if (newLights || resolved.shadowLights != state.options.shadowLights ||
+        resolved.shadowResolution != state.options.shadowResolution) {
+        takeLights(state, lights, environment, shadowLightsOf(resolved, device.info()));
+        newLights = false;
+        changes.add(Changes::lights());
+    }
     state.options = resolved;
     state.samples = *samples;
     const HairDetail detail = detailOf(state);
@@ -331,7 +348,7 @@ Status Renderer::recordPast(gpu::CommandList& list, const RenderOptions& options
 }
 
 std::uint32_t Renderer::accumulated() const {
-    return parts_->changes.picture ? 0 : parts_->accumulated;
+    return parts_->changes.picture || parts_->newLights ? 0 : parts_->accumulated;
 }
 
 bool Renderer::isSettled() const {

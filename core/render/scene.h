@@ -75,7 +75,7 @@ struct RenderScene {
     std::vector<RenderMesh> meshes;
     std::vector<RenderStrands> strands;
     Camera camera;
-    std::vector<Light> lights;  ///< at most kMaxLights
+    std::vector<Light> lights;  ///< any number: cutLights()
     /// Light from around; by default that of a room under a clear sky.
     Environment environment = Environment::gradient(Vec3f(0.22f, 0.235f, 0.26f), Vec3f(0.11f, 0.10f, 0.09f));
     Vec3f background = Vec3f(0.085f, 0.09f, 0.10f);  ///< linear RGB

@@ -258,7 +258,9 @@ shaders::LightConstants lightConstants(const RendererState& state, std::size_t l
         c = mapConstants(state, lightAtlas(state), square);
     }
     const Light& source = state.lights[light];
-    c.irradiance = toShader(source.kind == LightKind::point ? source.intensity : source.irradiance, 0);
+    const bool point = source.kind == LightKind::point;
+    c.irradiance = toShader(point ? source.intensity : source.irradiance, 0);
+    c.facing_ws = toShader(point ? source.facing_ws : Vec3f(Vec3f::Zero()), 0);
     return c;
 }
 

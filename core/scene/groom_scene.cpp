@@ -58,20 +58,45 @@ Result<render::Environment> readEnvironment(JsonReader& reader, const std::files
     return render::Environment::gradient(sky, reader.vector("ground", 0, kAnyRadiance));
 }
 
+void readArea(JsonReader& reader, render::LightKind kind, render::Light& light) {
+    light.kind = kind;
+    light.position_ws = reader.vector("position", -kMaxCoordinate, kMaxCoordinate, "m");
+    const Vec3f facing = reader.vector("facing", -kMaxCoordinate, kMaxCoordinate);
+    light.radiance = reader.vector("radiance", 0, kAnyRadiance);
+    Vec3f up = reader.has("up") ? reader.vector("up", -1, 1) : Vec3f(Vec3f::UnitY());
+    float halfWidth = 0, halfHeight = 0;
+    if (kind == render::LightKind::disc) {
+        halfWidth = halfHeight = static_cast<float>(reader.number("radius", 1e-4, kMaxCoordinate, "m"));
+    } else {
+        halfWidth = 0.5f * static_cast<float>(reader.number("width", 1e-4, kMaxCoordinate, "m"));
+        halfHeight = 0.5f * static_cast<float>(reader.number("height", 1e-4, kMaxCoordinate, "m"));
+    }
+    if (!reader.ok()) return;
+    if (!(facing.norm() > 0)) {
+        reader.complain("facing", "is no direction", "expected the way that the light goes");
+        return;
+    }
+    if (!(facing.cross(up).norm() > 1e-4f * facing.norm())) up = Vec3f::UnitX();
+    const Vec3f across = up.cross(facing).normalized();
+    light.halfAcross_ws = halfWidth * across;
+    light.halfUp_ws = halfHeight * facing.normalized().cross(across);
+}
+
 Status readLight(JsonReader& reader, const std::filesystem::path& folder, ViewFile& view) {
-    static constexpr std::array<std::string_view, 3> kKinds{"directional", "point", "environment"};
+    static constexpr std::array<std::string_view, 5> kKinds{"directional", "point", "environment",
+                                                            "rectangle", "disc"};
     render::Light light;
     const std::size_t kind = reader.choice("type", kKinds);
     if (kind == 2) {
         const auto environment = readEnvironment(reader, folder);
         if (!environment) return tl::unexpected(environment.error());
-        for (std::size_t i = 0; i < environment->coefficients.size(); ++i) {
-            view.environment.coefficients[i] += environment->coefficients[i];
-        }
+        view.environment.add(*environment);
         reader.finish();
         return {};
     }
-    if (kind == 1) {
+    if (kind > 2) {
+        readArea(reader, kind == 3 ? render::LightKind::rectangle : render::LightKind::disc, light);
+    } else if (kind == 1) {
         light.kind = render::LightKind::point;
         light.position_ws = reader.vector("position", -kMaxCoordinate, kMaxCoordinate, "m");
         light.intensity = reader.vector("intensity", 0, kAnyRadiance);

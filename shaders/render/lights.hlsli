@@ -11,7 +11,10 @@ float3 directionToLight(LightConstants light, float3 position_ws) {
 // Irradiance perpendicular to the light.
 float3 irradianceOf(LightConstants light, float3 position_ws) {
     const float3 d = light.toLight_ws.xyz - position_ws;
-    return light.toLight_ws.w > 0 ? light.irradiance.rgb / max(dot(d, d), 1e-6) : light.irradiance.rgb;
+    const float squared = max(dot(d, d), 1e-6);
+    const bool all = dot(light.facing_ws.xyz, light.facing_ws.xyz) == 0.0;
+    const float facing = all ? 1.0 : max(-dot(light.facing_ws.xyz, d) * rsqrt(squared), 0.0);
+    return light.toLight_ws.w > 0 ? light.irradiance.rgb * (facing / squared) : light.irradiance.rgb;
 }
 
 bool hasEnvironment(ShadeConstants shade) { return shade.hasEnvironment > 0; }

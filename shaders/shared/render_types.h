@@ -11,7 +11,7 @@ namespace hairloom::shaders {
 #define HAIRLOOM_OFFSET(type, member, offset)
 #endif
 
-#define HAIRLOOM_MAX_LIGHTS 3
+#define HAIRLOOM_MAX_LIGHTS 16
 
 // Directions that the sky is seen from: the corners of an icosahedron, each with the one across from it.
 #define HAIRLOOM_SKY_MAPS 12
@@ -109,6 +109,7 @@ struct LightConstants {
     float4x4 clipFromWorld;
     float4 toLight_ws;  // w = 0: unit direction; w = 1: place of a point light
     float4 irradiance;  // linear RGB, perpendicular to the light; of a point light at 1 m
+    float4 facing_ws;   // unit, of a point that is part of an area, whose light falls with the cosine; else 0
     float tileLeft;     // left edge of the light's square in the atlas, pixels
     float tileSize;     // of the square, pixels
     float headCasts;    // 1 where the head casts shadows
@@ -380,17 +381,17 @@ HAIRLOOM_OFFSET(ViewConstants, layers, 112);
 HAIRLOOM_OFFSET(ViewConstants, depthRange, 128);
 static_assert(sizeof(ViewConstants) == 144);
 HAIRLOOM_OFFSET(LightConstants, toLight_ws, 64);
-HAIRLOOM_OFFSET(LightConstants, depthRange, 112);
-HAIRLOOM_OFFSET(LightConstants, layers, 128);
-static_assert(sizeof(LightConstants) == 160);
-static_assert(sizeof(SkyConstants) == 160 * HAIRLOOM_SKY_MAPS);
+HAIRLOOM_OFFSET(LightConstants, depthRange, 128);
+HAIRLOOM_OFFSET(LightConstants, layers, 144);
+static_assert(sizeof(LightConstants) == 176);
+static_assert(sizeof(SkyConstants) == 176 * HAIRLOOM_SKY_MAPS);
 HAIRLOOM_OFFSET(SkyPoint, halved, 16);
 HAIRLOOM_OFFSET(ShadeConstants, primaryExponent, 192);
 HAIRLOOM_OFFSET(ShadeConstants, albedo, 240);
 HAIRLOOM_OFFSET(ShadeConstants, clumping, 320);
 HAIRLOOM_OFFSET(ShadeConstants, count, 352);
 HAIRLOOM_OFFSET(ShadeConstants, lights, 368);
-static_assert(sizeof(ShadeConstants) == 368 + 160 * HAIRLOOM_MAX_LIGHTS);
+static_assert(sizeof(ShadeConstants) == 368 + 176 * HAIRLOOM_MAX_LIGHTS);
 HAIRLOOM_OFFSET(LookConstants, gradientStart, 112);
 static_assert(sizeof(LookConstants) == 144);
 static_assert(sizeof(MeshConstants) == 80);

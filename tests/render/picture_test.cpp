@@ -183,8 +183,8 @@ TEST_F(RenderTest, AbsurdRequestsAreErrors) {
     options.shadowResolution = 1u << 30u;
     refuses(options, "shadow map");
     options = smallOptions(1);
-    scene.lights.resize(4);
-    refuses(options, "4 lights");
+    options.shadowLights = 17;
+    refuses(options, "17 lights");
 }
 
 TEST_F(RenderTest, BrokenScenesAreErrors) {

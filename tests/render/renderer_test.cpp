@@ -395,7 +395,10 @@ TEST_F(RendererTest, WrongReplacementsAreErrorsAndChangeNothing) {
     EXPECT_FALSE(renderer.setStrandPositions(3, head.strands.positions));
     EXPECT_FALSE(renderer.setMeshPositions(0, std::vector<Vec3f>(3, Vec3f::Zero())));
     EXPECT_FALSE(renderer.setMaterial(1, {}));
-    EXPECT_FALSE(renderer.setLights(std::vector<Light>(kMaxLights + 1)));
+    Light flat;
+    flat.kind = LightKind::rectangle;
+    flat.halfUp_ws = flat.halfAcross_ws;
+    EXPECT_FALSE(renderer.setLights(std::vector{flat}));
     Camera camera;
     camera.target_ws = camera.eye_ws;
     EXPECT_FALSE(renderer.setCamera(camera));
