@@ -16,19 +16,8 @@ constexpr std::uint64_t kMaxFileBytes = std::uint64_t{256} << 20u;
 constexpr std::uint32_t kMaxSide = 16384;
 
 Result<std::vector<std::byte>> encode(const std::filesystem::path& path, const Image& image) {
-    const std::size_t bytes = std::size_t{image.width} * image.height * 4;
-    if (bytes == 0 || image.rgba.size() != bytes) return failIn(path.string(), {}, "an image without pixels");
-    png_image png{};
-    png.version = PNG_IMAGE_VERSION;
-    png.width = image.width;
-    png.height = image.height;
-    png.format = PNG_FORMAT_RGBA;
-    std::vector<std::byte> file(PNG_IMAGE_PNG_SIZE_MAX(png));
-    png_alloc_size_t size = file.size();
-    if (png_image_write_to_memory(&png, file.data(), &size, 0, image.rgba.data(), 0, nullptr) == 0) {
-        return failIn(path.string(), {}, std::string("cannot be encoded: ") + png.message);
-    }
-    file.resize(size);
+    auto file = encodePng(image);
+    if (!file) return tl::unexpected(inFile(file.error(), path.string()));
     return file;
 }
 
@@ -74,6 +63,23 @@ std::vector<std::byte> chunks(std::span<const std::byte> file, const char* type)
 }
 
 }  // namespace
+
+Result<std::vector<std::byte>> encodePng(const Image& image) {
+    const std::size_t bytes = std::size_t{image.width} * image.height * 4;
+    if (bytes == 0 || image.rgba.size() != bytes) return fail("an image without pixels");
+    png_image png{};
+    png.version = PNG_IMAGE_VERSION;
+    png.width = image.width;
+    png.height = image.height;
+    png.format = PNG_FORMAT_RGBA;
+    std::vector<std::byte> file(PNG_IMAGE_PNG_SIZE_MAX(png));
+    png_alloc_size_t size = file.size();
+    if (png_image_write_to_memory(&png, file.data(), &size, 0, image.rgba.data(), 0, nullptr) == 0) {
+        return fail(std::string("cannot be encoded: ") + png.message);
+    }
+    file.resize(size);
+    return file;
+}
 
 Status writePng(const std::filesystem::path& path, const Image& image) {
     const auto file = encode(path, image);

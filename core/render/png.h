@@ -9,6 +9,9 @@
 
 namespace hairloom::render {
 
+/// The bytes of a file; the same image gives the same. Errors: an image without pixels.
+Result<std::vector<std::byte>> encodePng(const Image& image);
+
 /// Writes the whole file or leaves what was there. The same image gives the same bytes.
 Status writePng(const std::filesystem::path& path, const Image& image);
 

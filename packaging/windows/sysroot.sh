@@ -6,7 +6,7 @@
 # Qt, assimp and OpenMesh, which take longest, are unpacked from the folder ARCHIVES where it has them.
 set -euo pipefail
 here=$(dirname "$(readlink -f "$0")")
-libraries=(headers fmtlib spdlog highway tbb png tinyexr googletest tinygltf assimp openmesh)
+libraries=(headers fmtlib spdlog highway meshoptimizer tbb png tinyexr googletest tinygltf assimp openmesh)
 if [ "$1" = --without-qt ]; then shift; else libraries+=(qtbase); fi
 mkdir -p "$1"
 root=$(readlink -f "$1")
@@ -80,6 +80,8 @@ build_highway() {
     source_of highway
     cmake_install highway "$work/highway" -DHWY_ENABLE_CONTRIB=OFF -DHWY_ENABLE_EXAMPLES=OFF -DHWY_ENABLE_TESTS=OFF
 }
+
+build_meshoptimizer() { source_of meshoptimizer; cmake_install meshoptimizer "$work/meshoptimizer"; }
 
 build_tbb() {
     source_of onetbb

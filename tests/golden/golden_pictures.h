@@ -8,7 +8,7 @@
 
 #include "core/render/picture.h"
 #include "core/scene/groom_scene.h"
-#include "tests/support/flip.h"
+#include "core/render/flip.h"
 
 namespace hairloom::golden {
 

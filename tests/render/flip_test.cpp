@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tests/support/flip.h"
+#include "core/render/flip.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include "core/render/picture.h"
 #include "tests/gpu/test_backend.h"
 #include "tests/scene/small_head.h"
-#include "tests/support/flip.h"
+#include "core/render/flip.h"
 
 namespace hairloom {
 namespace {

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/cards/texture.h"
+
+namespace hairloom::cards {
+
+std::vector<Rect> packed(std::span<const std::array<std::uint32_t, 2>> sizes, std::uint32_t side,
+                         std::uint32_t padding) {
+    std::vector<std::size_t> order(sizes.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return sizes[a][1] > sizes[b][1]; });
+    std::vector<Rect> rects(sizes.size());
+    std::uint32_t x = 0, y = 0, shelf = 0;
+    for (const std::size_t i : order) {
+        const std::uint32_t width = sizes[i][0] + 2 * padding, height = sizes[i][1] + 2 * padding;
+        if (width > side) return {};
+        if (x + width > side) x = 0, y += shelf, shelf = 0;
+        if (y + height > side) return {};
+        rects[i] = {x + padding, y + padding, sizes[i][0], sizes[i][1]};
+        x += width;
+        shelf = std::max(shelf, height);
+    }
+    return rects;
+}
+
+namespace {
+
+double meanCoverage(const Picture& picture, const std::vector<Rect>& rects) {
+    double sum = 0, texels = 0;
+    for (const Rect& rect : rects) {
+        for (std::uint32_t y = rect.y; y < rect.y + rect.height; ++y)
+            for (std::uint32_t x = rect.x; x < rect.x + rect.width; ++x)
+                sum += static_cast<double>(picture.at(x, y).coverage);
+        texels += static_cast<double>(rect.width) * static_cast<double>(rect.height);
+    }
+    return texels > 0 ? sum / texels : 0;
+}
+
+/// The value that a share of the texels of a picture lies above.
+float valueAbove(const Picture& picture, double share) {
+    std::vector<float> values;
+    values.reserve(picture.texels.size());
+    for (const Texel& t : picture.texels) values.push_back(t.coverage);
+    const auto at =
+        std::min(values.size() - 1, static_cast<std::size_t>(share * static_cast<double>(values.size())));
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end(),
+                     std::greater<>());
+    return values[at];
+}
+
+double shareAbove(const Picture& picture, float threshold) {
+    const auto count =
+        std::ranges::count_if(picture.texels, [&](const Texel& t) { return t.coverage >= threshold; });
+    return static_cast<double>(count) / static_cast<double>(picture.texels.size());
+}
+
+}  // namespace
+
+Atlas makeAtlas(std::vector<Picture> pictures, std::vector<Rect> rects, std::uint32_t side) {
+    Atlas atlas;
+    Picture whole{side, side, std::vector<Texel>(std::size_t{side} * side)};
+    for (std::size_t i = 0; i < pictures.size(); ++i) {
+        for (std::uint32_t y = 0; y < rects[i].height; ++y) {
+            for (std::uint32_t x = 0; x < rects[i].width; ++x)
+                whole.at(rects[i].x + x, rects[i].y + y) = pictures[i].at(x, y);
+        }
+    }
+    fillGaps(whole);
+    const double covered = meanCoverage(whole, rects);
+    double all = 0;
+    for (const Rect& rect : rects) all += static_cast<double>(rect.width) * static_cast<double>(rect.height);
+    const double share = covered * all / (static_cast<double>(side) * static_cast<double>(side));
+    atlas.threshold = std::clamp(valueAbove(whole, share), 0.05f, 0.95f);
+    atlas.rects = std::move(rects);
+    atlas.levels.push_back(std::move(whole));
+    while (atlas.levels.back().width > 1) atlas.levels.push_back(halved(atlas.levels.back()));
+    return atlas;
+}
+
+float keepingScale(const Atlas& atlas, std::size_t level) {
+    const double share = shareAbove(atlas.levels[0], atlas.threshold);
+    const float value = valueAbove(atlas.levels[level], share);
+    return value > 0 ? atlas.threshold / value : 1.0f;
+}
+
+namespace {
+
+/// Bilinear taps within a rect: four texels with their weights.
+struct Taps {
+    std::array<std::size_t, 4> at;
+    std::array<float, 4> weight;
+};
+Taps taps(const Picture& picture, const Rect& rect, std::size_t level, float u, float v) {
+    const float scale = 1.0f / static_cast<float>(1u << level);
+    const auto place = [&](float share, std::uint32_t first, std::uint32_t count, std::uint32_t size,
+                           std::uint32_t& low, std::uint32_t& high) {
+        const float begin = static_cast<float>(first) * scale, length = static_cast<float>(count) * scale;
+        // No nearer to the border than half a texel, where there is room for that.
+        const float margin = std::min(0.5f, 0.5f * length);
+        const float at = begin + std::clamp(share * length, margin, length - margin) - 0.5f;
+        const float floor = std::floor(std::max(at, 0.0f));
+        low = std::min(static_cast<std::uint32_t>(floor), size - 1);
+        high = std::min(low + 1, size - 1);
+        return std::max(at, 0.0f) - floor;
+    };
+    std::uint32_t x0 = 0, x1 = 0, y0 = 0, y1 = 0;
+    const float fx = place(u, rect.x, rect.width, picture.width, x0, x1);
+    const float fy = place(v, rect.y, rect.height, picture.height, y0, y1);
+    const auto index = [&](std::uint32_t x, std::uint32_t y) { return std::size_t{y} * picture.width + x; };
+    return {{index(x0, y0), index(x1, y0), index(x0, y1), index(x1, y1)},
+            {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy}};
+}
+
+}  // namespace
+
+float sampleCoverage(const Atlas& atlas, const Rect& rect, std::size_t level, float u, float v) {
+    const Picture& picture = atlas.levels[level];
+    const Taps t = taps(picture, rect, level, u, v);
+    float sum = 0;
+    for (std::size_t k = 0; k < 4; ++k) sum += t.weight[k] * picture.texels[t.at[k]].coverage;
+    return sum;
+}
+
+Texel sample(const Atlas& atlas, const Rect& rect, std::size_t level, float u, float v) {
+    const Picture& picture = atlas.levels[level];
+    const Taps t = taps(picture, rect, level, u, v);
+    Texel out;
+    out.flow.setZero(), out.normal.setZero(), out.open = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const Texel& in = picture.texels[t.at[k]];
+        const float w = t.weight[k];
+        out.coverage += w * in.coverage, out.albedo += w * in.albedo, out.flow += w * in.flow;
+        out.normal += w * in.normal, out.depth += w * in.depth, out.along += w * in.along;
+        out.id += w * in.id, out.open += w * in.open;
+    }
+    return out;
+}
+
+}  // namespace hairloom::cards

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <meshoptimizer.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/cards/cards.h"
+
+namespace hairloom::cards {
+namespace {
+
+/// Stations that a strip needs to be nowhere farther than the tolerance from the whole one; the ends first,
+/// then where it is farthest.
+std::vector<std::size_t> keptStations(const Strip& strip, float widen, float tolerance) {
+    std::vector<std::size_t> kept{0, strip.stations() - 1};
+    for (;;) {
+        std::size_t worst = 0;
+        float farthest = tolerance;
+        for (std::size_t i = 0; i + 1 < kept.size(); ++i) {
+            for (std::size_t k = kept[i] + 1; k < kept[i + 1]; ++k) {
+                const float t = static_cast<float>(k - kept[i]) / static_cast<float>(kept[i + 1] - kept[i]);
+                for (const float x : {-widen, 0.0f, widen}) {
+                    const Vec3f on = (1 - t) * strip.at(kept[i], x) + t * strip.at(kept[i + 1], x);
+                    const float off = (strip.at(k, x) - on).norm();
+                    if (off > farthest) farthest = off, worst = k;
+                }
+            }
+        }
+        if (worst == 0) return kept;
+        kept.insert(std::ranges::upper_bound(kept, worst), worst);
+    }
+}
+
+bool isBent(const Strip& strip, float tolerance) {
+    for (std::size_t k = 0; k < strip.stations(); ++k) {
+        if (std::abs(strip.bend[k]) * strip.halfWidth[k] * strip.halfWidth[k] > tolerance) return true;
+    }
+    return false;
+}
+
+class Builder {
+  public:
+    explicit Builder(Cards& cards) : cards_(cards) {}
+
+    void add(std::uint32_t c) {
+        const Card& card = cards_.cards[c];
+        const std::vector<std::size_t> kept = keptStations(card.strip, card.widen, cards_.tolerance);
+        const bool bent = isBent(card.strip, cards_.tolerance);
+        const std::vector<float> columns = bent ? std::vector<float>{-1, 0, 1} : std::vector<float>{-1, 1};
+        const auto first = static_cast<std::uint32_t>(cards_.mesh.vertices.size());
+        for (const std::size_t k : kept)
+            for (const float x : columns) cards_.mesh.vertices.push_back(vertex(c, k, x, bent));
+        const auto count = static_cast<std::uint32_t>(columns.size());
+        for (std::uint32_t i = 0; i + 1 < kept.size(); ++i) {
+            for (std::uint32_t j = 0; j + 1 < count; ++j) {
+                const std::uint32_t a = first + i * count + j, b = a + count;
+                for (const std::uint32_t v : {a, a + 1, b, b, a + 1, b + 1}) cards_.mesh.indices.push_back(v);
+            }
+        }
+    }
+
+  private:
+    CardVertex vertex(std::uint32_t c, std::size_t k, float x, bool bent) const {
+        const Card& card = cards_.cards[c];
+        const Strip& strip = card.strip;
+        const Card& painter = cards_.cards[cards_.painters[card.texture]];
+        const Rect& rect = cards_.atlas.rects[card.texture];
+        CardVertex v;
+        const float across = x * card.widen;
+        v.position_ws = bent ? strip.at(k, across)
+                             : Vec3f(strip.centre[k] + across * strip.halfWidth[k] * strip.cross[k]);
+        const float slope = bent ? 2 * strip.bend[k] * across * strip.halfWidth[k] : 0.0f;
+        v.normal_ws = (strip.normal[k] - slope * strip.cross[k]).normalized();
+        v.along_ws = strip.along[k];
+        v.place = Vec2f(0.5f + 0.5f * x, static_cast<float>(k) / static_cast<float>(kStations - 1));
+        const auto side = static_cast<float>(cards_.atlas.side());
+        v.uv = Vec2f(static_cast<float>(rect.x) + v.place.x() * static_cast<float>(rect.width),
+                     static_cast<float>(rect.y) + v.place.y() * static_cast<float>(rect.height)) /
+               side;
+        constexpr float kMost = 4;
+        for (int i = 0; i < 3; ++i) {
+            v.tint[i] =
+                cards_.brightness *
+                std::clamp(card.albedo[k][i] / std::max(painter.albedo[k][i], 1e-4f), 1 / kMost, kMost);
+        }
+        v.open = std::clamp(card.open[k] / std::max(painter.open[k], 1e-4f), 1 / kMost, kMost);
+        v.card = c;
+        return v;
+    }
+
+    Cards& cards_;
+};
+
+}  // namespace
+
+void buildMesh(const Hair& hair, Cards& cards) {
+    Box3f box;
+    for (const Vec3f& point : hair.positions_ws) box.extend(point);
+    // The middle of what hair lies around: an upright line that ends below the crown.
+    const float top = box.max().y() - 0.4f * std::min(box.sizes().y(), box.sizes().x());
+    std::vector<float> depth(cards.cards.size());
+    for (std::size_t c = 0; c < depth.size(); ++c) {
+        const Vec3f& at = cards.cards[c].strip.centre[kStations / 2];
+        const Vec3f middle(box.center().x(), std::min(at.y(), top), box.center().z());
+        depth[c] = (at - middle).norm();
+    }
+    std::vector<std::uint32_t> order(depth.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::ranges::stable_sort(order, [&](std::uint32_t a, std::uint32_t b) { return depth[a] < depth[b]; });
+    cards.mesh = {};
+    Builder builder(cards);
+    for (const std::uint32_t c : order) builder.add(c);
+    std::vector<CardVertex> inOrder(cards.mesh.vertices.size());
+    meshopt_optimizeVertexFetch(inOrder.data(), cards.mesh.indices.data(), cards.mesh.indices.size(),
+                                cards.mesh.vertices.data(), inOrder.size(), sizeof(CardVertex));
+    cards.mesh.vertices = std::move(inOrder);
+}
+
+}  // namespace hairloom::cards

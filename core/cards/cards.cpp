@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/cards/cards.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/parallel.h"
+#include "core/cards/looks.h"
+
+namespace hairloom::cards {
+namespace {
+
+constexpr std::uint32_t kPadding = 4;  // texels around a picture
+constexpr std::uint32_t kLeastSide = 64;
+constexpr std::uint32_t kHairStations = 9;  // of strands, while they are sorted into bundles
+
+Status check(const CardOptions& options) {
+    if (options.cards < 1 || options.cards > 4096)
+        return fail(fmt::format("{} cards", options.cards), "1 to 4096");
+    if (options.textures < 1 || options.textures > 256)
+        return fail(fmt::format("{} textures", options.textures), "1 to 256");
+    const std::uint32_t side = options.mostSide;
+    if (side < kLeastSide || side > 8192 || (side & (side - 1)) != 0)
+        return fail(fmt::format("an atlas of {} texels", side), "a power of two from 64 to 8192");
+    if (!(options.texel > 0) || !(options.tolerance > 0) || !(options.error >= 0))
+        return fail("a size of texels or a tolerance that is not above 0");
+    return {};
+}
+
+/// What strands are like by stations of their card: means, and those of a neighbour where there are none.
+void measure(const Hair& hair, const HairLight& light, Card& card) {
+    std::array<float, kStations> weights{};
+    card.albedo.fill(Vec3f::Zero());
+    card.open.fill(0);
+    for (const std::uint32_t s : card.strands) {
+        std::size_t guess = 0;
+        for (std::size_t p = hair.offsets[s]; p < hair.offsets[s + 1]; ++p) {
+            const StripPlace place = placeOn(card.strip, hair.positions_ws[p], guess);
+            guess = place.station;
+            const std::size_t k = place.station + (place.share > 0.5f ? 1 : 0);
+            const float weight = hair.radii[p] + 1e-9f;
+            card.albedo[k] += weight * hair.albedo[p];
+            card.open[k] += weight * light.open(hair.positions_ws[p]);
+            weights[k] += weight;
+        }
+    }
+    for (std::size_t k = 0; k < kStations; ++k) {
+        if (weights[k] > 0) card.albedo[k] /= weights[k], card.open[k] /= weights[k];
+    }
+    for (std::size_t k = 1; k < kStations; ++k) {
+        if (weights[k] <= 0 && weights[k - 1] > 0)
+            card.albedo[k] = card.albedo[k - 1], card.open[k] = card.open[k - 1], weights[k] = weights[k - 1];
+    }
+    for (std::size_t k = kStations - 1; k-- > 0;) {
+        if (weights[k] <= 0)
+            card.albedo[k] = card.albedo[k + 1], card.open[k] = card.open[k + 1], weights[k] = 1;
+    }
+}
+
+float meanWidth(const Strip& strip) {
+    float sum = 0;
+    for (const float half : strip.halfWidth) sum += 2 * half;
+    return sum / static_cast<float>(strip.stations());
+}
+
+/// Rects of all textures with texels of that size; empty where they do not fit.
+std::vector<Rect> rectsFor(const Cards& cards, float texel, std::uint32_t side) {
+    std::vector<std::array<std::uint32_t, 2>> sizes;
+    for (const std::uint32_t painter : cards.painters) {
+        const Strip& strip = cards.cards[painter].strip;
+        const auto texels = [&](float metres, float least) {
+            return static_cast<std::uint32_t>(std::clamp(metres / texel, least, 16384.0f));
+        };
+        sizes.push_back({texels(meanWidth(strip), 4), texels(strip.length(), 8)});
+    }
+    return packed(sizes, side, kPadding);
+}
+
+struct Layout {
+    std::vector<Rect> rects;
+    std::uint32_t side = 0;
+    float texel = 0;
+};
+/// The smallest atlas that holds the textures as fine as they are asked for; the largest with texels as fine
+/// as fit there.
+Result<Layout> layOut(const Cards& cards, const CardOptions& options) {
+    for (std::uint32_t side = kLeastSide; side <= options.mostSide; side *= 2) {
+        for (const float coarser : {1.0f, 1.25f}) {  // rather than four times the memory
+            auto rects = rectsFor(cards, coarser * options.texel, side);
+            if (!rects.empty()) return Layout{std::move(rects), side, coarser * options.texel};
+        }
+    }
+    constexpr int kCoarser = 48;
+    float texel = options.texel;
+    for (int step = 0; step < kCoarser; ++step) {
+        texel *= 1.1f;
+        auto rects = rectsFor(cards, texel, options.mostSide);
+        if (!rects.empty()) return Layout{std::move(rects), options.mostSide, texel};
+    }
+    return fail(
+        fmt::format("{} textures do not fit an atlas of {} texels", cards.painters.size(), options.mostSide),
+        "fewer textures or a larger atlas");
+}
+
+}  // namespace
+
+Status bakeAtlas(const Hair& hair, const HairLight& light, float thickness, Cards& cards, Cancel cancel) {
+    std::vector<Picture> pictures(cards.painters.size());
+    parallelFor(pictures.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end && !cancelled(cancel); ++i) {
+            const Card& card = cards.cards[cards.painters[i]];
+            const Rect& rect = cards.atlas.rects[i];
+            pictures[i] = bake(hair, light, card.strip, card.strands, thickness, rect.width, rect.height);
+        }
+    });
+    if (cancelled(cancel)) return stopped();
+    cards.atlas = makeAtlas(std::move(pictures), std::move(cards.atlas.rects), cards.atlas.side());
+    return {};
+}
+
+Result<Cards> makeCards(const Hair& hair, const HairLight& light, const CardOptions& options, Cancel cancel) {
+    if (auto status = check(options); !status) return tl::unexpected(status.error());
+    const EvenHair even = evenHair(hair, kHairStations);
+    auto clusters = clusterHair(even, hair.rootNormals_ws, {options.cards, options.error}, cancel);
+    if (!clusters) return tl::unexpected(clusters.error());
+    Cards cards;
+    cards.tolerance = options.tolerance;
+    cards.cards.resize(clusters->size());
+    const EvenHair fine = evenHair(hair, kStations);
+    parallelFor(clusters->size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t c = begin; c < end; ++c) {
+            Card& card = cards.cards[c];
+            card.strands = std::move((*clusters)[c].strands);
+            const Strip fitted = fitStrip(fine, card.strands, hair.rootNormals_ws);
+            card.strip = finishStrip(fine, card.strands, fitted, kStations, hair.rootNormals_ws);
+            measure(hair, light, card);
+        }
+    });
+    if (cancelled(cancel)) return stopped();
+    const auto looks = looksOf(hair, light, cards.cards);
+    cards.painters = shareLooks(looks, options.textures, cards.cards);
+    auto layout = layOut(cards, options);
+    if (!layout) return tl::unexpected(layout.error());
+    cards.texel = layout->texel;
+    cards.atlas.rects = std::move(layout->rects);
+    cards.atlas.levels = {Picture{layout->side, layout->side, {}}};
+    if (auto status = bakeAtlas(hair, light, 1, cards, cancel); !status)
+        return tl::unexpected(status.error());
+    buildMesh(hair, cards);
+    return cards;
+}
+
+}  // namespace hairloom::cards

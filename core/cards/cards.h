@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Cards: textured strips that stand for bundles of strands.
+
+#include <array>
+
+#include "core/cards/clusters.h"
+#include "core/cards/texture.h"
+
+namespace hairloom::cards {
+
+struct CardOptions {
+    std::uint32_t cards = 200;    ///< at most, 1 … 4096
+    std::uint32_t textures = 32;  ///< at most, 1 … 256; cards that look alike share one
+    float error = 0;              ///< metres off their strips that strands may be; fewer cards where they are
+    float texel = 0.0007f;        ///< metres, the finest that textures are
+    float tolerance = 0.0005f;    ///< metres that a strip may be off its curve
+    std::uint32_t mostSide = 2048;  ///< texels along the atlas, 64 … 8192, a power of two
+};
+
+constexpr std::uint32_t kStations = 25;  ///< of a card's strip: 24 segments at most
+
+struct Card {
+    Strip strip;
+    std::vector<std::uint32_t> strands;
+    std::array<Vec3f, kStations> albedo;  ///< means of its strands
+    std::array<float, kStations> open;
+    std::uint32_t texture = 0;
+    float widen = 1;  ///< factor on the width, by which a shared texture covers as much as its own strands do
+};
+
+struct CardVertex {
+    Vec3f position_ws;
+    Vec3f normal_ws;  ///< unit, outwards
+    Vec3f along_ws;   ///< unit, towards the tip; with the normal it says what the flow of a texel means
+    Vec2f uv;         ///< in the atlas, 0 … 1; v grows downwards, as rows do
+    Vec2f place;      ///< in the card's own picture, 0 … 1
+    Vec3f tint =
+        Vec3f::Ones();  ///< factor on the albedo: what the card has beside the texture that it shares
+    float open = 1;     ///< factor on the ambient occlusion, likewise
+    std::uint32_t card = 0;
+};
+
+/// Triangles of inner cards come first, so that blending in order looks right from outside.
+struct CardMesh {
+    std::vector<CardVertex> vertices;
+    std::vector<std::uint32_t> indices;
+};
+
+struct Cards {
+    std::vector<Card> cards;
+    std::vector<std::uint32_t> painters;  ///< of each texture, the card whose strands it shows
+    Atlas atlas;
+    CardMesh mesh;
+    float texel = 0;  ///< metres, as the atlas had room for
+    float tolerance = 0;
+    float brightness = 1;  ///< factor on the albedo
+};
+
+/// The same for any number of threads. `hair` passed check(). Errors: options out of range, an atlas that
+/// cannot hold the textures at any size, stopped.
+Result<Cards> makeCards(const Hair& hair, const HairLight& light, const CardOptions& options, Cancel cancel);
+
+/// Bakes the textures anew, with strands `thickness` times as thick.
+Status bakeAtlas(const Hair& hair, const HairLight& light, float thickness, Cards& cards, Cancel cancel);
+
+/// The mesh of cards as they are.
+void buildMesh(const Hair& hair, Cards& cards);
+
+}  // namespace hairloom::cards

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Bundles of strands that a strip each can stand for.
+
+#include "core/cards/strip.h"
+
+namespace hairloom::cards {
+
+struct ClusterOptions {
+    std::uint32_t most = 200;  ///< bundles, ≥ 1
+    float goodEnough =
+        0;  ///< metres; no bundle is split whose strands are that near to their strip, root mean square
+};
+
+struct Cluster {
+    std::vector<std::uint32_t> strands;  ///< ascending, at least one
+    Strip strip;                         ///< stations of the hair
+    double error = 0;                    ///< sum over the strands of weight · m² off the strip
+};
+
+/// The bundle of the most error is split until there are enough: along the direction in which its strands
+/// differ most, off the surface before across it, since a strip can be wide but not thick. Then strands
+/// change over to the strip that they lie nearest to. In order of their first strand. The same for any number
+/// of threads. Errors: stopped.
+Result<std::vector<Cluster>> clusterHair(const EvenHair& hair, std::span<const Vec3f> rootNormals_ws,
+                                         const ClusterOptions& options, Cancel cancel);
+
+}  // namespace hairloom::cards

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Draws strands, cards and shells by one rule, without perspective, and says how far apart they look. Simple
+// and slow: what it draws is to be compared, and shown beside the strands.
+
+#include "core/cards/cards.h"
+#include "core/cards/shell.h"
+#include "core/render/image.h"
+
+namespace hairloom::cards {
+
+/// The head that all sizes are told by: a head of 0.25 m.
+constexpr float kHeadHeight = 0.25f;
+/// Samples along the height of a head in pictures of strands: 0.16 mm apart.
+constexpr std::uint32_t kSamplesPerHead = 1536;
+
+/// A direction that hair is looked at from, and how much of the plane across it a picture shows.
+struct View {
+    Vec3f toEye_ws, right_ws, up_ws;  ///< unit, perpendicular
+    Vec3f corner_ws;                  ///< upper left
+    std::uint32_t columns = 0,
+                  rows = 0;  ///< of squares of a 32nd of a head: pictures of all sizes divide them
+};
+/// `count` ≥ 1 around the head, at three heights, each with a margin around all hair.
+std::vector<View> viewsAround(const Hair& hair, std::uint32_t count);
+
+/// What a pixel shows, linear light.
+struct Shot {
+    std::uint32_t width = 0, height = 0;
+    std::vector<float> coverage;  ///< by hair, 0 … 1
+    std::vector<Vec3f> hair;      ///< light of hair, times its coverage
+    std::vector<Vec3f> all;       ///< of hair, head and background
+};
+
+/// Light that reaches the points of strands; the part that no direction changes.
+struct StrandLight {
+    std::vector<float> open, lit;
+};
+StrandLight strandLight(const Hair& hair, const HairLight& light);
+
+/// A picture of samples, before it is one of pixels.
+class Plate {
+  public:
+    /// `samplesPerHead` along the height of a head, a multiple of 32.
+    Plate(const View& view, std::uint32_t samplesPerHead);
+    void drawHead(const Hair& hair);
+    void drawStrands(const Hair& hair, const StrandLight& light);
+    /// Alpha is dithered, each sample by itself, and mip maps are those of pixels of that many a head.
+    void drawCards(const Hair& hair, const HairLight& light, const Cards& cards, std::uint32_t headPx);
+    void drawShell(const Hair& hair, const HairLight& light, const Shell& shell);
+    /// `headPx` divides the samples a head.
+    Shot developed(std::uint32_t headPx) const;
+
+  private:
+    Vec3f onPlate(const Vec3f& point_ws) const;  ///< samples, and metres towards the eye
+    std::size_t index(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+    }
+    View view_;
+    std::uint32_t samplesPerHead_;
+    float perMetre_;
+    int width_, height_;
+    std::vector<float> depth_;
+    std::vector<Vec3f> colour_;
+    std::vector<std::uint8_t> isHair_;
+};
+
+/// As people see it.
+render::Image shownAs(const Shot& shot);
+
+/// How a level differs from the strands, over all directions.
+struct Difference {
+    double coverage = 1;      ///< by its hair, times that of the strands
+    double light = 1;         ///< of its hair, summed up, times that of the strands
+    double flip = 0;          ///< mean over pictures and pixels
+    double worstFlip = 0;     ///< of one picture
+    double silhouettePx = 0;  ///< mean distance between outlines: area between them by their length
+};
+Result<Difference> difference(std::span<const Shot> strands, std::span<const Shot> level);
+
+}  // namespace hairloom::cards

@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/cards/levels.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/parallel.h"
+#include "core/base/stopwatch.h"
+#include "core/cards/raster.h"
+#include "core/cards/rig.h"
+
+namespace hairloom::cards {
+namespace {
+
+constexpr std::uint32_t kSamplesAPixel = 4;  // of cards and shells, along each axis
+
+/// All that levels are made from and held against.
+struct Work {
+    const Hair& hair;
+    const HairLight& light;
+    const StrandLight& strandLight;
+    const std::vector<View>& views;
+    const std::map<std::uint32_t, std::vector<Shot>>& strands;  ///< by pixels of a head
+    const ChainOptions& options;
+    Cancel cancel;
+
+    /// Some directions at all heights: enough to set a brightness by.
+    std::vector<std::size_t> someViews() const {
+        std::vector<std::size_t> some;
+        for (std::size_t v = 0; v < views.size(); v += std::max<std::size_t>(1, views.size() / 6))
+            some.push_back(v);
+        return some;
+    }
+    std::vector<std::size_t> allViews() const {
+        std::vector<std::size_t> all(views.size());
+        for (std::size_t v = 0; v < all.size(); ++v) all[v] = v;
+        return all;
+    }
+};
+
+void drawHairAlone(const Work& work, const Hair& hair, Plate& plate) {
+    // The light in thinner hair is that of all hair.
+    if (&hair == &work.hair) return plate.drawStrands(hair, work.strandLight);
+    plate.drawStrands(hair, strandLight(hair, work.light));
+}
+
+struct Shooting {
+    std::vector<Shot> shots;
+    double drawMs = 0;  ///< mean of a direction
+};
+/// Pictures of a level from some directions.
+Shooting shoot(const Work& work, const Level& level, const std::vector<std::size_t>& which) {
+    Shooting result;
+    result.shots.resize(which.size());
+    std::vector<double> seconds(which.size());
+    const std::uint32_t px = level.spec.headPx;
+    parallelFor(which.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end && !cancelled(work.cancel); ++i) {
+            const bool hairs = level.spec.kind == LevelKind::strands;
+            Plate plate(work.views[which[i]], hairs ? kSamplesPerHead : std::max(32u, px * kSamplesAPixel));
+            plate.drawHead(work.hair);
+            const Stopwatch watch;
+            if (const auto* hair = std::get_if<Hair>(&level.content)) drawHairAlone(work, *hair, plate);
+            if (const auto* cards = std::get_if<Cards>(&level.content))
+                plate.drawCards(work.hair, work.light, *cards, px);
+            if (const auto* shell = std::get_if<Shell>(&level.content))
+                plate.drawShell(work.hair, work.light, *shell);
+            seconds[i] = watch.seconds();
+            result.shots[i] = plate.developed(px);
+        }
+    });
+    for (const double s : seconds) result.drawMs += 1000 * s / static_cast<double>(seconds.size());
+    return result;
+}
+
+std::vector<Shot> chosen(const std::vector<Shot>& shots, const std::vector<std::size_t>& which) {
+    std::vector<Shot> some;
+    for (const std::size_t v : which) some.push_back(shots[v]);
+    return some;
+}
+
+Result<Difference> measured(const Work& work, const Level& level) {
+    const auto which = work.someViews();
+    const Shooting shooting = shoot(work, level, which);
+    if (cancelled(work.cancel)) return stopped();
+    return difference(chosen(work.strands.at(level.spec.headPx), which), shooting.shots);
+}
+
+constexpr double kFarEnough = 0.004;  // from 1: what coverage and light are set to
+constexpr int kRounds = 4;
+
+Status makeStrands(const Work& work, Level& level) {
+    if (level.spec.amount >= 1) {
+        level.content = work.hair;
+        return {};
+    }
+    auto widen = static_cast<float>(1 / level.spec.amount);
+    for (int round = 0; round < kRounds; ++round) {
+        level.content = thinned(work.hair, level.spec.amount, widen);
+        const auto off = measured(work, level);
+        if (!off) return tl::unexpected(off.error());
+        if (std::abs(off->coverage - 1) < kFarEnough) break;
+        widen *= static_cast<float>(std::pow(off->coverage, -1.5));
+    }
+    return {};
+}
+
+/// Sets thickness and brightness so that coverage and light are those of the strands.
+Status calibrate(const Work& work, Cards& made, Level& level) {
+    float thickness = 1;
+    for (int round = 0; round < kRounds; ++round) {
+        level.content = made;
+        const auto off = measured(work, level);
+        if (!off) return tl::unexpected(off.error());
+        const double brighter = 1 / std::max(off->light, 1e-9);
+        made.brightness = std::clamp(made.brightness * static_cast<float>(brighter), 0.25f, 4.0f);
+        const bool covers = std::abs(off->coverage - 1) < kFarEnough;
+        if (!covers) {
+            constexpr float kThinnest = 0.2f, kThickest = 8;
+            thickness = std::clamp(thickness * static_cast<float>(std::pow(off->coverage, -2.5)), kThinnest,
+                                   kThickest);
+            if (auto status = bakeAtlas(work.hair, work.light, thickness, made, work.cancel); !status)
+                return status;
+        }
+        buildMesh(work.hair, made);
+        level.content = made;
+        if (covers && std::abs(off->light - 1) < kFarEnough) break;
+    }
+    return {};
+}
+
+Status makeCardLevel(const Work& work, Level& level) {
+    const float pixel = kHeadHeight / static_cast<float>(level.spec.headPx);
+    CardOptions options;
+    options.cards = static_cast<std::uint32_t>(level.spec.amount);
+    options.textures = work.options.textures;
+    options.mostSide = work.options.mostSide;
+    options.texel = pixel / 1.5f;
+    options.tolerance = pixel / 3;
+    options.error = work.options.targetPx * pixel / 2;
+    auto made = makeCards(work.hair, work.light, options, work.cancel);
+    if (!made) return tl::unexpected(made.error());
+    return calibrate(work, *made, level);
+}
+
+Status makeShellLevel(const Work& work, Level& level) {
+    const ShellField field = ShellField::make(work.hair, work.light);
+    float low = 0.001f, high = 0.9f;
+    constexpr int kHalvings = 8;
+    for (int step = 0; step < kHalvings; ++step) {
+        const float middle = std::sqrt(low * high);
+        Shell shell = field.cut(middle, static_cast<std::uint32_t>(level.spec.amount));
+        const bool empty = shell.indices.empty();
+        level.content = std::move(shell);
+        const auto off = measured(work, level);
+        if (!off) return tl::unexpected(off.error());
+        (empty || off->coverage < 1 ? high : low) = middle;
+    }
+    if (std::get<Shell>(level.content).indices.empty())
+        return fail("hair too thin for a shell", "levels without a shell");
+    const auto off = measured(work, level);
+    if (!off) return tl::unexpected(off.error());
+    for (ShellVertex& v : std::get<Shell>(level.content).vertices)
+        v.albedo *= static_cast<float>(1 / std::max(off->light, 1e-3));
+    return {};
+}
+
+double millisecondsOf(const std::function<void()>& work) {
+    std::vector<double> times;
+    constexpr int kTimes = 5;
+    for (int i = 0; i < kTimes; ++i) {
+        const Stopwatch watch;
+        work();
+        times.push_back(1000 * watch.seconds());
+    }
+    std::ranges::sort(times);
+    return times[kTimes / 2];
+}
+
+/// The numbers of a level that no picture tells.
+Status count(const Work& work, Level& level) {
+    if (const auto* hair = std::get_if<Hair>(&level.content)) {
+        level.hairs = hair->strandCount();
+        level.triangles = 2 * (hair->positions_ws.size() - hair->strandCount());
+        level.bytes = hair->positions_ws.size() * sizeof(Vec4f);  // position and radius
+        const double share = static_cast<double>(level.hairs) / static_cast<double>(work.hair.strandCount());
+        level.moveMs = share * work.options.strandsMoveMs;
+    } else if (const auto* cards = std::get_if<Cards>(&level.content)) {
+        constexpr std::size_t kVertexBytes = 60,
+                              kTexelBytes = 8;  // as exporters/gltf_writer.cpp and atlases have them
+        level.triangles = cards->mesh.indices.size() / 3;
+        level.bytes = cards->mesh.vertices.size() * kVertexBytes + cards->mesh.indices.size() * 4;
+        for (const Picture& picture : cards->atlas.levels) level.bytes += picture.texels.size() * kTexelBytes;
+        const auto rig = makeRig(*cards, 24, 5, work.cancel);
+        if (!rig) return tl::unexpected(rig.error());
+        const std::vector<Eigen::Affine3f> motions(rig->joints.size(), Eigen::Affine3f::Identity());
+        const Binding binding = bind(*rig, *cards);
+        std::vector<Vec3f> moved(cards->mesh.vertices.size());
+        level.moveMs = millisecondsOf([&] { skin(binding, cards->mesh, motions, moved); });
+    } else if (const auto* shell = std::get_if<Shell>(&level.content)) {
+        level.triangles = shell->indices.size() / 3;
+        level.bytes = shell->vertices.size() * sizeof(ShellVertex) + shell->indices.size() * 4;
+        std::vector<Vec3f> moved(shell->vertices.size());
+        const Eigen::Affine3f head = Eigen::Affine3f::Identity();
+        level.moveMs = millisecondsOf([&] {
+            for (std::size_t v = 0; v < moved.size(); ++v) moved[v] = head * shell->vertices[v].position_ws;
+        });
+    }
+    return {};
+}
+
+std::string nameFor(const LevelSpec& spec) {
+    if (spec.kind == LevelKind::strands) return fmt::format("strands-{:g}%", 100 * spec.amount);
+    return fmt::format("{}-{:g}", nameOf(spec.kind), spec.amount);
+}
+
+Status finish(const Work& work, Level& level) {
+    Shooting shooting = shoot(work, level, work.allViews());
+    if (cancelled(work.cancel)) return stopped();
+    level.strands = work.strands.at(level.spec.headPx);
+    const auto off = difference(level.strands, shooting.shots);
+    if (!off) return tl::unexpected(off.error());
+    level.difference = *off;
+    level.shots = std::move(shooting.shots);
+    level.drawMs = shooting.drawMs;
+    const double target = static_cast<double>(work.options.targetPx);
+    if (target > 0 && level.spec.kind == LevelKind::cards && off->silhouettePx > target) {
+        return fail(fmt::format("outlines of {} are off by {:.2f} pixels, more than the {:g} asked for",
+                                level.name, off->silhouettePx, target),
+                    fmt::format("a target of {:.2f} pixels, which these cards reach, or more cards",
+                                off->silhouettePx + 0.005));
+    }
+    return count(work, level);
+}
+
+/// Pictures of all strands by pixels of a head.
+Result<std::map<std::uint32_t, std::vector<Shot>>> shootStrands(const Hair& hair, const StrandLight& light,
+                                                                const std::vector<View>& views,
+                                                                const std::vector<LevelSpec>& specs,
+                                                                Cancel cancel) {
+    std::map<std::uint32_t, std::vector<Shot>> shots;
+    for (const LevelSpec& spec : specs) shots[spec.headPx].resize(views.size());
+    parallelFor(views.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end && !cancelled(cancel); ++v) {
+            Plate plate(views[v], kSamplesPerHead);
+            plate.drawHead(hair);
+            plate.drawStrands(hair, light);
+            for (auto& [px, all] : shots) all[v] = plate.developed(px);
+        }
+    });
+    if (cancelled(cancel)) return stopped();
+    return shots;
+}
+
+}  // namespace
+
+Hair thinned(const Hair& hair, double share, float widen) {
+    std::vector<std::uint32_t> order(hair.strandCount());
+    for (std::uint32_t s = 0; s < order.size(); ++s) order[s] = s;
+    std::ranges::sort(order, {}, [](std::uint32_t s) { return std::pair(hashUnit(s, 5, 0), s); });
+    order.resize(std::clamp<std::size_t>(
+        static_cast<std::size_t>(share * static_cast<double>(order.size()) + 0.5), 1, order.size()));
+    std::ranges::sort(order);
+    Hair thin;
+    thin.specular = hair.specular, thin.shininess = hair.shininess;
+    for (const std::uint32_t s : order) {
+        for (std::size_t p = hair.offsets[s]; p < hair.offsets[s + 1]; ++p) {
+            thin.positions_ws.push_back(hair.positions_ws[p]);
+            thin.radii.push_back(widen * hair.radii[p]);
+            thin.albedo.push_back(hair.albedo[p]);
+        }
+        thin.offsets.push_back(static_cast<std::uint32_t>(thin.positions_ws.size()));
+        thin.rootNormals_ws.push_back(hair.rootNormals_ws[s]);
+    }
+    return thin;
+}
+
+Result<Chain> makeChain(const Hair& hair, const std::vector<LevelSpec>& specs, const ChainOptions& options,
+                        const Progress& progress, Cancel cancel) {
+    if (auto status = check(hair); !status) return tl::unexpected(status.error());
+    const double steps = static_cast<double>(specs.size()) + 1;
+    progress("strands", 0);
+    const auto light = HairLight::make(hair, cancel);
+    if (!light) return tl::unexpected(light.error());
+    Chain chain;
+    chain.strands = hair.strandCount();
+    chain.views = viewsAround(hair, options.directions);
+    const StrandLight onStrands = strandLight(hair, *light);
+    const auto shots = shootStrands(hair, onStrands, chain.views, specs, cancel);
+    if (!shots) return tl::unexpected(shots.error());
+    const Work work{hair, *light, onStrands, chain.views, *shots, options, cancel};
+    for (std::size_t i = 0; i < specs.size(); ++i) {
+        Level level;
+        level.spec = specs[i];
+        level.name = nameFor(specs[i]);
+        progress(level.name, (1 + static_cast<double>(i)) / steps);
+        const Stopwatch watch;
+        const Status status = level.spec.kind == LevelKind::strands ? makeStrands(work, level)
+                              : level.spec.kind == LevelKind::cards ? makeCardLevel(work, level)
+                                                                    : makeShellLevel(work, level);
+        if (!status) return tl::unexpected(status.error());
+        chain.makeSeconds += watch.seconds();
+        if (auto finished = finish(work, level); !finished) return tl::unexpected(finished.error());
+        chain.levels.push_back(std::move(level));
+    }
+    return chain;
+}
+
+}  // namespace hairloom::cards

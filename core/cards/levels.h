@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The chain of levels of detail: strands, fewer strands, cards, fewer cards, a shell; each measured against
+// all strands at the distance that it is for.
+
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "core/cards/judge.h"
+
+namespace hairloom::cards {
+
+enum class LevelKind { strands, cards, shell };
+std::string_view nameOf(LevelKind kind);
+
+/// A level that is asked for.
+struct LevelSpec {
+    LevelKind kind = LevelKind::cards;
+    double amount = 0;         ///< strands: share of the hairs, ]0, 1]; cards: how many; a shell's triangles
+    std::uint32_t headPx = 0;  ///< pixels along the height of a head from which it is shown: 16, 32 … 512
+};
+/// "strands:0.5@512,cards:200@256,shell@32"; @PX may be left out: half of the level before, 512 at first.
+/// Errors: other words, numbers out of range, levels that are not ever farther.
+Result<std::vector<LevelSpec>> parseLevels(std::string_view text);
+/// All strands, 2 in 5, `cards`, half and a quarter of them, a shell.
+std::string standardLevels(std::uint32_t cards);
+
+struct ChainOptions {
+    std::uint32_t textures = 32;
+    std::uint32_t mostSide = 2048;  ///< texels along an atlas
+    std::uint32_t directions = 12;  ///< that levels are judged from
+    float targetPx = 0;             ///< pixels that outlines of cards may be off; 0: what the budget gives
+    double strandsMoveMs = 0;       ///< what moving all hairs takes, as the caller measured it
+};
+
+/// How far off a level is seen that is for heads so high: in a picture of 1080 lines, 40° from its lower to
+/// its upper edge. Metres.
+double distanceOf(std::uint32_t headPx);
+
+struct Level {
+    LevelSpec spec;
+    std::string name;           ///< "cards-200"
+    std::size_t hairs = 0;      ///< that are drawn one by one
+    std::size_t triangles = 0;  ///< of hairs two a segment
+    std::size_t bytes = 0;  ///< of vertices, indices and textures with their mip maps, as they lie on a GPU
+    Difference difference;
+    double drawMs = 0;  ///< by the judge, on one core, mean of all directions
+    double moveMs = 0;  ///< on all cores
+    std::variant<Hair, Cards, Shell> content;
+    std::vector<Shot> shots;    ///< of each direction, at its distance
+    std::vector<Shot> strands;  ///< all strands, likewise
+
+    std::size_t cards() const {
+        const auto* made = std::get_if<Cards>(&content);
+        return made == nullptr ? 0 : made->cards.size();
+    }
+};
+
+struct Chain {
+    std::vector<Level> levels;
+    std::vector<View> views;
+    std::size_t strands = 0;
+    double makeSeconds = 0;  ///< clusters, strips, textures and shells, measuring left out
+};
+
+/// Told what is being made and which share is done.
+using Progress = std::function<void(std::string_view, double)>;
+
+/// Errors: those of check() and makeCards(), a target in pixels that the cards cannot meet (it says how near
+/// they come), stopped.
+Result<Chain> makeChain(const Hair& hair, const std::vector<LevelSpec>& specs, const ChainOptions& options,
+                        const Progress& progress, Cancel cancel);
+
+/// Every so many-th hair at random, wider by as much. `share` in ]0, 1].
+Hair thinned(const Hair& hair, double share, float widen);
+
+}  // namespace hairloom::cards

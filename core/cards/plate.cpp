@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/base/parallel.h"
+#include "core/cards/judge.h"
+#include "core/cards/raster.h"
+
+namespace hairloom::cards {
+namespace {
+
+constexpr std::uint32_t kSquaresPerHead = 32;
+const Vec3f kSkin(0.42f, 0.31f, 0.25f);
+const Vec3f kBackground(0.20f, 0.21f, 0.23f);
+
+Vec3f skinLight(const Vec3f& normal_ws) {
+    return kSkin * (0.45f + 0.55f * std::max(0.0f, normal_ws.dot(toLamp_ws())));
+}
+
+}  // namespace
+
+std::vector<View> viewsAround(const Hair& hair, std::uint32_t count) {
+    constexpr float kHeights[3] = {0, 20, -12};  // degrees
+    constexpr float kSquare = kHeadHeight / static_cast<float>(kSquaresPerHead);
+    std::vector<View> views;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const float turn = radians(360 * static_cast<float>(i) / static_cast<float>(count));
+        const float height = radians(kHeights[i % 3]);
+        View view;
+        view.toEye_ws =
+            Vec3f(std::sin(turn) * std::cos(height), std::sin(height), std::cos(turn) * std::cos(height));
+        view.right_ws = Vec3f::UnitY().cross(view.toEye_ws).normalized();
+        view.up_ws = view.toEye_ws.cross(view.right_ws);
+        Vec2f low = Vec2f::Constant(std::numeric_limits<float>::infinity()), high = -low;
+        for (const Vec3f& point : hair.positions_ws) {
+            const Vec2f at(point.dot(view.right_ws), point.dot(view.up_ws));
+            low = low.cwiseMin(at), high = high.cwiseMax(at);
+        }
+        low -= Vec2f::Constant(2 * kSquare), high += Vec2f::Constant(2 * kSquare);
+        constexpr float kMostSquares = 512;
+        const Vec2f squares = ((high - low) / kSquare).cwiseMin(kMostSquares);
+        view.columns = static_cast<std::uint32_t>(std::ceil(squares.x()));
+        view.rows = static_cast<std::uint32_t>(std::ceil(squares.y()));
+        view.corner_ws = low.x() * view.right_ws + high.y() * view.up_ws;
+        views.push_back(view);
+    }
+    return views;
+}
+
+StrandLight strandLight(const Hair& hair, const HairLight& light) {
+    StrandLight result{std::vector<float>(hair.positions_ws.size()),
+                       std::vector<float>(hair.positions_ws.size())};
+    parallelFor(hair.positions_ws.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t p = begin; p < end; ++p) {
+            result.open[p] = light.open(hair.positions_ws[p]);
+            result.lit[p] = light.lit(hair.positions_ws[p]);
+        }
+    });
+    return result;
+}
+
+Plate::Plate(const View& view, std::uint32_t samplesPerHead)
+    : view_(view),
+      samplesPerHead_(samplesPerHead),
+      perMetre_(static_cast<float>(samplesPerHead) / kHeadHeight),
+      width_(static_cast<int>(view.columns * (samplesPerHead / kSquaresPerHead))),
+      height_(static_cast<int>(view.rows * (samplesPerHead / kSquaresPerHead))) {
+    const std::size_t samples = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+    depth_.assign(samples, -std::numeric_limits<float>::infinity());
+    colour_.assign(samples, kBackground);
+    isHair_.assign(samples, 0);
+}
+
+Vec3f Plate::onPlate(const Vec3f& point_ws) const {
+    const Vec3f d = point_ws - view_.corner_ws;
+    return {d.dot(view_.right_ws) * perMetre_, -d.dot(view_.up_ws) * perMetre_, d.dot(view_.toEye_ws)};
+}
+
+void Plate::drawHead(const Hair& hair) {
+    for (std::size_t t = 0; t + 2 < hair.headIndices.size(); t += 3) {
+        std::array<Vec3f, 3> world, at;
+        for (std::size_t k = 0; k < 3; ++k) {
+            world[k] = hair.headPositions_ws[hair.headIndices[t + k]];
+            at[k] = onPlate(world[k]);
+        }
+        const Vec3f normal = (world[1] - world[0]).cross(world[2] - world[0]);
+        if (!(normal.norm() > 0)) continue;
+        const Vec3f colour = skinLight(normal.normalized());
+        forSamplesOfTriangle(at[0].head<2>(), at[1].head<2>(), at[2].head<2>(), width_, height_,
+                             [&](int x, int y, const Vec3f& b) {
+                                 const float depth =
+                                     b.x() * at[0].z() + b.y() * at[1].z() + b.z() * at[2].z();
+                                 const std::size_t i = index(x, y);
+                                 if (depth <= depth_[i]) return;
+                                 depth_[i] = depth, colour_[i] = colour, isHair_[i] = 0;
+                             });
+    }
+}
+
+void Plate::drawStrands(const Hair& hair, const StrandLight& light) {
+    const Reflection fibre{hair.specular, hair.shininess};
+    std::vector<Vec3f> colours;
+    std::vector<LinePoint> places;
+    std::vector<float> depths;
+    for (std::size_t s = 0; s < hair.strandCount(); ++s) {
+        const std::size_t first = hair.offsets[s], count = hair.offsets[s + 1] - first;
+        colours.clear(), places.clear(), depths.clear();
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::size_t p = first + i;
+            const Vec3f step =
+                hair.positions_ws[std::min(p + 1, first + count - 1)] - hair.positions_ws[i == 0 ? p : p - 1];
+            const Vec3f along = step.norm() > 0 ? Vec3f(step.normalized()) : Vec3f(0, -1, 0);
+            colours.push_back(
+                reflected(fibre, hair.albedo[p], along, view_.toEye_ws, light.open[p], light.lit[p]));
+            const Vec3f at = onPlate(hair.positions_ws[p]);
+            places.push_back({at.head<2>(), Vec2f::Constant(std::max(1e-4f, hair.radii[p] * perMetre_))});
+            depths.push_back(at.z());
+        }
+        for (std::size_t i = 0; i + 1 < count; ++i) {
+            forSamplesOfLine(places[i], places[i + 1], width_, height_, [&](int x, int y, float t) {
+                const float depth = depths[i] + t * (depths[i + 1] - depths[i]);
+                const std::size_t at = index(x, y);
+                if (depth <= depth_[at]) return;
+                depth_[at] = depth, isHair_[at] = 1;
+                colour_[at] = (1 - t) * colours[i] + t * colours[i + 1];
+            });
+        }
+    }
+}
+
+namespace {
+
+/// What of a card a sample shows.
+struct Seen {
+    std::uint32_t triangle = UINT32_MAX;
+    float b0 = 0, b1 = 0;
+};
+
+/// Level of the atlas between whose texels pixels lie, by area, as anisotropic filters have it.
+float levelOf(const Cards& cards, const std::array<const CardVertex*, 3>& v, float areaPx) {
+    const auto side = static_cast<float>(cards.atlas.side());
+    const Vec2f e = (v[1]->uv - v[0]->uv) * side, f = (v[2]->uv - v[0]->uv) * side;
+    const float texels = 0.5f * std::abs(e.x() * f.y() - e.y() * f.x());
+    const float level = 0.5f * std::log2(std::max(texels, 1e-6f) / std::max(areaPx, 1e-6f));
+    return std::clamp(level, 0.0f, static_cast<float>(cards.atlas.levels.size() - 1));
+}
+
+template <class T>
+T mixed(const Vec3f& b, const T& x, const T& y, const T& z) {
+    return b.x() * x + b.y() * y + b.z() * z;
+}
+
+}  // namespace
+
+void Plate::drawCards(const Hair& hair, const HairLight& light, const Cards& cards, std::uint32_t headPx) {
+    const float perPx = static_cast<float>(samplesPerHead_) / static_cast<float>(headPx);
+    std::vector<Seen> seen(depth_.size());
+    std::vector<float> levels(cards.mesh.indices.size() / 3);
+    const auto corners = [&](std::size_t triangle) {
+        std::array<const CardVertex*, 3> v{};
+        for (std::size_t k = 0; k < 3; ++k) v[k] = &cards.mesh.vertices[cards.mesh.indices[3 * triangle + k]];
+        return v;
+    };
+    for (std::uint32_t t = 0; t < levels.size(); ++t) {
+        const auto v = corners(t);
+        const Vec3f a = onPlate(v[0]->position_ws), b = onPlate(v[1]->position_ws),
+                    c = onPlate(v[2]->position_ws);
+        const float area = 0.5f * std::abs((b - a).x() * (c - a).y() - (b - a).y() * (c - a).x());
+        const float level = levels[t] = levelOf(cards, v, area / (perPx * perPx));
+        const auto low = static_cast<std::size_t>(level);
+        const std::size_t high = std::min(low + 1, cards.atlas.levels.size() - 1);
+        const float share = level - static_cast<float>(low);
+        const Card& card = cards.cards[v[0]->card];
+        const Rect& rect = cards.atlas.rects[card.texture];
+        forSamplesOfTriangle(
+            a.head<2>(), b.head<2>(), c.head<2>(), width_, height_, [&](int x, int y, const Vec3f& w) {
+                const std::size_t i = index(x, y);
+                const float depth = mixed(w, a.z(), b.z(), c.z());
+                if (depth <= depth_[i]) return;
+                const Vec2f place = mixed<Vec2f>(w, v[0]->place, v[1]->place, v[2]->place);
+                const float alpha =
+                    (1 - share) * sampleCoverage(cards.atlas, rect, low, place.x(), place.y()) +
+                    share * sampleCoverage(cards.atlas, rect, high, place.x(), place.y());
+                if (alpha <=
+                    hashUnit(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), v[0]->card))
+                    return;
+                depth_[i] = depth, isHair_[i] = 1;
+                seen[i] = {t, w.x(), w.y()};
+            });
+    }
+    const Reflection fibre{hair.specular, hair.shininess};
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+        if (seen[i].triangle == UINT32_MAX) continue;
+        const auto v = corners(seen[i].triangle);
+        const Vec3f w(seen[i].b0, seen[i].b1, 1 - seen[i].b0 - seen[i].b1);
+        const Vec2f place = mixed<Vec2f>(w, v[0]->place, v[1]->place, v[2]->place);
+        const auto level = static_cast<std::size_t>(levels[seen[i].triangle] + 0.5f);
+        const Texel texel = sample(cards.atlas, cards.atlas.rects[cards.cards[v[0]->card].texture], level,
+                                   place.x(), place.y());
+        const Vec3f normal = mixed<Vec3f>(w, v[0]->normal_ws, v[1]->normal_ws, v[2]->normal_ws).normalized();
+        const Vec3f strip = mixed<Vec3f>(w, v[0]->along_ws, v[1]->along_ws, v[2]->along_ws).normalized();
+        const Vec3f along = (texel.flow.y() * strip + texel.flow.x() * normal.cross(strip)).normalized();
+        const Vec3f tint = mixed<Vec3f>(w, v[0]->tint, v[1]->tint, v[2]->tint);
+        const float open = std::min(1.0f, texel.open * mixed(w, v[0]->open, v[1]->open, v[2]->open));
+        const Vec3f at =
+            mixed<Vec3f>(w, v[0]->position_ws, v[1]->position_ws, v[2]->position_ws) + texel.depth * normal;
+        colour_[i] =
+            reflected(fibre, texel.albedo.cwiseProduct(tint), along, view_.toEye_ws, open, light.lit(at));
+    }
+}
+
+void Plate::drawShell(const Hair& hair, const HairLight& light, const Shell& shell) {
+    const Reflection fibre{hair.specular, hair.shininess};
+    std::vector<Vec3f> at, colours;
+    for (const ShellVertex& v : shell.vertices) {
+        at.push_back(onPlate(v.position_ws));
+        colours.push_back(
+            reflected(fibre, v.albedo, v.along_ws, view_.toEye_ws, v.open, light.lit(v.position_ws)));
+    }
+    for (std::size_t t = 0; t + 2 < shell.indices.size(); t += 3) {
+        const std::uint32_t a = shell.indices[t], b = shell.indices[t + 1], c = shell.indices[t + 2];
+        forSamplesOfTriangle(at[a].head<2>(), at[b].head<2>(), at[c].head<2>(), width_, height_,
+                             [&](int x, int y, const Vec3f& w) {
+                                 const float depth = mixed(w, at[a].z(), at[b].z(), at[c].z());
+                                 const std::size_t i = index(x, y);
+                                 if (depth <= depth_[i]) return;
+                                 depth_[i] = depth, isHair_[i] = 1;
+                                 colour_[i] = mixed<Vec3f>(w, colours[a], colours[b], colours[c]);
+                             });
+    }
+}
+
+Shot Plate::developed(std::uint32_t headPx) const {
+    const std::uint32_t finer = samplesPerHead_ / headPx;
+    Shot shot;
+    shot.width = static_cast<std::uint32_t>(width_) / finer;
+    shot.height = static_cast<std::uint32_t>(height_) / finer;
+    const float share = 1 / static_cast<float>(finer * finer);
+    for (std::uint32_t y = 0; y < shot.height; ++y) {
+        for (std::uint32_t x = 0; x < shot.width; ++x) {
+            float coverage = 0;
+            Vec3f hair = Vec3f::Zero(), all = Vec3f::Zero();
+            for (std::uint32_t j = 0; j < finer; ++j) {
+                for (std::uint32_t i = 0; i < finer; ++i) {
+                    const std::size_t at =
+                        index(static_cast<int>(x * finer + i), static_cast<int>(y * finer + j));
+                    all += colour_[at];
+                    if (isHair_[at] == 0) continue;
+                    coverage += 1, hair += colour_[at];
+                }
+            }
+            shot.coverage.push_back(share * coverage);
+            shot.hair.push_back(share * hair);
+            shot.all.push_back(share * all);
+        }
+    }
+    return shot;
+}
+
+}  // namespace hairloom::cards

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Which samples of a picture lines and triangles cover. Sample (x, y) lies at (x + 0.5, y + 0.5); borders
+// belong to one of two neighbours.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "core/base/math.h"
+
+namespace hairloom::cards {
+
+/// What a random number of three integers is: 0 … 1, the same everywhere.
+inline float hashUnit(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    std::uint32_t h = a * 0x9e3779b9u ^ (b * 0x85ebca6bu + 0x7f4a7c15u) ^ (c * 0xc2b2ae35u + 0x165667b1u);
+    h ^= h >> 16u, h *= 0x7feb352du, h ^= h >> 15u, h *= 0x846ca68bu, h ^= h >> 16u;
+    return static_cast<float>(h >> 8u) * 0x1p-24f;
+}
+
+/// A point of a line on a picture, in samples. Radii may differ by axis, where the picture is stretched.
+struct LinePoint {
+    Vec2f at;
+    Vec2f radius;
+};
+
+/// Calls f(x, y, t) for the samples of a line of round cross-section, t in [0, 1] from a to b. A line thinner
+/// than a sample covers as many of them as its area says.
+template <class F>
+void forSamplesOfLine(const LinePoint& a, const LinePoint& b, int width, int height, const F& f) {
+    const Vec2f d = b.at - a.at;
+    const int major = std::abs(d.y()) * a.radius.x() >= std::abs(d.x()) * a.radius.y() ? 1 : 0;
+    const int minor = 1 - major;
+    if (d[major] == 0) return;
+    const float low = std::min(a.at[major], b.at[major]), high = std::max(a.at[major], b.at[major]);
+    const int size[2] = {width, height};
+    const int begin = std::max(0, static_cast<int>(std::ceil(std::max(low, -1.0f) - 0.5f)));
+    const int end = std::min(size[major], static_cast<int>(std::ceil(std::min(high, 1e6f) - 0.5f)));
+    const float slope = (d[minor] * a.radius[major]) / (d[major] * a.radius[minor]);
+    const float wider = std::sqrt(1 + slope * slope);
+    for (int i = begin; i < end; ++i) {
+        const float t = std::clamp((static_cast<float>(i) + 0.5f - a.at[major]) / d[major], 0.0f, 1.0f);
+        const float middle = a.at[minor] + t * d[minor];
+        const float half = wider * (a.radius[minor] + t * (b.radius[minor] - a.radius[minor]));
+        const int first = std::max(0, static_cast<int>(std::ceil(std::max(middle - half, -1.0f) - 0.5f)));
+        const int last =
+            std::min(size[minor], static_cast<int>(std::ceil(std::min(middle + half, 1e6f) - 0.5f)));
+        for (int j = first; j < last; ++j) major == 1 ? f(j, i, t) : f(i, j, t);
+    }
+}
+
+/// Calls f(x, y, barycentrics) for the samples of a triangle of either orientation.
+template <class F>
+void forSamplesOfTriangle(const Vec2f& a, const Vec2f& b, const Vec2f& c, int width, int height, const F& f) {
+    const float area = (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x();
+    if (area == 0 || !std::isfinite(area)) return;
+    const Vec2f low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
+    const int x0 = std::max(0, static_cast<int>(std::floor(std::max(low.x(), 0.0f))));
+    const int y0 = std::max(0, static_cast<int>(std::floor(std::max(low.y(), 0.0f))));
+    const int x1 = std::min(width, static_cast<int>(std::ceil(std::min(high.x(), 1e6f))));
+    const int y1 = std::min(height, static_cast<int>(std::ceil(std::min(high.y(), 1e6f))));
+    for (int y = y0; y < y1; ++y) {
+        for (int x = x0; x < x1; ++x) {
+            const Vec2f p(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+            const float u = ((b - p).x() * (c - p).y() - (b - p).y() * (c - p).x()) / area;
+            const float v = ((c - p).x() * (a - p).y() - (c - p).y() * (a - p).x()) / area;
+            const float w = 1 - u - v;
+            if (u >= 0 && v >= 0 && w > 0) f(x, y, Vec3f(u, v, w));
+        }
+    }
+}
+
+}  // namespace hairloom::cards

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The strip that a bundle of strands lies on: a centre curve, and at each of its stations a direction across,
+// a width and a bend.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/cards/hair.h"
+
+namespace hairloom::cards {
+
+/// Arrays are one a station, root first; world space, metres. A point of the surface at station k and x in
+/// [-1, 1] across is centre + x·halfWidth·cross + bend·((x·halfWidth)² - spread)·normal.
+struct Strip {
+    std::vector<Vec3f> centre;
+    std::vector<Vec3f> along;   ///< unit, towards the tip
+    std::vector<Vec3f> cross;   ///< unit, perpendicular to `along`
+    std::vector<Vec3f> normal;  ///< unit, outwards: along × cross
+    std::vector<float> halfWidth;
+    std::vector<float> bend;    ///< 1/m; 0 is flat
+    std::vector<float> spread;  ///< m², mean square of the strands' places across
+
+    std::size_t stations() const { return centre.size(); }
+    float length() const;
+    /// `x` as above.
+    Vec3f at(std::size_t station, float x) const;
+};
+
+/// The strip of least weighted square distance from its strands, which hold at least one. Its stations are
+/// those of the hair, so that point k of a strand belongs to station k.
+Strip fitStrip(const EvenHair& hair, std::span<const std::uint32_t> strands,
+               std::span<const Vec3f> rootNormals_ws);
+
+/// How far a strand is from lying on the strip, mean m² over its points. A distance off the surface counts
+/// whole; one across or along it little, since the strip is that much wider or longer. `enough`: stops at
+/// what is more than that.
+float offStrip(const Strip& strip, std::span<const Vec3f> points_ws, float enough);
+
+/// The same as a vector of 3 numbers a station, whose squared norm is that distance for a strip that is flat.
+void residual(const Strip& strip, std::span<const Vec3f> points_ws, std::span<float> out);
+
+/// A strip of evenly spaced stations through the same bundle, as long as it takes to hold the ends of most
+/// strands, as wide as holds nearly all.
+Strip finishStrip(const EvenHair& hair, std::span<const std::uint32_t> strands, const Strip& fitted,
+                  std::uint32_t stations, std::span<const Vec3f> rootNormals_ws);
+
+/// Where a point is on a strip.
+struct StripPlace {
+    float along = 0;          ///< 0 root … 1 tip, by length; beyond for points before or behind it
+    float across = 0;         ///< metres
+    float off = 0;            ///< metres outwards from the flat strip
+    std::size_t station = 0;  ///< the one before it
+    float share = 0;          ///< of the way to the next
+};
+/// The foot nearest along the centre to `guess`, a station; `place.station` of the point before is a good
+/// one.
+StripPlace placeOn(const Strip& strip, const Vec3f& point_ws, std::size_t guess);
+
+}  // namespace hairloom::cards

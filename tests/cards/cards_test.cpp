@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/cards/cards.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "core/base/parallel.h"
+#include "core/cards/rig.h"
+#include "tests/cards/card_samples.h"
+
+namespace hairloom::cards {
+namespace {
+
+using testing::HasSubstr;
+
+Result<Cards> cardsOf(const Hair& hair, const CardOptions& options) {
+    const auto light = HairLight::make(hair, nullptr);
+    return makeCards(hair, *light, options, nullptr);
+}
+
+TEST(Strip, OfARibbonLiesInItsPlaneAndHoldsIt) {
+    const Hair hair = ribbonHair(300, 0.04f, 0.002f);
+    const auto made = cardsOf(hair, {.cards = 1});
+    ASSERT_TRUE(made) << made.error().message();
+    ASSERT_EQ(made->cards.size(), 1u);
+    const Strip& strip = made->cards[0].strip;
+    for (std::size_t k = 0; k < strip.stations(); ++k) {
+        EXPECT_GT(std::abs(strip.cross[k].x()), 0.99f) << k;
+        EXPECT_GT(strip.normal[k].z(), 0.99f) << "outwards as the scalp's normal";
+        EXPECT_NEAR(strip.halfWidth[k], 0.02f, 0.002f) << k;
+    }
+    EXPECT_NEAR(strip.length(), 0.14f, 0.005f);
+}
+
+TEST(Strip, BendsWithABowl) {
+    Hair hair = ribbonHair(400, 0.04f, 0);
+    constexpr float kBend = 10;  // 1/m
+    for (Vec3f& p : hair.positions_ws) p.z() -= kBend * p.x() * p.x();
+    const EvenHair even = evenHair(hair, 9);
+    std::vector<std::uint32_t> all;
+    for (std::uint32_t s = 0; s < 400; ++s) all.push_back(s);
+    const Strip strip = fitStrip(even, all, hair.rootNormals_ws);
+    for (std::size_t k = 0; k < strip.stations(); ++k) EXPECT_NEAR(strip.bend[k], -kBend, 0.5f) << k;
+    for (const std::uint32_t s : all) {
+        const auto points = even.strand(s);
+        const Vec3f d = points[4] - strip.centre[4];
+        const float x = d.dot(strip.cross[4]);
+        EXPECT_NEAR(d.dot(strip.normal[4]), strip.bend[4] * (x * x - strip.spread[4]), 2e-4f);
+    }
+}
+
+TEST(Clusters, PartTwoLayersBeforeTheyPartARibbon) {
+    Hair hair = ribbonHair(300, 0.03f, 0.0005f);
+    const Hair above = hair;
+    for (std::size_t p = 0; p < above.positions_ws.size(); ++p) {
+        hair.positions_ws.push_back(above.positions_ws[p] + Vec3f(0, 0, 0.015f));
+        hair.radii.push_back(above.radii[p]), hair.albedo.push_back(above.albedo[p]);
+    }
+    for (std::size_t s = 0; s < above.strandCount(); ++s) {
+        hair.offsets.push_back(hair.offsets.back() + 8);
+        hair.rootNormals_ws.push_back(above.rootNormals_ws[s]);
+    }
+    const auto clusters = clusterHair(evenHair(hair, 9), hair.rootNormals_ws, {2, 0}, nullptr);
+    ASSERT_TRUE(clusters);
+    ASSERT_EQ(clusters->size(), 2u);
+    for (const Cluster& cluster : *clusters) {
+        EXPECT_EQ(cluster.strands.size(), 300u);
+        EXPECT_EQ(cluster.strands.front() < 300, cluster.strands.back() < 300) << "a layer each";
+    }
+}
+
+TEST(Clusters, HoldEachStrandOnceAndStopWhereTheyAreGoodEnough) {
+    const Hair hair = ballHair(2000);
+    const EvenHair even = evenHair(hair, 9);
+    const auto many = clusterHair(even, hair.rootNormals_ws, {60, 0}, nullptr);
+    ASSERT_TRUE(many);
+    EXPECT_GT(many->size(), 55u);
+    EXPECT_LE(many->size(), 60u);
+    std::set<std::uint32_t> seen;
+    for (const Cluster& cluster : *many) seen.insert(cluster.strands.begin(), cluster.strands.end());
+    EXPECT_EQ(seen.size(), 2000u);
+    const auto few = clusterHair(even, hair.rootNormals_ws, {60, 0.02f}, nullptr);
+    ASSERT_TRUE(few);
+    EXPECT_LT(few->size(), many->size());
+}
+
+TEST(Cards, AreTheSameForAnyNumberOfThreads) {
+    const Hair hair = ballHair(1500);
+    std::vector<Cards> made;
+    for (const std::size_t threads : {1u, 2u, 5u}) {
+        setThreadCount(threads);
+        auto cards = cardsOf(hair, {.cards = 24, .textures = 6});
+        ASSERT_TRUE(cards) << cards.error().message();
+        made.push_back(std::move(*cards));
+    }
+    setThreadCount(0);
+    for (std::size_t i = 1; i < made.size(); ++i) {
+        ASSERT_EQ(made[i].mesh.indices, made[0].mesh.indices);
+        for (std::size_t v = 0; v < made[0].mesh.vertices.size(); ++v) {
+            ASSERT_EQ(made[i].mesh.vertices[v].position_ws, made[0].mesh.vertices[v].position_ws);
+            ASSERT_EQ(made[i].mesh.vertices[v].tint, made[0].mesh.vertices[v].tint);
+        }
+        const auto &a = made[i].atlas.levels[0].texels, &b = made[0].atlas.levels[0].texels;
+        ASSERT_EQ(a.size(), b.size());
+        for (std::size_t t = 0; t < a.size(); ++t) {
+            ASSERT_EQ(a[t].coverage, b[t].coverage);
+            ASSERT_EQ(a[t].albedo, b[t].albedo);
+        }
+    }
+}
+
+TEST(Cards, KeepTheirBudgets) {
+    const Hair hair = ballHair(1500);
+    const auto made = cardsOf(hair, {.cards = 40, .textures = 5, .mostSide = 256});
+    ASSERT_TRUE(made) << made.error().message();
+    EXPECT_LE(made->cards.size(), 40u);
+    EXPECT_EQ(made->painters.size(), 5u);
+    EXPECT_EQ(made->atlas.rects.size(), 5u);
+    EXPECT_LE(made->atlas.side(), 256u);
+    std::vector<std::size_t> rows(made->cards.size());
+    for (const CardVertex& v : made->mesh.vertices) {
+        ++rows[v.card];
+        EXPECT_TRUE(v.position_ws.allFinite());
+        EXPECT_GE(v.uv.minCoeff(), 0);
+        EXPECT_LE(v.uv.maxCoeff(), 1);
+        EXPECT_NEAR(v.normal_ws.norm(), 1, 1e-4f);
+        EXPECT_NEAR(v.along_ws.norm(), 1, 1e-4f);
+    }
+    for (const std::size_t count : rows) {
+        EXPECT_GE(count, 4u) << "two segments' ends of two columns";
+        EXPECT_LE(count, 3u * kStations);
+    }
+}
+
+TEST(Cards, RefuseWhatCannotBe) {
+    EXPECT_THAT(check(Hair{}).error().message(), HasSubstr("no strands"));
+    EXPECT_THAT(check(ballHair(1)).error().message(), HasSubstr("one strand"));
+    Hair flat = ballHair(3);
+    for (Vec3f& p : flat.positions_ws) p = Vec3f(1, 2, 3);
+    EXPECT_THAT(check(flat).error().message(), HasSubstr("no length"));
+    Hair broken = ballHair(3);
+    broken.positions_ws[15].x() = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_THAT(check(broken).error().message(), HasSubstr("strand 1 is not finite"));
+    const Hair hair = ballHair(300);
+    EXPECT_THAT(cardsOf(hair, {.cards = 0}).error().message(), HasSubstr("0 cards"));
+    EXPECT_THAT(cardsOf(hair, {.mostSide = 100}).error().message(), HasSubstr("power of two"));
+    const auto full = cardsOf(hair, {.cards = 256, .textures = 256, .mostSide = 64});
+    ASSERT_FALSE(full);
+    EXPECT_THAT(full.error().message(), HasSubstr("do not fit an atlas of 64 texels; fewer textures"));
+}
+
+TEST(Cards, StopWhenTheyAreCancelled) {
+    const Hair hair = ballHair(300);
+    const auto light = HairLight::make(hair, nullptr);
+    const std::atomic<bool> cancel = true;
+    EXPECT_THAT(makeCards(hair, *light, {}, &cancel).error().message(), HasSubstr("stopped"));
+}
+
+TEST(Rig, HoldsEachVertexAndMovesItWithItsJoints) {
+    const Hair hair = ballHair(800);
+    const auto made = cardsOf(hair, {.cards = 30});
+    ASSERT_TRUE(made);
+    const auto rig = makeRig(*made, 6, 4, nullptr);
+    ASSERT_TRUE(rig);
+    EXPECT_LE(rig->chains(), 6u);
+    const Binding binding = bind(*rig, *made);
+    ASSERT_EQ(binding.weights.size(), made->mesh.vertices.size());
+    for (const Vec4f& w : binding.weights) {
+        EXPECT_NEAR(w.sum(), 1, 1e-5f);
+        EXPECT_GE(w.minCoeff(), 0);
+    }
+    Eigen::Affine3f moved = Eigen::Affine3f::Identity();
+    moved.translate(Vec3f(1, 2, 3));
+    std::vector<Vec3f> positions(made->mesh.vertices.size());
+    skin(binding, made->mesh, std::vector<Eigen::Affine3f>(rig->joints.size(), moved), positions);
+    for (std::size_t v = 0; v < positions.size(); ++v)
+        EXPECT_LT((positions[v] - made->mesh.vertices[v].position_ws - Vec3f(1, 2, 3)).norm(), 1e-5f);
+}
+
+}  // namespace
+}  // namespace hairloom::cards

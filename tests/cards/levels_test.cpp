@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/cards/levels.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/cards/card_samples.h"
+
+namespace hairloom::cards {
+namespace {
+
+using testing::HasSubstr;
+
+void noProgress(std::string_view, double) {}
+
+TEST(LevelSpecs, AreReadWithTheirDefaults) {
+    const auto specs = parseLevels("strands:0.5,cards:120,cards:60@64,shell");
+    ASSERT_TRUE(specs) << specs.error().message();
+    ASSERT_EQ(specs->size(), 4u);
+    EXPECT_EQ((*specs)[0].kind, LevelKind::strands);
+    EXPECT_DOUBLE_EQ((*specs)[0].amount, 0.5);
+    EXPECT_EQ((*specs)[0].headPx, 512u);
+    EXPECT_EQ((*specs)[1].headPx, 256u);
+    EXPECT_EQ((*specs)[2].headPx, 64u);
+    EXPECT_EQ((*specs)[3].kind, LevelKind::shell);
+    EXPECT_EQ((*specs)[3].headPx, 32u);
+    EXPECT_TRUE(parseLevels(standardLevels(200)));
+    EXPECT_TRUE(parseLevels(standardLevels(1)));
+}
+
+TEST(LevelSpecs, SayWhatIsWrong) {
+    for (const auto& [text, problem] : std::vector<std::pair<std::string, std::string>>{
+             {"", "unknown kind"},
+             {"cards:12@100", "pixels out of range"},
+             {"cards:12@x", "no number"},
+             {"cards:1.5", "no whole number"},
+             {"cards:nan", "out of range"},
+             {"strands:2", "out of range"},
+             {"cards:50@64,cards:20@128", "nearer than the one before"},
+             {"shell:3", "out of range"}}) {
+        const auto specs = parseLevels(text);
+        ASSERT_FALSE(specs) << text;
+        EXPECT_THAT(specs.error().message(), HasSubstr(problem)) << text;
+    }
+}
+
+TEST(Judge, SeesNoDifferenceBetweenHairAndItself) {
+    const Hair hair = ballHair(300);
+    const auto light = HairLight::make(hair, nullptr);
+    const auto views = viewsAround(hair, 3);
+    const StrandLight onStrands = strandLight(hair, *light);
+    std::vector<Shot> shots;
+    for (const View& view : views) {
+        Plate plate(view, kSamplesPerHead);
+        plate.drawStrands(hair, onStrands);
+        shots.push_back(plate.developed(64));
+    }
+    const auto off = difference(shots, shots);
+    ASSERT_TRUE(off);
+    EXPECT_EQ(off->coverage, 1);
+    EXPECT_EQ(off->light, 1);
+    EXPECT_EQ(off->flip, 0);
+    EXPECT_EQ(off->silhouettePx, 0);
+}
+
+TEST(Judge, HeadsHideWhatIsBehindThem) {
+    Hair hair = ballHair(300);
+    const auto light = HairLight::make(hair, nullptr);
+    const View view = viewsAround(hair, 1)[0];
+    const auto covered = [&](const Hair& shown) {
+        Plate plate(view, kSamplesPerHead);
+        plate.drawHead(shown);
+        plate.drawStrands(shown, strandLight(shown, *light));
+        double sum = 0;
+        for (const float c : plate.developed(64).coverage) sum += static_cast<double>(c);
+        return sum;
+    };
+    const double bare = covered(hair);
+    hair.headPositions_ws = {{-1, -1, 0.09f}, {1, -1, 0.09f}, {0, 1.5f, 0.09f}};
+    hair.headIndices = {0, 1, 2};
+    EXPECT_LT(covered(hair), 0.8 * bare);
+    EXPECT_GT(covered(hair), 0);
+}
+
+TEST(Levels, OfABallComeNearTheStrands) {
+    const Hair hair = ballHair(3000);
+    const auto specs = parseLevels("strands:1@256,strands:0.3@128,cards:60@128,cards:30@64,shell:400@32");
+    ASSERT_TRUE(specs);
+    ChainOptions options;
+    options.directions = 6;
+    options.mostSide = 1024;
+    const auto chain = makeChain(hair, *specs, options, noProgress, nullptr);
+    ASSERT_TRUE(chain) << chain.error().message();
+    ASSERT_EQ(chain->levels.size(), 5u);
+    EXPECT_EQ(chain->levels[0].difference.flip, 0);
+    for (const Level& level : chain->levels) {
+        EXPECT_NEAR(level.difference.coverage, 1, 0.05) << level.name;
+        EXPECT_NEAR(level.difference.light, 1, 0.05) << level.name;
+        EXPECT_LT(level.difference.flip, 0.15) << level.name;
+        EXPECT_GT(level.triangles, 0u) << level.name;
+    }
+    EXPECT_EQ(chain->levels[1].hairs, 900u);
+    EXPECT_LE(chain->levels[2].cards(), 60u);
+    EXPECT_LT(chain->levels[3].triangles, chain->levels[2].triangles);
+    EXPECT_LE(chain->levels[4].triangles, 440u);
+}
+
+TEST(Levels, OfferTheNearestTargetWhereOneCannotBeMet) {
+    const Hair hair = ballHair(500);
+    const auto specs = parseLevels("cards:2@256");
+    ChainOptions options;
+    options.directions = 2;
+    options.targetPx = 0.05f;
+    const auto chain = makeChain(hair, *specs, options, noProgress, nullptr);
+    ASSERT_FALSE(chain);
+    EXPECT_THAT(chain.error().message(), HasSubstr("more than the 0.05 asked for; a target of "));
+}
+
+TEST(Levels, StopWhenTheyAreCancelled) {
+    const std::atomic<bool> cancel = true;
+    const auto chain = makeChain(ballHair(50), *parseLevels("cards:4"), {}, noProgress, &cancel);
+    ASSERT_FALSE(chain);
+    EXPECT_THAT(chain.error().message(), HasSubstr("stopped"));
+}
+
+}  // namespace
+}  // namespace hairloom::cards

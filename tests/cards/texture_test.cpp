@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/cards/texture.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <numeric>
+
+#include "core/cards/raster.h"
+#include "tests/cards/card_samples.h"
+
+namespace hairloom::cards {
+namespace {
+
+TEST(Raster, ThinLinesCoverAsMuchAsTheirAreaSays) {
+    double covered = 0, area = 0;
+    for (int i = 0; i < 200; ++i) {
+        const float turn = 0.031f * static_cast<float>(i);
+        const Vec2f middle(100.3f, 99.7f), way(80 * std::cos(turn), 80 * std::sin(turn));
+        const Vec2f radius = Vec2f::Constant(0.2f);
+        forSamplesOfLine({middle - way, radius}, {middle + way, radius}, 200, 200,
+                         [&](int, int, float) { covered += 1; });
+        area += 160 * 0.4;
+    }
+    EXPECT_NEAR(covered / area, 1, 0.03);
+}
+
+TEST(Raster, NeighbouringTrianglesShareNoSampleAndLeaveNoGap) {
+    std::vector<int> hits(64 * 64);
+    const std::array<Vec2f, 4> corner{Vec2f(4, 4), Vec2f(60, 4), Vec2f(60, 60), Vec2f(4, 60)};
+    const auto count = [&](int x, int y, const Vec3f&) { ++hits[static_cast<std::size_t>(64 * y + x)]; };
+    forSamplesOfTriangle(corner[0], corner[1], corner[2], 64, 64, count);
+    forSamplesOfTriangle(corner[0], corner[2], corner[3], 64, 64, count);
+    int missing = 0;
+    for (int y = 5; y < 59; ++y)
+        for (int x = 5; x < 59; ++x) missing += hits[static_cast<std::size_t>(64 * y + x)] == 0 ? 1 : 0;
+    EXPECT_EQ(missing, 0);
+}
+
+struct Baked {
+    Hair hair;
+    Strip strip;
+    Picture picture;
+};
+Baked bakedRibbon(std::uint32_t strands, float thickness = 1) {
+    Baked baked{ribbonHair(strands, 0.04f, 0.002f), {}, {}};
+    const auto light = HairLight::make(baked.hair, nullptr);
+    const EvenHair even = evenHair(baked.hair, 25);
+    std::vector<std::uint32_t> all(strands);
+    std::iota(all.begin(), all.end(), 0u);
+    baked.strip =
+        finishStrip(even, all, fitStrip(even, all, baked.hair.rootNormals_ws), 25, baked.hair.rootNormals_ws);
+    baked.picture = bake(baked.hair, *light, baked.strip, all, thickness, 64, 128);
+    return baked;
+}
+
+double meanCoverage(const Picture& picture) {
+    double sum = 0;
+    for (const Texel& t : picture.texels) sum += static_cast<double>(t.coverage);
+    return sum / static_cast<double>(picture.texels.size());
+}
+
+TEST(Bake, CoversWhatRandomStrandsOfThatAreaDo) {
+    const Baked baked = bakedRibbon(80);
+    // 80 strands of 0.4 mm on 40 mm, here and there one over another.
+    EXPECT_NEAR(meanCoverage(baked.picture), 1 - std::exp(-80 * 0.0004 / 0.04), 0.04);
+    EXPECT_GT(meanCoverage(bakedRibbon(80, 2).picture), meanCoverage(baked.picture) + 0.1);
+}
+
+TEST(Bake, FlowGoesDownTheCardAndRootsComeFirst) {
+    const Baked baked = bakedRibbon(80);
+    double along = 0, weight = 0, top = 0, bottom = 0, topWeight = 0, bottomWeight = 0;
+    for (std::uint32_t y = 0; y < 128; ++y) {
+        for (std::uint32_t x = 0; x < 64; ++x) {
+            const Texel& t = baked.picture.at(x, y);
+            const auto c = static_cast<double>(t.coverage);
+            along += c * static_cast<double>(t.flow.y()), weight += c;
+            (y < 64 ? top : bottom) += c * static_cast<double>(t.along);
+            (y < 64 ? topWeight : bottomWeight) += c;
+        }
+    }
+    EXPECT_GT(along / weight, 0.99);
+    EXPECT_NEAR(top / topWeight, 0.25, 0.05);
+    EXPECT_NEAR(bottom / bottomWeight, 0.75, 0.05);
+}
+
+TEST(Atlas, PacksWithoutOverlapOrNotAtAll) {
+    const std::vector<std::array<std::uint32_t, 2>> sizes{{20, 60}, {30, 50}, {10, 10}, {40, 60}, {25, 25}};
+    const auto rects = packed(sizes, 128, 4);
+    ASSERT_EQ(rects.size(), sizes.size());
+    std::vector<int> used(128 * 128);
+    for (std::size_t i = 0; i < rects.size(); ++i) {
+        EXPECT_EQ(rects[i].width, sizes[i][0]);
+        EXPECT_EQ(rects[i].height, sizes[i][1]);
+        for (std::uint32_t y = rects[i].y - 4; y < rects[i].y + rects[i].height + 4; ++y)
+            for (std::uint32_t x = rects[i].x - 4; x < rects[i].x + rects[i].width + 4; ++x)
+                EXPECT_EQ(used[128 * y + x]++, 0);
+    }
+    EXPECT_TRUE(packed(sizes, 64, 4).empty());
+}
+
+TEST(Atlas, MipMapsKeepCoverage) {
+    Baked baked = bakedRibbon(80);
+    std::vector<Picture> pictures{baked.picture};
+    const Atlas atlas = makeAtlas(std::move(pictures), {Rect{4, 4, 64, 128}}, 256);
+    const double inAtlas = meanCoverage(atlas.levels[0]);
+    const auto above = [&](const Picture& picture, float scale) {
+        std::size_t count = 0;
+        for (const Texel& t : picture.texels)
+            count += scale * t.coverage >= atlas.threshold * 0.9999f ? 1 : 0;
+        return static_cast<double>(count) / static_cast<double>(picture.texels.size());
+    };
+    const double share = above(atlas.levels[0], 1);
+    EXPECT_NEAR(share, inAtlas, 0.02) << "a mask covers what alpha does, as far as steps of alpha let it";
+    for (std::size_t level = 1; level + 4 < atlas.levels.size(); ++level) {
+        EXPECT_NEAR(meanCoverage(atlas.levels[level]), inAtlas, 1e-4) << level;
+        EXPECT_NEAR(above(atlas.levels[level], keepingScale(atlas, level)), share, 0.15 * share + 0.004)
+            << level;
+    }
+}
+
+TEST(Atlas, GapsTakeTheColoursOfWhatIsNear) {
+    Baked baked = bakedRibbon(10);
+    std::vector<Picture> pictures{baked.picture};
+    const Atlas atlas = makeAtlas(std::move(pictures), {Rect{4, 4, 64, 128}}, 256);
+    for (const Texel& t : atlas.levels[0].texels) EXPECT_NEAR(t.albedo.x(), 0.3f, 0.01f);
+}
+
+}  // namespace
+}  // namespace hairloom::cards
