@@ -5,6 +5,7 @@
 #include <memory>
 #include <system_error>
 
+#include "cli/card_export.h"
 #include "cli/documents.h"
 #include "cli/job.h"
 #include "cli/outputs.h"
@@ -23,6 +24,7 @@ struct ExportOptions {
     std::string unit;
     std::string up;
     std::uint32_t points = 0;
+    CardExportOptions cards;
     std::string output;
 };
 
@@ -56,7 +58,28 @@ Result<Asked> findAsked(const ExportOptions& options) {
     return fail(fmt::format("{} does not read {}", options.target, options.format), "expected " + formats);
 }
 
+/// Writes the report beside the file, if that is one.
+Result<Report> withCompanion(const ExportOptions& options, Report report) {
+    const std::string companion = companionOf(options.output);
+    if (companion.empty()) return report;
+    if (auto saved = writeFileAtomically(companion, std::string_view(report.dump(2) + "\n")); !saved)
+        return tl::unexpected(saved.error());
+    return report;
+}
+
+Result<Report> exportAsCards(const ExportOptions& options) {
+    if (!options.target.empty() || !options.unit.empty() || options.up == "z" || options.points > 0)
+        return fail("--target, --unit, --up and --points say nothing of cards",
+                    "glTF is in metres, Y up; --cards, --textures and --levels");
+    const auto groom = loadDocument(options.input);
+    if (!groom) return tl::unexpected(groom.error());
+    auto report = exportCards(*groom, options.output, options.cards);
+    if (!report) return tl::unexpected(inFile(report.error(), options.input));
+    return withCompanion(options, std::move(*report));
+}
+
 Result<Report> exportAsset(const ExportOptions& options) {
+    if (options.format == kCardFormat) return exportAsCards(options);
     const auto asked = findAsked(options);
     if (!asked) return tl::unexpected(asked.error());
     const auto groom = loadDocument(options.input);
@@ -68,17 +91,13 @@ Result<Report> exportAsset(const ExportOptions& options) {
     const auto what = options.what == "hairs" ? ExportedHair::hairs : ExportedHair::guides;
     const auto written = exportHair(*groom, what, *asked->writer, options.output, exporting);
     if (!written) return tl::unexpected(written.error());
-    const Report report = toJson(*written);
-    const std::string companion = companionOf(options.output);
-    if (companion.empty()) return report;
-    if (auto saved = writeFileAtomically(companion, std::string_view(report.dump(2) + "\n")); !saved)
-        return tl::unexpected(saved.error());
-    return report;
+    return withCompanion(options, toJson(*written));
 }
 
 std::vector<std::string> formatNames() {
     std::vector<std::string> names;
     for (const StrandWriter& writer : strandWriters()) names.push_back(writer.name);
+    names.emplace_back(kCardFormat);
     return names;
 }
 
@@ -89,6 +108,9 @@ std::string formatsInWords() {
         text += fmt::format("{}{}: {}, with {}; {}.", text.empty() ? "" : " ", writer.name, writer.label,
                             writer.carries, writer.limits);
     }
+    text +=
+        " gltf: cards and a shell as binary glTF 2.0, with textures, a skin, levels (MSFT_lod) and springs "
+        "(VRMC_springBone); no strands.";
     return text;
 }
 
@@ -109,6 +131,7 @@ JobRun declare(CLI::App& job) {
     job.add_option("--up", options->up, "Axis that points up in the file")->check(CLI::IsMember({"y", "z"}));
     job.add_option("--points", options->points, "Resample every strand to so many points; 0 keeps them")
         ->check(CLI::Range(0, 1024));
+    addCardOptions(job, options->cards);
     job.add_option("-o,--output", options->output, "File to write; the report goes beside it")->required();
     return [options](const std::string&) {
         const std::string companion = companionOf(options->output);

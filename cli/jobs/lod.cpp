@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <fmt/format.h>
-
 #include <memory>
 
+#include "cli/card_export.h"
 #include "cli/documents.h"
 #include "cli/job.h"
 #include "cli/progress.h"
@@ -16,21 +15,18 @@ namespace {
 struct LodOptions {
     std::string input;
     std::string output;
-    std::string levels;
-    std::uint32_t cards = 200;
-    cards::ChainOptions chain;
+    CardExportOptions making;
 };
 
 Result<Report> run(const LodOptions& options, const std::string& commandLine) {
     const Stopwatch watch;
-    const auto specs =
-        cards::parseLevels(options.levels.empty() ? cards::standardLevels(options.cards) : options.levels);
+    const auto specs = levelsOf(options.making, cards::standardLevels(options.making.cards));
     if (!specs) return tl::unexpected(specs.error());
     const auto groom = loadDocument(options.input);
     if (!groom) return tl::unexpected(groom.error());
     const auto hair = cardHair(*groom);
     if (!hair) return tl::unexpected(inFile(hair.error(), options.input));
-    cards::ChainOptions chainOptions = options.chain;
+    cards::ChainOptions chainOptions = options.making.chain;
     chainOptions.strandsMoveMs = followMilliseconds(*groom);
     Progress bar("making levels", 1000);
     const auto chain = cards::makeChain(
@@ -55,26 +51,8 @@ JobRun declare(CLI::App& job) {
     job.add_option("-o,--output", options->output,
                    "Folder for textures, meshes, pictures beside the strands, table and plot")
         ->required();
-    job.add_option("--cards", options->cards, "Cards of the nearest level of cards, at most")
-        ->check(CLI::Range(1, 4096));
-    job.add_option("--textures", options->chain.textures,
-                   "Textures of a level, at most; cards that look alike share")
-        ->check(CLI::Range(1, 256));
-    job.add_option(
-           "--atlas", options->chain.mostSide,
-           "Texels along the largest atlas; smaller ones are made where texels of two thirds of a pixel fit")
-        ->check(CLI::IsMember({64, 128, 256, 512, 1024, 2048, 4096, 8192}));
-    job.add_option(
-           "--target-px", options->chain.targetPx,
-           "Pixels that outlines of cards may be off at their distance; fewer cards where that is enough, "
-           "an error where it is not reached; 0: as near as the cards come")
-        ->check(CLI::Range(0.0, 100.0));
-    job.add_option(
-        "--levels", options->levels,
-        "The chain: KIND[:AMOUNT][@PX],… of strands (share of the hairs), cards (how many) and shell "
-        "(triangles), PX the height of a head in pixels from which on it serves; by default all strands, 2 "
-        "in 5, cards, half and a quarter of them, a shell");
-    job.add_option("--directions", options->chain.directions, "Directions that levels are judged from")
+    addCardOptions(job, options->making);
+    job.add_option("--directions", options->making.chain.directions, "Directions that levels are judged from")
         ->check(CLI::Range(1, 360));
     return [options](const std::string& commandLine) { return run(*options, commandLine); };
 }

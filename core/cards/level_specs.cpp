@@ -100,8 +100,12 @@ Result<std::vector<LevelSpec>> parseLevels(std::string_view text) {
 }
 
 std::string standardLevels(std::uint32_t cards) {
-    return fmt::format("strands:1@512,strands:0.4@512,cards:{}@256,cards:{}@128,cards:{}@64,shell@32", cards,
-                       std::max(1u, cards / 2), std::max(1u, cards / 4));
+    return "strands:1@512,strands:0.4@512," + standardCardLevels(cards);
+}
+
+std::string standardCardLevels(std::uint32_t cards) {
+    return fmt::format("cards:{}@256,cards:{}@128,cards:{}@64,shell@32", cards, std::max(1u, cards / 2),
+                       std::max(1u, cards / 4));
 }
 
 double distanceOf(std::uint32_t headPx) {

@@ -160,10 +160,13 @@ Status makeShellLevel(const Work& work, Level& level) {
     }
     if (std::get<Shell>(level.content).indices.empty())
         return fail("hair too thin for a shell", "levels without a shell");
-    const auto off = measured(work, level);
-    if (!off) return tl::unexpected(off.error());
-    for (ShellVertex& v : std::get<Shell>(level.content).vertices)
-        v.albedo *= static_cast<float>(1 / std::max(off->light, 1e-3));
+    // Twice: highlights do not grow with the albedo.
+    for (int round = 0; round < 2; ++round) {
+        const auto off = measured(work, level);
+        if (!off) return tl::unexpected(off.error());
+        for (ShellVertex& v : std::get<Shell>(level.content).vertices)
+            v.albedo *= static_cast<float>(1 / std::max(off->light, 1e-3));
+    }
     return {};
 }
 
@@ -188,8 +191,8 @@ Status count(const Work& work, Level& level) {
         const double share = static_cast<double>(level.hairs) / static_cast<double>(work.hair.strandCount());
         level.moveMs = share * work.options.strandsMoveMs;
     } else if (const auto* cards = std::get_if<Cards>(&level.content)) {
-        constexpr std::size_t kVertexBytes = 60,
-                              kTexelBytes = 8;  // as exporters/gltf_writer.cpp and atlases have them
+        constexpr std::size_t kVertexBytes = 84;  // as glb.cpp writes them
+        constexpr std::size_t kTexelBytes = 8;    // colour and normal
         level.triangles = cards->mesh.indices.size() / 3;
         level.bytes = cards->mesh.vertices.size() * kVertexBytes + cards->mesh.indices.size() * 4;
         for (const Picture& picture : cards->atlas.levels) level.bytes += picture.texels.size() * kTexelBytes;

@@ -27,6 +27,8 @@ struct LevelSpec {
 Result<std::vector<LevelSpec>> parseLevels(std::string_view text);
 /// All strands, 2 in 5, `cards`, half and a quarter of them, a shell.
 std::string standardLevels(std::uint32_t cards);
+/// Of these those that are no strands.
+std::string standardCardLevels(std::uint32_t cards);
 
 struct ChainOptions {
     std::uint32_t textures = 32;

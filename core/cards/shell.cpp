@@ -160,7 +160,8 @@ Shell ShellField::cut(float level, std::uint32_t triangles) const {
     std::vector<std::uint32_t> simple(shell.indices.size());
     simple.resize(meshopt_simplify(
         simple.data(), shell.indices.data(), shell.indices.size(), shell.vertices[0].position_ws.data(),
-        shell.vertices.size(), sizeof(ShellVertex), std::size_t{3} * triangles, kLargestError, 0, nullptr));
+        shell.vertices.size(), sizeof(ShellVertex),
+        std::min(std::size_t{3} * triangles, shell.indices.size()), kLargestError, 0, nullptr));
     meshopt_optimizeVertexCache(simple.data(), simple.data(), simple.size(), shell.vertices.size());
     std::vector<ShellVertex> used(shell.vertices.size());
     used.resize(meshopt_optimizeVertexFetch(used.data(), simple.data(), simple.size(), shell.vertices.data(),

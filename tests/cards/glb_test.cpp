@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/cards/glb.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "tests/cards/card_samples.h"
+
+namespace hairloom::cards {
+namespace {
+
+using nlohmann::json;
+
+/// The chunks of a binary glTF.
+struct Glb {
+    json head;
+    std::vector<std::byte> bin;
+};
+Glb parsed(const std::vector<std::byte>& file) {
+    const auto word = [&](std::size_t at) {
+        std::uint32_t value = 0;
+        std::memcpy(&value, file.data() + at, 4);
+        return value;
+    };
+    EXPECT_EQ(word(0), 0x46546C67u);
+    EXPECT_EQ(word(4), 2u);
+    EXPECT_EQ(word(8), file.size());
+    const std::uint32_t text = word(12);
+    EXPECT_EQ(text % 4, 0u);
+    Glb glb;
+    glb.head = json::parse(reinterpret_cast<const char*>(file.data()) + 20,
+                           reinterpret_cast<const char*>(file.data()) + 20 + text);
+    EXPECT_EQ(word(20 + text), file.size() - 28 - text);
+    glb.bin.assign(file.begin() + 28 + text, file.end());
+    return glb;
+}
+
+Result<Chain> smallChain(const char* levels) {
+    ChainOptions options;
+    options.directions = 1;
+    options.mostSide = 256;
+    return makeChain(
+        ballHair(600), *parseLevels(levels), options, [](std::string_view, double) {}, nullptr);
+}
+
+std::vector<const Level*> all(const Chain& chain) {
+    std::vector<const Level*> levels;
+    for (const Level& level : chain.levels) levels.push_back(&level);
+    return levels;
+}
+
+TEST(Glb, HoldsMeshesSkinLevelsAndSprings) {
+    const auto chain = smallChain("cards:20@64,cards:8@32,shell:200@16");
+    ASSERT_TRUE(chain) << chain.error().message();
+    const std::vector<Collider> colliders{{Vec3f(0, 0.01f, 0), 0.095f}};
+    const auto file = glbOf(all(*chain), colliders);
+    ASSERT_TRUE(file) << file.error().message();
+    const Glb glb = parsed(*file);
+    const json& head = glb.head;
+    ASSERT_EQ(head["meshes"].size(), 3u);
+    EXPECT_EQ(head["materials"][0]["alphaMode"], "MASK");
+    EXPECT_EQ(head["materials"][0]["doubleSided"], true);
+    EXPECT_EQ(head["images"].size(), 6u) << "colour, normal and occlusion of two levels";
+    for (const json& view : head["bufferViews"]) {
+        EXPECT_EQ(view["byteOffset"].get<std::size_t>() % 4, 0u);
+        EXPECT_LE(view["byteOffset"].get<std::size_t>() + view["byteLength"].get<std::size_t>(),
+                  glb.bin.size());
+    }
+    const auto joints = head["skins"][0]["joints"].size();
+    for (std::size_t m = 0; m < 3; ++m) {
+        const json& attributes = head["meshes"][m]["primitives"][0]["attributes"];
+        const json& accessor = head["accessors"][attributes["JOINTS_0"].get<std::size_t>()];
+        const json& view = head["bufferViews"][accessor["bufferView"].get<std::size_t>()];
+        for (std::size_t i = 0; i < 4 * accessor["count"].get<std::size_t>(); ++i) {
+            std::uint16_t joint = 0;
+            std::memcpy(&joint, glb.bin.data() + view["byteOffset"].get<std::size_t>() + 2 * i, 2);
+            ASSERT_LT(joint, joints);
+        }
+    }
+    const std::size_t nearest = head["scenes"][0]["nodes"][1];
+    EXPECT_EQ(head["nodes"][nearest]["extensions"]["MSFT_lod"]["ids"], (json{nearest + 1, nearest + 2}));
+    EXPECT_EQ(head["nodes"][nearest]["extras"]["MSFT_screencoverage"].size(), 3u);
+    const json& springs = head["extensions"]["VRMC_springBone"];
+    EXPECT_NEAR(springs["colliders"][0]["shape"]["sphere"]["radius"].get<double>(), 0.095, 1e-6);
+    ASSERT_FALSE(springs["springs"].empty());
+    EXPECT_EQ(springs["springs"].size() * 5 + 1, joints);
+    EXPECT_EQ(*file, *glbOf(all(*chain), colliders)) << "the same bytes again";
+}
+
+TEST(Glb, RefusesStrandsAlone) {
+    const auto chain = smallChain("strands:1@16");
+    ASSERT_TRUE(chain) << chain.error().message();
+    const auto file = glbOf(all(*chain), {});
+    ASSERT_FALSE(file);
+    EXPECT_THAT(file.error().message(), testing::HasSubstr("one of cards or a shell"));
+}
+
+}  // namespace
+}  // namespace hairloom::cards
