@@ -125,9 +125,16 @@ Status calibrate(const Work& work, Cards& made, Level& level) {
                 return status;
         }
         buildMesh(work.hair, made);
-        level.content = made;
         if (covers && std::abs(off->light - 1) < kFarEnough) break;
     }
+    // What was baked last has a light of its own.
+    level.content = made;
+    const auto off = measured(work, level);
+    if (!off) return tl::unexpected(off.error());
+    made.brightness =
+        std::clamp(made.brightness / static_cast<float>(std::max(off->light, 0.25)), 0.25f, 4.0f);
+    buildMesh(work.hair, made);
+    level.content = std::move(made);
     return {};
 }
 
@@ -215,7 +222,7 @@ Status count(const Work& work, Level& level) {
 }
 
 std::string nameFor(const LevelSpec& spec) {
-    if (spec.kind == LevelKind::strands) return fmt::format("strands-{:g}%", 100 * spec.amount);
+    if (spec.kind == LevelKind::strands) return fmt::format("strands-{:g}", 100 * spec.amount);
     return fmt::format("{}-{:g}", nameOf(spec.kind), spec.amount);
 }
 
