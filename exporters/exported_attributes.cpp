@@ -23,8 +23,8 @@ std::int32_t groupNumber(const Groom& groom, std::uint32_t group) {
 /// What has a name of its own in the file, belongs to the scalp, or is a tool's state.
 bool isCarriedOtherwise(std::string_view name, bool perPoint) {
     if (perPoint)
-        return name == attribute::kPosition || name == attribute::kBasePosition ||
-               name.starts_with("sculpt.") || name == attribute::kRadius || name == attribute::kPointColour;
+        return name == attribute::kPosition || isOperatorAttribute(name) || name == attribute::kRadius ||
+               name == attribute::kPointColour;
     return name == attribute::kStrandId || name == attribute::kGroup || name == attribute::kGuide ||
            name == attribute::kRootUv || name == attribute::kRootTriangle ||
            name == attribute::kRootBarycentric || name == attribute::kSelected ||

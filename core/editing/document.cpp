@@ -29,10 +29,8 @@ Document::Document(Groom groom) : observers_(std::make_shared<Observers>()) {
 Document::~Document() = default;
 
 Result<std::unique_ptr<Document>> Document::open(const std::filesystem::path& path) {
-    auto groom = loadProject(path);
+    auto groom = openProject(path);
     if (!groom) return tl::unexpected(groom.error());
-    if (auto status = completeOperators(path.string(), *groom); !status)
-        return tl::unexpected(status.error());
     return std::make_unique<Document>(std::move(*groom));
 }
 

@@ -23,11 +23,6 @@ namespace {
 
 constexpr std::size_t kGrain = 64;
 
-bool isOfStack(std::string_view attribute) {
-    return attribute == attribute::kPosition || attribute == attribute::kBasePosition ||
-           attribute.starts_with("sculpt.");
-}
-
 const AttributeData* find(const AttributeSet& attributes, std::string_view name) {
     const auto found = attributes.all().find(name);
     return found == attributes.all().end() ? nullptr : &found->second;
@@ -43,7 +38,7 @@ class RestackCommand final : public Command {
             for (const auto& [attribute, data] : groom->pointAttributes.all()) names.insert(attribute);
         }
         for (const std::string& attribute : names) {
-            if (!isOfStack(attribute) ||
+            if ((attribute != attribute::kPosition && !isOperatorAttribute(attribute)) ||
                 from.pointAttributes.version(attribute) == to.pointAttributes.version(attribute))
                 continue;
             const AttributeData* data = find(to.pointAttributes, attribute);
@@ -104,7 +99,7 @@ void fitSculpts(Groom& groom) {
     }
     std::vector<std::string> gone;
     for (const auto& [name, data] : groom.pointAttributes.all()) {
-        if (name.starts_with("sculpt.") && !wanted.contains(name)) gone.push_back(name);
+        if (name.starts_with(kSculptPrefix) && !wanted.contains(name)) gone.push_back(name);
     }
     for (const std::string& name : gone) groom.pointAttributes.erase(name);
     for (const std::string& name : wanted) {
@@ -270,9 +265,7 @@ StackCommand bakeOperators(const Model& model) {
     const Groom& groom = model.groom;
     if (groom.operators.empty()) return nullptr;
     Groom next = groom;
-    next.operators.clear();
-    fitSculpts(next);
-    next.pointAttributes.erase(attribute::kBasePosition);
+    dropOperators(next);
     auto command = std::make_unique<RestackCommand>("Bake operators", groom, next);
     command->setRecord(recordOf("bake_operators", nlohmann::ordered_json::object()));
     return command;

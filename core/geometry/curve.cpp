@@ -61,27 +61,33 @@ float polylineLength(std::span<const Vec3f> points) {
     return static_cast<float>(length);
 }
 
-std::vector<Vec3f> resampleEvenly(std::span<const Vec3f> points, std::size_t count) {
-    assert(!points.empty() && count >= 2);
+std::vector<PolylinePlace> evenPlaces(std::span<const Vec3f> points, std::size_t count) {
+    assert(points.size() >= 2 && count >= 2);
     std::vector<double> arc(points.size(), 0);
     for (std::size_t i = 1; i < points.size(); ++i)
         arc[i] = arc[i - 1] + (points[i] - points[i - 1]).cast<double>().norm();
+    std::vector<PolylinePlace> places;
+    places.reserve(count);
+    std::uint32_t segment = 0;
+    for (std::size_t i = 0; i + 1 < count; ++i) {
+        const double target = arc.back() * static_cast<double>(i) / static_cast<double>(count - 1);
+        while (segment + 2 < points.size() && arc[segment + 1] < target) ++segment;
+        const double length = arc[segment + 1] - arc[segment];
+        const double t = length > 0 ? std::clamp((target - arc[segment]) / length, 0.0, 1.0) : 0;
+        places.push_back({segment, static_cast<float>(t)});
+    }
+    places.push_back({static_cast<std::uint32_t>(points.size() - 2), 1});
+    return places;
+}
+
+std::vector<Vec3f> resampleEvenly(std::span<const Vec3f> points, std::size_t count) {
+    assert(!points.empty());
+    if (points.size() == 1) return std::vector<Vec3f>(count, points.front());
     std::vector<Vec3f> result;
     result.reserve(count);
-    std::size_t segment = 1;
-    for (std::size_t i = 0; i < count; ++i) {
-        const double target = arc.back() * static_cast<double>(i) / static_cast<double>(count - 1);
-        while (segment + 1 < points.size() && arc[segment] < target) ++segment;
-        const bool atEnd = i + 1 == count || points.size() == 1;
-        if (atEnd) {
-            result.push_back(points.back());
-            continue;
-        }
-        const double length = arc[segment] - arc[segment - 1];
-        const double t = length > 0 ? std::clamp((target - arc[segment - 1]) / length, 0.0, 1.0) : 0;
-        result.push_back(points[segment - 1] +
-                         static_cast<float>(t) * (points[segment] - points[segment - 1]));
-    }
+    for (const auto& [segment, t] : evenPlaces(points, count))
+        result.push_back(points[segment] + t * (points[segment + 1] - points[segment]));
+    result.back() = points.back();
     return result;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 // Curves through strand points: uniform Catmull-Rom (thesis Eq. 54–56), resampling, frames.
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -16,6 +17,14 @@ Vec3f catmullRomDerivative(std::span<const Vec3f> points, float x);
 
 /// Sum of the segment lengths, metres.
 float polylineLength(std::span<const Vec3f> points);
+
+/// A place on a polyline.
+struct PolylinePlace {
+    std::uint32_t segment;  ///< from points[segment] to the next
+    float t;                ///< 0 … 1 of the way along it
+};
+/// `count` ≥ 2 places evenly spaced by arc length along a polyline of at least two points, end to end.
+std::vector<PolylinePlace> evenPlaces(std::span<const Vec3f> points, std::size_t count);
 
 /// `count` ≥ 2 points evenly spaced by arc length along the polyline; the ends are kept exactly.
 std::vector<Vec3f> resampleEvenly(std::span<const Vec3f> points, std::size_t count);

@@ -48,4 +48,17 @@ Groom makeGroom(std::vector<std::uint32_t> offsets, std::vector<Vec3f> positions
     return groom;
 }
 
+bool isOperatorAttribute(std::string_view name) {
+    return name == attribute::kBasePosition || name.starts_with(kSculptPrefix);
+}
+
+void dropOperators(Groom& groom) {
+    groom.operators.clear();
+    std::vector<std::string> gone;
+    for (const auto& [name, data] : groom.pointAttributes.all()) {
+        if (isOperatorAttribute(name)) gone.push_back(name);
+    }
+    for (const std::string& name : gone) groom.pointAttributes.erase(name);
+}
+
 }  // namespace hairloom

@@ -103,6 +103,11 @@ struct Groom {
 /// A groom of these strands with position and offsets and nothing else. `offsets` as in Groom.
 Groom makeGroom(std::vector<std::uint32_t> offsets, std::vector<Vec3f> positions);
 
+/// Whether a point attribute belongs to the operators: their base shape, or the strokes of a sculpt.
+bool isOperatorAttribute(std::string_view name);
+/// Leaves the positions as they are; operators, their base shape and their strokes go.
+void dropOperators(Groom& groom);
+
 /// Straight strands along the interpolated scalp normals (thesis §4.1), bound to the scalp, each with
 /// `points` ≥ 2 points over `length` metres, with ids, root UVs, radius tapered as the material says, and the
 /// Delaunay triangulation of the roots, which lists those that make no triangle as alone. Errors: no scalp,

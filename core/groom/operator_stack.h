@@ -5,11 +5,12 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace hairloom {
 
 struct Operator {
-    std::string op;               ///< a name of stackOperations()
+    std::string op;               ///< a name of stackOperators()
     std::string settings = "{}";  ///< what it has in a script beside its name, as a JSON object
     bool enabled = true;
     float weight = 1;          ///< 0 … 1, share of what it does to strands
@@ -24,8 +25,9 @@ inline constexpr const char* kSculpt = "sculpt";
 
 /// "sculpt.3": float3 per point, in the frame of the segment that ends there, as a share of its length; what
 /// is added to the segment. 0 at roots.
+inline constexpr std::string_view kSculptPrefix = "sculpt.";
 inline std::string sculptAttribute(std::uint32_t number) {
-    return "sculpt." + std::to_string(number);
+    return std::string(kSculptPrefix) + std::to_string(number);
 }
 
 }  // namespace hairloom

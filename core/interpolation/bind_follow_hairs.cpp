@@ -97,7 +97,8 @@ class Binder {
             lengths_[guide] = polylineLength(points(guide));
         }
         setFrames();
-        setRadii();
+        bindings_.radii =
+            runtime::wispRadii(settings_.wispRadiusRoot, settings_.wispRadiusTip, bindings_.pointsPerHair);
         bindings_.triangles = guideTriangles(groom_, bindings_.guideStrands);
         setHairs();
         projectRoots();
@@ -125,15 +126,6 @@ class Binder {
             normal.normalize();
             const Vec3f axis = normal.unitOrthogonal();
             bindings_.rootFrames[guide] << axis, normal.cross(axis), normal;
-        }
-    }
-
-    void setRadii() {
-        bindings_.radii.resize(bindings_.pointsPerHair);
-        for (std::uint32_t i = 0; i < bindings_.pointsPerHair; ++i) {
-            const float s = static_cast<float>(i) / static_cast<float>(bindings_.pointsPerHair - 1);
-            bindings_.radii[i] =
-                settings_.wispRadiusRoot + s * (settings_.wispRadiusTip - settings_.wispRadiusRoot);
         }
     }
 

@@ -18,30 +18,6 @@ constexpr Field<S> kFields[] = {
     field<&S::points>("points", "", 2, runtime::kMaxPoints, "of each strand, evenly spaced"),
 };
 
-/// Where a new point lies between two old ones.
-struct Between {
-    std::uint32_t from;
-    float t;  ///< of the way to the next
-};
-
-/// Points of a strand at even arc lengths; the ends are the ends. `first` is the strand's first point.
-void appendPlaces(std::span<const Vec3f> strand, std::uint32_t first, std::uint32_t count,
-                  std::vector<Between>& places) {
-    std::vector<double> arc{0};
-    for (std::size_t i = 1; i < strand.size(); ++i)
-        arc.push_back(arc.back() + static_cast<double>((strand[i] - strand[i - 1]).norm()));
-    const auto last = static_cast<std::uint32_t>(strand.size() - 1);
-    std::uint32_t segment = 0;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const double wanted = arc.back() * i / (count - 1);
-        while (segment + 1 < last && arc[segment + 1] < wanted) ++segment;
-        const double length = arc[segment + 1] - arc[segment];
-        const double t = length > 0 ? (wanted - arc[segment]) / length : 0;
-        places.push_back({first + segment, static_cast<float>(std::clamp(t, 0.0, 1.0))});
-    }
-    places.back() = {first + last - 1, 1};
-}
-
 template <class T>
 T mixed(const T& a, const T& b, float t) {
     if (t <= 0) return a;
@@ -53,21 +29,17 @@ T mixed(const T& a, const T& b, float t) {
     }
 }
 
-AttributeData taken(const AttributeData& data, const std::vector<Between>& places) {
+AttributeData taken(const AttributeData& data, const std::vector<PolylinePlace>& places) {
     return std::visit(
         [&](const auto& array) -> AttributeData {
             using Array = std::remove_cvref_t<decltype(array)>;
             std::vector<std::remove_cvref_t<decltype(array[0])>> values;
             values.reserve(places.size());
-            for (const Between& place : places)
-                values.push_back(mixed(array[place.from], array[place.from + 1], place.t));
+            for (const PolylinePlace& place : places)
+                values.push_back(mixed(array[place.segment], array[place.segment + 1], place.t));
             return Array(std::move(values));
         },
         data);
-}
-
-bool isOfOperators(std::string_view attribute) {
-    return attribute == attribute::kBasePosition || attribute.starts_with("sculpt.");
 }
 
 }  // namespace
@@ -87,23 +59,22 @@ Result<std::size_t> resample(Groom& groom, const S& settings, const Region& regi
     }
     if (changed == 0) return 0;
     std::vector<std::uint32_t> offsets{0};
-    std::vector<Between> places;
+    std::vector<PolylinePlace> places;
     for (std::size_t s = 0; s < counts.size(); ++s) {
         const std::uint32_t first = groom.offsets[s], own = groom.offsets[s + 1] - first;
         if (counts[s] == own) {
             for (std::uint32_t i = 0; i + 1 < own; ++i) places.push_back({first + i, 0});
             places.push_back({first + own - 2, 1});
         } else {
-            appendPlaces(groom.strand(s), first, counts[s], places);
+            for (const auto& [segment, t] : evenPlaces(groom.strand(s), counts[s]))
+                places.push_back({first + segment, t});
         }
         offsets.push_back(static_cast<std::uint32_t>(places.size()));
     }
+    dropOperators(groom);  // their arrays have other points
     AttributeSet points;
-    for (const auto& [name, data] : groom.pointAttributes.all()) {
-        if (!isOfOperators(name)) points.set(name, taken(data, places));
-    }
+    for (const auto& [name, data] : groom.pointAttributes.all()) points.set(name, taken(data, places));
     groom.pointAttributes = std::move(points);
-    groom.operators.clear();
     groom.offsets = CowArray<std::uint32_t>(std::move(offsets));
     return changed;
 }

@@ -34,13 +34,6 @@ Result<ImportedScene> importSceneWithUnit(const std::string& path, const std::st
     return importSceneLoud(path, options);
 }
 
-Result<Groom> openProject(const std::string& path) {
-    auto groom = loadProject(path);
-    if (!groom) return groom;
-    if (auto status = completeOperators(path, *groom); !status) return tl::unexpected(status.error());
-    return groom;
-}
-
 Result<Groom> loadDocument(const std::string& path) {
     if (looksLikeProject(path)) return openProject(path);
     auto imported = importStrands(path, {});

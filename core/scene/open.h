@@ -20,9 +20,6 @@ Result<ImportedScene> importSceneLoud(const std::string& path, const MeshImportO
 /// The same with the name of a unit, which may be empty.
 Result<ImportedScene> importSceneWithUnit(const std::string& path, const std::string& unit);
 
-/// A project, as loadProject() reads it, whose operators are checked and complete, too.
-Result<Groom> openProject(const std::string& path);
-
 /// A groom from a project, or from a hair file of any supported format.
 Result<Groom> loadDocument(const std::string& path);
 

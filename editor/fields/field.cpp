@@ -64,10 +64,11 @@ struct OperatorAt {
 
 std::vector<Field> settingsFields(const OperatorAt& at, const std::vector<FieldRow>& rows, bool region) {
     std::vector<Field> fields;
+    const Operator fresh = newOperator(at.op);
     for (const FieldRow& row : rows) {
         Field field = at.field(row.info);
         for (std::uint32_t c = 0; c < field.components(); ++c)
-            field.defaultValue[c] = settingOf(newOperator(at.op), row.info, c, region);
+            field.defaultValue[c] = settingOf(fresh, row.info, c, region);
         field.value = [at, info = row.info, region](const Groom& groom, std::uint32_t component) {
             const Operator* one = at.in(groom);
             return one ? settingOf(*one, info, component, region) : 0;

@@ -97,8 +97,7 @@ class EffectsPanel : public QWidget {
 
     /// Each effect on and off, while the head moves as it does in the view.
     void measure() {
-        const QString name = player_.motion() == "none" ? QStringLiteral("nod") : player_.motion();
-        auto motion = player_.makeMotion(name);
+        auto motion = player_.makeMeasuredMotion();
         if (!motion) return;
         const auto groom = std::make_shared<const Groom>(document_.groom());
         const std::shared_ptr<const HeadMotion> moves = std::move(*motion);

@@ -222,11 +222,7 @@ FollowHairs::Result Asset::followHairs(const Strands& rest, const Host& host) co
         shifts[far.hair] = Float3{static_cast<float>(far.shift[0]), static_cast<float>(far.shift[1]),
                                   static_cast<float>(far.shift[2])} *
                            kFarShiftStep;
-    std::vector<float> wisps(r.pointsPerHair);
-    for (std::uint32_t i = 0; i < r.pointsPerHair; ++i) {
-        const float s = static_cast<float>(i) / static_cast<float>(r.pointsPerHair - 1);
-        wisps[i] = r.radiusRoot + s * (r.radiusTip - r.radiusRoot);
-    }
+    const std::vector<float> wisps = wispRadii(r.radiusRoot, r.radiusTip, r.pointsPerHair);
     FollowView view;
     view.guideOffsets = rest.offsets;
     view.guideRestPositions_ss = rest.positions_ss;

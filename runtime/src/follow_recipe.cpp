@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "src/random.h"
+#include "hairloom/random.h"
 
 namespace hairloom::runtime {
 namespace {
@@ -149,6 +149,13 @@ Float3 shiftDirection(std::span<const RootPlane> planes_ss, const std::array<std
     if (!(size > 0.1f)) return {0, 0, 1};
     const Float3 unit = mean * (1 / size);
     return {dot(unit, own.x), dot(unit, own.y), dot(unit, own.normal)};
+}
+
+std::vector<float> wispRadii(float root, float tip, std::uint32_t points) {
+    std::vector<float> radii(points);
+    for (std::uint32_t i = 0; i < points; ++i)
+        radii[i] = root + static_cast<float>(i) / static_cast<float>(points - 1) * (tip - root);
+    return radii;
 }
 
 }  // namespace hairloom::runtime

@@ -48,9 +48,9 @@ Operator readOperatorShape(JsonReader& reader) {
     return one;
 }
 
-std::vector<Operator> readOperatorShapes(JsonReader& reader) {
+std::vector<Operator> readOperatorList(JsonReader& reader, Operator (*readOne)(JsonReader&)) {
     std::vector<Operator> operators;
-    for (JsonReader& entry : reader.objects("operators")) operators.push_back(readOperatorShape(entry));
+    for (JsonReader& entry : reader.objects("operators")) operators.push_back(readOne(entry));
     if (operators.size() > kMaxOperators)
         reader.complain("operators", fmt::format("has {} entries", operators.size()),
                         fmt::format("expected at most {}", kMaxOperators));

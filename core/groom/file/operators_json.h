@@ -17,7 +17,7 @@ nlohmann::ordered_json toJson(std::span<const Operator> operators);
 Operator readOperatorHead(JsonReader& reader);
 /// Takes settings as they are; readOperator() of core/operations/stack.h knows them.
 Operator readOperatorShape(JsonReader& reader);
-/// The member "operators", with at most kMaxOperators of them.
-std::vector<Operator> readOperatorShapes(JsonReader& reader);
+/// The member "operators", with at most kMaxOperators of them, each as `readOne` takes it.
+std::vector<Operator> readOperatorList(JsonReader& reader, Operator (*readOne)(JsonReader&));
 
 }  // namespace hairloom

@@ -41,7 +41,7 @@ Counts readHead(JsonReader& head, Groom& groom, ScalpMeshParts& scalp) {
     constexpr std::uint64_t kMax = std::numeric_limits<std::uint32_t>::max();
     const Counts counts{version, head.count("strands", 0, kMax), head.count("points", 0, kMax)};
     readLayers(head, groom);
-    if (version >= kFirstWithOperators) groom.operators = readOperatorShapes(head);
+    if (version >= kFirstWithOperators) groom.operators = readOperatorList(head, readOperatorShape);
     groom.groupNames = head.strings("groups");
     for (JsonReader& entry : head.objects("spheres")) groom.spheres.push_back(readSphere(entry));
     readSettings(head.object("material"), groom.material);

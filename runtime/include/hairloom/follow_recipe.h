@@ -49,4 +49,7 @@ DrawnHairs drawFollowHairs(const FollowRecipe& recipe, const Host& host = {});
 Float3 shiftDirection(std::span<const RootPlane> planes_ss, const std::array<std::uint32_t, 3>& guides,
                       Float3 rootWeights);
 
+/// Half the width of a wisp at each of `points` ≥ 2 points of a hair, metres: straight from root to tip.
+std::vector<float> wispRadii(float root, float tip, std::uint32_t points);
+
 }  // namespace hairloom::runtime

@@ -4,14 +4,7 @@
 #   cmake -DSOURCE=DIR -DBINARY=DIR -DWORK=DIR -DCLI=PROGRAM -DCC=C -DCXX=CXX -P install_and_play.cmake
 file(REMOVE_RECURSE "${WORK}")
 file(MAKE_DIRECTORY "${WORK}")
-function(run)
-    execute_process(COMMAND ${ARGN} OUTPUT_VARIABLE output ERROR_VARIABLE output RESULT_VARIABLE result
-                    OUTPUT_STRIP_TRAILING_WHITESPACE)
-    if(NOT result EQUAL 0)
-        message(FATAL_ERROR "${ARGN}\n${output}")
-    endif()
-    set(output "${output}" PARENT_SCOPE)
-endfunction()
+include("${SOURCE}/tests/support/run.cmake")
 
 run(${CMAKE_COMMAND} --install "${BINARY}" --component runtime --prefix "${WORK}/prefix")
 

@@ -3,14 +3,7 @@
 # and by pkg-config. Its strands come to the same state as those of INSIDE, the same program of this project.
 #   cmake -DSOURCE=DIR -DBUILD=DIR -DINSIDE=PROGRAM -DCOMPILER=CXX -P install_and_use.cmake
 file(REMOVE_RECURSE "${BUILD}/prefix" "${BUILD}/game")
-function(run)
-    execute_process(COMMAND ${ARGN} OUTPUT_VARIABLE output ERROR_VARIABLE output RESULT_VARIABLE result
-                    OUTPUT_STRIP_TRAILING_WHITESPACE)
-    if(NOT result EQUAL 0)
-        message(FATAL_ERROR "${ARGN}\n${output}")
-    endif()
-    set(output "${output}" PARENT_SCOPE)
-endfunction()
+include("${SOURCE}/tests/support/run.cmake")
 
 find_program(CCACHE ccache)
 if(CCACHE)
