@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// The constraint that all brushes share: segments keep their lengths, roots stay, hair stays out of the head.
+// The constraint that operations and brushes share: segments keep their lengths, roots stay, hair stays out
+// of the head.
 
 #include <span>
 #include <vector>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// The scalp as brushes meet it: how far away, and which way is out.
+// The scalp as operations and brushes meet it: how far away, and which way is out.
 
 #include <cmath>
 #include <memory>

@@ -38,7 +38,7 @@ Groom hairOnSphere(float length = 0.2f) {
     return straightHair(sphereScalp(kHeadRadius, 4, kHeadCentre), kStrands, 24, length);
 }
 
-/// Hair with bends, so that every brush finds something to do.
+/// Hair with bends, so that every operation finds something to do.
 Groom wavyHair() {
     Groom groom = hairOnSphere();
     EXPECT_TRUE(flow(groom, flowOverTheHead()));
@@ -48,24 +48,24 @@ Groom wavyHair() {
     return groom;
 }
 
-struct Brush {
+struct Tested {
     const char* name;
     std::function<Result<std::size_t>(Groom&, const Region&)> run;
     bool keepsLengths = true;
 };
 
-void PrintTo(const Brush& printed, std::ostream* out) {
+void PrintTo(const Tested& printed, std::ostream* out) {
     *out << printed.name;
 }
 
 template <class S>
-Brush brush(const char* name, Result<std::size_t> (*apply)(Groom&, const S&, const Region&), S settings = {},
-            bool keepsLengths = true) {
+Tested tested(const char* name, Result<std::size_t> (*apply)(Groom&, const S&, const Region&),
+              S settings = {}, bool keepsLengths = true) {
     return {name, [=](Groom& groom, const Region& region) { return apply(groom, settings, region); },
             keepsLengths};
 }
 
-std::vector<Brush> brushes() {
+std::vector<Tested> testedOperations() {
     FlowSettings parted = flowOverTheHead();
     parted.parting = 1;
     parted.partingPoint = kHeadCentre + Vec3f(0.02f, kHeadRadius, 0);
@@ -84,26 +84,26 @@ std::vector<Brush> brushes() {
     shorter.rescale = false;
     CollideSettings away;
     away.distance = 0.006f;
-    return {brush("Flow", flow, parted),
-            brush("Clump", clump),
-            brush("Noise", noise),
-            brush("Curl", curl),
-            brush("Smooth", smooth),
-            brush("Drape", drape),
-            brush("Collide", collide, away),
-            brush("Trim", trim, cut, false),
-            brush("SetLength", setLength, longer, false),
-            brush("CutLength", setLength, shorter, false)};
+    return {tested("Flow", flow, parted),
+            tested("Clump", clump),
+            tested("Noise", noise),
+            tested("Curl", curl),
+            tested("Smooth", smooth),
+            tested("Drape", drape),
+            tested("Collide", collide, away),
+            tested("Trim", trim, cut, false),
+            tested("SetLength", setLength, longer, false),
+            tested("CutLength", setLength, shorter, false)};
 }
 
-class EveryBrush : public testing::TestWithParam<Brush> {
+class EveryOperation : public testing::TestWithParam<Tested> {
   protected:
     void TearDown() override { setThreadCount(0); }
 };
-INSTANTIATE_TEST_SUITE_P(Brushes, EveryBrush, testing::ValuesIn(brushes()),
+INSTANTIATE_TEST_SUITE_P(Operations, EveryOperation, testing::ValuesIn(testedOperations()),
                          [](const auto& test) { return std::string(test.param.name); });
 
-TEST_P(EveryBrush, KeepsRootsCountsAndLengthsAndStaysOutOfTheHead) {
+TEST_P(EveryOperation, KeepsRootsCountsAndLengthsAndStaysOutOfTheHead) {
     const Groom before = wavyHair();
     Groom after = before;
     const auto touched = GetParam().run(after, {});
@@ -130,7 +130,7 @@ TEST_P(EveryBrush, KeepsRootsCountsAndLengthsAndStaysOutOfTheHead) {
     EXPECT_EQ(changed, *touched);
 }
 
-TEST_P(EveryBrush, LeavesFrozenAndLockedStrandsAlone) {
+TEST_P(EveryOperation, LeavesFrozenAndLockedStrandsAlone) {
     Groom before = wavyHair();
     std::vector<std::uint8_t> frozen(kStrands, 0);
     std::vector<std::uint32_t> layers(kStrands, 0);
@@ -156,7 +156,7 @@ TEST_P(EveryBrush, LeavesFrozenAndLockedStrandsAlone) {
               before.pointAttributes.version(attribute::kPosition));
 }
 
-TEST_P(EveryBrush, GivesTheSameBitsForAnyNumberOfThreads) {
+TEST_P(EveryOperation, GivesTheSameBitsForAnyNumberOfThreads) {
     const Groom before = wavyHair();
     setThreadCount(1);
     Groom one = before;
@@ -167,7 +167,7 @@ TEST_P(EveryBrush, GivesTheSameBitsForAnyNumberOfThreads) {
     EXPECT_EQ(contentHash(one), contentHash(four));
 }
 
-TEST_P(EveryBrush, ReachesOnlyItsRegion) {
+TEST_P(EveryOperation, ReachesOnlyItsRegion) {
     const Groom before = wavyHair();
     Region region;
     region.point = kHeadCentre;
@@ -406,7 +406,7 @@ TEST(Drape, TurnsSegmentsDown) {
     EXPECT_LT((points[2] - halfway - Vec3f(0, -0.1f, 0)).norm(), 1e-6f);
 }
 
-TEST(Brushes, SettingsOutOfRangeAndMissingScalpsAreRefused) {
+TEST(Operations, SettingsOutOfRangeAndMissingScalpsAreRefused) {
     Groom groom = makeGroom({0, 2}, {Vec3f(0, 0, 0), Vec3f(0, 0.1f, 0)});
     const auto noScalp = flow(groom, {});
     ASSERT_FALSE(noScalp);
