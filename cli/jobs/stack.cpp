@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <memory>
 
 #include "cli/documents.h"
@@ -19,6 +22,7 @@ namespace {
 struct StackOptions {
     std::string input;
     std::string from;
+    std::string layer;  ///< name; empty: all
     std::string output;
     bool bake = false;
 };
@@ -60,8 +64,18 @@ Result<Report> edit(const StackOptions& options, Groom groom) {
 Result<Report> run(const StackOptions& options) {
     auto groom = loadDocument(options.input);
     if (!groom) return tl::unexpected(groom.error());
-    if (options.output.empty()) return Report{{"operators", toJson(groom->operators)}};
-    return edit(options, std::move(*groom));
+    if (!options.output.empty()) return edit(options, std::move(*groom));
+    std::vector<Operator> shown = groom->operators;
+    if (!options.layer.empty()) {
+        const auto layer = std::ranges::find(groom->layers, options.layer, &Layer::name);
+        if (layer == groom->layers.end())
+            return failIn(options.input, {}, fmt::format("no layer is called '{}'", options.layer),
+                          "the job `layers` lists them");
+        const auto number = static_cast<std::uint32_t>(layer - groom->layers.begin()) + 1;
+        std::erase_if(shown,
+                      [&](const Operator& one) { return layerOf(one) != 0 && layerOf(one) != number; });
+    }
+    return Report{{"operators", toJson(shown)}};
 }
 
 JobRun declare(CLI::App& job) {
@@ -73,6 +87,8 @@ JobRun declare(CLI::App& job) {
                        "Operators to have, as this job prints them with --json (docs/formats/script.md)");
     auto* bake =
         job.add_flag("--bake", options->bake, "Make the hair as it is all there is; no operators stay");
+    job.add_option("--layer", options->layer, "Shows those alone that act on the layer of that name")
+        ->excludes(output);
     from->needs(output);
     bake->needs(output);
     return [options](const std::string&) {

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "core/editing/document.h"
+#include "core/editing/layer_commands.h"
 #include "core/editing/place.h"
 #include "core/editing/selection_commands.h"
 #include "core/editing/settings_commands.h"
@@ -108,6 +110,26 @@ MakeCommand readPlace(JsonReader& reader) {
     };
 }
 
+std::uint32_t readLayerIndex(JsonReader& reader) {
+    return static_cast<std::uint32_t>(reader.count("layer", 0, std::numeric_limits<std::uint32_t>::max()));
+}
+
+MakeCommand readMoveToLayer(JsonReader& reader) {
+    return [strands = readRuns(reader, "strands"),
+            layer = readLayerIndex(reader)](const Document& document) -> CommandResult {
+        const Model& model = document.model();
+        if (auto status = checkBelow(strands, model.groom.strandCount(), "strand"); !status)
+            return tl::unexpected(status.error());
+        return moveToLayer(model, strands, layer);
+    };
+}
+
+MakeCommand readRemoveLayer(JsonReader& reader) {
+    return [layer = readLayerIndex(reader)](const Document& document) {
+        return removeLayer(document.model(), layer);
+    };
+}
+
 MakeCommand readTriangulate(JsonReader&) {
     return [](const Document& document) -> CommandResult { return triangulate(document.model()); };
 }
@@ -161,6 +183,8 @@ constexpr RecordedOperation kOperations[] = {
     {"placement", readSettingsStep<PlacementSettings, setPlacementSettings>},
     {"spheres", readSpheres},
     {"layers", readLayers},
+    {"move_to_layer", readMoveToLayer},
+    {"remove_layer", readRemoveLayer},
     {"strands", readStrands},
     {"scalp", readScalp},
     {"density", readDensity},

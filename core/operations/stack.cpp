@@ -9,6 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/base/profiler.h"
 #include "core/groom/file/operators_json.h"
+#include "core/groom/file/project_file.h"
 #include "core/operations/length_constraint.h"
 #include "core/operations/sculpt.h"
 
@@ -118,12 +119,7 @@ Operator readOperator(JsonReader& reader) {
 }
 
 std::vector<Operator> readOperators(JsonReader& reader) {
-    std::vector<Operator> operators;
-    for (JsonReader& entry : reader.objects("operators")) operators.push_back(readOperator(entry));
-    if (operators.size() > kMaxOperators)
-        reader.complain("operators", fmt::format("has {} entries", operators.size()),
-                        fmt::format("expected at most {}", kMaxOperators));
-    return operators;
+    return readOperatorList(reader, readOperator);
 }
 
 Status completeOperators(const std::string& file, Groom& groom) {
@@ -134,6 +130,14 @@ Status completeOperators(const std::string& file, Groom& groom) {
     if (auto status = reader.status(); !status) return status;
     groom.operators = std::move(complete);
     return {};
+}
+
+Result<Groom> openProject(const std::filesystem::path& path) {
+    auto groom = loadProject(path);
+    if (!groom) return groom;
+    if (auto status = completeOperators(path.string(), *groom); !status)
+        return tl::unexpected(status.error());
+    return groom;
 }
 
 double settingOf(const Operator& one, const FieldInfo& field, std::uint32_t component, bool region) {
@@ -163,6 +167,17 @@ bool setSettingOf(Operator& one, const FieldInfo& field, double value, std::uint
     return true;
 }
 
+std::uint32_t layerOf(const Operator& one) {
+    const auto settings = nlohmann::ordered_json::parse(one.settings);
+    return settings.contains("region") ? settings["region"].value("layer", 0u) : 0;
+}
+
+void setLayerOf(Operator& one, std::uint32_t layer) {
+    auto settings = nlohmann::ordered_json::parse(one.settings);
+    settings["region"]["layer"] = layer;
+    one.settings = settings.dump();
+}
+
 std::size_t StackCache::bytes() const {
     std::size_t bytes = 0;
     for (const Level& level : levels_) bytes += level.key.capacity() + sizeOf(level.output) * sizeof(Vec3f);
@@ -177,12 +192,15 @@ class StackRun {
         work_.strandAttributes.erase(attribute::kFrozen);
         for (Layer& layer : work_.layers) layer.locked = false;
         const Version ids = groom.strandAttributes.version(attribute::kStrandId);
-        if (cache.scalp_ != groom.scalp || cache.offsets_ != groom.offsets.version() || cache.ids_ != ids)
+        const Version layers = groom.strandAttributes.version(attribute::kLayer);
+        if (cache.scalp_ != groom.scalp || cache.offsets_ != groom.offsets.version() || cache.ids_ != ids ||
+            cache.strandLayers_ != layers)
             cache.levels_.clear();
         if (cache.scalp_ != groom.scalp || !cache.skin_) cache.skin_ = sharedSkin(groom.scalp);
         cache.scalp_ = groom.scalp;
         cache.offsets_ = groom.offsets.version();
         cache.ids_ = ids;
+        cache.strandLayers_ = layers;
         // Behind a shorter stack nothing is of use.
         if (cache.levels_.size() > groom.operators.size()) cache.levels_.resize(groom.operators.size());
     }

@@ -3,6 +3,7 @@
 // Runs the operators of a groom (core/groom/operator_stack.h). An operator acts on all strands of its region,
 // frozen and locked ones too: these keep brushes away, and would fall back to the base shape else.
 
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <string>
@@ -36,12 +37,19 @@ std::vector<Operator> readOperators(JsonReader& reader);
 /// The same for those of a groom that was loaded from `file`: settings that it lacks get their defaults.
 /// Error: the first that does not hold, with its JSON path.
 Status completeOperators(const std::string& file, Groom& groom);
+/// A project file with its operators complete. Errors: those of loadProject() and completeOperators().
+Result<Groom> openProject(const std::filesystem::path& path);
 
 /// A setting of an operator whose settings are complete. `region` names one of scriptRegionFields().
 double settingOf(const Operator& one, const FieldInfo& field, std::uint32_t component, bool region = false);
 /// False, and no change, where the field does not hold the value.
 bool setSettingOf(Operator& one, const FieldInfo& field, double value, std::uint32_t component,
                   bool region = false);
+
+/// The layer that an operator's region names, counted from 1; 0 where it reaches all.
+std::uint32_t layerOf(const Operator& one);
+/// Of an operator whose region names one.
+void setLayerOf(Operator& one, std::uint32_t layer);
 
 /// What the operators made last. One thread at a time.
 class StackCache {
@@ -58,7 +66,7 @@ class StackCache {
     };
     std::shared_ptr<const void> scalp_;      ///< that the levels were made with
     std::shared_ptr<const SkinField> skin_;  ///< kept for the next run
-    Version offsets_ = 0, ids_ = 0;
+    Version offsets_ = 0, ids_ = 0, strandLayers_ = 0;
     std::vector<Level> levels_;
 };
 

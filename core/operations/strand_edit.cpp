@@ -20,6 +20,7 @@ constexpr Field<Region> kRegionFields[] = {
                            "side of the plane that is reached; zero reaches all strands"),
     field<&Region::fade>("fade", "m", 0, 1, "width of the seam in which strands are reached at random"),
     seedField<&Region::seed>("seed", "another seed reaches other strands of the seam"),
+    field<&Region::layer>("layer", "", 0, 1000, "number of the layer that is reached, from 1; 0 reaches all"),
 };
 
 std::uint32_t idOf(const Groom& groom, std::size_t strand) {
@@ -27,7 +28,13 @@ std::uint32_t idOf(const Groom& groom, std::size_t strand) {
     return strand < ids.size() ? ids[strand] : static_cast<std::uint32_t>(strand);
 }
 
+std::size_t layerOf(const Groom& groom, std::size_t strand) {
+    const auto layers = groom.strandAttributes.view<std::uint32_t>(attribute::kLayer);
+    return strand < layers.size() ? layers[strand] : 0;
+}
+
 bool reaches(const Region& region, const Groom& groom, std::size_t strand) {
+    if (region.layer != 0 && layerOf(groom, strand) + 1 != region.layer) return false;
     if (region.normal.isZero(0.0f)) return true;
     const float distance = (groom.strand(strand)[0] - region.point).dot(region.normal.normalized());
     Random random(region.seed, idOf(groom, strand));
@@ -38,8 +45,7 @@ bool editable(const Groom& groom, std::size_t strand) {
     if (groom.offsets[strand + 1] - groom.offsets[strand] < 2) return false;
     const auto frozen = groom.strandAttributes.view<std::uint8_t>(attribute::kFrozen);
     if (strand < frozen.size() && frozen[strand] != 0) return false;
-    const auto layers = groom.strandAttributes.view<std::uint32_t>(attribute::kLayer);
-    const std::size_t layer = strand < layers.size() ? layers[strand] : 0;
+    const std::size_t layer = layerOf(groom, strand);
     return layer >= groom.layers.size() || !groom.layers[layer].locked;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// The loop that every brush runs: over the strands it may touch, in parallel, with a random sequence of its
-// own for each strand.
+// The loop that every operation runs: over the strands it may touch, in parallel, with a random sequence of
+// its own for each strand.
 
 #include <functional>
 #include <span>
@@ -15,13 +15,14 @@ namespace hairloom {
 
 inline constexpr double kAnywhere = 1000;  ///< metres; largest coordinate that a setting may name
 
-/// Which strands a brush reaches: those whose root lies on the side of a plane that `normal` points to. A
-/// normal of zero reaches all.
+/// Which strands an operation reaches: those of a layer whose root lies on the side of a plane that `normal`
+/// points to. A normal of zero reaches all.
 struct Region {
     Vec3f point = Vec3f::Zero();
     Vec3f normal = Vec3f::Zero();
     float fade = 0;
     std::uint64_t seed = 1;
+    std::uint32_t layer = 0;  ///< of Groom::layers, counted from 1; 0 reaches all
 };
 std::span<const Field<Region>> fieldsOf(const Region&);
 

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "core/editing/layer_commands.h"
 #include "core/editing/place.h"
 #include "core/editing/replay.h"
 #include "core/editing/selection_commands.h"
@@ -136,7 +137,17 @@ void anyDrag(Document& document, Random& random, std::uint64_t key) {
 
 std::unique_ptr<Command> anyStrandCommand(const Model& model, Random& random) {
     const auto strands = someOf(model.groom.strandCount(), random, 4);
-    switch (random.below(6)) {
+    switch (random.below(8)) {
+        case 6: {
+            auto moved = moveToLayer(model, strands,
+                                     random.below(static_cast<std::uint32_t>(model.groom.layers.size())));
+            return moved ? std::move(*moved) : nullptr;
+        }
+        case 7: {
+            auto removed =
+                removeLayer(model, random.below(static_cast<std::uint32_t>(model.groom.layers.size())));
+            return removed ? std::move(*removed) : nullptr;
+        }
         case 0:
             return selectStrands(model, strands, static_cast<Choice>(random.below(4)));
         case 1:

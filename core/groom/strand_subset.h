@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/base/result.h"
+#include "core/groom/groom.h"
+
+namespace hairloom {
+
+/// These strands, ascending, with their attributes, and all else that a groom has; the triangulation, which
+/// is of all roots, goes.
+Groom strandsOf(const Groom& groom, std::span<const std::uint32_t> strands);
+
+/// Strands of that layer, ascending.
+std::vector<std::uint32_t> strandsOfLayer(const Groom& groom, std::uint32_t layer);
+
+/// Strands of the layers of these names, ascending. Errors: a name that no layer has, listing those there
+/// are.
+Result<std::vector<std::uint32_t>> strandsOfLayers(const Groom& groom, std::span<const std::string> names);
+
+}  // namespace hairloom

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Layers: what is shown, locked, operated on and exported together.
+#include <QHeaderView>
+#include <QPushButton>
+#include <QTreeWidget>
+#include <QVBoxLayout>
+#include <algorithm>
+
+#include "core/editing/document.h"
+#include "core/editing/layer_commands.h"
+#include "core/editing/selection_commands.h"
+#include "core/editing/settings_commands.h"
+#include "core/groom/strand_subset.h"
+#include "editor/panels/panel.h"
+
+namespace hairloom::editor {
+namespace {
+
+enum Column { kName, kVisible, kLocked, kStrands };
+
+class LayersPanel : public QWidget {
+  public:
+    LayersPanel(QtDocument& document, Messages& messages)
+        : document_(document), messages_(messages), list_(new QTreeWidget) {
+        auto* layout = new QVBoxLayout(this);
+        layout->setContentsMargins(0, 0, 0, 0);
+        layout->setSpacing(8);
+        makeList();
+        layout->addWidget(list_);
+        auto* first = new QHBoxLayout;
+        first->addWidget(
+            button("layerAdd", tr("Add"), tr("A new layer; selected strands move to it"), [this] { add(); }));
+        first->addWidget(button("layerRemove", tr("Remove"),
+                                tr("Takes the layer away; its strands go to the first of the others"),
+                                [this] { perform(editing::removeLayer(model(), chosen())); }));
+        first->addWidget(button("layerSolo", tr("Solo"), tr("Shows this layer alone; again: all of them"),
+                                [this] { solo(); }));
+        layout->addLayout(first);
+        auto* second = new QHBoxLayout;
+        second->addWidget(button("layerSelect", tr("Select strands"), tr("Selects the strands of the layer"),
+                                 [this] { select(); }));
+        second->addWidget(button("layerMove", tr("Move selected here"),
+                                 tr("Puts the selected strands on the layer"),
+                                 [this] { perform(editing::moveToLayer(model(), selected(), chosen())); }));
+        layout->addLayout(second);
+        connect(list_, &QTreeWidget::itemChanged, this, &LayersPanel::takeChange);
+        connect(&document_, &QtDocument::changed, this, [this](editing::Part parts) {
+            if (contains(parts, editing::Part::Layers | editing::Part::Strands | editing::Part::StrandFlags))
+                refresh();
+        });
+        refresh();
+    }
+
+  private:
+    const editing::Model& model() const { return document_.editing().model(); }
+    const std::vector<Layer>& layers() const { return document_.groom().layers; }
+    std::vector<std::uint32_t> selected() const {
+        return editing::strandsWithFlag(document_.groom(), attribute::kSelected);
+    }
+    std::uint32_t chosen() const {
+        const int row = list_->indexOfTopLevelItem(list_->currentItem());
+        return static_cast<std::uint32_t>(std::clamp(row, 0, static_cast<int>(layers().size()) - 1));
+    }
+
+    QPushButton* button(const char* name, const QString& text, const QString& tip,
+                        std::function<void()> act) {
+        auto* made = new QPushButton(text);
+        made->setObjectName(name);
+        made->setToolTip(tip);
+        connect(made, &QPushButton::clicked, this, [act = std::move(act)] { act(); });
+        return made;
+    }
+
+    void makeList() {
+        list_->setObjectName("layers");
+        list_->setHeaderLabels({tr("Layer"), tr("Shown"), tr("Locked"), tr("Strands")});
+        list_->setRootIsDecorated(false);
+        list_->setMinimumHeight(120);
+        list_->header()->setStretchLastSection(false);
+        list_->header()->setSectionResizeMode(kName, QHeaderView::Stretch);
+        for (const int column : {kVisible, kLocked, kStrands})
+            list_->header()->setSectionResizeMode(column, QHeaderView::ResizeToContents);
+        list_->setToolTip(
+            tr("Strands that are shown, locked, operated on and exported together. Double-click a name to "
+               "change it; the region of an operator can name a layer."));
+    }
+
+    void perform(Result<std::unique_ptr<editing::Command>> command) {
+        if (!command) return messages_.warn(QString::fromStdString(command.error().message()));
+        document_.perform(std::move(*command));
+    }
+    void set(std::vector<Layer> changed) {
+        document_.perform(editing::setLayers(model(), std::move(changed)));
+    }
+
+    QString freeName() const {
+        for (std::size_t number = layers().size() + 1;; ++number) {
+            const QString name = tr("Layer %1").arg(number);
+            if (std::ranges::none_of(layers(), [&](const Layer& l) { return l.name == name.toStdString(); }))
+                return name;
+        }
+    }
+
+    void add() {
+        std::vector<Layer> changed = layers();
+        changed.push_back({freeName().toStdString(), true, false});
+        const std::vector<std::uint32_t> moving = selected();
+        set(changed);
+        const auto last = static_cast<std::uint32_t>(changed.size() - 1);
+        list_->setCurrentItem(list_->topLevelItem(static_cast<int>(last)));
+        if (!moving.empty()) perform(editing::moveToLayer(model(), moving, last));
+    }
+
+    void solo() {
+        std::vector<Layer> changed = layers();
+        const std::size_t own = chosen();
+        bool alone = changed[own].visible;
+        for (std::size_t i = 0; i < changed.size(); ++i) alone = alone && (i == own || !changed[i].visible);
+        for (std::size_t i = 0; i < changed.size(); ++i) changed[i].visible = alone || i == own;
+        set(std::move(changed));
+    }
+
+    void select() {
+        const auto strands = strandsOfLayer(document_.groom(), chosen());
+        document_.perform(editing::selectStrands(model(), strands, editing::Choice::Replace));
+    }
+
+    void takeChange(QTreeWidgetItem* item, int column) {
+        const auto index = static_cast<std::size_t>(list_->indexOfTopLevelItem(item));
+        if (index >= layers().size()) return;
+        std::vector<Layer> changed = layers();
+        const bool checked = item->checkState(column) == Qt::Checked;
+        if (column == kVisible) changed[index].visible = checked;
+        if (column == kLocked) changed[index].locked = checked;
+        const QString name = item->text(kName).trimmed();
+        if (column == kName && !name.isEmpty()) changed[index].name = name.toStdString();
+        set(std::move(changed));
+        refresh();  // an empty name goes back
+    }
+
+    void refresh() {
+        const QSignalBlocker quiet(list_);
+        while (list_->topLevelItemCount() > static_cast<int>(layers().size()))
+            delete list_->takeTopLevelItem(list_->topLevelItemCount() - 1);
+        for (std::size_t i = 0; i < layers().size(); ++i) {
+            const int row = static_cast<int>(i);
+            if (row >= list_->topLevelItemCount()) {
+                auto* fresh = new QTreeWidgetItem(list_);
+                fresh->setFlags(Qt::ItemIsEnabled | Qt::ItemIsSelectable | Qt::ItemIsEditable |
+                                Qt::ItemIsUserCheckable);
+            }
+            QTreeWidgetItem& item = *list_->topLevelItem(row);
+            item.setText(kName, QString::fromStdString(layers()[i].name));
+            item.setCheckState(kVisible, layers()[i].visible ? Qt::Checked : Qt::Unchecked);
+            item.setCheckState(kLocked, layers()[i].locked ? Qt::Checked : Qt::Unchecked);
+            const auto strands = strandsOfLayer(document_.groom(), static_cast<std::uint32_t>(i)).size();
+            item.setText(kStrands, QStringLiteral("%L1").arg(strands));
+        }
+        if (list_->currentItem() == nullptr) list_->setCurrentItem(list_->topLevelItem(0));
+        find<QPushButton>("layerRemove")->setEnabled(layers().size() > 1);
+        find<QPushButton>("layerMove")->setEnabled(!selected().empty());
+    }
+    template <class W>
+    W* find(const char* name) const {
+        return findChild<W*>(QLatin1String(name));
+    }
+
+    QtDocument& document_;
+    Messages& messages_;
+    QTreeWidget* list_;
+};
+
+}  // namespace
+
+PanelInfo layersPanel() {
+    return {"layers",
+            QObject::tr("Layers"),
+            "overlay",
+            Qt::LeftDockWidgetArea,
+            28,
+            true,
+            [](const PanelParts& parts) -> QWidget* {
+                return scrolled(column({new LayersPanel(parts.document, parts.messages)}));
+            }};
+}
+
+}  // namespace hairloom::editor
