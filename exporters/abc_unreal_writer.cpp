@@ -24,7 +24,10 @@ StrandWriter abcUnrealWriter() {
             "Unreal takes units for centimetres",
             {{"unreal", "Unreal groom",
               ".abc in centimetres, Y up; turn it by 90° about X in Unreal's import", centimetres}},
-            write};
+            write,
+            {},
+            false,
+            true};
 }
 
 }  // namespace hairloom

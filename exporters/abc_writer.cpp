@@ -27,7 +27,10 @@ StrandWriter abcWriter() {
              {"houdini", "Houdini, Alembic", ".abc in metres, Y up", {}},
              {"maya", "Maya, Alembic", ".abc in centimetres, Y up", centimetres},
              {"unity", "Unity hair", ".abc in metres, Y up; 3 to 128 points, at most 65,536 strands", unity}},
-            write};
+            write,
+            {},
+            false,
+            true};
 }
 
 }  // namespace hairloom

@@ -34,8 +34,12 @@ std::string parameter(std::string_view scope, std::string_view pod, std::uint32_
 
 class CurvesWriter {
   public:
-    CurvesWriter(const Groom& groom, const PreparedStrands& strands, bool unreal)
-        : groom_(groom), strands_(strands), unreal_(unreal) {}
+    CurvesWriter(const Groom& groom, const PreparedStrands& strands, const StrandFrames* frames, bool unreal)
+        : groom_(groom), strands_(strands), unreal_(unreal) {
+        if (!frames) return;
+        times_ = {static_cast<std::uint32_t>(frames->points.size()), frames->first / frames->framesPerSecond,
+                  1 / frames->framesPerSecond};
+    }
 
     std::span<const std::byte> write() {
         const AlembicChild hair{
@@ -46,7 +50,7 @@ class CurvesWriter {
                                               std::span(&hair, 1))};
         const std::uint64_t top = alembicObject(file_, metadata_, 0, std::span(&root, 1));
         return finishAlembic(file_, metadata_, top,
-                             "_ai_AlembicVersion=Alembic 1.8.3;_ai_Application=Hairloom");
+                             "_ai_AlembicVersion=Alembic 1.8.3;_ai_Application=Hairloom", times_);
     }
 
   private:
@@ -80,19 +84,35 @@ class CurvesWriter {
         return xform;
     }
 
-    AlembicCompound geometry() {
-        AlembicCompound curves = compound();
+    static std::array<double, 6> boxOf(std::span<const Vec3f> positions) {
         Box3f bounds;
-        for (const Vec3f& position : strands_.positions) bounds.extend(position);
+        for (const Vec3f& position : positions) bounds.extend(position);
         std::array<double, 6> box{};
         for (int axis = 0; axis < 3; ++axis) {
             box[static_cast<std::size_t>(axis)] = double{bounds.min()[axis]};
             box[static_cast<std::size_t>(axis) + 3] = double{bounds.max()[axis]};
         }
-        curves.scalar(".selfBnds", AlembicType::Double, 6, std::as_bytes(std::span(box)),
-                      "interpretation=box");
-        curves.array("P", AlembicType::Float, 3, bytesOf(strands_.positions),
-                     "geoScope=vtx;interpretation=point");
+        return box;
+    }
+
+    /// Once, or at each time.
+    void addPoints(AlembicCompound& curves) {
+        std::vector<std::span<const Vec3f>> shapes(strands_.frames.begin(), strands_.frames.end());
+        if (shapes.empty()) shapes.emplace_back(strands_.positions);
+        std::vector<std::array<double, 6>> boxes;
+        for (const auto& shape : shapes) boxes.push_back(boxOf(shape));
+        std::vector<std::span<const std::byte>> boxSamples, pointSamples;
+        for (std::size_t i = 0; i < shapes.size(); ++i) {
+            boxSamples.push_back(std::as_bytes(std::span(boxes[i])));
+            pointSamples.push_back(std::as_bytes(shapes[i]));
+        }
+        curves.scalars(".selfBnds", AlembicType::Double, 6, boxSamples, "interpretation=box");
+        curves.arrays("P", AlembicType::Float, 3, pointSamples, "geoScope=vtx;interpretation=point");
+    }
+
+    AlembicCompound geometry() {
+        AlembicCompound curves = compound();
+        addPoints(curves);
         std::vector<std::int32_t> counts(strands_.strandCount());
         for (std::size_t s = 0; s < counts.size(); ++s)
             counts[s] = static_cast<std::int32_t>(strands_.offsets[s + 1] - strands_.offsets[s]);
@@ -168,6 +188,7 @@ class CurvesWriter {
     const Groom& groom_;
     const PreparedStrands& strands_;
     bool unreal_;
+    AlembicTimes times_;
     OgawaBuilder file_;
     std::vector<std::string> metadata_;
 };
@@ -178,7 +199,7 @@ Result<ExportReport> writeAlembic(const Groom& groom, const std::filesystem::pat
                                   const StrandExportOptions& options, bool unreal) {
     auto strands = prepareStrands(groom, options, options.pointsPerStrand);
     if (!strands) return tl::unexpected(inFile(strands.error(), path.string()));
-    CurvesWriter writer(groom, *strands, unreal);
+    CurvesWriter writer(groom, *strands, options.frames.get(), unreal);
     const auto bytes = writer.write();
     return writeAndCompare(groom, std::move(*strands), options, path, bytes);
 }

@@ -68,39 +68,65 @@ std::uint32_t alembicMetadata(std::vector<std::string>& table, const std::string
     return index + 1;
 }
 
-void AlembicCompound::header(const std::string& name, std::uint32_t bits, bool sampled,
+void AlembicCompound::header(const std::string& name, std::uint32_t bits, std::size_t samples,
                              const std::string& metadata) {
-    constexpr std::uint32_t kShortNumbers = 1u << 2u;  // two bytes each: any name fits
-    headers_.write(bits | kShortNumbers | alembicMetadata(metadata_, metadata) << 20u);
-    if (sampled) headers_.write(std::uint16_t{1});
-    headers_.write(static_cast<std::uint16_t>(name.size()));
+    constexpr std::uint32_t kFourByteNumbers = 2u << 2u, kTwoByteNumbers = 1u << 2u;
+    constexpr std::uint32_t kHasTimes = 0x100, kConstant = 0x800;
+    constexpr std::size_t kTwoBytes = 0xffff;
+    if (samples == 1) bits |= kConstant;
+    if (samples > 1) bits |= kHasTimes;
+    const bool isLong = samples > kTwoBytes;
+    headers_.write(bits | (isLong ? kFourByteNumbers : kTwoByteNumbers) |
+                   alembicMetadata(metadata_, metadata) << 20u);
+    const auto number = [&](std::size_t value) {
+        isLong ? headers_.write(static_cast<std::uint32_t>(value))
+               : headers_.write(static_cast<std::uint16_t>(value));
+    };
+    if (samples > 0) number(samples);
+    if (samples > 1) number(1);  // the sampling of the times
+    number(name.size());
     headers_.writeArray(std::span<const char>(name));
 }
 
 void AlembicCompound::scalar(const std::string& name, AlembicType type, std::uint32_t extent,
                              std::span<const std::byte> bytes, const std::string& metadata) {
-    constexpr std::uint32_t kScalar = 1, kConstant = 0x800, kHomogeneous = 0x400;
-    header(name, kScalar | static_cast<std::uint32_t>(type) << 4u | kConstant | kHomogeneous | extent << 12u,
-           true, metadata);
-    const std::uint64_t sample = file_.sample(bytes);
-    parts_.push_back(file_.group(std::span(&sample, 1)));
+    scalars(name, type, extent, std::span(&bytes, 1), metadata);
+}
+
+void AlembicCompound::scalars(const std::string& name, AlembicType type, std::uint32_t extent,
+                              std::span<const std::span<const std::byte>> samples,
+                              const std::string& metadata) {
+    constexpr std::uint32_t kScalar = 1, kHomogeneous = 0x400;
+    header(name, kScalar | static_cast<std::uint32_t>(type) << 4u | kHomogeneous | extent << 12u,
+           samples.size(), metadata);
+    std::vector<std::uint64_t> parts;
+    for (const auto& bytes : samples) parts.push_back(file_.sample(bytes));
+    parts_.push_back(file_.group(parts));
 }
 
 void AlembicCompound::array(const std::string& name, AlembicType type, std::uint32_t extent,
                             std::span<const std::byte> bytes, const std::string& metadata) {
-    constexpr std::uint32_t kArray = 2, kConstant = 0x800, kHomogeneous = 0x400;
+    arrays(name, type, extent, std::span(&bytes, 1), metadata);
+}
+
+void AlembicCompound::arrays(const std::string& name, AlembicType type, std::uint32_t extent,
+                             std::span<const std::span<const std::byte>> samples,
+                             const std::string& metadata) {
+    constexpr std::uint32_t kArray = 2, kHomogeneous = 0x400;
     header(name,
-           kArray | static_cast<std::uint32_t>(type) << 4u | kConstant | (extent == 1 ? kHomogeneous : 0) |
-               extent << 12u,
-           true, metadata);
-    // No dimensions: the size of the data tells the number of elements.
-    const std::array<std::uint64_t, 2> sample{file_.sample(bytes), file_.data({})};
-    parts_.push_back(file_.group(sample));
+           kArray | static_cast<std::uint32_t>(type) << 4u | (extent == 1 ? kHomogeneous : 0) | extent << 12u,
+           samples.size(), metadata);
+    std::vector<std::uint64_t> parts;
+    for (const auto& bytes : samples) {
+        parts.push_back(file_.sample(bytes));
+        parts.push_back(file_.data({}));  // no dimensions: the size of the data tells the number of elements
+    }
+    parts_.push_back(file_.group(parts));
 }
 
 void AlembicCompound::compound(const std::string& name, const AlembicCompound& inside,
                                const std::string& metadata) {
-    header(name, 0, false, metadata);
+    header(name, 0, 0, metadata);
     parts_.push_back(inside.write());
 }
 
@@ -131,17 +157,22 @@ std::uint64_t alembicObject(OgawaBuilder& file, std::vector<std::string>& metada
 }
 
 std::span<const std::byte> finishAlembic(OgawaBuilder& file, const std::vector<std::string>& metadata,
-                                         std::uint64_t top, const std::string& about) {
+                                         std::uint64_t top, const std::string& about,
+                                         const AlembicTimes& sampled) {
     ByteWriter texts;
     for (const std::string& text : metadata) {
         texts.write(static_cast<std::uint8_t>(text.size()));
         texts.writeArray(std::span<const char>(text));
     }
-    ByteWriter times;  // one sampling, of one time: 0
-    times.write(std::uint32_t{1});
-    times.write(1.0);
-    times.write(std::uint32_t{1});
-    times.write(0.0);
+    ByteWriter times;
+    const auto sampling = [&](std::uint32_t samples, double step, double first) {
+        times.write(samples);
+        times.write(step);
+        times.write(std::uint32_t{1});  // times in a cycle
+        times.write(first);
+    };
+    sampling(1, 1, 0);
+    if (sampled.count > 1) sampling(sampled.count, sampled.step, sampled.first);
     const std::int32_t version = 0;
     const auto bytesOf = [](const auto& value) { return std::as_bytes(std::span(&value, 1)); };
     const std::array<std::uint64_t, 6> root{file.data(bytesOf(version)),

@@ -54,12 +54,19 @@ class AlembicCompound {
     /// An array of elements of `extent` numbers.
     void array(const std::string& name, AlembicType type, std::uint32_t extent,
                std::span<const std::byte> bytes, const std::string& metadata = {});
+    /// The same with a value at each time of the file's second sampling.
+    void scalars(const std::string& name, AlembicType type, std::uint32_t extent,
+                 std::span<const std::span<const std::byte>> samples, const std::string& metadata = {});
+    void arrays(const std::string& name, AlembicType type, std::uint32_t extent,
+                std::span<const std::span<const std::byte>> samples, const std::string& metadata = {});
     void compound(const std::string& name, const AlembicCompound& inside, const std::string& metadata = {});
     /// Its group.
     std::uint64_t write() const;
 
   private:
-    void header(const std::string& name, std::uint32_t bits, bool sampled, const std::string& metadata);
+    /// `samples` 0 of a compound. More than one are at the times of the second sampling and all differ.
+    void header(const std::string& name, std::uint32_t bits, std::size_t samples,
+                const std::string& metadata);
 
     OgawaBuilder& file_;
     std::vector<std::string>& metadata_;
@@ -80,8 +87,16 @@ struct AlembicChild {
 std::uint64_t alembicObject(OgawaBuilder& file, std::vector<std::string>& metadata, std::uint64_t properties,
                             std::span<const AlembicChild> children);
 
-/// The archive around the top object.
+/// When the samples of properties that change are.
+struct AlembicTimes {
+    std::uint32_t count = 1;
+    double first = 0, step = 0;  ///< seconds
+};
+
+/// The archive around the top object. The first sampling is of one time, 0; `times` are the second, where
+/// there is more than one.
 std::span<const std::byte> finishAlembic(OgawaBuilder& file, const std::vector<std::string>& metadata,
-                                         std::uint64_t top, const std::string& about);
+                                         std::uint64_t top, const std::string& about,
+                                         const AlembicTimes& times);
 
 }  // namespace hairloom

@@ -25,17 +25,11 @@ Vec3f toFile(const Vec3f& position, const StrandExportOptions& options) {
 /// Values at even steps of the arc length, as resampleEvenly places the points.
 template <class T>
 std::vector<T> resampleValues(std::span<const Vec3f> points, std::span<const T> values, std::size_t count) {
-    std::vector<float> arc(points.size(), 0.0f);
-    for (std::size_t i = 1; i < points.size(); ++i) arc[i] = arc[i - 1] + (points[i] - points[i - 1]).norm();
-    std::vector<T> result(count, values.back());
-    std::size_t segment = 0;
-    for (std::size_t k = 0; k + 1 < count; ++k) {
-        const float at = arc.back() * static_cast<float>(k) / static_cast<float>(count - 1);
-        while (segment + 2 < points.size() && arc[segment + 1] <= at) ++segment;
-        const float length = arc[segment + 1] - arc[segment];
-        const float t = length > 0 ? std::clamp((at - arc[segment]) / length, 0.0f, 1.0f) : 0.0f;
-        result[k] = values[segment] + (values[segment + 1] - values[segment]) * t;
-    }
+    std::vector<T> result;
+    result.reserve(count);
+    for (const auto& [segment, t] : evenPlaces(points, count))
+        result.push_back(values[segment] + (values[segment + 1] - values[segment]) * t);
+    result.back() = values.back();
     return result;
 }
 
@@ -94,6 +88,7 @@ class Preparer {
         result_.positions.reserve(points);
         result_.thickness.reserve(points);
         for (std::size_t strand = 0; strand < strands; ++strand) add(strand);
+        addFrames();
         sayFindings();
         return std::move(result_);
     }
@@ -125,6 +120,27 @@ class Preparer {
         append(result_.colours, colours_, points, first, count);
         result_.sources.push_back(static_cast<std::uint32_t>(strand));
         result_.offsets.push_back(static_cast<std::uint32_t>(result_.positions.size()));
+    }
+
+    void addFrames() {
+        if (!options_.frames) return;
+        result_.frames.resize(options_.frames->points.size());
+        parallelFor(result_.frames.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t f = begin; f < end; ++f) {
+                const std::span<const Vec3f> all = options_.frames->points[f];
+                std::vector<Vec3f>& frame = result_.frames[f];
+                frame.reserve(result_.positions.size());
+                for (std::size_t s = 0; s < result_.sources.size(); ++s) {
+                    const std::uint32_t first = groom_.offsets[result_.sources[s]];
+                    const auto points = all.subspan(first, groom_.offsets[result_.sources[s] + 1] - first);
+                    const std::size_t count = result_.offsets[s + 1] - result_.offsets[s];
+                    const std::vector<Vec3f> even =
+                        count == points.size() ? std::vector<Vec3f>() : resampleEvenly(points, count);
+                    for (const Vec3f& point : even.empty() ? points : std::span<const Vec3f>(even))
+                        frame.push_back(toFile(point, options_));
+                }
+            }
+        });
     }
 
     void addPosition(const Vec3f& position) { result_.positions.push_back(toFile(position, options_)); }
@@ -306,6 +322,30 @@ std::vector<Vec2f> rootUvs(const Groom& groom, const PreparedStrands& strands) {
     return uvs;
 }
 
+namespace {
+
+/// How far strands that move are off, in millimetres; they must be as many frames.
+Result<double> frameError(const PreparedStrands& prepared, const StrandExportOptions& options,
+                          const ImportedStrands& readBack, const std::filesystem::path& path) {
+    if (readBack.frames.size() != prepared.frames.size())
+        return failIn(path.string(), {}, fmt::format("reads back as {} frames", readBack.frames.size()),
+                      fmt::format("{} were written", prepared.frames.size()));
+    double farthest = 0;
+    for (std::size_t f = 0; f < prepared.frames.size(); ++f) {
+        if (readBack.frames[f].size() != prepared.frames[f].size())
+            return failIn(path.string(), {},
+                          fmt::format("reads back with {} points in frame {}", readBack.frames[f].size(), f),
+                          fmt::format("{} were written", prepared.frames[f].size()));
+        for (std::size_t p = 0; p < prepared.frames[f].size(); ++p) {
+            const Vec3f off = toFile(readBack.frames[f][p], options) - prepared.frames[f][p];
+            farthest = std::max(farthest, static_cast<double>(off.norm()));
+        }
+    }
+    return 1000 * farthest * static_cast<double>(options.metresPerUnit);
+}
+
+}  // namespace
+
 Result<ExportReport> writeAndCompare(const Groom& groom, PreparedStrands prepared,
                                      const StrandExportOptions& options, const std::filesystem::path& path,
                                      std::span<const std::byte> bytes) {
@@ -313,6 +353,7 @@ Result<ExportReport> writeAndCompare(const Groom& groom, PreparedStrands prepare
     StrandImportOptions importOptions;
     importOptions.metresPerUnit = options.metresPerUnit;
     importOptions.up = options.up;
+    importOptions.frames = options.frames != nullptr;
     // What went into a device cannot be had back.
     std::error_code code;
     const auto readBack = std::filesystem::is_regular_file(path, code)
@@ -333,6 +374,12 @@ Result<ExportReport> writeAndCompare(const Groom& groom, PreparedStrands prepare
         const double error =
             strandError(groom.strand(prepared.sources[strand]), readBack->groom.strand(strand));
         report.maxErrorMm = std::max(report.maxErrorMm, error * 1000.0);
+    }
+    if (options.frames) {
+        const auto off = frameError(prepared, options, *readBack, path);
+        if (!off) return tl::unexpected(off.error());
+        report.frames = prepared.frames.size();
+        report.maxErrorMm = std::max(report.maxErrorMm, *off);
     }
     compareAttributes(groom, prepared, *readBack, report);
     report.findings = std::move(prepared.findings);

@@ -12,13 +12,14 @@ namespace hairloom {
 
 /// The strands that go into a file, in its units and axes.
 struct PreparedStrands {
-    std::vector<std::uint32_t> sources;     ///< strand of the groom
-    std::vector<std::uint32_t> offsets{0};  ///< as in Groom
-    std::vector<Vec3f> positions;           ///< units and axes of the file
-    std::vector<float> thickness;           ///< per point, diameter in units of the file
-    std::vector<float> transparency;        ///< per point, or empty
-    std::vector<Vec3f> colours;             ///< per point, or empty
-    bool isResampled = false;               ///< some strand has other points than the groom's
+    std::vector<std::uint32_t> sources;      ///< strand of the groom
+    std::vector<std::uint32_t> offsets{0};   ///< as in Groom
+    std::vector<Vec3f> positions;            ///< units and axes of the file
+    std::vector<std::vector<Vec3f>> frames;  ///< likewise, of strands that move
+    std::vector<float> thickness;            ///< per point, diameter in units of the file
+    std::vector<float> transparency;         ///< per point, or empty
+    std::vector<Vec3f> colours;              ///< per point, or empty
+    bool isResampled = false;                ///< some strand has other points than the groom's
     std::vector<Finding> findings;
 
     std::size_t strandCount() const { return sources.size(); }

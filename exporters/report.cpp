@@ -19,14 +19,16 @@ nlohmann::json toJson(const ExportReport& report) {
     nlohmann::json leftBehind = nlohmann::json::array();
     for (const LeftBehind& left : report.leftBehind)
         leftBehind.push_back({{"what", left.what}, {"fix", left.fix}});
-    return {{"attributes", std::move(attributes)},
-            {"left_behind", std::move(leftBehind)},
-            {"format", report.format},
-            {"strands", report.strands},
-            {"points", report.points},
-            {"bytes", report.bytes},
-            {"max_error_mm", report.maxErrorMm},
-            {"findings", std::move(findings)}};
+    nlohmann::json json{{"attributes", std::move(attributes)},
+                        {"left_behind", std::move(leftBehind)},
+                        {"format", report.format},
+                        {"strands", report.strands},
+                        {"points", report.points},
+                        {"bytes", report.bytes},
+                        {"max_error_mm", report.maxErrorMm},
+                        {"findings", std::move(findings)}};
+    if (report.frames > 0) json["frames"] = report.frames;
+    return json;
 }
 
 }  // namespace hairloom

@@ -27,6 +27,7 @@ struct ExportReport {
     std::string format;       ///< name of the format, as importStrands tells it
     std::size_t strands = 0;  ///< in the file
     std::size_t points = 0;   ///< in the file
+    std::size_t frames = 0;   ///< of strands that move; 0 at rest
     std::uint64_t bytes = 0;  ///< size of the file
     /// Largest distance of a point of the groom from its strand in the file, read back; millimetres.
     double maxErrorMm = 0;
@@ -35,8 +36,8 @@ struct ExportReport {
     std::vector<Finding> findings;
 };
 
-/// Keys: format, strands, points, bytes, max_error_mm, attributes (name, max_error), left_behind (what, fix),
-/// findings (severity, what, where, fix).
+/// Keys: format, strands, points, frames (where strands move), bytes, max_error_mm, attributes (name,
+/// max_error), left_behind (what, fix), findings (severity, what, where, fix).
 nlohmann::json toJson(const ExportReport& report);
 
 }  // namespace hairloom

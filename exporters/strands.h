@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,12 +25,21 @@ struct TargetLimits {
     bool refusesCoincident = false;  ///< one segment of no length and it takes none of the strands
 };
 
+/// Where strands are in time.
+struct StrandFrames {
+    double framesPerSecond = 60;             ///< > 0
+    double first = 0;                        ///< number of the first frame, in the file's time
+    std::vector<std::vector<Vec3f>> points;  ///< frame by frame, those of the whole groom; metres
+};
+
 struct StrandExportOptions {
     float metresPerUnit = 1.0f;  ///< > 0; metres in one unit of the file
     UpAxis up = UpAxis::Y;       ///< axis of the file that points up; Z up becomes (x, −z, y)
     std::uint32_t pointsPerStrand =
         0;                ///< resamples every strand evenly to so many; 0 keeps what the format allows
     TargetLimits limits;  ///< what goes beyond them is a finding with its fix
+    /// Of strands that move: for writers that animate. The groom is at the first frame. Null: at rest.
+    std::shared_ptr<const StrandFrames> frames = nullptr;
 };
 
 /// A program that reads a format, and what it wants of a file.
@@ -56,6 +66,7 @@ struct StrandWriter {
                                   const StrandExportOptions& options);
     std::string ownSuffix{};            ///< of its files, where that is not the name
     bool generatesFollowHairs = false;  ///< the file tells how follow hairs come from guides
+    bool animates = false;              ///< the file can hold StrandExportOptions::frames
 };
 const std::vector<StrandWriter>& strandWriters();
 /// Programs of all writers as `--target` has them, each once, in order of name.

@@ -29,9 +29,9 @@ std::vector<std::int32_t> curveVertexCounts(const PreparedStrands& strands) {
     return counts;
 }
 
-std::array<Vec3f, 2> extentOf(const PreparedStrands& strands) {
+std::array<Vec3f, 2> extentOf(std::span<const Vec3f> positions) {
     Box3f bounds;
-    for (const Vec3f& position : strands.positions) bounds.extend(position);
+    for (const Vec3f& position : positions) bounds.extend(position);
     return {bounds.min(), bounds.max()};
 }
 

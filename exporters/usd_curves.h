@@ -18,7 +18,7 @@ std::string_view usdTypeOf(const ExportedAttribute& attribute);
 std::string usdName(const std::string& name);
 std::vector<std::int32_t> curveVertexCounts(const PreparedStrands& strands);
 /// The corners of the box around all points.
-std::array<Vec3f, 2> extentOf(const PreparedStrands& strands);
+std::array<Vec3f, 2> extentOf(std::span<const Vec3f> positions);
 std::vector<ExportTarget> usdTargets(const std::string& suffix);
 
 }  // namespace hairloom

@@ -35,25 +35,54 @@ void writeAttribute(std::string& out, const ExportedAttribute& attribute) {
                        attribute.perPoint ? "vertex" : "uniform");
 }
 
+std::span<const float> numbersOf(std::span<const Vec3f> values) {
+    return {values[0].data(), values.size() * 3};
+}
+
+/// What strands that move have at each frame beside the first, which stands for all who look at no time.
+void writeSamples(std::string& out, const PreparedStrands& strands, const StrandFrames& frames) {
+    const auto write = [&](std::string_view name, const auto& valueOf) {
+        out += fmt::format("        {}.timeSamples = {{\n", name);
+        for (std::size_t f = 0; f < strands.frames.size(); ++f) {
+            out += fmt::format("            {}: ", frames.first + static_cast<double>(f));
+            const auto value = valueOf(strands.frames[f]);
+            writeNumbers(out, numbersOf(value), 3);
+            out += ",\n";
+        }
+        out += "        }\n";
+    };
+    write("float3[] extent", [](const std::vector<Vec3f>& points) { return extentOf(points); });
+    write("point3f[] points", [](const std::vector<Vec3f>& points) { return std::span(points); });
+}
+
+/// The lines of the head that say which times there are.
+std::string timesInHead(const StrandExportOptions& options) {
+    if (!options.frames) return {};
+    const double last = options.frames->first + static_cast<double>(options.frames->points.size() - 1);
+    return fmt::format(
+        "    endTimeCode = {}\n    framesPerSecond = {}\n    startTimeCode = {}\n    timeCodesPerSecond = "
+        "{}\n",
+        last, options.frames->framesPerSecond, options.frames->first, options.frames->framesPerSecond);
+}
+
 std::string usdaText(const Groom& groom, const PreparedStrands& strands, const StrandExportOptions& options) {
     std::string out = fmt::format(
-        "#usda 1.0\n(\n    defaultPrim = \"groom\"\n    doc = \"Hairloom\"\n    metersPerUnit = {}\n    "
+        "#usda 1.0\n(\n    defaultPrim = \"groom\"\n    doc = \"Hairloom\"\n{}    metersPerUnit = {}\n    "
         "upAxis = \"{}\"\n)\n\n"
         "def Xform \"groom\"\n{{\n    def BasisCurves \"hair\"\n    {{\n"
         "        uniform token type = \"linear\"\n        uniform token wrap = \"nonperiodic\"\n",
-        options.metresPerUnit, options.up == UpAxis::Z ? "Z" : "Y");
+        timesInHead(options), options.metresPerUnit, options.up == UpAxis::Z ? "Z" : "Y");
     const std::vector<std::int32_t> counts = curveVertexCounts(strands);
-    const std::array<Vec3f, 2> extent = extentOf(strands);
-    const auto numbersOf = [](std::span<const Vec3f> values) {
-        return std::span<const float>(values[0].data(), values.size() * 3);
-    };
+    const std::array<Vec3f, 2> extent = extentOf(strands.positions);
     out += "        float3[] extent = ";
     writeNumbers(out, numbersOf(extent), 3);
     out += "\n        int[] curveVertexCounts = ";
     writeNumbers(out, std::span<const std::int32_t>(counts), 1);
     out += "\n        point3f[] points = ";
     writeNumbers(out, numbersOf(strands.positions), 3);
-    out += "\n        float[] widths = ";
+    out += '\n';
+    if (options.frames) writeSamples(out, strands, *options.frames);
+    out += "        float[] widths = ";
     writeNumbers(out, std::span<const float>(strands.thickness), 1);
     out += " (\n            interpolation = \"vertex\"\n        )\n";
     for (const ExportedAttribute& attribute : exportedAttributes(groom, strands))
@@ -78,7 +107,10 @@ StrandWriter usdaWriter() {
             "any name",
             "none",
             usdTargets(".usda"),
-            writeUsda};
+            writeUsda,
+            {},
+            false,
+            true};
 }
 
 }  // namespace hairloom

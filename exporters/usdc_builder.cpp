@@ -12,7 +12,8 @@ namespace {
 constexpr std::size_t kBootstrap = 88;
 constexpr std::uint32_t kAttribute = 1, kPrim = 6, kRoot = 7;
 constexpr std::uint8_t kBool = 1, kUChar = 2, kInt = 3, kFloat = 8, kDouble = 9, kToken = 11, kVec2f = 20,
-                       kVec3f = 24, kVec4f = 28, kTokenVector = 41, kSpecifier = 42, kVariability = 44;
+                       kVec3f = 24, kVec4f = 28, kTokenVector = 41, kSpecifier = 42, kVariability = 44,
+                       kTimeSamples = 46, kDoubleVector = 48;
 
 UsdcRep inlined(std::uint8_t type, std::uint32_t payload) {
     return {std::uint64_t{1} << 62u | std::uint64_t{type} << 48u | payload};
@@ -119,6 +120,22 @@ UsdcRep UsdcBuilder::bytes(std::span<const std::uint8_t> values, bool areBools) 
 UsdcRep UsdcBuilder::floats(std::span<const float> values, std::uint32_t components) {
     constexpr std::array<std::uint8_t, 5> kTypes{0, kFloat, kVec2f, kVec3f, kVec4f};
     return array(kTypes[components], values);
+}
+
+UsdcRep UsdcBuilder::samples(std::span<const double> times, std::span<const UsdcRep> values) {
+    out_.align(8);
+    const std::uint64_t timesAt = out_.size();
+    out_.write(std::uint64_t{times.size()});
+    out_.writeArray(times);
+    out_.align(8);
+    const std::uint64_t offset = out_.size();
+    constexpr std::int64_t kNext = 8;  // a jump to what stands behind it
+    out_.write(kNext);
+    out_.write(std::uint64_t{kDoubleVector} << 48u | timesAt);
+    out_.write(kNext);
+    out_.write(std::uint64_t{values.size()});
+    for (const UsdcRep value : values) out_.write(value.bits);
+    return {std::uint64_t{kTimeSamples} << 48u | offset};
 }
 
 void UsdcBuilder::root(const Fields& fields) {

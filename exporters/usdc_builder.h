@@ -37,6 +37,9 @@ class UsdcBuilder {
     /// Elements of 1 to 4 numbers.
     UsdcRep floats(std::span<const float> values, std::uint32_t components);
 
+    /// An attribute's values at times, ascending.
+    UsdcRep samples(std::span<const double> times, std::span<const UsdcRep> values);
+
     /// Paths in the order of a walk from the root: the root itself first, children behind their parent, the
     /// properties of a prim last of its children. `depth` is 0 of the root; "points" of a property.
     void root(const Fields& fields);

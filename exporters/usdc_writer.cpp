@@ -21,15 +21,27 @@ Result<ExportReport> writeUsdc(const Groom& groom, const std::filesystem::path& 
     auto strands = prepareStrands(groom, options, options.pointsPerStrand);
     if (!strands) return tl::unexpected(inFile(strands.error(), path.string()));
     const std::vector<std::int32_t> counts = curveVertexCounts(*strands);
-    const std::array<Vec3f, 2> extent = extentOf(*strands);
+    const std::array<Vec3f, 2> extent = extentOf(strands->positions);
     const auto attributes = exportedAttributes(groom, *strands);
+    std::vector<double> times;
+    for (std::size_t f = 0; f < strands->frames.size(); ++f)
+        times.push_back(options.frames->first + static_cast<double>(f));
 
     UsdcBuilder file;
     const std::vector<std::string> top{"groom"}, below{"hair"};
-    file.root({{"defaultPrim", file.token("groom")},
-               {"metersPerUnit", file.number(readableDecimal(options.metresPerUnit))},
-               {"upAxis", file.token(options.up == UpAxis::Z ? "Z" : "Y")},
-               {"primChildren", file.tokens(top)}});
+    UsdcBuilder::Fields head{{"defaultPrim", file.token("groom")},
+                             {"metersPerUnit", file.number(readableDecimal(options.metresPerUnit))},
+                             {"upAxis", file.token(options.up == UpAxis::Z ? "Z" : "Y")},
+                             {"primChildren", file.tokens(top)}};
+    if (options.frames) {
+        const double first = options.frames->first, rate = options.frames->framesPerSecond;
+        head.emplace_back("startTimeCode", file.number(first));
+        head.emplace_back("endTimeCode",
+                          file.number(first + static_cast<double>(strands->frames.size() - 1)));
+        head.emplace_back("framesPerSecond", file.number(rate));
+        head.emplace_back("timeCodesPerSecond", file.number(rate));
+    }
+    file.root(head);
     file.prim(1, "groom",
               {{"specifier", file.definition()},
                {"typeName", file.token("Xform")},
@@ -46,12 +58,22 @@ Result<ExportReport> writeUsdc(const Groom& groom, const std::filesystem::path& 
                        {{"typeName", file.token("token")},
                         {"variability", file.uniform()},
                         {"default", file.token(value)}});
-    const auto add = [&](const std::string& name, const char* type, UsdcRep value) {
-        file.attribute(3, name, {{"typeName", file.token(type)}, {"default", value}});
+    const auto add = [&](const std::string& name, const char* type, UsdcRep value,
+                         std::span<const UsdcRep> frames = {}) {
+        UsdcBuilder::Fields fields{{"typeName", file.token(type)}, {"default", value}};
+        if (!frames.empty()) fields.emplace_back("timeSamples", file.samples(times, frames));
+        file.attribute(3, name, fields);
     };
-    add("extent", "float3[]", file.floats({extent[0].data(), 6}, 3));
+    std::vector<UsdcRep> extents, points;
+    for (const std::vector<Vec3f>& frame : strands->frames) {
+        const std::array<Vec3f, 2> box = extentOf(frame);
+        extents.push_back(file.floats({box[0].data(), 6}, 3));
+        points.push_back(file.floats({frame[0].data(), frame.size() * 3}, 3));
+    }
+    add("extent", "float3[]", file.floats({extent[0].data(), 6}, 3), extents);
     add("curveVertexCounts", "int[]", file.ints(counts));
-    add("points", "point3f[]", file.floats({strands->positions[0].data(), strands->positions.size() * 3}, 3));
+    add("points", "point3f[]", file.floats({strands->positions[0].data(), strands->positions.size() * 3}, 3),
+        points);
     file.attribute(3, "widths",
                    {{"typeName", file.token("float[]")},
                     {"interpolation", file.token("vertex")},
@@ -69,8 +91,15 @@ Result<ExportReport> writeUsdc(const Groom& groom, const std::filesystem::path& 
 }  // namespace
 
 StrandWriter usdcWriter() {
-    return {"usdc", "USD .usdc",         "what usda carries, in a tenth of the time",
-            "none", usdTargets(".usdc"), writeUsdc};
+    return {"usdc",
+            "USD .usdc",
+            "what usda carries, in a tenth of the time",
+            "none",
+            usdTargets(".usdc"),
+            writeUsdc,
+            {},
+            false,
+            true};
 }
 
 }  // namespace hairloom

@@ -21,6 +21,9 @@ struct ExportOptions {
     std::string format;
     std::string target;
     std::string what = "guides";
+    std::vector<std::string> layers;  ///< names; empty: all
+    std::string record;               ///< of simulate; empty: at rest
+    std::vector<std::uint64_t> frames;
     std::string unit;
     std::string up;
     std::uint32_t points = 0;
@@ -68,14 +71,31 @@ Result<Report> withCompanion(const ExportOptions& options, Report report) {
 }
 
 Result<Report> exportAsCards(const ExportOptions& options) {
-    if (!options.target.empty() || !options.unit.empty() || options.up == "z" || options.points > 0)
-        return fail("--target, --unit, --up and --points say nothing of cards",
+    if (!options.target.empty() || !options.unit.empty() || options.up == "z" || options.points > 0 ||
+        !options.record.empty() || !options.layers.empty())
+        return fail("--target, --unit, --up, --points, --layers and --record say nothing of cards",
                     "glTF is in metres, Y up; --cards, --textures and --levels");
     const auto groom = loadDocument(options.input);
     if (!groom) return tl::unexpected(groom.error());
     auto report = exportCards(*groom, options.output, options.cards);
     if (!report) return tl::unexpected(inFile(report.error(), options.input));
     return withCompanion(options, std::move(*report));
+}
+
+Result<HairToExport> hairToExport(const ExportOptions& options, const Groom& groom) {
+    HairToExport wanted;
+    wanted.hair = options.what == "hairs" ? ExportedHair::hairs : ExportedHair::guides;
+    wanted.layers = options.layers;
+    if (options.record.empty()) return wanted;
+    if (options.frames.size() != 2 || options.frames[1] < options.frames[0])
+        return fail("--frames goes backwards or is not two numbers", "FIRST,LAST");
+    wanted.firstFrame = options.frames[0];
+    for (std::uint64_t number = options.frames[0]; number <= options.frames[1]; ++number) {
+        auto frame = readFrame(options.record, groom, number);
+        if (!frame) return tl::unexpected(frame.error());
+        wanted.frames.push_back(std::move(*frame));
+    }
+    return wanted;
 }
 
 Result<Report> exportAsset(const ExportOptions& options) {
@@ -88,9 +108,10 @@ Result<Report> exportAsset(const ExportOptions& options) {
     if (!options.unit.empty()) exporting.metresPerUnit = metresPerUnit(options.unit);
     if (!options.up.empty()) exporting.up = options.up == "z" ? UpAxis::Z : UpAxis::Y;
     if (options.points > 0) exporting.pointsPerStrand = options.points;
-    const auto what = options.what == "hairs" ? ExportedHair::hairs : ExportedHair::guides;
-    const auto written = exportHair(*groom, what, *asked->writer, options.output, exporting);
-    if (!written) return tl::unexpected(written.error());
+    const auto wanted = hairToExport(options, *groom);
+    if (!wanted) return tl::unexpected(wanted.error());
+    const auto written = exportHair(*groom, *wanted, *asked->writer, options.output, exporting);
+    if (!written) return tl::unexpected(inFile(written.error(), options.input));
     return withCompanion(options, toJson(*written));
 }
 
@@ -125,8 +146,18 @@ JobRun declare(CLI::App& job) {
            "said")
         ->check(CLI::IsMember(exportPrograms()));
     job.add_option("--what", options->what,
-                   "guides: the strands of the groom; hairs: the follow hairs that pictures show, at rest")
+                   "guides: the strands of the groom; hairs: the follow hairs that pictures show")
         ->check(CLI::IsMember({"guides", "hairs"}));
+    job.add_option("--layers", options->layers, "Names of the layers to write, instead of all")
+        ->delimiter(',');
+    auto* record = job.add_option("--record", options->record,
+                                  "Frames that simulate --record wrote, instead of the rest");
+    auto* frames =
+        job.add_option("--frames", options->frames,
+                       "FIRST,LAST of the record: strands that move, in a format that can hold them")
+            ->delimiter(',')
+            ->needs(record);
+    record->needs(frames);
     addUnitOption(job, options->unit);
     job.add_option("--up", options->up, "Axis that points up in the file")->check(CLI::IsMember({"y", "z"}));
     job.add_option("--points", options->points, "Resample every strand to so many points; 0 keeps them")

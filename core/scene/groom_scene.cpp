@@ -6,7 +6,6 @@
 #include <cassert>
 #include <filesystem>
 
-#include "core/animation/root_motion.h"
 #include "core/base/file.h"
 #include "core/base/parallel.h"
 #include "core/geometry/selection.h"
@@ -17,6 +16,7 @@
 #include "core/render/exr.h"
 #include "core/render/png.h"
 #include "core/scene/hair_look.h"
+#include "core/scene/root_rotations.h"
 #include "core/simulation/simulation.h"
 
 namespace hairloom {
@@ -176,17 +176,6 @@ std::vector<float> radiiOfShown(const Groom& groom, const HairMaterial& material
         std::fill(radii.begin() + groom.offsets[s], radii.begin() + groom.offsets[s + 1], 0.0f);
     }
     return radii;
-}
-
-/// How the scalp has turned at the root of each strand.
-std::vector<Quatf> rootRotations(const Groom& rest, const Groom& posed, const HeadPose& pose) {
-    const std::vector<SurfacePoint> roots = rest.rootBindings();
-    if (!rest.scalp || roots.empty())
-        return std::vector<Quatf>(rest.strandCount(), Quatf(pose.head_ws.linear()));
-    std::vector<Quatf> rotations;
-    for (const auto& transform : rootTransforms(*rest.scalp, posed.scalp->positions(), roots))
-        rotations.emplace_back(transform.linear());
-    return rotations;
 }
 
 /// The same strands are in streaks and dyed, as strands and not the material say.

@@ -3,27 +3,137 @@
 
 #include <fmt/format.h>
 
+#include <numeric>
+
+#include "core/groom/strand_subset.h"
 #include "core/interpolation/follow_hairs.h"
+#include "core/scene/root_rotations.h"
+#include "core/simulation/simulation.h"
 
 namespace hairloom {
+namespace {
 
-Result<ExportReport> exportHair(const Groom& groom, ExportedHair what, const StrandWriter& writer,
-                                const std::filesystem::path& path, const StrandExportOptions& options) {
-    const std::uint32_t perGuide = groom.interpolation.followPerGuide;
-    if (what == ExportedHair::guides || perGuide == 0) {
-        auto report = writer.write(groom, path, options);
-        if (report && perGuide > 0 && !writer.generatesFollowHairs) {
-            report->findings.push_back({Severity::Warning,
-                                        fmt::format("{} follow hairs for each guide are left out", perGuide),
-                                        "interpolation", "export hairs to write what pictures show"});
-        }
-        return report;
+/// Follow hairs in a frame, wisps as wide as their speed makes them.
+class MovingHairs {
+  public:
+    MovingHairs(const Groom& rest, const FollowBindings& bindings) : rest_(rest), bindings_(bindings) {}
+
+    Result<std::vector<Vec3f>> at(const Groom& posed, const RecordedFrame& frame) {
+        std::vector<Vec3f> guides = guidePositions(posed, bindings_);
+        std::vector<Vec3f> velocities;
+        for (std::size_t p = 0; p < before_.size(); ++p)
+            velocities.push_back((guides[p] - before_[p]) * frame.framesPerSecond);
+        const std::vector<Quatf> turns = rootRotations(rest_, posed, frame.pose);
+        std::vector<Quatf> rotations;
+        for (const std::uint32_t strand : bindings_.guideStrands) rotations.push_back(turns[strand]);
+        std::vector<Vec3f> hairs(bindings_.hairCount() * bindings_.pointsPerHair);
+        auto made = evaluateFollowHairs(bindings_, {guides, velocities, rotations}, {}, hairs);
+        before_ = std::move(guides);
+        if (!made) return tl::unexpected(made.error());
+        return hairs;
     }
-    const auto bindings = bindFollowHairs(groom, groom.interpolation);
-    if (!bindings) return tl::unexpected(bindings.error());
-    const auto hairs = bakeFollowHairs(groom, *bindings);
-    if (!hairs) return tl::unexpected(hairs.error());
-    return writer.write(*hairs, path, options);
+
+  private:
+    const Groom& rest_;
+    const FollowBindings& bindings_;
+    std::vector<Vec3f> before_;  ///< guides, a frame ago
+};
+
+std::vector<Vec3f> pointsOf(const Groom& whole, std::span<const std::uint32_t> strands,
+                            std::span<const Vec3f> positions) {
+    std::vector<Vec3f> points;
+    for (const std::uint32_t s : strands) {
+        const auto own = positions.subspan(whole.offsets[s], whole.offsets[s + 1] - whole.offsets[s]);
+        points.insert(points.end(), own.begin(), own.end());
+    }
+    return points;
+}
+
+/// The shapes of `rest` at the frames, and itself at the first of them.
+struct Moving {
+    Groom first;
+    std::vector<std::vector<Vec3f>> shapes;
+};
+Result<Moving> movingHair(const Groom& whole, std::span<const std::uint32_t> strands, const Groom& guides,
+                          const HairToExport& wanted, const FollowBindings* bindings) {
+    Moving moving;
+    std::optional<MovingHairs> hairs;
+    if (bindings) hairs.emplace(guides, *bindings);
+    for (const RecordedFrame& frame : wanted.frames) {
+        const Groom posed = posedGroom(guides, pointsOf(whole, strands, frame.positions_ws), frame.pose);
+        std::vector<Vec3f> shape(posed.positions().begin(), posed.positions().end());
+        if (hairs) {
+            auto made = hairs->at(posed, frame);
+            if (!made) return tl::unexpected(made.error());
+            shape = std::move(*made);
+        }
+        if (moving.shapes.empty()) {
+            moving.first = posed;
+            if (bindings) {
+                auto baked = bakeFollowHairs(guides, *bindings);
+                if (!baked) return tl::unexpected(baked.error());
+                moving.first = std::move(*baked);
+                moving.first.scalp = posed.scalp;
+                moving.first.pointAttributes.set(attribute::kPosition, shape);
+            }
+        }
+        moving.shapes.push_back(std::move(shape));
+    }
+    return moving;
+}
+
+}  // namespace
+
+Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, const StrandWriter& writer,
+                                const std::filesystem::path& path, const StrandExportOptions& options) {
+    if (wanted.frames.size() > 1 && !writer.animates) {
+        std::string formats;
+        for (const StrandWriter& other : strandWriters()) {
+            if (other.animates) formats += (formats.empty() ? "" : ", ") + other.name;
+        }
+        return fail(fmt::format("{} holds one shape, and {} frames are to be written", writer.name,
+                                wanted.frames.size()),
+                    "expected one frame, or one of " + formats);
+    }
+    std::vector<std::uint32_t> strands(groom.strandCount());
+    std::iota(strands.begin(), strands.end(), 0u);
+    if (!wanted.layers.empty()) {
+        auto found = strandsOfLayers(groom, wanted.layers);
+        if (!found) return tl::unexpected(found.error());
+        strands = std::move(*found);
+    }
+    const Groom guides = wanted.layers.empty() ? groom : strandsOf(groom, strands);
+    const std::uint32_t perGuide = guides.interpolation.followPerGuide;
+    const bool isBaked = wanted.hair == ExportedHair::hairs && perGuide > 0;
+    FollowBindings bindings;
+    Groom shown = guides;
+    if (isBaked) {
+        auto bound = bindFollowHairs(guides, guides.interpolation);
+        if (!bound) return tl::unexpected(bound.error());
+        bindings = std::move(*bound);
+    }
+    StrandExportOptions exporting = options;
+    if (!wanted.frames.empty()) {
+        auto moving = movingHair(groom, strands, guides, wanted, isBaked ? &bindings : nullptr);
+        if (!moving) return tl::unexpected(moving.error());
+        shown = std::move(moving->first);
+        if (moving->shapes.size() > 1) {
+            exporting.frames = std::make_shared<const StrandFrames>(
+                StrandFrames{static_cast<double>(wanted.frames.front().framesPerSecond),
+                             static_cast<double>(wanted.firstFrame), std::move(moving->shapes)});
+        }
+    } else if (isBaked) {
+        auto baked = bakeFollowHairs(guides, bindings);
+        if (!baked) return tl::unexpected(baked.error());
+        shown = std::move(*baked);
+    }
+    auto report = writer.write(shown, path, exporting);
+    if (report && perGuide > 0 && !isBaked && !writer.generatesFollowHairs) {
+        report->findings.push_back({Severity::Warning,
+                                    fmt::format("{} follow hairs for each guide are left out", perGuide),
+                                    "interpolation", "export hairs to write what pictures show"});
+    }
+    return report;
 }
 
 }  // namespace hairloom

@@ -11,12 +11,15 @@
 #include <algorithm>
 
 #include "core/scene/hair_export.h"
+#include "core/scene/played_frames.h"
 #include "editor/fields/blocks.h"
 #include "importers/length_unit.h"
 
 namespace hairloom::editor {
 
 namespace {
+
+constexpr float kFramesPerSecond = 60;
 
 /// A program, and the writer of the format that it reads.
 struct Choice {
@@ -39,13 +42,17 @@ const std::vector<Choice>& choices() {
 
 }  // namespace
 
-ExportDialog::ExportDialog(QtDocument& document, Tasks& tasks, Messages& messages, QWidget* parent)
+ExportDialog::ExportDialog(QtDocument& document, Tasks& tasks, Messages& messages, const Player& player,
+                           QWidget* parent)
     : QDialog(parent),
       document_(document),
       tasks_(tasks),
       messages_(messages),
+      player_(player),
       target_(new QComboBox),
       what_(new QComboBox),
+      layers_(new QComboBox),
+      frames_(new QSpinBox),
       note_(new QLabel),
       unit_(new QComboBox),
       up_(new QComboBox),
@@ -70,6 +77,18 @@ ExportDialog::ExportDialog(QtDocument& document, Tasks& tasks, Messages& message
     what_->setObjectName("what");
     what_->setToolTip(
         tr("Guides for programs that interpolate hair themselves; else the hairs between them, too"));
+    layers_->setObjectName("layers");
+    layers_->addItem(tr("All layers"));
+    layers_->addItem(tr("Layers that are shown"));
+    for (const Layer& layer : document_.groom().layers)
+        layers_->addItem(QString::fromStdString(layer.name), QString::fromStdString(layer.name));
+    layers_->setToolTip(tr("Strands of all layers, or of some"));
+    frames_->setObjectName("frames");
+    frames_->setRange(0, 10000);
+    frames_->setSpecialValueText(tr("at rest"));
+    frames_->setToolTip(tr(
+        "Frames of 1/60 s of the motion of the view, or of a nod, simulated for the file; more than one in a "
+        "format that can hold them"));
     note_->setProperty("role", "dim");
     note_->setWordWrap(true);
     for (const LengthUnit& unit : lengthUnits()) unit_->addItem(unit.name, unit.metres);
@@ -82,6 +101,8 @@ ExportDialog::ExportDialog(QtDocument& document, Tasks& tasks, Messages& message
     form->addRow(tr("For"), target_);
     form->addRow(QString(), note_);
     form->addRow(tr("Strands"), what_);
+    form->addRow(tr("Layers"), layers_);
+    form->addRow(tr("Frames"), frames_);
     form->addRow(tr("Unit"), unit_);
     form->addRow(tr("Axis"), up_);
     form->addRow(tr("Points a strand"), points_);
@@ -135,12 +156,33 @@ void ExportDialog::exportTo(const QString& path) {
     options.metresPerUnit = static_cast<float>(unit_->currentData().toDouble());
     options.up = up_->currentIndex() == 1 ? UpAxis::Z : UpAxis::Y;
     options.pointsPerStrand = static_cast<std::uint32_t>(points_->value());
-    const auto what = static_cast<ExportedHair>(what_->currentData().toInt());
+    HairToExport wanted;
+    wanted.hair = static_cast<ExportedHair>(what_->currentData().toInt());
+    for (const Layer& layer : document_.groom().layers) {
+        const bool isShown = layers_->currentIndex() == 1 && layer.visible;
+        if (isShown || layers_->currentData().toString().toStdString() == layer.name)
+            wanted.layers.push_back(layer.name);
+    }
+    if (layers_->currentIndex() == 1 && wanted.layers.empty())
+        return messages_.warn(tr("No layer is shown, so that nothing would be written"));
+    auto motion = player_.makeMeasuredMotion();
+    if (!motion) return messages_.warn(QString::fromStdString(motion.error().message()));
+    const std::shared_ptr<const HeadMotion> moves = std::move(*motion);
+    const auto count = static_cast<std::uint32_t>(frames_->value());
     write_->setEnabled(false);
     const bool started = tasks_.run<ExportReport>(
         tr("Exporting %1").arg(QFileInfo(path).fileName()),
-        [groom = document_.groom(), what, path, options, &writer](TaskControl&) {
-            return exportHair(groom, what, writer, path.toStdString(), options);
+        [groom = document_.groom(), wanted, moves, count, path, options,
+         &writer](TaskControl& control) mutable -> Result<ExportReport> {
+            if (count > 0) {
+                auto frames = playFrames(groom, *moves, count, kFramesPerSecond, [&](std::uint32_t done) {
+                    control.setProgress(static_cast<float>(done) / static_cast<float>(count));
+                    return !control.isCancelled();
+                });
+                if (!frames) return tl::unexpected(frames.error());
+                wanted.frames = std::move(*frames);
+            }
+            return exportHair(groom, wanted, writer, path.toStdString(), options);
         },
         [self = QPointer(this), &messages = messages_, path](ExportReport report) {
             messages.say(tr("%1 written and read back").arg(QFileInfo(path).fileName()));

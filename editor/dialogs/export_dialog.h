@@ -12,6 +12,7 @@
 #include "editor/document/messages.h"
 #include "editor/document/qt_document.h"
 #include "editor/document/tasks.h"
+#include "editor/simulation/player.h"
 #include "exporters/report.h"
 
 namespace hairloom::editor {
@@ -20,7 +21,8 @@ class ExportDialog : public QDialog {
     Q_OBJECT
 
   public:
-    ExportDialog(QtDocument& document, Tasks& tasks, Messages& messages, QWidget* parent = nullptr);
+    ExportDialog(QtDocument& document, Tasks& tasks, Messages& messages, const Player& player,
+                 QWidget* parent = nullptr);
 
     /// Writes to this file with the options that are set; the report follows when it is done.
     void exportTo(const QString& path);
@@ -35,8 +37,11 @@ class ExportDialog : public QDialog {
     QtDocument& document_;
     Tasks& tasks_;
     Messages& messages_;
+    const Player& player_;
     QComboBox* target_;
     QComboBox* what_;
+    QComboBox* layers_;
+    QSpinBox* frames_;
     QLabel* note_;
     QComboBox* unit_;
     QComboBox* up_;

@@ -11,12 +11,14 @@
 
 #include "core/base/file.h"
 #include "exporters/strands.h"
+#include "tests/exporters/asset_samples.h"
 #include "tests/support/source_dir.h"
 
 namespace hairloom {
 namespace {
 
 namespace fs = std::filesystem;
+using test::helices;
 using testing::HasSubstr;
 
 class StrandWriters : public testing::Test {
@@ -39,21 +41,6 @@ Result<ExportReport> writeHair(const Groom& groom, const fs::path& path,
 Result<ExportReport> writeTfx(const Groom& groom, const fs::path& path,
                               const StrandExportOptions& options = {}) {
     return strandWriter("tfx").write(groom, path, options);
-}
-
-/// Strand s has counts[s] points on a helix.
-Groom helices(const std::vector<std::uint32_t>& counts) {
-    std::vector<std::uint32_t> offsets{0};
-    std::vector<Vec3f> positions;
-    for (std::size_t s = 0; s < counts.size(); ++s) {
-        for (std::uint32_t i = 0; i < counts[s]; ++i) {
-            const float t = static_cast<float>(i) / static_cast<float>(counts[s] - 1);
-            positions.emplace_back(0.01f * static_cast<float>(s) + 0.02f * std::cos(4 * t), 1.7f - 0.2f * t,
-                                   0.02f * std::sin(4 * t));
-        }
-        offsets.push_back(static_cast<std::uint32_t>(positions.size()));
-    }
-    return makeGroom(std::move(offsets), std::move(positions));
 }
 
 template <class T>
@@ -302,6 +289,51 @@ TEST_F(StrandWriters, EveryTargetOfEveryFormatIsWrittenAndReadBackByContent) {
             EXPECT_LT(report->maxErrorMm, 2.0) << target.name;
         }
     }
+}
+
+TEST_F(StrandWriters, StrandsThatMoveAreReadBackAtEveryFrame) {
+    const Groom groom = decorated({9, 17});
+    const auto frames = std::make_shared<StrandFrames>();
+    frames->framesPerSecond = 30;
+    frames->first = 5;
+    for (int f = 0; f < 4; ++f) {
+        std::vector<Vec3f> points(groom.positions().begin(), groom.positions().end());
+        for (Vec3f& point : points)
+            point += static_cast<float>(f) * Vec3f(0.01f, 0.1f * (point.y() - 1.7f), 0.003f);
+        frames->points.push_back(std::move(points));
+    }
+    int animating = 0;
+    for (const StrandWriter& writer : strandWriters()) {
+        if (!writer.animates) continue;
+        ++animating;
+        for (const ExportTarget& target : writer.targets) {
+            StrandExportOptions options = target.options;
+            options.frames = frames;
+            const fs::path path = folder / ("moving." + writer.suffix());
+            const auto report = writer.write(groom, path, options);
+            ASSERT_TRUE(report) << target.name << ": " << report.error().message();
+            EXPECT_EQ(report->frames, 4u);
+            EXPECT_LT(report->maxErrorMm, 0.001) << target.name;
+            StrandImportOptions reading;
+            reading.metresPerUnit = options.metresPerUnit;
+            reading.up = options.up;
+            reading.frames = true;
+            const auto back = importStrands(path, reading);
+            ASSERT_TRUE(back) << back.error().message();
+            EXPECT_FLOAT_EQ(back->framesPerSecond, 30) << target.name;
+            ASSERT_EQ(back->frames.size(), 4u);
+            for (std::size_t p = 0; p < groom.pointCount(); ++p)
+                EXPECT_LT((back->frames[3][p] - frames->points[3][p]).norm(), 1e-6f) << target.name;
+        }
+        StrandExportOptions fewer;
+        fewer.frames = frames;
+        fewer.pointsPerStrand = 5;
+        const auto report = writer.write(groom, folder / ("fewer." + writer.name), fewer);
+        ASSERT_TRUE(report) << report.error().message();
+        EXPECT_EQ(report->points, 10u);
+        EXPECT_LT(report->maxErrorMm, 3.0);
+    }
+    EXPECT_EQ(animating, 4);
 }
 
 TEST_F(StrandWriters, TargetsSetWhatTheirProgramWantsAndNameWhatItDoesNotTake) {

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "core/simulation/frame_record.h"
+
+namespace hairloom {
+
+/// The hair in `count` frames of a motion, from rest on, simulated on the CPU with its groom's settings.
+/// `progress` is told the frames that are done; where it returns false that ends with an error. Errors:
+/// those of Simulation::make.
+Result<std::vector<RecordedFrame>> playFrames(const Groom& groom, const HeadMotion& motion,
+                                              std::uint32_t count, float framesPerSecond,
+                                              const std::function<bool(std::uint32_t)>& progress);
+
+}  // namespace hairloom

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Wavefront OBJ with an `l` for each strand, root first: what Blender, Houdini, Maya and scripts read as
+// curves.
+
+#include <fmt/format.h>
+
+#include <iterator>
+
+#include "exporters/prepared_strands.h"
+
+namespace hairloom {
+namespace {
+
+Result<ExportReport> writeObjLines(const Groom& groom, const std::filesystem::path& path,
+                                   const StrandExportOptions& options) {
+    auto strands = prepareStrands(groom, options, options.pointsPerStrand);
+    if (!strands) return tl::unexpected(inFile(strands.error(), path.string()));
+    std::string text = fmt::format("# Hairloom, {} m in a unit, {} up\no hair\n", options.metresPerUnit,
+                                   options.up == UpAxis::Z ? "Z" : "Y");
+    const auto end = std::back_inserter(text);
+    for (const Vec3f& p : strands->positions) fmt::format_to(end, "v {} {} {}\n", p.x(), p.y(), p.z());
+    for (std::size_t strand = 0; strand < strands->strandCount(); ++strand) {
+        text += 'l';
+        for (std::uint32_t point = strands->offsets[strand]; point < strands->offsets[strand + 1]; ++point)
+            fmt::format_to(end, " {}", point + 1);
+        text += '\n';
+    }
+    return writeAndCompare(groom, std::move(*strands), options, path, std::as_bytes(std::span(text)));
+}
+
+}  // namespace
+
+StrandWriter objLinesWriter() {
+    return {"obj-lines",
+            "OBJ lines",
+            "nothing but positions",
+            "none",
+            {{"plain", "OBJ lines", ".obj in metres, Y up; a line for each strand, root first", {}}},
+            writeObjLines};
+}
+
+}  // namespace hairloom
