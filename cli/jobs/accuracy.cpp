@@ -31,12 +31,10 @@ struct AccuracyOptions {
 
 /// The groom's own number of points, and a half and a quarter of it.
 std::vector<std::string> pointsToTry(const Groom& groom) {
-    std::size_t own = 0;
-    for (std::size_t s = 0; s < groom.strandCount(); ++s) own = std::max(own, groom.strand(s).size());
     std::vector<std::string> counts;
-    for (const std::size_t part : {4u, 2u, 1u}) {
-        constexpr std::size_t kFewest = 4;
-        counts.push_back(fmt::format("{}", std::max(own / part, kFewest)));
+    for (const std::uint32_t part : {4u, 2u, 1u}) {
+        constexpr std::uint32_t kFewest = 4;
+        counts.push_back(fmt::format("{}", std::max(maxPoints(groom) / part, kFewest)));
     }
     return counts;
 }
@@ -124,7 +122,9 @@ Report frontReport(const WorkPrecision& result, std::optional<double> pixelsPerM
         rows.push_back(Report{{"setting", settingReport(result, *run)},
                               {"ms", run->milliseconds.median},
                               {"error_mm", run->error.rmsMm},
-                              {"error_mm_max", run->error.maxMm}});
+                              {"error_mm_max", run->error.maxMm},
+                              {"step_error_mm", run->stepError.rmsMm},
+                              {"model_error_mm", run->modelError.rmsMm}});
         if (pixelsPerMm) rows.back()["error_px"] = run->error.rmsMm * *pixelsPerMm;
     }
     return rows;

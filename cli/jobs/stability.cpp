@@ -6,20 +6,25 @@
 #include <optional>
 
 #include "cli/backend.h"
+#include "cli/documents.h"
 #include "cli/job.h"
+#include "cli/progress.h"
+#include "core/accuracy/certificate.h"
 #include "core/accuracy/stability_report.h"
 #include "core/base/file.h"
+#include "core/base/output_file.h"
 
 namespace hairloom::cli {
 namespace {
 
 struct StabilityJobOptions {
+    std::string groom;  ///< empty: the hard cases
     std::string output;
     std::vector<std::string> integrators;
     std::uint32_t cells = 24;
     std::uint32_t steps = 2000;
     std::uint64_t stepsAtRest = StabilityOptions{}.stepsAtRest;
-    std::uint32_t storms = StabilityOptions{}.storms;
+    std::optional<std::uint32_t> storms;
     std::string backend = "cpu";
     std::optional<std::uint32_t> device;
 };
@@ -85,7 +90,7 @@ Result<Report> stability(const StabilityJobOptions& options, const std::string& 
         std::erase(methods, springsWith(runtime::Integrator::implicitEuler));
     }
     suite.stepsAtRest = options.stepsAtRest;
-    suite.storms = options.storms;
+    suite.storms = options.storms.value_or(suite.storms);
     const std::vector<StabilityResult> results = runHardCases(methods, suite);
     std::vector<StabilityMap> maps;
     // Maps are of the integrators, not of what runs them.
@@ -115,31 +120,88 @@ Result<Report> stability(const StabilityJobOptions& options, const std::string& 
     return report;
 }
 
+void addStrength(Report& report, const StormStrength& strength) {
+    report["largest_step_s"] = strength.step;
+    report["root_speed"] = strength.rootSpeed;
+    report["turn"] = strength.turn;
+    report["wind"] = strength.wind;
+}
+
+Report certificateReport(const Certificate& certificate) {
+    constexpr std::size_t kListed = 8;
+    Report report;
+    addStrength(report, certificate.limits);
+    report["margin"] = kStormMargin;
+    report["storms"] = certificate.storms;
+    report["storms_within"] = certificate.within;
+    report["calm"] = certificate.calm;
+    report["failed"] = certificate.failed.size();
+    report["failures"] = Report::array();
+    for (std::size_t i = 0; i < std::min(kListed, certificate.failed.size()); ++i) {
+        const FailedStorm& storm = certificate.failed[i];
+        Report row{{"storm", storm.number}, {"what", storm.what}};
+        addStrength(row, storm.strength);
+        report["failures"].push_back(std::move(row));
+    }
+    report["words"] = inWords(certificate);
+    return report;
+}
+
+/// What one hairstyle withstands.
+Result<Report> certificateOf(const StabilityJobOptions& options) {
+    const auto groom = loadDocument(options.groom);
+    if (!groom) return tl::unexpected(groom.error());
+    CertificateOptions storms;
+    storms.storms = options.storms.value_or(storms.storms);
+    Progress progress("storms", storms.storms);
+    storms.progress = [&](std::size_t done, std::size_t) { progress.done(done); };
+    const auto certificate = certify(*groom, storms);
+    if (!certificate) return tl::unexpected(inFile(certificate.error(), options.groom));
+    Report report;
+    report["certificate"] = certificateReport(*certificate);
+    report["output"] = options.output;
+    const auto files =
+        writeFiles(options.output, {{"certificate.json", report["certificate"].dump(2) + "\n"}});
+    if (!files) return tl::unexpected(files.error());
+    report["files"] = *files;
+    return report;
+}
+
 JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<StabilityJobOptions>();
-    job.add_option("-o,--output", options->output,
-                   "Folder for report.html, cases.json, cases.csv, cases.md and the maps")
+    CLI::Option* const groom =
+        job.add_option("groom", options->groom, "Groom to certify: random storms on its own strands");
+    job.add_option(
+           "-o,--output", options->output,
+           "Folder for report.html, cases.json, cases.csv, cases.md and the maps, or certificate.json")
         ->required();
     job.add_option("--integrators", options->integrators,
                    "Rods, or integrators of springs, to run, instead of all")
         ->delimiter(',')
-        ->check(CLI::IsMember(methodNames()));
-    job.add_option("--storms", options->storms, "Random storms of case 26")->check(CLI::Range(1, 1'000'000));
+        ->check(CLI::IsMember(methodNames()))
+        ->excludes(groom);
+    job.add_option("--storms", options->storms, "Random storms of case 26, or on the groom (1,000)")
+        ->check(CLI::Range(1, 1'000'000));
     job.add_option("--backend", options->backend, "What runs the cases; maps are made on the CPU only")
-        ->check(CLI::IsMember({"cpu", "vulkan"}));
+        ->check(CLI::IsMember({"cpu", "vulkan"}))
+        ->excludes(groom);
     job.add_option("--device", options->device, "GPU to use, by its index in `devices`");
     job.add_option("--cells", options->cells, "Steps and stiffnesses of a map")->check(CLI::Range(2, 200));
     job.add_option("--steps", options->steps, "Steps of a cell")->check(CLI::Range(40, 100'000));
     job.add_option("--steps-at-rest", options->stepsAtRest, "Substeps of the case at rest")
         ->check(CLI::Range(8, 100'000'000));
-    return [options](const std::string& commandLine) { return stability(*options, commandLine); };
+    return [options](const std::string& commandLine) {
+        return options->groom.empty() ? stability(*options, commandLine) : certificateOf(*options);
+    };
 }
 
 }  // namespace
 
 Job stabilityJob() {
-    return {"stability", "Run the hard cases of the strand engine and map where each integrator is stable",
-            "-o stability --integrators verlet,rk4", declare};
+    return {
+        "stability",
+        "Run the hard cases of the strand engine and map where each integrator is stable, or certify a groom",
+        "-o stability --integrators verlet,rk4", declare};
 }
 
 }  // namespace hairloom::cli

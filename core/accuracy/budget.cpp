@@ -45,7 +45,10 @@ class Solver {
         if (!fits(chosen->milliseconds)) {
             if (auto status = giveUpEffects(*chosen); !status) return tl::unexpected(status.error());
         }
+        const auto again = timed(chosen->all);
+        if (!again) return tl::unexpected(again.error());
         Budget budget;
+        budget.millisecondsAgain = again->median;
         budget.fits = fits(chosen->milliseconds);
         budget.milliseconds = chosen->milliseconds;
         budget.errorMm = chosen->error.rmsMm;

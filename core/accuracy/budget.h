@@ -32,7 +32,8 @@ struct Budget {
     bool fits = false;  ///< else this is the fastest that was found
     Groom groom;        ///< with the settings chosen, resampled where `points` is given up
     Quartiles milliseconds;
-    double errorMm = 0;  ///< root mean square, of the sample
+    double millisecondsAgain = 0;  ///< median of runs of the choice once more, when all was done
+    double errorMm = 0;            ///< root mean square, of the sample
     double errorMaxMm = 0;
     Quartiles authoredMilliseconds;  ///< of the scene as it is
     std::vector<GivenUp> givenUp;    ///< in the order of the settings, then effects in the order of giving up

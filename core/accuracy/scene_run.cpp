@@ -8,6 +8,7 @@
 
 #include "core/base/random.h"
 #include "core/geometry/curve.h"
+#include "core/groom/strand_subset.h"
 
 namespace hairloom {
 namespace {
@@ -24,21 +25,6 @@ std::vector<std::uint32_t> drawn(std::size_t total, std::size_t count, std::uint
     all.resize(count);
     std::ranges::sort(all);
     return all;
-}
-
-AttributeSet chosen(const AttributeSet& attributes, const std::vector<std::uint32_t>& elements) {
-    AttributeSet result;
-    for (const auto& [name, data] : attributes.all()) {
-        std::visit(
-            [&, &key = name](const auto& array) {
-                using Array = std::remove_cvref_t<decltype(array)>;
-                std::vector<std::remove_cvref_t<decltype(array[0])>> values;
-                for (const std::uint32_t element : elements) values.push_back(array[element]);
-                result.set(key, AttributeData(Array(std::move(values))));
-            },
-            data);
-    }
-    return result;
 }
 
 /// Shares of the polyline's length at its points; evenly spread where it has no length.
@@ -83,18 +69,8 @@ bool MaterialPoints::read(std::span<const Vec3f> positions_ws, std::vector<Vec3f
 
 SceneHair sampleStrands(const Groom& groom, std::size_t count, std::uint64_t seed) {
     const std::vector<std::uint32_t> strands = drawnStrands(groom, count, seed);
-    std::vector<std::uint32_t> offsets{0}, points;
-    SceneHair hair;
-    for (const std::uint32_t strand : strands) {
-        for (std::uint32_t p = groom.offsets[strand]; p < groom.offsets[strand + 1]; ++p) points.push_back(p);
-        offsets.push_back(static_cast<std::uint32_t>(points.size()));
-        appendShares(groom.strand(strand), hair.arcShares);
-    }
-    hair.groom = groom;
-    hair.groom.offsets = CowArray<std::uint32_t>(std::move(offsets));
-    hair.groom.pointAttributes = chosen(groom.pointAttributes, points);
-    hair.groom.strandAttributes = chosen(groom.strandAttributes, strands);
-    hair.groom.triangulation = {};
+    SceneHair hair{strandsOf(groom, strands), {}};
+    for (const std::uint32_t strand : strands) appendShares(groom.strand(strand), hair.arcShares);
     return hair;
 }
 

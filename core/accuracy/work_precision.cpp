@@ -156,6 +156,25 @@ Status findFront(const GridHair& hair, const HeadPose& pose, const Followed& fol
     return {};
 }
 
+/// What is left with short steps, and what is not.
+Status splitErrors(const GridHair& hair, std::span<const HeadPose> poses, const GroundTruth& exact,
+                   WorkPrecision& result) {
+    for (WorkPrecisionRun& run : result.runs) {
+        if (!run.onFront) continue;
+        if (auto status = unlessCancelled(result.options); !status) return status;
+        SceneHair own = hair.at(run.values);
+        const auto as = runScene(own, poses, result.options.time, exact.followed);
+        own.groom.simulation.substeps = kConvergedSubsteps;
+        const auto fine = runScene(own, poses, result.options.time, exact.followed);
+        if (!as) return tl::unexpected(as.error());
+        if (!fine) return tl::unexpected(fine.error());
+        if (!fine->trajectory.finite) continue;
+        run.stepError = compare(as->trajectory, fine->trajectory);
+        run.modelError = compare(fine->trajectory, exact.trajectory);
+    }
+    return {};
+}
+
 /// In rounds over all settings, so that a machine that warms up or is busy for a while treats them alike.
 Status timeAll(const GridHair& hair, std::span<const HeadPose> poses, WorkPrecision& result,
                Counted& counted) {
@@ -352,6 +371,8 @@ Result<WorkPrecision> measureWorkPrecision(const Groom& groom, const HeadMotion&
     }
     if (auto status = timeAll(hair, poses, result, counted); !status) return tl::unexpected(status.error());
     if (auto status = findFront(hair, poses.front(), exact->followed, result); !status)
+        return tl::unexpected(status.error());
+    if (auto status = splitErrors(hair, poses, *exact, result); !status)
         return tl::unexpected(status.error());
     noteWhatMatters(result);
     return result;

@@ -35,11 +35,18 @@ struct WorkPrecisionOptions {
     std::function<bool()> cancelled;  ///< asked between runs; true ends them with an error
 };
 
+/// Substeps in 1/60 s that stand for infinitely many.
+inline constexpr std::uint32_t kConvergedSubsteps = 64;
+
 struct WorkPrecisionRun {
     std::vector<double> values;   ///< one for each axis
     bool diverged = false;        ///< then there are no numbers
     Quartiles milliseconds = {};  ///< of the engine, per frame: of the means of the repeated runs
     TrajectoryError error = {};
+    /// Of runs on the front, what `error` is made of; they need not add up. The steps' part: how far the run
+    /// is from one with kConvergedSubsteps. The model's part: how far that one is from the truth, which no
+    /// number of substeps makes good: too few points, another integrator, single precision.
+    TrajectoryError stepError = {}, modelError = {};
     bool onFront = false;  ///< no other run is both as fast and as exact (median time, root mean square)
     std::uint64_t stateHash = 0;
     /// Springs that would be on the front, but tremble where the head stands still: m/s, or 0.

@@ -69,11 +69,21 @@ void addFront(const WorkPrecision& result, HtmlReport& page) {
     }
     std::ranges::sort(front, {}, [](const WorkPrecisionRun* run) { return run->milliseconds.median; });
     std::vector<Cells> rows{headForPeople(result)};
-    for (const WorkPrecisionRun* run : front) rows.push_back(rowForPeople(result, *run));
-    for (Cells& row : rows) row.pop_back();
+    rows.front().back() = "of steps, mm rms";
+    rows.front().push_back("of the model, mm rms");
+    for (const WorkPrecisionRun* run : front) {
+        rows.push_back(rowForPeople(result, *run));
+        rows.back().back() = fmt::format("{:.4f}", run->stepError.rmsMm);
+        rows.back().push_back(fmt::format("{:.4f}", run->modelError.rmsMm));
+    }
     page.heading("The Pareto front");
     page.paragraph(
-        "Settings that no other one in this grid beats in both time and error, the fastest first.");
+        fmt::format("Settings that no other one in this grid beats in both time and error, the fastest "
+                    "first. The part of "
+                    "steps is how far a run is from one with {} substeps; the part of the model, how far "
+                    "that one is from "
+                    "the truth, which shorter steps do not mend: more points do.",
+                    kConvergedSubsteps));
     page.table(rows);
 }
 

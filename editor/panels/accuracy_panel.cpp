@@ -15,6 +15,7 @@
 #include "core/operations/resample.h"
 #include "editor/fields/number_box.h"
 #include "editor/panels/accuracy_plot.h"
+#include "editor/panels/certificate_box.h"
 #include "editor/panels/panel.h"
 
 namespace hairloom::editor {
@@ -65,6 +66,7 @@ class AccuracyPanel : public QWidget {
         layout->addWidget(chosenWords_);
         layout->addWidget(adopt_);
         layout->addWidget(measure_);
+        layout->addWidget(new CertificateBox(document_, tasks_));
         pixels_->setValue(1);
         milliseconds_->setValue(4);
         connect(measure_, &QPushButton::clicked, this, &AccuracyPanel::measure);
@@ -129,11 +131,18 @@ class AccuracyPanel : public QWidget {
             .arg(measured.error.rmsMm * pixelsPerMm(), 0, 'g', 2)
             .arg(measured.error.rmsMm, 0, 'g', 2);
     }
+    /// What the error of a run on the front is made of.
+    QString parts(std::size_t run) const {
+        const WorkPrecisionRun& measured = measured_->runs[run];
+        if (!measured.onFront || !(measured.stepError.rmsMm > 0)) return {};
+        return tr(", of which %1 px by its steps and %2 px by its points")
+            .arg(measured.stepError.rmsMm * pixelsPerMm(), 0, 'g', 2)
+            .arg(measured.modelError.rmsMm * pixelsPerMm(), 0, 'g', 2);
+    }
     QString setting(std::size_t run) const { return QString::fromStdString(describeRun(*measured_, run)); }
 
     void measure() {
-        const QString name = player_.motion() == "none" ? QStringLiteral("nod") : player_.motion();
-        auto motion = player_.makeMotion(name);
+        auto motion = player_.makeMeasuredMotion();
         if (!motion) return messages_.warn(QString::fromStdString(motion.error().message()));
         const auto groom = std::make_shared<const Groom>(document_.groom());
         const std::shared_ptr<const HeadMotion> moves = std::move(*motion);
@@ -219,7 +228,7 @@ class AccuracyPanel : public QWidget {
         QString text;
         const auto now = runOf(*measured_, document_.groom());
         if (now) {
-            text = tr("Now %1: %2.").arg(setting(*now), numbers(*now));
+            text = tr("Now %1: %2%3.").arg(setting(*now), numbers(*now), parts(*now));
             const WorkPrecisionRun& has = measured_->runs[*now];
             if (const auto next = nextStep(*measured_, *now); next && !has.diverged) {
                 text += ' ' + step(has, *next);
@@ -243,8 +252,9 @@ class AccuracyPanel : public QWidget {
         adopt_->setEnabled(any && chosen_);
         chosenWords_->setVisible(any);
         if (!any) return;
-        chosenWords_->setText(chosen_ ? tr("Chosen: %1: %2").arg(setting(*chosen_), numbers(*chosen_))
-                                      : tr("Click a point, or set a limit"));
+        chosenWords_->setText(
+            chosen_ ? tr("Chosen: %1: %2%3").arg(setting(*chosen_), numbers(*chosen_), parts(*chosen_))
+                    : tr("Click a point, or set a limit"));
         std::vector<AccuracyPoint> points;
         for (std::size_t r = 0; r < measured_->runs.size(); ++r) {
             const WorkPrecisionRun& run = measured_->runs[r];

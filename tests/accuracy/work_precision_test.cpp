@@ -93,6 +93,11 @@ TEST(WorkPrecision, MoreWorkIsMorePrecise) {
         EXPECT_LE(run.milliseconds.q1, run.milliseconds.q3);
         EXPECT_GT(run.error.rmsMm, 0);
         EXPECT_GE(run.error.maxMm, run.error.rmsMm);
+        if (!run.onFront) continue;
+        // Root mean squares over the same points are a norm.
+        EXPECT_LE(run.error.rmsMm, 1.0001 * (run.stepError.rmsMm + run.modelError.rmsMm));
+        EXPECT_GE(run.error.rmsMm, 0.9999 * std::abs(run.stepError.rmsMm - run.modelError.rmsMm));
+        EXPECT_GT(run.stepError.rmsMm, 0);
     }
     const WorkPrecisionRun &coarse = result->runs[0], &best = result->runs[3];
     EXPECT_THAT(best.values, ElementsAre(0, 8, 12));

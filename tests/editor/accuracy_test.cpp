@@ -89,6 +89,21 @@ TEST_F(AccuracyTest, APointOfTheDiagramIsChosenByAClick) {
     }
 }
 
+TEST_F(AccuracyTest, AThousandStormsSayWhatTheHairWithstands) {
+    auto* words = find<QLabel>("certificateWords");
+    EXPECT_FALSE(words->isVisibleTo(window.get()));
+    find<QPushButton>("certify")->click();
+    finishWork();
+    EXPECT_TRUE(words->text().startsWith("Withstands frames of")) << words->text().toStdString();
+    EXPECT_TRUE(words->text().contains("1000 random storms"));
+    Groom changed = groom();
+    changed.simulation.windSpeed = 3;
+    change("Wind", changed);
+    EXPECT_TRUE(words->text().startsWith("Before the last change")) << words->text().toStdString();
+    openBust();
+    EXPECT_TRUE(words->text().isEmpty());
+}
+
 TEST_F(AccuracyTest, AnotherDocumentAndACancelledRunLeaveNothing) {
     find<QPushButton>("accuracyMeasure")->click();
     parts().tasks.cancel();

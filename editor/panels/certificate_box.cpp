@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "editor/panels/certificate_box.h"
+
+#include <QVBoxLayout>
+#include <memory>
+
+#include "core/editing/document.h"
+
+namespace hairloom::editor {
+
+CertificateBox::CertificateBox(QtDocument& document, Tasks& tasks, QWidget* parent)
+    : QWidget(parent),
+      document_(document),
+      tasks_(tasks),
+      words_(new QLabel),
+      certify_(new QPushButton(tr("Certify"))) {
+    auto* layout = new QVBoxLayout(this);
+    layout->setContentsMargins(0, 0, 0, 0);
+    layout->setSpacing(8);
+    words_->setObjectName("certificateWords");
+    words_->setWordWrap(true);
+    certify_->setObjectName("certify");
+    certify_->setToolTip(
+        tr("Tries a thousand random storms on this hair: how fast a head, how strong a wind and how long a "
+           "frame it withstands in a game; half a minute or so"));
+    layout->addWidget(words_);
+    layout->addWidget(certify_);
+    connect(certify_, &QPushButton::clicked, this, &CertificateBox::certify);
+    connect(&document_, &QtDocument::changed, this, [this](editing::Part changed) {
+        if (!contains(changed, editing::Part::Physics | editing::kHairParts | editing::Part::Spheres)) return;
+        outdated_ = true;
+        refresh();
+    });
+    connect(&document_, &QtDocument::replaced, this, [this] {
+        certificate_.reset();
+        ++documents_;
+        refresh();
+    });
+    refresh();
+}
+
+void CertificateBox::certify() {
+    const auto groom = std::make_shared<const Groom>(document_.groom());
+    const bool began = tasks_.run<Certificate>(
+        tr("Certifying"),
+        [groom](TaskControl& control) {
+            CertificateOptions options;
+            options.progress = [&](std::size_t done, std::size_t total) {
+                control.setProgress(static_cast<float>(done) / static_cast<float>(total));
+            };
+            options.cancelled = [&] { return control.isCancelled(); };
+            return hairloom::certify(*groom, options);
+        },
+        [this, document = documents_](Certificate certificate) {
+            if (document != documents_) return;
+            certificate_ = std::move(certificate);
+            refresh();
+        });
+    if (began) outdated_ = false;
+}
+
+void CertificateBox::refresh() {
+    certify_->setEnabled(document_.groom().strandCount() > 0);
+    const QString age = outdated_ ? tr("Before the last change: ") : QString();
+    words_->setText(certificate_ ? age + QString::fromStdString(inWords(*certificate_)) : QString());
+    words_->setVisible(certificate_.has_value());
+}
+
+}  // namespace hairloom::editor

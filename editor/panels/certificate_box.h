@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What the hair withstands, found by random storms on it in the background.
+
+#include <QLabel>
+#include <QPushButton>
+#include <QWidget>
+#include <optional>
+
+#include "core/accuracy/certificate.h"
+#include "editor/document/qt_document.h"
+#include "editor/document/tasks.h"
+
+namespace hairloom::editor {
+
+class CertificateBox : public QWidget {
+    Q_OBJECT
+
+  public:
+    CertificateBox(QtDocument& document, Tasks& tasks, QWidget* parent = nullptr);
+
+  private:
+    void certify();
+    void refresh();
+
+    QtDocument& document_;
+    Tasks& tasks_;
+    QLabel* words_;
+    QPushButton* certify_;
+    std::optional<Certificate> certificate_;
+    bool outdated_ = false;
+    int documents_ = 0;  ///< that were opened: a certificate is of one
+};
+
+}  // namespace hairloom::editor
