@@ -7,6 +7,7 @@
 
 #include "core/editing/replay.h"
 #include "core/groom/file/json_reader.h"
+#include "core/scene/head_transfer.h"
 
 namespace hairloom {
 namespace {
@@ -60,6 +61,7 @@ std::string importRecord(const std::string& path, const StrandImportOptions& opt
 Result<Script> parseDocumentScript(const std::string& file, std::string_view text) {
     std::vector<ScriptExtension> extensions = editing::scriptExtensions();
     extensions.push_back({"import", readImport});
+    extensions.push_back(transferExtension());
     return parseScript(file, text, extensions);
 }
 

@@ -24,7 +24,7 @@ void replaceHair(Groom& groom, const Groom& hair);
 std::string importRecord(const std::string& path, const StrandImportOptions& options);
 
 /// parseScript() with all operations that a document's script may hold: those of core/operations, an editor's
-/// steps, and "import". `file` is named in errors.
+/// steps, "import" and "transfer". `file` is named in errors.
 Result<Script> parseDocumentScript(const std::string& file, std::string_view text);
 
 }  // namespace hairloom

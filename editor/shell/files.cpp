@@ -3,12 +3,15 @@
 
 #include <QCoreApplication>
 #include <QFileInfo>
+#include <algorithm>
 
 #include "core/base/file.h"
 #include "core/editing/document.h"
 #include "core/editing/settings_commands.h"
 #include "core/groom/file/project_file.h"
+#include "core/operations/stack.h"
 #include "core/scene/hair_import.h"
+#include "core/scene/head_transfer.h"
 #include "core/scene/motions.h"
 #include "core/scene/open.h"
 #include "core/scene/sample.h"
@@ -107,6 +110,10 @@ QString strandFilter() {
     return QObject::tr("Hair (%1);;All files (*)").arg(patternsOf(strandFormats()));
 }
 
+QString headFilter() {
+    return QObject::tr("Heads (%1);;All files (*)").arg(patternsOf(meshFormats()));
+}
+
 std::filesystem::path samplesFolder() {
     return findSamples(QCoreApplication::applicationDirPath().toStdString());
 }
@@ -175,6 +182,35 @@ void DocumentFiles::importStrands(const QString& path, const StrandImportOptions
                                   .arg(document_.groom().strandCount()));
             }
             preferences_.addRecentFile(path);
+        });
+}
+
+void DocumentFiles::transferTo(const QString& path) {
+    const QString name = QFileInfo(path).fileName();
+    const std::string file = path.toStdString();
+    tasks_.run<Opened>(
+        QObject::tr("Transferring to %1").arg(name),
+        [file, groom = document_.groom()](TaskControl&) -> Result<Opened> {
+            Opened opened;
+            opened.groom = groom;
+            const auto transfer = transferToFile(opened.groom, file);
+            if (!transfer) return tl::unexpected(transfer.error());
+            const double farthest = 1e3 * static_cast<double>(*std::ranges::max_element(transfer->distances));
+            opened.note =
+                QObject::tr("the farthest root was %1 mm off the new head").arg(farthest, 0, 'f', 1);
+            if (transfer->baked) opened.note += QObject::tr("; operators are baked");
+            return opened;
+        },
+        [this, name, file, before = document_.groom()](Opened opened) {
+            const Groom& now = document_.groom();
+            if (now.scalp != before.scalp || now.pointAttributes.version(attribute::kPosition) !=
+                                                 before.pointAttributes.version(attribute::kPosition))
+                return messages_.warn(QObject::tr("The hair has changed meanwhile; transfer it again"));
+            document_.perform(editing::replaceGroom(document_.editing().model(), std::move(opened.groom),
+                                                    QObject::tr("Transfer to %1").arg(name).toStdString(),
+                                                    transferRecord(file, 0)));
+            messages_.say(QObject::tr("On %1: %2").arg(name, opened.note));
+            preferences_.addRecentFile(QString::fromStdString(file));
         });
 }
 

@@ -24,9 +24,10 @@ enum class FileKind {
 /// where it has faces that are no ribbons of hair.
 FileKind kindOf(const QString& path);
 
-/// For file dialogs: all that opens, and hair of other programs alone.
+/// For file dialogs: all that opens, hair of other programs alone, and heads alone.
 QString openFilter();
 QString strandFilter();
+QString headFilter();
 
 class DocumentFiles {
   public:
@@ -45,6 +46,8 @@ class DocumentFiles {
     void openSample(const QString& name);
     /// Strands with these options, bound to the head of the document if it has one, replacing its strands.
     void importStrands(const QString& path, const StrandImportOptions& options);
+    /// The hair of the document onto the head of the file.
+    void transferTo(const QString& path);
     /// What a crash left.
     void openRecovered(const QString& file, const QString& documentPath, const QString& name);
 

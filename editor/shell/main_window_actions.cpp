@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The commands of the window: menus, shortcuts, tooltips.
 #include <QApplication>
+#include <QFileDialog>
 #include <QMenuBar>
 #include <QMessageBox>
 #include <algorithm>
@@ -72,10 +73,20 @@ void MainWindow::addFileActions() {
     add({"file.import", tr("&Import hair…"), "import",
          tr("Takes strands of another program onto the head, after a look at them"), QKeySequence("Ctrl+I")},
         [this] { chooseAndImport(); });
+    add({"file.transfer",
+         tr("&Transfer to another head…"),
+         "",
+         tr("Puts the hairstyle on the head of a file, sized and placed as that is"),
+         {}},
+        [this] {
+            const QString path =
+                QFileDialog::getOpenFileName(this, tr("Transfer to a head"), {}, headFilter());
+            if (!path.isEmpty()) files_.transferTo(path);
+        });
     add({"file.export", tr("&Export hair…"), "export",
          tr("Writes the hair for a game and reads it back to compare"), QKeySequence("Ctrl+E")},
         [this] {
-            ExportDialog dialog(document_, tasks_, messages_, this);
+            ExportDialog dialog(document_, tasks_, messages_, player_, this);
             dialog.exec();
         });
     menu->addSeparator();

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/editing/document.h"
+#include "core/scene/motions.h"
 #include "core/simulation/clip_motion.h"
 #include "core/simulation/effect_switch.h"
 #include "editor/simulation/live_engine.h"
@@ -158,6 +159,10 @@ Result<std::unique_ptr<HeadMotion>> Player::makeMotion(const QString& name) cons
     return motionOf(name, actor_, document_.groom());
 }
 
+Result<std::unique_ptr<HeadMotion>> Player::makeMeasuredMotion() const {
+    return makeMotion(motion_ == "none" ? QStringLiteral("nod") : motion_);
+}
+
 Status Player::setMotion(const QString& name) {
     const auto made = makeMotion(name);
     if (!made) return tl::unexpected(made.error());
@@ -259,6 +264,15 @@ void Player::setHeadOffset(const Eigen::Isometry3f& offset) {
 
 void Player::documentChanged(editing::Part parts) {
     const Groom& groom = document_.groom();
+    if (contains(parts, editing::Part::Head)) {
+        // Another head, or by undo the one before, has its own skeleton and clips.
+        motion_ = "none";
+        std::shared_ptr<const Actor> actor;
+        if (!groom.characterFile.empty()) {
+            if (auto loaded = loadActor({}, groom)) actor = std::move(*loaded);
+        }
+        setActor(std::move(actor));
+    }
     if (contains(parts, editing::Part::Physics | editing::kHairParts | editing::Part::Spheres))
         outdatePlanPreview();
     if (contains(parts, editing::kHairParts | editing::kScalpParts)) {

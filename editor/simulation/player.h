@@ -53,6 +53,8 @@ class Player : public QObject {
     const QString& motion() const { return motion_; }
     /// One that setMotion() takes, for this document. Errors: no such motion.
     Result<std::unique_ptr<HeadMotion>> makeMotion(const QString& name) const;
+    /// For measuring: the motion that plays, or a nod where the head is at rest. Errors: no such motion.
+    Result<std::unique_ptr<HeadMotion>> makeMeasuredMotion() const;
     /// Names that setMotion() takes for this document.
     QStringList motions() const;
     /// The character with skeleton and clips; null where the head came without.

@@ -151,7 +151,7 @@ TEST_F(ManualTest, GroomingSpheresMotionAndLook) {
     trigger("play.toggle");
     shootWindow("wind");
     trigger("play.reset");
-    ExportDialog exporting(document(), parts().tasks, parts().messages, window.get());
+    ExportDialog exporting(document(), parts().tasks, parts().messages, parts().player, window.get());
     exporting.show();
     exporting.exportTo(inFolder("shoulder.tfx"));
     finishWork();

@@ -122,7 +122,7 @@ TEST_P(ScreenshotsTest, Dialogs) {
     for (const auto* button : buttons)
         EXPECT_EQ(button->isDefault(), button->text() == "Close") << button->text().toStdString();
     shortcuts.hide();
-    ExportDialog exporting(document(), parts().tasks, parts().messages, window.get());
+    ExportDialog exporting(document(), parts().tasks, parts().messages, parts().player, window.get());
     exporting.show();
     exporting.exportTo(inFolder("hair.tfx"));
     finishWork();

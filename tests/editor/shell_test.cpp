@@ -276,7 +276,7 @@ TEST_F(ShellTest, EveryControlOfThePanelsHasATip) {
 
 TEST_F(ShellTest, ExportIsReadBackAndReported) {
     openSampleHair("short");
-    ExportDialog dialog(document(), parts().tasks, parts().messages);
+    ExportDialog dialog(document(), parts().tasks, parts().messages, parts().player);
     dialog.findChild<QComboBox*>("target")->setCurrentText("Yuksel .hair");
     dialog.exportTo(inFolder("hair.hair"));
     finishWork();
@@ -297,7 +297,7 @@ TEST_F(ShellTest, ExportIsReadBackAndReported) {
 
 TEST_F(ShellTest, AnAssetForGamesIsExportedWithItsSize) {
     openSampleHair("short");
-    ExportDialog dialog(document(), parts().tasks, parts().messages);
+    ExportDialog dialog(document(), parts().tasks, parts().messages, parts().player);
     dialog.findChild<QComboBox*>("target")->setCurrentText("Game by Hairloom's runtime");
     dialog.exportTo(inFolder("hair.hairrt"));
     finishWork();
@@ -316,7 +316,7 @@ TEST_F(ShellTest, ImportShowsTheStrandsBeforeTheyAreTakenAndBindsThemToTheHead) 
     openSampleHair("short");
     const std::size_t strands = groom().strandCount();
     {
-        ExportDialog dialog(document(), parts().tasks, parts().messages);
+        ExportDialog dialog(document(), parts().tasks, parts().messages, parts().player);
         dialog.exportTo(inFolder("hair.tfx"));
         finishWork();
     }
@@ -343,7 +343,7 @@ TEST_F(ShellTest, ImportShowsTheStrandsBeforeTheyAreTakenAndBindsThemToTheHead) 
 TEST_F(ShellTest, ASavedScriptRepeatsTheStepsOnTheHeadThatWasOpened) {
     openSampleHair("short");
     {
-        ExportDialog dialog(document(), parts().tasks, parts().messages);
+        ExportDialog dialog(document(), parts().tasks, parts().messages, parts().player);
         dialog.exportTo(inFolder("hair.tfx"));
         finishWork();
     }

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <memory>
+
+#include "cli/documents.h"
+#include "cli/job.h"
+#include "cli/outputs.h"
+#include "core/base/content_kind.h"
+#include "core/base/log.h"
+#include "core/groom/file/project_file.h"
+#include "core/scene/head_transfer.h"
+
+namespace hairloom::cli {
+namespace {
+
+constexpr float kFar_m = 0.005f;  ///< roots that were farther off are named
+constexpr std::size_t kNamed = 100;
+
+struct TransferOptions {
+    std::string input, head, unit, output;
+};
+
+Result<Report> transferHair(const TransferOptions& options) {
+    auto groom = loadDocument(options.input);
+    if (!groom) return tl::unexpected(groom.error());
+    const float unit = options.unit.empty() ? 0 : metresPerUnit(options.unit);
+    const auto transfer = transferToFile(*groom, options.head, unit);
+    if (!transfer) return tl::unexpected(inFile(transfer.error(), options.input));
+    if (transfer->baked)
+        log::warning("{}: its operators name places on the old head; the hair as it is is all there is now",
+                     options.input);
+    Report report;
+    report["strands"] = groom->strandCount();
+    report["same_mesh"] = transfer->sameMesh;
+    report["scale"] = transfer->fit.scale;
+    report["max_root_error_mm"] = 1e3 * static_cast<double>(*std::ranges::max_element(transfer->distances));
+    report["strands_far"] = std::ranges::count_if(transfer->distances, [](float d) { return d > kFar_m; });
+    report["strands_named"] = Report::array();
+    for (std::size_t s = 0; s < transfer->distances.size() && report["strands_named"].size() < kNamed; ++s) {
+        if (transfer->distances[s] > kFar_m)
+            report["strands_named"].push_back(Report{{"strand", s}, {"mm", 1e3f * transfer->distances[s]}});
+    }
+    if (auto saved = saveProject(*groom, options.output); !saved) return tl::unexpected(saved.error());
+    report["output"] = options.output;
+    return report;
+}
+
+JobRun declare(CLI::App& job) {
+    const auto options = std::make_shared<TransferOptions>();
+    job.add_option("groom", options->input, "Hair that grows on a head")->required();
+    job.add_option("--to", options->head, "Head to put it on, upright and looking the same way")->required();
+    addUnitOption(job, options->unit);
+    job.add_option("-o,--output", options->output, "Project to write")->required();
+    return [options](const std::string&) {
+        return withOutputs({{options->output, content::kProject}}, [&] { return transferHair(*options); });
+    };
+}
+
+}  // namespace
+
+Job transferJob() {
+    return {"transfer", "Put a hairstyle on another head",
+            "bob.hairloom --to head.obj --unit dm -o bob2.hairloom", declare};
+}
+
+}  // namespace hairloom::cli
