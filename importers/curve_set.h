@@ -40,9 +40,9 @@ struct CurveSet {
 };
 
 /// Appends the curves to the strands, and `frames` positions of each point where that is not 0: those of the
-/// set, the last one again where it has fewer. Curves of one point are left to the import to drop; those that are
-/// none of their basis become lines through their control points, with a warning. Errors: counts that do not add
-/// up.
+/// set, the last one again where it has fewer. Curves of one point are left to the import to drop; those that
+/// are none of their basis become lines through their control points, with a warning. Errors: counts that do
+/// not add up.
 Status appendCurves(const std::string& file, const CurveSet& curves, std::size_t frames, RawStrands& strands);
 
 /// Names that other programs gave attributes become Hairloom's, once all curves of a file are appended:

@@ -31,7 +31,7 @@ inline constexpr std::string_view kPosition = "position";   ///< float3, metres,
 inline constexpr std::string_view kRadius = "radius";       ///< float, metres, half the fibre's diameter
 inline constexpr std::string_view kPointColour = "colour";  ///< float3, linear RGB in [0, 1]
 inline constexpr std::string_view kBasePosition = "base_position";  ///< position below all operators
-inline constexpr std::string_view kTransparency = "transparency";  ///< float in [0, 1], 0 is opaque
+inline constexpr std::string_view kTransparency = "transparency";   ///< float in [0, 1], 0 is opaque
 // Per strand
 inline constexpr std::string_view kRootTriangle = "root_triangle";  ///< uint32, triangle of the scalp mesh
 inline constexpr std::string_view kRootBarycentric = "root_barycentric";  ///< float3, ≥ 0, sum 1

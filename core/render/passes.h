@@ -35,8 +35,8 @@ struct RendererState {
     DeviceScene scene;
     Camera camera;
     std::optional<Camera> pastCamera;  ///< a frame ago, where places of then are known
-    std::vector<Light> lights;  ///< that are drawn, directional ones and points
-    Environment environment;    ///< the rest
+    std::vector<Light> lights;         ///< that are drawn, directional ones and points
+    Environment environment;           ///< the rest
     Vec3f background = Vec3f::Zero();
     OverlayOnDevice overlay;
     RenderOptions options;

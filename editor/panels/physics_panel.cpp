@@ -50,7 +50,8 @@ QWidget* makePresets(QtDocument& document) {
     layout->setContentsMargins(0, 0, 0, 0);
     auto* box = new QComboBox;
     box->setObjectName("preset");
-    box->setToolTip(QObject::tr("Stiffness, cross-section and colour of measured hair; settings of motion stay"));
+    box->setToolTip(
+        QObject::tr("Stiffness, cross-section and colour of measured hair; settings of motion stay"));
     box->addItem(QObject::tr("Preset of measured hair…"));
     for (const runtime::HairPreset& preset : runtime::presets()) {
         box->addItem(labelOf(preset.name));

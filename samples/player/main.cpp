@@ -59,7 +59,8 @@ struct Times {
 };
 
 /// One character for `frames` frames; false where the library refuses something.
-bool play(hairloom::game::Instance& hair, const hl_asset_info& asset, const Options& options, Times& times, hl_error& error) {
+bool play(hairloom::game::Instance& hair, const hl_asset_info& asset, const Options& options, Times& times,
+          hl_error& error) {
     std::vector<float> points;
     const float pivot[3] = {0, asset.bounds_max[1], 0};
     const float wind[3] = {options.wind, 0, 0};
@@ -85,11 +86,14 @@ bool play(hairloom::game::Instance& hair, const hl_asset_info& asset, const Opti
 }
 
 /// Characters side by side, each at its own time of the nod, or all at rest until their hair sleeps.
-bool playCrowd(const hairloom::game::Asset& asset, const hl_asset_info& info, const Options& options, hl_error& error) {
+bool playCrowd(const hairloom::game::Asset& asset, const hl_asset_info& info, const Options& options,
+               hl_error& error) {
     std::vector<hairloom::game::Instance> crowd(static_cast<std::size_t>(options.crowd));
     std::size_t bytes = 0;
     for (hairloom::game::Instance& hair : crowd) {
-        if (!(&hair == &crowd[0] ? hair.make(asset, HL_GUIDES, nullptr, &error) : hair.copy(crowd[0], &error))) return false;
+        if (!(&hair == &crowd[0] ? hair.make(asset, HL_GUIDES, nullptr, &error)
+                                 : hair.copy(crowd[0], &error)))
+            return false;
         bytes += hair.describe().bytes;
         if (options.resting && !hair.set("windSpeed", 0, &error)) return false;
     }
@@ -114,8 +118,8 @@ bool playCrowd(const hairloom::game::Asset& asset, const hl_asset_info& info, co
         asleep += hair.describe().asleep;
         guides += hair.describe().guides;
     }
-    std::printf("crowd of %d %s: %.4f ms a frame, %.1f KB a character, %zu of %zu guides asleep\n", options.crowd,
-                options.resting ? "at rest" : "nodding", measured / options.frames,
+    std::printf("crowd of %d %s: %.4f ms a frame, %.1f KB a character, %zu of %zu guides asleep\n",
+                options.crowd, options.resting ? "at rest" : "nodding", measured / options.frames,
                 static_cast<double>(bytes) / 1e3 / static_cast<double>(options.crowd), asleep, guides);
     return true;
 }
@@ -124,15 +128,23 @@ bool parse(int count, char** words, Options& options) {
     for (int i = 1; i < count; ++i) {
         const std::string word = words[i];
         const bool more = i + 1 < count;
-        if (word == "--resting") options.resting = true;
-        else if (word == "--hairs") options.hairs = true;
-        else if (word == "--frames" && more) options.frames = std::atoi(words[++i]);
-        else if (word == "--crowd" && more) options.crowd = std::atoi(words[++i]);
-        else if (word == "--wind" && more) options.wind = static_cast<float>(std::atof(words[++i]));
-        else if (!options.file && word.rfind("--", 0) != 0) options.file = words[i];
-        else return false;
+        if (word == "--resting")
+            options.resting = true;
+        else if (word == "--hairs")
+            options.hairs = true;
+        else if (word == "--frames" && more)
+            options.frames = std::atoi(words[++i]);
+        else if (word == "--crowd" && more)
+            options.crowd = std::atoi(words[++i]);
+        else if (word == "--wind" && more)
+            options.wind = static_cast<float>(std::atof(words[++i]));
+        else if (!options.file && word.rfind("--", 0) != 0)
+            options.file = words[i];
+        else
+            return false;
     }
-    return options.file && options.frames > 0 && options.frames <= 100000 && options.crowd >= 0 && options.crowd <= 10000;
+    return options.file && options.frames > 0 && options.frames <= 100000 && options.crowd >= 0 &&
+           options.crowd <= 10000;
 }
 
 }  // namespace
@@ -140,7 +152,9 @@ bool parse(int count, char** words, Options& options) {
 int main(int count, char** words) {
     Options options;
     if (!parse(count, words, options)) {
-        std::fprintf(stderr, "player ASSET [--frames N] [--crowd N] [--resting] [--wind METRES_PER_SECOND] [--hairs]\n");
+        std::fprintf(
+            stderr,
+            "player ASSET [--frames N] [--crowd N] [--resting] [--wind METRES_PER_SECOND] [--hairs]\n");
         return 2;
     }
     std::size_t size = 0;
@@ -160,12 +174,16 @@ int main(int count, char** words) {
     Times times;
     if (good) {
         const hl_asset_info info = asset.describe();
-        std::printf("%u guides of %u points, %u follow hairs; opened in %.3f ms, checked in %.2f ms, made in %.1f ms\n", info.guides,
-                    info.guide_points, info.hairs, opened, checked, made);
+        std::printf(
+            "%u guides of %u points, %u follow hairs; opened in %.3f ms, checked in %.2f ms, made in %.1f "
+            "ms\n",
+            info.guides, info.guide_points, info.hairs, opened, checked, made);
         std::printf("memory %.1f KB, at most %.1f KB\n", static_cast<double>(hair.describe().bytes) / 1e3,
                     static_cast<double>(info.guides_memory + (options.hairs ? info.hairs_memory : 0)) / 1e3);
         good = play(hair, info, options, times, error);
-        if (good) std::printf("step %.3f ms, read-out %.3f ms a frame\n", times.step / options.frames, times.read / options.frames);
+        if (good)
+            std::printf("step %.3f ms, read-out %.3f ms a frame\n", times.step / options.frames,
+                        times.read / options.frames);
         if (good && options.crowd > 0) good = playCrowd(asset, info, options, error);
     }
     if (good) return 0;

@@ -60,11 +60,11 @@ struct StrandPatch {
 
 struct CurveConstants {
     uint strandCount;
-    uint subdivisions;    // curve segments per given segment
-    uint floatsPerPoint;  // of the positions
-    uint firstPoint;      // of the batch, in the positions
-    float rootRadius;  // metres
-    float tipScale;    // radius at the tip by that at the root
+    uint subdivisions;      // curve segments per given segment
+    uint floatsPerPoint;    // of the positions
+    uint firstPoint;        // of the batch, in the positions
+    float rootRadius;       // metres
+    float tipScale;         // radius at the tip by that at the root
     float radiusVariation;  // random spread from strand to strand, a part of the radius
     uint hasRadii;          // 1: points have their own
     float fullShare;        // share of the strands that have their full width
@@ -167,7 +167,7 @@ struct ShadeConstants {
     uint hasEnvironment;  // 1: there is light from around
     uint hasSkyMaps;      // 1: maps hold what of the sky is seen
     float fibreOpacity;
-    uint bounded;        // 1: Kajiya-Kay sends out no more light than it gets
+    uint bounded;         // 1: Kajiya-Kay sends out no more light than it gets
     float brightestTint;  // of a strand of light in fibres: more would be whiter than white
     uint unused0;
     uint count;  // of what a kernel works on: points of curves, or strands
@@ -230,7 +230,8 @@ struct RasterConstants {
 };
 #define HAIRLOOM_PHASE_NEAREST 0
 #define HAIRLOOM_PHASE_LIGHT 1
-// Where they tell what is nearest in the middle of a pixel: which of what has the least depth, and all about it.
+// Where they tell what is nearest in the middle of a pixel: which of what has the least depth, and all about
+// it.
 #define HAIRLOOM_PHASE_ITEM 2
 #define HAIRLOOM_PHASE_TELL 3
 
