@@ -39,8 +39,9 @@ std::optional<double> largestDifference(const AttributeData& authored, const Att
 
 /// What a person authored, as against a tool's state and what follows from other things.
 bool isAuthored(std::string_view name) {
-    return name != attribute::kPosition && name != attribute::kSelected && name != attribute::kHidden &&
-           name != attribute::kRootTriangle && name != attribute::kRootBarycentric;
+    return name != attribute::kPosition && !isOperatorAttribute(name) && name != attribute::kLayer &&
+           name != attribute::kSelected && name != attribute::kHidden && name != attribute::kRootTriangle &&
+           name != attribute::kRootBarycentric;
 }
 
 void compareSet(const AttributeSet& authored, std::size_t elements, const AttributeSet& read,
@@ -52,6 +53,26 @@ void compareSet(const AttributeSet& authored, std::size_t elements, const Attrib
         } else {
             report.leftBehind.push_back({fmt::format("attribute \"{}\" of {}", name, of),
                                          "export to Alembic as well, or keep the project"});
+        }
+    }
+}
+
+/// Of resampled strands no value of the file is that of a point of the groom: widths are compared with those
+/// that were written, and of all else only what is missing is known.
+void compareResampled(const Groom& groom, const PreparedStrands& prepared, float metresPerUnit,
+                      const AttributeSet& read, ExportReport& report) {
+    for (const auto& [name, data] : groom.pointAttributes.all()) {
+        if (!isAuthored(name) || sizeOf(data) != groom.pointCount()) continue;
+        if (!read.has(name)) {
+            report.leftBehind.push_back({fmt::format("attribute \"{}\" of points", name),
+                                         "export to Alembic as well, or keep the project"});
+        } else if (const auto radii = read.view<float>(name);
+                   name == attribute::kRadius && radii.size() == prepared.thickness.size()) {
+            double largest = 0;
+            for (std::size_t i = 0; i < radii.size(); ++i)
+                largest =
+                    std::max(largest, difference(0.5f * metresPerUnit * prepared.thickness[i], radii[i]));
+            report.attributes.push_back({name, largest});
         }
     }
 }
@@ -75,7 +96,8 @@ void reportSettings(const Groom& groom, const ImportedStrands& readBack, ExportR
     if (groom.interpolation.followPerGuide > 0 && !(carried && same(groom.interpolation, read.interpolation)))
         leave(fmt::format("{} follow hairs of each strand", groom.interpolation.followPerGuide),
               "export the hairs instead of the guides, or interpolate in the other program");
-    if (groom.layers.size() > 1) leave(fmt::format("{} layers", groom.layers.size()), "keep the project");
+    if (groom.layers.size() > 1)
+        leave(fmt::format("{} layers", groom.layers.size()), "export them one by one, or keep the project");
     if (!groom.spheres.empty() && !(carried && read.spheres.size() == groom.spheres.size()))
         leave(fmt::format("{} collision spheres", groom.spheres.size()),
               "place colliders in the other program");
@@ -86,21 +108,21 @@ void reportSettings(const Groom& groom, const ImportedStrands& readBack, ExportR
 
 }  // namespace
 
-void compareAttributes(const Groom& groom, const PreparedStrands& prepared, const ImportedStrands& readBack,
-                       ExportReport& report) {
+void compareAttributes(const Groom& groom, const PreparedStrands& prepared, float metresPerUnit,
+                       const ImportedStrands& readBack, ExportReport& report) {
     compareSet(groom.strandAttributes, groom.strandCount(), readBack.groom.strandAttributes, prepared.sources,
                "strands", report);
-    std::vector<std::uint32_t> points;
-    if (!prepared.isResampled) {
+    if (prepared.isResampled) {
+        compareResampled(groom, prepared, metresPerUnit, readBack.groom.pointAttributes, report);
+    } else {
+        std::vector<std::uint32_t> points;
         for (const std::uint32_t source : prepared.sources) {
             for (std::uint32_t p = groom.offsets[source]; p < groom.offsets[source + 1]; ++p)
                 points.push_back(p);
         }
+        compareSet(groom.pointAttributes, groom.pointCount(), readBack.groom.pointAttributes, points,
+                   "points", report);
     }
-    // Of resampled strands, no value of the file is that of a point.
-    compareSet(groom.pointAttributes, groom.pointCount(),
-               prepared.isResampled ? AttributeSet() : readBack.groom.pointAttributes, points, "points",
-               report);
     reportSettings(groom, readBack, report);
 }
 

@@ -7,8 +7,8 @@
 namespace hairloom {
 
 /// Fills `attributes` and `leftBehind` of the report from what the file reads back as. `readBack` has the
-/// strands of `prepared`, in order.
-void compareAttributes(const Groom& groom, const PreparedStrands& prepared, const ImportedStrands& readBack,
-                       ExportReport& report);
+/// strands of `prepared`, in order; `metresPerUnit` is of the file.
+void compareAttributes(const Groom& groom, const PreparedStrands& prepared, float metresPerUnit,
+                       const ImportedStrands& readBack, ExportReport& report);
 
 }  // namespace hairloom

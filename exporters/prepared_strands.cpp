@@ -381,7 +381,7 @@ Result<ExportReport> writeAndCompare(const Groom& groom, PreparedStrands prepare
         report.frames = prepared.frames.size();
         report.maxErrorMm = std::max(report.maxErrorMm, *off);
     }
-    compareAttributes(groom, prepared, *readBack, report);
+    compareAttributes(groom, prepared, options.metresPerUnit, *readBack, report);
     report.findings = std::move(prepared.findings);
     judgeRoots(groom, prepared, report.findings);
     report.findings.insert(report.findings.end(), readBack->warnings.begin(), readBack->warnings.end());

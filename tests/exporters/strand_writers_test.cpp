@@ -291,6 +291,29 @@ TEST_F(StrandWriters, EveryTargetOfEveryFormatIsWrittenAndReadBackByContent) {
     }
 }
 
+TEST_F(StrandWriters, ResampledStrandsCarryTheirWidthsAndClaimNoMore) {
+    Groom groom = decorated({9, 17});
+    groom.pointAttributes.set(attribute::kBasePosition,
+                              std::vector<Vec3f>(groom.pointCount(), Vec3f::Zero()));
+    StrandExportOptions options;
+    options.pointsPerStrand = 8;
+    options.metresPerUnit = 0.01f;
+    const auto names = [](const ExportReport& report) {
+        std::set<std::string> carried;
+        for (const ComparedAttribute& one : report.attributes) carried.insert(one.name);
+        return carried;
+    };
+    const auto abc = strandWriter("abc").write(groom, folder / "a.abc", options);
+    ASSERT_TRUE(abc) << abc.error().message();
+    EXPECT_TRUE(names(*abc).contains("radius"));
+    for (const ComparedAttribute& one : abc->attributes) EXPECT_LT(one.maxError, 1e-6) << one.name;
+    const auto lines = strandWriter("obj-lines").write(groom, folder / "a.obj", options);
+    ASSERT_TRUE(lines) << lines.error().message();
+    EXPECT_FALSE(names(*lines).contains("radius"));
+    for (const ExportReport* report : {&*abc, &*lines})
+        EXPECT_FALSE(names(*report).contains("base_position")) << "operators' own";
+}
+
 TEST_F(StrandWriters, StrandsThatMoveAreReadBackAtEveryFrame) {
     const Groom groom = decorated({9, 17});
     const auto frames = std::make_shared<StrandFrames>();

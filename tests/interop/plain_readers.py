@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Yuksel .hair, TressFX 4 and PLY read as their pages say, by nothing of Hairloom's: a list of strands of (x, y, z)."""
+"""Yuksel .hair, TressFX 4, PLY and OBJ read as their pages say, by nothing of Hairloom's: a list of strands of (x, y, z)."""
 import struct
 
 
@@ -44,6 +44,37 @@ def read_ply(path):
         at += 4 + 4 * count
     if at != len(body):
         raise ValueError(f"{len(body) - at} bytes follow the last strand")
+    return strands
+
+
+def read_obj_lines(path):
+    points, strands = [], []
+    for line in open(path):
+        words = line.split()
+        if words and words[0] == "v":
+            points.append(tuple(map(float, words[1:4])))
+        elif words and words[0] == "l":
+            strands.append([points[int(index) - 1] for index in words[1:]])
+    return strands
+
+
+def read_obj_c4d(path):
+    """Ribbons by their faces: each joins two cross-sections, whose first vertex is the strand's."""
+    points, strands, last = [], [], None
+    for line in open(path):
+        words = line.split()
+        if words and words[0] == "v":
+            points.append(tuple(map(float, words[1:4])))
+        elif words and words[0] == "f":
+            left, right, right_next, left_next = map(int, words[1:])
+            if (right, right_next) != (left + 1, left_next + 1):
+                raise ValueError(f"a face joins {left}, {right}, {right_next} and {left_next}")
+            if left != last:
+                strands.append([points[left - 1]])
+            strands[-1].append(points[left_next - 1])
+            last = left_next
+    if 2 * sum(map(len, strands)) != len(points):
+        raise ValueError(f"ribbons of {sum(map(len, strands))} cross-sections; there are {len(points)} vertices")
     return strands
 
 
