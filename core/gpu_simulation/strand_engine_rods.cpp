@@ -111,7 +111,7 @@ shaders::RodConstants StrandEngine::Impl::rodConstants(const runtime::SubstepCon
     c.torsionRatio = context.torsionRatio;
     c.stepRatio = substep > 0.0f ? context.h / substep : runtime::kRodFirstRatio;
     c.sweeps = context.sweeps ? 1 : 0;
-    c.conservative = context.air == runtime::Air::moving ? 0 : 1;
+    c.conservative = context.air == runtime::Air::moving ? 0 : context.spheresRest ? 2 : 1;
     c.fresh = rodsFresh ? 1 : 0;
     c.points = batch.shape.points;
     for (std::size_t m = 0; m < runtime::kWindModes; ++m) {

@@ -311,7 +311,7 @@ class RodStrip {
         V3 position = zero3();
         if (block_.firstFree > 1) position = rodRotate(inner_, restTangent(0)) * lengthOf(0);
         V turn = hn::Zero(D()), energy = hn::Zero(D()), kinetic = hn::Zero(D()), size = hn::Zero(D()),
-          touched = hn::Zero(D());
+          touched = hn::Zero(D()), masses = hn::Zero(D());
         V stiffness = hn::Zero(D());
         // The least that the normal part of a contact's force can be of it.
         const V normalShare = all(1.0f / std::sqrt(1.0f + context_.friction * context_.friction));
@@ -339,6 +339,7 @@ class RodStrip {
             energy = energy + (elastic - weight);
             size = size + (elastic + hn::Abs(weight));
             kinetic = mad(mass * all(0.5f), dot(velocity, velocity), kinetic);
+            masses = masses + mass;
             V load = hn::Zero(D());
             if constexpr (kContacts) {
                 touched = hn::Max(touched, point.contact.touching);
@@ -353,9 +354,13 @@ class RodStrip {
         // While nothing moves the root and no air blows, energy cannot rise: what rounding and the time
         // scheme add is taken back.
         const V last = hn::Load(D(), rod_.energy + lane_);
-        const V noise =
-            all(30.0f * static_cast<float>(HAIRLOOM_ROD_ROUNDING)) * (size + kinetic) +
-            all(4.0f * static_cast<float>(HAIRLOOM_ROD_ROUNDING)) * hn::Sqrt((size + size) * stiffness);
+        V noise = all(30.0f * static_cast<float>(HAIRLOOM_ROD_ROUNDING)) * (size + kinetic) +
+                  all(4.0f * static_cast<float>(HAIRLOOM_ROD_ROUNDING)) * hn::Sqrt((size + size) * stiffness);
+        // Where spheres press, what is as slow as this is rounding.
+        constexpr float kSlow = static_cast<float>(HAIRLOOM_ROD_CONTACT_SPEED);
+        if constexpr (kContacts)
+            noise =
+                hn::IfThenElse(touched > hn::Zero(D()), mad(masses, all(0.5f * kSlow * kSlow), noise), noise);
         const auto rose = hn::And(still_, hn::And(energy + kinetic > last + noise, kinetic > hn::Zero(D())));
         V after = energy + kinetic;
         if (!hn::AllFalse(D(), rose)) {
@@ -370,9 +375,12 @@ class RodStrip {
             turn = hn::IfThenElse(guarded, all(kRodNoStep), turn);
             lanes_.guarded |= bitsOf(guarded) << lane_;
         }
-        // Contacts do work that is not counted here.
-        const V unknown = all(kRodNoEnergy);
-        if constexpr (kContacts) after = hn::IfThenElse(touched > hn::Zero(D()), unknown, after);
+        // What contacts with spheres that move do is work that is not counted here. Those that rest can only
+        // take: what they push out comes to rest outside.
+        if constexpr (kContacts) {
+            if (!context_.spheresRest)
+                after = hn::IfThenElse(touched > hn::Zero(D()), all(kRodNoEnergy), after);
+        }
         hn::Store(after, D(), rod_.energy + lane_);
         hn::Store(turn, D(), rod_.turn + lane_);
     }

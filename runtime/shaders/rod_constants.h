@@ -27,4 +27,8 @@
 /// deep it is there, weight over stiffness, can be less than rounding.
 #define HAIRLOOM_ROD_CONTACT_REACH 5e-6
 
+/// Root mean square speed of a strand, m/s, below which contacts with spheres that rest are not looked at for
+/// energy that they add.
+#define HAIRLOOM_ROD_CONTACT_SPEED 5e-3
+
 #endif

@@ -12,7 +12,7 @@ void slowRod(float share) {
 /// Takes the step: places, velocities, and what the next one starts from.
 void finishRodStep() {
     float3 at = firstPosition();
-    float turn = 0.0, energy = 0.0, kinetic = 0.0, size = 0.0, stiffness = 0.0, touched = 0.0;
+    float turn = 0.0, energy = 0.0, kinetic = 0.0, size = 0.0, stiffness = 0.0, touched = 0.0, masses = 0.0;
     // The least that the normal part of a contact's force can be of it.
     const float normalShare = 1.0 / sqrt(1.0 + gFrame.substep.friction * gFrame.substep.friction);
     EACH_SEGMENT(j) {
@@ -38,6 +38,7 @@ void finishRodStep() {
         energy += elastic - weight;
         size += elastic + abs(weight);
         kinetic = mad(metres * 0.5, dot(now, now), kinetic);
+        masses += metres;
         float pressed = 0.0;
 #if HAIR_SPHERES
         if (gReachable != 0u) {
@@ -54,8 +55,10 @@ void finishRodStep() {
     // While nothing moves the root and no air blows, energy cannot rise: what rounding and the time scheme add is taken
     // back.
     const float last = energyBefore();
-    const float noise = 30.0 * HAIRLOOM_ROD_ROUNDING * (size + kinetic) +
+    float noise = 30.0 * HAIRLOOM_ROD_ROUNDING * (size + kinetic) +
                         4.0 * HAIRLOOM_ROD_ROUNDING * sqrt((size + size) * stiffness);
+    // Where spheres press, what is as slow as this is rounding.
+    if (touched > 0.0) noise = mad(masses, 0.5 * HAIRLOOM_ROD_CONTACT_SPEED * HAIRLOOM_ROD_CONTACT_SPEED, noise);
     float after = energy + kinetic;
     if (gStill && after > last + noise && kinetic > 0.0) {
         const float share = sqrt(min(max((last - energy) / max(kinetic, 1e-30), 0.0), 1.0));
@@ -66,8 +69,9 @@ void finishRodStep() {
             gGuarded = true;
         }
     }
-    // Contacts do work that is not counted here.
-    if (touched > 0.0) after = HAIRLOOM_ROD_NO_ENERGY;
+    // What contacts with spheres that move do is work that is not counted here. Those that rest can only take: what they
+    // push out of them comes to rest outside.
+    if (touched > 0.0 && gRod.conservative != 2u) after = HAIRLOOM_ROD_NO_ENERGY;
     setEnergyBefore(after);
     setLargestTurn(turn);
 }

@@ -26,7 +26,7 @@ struct RodConstants {
     float stepRatio;        ///< the first substep over the one before it
     uint points;            ///< that a strand of the batch may have
     uint sweeps;            ///< not 0: spheres are met where fast points come in
-    uint conservative;      ///< not 0: nothing but a root's motion adds energy
+    uint conservative;      ///< not 0: nothing but motion of roots and spheres adds energy; 2: nor do spheres
     uint fresh;             ///< not 0: strands were none before, and go on as rods through their points
     float4 windTurns[HAIRLOOM_WIND_MODES];  ///< x: turns of a wave in a substep
 };

@@ -201,7 +201,8 @@ struct SubstepContext : shaders::SubstepNumbers {
     float torsionRatio = 1.0f;     ///< GJ/EI
     float stepRatio = 1.0f;        ///< h over that of the substep before
     bool sweeps = false;           ///< spheres are met where fast points come in
-    bool conservative = false;     ///< nothing but a root's motion adds energy
+    bool conservative = false;     ///< nothing but motion of roots and spheres adds energy
+    bool spheresRest = false;      ///< nor do spheres
     const Wind* wind = nullptr;
     const float* windPhases = nullptr;  ///< of the substep's end
 };

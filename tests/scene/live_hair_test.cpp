@@ -4,10 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include "core/render/flip.h"
 #include "core/render/picture.h"
 #include "tests/gpu/test_backend.h"
 #include "tests/scene/small_head.h"
-#include "core/render/flip.h"
 
 namespace hairloom {
 namespace {

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/accuracy/certificate.h"
 #include "core/groom/groom_hash.h"
 #include "core/groom/validate.h"
 #include "core/scene/groom_scene.h"
@@ -32,6 +33,17 @@ TEST(SampleTest, SamplesAreCompleteAndDeterministic) {
     ASSERT_TRUE(again);
     EXPECT_EQ(contentHash(*again), contentHash(*made));
     EXPECT_FALSE(makeSample(kSamples, "no such style"));
+}
+
+TEST(SampleTest, LongHairComesToRestAmongItsSpheresAfterStorms) {
+    const auto groom = makeSample(kSamples, "long");
+    ASSERT_TRUE(groom) << groom.error().message();
+    CertificateOptions options;
+    options.storms = 60;
+    const auto certificate = certify(*groom, options);
+    ASSERT_TRUE(certificate) << certificate.error().message();
+    EXPECT_TRUE(certificate->failed.empty()) << inWords(*certificate);
+    EXPECT_GE(certificate->calm, 54u) << "most end with every point of eight strands below 5 mm/s";
 }
 
 TEST(GroomSceneTest, PosingMovesHeadAndHairAndBackAgain) {
