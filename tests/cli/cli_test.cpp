@@ -9,7 +9,6 @@
 #include <set>
 #include <sstream>
 
-#include "importers/scene.h"
 #include "tests/cli/command.h"
 
 namespace hairloom::test {
@@ -21,11 +20,6 @@ using testing::StartsWith;
 
 class Cli : public CommandLineTest {
   protected:
-    std::string createArguments(const std::string& more = "", int seed = 7, int points = 12) const {
-        return "create --mesh '" + bustFile() + "' --scalp material:scalp --count 300 --placement dart" +
-               " --length 0.2 --points " + std::to_string(points) + " --seed " + std::to_string(seed) +
-               " -o hair.hairloom " + more;
-    }
     std::size_t filesInFolder() const {
         return static_cast<std::size_t>(
             std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
@@ -94,103 +88,6 @@ TEST_F(Cli, StabilityWritesItsCasesAndMaps) {
     EXPECT_EQ(report["maps"].size(), 2u);
     for (const char* file : {"report.html", "cases.csv", "cases.json", "cases.md", "stability-rk4-coils.svg"})
         EXPECT_TRUE(fs::exists(folder / "out" / file)) << file;
-}
-
-TEST_F(Cli, StabilityOfAGroomIsItsCertificate) {
-    runJson(createArguments("", 7, 20));
-    const auto certificate = runJson("stability hair.hairloom -o out --storms 20")["certificate"];
-    EXPECT_EQ(certificate["storms"], 20);
-    EXPECT_EQ(certificate["failed"], 0) << certificate.dump(2);
-    for (const char* limit : {"largest_step_s", "root_speed", "turn", "wind", "margin"})
-        EXPECT_GT(certificate[limit].get<double>(), 0) << limit;
-    EXPECT_EQ(nlohmann::json::parse(readText(folder / "out/certificate.json")), certificate);
-    EXPECT_EQ(run("stability hair.hairloom -o out --integrators rk4").exitCode, 2);
-    EXPECT_THAT(run("stability none.hairloom -o other").errors, StartsWith("error: none.hairloom"));
-    EXPECT_FALSE(fs::exists(folder / "other"));
-}
-
-TEST_F(Cli, BudgetIsSharedByCharactersAndTimedAgain) {
-    runJson(createArguments("", 7, 20));
-    const auto budget =
-        runJson("budget hair.hairloom --ms 1000 --characters 10 --frames 4 --repeat 1 --truth engine");
-    EXPECT_EQ(budget["characters"], 10);
-    EXPECT_LE(budget["ms"].get<double>(), 1000);
-    EXPECT_GT(budget["ms_again"].get<double>(), 0);
-    EXPECT_GE(budget["spread_share"].get<double>(), 0);
-}
-
-TEST_F(Cli, AStyleIsTransferredToAnotherHeadAndSimulatedThere) {
-    runJson(createArguments());
-    // The same head, twice the size, with other triangles: vertices in another order.
-    const auto head = importScene(bustFile());
-    ASSERT_TRUE(head);
-    std::ofstream obj(folder / "large.obj");
-    const auto positions = head->mesh.positions();
-    for (std::size_t v = positions.size(); v-- > 0;) {
-        const Vec3f p = 2 * positions[v];
-        obj << "v " << p.x() << ' ' << p.y() << ' ' << p.z() << '\n';
-    }
-    for (const Triangle& t : head->mesh.triangles()) {
-        obj << 'f';
-        for (const std::uint32_t v : t) obj << ' ' << positions.size() - v;
-        obj << '\n';
-    }
-    obj.close();
-    const auto report = runJson("transfer hair.hairloom --to large.obj -o large.hairloom");
-    EXPECT_EQ(report["strands"], 300);
-    EXPECT_FALSE(report["same_mesh"].get<bool>());
-    EXPECT_NEAR(report["scale"].get<double>(), 2, 0.05);
-    EXPECT_LT(report["max_root_error_mm"].get<double>(), 5);
-    EXPECT_TRUE(report["strands_named"].is_array());
-    EXPECT_EQ(runJson("simulate large.hairloom --frames 3 --motion nod")["nan_count"], 0);
-    EXPECT_TRUE(runJson("validate large.hairloom")["valid"].get<bool>());
-    EXPECT_EQ(run("transfer hair.hairloom --to none.obj -o x.hairloom").exitCode, 1);
-}
-
-TEST_F(Cli, MovingHairIsExportedAndComesBack) {
-    runJson(createArguments("", 7, 20));
-    runJson("set hair.hairloom interpolation.followPerGuide=3 -o hair.hairloom");
-    runJson("simulate hair.hairloom --frames 6 --motion nod --record run.frames");
-    for (const char* const format : {"abc", "usda", "usdc"}) {
-        const auto report = runJson(
-            std::string("export hair.hairloom --what hairs --record run.frames --frames 1,5 --format ") +
-            format + " -o moving." + format);
-        EXPECT_EQ(report["strands"], 900) << format;
-        EXPECT_EQ(report["frames"], 5) << format;
-        EXPECT_LT(report["max_error_mm"].get<double>(), 0.001) << format;
-        const auto back =
-            runJson(std::string("import moving.") + format + " --record back.frames -o back.hairloom");
-        EXPECT_EQ(back["frames"], 5) << format;
-    }
-    const std::string one = " hair.hairloom --record run.frames --format hair -o h.hair --frames ";
-    EXPECT_EQ(runJson("export" + one + "3,3")["strands"], 300) << "one frame is a shape";
-    EXPECT_THAT(run("export" + one + "1,3").errors, HasSubstr("hair holds one shape"));
-    EXPECT_THAT(run("export" + one + "1,99").errors, HasSubstr("frames"));
-    EXPECT_EQ(run("export hair.hairloom --record run.frames --format abc -o m.abc").exitCode, 2)
-        << "which frames";
-}
-
-TEST_F(Cli, LayersAreMadeByScriptsShownAndExportedAlone) {
-    runJson(createArguments());
-    std::ofstream(folder / "layers.json") << R"({"hairloom_script": 1, "operations": [
-        {"op": "layers", "layers": [{"name": "Hair", "visible": true, "locked": false},
-                                    {"name": "Fringe", "visible": true, "locked": false}]},
-        {"op": "move_to_layer", "strands": [10, 20], "layer": 1},
-        {"op": "operators", "operators": [{"op": "noise", "region": {"layer": 2}}, {"op": "smooth"}]}]})";
-    runJson("groom hair.hairloom --script layers.json -o hair.hairloom");
-    const auto layers = runJson("layers hair.hairloom")["layers"];
-    ASSERT_EQ(layers.size(), 2u);
-    EXPECT_EQ(layers[1]["name"], "Fringe");
-    EXPECT_EQ(layers[1]["strands"], 20);
-    EXPECT_EQ(layers[1]["points"], 20 * 12);
-    EXPECT_EQ(layers[0]["operators"], nlohmann::json({1}));
-    EXPECT_EQ(layers[1]["operators"], nlohmann::json({0, 1}));
-    EXPECT_EQ(runJson("stack hair.hairloom --layer Hair")["operators"].size(), 1u);
-    EXPECT_EQ(runJson("export hair.hairloom --layers Fringe --format obj-lines -o f.obj")["strands"], 20);
-    EXPECT_EQ(runJson("export hair.hairloom --layers Hair,Fringe --format obj-c4d -o a.obj")["strands"], 300);
-    EXPECT_EQ(runJson("import a.obj -o back.hairloom")["strands"], 300);
-    EXPECT_THAT(run("export hair.hairloom --layers Beard --format hair -o b.hair").errors,
-                HasSubstr("no layer is called 'Beard'; expected some of Hair, Fringe"));
 }
 
 TEST_F(Cli, CreateReportsItsResult) {

@@ -19,8 +19,17 @@ struct Outcome {
     nlohmann::json json() const { return nlohmann::json::parse(output); }
 };
 
+/// The sample head, for --mesh.
+std::string bustFile();
+
 class CommandLineTest : public testing::Test {
   protected:
+    /// 300 strands on the bust, as hair.hairloom.
+    std::string createArguments(const std::string& more = "", int seed = 7, int points = 12) const {
+        return "create --mesh '" + bustFile() + "' --scalp material:scalp --count 300 --placement dart" +
+               " --length 0.2 --points " + std::to_string(points) + " --seed " + std::to_string(seed) +
+               " -o hair.hairloom " + more;
+    }
     void SetUp() override;
     void TearDown() override;
 
@@ -32,8 +41,6 @@ class CommandLineTest : public testing::Test {
     std::filesystem::path folder;
 };
 
-/// The sample head, for --mesh.
-std::string bustFile();
 /// A file of the data from elsewhere, or empty when this checkout has none.
 std::string dataFile(const std::string& name);
 std::string readText(const std::filesystem::path& path);
