@@ -17,17 +17,17 @@ StrandWriter abcUnrealWriter() {
     StrandExportOptions centimetres;
     centimetres.metresPerUnit = 0.01f;
     centimetres.limits = {"Unreal", 0, 255, 2, false};
-    return {"abc-unreal",
-            "Alembic .abc for Unreal's groom importer",
-            "what abc carries, and Unreal's groom schema 1.5: widths, closest guides and their weights, "
-            "version and tool",
-            "Unreal takes units for centimetres",
-            {{"unreal", "Unreal groom",
-              ".abc in centimetres, Y up; turn it by 90° about X in Unreal's import", centimetres}},
-            write,
-            {},
-            false,
-            true};
+    StrandWriter writer{
+        "abc-unreal",
+        "Alembic .abc for Unreal's groom importer",
+        "what abc carries, and Unreal's groom schema 1.5: widths, closest guides and their weights, "
+        "version and tool",
+        "Unreal takes units for centimetres",
+        {{"unreal", "Unreal groom", ".abc in centimetres, Y up; turn it by 90° about X in Unreal's import",
+          centimetres}},
+        write};
+    writer.animates = true;
+    return writer;
 }
 
 }  // namespace hairloom

@@ -18,19 +18,19 @@ StrandWriter abcWriter() {
     centimetres.metresPerUnit = 0.01f;
     StrandExportOptions unity;
     unity.limits = unityLimits();
-    return {"abc",
-            "Alembic .abc",
-            "width and colour of each point; root UV, id, group and guide flag of each strand; attributes of "
-            "any name",
-            "none",
-            {{"blender", "Blender, Alembic", ".abc in metres, Y up, as Blender takes every Alembic file", {}},
-             {"houdini", "Houdini, Alembic", ".abc in metres, Y up", {}},
-             {"maya", "Maya, Alembic", ".abc in centimetres, Y up", centimetres},
-             {"unity", "Unity hair", ".abc in metres, Y up; 3 to 128 points, at most 65,536 strands", unity}},
-            write,
-            {},
-            false,
-            true};
+    StrandWriter writer{
+        "abc",
+        "Alembic .abc",
+        "width and colour of each point; root UV, id, group and guide flag of each strand; attributes of "
+        "any name",
+        "none",
+        {{"blender", "Blender, Alembic", ".abc in metres, Y up, as Blender takes every Alembic file", {}},
+         {"houdini", "Houdini, Alembic", ".abc in metres, Y up", {}},
+         {"maya", "Maya, Alembic", ".abc in centimetres, Y up", centimetres},
+         {"unity", "Unity hair", ".abc in metres, Y up; 3 to 128 points, at most 65,536 strands", unity}},
+        write};
+    writer.animates = true;
+    return writer;
 }
 
 }  // namespace hairloom

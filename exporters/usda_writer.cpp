@@ -101,16 +101,16 @@ Result<ExportReport> writeUsda(const Groom& groom, const std::filesystem::path& 
 }  // namespace
 
 StrandWriter usdaWriter() {
-    return {"usda",
-            "USD .usda",
-            "width and colour of each point; root UV, id, group and guide flag of each strand; attributes of "
-            "any name",
-            "none",
-            usdTargets(".usda"),
-            writeUsda,
-            {},
-            false,
-            true};
+    StrandWriter writer{
+        "usda",
+        "USD .usda",
+        "width and colour of each point; root UV, id, group and guide flag of each strand; attributes of "
+        "any name",
+        "none",
+        usdTargets(".usda"),
+        writeUsda};
+    writer.animates = true;
+    return writer;
 }
 
 }  // namespace hairloom

@@ -91,15 +91,10 @@ Result<ExportReport> writeUsdc(const Groom& groom, const std::filesystem::path& 
 }  // namespace
 
 StrandWriter usdcWriter() {
-    return {"usdc",
-            "USD .usdc",
-            "what usda carries, in a tenth of the time",
-            "none",
-            usdTargets(".usdc"),
-            writeUsdc,
-            {},
-            false,
-            true};
+    StrandWriter writer{"usdc", "USD .usdc",         "what usda carries, in a tenth of the time",
+                        "none", usdTargets(".usdc"), writeUsdc};
+    writer.animates = true;
+    return writer;
 }
 
 }  // namespace hairloom

@@ -31,10 +31,11 @@ struct AccuracyOptions {
 
 /// The groom's own number of points, and a half and a quarter of it.
 std::vector<std::string> pointsToTry(const Groom& groom) {
+    const std::uint32_t own = maxPoints(groom);
     std::vector<std::string> counts;
     for (const std::uint32_t part : {4u, 2u, 1u}) {
         constexpr std::uint32_t kFewest = 4;
-        counts.push_back(fmt::format("{}", std::max(maxPoints(groom) / part, kFewest)));
+        counts.push_back(fmt::format("{}", std::max(own / part, kFewest)));
     }
     return counts;
 }

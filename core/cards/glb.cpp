@@ -18,7 +18,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::uint32_t kChains = 24, kJointsPerChain = 5;
 // What springs are set to; how the strands of the groom move is not in it.
 constexpr double kStiffness = 0.6, kDrag = 0.4, kGravity = 0.2, kHitRadius = 0.008;
 

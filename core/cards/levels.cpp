@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
@@ -35,7 +36,7 @@ struct Work {
     }
     std::vector<std::size_t> allViews() const {
         std::vector<std::size_t> all(views.size());
-        for (std::size_t v = 0; v < all.size(); ++v) all[v] = v;
+        std::iota(all.begin(), all.end(), std::size_t{0});
         return all;
     }
 };
@@ -203,7 +204,7 @@ Status count(const Work& work, Level& level) {
         level.triangles = cards->mesh.indices.size() / 3;
         level.bytes = cards->mesh.vertices.size() * kVertexBytes + cards->mesh.indices.size() * 4;
         for (const Picture& picture : cards->atlas.levels) level.bytes += picture.texels.size() * kTexelBytes;
-        const auto rig = makeRig(*cards, 24, 5, work.cancel);
+        const auto rig = makeRig(*cards, kChains, kJointsPerChain, work.cancel);
         if (!rig) return tl::unexpected(rig.error());
         const std::vector<Eigen::Affine3f> motions(rig->joints.size(), Eigen::Affine3f::Identity());
         const Binding binding = bind(*rig, *cards);

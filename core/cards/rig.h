@@ -22,6 +22,9 @@ struct Rig {
     std::size_t chains() const { return curves.size(); }
 };
 
+/// What files of cards have, and what moving them is timed with.
+inline constexpr std::uint32_t kChains = 24, kJointsPerChain = 5;
+
 /// `chains` at most, of `perChain` ≥ 2 joints, through the middles of cards that lie together. Errors:
 /// stopped.
 Result<Rig> makeRig(const Cards& cards, std::uint32_t chains, std::uint32_t perChain, Cancel cancel);

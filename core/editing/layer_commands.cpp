@@ -8,18 +8,13 @@
 
 #include "core/editing/records.h"
 #include "core/editing/settings_commands.h"
+#include "core/groom/strand_subset.h"
 #include "core/operations/stack.h"
 
 namespace hairloom::editing {
 namespace {
 
 using CommandResult = Result<std::unique_ptr<Command>>;
-
-std::vector<std::uint32_t> layersOf(const Groom& groom) {
-    const auto layers = groom.strandAttributes.view<std::uint32_t>(attribute::kLayer);
-    if (layers.size() != groom.strandCount()) return std::vector<std::uint32_t>(groom.strandCount(), 0);
-    return {layers.begin(), layers.end()};
-}
 
 /// The hair as its operators make it where strands are on these layers.
 CommandResult withLayers(const Model& model, Groom next, std::vector<std::uint32_t> layers, std::string name,
@@ -44,7 +39,7 @@ Status checkLayer(const Groom& groom, std::uint32_t layer) {
 CommandResult moveToLayer(const Model& model, std::span<const std::uint32_t> strands, std::uint32_t layer) {
     const Groom& groom = model.groom;
     if (auto status = checkLayer(groom, layer); !status) return tl::unexpected(status.error());
-    std::vector<std::uint32_t> layers = layersOf(groom);
+    std::vector<std::uint32_t> layers = layersOfStrands(groom);
     const bool moves = std::ranges::any_of(strands, [&](std::uint32_t s) { return layers[s] != layer; });
     if (!moves) return nullptr;
     for (const std::uint32_t s : strands) layers[s] = layer;
@@ -66,7 +61,7 @@ CommandResult removeLayer(const Model& model, std::uint32_t layer) {
         }
         if (of > number) setLayerOf(next.operators[i], of - 1);
     }
-    std::vector<std::uint32_t> layers = layersOf(groom);
+    std::vector<std::uint32_t> layers = layersOfStrands(groom);
     for (std::uint32_t& at : layers) at = at == layer ? 0 : at > layer ? at - 1 : at;
     next.layers.erase(next.layers.begin() + static_cast<std::ptrdiff_t>(layer));
     return withLayers(model, std::move(next), std::move(layers), "Remove layer " + groom.layers[layer].name,

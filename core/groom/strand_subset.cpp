@@ -26,13 +26,6 @@ AttributeSet chosen(const AttributeSet& attributes, std::span<const std::uint32_
     return result;
 }
 
-std::vector<std::uint32_t> layersOfStrands(const Groom& groom) {
-    const auto layers = groom.strandAttributes.view<std::uint32_t>(attribute::kLayer);
-    std::vector<std::uint32_t> all(groom.strandCount(), 0);
-    if (layers.size() == all.size()) std::ranges::copy(layers, all.begin());
-    return all;
-}
-
 }  // namespace
 
 Groom strandsOf(const Groom& groom, std::span<const std::uint32_t> strands) {
@@ -47,6 +40,13 @@ Groom strandsOf(const Groom& groom, std::span<const std::uint32_t> strands) {
     some.strandAttributes = chosen(groom.strandAttributes, strands);
     some.triangulation = {};
     return some;
+}
+
+std::vector<std::uint32_t> layersOfStrands(const Groom& groom) {
+    const auto layers = groom.strandAttributes.view<std::uint32_t>(attribute::kLayer);
+    std::vector<std::uint32_t> all(groom.strandCount(), 0);
+    if (layers.size() == all.size()) std::ranges::copy(layers, all.begin());
+    return all;
 }
 
 std::vector<std::uint32_t> strandsOfLayer(const Groom& groom, std::uint32_t layer) {

@@ -15,6 +15,9 @@ namespace hairloom {
 /// is of all roots, goes.
 Groom strandsOf(const Groom& groom, std::span<const std::uint32_t> strands);
 
+/// The layer of each strand; the first where the groom says none.
+std::vector<std::uint32_t> layersOfStrands(const Groom& groom);
+
 /// Strands of that layer, ascending.
 std::vector<std::uint32_t> strandsOfLayer(const Groom& groom, std::uint32_t layer);
 

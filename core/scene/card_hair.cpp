@@ -80,12 +80,7 @@ void setRootNormals(const Groom& groom, cards::Hair& hair) {
     parallelFor(hair.strandCount(), 256, [&](std::size_t begin, std::size_t end) {
         for (std::size_t s = begin; s < end; ++s) {
             const auto hit = tree.closest(hair.strand(s)[0]);
-            const Triangle& triangle = groom.scalp->triangles()[hit.surface.triangle];
-            Vec3f normal = Vec3f::Zero();
-            for (int k = 0; k < 3; ++k)
-                normal += hit.surface.barycentric[k] *
-                          groom.scalp->normals()[triangle[static_cast<std::size_t>(k)]];
-            hair.rootNormals_ws[s] = normal.norm() > 0 ? Vec3f(normal.normalized()) : Vec3f::UnitY();
+            hair.rootNormals_ws[s] = groom.scalp->normalAt(hit.surface.triangle, hit.surface.barycentric);
         }
     });
 }

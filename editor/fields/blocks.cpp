@@ -7,6 +7,7 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 #include <algorithm>
+#include <utility>
 
 namespace hairloom::editor {
 
@@ -15,6 +16,15 @@ QWidget* heading(const QString& text) {
     label->setProperty("role", "heading");
     label->setIndent(0);
     return label;
+}
+
+QPushButton* pushButton(const char* name, const QString& text, const QString& tip,
+                        std::function<void()> act) {
+    auto* made = new QPushButton(text);
+    made->setObjectName(name);
+    made->setToolTip(tip);
+    QObject::connect(made, &QPushButton::clicked, made, [act = std::move(act)] { act(); });
+    return made;
 }
 
 QWidget* scrolled(QWidget* content) {

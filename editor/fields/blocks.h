@@ -2,13 +2,17 @@
 #pragma once
 // Building blocks that panels and dialogs share.
 
+#include <QPushButton>
 #include <QTreeWidget>
 #include <QWidget>
+#include <functional>
 #include <initializer_list>
 
 namespace hairloom::editor {
 
 QWidget* heading(const QString& text);
+/// Does `act` when it is clicked, as long as it lives.
+QPushButton* pushButton(const char* name, const QString& text, const QString& tip, std::function<void()> act);
 /// `content` in a scroll area with the margins of a panel.
 QWidget* scrolled(QWidget* content);
 /// A widget with a vertical layout, margins and spacing of a panel.

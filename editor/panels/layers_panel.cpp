@@ -28,20 +28,20 @@ class LayersPanel : public QWidget {
         makeList();
         layout->addWidget(list_);
         auto* first = new QHBoxLayout;
-        first->addWidget(
-            button("layerAdd", tr("Add"), tr("A new layer; selected strands move to it"), [this] { add(); }));
-        first->addWidget(button("layerRemove", tr("Remove"),
-                                tr("Takes the layer away; its strands go to the first of the others"),
-                                [this] { perform(editing::removeLayer(model(), chosen())); }));
-        first->addWidget(button("layerSolo", tr("Solo"), tr("Shows this layer alone; again: all of them"),
-                                [this] { solo(); }));
+        first->addWidget(pushButton("layerAdd", tr("Add"), tr("A new layer; selected strands move to it"),
+                                    [this] { add(); }));
+        first->addWidget(pushButton("layerRemove", tr("Remove"),
+                                    tr("Takes the layer away; its strands go to the first of the others"),
+                                    [this] { perform(editing::removeLayer(model(), chosen())); }));
+        first->addWidget(pushButton("layerSolo", tr("Solo"), tr("Shows this layer alone; again: all of them"),
+                                    [this] { solo(); }));
         layout->addLayout(first);
         auto* second = new QHBoxLayout;
-        second->addWidget(button("layerSelect", tr("Select strands"), tr("Selects the strands of the layer"),
-                                 [this] { select(); }));
-        second->addWidget(button("layerMove", tr("Move selected here"),
-                                 tr("Puts the selected strands on the layer"),
-                                 [this] { perform(editing::moveToLayer(model(), selected(), chosen())); }));
+        second->addWidget(pushButton("layerSelect", tr("Select strands"),
+                                     tr("Selects the strands of the layer"), [this] { select(); }));
+        second->addWidget(
+            pushButton("layerMove", tr("Move selected here"), tr("Puts the selected strands on the layer"),
+                       [this] { perform(editing::moveToLayer(model(), selected(), chosen())); }));
         layout->addLayout(second);
         connect(list_, &QTreeWidget::itemChanged, this, &LayersPanel::takeChange);
         connect(&document_, &QtDocument::changed, this, [this](editing::Part parts) {
@@ -60,15 +60,6 @@ class LayersPanel : public QWidget {
     std::uint32_t chosen() const {
         const int row = list_->indexOfTopLevelItem(list_->currentItem());
         return static_cast<std::uint32_t>(std::clamp(row, 0, static_cast<int>(layers().size()) - 1));
-    }
-
-    QPushButton* button(const char* name, const QString& text, const QString& tip,
-                        std::function<void()> act) {
-        auto* made = new QPushButton(text);
-        made->setObjectName(name);
-        made->setToolTip(tip);
-        connect(made, &QPushButton::clicked, this, [act = std::move(act)] { act(); });
-        return made;
     }
 
     void makeList() {

@@ -29,9 +29,9 @@ class OperatorsPanel : public QWidget {
         setMinimumWidth(kWidth_px);
         auto* first = new QHBoxLayout;
         first->addWidget(makeAddButton());
-        first->addWidget(button("operatorBake", tr("Bake"),
-                                tr("Makes the hair as it is all there is; the operators are gone"),
-                                [this] { perform(editing::bakeOperators(model()), kNone); }));
+        first->addWidget(pushButton("operatorBake", tr("Bake"),
+                                    tr("Makes the hair as it is all there is; the operators are gone"),
+                                    [this] { perform(editing::bakeOperators(model()), kNone); }));
         layout->addLayout(first);
         list_->setObjectName("operators");
         list_->setMinimumHeight(150);
@@ -66,15 +66,6 @@ class OperatorsPanel : public QWidget {
         return text;
     }
 
-    QPushButton* button(const char* name, const QString& text, const QString& tip,
-                        std::function<void()> act) {
-        auto* made = new QPushButton(text);
-        made->setObjectName(name);
-        made->setToolTip(tip);
-        connect(made, &QPushButton::clicked, this, [act = std::move(act)] { act(); });
-        return made;
-    }
-
     QWidget* makeAddButton() {
         auto* add = new QPushButton(tr("Add"));
         add->setObjectName("operatorAdd");
@@ -96,16 +87,19 @@ class OperatorsPanel : public QWidget {
 
     QLayout* makeEditButtons() {
         auto* row = new QHBoxLayout;
-        row->addWidget(button("operatorUp", tr("Earlier"), tr("Lets it act before the one above it"), [this] {
-            if (chosen() != kNone && chosen() > 0) move(chosen() - 1);
-        }));
-        row->addWidget(button("operatorDown", tr("Later"), tr("Lets it act after the one below it"), [this] {
-            if (chosen() != kNone && chosen() + 1 < operators().size()) move(chosen() + 1);
-        }));
-        row->addWidget(button("operatorCopy", tr("Duplicate"), tr("Adds the same again behind it"), [this] {
-            if (chosen() != kNone) perform(editing::copyOperator(model(), chosen()), chosen() + 1);
-        }));
-        row->addWidget(button("operatorRemove", tr("Remove"), tr("Takes the operator away"), [this] {
+        row->addWidget(
+            pushButton("operatorUp", tr("Earlier"), tr("Lets it act before the one above it"), [this] {
+                if (chosen() != kNone && chosen() > 0) move(chosen() - 1);
+            }));
+        row->addWidget(
+            pushButton("operatorDown", tr("Later"), tr("Lets it act after the one below it"), [this] {
+                if (chosen() != kNone && chosen() + 1 < operators().size()) move(chosen() + 1);
+            }));
+        row->addWidget(
+            pushButton("operatorCopy", tr("Duplicate"), tr("Adds the same again behind it"), [this] {
+                if (chosen() != kNone) perform(editing::copyOperator(model(), chosen()), chosen() + 1);
+            }));
+        row->addWidget(pushButton("operatorRemove", tr("Remove"), tr("Takes the operator away"), [this] {
             if (chosen() != kNone) perform(editing::removeOperator(model(), chosen()), chosen());
         }));
         return row;

@@ -21,13 +21,6 @@ namespace {
 
 constexpr float kNearHair = 0.04f;  // metres: skin that spheres have to cover
 
-QPushButton* button(const char* name, const QString& text, const QString& tip) {
-    auto* made = new QPushButton(text);
-    made->setObjectName(name);
-    made->setToolTip(tip);
-    return made;
-}
-
 class SpheresPanel : public QWidget {
   public:
     SpheresPanel(QtDocument& document, const Preferences& preferences, Tasks& tasks, Messages& messages,
@@ -54,22 +47,18 @@ class SpheresPanel : public QWidget {
         layout->addWidget(list_, 1);
 
         auto* row = new QHBoxLayout;
-        auto* mirror =
-            button("sphereMirror", tr("Mirror"), tr("Adds the sphere again on the other side of the head"));
-        auto* remove = button("sphereRemove", tr("Remove"), tr("Takes the sphere away"));
-        row->addWidget(mirror);
-        row->addWidget(remove);
-        layout->addLayout(row);
-        connect(mirror, &QPushButton::clicked, this, [this] {
-            onSelected([](const editing::Model& model, std::size_t index) {
-                return editing::mirrorSphere(model, index);
-            });
-        });
-        connect(remove, &QPushButton::clicked, this, [this] {
+        row->addWidget(pushButton("sphereMirror", tr("Mirror"),
+                                  tr("Adds the sphere again on the other side of the head"), [this] {
+                                      onSelected([](const editing::Model& model, std::size_t index) {
+                                          return editing::mirrorSphere(model, index);
+                                      });
+                                  }));
+        row->addWidget(pushButton("sphereRemove", tr("Remove"), tr("Takes the sphere away"), [this] {
             onSelected([](const editing::Model& model, std::size_t index) {
                 return editing::removeSphere(model, index);
             });
-        });
+        }));
+        layout->addLayout(row);
         makeNumbers(*layout);
 
         layout->addWidget(heading(tr("Fit to the head")));
@@ -79,16 +68,16 @@ class SpheresPanel : public QWidget {
         count_->setValue(12);
         count_->setSuffix(tr(" spheres"));
         count_->setToolTip(tr("Number of spheres; more lie closer to the skin and cost more"));
-        auto* fit = button("sphereFit", tr("Fit"),
-                           tr("Replaces all spheres by ones that cover head, neck and shoulders "
-                              "where hair comes near"));
+        auto* fit = pushButton("sphereFit", tr("Fit"),
+                               tr("Replaces all spheres by ones that cover head, neck and shoulders "
+                                  "where hair comes near"),
+                               [this] { this->fit(); });
         fitRow->addWidget(count_, 1);
         fitRow->addWidget(fit);
         layout->addLayout(fitRow);
         fit_->setProperty("role", "dim");
         fit_->setWordWrap(true);
         layout->addWidget(fit_);
-        connect(fit, &QPushButton::clicked, this, &SpheresPanel::fit);
         connect(&document_, &QtDocument::changed, this, [this](editing::Part parts) {
             if (contains(parts, editing::Part::Spheres)) refresh();
         });

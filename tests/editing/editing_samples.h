@@ -4,6 +4,7 @@
 
 #include "core/editing/brush_list.h"
 #include "core/editing/document.h"
+#include "core/editing/replay.h"
 #include "core/geometry/curve.h"
 #include "core/groom/groom_hash.h"
 #include "core/groom/validate.h"
@@ -87,5 +88,17 @@ struct TopStrand {
         return stroke;
     }
 };
+
+/// The document's script makes of hairOnHead() what the document has become of it.
+inline void expectScriptMakesTheSame(const Document& document) {
+    const auto text = document.script();
+    ASSERT_TRUE(text) << text.error().message();
+    const auto script = parseScript("s.json", *text, scriptExtensions());
+    ASSERT_TRUE(script) << script.error().message();
+    Groom scripted = hairOnHead();
+    const auto run = runScript(*script, scripted);
+    ASSERT_TRUE(run) << run.error().message();
+    EXPECT_EQ(contentHash(scripted), contentHash(document.groom()));
+}
 
 }  // namespace hairloom::editing
