@@ -196,10 +196,12 @@ WorkPrecision known() {
     result.groomStrands = 40;
     result.strands = 4;
     result.groundTruthName = "made";
-    result.runs.push_back({{0, 1}, false, {0.5, 1, 2}, {4, 8}, true, 1});
-    result.runs.push_back({{0, 8}, false, {4, 5, 6}, {0.25, 0.5}, true, 2});
-    result.runs.push_back({{5, 1}, true, {}, {}, false, 3});
-    result.runs.push_back({{5, 8}, false, {7, 8, 9}, {0.5, 1}, false, 4});
+    result.runs = {
+        {.values = {0, 1}, .milliseconds = {0.5, 1, 2}, .error = {4, 8}, .onFront = true, .stateHash = 1},
+        {.values = {0, 8}, .milliseconds = {4, 5, 6}, .error = {0.25, 0.5}, .onFront = true, .stateHash = 2},
+        {.values = {5, 1}, .diverged = true, .stateHash = 3},
+        {.values = {5, 8}, .milliseconds = {7, 8, 9}, .error = {0.5, 1}, .stateHash = 4},
+    };
     return result;
 }
 
