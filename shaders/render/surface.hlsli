@@ -13,14 +13,15 @@ RWStructuredBuffer<SurfacePixel> gFound : register(u2);
 // Whether the pixel shows what has this depth there, for the last phase.
 bool isShown(uint pixel, float depth, uint item) {
     const uint bits = asuint(depth);
+    bool shown = false;
     if (gRaster.phase == HAIRLOOM_PHASE_NEAREST) {
         if (bits < gNearest[pixel]) InterlockedMin(gNearest[pixel], bits);
     } else if (gRaster.phase == HAIRLOOM_PHASE_ITEM) {
         if (bits == gNearest[pixel]) InterlockedMin(gItem[pixel], item);
     } else {
-        return gItem[pixel] == item;
+        shown = gItem[pixel] == item;
     }
-    return false;
+    return shown;
 }
 
 float2 onScreen(float4x4 clipFromWorld, float3 position_ws) {
