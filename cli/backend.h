@@ -6,8 +6,10 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/gpu_simulation/gpu_engine_method.h"
+#include "core/render/fibre_material.h"
 #include "core/scene/engine_choice.h"
 
 namespace hairloom::cli {
@@ -15,6 +17,20 @@ namespace hairloom::cli {
 /// The graphics APIs as --backend names them.
 inline const std::map<std::string, gpu::Backend> kGpuBackends{{"vulkan", gpu::Backend::Vulkan},
                                                               {"d3d11", gpu::Backend::Direct3D11}};
+
+/// The shading models as --shading names them.
+inline const std::map<std::string, render::ShadingModel> kShadingModels{
+    {"kajiya", render::ShadingModel::kajiya},
+    {"marschner", render::ShadingModel::marschner},
+    {"sadeghi", render::ShadingModel::sadeghi}};
+
+/// What an option that takes such choices lists.
+template <class T>
+std::vector<std::string> namesOf(const std::map<std::string, T>& choices) {
+    std::vector<std::string> names;
+    for (const auto& [name, value] : choices) names.push_back(name);
+    return names;
+}
 
 /// A device and the kernels on it; outlives what simulates on it.
 class GpuBackend {

@@ -10,6 +10,7 @@
 #include "cli/documents.h"
 #include "cli/job.h"
 #include "cli/motions.h"
+#include "cli/picture_accuracy.h"
 #include "cli/progress.h"
 #include "core/accuracy/work_precision_report.h"
 #include "core/scene/groom_scene.h"
@@ -27,6 +28,7 @@ struct AccuracyOptions {
     std::vector<std::string> integrators, substeps, iterations, points, threadCounts;
     std::vector<std::string> vary;  ///< FIELD=V1,V2,…
     std::string view;               ///< view file; empty for none
+    PictureAccuracyOptions picture;
 };
 
 /// The groom's own number of points, and a half and a quarter of it.
@@ -202,7 +204,12 @@ JobRun declare(CLI::App& job) {
     job.add_option("--repeat", options->repeats, "Timed runs of each setting")->check(CLI::Range(1, 1000));
     addGroundTruthOptions(job, options->groundTruth);
     job.add_option("--seed", options->seed, "Another seed draws other strands");
-    return [options](const std::string& commandLine) { return accuracy(*options, commandLine); };
+    addPictureAccuracyOptions(job, options->picture);
+    return [options](const std::string& commandLine) {
+        if (!options->picture.wanted) return accuracy(*options, commandLine);
+        return pictureAccuracy(options->picture, options->motion.input, options->view, options->repeats,
+                               options->output, commandLine);
+    };
 }
 
 }  // namespace

@@ -1,37 +1,39 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include <cmath>
 #include <memory>
 #include <optional>
 
 #include "cli/accuracy_jobs.h"
+#include "cli/backend.h"
 #include "cli/documents.h"
 #include "cli/job.h"
 #include "cli/motions.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
+#include "cli/vectors.h"
 #include "core/accuracy/budget.h"
 #include "core/base/content_kind.h"
 #include "core/groom/file/project_file.h"
 #include "core/groom/file/settings_json.h"
+#include "core/scene/live_cost.h"
 
 namespace hairloom::cli {
 namespace {
 
 struct BudgetJobOptions {
     MotionOptions motion;
-    double milliseconds = 1;
+    std::optional<double> milliseconds, withinMm;  // one of them
     std::uint32_t characters = 1;
+    std::optional<std::uint32_t> device;  ///< whole frames on that GPU; else the engine on the CPU
+    std::string size;                     ///< of those frames
+    bool busy = false;                    ///< times need not be reliable
     std::string output;
     std::uint32_t strands = 100;
     std::uint32_t repeats = 5;
     GroundTruthOptions groundTruth;
     std::uint64_t seed = 1;
 };
-
-/// Share by which times of the same may differ where they are to be relied upon.
-constexpr double kSteady = 0.15;
 
 /// A bar for each thing that is done.
 class Bars {
@@ -49,13 +51,95 @@ class Bars {
     std::size_t total_ = 0;
 };
 
+/// Whole frames on a GPU, simulated and drawn as the viewport does while something moves.
+class FrameTimer {
+  public:
+    static Result<FrameTimer> make(std::uint32_t device, const std::string& size, const HeadMotion& motion) {
+        std::pair<std::uint32_t, std::uint32_t> pixels(1920, 1080);
+        if (!size.empty()) {
+            const auto parsed = parseSize(size);
+            if (!parsed) return tl::unexpected(parsed.error());
+            pixels = *parsed;
+        }
+        auto gpu = GpuBackend::make(std::nullopt, device);
+        if (!gpu) return tl::unexpected(gpu.error());
+        return FrameTimer(std::move(*gpu), pixels, motion);
+    }
+    Result<double> time(const Groom& groom) {
+        constexpr std::uint32_t kFrames = 60, kFramesOfSoftware = 4;
+        const bool software = gpu_->device().info().type == gpu::DeviceType::Cpu;
+        const auto cost = loop_->run(groom, motion_, EngineKind::gpu, software ? kFramesOfSoftware : kFrames);
+        if (!cost) return tl::unexpected(cost.error());
+        last_ = *cost;
+        return cost->frame();
+    }
+    const std::string& deviceName() const { return gpu_->deviceName(); }
+    /// Of the frames timed last, which are those of the choice.
+    Report parts() const {
+        return Report{{"hairs", last_.hairs},      {"simulate_ms", last_.simulate},
+                      {"follow_ms", last_.follow}, {"shadow_ms", last_.shadow},
+                      {"shade_ms", last_.shade},   {"draw_ms", last_.draw},
+                      {"frame_ms", last_.frame()}};
+    }
+
+  private:
+    FrameTimer(std::unique_ptr<GpuBackend> gpu, std::pair<std::uint32_t, std::uint32_t> pixels,
+               const HeadMotion& motion)
+        : gpu_(std::move(gpu)),
+          loop_(std::make_unique<LiveLoop>(gpu_->device(), gpu_->kernels(), pixels.first, pixels.second)),
+          motion_(motion) {}
+
+    std::unique_ptr<GpuBackend> gpu_;
+    std::unique_ptr<LiveLoop> loop_;
+    const HeadMotion& motion_;
+    LiveCost last_;
+};
+
+Error doesNotFit(const BudgetJobOptions& options, const Budget& solved) {
+    if (options.withinMm) {
+        return Error{options.motion.input,
+                     {},
+                     fmt::format("the most exact settings found are off by {:.3g} mm", solved.errorMm),
+                     fmt::format("an error of at least that; {:.3g} mm was asked for", *options.withinMm)};
+    }
+    const double characters = options.characters;
+    return Error{options.motion.input,
+                 {},
+                 fmt::format("the fastest settings found take {:.3g} ms a frame on this machine",
+                             characters * solved.milliseconds.median),
+                 fmt::format("a budget of at least that; {:.3g} ms were asked for, {:.3g} ms is what the "
+                             "scene takes as it is",
+                             *options.milliseconds, characters * solved.authoredMilliseconds.median)};
+}
+
+Error isTooBusy(const BudgetJobOptions& options, const Budget& solved) {
+    const Quartiles& ms = solved.milliseconds;
+    return Error{options.motion.input,
+                 {},
+                 fmt::format("this machine is too busy to promise milliseconds: half of the runs of the "
+                             "choice differ by {:.0f} %, and it took {:.3g} ms, then {:.3g} ms",
+                             100 * (ms.q3 - ms.q1) / ms.median, options.characters * ms.median,
+                             options.characters * solved.millisecondsAgain),
+                 fmt::format("differences of at most {:.0f} %: a quiet machine, more --repeat, or --busy to "
+                             "take what there is",
+                             100 * kSteadyShare)};
+}
+
 Result<Report> budget(const BudgetJobOptions& options) {
     const auto scene = openMovingGroom(options.motion);
     if (!scene) return tl::unexpected(scene.error());
     BudgetOptions solving;
     // Characters are stepped one after the other, each on all threads.
     const double characters = options.characters;
-    solving.milliseconds = options.milliseconds / characters;
+    if (options.milliseconds) solving.milliseconds = *options.milliseconds / characters;
+    solving.withinMm = options.withinMm;
+    std::optional<FrameTimer> frames;
+    if (options.device) {
+        auto made = FrameTimer::make(*options.device, options.size, *scene->motion);
+        if (!made) return tl::unexpected(made.error());
+        frames.emplace(std::move(*made));
+        solving.frameTime = [&](const Groom& groom) { return frames->time(groom); };
+    }
     solving.time.frames = options.motion.frames;
     solving.time.framesPerSecond = options.motion.framesPerSecond;
     solving.strands = options.strands;
@@ -69,15 +153,8 @@ Result<Report> budget(const BudgetJobOptions& options) {
         solveBudget(scene->groom, *scene->motion, solving, *makeGroundTruth(options.groundTruth));
     bars.reset();
     if (!solved) return tl::unexpected(solved.error());
-    if (!solved->fits) {
-        return failIn(
-            options.motion.input, {},
-            fmt::format("the fastest settings found take {:.3g} ms a frame on this machine",
-                        characters * solved->milliseconds.median),
-            fmt::format("a budget of at least that; {:.3g} ms were asked for, {:.3g} ms is what the "
-                        "scene takes as it is",
-                        options.milliseconds, characters * solved->authoredMilliseconds.median));
-    }
+    if (!solved->fits) return tl::unexpected(doesNotFit(options, *solved));
+    if (solved->busy() && !options.busy) return tl::unexpected(isTooBusy(options, *solved));
     Report report;
     report["settings"] = toJson(solved->groom.simulation);
     report["points"] = solved->groom.pointCount();
@@ -96,12 +173,9 @@ Result<Report> budget(const BudgetJobOptions& options) {
     for (const GivenUp& thing : solved->givenUp)
         report["given_up"].push_back(Report{{"what", thing.what}, {"from", thing.from}, {"to", thing.to}});
     report["notes"] = solved->notes;
-    if (!(spread <= kSteady) || !(std::abs(solved->millisecondsAgain / one.median - 1) <= kSteady)) {
-        report["notes"].push_back(fmt::format(
-            "This machine was busy: half of the runs differ by {:.0f} %, and the choice took {:.3g} ms "
-            "when it ran again. Measure on a quiet one before you rely on it.",
-            100 * spread, characters * solved->millisecondsAgain));
-    }
+    if (frames) report["device"] = frames->deviceName();
+    if (frames) report["frame"] = frames->parts();
+    if (solved->busy()) report["notes"].push_back(isTooBusy(options, *solved).message());
     if (options.output.empty()) return report;
     if (auto saved = saveProject(solved->groom, options.output); !saved) return tl::unexpected(saved.error());
     report["output"] = options.output;
@@ -111,9 +185,23 @@ Result<Report> budget(const BudgetJobOptions& options) {
 JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<BudgetJobOptions>();
     addMotionOptions(job, options->motion);
-    job.add_option("--ms", options->milliseconds, "Milliseconds a frame for the engine and all strands")
-        ->required()
+    auto* asked = job.add_option_group("what is asked for");
+    asked
+        ->add_option("--ms", options->milliseconds,
+                     "Milliseconds a frame for all strands: finds the most exact settings that take no more")
         ->check(CLI::Range(1e-6, 1e6));
+    asked
+        ->add_option("--within-mm", options->withinMm,
+                     "Millimetres, root mean square: finds the cheapest settings that are as exact")
+        ->check(CLI::Range(1e-6, 1e6));
+    asked->require_option(1);
+    auto* device = job.add_option(
+        "--device", options->device,
+        "Count whole frames, simulated and drawn, on that GPU by its index in `devices`, instead "
+        "of the engine on the CPU");
+    job.add_option("--size", options->size, "Pixels WxH of those frames; 1920x1080 without")->needs(device);
+    job.add_flag("--busy", options->busy,
+                 "Answer even where times differ too much to be relied upon, with a note");
     job.add_option("--characters", options->characters,
                    "Characters with this hair that share the milliseconds, one after the other")
         ->check(CLI::Range(1, 100'000));

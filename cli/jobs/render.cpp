@@ -93,17 +93,6 @@ const std::map<std::string, render::Transparency> kTransparency{
     {"a2c", render::Transparency::alphaToCoverage},
     {"weighted", render::Transparency::weighted}};
 
-template <class T>
-std::vector<std::string> namesOf(const std::map<std::string, T>& choices) {
-    std::vector<std::string> names;
-    for (const auto& [name, value] : choices) names.push_back(name);
-    return names;
-}
-
-const std::map<std::string, render::ShadingModel> kModels{{"kajiya", render::ShadingModel::kajiya},
-                                                          {"marschner", render::ShadingModel::marschner},
-                                                          {"sadeghi", render::ShadingModel::sadeghi}};
-
 Result<render::RenderOptions> pictureOptions(const RenderJobOptions& options, const ViewFile& view) {
     render::RenderOptions picture;
     std::pair<std::uint32_t, std::uint32_t> size = view.size.value_or(std::pair(1024u, 1024u));
@@ -323,7 +312,7 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
         if (!read) return tl::unexpected(read.error());
         view = std::move(*read);
     }
-    view.fibre.model = kModels.at(options.shading);
+    view.fibre.model = kShadingModels.at(options.shading);
     view.fibre.scattering = options.scatter == "dual" ? render::Scattering::dual : render::Scattering::single;
     const auto how = pictureOptions(options, view);
     if (!how) return tl::unexpected(how.error());
@@ -392,7 +381,7 @@ JobRun declare(CLI::App& job) {
     job.add_option("--material", options->material,
                    "Sample material (fire, tentacles, …) or JSON file of material fields to apply");
     job.add_option("--shading", options->shading, "Shading model")
-        ->check(CLI::IsMember({"kajiya", "marschner", "sadeghi"}));
+        ->check(CLI::IsMember(namesOf(kShadingModels)));
     job.add_option(
            "--scatter", options->scatter,
            "Light that other hairs have scattered: single leaves it out, dual adds it; not for kajiya")

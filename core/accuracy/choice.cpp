@@ -43,6 +43,16 @@ std::optional<std::size_t> runOf(const WorkPrecision& measured, const Groom& gro
     return std::nullopt;
 }
 
+std::vector<std::size_t> runsAlong(const WorkPrecision& measured, std::size_t run, std::size_t axis) {
+    std::vector<std::size_t> along;
+    for (std::size_t r = 0; r < measured.runs.size(); ++r) {
+        std::vector<double> values = measured.runs[r].values;
+        values[axis] = measured.runs[run].values[axis];
+        if (values == measured.runs[run].values) along.push_back(r);
+    }
+    return along;
+}
+
 std::optional<std::size_t> nextStep(const WorkPrecision& measured, std::size_t from) {
     const WorkPrecisionRun& now = measured.runs[from];
     const auto isMoreExact = [&](const WorkPrecisionRun& run) {

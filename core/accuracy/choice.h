@@ -20,6 +20,8 @@ std::optional<std::size_t> nextStep(const WorkPrecision& measured, std::size_t f
 std::optional<std::size_t> cheapestWithinError(const WorkPrecision& measured, double rmsMm);
 /// The most exact whose median time is at most so many milliseconds.
 std::optional<std::size_t> mostExactWithinTime(const WorkPrecision& measured, double milliseconds);
+/// Runs that differ from that one in that axis alone, itself among them, in the order of the axis.
+std::vector<std::size_t> runsAlong(const WorkPrecision& measured, std::size_t run, std::size_t axis);
 /// "4 substeps, 24 points".
 std::string describeRun(const WorkPrecision& measured, std::size_t run);
 

@@ -85,7 +85,7 @@ Status followAll(const GridHair& hair, std::span<const HeadPose> poses, const Tr
     for (WorkPrecisionRun& run : result.runs) {
         if (auto status = unlessCancelled(result.options); !status) return status;
         const ThreadLimit limit = hair.limitThreads(run.values);
-        const auto outcome = runScene(hair.at(run.values), poses, result.options.time, followed);
+        auto outcome = runScene(hair.at(run.values), poses, result.options.time, followed);
         if (!outcome) return tl::unexpected(outcome.error());
         run.stateHash = outcome->stateHash;
         run.diverged = !outcome->trajectory.finite || outcome->nanCount > 0 || outcome->restoredStrands > 0;
@@ -94,6 +94,7 @@ Status followAll(const GridHair& hair, std::span<const HeadPose> poses, const Tr
             run.diverged = !(run.error.rmsMm <= result.options.divergedAboveMm);
         }
         if (run.diverged) run.error = {};
+        if (result.options.keepTrajectories && !run.diverged) run.trajectory = std::move(outcome->trajectory);
         counted.add(run.diverged ? 1 + result.options.repeats : 1);
     }
     return {};
@@ -363,6 +364,7 @@ Result<WorkPrecision> measureWorkPrecision(const Groom& groom, const HeadMotion&
     result.groundTruthUncertaintyMm = exact->uncertaintyMm;
     result.groundTruthDetail = exact->detail;
     result.notes = exact->notes;
+    if (options.keepTrajectories) result.groundTruthTrajectory = exact->trajectory;
     counted.add();
 
     const std::vector<HeadPose> poses = posesOf(motion, options.time);

@@ -29,6 +29,7 @@ struct WorkPrecisionOptions {
     /// A run whose root mean square error is larger has diverged; 0 stands for a quarter of the longest
     /// strand.
     double divergedAboveMm = 0;
+    bool keepTrajectories = false;  ///< of the compared points, for showing them
     std::function<void(std::size_t done, std::size_t total)> progress;
     /// Called after each round of timed runs with what is known by then.
     std::function<void(const WorkPrecision&)> partial;
@@ -49,6 +50,7 @@ struct WorkPrecisionRun {
     TrajectoryError stepError = {}, modelError = {};
     bool onFront = false;  ///< no other run is both as fast and as exact (median time, root mean square)
     std::uint64_t stateHash = 0;
+    Trajectory trajectory = {};  ///< of the compared points, where it was asked for and did not diverge
     /// Springs that would be on the front, but tremble where the head stands still: m/s, or 0.
     double trembling = 0;
 };
@@ -60,6 +62,7 @@ struct WorkPrecision {
     std::string groundTruthDescription;
     std::string groundTruthDetail;
     double groundTruthUncertaintyMm = 0;
+    Trajectory groundTruthTrajectory;     ///< where it was asked for: `pointsCompared` a strand
     std::uint32_t groundTruthPoints = 0;  ///< per strand; 0 as authored
     std::size_t groomStrands = 0;
     std::size_t strands = 0;             ///< that ran

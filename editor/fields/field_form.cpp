@@ -12,15 +12,17 @@
 #include "core/editing/settings_commands.h"
 #include "editor/fields/colour.h"
 #include "editor/fields/number_box.h"
+#include "editor/fields/price_tag.h"
 #include "editor/style/icons.h"
 
 namespace hairloom::editor {
 
 FieldForm::FieldForm(QtDocument& document, const Preferences& preferences, std::vector<Field> fields,
-                     QWidget* parent)
+                     const Prices* prices, QWidget* parent)
     : QWidget(parent),
       document_(document),
       preferences_(preferences),
+      prices_(prices),
       fields_(std::move(fields)),
       grid_(new QGridLayout(this)) {
     grid_->setContentsMargins(0, 0, 0, 0);
@@ -77,6 +79,7 @@ void FieldForm::addRow(const Field& field) {
     grid_->addWidget(label, row, 0);
     grid_->addWidget(control, row, 1);
     grid_->addWidget(defaultValue, row, 2);
+    if (prices_) grid_->addWidget(new PriceTag(*prices_, preferences_, field.name), row + 1, 1, 1, 2);
     refreshers_.push_back([this, &field, label, control, defaultValue] {
         const QString tip = tooltipOf(field, preferences_.unit());
         label->setToolTip(tip);

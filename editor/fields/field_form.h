@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "editor/document/preferences.h"
+#include "editor/document/prices.h"
 #include "editor/fields/field.h"
 
 namespace hairloom::editor {
@@ -17,8 +18,9 @@ class FieldForm : public QWidget {
     Q_OBJECT
 
   public:
+    /// With `prices`, rows of settings that have some show them.
     FieldForm(QtDocument& document, const Preferences& preferences, std::vector<Field> fields,
-              QWidget* parent = nullptr);
+              const Prices* prices = nullptr, QWidget* parent = nullptr);
 
     /// The control of a field, for tests and help; null where there is none of that name. Objects are named
     /// after their fields.
@@ -38,6 +40,7 @@ class FieldForm : public QWidget {
 
     QtDocument& document_;
     const Preferences& preferences_;
+    const Prices* prices_;
     std::vector<Field> fields_;
     QGridLayout* grid_;
     editing::Part shown_ = editing::Part::None;  ///< parts that the fields are of

@@ -6,11 +6,12 @@
 
 #include "editor/fields/field.h"
 #include "editor/fields/number_box.h"
+#include "editor/fields/price_tag.h"
 
 namespace hairloom::editor {
 
-OptionForm::OptionForm(const Preferences& preferences, QWidget* parent)
-    : QWidget(parent), preferences_(preferences), layout_(new QFormLayout(this)) {
+OptionForm::OptionForm(const Preferences& preferences, const Prices* prices, QWidget* parent)
+    : QWidget(parent), preferences_(preferences), prices_(prices), layout_(new QFormLayout(this)) {
     layout_->setContentsMargins(0, 0, 0, 0);
     layout_->setHorizontalSpacing(10);
     layout_->setVerticalSpacing(5);
@@ -33,7 +34,7 @@ void OptionForm::addNumber(const QString& name, const QString& label, const QStr
                                  QString::number(max * shown.factor, 'g', 5), shown.unit));
     });
     refreshers_.back()();
-    layout_->addRow(label, box);
+    addPriced(name, label, box);
 }
 
 void OptionForm::addBool(const QString& name, const QString& label, const QString& tip,
@@ -57,7 +58,12 @@ void OptionForm::addChoice(const QString& name, const QString& label, const QStr
     connect(box, &QComboBox::activated, this, [set = std::move(set)](int index) { set(index); });
     refreshers_.push_back([box, get = std::move(get)] { box->setCurrentIndex(get()); });
     refreshers_.back()();
-    layout_->addRow(label, box);
+    addPriced(name, label, box);
+}
+
+void OptionForm::addPriced(const QString& name, const QString& label, QWidget* control) {
+    layout_->addRow(label, control);
+    if (prices_) layout_->addRow(QString(), new PriceTag(*prices_, preferences_, name));
 }
 
 void OptionForm::addWidget(const QString& label, QWidget* widget) {

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "editor/document/preferences.h"
+#include "editor/document/prices.h"
 
 namespace hairloom::editor {
 
@@ -14,7 +15,9 @@ class OptionForm : public QWidget {
     Q_OBJECT
 
   public:
-    explicit OptionForm(const Preferences& preferences, QWidget* parent = nullptr);
+    /// With `prices`, numbers and choices that have some show them.
+    explicit OptionForm(const Preferences& preferences, const Prices* prices = nullptr,
+                        QWidget* parent = nullptr);
 
     /// `unit` as in fields ("m", ""); the tooltip tells range and unit. `get` is asked again at refresh().
     void addNumber(const QString& name, const QString& label, const QString& tip, const QString& unit,
@@ -29,7 +32,10 @@ class OptionForm : public QWidget {
     void refresh();
 
   private:
+    void addPriced(const QString& name, const QString& label, QWidget* control);
+
     const Preferences& preferences_;
+    const Prices* prices_;
     QFormLayout* layout_;
     std::vector<std::function<void()>> refreshers_;
 };

@@ -6,7 +6,9 @@
 
 #include "editor/document/messages.h"
 #include "editor/document/preferences.h"
+#include "editor/document/prices.h"
 #include "editor/document/qt_document.h"
+#include "editor/document/tasks.h"
 #include "editor/viewport/viewport.h"
 
 namespace hairloom::editor {
@@ -16,7 +18,10 @@ QWidget* makePresetList(QtDocument& document, const Preferences& preferences, Me
                         Viewport& viewport);
 /// A look to compare with, left of a line in the viewport.
 QWidget* makeCompareBar(QtDocument& document, Viewport& viewport);
-/// How finely the viewport draws: edges, shadows, hair over hair.
-QWidget* makePictureForm(const Preferences& preferences, Viewport& viewport);
+/// How finely the viewport draws: edges, shadows, hair over hair; and what each setting costs where that was
+/// measured.
+QWidget* makePictureForm(const Preferences& preferences, const Prices& prices, Viewport& viewport);
+/// A button that measures what the picture's settings cost, for this hair in this view.
+QWidget* makePicturePrices(QtDocument& document, Tasks& tasks, Viewport& viewport, Prices& prices);
 
 }  // namespace hairloom::editor

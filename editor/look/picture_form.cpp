@@ -9,8 +9,8 @@ namespace {
 
 class PictureForm : public OptionForm {
   public:
-    PictureForm(const Preferences& preferences, Viewport& viewport)
-        : OptionForm(preferences), viewport_(viewport) {
+    PictureForm(const Preferences& preferences, const Prices& prices, Viewport& viewport)
+        : OptionForm(preferences, &prices), viewport_(viewport) {
         addEdges();
         addShadows();
         connect(&viewport_, &Viewport::lookChanged, this, &OptionForm::refresh);
@@ -122,8 +122,8 @@ class PictureForm : public OptionForm {
 
 }  // namespace
 
-QWidget* makePictureForm(const Preferences& preferences, Viewport& viewport) {
-    return new PictureForm(preferences, viewport);
+QWidget* makePictureForm(const Preferences& preferences, const Prices& prices, Viewport& viewport) {
+    return new PictureForm(preferences, prices, viewport);
 }
 
 }  // namespace hairloom::editor

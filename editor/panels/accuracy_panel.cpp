@@ -3,6 +3,7 @@
 // and settings taken from it.
 #include <QLabel>
 #include <QPushButton>
+#include <QSignalBlocker>
 #include <QVBoxLayout>
 #include <algorithm>
 #include <cmath>
@@ -17,6 +18,7 @@
 #include "editor/panels/accuracy_plot.h"
 #include "editor/panels/certificate_box.h"
 #include "editor/panels/panel.h"
+#include "editor/panels/run_view.h"
 
 namespace hairloom::editor {
 namespace {
@@ -35,11 +37,14 @@ class AccuracyPanel : public QWidget {
           tasks_(parts.tasks),
           messages_(parts.messages),
           viewport_(parts.viewport),
+          prices_(parts.prices),
           plot_(new AccuracyPlot),
           words_(new QLabel),
           measure_(new QPushButton(tr("Measure"))),
           chosenWords_(new QLabel),
+          show_(new QPushButton(tr("Show in the view"))),
           adopt_(new QPushButton(tr("Adopt"))),
+          view_(new RunView(parts, this)),
           pixels_(new NumberBox(0.01, 100, false)),
           milliseconds_(new NumberBox(0.01, 100, false)) {
         auto* layout = new QVBoxLayout(this);
@@ -63,14 +68,28 @@ class AccuracyPanel : public QWidget {
                "a reference in double precision; half a minute or so"));
         chosenWords_->setObjectName("accuracyChosen");
         chosenWords_->setWordWrap(true);
+        show_->setObjectName("accuracyShow");
+        show_->setCheckable(true);
+        show_->setToolTip(
+            tr("Plays the measured motion with these settings, over and over, without changing the document. "
+               "Over the hair lie the compared strands, from green, exact, to red, 5 px off; blue ones are "
+               "the reference"));
         layout->addWidget(chosenWords_);
-        layout->addWidget(adopt_);
+        auto* row = new QHBoxLayout;
+        row->addWidget(show_, 1);
+        row->addWidget(adopt_, 1);
+        layout->addLayout(row);
         layout->addWidget(measure_);
         layout->addWidget(new CertificateBox(document_, tasks_));
         pixels_->setValue(1);
         milliseconds_->setValue(4);
         connect(measure_, &QPushButton::clicked, this, &AccuracyPanel::measure);
         connect(adopt_, &QPushButton::clicked, this, &AccuracyPanel::adopt);
+        connect(show_, &QPushButton::toggled, this, [this](bool on) { on ? showChosen() : view_->stop(); });
+        connect(view_, &RunView::stopped, this, [this] {
+            const QSignalBlocker quiet(show_);
+            show_->setChecked(false);
+        });
         connect(plot_, &AccuracyPlot::clicked, this, [this](std::size_t run) { choose(run); });
         connect(pixels_, &NumberBox::edited, this, [this](double px) {
             if (measured_) choose(cheapestWithinError(*measured_, px / pixelsPerMm()));
@@ -87,6 +106,7 @@ class AccuracyPanel : public QWidget {
         connect(&document_, &QtDocument::replaced, this, [this] {
             measured_.reset();
             chosen_.reset();
+            prices_.clear();
             ++documents_;
             refresh();
         });
@@ -148,7 +168,8 @@ class AccuracyPanel : public QWidget {
         const std::shared_ptr<const HeadMotion> moves = std::move(*motion);
         const auto keep = [this, document = documents_](const WorkPrecision& result) {
             if (document != documents_) return;
-            measured_ = result;
+            measured_ = std::make_shared<const WorkPrecision>(result);
+            measuredAt_ = QDateTime::currentDateTime();
             refresh();
         };
         const bool began = tasks_.run<WorkPrecision>(
@@ -159,6 +180,7 @@ class AccuracyPanel : public QWidget {
                 options.time.frames = kFrames;
                 options.strands = kMostStrands;
                 options.repeats = kRepeats;
+                options.keepTrajectories = true;
                 options.progress = [&](std::size_t done, std::size_t total) {
                     control.setProgress(static_cast<float>(done) / static_cast<float>(total));
                 };
@@ -181,6 +203,12 @@ class AccuracyPanel : public QWidget {
     void choose(std::optional<std::size_t> run) {
         chosen_ = run;
         refresh();
+        if (show_->isChecked()) showChosen();
+    }
+
+    void showChosen() {
+        if (chosen_ && !measured_->runs[*chosen_].diverged) return view_->show(measured_, *chosen_);
+        view_->stop();
     }
 
     void adopt() {
@@ -242,14 +270,36 @@ class AccuracyPanel : public QWidget {
         return text;
     }
 
+    /// What other values of each setting would cost, for the rows where they are set.
+    void showPrices() {
+        QHash<QString, SettingPrices> prices;
+        const auto now = runOf(*measured_, document_.groom());
+        const std::vector<GridAxis>& axes = measured_->options.axes;
+        for (std::size_t a = 0; a < axes.size() && now; ++a) {
+            SettingPrices& setting = prices[QString::fromStdString(axes[a].field)];
+            setting.unit = tr("px");
+            setting.measured = measuredAt_;
+            setting.outdated = outdated_;
+            for (const std::size_t r : runsAlong(*measured_, *now, a)) {
+                const WorkPrecisionRun& run = measured_->runs[r];
+                if (run.diverged || !(run.milliseconds.median > 0)) continue;
+                setting.values.push_back({QString::fromStdString(axisValueText(axes[a], run.values[a])),
+                                          run.milliseconds.median * timeScale(),
+                                          run.error.rmsMm * pixelsPerMm(), r == *now});
+            }
+        }
+        prices_.set(Prices::Of::Motion, prices);
+    }
+
     void refresh() {
         words_->setText(sentence());
         measure_->setEnabled(document_.groom().strandCount() > 0);
-        const bool any = measured_.has_value();
+        const bool any = measured_ != nullptr;
         plot_->setVisible(any);
         for (QWidget* control : {static_cast<QWidget*>(pixels_), static_cast<QWidget*>(milliseconds_)})
             control->setEnabled(any);
         adopt_->setEnabled(any && chosen_);
+        show_->setEnabled(any && chosen_);
         chosenWords_->setVisible(any);
         if (!any) return;
         chosenWords_->setText(
@@ -265,6 +315,7 @@ class AccuracyPanel : public QWidget {
         }
         plot_->setPoints(std::move(points), "px");
         plot_->setMarked(runOf(*measured_, document_.groom()), chosen_);
+        showPrices();
     }
 
     QtDocument& document_;
@@ -272,13 +323,16 @@ class AccuracyPanel : public QWidget {
     Tasks& tasks_;
     Messages& messages_;
     Viewport& viewport_;
+    Prices& prices_;
     AccuracyPlot* plot_;
     QLabel* words_;
     QPushButton* measure_;
     QLabel* chosenWords_;
-    QPushButton* adopt_;
+    QPushButton *show_, *adopt_;
+    RunView* view_;
     NumberBox *pixels_, *milliseconds_;
-    std::optional<WorkPrecision> measured_;
+    std::shared_ptr<const WorkPrecision> measured_;
+    QDateTime measuredAt_;
     std::optional<std::size_t> chosen_;
     std::uint32_t documents_ = 0;  ///< replaced so far
     bool outdated_ = false;        ///< `measured_` is of the document before its last change

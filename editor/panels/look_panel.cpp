@@ -84,11 +84,12 @@ const std::vector<Group>& groups() {
 
 class LookPanel : public QWidget {
   public:
-    LookPanel(QtDocument& document, const Preferences& preferences, Messages& messages, Viewport& viewport)
-        : document_(document),
-          preferences_(preferences),
-          messages_(messages),
-          viewport_(viewport),
+    explicit LookPanel(const PanelParts& parts)
+        : document_(parts.document),
+          preferences_(parts.preferences),
+          prices_(parts.prices),
+          messages_(parts.messages),
+          viewport_(parts.viewport),
           model_(new QComboBox),
           layout_(new QVBoxLayout(this)) {
         layout_->setContentsMargins(0, 0, 0, 0);
@@ -100,7 +101,10 @@ class LookPanel : public QWidget {
         makeModels();
         makeGroups();
         layout_->addWidget(
-            collapsible(tr("Edges and shadows"), makePictureForm(preferences_, viewport_), false));
+            collapsible(tr("Edges and shadows"),
+                        column({makePictureForm(preferences_, prices_, viewport_),
+                                makePicturePrices(document_, parts.tasks, viewport_, parts.prices)}),
+                        false));
         layout_->addWidget(collapsible(tr("Hairs between the guides"), form(followHairFields()), false));
         connect(&viewport_, &Viewport::lookChanged, this, &LookPanel::refresh);
         refresh();
@@ -108,7 +112,7 @@ class LookPanel : public QWidget {
 
   private:
     FieldForm* form(const std::vector<Field>& fields) {
-        return new FieldForm(document_, preferences_, fields);
+        return new FieldForm(document_, preferences_, fields, &prices_);
     }
 
     void makeModels() {
@@ -179,6 +183,7 @@ class LookPanel : public QWidget {
 
     QtDocument& document_;
     const Preferences& preferences_;
+    const Prices& prices_;
     Messages& messages_;
     Viewport& viewport_;
     QComboBox* model_;
@@ -195,10 +200,7 @@ PanelInfo lookPanel() {
             Qt::RightDockWidgetArea,
             50,
             true,
-            [](const PanelParts& parts) -> QWidget* {
-                return scrolled(column(
-                    {new LookPanel(parts.document, parts.preferences, parts.messages, parts.viewport)}));
-            }};
+            [](const PanelParts& parts) -> QWidget* { return scrolled(column({new LookPanel(parts)})); }};
 }
 
 }  // namespace hairloom::editor

@@ -10,6 +10,7 @@
 
 #include "editor/document/messages.h"
 #include "editor/document/preferences.h"
+#include "editor/document/prices.h"
 #include "editor/document/qt_document.h"
 #include "editor/document/tasks.h"
 #include "editor/fields/blocks.h"
@@ -23,6 +24,7 @@ namespace hairloom::editor {
 struct PanelParts {
     QtDocument& document;
     Preferences& preferences;
+    Prices& prices;
     Tasks& tasks;
     Messages& messages;
     Player& player;

@@ -93,14 +93,14 @@ QWidget* withCurve(QtDocument& document, QWidget* form) {
     return widget;
 }
 
-QWidget* makePanel(QtDocument& document, const Preferences& preferences) {
+QWidget* makePanel(QtDocument& document, const Preferences& preferences, const Prices& prices) {
     const std::vector<Field> fields = simulationFields();
     QWidget* const content = column({makePresets(document), makeHoldButton(document)});
     auto* layout = static_cast<QVBoxLayout*>(content->layout());
     QStringList shown;
     for (const Group& group : groups()) {
         shown += group.fields;
-        QWidget* form = new FieldForm(document, preferences, pick(fields, group.fields));
+        QWidget* form = new FieldForm(document, preferences, pick(fields, group.fields), &prices);
         if (group.fields.contains("angularStiffness")) form = withCurve(document, form);
         layout->insertWidget(layout->count() - 1, collapsible(group.title, form, group.open));
     }
@@ -110,7 +110,7 @@ QWidget* makePanel(QtDocument& document, const Preferences& preferences) {
         if (!shown.contains(field.name)) others.append(field.name);
     }
     if (!others.isEmpty()) {
-        auto* form = new FieldForm(document, preferences, pick(fields, others));
+        auto* form = new FieldForm(document, preferences, pick(fields, others), &prices);
         layout->insertWidget(layout->count() - 1, collapsible(QObject::tr("More"), form, false));
     }
     return scrolled(content);
@@ -119,13 +119,14 @@ QWidget* makePanel(QtDocument& document, const Preferences& preferences) {
 }  // namespace
 
 PanelInfo physicsPanel() {
-    return {"physics",
-            QObject::tr("Physics"),
-            "physics",
-            Qt::RightDockWidgetArea,
-            60,
-            true,
-            [](const PanelParts& parts) { return makePanel(parts.document, parts.preferences); }};
+    return {
+        "physics",
+        QObject::tr("Physics"),
+        "physics",
+        Qt::RightDockWidgetArea,
+        60,
+        true,
+        [](const PanelParts& parts) { return makePanel(parts.document, parts.preferences, parts.prices); }};
 }
 
 }  // namespace hairloom::editor

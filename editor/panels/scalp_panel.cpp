@@ -142,13 +142,13 @@ using Roots = std::vector<SurfacePoint>;
 
 class PlacePanel : public QWidget {
   public:
-    PlacePanel(QtDocument& document, const Preferences& preferences, Tasks& tasks, Messages& messages,
-               Viewport& viewport)
+    PlacePanel(QtDocument& document, const Preferences& preferences, const Prices& prices, Tasks& tasks,
+               Messages& messages, Viewport& viewport)
         : document_(document), tasks_(tasks), messages_(messages), viewport_(viewport), note_(new QLabel) {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(8);
-        layout->addWidget(new FieldForm(document, preferences, placementFields()));
+        layout->addWidget(new FieldForm(document, preferences, placementFields(), &prices));
         auto* preview = new QPushButton(tr("Preview roots"));
         preview->setObjectName("placePreview");
         preview->setCheckable(true);
@@ -242,8 +242,8 @@ PanelInfo scalpPanel() {
                 return scrolled(column({heading(QObject::tr("Where hair grows")),
                                         new ScalpPanel(parts.document, parts.messages),
                                         heading(QObject::tr("Place hair")),
-                                        new PlacePanel(parts.document, parts.preferences, parts.tasks,
-                                                       parts.messages, parts.viewport)}));
+                                        new PlacePanel(parts.document, parts.preferences, parts.prices,
+                                                       parts.tasks, parts.messages, parts.viewport)}));
             }};
 }
 

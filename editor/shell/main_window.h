@@ -24,7 +24,9 @@ class MainWindow : public QMainWindow {
     MainWindow();
     ~MainWindow() override;
 
-    PanelParts parts() { return {document_, preferences_, tasks_, messages_, player_, *viewport_, tools_}; }
+    PanelParts parts() {
+        return {document_, preferences_, prices_, tasks_, messages_, player_, *viewport_, tools_};
+    }
     DocumentFiles& files() { return files_; }
     Actions& actions() { return *actions_; }
     StatusLine& statusLine() { return *status_; }
@@ -76,6 +78,7 @@ class MainWindow : public QMainWindow {
     void frameSelection();
 
     Preferences preferences_;
+    Prices prices_;
     QtDocument document_;
     Tasks tasks_;
     Messages messages_;

@@ -27,4 +27,7 @@ struct PictureQuality {
     bool operator==(const PictureQuality&) const = default;
 };
 
+/// Of a picture while nothing moves, with what the device can; size and exposure are the caller's.
+render::RenderOptions stillOptions(const PictureQuality& quality, const gpu::DeviceInfo& device);
+
 }  // namespace hairloom::editor

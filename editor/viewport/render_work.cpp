@@ -65,15 +65,6 @@ bool samePoints(const Groom& a, const Groom& b) {
     return a.pointAttributes.version(attribute::kPosition) == b.pointAttributes.version(attribute::kPosition);
 }
 
-/// The most samples up to those that were asked for.
-std::uint32_t maxSamples(const gpu::DeviceInfo& device, std::uint32_t asked) {
-    std::uint32_t maximum = 1;
-    for (const std::uint32_t count : device.sampleCounts) {
-        if (count <= asked) maximum = std::max(maximum, count);
-    }
-    return maximum;
-}
-
 ViewFile viewOf(const PictureRequest& request) {
     ViewFile view;
     view.fibre.model = request.quality.model;
@@ -262,28 +253,20 @@ Status RenderWork::showDye(const PictureRequest& request) {
 }
 
 render::RenderOptions RenderWork::options() const {
-    const PictureQuality& quality = last_->quality;
-    const gpu::DeviceInfo& device = device_.info();
-    render::RenderOptions options;
+    render::RenderOptions options = stillOptions(last_->quality, device_.info());
     options.width = width_;
     options.height = height_;
     options.exposure = last_->exposure;
-    options.samples = last_->moving ? 1 : maxSamples(device, quality.samples);
-    options.frames = last_->moving ? 1 : quality.frames;
-    options.filter = quality.filter;
-    options.transparency = quality.transparency;
-    if (device.tessellation || quality.ribbons != render::Ribbons::tessellated)
-        options.ribbons = quality.ribbons;
-    options.subdivisions = last_->moving ? 1 : quality.subdivisions;
-    options.shadows = quality.shadows;
     options.bakeBehind = true;
-    if (last_->moving) options.skyStrands = 1024;
-    options.headAbsorption = quality.headAbsorption;
-    options.shadowBlur = last_->moving ? 0.0f : quality.shadowBlur;
-    options.shadowResolution =
-        last_->moving ? std::min(512u, quality.shadowResolution) : quality.shadowResolution;
-    options.detail = last_->moving ? 0.5f : 0.0f;
     options.transparentBackground = last_->seeThrough && !swapChain_;
+    if (!last_->moving) return options;
+    options.samples = 1;
+    options.frames = 1;
+    options.subdivisions = 1;
+    options.skyStrands = 1024;
+    options.shadowBlur = 0;
+    options.shadowResolution = std::min(512u, options.shadowResolution);
+    options.detail = 0.5f;
     return options;
 }
 

@@ -76,6 +76,7 @@ class Viewport : public QWidget {
     bool isHeadShown() const { return showHead_; }
     void setLightTurn(float degrees);
     void setExposure(float factor);
+    float exposure() const { return exposure_; }
     /// Factors on the lights and on the light from around; 1 as they come.
     void setLight(float lights, float environment);
     float lightScale() const { return lightScale_; }

@@ -57,6 +57,57 @@ TEST(Budget, ZeroBudgetTurnsOffAllOptionalEffects) {
     EXPECT_NE(budget->groom.simulation.gravity.y, 0.0f);
 }
 
+TEST(Budget, TheCheapestWithinAnErrorIsFound) {
+    const Groom groom = scene();
+    const auto motion = makeRigidMotion("spin", groom);
+    BudgetOptions options = few(1);
+    options.milliseconds.reset();
+    options.withinMm = 1e4;
+    const auto loose = solveBudget(groom, **motion, options, EngineConverged(8));
+    ASSERT_TRUE(loose) << loose.error().message();
+    EXPECT_TRUE(loose->fits);
+    EXPECT_TRUE(loose->givenUp.size() > 0) << "anything is exact enough";
+    options.withinMm = 1e-9;
+    const auto strict = solveBudget(groom, **motion, options, EngineConverged(8));
+    ASSERT_TRUE(strict) << strict.error().message();
+    EXPECT_FALSE(strict->fits);
+    EXPECT_LT(strict->errorMm, loose->errorMm) << "the most exact there is";
+}
+
+TEST(Budget, FramesThatAreTimedElsewhereLoseFollowHairsFirst) {
+    Groom groom = scene();
+    groom.interpolation.followPerGuide = 40;
+    const auto motion = makeRigidMotion("none", groom);
+    BudgetOptions options = few(1.1);
+    options.frameTime = [](const Groom& timed) -> Result<double> {
+        return 0.1 * timed.interpolation.followPerGuide;
+    };
+    const auto budget = solveBudget(groom, **motion, options, EngineConverged(8));
+    ASSERT_TRUE(budget) << budget.error().message();
+    EXPECT_TRUE(budget->fits);
+    EXPECT_EQ(budget->groom.interpolation.followPerGuide, 10u);
+    EXPECT_TRUE(budget->groom.simulation.windSpeed > 0) << "effects stay";
+    EXPECT_FALSE(budget->busy());
+    EXPECT_DOUBLE_EQ(budget->milliseconds.median, 1);
+}
+
+TEST(Budget, TimesThatDifferTooMuchAreOfABusyMachine) {
+    const Groom groom = scene();
+    const auto motion = makeRigidMotion("none", groom);
+    BudgetOptions options = few(100);
+    int calls = 0;
+    options.frameTime = [&](const Groom&) -> Result<double> { return ++calls % 2 ? 1.0 : 2.0; };
+    const auto spread = solveBudget(groom, **motion, options, EngineConverged(8));
+    ASSERT_TRUE(spread) << spread.error().message();
+    EXPECT_TRUE(spread->busy());
+    // Steady in itself, and twice as slow with each look.
+    calls = 0;
+    options.frameTime = [&](const Groom&) -> Result<double> { return 1 << (calls++ / 16 % 8); };
+    const auto drifts = solveBudget(groom, **motion, options, EngineConverged(8));
+    ASSERT_TRUE(drifts) << drifts.error().message();
+    EXPECT_TRUE(drifts->busy());
+}
+
 TEST(Budget, AccuracyGrowsWithTheBudget) {
     const auto poor = solve(scene(), 1e-6);
     const auto rich = solve(scene(), 1e5);

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/accuracy/run_preview.h"
 #include "tests/accuracy/hair.h"
 
 namespace hairloom::test {
@@ -90,6 +91,40 @@ TEST(Choice, TriesWhatTheGroomHasAndWhatIsAroundIt) {
     groom.simulation.strandModel = runtime::StrandModel::springs;
     axes = axesToTry(groom);
     EXPECT_EQ(axes[1].field, "lengthIterations");
+}
+
+TEST(Choice, AlongAnAxisNothingElseChanges) {
+    WorkPrecision measured;
+    measured.options.axes = {{"substeps", {1, 2}}, {std::string(kPointsAxis), {6, 12, 24}}};
+    for (auto& values : combinations(measured.options.axes)) measured.runs.push_back({.values = values});
+    EXPECT_EQ(runsAlong(measured, 4, 0), (std::vector<std::size_t>{1, 4}));
+    EXPECT_EQ(runsAlong(measured, 4, 1), (std::vector<std::size_t>{3, 4, 5}));
+}
+
+TEST(RunPreview, HasThePointsOfTheGroomWhateverRan) {
+    const Groom groom = straightHair(6, 12);
+    const auto motion = makeRigidMotion("nod", groom);
+    WorkPrecision measured;
+    measured.options.axes = {{"substeps", {2}}, {std::string(kPointsAxis), {5, 12}}};
+    measured.options.time.frames = 8;
+    for (auto& values : combinations(measured.options.axes)) measured.runs.push_back({.values = values});
+    const auto coarse = previewRun(groom, **motion, measured, 0, {});
+    const auto own = previewRun(groom, **motion, measured, 1, {});
+    ASSERT_TRUE(coarse && own);
+    ASSERT_EQ(own->positions_ws.size(), 9u);
+    // Twelve points: the very simulation.
+    Groom same = groom;
+    same.simulation.substeps = 2;
+    auto simulation = Simulation::make(same, own->poses.front(), {});
+    ASSERT_TRUE(simulation.has_value());
+    for (std::size_t frame = 1; frame < own->poses.size(); ++frame)
+        simulation->step(1 / measured.options.time.framesPerSecond, own->poses[frame]);
+    const auto last = simulation->positions_ws();
+    for (std::size_t p = 0; p < last.size(); ++p) {
+        EXPECT_LT((own->positions_ws.back()[p] - last[p]).norm(), 1e-6f);
+        EXPECT_LT((coarse->positions_ws.back()[p] - last[p]).norm(), 0.02f) << "near, by other points";
+    }
+    EXPECT_FALSE(previewRun(groom, **motion, measured, 0, [] { return true; }));
 }
 
 }  // namespace

@@ -32,11 +32,44 @@ TEST_F(Hairstyle, StabilityOfAGroomIsItsCertificate) {
 TEST_F(Hairstyle, BudgetIsSharedByCharactersAndTimedAgain) {
     runJson(createArguments("", 7, 20));
     const auto budget =
-        runJson("budget hair.hairloom --ms 1000 --characters 10 --frames 4 --repeat 1 --truth engine");
+        runJson("budget hair.hairloom --ms 1000 --characters 10 --frames 4 --repeat 1 --truth engine --busy");
     EXPECT_EQ(budget["characters"], 10);
     EXPECT_LE(budget["ms"].get<double>(), 1000);
     EXPECT_GT(budget["ms_again"].get<double>(), 0);
     EXPECT_GE(budget["spread_share"].get<double>(), 0);
+    const auto exact =
+        runJson("budget hair.hairloom --within-mm 1000 --frames 4 --repeat 1 --truth engine --busy");
+    EXPECT_EQ(exact["settings"]["substeps"], 1);
+    EXPECT_EQ(run("budget hair.hairloom --frames 4").exitCode, 2) << "neither time nor error";
+    EXPECT_EQ(run("budget hair.hairloom --ms 1 --within-mm 1").exitCode, 2);
+    EXPECT_EQ(run("budget hair.hairloom --ms 1 --size 64x64").exitCode, 2) << "nothing is drawn";
+}
+
+TEST_F(Hairstyle, ABudgetOfWholeFramesCountsDrawing) {
+    runJson(createArguments("", 7, 20));
+    const auto budget = runJson(
+        "budget hair.hairloom --ms 1e5 --device 0 --size 64x64 --frames 4 --repeat 1 --truth engine --busy");
+    EXPECT_FALSE(budget["device"].get<std::string>().empty());
+    EXPECT_GT(budget["frame"]["draw_ms"].get<double>(), 0);
+    EXPECT_NEAR(budget["frame"]["frame_ms"].get<double>(), budget["ms_again"].get<double>(), 1e-6);
+}
+
+TEST_F(Hairstyle, SettingsOfThePictureHavePricesToo) {
+    runJson(createArguments("", 7, 20));
+    const auto report = runJson(
+        "accuracy hair.hairloom --picture -o out --size 48x48 --passes 2 --repeat 1 --shading marschner");
+    std::map<std::string, int> now;
+    for (const auto& run : report["picture"]) {
+        EXPECT_GT(run["ms"].get<double>(), 0);
+        EXPECT_GE(run["flip"].get<double>(), 0);
+        now[run["setting"]] += run["now"].get<bool>();
+    }
+    for (const char* setting : {"samples", "filter", "transparency", "ribbons", "subdivisions", "shadows",
+                                "shadowResolution", "scattering"})
+        EXPECT_EQ(now[setting], 1) << setting;
+    for (const char* file : {"picture.csv", "picture.svg", "report.html"})
+        EXPECT_TRUE(fs::exists(folder / "out" / file)) << file;
+    EXPECT_EQ(run("accuracy hair.hairloom -o out --size 48x48").exitCode, 2) << "only of pictures";
 }
 
 TEST_F(Hairstyle, AStyleIsTransferredToAnotherHeadAndSimulatedThere) {

@@ -5,6 +5,7 @@
 
 #include "core/operations/resample.h"
 #include "editor/fields/number_box.h"
+#include "editor/fields/price_tag.h"
 #include "editor/panels/accuracy_plot.h"
 #include "tests/editor/window_fixture.h"
 
@@ -87,6 +88,45 @@ TEST_F(AccuracyTest, APointOfTheDiagramIsChosenByAClick) {
         EXPECT_TRUE(adopt().isEnabled());
         EXPECT_NE(chosen(), none);
     }
+}
+
+TEST_F(AccuracyTest, ASettingIsPricedWhereItIsSet) {
+    auto* tag = find<PriceTag>("substepsPrice");
+    EXPECT_TRUE(tag->words().isEmpty());
+    EXPECT_FALSE(tag->isVisibleTo(tag->parentWidget()));
+    measure();
+    EXPECT_TRUE(tag->isVisibleTo(tag->parentWidget()));
+    EXPECT_TRUE(tag->words().contains(" px")) << tag->words().toStdString();
+    EXPECT_TRUE(tag->toolTip().contains("Measured at"));
+    Groom changed = groom();
+    changed.simulation.windSpeed = 3;
+    change("Wind", changed);
+    EXPECT_TRUE(tag->toolTip().contains("before the last change"));
+    openBust();
+    EXPECT_FALSE(tag->isVisibleTo(tag->parentWidget())) << "another document has no prices";
+}
+
+TEST_F(AccuracyTest, AMeasuredSettingIsShownInTheViewAndLeavesNoTrace) {
+    auto* show = find<QPushButton>("accuracyShow");
+    EXPECT_FALSE(show->isEnabled());
+    const auto before = hash();
+    measure();
+    find<NumberBox>("accuracyPixels")->spinBox().setValue(100);  // fewer points than the hair has
+    show->click();
+    finishWork();
+    ASSERT_TRUE(QTest::qWaitFor([&] { return viewport().pose() != nullptr; }));
+    const auto first = viewport().pose();
+    EXPECT_EQ(first->positions_ws.size(), groom().pointCount());
+    ASSERT_TRUE(QTest::qWaitFor([&] { return viewport().pose() != first; })) << "it moves";
+    for (const Vec3f& point : viewport().pose()->positions_ws) ASSERT_TRUE(point.allFinite());
+    EXPECT_EQ(hash(), before);
+    show->click();
+    EXPECT_EQ(viewport().pose(), nullptr);
+    show->click();
+    finishWork();
+    adopt().click();
+    EXPECT_FALSE(show->isChecked()) << "the document has changed";
+    EXPECT_EQ(viewport().pose(), nullptr);
 }
 
 TEST_F(AccuracyTest, AThousandStormsSayWhatTheHairWithstands) {

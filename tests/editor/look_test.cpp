@@ -9,6 +9,7 @@
 #include "core/scene/look_presets.h"
 #include "editor/fields/field_form.h"
 #include "editor/fields/number_box.h"
+#include "editor/fields/price_tag.h"
 #include "editor/look/tress.h"
 #include "tests/editor/window_fixture.h"
 
@@ -220,6 +221,29 @@ TEST_F(LookPictureTest, ThumbnailsAreDrawnWhenNothingElseIs) {
     EXPECT_EQ(thumbnail.size(), QSize(64, 64));
     EXPECT_LT(qGray(thumbnail.pixel(32, 32)), 90) << "black hair";
     EXPECT_GT(qGray(thumbnail.pixel(1, 32)), 150) << "beside it";
+}
+
+TEST_F(LookTest, SettingsOfThePictureSayWhatTheyCost) {
+    Groom few = groom();
+    std::vector<std::uint32_t> offsets(few.offsets.view().begin(), few.offsets.view().begin() + 51);
+    const std::vector<Vec3f> points(few.positions().begin(), few.positions().begin() + offsets.back());
+    document().open(makeGroom(offsets, points), {}, "few");
+    viewport().resize(64, 48);
+    auto* tag = find<PriceTag>("samplesPrice");
+    EXPECT_TRUE(tag->words().isEmpty());
+    const auto before = hash();
+    find<QPushButton>("pictureMeasure")->click();
+    finishWork();
+    EXPECT_EQ(hash(), before);
+    for (const char* setting : {"samples", "shadows", "shadowResolution", "subdivisions", "transparency"}) {
+        const auto* priced = find<PriceTag>((QString(setting) + "Price").toUtf8().constData());
+        EXPECT_TRUE(priced->words().contains("FLIP")) << setting;
+    }
+    EXPECT_TRUE(tag->toolTip().contains("Measured at"));
+    PictureQuality quality = viewport().quality();
+    quality.subdivisions = 1;
+    viewport().setQuality(quality);
+    EXPECT_TRUE(tag->toolTip().contains("before the last change"));
 }
 
 }  // namespace

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/picture_accuracy.h"
+
+#include <optional>
+#include <tuple>
+
+#include "cli/accuracy_jobs.h"
+#include "cli/backend.h"
+#include "cli/documents.h"
+#include "cli/progress.h"
+#include "cli/vectors.h"
+#include "core/scene/picture_cost_report.h"
+
+namespace hairloom::cli {
+namespace {
+
+Report rowsOf(const PictureCost& cost) {
+    Report rows = Report::array();
+    for (const PictureCostRun& run : cost.runs) {
+        rows.push_back(Report{{"setting", run.setting},
+                              {"value", run.value},
+                              {"now", run.now},
+                              {"ms", run.milliseconds.median},
+                              {"ms_spread", toReport(run.milliseconds)},
+                              {"flip", run.flip},
+                              {"light", run.light}});
+    }
+    return rows;
+}
+
+}  // namespace
+
+void addPictureAccuracyOptions(CLI::App& job, PictureAccuracyOptions& options) {
+    auto* picture = job.add_flag("--picture", options.wanted,
+                                 "Measure the settings of the picture instead of those of the motion: "
+                                 "samples, shadows, curves, thin hair, follow hairs");
+    const auto add = [&](const char* name, auto& value, const char* does) {
+        return job.add_option(name, value, does)->needs(picture);
+    };
+    add("--shading", options.shading, "Shading model of the picture")
+        ->check(CLI::IsMember(namesOf(kShadingModels)));
+    add("--size", options.size, "Pixels WxH of the picture; 640x640 where neither this nor the view says");
+    add("--passes", options.frames, "Frames that are averaged in the pictures that are compared")
+        ->check(CLI::Range(1, 1024));
+    add("--hairs", options.hairs,
+        "Hairs to draw at most, 0 for all; without it all, and 2000 on a software device, which is slow");
+    add("--device", options.device, "GPU to draw on, by its index in `devices`");
+}
+
+Result<Report> pictureAccuracy(const PictureAccuracyOptions& options, const std::string& groomFile,
+                               const std::string& view, std::uint32_t repeats, const std::string& folder,
+                               const std::string& commandLine) {
+    PictureCostOptions measuring;
+    if (!view.empty()) {
+        auto read = readViewFile(view);
+        if (!read) return tl::unexpected(read.error());
+        measuring.view = std::move(*read);
+    }
+    measuring.view.fibre.model = kShadingModels.at(options.shading);
+    std::pair<std::uint32_t, std::uint32_t> size = measuring.view.size.value_or(std::pair(640u, 640u));
+    if (!options.size.empty()) {
+        const auto parsed = parseSize(options.size);
+        if (!parsed) return tl::unexpected(parsed.error());
+        size = *parsed;
+    }
+    std::tie(measuring.picture.width, measuring.picture.height) = size;
+    measuring.picture.frames = options.frames;
+    measuring.repeats = repeats;
+    auto groom = loadDocument(groomFile);
+    if (!groom) return tl::unexpected(groom.error());
+    const auto gpu = GpuBackend::make(std::nullopt, options.device);
+    if (!gpu) return tl::unexpected(gpu.error());
+    measuring.mostHairs = options.hairs.value_or(mostHairsOn((*gpu)->device()));
+    std::optional<Progress> progress;
+    measuring.progress = [&](std::size_t done, std::size_t total) {
+        if (!progress) progress.emplace("drawing", total);
+        progress->done(done);
+    };
+    const auto cost = measurePictureCost((*gpu)->device(), *groom, measuring);
+    progress.reset();
+    if (!cost) return tl::unexpected(cost.error());
+    const auto files = writePictureCost(*cost, groomFile, commandLine, folder);
+    if (!files) return tl::unexpected(files.error());
+    return Report{{"device", cost->device}, {"hairs", cost->hairs},     {"all_hairs", cost->allHairs},
+                  {"frames", cost->frames}, {"picture", rowsOf(*cost)}, {"notes", cost->notes},
+                  {"output", folder},       {"files", *files}};
+}
+
+}  // namespace hairloom::cli

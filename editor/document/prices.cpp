@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "editor/document/prices.h"
+
+namespace hairloom::editor {
+
+void Prices::set(Of kind, const QHash<QString, SettingPrices>& prices) {
+    all(kind) = prices;
+    for (SettingPrices& one : all(kind)) {
+        if (!one.measured.isValid()) one.measured = QDateTime::currentDateTime();
+    }
+    Q_EMIT changed();
+}
+
+void Prices::outdate(Of kind) {
+    for (SettingPrices& prices : all(kind)) prices.outdated = true;
+    Q_EMIT changed();
+}
+
+void Prices::clear() {
+    motion_.clear();
+    picture_.clear();
+    Q_EMIT changed();
+}
+
+const SettingPrices* Prices::find(const QString& setting) const {
+    for (const auto* prices : {&motion_, &picture_}) {
+        if (const auto found = prices->find(setting); found != prices->end()) return &*found;
+    }
+    return nullptr;
+}
+
+}  // namespace hairloom::editor
