@@ -165,7 +165,14 @@ TEST_F(ManualTest, Accuracy) {
     find<QPushButton>("accuracyMeasure")->click();
     finishWork();
     find<NumberBox>("accuracyPixels")->spinBox().setValue(0.5);
+    find<QPushButton>("accuracyShow")->click();
+    finishWork();
+    const auto atRest = viewport().pose();
+    ASSERT_TRUE(QTest::qWaitFor([&] { return viewport().pose() && viewport().pose() != atRest; }));
     shootWindow("accuracy");
+    find<QPushButton>("accuracyShow")->click();
+    raise("physics");
+    shootWindow("prices");
 }
 
 TEST_F(ManualTest, Dye) {
