@@ -12,7 +12,9 @@
 #include "cli/motions.h"
 #include "cli/picture_accuracy.h"
 #include "cli/progress.h"
+#include "core/accuracy/compare_reports.h"
 #include "core/accuracy/work_precision_report.h"
+#include "core/base/file.h"
 #include "core/scene/groom_scene.h"
 
 namespace hairloom::cli {
@@ -29,6 +31,7 @@ struct AccuracyOptions {
     std::vector<std::string> vary;  ///< FIELD=V1,V2,…
     std::string view;               ///< view file; empty for none
     PictureAccuracyOptions picture;
+    std::vector<std::string> compared;  ///< two folders of earlier reports, or none
 };
 
 /// The groom's own number of points, and a half and a quarter of it.
@@ -179,6 +182,32 @@ Result<Report> accuracy(const AccuracyOptions& options, const std::string& comma
     return report;
 }
 
+Report rowOf(const ComparedRun& run) {
+    Report row{{"setting", run.setting}, {"slower", run.slower}, {"less_exact", run.lessExact}};
+    if (!run.divergedBefore) row["before"] = Report{{"ms", run.msBefore}, {"error_mm", run.errorBefore}};
+    if (!run.divergedAfter) row["after"] = Report{{"ms", run.msAfter}, {"error_mm", run.errorAfter}};
+    return row;
+}
+
+Result<Report> compareFolders(const std::vector<std::string>& folders) {
+    std::vector<std::string> tables;
+    for (const std::string& folder : folders) {
+        auto table = readTextFile(std::filesystem::path(folder) / "data.csv");
+        if (!table) return tl::unexpected(table.error());
+        tables.push_back(std::move(*table));
+    }
+    const auto result = compareReports(tables[0], tables[1]);
+    if (!result) return tl::unexpected(inFile(result.error(), folders[0] + ", " + folders[1]));
+    Report report{
+        {"compared", result->runs.size()}, {"regressions", Report::array()}, {"rows", Report::array()}};
+    for (const ComparedRun& run : result->runs) {
+        report["rows"].push_back(rowOf(run));
+        if (run.slower || run.lessExact) report["regressions"].push_back(rowOf(run));
+    }
+    report["missing"] = result->missing;
+    return report;
+}
+
 JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<AccuracyOptions>();
     addMotionOptions(job, options->motion);
@@ -205,7 +234,18 @@ JobRun declare(CLI::App& job) {
     addGroundTruthOptions(job, options->groundTruth);
     job.add_option("--seed", options->seed, "Another seed draws other strands");
     addPictureAccuracyOptions(job, options->picture);
+    auto* compare = job.add_option("--compare", options->compared,
+                                   "Instead of measuring: two folders of reports; names settings that are "
+                                   "slower or less exact in the second")
+                        ->expected(2);
+    for (const char* name : {"groom", "--output"}) job.get_option(name)->required(false);
+    job.final_callback([&job, compare] {
+        for (const char* name : {"groom", "--output"}) {
+            if (compare->count() == 0 && job.get_option(name)->count() == 0) throw CLI::RequiredError(name);
+        }
+    });
     return [options](const std::string& commandLine) {
+        if (!options->compared.empty()) return compareFolders(options->compared);
         if (!options->picture.wanted) return accuracy(*options, commandLine);
         return pictureAccuracy(options->picture, options->motion.input, options->view, options->repeats,
                                options->output, commandLine);

@@ -31,7 +31,8 @@ struct BudgetJobOptions {
     std::string output;
     std::uint32_t strands = 100;
     std::uint32_t repeats = 5;
-    GroundTruthOptions groundTruth;
+    // What decides is which setting is the better one: the engine converged tells that in seconds.
+    GroundTruthOptions groundTruth{.groundTruth = "engine"};
     std::uint64_t seed = 1;
 };
 

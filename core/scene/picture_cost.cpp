@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <deque>
 #include <map>
 #include <memory>
 
@@ -16,6 +17,9 @@
 
 namespace hairloom {
 namespace {
+
+constexpr std::uint32_t kWarmUp = 8;  ///< frames, until a GPU is at speed
+constexpr std::size_t kUnderWay = 2;  ///< frames
 
 /// All that a picture is drawn from and that a setting may change.
 struct Settings {
@@ -237,39 +241,73 @@ class Measuring {
         if (!view_.camera)
             view_.camera = render::frame(render::View::ThreeQuarter, shown->scene.subject(), aspect);
         scene.camera = *view_.camera;
-        scene.lights = view_.hasLights ? view_.lights : render::studioLights(scene.camera);
+        lights_ = view_.hasLights ? view_.lights : render::studioLights(scene.camera);
+        scene.lights = lights_;
         if (view_.hasLights) scene.environment = view_.environment;
         scene.background = view_.background.value_or(scene.background);
         if (auto set = shown->renderer.setScene(scene); !set) return tl::unexpected(set.error());
         return shown.get();
     }
 
-    /// As if the hair had just moved.
     Result<render::Picture> draw(const Settings& settings) {
         if (options_.cancelled && options_.cancelled()) return fail("measuring was cancelled");
         const auto shown = shownFor(settings);
         if (!shown) return tl::unexpected(shown.error());
-        const auto points_ws = (*shown)->scene.scene().strands.front().positions_ws;
-        if (auto moved = (*shown)->renderer.setStrandPositions(0, points_ws); !moved)
-            return tl::unexpected(moved.error());
         return render::renderPicture(device_, (*shown)->renderer, settings.picture);
     }
 
-    Result<PictureCostRun> run(const Settings& settings) {
-        PictureCostRun run;
-        Settings single = settings;
-        single.picture.frames = 1;
+    /// Frames in which shadows are made anew, as for hair that moves. They follow each other without a pause:
+    /// a GPU that is left waiting clocks itself down.
+    Result<Quartiles> frameTime(const Settings& settings) {
+        const auto shown = shownFor(settings);
+        if (!shown) return tl::unexpected(shown.error());
+        render::Renderer& renderer = (*shown)->renderer;
+        render::RenderOptions options = settings.picture;
+        options.frames = 1;
+        gpu::TextureDesc desc;
+        desc.name = "timed";
+        desc.width = options.width;
+        desc.height = options.height;
+        desc.usage = gpu::Usage::RenderTarget;
+        const auto target = device_.createTexture(desc);
+        if (!target) return tl::unexpected(target.error());
+        const bool software = device_.info().type == gpu::DeviceType::Cpu;
+        const std::uint32_t warmUp = software ? 0 : kWarmUp;
         std::vector<double> times;
-        for (std::uint32_t r = 0; r < options_.repeats; ++r) {
-            const auto frame = draw(single);
-            if (!frame) return tl::unexpected(frame.error());
-            double ms = 0;
-            for (const gpu::PassTime& pass : frame->passes) ms += pass.milliseconds;
-            times.push_back(ms);
+        std::deque<gpu::SubmissionPtr> underWay;
+        const auto finish = [&](std::size_t left) -> Status {
+            for (; underWay.size() > left; underWay.pop_front()) {
+                const auto passes = underWay.front()->passTimes();
+                if (!passes) return tl::unexpected(passes.error());
+                double ms = 0;
+                for (const gpu::PassTime& pass : *passes) ms += pass.milliseconds;
+                times.push_back(ms);
+            }
+            return {};
+        };
+        for (std::uint32_t frame = 0; frame < warmUp + options_.repeats; ++frame) {
+            if (auto set = renderer.setLights(lights_); !set) return tl::unexpected(set.error());
+            auto list = device_.createCommandList();
+            if (!list) return tl::unexpected(list.error());
+            if (auto status = renderer.record(**list, options, *target); !status)
+                return tl::unexpected(status.error());
+            auto submission = device_.submit(std::move(*list));
+            if (!submission) return tl::unexpected(submission.error());
+            underWay.push_back(std::move(*submission));
+            if (auto status = finish(kUnderWay); !status) return tl::unexpected(status.error());
         }
-        run.milliseconds = quartiles(std::move(times));
+        if (auto status = finish(0); !status) return tl::unexpected(status.error());
+        times.erase(times.begin(), times.begin() + warmUp);
+        return quartiles(std::move(times));
+    }
+
+    Result<PictureCostRun> run(const Settings& settings) {
         const auto picture = draw(settings);
         if (!picture) return tl::unexpected(picture.error());
+        const auto time = frameTime(settings);
+        if (!time) return tl::unexpected(time.error());
+        PictureCostRun run;
+        run.milliseconds = *time;
         const auto flip = render::flipDifference(exact_.image, picture->image);
         if (!flip) return tl::unexpected(flip.error());
         run.flip = flip->mean;
@@ -282,6 +320,7 @@ class Measuring {
     Groom groom_;
     const PictureCostOptions& options_;
     ViewFile view_;
+    std::vector<render::Light> lights_;
     PictureCost cost_;
     render::Picture exact_;
     std::map<std::pair<std::uint32_t, render::Scattering>, std::unique_ptr<Shown>> shown_;

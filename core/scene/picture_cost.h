@@ -25,7 +25,7 @@ struct PictureCostOptions {
     /// Hairs to draw at most, follow hairs counted, of strands drawn from the groom's; 0: all. Software
     /// devices take minutes for a whole head.
     std::size_t mostHairs = 0;
-    std::uint32_t repeats = 3;       ///< timed pictures of each setting, ≥ 1
+    std::uint32_t repeats = 3;       ///< timed frames of each setting, ≥ 1
     std::uint32_t exactFrames = 64;  ///< averaged in the picture that counts as right, 1…1024
     std::function<void(std::size_t done, std::size_t total)> progress;
     std::function<bool()> cancelled;  ///< asked between pictures; true ends them with an error

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "core/accuracy/compare_reports.h"
 #include "core/accuracy/effect_cost.h"
 #include "core/accuracy/work_precision_report.h"
 #include "core/base/file.h"
@@ -213,6 +214,39 @@ TEST(Report, CsvHasARowForEachRun) {
               "verlet,8,5,4,6,50,0.25,0.5,0,1\n"
               "rk4,1,,,,,,,1,0\n"
               "rk4,8,8,7,9,80,0.5,1,0,0\n");
+}
+
+TEST(Report, TwoReportsAreComparedSettingBySetting) {
+    const WorkPrecision before = known();
+    WorkPrecision after = known();
+    after.runs[0].milliseconds = {1.9, 2.1, 2.2};  // twice as slow; its quartiles overlapped
+    after.runs[1].error.rmsMm = 0.5;
+    after.runs[3].diverged = true;
+    const auto result = compareReports(workPrecisionCsv(before), workPrecisionCsv(after));
+    ASSERT_TRUE(result) << result.error().message();
+    ASSERT_EQ(result->runs.size(), 4u);
+    EXPECT_EQ(result->runs[0].setting, "integrator verlet, substeps 1");
+    EXPECT_FALSE(result->runs[0].slower) << "within the spread of the first";
+    EXPECT_TRUE(result->runs[1].lessExact);
+    EXPECT_FALSE(result->runs[2].slower || result->runs[2].lessExact) << "diverged before and after";
+    EXPECT_TRUE(result->runs[3].lessExact) << "diverges now";
+    after = known();
+    after.runs[0].milliseconds = {2.1, 2.2, 2.3};
+    EXPECT_TRUE(compareReports(workPrecisionCsv(before), workPrecisionCsv(after))->runs[0].slower);
+    EXPECT_TRUE(compareReports(workPrecisionCsv(after), workPrecisionCsv(before))->missing.empty());
+    after.runs.erase(after.runs.begin());
+    EXPECT_EQ(compareReports(workPrecisionCsv(before), workPrecisionCsv(after))->missing.size(), 1u);
+}
+
+TEST(Report, WhatIsNoReportIsNotCompared) {
+    const std::string csv = workPrecisionCsv(known());
+    EXPECT_THAT(compareReports("a,b\n1,2\n", csv).error().message(), HasSubstr("no column ms_median"));
+    EXPECT_THAT(compareReports("", csv).error().message(), HasSubstr("no column"));
+    EXPECT_THAT(compareReports(csv + "verlet,2\n", csv).error().message(), HasSubstr("2 columns"));
+    EXPECT_THAT(compareReports(csv + "verlet,2,x,1,1,1,1,1,0,0\n", csv).error().message(),
+                HasSubstr("ms_median is 'x'"));
+    EXPECT_THAT(compareReports(csv.substr(0, csv.find('\n')), csv).error().message(),
+                HasSubstr("no setting in common"));
 }
 
 TEST(Report, TheChartShowsFrontAndRest) {
