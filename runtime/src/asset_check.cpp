@@ -22,7 +22,8 @@ AssetError damaged(std::uint64_t byte, std::string words) {
 }
 
 bool allFinite(std::span<const float> values) {
-    return std::ranges::all_of(values, [](float value) { return std::isfinite(value); });
+    return std::all_of(std::begin(values), std::end(values),
+                       [](float value) { return std::isfinite(value); });
 }
 
 bool inside(Text place, std::span<const char> text) {
@@ -132,8 +133,8 @@ Problem Asset::checkFollowHairs() const {
             return damaged(placeOf(&guide), "a guide that is no strand or has no frame");
     }
     for (const GuideTriangle& triangle : guideTriangles) {
-        const bool known =
-            std::ranges::all_of(triangle.guides, [&](std::uint32_t g) { return g < guides.size(); });
+        const bool known = std::all_of(std::begin(triangle.guides), std::end(triangle.guides),
+                                       [&](std::uint32_t g) { return g < guides.size(); });
         if (!known || !(triangle.area >= 0) || !std::isfinite(triangle.area))
             return damaged(placeOf(&triangle), "a triangle of guides that there are not, or without area");
     }

@@ -154,7 +154,8 @@ std::string_view Asset::choiceOf(const Setting& setting) const {
 }
 
 const Setting* Asset::findSetting(std::string_view name) const {
-    const auto found = std::ranges::find_if(settings, [&](const Setting& s) { return nameOf(s) == name; });
+    const auto found =
+        std::find_if(settings.begin(), settings.end(), [&](const Setting& s) { return nameOf(s) == name; });
     return found == settings.end() ? nullptr : &*found;
 }
 

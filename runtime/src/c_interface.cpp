@@ -133,7 +133,7 @@ hl_code hl_asset_bone(const hl_asset* opened, uint32_t bone, hl_bone* out, hl_er
         const asset::Bone& record = asset.bones[bone];
         const std::string_view name = asset.text(record.name);
         *out = {name.data(), name.size(), record.index, {}};
-        std::ranges::copy(record.inverseBind, out->inverse_bind);
+        std::copy(std::begin(record.inverseBind), std::end(record.inverseBind), out->inverse_bind);
         return say(error, HL_OK, HL_NO_PLACE, "");
     });
 }
@@ -163,7 +163,7 @@ hl_code hl_asset_numbers(const hl_asset* opened, const char* name, double* value
         if (count < found.size())
             return say(error, HL_WRONG_SIZE, HL_NO_PLACE,
                        "room for " + std::to_string(count) + " values of " + std::to_string(found.size()));
-        std::ranges::copy(found, values);
+        std::copy(found.begin(), found.end(), values);
         return say(error, HL_OK, HL_NO_PLACE, "");
     });
 }

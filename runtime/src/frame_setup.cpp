@@ -174,8 +174,8 @@ SubstepContext substepContext(const SimulationSettings& settings, const EffectPl
     context.rootDamping = settings.dampingTime > 0.0f ? 1.0f / settings.dampingTime : 0.0f;
     context.bendDampingTime = settings.bendDampingTime;
     context.torsionRatio = settings.torsionRatio;
-    context.spheresRest =
-        std::ranges::all_of(spheres, [](const MovingSphere& sphere) { return sphere.stepLength == 0.0f; });
+    context.spheresRest = std::all_of(spheres.begin(), spheres.end(),
+                                      [](const MovingSphere& sphere) { return sphere.stepLength == 0.0f; });
     context.sweeps = plan.on(Effect::continuousCollision);
     context.friction = settings.friction;
     context.restitution = settings.restitution;

@@ -87,7 +87,9 @@ InstanceMemory instanceMemory(const Asset& asset) {
         blocks += more;
         planeFloats += more * (std::size_t{points} * kBlockLanes + kPlanePadding);
     }
-    const std::size_t solver = *std::ranges::max_element(kernels().solverFloats) * std::size_t{longest};
+    const std::size_t solver =
+        *std::max_element(std::begin(kernels().solverFloats), std::end(kernels().solverFloats)) *
+        std::size_t{longest};
     // Rods take more than springs with any integrator do; of angular springs they have stiffness and targets.
     const std::size_t planes = kRestPlanes + kStatePlanes + kRodRestPlanes + kRodStatePlanes + 4;
     const std::size_t lanes =
@@ -330,7 +332,7 @@ Outcome Instance::readHairs(const hl_out& positions, const hl_out& tangents, con
 
 Outcome Instance::readOffsets(std::span<std::uint32_t> offsets) const {
     if (offsets.size() != offsets_.size()) return wrongSize("offsets", offsets.size(), offsets_.size());
-    std::ranges::copy(offsets_, offsets.begin());
+    std::copy(offsets_.begin(), offsets_.end(), offsets.begin());
     return std::nullopt;
 }
 

@@ -44,8 +44,8 @@ std::span<const HairPreset> presets() {
 }
 
 const HairPreset* findPreset(std::string_view name) {
-    const auto found =
-        std::ranges::find(kPresets, name, [](const HairPreset& p) { return std::string_view(p.name); });
+    const auto found = std::find_if(std::begin(kPresets), std::end(kPresets),
+                                    [&](const HairPreset& p) { return p.name == name; });
     return found != std::end(kPresets) ? found : nullptr;
 }
 

@@ -58,7 +58,10 @@ struct Ramp {
         return maximum;
     }
 
-    friend bool operator==(const Ramp& a, const Ramp& b) { return std::ranges::equal(a.inUse(), b.inUse()); }
+    friend bool operator==(const Ramp& a, const Ramp& b) {
+        const auto left = a.inUse(), right = b.inUse();
+        return std::equal(left.begin(), left.end(), right.begin(), right.end());
+    }
 };
 
 /// What is wrong with it, "has 1 keys; expected 2 to 16", or nothing.

@@ -33,7 +33,11 @@ Float3 componentMax(Float3 a, Float3 b) {
 }
 
 void add(std::int64_t& sum, std::int64_t value) {
+#ifdef __cpp_lib_atomic_ref
     std::atomic_ref<std::int64_t>(sum).fetch_add(value, std::memory_order_relaxed);
+#else
+    __atomic_fetch_add(&sum, value, __ATOMIC_RELAXED);  // a library older than the language, with clang
+#endif
 }
 
 /// Weight of one of the eight corners; they sum to kMassUnits.
