@@ -12,6 +12,7 @@
 #include "core/base/content_kind.h"
 #include "core/base/file.h"
 #include "core/scene/hair_export.h"
+#include "core/scene/web_page.h"
 
 namespace hairloom::cli {
 namespace {
@@ -98,6 +99,20 @@ Result<HairToExport> hairToExport(const ExportOptions& options, const Groom& gro
     return wanted;
 }
 
+Result<Report> exportAsPage(const ExportOptions& options) {
+    if (!options.target.empty() || !options.unit.empty() || options.up == "z" || options.points > 0 ||
+        !options.record.empty() || options.what == "hairs")
+        return fail("--target, --unit, --up, --points, --record and --what hairs say nothing of a page",
+                    "it plays a runtime asset in metres, Y up, which draws follow hairs itself");
+    const auto groom = loadDocument(options.input);
+    if (!groom) return tl::unexpected(groom.error());
+    HairToExport wanted;
+    wanted.layers = options.layers;
+    const auto written = exportWebPage(*groom, wanted, options.output);
+    if (!written) return tl::unexpected(inFile(written.error(), options.input));
+    return toJson(*written);
+}
+
 Result<Report> exportAsset(const ExportOptions& options) {
     if (options.format == kCardFormat) return exportAsCards(options);
     const auto asked = findAsked(options);
@@ -119,6 +134,7 @@ std::vector<std::string> formatNames() {
     std::vector<std::string> names;
     for (const StrandWriter& writer : strandWriters()) names.push_back(writer.name);
     names.emplace_back(kCardFormat);
+    names.emplace_back(kWebFormat);
     return names;
 }
 
@@ -131,7 +147,8 @@ std::string formatsInWords() {
     }
     text +=
         " gltf: cards and a shell as binary glTF 2.0, with textures, a skin, levels (MSFT_lod) and springs "
-        "(VRMC_springBone); no strands.";
+        "(VRMC_springBone); no strands. web: a folder with a page that plays the runtime asset in a browser, "
+        "offline.";
     return text;
 }
 
@@ -163,8 +180,11 @@ JobRun declare(CLI::App& job) {
     job.add_option("--points", options->points, "Resample every strand to so many points; 0 keeps them")
         ->check(CLI::Range(0, 1024));
     addCardOptions(job, options->cards);
-    job.add_option("-o,--output", options->output, "File to write; the report goes beside it")->required();
+    job.add_option("-o,--output", options->output,
+                   "File to write, or the folder of a page; the report goes beside a file")
+        ->required();
     return [options](const std::string&) {
+        if (options->format == kWebFormat) return exportAsPage(*options);
         const std::string companion = companionOf(options->output);
         return withOutputs({{options->output}, {companion, content::kJson}},
                            [&] { return exportAsset(*options); });

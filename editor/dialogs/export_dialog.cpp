@@ -12,6 +12,7 @@
 
 #include "core/scene/hair_export.h"
 #include "core/scene/played_frames.h"
+#include "core/scene/web_page.h"
 #include "editor/fields/blocks.h"
 #include "importers/length_unit.h"
 
@@ -25,7 +26,17 @@ constexpr float kFramesPerSecond = 60;
 struct Choice {
     const StrandWriter* writer;
     const ExportTarget* target;
+    bool isPage = false;  ///< a folder around the writer's file
 };
+
+const ExportTarget& pageTarget() {
+    static const ExportTarget target{
+        "browser",
+        "Browser, a page that moves",
+        "a folder with index.html, which opens without a network; it plays the runtime's asset",
+        {}};
+    return target;
+}
 
 /// By the names of the formats.
 const std::vector<Choice>& choices() {
@@ -34,6 +45,7 @@ const std::vector<Choice>& choices() {
         for (const StrandWriter& writer : strandWriters()) {
             for (const ExportTarget& target : writer.targets) list.push_back({&writer, &target});
         }
+        list.push_back({&strandWriter("runtime"), &pageTarget(), true});
         std::ranges::stable_sort(list, {}, [](const Choice& choice) { return choice.writer->label; });
         return list;
     }();
@@ -141,9 +153,15 @@ void ExportDialog::takeTarget(int index) {
 }
 
 void ExportDialog::choosePath() {
-    const StrandWriter& writer = *choices()[static_cast<std::size_t>(target_->currentIndex())].writer;
-    const QString suffix = "." + QString::fromStdString(writer.suffix());
-    const QString name = QFileInfo(document_.title()).completeBaseName() + suffix;
+    const Choice& choice = choices()[static_cast<std::size_t>(target_->currentIndex())];
+    const QString title = QFileInfo(document_.title()).completeBaseName();
+    if (choice.isPage) {
+        const QString folder = QFileDialog::getExistingDirectory(this, tr("Folder that gets the page"));
+        if (!folder.isEmpty()) exportTo(folder + "/" + title);
+        return;
+    }
+    const QString suffix = "." + QString::fromStdString(choice.writer->suffix());
+    const QString name = title + suffix;
     const QString path = QFileDialog::getSaveFileName(this, windowTitle(), name, "*" + suffix);
     if (!path.isEmpty()) exportTo(path);
 }
@@ -165,6 +183,8 @@ void ExportDialog::exportTo(const QString& path) {
     }
     if (layers_->currentIndex() == 1 && wanted.layers.empty())
         return messages_.warn(tr("No layer is shown, so that nothing would be written"));
+    if (choice.isPage && frames_->value() > 0)
+        return messages_.warn(tr("A page plays the hair itself: set Frames to “at rest”"));
     auto motion = player_.makeMeasuredMotion();
     if (!motion) return messages_.warn(QString::fromStdString(motion.error().message()));
     const std::shared_ptr<const HeadMotion> moves = std::move(*motion);
@@ -172,8 +192,8 @@ void ExportDialog::exportTo(const QString& path) {
     write_->setEnabled(false);
     const bool started = tasks_.run<ExportReport>(
         tr("Exporting %1").arg(QFileInfo(path).fileName()),
-        [groom = document_.groom(), wanted, moves, count, path, options,
-         &writer](TaskControl& control) mutable -> Result<ExportReport> {
+        [groom = document_.groom(), wanted, moves, count, path, options, &writer,
+         isPage = choice.isPage](TaskControl& control) mutable -> Result<ExportReport> {
             if (count > 0) {
                 auto frames = playFrames(groom, *moves, count, kFramesPerSecond, [&](std::uint32_t done) {
                     control.setProgress(static_cast<float>(done) / static_cast<float>(count));
@@ -182,6 +202,7 @@ void ExportDialog::exportTo(const QString& path) {
                 if (!frames) return tl::unexpected(frames.error());
                 wanted.frames = std::move(*frames);
             }
+            if (isPage) return exportWebPage(groom, wanted, path.toStdString());
             return exportHair(groom, wanted, writer, path.toStdString(), options);
         },
         [self = QPointer(this), &messages = messages_, path](ExportReport report) {
