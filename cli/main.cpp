@@ -14,6 +14,7 @@
 
 #include "cli/error_report.h"
 #include "cli/finite_numbers.h"
+#include "cli/global_options.h"
 #include "cli/job.h"
 #include "core/base/log.h"
 #include "core/base/output_file.h"
@@ -96,20 +97,8 @@ int main(int argc, char** argv) {
     // On Windows, too, a word that begins with a slash is a path.
     app.allow_windows_style_options(false);
     app.fallthrough();
-    app.set_version_flag("--version", "hairloom-cli " HAIRLOOM_VERSION);
-    bool json = false;
-    std::size_t threads = 0;
-    bool quiet = false;
-    bool profile = false;
-    bool force = false;
-    app.add_flag("--json", json, "Print exactly one JSON object on standard output");
-    app.add_option("--threads", threads, "Threads to use, 0 for one per core; results do not depend on it")
-        ->check(CLI::Range(0, 1024));
-    app.add_flag("--quiet", quiet, "No warnings on standard error");
-    app.add_flag("--profile", profile, "Print on standard error what the parts of the job took");
-
-    app.add_flag("--force", force,
-                 "Write also over an input, another kind of file, a read-only file, a device or a FIFO");
+    hairloom::cli::GlobalOptions options;
+    hairloom::cli::addGlobalOptions(app, options);
 
     const hairloom::cli::Jobs jobs(app);
     hairloom::cli::refuseNumbersThatAreNone(app);
@@ -121,16 +110,16 @@ int main(int argc, char** argv) {
         const auto isJson = [](const char* word) { return std::string_view(word) == "--json"; };
         return endParsing(app, error, std::any_of(argv + 1, argv + argc, isJson));
     }
-    hairloom::setWriteRules({force, true, "give another name, or --force"});
-    if (quiet) hairloom::log::setThreshold(hairloom::log::Level::Error);
+    hairloom::setWriteRules({options.force, true, "give another name, or --force"});
+    if (options.quiet) hairloom::log::setThreshold(hairloom::log::Level::Error);
     try {
-        hairloom::setThreadCount(threads);
-        const int exitCode = runChosenJob(jobs, joined(argc, argv), json);
-        if (profile) printProfile();
+        hairloom::setThreadCount(options.threads);
+        const int exitCode = runChosenJob(jobs, joined(argc, argv), options.json);
+        if (options.profile) printProfile();
         return exitCode;
     } catch (const std::bad_alloc&) {
-        return failWith({{}, {}, "out of memory", {}}, json);
+        return failWith({{}, {}, "out of memory", {}}, options.json);
     } catch (const std::exception& error) {
-        return failWith({{}, {}, error.what(), {}}, json);
+        return failWith({{}, {}, error.what(), {}}, options.json);
     }
 }

@@ -9,6 +9,7 @@
 
 #include "cli/field_rows.h"
 #include "cli/job.h"
+#include "cli/man_pages.h"
 #include "cli/outputs.h"
 #include "core/base/file.h"
 #include "core/groom/file/fields.h"
@@ -119,16 +120,34 @@ Result<Report> write(const std::string& output) {
     return Report{{"bytes", page.size()}, {"output", output}};
 }
 
+Result<Report> writeManPages(const std::string& folder) {
+    auto names =
+        writeFiles(folder, {{"hairloom.1", editorManPage()}, {"hairloom-cli.1", commandLineManPage()}});
+    if (!names) return tl::unexpected(names.error());
+    return Report{{"output", folder}, {"files", *names}};
+}
+
 JobRun declare(CLI::App& job) {
-    const auto output = std::make_shared<std::string>();
-    job.add_option("-o,--output", *output, "Markdown file to write")->required();
-    return [output](const std::string&) { return withOutputs({{*output}}, [&] { return write(*output); }); };
+    struct Options {
+        std::string output, man;
+    };
+    const auto options = std::make_shared<Options>();
+    auto* page = job.add_option("-o,--output", options->output, "Markdown file to write");
+    auto* man = job.add_option("--man", options->man,
+                               "Folder to write the manual pages hairloom.1 and hairloom-cli.1 into");
+    page->excludes(man);
+    job.require_option(1);
+    return [options](const std::string&) {
+        if (!options->man.empty()) return writeManPages(options->man);
+        return withOutputs({{options->output}}, [&] { return write(options->output); });
+    };
 }
 
 }  // namespace
 
 Job referenceJob() {
-    return {"reference", "Write the reference page of settings, operations, brushes and jobs",
+    return {"reference",
+            "Write the reference page of settings, operations, brushes and jobs, or manual pages",
             "-o docs/reference.md", declare};
 }
 

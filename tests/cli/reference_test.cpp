@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <sstream>
+
 #include "tests/cli/command.h"
 #include "tests/support/source_dir.h"
 
@@ -37,6 +39,23 @@ TEST_F(Reference, GroomListsOperationsAndBrushesWithTheirFields) {
     EXPECT_EQ(listed["region"].size(), 5u);
     EXPECT_EQ(listed["brush_settings"][0]["field"], "radius");
     EXPECT_EQ(run("groom hair.hairloom").exitCode, 2) << "neither --list nor a script";
+}
+
+TEST_F(Reference, ManualPagesHaveEveryJobAndBrush) {
+    const auto written = runJson("reference --man man");
+    EXPECT_EQ(written["files"].size(), 2u);
+    const std::string page = readText(folder / "man/hairloom-cli.1");
+    for (const char* line : {".SH NAME", ".B \\-\\-json", ".SS export", ".SS simulate", ".B \\-\\-frames ",
+                             "hairloom\\-cli simulate hair.hairloom"})
+        EXPECT_THAT(page, testing::HasSubstr(line));
+    // Troff takes a line that begins so for an order of its own, of which these pages use a few.
+    std::istringstream lines(page);
+    for (std::string line; std::getline(lines, line);) {
+        if (line.empty() || line[0] != '.') continue;
+        EXPECT_THAT(line, testing::MatchesRegex("\\.(TH|SH|SS|TP|PP|B|BR|RB|RI|I|RS|RE|EX|EE)( .*)?"));
+    }
+    EXPECT_THAT(readText(folder / "man/hairloom.1"), testing::HasSubstr(".B Comb\n"));
+    EXPECT_EQ(run("reference").exitCode, 2) << "neither a page nor a folder";
 }
 
 }  // namespace
