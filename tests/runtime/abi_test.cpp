@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The binary interface of hairloom.h on machines of 64 bits. Games are linked against it, and other languages
+// (P/Invoke, say) lay out its structs by hand: a change here breaks them. What is new goes to the end of a
+// struct that tells its size, or has a name of its own.
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <iterator>
+#include <type_traits>
+
+#include "hairloom/hairloom.h"
+
+namespace {
+
+static_assert(sizeof(void*) == 8 && sizeof(size_t) == 8);
+
+/// Members in order, each with where it begins; nothing but padding lies between them.
+struct Member {
+    const char* name;
+    std::size_t offset, bytes, expectedOffset, expectedBytes;
+};
+#define MEMBER(type, name, offset, bytes)                                        \
+    Member {                                                                     \
+#type "." #name, offsetof(type, name), sizeof(type::name), offset, bytes \
+    }
+
+TEST(Abi, StructsLieAsTheyDid) {
+    const Member members[] = {
+        MEMBER(hl_error, code, 0, 4),
+        MEMBER(hl_error, byte, 8, 8),
+        MEMBER(hl_error, words, 16, 232),
+        MEMBER(hl_asset, inside, 0, 320),
+        MEMBER(hl_asset_info, major, 0, 4),
+        MEMBER(hl_asset_info, minor, 4, 4),
+        MEMBER(hl_asset_info, guides, 8, 4),
+        MEMBER(hl_asset_info, guide_points, 12, 4),
+        MEMBER(hl_asset_info, hairs, 16, 4),
+        MEMBER(hl_asset_info, points_per_hair, 20, 4),
+        MEMBER(hl_asset_info, bones, 24, 4),
+        MEMBER(hl_asset_info, spheres, 28, 4),
+        MEMBER(hl_asset_info, scalp_vertices, 32, 4),
+        MEMBER(hl_asset_info, bounds_min, 36, 12),
+        MEMBER(hl_asset_info, bounds_max, 48, 12),
+        MEMBER(hl_asset_info, greatest_error, 60, 4),
+        MEMBER(hl_asset_info, guides_memory, 64, 8),
+        MEMBER(hl_asset_info, hairs_memory, 72, 8),
+        MEMBER(hl_asset_info, thread_memory, 80, 8),
+        MEMBER(hl_bone, name, 0, 8),
+        MEMBER(hl_bone, name_bytes, 8, 8),
+        MEMBER(hl_bone, index, 16, 4),
+        MEMBER(hl_bone, inverse_bind, 20, 48),
+        MEMBER(hl_jobs, user, 0, 8),
+        MEMBER(hl_jobs, parallel_for, 8, 8),
+        MEMBER(hl_frame, size, 0, 8),
+        MEMBER(hl_frame, dt, 8, 4),
+        MEMBER(hl_frame, time, 16, 8),
+        MEMBER(hl_frame, head, 24, 8),
+        MEMBER(hl_frame, bones, 32, 8),
+        MEMBER(hl_frame, bone_count, 40, 8),
+        MEMBER(hl_frame, scalp, 48, 8),
+        MEMBER(hl_frame, scalp_count, 56, 8),
+        MEMBER(hl_frame, roots, 64, 8),
+        MEMBER(hl_frame, root_count, 72, 8),
+        MEMBER(hl_frame, spheres, 80, 8),
+        MEMBER(hl_frame, sphere_count, 88, 8),
+        MEMBER(hl_frame, wind, 96, 8),
+        MEMBER(hl_frame, origin, 104, 24),
+        MEMBER(hl_instance_info, guides, 0, 4),
+        MEMBER(hl_instance_info, guide_points, 4, 4),
+        MEMBER(hl_instance_info, hairs, 8, 4),
+        MEMBER(hl_instance_info, points_per_hair, 12, 4),
+        MEMBER(hl_instance_info, asleep, 16, 4),
+        MEMBER(hl_instance_info, restored, 20, 4),
+        MEMBER(hl_instance_info, left_roots, 24, 4),
+        MEMBER(hl_instance_info, left_spheres, 28, 4),
+        MEMBER(hl_instance_info, bytes, 32, 8),
+        MEMBER(hl_out, data, 0, 8),
+        MEMBER(hl_out, bytes, 8, 8),
+        MEMBER(hl_out, stride, 16, 8),
+    };
+    for (const Member& member : members) {
+        EXPECT_EQ(member.offset, member.expectedOffset) << member.name;
+        EXPECT_EQ(member.bytes, member.expectedBytes) << member.name;
+    }
+    EXPECT_EQ(sizeof(hl_error), 248u);
+    EXPECT_EQ(sizeof(hl_asset), 320u);
+    EXPECT_EQ(sizeof(hl_asset_info), 88u);
+    EXPECT_EQ(sizeof(hl_bone), 72u);
+    EXPECT_EQ(sizeof(hl_jobs), 16u);
+    EXPECT_EQ(sizeof(hl_frame), 128u);
+    EXPECT_EQ(sizeof(hl_instance_info), 40u);
+    EXPECT_EQ(sizeof(hl_out), 24u);
+}
+#undef MEMBER
+
+TEST(Abi, CodesHaveTheirNumbers) {
+    const int codes[] = {HL_OK,        HL_DAMAGED,   HL_NEWER,  HL_WRONG_SIZE,
+                         HL_BAD_VALUE, HL_NO_MEMORY, HL_GUIDES, HL_HAIRS};
+    const int expected[] = {0, 1, 2, 3, 4, 5, 0, 1};
+    for (std::size_t i = 0; i < std::size(codes); ++i) EXPECT_EQ(codes[i], expected[i]) << i;
+    EXPECT_EQ(sizeof(hl_code), 4u);
+    EXPECT_EQ(HL_NO_PLACE, ~std::uint64_t{0});
+}
+
+/// Names are C's: what a function takes and returns is all that a linker does not look at.
+template <class Expected, class Function>
+constexpr bool isA(Function*) {
+    return std::is_same_v<Expected, Function>;
+}
+
+TEST(Abi, FunctionsTakeWhatTheyTook) {
+    using Asset = const hl_asset*;
+    using Hair = hl_instance*;
+    using ConstHair = const hl_instance*;
+    EXPECT_TRUE((isA<hl_code(hl_asset*, const void*, size_t, hl_error*)>(&hl_asset_open)));
+    EXPECT_TRUE((isA<hl_code(Asset, hl_error*)>(&hl_asset_check)));
+    EXPECT_TRUE((isA<hl_code(Asset, hl_asset_info*, hl_error*)>(&hl_asset_describe)));
+    EXPECT_TRUE((isA<hl_code(Asset, std::uint32_t, hl_bone*, hl_error*)>(&hl_asset_bone)));
+    EXPECT_TRUE((isA<hl_code(Asset, std::uint32_t*, size_t, hl_error*)>(&hl_asset_scalp_sources)));
+    EXPECT_TRUE((isA<hl_code(Asset, const char*, double*, size_t, size_t*, hl_error*)>(&hl_asset_numbers)));
+    EXPECT_TRUE((isA<hl_code(Asset, std::uint32_t, const hl_jobs*, Hair*, hl_error*)>(&hl_instance_make)));
+    EXPECT_TRUE((isA<hl_code(ConstHair, Hair*, hl_error*)>(&hl_instance_copy)));
+    EXPECT_TRUE((isA<void(Hair)>(&hl_instance_free)));
+    EXPECT_TRUE((isA<void(hl_frame*)>(&hl_frame_init)));
+    EXPECT_TRUE((isA<hl_code(Hair, const hl_frame*, hl_error*)>(&hl_instance_reset)));
+    EXPECT_TRUE((isA<hl_code(Hair, const hl_frame*, hl_error*)>(&hl_instance_step)));
+    EXPECT_TRUE((isA<hl_code(Hair, const char*, const double*, size_t, hl_error*)>(&hl_instance_set)));
+    EXPECT_TRUE((isA<hl_code(ConstHair, hl_instance_info*, hl_error*)>(&hl_instance_describe)));
+    EXPECT_TRUE((isA<hl_code(ConstHair, std::uint32_t*, size_t, hl_error*)>(&hl_instance_offsets)));
+    EXPECT_TRUE((isA<std::uint64_t(ConstHair)>(&hl_instance_hash)));
+    EXPECT_TRUE((isA<hl_code(Hair, hl_out, hl_out, hl_out, hl_error*)>(&hl_instance_read_guides)));
+    EXPECT_TRUE((isA<hl_code(Hair, hl_out, hl_out, hl_out, hl_error*)>(&hl_instance_read_hairs)));
+}
+
+}  // namespace
