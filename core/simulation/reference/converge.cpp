@@ -8,12 +8,16 @@
 namespace hairloom::reference {
 namespace {
 
-void runFrames(Solver solver, std::span<const Root> start, std::span<const Frame> frames,
-               const StepOptions& options, Convergence& result) {
+/// Of a run that has failed somewhere, and that counts as not converged whatever comes.
+constexpr int kHalvingsOnceFailed = 1;
+
+void runFrames(Solver solver, std::span<const Root> start, std::span<const Frame> frames, StepOptions options,
+               Convergence& result) {
     solver.reset(start);
     result.report = {};
     result.positions_ws.clear();
     for (const Frame& frame : frames) {
+        if (result.report.failed > 0) options.halvings = kHalvingsOnceFailed;
         const StepReport report = solver.step(frame, options);
         result.report.steps += report.steps;
         result.report.halved += report.halved;

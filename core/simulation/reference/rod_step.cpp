@@ -20,6 +20,7 @@ constexpr std::size_t kBlock =
     9;  // unknowns of a free segment: λ, its turn, then the position of its outer point
 constexpr std::size_t kBand = 11;
 constexpr int kMaxIterations = 60;
+constexpr int kStalled = 15;          // iterations without a smaller correction: it goes round in circles
 constexpr double kConverged = 1e-12;  // radians and mean segments
 constexpr double kRounding = 1e-10;   // smaller corrections that no longer shrink are rounding errors
 /// Of the twist of segments that nothing holds, in the Jacobian alone.
@@ -75,7 +76,8 @@ class RodStep {
     }
 
     bool run() {
-        double before = std::numeric_limits<double>::infinity();
+        double before = std::numeric_limits<double>::infinity(), smallest = before;
+        int sinceSmallest = 0;
         bool slow = true;
         for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
             fillRemainders();
@@ -86,6 +88,9 @@ class RodStep {
             const double moved = correct();
             if (!std::isfinite(moved)) return false;
             if (moved < kConverged || (moved < kRounding && moved > 0.5 * before)) return true;
+            sinceSmallest = moved < smallest ? 0 : sinceSmallest + 1;
+            if (sinceSmallest == kStalled) return false;
+            smallest = std::min(smallest, moved);
             slow = moved > 0.1 * before || moved > 0.3;
             before = moved;
         }

@@ -15,8 +15,6 @@
 namespace hairloom::reference {
 namespace {
 
-constexpr int kMaxHalvings = 6;
-
 Vec3d toDouble(runtime::Float3 v) {
     return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
 }
@@ -199,11 +197,11 @@ void Solver::stepStrand(Strand& strand, const RootPath& path, const StepOptions&
     for (std::uint32_t i = 0; i < options.substeps; ++i) {
         const double from = static_cast<double>(i) * share, to = static_cast<double>(i + 1) * share;
         if (strand.rod) {
-            advanceRod(strand, path, from, to, options.order, report, kMaxHalvings);
+            advanceRod(strand, path, from, to, options.order, report, options.halvings);
             continue;
         }
         if (options.order < 4 || impulses) {
-            advance(strand, path, from, to, options.order == 1 ? 1.0 : 0.5, report, kMaxHalvings);
+            advance(strand, path, from, to, options.order == 1 ? 1.0 : 0.5, report, options.halvings);
             continue;
         }
         // Suzuki 1990: S(a h)² S((1 − 4a) h) S(a h)².
@@ -211,7 +209,7 @@ void Solver::stepStrand(Strand& strand, const RootPath& path, const StepOptions&
         const double parts[] = {0.0, a, 2.0 * a, 1.0 - 2.0 * a, 1.0 - a, 1.0};
         for (std::size_t k = 0; k + 1 < std::size(parts); ++k)
             advance(strand, path, from + share * parts[k], from + share * parts[k + 1], 0.5, report,
-                    kMaxHalvings);
+                    options.halvings);
     }
     if (physics_.lengthHeld && shape.firstFree < shape.points())
         report.largestStretch = std::max(report.largestStretch, largestStretch(shape, strand.state.x));

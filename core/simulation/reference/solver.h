@@ -67,6 +67,8 @@ struct StepOptions {
     /// implicit Euler method, brings strands to rest sooner, and leaves the position of rest as it is. Of
     /// rods: 1, 2 or 3 stages of Radau IIA collocation, which damp what is too fast for a step.
     int order = 4;
+    /// Times that a step which cannot be solved is halved, with its halves; each costs twice the work.
+    int halvings = 6;
 };
 
 /// How well the equations of a frame were solved.
