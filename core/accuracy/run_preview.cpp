@@ -63,4 +63,27 @@ Result<RunPreview> previewRun(const Groom& groom, const HeadMotion& motion, cons
     return preview;
 }
 
+std::vector<std::uint32_t> strandsFarthestApart(const Groom& groom, const RunPreview& a, const RunPreview& b,
+                                                double share) {
+    std::vector<std::pair<float, std::uint32_t>> apart;
+    for (std::uint32_t s = 0; s < groom.strandCount(); ++s) {
+        float farthest = 0;
+        for (std::size_t frame = 0; frame < a.positions_ws.size(); ++frame) {
+            for (std::uint32_t p = groom.offsets[s]; p < groom.offsets[s + 1]; ++p)
+                farthest = std::max(farthest, (a.positions_ws[frame][p] - b.positions_ws[frame][p]).norm());
+        }
+        if (farthest > 0) apart.emplace_back(farthest, s);
+    }
+    // Of equal ones the first.
+    std::ranges::sort(apart, [](const auto& x, const auto& y) {
+        return x.first != y.first ? x.first > y.first : x.second < y.second;
+    });
+    const auto most = static_cast<std::size_t>(share * static_cast<double>(groom.strandCount()));
+    apart.resize(std::min(apart.size(), std::max<std::size_t>(most, 1)));
+    std::vector<std::uint32_t> strands;
+    for (const auto& [distance, strand] : apart) strands.push_back(strand);
+    std::ranges::sort(strands);
+    return strands;
+}
+
 }  // namespace hairloom

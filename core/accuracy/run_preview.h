@@ -20,4 +20,9 @@ struct RunPreview {
 Result<RunPreview> previewRun(const Groom& groom, const HeadMotion& motion, const WorkPrecision& measured,
                               std::size_t run, const std::function<bool()>& cancelled);
 
+/// The strands of the groom that are farthest apart in two previews of it, by their farthest points in any
+/// frame: the `share` (0…1, at least one) of all that is worst; ascending. Those that agree are left out.
+std::vector<std::uint32_t> strandsFarthestApart(const Groom& groom, const RunPreview& a, const RunPreview& b,
+                                                double share);
+
 }  // namespace hairloom

@@ -7,10 +7,12 @@
 #include <QVBoxLayout>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/accuracy/choice.h"
 #include "core/editing/document.h"
 #include "core/editing/records.h"
+#include "core/editing/selection_commands.h"
 #include "core/editing/settings_commands.h"
 #include "core/groom/file/settings_json.h"
 #include "core/operations/resample.h"
@@ -27,6 +29,8 @@ constexpr std::uint32_t kFrames = 30;
 constexpr std::uint32_t kRepeats = 3;
 constexpr std::uint32_t kMostStrands = 4000;  ///< that run; times of more are in proportion
 constexpr std::size_t kTrueStrands = 12;      ///< that the reference solves
+constexpr double kWorstShare = 0.05;          ///< of all strands
+constexpr std::uint32_t kTrueSubsteps = 16;   ///< hair that slides over spheres would take minutes with more
 constexpr double kTolerance_mm = 0.02;
 
 class AccuracyPanel : public QWidget {
@@ -44,6 +48,7 @@ class AccuracyPanel : public QWidget {
           chosenWords_(new QLabel),
           show_(new QPushButton(tr("Show in the view"))),
           adopt_(new QPushButton(tr("Adopt"))),
+          worst_(new QPushButton(tr("Select the worst strands"))),
           view_(new RunView(parts, this)),
           pixels_(new NumberBox(0.01, 100, false)),
           milliseconds_(new NumberBox(0.01, 100, false)) {
@@ -79,6 +84,12 @@ class AccuracyPanel : public QWidget {
         row->addWidget(show_, 1);
         row->addWidget(adopt_, 1);
         layout->addLayout(row);
+        worst_->setObjectName("accuracyWorst");
+        worst_->setToolTip(
+            tr("Selects the twentieth of all strands that this setting takes farthest from where the most "
+               "exact one has them"));
+        connect(worst_, &QPushButton::clicked, this, &AccuracyPanel::selectWorst);
+        layout->addWidget(worst_);
         layout->addWidget(measure_);
         layout->addWidget(new CertificateBox(document_, tasks_));
         pixels_->setValue(1);
@@ -192,6 +203,7 @@ class AccuracyPanel : public QWidget {
                 ReferenceConverged::Options truth;
                 truth.strands = kTrueStrands;
                 truth.toleranceMm = kTolerance_mm;
+                truth.maxSubsteps = kTrueSubsteps;
                 return measureWorkPrecision(*groom, *moves, options, ReferenceConverged(truth));
             },
             keep);
@@ -209,6 +221,38 @@ class AccuracyPanel : public QWidget {
     void showChosen() {
         if (chosen_ && !measured_->runs[*chosen_].diverged) return view_->show(measured_, *chosen_);
         view_->stop();
+    }
+
+    /// Those of all strands that the chosen setting, or that of the document, takes farthest from the most
+    /// exact that was measured.
+    void selectWorst() {
+        const auto run = chosen_ ? chosen_ : runOf(*measured_, document_.groom());
+        const auto best = mostExactWithinTime(*measured_, std::numeric_limits<double>::infinity());
+        if (!run || !best || *run == *best || measured_->runs[*run].diverged)
+            return messages_.say(tr("Choose a setting that is not the most exact one"));
+        auto motion = player_.makeMeasuredMotion();
+        if (!motion) return messages_.warn(QString::fromStdString(motion.error().message()));
+        const auto groom = std::make_shared<const Groom>(document_.groom());
+        const std::shared_ptr<const HeadMotion> moves = std::move(*motion);
+        tasks_.run<std::vector<std::uint32_t>>(
+            tr("Comparing strands"),
+            [groom, moves, measured = measured_, run = *run,
+             best = *best](TaskControl& control) -> Result<std::vector<std::uint32_t>> {
+                const auto cancelled = [&] { return control.isCancelled(); };
+                const auto other = previewRun(*groom, *moves, *measured, run, cancelled);
+                if (!other) return tl::unexpected(other.error());
+                const auto exact = previewRun(*groom, *moves, *measured, best, cancelled);
+                if (!exact) return tl::unexpected(exact.error());
+                return strandsFarthestApart(*groom, *other, *exact, kWorstShare);
+            },
+            [this, groom](const std::vector<std::uint32_t>& strands) {
+                if (document_.groom().offsets.version() != groom->offsets.version()) return;
+                document_.perform(
+                    editing::selectStrands(document_.editing().model(), strands, editing::Choice::Replace));
+                messages_.say(tr("%L1 strands are selected: the twentieth that is farthest from where the "
+                                 "most exact setting has it")
+                                  .arg(strands.size()));
+            });
     }
 
     void adopt() {
@@ -300,6 +344,7 @@ class AccuracyPanel : public QWidget {
             control->setEnabled(any);
         adopt_->setEnabled(any && chosen_);
         show_->setEnabled(any && chosen_);
+        worst_->setEnabled(any);
         chosenWords_->setVisible(any);
         if (!any) return;
         chosenWords_->setText(
@@ -328,7 +373,7 @@ class AccuracyPanel : public QWidget {
     QLabel* words_;
     QPushButton* measure_;
     QLabel* chosenWords_;
-    QPushButton *show_, *adopt_;
+    QPushButton *show_, *adopt_, *worst_;
     RunView* view_;
     NumberBox *pixels_, *milliseconds_;
     std::shared_ptr<const WorkPrecision> measured_;

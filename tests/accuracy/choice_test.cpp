@@ -125,6 +125,11 @@ TEST(RunPreview, HasThePointsOfTheGroomWhateverRan) {
         EXPECT_LT((coarse->positions_ws.back()[p] - last[p]).norm(), 0.02f) << "near, by other points";
     }
     EXPECT_FALSE(previewRun(groom, **motion, measured, 0, [] { return true; }));
+    EXPECT_EQ(strandsFarthestApart(groom, *coarse, *own, 0.5).size(), 3u);
+    EXPECT_TRUE(strandsFarthestApart(groom, *own, *own, 0.5).empty());
+    RunPreview moved = *own;
+    moved.positions_ws[3][groom.offsets[4] + 7] += Vec3f(0.1f, 0, 0);
+    EXPECT_EQ(strandsFarthestApart(groom, moved, *own, 0), std::vector<std::uint32_t>{4});
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <QLabel>
 #include <QPushButton>
 
+#include "core/editing/selection_commands.h"
 #include "core/operations/resample.h"
 #include "editor/fields/number_box.h"
 #include "editor/fields/price_tag.h"
@@ -127,6 +128,20 @@ TEST_F(AccuracyTest, AMeasuredSettingIsShownInTheViewAndLeavesNoTrace) {
     adopt().click();
     EXPECT_FALSE(show->isChecked()) << "the document has changed";
     EXPECT_EQ(viewport().pose(), nullptr);
+}
+
+TEST_F(AccuracyTest, TheStrandsThatMatterMostAreSelected) {
+    measure();
+    find<NumberBox>("accuracyPixels")->spinBox().setValue(100);
+    find<QPushButton>("accuracyWorst")->click();
+    finishWork();
+    const auto selected = editing::strandsWithFlag(groom(), attribute::kSelected);
+    EXPECT_EQ(selected.size(), 10u) << "a twentieth of 200";
+    trigger("edit.undo");
+    EXPECT_TRUE(editing::strandsWithFlag(groom(), attribute::kSelected).empty());
+    find<NumberBox>("accuracyMs")->spinBox().setValue(100);
+    find<QPushButton>("accuracyWorst")->click();
+    EXPECT_FALSE(parts().tasks.isBusy()) << "the most exact has no worst";
 }
 
 TEST_F(AccuracyTest, AThousandStormsSayWhatTheHairWithstands) {
