@@ -57,6 +57,7 @@ Result<Report> list() {
     }
     return Report{{"operators", std::move(operators)},
                   {"region", reportOf(scriptRegionFields())},
+                  {"mask", reportOf(scriptMaskFields())},
                   {"brushes", std::move(brushes)},
                   {"brush_settings", reportOf(fieldRows<editing::BrushSettings>())}};
 }

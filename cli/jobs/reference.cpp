@@ -73,6 +73,10 @@ void addOperations(std::string& page) {
         "[formats/script.md](formats/script.md) says what they do and how a script is written.\n"
         "\n### `region`\n\nEvery operation takes one; it limits the operation to some strands.\n";
     addFields(scriptRegionFields(), page);
+    page +=
+        "\n### `mask`\n\nOperations that a stack may hold take one, and the sculpt does; they act by its "
+        "share.\n";
+    addFields(scriptMaskFields(), page);
     for (const Operation& operation : operations()) {
         page += fmt::format("\n### `{}`\n\n{}\n", operation.name, asSentence(operation.meaning));
         addFields(operation.fields(), page);

@@ -3,18 +3,19 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
+#include <tuple>
 
 #include "cli/documents.h"
 #include "cli/job.h"
 #include "cli/outputs.h"
 #include "core/base/content_kind.h"
-#include "core/base/file.h"
 #include "core/base/stopwatch.h"
 #include "core/editing/document.h"
 #include "core/editing/stack_commands.h"
 #include "core/groom/file/operators_json.h"
 #include "core/groom/file/project_file.h"
-#include "core/operations/stack.h"
+#include "core/operations/stack_file.h"
 
 namespace hairloom::cli {
 namespace {
@@ -22,38 +23,54 @@ namespace {
 struct StackOptions {
     std::string input;
     std::string from;
+    std::string add;
+    std::string keep;
     std::string layer;  ///< name; empty: all
     std::string output;
+    std::optional<std::size_t> at, solo, duplicate, remove, only;
     bool bake = false;
 };
 
-Result<std::vector<Operator>> readStack(const std::string& path) {
-    const auto text = readTextFile(path, kMaxJsonBytes);
-    if (!text) return tl::unexpected(text.error());
-    const auto json = parseJson(path, *text);
-    if (!json) return tl::unexpected(json.error());
-    JsonReader reader(*json, path);
-    auto operators = readOperators(reader);
-    reader.finish();
-    if (auto status = reader.status(); !status) return tl::unexpected(status.error());
-    return operators;
+/// The steps that the options ask for, in the order of the help.
+Status perform(const StackOptions& options, editing::Document& document) {
+    const auto step = [&](editing::StackCommand command, const std::string& file = {}) -> Status {
+        if (!command) return tl::unexpected(file.empty() ? command.error() : inFile(command.error(), file));
+        document.perform(std::move(*command));
+        return {};
+    };
+    const editing::Model& model = document.model();
+    if (!options.from.empty()) {
+        auto operators = loadOperators(options.from);
+        if (!operators) return tl::unexpected(operators.error());
+        if (auto done = step(editing::setOperators(model, std::move(*operators), "Operators"), options.from);
+            !done)
+            return done;
+    }
+    if (!options.add.empty()) {
+        auto operators = loadOperators(options.add);
+        if (!operators) return tl::unexpected(operators.error());
+        const std::size_t at = options.at.value_or(model.groom.operators.size());
+        if (auto done =
+                step(editing::addOperators(model, at, std::move(*operators), "Add operators"), options.add);
+            !done)
+            return done;
+    }
+    if (options.duplicate) {
+        if (auto done = step(editing::copyOperator(model, *options.duplicate)); !done) return done;
+    }
+    if (options.remove) {
+        if (auto done = step(editing::removeOperator(model, *options.remove)); !done) return done;
+    }
+    if (options.solo) {
+        if (auto done = step(editing::soloOperator(model, *options.solo)); !done) return done;
+    }
+    return options.bake ? step(editing::bakeOperators(model)) : Status{};
 }
 
 Result<Report> edit(const StackOptions& options, Groom groom) {
     const Stopwatch watch;
     editing::Document document(std::move(groom));
-    if (!options.from.empty()) {
-        auto operators = readStack(options.from);
-        if (!operators) return tl::unexpected(operators.error());
-        auto command = editing::setOperators(document.model(), std::move(*operators), "Operators");
-        if (!command) return tl::unexpected(inFile(command.error(), options.from));
-        document.perform(std::move(*command));
-    }
-    if (options.bake) {
-        auto command = editing::bakeOperators(document.model());
-        if (!command) return tl::unexpected(command.error());
-        document.perform(std::move(*command));
-    }
+    if (auto done = perform(options, document); !done) return tl::unexpected(done.error());
     if (auto saved = saveProject(document.groom(), options.output); !saved)
         return tl::unexpected(saved.error());
     return Report{{"operators", toJson(document.groom().operators)},
@@ -75,7 +92,18 @@ Result<Report> run(const StackOptions& options) {
         std::erase_if(shown,
                       [&](const Operator& one) { return layerOf(one) != 0 && layerOf(one) != number; });
     }
-    return Report{{"operators", toJson(shown)}};
+    if (options.only) {
+        if (*options.only >= shown.size())
+            return failIn(options.input, {}, fmt::format("operator {} is asked for", *options.only),
+                          fmt::format("there are {}", shown.size()));
+        shown = {shown[*options.only]};
+    }
+    Report report{{"operators", toJson(shown)}};
+    if (!options.keep.empty()) {
+        if (auto kept = saveOperators(options.keep, shown); !kept) return tl::unexpected(kept.error());
+        report["kept"] = options.keep;
+    }
+    return report;
 }
 
 JobRun declare(CLI::App& job) {
@@ -87,19 +115,39 @@ JobRun declare(CLI::App& job) {
                        "Operators to have, as this job prints them with --json (docs/formats/script.md)");
     auto* bake =
         job.add_flag("--bake", options->bake, "Make the hair as it is all there is; no operators stay");
+    auto* add = job.add_option("--add", options->add,
+                               "Operators to have besides, of such a file: of another project, or a preset");
+    job.add_option("--at", options->at,
+                   "Where those go: before the one of that number, from 0; else behind all")
+        ->needs(add);
+    for (auto [name, number, help] :
+         {std::tuple{"--duplicate", &options->duplicate, "Operator to have twice, by its number from 0"},
+          std::tuple{"--remove", &options->remove, "Operator to take away"},
+          std::tuple{"--solo", &options->solo,
+                     "Operator that acts alone, the others being muted; all again where it did so"}})
+        job.add_option(name, *number, help)->needs(output);
+    add->needs(output);
     job.add_option("--layer", options->layer, "Shows those alone that act on the layer of that name")
+        ->excludes(output);
+    job.add_option("--only", options->only, "Shows the one of that number alone, of those that are shown")
+        ->excludes(output);
+    job.add_option(
+           "--keep", options->keep,
+           "File to keep what is shown in, for --from, --add and the editor's presets; sculpts stay out")
         ->excludes(output);
     from->needs(output);
     bake->needs(output);
     return [options](const std::string&) {
-        return withOutputs({{options->output, content::kProject}}, [&] { return run(*options); });
+        return withOutputs({{options->output, content::kProject}, {options->keep, content::kJson}},
+                           [&] { return run(*options); });
     };
 }
 
 }  // namespace
 
 Job stackJob() {
-    return {"stack", "Show, set or bake the operators of a groom", "hair.hairloom --json", declare};
+    return {"stack", "Show, set, copy, solo or bake the operators of a groom", "hair.hairloom --json",
+            declare};
 }
 
 }  // namespace hairloom::cli

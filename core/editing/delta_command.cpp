@@ -22,7 +22,7 @@ class DeltaCommand final : public Command {
   public:
     DeltaCommand(std::string name, Deltas deltas) : name_(std::move(name)), deltas_(std::move(deltas)) {
         touched_ = unionOf({deltas_.points.strands(), deltas_.frozen.strands(), deltas_.hidden.strands(),
-                            deltas_.selected.strands(), deltas_.dye.strands()});
+                            deltas_.selected.strands(), deltas_.dye.strands(), deltas_.mask.strands()});
     }
     std::string name() const override { return name_; }
 
@@ -34,6 +34,7 @@ class DeltaCommand final : public Command {
         deltas_.faces.exchange(model.groom);
         deltas_.density.exchange(model.groom);
         deltas_.dye.exchange(model.groom);
+        deltas_.mask.exchange(model.groom);
         if (!isDone_) deltas_.strands.exchange(model.groom);
         isDone_ = !isDone_;
         return {parts(), deltas_.strands.empty() ? std::span<const std::uint32_t>(touched_)
@@ -44,7 +45,7 @@ class DeltaCommand final : public Command {
         return sizeof(*this) + name_.capacity() + touched_.capacity() * sizeof(std::uint32_t) +
                deltas_.points.bytes() + deltas_.frozen.bytes() + deltas_.hidden.bytes() +
                deltas_.selected.bytes() + deltas_.faces.bytes() + deltas_.density.bytes() +
-               deltas_.dye.bytes() + deltas_.strands.bytes();
+               deltas_.dye.bytes() + deltas_.mask.bytes() + deltas_.strands.bytes();
     }
 
   private:
@@ -56,6 +57,7 @@ class DeltaCommand final : public Command {
         if (!deltas_.faces.empty()) parts = parts | Part::ScalpFaces;
         if (!deltas_.density.empty()) parts = parts | Part::Density;
         if (!deltas_.dye.empty()) parts = parts | Part::Dye;
+        if (!deltas_.mask.empty()) parts = parts | Part::Masks;
         if (deltas_.dye.changesStrength()) parts = parts | Part::Material;
         if (!deltas_.strands.empty()) parts = parts | Part::Strands | Part::Triangulation;
         return parts;

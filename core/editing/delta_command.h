@@ -7,6 +7,7 @@
 
 #include "core/editing/command.h"
 #include "core/editing/dye_delta.h"
+#include "core/editing/mask_delta.h"
 #include "core/editing/point_delta.h"
 #include "core/editing/scalp_delta.h"
 #include "core/editing/strand_delta.h"
@@ -22,10 +23,11 @@ struct Deltas {
     FaceDelta faces;
     DensityDelta density;
     DyeDelta dye;
+    MaskDelta mask;
     StrandDelta strands;  ///< last in doing, first in undoing
     bool empty() const {
         return points.empty() && frozen.empty() && hidden.empty() && selected.empty() && faces.empty() &&
-               density.empty() && dye.empty() && strands.empty();
+               density.empty() && dye.empty() && mask.empty() && strands.empty();
     }
 };
 

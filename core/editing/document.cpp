@@ -83,7 +83,7 @@ Change Document::carryOut(std::unique_ptr<Command> command, std::string record) 
     Change change = command->exchange(model_);
     const bool comesOrGoes =
         contains(change.parts, Part::Strands) && !contains(change.parts, Part::Operators);
-    if (comesOrGoes && !model_.groom.operators.empty()) {
+    if ((comesOrGoes && !model_.groom.operators.empty()) || maskChanged(change.parts)) {
         if (auto stack = stackAfterStrands(model_)) {
             change.parts = change.parts | stack->exchange(model_).parts;
             command = asOneStep(std::move(command), std::move(stack));
@@ -139,6 +139,7 @@ Status Document::beginStroke(Stroke header) {
     stroke_ = std::move(*session);
     strokeStrands_ = model_.groom.strandCount();
     strokeTouched_.assign(strokeStrands_, 0);
+    strokeParts_ = Part::None;
     return {};
 }
 
@@ -148,6 +149,7 @@ Status Document::dab(const Dab& dab) {
     if (!change) return tl::unexpected(change.error());
     strokeTouched_.resize(std::max(strokeTouched_.size(), model_.groom.strandCount()), 0);
     for (const std::uint32_t s : change->strands) strokeTouched_[s] = 1;
+    strokeParts_ = strokeParts_ | change->parts;
     if (change->parts == Part::None) return {};
     notify(*change);  // the session keeps the bounds
     return {};
@@ -162,9 +164,9 @@ Stroke Document::endStroke() {
     const bool comesOrGoes = model_.groom.strandCount() != strokeStrands_;
     stroke_.reset();
     if (!command) return drawn;
-    if (!model_.groom.operators.empty() && (movesHair || comesOrGoes)) {
-        if (auto stack =
-                comesOrGoes ? stackAfterStrands(model_) : stackAfterStroke(model_, strokeTouched())) {
+    const bool runsAgain = comesOrGoes || maskChanged(strokeParts_);
+    if (!model_.groom.operators.empty() && (movesHair || runsAgain)) {
+        if (auto stack = runsAgain ? stackAfterStrands(model_) : stackAfterStroke(model_, strokeTouched())) {
             change.parts = change.parts | stack->exchange(model_).parts;
             change.strands = {};
             command = asOneStep(std::move(command), std::move(stack));
@@ -173,6 +175,10 @@ Stroke Document::endStroke() {
     history_.add(std::move(command), toJson(drawn).dump());
     changed({change.parts | Part::History, change.strands});
     return drawn;
+}
+
+bool Document::maskChanged(Part parts) const {
+    return contains(parts, Part::Density | Part::Dye | Part::Masks) && readsMaps(model_.groom.operators);
 }
 
 std::vector<std::uint32_t> Document::strokeTouched() const {

@@ -94,6 +94,8 @@ class Document {
     Change carryOut(std::unique_ptr<Command> command, std::string record);
     /// Two that have been carried out.
     static std::unique_ptr<Command> asOneStep(std::unique_ptr<Command> done, std::unique_ptr<Command> also);
+    /// These parts hold what a mask of the operators shows.
+    bool maskChanged(Part parts) const;
     std::vector<std::uint32_t> strokeTouched() const;
 
     Model model_;
@@ -103,6 +105,7 @@ class Document {
     std::uint64_t mergeState_ = 0;  ///< state of the history that a step of that key led to
     std::unique_ptr<StrokeSession> stroke_;
     std::size_t strokeStrands_ = 0;            ///< strands when the stroke began
+    Part strokeParts_ = Part::None;            ///< that its dabs changed
     std::vector<std::uint8_t> strokeTouched_;  ///< per strand, 1 for those that this stroke touched
     struct Observers;
     std::shared_ptr<Observers> observers_;

@@ -35,6 +35,7 @@ enum class Part : std::uint32_t {
     History = 1u << 13u,        ///< what can be undone
     Dye = 1u << 14u,            ///< its mask, as it was painted
     Operators = 1u << 15u,      ///< of the stack, or their settings
+    Masks = 1u << 16u,          ///< as they were painted, for operators
     Everything = 0xffffffffu,
 };
 constexpr Part operator|(Part a, Part b) {

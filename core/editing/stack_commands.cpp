@@ -246,6 +246,28 @@ StackCommand copyOperator(const Model& model, std::size_t index) {
     return restack(model, std::move(next), name, recordOf("copy_operator", {{"at", index}}));
 }
 
+StackCommand soloOperator(const Model& model, std::size_t index) {
+    if (auto status = checkIndex(model, index, model.groom.operators.size()); !status)
+        return tl::unexpected(status.error());
+    std::vector<Operator> operators = model.groom.operators;
+    bool isAlone = operators[index].enabled;
+    for (std::size_t i = 0; i < operators.size(); ++i)
+        isAlone = isAlone && (i == index || !operators[i].enabled);
+    for (std::size_t i = 0; i < operators.size(); ++i) operators[i].enabled = isAlone || i == index;
+    const std::string name = (isAlone ? "All again" : "Solo " + labelOf(operators[index]));
+    return setOperators(model, std::move(operators), name);
+}
+
+StackCommand addOperators(const Model& model, std::size_t index, std::vector<Operator> added,
+                          std::string name) {
+    if (auto status = checkIndex(model, index, model.groom.operators.size() + 1); !status)
+        return tl::unexpected(status.error());
+    std::vector<Operator> operators = model.groom.operators;
+    for (Operator& one : added) one.number = 0;
+    operators.insert(operators.begin() + static_cast<std::ptrdiff_t>(index), added.begin(), added.end());
+    return setOperators(model, std::move(operators), std::move(name));
+}
+
 StackCommand setOperators(const Model& model, std::vector<Operator> operators, std::string name) {
     Groom next = model.groom;
     std::set<std::uint32_t> numbers;
@@ -286,7 +308,7 @@ std::unique_ptr<Command> stackAfterStrands(const Model& model) {
 std::unique_ptr<Command> stackAfterStroke(const Model& model, std::span<const std::uint32_t> strands) {
     const Groom& groom = model.groom;
     const Operator& top = groom.operators.back();
-    const bool isNew = top.op != kSculpt || !top.enabled || top.weight < 1;
+    const bool isNew = top.op != kSculpt || !top.enabled || top.weight < 1 || !maskOf(top).isWhole();
     std::vector<Operator> operators = groom.operators;
     if (isNew && operators.size() >= kMaxOperators) return nullptr;
     if (isNew) {

@@ -24,16 +24,21 @@ StackCommand moveOperator(const Model& model, std::size_t from, std::size_t to);
 StackCommand setOperator(const Model& model, std::size_t index, Operator changed, std::string name);
 /// Puts the same on top of it, with what was sculpted.
 StackCommand copyOperator(const Model& model, std::size_t index);
+/// Lets it act alone, or all again where it does so already.
+StackCommand soloOperator(const Model& model, std::size_t index);
+/// Before the one at `index`, or on top, in this order.
+StackCommand addOperators(const Model& model, std::size_t index, std::vector<Operator> added,
+                          std::string name);
 /// All of them. A sculpt keeps the strokes that its number has; one without begins empty.
 StackCommand setOperators(const Model& model, std::vector<Operator> operators, std::string name);
 /// The hair as it is becomes all there is.
 StackCommand bakeOperators(const Model& model);
 
 /// What has to follow a step that changed strands beside the stack. Null where nothing has to.
-/// Strands came or went: the stack runs again, with them.
+/// Strands came or went, or what masks read was painted: the stack runs again.
 std::unique_ptr<Command> stackAfterStrands(const Model& model);
 /// Brushes moved points of these strands (ascending): the topmost operator keeps it, where it is a sculpt
-/// that is enabled and has its full weight, else a new one on top.
+/// that is enabled and has its full weight and no mask, else a new one on top.
 std::unique_ptr<Command> stackAfterStroke(const Model& model, std::span<const std::uint32_t> strands);
 
 }  // namespace hairloom::editing

@@ -132,6 +132,7 @@ std::unique_ptr<Command> StrokeSession::finish(Change& change) {
     change = brush_->finish(target_);
     target_.changes.points.finish(target_.groom());
     target_.changes.dye.finish(target_.groom());
+    target_.changes.mask.finish(target_.groom());
     return commandOf(std::string(brush_->info().label), std::move(target_.changes));
 }
 

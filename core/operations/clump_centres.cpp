@@ -2,11 +2,8 @@
 #include "core/operations/clump_centres.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
-#include <unordered_map>
 
 #include "core/base/parallel.h"
 #include "core/base/random.h"
@@ -15,54 +12,6 @@ namespace hairloom {
 namespace {
 
 constexpr std::size_t kGrain = 1024;
-
-/// Chosen roots by cells of one spacing, so that all within one spacing lie in the 27 cells around.
-class CentreGrid {
-  public:
-    CentreGrid(const Groom& groom, float spacing) : groom_(groom), spacing_(spacing) {}
-
-    /// The nearest chosen strand within one spacing, or kNone.
-    static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-    std::uint32_t nearest(const Vec3f& root) const {
-        const Cell home = cellOf(root);
-        std::uint32_t best = kNone;
-        float bestDistance = spacing_;
-        for (int x = -1; x <= 1; ++x)
-            for (int y = -1; y <= 1; ++y)
-                for (int z = -1; z <= 1; ++z) {
-                    const auto found = cells_.find(keyOf({home[0] + x, home[1] + y, home[2] + z}));
-                    if (found == cells_.end()) continue;
-                    for (const std::uint32_t centre : found->second) {
-                        const float distance = (groom_.strand(centre)[0] - root).norm();
-                        if (distance > bestDistance || (distance == bestDistance && centre > best)) continue;
-                        bestDistance = distance;
-                        best = centre;
-                    }
-                }
-        return best;
-    }
-    void add(std::uint32_t strand) { cells_[keyOf(cellOf(groom_.strand(strand)[0]))].push_back(strand); }
-
-  private:
-    using Cell = std::array<std::int64_t, 3>;
-    Cell cellOf(const Vec3f& p) const {
-        // Far coordinates share a border cell; that costs time, not correctness.
-        constexpr float kFar = 1e15f;
-        const auto index = [&](float x) {
-            return static_cast<std::int64_t>(std::floor(std::clamp(x / spacing_, -kFar, kFar)));
-        };
-        return {index(p.x()), index(p.y()), index(p.z())};
-    }
-    static std::uint64_t keyOf(const Cell& cell) {
-        std::uint64_t key = 0;
-        for (const std::int64_t part : cell) key = Random::mix(key ^ static_cast<std::uint64_t>(part));
-        return key;
-    }
-
-    const Groom& groom_;
-    float spacing_;
-    std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;
-};
 
 /// All strands that can lead, in an order that depends on seed and id alone.
 std::vector<std::uint32_t> randomOrder(const Groom& groom, std::uint64_t seed) {
@@ -80,6 +29,44 @@ std::vector<std::uint32_t> randomOrder(const Groom& groom, std::uint64_t seed) {
 }
 
 }  // namespace
+
+std::uint32_t CentreGrid::nearest(const Vec3f& root) const {
+    const Cell home = cellOf(root);
+    std::uint32_t best = kNone;
+    float bestDistance = spacing_;
+    for (int x = -1; x <= 1; ++x)
+        for (int y = -1; y <= 1; ++y)
+            for (int z = -1; z <= 1; ++z) {
+                const auto found = cells_.find(keyOf({home[0] + x, home[1] + y, home[2] + z}));
+                if (found == cells_.end()) continue;
+                for (const std::uint32_t centre : found->second) {
+                    const float distance = (groom_.strand(centre)[0] - root).norm();
+                    if (distance > bestDistance || (distance == bestDistance && centre > best)) continue;
+                    bestDistance = distance;
+                    best = centre;
+                }
+            }
+    return best;
+}
+
+void CentreGrid::add(std::uint32_t strand) {
+    cells_[keyOf(cellOf(groom_.strand(strand)[0]))].push_back(strand);
+}
+
+CentreGrid::Cell CentreGrid::cellOf(const Vec3f& p) const {
+    // Far coordinates share a border cell; that costs time, not correctness.
+    constexpr float kFar = 1e15f;
+    const auto index = [&](float x) {
+        return static_cast<std::int64_t>(std::floor(std::clamp(x / spacing_, -kFar, kFar)));
+    };
+    return {index(p.x()), index(p.y()), index(p.z())};
+}
+
+std::uint64_t CentreGrid::keyOf(const Cell& cell) {
+    std::uint64_t key = 0;
+    for (const std::int64_t part : cell) key = Random::mix(key ^ static_cast<std::uint64_t>(part));
+    return key;
+}
 
 std::vector<std::uint32_t> chooseCentres(const Groom& groom, float spacing, std::uint64_t seed) {
     const std::vector<std::uint32_t> order = randomOrder(groom, seed);

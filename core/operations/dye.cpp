@@ -67,10 +67,8 @@ Result<std::size_t> dye(Groom& groom, const S& settings, const Region& region) {
 }
 
 Operation dyeOperation() {
-    Operation mask =
-        operation<S, dye>("dye", 100, "says which strands the material's dye colours, and how much");
-    mask.stacks = false;
-    return mask;
+    return lastingOperation<S, dye>("dye", 100,
+                                    "says which strands the material's dye colours, and how much");
 }
 
 }  // namespace hairloom

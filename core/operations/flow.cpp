@@ -6,6 +6,7 @@
 
 #include "core/operations/length_constraint.h"
 #include "core/operations/operation.h"
+#include "core/operations/strand_frames.h"
 
 namespace hairloom {
 namespace {
@@ -40,17 +41,6 @@ constexpr float kCrownBlur = 0.004f;    ///< metres; at the crown itself the dir
 constexpr float kHugReach = 0.02f;      ///< metres above its lift over which hair lets go of the skin
 constexpr float kSteepestClimb = 0.7f;  ///< sine of the angle at which hair seeks its height
 constexpr float kSteepestSink = 0.4f;
-constexpr float kTiny = 1e-6f;
-
-float smoothStep(float low, float high, float x) {
-    const float t = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
-    return t * t * (3 - 2 * t);
-}
-
-Vec3f unitOr(const Vec3f& v, const Vec3f& fallback) {
-    const float norm = v.norm();
-    return norm > kTiny ? Vec3f(v / norm) : fallback;
-}
 
 /// What a strand draws once.
 struct Character {

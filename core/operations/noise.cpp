@@ -6,6 +6,7 @@
 
 #include "core/operations/length_constraint.h"
 #include "core/operations/operation.h"
+#include "core/operations/strand_frames.h"
 
 namespace hairloom {
 namespace {
@@ -22,20 +23,6 @@ constexpr Field<S> kFields[] = {
 };
 
 constexpr float kSegmentsPerWave = 4;
-
-/// Value noise with a smooth step between the integers; each component in [−1, 1].
-Vec3f waveAt(std::uint64_t stream, float x) {
-    const float cell = std::floor(x);
-    const auto corner = [&](float whole) {
-        Random random(stream, static_cast<std::uint64_t>(whole));
-        const float a = random.uniform(-1, 1);
-        const float b = random.uniform(-1, 1);
-        return Vec3f(a, b, random.uniform(-1, 1));
-    };
-    const float t = x - cell;
-    const float smooth = t * t * (3 - 2 * t);
-    return corner(cell) * (1 - smooth) + corner(cell + 1) * smooth;
-}
 
 }  // namespace
 

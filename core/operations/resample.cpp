@@ -80,9 +80,7 @@ Result<std::size_t> resample(Groom& groom, const S& settings, const Region& regi
 }
 
 Operation resampleOperation() {
-    Operation counts = operation<S, resample>("resample", 110, "gives strands another number of points");
-    counts.stacks = false;
-    return counts;
+    return lastingOperation<S, resample>("resample", 110, "gives strands another number of points");
 }
 
 }  // namespace hairloom

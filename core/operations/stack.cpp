@@ -10,7 +10,7 @@
 #include "core/base/profiler.h"
 #include "core/groom/file/operators_json.h"
 #include "core/groom/file/project_file.h"
-#include "core/operations/length_constraint.h"
+#include "core/groom/point_dye.h"
 #include "core/operations/sculpt.h"
 
 namespace hairloom {
@@ -33,54 +33,43 @@ std::span<const T> valuesOf(const AttributeData& data) {
     return std::get<CowArray<T>>(data).view();
 }
 
-/// Calls body(points of a strand: first, count) for all strands, on several threads.
-template <class Body>
-void forEachStrand(const Groom& groom, const Body& body) {
-    parallelFor(groom.strandCount(), kGrain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t s = begin; s < end; ++s) {
-            const std::size_t count = groom.offsets[s + 1] - groom.offsets[s];
-            if (count >= 2) body(groom.offsets[s], count);
-        }
-    });
+const char* nameOf(SettingsPart part) {
+    return part == SettingsPart::region ? "region" : "mask";
 }
 
 AttributeData sculpted(const Groom& groom, const Operator& one, const AttributeData& input) {
     const auto from = valuesOf<Vec3f>(input);
     const auto offsets = groom.pointAttributes.view<Vec3f>(sculptAttribute(one.number));
     std::vector<Vec3f> to(from.begin(), from.end());
-    forEachStrand(groom, [&](std::size_t first, std::size_t count) {
-        applySculpt(from.subspan(first, count), offsets.subspan(first, count), one.weight,
-                    std::span(to).subspan(first, count));
+    parallelFor(groom.strandCount(), kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t s = begin; s < end; ++s) {
+            const std::size_t first = groom.offsets[s], count = groom.offsets[s + 1] - first;
+            if (count < 2) continue;
+            applySculpt(from.subspan(first, count), offsets.subspan(first, count), one.weight,
+                        std::span(to).subspan(first, count));
+        }
     });
     return CowArray<Vec3f>(std::move(to));
 }
 
-/// A share of the way from one shape to another; segments get a length between those that they have there.
-AttributeData blended(const Groom& groom, const AttributeData& before, const AttributeData& after,
-                      float weight) {
-    const auto from = valuesOf<Vec3f>(before);
-    const auto to = valuesOf<Vec3f>(after);
-    std::vector<Vec3f> between(from.begin(), from.end());
-    forEachStrand(groom, [&](std::size_t first, std::size_t count) {
-        const auto a = from.subspan(first, count), b = to.subspan(first, count);
-        if (std::ranges::equal(a, b)) return;
-        const auto points = std::span(between).subspan(first, count);
-        std::vector<float> lengths(count - 1);
-        for (std::size_t i = 0; i < count; ++i) points[i] = a[i] + weight * (b[i] - a[i]);
-        for (std::size_t i = 0; i + 1 < count; ++i) {
-            const float was = (a[i + 1] - a[i]).norm();
-            lengths[i] = was + weight * ((b[i + 1] - b[i]).norm() - was);
-        }
-        restoreLengthsByDirection(points, lengths);
-    });
-    return CowArray<Vec3f>(std::move(between));
+/// All settings, or those of the region or mask, which may be left out where they are the default.
+nlohmann::ordered_json settingsOf(const Operator& one, SettingsPart part) {
+    nlohmann::ordered_json all = nlohmann::ordered_json::parse(one.settings);
+    if (part == SettingsPart::own) return all;
+    const char* const name = nameOf(part);
+    if (all.contains(name)) return all[name];
+    return part == SettingsPart::region ? fieldsToJson(Region{}) : fieldsToJson(Mask{});
 }
 
-/// All settings, or those of the region, which may be left out where it is the default.
-nlohmann::ordered_json settingsWithRegion(const Operator& one, bool region) {
+/// The same as it stands in a file of its own.
+void storePart(Operator& one, SettingsPart part, const nlohmann::ordered_json& settings) {
     nlohmann::ordered_json all = nlohmann::ordered_json::parse(one.settings);
-    if (!region) return all;
-    return all.contains("region") ? all["region"] : fieldsToJson(Region{});
+    if (part == SettingsPart::own) {
+        all = settings;
+    } else {
+        all[nameOf(part)] = settings;
+    }
+    one.settings = all.dump();
 }
 
 }  // namespace
@@ -90,9 +79,10 @@ const std::vector<StackOperator>& stackOperators() {
         std::vector<StackOperator> known;
         for (const Operation& operation : operations()) {
             if (operation.stacks)
-                known.push_back({operation.name, operation.meaning, operation.fields(), true});
+                known.push_back(
+                    {operation.name, operation.meaning, operation.fields(), true, operation.hasCurve});
         }
-        known.push_back({kSculpt, "holds brush strokes", {}, false});
+        known.push_back({kSculpt, "holds brush strokes", {}, false, false});
         return known;
     }();
     return kKnown;
@@ -113,7 +103,11 @@ Operator readOperator(JsonReader& reader) {
     const auto names = stackNames();
     const std::string_view name = names[reader.choice("op", names)];
     Operator one = readOperatorHead(reader);
-    if (name != kSculpt) one.settings = operationOf(name).settings(reader);
+    if (name != kSculpt) {
+        one.settings = operationOf(name).settings(reader);
+    } else if (reader.has("mask")) {
+        setMaskOf(one, readMask(reader));
+    }
     reader.finish();
     return one;
 }
@@ -140,31 +134,59 @@ Result<Groom> openProject(const std::filesystem::path& path) {
     return groom;
 }
 
-double settingOf(const Operator& one, const FieldInfo& field, std::uint32_t component, bool region) {
-    const nlohmann::ordered_json value = settingsWithRegion(one, region).at(field.name);
+double settingOf(const Operator& one, const FieldInfo& field, std::uint32_t component, SettingsPart part) {
+    const nlohmann::ordered_json value = settingsOf(one, part).at(field.name);
     if (value.is_array()) return value.at(component).get<double>();
+    if (field.kind == FieldKind::Choice) {
+        const auto name = value.get<std::string>();
+        return static_cast<double>(std::ranges::find(field.choices, name) - field.choices.begin());
+    }
     return value.is_boolean() ? (value.get<bool>() ? 1 : 0) : value.get<double>();
 }
 
-bool setSettingOf(Operator& one, const FieldInfo& field, double value, std::uint32_t component, bool region) {
+bool setSettingOf(Operator& one, const FieldInfo& field, double value, std::uint32_t component,
+                  SettingsPart part) {
     if (!field.holds(value)) return false;
-    nlohmann::ordered_json all = nlohmann::ordered_json::parse(one.settings);
-    nlohmann::ordered_json part = settingsWithRegion(one, region);
-    nlohmann::ordered_json& member = part.at(field.name);
+    nlohmann::ordered_json settings = settingsOf(one, part);
+    nlohmann::ordered_json& member = settings.at(field.name);
     if (field.kind == FieldKind::Bool) {
         member = value != 0;
+    } else if (field.kind == FieldKind::Choice) {
+        member = field.choices[static_cast<std::size_t>(value)];
     } else if (field.isWhole()) {
         member = value < runtime::kMaxSeed ? static_cast<std::uint64_t>(value) : ~std::uint64_t{0};
     } else {
         (member.is_array() ? member.at(component) : member) = readableDecimal(static_cast<float>(value));
     }
-    if (region) {
-        all["region"] = part;
-    } else {
-        all = part;
-    }
-    one.settings = all.dump();
+    storePart(one, part, settings);
     return true;
+}
+
+Mask maskOf(const Operator& one) {
+    const nlohmann::json json = nlohmann::json::parse(one.settings);
+    JsonReader reader(json, {});
+    return readMask(reader);
+}
+
+void setMaskOf(Operator& one, const Mask& mask) {
+    storePart(one, SettingsPart::mask, fieldsToJson(mask));
+}
+
+DrawnCurve curveOf(const Operator& one) {
+    const nlohmann::json json = nlohmann::json::parse(one.settings);
+    JsonReader reader(json, {});
+    return readCurve(reader);
+}
+
+void setCurveOf(Operator& one, const DrawnCurve& curve) {
+    auto settings = nlohmann::ordered_json::parse(one.settings);
+    settings["curve"] = toJson(curve);
+    one.settings = settings.dump();
+}
+
+bool readsMaps(const std::vector<Operator>& operators) {
+    return std::ranges::any_of(operators,
+                               [](const Operator& one) { return maskOf(one).map != MaskMap::none; });
 }
 
 std::uint32_t layerOf(const Operator& one) {
@@ -234,12 +256,13 @@ class StackRun {
     std::string keyOf(const Operator& one) const {
         const Version strokes =
             one.op == kSculpt ? groom_.pointAttributes.version(sculptAttribute(one.number)) : 0;
-        return fmt::format("{} {} {} {}", one.op, one.weight, strokes, one.settings);
+        return fmt::format("{} {} {} {} {}", one.op, one.weight, strokes, one.settings,
+                           mapState(groom_, maskOf(one).map));
     }
 
     Result<AttributeData> apply(const Operator& one, const AttributeData& input) {
         HAIRLOOM_PROFILE("operations: operator");
-        if (one.op == kSculpt) return sculpted(groom_, one, input);
+        if (one.op == kSculpt) return masked(one, input, sculpted(groom_, one, input));
         const auto json = parseJson({}, one.settings);
         if (!json) return tl::unexpected(json.error());
         JsonReader reader(*json, {});
@@ -248,9 +271,23 @@ class StackRun {
         if (auto status = reader.status(); !status) return tl::unexpected(status.error());
         work_.pointAttributes = {};
         work_.pointAttributes.set(attribute::kPosition, input);
+        if (const auto dye = groom_.pointAttributes.all().find(attribute::kPointDye);
+            dye != groom_.pointAttributes.all().end())
+            work_.pointAttributes.set(attribute::kPointDye, dye->second);
         if (const auto touched = edit(work_); !touched) return tl::unexpected(touched.error());
         const AttributeData output = work_.pointAttributes.all().find(attribute::kPosition)->second;
-        return one.weight < 1 ? blended(groom_, input, output, one.weight) : output;
+        if (!(one.weight < 1)) return output;
+        return CowArray<Vec3f>(
+            blendShapes(groom_, valuesOf<Vec3f>(input), valuesOf<Vec3f>(output), {one.weight, {}}));
+    }
+
+    /// Of a sculpt; operations heed their masks themselves.
+    AttributeData masked(const Operator& one, const AttributeData& input, AttributeData output) const {
+        const Mask mask = maskOf(one);
+        if (mask.isWhole()) return output;
+        const auto from = valuesOf<Vec3f>(input);
+        const std::vector<float> shares = maskShares(groom_, mask, from);
+        return CowArray<Vec3f>(blendShapes(groom_, from, valuesOf<Vec3f>(output), {1, shares}));
     }
 
     const Groom& groom_;

@@ -21,6 +21,7 @@ struct StackOperator {
     std::string_view meaning;
     std::vector<FieldRow> fields;
     bool hasRegion;
+    bool hasCurve;  ///< one is drawn for it
 };
 const std::vector<StackOperator>& stackOperators();
 /// The one of that name, or null.
@@ -40,11 +41,18 @@ Status completeOperators(const std::string& file, Groom& groom);
 /// A project file with its operators complete. Errors: those of loadProject() and completeOperators().
 Result<Groom> openProject(const std::filesystem::path& path);
 
-/// A setting of an operator whose settings are complete. `region` names one of scriptRegionFields().
-double settingOf(const Operator& one, const FieldInfo& field, std::uint32_t component, bool region = false);
+/// Which of its fields: the operation's, scriptRegionFields() or scriptMaskFields().
+enum class SettingsPart : std::uint8_t { own, region, mask };
+/// A setting of an operator whose settings are complete. The field is no ramp.
+double settingOf(const Operator& one, const FieldInfo& field, std::uint32_t component,
+                 SettingsPart part = SettingsPart::own);
 /// False, and no change, where the field does not hold the value.
 bool setSettingOf(Operator& one, const FieldInfo& field, double value, std::uint32_t component,
-                  bool region = false);
+                  SettingsPart part = SettingsPart::own);
+
+/// Every operator has one; it is whole where none is written.
+Mask maskOf(const Operator& one);
+void setMaskOf(Operator& one, const Mask& mask);
 
 /// The layer that an operator's region names, counted from 1; 0 where it reaches all.
 std::uint32_t layerOf(const Operator& one);
@@ -71,6 +79,13 @@ class StackCache {
 };
 
 inline constexpr std::size_t kWholeStack = std::numeric_limits<std::size_t>::max();
+
+/// Of an operator that has one.
+DrawnCurve curveOf(const Operator& one);
+void setCurveOf(Operator& one, const DrawnCurve& curve);
+
+/// Whether a mask of the stack shows what is painted on a map, so that it runs again where that changes.
+bool readsMaps(const std::vector<Operator>& operators);
 
 /// The positions that the first `count` operators make of the groom's base shape; the base shape itself where
 /// none does anything. Only operators from the first that has changed since the cache was filled run. The

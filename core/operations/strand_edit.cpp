@@ -21,6 +21,8 @@ constexpr Field<Region> kRegionFields[] = {
     field<&Region::fade>("fade", "m", 0, 1, "width of the seam in which strands are reached at random"),
     seedField<&Region::seed>("seed", "another seed reaches other strands of the seam"),
     field<&Region::layer>("layer", "", 0, 1000, "number of the layer that is reached, from 1; 0 reaches all"),
+    field<&Region::group>("group", "", 0, 100'000,
+                          "number of the file's group that is reached, from 1; 0 reaches all"),
 };
 
 std::uint32_t idOf(const Groom& groom, std::size_t strand) {
@@ -35,6 +37,10 @@ std::size_t layerOf(const Groom& groom, std::size_t strand) {
 
 bool reaches(const Region& region, const Groom& groom, std::size_t strand) {
     if (region.layer != 0 && layerOf(groom, strand) + 1 != region.layer) return false;
+    if (region.group != 0) {
+        const auto groups = groom.strandAttributes.view<std::uint32_t>(attribute::kGroup);
+        if (strand >= groups.size() || groups[strand] + 1 != region.group) return false;
+    }
     if (region.normal.isZero(0.0f)) return true;
     const float distance = (groom.strand(strand)[0] - region.point).dot(region.normal.normalized());
     Random random(region.seed, idOf(groom, strand));

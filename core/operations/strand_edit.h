@@ -15,14 +15,15 @@ namespace hairloom {
 
 inline constexpr double kAnywhere = 1000;  ///< metres; largest coordinate that a setting may name
 
-/// Which strands an operation reaches: those of a layer whose root lies on the side of a plane that `normal`
-/// points to. A normal of zero reaches all.
+/// Which strands an operation reaches: those of a layer and a group whose root lies on the side of a plane
+/// that `normal` points to. A normal of zero reaches all.
 struct Region {
     Vec3f point = Vec3f::Zero();
     Vec3f normal = Vec3f::Zero();
     float fade = 0;
     std::uint64_t seed = 1;
     std::uint32_t layer = 0;  ///< of Groom::layers, counted from 1; 0 reaches all
+    std::uint32_t group = 0;  ///< of Groom::groupNames, likewise
 };
 std::span<const Field<Region>> fieldsOf(const Region&);
 
@@ -38,6 +39,8 @@ struct StrandEdit {
     /// Its own random sequence; strands draw alike whatever their order.
     Random random(std::uint64_t seed) const { return Random(seed, id); }
     float totalLength() const;
+    /// Out of the skin at its root; +Y without a skin.
+    Vec3f outward() const { return skin ? skin->distanceAt(points[0]).outward : Vec3f(Vec3f::UnitY()); }
 };
 
 struct EditOptions {

@@ -62,19 +62,21 @@ struct OperatorAt {
     }
 };
 
-std::vector<Field> settingsFields(const OperatorAt& at, const std::vector<FieldRow>& rows, bool region) {
+std::vector<Field> settingsFields(const OperatorAt& at, const std::vector<FieldRow>& rows,
+                                  SettingsPart part) {
     std::vector<Field> fields;
     const Operator fresh = newOperator(at.op);
     for (const FieldRow& row : rows) {
+        if (row.info.components() == 0) continue;
         Field field = at.field(row.info);
         for (std::uint32_t c = 0; c < field.components(); ++c)
-            field.defaultValue[c] = settingOf(fresh, row.info, c, region);
-        field.value = [at, info = row.info, region](const Groom& groom, std::uint32_t component) {
+            field.defaultValue[c] = settingOf(fresh, row.info, c, part);
+        field.value = [at, info = row.info, part](const Groom& groom, std::uint32_t component) {
             const Operator* one = at.in(groom);
-            return one ? settingOf(*one, info, component, region) : 0;
+            return one ? settingOf(*one, info, component, part) : 0;
         };
-        field.set = [at, info = row.info, region](Groom& groom, double value, std::uint32_t component) {
-            return at.in(groom) && setSettingOf(groom.operators[at.index], info, value, component, region);
+        field.set = [at, info = row.info, part](Groom& groom, double value, std::uint32_t component) {
+            return at.in(groom) && setSettingOf(groom.operators[at.index], info, value, component, part);
         };
         fields.push_back(std::move(field));
     }
@@ -86,7 +88,7 @@ std::vector<Field> settingsFields(const OperatorAt& at, const std::vector<FieldR
 std::vector<Field> operatorFields(const Groom& groom, std::size_t index, const SayError& failed) {
     const OperatorAt at{index, groom.operators[index].op, failed};
     const StackOperator* const known = findStackOperator(at.op);
-    std::vector<Field> fields = settingsFields(at, known->fields, false);
+    std::vector<Field> fields = settingsFields(at, known->fields, SettingsPart::own);
     Field weight = at.field(kWeight);
     weight.defaultValue[0] = 1;
     weight.value = [at](const Groom& now, std::uint32_t) {
@@ -104,7 +106,12 @@ std::vector<Field> operatorFields(const Groom& groom, std::size_t index, const S
 
 std::vector<Field> operatorRegionFields(const Groom& groom, std::size_t index, const SayError& failed) {
     const OperatorAt at{index, groom.operators[index].op, failed};
-    return settingsFields(at, scriptRegionFields(), true);
+    return settingsFields(at, scriptRegionFields(), SettingsPart::region);
+}
+
+std::vector<Field> operatorMaskFields(const Groom& groom, std::size_t index, const SayError& failed) {
+    const OperatorAt at{index, groom.operators[index].op, failed};
+    return settingsFields(at, scriptMaskFields(), SettingsPart::mask);
 }
 
 QStringList Field::choiceLabels() const {

@@ -33,11 +33,12 @@ std::vector<Field> simulationFields();
 std::vector<Field> materialFields();
 std::vector<Field> followHairFields();
 std::vector<Field> placementFields();
-/// Weight and settings of the operator at `index`, or those of its region. A complaint of an operator goes to
-/// `failed`.
+/// Weight and settings of the operator at `index`, or those of its region, or of its mask but the ramp. A
+/// complaint of an operator goes to `failed`.
 using SayError = std::function<void(const QString&)>;
 std::vector<Field> operatorFields(const Groom& groom, std::size_t index, const SayError& failed);
 std::vector<Field> operatorRegionFields(const Groom& groom, std::size_t index, const SayError& failed);
+std::vector<Field> operatorMaskFields(const Groom& groom, std::size_t index, const SayError& failed);
 
 /// The fields of these names, in that order. Each name is one of `all`.
 std::vector<Field> pick(const std::vector<Field>& all, const QStringList& names);

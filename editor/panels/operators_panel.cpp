@@ -1,16 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The stack of operators: a list in the order in which they act, and the settings of the one that is chosen.
+#include <QClipboard>
+#include <QGuiApplication>
+#include <QInputDialog>
+#include <QLabel>
 #include <QListWidget>
 #include <QMenu>
 #include <QPushButton>
+#include <QStandardPaths>
 #include <QToolButton>
 #include <QVBoxLayout>
 
 #include "core/editing/document.h"
 #include "core/editing/stack_commands.h"
-#include "core/operations/stack.h"
+#include "core/operations/stack_file.h"
 #include "editor/fields/field_form.h"
+#include "editor/fields/mask_ramp.h"
 #include "editor/panels/panel.h"
+#include "editor/tools/curve_tool.h"
 
 namespace hairloom::editor {
 namespace {
@@ -21,8 +28,12 @@ constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
 class OperatorsPanel : public QWidget {
   public:
-    OperatorsPanel(QtDocument& document, const Preferences& preferences, Messages& messages)
-        : document_(document), preferences_(preferences), messages_(messages), list_(new QListWidget) {
+    explicit OperatorsPanel(const PanelParts& parts)
+        : document_(parts.document),
+          preferences_(parts.preferences),
+          messages_(parts.messages),
+          tools_(parts.tools),
+          list_(new QListWidget) {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(8);
@@ -40,6 +51,7 @@ class OperatorsPanel : public QWidget {
                "nothing. Brush strokes go to a sculpt at the end."));
         layout->addWidget(list_);
         layout->addLayout(makeEditButtons());
+        layout->addLayout(makeKeepButtons());
         settings_ = new QVBoxLayout;
         layout->addLayout(settings_);
         layout->addStretch(1);
@@ -105,6 +117,105 @@ class OperatorsPanel : public QWidget {
         return row;
     }
 
+    QLayout* makeKeepButtons() {
+        auto* row = new QHBoxLayout;
+        row->addWidget(
+            pushButton("operatorSolo", tr("Solo"), tr("Lets it act alone; again: all of them"), [this] {
+                if (chosen() != kNone) perform(editing::soloOperator(model(), chosen()), chosen());
+            }));
+        row->addWidget(pushButton("operatorClip", tr("Copy"),
+                                  tr("Puts the operator on the clipboard, for another project"), [this] {
+                                      if (chosen() != kNone) copy();
+                                  }));
+        row->addWidget(pushButton("operatorPaste", tr("Paste"),
+                                  tr("Adds what is on the clipboard behind the chosen one"),
+                                  [this] { paste(); }));
+        auto* presets = new QPushButton(tr("Presets"));
+        presets->setObjectName("operatorPresets");
+        presets->setToolTip(tr("Stacks that you kept, for all projects"));
+        auto* menu = new QMenu(presets);
+        connect(menu, &QMenu::aboutToShow, this, [this, menu] { fillPresets(*menu); });
+        fillPresets(*menu);
+        presets->setMenu(menu);
+        row->addWidget(presets);
+        return row;
+    }
+
+    void copy() {
+        const Operator one = operators()[chosen()];
+        QGuiApplication::clipboard()->setText(QString::fromStdString(operatorsText({&one, 1})));
+    }
+    void paste() {
+        const std::string text = QGuiApplication::clipboard()->text().toStdString();
+        insert(parseOperators(tr("clipboard").toStdString(), text), tr("Paste operators"));
+    }
+    /// Behind the chosen one.
+    void insert(Result<std::vector<Operator>> added, const QString& name) {
+        if (!added) {
+            messages_.warn(QString::fromStdString(added.error().message()));
+            return;
+        }
+        const std::size_t at = chosen() == kNone ? operators().size() : chosen() + 1;
+        const std::size_t count = added->size();
+        perform(editing::addOperators(model(), at, std::move(*added), name.toStdString()), at + count - 1);
+    }
+
+    static std::filesystem::path folderOfStacks() {
+        return (QStandardPaths::writableLocation(QStandardPaths::AppDataLocation) + "/stacks").toStdString();
+    }
+    void fillPresets(QMenu& menu) {
+        menu.clear();
+        for (const std::string& name : stackPresets(folderOfStacks())) {
+            QAction* action = menu.addAction(QString::fromStdString(name));
+            connect(action, &QAction::triggered, this, [this, name] {
+                const auto file = stackPresetFile(folderOfStacks(), name);
+                insert(file ? loadOperators(*file) : tl::unexpected(file.error()),
+                       tr("Preset %1").arg(QString::fromStdString(name)));
+            });
+        }
+        menu.addSeparator();
+        connect(menu.addAction(tr("Keep the operator…")), &QAction::triggered, this, [this] {
+            if (chosen() != kNone) keep({operators()[chosen()]});
+        });
+        connect(menu.addAction(tr("Keep the stack…")), &QAction::triggered, this,
+                [this] { keep(operators()); });
+    }
+    void keep(const std::vector<Operator>& kept) {
+        bool taken = false;
+        const QString name =
+            QInputDialog::getText(this, tr("Keep operators"), tr("Name"), QLineEdit::Normal, {}, &taken);
+        if (!taken || name.trimmed().isEmpty()) return;
+        const auto file = stackPresetFile(folderOfStacks(), name.trimmed().toStdString());
+        std::error_code problem;
+        std::filesystem::create_directories(folderOfStacks(), problem);
+        const Status saved = file ? saveOperators(*file, kept) : tl::unexpected(file.error());
+        if (!saved) messages_.warn(QString::fromStdString(saved.error().message()));
+    }
+
+    QWidget* curveRow(std::size_t index) {
+        auto* row = new QWidget;
+        auto* layout = new QHBoxLayout(row);
+        layout->setContentsMargins(0, 0, 0, 0);
+        layout->addWidget(new QLabel(tr("Curve")));
+        layout->addWidget(pushButton("curveDraw", tr("Draw"),
+                                     tr("Takes the pen: draw over the head, or click point by point"),
+                                     [this, index] {
+                                         auto* tool = dynamic_cast<CurveTool*>(tools_.find("curve"));
+                                         if (!tool) return;
+                                         tool->setOperator(index);
+                                         tools_.activate(tool);
+                                     }));
+        layout->addWidget(pushButton(
+            "curveClear", tr("Clear"), tr("Without a curve the operator does nothing"), [this, index] {
+                if (index >= operators().size()) return;
+                Operator changed = operators()[index];
+                setCurveOf(changed, {});
+                perform(editing::setOperator(model(), index, changed, tr("Clear curve").toStdString()),
+                        index);
+            }));
+        return row;
+    }
+
     std::size_t chosen() const {
         const int row = list_->currentRow();
         return row < 0 || static_cast<std::size_t>(row) >= operators().size() ? kNone
@@ -166,17 +277,31 @@ class OperatorsPanel : public QWidget {
         if (index == kNone) return;
         const auto failed = [this](const QString& words) { messages_.warn(words); };
         settings_->addWidget(heading(labelOf(operators()[index])));
+        if (findStackOperator(op)->hasCurve) settings_->addWidget(curveRow(index));
         settings_->addWidget(
             new FieldForm(document_, preferences_, operatorFields(document_.groom(), index, failed)));
+        settings_->addWidget(
+            collapsible(tr("Mask"), maskForm(index, failed), !maskOf(operators()[index]).isWhole()));
         if (!findStackOperator(op)->hasRegion) return;
         auto* region =
             new FieldForm(document_, preferences_, operatorRegionFields(document_.groom(), index, failed));
         settings_->addWidget(collapsible(tr("Region"), region, false));
     }
 
+    QWidget* maskForm(std::size_t index, const SayError& failed) {
+        auto* form = new QWidget;
+        auto* rows = new QVBoxLayout(form);
+        rows->setContentsMargins(0, 0, 0, 0);
+        rows->addWidget(
+            new FieldForm(document_, preferences_, operatorMaskFields(document_.groom(), index, failed)));
+        rows->addWidget(new MaskRamp(document_, index, failed));
+        return form;
+    }
+
     QtDocument& document_;
     const Preferences& preferences_;
     Messages& messages_;
+    ToolBox& tools_;
     QListWidget* list_;
     QVBoxLayout* settings_ = nullptr;
     std::size_t chosen_ = kNone;
@@ -193,9 +318,7 @@ PanelInfo operatorsPanel() {
         Qt::LeftDockWidgetArea,
         25,
         true,
-        [](const PanelParts& parts) -> QWidget* {
-            return scrolled(column({new OperatorsPanel(parts.document, parts.preferences, parts.messages)}));
-        }};
+        [](const PanelParts& parts) -> QWidget* { return scrolled(column({new OperatorsPanel(parts)})); }};
 }
 
 }  // namespace hairloom::editor

@@ -182,8 +182,26 @@ TEST_F(StackEdit, SculptFollowsWhatChangesBelowAndHasAWeight) {
     expectScriptMakesTheSame(document);
 }
 
+TEST_F(StackEdit, SoloLetsOneActAndThenAllAgain) {
+    perform(document, soloOperator(document.model(), 1));
+    for (std::size_t i = 0; i < groom().operators.size(); ++i)
+        EXPECT_EQ(groom().operators[i].enabled, i == 1) << i;
+    expectEvaluated(groom());
+    perform(document, soloOperator(document.model(), 1));
+    for (const Operator& one : groom().operators) EXPECT_TRUE(one.enabled);
+    EXPECT_FALSE(soloOperator(document.model(), 99));
+    std::vector<Operator> more{newOperator("wave"), newOperator(kSculpt)};
+    perform(document, addOperators(document.model(), 1, more, "Add two"));
+    EXPECT_EQ(groom().operators[1].op, "wave");
+    EXPECT_EQ(groom().operators[2].op, kSculpt);
+    EXPECT_NE(groom().operators[2].number, 0u);
+    expectEvaluated(groom());
+    expectHistoryHolds();
+    expectScriptMakesTheSame(document);
+}
+
 TEST_F(StackEdit, StrokesThatMoveNothingLeaveTheStackAlone) {
-    for (const char* tool : {"freeze", "dye_paint", "scalp_paint", "density_paint"}) {
+    for (const char* tool : {"freeze", "dye_paint", "mask_paint", "scalp_paint", "density_paint"}) {
         ASSERT_TRUE(document.replay(strokeFor(tool))) << tool;
         EXPECT_EQ(groom().operators.size(), 3u) << tool;
         expectEvaluated(groom());

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The Operators panel: what it shows, what each of its buttons does, strokes on top, undo of all of it.
+#include <QClipboard>
+#include <QComboBox>
+#include <QGuiApplication>
 #include <QListWidget>
 #include <QMenu>
 #include <QPushButton>
 
 #include "core/operations/stack.h"
 #include "editor/fields/number_box.h"
+#include "editor/fields/ramp_edit.h"
 #include "editor/tools/brush_tool.h"
+#include "editor/tools/curve_tool.h"
 #include "tests/editor/window_fixture.h"
 
 namespace hairloom::editor {
@@ -108,11 +113,79 @@ TEST_F(OperatorsTest, ButtonsDoWhatTheySayAndAreUndone) {
     EXPECT_EQ(list().count(), 5);
 }
 
+TEST_F(OperatorsTest, SoloCopyAndPasteDoWhatTheySay) {
+    choose(1);
+    click("operatorSolo");
+    for (std::size_t i = 0; i < groom().operators.size(); ++i)
+        EXPECT_EQ(groom().operators[i].enabled, i == 1) << i;
+    expectEvaluated();
+    click("operatorSolo");
+    for (const Operator& one : groom().operators) EXPECT_TRUE(one.enabled);
+    choose(2);
+    click("operatorClip");
+    const Operator copied = groom().operators[2];
+    choose(4);
+    click("operatorPaste");
+    EXPECT_EQ(rows(), (QStringList{"Set length", "Flow", "Clump", "Noise", "Collide", "Clump"}));
+    EXPECT_EQ(groom().operators[5], copied);
+    expectEvaluated();
+    QGuiApplication::clipboard()->setText("not operators");
+    const auto before = hash();
+    click("operatorPaste");
+    EXPECT_EQ(hash(), before);
+}
+
+TEST_F(OperatorsTest, AMaskLimitsAnOperatorAndItsRampIsDrawn) {
+    choose(2);
+    const auto whole = hash();
+    auto* ramp = window->panel("operators")->findChild<RampEdit*>("maskRamp");
+    ASSERT_TRUE(ramp);
+    Q_EMIT ramp->begun();
+    Q_EMIT ramp->edited(runtime::Ramp::straight(0, 1));
+    EXPECT_EQ(maskOf(groom().operators[2]).ramp, runtime::Ramp::straight(0, 1));
+    EXPECT_NE(hash(), whole);
+    EXPECT_EQ(document().stepCount(), 1);
+    expectEvaluated();
+    auto* map = window->panel("operators")->findChild<QComboBox*>("map");
+    ASSERT_TRUE(map);
+    Q_EMIT map->activated(static_cast<int>(MaskMap::mask1));
+    EXPECT_EQ(maskOf(groom().operators[2]).map, MaskMap::mask1);
+    expectEvaluated();
+    undoAll();
+    EXPECT_EQ(hash(), whole);
+}
+
+TEST_F(OperatorsTest, ThePenOfAPartingGivesItItsCurve) {
+    choose(1);
+    add("Part");
+    ASSERT_EQ(groom().operators[2].op, "part");
+    click("curveDraw");
+    auto* tool = dynamic_cast<CurveTool*>(parts().tools.active());
+    ASSERT_TRUE(tool);
+    const auto pointer = [](double x, double y) {
+        Pointer at;
+        at.at_px = {x, y};
+        at.button = Qt::LeftButton;
+        return at;
+    };
+    const QSize size = parts().viewport.size();
+    const double x = size.width() / 2.0, y = size.height() / 3.0;
+    tool->press(pointer(x, y));
+    for (int i = 1; i <= 20; ++i) tool->drag(pointer(x + i, y - 3 * i));
+    tool->release(pointer(x + 20, y - 60));
+    EXPECT_GE(curveOf(groom().operators[2]).points.size(), 2u);
+    expectEvaluated();
+    click("curveClear");
+    EXPECT_TRUE(curveOf(groom().operators[2]).points.empty());
+    undoAll();
+    EXPECT_EQ(list().count(), 5);
+}
+
 TEST_F(OperatorsTest, ButtonsOfAnEmptyStackDoNoHarm) {
     click("operatorBake");
     const auto baked = hash();
-    for (const char* button :
-         {"operatorUp", "operatorDown", "operatorCopy", "operatorRemove", "operatorBake"})
+    for (const char* button : {"operatorUp", "operatorDown", "operatorCopy", "operatorRemove", "operatorBake",
+                               "operatorSolo", "operatorClip"})
         click(button);
     EXPECT_EQ(hash(), baked);
     EXPECT_EQ(document().stepCount(), 1);

@@ -80,7 +80,7 @@ TEST_P(BrushToolTest, EscapeCancelsTheStroke) {
 
 INSTANTIATE_TEST_SUITE_P(All, BrushToolTest,
                          testing::Values("comb", "brush", "grab", "smooth", "puff", "pinch", "length", "cut",
-                                         "cut_line", "delete", "dye_paint", "freeze"),
+                                         "cut_line", "delete", "dye_paint", "mask_paint", "freeze"),
                          [](const auto& brush) { return std::string(brush.param); });
 
 TEST_F(ToolsTest, KeysChangeSizeAndStrength) {

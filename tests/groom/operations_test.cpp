@@ -16,6 +16,7 @@
 #include "core/operations/flow.h"
 #include "core/operations/length_constraint.h"
 #include "core/operations/noise.h"
+#include "core/operations/operation.h"
 #include "core/operations/set_length.h"
 #include "core/operations/smooth.h"
 #include "core/operations/trim.h"
@@ -65,6 +66,22 @@ Tested tested(const char* name, Result<std::size_t> (*apply)(Groom&, const S&, c
             keepsLengths};
 }
 
+/// As a script has it.
+Tested scripted(const char* name, const std::string& json, bool keepsLengths = true) {
+    return {name,
+            [json](Groom& groom, const Region& region) -> Result<std::size_t> {
+                nlohmann::json parsed = nlohmann::json::parse(json);
+                parsed["region"] = nlohmann::json::parse(fieldsToJson(region).dump());
+                JsonReader reader(parsed, "o.json");
+                const auto op = reader.string("op");
+                const auto run = std::ranges::find(operations(), op, &Operation::name)->read(reader);
+                reader.finish();
+                if (auto status = reader.status(); !status) return tl::unexpected(status.error());
+                return run(groom);
+            },
+            keepsLengths};
+}
+
 std::vector<Tested> testedOperations() {
     FlowSettings parted = flowOverTheHead();
     parted.parting = 1;
@@ -84,16 +101,33 @@ std::vector<Tested> testedOperations() {
     shorter.rescale = false;
     CollideSettings away;
     away.distance = 0.006f;
-    return {tested("Flow", flow, parted),
-            tested("Clump", clump),
-            tested("Noise", noise),
-            tested("Curl", curl),
-            tested("Smooth", smooth),
-            tested("Drape", drape),
-            tested("Collide", collide, away),
-            tested("Trim", trim, cut, false),
-            tested("SetLength", setLength, longer, false),
-            tested("CutLength", setLength, shorter, false)};
+    return {
+        tested("Flow", flow, parted),
+        tested("Clump", clump),
+        tested("Noise", noise),
+        tested("Curl", curl),
+        tested("Smooth", smooth),
+        tested("Drape", drape),
+        tested("Collide", collide, away),
+        tested("Trim", trim, cut, false),
+        tested("SetLength", setLength, longer, false),
+        tested("CutLength", setLength, shorter, false),
+        scripted("Wave", R"({"op": "wave"})"),
+        scripted("Frizz", R"({"op": "frizz"})"),
+        scripted("Straighten", R"({"op": "straighten"})"),
+        scripted("Bend", R"({"op": "bend", "inwardDegrees": 90, "sidewaysDegrees": -30})"),
+        scripted("Flyaways", R"({"op": "flyaways", "share": 0.5})"),
+        scripted("Shrinkwrap", R"({"op": "shrinkwrap"})"),
+        scripted("Part",
+                 R"({"op": "part", "curve": [[0.01, 1.67, 0.06], [0.01, 1.69, 0], [0, 1.67, -0.06]]})"),
+        scripted("Attract", R"({"op": "attract", "reach": 0, "curve": [[0, 1.6, -0.12], [0, 1.4, -0.14]]})"),
+        scripted("Braid",
+                 R"({"op": "braid", "curve": [[0, 1.58, -0.11], [0, 1.5, -0.12], [0, 1.3, -0.12]]})"),
+        scripted("Bun", R"({"op": "bun"})"),
+        scripted("Mirror", R"({"op": "mirror", "reach": 0.03})", false),
+        scripted(
+            "AttractAlong",
+            R"({"op": "attract", "to": "along", "reach": 0, "curve": [[0, 1.6, -0.12], [0, 1.4, -0.14]]})")};
 }
 
 class EveryOperation : public testing::TestWithParam<Tested> {

@@ -255,7 +255,7 @@ TEST(HostileProject, VersionsAndKindsAreNamed) {
     const TemporaryFolder folder;
     Forger newer(folder);
     newer.version = kProjectVersion + 2;
-    EXPECT_THAT(newer.error(), HasSubstr("project is version 9; this program reads versions up to 7"));
+    EXPECT_THAT(newer.error(), HasSubstr("project is version 10; this program reads versions up to 8"));
     Forger other(folder);
     other.kind = "cache";
     EXPECT_THAT(other.error(), HasSubstr("/kind is 'cache'; expected 'project'"));

@@ -52,7 +52,7 @@ TEST(Script, NamesWhatIsWrongAndWhatIsAllowed) {
         return R"({"hairloom_script": 1, "operations": [)" + std::string(step) + "]}";
     };
     EXPECT_THAT(parseError(oneStep(R"({"op": "comb"})")),
-                HasSubstr("/operations/0/op is \"comb\"; expected one of set_length, flow, clump"));
+                HasSubstr("/operations/0/op is \"comb\"; expected one of set_length, flow, part"));
     EXPECT_THAT(
         parseError(oneStep(R"({"op": "curl", "raduis": 1})")),
         HasSubstr("/operations/0/raduis is not known to this program; expected only clearance, frequency"));

@@ -134,6 +134,119 @@ TEST(Stack, WeightLeadsFromNothingToAllAndKeepsLengths) {
         EXPECT_LT((almostNone[i] - groom.positions()[i]).norm(), 1e-5f);
 }
 
+/// Every second strand is painted.
+Groom halfPainted() {
+    Groom groom = stacked();
+    std::vector<float> mask(groom.strandCount());
+    for (std::size_t s = 0; s < mask.size(); ++s) mask[s] = s % 2 == 0 ? 1.0f : 0.0f;
+    groom.strandAttributes.set("mask.2", mask);
+    std::vector<Vec3f> strokes(groom.pointCount(), Vec3f(0.5f, 0, 0));
+    groom.pointAttributes.set(sculptAttribute(0), strokes);
+    return groom;
+}
+
+TEST(Stack, MasksKeepEveryOperatorToWhatIsPainted) {
+    for (const StackOperator& known : stackOperators()) {
+        SCOPED_TRACE(known.name);
+        Groom groom = halfPainted();
+        Operator one = newOperator(known.name);
+        groom.operators = {one};
+        const auto whole = evaluated(groom);
+        const auto base = groom.positions();
+        for (const bool invert : {false, true}) {
+            Mask mask;
+            mask.map = MaskMap::mask2;
+            mask.invert = invert;
+            setMaskOf(one, mask);
+            groom.operators = {one};
+            const auto masked = evaluated(groom);
+            for (std::size_t s = 0; s < groom.strandCount(); ++s) {
+                const std::size_t first = groom.offsets[s];
+                for (std::size_t i = first; i < first + 12; ++i) {
+                    if ((s % 2 == 0) == invert) {
+                        EXPECT_EQ(masked[i], base[i]) << "strand " << s;
+                    } else {
+                        EXPECT_LT((masked[i] - whole[i]).norm(), 1e-6f) << "strand " << s;
+                    }
+                }
+            }
+        }
+    }
+}
+
+TEST(Stack, ARampLetsTipsFollowAndRootsStay) {
+    Groom groom = stacked();
+    Operator one = operatorOf(
+        R"({"op": "drape", "amount": 1, "rootAmount": 1, "clearance": 0, "mask": {"ramp": [[0, 0], [0.5, 0], [1, 1]]}})");
+    groom.operators = {one};
+    const auto shape = evaluated(groom);
+    std::size_t turned = 0;
+    for (std::size_t s = 0; s < groom.strandCount(); ++s) {
+        const auto base = groom.strand(s);
+        const std::size_t first = groom.offsets[s];
+        for (std::size_t i = 0; i < 12; ++i) {
+            if (i > 5) continue;
+            EXPECT_EQ(shape[first + i], base[i]) << "strand " << s << ", point " << i;
+        }
+        EXPECT_NEAR(polylineLength(std::span(shape).subspan(first, 12)), 0.1f, 1e-5f);
+        turned += (shape[first + 11] - base[11]).norm() > 0.005f ? 1 : 0;
+    }
+    EXPECT_GT(turned, groom.strandCount() / 2);
+    EXPECT_EQ(maskOf(one).ramp.count, 3u);
+}
+
+TEST(Stack, PaintingAMaskRunsTheOperatorsThatHaveIt) {
+    Groom groom = halfPainted();
+    groom.operators[1] = operatorOf(R"({"op": "curl", "mask": {"map": "mask2"}})");
+    EXPECT_TRUE(readsMaps(groom.operators));
+    StackCache cache;
+    const Version first = versionOf(*evaluateStack(groom, cache, 1));
+    const Version second = versionOf(*evaluateStack(groom, cache, 2));
+    groom.strandAttributes.edit<float>("mask.2")[1] = 0.5f;
+    EXPECT_EQ(versionOf(*evaluateStack(groom, cache, 1)), first);
+    EXPECT_NE(versionOf(*evaluateStack(groom, cache, 2)), second);
+    const AttributeData kept = evaluate(groom, cache);
+    EXPECT_TRUE(std::ranges::equal(points(kept), evaluated(groom)));
+}
+
+TEST(Stack, MasksShowTheDensityOfTheScalpAndTheDyeOfPoints) {
+    Groom groom = stacked();
+    groom.scalpDensity.assign(groom.scalp->positions().size(), 1);
+    for (std::size_t v = 0; v < groom.scalpDensity.size(); ++v)
+        groom.scalpDensity[v] = groom.scalp->positions()[v].x() > 0 ? 1.0f : 0.0f;
+    Mask mask;
+    mask.map = MaskMap::density;
+    const auto shares = maskShares(groom, mask, groom.positions());
+    for (std::size_t s = 0; s < groom.strandCount(); ++s) {
+        const float x = groom.strand(s)[0].x();
+        if (std::abs(x) < 0.03f) continue;
+        EXPECT_NEAR(shares[groom.offsets[s]], x > 0 ? 1 : 0, 1e-6f);
+    }
+    std::vector<float> dye(groom.pointCount(), 0.25f);
+    groom.pointAttributes.set("dye", dye);
+    mask.map = MaskMap::dye;
+    mask.invert = true;
+    EXPECT_FLOAT_EQ(maskShares(groom, mask, groom.positions())[7], 0.75f);
+
+    Groom bare = makeGroom({0, 2}, {Vec3f(0, 0, 0), Vec3f(0, 0.1f, 0)});
+    mask.map = MaskMap::density;
+    const auto run = runMasked(bare, mask, [](Groom&) -> Result<std::size_t> { return 1; });
+    ASSERT_FALSE(run);
+    EXPECT_THAT(run.error().message(), HasSubstr("bound to no scalp"));
+}
+
+TEST(Stack, ARegionMayBeAGroupOfTheFile) {
+    Groom groom = halfPainted();
+    std::vector<std::uint32_t> groups(groom.strandCount());
+    for (std::size_t s = 0; s < groups.size(); ++s) groups[s] = s % 2;
+    groom.groupNames = {"even", "odd"};
+    groom.strandAttributes.set(attribute::kGroup, groups);
+    groom.operators = {operatorOf(R"({"op": "drape", "region": {"group": 2}})")};
+    const auto shape = evaluated(groom);
+    for (std::size_t s = 0; s < groom.strandCount(); ++s)
+        EXPECT_EQ(shape[groom.offsets[s] + 11] == groom.strand(s)[11], s % 2 == 0) << "strand " << s;
+}
+
 TEST(Stack, ActsOnFrozenAndLockedStrandsToo) {
     Groom groom = stacked();
     const auto free = evaluated(groom);

@@ -261,6 +261,28 @@ std::vector<std::pair<double, double>> JsonReader::pairs(std::string_view key, d
     return {};
 }
 
+std::vector<Vec3f> JsonReader::vectors(std::string_view key, double min, double max, std::size_t maximum) {
+    const json* value = member(key);
+    if (!value) return {};
+    std::vector<Vec3f> result;
+    bool good = value->is_array() && value->size() <= maximum;
+    for (std::size_t i = 0; good && i < value->size(); ++i) {
+        const json& vector = (*value)[i];
+        good = vector.is_array() && vector.size() == 3;
+        Vec3f read = Vec3f::Zero();
+        for (std::size_t c = 0; good && c < 3; ++c) {
+            good = vector[c].is_number() && withinRange(vector[c].get<double>(), min, max);
+            if (good) read[static_cast<int>(c)] = vector[c].get<float>();
+        }
+        result.push_back(read);
+    }
+    if (good) return result;
+    complain(key, "is no such list",
+             fmt::format("expected an array of up to {} arrays of three numbers from {}", maximum,
+                         rangeText(min, max, {})));
+    return {};
+}
+
 std::size_t JsonReader::choice(std::string_view key, std::span<const std::string_view> choices) {
     const std::string name = string(key);
     if (!ok()) return 0;

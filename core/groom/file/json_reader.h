@@ -48,6 +48,8 @@ class JsonReader {
     /// An array of at most `most` pairs of numbers, each an array.
     std::vector<std::pair<double, double>> pairs(std::string_view key, double min, double max,
                                                  std::size_t maximum);
+    /// An array of at most `most` arrays of three numbers.
+    std::vector<Vec3f> vectors(std::string_view key, double min, double max, std::size_t maximum);
     /// An index into `choices`.
     std::size_t choice(std::string_view key, std::span<const std::string_view> choices);
     JsonReader object(std::string_view key);

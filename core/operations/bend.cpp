@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/operations/length_constraint.h"
+#include "core/operations/operation.h"
+#include "core/operations/strand_frames.h"
+
+namespace hairloom {
+namespace {
+
+struct BendSettings {
+    float inwardDegrees = 40;
+    float sidewaysDegrees = 0;
+    float start = 0.5f;
+    float variation = 0.2f;
+    float clearance = 0.001f;
+    std::uint64_t seed = 1;
+};
+using S = BendSettings;
+
+constexpr Field<S> kFields[] = {
+    field<&S::inwardDegrees>("inwardDegrees", "°", -360, 360,
+                             "turn of the tip towards the head, below 0 away from it: tips turned in or out"),
+    field<&S::sidewaysDegrees>("sidewaysDegrees", "°", -360, 360, "turn of the tip along the skin"),
+    field<&S::start>("start", "", 0, 0.99, "share of the length from which hair bends; evenly from there on"),
+    field<&S::variation>("variation", "", 0, 1, "random share by which a strand may bend less"),
+    clearanceField<&S::clearance>(),
+    seedField<&S::seed>("seed", "another seed varies the strands differently"),
+};
+std::span<const Field<S>> fieldsOf(const S&) {
+    return kFields;
+}
+
+Result<std::size_t> bend(Groom& groom, const S& settings, const Region& region) {
+    if (auto status = checkFields("bend", settings); !status) return tl::unexpected(status.error());
+    return editStrands(groom, region, {settings.clearance, true}, [&](StrandEdit& strand) {
+        const float total = strand.totalLength();
+        if (!(total > 0)) return;
+        const float own = 1 - settings.variation * strand.random(settings.seed).uniform();
+        const auto frames = strandFrames(strand.points, strand.outward());
+        Vec3f last = strand.points[0];
+        float arc = 0;
+        for (std::size_t i = 1; i < strand.points.size(); ++i) {
+            arc += strand.lengths[i - 1];
+            const float share = std::max(0.0f, (arc / total - settings.start) / (1 - settings.start)) * own;
+            const Vec3f segment = strand.points[i] - last;
+            last = strand.points[i];
+            const Eigen::AngleAxisf inward(-radians(settings.inwardDegrees) * share, frames[i].lateral);
+            const Eigen::AngleAxisf sideways(radians(settings.sidewaysDegrees) * share, frames[i].outward);
+            strand.points[i] = strand.points[i - 1] + sideways * (inward * segment);
+        }
+        restoreLengthsByDirection(strand.points, strand.lengths);
+    });
+}
+
+}  // namespace
+
+Operation bendOperation() {
+    return operation<S, bend>("bend", 66, "turns tips in, out or to the side");
+}
+
+}  // namespace hairloom

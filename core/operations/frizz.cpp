@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
+#include "core/operations/length_constraint.h"
+#include "core/operations/operation.h"
+#include "core/operations/strand_frames.h"
+
+namespace hairloom {
+namespace {
+
+struct FrizzSettings {
+    float angleDegrees = 25;
+    float frequency = 120;
+    float share = 0.7f;
+    float start = 0.02f;
+    float clearance = 0.001f;
+    std::uint64_t seed = 1;
+};
+using S = FrizzSettings;
+
+constexpr Field<S> kFields[] = {
+    field<&S::angleDegrees>("angleDegrees", "°", 0, 90, "how far kinks turn hair from its course"),
+    field<&S::frequency>("frequency", "1/m", 1, 2000,
+                         "kinks for each metre of hair; segments limit it to one for each"),
+    field<&S::share>("share", "", 0, 1, "share of the strands that are frizzy; the others stay as they are"),
+    field<&S::start>("start", "m", 0, 5, "distance from the root over which kinks grow to their full angle"),
+    clearanceField<&S::clearance>(),
+    seedField<&S::seed>("seed", "another seed kinks other strands"),
+};
+std::span<const Field<S>> fieldsOf(const S&) {
+    return kFields;
+}
+
+/// Turns segments, and keeps the course: kinks lead to and fro about it.
+Result<std::size_t> frizz(Groom& groom, const S& settings, const Region& region) {
+    if (auto status = checkFields("frizz", settings); !status) return tl::unexpected(status.error());
+    const float sine = std::sin(radians(settings.angleDegrees));
+    return editStrands(groom, region, {settings.clearance}, [&](StrandEdit& strand) {
+        Random random = strand.random(settings.seed);
+        const std::uint64_t stream = random.next();
+        if (random.uniform() >= settings.share) return;
+        const float own = 0.4f + 0.6f * random.uniform();  // no two strands are equally frizzy
+        Vec3f last = strand.points[0];
+        float arc = 0;
+        for (std::size_t i = 1; i < strand.points.size(); ++i) {
+            const Vec3f segment = strand.points[i] - last;
+            last = strand.points[i];
+            arc += strand.lengths[i - 1];
+            const float grown = settings.start > 0 ? std::min(arc / settings.start, 1.0f) : 1.0f;
+            const Vec3f direction = unitOr(segment, Vec3f::Zero());
+            const Vec3f kink = waveAt(stream, arc * settings.frequency);
+            const Vec3f aside = kink - direction * kink.dot(direction);
+            strand.points[i] =
+                strand.points[i - 1] +
+                unitOr(direction + sine * own * grown * aside, direction) * strand.lengths[i - 1];
+        }
+    });
+}
+
+}  // namespace
+
+Operation frizzOperation() {
+    return operation<S, frizz>("frizz", 42, "kinks strands at random, some more than others");
+}
+
+}  // namespace hairloom

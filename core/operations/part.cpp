@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+
+#include "core/operations/length_constraint.h"
+#include "core/operations/operation.h"
+#include "core/operations/strand_frames.h"
+
+namespace hairloom {
+namespace {
+
+struct PartSettings {
+    float strength = 1;
+    float reach = 0.07f;
+    float liftDegrees = 25;
+    float rise = 0.03f;
+    float clearance = 0.0015f;
+    DrawnCurve curve;
+};
+using S = PartSettings;
+
+constexpr Field<S> kFields[] = {
+    field<&S::strength>("strength", "", 0, 1, "how strongly hair is laid away from the parting"),
+    field<&S::reach>("reach", "m", 0.001, 1, "distance from the parting at which hair is as it was"),
+    field<&S::liftDegrees>("liftDegrees", "°", 0, 90, "angle to the skin at which hair leaves its root"),
+    field<&S::rise>("rise", "m", 0, 1, "distance from the root over which that angle is lost"),
+    clearanceField<&S::clearance>(),
+};
+std::span<const Field<S>> fieldsOf(const S&) {
+    return kFields;
+}
+
+constexpr float kAway =
+    0.9f;  ///< sine of the angle at which hair leads away from the parting, as far as skin lets it
+
+/// Across the parting there, along the skin, to the right of its direction.
+Vec3f across(const CurveLine::Nearest& place, const Vec3f& outward) {
+    return unitOr(place.direction.cross(outward), place.direction.unitOrthogonal());
+}
+
+/// A direction whose share along the unit vector `axis` is at least `least`; the rest keeps its direction.
+Vec3f raised(const Vec3f& direction, const Vec3f& axis, float least) {
+    const float now = direction.dot(axis);
+    if (now >= least) return direction;
+    const Vec3f rest = unitOr(direction - axis * now, axis.unitOrthogonal());
+    return axis * least + rest * std::sqrt(std::max(0.0f, 1 - least * least));
+}
+
+void layAway(StrandEdit& strand, const CurveLine& line, const S& settings) {
+    const CurveLine::Nearest home = line.nearest(strand.points[0]);
+    if (home.distance >= settings.reach) return;
+    const Vec3f outward = strand.outward();
+    const float side = (strand.points[0] - home.point).dot(across(home, outward)) < 0 ? -1.0f : 1.0f;
+    Vec3f last = strand.points[0];
+    float arc = 0;
+    for (std::size_t i = 1; i < strand.points.size(); ++i) {
+        arc += strand.lengths[i - 1];
+        Vec3f direction = unitOr(strand.points[i] - last, outward);
+        last = strand.points[i];
+        const Vec3f& from = strand.points[i - 1];
+        const CurveLine::Nearest place = line.nearest(from);
+        const float weight =
+            settings.strength * (1 - smoothStep(0.3f * settings.reach, settings.reach, place.distance));
+        if (weight > 0) {
+            const Vec3f normal = strand.skin ? strand.skin->distanceAt(from).outward : outward;
+            const Vec3f away = side * across(place, normal);
+            const float leads = direction.dot(away);
+            direction = raised(direction, away, std::max(leads, leads + weight * (kAway - leads)));
+            // The skin is met at the angle that the root leaves it, then along.
+            const float lift = settings.rise > 0 ? std::max(0.0f, 1 - arc / settings.rise) : 0.0f;
+            const float climb = std::sin(radians(settings.liftDegrees)) * lift;
+            const float rises = direction.dot(normal);
+            const float wanted = rises + weight * (climb - rises);
+            const Vec3f tangent = unitOr(direction - normal * rises, away);
+            direction = tangent * std::sqrt(std::max(0.0f, 1 - wanted * wanted)) + normal * wanted;
+        }
+        strand.points[i] = from + unitOr(direction, outward) * strand.lengths[i - 1];
+    }
+}
+
+Result<std::size_t> part(Groom& groom, const S& settings, const Region& region) {
+    if (auto status = checkFields("part", settings); !status) return tl::unexpected(status.error());
+    if (!CurveLine::isDrawn(settings.curve)) return std::size_t{0};
+    const CurveLine line(settings.curve);
+    return editStrands(groom, region, {settings.clearance, true},
+                       [&](StrandEdit& strand) { layAway(strand, line, settings); });
+}
+
+}  // namespace
+
+Operation partOperation() {
+    return operation<S, part>("part", 22, "lays strands away from a parting that is drawn on the scalp");
+}
+
+}  // namespace hairloom
