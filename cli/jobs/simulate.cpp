@@ -15,9 +15,12 @@
 #include "cli/progress.h"
 #include "core/base/content_kind.h"
 #include "core/base/log.h"
+#include "core/editing/document.h"
 #include "core/editing/penetration.h"
+#include "core/editing/take_shape.h"
 #include "core/groom/file/project_file.h"
 #include "core/simulation/frame_record.h"
+#include "core/simulation/rest_positions.h"
 #include "core/simulation/sag.h"
 #include "core/simulation/simulation.h"
 
@@ -40,6 +43,7 @@ struct SimulateOptions {
     std::string method = "strands";
     bool hairHair = false;
     bool sag = false;
+    bool take = false;
     std::string record;
     std::string against;
     std::string output;
@@ -177,6 +181,20 @@ Result<Report> sagOf(const Groom& groom, const SimulateOptions& options) {
     return report;
 }
 
+/// The groom with the frame as its authored shape, and how well that holds.
+Result<Groom> take(Groom groom, std::span<const Vec3f> positions_ws, const HeadPose& pose, Report& report) {
+    editing::Document document(std::move(groom));
+    const std::vector<Vec3f> shape = restPositions(document.groom(), positions_ws, pose);
+    auto command = editing::takeShape(document.model(), shape, true);
+    if (!command) return tl::unexpected(command.error());
+    document.perform(std::move(*command));
+    Groom taken = std::move(document).takeGroom();
+    const auto sag = measureSag(taken);
+    if (!sag) return tl::unexpected(sag.error());
+    report["sag"] = sagReport(taken, *sag);
+    return taken;
+}
+
 /// What --engine says, and where it says nothing --backend.
 Result<JobEngine> engineOf(const SimulateOptions& options, const Groom& groom) {
     if (options.engine.empty() && options.backend == "cpu")
@@ -245,7 +263,10 @@ Result<Report> simulate(const SimulateOptions& options) {
     const Groom moved = posedGroom(*groom, simulation->positions_ws(), inWorld(pose));
     reportInsideMesh(moved, report);
     if (!options.output.empty()) {
-        if (auto saved = saveProject(moved, options.output); !saved) return tl::unexpected(saved.error());
+        Result<Groom> kept = moved;
+        if (options.take) kept = take(*groom, simulation->positions_ws(), pose, report);
+        if (!kept) return tl::unexpected(kept.error());
+        if (auto saved = saveProject(*kept, options.output); !saved) return tl::unexpected(saved.error());
         report["output"] = options.output;
     }
     return report;
@@ -286,7 +307,13 @@ JobRun declare(CLI::App& job) {
     job.add_option("--record", options->record, "File to write every frame to");
     job.add_option("--against", options->against,
                    "Record of the same groom and frames to tell the distance from");
-    job.add_option("-o,--output", options->output, "Project to write with the hair as it ends");
+    auto* output =
+        job.add_option("-o,--output", options->output, "Project to write with the hair as it ends");
+    job.add_flag(
+           "--take", options->take,
+           "What -o writes has the hair as it ends for its authored shape, on the head at rest, as rods "
+           "that carry their weight in it; operators stay, with a sculpt on top")
+        ->needs(output);
     return [options](const std::string&) {
         return withOutputs({{options->output, content::kProject}, {options->record, content::kFrames}},
                            [&] { return simulate(*options); });

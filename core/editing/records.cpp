@@ -12,8 +12,10 @@
 #include "core/editing/selection_commands.h"
 #include "core/editing/settings_commands.h"
 #include "core/editing/stack_commands.h"
+#include "core/editing/take_shape.h"
 #include "core/groom/file/settings_json.h"
 #include "core/operations/stack.h"
+#include "core/operations/strand_edit.h"
 
 namespace hairloom::editing {
 namespace {
@@ -96,6 +98,18 @@ MakeCommand readDensity(JsonReader& reader) {
             return fail(fmt::format("{} densities", values.size()),
                         fmt::format("one for each of {} vertices", vertices));
         return setDensity(document.model(), values);
+    };
+}
+
+MakeCommand readTakeShape(JsonReader& reader) {
+    const std::vector<double> numbers = reader.numbers("points", -kAnywhere, kAnywhere, 3 * kMaxNumbers, "m");
+    const bool carriesWeight = reader.boolean("carriesWeight");
+    std::vector<Vec3f> points(numbers.size() / 3);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        points[i] = Vec3d(numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]).cast<float>();
+    if (numbers.size() % 3 != 0) reader.complain("points", "has numbers beside those of points");
+    return [points, carriesWeight](const Document& document) -> CommandResult {
+        return takeShape(document.model(), points, carriesWeight);
     };
 }
 
@@ -197,6 +211,7 @@ constexpr RecordedOperation kOperations[] = {
     {"copy_operator", readAtOperator<copyOperator>},
     {"remove_operator", readAtOperator<removeOperator>},
     {"bake_operators", readBake},
+    {"take_shape", readTakeShape},
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/groom/carried_weight.h"
 #include "core/simulation/simulation.h"
 
 namespace hairloom {
@@ -73,8 +74,7 @@ Result<Sag> measureSag(const Groom& groom) {
 
 Groom holdingItsShape(const Groom& groom) {
     Groom held = groom;
-    held.simulation.strandModel = runtime::StrandModel::rods;
-    held.simulation.restGravity = 1;
+    carryWeight(held.simulation);
     return held;
 }
 

@@ -59,8 +59,8 @@ class OperatorsPanel : public QWidget {
         connect(list_, &QListWidget::itemChanged, this, [this](QListWidgetItem* item) {
             mute(static_cast<std::size_t>(list_->row(item)), item->checkState() != Qt::Checked);
         });
-        connect(&document_, &QtDocument::changed, this, [this](editing::Part parts) {
-            if (contains(parts, editing::Part::Operators)) refresh();
+        connect(&document_, &QtDocument::changed, this, [this](editing::Part changed) {
+            if (contains(changed, editing::Part::Operators)) refresh();
         });
         connect(&document_, &QtDocument::replaced, this, [this] { chosen_ = kNone; });
         refresh();

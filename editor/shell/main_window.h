@@ -53,9 +53,11 @@ class MainWindow : public QMainWindow {
     void addFileActions();
     void addEditActions();
     void addSelectActions();
+    void chooseGuidesByClustering();
     void fillGroupMenu();
     void addViewActions();
     void addPlayActions();
+    void takeShape();
     void addToolActions();
     void addHelpActions();
     void makePanels();

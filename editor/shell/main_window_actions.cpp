@@ -6,7 +6,10 @@
 #include <QMessageBox>
 #include <algorithm>
 
+#include "core/editing/document.h"
 #include "core/editing/selection_commands.h"
+#include "core/editing/take_shape.h"
+#include "core/simulation/rest_positions.h"
 #include "editor/dialogs/export_dialog.h"
 #include "editor/dialogs/preferences_dialog.h"
 #include "editor/dialogs/shortcut_dialog.h"
@@ -207,10 +210,39 @@ void MainWindow::addPlayActions() {
     add({"play.reset", tr("&Reset to rest"), "reset", tr("Puts the hair back to its authored shape"),
          QKeySequence("Shift+Space")},
         [this] { player_.reset(); });
+    add({"play.take",
+         tr("&Take this shape"),
+         "grow",
+         tr("Makes the hair as it is now its authored shape, on the head at rest; it holds under gravity"),
+         {}},
+        [this] { takeShape(); });
     connect(&player_, &Player::stateChanged, this, [this, &toggle] {
         toggle.setIcon(icon(player_.isPlaying() ? "pause" : "play"));
         toggle.setText(player_.isPlaying() ? tr("&Pause") : tr("&Play"));
     });
+}
+
+void MainWindow::takeShape() {
+    player_.pause();
+    const auto frame = player_.frame();
+    if (!frame) {
+        messages_.say(tr("Let the hair move first: the shape that it has now is the authored one"));
+        return;
+    }
+    if (frame->pose->positions_ws.size() != document_.groom().pointCount()) {
+        messages_.warn(tr("This frame is on the graphics card alone; let the CPU simulate (Motion panel)"));
+        return;
+    }
+    const std::vector<Vec3f> shape =
+        restPositions(document_.groom(), frame->pose->positions_ws, frame->pose->head);
+    auto command = editing::takeShape(document_.editing().model(), shape, true);
+    if (!command) {
+        messages_.warn(QString::fromStdString(command.error().message()));
+        return;
+    }
+    player_.reset();
+    document_.perform(std::move(*command));
+    messages_.say(tr("The hair keeps this shape"));
 }
 
 void MainWindow::addToolActions() {

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The menu over strands that are chosen: select, hide and show, freeze, delete.
+// The menu over strands that are chosen: select, hide and show, freeze, guides, delete.
+#include <fmt/format.h>
+
+#include <QInputDialog>
 #include <QMenuBar>
 #include <algorithm>
 #include <iterator>
 
 #include "core/editing/document.h"
 #include "core/editing/selection_commands.h"
+#include "core/editing/settings_commands.h"
+#include "core/operations/guide_clusters.h"
 #include "editor/shell/main_window.h"
 
 namespace hairloom::editor {
@@ -18,6 +23,36 @@ std::vector<std::uint32_t> others(const Groom& groom, const std::vector<std::uin
 }
 
 }  // namespace
+
+void MainWindow::chooseGuidesByClustering() {
+    const Groom& groom = document_.groom();
+    const std::vector<std::uint32_t> strands = strandsToEdit(groom, {});
+    if (strands.size() < 2) {
+        messages_.say(tr("There are no strands to choose among"));
+        return;
+    }
+    bool taken = false;
+    GuidesSettings settings;
+    settings.count = static_cast<std::uint32_t>(
+        QInputDialog::getInt(this, tr("Guides by clustering"), tr("Guides of %1 strands").arg(strands.size()),
+                             std::min<int>(200, static_cast<int>(strands.size() / 2)), 1,
+                             static_cast<int>(strands.size()), 1, &taken));
+    if (!taken) return;
+    const GuideClusters clusters = clusterGuides(groom, strands, settings);
+    Groom guided = groom;
+    if (auto chosen = chooseGuides(guided, settings); !chosen) {
+        messages_.warn(QString::fromStdString(chosen.error().message()));
+        return;
+    }
+    const std::string record = fmt::format(R"({{"op":"guides","count":{}}})", settings.count);
+    document_.perform(editing::replaceGroom(document_.editing().model(), std::move(guided),
+                                            tr("Guides by clustering").toStdString(), record));
+    messages_.say(tr("%1 guides stand for %2 strands, which are %3 mm from them on average, %4 mm at most")
+                      .arg(clusters.guides.size())
+                      .arg(strands.size())
+                      .arg(clusters.meanMm, 0, 'f', 1)
+                      .arg(clusters.maxMm, 0, 'f', 1));
+}
 
 void MainWindow::addSelectActions() {
     QMenu* menu = menuBar()->addMenu(tr("&Select"));
@@ -96,6 +131,13 @@ void MainWindow::addSelectActions() {
             return editing::freezeStrands(model, editing::allStrands(model.groom), false);
         },
         false);
+    menu->addAction(&actions_->add(
+        {"select.guides",
+         tr("G&uides by clustering…"),
+         "",
+         tr("Finds few strands that stand for all, keeps them, and lets follow hairs come from them"),
+         {}},
+        [this] { chooseGuidesByClustering(); }));
     add(
         {"select.delete", tr("&Delete selected"), "delete", tr("Removes the selected strands"),
          QKeySequence("Del")},

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <memory>
+
+#include "cli/documents.h"
+#include "cli/job.h"
+#include "cli/outputs.h"
+#include "core/base/content_kind.h"
+#include "core/base/stopwatch.h"
+#include "core/groom/file/project_file.h"
+#include "core/operations/guide_clusters.h"
+
+namespace hairloom::cli {
+namespace {
+
+struct GuidesOptions {
+    std::string input, output;
+    GuidesSettings settings;
+    bool all = false;
+};
+
+Result<Report> run(const GuidesOptions& options) {
+    auto groom = loadDocument(options.input);
+    if (!groom) return tl::unexpected(groom.error());
+    const Stopwatch watch;
+    GuidesSettings settings = options.settings;
+    settings.alone = !options.all;
+    const GuideClusters clusters = clusterGuides(*groom, strandsToEdit(*groom, {}), settings);
+    if (clusters.guides.empty())
+        return failIn(options.input, {}, "no strand could be a guide",
+                      "expected strands of two points at least that are neither frozen nor locked");
+    Report report{{"strands", groom->strandCount()},
+                  {"guides", clusters.guides.size()},
+                  {"mean_mm", clusters.meanMm},
+                  {"max_mm", clusters.maxMm}};
+    if (!options.output.empty()) {
+        if (auto chosen = chooseGuides(*groom, settings); !chosen) return tl::unexpected(chosen.error());
+        if (auto saved = saveProject(*groom, options.output); !saved) return tl::unexpected(saved.error());
+        report["output"] = options.output;
+    }
+    report["follow_per_guide"] = groom->interpolation.followPerGuide;
+    report["seconds"] = watch.seconds();
+    return report;
+}
+
+JobRun declare(CLI::App& job) {
+    const auto options = std::make_shared<GuidesOptions>();
+    job.add_option("groom", options->input, "Hair of many strands")->required();
+    job.add_option("--count", options->settings.count, "Guides to find")->check(CLI::Range(1, 100'000));
+    job.add_option("--root-weight", options->settings.rootWeight,
+                   "How much the distance of roots counts beside that of shapes")
+        ->check(CLI::Range(0.0, 100.0));
+    job.add_option("--seed", options->settings.seed, "Another seed begins with other strands");
+    job.add_flag("--all", options->all,
+                 "Keep all strands, the guides being marked; else they stay alone with follow hairs");
+    job.add_option("-o,--output", options->output, "Project to write; without it the error is told alone");
+    return [options](const std::string&) {
+        return withOutputs({{options->output, content::kProject}}, [&] { return run(*options); });
+    };
+}
+
+}  // namespace
+
+Job guidesJob() {
+    return {"guides",
+            "Find few strands that stand for all, by clustering, and how far the others are from them",
+            "hair.hairloom --count 200 -o guides.hairloom", declare};
+}
+
+}  // namespace hairloom::cli

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Operators on the command line: copied between projects, masked, alone; guides and shapes that are taken.
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "tests/cli/command.h"
+
+namespace hairloom::test {
+namespace {
+
+using testing::HasSubstr;
+
+class OperatorsCli : public CommandLineTest {
+  protected:
+    void SetUp() override {
+        CommandLineTest::SetUp();
+        runJson(createArguments());
+        std::ofstream(folder / "stack.json") << R"({"operators": [
+            {"op": "flow", "gravity": 0.9},
+            {"op": "curl", "mask": {"map": "density", "ramp": [[0, 0], [1, 1]]}},
+            {"op": "part", "curve": [[0, 1.74, 0.08], [0, 1.78, 0], [0, 1.76, -0.06]]}]})";
+        runJson("stack hair.hairloom --from stack.json -o styled.hairloom");
+    }
+    std::size_t enabled(const std::string& project) {
+        std::size_t count = 0;
+        for (const auto& one : runJson("stack " + project)["operators"]) count += one["enabled"].get<bool>();
+        return count;
+    }
+};
+
+TEST_F(OperatorsCli, StacksAreKeptAndAddedToOtherHair) {
+    const auto kept = runJson("stack styled.hairloom --only 1 --keep curl.stack.json");
+    ASSERT_EQ(kept["operators"].size(), 1u);
+    EXPECT_EQ(kept["operators"][0]["mask"]["map"], "density");
+    const auto added = runJson("stack hair.hairloom --add curl.stack.json -o other.hairloom");
+    EXPECT_EQ(added["operators"], kept["operators"]);
+    const auto before = runJson("stack styled.hairloom --add curl.stack.json --at 0 -o more.hairloom");
+    ASSERT_EQ(before["operators"].size(), 4u);
+    EXPECT_EQ(before["operators"][0], kept["operators"][0]);
+    const Outcome outcome = run("stack styled.hairloom --only 9");
+    EXPECT_EQ(outcome.exitCode, 1);
+    EXPECT_THAT(outcome.errors, HasSubstr("operator 9 is asked for; there are 3"));
+    EXPECT_EQ(run("stack styled.hairloom --solo 0").exitCode, 2) << "needs -o";
+}
+
+TEST_F(OperatorsCli, OneActsAloneIsDuplicatedAndRemoved) {
+    runJson("stack styled.hairloom --solo 1 -o solo.hairloom");
+    EXPECT_EQ(enabled("solo.hairloom"), 1u);
+    runJson("stack solo.hairloom --solo 1 -o all.hairloom");
+    EXPECT_EQ(readText(folder / "all.hairloom"), readText(folder / "styled.hairloom"));
+    const auto twice = runJson("stack styled.hairloom --duplicate 2 --remove 0 -o twice.hairloom");
+    ASSERT_EQ(twice["operators"].size(), 3u);
+    EXPECT_EQ(twice["operators"][1], twice["operators"][2]);
+}
+
+TEST_F(OperatorsCli, GuidesStandForAllStrands) {
+    const auto few = runJson("guides styled.hairloom --count 10");
+    const auto many = runJson("guides styled.hairloom --count 40 -o guides.hairloom");
+    EXPECT_EQ(many["guides"], 40);
+    EXPECT_LT(many["mean_mm"].get<double>(), few["mean_mm"].get<double>());
+    EXPECT_LE(many["mean_mm"].get<double>(), many["max_mm"].get<double>());
+    EXPECT_EQ(runJson("info guides.hairloom")["strands"], 40);
+    EXPECT_TRUE(runJson("validate guides.hairloom")["valid"].get<bool>());
+    runJson("guides styled.hairloom --count 40 --all -o marked.hairloom");
+    const auto marked = runJson("info marked.hairloom");
+    EXPECT_EQ(marked["guides"], 40);
+    EXPECT_EQ(marked["strands"], many["strands"]);
+    runJson("guides styled.hairloom --count 40 --threads 1 -o again.hairloom");
+    EXPECT_EQ(readText(folder / "guides.hairloom"), readText(folder / "again.hairloom"));
+}
+
+TEST_F(OperatorsCli, AFrameOfTheSimulationIsTakenAsTheShape) {
+    const auto taken =
+        runJson("simulate styled.hairloom --frames 20 --motion nod --wind 4,0,0 --take -o taken.hairloom");
+    EXPECT_LT(taken["sag"]["mean_mm"].get<double>(), 1) << "it holds";
+    const auto operators = runJson("stack taken.hairloom")["operators"];
+    ASSERT_EQ(operators.size(), 4u);
+    EXPECT_EQ(operators[3]["op"], "sculpt");
+    EXPECT_TRUE(runJson("validate taken.hairloom")["valid"].get<bool>());
+    EXPECT_EQ(run("simulate styled.hairloom --frames 2 --take").exitCode, 2) << "needs -o";
+}
+
+}  // namespace
+}  // namespace hairloom::test
