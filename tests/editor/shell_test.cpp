@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Opening, saving, leaving, recovering, preferences, shortcuts.
 #include <QComboBox>
+#include <QDir>
 #include <QDropEvent>
+#include <QFile>
 #include <QFileInfo>
 #include <QKeySequenceEdit>
 #include <QLabel>
 #include <QMimeData>
 #include <QProgressBar>
 #include <QPushButton>
+#include <QSpinBox>
 #include <QStandardPaths>
 
 #include "core/base/file.h"
@@ -310,6 +313,31 @@ TEST_F(ShellTest, AnAssetForGamesIsExportedWithItsSize) {
     EXPECT_TRUE(std::ranges::any_of(labels, [&](const QLabel* label) {
         return label->text().contains(size);
     })) << size.toStdString();
+}
+
+TEST_F(ShellTest, APageForBrowsersIsExportedAtRest) {
+    openSampleHair("short");
+    for (const char* name : {"index.html", "player.js"}) {
+        ASSERT_TRUE(QDir().mkpath(inFolder("player")));
+        QFile file(inFolder("player/") + name);
+        ASSERT_TRUE(file.open(QIODevice::WriteOnly) && file.write("player") > 0);
+    }
+    qputenv("HAIRLOOM_WEB", inFolder("player").toUtf8());
+    ExportDialog dialog(document(), parts().tasks, parts().messages, parts().player);
+    dialog.findChild<QComboBox*>("target")->setCurrentText("Browser, a page that moves");
+    auto* frames = dialog.findChild<QSpinBox*>("frames");
+    frames->setValue(3);
+    dialog.exportTo(inFolder("page"));
+    finishWork();
+    EXPECT_FALSE(QFileInfo::exists(inFolder("page"))) << "frames are the page's own";
+    frames->setValue(0);
+    dialog.exportTo(inFolder("page"));
+    finishWork();
+    qunsetenv("HAIRLOOM_WEB");
+    EXPECT_EQ(dialog.report().format, "web");
+    EXPECT_EQ(dialog.report().strands, groom().strandCount());
+    for (const char* name : {"index.html", "player.js", "hair.js", "hair.hairrt"})
+        EXPECT_TRUE(QFileInfo::exists(inFolder("page/") + name)) << name;
 }
 
 TEST_F(ShellTest, ImportShowsTheStrandsBeforeTheyAreTakenAndBindsThemToTheHead) {

@@ -16,6 +16,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
+void setVariable(const char* name, const std::string& value) {
+#ifdef _WIN32
+    _putenv_s(name, value.c_str());  // empty: removes it
+#else
+    value.empty() ? unsetenv(name) : setenv(name, value.c_str(), 1);
+#endif
+}
+
 /// The page itself runs in `./dev web`, in a browser; here its player is two words.
 class WebPage : public testing::Test {
   protected:
@@ -24,10 +32,10 @@ class WebPage : public testing::Test {
         fs::create_directories(folder_ / "player");
         EXPECT_TRUE(writeFileAtomically(folder_ / "player/index.html", std::string_view("<p>index")));
         EXPECT_TRUE(writeFileAtomically(folder_ / "player/player.js", std::string_view("player")));
-        setenv("HAIRLOOM_WEB", (folder_ / "player").c_str(), 1);
+        setVariable("HAIRLOOM_WEB", (folder_ / "player").string());
     }
     ~WebPage() override {
-        unsetenv("HAIRLOOM_WEB");
+        setVariable("HAIRLOOM_WEB", "");
         fs::remove_all(folder_);
     }
     WebPage(const WebPage&) = delete;
@@ -100,7 +108,7 @@ TEST_F(WebPage, WithoutPlayerOrHairNamesWhatHelpsAndLeavesNothing) {
 }
 
 TEST_F(WebPage, PlayerIsFoundBesideInstalledPrograms) {
-    unsetenv("HAIRLOOM_WEB");
+    setVariable("HAIRLOOM_WEB", "");
     EXPECT_TRUE(findWebPlayer(folder_ / "bin").empty());
     fs::create_directories(folder_ / "share/hairloom");
     fs::rename(folder_ / "player", folder_ / "share/hairloom/web");

@@ -5,6 +5,7 @@
 
 #include <hairloom/hairloom.hpp>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -40,8 +41,8 @@ int main(int count, char** words) {
     hairloom::game::Error error;
     hairloom::game::Asset asset;
     hairloom::game::Instance hair;
-    bool good = asset.open(aligned.data(), bytes.size(), &error) &&
-                hair.make(asset, HL_HAIRS, nullptr, &error);
+    bool good =
+        asset.open(aligned.data(), bytes.size(), &error) && hair.make(asset, HL_HAIRS, nullptr, &error);
     const float* head = reinterpret_cast<const float*>(matrices.data());
     const std::size_t frames = matrices.size() / (12 * sizeof(float));
     for (std::size_t f = 0; good && f < frames; ++f) {
