@@ -7,6 +7,7 @@
 #include "core/operations/clump_centres.h"
 #include "core/operations/length_constraint.h"
 #include "core/operations/operation.h"
+#include "core/operations/reshape.h"
 
 namespace hairloom {
 namespace {
@@ -22,14 +23,6 @@ constexpr Field<S> kFields[] = {
     clearanceField<&S::clearance>(),
     seedField<&S::seed>("seed", "another seed chooses other strands"),
 };
-
-/// Position at a share of the points from the root.
-Vec3f pointAlong(std::span<const Vec3f> points, float t) {
-    const float x = t * static_cast<float>(points.size() - 1);
-    const auto i = std::min(static_cast<std::size_t>(x), points.size() - 2);
-    const float local = x - static_cast<float>(i);
-    return points[i] * (1 - local) + points[i + 1] * local;
-}
 
 }  // namespace
 

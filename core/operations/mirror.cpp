@@ -4,6 +4,7 @@
 #include "core/operations/clump_centres.h"
 #include "core/operations/length_constraint.h"
 #include "core/operations/operation.h"
+#include "core/operations/reshape.h"
 
 namespace hairloom {
 namespace {
@@ -27,14 +28,6 @@ constexpr Field<S> kFields[] = {
 };
 std::span<const Field<S>> fieldsOf(const S&) {
     return kFields;
-}
-
-/// The point at a share of the points from the root.
-Vec3f pointAlong(std::span<const Vec3f> points, float t) {
-    const float x = t * static_cast<float>(points.size() - 1);
-    const auto i = std::min(static_cast<std::size_t>(x), points.size() - 2);
-    const float local = x - static_cast<float>(i);
-    return points[i] * (1 - local) + points[i + 1] * local;
 }
 
 /// A strand of the other side takes the shape of the one whose mirrored root is nearest, with its lengths.

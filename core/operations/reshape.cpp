@@ -19,6 +19,13 @@ void growStraightUp(std::span<Vec3f> points, float length) {
 
 }  // namespace
 
+Vec3f pointAlong(std::span<const Vec3f> points, float t) {
+    const float x = t * static_cast<float>(points.size() - 1);
+    const auto i = std::min(static_cast<std::size_t>(x), points.size() - 2);
+    const float local = x - static_cast<float>(i);
+    return points[i] * (1 - local) + points[i + 1] * local;
+}
+
 void scaleToLength(std::span<Vec3f> points, float length) {
     const float now = polylineLength(points);
     if (!(now > 0)) return growStraightUp(points, length);

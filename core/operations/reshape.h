@@ -8,6 +8,9 @@
 
 namespace hairloom {
 
+/// Position at a share 0 … 1 of the points, of which there are two at least, from the root.
+Vec3f pointAlong(std::span<const Vec3f> points, float t);
+
 /// Scales about the root; a strand without length grows along +Y. `length` > 0, metres.
 void scaleToLength(std::span<Vec3f> points, float length);
 
