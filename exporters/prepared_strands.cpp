@@ -370,17 +370,19 @@ Result<ExportReport> writeAndCompare(const Groom& groom, PreparedStrands prepare
     report.strands = prepared.strandCount();
     report.points = prepared.positions.size();
     report.bytes = bytes.size();
+    double farthest = 0;  // mm
     for (std::size_t strand = 0; strand < prepared.strandCount(); ++strand) {
         const double error =
             strandError(groom.strand(prepared.sources[strand]), readBack->groom.strand(strand));
-        report.maxErrorMm = std::max(report.maxErrorMm, error * 1000.0);
+        farthest = std::max(farthest, error * 1000.0);
     }
     if (options.frames) {
         const auto off = frameError(prepared, options, *readBack, path);
         if (!off) return tl::unexpected(off.error());
         report.frames = prepared.frames.size();
-        report.maxErrorMm = std::max(report.maxErrorMm, *off);
+        farthest = std::max(farthest, *off);
     }
+    report.maxErrorMm = farthest;
     compareAttributes(groom, prepared, options.metresPerUnit, *readBack, report);
     report.findings = std::move(prepared.findings);
     judgeRoots(groom, prepared, report.findings);

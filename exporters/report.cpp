@@ -25,8 +25,19 @@ nlohmann::json toJson(const ExportReport& report) {
                         {"strands", report.strands},
                         {"points", report.points},
                         {"bytes", report.bytes},
-                        {"max_error_mm", report.maxErrorMm},
+                        {"max_error_mm", nullptr},
                         {"findings", std::move(findings)}};
+    if (report.maxErrorMm) json["max_error_mm"] = *report.maxErrorMm;
+    for (const WrittenLevel& level : report.levels) {
+        json["levels"].push_back({{"name", level.name},
+                                  {"cards", level.cards},
+                                  {"triangles", level.triangles},
+                                  {"bytes", level.bytes},
+                                  {"distance_m", level.distance},
+                                  {"coverage", level.coverage},
+                                  {"flip", level.flip},
+                                  {"light", level.light}});
+    }
     if (report.frames > 0) json["frames"] = report.frames;
     return json;
 }

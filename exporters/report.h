@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,21 +24,36 @@ struct LeftBehind {
     std::string fix;
 };
 
+/// A level of detail that the file has, held against all strands at its distance.
+struct WrittenLevel {
+    std::string name;  ///< "cards-200"
+    std::size_t cards = 0;
+    std::size_t triangles = 0;
+    std::uint64_t bytes = 0;  ///< on a GPU
+    double distance = 0;      ///< metres from which on it serves
+    double coverage = 1;      ///< times that of the strands
+    double flip = 0;          ///< mean over its pictures
+    double light = 1;         ///< times that of the strands
+};
+
 struct ExportReport {
     std::string format;       ///< name of the format, as importStrands tells it
     std::size_t strands = 0;  ///< in the file
     std::size_t points = 0;   ///< in the file
     std::size_t frames = 0;   ///< of strands that move; 0 at rest
     std::uint64_t bytes = 0;  ///< size of the file
-    /// Largest distance of a point of the groom from its strand in the file, read back; millimetres.
-    double maxErrorMm = 0;
+    /// Largest distance of a point of the groom from its strand in the file, read back; millimetres. Nothing
+    /// where the file has no point of a strand.
+    std::optional<double> maxErrorMm;
     std::vector<ComparedAttribute> attributes;
     std::vector<LeftBehind> leftBehind;
     std::vector<Finding> findings;
+    std::vector<WrittenLevel> levels;  ///< of files of cards, the nearest first
 };
 
-/// Keys: format, strands, points, frames (where strands move), bytes, max_error_mm, attributes (name,
-/// max_error), left_behind (what, fix), findings (severity, what, where, fix).
+/// Keys: format, strands, points, frames (where strands move), bytes, max_error_mm (null where nothing was
+/// measured), attributes (name, max_error), left_behind (what, fix), findings (severity, what, where, fix);
+/// of cards levels (name, cards, triangles, bytes, distance_m, coverage, flip, light).
 nlohmann::json toJson(const ExportReport& report);
 
 }  // namespace hairloom

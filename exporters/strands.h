@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -58,7 +59,8 @@ struct StrandWriter {
     std::string limits;   ///< in words
     std::vector<ExportTarget> targets;  ///< at least one
     std::string suffix() const { return ownSuffix.empty() ? name.substr(0, name.find('-')) : ownSuffix; }
-    /// Replaces `path` atomically, reads the file back and compares. Strands that no consumer could use
+    /// Null: the format holds cards instead of strands (core/scene/hair_export.h). Otherwise it
+    /// replaces `path` atomically, reads the file back and compares. Strands that no consumer could use
     /// (fewer than two points, not finite, of no length) are left out and reported. Errors: nothing left to
     /// write, a limit of the format that options cannot mend, a file that cannot be written or does not read
     /// back.
@@ -67,15 +69,18 @@ struct StrandWriter {
     std::string ownSuffix{};            ///< of its files, where that is not the name
     bool generatesFollowHairs = false;  ///< the file tells how follow hairs come from guides
     bool animates = false;              ///< the file can hold StrandExportOptions::frames
+    bool holdsCards() const { return write == nullptr; }
 };
 const std::vector<StrandWriter>& strandWriters();
+// Of these, or of a list that holds more.
+using StrandWriters = std::span<const StrandWriter>;
 /// Programs of all writers as `--target` has them, each once, in order of name.
-std::vector<std::string> exportPrograms();
+std::vector<std::string> exportPrograms(StrandWriters writers = strandWriters());
 /// What the program wants of a format; null where it does not read that.
 const ExportTarget* findTarget(const StrandWriter& writer, std::string_view program);
 /// The writer of the format that the program reads best; there must be one.
-const StrandWriter& preferredWriter(std::string_view program);
+const StrandWriter& preferredWriter(std::string_view program, StrandWriters writers = strandWriters());
 /// The writer of that name; there must be one.
-const StrandWriter& strandWriter(std::string_view name);
+const StrandWriter& strandWriter(std::string_view name, StrandWriters writers = strandWriters());
 
 }  // namespace hairloom

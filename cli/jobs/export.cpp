@@ -5,10 +5,11 @@
 #include <memory>
 #include <system_error>
 
-#include "cli/card_export.h"
+#include "cli/card_options.h"
 #include "cli/documents.h"
 #include "cli/job.h"
 #include "cli/outputs.h"
+#include "cli/progress.h"
 #include "core/base/content_kind.h"
 #include "core/base/file.h"
 #include "core/scene/hair_export.h"
@@ -28,7 +29,7 @@ struct ExportOptions {
     std::string unit;
     std::string up;
     std::uint32_t points = 0;
-    CardExportOptions cards;
+    LevelBudget levels;
     std::string output;
 };
 
@@ -49,13 +50,13 @@ struct Asked {
 Result<Asked> findAsked(const ExportOptions& options) {
     if (options.format.empty() && options.target.empty())
         return fail("neither --format nor --target is given", "expected one of them");
-    const StrandWriter& writer =
-        options.format.empty() ? preferredWriter(options.target) : strandWriter(options.format);
+    const StrandWriter& writer = options.format.empty() ? preferredWriter(options.target, hairWriters())
+                                                        : strandWriter(options.format, hairWriters());
     if (options.target.empty()) return Asked{&writer, &writer.targets.front()};
     const ExportTarget* const target = findTarget(writer, options.target);
     if (target != nullptr) return Asked{&writer, target};
     std::string formats;
-    for (const StrandWriter& other : strandWriters()) {
+    for (const StrandWriter& other : hairWriters()) {
         if (findTarget(other, options.target) != nullptr)
             formats += (formats.empty() ? "" : ", ") + other.name;
     }
@@ -71,22 +72,11 @@ Result<Report> withCompanion(const ExportOptions& options, Report report) {
     return report;
 }
 
-Result<Report> exportAsCards(const ExportOptions& options) {
-    if (!options.target.empty() || !options.unit.empty() || options.up == "z" || options.points > 0 ||
-        !options.record.empty() || !options.layers.empty())
-        return fail("--target, --unit, --up, --points, --layers and --record say nothing of cards",
-                    "glTF is in metres, Y up; --cards, --textures and --levels");
-    const auto groom = loadDocument(options.input);
-    if (!groom) return tl::unexpected(groom.error());
-    auto report = exportCards(*groom, options.output, options.cards);
-    if (!report) return tl::unexpected(inFile(report.error(), options.input));
-    return withCompanion(options, std::move(*report));
-}
-
 Result<HairToExport> hairToExport(const ExportOptions& options, const Groom& groom) {
     HairToExport wanted;
     wanted.hair = options.what == "hairs" ? ExportedHair::hairs : ExportedHair::guides;
     wanted.layers = options.layers;
+    wanted.levels = options.levels;
     if (options.record.empty()) return wanted;
     if (options.frames.size() != 2 || options.frames[1] < options.frames[0])
         return fail("--frames goes backwards or is not two numbers", "FIRST,LAST");
@@ -114,7 +104,6 @@ Result<Report> exportAsPage(const ExportOptions& options) {
 }
 
 Result<Report> exportAsset(const ExportOptions& options) {
-    if (options.format == kCardFormat) return exportAsCards(options);
     const auto asked = findAsked(options);
     if (!asked) return tl::unexpected(asked.error());
     const auto groom = loadDocument(options.input);
@@ -123,8 +112,12 @@ Result<Report> exportAsset(const ExportOptions& options) {
     if (!options.unit.empty()) exporting.metresPerUnit = metresPerUnit(options.unit);
     if (!options.up.empty()) exporting.up = options.up == "z" ? UpAxis::Z : UpAxis::Y;
     if (options.points > 0) exporting.pointsPerStrand = options.points;
-    const auto wanted = hairToExport(options, *groom);
+    auto wanted = hairToExport(options, *groom);
     if (!wanted) return tl::unexpected(wanted.error());
+    Progress bar("exporting", 1000);
+    wanted->progress = [&](std::string_view, double share) {
+        bar.done(static_cast<std::size_t>(1000 * share));
+    };
     const auto written = exportHair(*groom, *wanted, *asked->writer, options.output, exporting);
     if (!written) return tl::unexpected(inFile(written.error(), options.input));
     return withCompanion(options, toJson(*written));
@@ -132,8 +125,7 @@ Result<Report> exportAsset(const ExportOptions& options) {
 
 std::vector<std::string> formatNames() {
     std::vector<std::string> names;
-    for (const StrandWriter& writer : strandWriters()) names.push_back(writer.name);
-    names.emplace_back(kCardFormat);
+    for (const StrandWriter& writer : hairWriters()) names.push_back(writer.name);
     names.emplace_back(kWebFormat);
     return names;
 }
@@ -141,14 +133,11 @@ std::vector<std::string> formatNames() {
 /// What each carries beside the points, and its limits.
 std::string formatsInWords() {
     std::string text;
-    for (const StrandWriter& writer : strandWriters()) {
+    for (const StrandWriter& writer : hairWriters()) {
         text += fmt::format("{}{}: {}, with {}; {}.", text.empty() ? "" : " ", writer.name, writer.label,
                             writer.carries, writer.limits);
     }
-    text +=
-        " gltf: cards and a shell as binary glTF 2.0, with textures, a skin, levels (MSFT_lod) and springs "
-        "(VRMC_springBone); no strands. web: a folder with a page that plays the runtime asset in a browser, "
-        "offline.";
+    text += " web: a folder with a page that plays the runtime asset in a browser, offline.";
     return text;
 }
 
@@ -161,7 +150,7 @@ JobRun declare(CLI::App& job) {
            "--target", options->target,
            "Program to write for: sets unit, axis, points and limits, and the format where that is not "
            "said")
-        ->check(CLI::IsMember(exportPrograms()));
+        ->check(CLI::IsMember(exportPrograms(hairWriters())));
     job.add_option("--what", options->what,
                    "guides: the strands of the groom; hairs: the follow hairs that pictures show")
         ->check(CLI::IsMember({"guides", "hairs"}));
@@ -179,7 +168,7 @@ JobRun declare(CLI::App& job) {
     job.add_option("--up", options->up, "Axis that points up in the file")->check(CLI::IsMember({"y", "z"}));
     job.add_option("--points", options->points, "Resample every strand to so many points; 0 keeps them")
         ->check(CLI::Range(0, 1024));
-    addCardOptions(job, options->cards);
+    addCardOptions(job, options->levels);
     job.add_option("-o,--output", options->output,
                    "File to write, or the folder of a page; the report goes beside a file")
         ->required();

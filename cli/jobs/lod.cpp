@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <memory>
 
-#include "cli/card_export.h"
+#include "cli/card_options.h"
 #include "cli/documents.h"
 #include "cli/job.h"
 #include "cli/progress.h"
 #include "core/base/stopwatch.h"
-#include "core/scene/card_hair.h"
 #include "core/scene/level_report.h"
 
 namespace hairloom::cli {
@@ -15,22 +14,16 @@ namespace {
 struct LodOptions {
     std::string input;
     std::string output;
-    CardExportOptions making;
+    LevelBudget budget;
 };
 
 Result<Report> run(const LodOptions& options, const std::string& commandLine) {
     const Stopwatch watch;
-    const auto specs = levelsOf(options.making, cards::standardLevels(options.making.cards));
-    if (!specs) return tl::unexpected(specs.error());
     const auto groom = loadDocument(options.input);
     if (!groom) return tl::unexpected(groom.error());
-    const auto hair = cardHair(*groom);
-    if (!hair) return tl::unexpected(inFile(hair.error(), options.input));
-    cards::ChainOptions chainOptions = options.making.chain;
-    chainOptions.strandsMoveMs = followMilliseconds(*groom);
     Progress bar("making levels", 1000);
-    const auto chain = cards::makeChain(
-        *hair, *specs, chainOptions,
+    const auto chain = makeLevels(
+        *groom, options.budget, LevelsMade::all,
         [&](std::string_view, double share) { bar.done(static_cast<std::size_t>(1000 * share)); }, nullptr);
     if (!chain) return tl::unexpected(inFile(chain.error(), options.input));
     const auto files = writeChain(*chain, commandLine, collidersOf(*groom), options.output);
@@ -51,8 +44,8 @@ JobRun declare(CLI::App& job) {
     job.add_option("-o,--output", options->output,
                    "Folder for textures, meshes, pictures beside the strands, table and plot")
         ->required();
-    addCardOptions(job, options->making);
-    job.add_option("--directions", options->making.chain.directions, "Directions that levels are judged from")
+    addCardOptions(job, options->budget);
+    job.add_option("--directions", options->budget.chain.directions, "Directions that levels are judged from")
         ->check(CLI::Range(1, 360));
     return [options](const std::string& commandLine) { return run(*options, commandLine); };
 }

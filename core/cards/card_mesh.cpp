@@ -11,10 +11,10 @@ namespace hairloom::cards {
 namespace {
 
 /// Stations that a strip needs to be nowhere farther than the tolerance from the whole one; the ends first,
-/// then where it is farthest.
-std::vector<std::size_t> keptStations(const Strip& strip, float widen, float tolerance) {
+/// then where it is farthest, `most` at most.
+std::vector<std::size_t> keptStations(const Strip& strip, float widen, float tolerance, std::size_t most) {
     std::vector<std::size_t> kept{0, strip.stations() - 1};
-    for (;;) {
+    while (kept.size() < most) {
         std::size_t worst = 0;
         float farthest = tolerance;
         for (std::size_t i = 0; i + 1 < kept.size(); ++i) {
@@ -30,6 +30,7 @@ std::vector<std::size_t> keptStations(const Strip& strip, float widen, float tol
         if (worst == 0) return kept;
         kept.insert(std::ranges::upper_bound(kept, worst), worst);
     }
+    return kept;
 }
 
 bool isBent(const Strip& strip, float tolerance) {
@@ -45,7 +46,8 @@ class Builder {
 
     void add(std::uint32_t c) {
         const Card& card = cards_.cards[c];
-        const std::vector<std::size_t> kept = keptStations(card.strip, card.widen, cards_.tolerance);
+        const std::vector<std::size_t> kept =
+            keptStations(card.strip, card.widen, cards_.tolerance, cards_.segments + 1);
         const bool bent = isBent(card.strip, cards_.tolerance);
         const std::vector<float> columns = bent ? std::vector<float>{-1, 0, 1} : std::vector<float>{-1, 1};
         const auto first = static_cast<std::uint32_t>(cards_.mesh.vertices.size());

@@ -26,6 +26,8 @@ Status check(const CardOptions& options) {
         return fail(fmt::format("an atlas of {} texels", side), "a power of two from 64 to 8192");
     if (!(options.texel > 0) || !(options.tolerance > 0) || !(options.error >= 0))
         return fail("a size of texels or a tolerance that is not above 0");
+    if (options.segments < 1 || options.segments > kStations - 1)
+        return fail(fmt::format("{} segments", options.segments), "1 to 24");
     return {};
 }
 
@@ -127,6 +129,7 @@ Result<Cards> makeCards(const Hair& hair, const HairLight& light, const CardOpti
     if (!clusters) return tl::unexpected(clusters.error());
     Cards cards;
     cards.tolerance = options.tolerance;
+    cards.segments = options.segments;
     cards.cards.resize(clusters->size());
     const EvenHair fine = evenHair(hair, kStations);
     parallelFor(clusters->size(), 1, [&](std::size_t begin, std::size_t end) {

@@ -15,6 +15,7 @@ struct CardOptions {
     float error = 0;              ///< metres off their strips that strands may be; fewer cards where they are
     float texel = 0.0007f;        ///< metres, the finest that textures are
     float tolerance = 0.0005f;    ///< metres that a strip may be off its curve
+    std::uint32_t segments = 24;  ///< of a strip, at most, 1 … 24
     std::uint32_t mostSide = 2048;  ///< texels along the atlas, 64 … 8192, a power of two
 };
 
@@ -54,7 +55,8 @@ struct Cards {
     CardMesh mesh;
     float texel = 0;  ///< metres, as the atlas had room for
     float tolerance = 0;
-    float brightness = 1;  ///< factor on the albedo
+    std::uint32_t segments = kStations - 1;  ///< of a strip, at most
+    float brightness = 1;                    ///< factor on the albedo
 };
 
 /// The same for any number of threads. `hair` passed check(). Errors: options out of range, an atlas that

@@ -99,13 +99,16 @@ Result<std::vector<LevelSpec>> parseLevels(std::string_view text) {
     }
 }
 
-std::string standardLevels(std::uint32_t cards) {
-    return "strands:1@512,strands:0.4@512," + standardCardLevels(cards);
+std::string standardLevels(std::uint32_t cards, std::uint32_t headPx) {
+    return "strands:1@512,strands:0.4@512," + standardCardLevels(cards, headPx);
 }
 
-std::string standardCardLevels(std::uint32_t cards) {
-    return fmt::format("cards:{}@256,cards:{}@128,cards:{}@64,shell@32", cards, std::max(1u, cards / 2),
-                       std::max(1u, cards / 4));
+std::string standardCardLevels(std::uint32_t cards, std::uint32_t headPx) {
+    const auto share = [](std::uint32_t whole, std::uint32_t part, std::uint32_t least) {
+        return std::max(least, whole / part);
+    };
+    return fmt::format("cards:{}@{},cards:{}@{},cards:{}@{},shell@{}", cards, headPx, share(cards, 2, 1),
+                       share(headPx, 2, 16), share(cards, 4, 1), share(headPx, 4, 16), share(headPx, 8, 16));
 }
 
 double distanceOf(std::uint32_t headPx) {

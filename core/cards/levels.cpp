@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "core/base/parallel.h"
@@ -25,10 +26,13 @@ struct Work {
     const std::vector<View>& views;
     const std::map<std::uint32_t, std::vector<Shot>>& strands;  ///< by pixels of a head
     const ChainOptions& options;
+    const std::function<void()>& tick;  ///< called now and then while a level is made
     Cancel cancel;
 
-    /// Some directions at all heights: enough to set a brightness by.
-    std::vector<std::size_t> someViews() const {
+    /// What coverage and brightness are set by: some directions at all heights, where pictures are small all.
+    std::vector<std::size_t> viewsFor(const LevelSpec& spec) const {
+        constexpr std::uint32_t kSmall = 64;  // pixels of a head
+        if (spec.headPx <= kSmall && spec.kind != LevelKind::strands) return allViews();
         std::vector<std::size_t> some;
         for (std::size_t v = 0; v < views.size(); v += std::max<std::size_t>(1, views.size() / 6))
             some.push_back(v);
@@ -83,7 +87,8 @@ std::vector<Shot> chosen(const std::vector<Shot>& shots, const std::vector<std::
 }
 
 Result<Difference> measured(const Work& work, const Level& level) {
-    const auto which = work.someViews();
+    work.tick();
+    const auto which = work.viewsFor(level.spec);
     const Shooting shooting = shoot(work, level, which);
     if (cancelled(work.cancel)) return stopped();
     return difference(chosen(work.strands.at(level.spec.headPx), which), shooting.shots);
@@ -144,6 +149,7 @@ Status makeCardLevel(const Work& work, Level& level) {
     CardOptions options;
     options.cards = static_cast<std::uint32_t>(level.spec.amount);
     options.textures = work.options.textures;
+    options.segments = work.options.segments;
     options.mostSide = work.options.mostSide;
     options.texel = pixel / 1.5f;
     options.tolerance = pixel / 3;
@@ -156,22 +162,29 @@ Status makeCardLevel(const Work& work, Level& level) {
 Status makeShellLevel(const Work& work, Level& level) {
     const ShellField field = ShellField::make(work.hair, work.light);
     float low = 0.001f, high = 0.9f;
-    constexpr int kHalvings = 8;
-    for (int step = 0; step < kHalvings; ++step) {
+    constexpr int kHalvings = 10;
+    Shell best;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (int step = 0; step < kHalvings && nearest > kFarEnough; ++step) {
         const float middle = std::sqrt(low * high);
         Shell shell = field.cut(middle, static_cast<std::uint32_t>(level.spec.amount));
         const bool empty = shell.indices.empty();
-        level.content = std::move(shell);
+        level.content = shell;
         const auto off = measured(work, level);
         if (!off) return tl::unexpected(off.error());
         (empty || off->coverage < 1 ? high : low) = middle;
+        // Few triangles make coverage jump: the last is not always the nearest.
+        if (empty || std::abs(off->coverage - 1) >= nearest) continue;
+        nearest = std::abs(off->coverage - 1);
+        best = std::move(shell);
     }
-    if (std::get<Shell>(level.content).indices.empty())
-        return fail("hair too thin for a shell", "levels without a shell");
-    // Twice: highlights do not grow with the albedo.
-    for (int round = 0; round < 2; ++round) {
+    if (best.indices.empty()) return fail("hair too thin for a shell", "levels without a shell");
+    level.content = std::move(best);
+    // More than once: highlights do not grow with the albedo.
+    for (int round = 0; round < 2 * kRounds; ++round) {
         const auto off = measured(work, level);
         if (!off) return tl::unexpected(off.error());
+        if (std::abs(off->light - 1) < kFarEnough) break;
         for (ShellVertex& v : std::get<Shell>(level.content).vertices)
             v.albedo *= static_cast<float>(1 / std::max(off->light, 1e-3));
     }
@@ -301,12 +314,20 @@ Result<Chain> makeChain(const Hair& hair, const std::vector<LevelSpec>& specs, c
     const StrandLight onStrands = strandLight(hair, *light);
     const auto shots = shootStrands(hair, onStrands, chain.views, specs, cancel);
     if (!shots) return tl::unexpected(shots.error());
-    const Work work{hair, *light, onStrands, chain.views, *shots, options, cancel};
+    double share = 1 / steps;
+    std::string_view making;
+    // Nobody knows how many rounds a level takes: each does a tenth of what is left of it.
+    const std::function<void()> tick = [&] {
+        const double end = (2 + static_cast<double>(chain.levels.size())) / steps;
+        progress(making, share += 0.1 * (end - share));
+    };
+    const Work work{hair, *light, onStrands, chain.views, *shots, options, tick, cancel};
     for (std::size_t i = 0; i < specs.size(); ++i) {
         Level level;
         level.spec = specs[i];
         level.name = nameFor(specs[i]);
-        progress(level.name, (1 + static_cast<double>(i)) / steps);
+        making = level.name;
+        progress(making, share = (1 + static_cast<double>(i)) / steps);
         const Stopwatch watch;
         const Status status = level.spec.kind == LevelKind::strands ? makeStrands(work, level)
                               : level.spec.kind == LevelKind::cards ? makeCardLevel(work, level)

@@ -25,13 +25,14 @@ struct LevelSpec {
 /// "strands:0.5@512,cards:200@256,shell@32"; @PX may be left out: half of the level before, 512 at first.
 /// Errors: other words, numbers out of range, levels that are not ever farther.
 Result<std::vector<LevelSpec>> parseLevels(std::string_view text);
-/// All strands, 2 in 5, `cards`, half and a quarter of them, a shell.
-std::string standardLevels(std::uint32_t cards);
+/// All strands, 2 in 5, `cards`, half and a quarter of them, a shell; cards from `headPx` on, 16 … 512.
+std::string standardLevels(std::uint32_t cards, std::uint32_t headPx = 256);
 /// Of these those that are no strands.
-std::string standardCardLevels(std::uint32_t cards);
+std::string standardCardLevels(std::uint32_t cards, std::uint32_t headPx = 256);
 
 struct ChainOptions {
     std::uint32_t textures = 32;
+    std::uint32_t segments = 24;    ///< of a card, at most
     std::uint32_t mostSide = 2048;  ///< texels along an atlas
     std::uint32_t directions = 12;  ///< that levels are judged from
     float targetPx = 0;             ///< pixels that outlines of cards may be off; 0: what the budget gives
@@ -68,7 +69,8 @@ struct Chain {
     double makeSeconds = 0;  ///< clusters, strips, textures and shells, measuring left out
 };
 
-/// Told what is being made and which share is done.
+/// Told what is being made and which share is done, every few seconds; work that is stopped looks up then,
+/// too.
 using Progress = std::function<void(std::string_view, double)>;
 
 /// Errors: those of check() and makeCards(), a target in pixels that the cards cannot meet (it says how near

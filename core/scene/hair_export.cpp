@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numeric>
 
+#include "core/base/output_file.h"
 #include "core/groom/strand_subset.h"
 #include "core/interpolation/follow_hairs.h"
 #include "core/scene/root_rotations.h"
@@ -82,7 +84,42 @@ Result<Moving> movingHair(const Groom& whole, std::span<const std::uint32_t> str
     return moving;
 }
 
+Result<ExportReport> writeCards(const Groom& groom, const HairToExport& wanted,
+                                const std::filesystem::path& path, const StrandExportOptions& options) {
+    if (options.metresPerUnit != 1 || options.up != UpAxis::Y || options.pointsPerStrand > 0)
+        return fail("another unit, axis or number of points is asked for, and cards have none",
+                    "glTF is in metres, Y up");
+    const auto progress = wanted.progress ? wanted.progress : [](std::string_view, double) {};
+    const auto chain = makeLevels(groom, wanted.levels, LevelsMade::cardsAndShell, progress, wanted.cancel);
+    if (!chain) return tl::unexpected(chain.error());
+    auto file = levelFile(*chain, groom);
+    if (!file) return tl::unexpected(file.error());
+    if (auto status = writeFileAtomically(path, file->bytes); !status) return tl::unexpected(status.error());
+    return std::move(file->report);
+}
+
 }  // namespace
+
+const std::vector<StrandWriter>& hairWriters() {
+    static const std::vector<StrandWriter> all = [] {
+        std::vector<StrandWriter> writers = strandWriters();
+        writers.push_back(
+            {kCardFormat,
+             "Cards as binary glTF 2.0",
+             "textures, a skin, levels (MSFT_lod) and springs (VRMC_springBone)",
+             "cards and a shell, no strands",
+             {{"cards",
+               "Engines without strands: cards (glTF)",
+               "Cards and a shell for far away, each measured against the strands. It takes a minute "
+               "or so; the panel Levels shows them before they leave.",
+               {}}},
+             nullptr,
+             "glb"});
+        std::ranges::sort(writers, {}, &StrandWriter::name);
+        return writers;
+    }();
+    return all;
+}
 
 Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, const StrandWriter& writer,
                                 const std::filesystem::path& path, const StrandExportOptions& options) {
@@ -104,7 +141,7 @@ Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, 
     }
     const Groom guides = wanted.layers.empty() ? groom : strandsOf(groom, strands);
     const std::uint32_t perGuide = guides.interpolation.followPerGuide;
-    const bool isBaked = wanted.hair == ExportedHair::hairs && perGuide > 0;
+    const bool isBaked = wanted.hair == ExportedHair::hairs && perGuide > 0 && !writer.holdsCards();
     FollowBindings bindings;
     Groom shown = guides;
     if (isBaked) {
@@ -127,6 +164,7 @@ Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, 
         if (!baked) return tl::unexpected(baked.error());
         shown = std::move(*baked);
     }
+    if (writer.holdsCards()) return writeCards(shown, wanted, path, exporting);
     auto report = writer.write(shown, path, exporting);
     if (report && perGuide > 0 && !isBaked && !writer.generatesFollowHairs) {
         report->findings.push_back({Severity::Warning,

@@ -5,10 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "core/scene/level_chain.h"
 #include "core/simulation/frame_record.h"
 #include "exporters/strands.h"
 
 namespace hairloom {
+
+/// Formats that hair leaves in, in order of name: those of strandWriters(), and glTF, which holds cards.
+const std::vector<StrandWriter>& hairWriters();
 
 enum class ExportedHair {
     guides,  ///< the strands of the groom, for programs that interpolate themselves
@@ -21,11 +25,17 @@ struct HairToExport {
     std::vector<std::string> layers;    ///< by their names; empty: all
     std::vector<RecordedFrame> frames;  ///< of all strands; empty: at rest; one: as they are there
     std::uint64_t firstFrame = 0;       ///< number of the first of them
+
+    // Of formats that hold cards; those stand for the hairs that pictures show.
+    LevelBudget levels;
+    cards::Progress progress;        ///< may be empty
+    cards::Cancel cancel = nullptr;  ///< may be null
 };
 
-/// Writes, reads back and compares as the writer does. The report says how many follow hairs stay behind
-/// where guides alone are written. Errors: those of the writer and of bindFollowHairs(); a layer that is not
-/// there; several frames for a format that holds one shape.
+/// Writes, reads back and compares as the writer does; cards are made and measured. The report says how many
+/// follow hairs stay behind where guides alone are written. Errors: those of the writer, of
+/// bindFollowHairs(), makeLevels() and levelFile(); a layer that is not there; several frames for a format
+/// that holds one shape; units, axes or points of strands for cards.
 Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, const StrandWriter& writer,
                                 const std::filesystem::path& path, const StrandExportOptions& options);
 

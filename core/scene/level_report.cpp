@@ -148,12 +148,6 @@ render::Image sideBySide(const Level& level) {
     return page;
 }
 
-std::vector<cards::Collider> collidersOf(const Groom& groom) {
-    std::vector<cards::Collider> colliders;
-    for (const CollisionSphere& sphere : groom.spheres) colliders.push_back({sphere.centre, sphere.radius});
-    return colliders;
-}
-
 Result<std::vector<std::string>> writeChain(const Chain& chain, const std::string& commandLine,
                                             std::span<const cards::Collider> colliders,
                                             const std::filesystem::path& folder) {

@@ -9,7 +9,6 @@
 
 #include "core/cards/glb.h"
 #include "core/cards/levels.h"
-#include "core/groom/groom.h"
 
 namespace hairloom {
 
@@ -22,9 +21,6 @@ std::string levelTable(const cards::Chain& chain);
 
 /// Strands above, the level below, from some directions.
 render::Image sideBySide(const cards::Level& level);
-
-/// The groom's collision spheres.
-std::vector<cards::Collider> collidersOf(const Groom& groom);
 
 /// Writes all into a folder, which is made where it is missing; names in it, in order. Pictures of a level
 /// are NAME.png; its textures NAME_colour.png (albedo and coverage), NAME_shape.png (flow across and along,

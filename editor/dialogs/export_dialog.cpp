@@ -9,6 +9,7 @@
 #include <QPointer>
 #include <QVBoxLayout>
 #include <algorithm>
+#include <atomic>
 
 #include "core/scene/hair_export.h"
 #include "core/scene/played_frames.h"
@@ -21,6 +22,7 @@ namespace hairloom::editor {
 namespace {
 
 constexpr float kFramesPerSecond = 60;
+constexpr int kMostFrames = 10000;
 
 /// A program, and the writer of the format that it reads.
 struct Choice {
@@ -42,7 +44,7 @@ const ExportTarget& pageTarget() {
 const std::vector<Choice>& choices() {
     static const std::vector<Choice> all = [] {
         std::vector<Choice> list;
-        for (const StrandWriter& writer : strandWriters()) {
+        for (const StrandWriter& writer : hairWriters()) {
             for (const ExportTarget& target : writer.targets) list.push_back({&writer, &target});
         }
         list.push_back({&strandWriter("runtime"), &pageTarget(), true});
@@ -61,6 +63,7 @@ ExportDialog::ExportDialog(QtDocument& document, Tasks& tasks, Messages& message
       tasks_(tasks),
       messages_(messages),
       player_(player),
+      form_(new QFormLayout),
       target_(new QComboBox),
       what_(new QComboBox),
       layers_(new QComboBox),
@@ -69,6 +72,8 @@ ExportDialog::ExportDialog(QtDocument& document, Tasks& tasks, Messages& message
       unit_(new QComboBox),
       up_(new QComboBox),
       points_(new QSpinBox),
+      cards_(new QSpinBox),
+      textures_(new QSpinBox),
       summary_(new QLabel),
       findings_(new QTreeWidget) {
     setWindowTitle(tr("Export hair"));
@@ -76,11 +81,10 @@ ExportDialog::ExportDialog(QtDocument& document, Tasks& tasks, Messages& message
     auto* layout = new QVBoxLayout(this);
     layout->setContentsMargins(20, 20, 20, 16);
     layout->setSpacing(12);
-    auto* form = new QFormLayout;
-    form->setHorizontalSpacing(16);
-    form->setVerticalSpacing(8);
-    form->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
-    layout->addLayout(form);
+    form_->setHorizontalSpacing(16);
+    form_->setVerticalSpacing(8);
+    form_->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
+    layout->addLayout(form_);
     for (const Choice& choice : choices()) target_->addItem(QString::fromStdString(choice.target->name));
     target_->setObjectName("target");
     target_->setToolTip(tr("Sets unit, axis and points as this program expects them"));
@@ -96,7 +100,7 @@ ExportDialog::ExportDialog(QtDocument& document, Tasks& tasks, Messages& message
         layers_->addItem(QString::fromStdString(layer.name), QString::fromStdString(layer.name));
     layers_->setToolTip(tr("Strands of all layers, or of some"));
     frames_->setObjectName("frames");
-    frames_->setRange(0, 10000);
+    frames_->setRange(0, kMostFrames);
     frames_->setSpecialValueText(tr("at rest"));
     frames_->setToolTip(tr(
         "Frames of 1/60 s of the motion of the view, or of a nod, simulated for the file; more than one in a "
@@ -110,16 +114,27 @@ ExportDialog::ExportDialog(QtDocument& document, Tasks& tasks, Messages& message
     points_->setRange(0, 1024);
     points_->setSpecialValueText(tr("as they are"));
     points_->setToolTip(tr("Points of every strand, resampled evenly"));
-    form->addRow(tr("For"), target_);
-    form->addRow(QString(), note_);
-    form->addRow(tr("Strands"), what_);
-    form->addRow(tr("Layers"), layers_);
-    form->addRow(tr("Frames"), frames_);
-    form->addRow(tr("Unit"), unit_);
-    form->addRow(tr("Axis"), up_);
-    form->addRow(tr("Points a strand"), points_);
+    form_->addRow(tr("For"), target_);
+    form_->addRow(QString(), note_);
+    form_->addRow(tr("Strands"), what_);
+    form_->addRow(tr("Layers"), layers_);
+    form_->addRow(tr("Frames"), frames_);
+    form_->addRow(tr("Unit"), unit_);
+    form_->addRow(tr("Axis"), up_);
+    form_->addRow(tr("Points a strand"), points_);
+    const LevelBudget budget;
+    cards_->setObjectName("cards");
+    cards_->setRange(1, 4096);
+    cards_->setValue(static_cast<int>(budget.cards));
+    cards_->setToolTip(
+        tr("Cards of the nearest level, at most; farther ones have half and a quarter of them"));
+    textures_->setObjectName("textures");
+    textures_->setRange(1, 256);
+    textures_->setValue(static_cast<int>(budget.chain.textures));
+    textures_->setToolTip(tr("Textures of a level, at most; cards that look alike share one"));
+    form_->addRow(tr("Cards"), cards_);
+    form_->addRow(tr("Textures"), textures_);
     summary_->setWordWrap(true);
-    summary_->setText(tr("The file is read back after writing and compared with the hair."));
     layout->addWidget(summary_);
     findings_->setObjectName("findings");
     findings_->setHeaderLabels({tr("Finding"), tr("Where"), tr("What to do")});
@@ -142,7 +157,16 @@ ExportDialog::ExportDialog(QtDocument& document, Tasks& tasks, Messages& message
 }
 
 void ExportDialog::takeTarget(int index) {
-    const ExportTarget& target = *choices()[static_cast<std::size_t>(index)].target;
+    const Choice& choice = choices()[static_cast<std::size_t>(index)];
+    const ExportTarget& target = *choice.target;
+    const bool cards = choice.writer->holdsCards();
+    for (QWidget* ofStrands : {static_cast<QWidget*>(what_), static_cast<QWidget*>(unit_),
+                               static_cast<QWidget*>(up_), static_cast<QWidget*>(points_)})
+        form_->setRowVisible(ofStrands, !cards);
+    for (QWidget* ofCards : {cards_, textures_}) form_->setRowVisible(ofCards, cards);
+    frames_->setMaximum(cards ? 1 : kMostFrames);
+    summary_->setText(cards ? tr("Each level is held against the strands at its distance.")
+                            : tr("The file is read back after writing and compared with the hair."));
     note_->setText(QString::fromStdString(target.note));
     for (int i = 0; i < unit_->count(); ++i) {
         if (static_cast<float>(unit_->itemData(i).toDouble()) == target.options.metresPerUnit)
@@ -176,6 +200,8 @@ void ExportDialog::exportTo(const QString& path) {
     options.pointsPerStrand = static_cast<std::uint32_t>(points_->value());
     HairToExport wanted;
     wanted.hair = static_cast<ExportedHair>(what_->currentData().toInt());
+    wanted.levels.cards = static_cast<std::uint32_t>(cards_->value());
+    wanted.levels.chain.textures = static_cast<std::uint32_t>(textures_->value());
     for (const Layer& layer : document_.groom().layers) {
         const bool isShown = layers_->currentIndex() == 1 && layer.visible;
         if (isShown || layers_->currentData().toString().toStdString() == layer.name)
@@ -203,10 +229,17 @@ void ExportDialog::exportTo(const QString& path) {
                 wanted.frames = std::move(*frames);
             }
             if (isPage) return exportWebPage(groom, wanted, path.toStdString());
+            std::atomic<bool> stop = false;
+            wanted.progress = [&](std::string_view, double share) {
+                control.setProgress(static_cast<float>(share));
+                stop = control.isCancelled();
+            };
+            wanted.cancel = &stop;
             return exportHair(groom, wanted, writer, path.toStdString(), options);
         },
         [self = QPointer(this), &messages = messages_, path](ExportReport report) {
-            messages.say(tr("%1 written and read back").arg(QFileInfo(path).fileName()));
+            messages.say((report.levels.empty() ? tr("%1 written and read back") : tr("%1 written"))
+                             .arg(QFileInfo(path).fileName()));
             if (!self) return;
             self->report_ = std::move(report);
             self->showReport();
@@ -215,14 +248,28 @@ void ExportDialog::exportTo(const QString& path) {
     connect(&tasks_, &Tasks::stopped, this, [this] { write_->setEnabled(true); });
 }
 
-void ExportDialog::showReport() {
-    summary_->setText(
-        tr("%1: %L2 strands, %L3 points, %4. Farthest point of the file from the hair: %5 mm.")
+QString ExportDialog::summary() const {
+    const QString size =
+        locale().formattedDataSize(static_cast<qint64>(report_.bytes), 1, QLocale::DataSizeSIFormat);
+    if (!report_.levels.empty())
+        return tr("%1: %L2 strands as cards, %L3 vertices, %4.")
             .arg(QString::fromStdString(report_.format))
             .arg(report_.strands)
             .arg(report_.points)
-            .arg(locale().formattedDataSize(static_cast<qint64>(report_.bytes), 1, QLocale::DataSizeSIFormat))
-            .arg(report_.maxErrorMm, 0, 'g', 3));
+            .arg(size);
+    QString words = tr("%1: %L2 strands, %L3 points, %4.")
+                        .arg(QString::fromStdString(report_.format))
+                        .arg(report_.strands)
+                        .arg(report_.points)
+                        .arg(size);
+    if (report_.maxErrorMm)
+        words +=
+            ' ' + tr("Farthest point of the file from the hair: %1 mm.").arg(*report_.maxErrorMm, 0, 'g', 3);
+    return words;
+}
+
+void ExportDialog::showReport() {
+    summary_->setText(summary());
     findings_->clear();
     const auto add = [&](const std::string& what, const QString& where, const std::string& fix) {
         auto* item = new QTreeWidgetItem({QString::fromStdString(what), where, QString::fromStdString(fix)});
@@ -235,6 +282,13 @@ void ExportDialog::showReport() {
     for (const ComparedAttribute& attribute : report_.attributes)
         add(attribute.name, tr("attribute"),
             tr("carried, to %1").arg(attribute.maxError, 0, 'g', 3).toStdString());
+    for (const WrittenLevel& level : report_.levels)
+        add(level.name, tr("from %1 m").arg(level.distance, 0, 'f', 2),
+            tr("coverage %1, light %2 of the strands', FLIP %3")
+                .arg(level.coverage, 0, 'f', 3)
+                .arg(level.light, 0, 'f', 3)
+                .arg(level.flip, 0, 'f', 3)
+                .toStdString());
     if (findings_->topLevelItemCount() == 0)
         findings_->addTopLevelItem(new QTreeWidgetItem({tr("Nothing to mend")}));
     wrapRows(*findings_);

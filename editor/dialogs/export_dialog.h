@@ -4,6 +4,7 @@
 
 #include <QComboBox>
 #include <QDialog>
+#include <QFormLayout>
 #include <QLabel>
 #include <QPushButton>
 #include <QSpinBox>
@@ -32,12 +33,14 @@ class ExportDialog : public QDialog {
   private:
     void takeTarget(int index);
     void showReport();
+    QString summary() const;
     void choosePath();
 
     QtDocument& document_;
     Tasks& tasks_;
     Messages& messages_;
     const Player& player_;
+    QFormLayout* form_;
     QComboBox* target_;
     QComboBox* what_;
     QComboBox* layers_;
@@ -46,6 +49,7 @@ class ExportDialog : public QDialog {
     QComboBox* unit_;
     QComboBox* up_;
     QSpinBox* points_;
+    QSpinBox *cards_, *textures_;
     QPushButton* write_;
     QLabel* summary_;
     QTreeWidget* findings_;

@@ -32,6 +32,14 @@ QString short_(double value) {
     return QString::number(value, 'g', 3);
 }
 
+QString inUnit(const QString& value, const QString& unit) {
+    return unit.isEmpty() ? value : value + ' ' + unit;
+}
+
+QString axis(const QString& name, const QString& unit) {
+    return unit.isEmpty() ? name : QStringLiteral("%1 [%2]").arg(name, unit);
+}
+
 }  // namespace
 
 double AccuracyPlot::Span::shareOf(double value) const {
@@ -41,6 +49,12 @@ double AccuracyPlot::Span::shareOf(double value) const {
 AccuracyPlot::AccuracyPlot(QWidget* parent) : QWidget(parent) {
     setMouseTracking(true);
     setObjectName("accuracyPlot");
+}
+
+void AccuracyPlot::setAxes(const QString& cost, const QString& costUnit, const QString& error) {
+    cost_ = cost;
+    costUnit_ = costUnit;
+    errorName_ = error;
 }
 
 void AccuracyPlot::setPoints(std::vector<AccuracyPoint> points, const QString& unit) {
@@ -137,8 +151,8 @@ void AccuracyPlot::drawAxes(QPainter& painter) const {
                          short_(tick));
     }
     painter.setPen(palette().color(QPalette::Text));
-    painter.drawText(QRectF(0, 0, width(), line), Qt::AlignLeft, tr("error [%1]").arg(unit_));
-    painter.drawText(QRectF(0, height() - line, width() - 10, line), Qt::AlignRight, tr("time a frame [ms]"));
+    painter.drawText(QRectF(0, 0, width(), line), Qt::AlignLeft, axis(errorName_, unit_));
+    painter.drawText(QRectF(0, height() - line, width() - 10, line), Qt::AlignRight, axis(cost_, costUnit_));
 }
 
 void AccuracyPlot::drawPoint(QPainter& painter, std::size_t p) const {
@@ -188,9 +202,10 @@ void AccuracyPlot::mouseMoveEvent(QMouseEvent* event) {
     hovered_ = pointAt(event->position());
     if (!hovered_) return QToolTip::hideText();
     const AccuracyPoint& point = points_[*hovered_];
-    const QString error = point.diverged ? tr("diverges") : tr("%1 %2").arg(short_(point.error), unit_);
-    QToolTip::showText(event->globalPosition().toPoint(),
-                       tr("%1: %2 ms, %3").arg(point.words, short_(point.milliseconds), error), this);
+    const QString error = point.diverged ? tr("diverges") : inUnit(short_(point.error), unit_);
+    QToolTip::showText(
+        event->globalPosition().toPoint(),
+        tr("%1: %2, %3").arg(point.words, inUnit(short_(point.milliseconds), costUnit_), error), this);
 }
 
 void AccuracyPlot::mousePressEvent(QMouseEvent* event) {

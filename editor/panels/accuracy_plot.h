@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// The diagram of the Accuracy panel: what each setting costs against how far its hair is from the truth, both
-// logarithmic. Diverged settings stand at the upper edge.
+// The diagram of the Accuracy and Levels panels: what each setting costs against how far its hair is from the
+// truth, both logarithmic. Diverged settings stand at the upper edge.
 
 #include <QWidget>
 #include <optional>
@@ -10,7 +10,7 @@
 namespace hairloom::editor {
 
 struct AccuracyPoint {
-    double milliseconds = 0;  ///< a frame, > 0
+    double milliseconds = 0;  ///< a frame, or another cost; > 0
     double q1 = 0, q3 = 0;    ///< quartiles of it
     double error = 0;         ///< ≥ 0, in the unit of the axis
     bool diverged = false;    ///< then there is no error
@@ -23,6 +23,8 @@ class AccuracyPlot : public QWidget {
 
   public:
     explicit AccuracyPlot(QWidget* parent = nullptr);
+    /// What is across and up, in place of milliseconds and errors: "triangles".
+    void setAxes(const QString& cost, const QString& costUnit, const QString& error);
     /// `unit` is of errors, "px".
     void setPoints(std::vector<AccuracyPoint> points, const QString& unit);
     /// The one that the document has, and the one that is chosen; marked.
@@ -53,7 +55,7 @@ class AccuracyPlot : public QWidget {
     void drawPoint(QPainter& painter, std::size_t point) const;
 
     std::vector<AccuracyPoint> points_;
-    QString unit_ = "mm";
+    QString cost_ = tr("time a frame"), costUnit_ = "ms", errorName_ = tr("error"), unit_ = "mm";
     Span time_, error_;
     std::optional<std::size_t> now_, chosen_, hovered_;
 };

@@ -68,8 +68,16 @@ TEST_F(LodJob, CardsAreExportedAsGltf) {
     EXPECT_TRUE(fs::exists(folder / "hair.glb.report.json"));
     const auto read = runJson("info hair.glb");
     EXPECT_GT(read["scalp"]["vertices"], 20) << "our own reader takes it for a mesh";
-    EXPECT_THAT(run("export hair.hairloom --format gltf --up z -o z.glb").errors,
-                HasSubstr("say nothing of cards"));
+    EXPECT_TRUE(report["max_error_mm"].is_null()) << "no point of a strand is in the file";
+    EXPECT_THAT(run("export hair.hairloom --format gltf --up z -o z.glb").errors, HasSubstr("metres, Y up"));
+    EXPECT_FALSE(fs::exists(folder / "z.glb"));
+    const auto few =
+        runJson("export hair.hairloom --target cards --cards 8 --segments 1 --from-px 64 -o few.glb");
+    EXPECT_EQ(few["format"], "gltf");
+    ASSERT_EQ(few["levels"].size(), 4u);
+    EXPECT_LE(few["levels"][0]["cards"], 8);
+    EXPECT_LE(few["levels"][0]["triangles"], 8 * 4) << "one segment of at most two quads a card";
+    EXPECT_NEAR(few["levels"][0]["distance_m"], 5.8, 0.01);
 }
 
 }  // namespace

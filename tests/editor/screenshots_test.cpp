@@ -108,6 +108,19 @@ TEST_P(ScreenshotsTest, WindowAndPanels) {
     }
 }
 
+TEST_P(ScreenshotsTest, LevelsThatAreMade) {
+    openSampleHair("short");
+    const std::vector<std::uint32_t> offsets(groom().offsets.view().begin(),
+                                             groom().offsets.view().begin() + 301);
+    const std::vector<Vec3f> points(groom().positions().begin(),
+                                    groom().positions().begin() + offsets.back());
+    document().open(makeGroom(offsets, points), {}, "few");
+    window->panel("levels")->raise();
+    find<QPushButton>("levelsMake")->click();
+    finishWork();
+    shoot(*window->panel("levels")->widget(), "panel-levels-made");
+}
+
 TEST_P(ScreenshotsTest, Dialogs) {
     openSampleHair("short");
     PreferencesDialog preferences(parts().preferences, window.get());

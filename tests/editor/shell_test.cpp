@@ -284,7 +284,7 @@ TEST_F(ShellTest, ExportIsReadBackAndReported) {
     dialog.exportTo(inFolder("hair.hair"));
     finishWork();
     EXPECT_EQ(dialog.report().strands, groom().strandCount());
-    EXPECT_LT(dialog.report().maxErrorMm, 0.001);
+    EXPECT_LT(dialog.report().maxErrorMm.value(), 0.001);
     const auto back = importStrands(inFolder("hair.hair").toStdString());
     ASSERT_TRUE(back) << back.error().message();
     EXPECT_EQ(back->groom.strandCount(), groom().strandCount());
@@ -298,6 +298,32 @@ TEST_F(ShellTest, ExportIsReadBackAndReported) {
     EXPECT_EQ(dialog.report().strands, 3 * full.strandCount());
 }
 
+TEST_F(ShellTest, CardsLeaveByTheSameDialogWithWhatEachLevelLoses) {
+    openSampleHair("short");
+    const std::vector<std::uint32_t> offsets(groom().offsets.view().begin(),
+                                             groom().offsets.view().begin() + 301);
+    const std::vector<Vec3f> points(groom().positions().begin(),
+                                    groom().positions().begin() + offsets.back());
+    document().open(makeGroom(offsets, points), {}, "few");
+    ExportDialog dialog(document(), parts().tasks, parts().messages, parts().player);
+    dialog.show();
+    auto* cards = dialog.findChild<QSpinBox*>("cards");
+    EXPECT_FALSE(cards->isVisible()) << "strands have none";
+    dialog.findChild<QComboBox*>("target")->setCurrentText("Engines without strands: cards (glTF)");
+    EXPECT_TRUE(cards->isVisible());
+    EXPECT_FALSE(dialog.findChild<QComboBox*>("what")->isVisible());
+    cards->setValue(12);
+    dialog.findChild<QSpinBox*>("textures")->setValue(4);
+    dialog.exportTo(inFolder("few.glb"));
+    finishWork();
+    ASSERT_EQ(dialog.report().levels.size(), 4u) << window->statusLine().message().toStdString();
+    EXPECT_LE(dialog.report().levels[0].cards, 12u);
+    EXPECT_FALSE(dialog.report().maxErrorMm);
+    EXPECT_TRUE(QFileInfo::exists(inFolder("few.glb")));
+    const auto* findings = dialog.findChild<QTreeWidget*>("findings");
+    EXPECT_FALSE(findings->findItems("cards-12", Qt::MatchExactly).isEmpty());
+}
+
 TEST_F(ShellTest, AnAssetForGamesIsExportedWithItsSize) {
     openSampleHair("short");
     ExportDialog dialog(document(), parts().tasks, parts().messages, parts().player);
@@ -305,7 +331,7 @@ TEST_F(ShellTest, AnAssetForGamesIsExportedWithItsSize) {
     dialog.exportTo(inFolder("hair.hairrt"));
     finishWork();
     EXPECT_EQ(dialog.report().strands, groom().strandCount());
-    EXPECT_LT(dialog.report().maxErrorMm, 0.05);
+    EXPECT_LT(dialog.report().maxErrorMm.value(), 0.05);
     EXPECT_EQ(dialog.report().bytes, static_cast<std::uint64_t>(QFileInfo(inFolder("hair.hairrt")).size()));
     const QString size = dialog.locale().formattedDataSize(static_cast<qint64>(dialog.report().bytes), 1,
                                                            QLocale::DataSizeSIFormat);

@@ -85,7 +85,7 @@ TEST_F(StrandWriters, HairRoundTripIsExact) {
     ASSERT_TRUE(report) << report.error().message();
     EXPECT_EQ(report->strands, 5u);
     EXPECT_EQ(report->points, 188u);
-    EXPECT_EQ(report->maxErrorMm, 0.0);
+    EXPECT_EQ(report->maxErrorMm.value(), 0.0);
     EXPECT_EQ(report->bytes, fs::file_size(folder / "a.hair"));
     const auto back = importStrands(folder / "a.hair");
     ASSERT_TRUE(back) << back.error().message();
@@ -99,7 +99,7 @@ TEST_F(StrandWriters, TfxRoundTripIsExact) {
     const Groom groom = decorated({16, 16, 16});
     const auto report = writeTfx(groom, folder / "a.tfx");
     ASSERT_TRUE(report) << report.error().message();
-    EXPECT_EQ(report->maxErrorMm, 0.0);
+    EXPECT_EQ(report->maxErrorMm.value(), 0.0);
     EXPECT_FALSE(says(*report, "resampled"));
     const auto back = importStrands(folder / "a.tfx");
     ASSERT_TRUE(back) << back.error().message();
@@ -134,8 +134,8 @@ TEST_F(StrandWriters, TfxResamplesToTheNearestAllowedCountAndSaysSo) {
         ASSERT_TRUE(report) << report.error().message();
         EXPECT_EQ(report->points, 2u * expected) << points;
         EXPECT_TRUE(says(*report, "resampled"));
-        EXPECT_GT(report->maxErrorMm, 0.0);
-        EXPECT_LT(report->maxErrorMm, 20.0);
+        EXPECT_GT(report->maxErrorMm.value(), 0.0);
+        EXPECT_LT(report->maxErrorMm.value(), 20.0);
         const auto back = importStrands(folder / "a.tfx");
         ASSERT_TRUE(back);
         EXPECT_EQ(back->groom.strand(1).front(), groom.strand(1).front());
@@ -159,7 +159,7 @@ TEST_F(StrandWriters, UnitsAndAxesComeBack) {
     for (const auto& report :
          {writeHair(groom, folder / "a.hair", options), writeTfx(groom, folder / "a.tfx", options)}) {
         ASSERT_TRUE(report) << report.error().message();
-        EXPECT_LT(report->maxErrorMm, 1e-3);
+        EXPECT_LT(report->maxErrorMm.value(), 1e-3);
     }
     // Read as if Y were up: height is in z, 1.7 m are 66.9 inches.
     const auto raw = importStrands(folder / "a.hair");
@@ -179,7 +179,7 @@ TEST_F(StrandWriters, UnusableStrandsAreLeftOutAndReported) {
     EXPECT_TRUE(says(*report, "2 strands of no length"));
     EXPECT_TRUE(says(*report, "segments of no length"));
     EXPECT_TRUE(says(*report, "no widths"));
-    EXPECT_LT(report->maxErrorMm, 1e-4);
+    EXPECT_LT(report->maxErrorMm.value(), 1e-4);
     for (const Finding& finding : report->findings) {
         EXPECT_TRUE(finding.severity == Severity::Info || !finding.fix.empty()) << finding.what;
     }
@@ -238,7 +238,7 @@ TEST_F(StrandWriters, AlembicAndUsdCarryEveryAttribute) {
             const auto report = strandWriter(format).write(groom, path, options);
             ASSERT_TRUE(report) << report.error().message();
             EXPECT_EQ(report->format, format.starts_with("usd") ? "USD" : "Alembic");
-            EXPECT_LT(report->maxErrorMm, 0.001);
+            EXPECT_LT(report->maxErrorMm.value(), 0.001);
             std::set<std::string> carried;
             for (const ComparedAttribute& compared : report->attributes) {
                 carried.insert(compared.name);
@@ -286,7 +286,7 @@ TEST_F(StrandWriters, EveryTargetOfEveryFormatIsWrittenAndReadBackByContent) {
             const auto report = writer.write(groom, folder / "any.name", target.options);
             ASSERT_TRUE(report) << target.name << ": " << report.error().message();
             EXPECT_EQ(report->strands, 2u) << target.name;
-            EXPECT_LT(report->maxErrorMm, 2.0) << target.name;
+            EXPECT_LT(report->maxErrorMm.value(), 2.0) << target.name;
         }
     }
 }
@@ -336,7 +336,7 @@ TEST_F(StrandWriters, StrandsThatMoveAreReadBackAtEveryFrame) {
             const auto report = writer.write(groom, path, options);
             ASSERT_TRUE(report) << target.name << ": " << report.error().message();
             EXPECT_EQ(report->frames, 4u);
-            EXPECT_LT(report->maxErrorMm, 0.001) << target.name;
+            EXPECT_LT(report->maxErrorMm.value(), 0.001) << target.name;
             StrandImportOptions reading;
             reading.metresPerUnit = options.metresPerUnit;
             reading.up = options.up;
@@ -354,7 +354,7 @@ TEST_F(StrandWriters, StrandsThatMoveAreReadBackAtEveryFrame) {
         const auto report = writer.write(groom, folder / ("fewer." + writer.name), fewer);
         ASSERT_TRUE(report) << report.error().message();
         EXPECT_EQ(report->points, 10u);
-        EXPECT_LT(report->maxErrorMm, 3.0);
+        EXPECT_LT(report->maxErrorMm.value(), 3.0);
     }
     EXPECT_EQ(animating, 4);
 }

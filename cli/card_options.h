@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What levels of detail may cost, as the command line asks for it.
+
+#include <CLI/App.hpp>
+
+#include "core/scene/level_chain.h"
+
+namespace hairloom::cli {
+
+/// --cards, --textures, --segments, --from-px, --atlas, --target-px, --levels.
+void addCardOptions(CLI::App& job, LevelBudget& budget);
+
+}  // namespace hairloom::cli

@@ -1,0 +1,350 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "editor/panels/levels_panel.h"
+
+#include <QFileDialog>
+#include <QFileInfo>
+#include <QHeaderView>
+#include <QPainter>
+#include <QVBoxLayout>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "core/base/output_file.h"
+
+namespace hairloom::editor {
+namespace {
+
+enum Column { kName, kCards, kTriangles, kBytes, kFrom, kCoverage, kLight, kFlip, kColumns };
+
+/// All that a level is made from.
+constexpr editing::Part kShown = editing::kHairParts | editing::kScalpParts | editing::Part::Spheres |
+                                 editing::Part::Material | editing::Part::Interpolation | editing::Part::Dye |
+                                 editing::Part::Operators;
+
+/// The height of a head in pixels that is seen from so far, of those that levels can have.
+std::uint32_t headPxAt(double metres) {
+    const double px = cards::distanceOf(512) / metres * 512;
+    return static_cast<std::uint32_t>(std::clamp(std::exp2(std::round(std::log2(px))), 16.0, 512.0));
+}
+
+/// A texture over a chequered ground, which shows through where no hair is.
+QPixmap onChequers(const QImage& texture, int width) {
+    const QImage shown = texture.scaledToWidth(std::max(32, width), Qt::SmoothTransformation);
+    QPixmap pixmap(shown.size());
+    QPainter painter(&pixmap);
+    painter.fillRect(shown.rect(), QColor(72, 74, 80));
+    painter.fillRect(shown.rect(), QBrush(QColor(96, 98, 104), Qt::Dense4Pattern));
+    painter.drawImage(0, 0, shown);
+    return pixmap;
+}
+
+}  // namespace
+
+LevelsPanel::LevelsPanel(const PanelParts& parts)
+    : document_(parts.document),
+      tasks_(parts.tasks),
+      messages_(parts.messages),
+      viewport_(parts.viewport),
+      words_(new QLabel),
+      table_(new QTreeWidget),
+      plot_(new AccuracyPlot) {
+    setObjectName("levels");
+    auto* layout = new QVBoxLayout(this);
+    layout->setContentsMargins(0, 0, 0, 0);
+    layout->setSpacing(8);
+    words_->setObjectName("levelsWords");
+    words_->setWordWrap(true);
+    layout->addWidget(words_);
+    layout->addWidget(makeBudget());
+    table_->setObjectName("levelsTable");
+    table_->setRootIsDecorated(false);
+    table_->setHeaderLabels(
+        {tr("Level"), tr("Cards"), tr("Tri."), tr("MB"), tr("m"), tr("Cov."), tr("Light"), tr("FLIP")});
+    table_->setToolTip(tr(
+        "Cards, triangles and memory of each level, the distance from which on it serves, and how far it is "
+        "from all strands there: coverage and light of its hair as a share of theirs, FLIP the difference "
+        "that people see, 0 none. Click a level to see it"));
+    table_->header()->setSectionResizeMode(QHeaderView::ResizeToContents);
+    table_->header()->setMinimumSectionSize(24);
+    table_->setHorizontalScrollBarPolicy(Qt::ScrollBarAsNeeded);
+    layout->addWidget(table_);
+    plot_->setObjectName("levelsPlot");
+    plot_->setAxes(tr("triangles"), {}, tr("FLIP to all strands"));
+    layout->addWidget(plot_);
+    layout->addWidget(makeLook());
+    connect(table_, &QTreeWidget::currentItemChanged, this, &LevelsPanel::showChosen);
+    connect(plot_, &AccuracyPlot::clicked, this,
+            [this](std::size_t point) { table_->setCurrentItem(table_->topLevelItem(plotted_[point])); });
+    connect(&document_, &QtDocument::changed, this, &LevelsPanel::noteChange);
+    connect(&document_, &QtDocument::replaced, this, [this] {
+        made_.reset();
+        ++documents_;
+        fillTable();
+        refresh();
+    });
+    viewport_.addMarks([this](Marks& marks) {
+        if (over_->isChecked() && !viewport_.pose()) marks_.draw(marks);
+    });
+    refresh();
+}
+
+NumberBox* LevelsPanel::addBudget(QFormLayout& form, const char* name, const QString& label,
+                                  const QString& tip, double min, double max, double value) {
+    auto* box = new NumberBox(min, max, true);
+    box->setObjectName(name);
+    box->setToolTip(tip);
+    box->setValue(value);
+    form.addRow(label, box);
+    return box;
+}
+
+QWidget* LevelsPanel::makeBudget() {
+    auto* widget = new QWidget;
+    auto* layout = new QVBoxLayout(widget);
+    layout->setContentsMargins(0, 0, 0, 0);
+    layout->setSpacing(8);
+    auto* form = new QFormLayout;
+    form->setVerticalSpacing(6);
+    layout->addLayout(form);
+    const LevelBudget standard;
+    cards_ = addBudget(*form, "levelCards", tr("Cards"),
+                       tr("Cards of the nearest level, at most; the next have half and a quarter of them"), 1,
+                       1000, standard.cards);
+    textures_ = addBudget(*form, "levelTextures", tr("Textures"),
+                          tr("Textures of a level, at most; cards that look alike share one"), 1, 128,
+                          standard.chain.textures);
+    segments_ = addBudget(*form, "levelSegments", tr("Segments"),
+                          tr("Segments of a card, at most; fewer where a third of a pixel needs no more"), 1,
+                          24, standard.chain.segments);
+    distance_ = new NumberBox(cards::distanceOf(512), cards::distanceOf(16), false);
+    distance_->setObjectName("levelDistance");
+    distance_->setShown(1, tr("m"), 2);
+    distance_->setValue(cards::distanceOf(standard.headPx));
+    distance_->setToolTip(tr(
+        "Metres from which on the nearest cards serve, in a picture of 1080 lines and 40°; each level after "
+        "it serves from twice as far. Distances at which a head is 512, 256 … 16 pixels high"));
+    form->addRow(tr("From"), distance_);
+    connect(distance_, &NumberBox::edited, this,
+            [this](double metres) { distance_->setValue(cards::distanceOf(headPxAt(metres))); });
+    auto* row = new QHBoxLayout;
+    make_ =
+        pushButton("levelsMake", tr("Make"),
+                   tr("Makes the chain and holds each level against all strands; a minute or two for a full "
+                      "head of hair. The status line stops it"),
+                   [this] { make(); });
+    export_ = pushButton("levelsExport", tr("Export glTF…"),
+                         tr("Writes cards and shell as they are shown, with textures, joints and springs"),
+                         [this] { choosePath(); });
+    row->addWidget(make_);
+    row->addWidget(export_);
+    layout->addLayout(row);
+    return widget;
+}
+
+QWidget* LevelsPanel::makeLook() {
+    look_ = new QWidget;
+    auto* layout = new QVBoxLayout(look_);
+    layout->setContentsMargins(0, 0, 0, 0);
+    layout->setSpacing(8);
+    over_ = new QCheckBox(tr("Cards over the strands"));
+    over_->setObjectName("levelOver");
+    over_->setToolTip(
+        tr("Shows the cards of the level in the viewport, each in a colour, while the hair is at rest"));
+    connect(over_, &QCheckBox::toggled, this, [this] { viewport_.redraw(); });
+    layout->addWidget(over_);
+    layout->addWidget(heading(tr("At its distance")));
+    viewWords_ = new QLabel;
+    viewWords_->setObjectName("levelViewWords");
+    viewWords_->setWordWrap(true);
+    viewWords_->setProperty("role", "dim");
+    layout->addWidget(viewWords_);
+    view_ = new LevelView;
+    view_->setObjectName("levelView");
+    view_->setToolTip(tr("All strands left of the line, the level right of it; drag the line"));
+    layout->addWidget(view_);
+    auto* form = new QFormLayout;
+    form->setVerticalSpacing(6);
+    direction_ = new NumberBox(1, 4, true);
+    direction_->setObjectName("levelDirection");
+    direction_->setValue(1);
+    direction_->setToolTip(tr("From before, from the left, from behind, from the right"));
+    connect(direction_, &NumberBox::edited, this, &LevelsPanel::showChosen);
+    form->addRow(tr("Side"), direction_);
+    layout->addLayout(form);
+    layout->addWidget(heading(tr("Textures")));
+    map_ = new QComboBox;
+    map_->setObjectName("levelMap");
+    map_->setToolTip(
+        tr("Colour: albedo and coverage. Shape: flow, depth, ambient occlusion. Normal. Strand: "
+           "root to tip, number of the strand"));
+    connect(map_, &QComboBox::currentIndexChanged, this, &LevelsPanel::showTexture);
+    layout->addWidget(map_);
+    texture_ = new QLabel;
+    texture_->setObjectName("levelTexture");
+    texture_->setToolTip(tr("The atlas of the level; cards that look alike share a place"));
+    layout->addWidget(texture_);
+    return look_;
+}
+
+LevelBudget LevelsPanel::budget() const {
+    LevelBudget budget;
+    budget.cards = static_cast<std::uint32_t>(cards_->value());
+    budget.chain.textures = static_cast<std::uint32_t>(textures_->value());
+    budget.chain.segments = static_cast<std::uint32_t>(segments_->value());
+    budget.headPx = headPxAt(distance_->value());
+    return budget;
+}
+
+void LevelsPanel::make() {
+    const auto groom = std::make_shared<const Groom>(document_.groom());
+    tasks_.run<MadeLevels>(
+        tr("Making levels"),
+        [groom, budget = budget()](TaskControl& control) { return makeShownLevels(*groom, budget, control); },
+        [this, document = documents_, change = changes_](MadeLevels made) {
+            if (document != documents_) return;
+            made_ = std::move(made);
+            madeAt_ = change;
+            fillTable();
+            refresh();
+        });
+}
+
+void LevelsPanel::choosePath() {
+    const QString name = QFileInfo(document_.title()).completeBaseName() + ".glb";
+    const QString path = QFileDialog::getSaveFileName(this, tr("Export glTF"), name, "*.glb");
+    if (!path.isEmpty()) exportTo(path);
+}
+
+void LevelsPanel::exportTo(const QString& path) {
+    if (!made_) return;
+    const LevelFile& file = made_->file;
+    if (auto written = writeFileAtomically(path.toStdString(), file.bytes); !written)
+        return messages_.warn(QString::fromStdString(written.error().message()));
+    const QString size =
+        locale().formattedDataSize(static_cast<qint64>(file.bytes.size()), 1, QLocale::DataSizeSIFormat);
+    QString words = tr("%1 written: %2 levels, %3")
+                        .arg(QFileInfo(path).fileName())
+                        .arg(file.report.levels.size())
+                        .arg(size);
+    if (madeAt_ != changes_) words += "; " + tr("as it was made before the last change");
+    const auto warning = std::ranges::find(file.report.findings, Severity::Warning, &Finding::severity);
+    if (warning == file.report.findings.end()) return messages_.say(words);
+    messages_.warn(words + "; " + QString::fromStdString(warning->what));
+}
+
+void LevelsPanel::noteChange(editing::Part changed) {
+    if (!contains(changed, kShown)) return;
+    ++changes_;
+    refresh();
+}
+
+QString LevelsPanel::sentence() const {
+    if (document_.groom().strandCount() == 0) return tr("Place hair to make levels of it.");
+    if (!made_)
+        return tr(
+            "What stands for this hair farther away: fewer strands, cards, a shell, each held against all "
+            "strands at its distance.");
+    QString text = tr("Of %L1 hairs in %2 s.").arg(made_->strands).arg(made_->seconds, 0, 'f', 1);
+    if (madeAt_ != changes_) text += ' ' + tr("The hair has changed since: make them anew.");
+    return text;
+}
+
+const MadeLevel* LevelsPanel::chosen() const {
+    const int row = table_->indexOfTopLevelItem(table_->currentItem());
+    return made_ && row >= 0 ? &made_->levels[static_cast<std::size_t>(row)] : nullptr;
+}
+
+void LevelsPanel::fillTable() {
+    const int before = table_->indexOfTopLevelItem(table_->currentItem());
+    table_->clear();
+    if (!made_) return;
+    int firstCards = -1;
+    for (const MadeLevel& made : made_->levels) {
+        const cards::Level& level = made.level;
+        const cards::Difference& off = level.difference;
+        auto* item = new QTreeWidgetItem(table_);
+        item->setText(kName, QString::fromStdString(level.name));
+        if (level.cards() > 0) item->setText(kCards, QString::number(level.cards()));
+        item->setText(kTriangles, QStringLiteral("%L1").arg(level.triangles));
+        item->setText(kBytes, QString::number(static_cast<double>(level.bytes) / 1e6, 'f', 2));
+        item->setText(kFrom, QString::number(cards::distanceOf(level.spec.headPx), 'f', 2));
+        item->setText(kCoverage, QString::number(off.coverage, 'f', 3));
+        item->setText(kLight, QString::number(off.light, 'f', 3));
+        item->setText(kFlip, QString::number(off.flip, 'f', 3));
+        for (int c = kCards; c < kColumns; ++c) item->setTextAlignment(c, Qt::AlignRight | Qt::AlignVCenter);
+        if (firstCards < 0 && level.cards() > 0) firstCards = table_->topLevelItemCount() - 1;
+    }
+    const int rows = table_->topLevelItemCount();
+    table_->setFixedHeight(table_->header()->sizeHint().height() + rows * table_->sizeHintForRow(0) + 22);
+    table_->setCurrentItem(
+        table_->topLevelItem(before >= 0 && before < rows ? before : std::max(0, firstCards)));
+}
+
+void LevelsPanel::showPlot() {
+    std::vector<AccuracyPoint> points;
+    plotted_.clear();
+    for (int row = 0; row < table_->topLevelItemCount(); ++row) {
+        const MadeLevel& made = made_->levels[static_cast<std::size_t>(row)];
+        const auto triangles = static_cast<double>(made.level.triangles);
+        if (!(made.level.difference.flip > 0)) continue;  // all strands themselves
+        plotted_.push_back(row);
+        points.push_back({triangles, triangles, triangles, made.level.difference.flip, false, true,
+                          QString::fromStdString(made.level.name)});
+    }
+    plot_->setPoints(std::move(points), {});
+}
+
+void LevelsPanel::showChosen() {
+    const MadeLevel* made = chosen();
+    const auto* cards = made == nullptr ? nullptr : std::get_if<cards::Cards>(&made->level.content);
+    marks_ = cards == nullptr ? CardMarks() : CardMarks(*cards);
+    viewport_.redraw();
+    if (made == nullptr) return view_->show({}, {});
+    const std::size_t side = std::min(made->shots.size(), static_cast<std::size_t>(direction_->value())) - 1;
+    view_->show(made->strands[side], made->shots[side]);
+    viewWords_->setText(tr("Strands | %1, as seen from %2 m: a head of %3 pixels in 1080 lines")
+                            .arg(QString::fromStdString(made->level.name))
+                            .arg(cards::distanceOf(made->level.spec.headPx), 0, 'f', 2)
+                            .arg(made->level.spec.headPx));
+    const int map = std::max(0, map_->currentIndex());
+    map_->clear();
+    for (const MadeLevel::Texture& texture : made->textures) map_->addItem(texture.name);
+    map_->setEnabled(!made->textures.empty());
+    if (!made->textures.empty()) map_->setCurrentIndex(map);
+    showTexture();
+}
+
+void LevelsPanel::showTexture() {
+    const MadeLevel* made = chosen();
+    const int map = map_->currentIndex();
+    if (made == nullptr || map < 0 || static_cast<std::size_t>(map) >= made->textures.size())
+        return texture_->setPixmap({});
+    constexpr int kWidth = 280;
+    texture_->setPixmap(onChequers(made->textures[static_cast<std::size_t>(map)].image, kWidth));
+}
+
+void LevelsPanel::refresh() {
+    words_->setText(sentence());
+    make_->setEnabled(document_.groom().strandCount() > 0);
+    const bool any = made_.has_value();
+    export_->setEnabled(any);
+    for (QWidget* part : {static_cast<QWidget*>(table_), static_cast<QWidget*>(plot_), look_})
+        part->setVisible(any);
+    if (any) showPlot();
+    showChosen();
+}
+
+PanelInfo levelsPanel() {
+    return {"levels",
+            QObject::tr("Levels"),
+            "overlay",
+            Qt::RightDockWidgetArea,
+            97,
+            true,
+            [](const PanelParts& parts) -> QWidget* {
+                return scrolled(column({heading(QObject::tr("Levels of detail")), new LevelsPanel(parts)}));
+            }};
+}
+
+}  // namespace hairloom::editor

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// A chain of levels as the Levels panel keeps it: numbers, meshes, small pictures, and the file that it
+// leaves as.
+
+#include <QImage>
+#include <QString>
+#include <vector>
+
+#include "core/scene/level_chain.h"
+#include "editor/document/tasks.h"
+
+namespace hairloom::editor {
+
+struct MadeLevel {
+    cards::Level level;  ///< without its hair, texels and shots
+    // By directions, of one size.
+    std::vector<QImage> strands, shots;
+    struct Texture {
+        QString name;  ///< "colour"
+        QImage image;  ///< kShownSide texels wide at most
+    };
+    std::vector<Texture> textures;
+};
+
+struct MadeLevels {
+    std::vector<MadeLevel> levels;
+    std::size_t strands = 0;
+    double seconds = 0;
+    LevelFile file;
+};
+
+/// Errors: those of makeLevels() and levelFile().
+Result<MadeLevels> makeShownLevels(const Groom& groom, const LevelBudget& budget, TaskControl& control);
+
+}  // namespace hairloom::editor
