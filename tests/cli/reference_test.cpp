@@ -36,7 +36,7 @@ TEST_F(Reference, GroomListsOperationsAndBrushesWithTheirFields) {
     EXPECT_EQ(puff["fields"][0]["default"], 0.01);
     EXPECT_EQ(puff["fields"][0]["max"], 0.1);
     EXPECT_EQ(named(listed["brushes"], "delete")["fields"][0]["default"], true);
-    EXPECT_EQ(listed["region"].size(), 5u);
+    EXPECT_EQ(listed["region"].size(), 6u);
     EXPECT_EQ(listed["brush_settings"][0]["field"], "radius");
     EXPECT_EQ(run("groom hair.hairloom").exitCode, 2) << "neither --list nor a script";
 }
