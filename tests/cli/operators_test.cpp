@@ -24,7 +24,8 @@ class OperatorsCli : public CommandLineTest {
     }
     std::size_t enabled(const std::string& project) {
         std::size_t count = 0;
-        for (const auto& one : runJson("stack " + project)["operators"]) count += one["enabled"].get<bool>();
+        const auto shown = runJson("stack " + project);
+        for (const auto& one : shown["operators"]) count += one["enabled"].get<bool>();
         return count;
     }
 };
