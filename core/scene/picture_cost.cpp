@@ -38,8 +38,7 @@ struct Candidate {
 /// Settings in the order of the Look panel.
 class Candidates {
   public:
-    Candidates(const Settings& now, std::uint32_t mostSamples, bool hasFollowHairs, bool scatters)
-        : now_(now) {
+    Candidates(const Settings& now, std::uint32_t mostSamples, bool scatters) : now_(now) {
         for (std::uint32_t samples = 1; samples <= mostSamples; samples *= 2)
             add("samples", fmt::to_string(samples), [&](Settings& s) { s.picture.samples = samples; });
         using render::PostFilter, render::Ribbons, render::Shadows, render::Transparency;
@@ -64,7 +63,7 @@ class Candidates {
             add("scattering", "single", [](Settings& s) { s.scattering = render::Scattering::single; });
             add("scattering", "dual", [](Settings& s) { s.scattering = render::Scattering::dual; });
         }
-        if (hasFollowHairs) addFollowHairs();
+        if (now.followPerGuide > 0) addFollowHairs();
     }
     const std::vector<Candidate>& list() const { return list_; }
 
@@ -151,11 +150,12 @@ class Measuring {
         if (!samples) return tl::unexpected(samples.error());
         now.picture.samples = *samples;
         const bool scatters = view_.fibre.model != render::ShadingModel::kajiya;
-        const Candidates candidates(now, mostSamples(), now.followPerGuide > 0, scatters);
+        const Candidates candidates(now, mostSamples(), scatters);
         total_ = 2 + candidates.list().size();
         auto exact = draw(exactSettings(now));
         if (!exact) return tl::unexpected(exact.error());
         exact_ = std::move(*exact);
+        exactLight_ = hairLight(exact_.linear, exact_.surface);
         step();
         auto asItIs = run(now);
         if (!asItIs) return tl::unexpected(asItIs.error());
@@ -311,8 +311,7 @@ class Measuring {
         const auto flip = render::flipDifference(exact_.image, picture->image);
         if (!flip) return tl::unexpected(flip.error());
         run.flip = flip->mean;
-        const double right = hairLight(exact_.linear, exact_.surface);
-        run.light = right > 0 ? hairLight(picture->linear, exact_.surface) / right : 1;
+        run.light = exactLight_ > 0 ? hairLight(picture->linear, exact_.surface) / exactLight_ : 1;
         return run;
     }
 
@@ -323,6 +322,7 @@ class Measuring {
     std::vector<render::Light> lights_;
     PictureCost cost_;
     render::Picture exact_;
+    double exactLight_ = 0;  ///< of its hair
     std::map<std::pair<std::uint32_t, render::Scattering>, std::unique_ptr<Shown>> shown_;
     std::size_t done_ = 0, total_ = 0;
 };
