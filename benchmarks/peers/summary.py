@@ -69,6 +69,22 @@ def label_of(row):
     return row["setting"].replace("substeps", "").replace("substep", "").replace("steps", "").replace(" ", "")
 
 
+def labels(points):
+    """Beside each point (x, y, words, colour) where there is room; a point without room goes without."""
+    taken = [(x - 4, y - 4, x + 4, y + 4) for x, y, _, _ in points]
+    parts = []
+    for x, y, words, colour in points:
+        wide = 6.5 * len(words)
+        for left, base in ((x + 8, y - 4), (x - 8 - wide, y + 12), (x - wide / 2, y - 9), (x - wide / 2, y + 18), (x + 8, y + 12)):
+            box = (left, base - 9, left + wide, base + 1)
+            if all(box[2] < a or c < box[0] or box[3] < b or d < box[1] for a, b, c, d in taken):
+                taken.append(box)
+                parts.append(text(left, base, words, 11, "start", colour,
+                                  ' stroke="#ffffff" stroke-width="3" stroke-linejoin="round" paint-order="stroke"'))
+                break
+    return parts
+
+
 def picture(rows, path):
     finite = [row for row in rows if math.isfinite(number(row, "error_rms_mm"))]
     x0, x1 = decades([number(row, "ms_per_frame") for row in finite])
@@ -89,23 +105,25 @@ def picture(rows, path):
     for k in range(y0, y1 + 1):
         parts += [line(LEFT, y_of(10**k), RIGHT, y_of(10**k), "#e2e2e2"), text(LEFT - 9, y_of(10**k) + 4, power(k), anchor="end")]
     parts.append(f'<rect x="{LEFT}" y="{TOP}" width="{RIGHT - LEFT}" height="{BOTTOM - TOP}" fill="none" stroke="#666666"/>')
-    halo = ' stroke="#ffffff" stroke-width="3" stroke-linejoin="round" paint-order="stroke"'
+    points = []
     for s, (peer, colour) in enumerate(COLOURS.items()):
         own = [row for row in finite if row["peer"] == peer]
         if not own:
             continue
         spots = [(x_of(number(row, "ms_per_frame")), y_of(number(row, "error_rms_mm")), row) for row in own]
         doubt = y_of(number(own[0], "doubt_mm"))
-        parts.append(line(min(spot[0] for spot in spots) - 20, doubt, max(spot[0] for spot in spots) + 20, doubt, colour,
+        parts.append(line(max(spots[0][0] - 20, LEFT), doubt, min(spots[-1][0] + 20, RIGHT), doubt, colour,
                           ' stroke-width="1.2" stroke-dasharray="6 4"'))
         way = "L".join(f"{x:.2f} {y:.2f}" for x, y, _ in spots)
         parts.append(f'<path d="M{way}" fill="none" stroke="{colour}" stroke-width="1.6"/>')
-        for k, (x, y, row) in enumerate(spots):
+        for x, y, row in spots:
             tip = f'{peer}, {row["setting"]}: {row["ms_per_frame"]} ms, {row["error_rms_mm"]} mm rms, {row["error_max_mm"]} mm at most'
-            parts += [f'<circle cx="{x:.2f}" cy="{y:.2f}" r="4" fill="{colour}" stroke="#ffffff" stroke-width="0.8">'
-                      f"<title>{tip}</title></circle>", text(x, y + (-9 if k % 2 == 0 else 18), label_of(row), 11, more=halo)]
+            parts.append(f'<circle cx="{x:.2f}" cy="{y:.2f}" r="4" fill="{colour}" stroke="#ffffff" stroke-width="0.8">'
+                         f"<title>{tip}</title></circle>")
+            points.append((x, y, label_of(row), colour))
         parts += [line(RIGHT + 22, TOP + 9 + 22 * s, RIGHT + 46, TOP + 9 + 22 * s, colour, ' stroke-width="2"'),
                   text(RIGHT + 54, TOP + 13 + 22 * s, f'{peer} {own[0]["version"]}', anchor="start")]
+    parts += labels(points)
     below = TOP + 9 + 22 * len(COLOURS)
     parts += [line(RIGHT + 22, below, RIGHT + 46, below, "#666666", ' stroke-width="1.2" stroke-dasharray="6 4"'),
               text(RIGHT + 54, below + 4, "doubt of its own truth", anchor="start"),
@@ -132,7 +150,7 @@ def sentence(peer, rows, ours):
             words.append(f"It is less than ten times at {', '.join(close)}.")
     if beyond:
         best = min(ours, key=lambda row: number(row, "error_rms_mm"))
-        words.append(f"At {' and '.join(row['setting'] for row in beyond)} it is more exact "
+        words.append(f"{'At' if reached else 'at'} {' and '.join(row['setting'] for row in beyond)} it is more exact "
                      f"({short(number(beyond[0], 'error_rms_mm'))} mm) than ours at any setting here "
                      f"({short(number(best, 'error_rms_mm'))} mm), for "
                      f"{short(number(beyond[0], 'ms_per_frame') / number(best, 'ms_per_frame'))} times the time.")

@@ -27,7 +27,11 @@ class SummaryTest(unittest.TestCase):
 
     def test_what_is_more_exact_than_ours_is_said(self):
         words = summary.sentence("P", [row(40, 0.01, "fine")], self.OURS)
-        self.assertIn("At fine it is more exact (0.01 mm) than ours at any setting here (0.1 mm), for 10 times the time.", words)
+        self.assertIn("at fine it is more exact (0.01 mm) than ours at any setting here (0.1 mm), for 10 times the time.", words)
+
+    def test_labels_do_not_lie_on_each_other(self):
+        self.assertEqual(len(summary.labels([(100, 100, "10×10", "#000000"), (300, 100, "10×10", "#000000")])), 2)
+        self.assertEqual(len(summary.labels([(100, 100, "10×10", "#000000")] * 9)), 3)
 
     def test_numbers_have_two_digits(self):
         self.assertEqual([summary.short(x) for x in (21987, 104.2, 10.4, 5.54, 0.0491, 0.0, 2.8e-5)],
