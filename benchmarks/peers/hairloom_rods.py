@@ -55,7 +55,7 @@ def simulate(rest, substeps, damping, turning, frames):
             json.dump({"keys": keys}, file)
         words = ["simulate", groom, "--motion", motion, "--engine", "cpu", "--fps", str(scene.FPS), "--substeps", str(substeps)]
         cli(*words, "--frames", str(frames), "--record", record)
-        # Reading the groom is paid once: what one frame less costs is what frames cost.
+        # Reading the groom is paid once: what two runs differ by is what frames cost.
         seconds = cli(*words, "--frames", str(frames + 1))[1] - cli(*words, "--frames", "1")[1]
         return read_frames(record, rest), seconds
 
