@@ -8,7 +8,7 @@
 #include <map>
 #include <optional>
 
-#include "importers/scene.h"
+#include "exporters/character.h"
 
 namespace hairloom {
 namespace {
@@ -39,7 +39,7 @@ class Collector {
         const auto bindings = groom_.rootBindings();
         const bool bound = groom_.scalp && bindings.size() == groom_.strandCount();
         const bool boned = std::ranges::any_of(groom_.spheres, [](const auto& s) { return !s.bone.empty(); });
-        if ((bound || boned) && !groom_.characterFile.empty()) openCharacter();
+        if (bound || boned) openCharacter();
         if (bound) addRoots(bindings);
         addSpheres();
         return std::move(result_);
@@ -47,22 +47,13 @@ class Collector {
 
   private:
     void openCharacter() {
-        MeshImportOptions options;
-        if (groom_.characterMetresPerUnit > 0) options.metresPerUnit = groom_.characterMetresPerUnit;
-        auto scene = importScene(groom_.characterFile, options);
-        const auto leave = [&](const std::string& why) {
-            result_.findings.push_back({Severity::Warning,
-                                        fmt::format("the head's bones are left out: {}", why), "skin",
-                                        "export where the head's file is as it was; roots move rigidly now"});
-        };
-        if (!scene) return leave(scene.error().message());
-        if (scene->skeleton.empty()) return;
-        const bool same = groom_.scalp && scene->mesh.vertexCount() == groom_.scalp->vertexCount() &&
-                          std::ranges::equal(scene->mesh.triangles(), groom_.scalp->triangles());
-        if (!same) return leave(fmt::format("{} has another mesh", groom_.characterFile));
-        if (scene->skeleton.bones().size() > kMaxBones)
-            return leave(fmt::format("{} bones are more than {}", scene->skeleton.bones().size(), kMaxBones));
-        scene_ = std::move(*scene);
+        scene_ = characterOf(groom_, result_.findings);
+        if (!scene_ || scene_->skeleton.bones().size() <= kMaxBones) return;
+        result_.findings.push_back({Severity::Warning,
+                                    fmt::format("the head's bones are left out: {} are more than {}",
+                                                scene_->skeleton.bones().size(), kMaxBones),
+                                    "skin", "bind the head to fewer bones; roots move rigidly now"});
+        scene_.reset();
     }
 
     /// The asset's number of a bone of the skeleton.

@@ -16,12 +16,6 @@ namespace {
 
 constexpr float kRootTolerance = 0.005f;  ///< metres; roots farther from the scalp float visibly
 
-Vec3f toFile(const Vec3f& position, const StrandExportOptions& options) {
-    Vec3f p = position;
-    if (options.up == UpAxis::Z) p = Vec3f(p.x(), -p.z(), p.y());
-    return options.metresPerUnit == 1.0f ? p : Vec3f(p / options.metresPerUnit);
-}
-
 /// Values at even steps of the arc length, as resampleEvenly places the points.
 template <class T>
 std::vector<T> resampleValues(std::span<const Vec3f> points, std::span<const T> values, std::size_t count) {
@@ -288,6 +282,12 @@ double strandError(std::span<const Vec3f> strand, std::span<const Vec3f> readBac
 }
 
 }  // namespace
+
+Vec3f toFile(const Vec3f& position, const StrandExportOptions& options) {
+    Vec3f p = position;
+    if (options.up == UpAxis::Z) p = Vec3f(p.x(), -p.z(), p.y());
+    return options.metresPerUnit == 1.0f ? p : Vec3f(p / options.metresPerUnit);
+}
 
 Result<PreparedStrands> prepareStrands(const Groom& groom, const StrandExportOptions& options,
                                        std::uint32_t pointsPerStrand) {

@@ -25,6 +25,9 @@ struct PreparedStrands {
     std::size_t strandCount() const { return sources.size(); }
 };
 
+/// A point of the groom, in units and axes of the file.
+Vec3f toFile(const Vec3f& position, const StrandExportOptions& options);
+
 /// `pointsPerStrand` 0 keeps every strand's points; strands that have that many already keep theirs too.
 /// Errors: options out of range, nothing to write.
 Result<PreparedStrands> prepareStrands(const Groom& groom, const StrandExportOptions& options,

@@ -38,6 +38,7 @@ nlohmann::json toJson(const ExportReport& report) {
                                   {"flip", level.flip},
                                   {"light", level.light}});
     }
+    if (!report.companions.empty()) json["companions"] = report.companions;
     if (report.frames > 0) json["frames"] = report.frames;
     return json;
 }

@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "exporters/prepared_strands.h"
+#include "exporters/tfx_companions.h"
 
 namespace hairloom {
 namespace {
@@ -138,7 +139,12 @@ Result<ExportReport> writeTfx(const Groom& groom, const std::filesystem::path& p
     for (const Vec2f& uv : sections.uvs) writer.writeArray(std::span<const float>(uv.data(), 2));
     writer.writeArray(std::span<const float>(sections.thicknessScale));
     writeColours(writer, *strands);
-    return writeAndCompare(groom, std::move(*strands), options, path, writer.bytes());
+    // Before the strands, so that what is read back is what a loader will find.
+    auto companions = writeTfxCompanions(groom, *strands, options, path);
+    if (!companions) return tl::unexpected(companions.error());
+    auto report = writeAndCompare(groom, std::move(*strands), options, path, writer.bytes());
+    if (report) report->companions = std::move(*companions);
+    return report;
 }
 
 }  // namespace
@@ -151,7 +157,8 @@ StrandWriter tfxWriter() {
     return {
         "tfx",
         "TressFX .tfx",
-        "root UV and thickness factor of each strand, colour and transparency of each point",
+        "root UV and thickness factor of each strand, colour and transparency of each point; bones of the "
+        "roots and the skinned head beside it (.tfxbone, .tfxmesh) where the head has some",
         "4, 8, 16, 32 or 64 points on every strand",
         {{"tressfx", "TressFX", ".tfx version 4, metres, Y up; strands resampled to 4, 8, 16, 32 or 64", {}},
          {"tressfx-unreal", "TressFX for Unreal", ".tfx in centimetres, Z up, 16 points a strand", unreal}},

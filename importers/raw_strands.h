@@ -68,6 +68,11 @@ struct StrandReader {
     /// `file` is named in errors.
     Result<RawStrands> (*read)(const std::string& file, std::span<const std::byte> bytes,
                                const StrandImportOptions& options);
+    /// Suffix of a file that may lie beside it under its name; empty: none. What is wrong with that file is
+    /// an error, and leaves the strands as they are.
+    std::string_view companion = {};
+    Status (*readCompanion)(const std::string& file, std::span<const std::byte> bytes,
+                            RawStrands& strands) = nullptr;
 };
 const std::vector<StrandReader>& strandReaders();
 

@@ -27,11 +27,28 @@ std::vector<const StrandReader*> readersInOrder() {
     return readers;
 }
 
+/// Strands are of use without it: what is wrong with it is said, no more.
+void readCompanion(const StrandReader& reader, std::filesystem::path path, RawStrands& raw) {
+    path.replace_extension(reader.companion);
+    std::error_code code;
+    if (!std::filesystem::is_regular_file(path, code)) return;
+    const auto bytes = readFile(path);
+    const Status taken =
+        bytes ? reader.readCompanion(path.string(), *bytes, raw) : Status(tl::unexpected(bytes.error()));
+    if (!taken)
+        raw.warnings.push_back({Severity::Error, taken.error().message(), path.filename().string(),
+                                "it is left out; write it anew, or take it away"});
+}
+
+/// Of a file, and what lies beside it, at `path` unless that is empty.
 Result<RawStrands> readRaw(const std::string& file, std::span<const std::byte> bytes,
-                           const StrandImportOptions& options) {
+                           const StrandImportOptions& options, const std::filesystem::path& path) {
     if (bytes.empty()) return failIn(file, {}, "is empty", "expected a strand file");
     for (const StrandReader* reader : readersInOrder()) {
-        if (reader->recognise(bytes)) return reader->read(file, bytes, options);
+        if (!reader->recognise(bytes)) continue;
+        auto raw = reader->read(file, bytes, options);
+        if (raw && !path.empty() && !reader->companion.empty()) readCompanion(*reader, path, *raw);
+        return raw;
     }
     return failIn(file, Byte{0}, "is in no known strand format", "expected " + labelsOf(strandFormats()));
 }
@@ -332,12 +349,14 @@ bool looksLikeStrandFile(std::span<const std::byte> bytes) {
     });
 }
 
-Result<ImportedStrands> importStrandsFromMemory(const std::string& file, std::span<const std::byte> bytes,
-                                                const StrandImportOptions& asked) {
+namespace {
+
+Result<ImportedStrands> importBytes(const std::string& file, std::span<const std::byte> bytes,
+                                    const StrandImportOptions& asked, const std::filesystem::path& path) {
     if (!(asked.metresPerUnit > 0) || !std::isfinite(asked.metresPerUnit)) {
         return fail(fmt::format("{} metres per unit", asked.metresPerUnit), "expected a positive number");
     }
-    auto raw = readRaw(file, bytes, asked);
+    auto raw = readRaw(file, bytes, asked, path);
     if (!raw) return tl::unexpected(raw.error());
     const StrandImportOptions options = stated(*raw, asked);
     Cleaner(*raw, options).run();
@@ -370,10 +389,17 @@ Result<ImportedStrands> importStrandsFromMemory(const std::string& file, std::sp
     return result;
 }
 
+}  // namespace
+
+Result<ImportedStrands> importStrandsFromMemory(const std::string& file, std::span<const std::byte> bytes,
+                                                const StrandImportOptions& options) {
+    return importBytes(file, bytes, options, {});
+}
+
 Result<ImportedStrands> importStrands(const std::filesystem::path& path, const StrandImportOptions& options) {
     const auto bytes = readFile(path);
     if (!bytes) return tl::unexpected(bytes.error());
-    return importStrandsFromMemory(path.string(), *bytes, options);
+    return importBytes(path.string(), *bytes, options, path);
 }
 
 }  // namespace hairloom

@@ -10,6 +10,7 @@
 
 #include "core/base/file.h"
 #include "importers/raw_strands.h"
+#include "importers/tfx_bones.h"
 
 namespace hairloom {
 namespace {
@@ -264,7 +265,12 @@ Result<RawStrands> readTfx(const std::string& file, std::span<const std::byte> b
 }  // namespace
 
 StrandReader tfxReader() {
-    return {{"TressFX .tfx (version 3 or 4)", {"tfx"}}, Recognition::Signature, isTfx, readTfx};
+    return {{"TressFX .tfx (version 3 or 4)", {"tfx"}},
+            Recognition::Signature,
+            isTfx,
+            readTfx,
+            "tfxbone",
+            readTfxBones};
 }
 
 }  // namespace hairloom

@@ -22,6 +22,7 @@ constexpr std::array kSignatures{
     Signature{"\x89HRT\r\n\x1a\n"sv, "a runtime asset"},
     Signature{"\0\0\x80\x40"sv, "a TressFX 4 file"},
     Signature{"\0\0\x40\x40"sv, "a TressFX 3 file"},
+    Signature{"# TressFX collision mesh"sv, "a TressFX collision mesh"},
     Signature{"Ogawa\xff"sv, "an Alembic file"},
     Signature{"Ogawa\0"sv, "an Alembic file"},
     Signature{"PXR-USDC"sv, "a binary USD file"},

@@ -276,6 +276,8 @@ void ExportDialog::showReport() {
         for (int c = 0; c < 3; ++c) item->setToolTip(c, item->text(c));
         findings_->addTopLevelItem(item);
     };
+    for (const std::string& companion : report_.companions)
+        add(companion, tr("beside it"), tr("written with the strands").toStdString());
     for (const LeftBehind& left : report_.leftBehind) add(left.what, tr("left behind"), left.fix);
     for (const Finding& finding : report_.findings)
         add(finding.what, QString::fromStdString(finding.where), finding.fix);
