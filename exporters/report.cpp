@@ -38,6 +38,10 @@ nlohmann::json toJson(const ExportReport& report) {
                                   {"flip", level.flip},
                                   {"light", level.light}});
     }
+    if (report.safeLimits) {
+        for (const auto& field : fieldsOf(*report.safeLimits))
+            json["certificate"][std::string(field.name)] = field.get(*report.safeLimits, 0);
+    }
     if (!report.companions.empty()) json["companions"] = report.companions;
     if (report.frames > 0) json["frames"] = report.frames;
     return json;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/groom/validate.h"
+#include "exporters/safe_limits.h"
 
 namespace hairloom {
 
@@ -48,14 +49,15 @@ struct ExportReport {
     std::vector<ComparedAttribute> attributes;
     std::vector<LeftBehind> leftBehind;
     std::vector<Finding> findings;
-    std::vector<WrittenLevel> levels;     ///< of files of cards, the nearest first
-    std::vector<std::string> companions;  ///< names of files that were written beside it
+    std::vector<WrittenLevel> levels;      ///< of files of cards, the nearest first
+    std::optional<SafeLimits> safeLimits;  ///< where the hairstyle was certified
+    std::vector<std::string> companions;   ///< names of files that were written beside it
 };
 
 /// Keys: format, strands, points, frames (where strands move), bytes, max_error_mm (null where nothing was
 /// measured), attributes (name, max_error), left_behind (what, fix), findings (severity, what, where, fix);
-/// companions (names, where there are some); of cards levels (name, cards, triangles, bytes, distance_m,
-/// coverage, flip, light).
+/// certificate (the fields of SafeLimits, where it was made); companions (names, where there are some); of
+/// cards levels (name, cards, triangles, bytes, distance_m, coverage, flip, light).
 nlohmann::json toJson(const ExportReport& report);
 
 }  // namespace hairloom

@@ -195,7 +195,8 @@ Status addFindings(const Groom& groom, const FollowSections& follow, const runti
 }
 
 Result<std::vector<std::byte>> buildAsset(const Groom& groom, PreparedStrands& strands,
-                                          const FollowSections& follow) {
+                                          const FollowSections& follow,
+                                          const std::optional<SafeLimits>& safeLimits) {
     const auto encoded = encodeStrands(strands.offsets, strands.positions);
     if (!encoded) return tl::unexpected(encoded.error());
     AssetBuilder builder;
@@ -219,6 +220,7 @@ Result<std::vector<std::byte>> buildAsset(const Groom& groom, PreparedStrands& s
     builder.addSettings("simulation", groom.simulation);
     builder.addSettings("material", groom.material);
     builder.addSettings("interpolation", groom.interpolation);
+    if (safeLimits) builder.addSettings("certificate", *safeLimits);
     Box3f bounds;
     for (const Vec3f& position : strands.positions) bounds.extend(position);
     return builder.finish(bounds, static_cast<std::uint32_t>(strands.positions.size()));
@@ -233,7 +235,7 @@ Result<ExportReport> writeRuntime(const Groom& groom, const std::filesystem::pat
     if (auto status = checkPoints(*strands); !status) return here(status.error());
     const auto follow = followSections(groom, *strands);
     if (!follow) return here(follow.error());
-    const auto bytes = buildAsset(groom, *strands, *follow);
+    const auto bytes = buildAsset(groom, *strands, *follow, options.safeLimits);
     if (!bytes) return here(bytes.error());
     auto report = writeAndCompare(groom, std::move(*strands), options, path, *bytes);
     if (!report) return report;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,6 +14,7 @@
 #include "core/base/result.h"
 #include "core/groom/groom.h"
 #include "exporters/report.h"
+#include "exporters/safe_limits.h"
 #include "importers/strands.h"
 
 namespace hairloom {
@@ -41,6 +43,7 @@ struct StrandExportOptions {
     TargetLimits limits;  ///< what goes beyond them is a finding with its fix
     /// Of strands that move: for writers that animate. The groom is at the first frame. Null: at rest.
     std::shared_ptr<const StrandFrames> frames = nullptr;
+    std::optional<SafeLimits> safeLimits{};  ///< for formats that carry them
 };
 
 /// A program that reads a format, and what it wants of a file.

@@ -10,6 +10,7 @@
 #include "cli/job.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
+#include "core/accuracy/certificate.h"
 #include "core/base/content_kind.h"
 #include "core/base/file.h"
 #include "core/scene/hair_export.h"
@@ -29,6 +30,7 @@ struct ExportOptions {
     std::string unit;
     std::string up;
     std::uint32_t points = 0;
+    bool certify = false;
     LevelBudget levels;
     std::string output;
 };
@@ -77,6 +79,7 @@ Result<HairToExport> hairToExport(const ExportOptions& options, const Groom& gro
     wanted.hair = options.what == "hairs" ? ExportedHair::hairs : ExportedHair::guides;
     wanted.layers = options.layers;
     wanted.levels = options.levels;
+    if (options.certify) wanted.storms = CertificateOptions{}.storms;
     if (options.record.empty()) return wanted;
     if (options.frames.size() != 2 || options.frames[1] < options.frames[0])
         return fail("--frames goes backwards or is not two numbers", "FIRST,LAST");
@@ -98,6 +101,7 @@ Result<Report> exportAsPage(const ExportOptions& options) {
     if (!groom) return tl::unexpected(groom.error());
     HairToExport wanted;
     wanted.layers = options.layers;
+    if (options.certify) wanted.storms = CertificateOptions{}.storms;
     const auto written = exportWebPage(*groom, wanted, options.output);
     if (!written) return tl::unexpected(inFile(written.error(), options.input));
     return toJson(*written);
@@ -168,6 +172,10 @@ JobRun declare(CLI::App& job) {
     job.add_option("--up", options->up, "Axis that points up in the file")->check(CLI::IsMember({"y", "z"}));
     job.add_option("--points", options->points, "Resample every strand to so many points; 0 keeps them")
         ->check(CLI::Range(0, 1024));
+    job.add_flag(
+        "--certify", options->certify,
+        "Find by a thousand random storms what a game may do to this hair (half a minute or so), for "
+        "the report and the runtime asset");
     addCardOptions(job, options->levels);
     job.add_option("-o,--output", options->output,
                    "File to write, or the folder of a page; the report goes beside a file")

@@ -4,8 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 
+#include "core/accuracy/certificate.h"
+#include "core/accuracy/scene_run.h"
 #include "core/base/output_file.h"
 #include "core/groom/strand_subset.h"
 #include "core/interpolation/follow_hairs.h"
@@ -98,6 +101,34 @@ Result<ExportReport> writeCards(const Groom& groom, const HairToExport& wanted,
     return std::move(file->report);
 }
 
+/// Of the strands as a game plays them.
+Result<SafeLimits> safeLimits(const Groom& guides, std::uint32_t pointsPerStrand,
+                              const HairToExport& wanted) {
+    CertificateOptions options;
+    options.storms = wanted.storms;
+    std::atomic<std::size_t> most = 0;
+    options.progress = [&](std::size_t done, std::size_t total) {
+        // Threads report out of order; a bar must not go back.
+        std::size_t before = most;
+        while (before < done && !most.compare_exchange_weak(before, done)) {
+        }
+        if (wanted.progress && before < done)
+            wanted.progress("storms", static_cast<double>(done) / static_cast<double>(total));
+    };
+    options.cancelled = [&] { return wanted.cancel != nullptr && *wanted.cancel; };
+    const SceneHair all = sampleStrands(guides, guides.strandCount(), 0);
+    const auto made =
+        certify(pointsPerStrand > 0 ? resampledHair(all, pointsPerStrand).groom : guides, options);
+    if (!made) return tl::unexpected(made.error());
+    const StormStrength& limits = made->limits;
+    return SafeLimits{static_cast<float>(limits.step),
+                      static_cast<float>(limits.rootSpeed),
+                      static_cast<float>(limits.turn),
+                      static_cast<float>(limits.wind),
+                      made->storms,
+                      static_cast<std::uint32_t>(made->failed.size())};
+}
+
 }  // namespace
 
 const std::vector<StrandWriter>& hairWriters() {
@@ -164,9 +195,15 @@ Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, 
         if (!baked) return tl::unexpected(baked.error());
         shown = std::move(*baked);
     }
-    if (writer.holdsCards()) return writeCards(shown, wanted, path, exporting);
-    auto report = writer.write(shown, path, exporting);
-    if (report && perGuide > 0 && !isBaked && !writer.generatesFollowHairs) {
+    if (wanted.storms > 0) {
+        const auto limits = safeLimits(guides, isBaked ? 0 : exporting.pointsPerStrand, wanted);
+        if (!limits) return tl::unexpected(limits.error());
+        exporting.safeLimits = *limits;
+    }
+    auto report = writer.holdsCards() ? writeCards(shown, wanted, path, exporting)
+                                      : writer.write(shown, path, exporting);
+    if (report) report->safeLimits = exporting.safeLimits;
+    if (report && !writer.holdsCards() && perGuide > 0 && !isBaked && !writer.generatesFollowHairs) {
         report->findings.push_back({Severity::Warning,
                                     fmt::format("{} follow hairs for each guide are left out", perGuide),
                                     "interpolation", "export hairs to write what pictures show"});

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <atomic>
 
+#include "core/accuracy/certificate.h"
 #include "core/scene/hair_export.h"
 #include "core/scene/played_frames.h"
 #include "core/scene/web_page.h"
@@ -74,6 +75,7 @@ ExportDialog::ExportDialog(QtDocument& document, Tasks& tasks, Messages& message
       points_(new QSpinBox),
       cards_(new QSpinBox),
       textures_(new QSpinBox),
+      certify_(new QCheckBox(tr("what a game may do to it"))),
       summary_(new QLabel),
       findings_(new QTreeWidget) {
     setWindowTitle(tr("Export hair"));
@@ -134,6 +136,11 @@ ExportDialog::ExportDialog(QtDocument& document, Tasks& tasks, Messages& message
     textures_->setToolTip(tr("Textures of a level, at most; cards that look alike share one"));
     form_->addRow(tr("Cards"), cards_);
     form_->addRow(tr("Textures"), textures_);
+    certify_->setObjectName("certify");
+    certify_->setToolTip(
+        tr("Tries a thousand random storms; half a minute or so. The report has what was found, and a "
+           "runtime asset carries it"));
+    form_->addRow(tr("Certify"), certify_);
     summary_->setWordWrap(true);
     layout->addWidget(summary_);
     findings_->setObjectName("findings");
@@ -200,6 +207,7 @@ void ExportDialog::exportTo(const QString& path) {
     options.pointsPerStrand = static_cast<std::uint32_t>(points_->value());
     HairToExport wanted;
     wanted.hair = static_cast<ExportedHair>(what_->currentData().toInt());
+    if (certify_->isChecked()) wanted.storms = CertificateOptions{}.storms;
     wanted.levels.cards = static_cast<std::uint32_t>(cards_->value());
     wanted.levels.chain.textures = static_cast<std::uint32_t>(textures_->value());
     for (const Layer& layer : document_.groom().layers) {
@@ -228,13 +236,13 @@ void ExportDialog::exportTo(const QString& path) {
                 if (!frames) return tl::unexpected(frames.error());
                 wanted.frames = std::move(*frames);
             }
-            if (isPage) return exportWebPage(groom, wanted, path.toStdString());
             std::atomic<bool> stop = false;
             wanted.progress = [&](std::string_view, double share) {
                 control.setProgress(static_cast<float>(share));
                 stop = control.isCancelled();
             };
             wanted.cancel = &stop;
+            if (isPage) return exportWebPage(groom, wanted, path.toStdString());
             return exportHair(groom, wanted, writer, path.toStdString(), options);
         },
         [self = QPointer(this), &messages = messages_, path](ExportReport report) {
@@ -276,6 +284,18 @@ void ExportDialog::showReport() {
         for (int c = 0; c < 3; ++c) item->setToolTip(c, item->text(c));
         findings_->addTopLevelItem(item);
     };
+    if (report_.safeLimits)
+        add(tr("withstands frames of %1 ms, %2 m/s, a turn of %3° a frame, wind of %4 m/s at once")
+                .arg(1000 * static_cast<double>(report_.safeLimits->largestStep), 0, 'g', 3)
+                .arg(static_cast<double>(report_.safeLimits->rootSpeed), 0, 'g', 3)
+                .arg(static_cast<double>(report_.safeLimits->turn), 0, 'g', 3)
+                .arg(static_cast<double>(report_.safeLimits->wind), 0, 'g', 3)
+                .toStdString(),
+            tr("certificate"),
+            tr("%1 random storms; %2 broke it beyond these limits")
+                .arg(report_.safeLimits->storms)
+                .arg(report_.safeLimits->failed)
+                .toStdString());
     for (const std::string& companion : report_.companions)
         add(companion, tr("beside it"), tr("written with the strands").toStdString());
     for (const LeftBehind& left : report_.leftBehind) add(left.what, tr("left behind"), left.fix);

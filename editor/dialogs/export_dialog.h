@@ -2,6 +2,7 @@
 #pragma once
 // Writes the hair for another program and says what came back when the file was read again.
 
+#include <QCheckBox>
 #include <QComboBox>
 #include <QDialog>
 #include <QFormLayout>
@@ -50,6 +51,7 @@ class ExportDialog : public QDialog {
     QComboBox* up_;
     QSpinBox* points_;
     QSpinBox *cards_, *textures_;
+    QCheckBox* certify_;
     QPushButton* write_;
     QLabel* summary_;
     QTreeWidget* findings_;
