@@ -44,7 +44,7 @@ void addPictureAccuracyOptions(CLI::App& job, PictureAccuracyOptions& options) {
         ->check(CLI::Range(1, 1024));
     add("--hairs", options.hairs,
         "Hairs to draw at most, 0 for all; without it all, and 2000 on a software device, which is slow");
-    add("--device", options.device, "GPU to draw on, by its index in `devices`");
+    job.add_option("--device", options.device, "GPU to draw or simulate on, by its index in `devices`");
 }
 
 Result<Report> pictureAccuracy(const PictureAccuracyOptions& options, const std::string& groomFile,

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "cli/accuracy_jobs.h"
+#include "cli/backend.h"
 #include "cli/documents.h"
 #include "cli/job.h"
 #include "cli/motions.h"
@@ -90,9 +91,8 @@ Report settingReport(const WorkPrecision& result, const WorkPrecisionRun& run) {
     Report setting = Report::object();
     for (std::size_t a = 0; a < run.values.size(); ++a) {
         const GridAxis& axis = result.options.axes[a];
-        const auto* field = runtime::findField<runtime::SimulationSettings>(axis.field);
         const double value = run.values[a];
-        if (field && !field->choices.empty()) {
+        if (isEnumeration(axis.field)) {
             setting[axis.field] = axisValueText(axis, value);
         } else if (value == std::floor(value)) {
             setting[axis.field] = std::llround(value);
@@ -153,6 +153,15 @@ Result<Report> accuracy(const AccuracyOptions& options, const std::string& comma
     measuring.strands = options.strands;
     measuring.repeats = options.repeats;
     measuring.seed = options.seed;
+    const auto engine = findAxis(measuring.axes, kEngineAxis);
+    std::unique_ptr<GpuBackend> gpu;
+    if (engine &&
+        std::ranges::find(measuring.axes[*engine].values, 1.0) != measuring.axes[*engine].values.end()) {
+        auto made = GpuBackend::make(std::nullopt, options.picture.device);
+        if (!made) return tl::unexpected(made.error());
+        gpu = std::move(*made);
+        measuring.gpuEngine = gpu->engine();
+    }
     std::optional<Progress> progress;
     measuring.progress = [&](std::size_t done, std::size_t total) {
         if (!progress) progress.emplace("measuring", total);
@@ -167,6 +176,7 @@ Result<Report> accuracy(const AccuracyOptions& options, const std::string& comma
     if (!files) return tl::unexpected(files.error());
 
     Report report;
+    report["device"] = gpu ? Report(gpu->deviceName()) : Report();
     report["strands"] = result->strands;
     report["strands_compared"] = result->strandsCompared;
     report["frames"] = measuring.time.frames;
@@ -226,7 +236,10 @@ JobRun declare(CLI::App& job) {
     list("--points", options->points,
          "Points per strand to try, instead of the groom's, a half and a quarter");
     list("--thread-counts", options->threadCounts, "Numbers of threads to try, instead of --threads alone");
-    job.add_option("--vary", options->vary, "Another setting to try, FIELD=VALUE,VALUE,…; may be repeated");
+    job.add_option(
+        "--vary", options->vary,
+        "Another setting to try, FIELD=VALUE,VALUE,…; may be repeated. A field of the simulation, or "
+        "engine=cpu,gpu, hairHair=0,1 (hair against hair), spheres=0,2,… (the first so many)");
     job.add_option("--view", options->view,
                    "View file (docs/cli.md) with a camera and a size: errors in its pixels, too")
         ->type_name("FILE");

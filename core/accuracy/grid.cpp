@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <vector>
 
 #include "core/groom/file/former_names.h"
 #include "hairloom/strands.h"
@@ -16,31 +17,35 @@ namespace {
 constexpr double kFewestPoints = 3;  // of which one is free even where two are clamped
 constexpr double kMaxThreads = 1024;
 
-struct Bounds {
+constexpr double kMaxSpheres = 4096;
+
+/// An axis that is no setting: whole numbers, or choices by their index.
+struct OwnAxis {
+    std::string_view name;
     double min, max;
+    std::vector<std::string_view> choices = {};
 };
-
-/// Range of the axes that are no settings.
-Bounds ownBounds(std::string_view field) {
-    if (field == kPointsAxis) return {kFewestPoints, static_cast<double>(runtime::kMaxPoints)};
-    return {0, kMaxThreads};
-}
-
-bool isOwn(std::string_view field) {
-    return field == kPointsAxis || field == kThreadsAxis;
+const OwnAxis* findOwn(std::string_view field) {
+    static const std::vector<OwnAxis> all{{kPointsAxis, kFewestPoints, double{runtime::kMaxPoints}},
+                                          {kThreadsAxis, 0, kMaxThreads},
+                                          {kEngineAxis, 0, 1, {"cpu", "gpu"}},
+                                          {kHairHairAxis, 0, 1},
+                                          {kSpheresAxis, 0, kMaxSpheres}};
+    const auto found = std::ranges::find(all, field, &OwnAxis::name);
+    return found == all.end() ? nullptr : &*found;
 }
 
 Status checkValue(const GridAxis& axis, double value) {
-    if (isOwn(axis.field)) {
-        const Bounds bounds = ownBounds(axis.field);
-        if (value >= bounds.min && value <= bounds.max && value == std::floor(value)) return {};
+    if (const OwnAxis* own = findOwn(axis.field)) {
+        if (value >= own->min && value <= own->max && value == std::floor(value)) return {};
         return fail(fmt::format("{} is {}", axis.field, value),
-                    fmt::format("expected a whole number from {} to {}", bounds.min, bounds.max));
+                    fmt::format("expected a whole number from {} to {}", own->min, own->max));
     }
     const auto* field = runtime::findField<runtime::SimulationSettings>(axis.field);
     if (!field || field->components() != 1) {
         return fail(fmt::format("there is no setting '{}' of one number", axis.field),
-                    fmt::format("expected {}, {} or a field of the simulation", kPointsAxis, kThreadsAxis));
+                    fmt::format("expected {}, {}, {}, {}, {} or a field of the simulation", kPointsAxis,
+                                kThreadsAxis, kEngineAxis, kHairHairAxis, kSpheresAxis));
     }
     runtime::SimulationSettings settings;
     if (runtime::setFieldValue(settings, *field, value)) return {};
@@ -53,15 +58,21 @@ std::span<const FormerMember> formerNames() {
     return formerMembers(runtime::SimulationSettings{});
 }
 
+/// Of an enumeration, by index; empty for what is a number.
+std::vector<std::string_view> choicesOf(std::string_view field) {
+    if (const OwnAxis* own = findOwn(field)) return own->choices;
+    const auto* info = runtime::findField<runtime::SimulationSettings>(field);
+    return info ? std::vector<std::string_view>(info->choices.begin(), info->choices.end())
+                : std::vector<std::string_view>();
+}
+
 Result<double> parseValue(const std::string& field, const std::string& given) {
     const auto text = currentValue(formerNames(), field, given).get<std::string>();
-    if (const auto* info = runtime::findField<runtime::SimulationSettings>(field);
-        info && !info->choices.empty()) {
-        const auto chosen =
-            std::ranges::find(info->choices, text, [](const char* name) { return std::string(name); });
-        if (chosen != info->choices.end()) return static_cast<double>(chosen - info->choices.begin());
+    if (const auto choices = choicesOf(field); !choices.empty()) {
+        const auto chosen = std::ranges::find(choices, text);
+        if (chosen != choices.end()) return static_cast<double>(chosen - choices.begin());
         return fail(fmt::format("{} is '{}'", field, text),
-                    fmt::format("expected one of {}", fmt::join(info->choices, ", ")));
+                    fmt::format("expected one of {}", fmt::join(choices, ", ")));
     }
     double value = 0;
     const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -73,10 +84,14 @@ Result<double> parseValue(const std::string& field, const std::string& given) {
 
 }  // namespace
 
+bool isEnumeration(std::string_view field) {
+    return !choicesOf(field).empty();
+}
+
 std::string axisValueText(const GridAxis& axis, double value) {
-    const auto* field = runtime::findField<runtime::SimulationSettings>(axis.field);
-    if (field && !field->choices.empty()) return field->choices[static_cast<std::size_t>(value)];
-    return fmt::format("{:.9g}", value);
+    const auto choices = choicesOf(axis.field);
+    return choices.empty() ? fmt::format("{:.9g}", value)
+                           : std::string(choices[static_cast<std::size_t>(value)]);
 }
 
 Result<GridAxis> parseAxis(std::string_view field, const std::vector<std::string>& values) {

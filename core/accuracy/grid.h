@@ -13,7 +13,7 @@
 namespace hairloom {
 
 /// What varies: a field of runtime::SimulationSettings by its name (an enumeration by its index), or one of
-/// the two below.
+/// those below.
 struct GridAxis {
     std::string field;
     std::vector<double> values;
@@ -22,6 +22,16 @@ struct GridAxis {
 inline constexpr std::string_view kPointsAxis = "points";
 /// Threads that the engine may use, 0 for all.
 inline constexpr std::string_view kThreadsAxis = "threads";
+
+/// What moves the strands: "cpu" or "gpu", by its index.
+inline constexpr std::string_view kEngineAxis = "engine";
+/// Hair against hair: 0 or 1.
+inline constexpr std::string_view kHairHairAxis = "hairHair";
+/// Collision spheres that stay, the first of the groom's.
+inline constexpr std::string_view kSpheresAxis = "spheres";
+
+/// Whether its values are names.
+bool isEnumeration(std::string_view field);
 
 /// The value as a person writes it: "verlet", "16", "0.25".
 std::string axisValueText(const GridAxis& axis, double value);

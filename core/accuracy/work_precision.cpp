@@ -31,10 +31,16 @@ double longestStrandMm(const Groom& groom) {
 /// The hair of every combination of the grid, resampled once for each number of points.
 class GridHair {
   public:
-    GridHair(SceneHair authored, const std::vector<GridAxis>& axes)
-        : axes_(axes), points_(findAxis(axes, kPointsAxis)), threads_(findAxis(axes, kThreadsAxis)) {
+    GridHair(SceneHair authored, const WorkPrecisionOptions& options)
+        : axes_(options.axes),
+          gpuEngine_(options.gpuEngine),
+          points_(findAxis(axes_, kPointsAxis)),
+          threads_(findAxis(axes_, kThreadsAxis)),
+          engine_(findAxis(axes_, kEngineAxis)),
+          hairHair_(findAxis(axes_, kHairHairAxis)),
+          spheres_(findAxis(axes_, kSpheresAxis)) {
         if (points_) {
-            for (const double points : axes[*points_].values) {
+            for (const double points : axes_[*points_].values) {
                 byPoints_[points] = resampledHair(authored, static_cast<std::uint32_t>(points));
             }
         }
@@ -44,7 +50,16 @@ class GridHair {
     SceneHair at(const std::vector<double>& values) const {
         SceneHair hair = points_ ? byPoints_.at(values[*points_]) : authored_;
         applyValues(axes_, values, hair.groom.simulation);
+        if (spheres_ && static_cast<double>(hair.groom.spheres.size()) > values[*spheres_])
+            hair.groom.spheres.resize(static_cast<std::size_t>(values[*spheres_]));
         return hair;
+    }
+    /// What runs it.
+    SimulationOptions optionsAt(const std::vector<double>& values) const {
+        SimulationOptions options;
+        if (engine_ && values[*engine_] > 0) options.backend = gpuEngine_;
+        if (hairHair_ && values[*hairHair_] > 0) options.hairHair = runtime::HairVolumeSettings();
+        return options;
     }
     /// The finest strands of the grid with the scene's own settings.
     SceneHair finest() const { return points_ ? byPoints_.rbegin()->second : authored_; }
@@ -55,7 +70,8 @@ class GridHair {
 
   private:
     const std::vector<GridAxis>& axes_;
-    std::optional<std::size_t> points_, threads_;
+    const MethodMaker& gpuEngine_;
+    std::optional<std::size_t> points_, threads_, engine_, hairHair_, spheres_;
     SceneHair authored_;
     std::map<double, SceneHair> byPoints_;
 };
@@ -85,7 +101,8 @@ Status followAll(const GridHair& hair, std::span<const HeadPose> poses, const Tr
     for (WorkPrecisionRun& run : result.runs) {
         if (auto status = unlessCancelled(result.options); !status) return status;
         const ThreadLimit limit = hair.limitThreads(run.values);
-        auto outcome = runScene(hair.at(run.values), poses, result.options.time, followed);
+        auto outcome =
+            runScene(hair.at(run.values), poses, result.options.time, followed, hair.optionsAt(run.values));
         if (!outcome) return tl::unexpected(outcome.error());
         run.stateHash = outcome->stateHash;
         run.diverged = !outcome->trajectory.finite || outcome->nanCount > 0 || outcome->restoredStrands > 0;
@@ -103,7 +120,8 @@ Status followAll(const GridHair& hair, std::span<const HeadPose> poses, const Tr
 /// The greatest speed of followed points, m/s, after some seconds of a head at rest in still air; 0 where it
 /// is slower than hair at rest may be. Motion is damped at least as fast as by default, so that it does not
 /// swing on.
-Result<double> tremblingAtRest(SceneHair hair, const HeadPose& pose, const Followed& followed) {
+Result<double> tremblingAtRest(SceneHair hair, const HeadPose& pose, const Followed& followed,
+                               const SimulationOptions& options) {
     runtime::SimulationSettings& settings = hair.groom.simulation;
     if (settings.strandModel == runtime::StrandModel::rods) return 0.0;
     const float usual = runtime::SimulationSettings().dampingTime;
@@ -112,7 +130,7 @@ Result<double> tremblingAtRest(SceneHair hair, const HeadPose& pose, const Follo
     SceneTime time;
     time.frames = static_cast<std::uint32_t>(runtime::kTrialSeconds * 60);
     const std::vector<HeadPose> still(time.frames + 1, pose);
-    const auto outcome = runScene(hair, still, time, followed);
+    const auto outcome = runScene(hair, still, time, followed, options);
     if (!outcome) return tl::unexpected(outcome.error());
     const Trajectory& run = outcome->trajectory;
     if (!run.finite) return std::numeric_limits<double>::infinity();
@@ -148,7 +166,8 @@ Status findFront(const GridHair& hair, const HeadPose& pose, const Followed& fol
             WorkPrecisionRun& run = result.runs[r];
             if (!run.onFront || !calm.insert(r).second) continue;
             if (auto status = unlessCancelled(result.options); !status) return status;
-            const auto speed = tremblingAtRest(hair.at(run.values), pose, followed);
+            const auto speed =
+                tremblingAtRest(hair.at(run.values), pose, followed, hair.optionsAt(run.values));
             if (!speed) return tl::unexpected(speed.error());
             run.trembling = *speed;
             settled = settled && !(*speed > 0);
@@ -164,9 +183,10 @@ Status splitErrors(const GridHair& hair, std::span<const HeadPose> poses, const 
         if (!run.onFront) continue;
         if (auto status = unlessCancelled(result.options); !status) return status;
         SceneHair own = hair.at(run.values);
-        const auto as = runScene(own, poses, result.options.time, exact.followed);
+        const SimulationOptions options = hair.optionsAt(run.values);
+        const auto as = runScene(own, poses, result.options.time, exact.followed, options);
         own.groom.simulation.substeps = kConvergedSubsteps;
-        const auto fine = runScene(own, poses, result.options.time, exact.followed);
+        const auto fine = runScene(own, poses, result.options.time, exact.followed, options);
         if (!as) return tl::unexpected(as.error());
         if (!fine) return tl::unexpected(fine.error());
         if (!fine->trajectory.finite) continue;
@@ -185,7 +205,9 @@ Status timeAll(const GridHair& hair, std::span<const HeadPose> poses, WorkPrecis
             if (result.runs[r].diverged) continue;
             if (auto status = unlessCancelled(result.options); !status) return status;
             const ThreadLimit limit = hair.limitThreads(result.runs[r].values);
-            const auto outcome = runScene(hair.at(result.runs[r].values), poses, result.options.time, {});
+            const std::vector<double>& values = result.runs[r].values;
+            const auto outcome =
+                runScene(hair.at(values), poses, result.options.time, {}, hair.optionsAt(values));
             if (!outcome) return tl::unexpected(outcome.error());
             times[r].push_back(outcome->millisecondsPerFrame);
             counted.add();
@@ -300,10 +322,13 @@ void noteWhatMatters(WorkPrecision& result) {
     }
 }
 
-Status checkAxes(const std::vector<GridAxis>& axes) {
+Status checkAxes(const WorkPrecisionOptions& options) {
     std::set<std::string> seen;
-    for (const GridAxis& axis : axes) {
+    for (const GridAxis& axis : options.axes) {
         if (auto status = checkAxis(axis); !status) return status;
+        if (axis.field == kEngineAxis && !options.gpuEngine &&
+            std::ranges::find(axis.values, 1.0) != axis.values.end())
+            return fail("the engine on a GPU is asked for and there is none", "expected cpu, or a GPU");
         if (!seen.insert(axis.field).second)
             return fail(axis.field + " varies twice", "expected one axis of it");
     }
@@ -334,7 +359,7 @@ Result<WorkPrecision> measureWorkPrecision(const Groom& groom, const HeadMotion&
                                            const WorkPrecisionOptions& options,
                                            const GroundTruthSource& groundTruth) {
     assert(options.repeats >= 1 && options.strands >= 1 && options.time.stepsPerFrame == 1);
-    if (auto status = checkAxes(options.axes); !status) return tl::unexpected(status.error());
+    if (auto status = checkAxes(options); !status) return tl::unexpected(status.error());
     if (groom.strandCount() == 0) return fail("the groom has no strands", "expected strands to simulate");
 
     WorkPrecision result;
@@ -350,7 +375,7 @@ Result<WorkPrecision> measureWorkPrecision(const Groom& groom, const HeadMotion&
     if (const auto points = findAxis(options.axes, kPointsAxis)) {
         result.groundTruthPoints = largestCount(options.axes[*points].values);
     }
-    const GridHair hair(std::move(sample), result.options.axes);
+    const GridHair hair(std::move(sample), result.options);
 
     // The truth counts as one run; it takes as long as several, but how many depends on the grid.
     Counted counted(options, 1 + result.runs.size() * (1 + options.repeats));

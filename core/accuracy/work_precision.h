@@ -29,6 +29,7 @@ struct WorkPrecisionOptions {
     /// A run whose root mean square error is larger has diverged; 0 stands for a quarter of the longest
     /// strand.
     double divergedAboveMm = 0;
+    MethodMaker gpuEngine = {};     ///< that runs the engine "gpu" of kEngineAxis
     bool keepTrajectories = false;  ///< of the compared points, for showing them
     std::function<void(std::size_t done, std::size_t total)> progress;
     /// Called after each round of timed runs with what is known by then.
@@ -71,8 +72,8 @@ struct WorkPrecision {
     std::vector<std::string> notes;      ///< what a reader must know; whole sentences
 };
 
-/// Errors: an axis that is neither a field nor named above, values out of its range (all of them checked
-/// before anything runs), a groom that cannot be simulated, being cancelled.
+/// Errors: an axis that is neither a field nor named above, values out of its range, a GPU without
+/// gpuEngine (all of them checked before anything runs), a groom that cannot be simulated, being cancelled.
 Result<WorkPrecision> measureWorkPrecision(const Groom& groom, const HeadMotion& motion,
                                            const WorkPrecisionOptions& options,
                                            const GroundTruthSource& groundTruth);

@@ -11,7 +11,6 @@
 namespace hairloom {
 namespace {
 
-constexpr std::string_view kIntegratorAxis = "integrator";
 constexpr Marker kShapes[] = {Marker::Circle, Marker::Square, Marker::TriangleUp, Marker::Diamond};
 constexpr const char* kGrey = "#666666";
 
@@ -27,11 +26,23 @@ std::size_t placeOf(const WorkPrecision& result, const WorkPrecisionRun& run,
     return static_cast<std::size_t>(std::ranges::find(values, run.values[*axis]) - values.begin());
 }
 
+/// The axis whose values have colours: the first enumeration that varies, or else the first there is.
+std::optional<std::size_t> colouredAxis(const std::vector<GridAxis>& axes) {
+    std::optional<std::size_t> first;
+    for (std::size_t a = 0; a < axes.size(); ++a) {
+        if (!isEnumeration(axes[a].field)) continue;
+        if (varies(axes, a)) return a;
+        if (!first) first = a;
+    }
+    return first;
+}
+
 /// Axes whose values stand in labels: those that vary, but for the one that has colours.
 std::vector<std::size_t> labelledAxes(const std::vector<GridAxis>& axes) {
+    const auto coloured = colouredAxis(axes);
     std::vector<std::size_t> labelled;
     for (std::size_t a = 0; a < axes.size(); ++a) {
-        if (varies(axes, a) && axes[a].field != kIntegratorAxis) labelled.push_back(a);
+        if (varies(axes, a) && a != coloured) labelled.push_back(a);
     }
     return labelled;
 }
@@ -74,13 +85,13 @@ std::string divergedText(const WorkPrecision& result, std::size_t axis, double v
 }
 
 /// Series that only name the colours and the shapes.
-void addLegend(const WorkPrecision& result, std::optional<std::size_t> integrator,
+void addLegend(const WorkPrecision& result, std::optional<std::size_t> coloured,
                std::optional<std::size_t> points, Plot& plot) {
-    if (integrator) {
-        const GridAxis& axis = result.options.axes[*integrator];
+    if (coloured) {
+        const GridAxis& axis = result.options.axes[*coloured];
         for (std::size_t v = 0; v < axis.values.size(); ++v) {
             plot.series.push_back({.name = axisValueText(axis, axis.values[v]) +
-                                           divergedText(result, *integrator, axis.values[v]),
+                                           divergedText(result, *coloured, axis.values[v]),
                                    .colour = paletteColour(v)});
         }
     }
@@ -135,16 +146,16 @@ Plot workPrecisionPlot(const WorkPrecision& result, const ReportContext& context
     plot.y = {.title = "error, root mean square", .unit = "mm", .scale = Scale::Logarithmic};
     plot.width = 860;
     plot.height = 560;
-    const auto integrator = findAxis(result.options.axes, kIntegratorAxis);
+    const auto coloured = colouredAxis(result.options.axes);
     const auto points = findAxis(result.options.axes, kPointsAxis);
-    addLegend(result, integrator, points, plot);
+    addLegend(result, coloured, points, plot);
 
     std::map<std::pair<std::size_t, std::size_t>, Series> series;
     std::vector<PlotPoint> front;
     TimeRange times;
     for (const WorkPrecisionRun& run : result.runs) {
         if (run.diverged) continue;
-        const auto key = std::pair(placeOf(result, run, integrator), placeOf(result, run, points));
+        const auto key = std::pair(placeOf(result, run, coloured), placeOf(result, run, points));
         series[key].points.push_back({.x = run.milliseconds.median,
                                       .y = run.error.rmsMm,
                                       .xLow = run.milliseconds.q1,
@@ -178,10 +189,10 @@ std::optional<Plot> errorPlot(const WorkPrecision& result, std::size_t axisIndex
     const bool ofNumbers = axis.field == kPointsAxis || (field && field->choices.empty());
     if (!ofNumbers || !varies(axes, axisIndex)) return std::nullopt;
 
-    const auto integrator = findAxis(axes, kIntegratorAxis);
+    const auto coloured = colouredAxis(axes);
     std::string held;
     for (std::size_t a = 0; a < axes.size(); ++a) {
-        if (a == axisIndex || a == integrator || axes[a].field == kThreadsAxis) continue;
+        if (a == axisIndex || a == coloured || axes[a].field == kThreadsAxis) continue;
         held += fmt::format("{}{} {}", held.empty() ? "Held: " : ", ", axes[a].field,
                             axisValueText(axes[a], heldValue(axes[a])));
     }
@@ -202,17 +213,17 @@ std::optional<Plot> errorPlot(const WorkPrecision& result, std::size_t axisIndex
     for (const WorkPrecisionRun& run : result.runs) {
         bool shown = true;
         for (std::size_t a = 0; a < axes.size(); ++a) {
-            const bool free = a == axisIndex || a == integrator;
+            const bool free = a == axisIndex || a == coloured;
             const double wanted = axes[a].field == kThreadsAxis ? axes[a].values.front() : heldValue(axes[a]);
             shown = shown && (free || run.values[a] == wanted);
         }
         if (!shown) continue;
         const double error = run.diverged ? std::numeric_limits<double>::infinity() : run.error.rmsMm;
-        series[placeOf(result, run, integrator)].points.push_back(
+        series[placeOf(result, run, coloured)].points.push_back(
             {.x = run.values[axisIndex], .y = error, .tooltip = tooltipOf(result, run)});
     }
     for (auto& [place, one] : series) {
-        if (integrator) one.name = axisValueText(axes[*integrator], axes[*integrator].values[place]);
+        if (coloured) one.name = axisValueText(axes[*coloured], axes[*coloured].values[place]);
         one.colour = paletteColour(place);
         one.line = LineStyle::Solid;
         std::ranges::sort(one.points, {}, &PlotPoint::x);

@@ -143,8 +143,11 @@ void addWhatWasRun(const WorkPrecision& result, const ReportContext& context, Ht
                              options.pointsCompared));
     facts.emplace_back("Time",
                        fmt::format("of the engine, mean over the frames of a run; median and quartiles of {} "
-                                   "runs after an untimed one, in rounds over all settings",
-                                   options.repeats));
+                                   "runs after an untimed one, in rounds over all settings{}",
+                                   options.repeats,
+                                   findAxis(options.axes, kEngineAxis)
+                                       ? "; of a GPU from recording a frame to having its report"
+                                       : ""));
     facts.emplace_back("Diverged", fmt::format("not finite, or an error above {:.4g} mm root mean square",
                                                options.divergedAboveMm));
     facts.emplace_back(
