@@ -24,7 +24,41 @@ bool isCheaper(const WorkPrecisionRun& a, const WorkPrecisionRun& b) {
     return a.milliseconds.median < b.milliseconds.median;
 }
 
+constexpr double kEqual = 1.2;
+
+double timeOf(const WorkPrecisionRun& run) {
+    return run.milliseconds.median;
+}
+double errorOf(const WorkPrecisionRun& run) {
+    return run.error.rmsMm;
+}
+
+/// How many times the larger is the smaller; both are above 0, or it is 1.
+double ratio(double a, double b) {
+    return a > 0 && b > 0 ? std::max(a / b, b / a) : 1;
+}
+
+template <class Same, class Other>
+std::optional<std::size_t> pairOf(const WorkPrecision& measured, std::size_t index, const Same& same,
+                                  const Other& other) {
+    const WorkPrecisionRun& run = measured.runs[index];
+    const auto isAlike = [&](const WorkPrecisionRun& candidate) {
+        return &candidate != &run && ratio(same(candidate), same(run)) <= kEqual;
+    };
+    return best(measured, isAlike, [&](const WorkPrecisionRun& a, const WorkPrecisionRun& b) {
+        return ratio(other(a), other(run)) > ratio(other(b), other(run));
+    });
+}
+
 }  // namespace
+
+std::optional<std::size_t> pairOfEqualTime(const WorkPrecision& measured, std::size_t run) {
+    return pairOf(measured, run, timeOf, errorOf);
+}
+
+std::optional<std::size_t> pairOfEqualError(const WorkPrecision& measured, std::size_t run) {
+    return pairOf(measured, run, errorOf, timeOf);
+}
 
 std::optional<std::size_t> runOf(const WorkPrecision& measured, const Groom& groom) {
     const std::vector<GridAxis>& axes = measured.options.axes;

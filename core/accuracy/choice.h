@@ -20,6 +20,10 @@ std::optional<std::size_t> nextStep(const WorkPrecision& measured, std::size_t f
 std::optional<std::size_t> cheapestWithinError(const WorkPrecision& measured, double rmsMm);
 /// The most exact whose median time is at most so many milliseconds.
 std::optional<std::size_t> mostExactWithinTime(const WorkPrecision& measured, double milliseconds);
+/// Of those that take as long as that run, within a fifth, the one whose error differs most from its error.
+std::optional<std::size_t> pairOfEqualTime(const WorkPrecision& measured, std::size_t run);
+/// Of those that are as exact, within a fifth, the one whose time differs most from its time.
+std::optional<std::size_t> pairOfEqualError(const WorkPrecision& measured, std::size_t run);
 /// Runs that differ from that one in that axis alone, itself among them, in the order of the axis.
 std::vector<std::size_t> runsAlong(const WorkPrecision& measured, std::size_t run, std::size_t axis);
 /// "4 substeps, 24 points".

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What accuracy costs: the diagram of this hair on this machine, in milliseconds and in pixels of the view,
 // and settings taken from it.
+#include <QComboBox>
 #include <QLabel>
 #include <QPushButton>
 #include <QSignalBlocker>
@@ -33,6 +34,9 @@ constexpr double kWorstShare = 0.05;          ///< of all strands
 constexpr std::uint32_t kTrueSubsteps = 16;   ///< hair that slides over spheres would take minutes with more
 constexpr double kTolerance_mm = 0.02;
 
+/// What a setting is shown beside, in the order of the list.
+enum class Beside { reference, equalTime, equalError, document };
+
 class AccuracyPanel : public QWidget {
   public:
     explicit AccuracyPanel(const PanelParts& parts)
@@ -47,6 +51,7 @@ class AccuracyPanel : public QWidget {
           measure_(new QPushButton(tr("Measure"))),
           chosenWords_(new QLabel),
           show_(new QPushButton(tr("Show in the view"))),
+          beside_(new QComboBox),
           adopt_(new QPushButton(tr("Adopt"))),
           worst_(new QPushButton(tr("Select the worst strands"))),
           view_(new RunView(parts, this)),
@@ -78,12 +83,22 @@ class AccuracyPanel : public QWidget {
         show_->setToolTip(
             tr("Plays the measured motion with these settings, over and over, without changing the document. "
                "Over the hair lie the compared strands, from green, exact, to red, 5 px off; blue ones are "
-               "the reference"));
+               "what they are shown beside"));
+        beside_->setObjectName("accuracyBeside");
+        beside_->addItems({tr("beside the reference"), tr("beside what takes as long"),
+                           tr("beside what is as exact"), tr("beside the document's setting")});
+        beside_->setToolTip(
+            tr("What the blue strands are: the truth, or another setting that takes as long, within a fifth, "
+               "and "
+               "differs most in its error; one that is as exact and differs most in its time; or the "
+               "document's"));
+        connect(beside_, &QComboBox::currentIndexChanged, this, [this] { choose(chosen_); });
         layout->addWidget(chosenWords_);
         auto* row = new QHBoxLayout;
         row->addWidget(show_, 1);
-        row->addWidget(adopt_, 1);
+        row->addWidget(beside_, 1);
         layout->addLayout(row);
+        layout->addWidget(adopt_);
         worst_->setObjectName("accuracyWorst");
         worst_->setToolTip(
             tr("Selects the twentieth of all strands that this setting takes farthest from where the most "
@@ -219,8 +234,34 @@ class AccuracyPanel : public QWidget {
     }
 
     void showChosen() {
-        if (chosen_ && !measured_->runs[*chosen_].diverged) return view_->show(measured_, *chosen_);
+        if (chosen_ && !measured_->runs[*chosen_].diverged) return view_->show(measured_, *chosen_, beside());
         view_->stop();
+    }
+
+    /// The run that the chosen one is shown beside; nothing: the reference.
+    std::optional<std::size_t> beside() const {
+        std::optional<std::size_t> other;
+        switch (static_cast<Beside>(beside_->currentIndex())) {
+            case Beside::equalTime:
+                other = pairOfEqualTime(*measured_, *chosen_);
+                break;
+            case Beside::equalError:
+                other = pairOfEqualError(*measured_, *chosen_);
+                break;
+            case Beside::document:
+                other = runOf(*measured_, document_.groom());
+                break;
+            case Beside::reference:
+                break;
+        }
+        if (other && (other == chosen_ || measured_->runs[*other].diverged)) return std::nullopt;
+        return other;
+    }
+    QString besideInWords() const {
+        if (static_cast<Beside>(beside_->currentIndex()) == Beside::reference) return {};
+        const auto other = beside();
+        if (!other) return tr(" Nothing that was measured is a pair to it; blue is the reference.");
+        return tr(" Beside it in blue: %1: %2.").arg(setting(*other), numbers(*other));
     }
 
     /// Those of all strands that the chosen setting, or that of the document, takes farthest from the most
@@ -344,11 +385,13 @@ class AccuracyPanel : public QWidget {
             control->setEnabled(any);
         adopt_->setEnabled(any && chosen_);
         show_->setEnabled(any && chosen_);
+        beside_->setEnabled(any && chosen_);
         worst_->setEnabled(any);
         chosenWords_->setVisible(any);
         if (!any) return;
         chosenWords_->setText(
-            chosen_ ? tr("Chosen: %1: %2%3").arg(setting(*chosen_), numbers(*chosen_), parts(*chosen_))
+            chosen_ ? tr("Chosen: %1: %2%3.").arg(setting(*chosen_), numbers(*chosen_), parts(*chosen_)) +
+                          besideInWords()
                     : tr("Click a point, or set a limit"));
         std::vector<AccuracyPoint> points;
         for (std::size_t r = 0; r < measured_->runs.size(); ++r) {
@@ -373,7 +416,9 @@ class AccuracyPanel : public QWidget {
     QLabel* words_;
     QPushButton* measure_;
     QLabel* chosenWords_;
-    QPushButton *show_, *adopt_, *worst_;
+    QPushButton* show_;
+    QComboBox* beside_;
+    QPushButton *adopt_, *worst_;
     RunView* view_;
     NumberBox *pixels_, *milliseconds_;
     std::shared_ptr<const WorkPrecision> measured_;

@@ -8,7 +8,7 @@ namespace {
 
 constexpr float kRed_px = 5;  ///< error at which strands are red
 constexpr float kLine_px = 2;
-const QColor kReference(90, 170, 255);
+const QColor kOther(90, 170, 255);
 
 }  // namespace
 
@@ -30,12 +30,14 @@ RunView::RunView(const PanelParts& parts, QObject* parent)
     viewport_.addMarks([this](Marks& marks) { draw(marks); });
 }
 
-void RunView::show(std::shared_ptr<const WorkPrecision> measured, std::size_t run) {
+void RunView::show(std::shared_ptr<const WorkPrecision> measured, std::size_t run,
+                   std::optional<std::size_t> beside) {
     auto motion = player_.makeMeasuredMotion();
     if (!motion) return messages_.warn(QString::fromStdString(motion.error().message()));
     player_.pause();
     measured_ = std::move(measured);
     run_ = run;
+    beside_ = beside;
     const auto groom = std::make_shared<const Groom>(document_.groom());
     const std::shared_ptr<const HeadMotion> moves = std::move(*motion);
     const bool began = tasks_.run<RunPreview>(
@@ -81,8 +83,11 @@ void RunView::showFrame() {
 void RunView::draw(Marks& marks) const {
     if (!preview_ || frame_ == 0) return;
     const Trajectory &run = measured_->runs[run_].trajectory, &truth = measured_->groundTruthTrajectory;
+    const Trajectory& other = beside_ ? measured_->runs[*beside_].trajectory : truth;
     const std::size_t perFrame = truth.pointsPerFrame, first = (frame_ - 1) * perFrame;
-    if (run.points_ws.size() < first + perFrame || truth.points_ws.size() < first + perFrame) return;
+    for (const Trajectory* drawn : {&run, &truth, &other}) {
+        if (drawn->points_ws.size() < first + perFrame) return;
+    }
     const Vec3f origin_ws = preview_->poses[frame_].origin_ws.cast<float>();
     const float red = kRed_px * viewport_.camera().metresPerPixel(document_.groom().bounds().center(),
                                                                   viewport_.viewSize_px());
@@ -93,7 +98,7 @@ void RunView::draw(Marks& marks) const {
                        kLine_px, Marks::Depth::OnTop);
         };
         const float error = (run.points_ws[first + p + 1] - truth.points_ws[first + p + 1]).norm();
-        segment(truth, kReference);
+        segment(other, kOther);
         segment(run, heat(red > 0 ? error / red : 0));
     }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // A measured setting played in the view, over and over: all hair moves as it would, and over it lie the
-// compared strands, coloured by their error, beside those of the reference.
+// compared strands, coloured by their error, beside those of the reference or of another setting.
 
 #include <QTimer>
 #include <memory>
@@ -17,8 +17,10 @@ class RunView : public QObject {
 
   public:
     explicit RunView(const PanelParts& parts, QObject* parent = nullptr);
-    /// From when it is simulated on; in place of what is shown. The measurement has kept trajectories.
-    void show(std::shared_ptr<const WorkPrecision> measured, std::size_t run);
+    /// From when it is simulated on; in place of what is shown. The measurement has kept trajectories. The
+    /// other strands, in blue, are the reference's where `beside` names no run.
+    void show(std::shared_ptr<const WorkPrecision> measured, std::size_t run,
+              std::optional<std::size_t> beside);
     /// The view shows the document again.
     void stop();
 
@@ -39,6 +41,7 @@ class RunView : public QObject {
     QTimer timer_;
     std::shared_ptr<const WorkPrecision> measured_;
     std::size_t run_ = 0;
+    std::optional<std::size_t> beside_;
     std::optional<RunPreview> preview_;  ///< while it is shown
     std::size_t frame_ = 0;
     quint64 asked_ = 0;  ///< previews asked for so far; only the last one is shown

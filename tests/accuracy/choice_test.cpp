@@ -44,6 +44,16 @@ TEST(Choice, FindsWhereTheGroomIs) {
     EXPECT_FALSE(runOf(measured, groom)) << "other points";
 }
 
+TEST(Choice, PairsAreAlikeInOneThingAndDifferMostInTheOther) {
+    const WorkPrecision measured = grid({{1, 8}, {1.1, 2}, {1.15, 6}, {0.9, 0}, {5, 2.2}, {1.05, 0.5}});
+    EXPECT_EQ(pairOfEqualTime(measured, 0), 5u);
+    EXPECT_EQ(pairOfEqualTime(measured, 5), 0u);
+    EXPECT_EQ(pairOfEqualError(measured, 1), 4u);
+    EXPECT_EQ(pairOfEqualError(measured, 4), 1u);
+    EXPECT_FALSE(pairOfEqualTime(measured, 4)) << "nothing takes as long";
+    EXPECT_FALSE(pairOfEqualError(measured, 0)) << "what diverges is no pair";
+}
+
 TEST(Choice, OffersWhatIsBetterAndNothingElse) {
     // The third costs more than the second and is no nearer.
     const WorkPrecision measured = grid({{1, 8}, {2, 3}, {4, 5}, {8, 1}});

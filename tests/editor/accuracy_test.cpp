@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The Accuracy panel as a new user walks it: measure, read, set a limit in pixels, adopt, undo.
+#include <QComboBox>
 #include <QLabel>
 #include <QPushButton>
 
@@ -128,6 +129,25 @@ TEST_F(AccuracyTest, AMeasuredSettingIsShownInTheViewAndLeavesNoTrace) {
     adopt().click();
     EXPECT_FALSE(show->isChecked()) << "the document has changed";
     EXPECT_EQ(viewport().pose(), nullptr);
+}
+
+TEST_F(AccuracyTest, ASettingIsShownBesideItsPair) {
+    auto* beside = find<QComboBox>("accuracyBeside");
+    EXPECT_FALSE(beside->isEnabled());
+    measure();
+    find<NumberBox>("accuracyPixels")->spinBox().setValue(100);
+    EXPECT_FALSE(chosen().contains("in blue")) << "blue is the reference";
+    beside->setCurrentIndex(3);
+    EXPECT_TRUE(chosen().contains("Beside it in blue: 2 substeps, 12 points")) << chosen().toStdString();
+    find<QPushButton>("accuracyShow")->click();
+    finishWork();
+    ASSERT_TRUE(QTest::qWaitFor([&] { return viewport().pose() != nullptr; }));
+    for (const int other : {1, 2, 0}) {
+        beside->setCurrentIndex(other);
+        finishWork();
+        EXPECT_TRUE(find<QPushButton>("accuracyShow")->isChecked());
+        EXPECT_EQ(chosen().contains("blue"), other != 0) << chosen().toStdString();
+    }
 }
 
 TEST_F(AccuracyTest, TheStrandsThatMatterMostAreSelected) {
