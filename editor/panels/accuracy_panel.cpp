@@ -87,6 +87,8 @@ class AccuracyPanel : public QWidget {
         beside_->setObjectName("accuracyBeside");
         beside_->addItems({tr("beside the reference"), tr("beside what takes as long"),
                            tr("beside what is as exact"), tr("beside the document's setting")});
+        beside_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+        beside_->setMinimumContentsLength(8);
         beside_->setToolTip(
             tr("What the blue strands are: the truth, or another setting that takes as long, within a fifth, "
                "and "

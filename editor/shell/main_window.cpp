@@ -9,6 +9,7 @@
 #include <QMenuBar>
 #include <QMessageBox>
 #include <QMimeData>
+#include <QScreen>
 #include <QSettings>
 #include <QToolBar>
 
@@ -36,7 +37,9 @@ MainWindow::MainWindow()
     setAcceptDrops(true);
     setDockNestingEnabled(true);
     setTabPosition(Qt::AllDockWidgetAreas, QTabWidget::North);
-    resize(1440, 900);
+    // Along the side there is room for the whole names of all panels.
+    setTabPosition(Qt::RightDockWidgetArea, QTabWidget::East);
+    resize(QSize(1440, 900).boundedTo(screen()->availableSize()));
 
     viewport_ = new Viewport(document_, preferences_);
     tools_.fill({document_, preferences_, messages_, player_, *viewport_});
@@ -46,6 +49,8 @@ MainWindow::MainWindow()
     setStatusBar(status_);
     pages_->addWidget(start_);
     pages_->addWidget(viewport_);
+    // What stands beside it fits into 1280 pixels, then.
+    pages_->setMinimumSize(320, 240);
     setCentralWidget(pages_);
 
     addFileActions();
@@ -148,7 +153,7 @@ void MainWindow::makeBars() {
 
     auto* tools = new QToolBar(tr("Tools"));
     tools->setObjectName("bar:tools");
-    tools->setIconSize({20, 20});
+    tools->setIconSize({18, 18});
     addToolBar(Qt::LeftToolBarArea, tools);
     tools->addActions(toolGroup_->actions());
 }

@@ -12,6 +12,8 @@
 #include <QPushButton>
 #include <QSpinBox>
 #include <QStandardPaths>
+#include <QTabBar>
+#include <QToolBar>
 
 #include "core/base/file.h"
 #include "core/groom/file/project_file.h"
@@ -30,6 +32,32 @@ namespace hairloom::editor {
 namespace {
 
 class ShellTest : public WindowTest {};
+
+TEST_F(ShellTest, EveryToolAndPanelCanBeReachedAt1280By800) {
+    window->resize(1280, 800);
+    QCoreApplication::processEvents();
+    EXPECT_EQ(window->size(), QSize(1280, 800)) << "nothing asks for more";
+    const QRect shown = window->rect();
+    const auto isShown = [&](const QWidget& widget, const QRect& part) {
+        return widget.isVisible() &&
+               shown.contains(QRect(widget.mapTo(window.get(), part.topLeft()), part.size()));
+    };
+    for (QToolBar* bar : window->findChildren<QToolBar*>()) {
+        for (QAction* action : bar->actions()) {
+            const QWidget* button = bar->widgetForAction(action);
+            EXPECT_TRUE(isShown(*button, button->rect())) << action->text().toStdString();
+        }
+    }
+    for (QTabBar* tabs : window->findChildren<QTabBar*>()) {
+        for (int tab = 0; tab < tabs->count() && tabs->isVisible(); ++tab) {
+            EXPECT_TRUE(isShown(*tabs, tabs->tabRect(tab))) << tabs->tabText(tab).toStdString();
+            const QFontMetrics font = tabs->fontMetrics();
+            EXPECT_GE(std::max(tabs->tabRect(tab).width(), tabs->tabRect(tab).height()),
+                      font.horizontalAdvance(tabs->tabText(tab)))
+                << tabs->tabText(tab).toStdString() << " is cut short";
+        }
+    }
+}
 
 TEST_F(ShellTest, AnEmptyWindowSaysWhatToDoFirstAndOffersTheSamples) {
     auto* first = find<QLabel>("firstStep");
