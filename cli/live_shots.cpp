@@ -23,16 +23,20 @@ Result<render::Picture> LiveShots::take(std::uint64_t frame, const render::Rende
         if (auto set = renderer_.setScene(scene); !set) return tl::unexpected(set.error());
         shown_ = true;
     }
-    if (auto set = renderer_.setCamera(scene.camera, true); !set) return tl::unexpected(set.error());
+    if (auto set = renderer_.setCamera(scene.camera, !how.temporal); !set) return tl::unexpected(set.error());
     gpu::SubmissionPtr last;
     for (; frame_ < frame; ++frame_) {
         auto list = device_.createCommandList();
         if (!list) return tl::unexpected(list.error());
-        if (how.surface && frame_ + 1 == frame) {
+        if (how.surface && !how.temporal && frame_ + 1 == frame) {
             if (auto past = renderer_.recordPast(**list, how); !past) return tl::unexpected(past.error());
         }
         if (auto moved = live_.record(**list, renderer_, kFrame); !moved)
             return tl::unexpected(moved.error());
+        if (how.temporal && frame_ + 1 < frame) {
+            if (auto drawn = renderer_.record(**list, how, nullptr); !drawn)
+                return tl::unexpected(drawn.error());
+        }
         auto submission = device_.submit(std::move(*list));
         if (!submission) return tl::unexpected(submission.error());
         live_.submitted(*submission);

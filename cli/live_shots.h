@@ -18,7 +18,7 @@ class LiveShots {
     /// Strands at rest.
     const GroomScene& scene() const { return live_.scene(); }
     /// After so many frames of 1/60 s, not fewer than at the last call; `scene` says camera, lights and
-    /// background.
+    /// background. Of a temporal picture all frames before are drawn as well.
     Result<render::Picture> take(std::uint64_t frame, const render::RenderScene& scene,
                                  const render::RenderOptions& how);
 

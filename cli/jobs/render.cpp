@@ -58,6 +58,7 @@ struct RenderJobOptions {
     std::string backend = "any";
     float exposure = 1;
     std::uint32_t passes = 8;
+    bool temporal = false;
     std::string exr;
     std::vector<std::string> aovs;
     std::string animation;
@@ -105,16 +106,17 @@ Result<render::RenderOptions> pictureOptions(const RenderJobOptions& options, co
     const AntiAliasing& aa = kAntiAliasing.at(options.antiAliasing);
     picture.samples = aa.samples;
     picture.filter = aa.filter;
-    picture.frames = aa.once ? 1 : options.passes;
+    picture.temporal = options.temporal;
+    picture.frames = aa.once || options.temporal ? 1 : options.passes;
     picture.shadows = kShadows.at(options.shadow);
     picture.shadowLights = options.shadowLights;
     picture.headAbsorption = options.headAbsorption.value_or(view.headAbsorption.value_or(0));
     picture.shadowBlur = options.shadowBlur.value_or(view.shadowBlur.value_or(0));
     picture.ribbons = kRibbons.at(options.ribbons);
     // One frame is least noisy when blended; the average of several has no bias when left to chance.
-    const std::string transparency = options.transparency != "auto" ? options.transparency
-                                     : picture.frames > 1           ? "stochastic"
-                                                                    : "weighted";
+    const std::string transparency = options.transparency != "auto"           ? options.transparency
+                                     : picture.frames > 1 || picture.temporal ? "stochastic"
+                                                                              : "weighted";
     picture.transparency = kTransparency.at(transparency);
     picture.detail = options.detail;
     picture.exposure = options.exposure;
@@ -419,9 +421,9 @@ JobRun declare(CLI::App& job) {
         ->check(CLI::Range(0.0, 100.0));
     job.add_option("--exposure", options->exposure, "Factor on the light before the tone curve")
         ->check(CLI::Range(1e-3, 1e3));
-    job.add_option("--passes", options->passes,
-                   "Times the picture is drawn, each moved by part of a pixel, and averaged")
-        ->check(CLI::Range(1, 1024));
+    auto* passes = job.add_option("--passes", options->passes,
+                                  "Times the picture is drawn, each moved by part of a pixel, and averaged")
+                       ->check(CLI::Range(1, 1024));
     auto* record = job.add_option("--record", options->record, "Frames that simulate --record wrote");
     auto* motion =
         job.add_option(
@@ -429,6 +431,12 @@ JobRun declare(CLI::App& job) {
                "Simulate the hair while it is drawn, on a head that moves like that: none, spin, nod, "
                "clip:NAME or a file of keys F.json")
             ->excludes(record);
+    job.add_flag("--temporal", options->temporal,
+                 "Each frame of the simulation is drawn once and joins those before it, as in the window "
+                 "while hair "
+                 "moves")
+        ->needs(motion)
+        ->excludes(passes);
     job.add_option("--character", options->character,
                    "File with the skeleton and clips, instead of the one the scalp came from")
         ->needs(motion);

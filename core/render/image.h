@@ -28,6 +28,8 @@ struct SurfacePixel {
     float velocityX = 0;            ///< pixels that it has moved since a frame ago, to the right
     float velocityY = 0;            ///< and down
     std::array<float, 4> albedo{};  ///< linear RGB, and 0 where nothing is
+    float pastDepth = 0;            ///< metres along the view of a frame ago
+    std::array<float, 3> unused{};
     static constexpr std::uint32_t kNoStrand = 0xffffffffu;
 
     bool hasStrand() const { return strand != kNoStrand; }

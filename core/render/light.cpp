@@ -10,6 +10,8 @@ namespace {
 
 constexpr float kMargin = 0.04f;       // of the size, around the hair
 constexpr float kMinHalf = 1e-4f;      // metres
+constexpr float kSizes = 8;            // of a light's view between one and twice as large
+constexpr float kSnap = 64;            // texels along the side of the least map
 constexpr float kWidestSlope = 3.73f;  // of a point light's view: tan 75 degrees
 
 struct Extent {
@@ -21,12 +23,28 @@ struct Extent {
         maximum = std::max(maximum, value);
     }
     float size() const { return maximum - minimum; }
+    /// Grows to a size of few, and to a place that moves by whole texels of any map of a multiple of kSnap
+    /// texels, so that hair that rests meets the same texels while other hair moves.
+    void snap() {
+        const float least = std::max(size(), 2 * kMinHalf);
+        const float step = std::exp2(std::floor(std::log2(least))) / kSizes;
+        const float whole = std::ceil(least * (1 + 1.0f / kSnap) / step) * step;
+        const float texels = whole / kSnap;
+        minimum = std::floor(minimum / texels) * texels;
+        maximum = minimum + whole;
+    }
     void widen(float share) {
         const float by = std::max(share * size(), kMinHalf);
         minimum -= by;
         maximum += by;
     }
 };
+
+/// The middle of a box, on a grid that changes seldom while hair moves.
+Vec3f roughly(const Box3f& box) {
+    const float step = 0.25f * std::exp2(std::ceil(std::log2(std::max(box.diagonal().norm(), kMinHalf))));
+    return ((box.center() / step).array().round() * step).matrix();
+}
 
 }  // namespace
 
@@ -69,8 +87,8 @@ LightView fitLight(const Light& light, std::span<const Vec3f> hair_ws, const Box
     for (const Vec3f& p : hair_ws) hair.extend(p);
     if (hair.isEmpty()) hair = Box3f(all_ws.center());
     // Towards the light; right and up span the shadow map.
-    const Vec3f eye = point ? light.position_ws : hair.center();
-    const Vec3f out = point ? Vec3f(light.position_ws - hair.center()) : light.toLight_ws;
+    const Vec3f eye = point ? light.position_ws : Vec3f(Vec3f::Zero());
+    const Vec3f out = point ? Vec3f(light.position_ws - roughly(hair)) : light.toLight_ws;
     const Vec3f back = out.norm() > 1e-6f ? out.normalized() : Vec3f::UnitY();
     const Vec3f helper = std::abs(back.y()) < 0.9f ? Vec3f::UnitY() : Vec3f::UnitX();
     const Vec3f right = helper.cross(back).normalized();
@@ -103,8 +121,13 @@ LightView fitLight(const Light& light, std::span<const Vec3f> hair_ws, const Box
     for (int i = 0; i < 8 && !all_ws.isEmpty(); ++i) {
         along.add(inView(all_ws.corner(static_cast<Box3f::CornerType>(i))).z());
     }
-    for (Extent& extent : across) extent.widen(kMargin);
+    for (Extent& extent : across) {
+        extent.widen(kMargin);
+        extent.snap();
+    }
     along.widen(0.01f);
+    along.snap();
+    hairAlong.snap();
     if (point) along.minimum = std::max(along.minimum, std::max(1e-3f, 1e-4f * along.maximum));
     along.maximum = std::max(along.maximum, along.minimum + kMinHalf);
 

@@ -52,9 +52,9 @@ struct LightView {
     float hairRange = 1;               ///< metres along the light that hair takes up
 };
 
-/// Fitted to `hair_ws` across the light, and along it to what throws shadows on hair or gets its shadow as
-/// well. A point light amidst the hair sees only what lies within 75 degrees of the middle. A directional one
-/// sees `more_ws` as well.
+/// Fitted, in steps that keep texels in their places while hair moves, to `hair_ws` across the light, and
+/// along it to what throws shadows on hair or gets its shadow as well. A point light amidst the hair sees
+/// only what lies within 75 degrees of the middle. A directional one sees `more_ws` as well.
 LightView fitLight(const Light& light, std::span<const Vec3f> hair_ws, const Box3f& all_ws,
                    const Box3f& more_ws = {});
 

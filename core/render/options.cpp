@@ -35,6 +35,9 @@ Status check(const RenderOptions& o, const gpu::DeviceInfo& device) {
         return fail(fmt::format("shadows blurred by {} pixels", o.shadowBlur), "0 to 32");
     }
     if (!(o.detail >= 0 && o.detail <= 100)) return fail("a detail outside 0 to 100 pixels");
+    if (o.temporal && (o.frames != 1 || o.shadowBlur > 0))
+        return fail("frames that join those before them as an average or with blurred shadows",
+                    "one of them");
     if (o.ribbons == Ribbons::tessellated && !device.tessellation) {
         return fail("tessellated ribbons on " + device.name, "a device with tessellation");
     }

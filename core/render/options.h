@@ -68,6 +68,9 @@ struct RenderOptions {
     bool bakeBehind = false;
     /// What is nearest in each pixel is told as well: Renderer::surface().
     bool surface = false;
+    /// For pictures in which things move: each frame joins those before it, each pixel where its surface was.
+    /// One frame (`frames`), no blurred shadows.
+    bool temporal = false;
     float exposure = 2;                  ///< factor before the tone curve
     bool transparentBackground = false;  ///< alpha is coverage; else 1 everywhere
 

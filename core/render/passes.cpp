@@ -329,7 +329,9 @@ Mat4f pastCameraMatrix(const RendererState& state) {
 }
 
 void recordFrame(gpu::CommandList& list, RendererState& state, std::uint32_t number) {
-    const auto [jitterX, jitterY] = jitter(number, state.options.frames);
+    constexpr std::uint32_t kTemporalJitter = 64;
+    const auto [jitterX, jitterY] = state.options.temporal ? jitter(number % kTemporalJitter, kTemporalJitter)
+                                                           : jitter(number, state.options.frames);
     const Mat4f clipFromWorld = cameraMatrix(state, state.bounds(), jitterX, jitterY);
     if (state.plan.runs(Pass::nearest)) {
         recordRasterised(list, state, clipFromWorld, number);
@@ -360,7 +362,7 @@ void recordFrame(gpu::CommandList& list, RendererState& state, std::uint32_t num
     constants.pixels = width * height;
     constants.rowThreads = width;
     constants.samples = 1;
-    constants.sumBegins = number == 0 ? 1 : 0;
+    constants.sumBegins = number == 0 || state.options.temporal ? 1 : 0;
     list.setConstants(0, gpu::bytesOf(constants));
     bind(list, {Binding::read(0, t.frame()), Binding::write(0, state.frames())});
     list.dispatch(groupsFor(width, HAIRLOOM_TILE_GROUP), groupsFor(height, HAIRLOOM_TILE_GROUP));

@@ -45,6 +45,10 @@ struct RendererState {
     /// Ends of the deep opacity layers behind the first hair, as parts of the depth that hair takes up.
     std::array<float, 3> deepLayers{0.04f, 0.14f, 1.0f};
     RenderPlan plan;
+    struct {
+        std::uint32_t frames = 0;  ///< that have joined; 0: nothing is known of one before
+        bool turn = false;         ///< BufferId::history is that before
+    } temporal;
     /// What is recorded is without shadows, for Pass::shadowBlur.
     bool lit = false;
     bool onCpu;  ///< the device is a software rasteriser
@@ -67,6 +71,8 @@ struct RendererState {
     const gpu::BufferPtr& frames() const { return targets[lit ? BufferId::litSum : BufferId::sum]; }
     /// What is shown: the sum of frames, or that with blurred shadows.
     const gpu::BufferPtr& result() const {
+        if (plan.runs(Pass::temporal))
+            return targets[temporal.turn ? BufferId::history : BufferId::otherHistory];
         return targets[plan.runs(Pass::shadowBlur) ? BufferId::blurred : BufferId::sum];
     }
     const gpu::TexturePtr& orPlaceholder(TargetId id) const {
@@ -95,6 +101,8 @@ void recordSkySeen(gpu::CommandList& list, RendererState& state);
 void recordShading(gpu::CommandList& list, RendererState& state);
 /// What is nearest in each pixel.
 void recordSurface(gpu::CommandList& list, RendererState& state);
+/// The frame joins those before it; `moves`: something is not as it was in them.
+void recordTemporal(gpu::CommandList& list, RendererState& state, bool moves);
 /// Takes curves and head as they are for those of a frame ago; outside a pass.
 void recordPast(gpu::CommandList& list, RendererState& state);
 /// Head and hair in the samples of a frame, by kernels; then added to the sum.

@@ -127,13 +127,20 @@ class Planner {
                                        facts_.look ? "colour or absorption changes from place to place"
                                                    : "all of a material's hair looks the same")
                          : "no hair");
-        pass(Pass::surface, options_.surface,
-             options_.surface ? "depth, strand, velocity and albedo of what is nearest in each pixel"
-                              : "nobody asked what is in each pixel");
-        buffer(BufferId::surfaceNearest, pixels(), 4, options_.surface, "depth in the middle of each pixel");
-        buffer(BufferId::surfaceItem, pixels(), 4, options_.surface,
-               "which of all points or triangles it is");
-        buffer(BufferId::surface, pixels(), sizeof(shaders::SurfacePixel), options_.surface,
+        const bool surface = options_.surface || options_.temporal;
+        pass(Pass::surface, surface,
+             surface ? "depth, strand, velocity and albedo of what is nearest in each pixel"
+                     : "nobody asked what is in each pixel");
+        pass(Pass::temporal, options_.temporal,
+             options_.temporal ? "frames before join, each pixel where its surface was"
+                               : "each frame or average stands for itself");
+        for (const BufferId id : {BufferId::history, BufferId::otherHistory})
+            buffer(id, pixels(), 16, options_.temporal, "light of the frames before");
+        for (const BufferId id : {BufferId::historyPixels, BufferId::otherHistoryPixels})
+            buffer(id, pixels(), sizeof(shaders::TemporalPixel), options_.temporal, "what was seen in them");
+        buffer(BufferId::surfaceNearest, pixels(), 4, surface, "depth in the middle of each pixel");
+        buffer(BufferId::surfaceItem, pixels(), 4, surface, "which of all points or triangles it is");
+        buffer(BufferId::surface, pixels(), sizeof(shaders::SurfacePixel), surface,
                "depth, strand, velocity and albedo");
         const bool kernels = options_.ribbons == Ribbons::compute;
         pass(Pass::nearest, kernels,
@@ -213,10 +220,10 @@ class Planner {
 
 const char* passName(Pass pass) {
     constexpr std::array<const char*, kPassCount> kNames{
-        "curves",        "head depth", "first hair",    "opacity layers", "sky head depth", "sky first hair",
-        "sky layers",    "sky seen",   "shade",         "surface",        "nearest",        "draw",
-        "blend",         "composite",  "accumulate",    "shadow blur",    "tone map",       "filter",
-        "overlay depth", "overlay",    "overlay on top"};
+        "curves",     "head depth",    "first hair", "opacity layers", "sky head depth", "sky first hair",
+        "sky layers", "sky seen",      "shade",      "surface",        "nearest",        "draw",
+        "blend",      "composite",     "accumulate", "temporal",       "shadow blur",    "tone map",
+        "filter",     "overlay depth", "overlay",    "overlay on top"};
     return kNames[static_cast<std::size_t>(pass)];
 }
 
@@ -250,7 +257,11 @@ const char* bufferName(BufferId buffer) {
                                                            "blurred",
                                                            "nearest surface",
                                                            "surface numbers",
-                                                           "surface"};
+                                                           "surface",
+                                                           "history",
+                                                           "other history",
+                                                           "history pixels",
+                                                           "other history pixels"};
     return kNames[static_cast<std::size_t>(buffer)];
 }
 

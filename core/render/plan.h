@@ -33,6 +33,7 @@ enum class Pass {
     blend,      ///< hair over head, in any order
     composite,  ///< of the blended hair
     accumulate,
+    temporal,    ///< frames before join, where their surfaces were
     shadowBlur,  ///< on the screen
     toneMap,
     filter,
@@ -77,8 +78,12 @@ enum class BufferId {
     surfaceNearest,  ///< depths in the middle of pixels, as bits
     surfaceItem,     ///< of all points and triangles the number of what is there
     surface,         ///< SurfacePixels
+    history,         ///< what temporal shows, in turns with the other
+    otherHistory,
+    historyPixels,  ///< TemporalPixels, likewise
+    otherHistoryPixels,
 };
-inline constexpr std::size_t kBufferCount = static_cast<std::size_t>(BufferId::surface) + 1;
+inline constexpr std::size_t kBufferCount = static_cast<std::size_t>(BufferId::otherHistoryPixels) + 1;
 const char* bufferName(BufferId buffer);
 
 /// What the plan looks at.

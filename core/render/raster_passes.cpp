@@ -86,7 +86,7 @@ void recordResolve(gpu::CommandList& list, RendererState& state, std::uint32_t n
     constants.pixels = pixels;
     constants.rowThreads = rows.threads();
     constants.samples = state.samples;
-    constants.sumBegins = number == 0 ? 1 : 0;
+    constants.sumBegins = number == 0 || state.options.temporal ? 1 : 0;
     constants.background =
         state.options.transparentBackground ? shaders::float4{0, 0, 0, 0} : toShader(state.background, 1);
     list.beginPass({passName(Pass::accumulate), {}, {}});

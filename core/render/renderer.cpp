@@ -46,7 +46,8 @@ Changes compare(const RenderOptions& before, const RenderOptions& now) {
     }
     changes.picture |= now.frames != before.frames ||
                        now.transparentBackground != before.transparentBackground ||
-                       now.ribbons != before.ribbons || now.transparency != before.transparency;
+                       now.ribbons != before.ribbons || now.transparency != before.transparency ||
+                       now.temporal != before.temporal;
     return changes;
 }
 
@@ -93,6 +94,7 @@ Status Renderer::setScene(const RenderScene& scene) {
     parts_->changes = Changes::geometry();
     state.scene = {};
     state.pastCamera.reset();
+    state.temporal = {};
     if (auto status = check(scene); !status) return status;
     auto uploaded = DeviceScene::upload(parts_->device, scene);
     if (!uploaded) return tl::unexpected(uploaded.error());
@@ -185,6 +187,7 @@ void Renderer::setEnvironment(const Environment& environment) {
 
 void Renderer::setBackground(const Vec3f& linear) {
     parts_->state.background = linear;
+    parts_->state.temporal = {};
     parts_->changes.picture = true;
 }
 
@@ -239,6 +242,7 @@ Status Renderer::Parts::prepareTargets(bool presents) {
     if (isNew->has(TargetId::skyHead) || isNew->has(BufferId::skyLayers)) changes.add(Changes::head());
     changes.picture |= isNew->has(TargetId::colour) || isNew->has(BufferId::nearest) ||
                        isNew->has(BufferId::sum) || isNew->has(BufferId::surface);
+    if (isNew->has(BufferId::history)) state.temporal = {};
     return {};
 }
 
@@ -302,7 +306,8 @@ void Renderer::Parts::recordChanges(gpu::CommandList& list) {
         recordShading(list, state);
         if (state.plan.runs(Pass::shadowBlur)) withoutShadows([&] { recordShading(list, state); });
     }
-    if (changes.picture && state.plan.runs(Pass::surface)) recordSurface(list, state);
+    if ((changes.picture || state.options.temporal) && state.plan.runs(Pass::surface))
+        recordSurface(list, state);
     if (changes.picture) accumulated = 0;
     changes = Changes::placeholderTexture();
 }
@@ -318,9 +323,15 @@ Status Renderer::record(gpu::CommandList& list, const RenderOptions& options, co
     }
     if (auto status = p.prepare(options, target != nullptr); !status) return status;
     if (auto status = prepareOverlay(p.device, list, p.state.overlay); !status) return status;
+    const bool moves = p.changes.curves || p.changes.shadows || p.changes.shading;
     p.recordChanges(list);
     const bool blurs = p.state.plan.runs(Pass::shadowBlur);
-    if (p.accumulated < options.frames) {
+    if (options.temporal) {
+        recordFrame(list, p.state, p.state.temporal.frames);
+        recordTemporal(list, p.state, moves);
+        render::recordPast(list, p.state);
+        p.accumulated = 1;
+    } else if (p.accumulated < options.frames) {
         recordFrame(list, p.state, p.accumulated);
         if (blurs) p.withoutShadows([&] { recordFrame(list, p.state, p.accumulated); });
         ++p.accumulated;

@@ -9,6 +9,9 @@ namespace {
 
 using gpu::Binding;
 
+// Of what moves more frames would trail; what rests becomes as smooth as a still picture.
+constexpr float kFramesMoving = 16, kFramesStill = 64;
+
 /// Metres along the view of a place (x, y, z, 1).
 shaders::float4 forwardOf(const Camera& camera) {
     const Vec3f forward_ws = (camera.target_ws - camera.eye_ws).normalized();
@@ -48,6 +51,7 @@ class SurfaceRecorder {
         constants_.pastClipFromWorld =
             state.pastCamera ? toShader(pastCameraMatrix(state)) : constants_.clipFromWorld;
         constants_.forward_ws = forwardOf(state.camera);
+        constants_.pastForward_ws = forwardOf(state.pastCamera.value_or(state.camera));
         raster_ = everyPixel(state);
     }
 
@@ -126,6 +130,35 @@ void recordSurface(gpu::CommandList& list, RendererState& state) {
     for (const std::uint32_t phase : {HAIRLOOM_PHASE_NEAREST, HAIRLOOM_PHASE_ITEM, HAIRLOOM_PHASE_TELL})
         recorder.phase(phase);
     list.endPass();
+}
+
+void recordTemporal(gpu::CommandList& list, RendererState& state, bool moves) {
+    const Targets& t = state.targets;
+    const bool turn = state.temporal.turn;
+    shaders::TemporalConstants constants{};
+    constants.width = state.options.width;
+    constants.height = state.options.height;
+    constants.hasPast = state.temporal.frames > 0 ? 1 : 0;
+    constants.most = moves ? kFramesMoving : kFramesStill;
+    constants.moves = moves ? 1 : 0;
+    list.beginPass({passName(Pass::temporal), {}, {}});
+    list.setPipeline(state.pipelines.compute("temporal.comp"));
+    list.setConstants(0, gpu::bytesOf(constants));
+    // Before the first frame there is nothing to read; its sum has elements of the same size.
+    const bool past = state.temporal.frames > 0;
+    const auto before = [&](BufferId one, BufferId other) {
+        return past ? t[turn ? one : other] : t[BufferId::sum];
+    };
+    bind(list, {Binding::read(0, t[BufferId::sum]), Binding::read(1, t[BufferId::surface]),
+                Binding::read(2, before(BufferId::history, BufferId::otherHistory)),
+                Binding::read(3, before(BufferId::historyPixels, BufferId::otherHistoryPixels)),
+                Binding::write(0, t[turn ? BufferId::otherHistory : BufferId::history]),
+                Binding::write(1, t[turn ? BufferId::otherHistoryPixels : BufferId::historyPixels])});
+    list.dispatch(groupsFor(state.options.width, HAIRLOOM_TILE_GROUP),
+                  groupsFor(state.options.height, HAIRLOOM_TILE_GROUP));
+    list.endPass();
+    state.temporal.turn = !turn;
+    ++state.temporal.frames;
 }
 
 void recordPast(gpu::CommandList& list, RendererState& state) {

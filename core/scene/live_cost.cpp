@@ -25,6 +25,7 @@ render::RenderOptions viewportOptions(std::uint32_t width, std::uint32_t height)
     options.skyStrands = 1024;
     options.detail = 0.5f;
     options.bakeBehind = true;
+    options.temporal = true;
     return options;
 }
 

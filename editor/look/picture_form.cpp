@@ -69,6 +69,17 @@ class PictureForm : public OptionForm {
                  tr("Frames that are averaged while nothing moves, each moved by part of a pixel: more give "
                     "finer hair"),
                  1, 7, tr("%1 averaged"), &PictureQuality::frames);
+        addBool(
+            "joinsFrames", tr("Join frames"),
+            tr("While something moves, each frame joins those before it where their hair was: thin hair is "
+               "smooth in "
+               "place of grainy, and costs a little more"),
+            [this] { return viewport_.quality().joinsFrames; },
+            [this](bool on) {
+                PictureQuality quality = viewport_.quality();
+                quality.joinsFrames = on;
+                viewport_.setQuality(quality);
+            });
         addEnum("filter", tr("Filter"), tr("Softens the edges that are left in the finished picture"),
                 {tr("None"), tr("FXAA"), tr("FXAA, long search")}, &PictureQuality::filter);
         addEnum("transparency", tr("Thin hair"),

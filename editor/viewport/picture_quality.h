@@ -13,6 +13,7 @@ struct PictureQuality {
     /// A pixel and frame, as render::RenderOptions; more than the device has: its most.
     std::uint32_t samples = 4;
     std::uint32_t frames = 8;  ///< averaged when the picture is still, 1…256
+    bool joinsFrames = true;   ///< while something moves: render::RenderOptions::temporal
     render::PostFilter filter = render::PostFilter::none;
     render::Transparency transparency = render::Transparency::stochastic;
     /// Strips where the device cannot tessellate.

@@ -262,6 +262,7 @@ render::RenderOptions RenderWork::options() const {
     if (!last_->moving) return options;
     options.samples = 1;
     options.frames = 1;
+    options.temporal = last_->quality.joinsFrames;
     options.subdivisions = 1;
     options.skyStrands = 1024;
     options.shadowBlur = 0;

@@ -61,6 +61,7 @@ Status Show::showNext() {
     options.subdivisions = 1;
     options.shadowResolution = 512;
     options.detail = 0.5f;
+    options.temporal = true;
     auto list = device_->createCommandList();
     if (!list) return tl::unexpected(list.error());
     if (auto status = hair_.record(**list, renderer_, kFrame); !status) return status;

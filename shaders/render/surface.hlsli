@@ -38,6 +38,8 @@ SurfacePixel surfaceAt(float3 position_ws, float3 past_ws, uint strand, float3 a
     found.velocityX = moved.x;
     found.velocityY = moved.y;
     found.albedo = float4(albedo, 1);
+    found.pastDepth = dot(gSurface.pastForward_ws.xyz, past_ws) + gSurface.pastForward_ws.w;
+    found.unused0 = found.unused1 = found.unused2 = 0;
     return found;
 }
 #endif

@@ -13,5 +13,7 @@ void main(uint3 id : SV_DispatchThreadID) {
     nothing.strand = HAIRLOOM_NO_STRAND;
     nothing.velocityX = nothing.velocityY = 0;
     nothing.albedo = 0;
+    nothing.pastDepth = nothing.depth;
+    nothing.unused0 = nothing.unused1 = nothing.unused2 = 0;
     gFound[pixel] = nothing;
 }

@@ -242,6 +242,25 @@ struct SurfacePixel {
     float velocityX;  // pixels that it has moved since a frame ago, to the right
     float velocityY;  // and down
     float4 albedo;    // linear RGB; w: 0 where nothing is
+    float pastDepth;  // metres along the view of a frame ago
+    float unused0, unused1, unused2;
+};
+
+// What is known of a pixel for the frame after it.
+struct TemporalPixel {
+    float depth;   // as SurfacePixel
+    uint strand;   // likewise
+    float frames;  // that its light is the mean of, as far as they count
+    float albedo;  // 0 where nothing is
+};
+
+struct TemporalConstants {
+    uint width;  // pixels
+    uint height;
+    uint hasPast;  // 0: nothing is known of a frame before
+    float most;    // frames that count
+    uint moves;    // 1 where hair, head, camera or light are not as a frame ago
+    uint unused0, unused1, unused2;
 };
 
 // How to tell it.
@@ -249,6 +268,7 @@ struct SurfaceConstants {
     float4x4 clipFromWorld;
     float4x4 pastClipFromWorld;  // of a frame ago
     float4 forward_ws;           // times a place (x, y, z, 1): metres along the view
+    float4 pastForward_ws;       // of a frame ago
     uint firstItem;              // number of a batch's first curve point or a mesh's first triangle among all
     uint firstStrand;            // number of a group's first strand among all
     uint pastStrands;            // of the batch whose places of a frame ago are known; of a mesh 1 or 0
@@ -398,9 +418,11 @@ static_assert(sizeof(LookConstants) == 144);
 static_assert(sizeof(MeshConstants) == 80);
 HAIRLOOM_OFFSET(RasterConstants, samplePositions, 64);
 static_assert(sizeof(RasterConstants) == 128);
-static_assert(sizeof(SurfacePixel) == 32);
-HAIRLOOM_OFFSET(SurfaceConstants, firstItem, 144);
-static_assert(sizeof(SurfaceConstants) == 160);
+static_assert(sizeof(SurfacePixel) == 48);
+static_assert(sizeof(TemporalPixel) == 16);
+static_assert(sizeof(TemporalConstants) == 32);
+HAIRLOOM_OFFSET(SurfaceConstants, firstItem, 160);
+static_assert(sizeof(SurfaceConstants) == 176);
 static_assert(sizeof(FillConstants) == 16);
 static_assert(sizeof(ResolveConstants) == 32);
 static_assert(sizeof(PackConstants) == 32);

@@ -132,6 +132,11 @@ TEST_F(RenderJob, HairIsSimulatedWhileItIsDrawnOnEitherEngine) {
     EXPECT_EQ(run("render hair.hairloom -o x.png --engine gpu").exitCode, 2) << "nothing moves";
     EXPECT_EQ(run("render hair.hairloom -o x.png --frames 0,3").exitCode, 2);
 
+    const auto joined = runJson(
+        "render hair.hairloom -o joined.png --size 48x48 --aa none --motion nod --frame 4 --engine cpu "
+        "--temporal");
+    EXPECT_TRUE(targets(joined).contains("history"));
+    EXPECT_EQ(run("render hair.hairloom -o x.png --motion nod --frame 4 --temporal --passes 4").exitCode, 2);
     const auto simulated = runJson("simulate hair.hairloom --frames 2 --engine gpu");
     EXPECT_EQ(simulated["engine"], "gpu");
     EXPECT_FALSE(simulated["device"].is_null());
