@@ -161,46 +161,45 @@ std::string meshRefusal(const ImportedScene& scene) {
 
 }  // namespace
 
-Result<std::vector<std::string>> writeTfxCompanions(const Groom& groom, PreparedStrands& strands,
-                                                    const StrandExportOptions& options,
-                                                    const std::filesystem::path& path) {
-    std::vector<std::string> written;
-    const auto leave = [&](const std::string& why, const char* ending, std::string fix) {
-        strands.findings.push_back({Severity::Warning, why, std::string("no .") + ending, std::move(fix)});
-    };
-    const auto write = [&](const char* ending, std::span<const std::byte> bytes) -> Status {
-        auto companion = path;
-        companion.replace_extension(ending);
-        if (companion == path) return {};  // the strands were asked for under this name
-        written.push_back(companion.filename().string());
-        return writeFileAtomically(companion, bytes);
-    };
+std::vector<TfxCompanion> tfxCompanions(const Groom& groom, PreparedStrands& strands,
+                                        const StrandExportOptions& options,
+                                        const std::filesystem::path& path) {
+    std::vector<TfxCompanion> made;
     // What goes into a device has nothing beside it.
     std::error_code code;
     const auto type = std::filesystem::status(path, code).type();
     if (type != std::filesystem::file_type::regular && type != std::filesystem::file_type::not_found)
-        return written;
+        return made;
+    const auto leave = [&](const std::string& why, const char* ending, std::string fix) {
+        strands.findings.push_back({Severity::Warning, why, std::string("no .") + ending, std::move(fix)});
+    };
+    const auto add = [&](const char* ending, std::vector<std::byte> bytes) {
+        TfxCompanion companion{path, std::move(bytes)};
+        companion.path.replace_extension(ending);
+        if (companion.path != path) made.push_back(std::move(companion));  // else that is the strands' name
+    };
     const auto scene = characterOf(groom, strands.findings);
     const bool isSkinned = scene && scene->skin.vertexCount() == scene->mesh.vertexCount();
     const bool isBound = groom.rootBindings().size() == groom.strandCount();
     const NamedWeights weights =
         isSkinned && isBound ? rootWeights(groom, strands, *scene) : carriedWeights(groom, strands);
     if (!weights.bones.empty()) {
-        const std::string why = refusal(weights);
-        if (!why.empty())
+        if (const std::string why = refusal(weights); !why.empty())
             leave(why, "tfxbone", "mend the character's skin, and export again");
-        else if (auto status = write("tfxbone", boneFile(weights)); !status)
-            return tl::unexpected(status.error());
+        else
+            add("tfxbone", boneFile(weights));
     } else if (isSkinned && !isBound) {
         leave("the strands are bound to no scalp", "tfxbone", "bind them, so that bones move their roots");
     }
-    if (!isSkinned) return written;
-    const std::string why = meshRefusal(*scene), meshText = meshFile(*scene, options);
-    if (!why.empty())
+    if (!isSkinned) return made;
+    if (const std::string why = meshRefusal(*scene); !why.empty()) {
         leave(why, "tfxmesh", "rename it in the character's file");
-    else if (auto status = write("tfxmesh", std::as_bytes(std::span(meshText))); !status)
-        return tl::unexpected(status.error());
-    return written;
+    } else {
+        const std::string text = meshFile(*scene, options);
+        const auto bytes = std::as_bytes(std::span(text));
+        add("tfxmesh", {bytes.begin(), bytes.end()});
+    }
+    return made;
 }
 
 }  // namespace hairloom

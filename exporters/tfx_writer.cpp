@@ -9,6 +9,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/content_kind.h"
+#include "core/base/output_file.h"
 #include "exporters/prepared_strands.h"
 #include "exporters/tfx_companions.h"
 
@@ -112,6 +114,28 @@ void addLimits(PreparedStrands& strands) {
     }
 }
 
+/// All of them or none, and none where `strands` may not replace what is at `path`. Returns their names.
+Result<std::vector<std::string>> writeCompanions(const std::vector<TfxCompanion>& companions,
+                                                 const std::filesystem::path& path,
+                                                 std::span<const std::byte> strands) {
+    std::vector<std::string> names;
+    if (companions.empty()) return names;
+    if (const auto mayBe = OutputFile::open(path, contentKind(strands)); !mayBe)
+        return tl::unexpected(mayBe.error());
+    std::vector<OutputFile> files;
+    for (const TfxCompanion& companion : companions) {
+        auto file = OutputFile::open(companion.path, contentKind(companion.bytes));
+        if (!file) return tl::unexpected(file.error());
+        if (auto status = file->write(companion.bytes); !status) return tl::unexpected(status.error());
+        files.push_back(std::move(*file));
+        names.push_back(companion.path.filename().string());
+    }
+    for (OutputFile& file : files) {
+        if (auto status = file.finish(); !status) return tl::unexpected(status.error());
+    }
+    return names;
+}
+
 Result<ExportReport> writeTfx(const Groom& groom, const std::filesystem::path& path,
                               const StrandExportOptions& options) {
     const auto points = choosePoints(groom, options);
@@ -140,10 +164,11 @@ Result<ExportReport> writeTfx(const Groom& groom, const std::filesystem::path& p
     writer.writeArray(std::span<const float>(sections.thicknessScale));
     writeColours(writer, *strands);
     // Before the strands, so that what is read back is what a loader will find.
-    auto companions = writeTfxCompanions(groom, *strands, options, path);
-    if (!companions) return tl::unexpected(companions.error());
+    const auto companions = tfxCompanions(groom, *strands, options, path);
+    auto written = writeCompanions(companions, path, writer.bytes());
+    if (!written) return tl::unexpected(written.error());
     auto report = writeAndCompare(groom, std::move(*strands), options, path, writer.bytes());
-    if (report) report->companions = std::move(*companions);
+    if (report) report->companions = std::move(*written);
     return report;
 }
 

@@ -68,7 +68,7 @@ Result<MeshOnDevice> uploadMesh(gpu::Device& device, const RenderMesh& mesh) {
     result.indices.assign(mesh.indices.begin(), mesh.indices.end());
     result.vertexCount = mesh.positions_ws.size();
     result.matte = mesh.matte;
-    for (const Vec3f& p : mesh.positions_ws) result.bounds_ws.extend(p);
+    result.bounds_ws = boundsOf(mesh.positions_ws, mesh.indices);
     std::vector<Vec3f> computed;
     if (mesh.normals_ws.empty()) computed = averagedNormals(mesh.positions_ws, mesh.indices);
     const std::span<const Vec3f> normals = mesh.normals_ws.empty() ? computed : mesh.normals_ws;
@@ -259,7 +259,7 @@ Status DeviceScene::replaceMesh(std::size_t mesh, std::span<const Vec3f> positio
     }
     const auto bounds = finiteBounds(positions_ws, "mesh vertex");
     if (!bounds) return tl::unexpected(bounds.error());
-    m.bounds_ws = *bounds;
+    m.bounds_ws = boundsOf(positions_ws, m.indices);
     m.devicePositions = m.deviceNormals = nullptr;
     m.positions_ws.assign(positions_ws.begin(), positions_ws.end());
     if (normals_ws.empty()) {

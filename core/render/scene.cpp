@@ -72,11 +72,15 @@ Status check(const RenderScene& scene) {
     return {};
 }
 
+Box3f boundsOf(std::span<const Vec3f> positions, std::span<const std::uint32_t> indices) {
+    Box3f box;
+    for (const std::uint32_t index : indices) box.extend(positions[index]);
+    return box;
+}
+
 Box3f boundsOf(const RenderScene& scene) {
     Box3f box;
-    for (const RenderMesh& mesh : scene.meshes) {
-        for (const Vec3f& p : mesh.positions_ws) box.extend(p);
-    }
+    for (const RenderMesh& mesh : scene.meshes) box.extend(boundsOf(mesh.positions_ws, mesh.indices));
     for (const RenderStrands& strands : scene.strands) {
         for (const Vec3f& p : strands.positions_ws) box.extend(p);
     }

@@ -81,6 +81,8 @@ struct RenderScene {
     Vec3f background = Vec3f(0.085f, 0.09f, 0.10f);  ///< linear RGB
 };
 
+/// Of the vertices that triangles have; others, as of groups that are hidden, do not count.
+Box3f boundsOf(std::span<const Vec3f> positions, std::span<const std::uint32_t> indices);
 /// Of all meshes and strands.
 Box3f boundsOf(const RenderScene& scene);
 

@@ -68,6 +68,9 @@ TEST_F(NoFileHarmed, CompanionsAreHeldToTheSameRules) {
     std::ofstream(folder / "a.hair.report.json") << "my notes\n";
     expectRefused("export g.hairloom --format hair -o a.hair", "a.hair.report.json: is text");
     EXPECT_EQ(readText(folder / "a.hair.report.json"), "my notes\n");
+    std::ofstream(folder / "b.tfxmesh") << "my notes\n";
+    expectRefused("export g.hairloom --format tfx --points 8 -o b.tfx", "b.tfxmesh: is text");
+    EXPECT_EQ(readText(folder / "b.tfxmesh"), "my notes\n");
 }
 
 TEST_F(NoFileHarmed, ErrorsAreAnObjectForPrograms) {
