@@ -72,8 +72,27 @@ ViewFile viewOf(const PictureRequest& request) {
     return view;
 }
 
-/// As a groom shown without its follow hairs.
-Groom withoutFollowHairs(Groom groom) {
+/// Of guides that stand for their follow hairs: as wide as these side by side, so that they hide as much, but
+/// for a few guides of many hairs, which would be ribbons.
+float draftRadius(float radius, const Groom& groom) {
+    constexpr float kWidest = 0.0005f;  // metres
+    const float all = radius * static_cast<float>(groom.interpolation.followPerGuide);
+    return std::max(radius, std::min(all, kWidest));
+}
+
+HairMaterial draftMaterial(const Groom& groom) {
+    HairMaterial material = groom.material;
+    material.rootRadius = draftRadius(material.rootRadius, groom);
+    return material;
+}
+
+/// Guides alone.
+Groom draftOf(Groom groom) {
+    if (groom.pointAttributes.has(attribute::kRadius)) {
+        for (float& radius : groom.pointAttributes.edit<float>(attribute::kRadius))
+            radius = draftRadius(radius, groom);
+    }
+    groom.material = draftMaterial(groom);
     groom.interpolation.followPerGuide = 0;
     return groom;
 }
@@ -166,7 +185,8 @@ Status RenderWork::takeScene(const PictureRequest& request, bool draft) {
     const bool sameModel = request.quality.model == last_->quality.model &&
                            request.quality.scattering == last_->quality.scattering;
     if (!sameGroom || !sameModel) {
-        if (!scene_->setMaterial(now.material, viewOf(request))) return replaceScene(request, draft);
+        if (!scene_->setMaterial(draft ? draftMaterial(now) : now.material, viewOf(request)))
+            return replaceScene(request, draft);
         if (auto set = showMaterial(request); !set) return set;
     }
     const bool sameDye = now.pointAttributes.version(attribute::kPointDye) ==
@@ -184,8 +204,7 @@ Status RenderWork::takeScene(const PictureRequest& request, bool draft) {
 }
 
 Status RenderWork::replaceScene(const PictureRequest& request, bool draft) {
-    auto made =
-        GroomScene::make(draft ? withoutFollowHairs(*request.groom) : *request.groom, viewOf(request), {});
+    auto made = GroomScene::make(draft ? draftOf(*request.groom) : *request.groom, viewOf(request), {});
     if (!made) return tl::unexpected(made.error());
     scene_ = std::move(*made);
     draft_ = draft;
