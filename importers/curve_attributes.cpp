@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "importers/curve_set.h"
@@ -25,20 +26,24 @@ std::size_t strandCount(const RawStrands& strands) {
     return strands.offsets.size() - 1;
 }
 
-/// The element of a strand: its own, or its first point's.
-std::size_t elementOf(const RawStrands& strands, const RawAttribute& attribute, std::size_t strand) {
-    return attribute.perPoint ? strands.offsets[strand] : strand;
+/// The element of a strand: its own, or its first point's; nothing of a strand without points.
+std::optional<std::size_t> elementOf(const RawStrands& strands, const RawAttribute& attribute,
+                                     std::size_t strand) {
+    if (!attribute.perPoint) return strand;
+    if (strands.offsets[strand] == strands.offsets[strand + 1]) return std::nullopt;
+    return strands.offsets[strand];
 }
 
 /// Values of strands from either kind of number; fractions are cut.
 std::vector<std::int32_t> wholeOfStrands(const RawStrands& strands, const RawAttribute& attribute) {
     std::vector<std::int32_t> values(strandCount(strands));
     for (std::size_t strand = 0; strand < values.size(); ++strand) {
-        const std::size_t at = elementOf(strands, attribute, strand);
+        const auto at = elementOf(strands, attribute, strand);
+        if (!at) continue;
         if (attribute.type != RawAttribute::Type::Number) {
-            values[strand] = attribute.whole[at];
+            values[strand] = attribute.whole[*at];
         } else {
-            const float value = attribute.numbers[at * attribute.components];
+            const float value = attribute.numbers[*at * attribute.components];
             values[strand] = std::abs(value) < 2e9f ? static_cast<std::int32_t>(value) : 0;
         }
     }
@@ -63,8 +68,9 @@ void takeRootUvs(RawStrands& strands) {
         RawAttribute* const uv = find(strands, name);
         if (uv == nullptr || uv->type != RawAttribute::Type::Number || uv->components < 2) continue;
         for (std::size_t strand = 0; strand < strandCount(strands); ++strand) {
-            const std::size_t at = elementOf(strands, *uv, strand) * uv->components;
-            strands.rootUvs.emplace_back(uv->numbers[at], uv->numbers[at + 1]);
+            const auto at = elementOf(strands, *uv, strand);
+            const float* const first = at ? &uv->numbers[*at * uv->components] : nullptr;
+            strands.rootUvs.push_back(first ? Vec2f(first[0], first[1]) : Vec2f(Vec2f::Zero()));
         }
         return remove(strands, uv);
     }

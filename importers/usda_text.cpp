@@ -146,8 +146,7 @@ class Parser {
     // Values
 
     bool number(UsdValue& value) {
-        skip();
-        const char* const begin = text_.data() + at_ + (text_[at_] == '+' ? 1 : 0);
+        const char* const begin = text_.data() + at_ + (peek() == '+' ? 1 : 0);
         double parsed = 0;
         const auto [end, code] = std::from_chars(begin, text_.data() + text_.size(), parsed);
         if (code == std::errc::invalid_argument)

@@ -33,12 +33,16 @@ void expectSoundOrRefused(const Bytes& bytes, const StrandImportOptions& options
 }
 
 std::vector<Bytes> samples() {
-    return {fullHair(4, 5),
-            fullTfx4(4, 4),
-            plainTfx3(4, 4),
-            bytesOf(ribbonObj(3, 4, RibbonOrder::Interleaved)),
-            bytesOf(ribbonObj(3, 4, RibbonOrder::EdgeAfterEdge, RibbonFaces::Triangles)),
-            bytesOf("v 0 0 0\nv 0 .1 0\nv 0 .2 0\nl 1 2 3\nl 3 2 1\nl -1 -2\n")};
+    return {
+        fullHair(4, 5),
+        fullTfx4(4, 4),
+        plainTfx3(4, 4),
+        bytesOf(ribbonObj(3, 4, RibbonOrder::Interleaved)),
+        bytesOf(ribbonObj(3, 4, RibbonOrder::EdgeAfterEdge, RibbonFaces::Triangles)),
+        bytesOf("v 0 0 0\nv 0 .1 0\nv 0 .2 0\nl 1 2 3\nl 3 2 1\nl -1 -2\n"),
+        bytesOf("#usda 1.0\n(\n    metersPerUnit = +1\n    upAxis = \"Y\"\n)\ndef BasisCurves \"hair\"\n{\n"
+                "    int[] curveVertexCounts = [3]\n"
+                "    point3f[] points = [(0, 0, 0), (0, 0.1, 0), (0, 0.2, 0)]\n}\n")};
 }
 
 TEST(StrandsHostile, EveryTruncation) {

@@ -34,6 +34,20 @@ TEST(StrandsPly, ListsAndEdgesAreStrandsWithTheirPointsValues) {
     expectStrand("element edge 2\nproperty int vertex1\nproperty int vertex2\n", "1 2\n0 1\n");
 }
 
+TEST(StrandsPly, AStrandWithoutPointsHasNoValues) {
+    // Ids and root UVs of points are their strand's by the first of them, also where the last strand has
+    // none.
+    const auto imported = read(
+        "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
+        "property float groom_id\nproperty float groom_guide\nelement strand 2\n"
+        "property list uchar int vertex_indices\nend_header\n0 0 0 7 1\n0 0.1 0 7 1\n2 0 1\n0\n");
+    ASSERT_TRUE(imported) << imported.error().message();
+    ASSERT_EQ(imported->groom.strandCount(), 1u);
+    ASSERT_EQ(imported->dropped.size(), 1u);
+    EXPECT_EQ(imported->groom.strandAttributes.view<std::uint32_t>(attribute::kStrandId)[0], 7u);
+    EXPECT_EQ(imported->groom.strandAttributes.view<std::uint8_t>(attribute::kGuide)[0], 1);
+}
+
 TEST(StrandsPly, WhatContradictsItselfIsRefused) {
     const auto refusal = [](const std::string& element, const std::string& row) {
         const auto imported = read(kVertices + element + "end_header\n" + kRows + row);
