@@ -34,10 +34,12 @@ Result<std::int32_t> readCount(ByteReader& reader, std::string_view what, std::u
     const Byte place{reader.position()};
     const auto count = reader.read<std::int32_t>(what);
     if (!count) return count;
-    if (*count < 1 || static_cast<std::uint64_t>(*count) > reader.remaining() / bytesEach)
-        return failIn(file, place, fmt::format("tells of {} {}", *count, what),
-                      fmt::format("expected 1 to {}, as the file's {} bytes can hold",
-                                  reader.remaining() / bytesEach, reader.size()));
+    const std::uint64_t most = reader.remaining() / bytesEach;
+    if (*count < 1 || static_cast<std::uint64_t>(*count) > most)
+        return failIn(
+            file, place, fmt::format("tells of {} {}", *count, what),
+            most > 0 ? fmt::format("expected 1 to {}, as the file's {} bytes can hold", most, reader.size())
+                     : fmt::format("the file has {} bytes and holds none", reader.size()));
     return count;
 }
 
