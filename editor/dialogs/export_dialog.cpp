@@ -79,7 +79,7 @@ ExportDialog::ExportDialog(QtDocument& document, Tasks& tasks, Messages& message
       summary_(new QLabel),
       findings_(new QTreeWidget) {
     setWindowTitle(tr("Export hair"));
-    resize(620, 480);
+    resize(620, 560);
     auto* layout = new QVBoxLayout(this);
     layout->setContentsMargins(20, 20, 20, 16);
     layout->setSpacing(12);
