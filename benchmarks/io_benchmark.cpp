@@ -65,8 +65,9 @@ std::string objRibbons(const Groom& groom) {
 
 /// In every format that can be written.
 void measureFormats(Timings& timings, const std::string& name, const Groom& groom) {
-    const TemporaryFile file("hairloom-io-benchmark");
     for (const StrandWriter& writer : strandWriters()) {
+        // Of its own: a file of another kind is not replaced.
+        const TemporaryFile file("hairloom-io-benchmark." + writer.suffix());
         timings.measure("write ." + writer.name + ", " + name, [&](Rounds& rounds) -> Status {
             while (rounds.next()) {
                 const auto written = writer.write(groom, file.path, {});

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 namespace hairloom::benchmarks {
 
@@ -9,7 +10,7 @@ namespace hairloom::benchmarks {
 struct TemporaryFile {
     std::filesystem::path path;
 
-    explicit TemporaryFile(const char* name) : path(std::filesystem::temp_directory_path() / name) {}
+    explicit TemporaryFile(const std::string& name) : path(std::filesystem::temp_directory_path() / name) {}
     ~TemporaryFile() {
         std::error_code ignored;
         std::filesystem::remove(path, ignored);
