@@ -23,9 +23,9 @@ std::uint16_t toShare(float value) {
 template <class Matrix>
 std::array<float, 12> rowsOf(const Matrix& matrix) {
     std::array<float, 12> rows{};
+    auto at = rows.begin();
     for (int row = 0; row < 3; ++row) {
-        for (int column = 0; column < 4; ++column)
-            rows[static_cast<std::size_t>(4 * row + column)] = matrix(row, column);
+        for (int column = 0; column < 4; ++column) *at++ = matrix(row, column);
     }
     return rows;
 }

@@ -32,7 +32,7 @@ static_assert(sizeof(StrandRecord) == 36);
 Result<std::int32_t> readCount(ByteReader& reader, std::string_view what, std::uint64_t bytesEach,
                                const std::string& file) {
     const Byte place{reader.position()};
-    const auto count = reader.read<std::int32_t>(what);
+    auto count = reader.read<std::int32_t>(what);
     if (!count) return count;
     const std::uint64_t most = reader.remaining() / bytesEach;
     if (*count < 1 || static_cast<std::uint64_t>(*count) > most)

@@ -324,7 +324,7 @@ class Parser {
         child.isOver = specifier != "def";
         if (peek() != '"' && peek() != '\'') child.type = word();
         if (!takeString(child.name)) return false;
-        if (!metadata([](const std::string&, UsdValue) {})) return false;
+        if (!metadata([](const std::string&, const UsdValue&) {})) return false;
         if (!need('{')) return false;
         while (!take('}')) {
             if (atEnd()) return wrong("the file ends inside a prim", "expected '}'");
