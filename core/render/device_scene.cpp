@@ -69,6 +69,9 @@ Result<MeshOnDevice> uploadMesh(gpu::Device& device, const RenderMesh& mesh) {
     result.vertexCount = mesh.positions_ws.size();
     result.matte = mesh.matte;
     result.bounds_ws = boundsOf(mesh.positions_ws, mesh.indices);
+    std::vector<bool> isDrawn(result.vertexCount);
+    for (const std::uint32_t index : mesh.indices) isDrawn[index] = true;
+    result.hasLooseVertices = std::ranges::find(isDrawn, false) != isDrawn.end();
     std::vector<Vec3f> computed;
     if (mesh.normals_ws.empty()) computed = averagedNormals(mesh.positions_ws, mesh.indices);
     const std::span<const Vec3f> normals = mesh.normals_ws.empty() ? computed : mesh.normals_ws;
@@ -259,7 +262,7 @@ Status DeviceScene::replaceMesh(std::size_t mesh, std::span<const Vec3f> positio
     }
     const auto bounds = finiteBounds(positions_ws, "mesh vertex");
     if (!bounds) return tl::unexpected(bounds.error());
-    m.bounds_ws = boundsOf(positions_ws, m.indices);
+    m.bounds_ws = m.hasLooseVertices ? boundsOf(positions_ws, m.indices) : *bounds;
     m.devicePositions = m.deviceNormals = nullptr;
     m.positions_ws.assign(positions_ws.begin(), positions_ws.end());
     if (normals_ws.empty()) {

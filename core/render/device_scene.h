@@ -95,6 +95,7 @@ struct MeshOnDevice {
     gpu::BufferPtr past;                            ///< positions a frame ago, once they were asked for
     bool hasPast = false;                           ///< these were recorded
     Box3f bounds_ws;
+    bool hasLooseVertices = false;  ///< that no triangle has
     bool matte = false;
     float area = 0;  ///< m², where it stood when it was set
     Vec3f meanAlbedo = Vec3f::Zero();
