@@ -72,8 +72,7 @@ class PictureForm : public OptionForm {
         addBool(
             "joinsFrames", tr("Join frames"),
             tr("While something moves, each frame joins those before it where their hair was: thin hair is "
-               "smooth in "
-               "place of grainy, and costs a little more"),
+               "smooth in place of grainy, and costs a little more"),
             [this] { return viewport_.quality().joinsFrames; },
             [this](bool on) {
                 PictureQuality quality = viewport_.quality();

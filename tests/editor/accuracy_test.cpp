@@ -22,9 +22,7 @@ class AccuracyTest : public WindowTest {
         // Few strands and points: a grid that is measured in seconds.
         Groom few = groom();
         ASSERT_TRUE(resample(few, {12}));
-        std::vector<std::uint32_t> offsets(few.offsets.view().begin(), few.offsets.view().begin() + 201);
-        const std::vector<Vec3f> points(few.positions().begin(), few.positions().begin() + offsets.back());
-        few = makeGroom(offsets, points);
+        few = firstStrands(few, 200);
         few.simulation = groom().simulation;  // no spheres: what slides over them converges slowly
         document().open(few, {}, "few");
         window->panel("accuracy")->raise();

@@ -19,12 +19,7 @@ class LevelsTest : public WindowTest {
         WindowTest::SetUp();
         openSampleHair("short");
         // Few strands and no head: a chain that is made in seconds.
-        const std::vector<std::uint32_t> offsets(groom().offsets.view().begin(),
-                                                 groom().offsets.view().begin() + 301);
-        const std::vector<Vec3f> points(groom().positions().begin(),
-                                        groom().positions().begin() + offsets.back());
-        Groom few = makeGroom(offsets, points);
-        document().open(few, {}, "few");
+        openFirstStrands(300);
         window->panel("levels")->raise();
         QCoreApplication::processEvents();
         find<NumberBox>("levelCards")->spinBox().setValue(24);

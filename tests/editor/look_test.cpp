@@ -226,10 +226,7 @@ TEST_F(LookPictureTest, ThumbnailsAreDrawnWhenNothingElseIs) {
 }
 
 TEST_F(LookTest, SettingsOfThePictureSayWhatTheyCost) {
-    Groom few = groom();
-    std::vector<std::uint32_t> offsets(few.offsets.view().begin(), few.offsets.view().begin() + 51);
-    const std::vector<Vec3f> points(few.positions().begin(), few.positions().begin() + offsets.back());
-    document().open(makeGroom(offsets, points), {}, "few");
+    openFirstStrands(50);
     viewport().resize(64, 48);
     auto* tag = find<PriceTag>("samplesPrice");
     EXPECT_TRUE(tag->words().isEmpty());

@@ -110,11 +110,7 @@ TEST_P(ScreenshotsTest, WindowAndPanels) {
 
 TEST_P(ScreenshotsTest, LevelsThatAreMade) {
     openSampleHair("short");
-    const std::vector<std::uint32_t> offsets(groom().offsets.view().begin(),
-                                             groom().offsets.view().begin() + 301);
-    const std::vector<Vec3f> points(groom().positions().begin(),
-                                    groom().positions().begin() + offsets.back());
-    document().open(makeGroom(offsets, points), {}, "few");
+    openFirstStrands(300);
     window->panel("levels")->raise();
     find<QPushButton>("levelsMake")->click();
     finishWork();

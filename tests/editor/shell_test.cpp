@@ -328,11 +328,7 @@ TEST_F(ShellTest, ExportIsReadBackAndReported) {
 
 TEST_F(ShellTest, CardsLeaveByTheSameDialogWithWhatEachLevelLoses) {
     openSampleHair("short");
-    const std::vector<std::uint32_t> offsets(groom().offsets.view().begin(),
-                                             groom().offsets.view().begin() + 301);
-    const std::vector<Vec3f> points(groom().positions().begin(),
-                                    groom().positions().begin() + offsets.back());
-    document().open(makeGroom(offsets, points), {}, "few");
+    openFirstStrands(300);
     ExportDialog dialog(document(), parts().tasks, parts().messages, parts().player);
     dialog.show();
     auto* cards = dialog.findChild<QSpinBox*>("cards");

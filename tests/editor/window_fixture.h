@@ -92,6 +92,14 @@ class WindowTest : public testing::Test {
         viewport().look(render::View::Front);
         viewport().frameAll();
     }
+    /// The first strands of a groom alone: no head, no spheres, settings as by default.
+    static Groom firstStrands(const Groom& all, std::size_t count) {
+        const std::vector<std::uint32_t> offsets(
+            all.offsets.view().begin(), all.offsets.view().begin() + static_cast<std::ptrdiff_t>(count) + 1);
+        return makeGroom(offsets, {all.positions().begin(), all.positions().begin() + offsets.back()});
+    }
+    /// Those of the document, in its place: what takes minutes with all takes seconds.
+    void openFirstStrands(std::size_t count) { document().open(firstStrands(groom(), count), {}, "few"); }
     void openBust() {
         files().openSample({});
         finishWork();
