@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Strand files in and out: reading, and writing with the read-back.
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "benchmarks/measurement.h"
+#include "benchmarks/peak_memory.h"
 #include "benchmarks/sample_hair.h"
 #include "benchmarks/temporary_file.h"
 #include "exporters/strands.h"
+#include "importers/child_process.h"
 #include "importers/strands.h"
 
 namespace hairloom::benchmarks {
@@ -15,12 +19,12 @@ namespace {
 constexpr std::uint32_t kStrands = 11400;
 constexpr std::uint32_t kPoints = 16;
 
-Groom head() {
+Groom head(std::uint32_t strands = kStrands) {
     std::vector<std::uint32_t> offsets{0};
     std::vector<Vec3f> positions;
-    for (std::uint32_t s = 0; s < kStrands; ++s) {
+    for (std::uint32_t s = 0; s < strands; ++s) {
         const float angle = 2.4f * static_cast<float>(s);
-        const float out = 0.1f * std::sqrt(static_cast<float>(s) / kStrands);
+        const float out = 0.1f * std::sqrt(static_cast<float>(s) / static_cast<float>(strands));
         for (std::uint32_t i = 0; i < kPoints; ++i) {
             const float t = static_cast<float>(i) / (kPoints - 1);
             positions.emplace_back(out * (1 + t) * std::cos(angle), 1.7f - 0.3f * t,
@@ -98,6 +102,38 @@ void measureText(Timings& timings, const std::string& name, const std::string& t
     });
 }
 
+/// What `import` and `export` of a full head take at most, as shares of the file's size; nothing where the
+/// system does not tell.
+void measureMemory(Timings& timings, std::uint32_t strands) {
+    const std::string program = (programFolder() / "hairloom-cli").string();
+    const TemporaryFile project("hairloom-io-benchmark.hairloom");
+    std::optional<Groom> groom = head(strands);
+    for (const StrandWriter& writer : strandWriters()) {
+        if (writer.suffix() == "hairrt") continue;  // quantised, so its size says nothing of the hair's
+        const TemporaryFile file("hairloom-io-benchmark." + writer.suffix());
+        const bool isFirst = !std::filesystem::exists(project.path);
+        if (isFirst && !writer.write(*groom, file.path, {})) return;
+        const auto measure = [&](const std::string& what, const std::vector<std::string>& command) {
+            const auto bytes = peakMemory(command);
+            std::error_code code;
+            const auto size = std::filesystem::file_size(file.path, code);
+            if (!bytes || code) return;
+            timings.add({fmt::format("memory to {} .{}, {} strands of {} points", what, writer.name, strands,
+                                     kPoints),
+                         "times the file",
+                         {static_cast<double>(*bytes) / static_cast<double>(size)}});
+        };
+        const std::vector<std::string> import{
+            program, "import", file.path.string(), "-o", project.path.string(), "--force"};
+        if (isFirst && !peakMemory(import)) return;
+        groom.reset();
+        measure("export", {program, "export", project.path.string(), "--format", writer.name, "-o",
+                           file.path.string(), "--force"});
+        std::filesystem::remove(file.path.string() + ".report.json");
+        measure("import", import);
+    }
+}
+
 Result<Outcome> run(const Options& options) {
     const auto& hairstyles = samples();
     if (!hairstyles) return tl::unexpected(hairstyles.error());
@@ -108,6 +144,8 @@ Result<Outcome> run(const Options& options) {
     measureFormats(timings, made, groom);
     measureText(timings, "read .obj of lines, " + made, objLines(groom));
     measureText(timings, "read .obj of ribbons, " + made, objRibbons(groom));
+    constexpr std::uint32_t kMany = 1'000'000, kFew = 20'000;
+    measureMemory(timings, options.quick ? kFew : kMany);
     return timings.outcome("io");
 }
 

@@ -46,6 +46,10 @@ void Timings::measure(const std::string& name, const std::function<Status(Rounds
     measurements_.push_back(std::move(measurement));
 }
 
+void Timings::add(Measurement measurement) {
+    if (status_) measurements_.push_back(std::move(measurement));
+}
+
 Result<Outcome> Timings::outcome(const std::string& benchmark) const {
     if (!status_) return tl::unexpected(status_.error());
     Outcome outcome;

@@ -57,6 +57,8 @@ class Timings {
     explicit Timings(const Options& options) : options_(options) {}
 
     void measure(const std::string& name, const std::function<Status(Rounds&)>& work);
+    /// What was measured elsewhere.
+    void add(Measurement measurement);
     /// Reports of what was measured, under the benchmark's name, or the first failure.
     Result<Outcome> outcome(const std::string& benchmark) const;
 

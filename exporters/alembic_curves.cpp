@@ -35,13 +35,14 @@ std::string parameter(std::string_view scope, std::string_view pod, std::uint32_
 class CurvesWriter {
   public:
     CurvesWriter(const Groom& groom, const PreparedStrands& strands, const StrandFrames* frames, bool unreal)
-        : groom_(groom), strands_(strands), unreal_(unreal) {
+        : strands_(strands), attributes_(exportedAttributes(groom, strands)), unreal_(unreal) {
+        file_.reserve(roomOf(strands, attributes_));
         if (!frames) return;
         times_ = {static_cast<std::uint32_t>(frames->points.size()), frames->first / frames->framesPerSecond,
                   1 / frames->framesPerSecond};
     }
 
-    std::span<const std::byte> write() {
+    std::vector<std::byte> write() {
         const AlembicChild hair{
             "hair", kCurveObject,
             alembicObject(file_, metadata_, objectOf(".geom", geometry(), kCurveSchema), {})};
@@ -130,8 +131,7 @@ class CurvesWriter {
 
     void addParameters(AlembicCompound& out) {
         std::array<const ExportedAttribute*, 3> closest{};
-        const std::vector<ExportedAttribute> attributes = exportedAttributes(groom_, strands_);
-        for (const ExportedAttribute& attribute : attributes) {
+        for (const ExportedAttribute& attribute : attributes_) {
             if (const auto k = closestGuidesIndex(attribute.name); k && unreal_)
                 closest[*k] = &attribute;
             else
@@ -185,8 +185,8 @@ class CurvesWriter {
                   parameter("uni", "int32_t", 1, 3));
     }
 
-    const Groom& groom_;
     const PreparedStrands& strands_;
+    std::vector<ExportedAttribute> attributes_;
     bool unreal_;
     AlembicTimes times_;
     OgawaBuilder file_;
@@ -200,8 +200,8 @@ Result<ExportReport> writeAlembic(const Groom& groom, const std::filesystem::pat
     auto strands = prepareStrands(groom, options, options.pointsPerStrand);
     if (!strands) return tl::unexpected(inFile(strands.error(), path.string()));
     CurvesWriter writer(groom, *strands, options.frames.get(), unreal);
-    const auto bytes = writer.write();
-    return writeAndCompare(groom, std::move(*strands), options, path, bytes);
+    auto bytes = writer.write();
+    return writeAndCompare(groom, std::move(*strands), options, path, std::move(bytes));
 }
 
 }  // namespace hairloom

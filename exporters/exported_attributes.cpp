@@ -132,4 +132,14 @@ std::vector<ExportedAttribute> exportedAttributes(const Groom& groom, const Prep
     return Collector(groom, strands).run();
 }
 
+std::size_t roomOf(const PreparedStrands& strands, std::span<const ExportedAttribute> attributes) {
+    constexpr std::size_t kTables = 65536;
+    std::size_t bytes = kTables + strands.positions.size() * sizeof(Vec3f) * (1 + strands.frames.size()) +
+                        strands.thickness.size() * sizeof(float) +
+                        strands.offsets.size() * sizeof(std::uint32_t);
+    for (const ExportedAttribute& attribute : attributes)
+        bytes += (attribute.numbers.size() + attribute.whole.size()) * sizeof(float);
+    return bytes;
+}
+
 }  // namespace hairloom

@@ -2,7 +2,9 @@
 #pragma once
 // Attributes of strands and points under the names that other programs know, for formats that carry any.
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,5 +27,8 @@ struct ExportedAttribute {
 /// where the groom has them (an id always), then all that Hairloom gives no meaning to, in order of name.
 /// Points of resampled strands have nothing but colours.
 std::vector<ExportedAttribute> exportedAttributes(const Groom& groom, const PreparedStrands& strands);
+
+/// About what a binary file of them takes, in bytes, so that it grows without being copied.
+std::size_t roomOf(const PreparedStrands& strands, std::span<const ExportedAttribute> attributes);
 
 }  // namespace hairloom

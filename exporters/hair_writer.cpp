@@ -77,7 +77,7 @@ Result<ExportReport> writeHair(const Groom& groom, const std::filesystem::path& 
     writer.writeArray(std::span<const float>(strands->thickness));
     writer.writeArray(std::span<const float>(strands->transparency));
     writeVectors(writer, strands->colours);
-    return writeAndCompare(groom, std::move(*strands), options, path, writer.bytes());
+    return writeAndCompare(groom, std::move(*strands), options, path, std::move(writer).take());
 }
 
 }  // namespace

@@ -29,6 +29,7 @@ Result<ExportReport> writeObjC4d(const Groom& groom, const std::filesystem::path
     if (!strands) return tl::unexpected(inFile(strands.error(), path.string()));
     std::string text = fmt::format("# Hairloom, {} m in a unit, {} up\no hair\n", options.metresPerUnit,
                                    options.up == UpAxis::Z ? "Z" : "Y");
+    text.reserve(strands->positions.size() * 112);
     const auto end = std::back_inserter(text);
     for (std::size_t first = 0; first < strands->positions.size(); first += points) {
         const auto strand = std::span(strands->positions).subspan(first, points);
@@ -43,7 +44,7 @@ Result<ExportReport> writeObjC4d(const Groom& groom, const std::filesystem::path
         for (std::size_t left = 2 * first + 1; left + 2 < 2 * (first + points); left += 2)
             fmt::format_to(end, "f {} {} {} {}\n", left, left + 1, left + 3, left + 2);
     }
-    return writeAndCompare(groom, std::move(*strands), options, path, std::as_bytes(std::span(text)));
+    return writeAndCompare(groom, std::move(*strands), options, path, std::move(text));
 }
 
 }  // namespace

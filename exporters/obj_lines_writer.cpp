@@ -17,6 +17,7 @@ Result<ExportReport> writeObjLines(const Groom& groom, const std::filesystem::pa
     if (!strands) return tl::unexpected(inFile(strands.error(), path.string()));
     std::string text = fmt::format("# Hairloom, {} m in a unit, {} up\no hair\n", options.metresPerUnit,
                                    options.up == UpAxis::Z ? "Z" : "Y");
+    text.reserve(strands->positions.size() * 48);
     const auto end = std::back_inserter(text);
     for (const Vec3f& p : strands->positions) fmt::format_to(end, "v {} {} {}\n", p.x(), p.y(), p.z());
     for (std::size_t strand = 0; strand < strands->strandCount(); ++strand) {
@@ -25,7 +26,7 @@ Result<ExportReport> writeObjLines(const Groom& groom, const std::filesystem::pa
             fmt::format_to(end, " {}", point + 1);
         text += '\n';
     }
-    return writeAndCompare(groom, std::move(*strands), options, path, std::as_bytes(std::span(text)));
+    return writeAndCompare(groom, std::move(*strands), options, path, std::move(text));
 }
 
 }  // namespace

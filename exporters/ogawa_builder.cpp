@@ -52,10 +52,9 @@ std::uint64_t OgawaBuilder::group(std::span<const std::uint64_t> children) {
     return at;
 }
 
-std::span<const std::byte> OgawaBuilder::finish(std::uint64_t root) {
-    file_.assign(out_.bytes().begin(), out_.bytes().end());
-    std::memcpy(file_.data() + kHeaderBytes / 2, &root, sizeof root);
-    return file_;
+std::vector<std::byte> OgawaBuilder::finish(std::uint64_t root) {
+    out_.overwrite(kHeaderBytes / 2, root);
+    return std::move(out_).take();
 }
 
 std::uint32_t alembicMetadata(std::vector<std::string>& table, const std::string& text) {
@@ -156,9 +155,9 @@ std::uint64_t alembicObject(OgawaBuilder& file, std::vector<std::string>& metada
     return file.group(parts);
 }
 
-std::span<const std::byte> finishAlembic(OgawaBuilder& file, const std::vector<std::string>& metadata,
-                                         std::uint64_t top, const std::string& about,
-                                         const AlembicTimes& sampled) {
+std::vector<std::byte> finishAlembic(OgawaBuilder& file, const std::vector<std::string>& metadata,
+                                     std::uint64_t top, const std::string& about,
+                                     const AlembicTimes& sampled) {
     ByteWriter texts;
     for (const std::string& text : metadata) {
         texts.write(static_cast<std::uint8_t>(text.size()));

@@ -23,12 +23,13 @@ class OgawaBuilder {
     /// A block of a sample: a digest, which readers use to tell samples apart, and the bytes.
     std::uint64_t sample(std::span<const std::byte> bytes);
     std::uint64_t group(std::span<const std::uint64_t> children);
-    /// The whole file.
-    std::span<const std::byte> finish(std::uint64_t root);
+    /// Room for so many bytes in all.
+    void reserve(std::size_t bytes) { out_.reserve(bytes); }
+    /// The whole file, and the end of the builder.
+    std::vector<std::byte> finish(std::uint64_t root);
 
   private:
     ByteWriter out_;
-    std::vector<std::byte> file_;
 };
 
 /// Names as docs of AbcCoreOgawa number them.
@@ -95,8 +96,7 @@ struct AlembicTimes {
 
 /// The archive around the top object. The first sampling is of one time, 0; `times` are the second, where
 /// there is more than one.
-std::span<const std::byte> finishAlembic(OgawaBuilder& file, const std::vector<std::string>& metadata,
-                                         std::uint64_t top, const std::string& about,
-                                         const AlembicTimes& times);
+std::vector<std::byte> finishAlembic(OgawaBuilder& file, const std::vector<std::string>& metadata,
+                                     std::uint64_t top, const std::string& about, const AlembicTimes& times);
 
 }  // namespace hairloom

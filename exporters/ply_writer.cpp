@@ -32,6 +32,8 @@ Result<ExportReport> writePly(const Groom& groom, const std::filesystem::path& p
     head += fmt::format("element strand {}\nproperty list uint uint vertex_indices\nend_header\n",
                         strands->strandCount());
     ByteWriter writer;
+    writer.reserve(head.size() + strands->positions.size() * (32 + 4 * attributes.size()) +
+                   4 * strands->strandCount());
     writer.writeArray(std::span<const char>(head));
     for (std::size_t point = 0; point < strands->positions.size(); ++point) {
         writer.writeArray(std::span<const float>(strands->positions[point].data(), 3));
@@ -44,7 +46,7 @@ Result<ExportReport> writePly(const Groom& groom, const std::filesystem::path& p
         for (std::uint32_t point = strands->offsets[strand]; point < strands->offsets[strand + 1]; ++point)
             writer.write(point);
     }
-    return writeAndCompare(groom, std::move(*strands), options, path, writer.bytes());
+    return writeAndCompare(groom, std::move(*strands), options, path, std::move(writer).take());
 }
 
 }  // namespace

@@ -348,7 +348,9 @@ Result<double> frameError(const PreparedStrands& prepared, const StrandExportOpt
 
 Result<ExportReport> writeAndCompare(const Groom& groom, PreparedStrands prepared,
                                      const StrandExportOptions& options, const std::filesystem::path& path,
-                                     std::span<const std::byte> bytes) {
+                                     FileContents contents) {
+    const auto bytes = std::visit([](const auto& all) { return std::as_bytes(std::span(all)); }, contents);
+    const std::size_t size = bytes.size(), points = prepared.positions.size();
     if (auto status = writeFileAtomically(path, bytes); !status) return tl::unexpected(status.error());
     StrandImportOptions importOptions;
     importOptions.metresPerUnit = options.metresPerUnit;
@@ -356,9 +358,11 @@ Result<ExportReport> writeAndCompare(const Groom& groom, PreparedStrands prepare
     importOptions.frames = options.frames != nullptr;
     // What went into a device cannot be had back.
     std::error_code code;
-    const auto readBack = std::filesystem::is_regular_file(path, code)
-                              ? importStrands(path, importOptions)
-                              : importStrandsFromMemory(path.string(), bytes, importOptions);
+    const bool isFile = std::filesystem::is_regular_file(path, code);
+    if (isFile) contents = {};
+    std::vector<Vec3f>().swap(prepared.positions);
+    const auto readBack = isFile ? importStrands(path, importOptions)
+                                 : importStrandsFromMemory(path.string(), bytes, importOptions);
     if (!readBack) return tl::unexpected(readBack.error());
     if (readBack->groom.strandCount() != prepared.strandCount()) {
         return failIn(path.string(), {},
@@ -368,8 +372,8 @@ Result<ExportReport> writeAndCompare(const Groom& groom, PreparedStrands prepare
     ExportReport report;
     report.format = readBack->format;
     report.strands = prepared.strandCount();
-    report.points = prepared.positions.size();
-    report.bytes = bytes.size();
+    report.points = points;
+    report.bytes = size;
     double farthest = 0;  // mm
     for (std::size_t strand = 0; strand < prepared.strandCount(); ++strand) {
         const double error =

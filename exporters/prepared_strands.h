@@ -4,6 +4,9 @@
 // result.
 
 #include <span>
+#include <string>
+#include <variant>
+#include <vector>
 
 #include "core/base/file.h"
 #include "exporters/strands.h"
@@ -40,9 +43,13 @@ TargetLimits unityLimits();
 /// neither is known.
 std::vector<Vec2f> rootUvs(const Groom& groom, const PreparedStrands& strands);
 
-/// Writes the file, reads it back and measures how far it is from the groom.
+/// A file as its writer made it.
+using FileContents = std::variant<std::vector<std::byte>, std::string>;
+
+/// Writes the file, reads it back and measures how far it is from the groom. The contents are let go before
+/// they are read back: beside a million strands they weigh.
 Result<ExportReport> writeAndCompare(const Groom& groom, PreparedStrands prepared,
                                      const StrandExportOptions& options, const std::filesystem::path& path,
-                                     std::span<const std::byte> bytes);
+                                     FileContents contents);
 
 }  // namespace hairloom

@@ -167,7 +167,7 @@ Result<ExportReport> writeTfx(const Groom& groom, const std::filesystem::path& p
     const auto companions = tfxCompanions(groom, *strands, options, path);
     auto written = writeCompanions(companions, path, writer.bytes());
     if (!written) return tl::unexpected(written.error());
-    auto report = writeAndCompare(groom, std::move(*strands), options, path, writer.bytes());
+    auto report = writeAndCompare(groom, std::move(*strands), options, path, std::move(writer).take());
     if (report) report->companions = std::move(*written);
     return report;
 }

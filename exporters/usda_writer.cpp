@@ -72,6 +72,8 @@ std::string usdaText(const Groom& groom, const PreparedStrands& strands, const S
         "def Xform \"groom\"\n{{\n    def BasisCurves \"hair\"\n    {{\n"
         "        uniform token type = \"linear\"\n        uniform token wrap = \"nonperiodic\"\n",
         timesInHead(options), options.metresPerUnit, options.up == UpAxis::Z ? "Z" : "Y");
+    // About what points and widths take as text.
+    out.reserve(strands.positions.size() * 48 * (1 + strands.frames.size()));
     const std::vector<std::int32_t> counts = curveVertexCounts(strands);
     const std::array<Vec3f, 2> extent = extentOf(strands.positions);
     out += "        float3[] extent = ";
@@ -87,15 +89,16 @@ std::string usdaText(const Groom& groom, const PreparedStrands& strands, const S
     out += " (\n            interpolation = \"vertex\"\n        )\n";
     for (const ExportedAttribute& attribute : exportedAttributes(groom, strands))
         writeAttribute(out, attribute);
-    return out + "    }\n}\n";
+    out += "    }\n}\n";
+    return out;
 }
 
 Result<ExportReport> writeUsda(const Groom& groom, const std::filesystem::path& path,
                                const StrandExportOptions& options) {
     auto strands = prepareStrands(groom, options, options.pointsPerStrand);
     if (!strands) return tl::unexpected(inFile(strands.error(), path.string()));
-    const std::string text = usdaText(groom, *strands, options);
-    return writeAndCompare(groom, std::move(*strands), options, path, std::as_bytes(std::span(text)));
+    std::string text = usdaText(groom, *strands, options);
+    return writeAndCompare(groom, std::move(*strands), options, path, std::move(text));
 }
 
 }  // namespace

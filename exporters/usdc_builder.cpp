@@ -177,7 +177,7 @@ std::vector<std::int32_t> UsdcBuilder::jumps() const {
     return jumps;
 }
 
-std::span<const std::byte> UsdcBuilder::finish() {
+std::vector<std::byte> UsdcBuilder::finish() {
     struct Section {
         std::array<char, 16> name{};
         std::uint64_t begin = 0, size = 0;
@@ -239,11 +239,10 @@ std::span<const std::byte> UsdcBuilder::finish() {
     const std::uint64_t contents = out_.size();
     out_.write(std::uint64_t{sections.size()});
     out_.writeArray(std::span<const Section>(sections));
-    file_.assign(out_.bytes().begin(), out_.bytes().end());
-    const std::string_view start("PXR-USDC\0\10\0", 11);
-    std::memcpy(file_.data(), start.data(), start.size());
-    std::memcpy(file_.data() + 16, &contents, sizeof contents);
-    return file_;
+    constexpr std::array<char, 11> kStart{'P', 'X', 'R', '-', 'U', 'S', 'D', 'C', 0, 8, 0};
+    out_.overwrite(0, kStart);
+    out_.overwrite(16, contents);
+    return std::move(out_).take();
 }
 
 }  // namespace hairloom

@@ -46,7 +46,10 @@ class UsdcBuilder {
     void prim(std::uint32_t depth, const std::string& name, const Fields& fields);
     void attribute(std::uint32_t depth, const std::string& name, const Fields& fields);
 
-    std::span<const std::byte> finish();
+    /// Room for so many bytes in all.
+    void reserve(std::size_t bytes) { out_.reserve(bytes); }
+    /// The whole file, and the end of the builder.
+    std::vector<std::byte> finish();
 
   private:
     struct Path {
@@ -65,7 +68,6 @@ class UsdcBuilder {
     std::vector<std::uint32_t> fieldTokens_, fieldSets_;
     std::vector<std::uint64_t> fieldValues_;
     std::vector<Path> paths_;
-    std::vector<std::byte> file_;
 };
 
 }  // namespace hairloom

@@ -28,6 +28,7 @@ Result<ExportReport> writeUsdc(const Groom& groom, const std::filesystem::path& 
         times.push_back(options.frames->first + static_cast<double>(f));
 
     UsdcBuilder file;
+    file.reserve(roomOf(*strands, attributes));
     const std::vector<std::string> top{"groom"}, below{"hair"};
     UsdcBuilder::Fields head{{"defaultPrim", file.token("groom")},
                              {"metersPerUnit", file.number(readableDecimal(options.metresPerUnit))},

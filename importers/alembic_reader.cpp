@@ -110,14 +110,19 @@ class Reader {
     Reader(const AlembicArchive& archive, const std::string& file, bool frames)
         : archive_(archive), file_(file), frames_(frames) {}
 
-    Result<RawStrands> run() {
+    /// All that is needed of the archive.
+    Status readAll() {
         if (auto status = visit(archive_.top(), {}, 0); !status)
             return tl::unexpected(inFile(status.error(), file_));
         if (curves_.empty()) return failIn(file_, {}, "has no curves", "expected hair as curves");
+        return {};
+    }
+
+    Result<RawStrands> strands() {
         std::size_t frames = 0;
         for (const CurveSet& set : curves_) frames = std::max(frames, set.frames.size());
-        for (const CurveSet& set : curves_) {
-            if (auto status = appendCurves(file_, set, frames, strands_); !status)
+        for (CurveSet& set : curves_) {
+            if (auto status = appendCurves(file_, std::move(set), frames, strands_); !status)
                 return tl::unexpected(status.error());
         }
         adoptAttributes(strands_);
@@ -181,14 +186,9 @@ class Reader {
         return result;
     }
 
-    Result<std::vector<Vec3f>> pointsAt(const AlembicProperty& property, std::uint32_t sample) const {
-        const auto numbers = archive_.floats(property, sample);
-        if (!numbers) return tl::unexpected(numbers.error());
+    Result<std::vector<float>> pointsAt(const AlembicProperty& property, std::uint32_t sample) const {
         if (property.extent != 3) return fail(property.name + " has no vectors of three", "expected points");
-        std::vector<Vec3f> points(numbers->size() / 3);
-        for (std::size_t i = 0; i < points.size(); ++i)
-            points[i] = Eigen::Map<const Vec3f>(&(*numbers)[i * 3]);
-        return points;
+        return archive_.floats(property, sample);
     }
 
     Status readCurves(const AlembicObject& object, const AlembicProperty& geometry,
@@ -420,14 +420,17 @@ bool isAlembic(std::span<const std::byte> bytes) {
     return starts("Ogawa") || starts(kHdf5);
 }
 
-Result<RawStrands> readAlembic(const std::string& file, std::span<const std::byte> bytes,
+Result<RawStrands> readAlembic(const std::string& file, std::vector<std::byte>&& bytes,
                                const StrandImportOptions& options) {
     if (std::to_integer<int>(bytes[0]) == 0x89)
         return failIn(file, Byte{0}, "is in the HDF5 container of Alembic before 1.5",
                       "expected Ogawa: export it again, or run abcconvert -toOgawa");
     const auto archive = AlembicArchive::open(file, bytes);
     if (!archive) return tl::unexpected(archive.error());
-    return Reader(*archive, file, options.frames).run();
+    Reader reader(*archive, file, options.frames);
+    if (auto status = reader.readAll(); !status) return tl::unexpected(status.error());
+    std::vector<std::byte>().swap(bytes);
+    return reader.strands();
 }
 
 }  // namespace

@@ -148,9 +148,11 @@ void spread(RawAttribute& attribute, std::span<const std::uint32_t> offsets) {
 }
 
 /// Each component of whole vectors is an attribute of its own.
-std::vector<CurveAttribute> split(const CurveAttribute& attribute) {
-    if (attribute.whole.empty() || attribute.components == 1) return {attribute};
-    std::vector<CurveAttribute> parts;
+void split(CurveAttribute attribute, std::vector<CurveAttribute>& parts) {
+    if (attribute.whole.empty() || attribute.components == 1) {
+        parts.push_back(std::move(attribute));
+        return;
+    }
     for (std::uint32_t c = 0; c < attribute.components; ++c) {
         CurveAttribute part{
             fmt::format("{}_{}", attribute.name, c), attribute.scope, 1, {}, {}, attribute.isFlag};
@@ -158,19 +160,19 @@ std::vector<CurveAttribute> split(const CurveAttribute& attribute) {
             part.whole.push_back(attribute.whole[i]);
         parts.push_back(std::move(part));
     }
-    return parts;
 }
 
 class Appender {
   public:
-    Appender(const std::string& file, const CurveSet& curves, std::size_t frames, RawStrands& strands)
-        : file_(file), curves_(curves), frames_(frames), strands_(strands) {}
+    Appender(const std::string& file, CurveSet curves, std::size_t frames, RawStrands& strands)
+        : file_(file), curves_(std::move(curves)), frames_(frames), strands_(strands) {}
 
     Status run() {
         if (auto status = measure(); !status) return status;
         widthScale_ = std::cbrt(std::abs(curves_.toFile.linear().determinant()));
         strands_.frames.resize(frames_);
         openSinks();
+        reserve();
         Where where{0, 0, 0, 1, {}};
         std::size_t knotValues = 0;
         for (; where.curve < sizes_.curves; ++where.curve) {
@@ -205,7 +207,7 @@ class Appender {
             knots += curves_.counts[curve] + orderOf(curve);
             sizes_.knots += knotCount(formOf(curve, 0, 0), curves_.counts[curve]);
         }
-        sizes_.points = curves_.points.size();
+        sizes_.points = curves_.points.size() / 3;
         if (points != sizes_.points)
             return wrong(fmt::format("curves of together {} points", points),
                          fmt::format("the file has {} points", sizes_.points));
@@ -218,8 +220,8 @@ class Appender {
             return wrong(fmt::format("{} weights", curves_.weights.size()),
                          fmt::format("expected {}", sizes_.points));
         for (const auto& frame : curves_.frames) {
-            if (frame.size() != sizes_.points)
-                return wrong(fmt::format("{} points at one time", frame.size()),
+            if (frame.size() != curves_.points.size())
+                return wrong(fmt::format("{} points at one time", frame.size() / 3),
                              fmt::format("expected {} at all times", sizes_.points));
         }
         return {};
@@ -239,9 +241,8 @@ class Appender {
 
     void openSinks() {
         const std::size_t strands = strands_.offsets.size() - 1, points = strands_.positions.size();
-        for (const CurveAttribute& attribute : curves_.attributes) {
-            for (CurveAttribute& part : split(attribute)) parts_.push_back(std::move(part));
-        }
+        for (CurveAttribute& attribute : curves_.attributes) split(std::move(attribute), parts_);
+        curves_.attributes.clear();
         std::vector<std::pair<std::size_t, Scope>> open;
         for (CurveAttribute& part : parts_) {
             const Scope scope = scopeOf(part, sizes_);
@@ -293,6 +294,21 @@ class Appender {
         return strands_.attributes.size() - 1;
     }
 
+    /// Room for a point for each control point, which is what lines have and other curves begin with.
+    void reserve() {
+        const std::size_t points = strands_.positions.size() + sizes_.points;
+        strands_.positions.reserve(points);
+        for (std::vector<Vec3f>& frame : strands_.frames) frame.reserve(points);
+        strands_.offsets.reserve(strands_.offsets.size() + sizes_.curves);
+        for (RawAttribute& attribute : strands_.attributes) {
+            const std::size_t elements = attribute.perPoint ? points : strands_.offsets.capacity();
+            if (attribute.type == RawAttribute::Type::Number)
+                attribute.numbers.reserve(elements * attribute.components);
+            else
+                attribute.whole.reserve(elements);
+        }
+    }
+
     void reportLeftOut(const CurveAttribute& part) {
         strands_.warnings.push_back(
             fileWarning(fmt::format("{} has {} values, which fit {} curves of {} points in no way", part.name,
@@ -342,17 +358,19 @@ class Appender {
         strands_.frames[frame].push_back(positionOf(point, controls, points, toFile));
     }
 
-    static Vec3f positionOf(const CurvePoint& point, std::size_t controls, std::span<const Vec3f> points,
+    static Vec3f positionOf(const CurvePoint& point, std::size_t controls, std::span<const float> points,
                             const Eigen::Affine3d& toFile) {
-        if (point.count == 1 && toFile.matrix().isIdentity(0)) return points[controls + point.index[0]];
+        const auto control = [&](std::uint32_t k) {
+            return Eigen::Map<const Vec3f>(&points[3 * (controls + point.index[k])]);
+        };
+        if (point.count == 1 && toFile.matrix().isIdentity(0)) return control(0);
         Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-        for (std::uint32_t k = 0; k < point.count; ++k)
-            sum += point.weight[k] * points[controls + point.index[k]].cast<double>();
+        for (std::uint32_t k = 0; k < point.count; ++k) sum += point.weight[k] * control(k).cast<double>();
         return (toFile * sum).cast<float>();
     }
 
     const std::string& file_;
-    const CurveSet& curves_;
+    CurveSet curves_;
     std::size_t frames_;
     RawStrands& strands_;
     Sizes sizes_;
@@ -369,9 +387,8 @@ class Appender {
 
 }  // namespace
 
-Status appendCurves(const std::string& file, const CurveSet& curves, std::size_t frames,
-                    RawStrands& strands) {
-    if (auto status = Appender(file, curves, frames, strands).run(); !status) return status;
+Status appendCurves(const std::string& file, CurveSet curves, std::size_t frames, RawStrands& strands) {
+    if (auto status = Appender(file, std::move(curves), frames, strands).run(); !status) return status;
     for (RawAttribute& attribute : strands.attributes)
         pad(attribute, strands.offsets.size() - 1, strands.positions.size());
     return {};

@@ -29,13 +29,13 @@ struct CurveSet {
     CurveBasis basis = CurveBasis::Linear;
     CurveWrap wrap = CurveWrap::Open;
     std::vector<std::uint32_t> counts;  ///< control points of each curve
-    std::vector<Vec3f> points;
+    std::vector<float> points;          ///< three numbers each, in the object's space
     std::vector<std::uint32_t> orders;  ///< of NURBS, for each curve or one for all; empty: 4
     std::vector<double> knots;          ///< of NURBS, all curves after each other, or empty
     std::vector<float> weights;         ///< of NURBS, a point each, or empty
     Eigen::Affine3d toFile = Eigen::Affine3d::Identity();  ///< from the object's space
     std::vector<CurveAttribute> attributes;                ///< "width" is a diameter in the object's space
-    std::vector<std::vector<Vec3f>> frames;                ///< `points` at each time, or empty
+    std::vector<std::vector<float>> frames;                ///< `points` at each time, or empty
     std::vector<Eigen::Affine3d> frameToFile;              ///< as many, or empty where it stays
 };
 
@@ -43,7 +43,7 @@ struct CurveSet {
 /// set, the last one again where it has fewer. Curves of one point are left to the import to drop; those that
 /// are none of their basis become lines through their control points, with a warning. Errors: counts that do
 /// not add up.
-Status appendCurves(const std::string& file, const CurveSet& curves, std::size_t frames, RawStrands& strands);
+Status appendCurves(const std::string& file, CurveSet curves, std::size_t frames, RawStrands& strands);
 
 /// Names that other programs gave attributes become Hairloom's, once all curves of a file are appended:
 /// widths, root UV, groups, guides and ids.

@@ -118,7 +118,7 @@ bool isHair(std::span<const std::byte> bytes) {
     return bytes.size() >= 4 && std::memcmp(bytes.data(), "HAIR", 4) == 0;
 }
 
-Result<RawStrands> readHair(const std::string& file, std::span<const std::byte> bytes,
+Result<RawStrands> readHair(const std::string& file, std::vector<std::byte>&& bytes,
                             const StrandImportOptions&) {
     ByteReader reader(file, bytes);
     const auto header = reader.read<Header>("the header");

@@ -16,11 +16,12 @@ bool isText(std::span<const std::byte> bytes) {
     return std::none_of(start.begin(), start.end(), [](std::byte b) { return b == std::byte{0}; });
 }
 
-Result<RawStrands> readObj(const std::string& file, std::span<const std::byte> bytes,
+Result<RawStrands> readObj(const std::string& file, std::vector<std::byte>&& bytes,
                            const StrandImportOptions& options) {
     const void* const characters = bytes.data();
     const auto obj = parseObjStrands(file, {static_cast<const char*>(characters), bytes.size()});
     if (!obj) return tl::unexpected(obj.error());
+    std::vector<std::byte>().swap(bytes);
     if (obj->vertices.empty()) {
         return failIn(file, {}, "is text without a vertex",
                       "expected an OBJ file with lines or hair ribbons");

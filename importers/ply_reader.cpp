@@ -25,12 +25,17 @@ class Reader {
     Reader(const std::string& file, std::span<const std::byte> bytes, const PlyHeader& header)
         : file_(file), rows_(file, bytes, header), header_(header) {}
 
-    Result<RawStrands> run() {
+    /// All that is needed of the file's bytes.
+    Status readAll() {
         for (const PlyElement& element : header_.elements) {
             if (element.properties.empty()) continue;
-            if (auto status = rows_.checkCount(element); !status) return tl::unexpected(status.error());
-            if (auto status = readElement(element); !status) return tl::unexpected(status.error());
+            if (auto status = rows_.checkCount(element); !status) return status;
+            if (auto status = readElement(element); !status) return status;
         }
+        return {};
+    }
+
+    Result<RawStrands> strands() {
         if (lines_.lineOffsets.size() < 2)
             return failIn(file_, {}, "is a PLY without strands", "expected an element of strands or edges");
         const auto count = lines_.vertices.size();
@@ -42,10 +47,13 @@ class Reader {
         if (!raw) return raw;
         raw->format = "PLY strands";
         raw->rootFirst = !hasEdges_;
-        for (const RawAttribute& attribute : attributes_) {
-            RawAttribute& added = raw->attributes.emplace_back(attribute);
-            added.numbers.clear();
-            for (const std::uint32_t vertex : vertices) added.numbers.push_back(attribute.numbers[vertex]);
+        lines_ = {};
+        for (RawAttribute& attribute : attributes_) {
+            std::vector<float> ofPoints;
+            ofPoints.reserve(vertices.size());
+            for (const std::uint32_t vertex : vertices) ofPoints.push_back(attribute.numbers[vertex]);
+            attribute.numbers = std::move(ofPoints);
+            raw->attributes.push_back(std::move(attribute));
         }
         takeColours(*raw);
         adoptAttributes(*raw);
@@ -62,6 +70,7 @@ class Reader {
             if (!lines_.vertices.empty() || !columns_.empty())
                 return rows_.wrong("vertices stand in two elements");
             if (auto status = findProperties(element); !status) return status;
+            reserve(element);
         }
         const auto list = element.find({"vertex_indices", "vertex_index", "indices"});
         const auto from = element.find({"vertex1"}), to = element.find({"vertex2"});
@@ -105,6 +114,14 @@ class Reader {
             if (property.name == "radius") attributes_.back().name = "width";
         }
         return {};
+    }
+
+    /// Never more than the file can hold, whatever it promises: a value takes a byte or more.
+    void reserve(const PlyElement& element) {
+        const auto rows = static_cast<std::size_t>(
+            std::min<std::uint64_t>(element.count, rows_.remaining() / element.properties.size()));
+        lines_.vertices.reserve(rows);
+        for (RawAttribute& attribute : attributes_) attribute.numbers.reserve(rows);
     }
 
     void addVertex(const PlyRow& row) {
@@ -162,11 +179,14 @@ class Reader {
     bool hasEdges_ = false;
 };
 
-Result<RawStrands> readPly(const std::string& file, std::span<const std::byte> bytes,
+Result<RawStrands> readPly(const std::string& file, std::vector<std::byte>&& bytes,
                            const StrandImportOptions&) {
     const auto header = readPlyHeader(file, bytes);
     if (!header) return tl::unexpected(header.error());
-    return Reader(file, bytes, *header).run();
+    Reader reader(file, bytes, *header);
+    if (auto status = reader.readAll(); !status) return tl::unexpected(status.error());
+    std::vector<std::byte>().swap(bytes);
+    return reader.strands();
 }
 
 }  // namespace

@@ -31,9 +31,10 @@ class PlyRows {
     /// The next row. Errors, with line or byte: no number, the end of the file, a list longer than that.
     Status row(const PlyElement& element, PlyRow& row);
     tl::unexpected<Error> wrong(std::string problem, std::string expected = {}) const;
+    /// Bytes that are left to read.
+    std::uint64_t remaining() const { return text_.size() - position_; }
 
   private:
-    std::uint64_t remaining() const { return text_.size() - position_; }
     Result<double> next(PlyType type) {
         return encoding_ == PlyEncoding::Text ? nextWord() : nextBinary(type);
     }

@@ -65,8 +65,9 @@ struct StrandReader {
     FileFormat format;
     Recognition recognition;
     bool (*recognise)(std::span<const std::byte> bytes);  ///< from the first 256 bytes or more
-    /// `file` is named in errors.
-    Result<RawStrands> (*read)(const std::string& file, std::span<const std::byte> bytes,
+    /// `file` is named in errors. The bytes are the reader's to let go once it has what it needs of them:
+    /// beside a million strands they weigh.
+    Result<RawStrands> (*read)(const std::string& file, std::vector<std::byte>&& bytes,
                                const StrandImportOptions& options);
     /// Suffix of a file that may lie beside it under its name; empty: none. What is wrong with that file is
     /// an error, and leaves the strands as they are.

@@ -65,7 +65,7 @@ void readGuides(const runtime::Asset& from, RawStrands& raw) {
     raw.attributes.push_back(std::move(guides));
 }
 
-Result<RawStrands> readRuntime(const std::string& file, std::span<const std::byte> given,
+Result<RawStrands> readRuntime(const std::string& file, std::vector<std::byte>&& given,
                                const StrandImportOptions&) {
     // Memory of whole files is aligned so; a piece of another buffer need not be.
     struct alignas(asset::kAlignment) Piece {

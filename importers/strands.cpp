@@ -41,12 +41,12 @@ void readCompanion(const StrandReader& reader, std::filesystem::path path, RawSt
 }
 
 /// Of a file, and what lies beside it, at `path` unless that is empty.
-Result<RawStrands> readRaw(const std::string& file, std::span<const std::byte> bytes,
+Result<RawStrands> readRaw(const std::string& file, std::vector<std::byte> bytes,
                            const StrandImportOptions& options, const std::filesystem::path& path) {
     if (bytes.empty()) return failIn(file, {}, "is empty", "expected a strand file");
     for (const StrandReader* reader : readersInOrder()) {
         if (!reader->recognise(bytes)) continue;
-        auto raw = reader->read(file, bytes, options);
+        auto raw = reader->read(file, std::move(bytes), options);
         if (raw && !path.empty() && !reader->companion.empty()) readCompanion(*reader, path, *raw);
         return raw;
     }
@@ -69,17 +69,18 @@ class Cleaner {
         const std::size_t strands = raw_.offsets.size() - 1;
         std::uint32_t begin = 0;
         offsets_.reserve(strands + 1);
-        const bool follows = !raw_.attributes.empty() || !raw_.frames.empty();
         for (std::size_t strand = 0; strand < strands; ++strand) {
             const std::uint32_t end = raw_.offsets[strand + 1];
-            const std::size_t before = offsets_.size();
+            const std::size_t kept = offsets_.size(), dropped = droppedPoints_.size();
             keep(strand, begin, end);
-            if (follows && offsets_.size() > before)
-                keptStrands_.push_back(static_cast<std::uint32_t>(strand));
-            keptPoints_.resize(follows ? written_ : 0);
+            if (offsets_.size() == kept) {
+                droppedStrands_.push_back(static_cast<std::uint32_t>(strand));
+                droppedPoints_.resize(dropped);
+                for (std::uint32_t point = begin; point < end; ++point) droppedPoints_.push_back(point);
+            }
             begin = end;
         }
-        gatherAttributes();
+        compactAttributes();
         raw_.positions.resize(written_);
         for (auto* values : {&raw_.thickness, &raw_.transparency}) {
             if (!values->empty()) values->resize(written_);
@@ -105,8 +106,9 @@ class Cleaner {
                 return drop(DropReason::NotFinite);
             }
             if (written_ > start && (position - raw_.positions[written_ - 1]).norm() <= kCoincidentPoints)
-                continue;
-            place(point, position);
+                droppedPoints_.push_back(point);
+            else
+                place(point, position);
         }
         const std::size_t kept = written_ - start;
         if (kept < 2) {
@@ -120,34 +122,34 @@ class Cleaner {
         offsets_.push_back(static_cast<std::uint32_t>(written_));
     }
 
-    void gatherAttributes() {
+    void compactAttributes() {
         for (RawAttribute& attribute : raw_.attributes) {
-            const auto& kept = attribute.perPoint ? keptPoints_ : keptStrands_;
-            gather(attribute.numbers, attribute.components, kept);
-            gather(attribute.whole, 1, kept);
+            const auto& dropped = attribute.perPoint ? droppedPoints_ : droppedStrands_;
+            remove(dropped, attribute.numbers, attribute.components);
+            remove(dropped, attribute.whole, 1);
         }
         for (std::vector<Vec3f>& frame : raw_.frames) {
-            gather(frame, 1, keptPoints_);
+            remove(droppedPoints_, frame, 1);
             for (Vec3f& position : frame) position = toMetresYUp(position, options_, raw_.mirrorZ);
         }
     }
 
+    /// Elements by their places, which ascend.
     template <class T>
-    static void gather(std::vector<T>& values, std::size_t components, std::span<const std::uint32_t> kept) {
-        if (values.empty()) return;
-        for (std::size_t i = 0; i < kept.size(); ++i) {
-            for (std::size_t c = 0; c < components; ++c)
-                values[i * components + c] = values[kept[i] * components + c];
+    static void remove(std::span<const std::uint32_t> places, std::vector<T>& values,
+                       std::size_t components) {
+        if (values.empty() || places.empty()) return;
+        std::size_t free = places.front() * components;
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            const std::size_t from = (places[i] + std::size_t{1}) * components;
+            const std::size_t to = i + 1 < places.size() ? places[i + 1] * components : values.size();
+            for (std::size_t at = from; at < to; ++at) values[free++] = values[at];
         }
-        values.resize(kept.size() * components);
+        values.resize(free);
     }
 
     /// Moves a point to the next free place, which is never behind its own.
     void place(std::uint32_t point, const Vec3f& position) {
-        if (!raw_.attributes.empty() || !raw_.frames.empty()) {
-            keptPoints_.resize(written_);
-            keptPoints_.push_back(point);
-        }
         raw_.positions[written_] = position;
         if (!raw_.thickness.empty()) raw_.thickness[written_] = raw_.thickness[point];
         if (!raw_.transparency.empty()) raw_.transparency[written_] = raw_.transparency[point];
@@ -173,7 +175,7 @@ class Cleaner {
     RawStrands& raw_;
     const StrandImportOptions& options_;
     std::vector<std::uint32_t> offsets_{0};
-    std::vector<std::uint32_t> keptStrands_, keptPoints_;  ///< of the file, where attributes follow them
+    std::vector<std::uint32_t> droppedStrands_, droppedPoints_;  ///< of the file, ascending
     std::size_t written_ = 0;
     std::size_t repairedStrands_ = 0;
     std::size_t repairedPoints_ = 0;
@@ -351,12 +353,12 @@ bool looksLikeStrandFile(std::span<const std::byte> bytes) {
 
 namespace {
 
-Result<ImportedStrands> importBytes(const std::string& file, std::span<const std::byte> bytes,
+Result<ImportedStrands> importBytes(const std::string& file, std::vector<std::byte> bytes,
                                     const StrandImportOptions& asked, const std::filesystem::path& path) {
     if (!(asked.metresPerUnit > 0) || !std::isfinite(asked.metresPerUnit)) {
         return fail(fmt::format("{} metres per unit", asked.metresPerUnit), "expected a positive number");
     }
-    auto raw = readRaw(file, bytes, asked, path);
+    auto raw = readRaw(file, std::move(bytes), asked, path);
     if (!raw) return tl::unexpected(raw.error());
     const StrandImportOptions options = stated(*raw, asked);
     Cleaner(*raw, options).run();
@@ -393,13 +395,13 @@ Result<ImportedStrands> importBytes(const std::string& file, std::span<const std
 
 Result<ImportedStrands> importStrandsFromMemory(const std::string& file, std::span<const std::byte> bytes,
                                                 const StrandImportOptions& options) {
-    return importBytes(file, bytes, options, {});
+    return importBytes(file, {bytes.begin(), bytes.end()}, options, {});
 }
 
 Result<ImportedStrands> importStrands(const std::filesystem::path& path, const StrandImportOptions& options) {
-    const auto bytes = readFile(path);
+    auto bytes = readFile(path);
     if (!bytes) return tl::unexpected(bytes.error());
-    return importBytes(path.string(), *bytes, options, path);
+    return importBytes(path.string(), std::move(*bytes), options, path);
 }
 
 }  // namespace hairloom

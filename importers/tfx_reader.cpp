@@ -252,7 +252,7 @@ bool isTfx(std::span<const std::byte> bytes) {
     return version >= 1.0f && version < 8.0f && std::to_integer<int>(bytes[0]) == 0;
 }
 
-Result<RawStrands> readTfx(const std::string& file, std::span<const std::byte> bytes,
+Result<RawStrands> readTfx(const std::string& file, std::vector<std::byte>&& bytes,
                            const StrandImportOptions&) {
     ByteReader reader(file, bytes);
     const auto version = reader.read<float>("the version");

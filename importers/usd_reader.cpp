@@ -26,8 +26,13 @@ UsdValue valueAt(const UsdAttribute& attribute, double time) {
     if (value.numbers.size() != after->second.numbers.size()) return value;
     const double t = (time - before->first) / (after->first - before->first);
     for (std::size_t i = 0; i < value.numbers.size(); ++i)
-        value.numbers[i] = (1 - t) * value.numbers[i] + t * after->second.numbers[i];
+        value.numbers.set(i, (1 - t) * value.numbers[i] + t * after->second.numbers[i]);
     return value;
+}
+
+/// As well, of an attribute that is read once: what stays in time is taken from it.
+UsdValue takeAt(UsdAttribute& attribute, double time) {
+    return attribute.samples.empty() ? std::move(attribute.value) : valueAt(attribute, time);
 }
 
 /// A rotation about axes in turn, the first letter first: "XYZ".
@@ -86,19 +91,15 @@ bool isWhole(std::string_view type) {
            type.starts_with("uchar");
 }
 
-std::vector<Vec3f> pointsOf(const UsdValue& value) {
-    std::vector<Vec3f> points;
-    if (value.components != 3) return points;
-    points.resize(value.numbers.size() / 3);
-    for (std::size_t i = 0; i < points.size(); ++i)
-        points[i] = Eigen::Map<const Eigen::Vector3d>(&value.numbers[i * 3]).cast<float>();
-    return points;
+/// Three numbers each.
+std::vector<float> pointsOf(UsdValue value) {
+    return value.components == 3 ? std::move(value.numbers).floats() : std::vector<float>();
 }
 
 class Reader {
   public:
-    Reader(const UsdStage& stage, const std::string& file, bool frames)
-        : stage_(stage), file_(file), frames_(frames) {}
+    Reader(UsdStage stage, const std::string& file, bool frames)
+        : stage_(std::move(stage)), file_(file), frames_(frames) {}
 
     Result<RawStrands> run() {
         readStage();
@@ -107,11 +108,12 @@ class Reader {
         if (curves_.empty()) return failIn(file_, {}, "has no curves", "expected hair as BasisCurves");
         std::size_t frames = 0;
         for (const CurveSet& set : curves_) frames = std::max(frames, set.frames.size());
-        for (const CurveSet& set : curves_) {
-            if (auto status = appendCurves(file_, set, frames, strands_); !status) {
+        for (CurveSet& set : curves_) {
+            const std::string path = set.path;
+            if (auto status = appendCurves(file_, std::move(set), frames, strands_); !status) {
                 // One set of several that contradicts itself leaves the others to be had.
                 strands_.warnings.push_back(
-                    fileWarning(status.error().problem, set.path, status.error().expected));
+                    fileWarning(status.error().problem, path, status.error().expected));
             }
         }
         adoptAttributes(strands_);
@@ -144,13 +146,13 @@ class Reader {
             "composition", "flatten the stage (usdcat --flatten) to have all that it is made of"));
     }
 
-    Status visit(const UsdPrim& prim, const std::string& path, const Above& above) {
+    Status visit(UsdPrim& prim, const std::string& path, const Above& above) {
         Above levels = above;
         levels.push_back(&prim);
         if (!prim.isOver && (prim.type == "BasisCurves" || prim.type == "NurbsCurves")) {
             if (auto status = readCurves(prim, path, levels); !status) return status;
         }
-        for (const UsdPrim& child : prim.children) {
+        for (UsdPrim& child : prim.children) {
             if (auto status = visit(child, path + "/" + child.name, levels); !status) return status;
         }
         return {};
@@ -188,31 +190,32 @@ class Reader {
         if (wanted == 0 || value.numbers.size() != wanted)
             return fail(fmt::format("{} of {} has {} numbers", name, prim.name, value.numbers.size()),
                         fmt::format("expected {} of a transform that is known", wanted));
-        const Eigen::Affine3d result = operation(kind, value.numbers);
+        const Eigen::Affine3d result = operation(kind, value.numbers.doubles());
         return inverse ? Eigen::Affine3d(result.inverse()) : result;
     }
 
-    Status readCurves(const UsdPrim& prim, const std::string& path, const Above& levels) {
-        const UsdAttribute* const points = prim.find("points");
+    Status readCurves(UsdPrim& prim, const std::string& path, const Above& levels) {
+        UsdAttribute* const points = prim.find("points");
         const UsdAttribute* const counts = prim.find("curveVertexCounts");
         if (points == nullptr || counts == nullptr) return {};
         const std::set<double> times = timesOf(*points, levels);
         const double first = times.empty() ? 0 : *times.begin();
         CurveSet set;
         set.path = path;
-        for (const double count : valueAt(*counts, first).numbers) {
+        for (const double count : valueAt(*counts, first).numbers.doubles()) {
             if (!(count >= 0 && count <= INT32_MAX))
                 return fail(fmt::format("{}: a curve of {} points", path, count), "expected a count");
             if (count > 0) set.counts.push_back(static_cast<std::uint32_t>(count));
         }
-        set.points = pointsOf(valueAt(*points, first));
-        if (set.points.empty() || set.counts.empty()) return {};
+        if (set.counts.empty()) return {};
         const auto where = toFile(levels, first);
         if (!where) return tl::unexpected(where.error());
         set.toFile = *where;
         readForm(prim, set);
         if (auto status = readFrames(*points, levels, times, set); !status) return status;
-        for (const UsdAttribute& attribute : prim.attributes) addAttribute(prim, attribute, first, set);
+        set.points = pointsOf(takeAt(*points, first));
+        if (set.points.empty()) return {};
+        for (UsdAttribute& attribute : prim.attributes) addAttribute(prim, attribute, first, set);
         curves_.push_back(std::move(set));
         return {};
     }
@@ -227,12 +230,13 @@ class Reader {
         if (prim.type == "NurbsCurves") {
             set.basis = CurveBasis::Nurbs;
             if (const UsdAttribute* const orders = prim.find("order")) {
-                for (const double order : orders->value.numbers)
+                for (const double order : orders->value.numbers.doubles())
                     set.orders.push_back(order >= 0 && order < 1000 ? static_cast<std::uint32_t>(order) : 0);
             }
-            if (const UsdAttribute* const knots = prim.find("knots")) set.knots = knots->value.numbers;
+            if (const UsdAttribute* const knots = prim.find("knots"))
+                set.knots = knots->value.numbers.doubles();
             if (const UsdAttribute* const weights = prim.find("pointWeights"))
-                set.weights.assign(weights->value.numbers.begin(), weights->value.numbers.end());
+                set.weights = UsdNumbers(weights->value.numbers).floats();
             return;
         }
         const std::string wrap = tokenOf(prim, "wrap", "nonperiodic");
@@ -279,12 +283,12 @@ class Reader {
         return {};
     }
 
-    void addAttribute(const UsdPrim& prim, const UsdAttribute& attribute, double time, CurveSet& set) {
+    void addAttribute(const UsdPrim& prim, UsdAttribute& attribute, double time, CurveSet& set) {
         constexpr std::string_view kPrimvar = "primvars:", kIndices = ":indices";
         const bool isWidth = attribute.name == "widths";
         if (!isWidth && !attribute.name.starts_with(kPrimvar)) return;
         if (attribute.name.ends_with(kIndices)) return;
-        const UsdValue value = valueAt(attribute, time);
+        UsdValue value = takeAt(attribute, time);
         CurveAttribute added;
         added.name = isWidth ? "width" : attribute.name.substr(kPrimvar.size());
         if (value.numbers.empty()) {
@@ -299,23 +303,23 @@ class Reader {
         if (attribute.elementSize > 1 && attribute.elementSize <= 4)
             added.components *= static_cast<std::uint32_t>(attribute.elementSize);
         if (added.components > 4) return;
-        std::vector<double> numbers = value.numbers;
+        UsdNumbers numbers = std::move(value.numbers);
         if (const UsdAttribute* const indices = prim.find(attribute.name + std::string(kIndices)))
-            numbers = indexed(numbers, added.components, valueAt(*indices, time).numbers);
+            numbers = indexed(numbers, added.components, valueAt(*indices, time).numbers.doubles());
         if (isWhole(attribute.type)) {
             added.isFlag = attribute.type.starts_with("bool") || attribute.type.starts_with("uchar");
-            for (const double number : numbers)
+            for (const double number : numbers.doubles())
                 added.whole.push_back(std::abs(number) < 9e15 ? static_cast<std::int64_t>(number) : 0);
         } else {
-            added.numbers.assign(numbers.begin(), numbers.end());
+            added.numbers = std::move(numbers).floats();
         }
         set.attributes.push_back(std::move(added));
     }
 
     /// Values by their places; one that there is not is 0.
-    static std::vector<double> indexed(const std::vector<double>& values, std::size_t components,
-                                       const std::vector<double>& places) {
-        std::vector<double> found;
+    static UsdNumbers indexed(const UsdNumbers& values, std::size_t components,
+                              const std::vector<double>& places) {
+        UsdNumbers found;
         for (const double place : places) {
             const bool is = place >= 0 && place < static_cast<double>(values.size() / components);
             for (std::size_t c = 0; c < components; ++c)
@@ -324,7 +328,7 @@ class Reader {
         return found;
     }
 
-    const UsdStage& stage_;
+    UsdStage stage_;
     const std::string& file_;
     bool frames_;
     std::vector<CurveSet> curves_;
@@ -341,13 +345,13 @@ bool isUsd(std::span<const std::byte> bytes) {
     return beginsWith(bytes, "#usda") || isUsdc(bytes);
 }
 
-Result<RawStrands> readUsd(const std::string& file, std::span<const std::byte> bytes,
+Result<RawStrands> readUsd(const std::string& file, std::vector<std::byte>&& bytes,
                            const StrandImportOptions& options) {
-    const auto stage = isUsdc(bytes)
-                           ? readUsdc(file, bytes)
-                           : readUsda(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    auto stage = isUsdc(bytes) ? readUsdc(file, bytes)
+                               : readUsda(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     if (!stage) return tl::unexpected(stage.error());
-    return Reader(*stage, file, options.frames).run();
+    std::vector<std::byte>().swap(bytes);
+    return Reader(std::move(*stage), file, options.frames).run();
 }
 
 }  // namespace

@@ -16,8 +16,20 @@ const UsdAttribute* UsdPrim::find(std::string_view attribute) const {
     const auto found = std::ranges::find(attributes, attribute, &UsdAttribute::name);
     return found == attributes.end() ? nullptr : &*found;
 }
+UsdAttribute* UsdPrim::find(std::string_view attribute) {
+    const auto found = std::ranges::find(attributes, attribute, &UsdAttribute::name);
+    return found == attributes.end() ? nullptr : &*found;
+}
 
 namespace {
+
+/// "float", "half3[]", "point3f": names of types end in the letter of their precision behind their size.
+bool isSingle(std::string_view type) {
+    if (type.starts_with("float") || type.starts_with("half")) return true;
+    if (type.ends_with("[]")) type.remove_suffix(2);
+    return type.size() > 1 && (type.back() == 'f' || type.back() == 'h') && type[type.size() - 2] >= '2' &&
+           type[type.size() - 2] <= '4';
+}
 
 constexpr int kMaxDepth = 128;
 
@@ -258,6 +270,7 @@ class Parser {
             UsdValue time;
             if (!number(time) || !need(':')) return false;
             UsdValue at;
+            if (isSingle(attribute.type)) at.numbers.keepSingle();
             if (!value(at)) return false;
             attribute.samples.insert_or_assign(time.numbers.front(), std::move(at));
             if (!take(',') && peek() != '}')
@@ -366,6 +379,7 @@ class Parser {
         const bool isSampled = cut(attribute.name, ".timeSamples");
         const bool isConnection = cut(attribute.name, ".connect");
         if (take('=')) {
+            if (isSingle(attribute.type)) attribute.value.numbers.keepSingle();
             if (!(isSampled ? samples(attribute) : value(attribute.value))) return false;
         }
         const auto use = [&](const std::string& key, const UsdValue& found) {

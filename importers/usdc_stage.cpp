@@ -269,6 +269,7 @@ class Reader {
         const Layout layout = layoutOf(value.type());
         if (layout.count == 0) return result;
         result.components = layout.count;
+        if (layout.component == Float || layout.component == Half) result.numbers.keepSingle();
         if (value.isArray()) {
             if (auto status = readArray(value, layout, result.numbers); !status)
                 return tl::unexpected(status.error());
@@ -282,15 +283,19 @@ class Reader {
         }
         // The real part of a quaternion stands last here, and first in text.
         if (value.type() >= Quatd && value.type() <= Quath) {
-            for (std::size_t i = 0; i + 3 < result.numbers.size(); i += 4)
-                std::rotate(&result.numbers[i], &result.numbers[i + 3], &result.numbers[i] + 4);
+            UsdNumbers& numbers = result.numbers;
+            for (std::size_t i = 0; i + 3 < numbers.size(); i += 4) {
+                const double real = numbers[i + 3];
+                for (std::size_t k = i + 3; k > i; --k) numbers.set(k, numbers[k - 1]);
+                numbers.set(i, real);
+            }
         }
         return result;
     }
 
     /// Small values stand in the field itself: numbers of up to 32 bits, vectors and diagonals of whole
     /// numbers of 8.
-    static void inlined(const UsdcValue& value, const Layout& layout, std::vector<double>& numbers) {
+    static void inlined(const UsdcValue& value, const Layout& layout, UsdNumbers& numbers) {
         const auto bits = static_cast<std::uint32_t>(value.payload());
         const auto small = [&](std::uint32_t index) {
             return static_cast<double>(static_cast<std::int8_t>(bits >> (8 * index) & 0xffu));
@@ -299,8 +304,8 @@ class Reader {
         const bool isMatrix = value.type() >= Matrix2d && value.type() <= Matrix4d;
         if (isMatrix) {
             const std::uint32_t side = 2 + (value.type() - Matrix2d);
-            numbers.assign(std::size_t{side} * side, 0.0);
-            for (std::uint32_t k = 0; k < side; ++k) numbers[k * (side + 1)] = small(k);
+            for (std::uint32_t k = 0; k < side * side; ++k)
+                numbers.push_back(k % (side + 1) == 0 ? small(k / (side + 1)) : 0.0);
         } else if (layout.count > 1) {
             for (std::uint32_t k = 0; k < layout.count; ++k) numbers.push_back(small(k));
         } else if (layout.component == Double) {
@@ -327,7 +332,7 @@ class Reader {
         return std::uint64_t{*size};
     }
 
-    Status readArray(const UsdcValue& value, const Layout& layout, std::vector<double>& numbers) {
+    Status readArray(const UsdcValue& value, const Layout& layout, UsdNumbers& numbers) {
         constexpr std::uint64_t kFewestCompressed = 16;
         if (value.payload() == 0) return {};
         const auto size = arraySize(value);
@@ -343,18 +348,18 @@ class Reader {
         if (*code != 't') return error("an array is packed in an unknown way", "expected 'i' or 't'");
         const auto entries = in_.read<std::uint32_t>("the size of a table");
         if (!entries) return tl::unexpected(entries.error());
-        std::vector<double> table, places;
+        UsdNumbers table, places;
         if (auto status = readPlain(layout, *entries, table); !status) return status;
         if (auto status = readPacked(UInt, *size, places); !status) return status;
-        for (const double place : places) {
-            if (place >= static_cast<double>(table.size()))
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            if (places[i] >= static_cast<double>(table.size()))
                 return error("a packed array names what its table does not have");
-            numbers.push_back(table[static_cast<std::size_t>(place)]);
+            numbers.push_back(table[static_cast<std::size_t>(places[i])]);
         }
         return {};
     }
 
-    Status readPlain(const Layout& layout, std::uint64_t count, std::vector<double>& numbers) {
+    Status readPlain(const Layout& layout, std::uint64_t count, UsdNumbers& numbers) {
         const std::size_t size = sizeOf(layout.component);
         if (count > in_.remaining() / (size * layout.count))
             return error(fmt::format("an array of {} elements goes beyond the end of the file", count));
@@ -378,7 +383,7 @@ class Reader {
         return {};
     }
 
-    Status readPacked(Type component, std::uint64_t count, std::vector<double>& numbers) {
+    Status readPacked(Type component, std::uint64_t count, UsdNumbers& numbers) {
         const auto size = in_.read<std::uint64_t>("the size of packed numbers");
         if (!size) return tl::unexpected(size.error());
         if (auto status = keep(count); !status) return status;
@@ -445,7 +450,7 @@ class Reader {
         }
         auto times = valueOf(value);
         if (!times) return tl::unexpected(times.error());
-        return std::move(times->numbers);
+        return times->numbers.doubles();
     }
 
     const UsdcFile& file_;

@@ -100,8 +100,15 @@ class ByteWriter {
         bytes_.resize((bytes_.size() + alignment - 1) / alignment * alignment);
     }
     void reserve(std::size_t bytes) { bytes_.reserve(bytes); }
+    /// Over what was written at `position`.
+    template <class T>
+    void overwrite(std::size_t position, const T& value) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        std::memcpy(bytes_.data() + position, &value, sizeof value);
+    }
     std::size_t size() const { return bytes_.size(); }
     std::span<const std::byte> bytes() const { return bytes_; }
+    std::vector<std::byte> take() && { return std::move(bytes_); }
 
   private:
     std::vector<std::byte> bytes_;

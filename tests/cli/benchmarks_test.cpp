@@ -7,6 +7,9 @@
 #include <thread>
 
 #include "benchmarks/measurement.h"
+#include "benchmarks/peak_memory.h"
+#include "benchmarks/temporary_file.h"
+#include "exporters/strands.h"
 
 namespace hairloom::benchmarks {
 namespace {
@@ -65,6 +68,35 @@ TEST(Benchmarks, TimingsRepeatAndStopAtTheFirstFailure) {
     });
     EXPECT_FALSE(bad.outcome("all"));
 }
+
+#if defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+TEST(Benchmarks, MemoryIsThatOfTheProgramAndImportTakesLittle) {
+    EXPECT_FALSE(peakMemory({"/nonexistent/program"}));
+    EXPECT_FALSE(peakMemory({HAIRLOOM_CLI, "import", "/nonexistent.abc", "-o", "/nonexistent.hairloom"}));
+    constexpr double kProgram = 16e6;  // what it takes for itself
+    constexpr std::uint32_t kStrands = 100'000, kPoints = 16;
+    std::vector<std::uint32_t> offsets{0};
+    std::vector<Vec3f> positions;
+    for (std::uint32_t s = 0; s < kStrands; ++s) {
+        for (std::uint32_t i = 0; i < kPoints; ++i)
+            positions.emplace_back(1e-6f * static_cast<float>(s), 1.7f - 0.01f * static_cast<float>(i), 0.0f);
+        offsets.push_back(static_cast<std::uint32_t>(positions.size()));
+    }
+    const Groom groom = makeGroom(std::move(offsets), std::move(positions));
+    const TemporaryFile project("hairloom-memory-test.hairloom");
+    for (const char* format : {"abc", "usdc", "usda", "ply", "tfx", "hair", "obj-lines"}) {
+        const StrandWriter& writer = strandWriter(format);
+        const TemporaryFile file("hairloom-memory-test." + writer.suffix());
+        ASSERT_TRUE(writer.write(groom, file.path, {})) << format;
+        const auto taken =
+            peakMemory({HAIRLOOM_CLI, "import", file.path.string(), "-o", project.path.string(), "--force"});
+        ASSERT_TRUE(taken) << format;
+        const auto size = static_cast<double>(std::filesystem::file_size(file.path));
+        EXPECT_LT(static_cast<double>(*taken), 3 * size + kProgram) << format;
+        EXPECT_GT(static_cast<double>(*taken), 0.5 * size) << format;
+    }
+}
+#endif
 
 }  // namespace
 }  // namespace hairloom::benchmarks
