@@ -116,6 +116,26 @@ Result<std::optional<double>> pixelsPerMm(const std::string& file, const Groom& 
     return 1e-3 / static_cast<double>(metres);
 }
 
+Report rowOf(const WorkPrecision& result, const WorkPrecisionRun& run, std::optional<double> pixelsPerMm) {
+    Report row{{"setting", settingReport(result, run)}};
+    if (run.diverged) return row;
+    row["ms"] = run.milliseconds.median;
+    row["error_mm"] = run.error.rmsMm;
+    row["error_mm_max"] = run.error.maxMm;
+    if (pixelsPerMm) row["error_px"] = run.error.rmsMm * *pixelsPerMm;
+    row["drop_mm"] = finiteOrNull(run.other.dropMm);
+    row["after_shake_mm"] = finiteOrNull(run.other.returnMm);
+    row["head_depth_mm"] = run.other.headDepthMm;
+    row["sphere_depth_mm"] = run.other.sphereDepthMm;
+    row["rest_speed_mm_s"] = finiteOrNull(1e3 * run.other.restSpeed);
+    if (run.parts) {
+        row["step_error_mm"] = run.parts->step.rmsMm;
+        row["points_error_mm"] = run.parts->points.rmsMm;
+        row["model_error_mm"] = run.parts->model.rmsMm;
+    }
+    return row;
+}
+
 /// The fastest first.
 Report frontReport(const WorkPrecision& result, std::optional<double> pixelsPerMm) {
     std::vector<const WorkPrecisionRun*> front;
@@ -125,13 +145,7 @@ Report frontReport(const WorkPrecision& result, std::optional<double> pixelsPerM
     std::ranges::sort(front, {}, [](const WorkPrecisionRun* run) { return run->milliseconds.median; });
     Report rows = Report::array();
     for (const WorkPrecisionRun* run : front) {
-        rows.push_back(Report{{"setting", settingReport(result, *run)},
-                              {"ms", run->milliseconds.median},
-                              {"error_mm", run->error.rmsMm},
-                              {"error_mm_max", run->error.maxMm},
-                              {"step_error_mm", run->stepError.rmsMm},
-                              {"model_error_mm", run->modelError.rmsMm}});
-        if (pixelsPerMm) rows.back()["error_px"] = run->error.rmsMm * *pixelsPerMm;
+        rows.push_back(rowOf(result, *run, pixelsPerMm));
     }
     return rows;
 }
@@ -186,6 +200,12 @@ Result<Report> accuracy(const AccuracyOptions& options, const std::string& comma
     report["truth_detail"] = result->groundTruthDetail;
     report["truth_uncertainty_mm"] = result->groundTruthUncertaintyMm;
     report["front"] = frontReport(*result, *scale);
+    report["rows"] = Report::array();
+    for (const WorkPrecisionRun& run : result->runs) {
+        report["rows"].push_back(rowOf(*result, run, *scale));
+        report["rows"].back()["diverged"] = run.diverged;
+        report["rows"].back()["trembles"] = run.trembling > 0;
+    }
     report["notes"] = result->notes;
     report["output"] = options.output;
     report["files"] = *files;

@@ -348,6 +348,24 @@ void drawSeries(const Plot& plot, const Legend& legend, const Layout& layout, Sv
     drawLabels(points, lines, layout, canvas);
 }
 
+void drawBars(const Plot& plot, const Legend& legend, const Layout& layout, SvgCanvas& canvas) {
+    constexpr double kGroup = 0.8;  // of the way to the next x
+    const PixelBox& f = layout.frame;
+    const double bottom = f.y + f.height;
+    const double width = kGroup / static_cast<double>(plot.series.size());
+    for (std::size_t s = 0; s < plot.series.size(); ++s) {
+        for (const PlotPoint& point : plot.series[s].points) {
+            if (!layout.y.drawable(point.y)) continue;
+            const double from = point.x - kGroup / 2 + static_cast<double>(s) * width;
+            const double left = layout.xOf(from), right = layout.xOf(from + width);
+            const double top = std::max(layout.yOf(point.y), f.y);
+            if (top < bottom)
+                canvas.box({left, top, right - left - 1, bottom - top}, legend.seriesColour(s),
+                           point.tooltip);
+        }
+    }
+}
+
 }  // namespace
 
 std::string svg(const Plot& plot) {
@@ -356,7 +374,7 @@ std::string svg(const Plot& plot) {
     SvgCanvas canvas(layout.width, layout.height, plot.title);
     if (!plot.map) drawGrid(layout, canvas);
     if (plot.map) drawMap(*plot.map, legend, layout, canvas);
-    drawSeries(plot, legend, layout, canvas);
+    plot.bars ? drawBars(plot, legend, layout, canvas) : drawSeries(plot, legend, layout, canvas);
     canvas.frame(layout.frame, {"#555555"});
     drawXTicks(layout, canvas);
     drawYTicks(layout, canvas);

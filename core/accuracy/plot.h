@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Charts as SVG: points and lines over linear, logarithmic or named axes, and filled maps with a colour bar.
+// Charts as SVG: points, lines and bars over linear, logarithmic or named axes, and filled maps with a colour
+// bar.
 // The text is laid out here with the widths of a common sans-serif face, so that nothing is clipped or
 // printed over something else whichever viewer draws it. Equal plots give equal bytes.
 //
@@ -99,6 +100,9 @@ struct Plot {
     std::vector<Series> series = {};
     std::optional<FilledMap> map = {};
     std::string infinityName = "off the scale";
+    /// Points are bars from the lower edge, those of one x side by side in the order of the series; x counts
+    /// 0, 1, … and takes `ticks`. What is below the range has no bar.
+    bool bars = false;
     double width = 760;   ///< pixels, 320 … 4000
     double height = 480;  ///< pixels, 240 … 4000
 };

@@ -82,7 +82,8 @@ Legend::Legend(const Plot& plot) : plot_(plot) {
     bool upwards = false;
     for (std::size_t s = 0; s < plot.series.size(); ++s) {
         const Series& series = plot.series[s];
-        if (!series.name.empty()) addEntry(Entry::Kind::Series, series.name, seriesColour(s), &series);
+        const auto kind = plot.bars ? Entry::Kind::Swatch : Entry::Kind::Series;
+        if (!series.name.empty()) addEntry(kind, series.name, seriesColour(s), &series);
         upwards = upwards || std::ranges::any_of(series.points, [](const PlotPoint& point) {
                       return std::isinf(point.y) && point.y > 0;
                   });

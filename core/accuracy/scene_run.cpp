@@ -74,6 +74,16 @@ SceneHair sampleStrands(const Groom& groom, std::size_t count, std::uint64_t see
     return hair;
 }
 
+SceneHair strandsOf(const SceneHair& hair, std::span<const std::uint32_t> strands) {
+    SceneHair some{strandsOf(hair.groom, strands), {}};
+    for (const std::uint32_t s : strands) {
+        const auto shares = hair.arcShares.begin();
+        some.arcShares.insert(some.arcShares.end(), shares + hair.groom.offsets[s],
+                              shares + hair.groom.offsets[s + 1]);
+    }
+    return some;
+}
+
 SceneHair resampledHair(const SceneHair& hair, std::uint32_t points) {
     assert(points >= 2);
     SceneHair result;
@@ -154,6 +164,7 @@ Result<SceneResult> runScene(const SceneHair& hair, std::span<const HeadPose> po
     result.stateHash = stats.stateHash;
     result.nanCount = stats.nanCount;
     result.restoredStrands = stats.restoredStrands;
+    result.sphereDepthMm = stats.maxPenetrationMm;
     result.effects = stats.effects;
     return result;
 }

@@ -22,6 +22,9 @@ struct SceneHair {
 /// and settings stay; the triangulation, which is of all roots, goes. Points as authored.
 SceneHair sampleStrands(const Groom& groom, std::size_t count, std::uint64_t seed);
 
+/// These strands, ascending, as sampleStrands() has them.
+SceneHair strandsOf(const SceneHair& hair, std::span<const std::uint32_t> strands);
+
 /// The same strands with `points` ≥ 2 points each, evenly spaced by arc length. Point attributes other than
 /// the position go, and operators with them.
 SceneHair resampledHair(const SceneHair& hair, std::uint32_t points);
@@ -94,6 +97,7 @@ struct SceneResult {
     std::uint64_t stateHash = 0;
     std::uint64_t nanCount = 0;
     std::uint64_t restoredStrands = 0;  ///< see SimulationStats
+    double sphereDepthMm = 0;           ///< deepest point inside a sphere, over all frames
     std::vector<EffectReport> effects;  ///< after the last frame
 };
 

@@ -112,10 +112,12 @@ void SvgCanvas::polyline(const std::vector<PixelSegment>& connected, const Strok
     out_ += fmt::format("<path d=\"{}\" stroke-linejoin=\"round\" {}/>\n", path, strokeAttributes(stroke));
 }
 
-void SvgCanvas::box(const PixelBox& box, const std::string& fill) {
-    out_ += fmt::format(
-        "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\" shape-rendering=\"crispEdges\"/>\n",
-        px(box.x), px(box.y), px(box.width), px(box.height), escapeMarkup(fill));
+void SvgCanvas::box(const PixelBox& box, const std::string& fill, std::string_view tooltip) {
+    out_ += withTooltip("rect",
+                        fmt::format("x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\" "
+                                    "shape-rendering=\"crispEdges\"",
+                                    px(box.x), px(box.y), px(box.width), px(box.height), escapeMarkup(fill)),
+                        tooltip);
 }
 
 void SvgCanvas::frame(const PixelBox& box, const Stroke& stroke) {

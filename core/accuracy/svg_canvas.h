@@ -36,7 +36,7 @@ class SvgCanvas {
     void line(const PixelSegment& segment, const Stroke& stroke);
     void polyline(const std::vector<PixelSegment>& connected, const Stroke& stroke);
     /// Sharp edges, so that neighbouring boxes show no seam.
-    void box(const PixelBox& box, const std::string& fill);
+    void box(const PixelBox& box, const std::string& fill, std::string_view tooltip = {});
     void frame(const PixelBox& box, const Stroke& stroke);
     /// `y` is the line of writing. "10^-3" is set with a raised exponent.
     void text(double x, double y, std::string_view text, const TextStyle& style);

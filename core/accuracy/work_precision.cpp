@@ -9,7 +9,9 @@
 #include <map>
 #include <set>
 
-#include "core/accuracy/thread_limit.h"
+#include "core/accuracy/choice.h"
+#include "core/accuracy/error_parts.h"
+#include "core/accuracy/measures.h"
 #include "core/geometry/curve.h"
 #include "hairloom/stable.h"
 
@@ -27,54 +29,6 @@ double longestStrandMm(const Groom& groom) {
     }
     return 1e3 * static_cast<double>(longest);
 }
-
-/// The hair of every combination of the grid, resampled once for each number of points.
-class GridHair {
-  public:
-    GridHair(SceneHair authored, const WorkPrecisionOptions& options)
-        : axes_(options.axes),
-          gpuEngine_(options.gpuEngine),
-          points_(findAxis(axes_, kPointsAxis)),
-          threads_(findAxis(axes_, kThreadsAxis)),
-          engine_(findAxis(axes_, kEngineAxis)),
-          hairHair_(findAxis(axes_, kHairHairAxis)),
-          spheres_(findAxis(axes_, kSpheresAxis)) {
-        if (points_) {
-            for (const double points : axes_[*points_].values) {
-                byPoints_[points] = resampledHair(authored, static_cast<std::uint32_t>(points));
-            }
-        }
-        authored_ = std::move(authored);
-    }
-
-    SceneHair at(const std::vector<double>& values) const {
-        SceneHair hair = points_ ? byPoints_.at(values[*points_]) : authored_;
-        applyValues(axes_, values, hair.groom.simulation);
-        if (spheres_ && static_cast<double>(hair.groom.spheres.size()) > values[*spheres_])
-            hair.groom.spheres.resize(static_cast<std::size_t>(values[*spheres_]));
-        return hair;
-    }
-    /// What runs it.
-    SimulationOptions optionsAt(const std::vector<double>& values) const {
-        SimulationOptions options;
-        if (engine_ && values[*engine_] > 0) options.backend = gpuEngine_;
-        if (hairHair_ && values[*hairHair_] > 0) options.hairHair = runtime::HairVolumeSettings();
-        return options;
-    }
-    /// The finest strands of the grid with the scene's own settings.
-    SceneHair finest() const { return points_ ? byPoints_.rbegin()->second : authored_; }
-
-    ThreadLimit limitThreads(const std::vector<double>& values) const {
-        return threads_ ? ThreadLimit(static_cast<std::size_t>(values[*threads_])) : ThreadLimit();
-    }
-
-  private:
-    const std::vector<GridAxis>& axes_;
-    const MethodMaker& gpuEngine_;
-    std::optional<std::size_t> points_, threads_, engine_, hairHair_, spheres_;
-    SceneHair authored_;
-    std::map<double, SceneHair> byPoints_;
-};
 
 /// Counts runs for whoever watches.
 class Counted {
@@ -110,88 +64,62 @@ Status followAll(const GridHair& hair, std::span<const HeadPose> poses, const Tr
             run.error = compare(outcome->trajectory, groundTruth);
             run.diverged = !(run.error.rmsMm <= result.options.divergedAboveMm);
         }
-        if (run.diverged) run.error = {};
-        if (result.options.keepTrajectories && !run.diverged) run.trajectory = std::move(outcome->trajectory);
-        counted.add(run.diverged ? 1 + result.options.repeats : 1);
+        if (run.diverged) {
+            run.error = {};
+        } else {
+            run.trajectory = std::move(outcome->trajectory);
+            run.other.sphereDepthMm = outcome->sphereDepthMm;
+        }
+        counted.add(run.diverged ? 2 + result.options.repeats : 1);
     }
     return {};
 }
 
-/// The greatest speed of followed points, m/s, after some seconds of a head at rest in still air; 0 where it
-/// is slower than hair at rest may be. Motion is damped at least as fast as by default, so that it does not
-/// swing on.
-Result<double> tremblingAtRest(SceneHair hair, const HeadPose& pose, const Followed& followed,
-                               const SimulationOptions& options) {
-    runtime::SimulationSettings& settings = hair.groom.simulation;
-    if (settings.strandModel == runtime::StrandModel::rods) return 0.0;
-    const float usual = runtime::SimulationSettings().dampingTime;
-    settings.windSpeed = 0;
-    settings.dampingTime = settings.dampingTime > 0 ? std::min(settings.dampingTime, usual) : usual;
-    SceneTime time;
-    time.frames = static_cast<std::uint32_t>(runtime::kTrialSeconds * 60);
-    const std::vector<HeadPose> still(time.frames + 1, pose);
-    const auto outcome = runScene(hair, still, time, followed, options);
-    if (!outcome) return tl::unexpected(outcome.error());
-    const Trajectory& run = outcome->trajectory;
-    if (!run.finite) return std::numeric_limits<double>::infinity();
-    constexpr std::size_t kLastFrames = 10;
-    float farthest = 0;
-    for (std::size_t i = run.points_ws.size() - kLastFrames * run.pointsPerFrame; i < run.points_ws.size();
-         ++i)
-        farthest = std::max(farthest, (run.points_ws[i] - run.points_ws[i - run.pointsPerFrame]).norm());
-    const double speed = static_cast<double>(farthest * time.framesPerSecond);
-    return speed > static_cast<double>(runtime::kTrialSpeed) ? speed : 0.0;
+constexpr std::size_t kRestingStrands = 16;  // that are let rest, of those that are compared
+
+/// How each setting holds its shape and lies on head and spheres.
+Status findOtherErrors(const GridHair& hair, const Groom& groom, std::span<const HeadPose> poses,
+                       std::vector<std::uint32_t> strands, WorkPrecision& result, Counted& counted) {
+    std::vector<const Trajectory*> trajectories;
+    for (const WorkPrecisionRun& run : result.runs) trajectories.push_back(&run.trajectory);
+    const std::vector<double> depths = headDepths(groom, poses, trajectories);
+    const std::size_t every = (strands.size() + kRestingStrands - 1) / kRestingStrands;
+    for (std::size_t s = 0; s * every < strands.size(); ++s) strands[s] = strands[s * every];
+    strands.resize((strands.size() + every - 1) / every);
+    for (std::size_t r = 0; r < result.runs.size(); ++r) {
+        WorkPrecisionRun& run = result.runs[r];
+        if (run.diverged) continue;
+        if (auto status = unlessCancelled(result.options); !status) return status;
+        run.other.headDepthMm = depths[r];
+        SceneHair some = hair.alone(hair.at(run.values), strands, run.values).hair;
+        const bool springs = some.groom.simulation.strandModel == runtime::StrandModel::springs;
+        const auto rested =
+            measureRest(std::move(some), poses.front(), hair.optionsAt(run.values), run.other);
+        if (!rested) return rested;
+        const bool trembles = run.other.restSpeed > static_cast<double>(runtime::kTrialSpeed);
+        if (springs && trembles) run.trembling = run.other.restSpeed;
+        counted.add();
+    }
+    return {};
 }
 
-/// Of the runs that neither diverge nor tremble.
 void markFront(WorkPrecision& result) {
-    std::vector<std::pair<double, double>> pairs;
-    for (const WorkPrecisionRun& run : result.runs) {
-        const double never = std::numeric_limits<double>::infinity();
-        const bool out = run.diverged || run.trembling > 0;
-        pairs.emplace_back(out ? never : run.milliseconds.median, out ? never : run.error.rmsMm);
-    }
-    const std::vector<bool> front = paretoFront(pairs);
+    const std::vector<bool> front = frontBy(result, Measure::distance);
     for (std::size_t r = 0; r < result.runs.size(); ++r) result.runs[r].onFront = front[r];
 }
 
-/// What trembles at rest is not recommended: without it the front is found again.
-Status findFront(const GridHair& hair, const HeadPose& pose, const Followed& followed,
-                 WorkPrecision& result) {
-    std::set<std::size_t> calm;
-    for (bool settled = false; !settled;) {
-        markFront(result);
-        settled = true;
-        for (std::size_t r = 0; r < result.runs.size(); ++r) {
-            WorkPrecisionRun& run = result.runs[r];
-            if (!run.onFront || !calm.insert(r).second) continue;
-            if (auto status = unlessCancelled(result.options); !status) return status;
-            const auto speed =
-                tremblingAtRest(hair.at(run.values), pose, followed, hair.optionsAt(run.values));
-            if (!speed) return tl::unexpected(speed.error());
-            run.trembling = *speed;
-            settled = settled && !(*speed > 0);
-        }
-    }
-    return {};
-}
-
-/// What is left with short steps, and what is not.
-Status splitErrors(const GridHair& hair, std::span<const HeadPose> poses, const GroundTruth& exact,
-                   WorkPrecision& result) {
-    for (WorkPrecisionRun& run : result.runs) {
-        if (!run.onFront) continue;
+/// What is left with short steps, and what is not, of the runs that a reader looks at.
+Status splitErrors(const GridHair& hair, const Groom& groom, std::span<const HeadPose> poses,
+                   const GroundTruth& exact, WorkPrecision& result) {
+    ErrorSplitter splitter(hair, result.options.axes, result.settings, poses, result.options.time, exact);
+    const auto own = runOf(result, groom);
+    for (std::size_t r = 0; r < result.runs.size(); ++r) {
+        WorkPrecisionRun& run = result.runs[r];
+        if (run.diverged || (!run.onFront && own != r)) continue;
         if (auto status = unlessCancelled(result.options); !status) return status;
-        SceneHair own = hair.at(run.values);
-        const SimulationOptions options = hair.optionsAt(run.values);
-        const auto as = runScene(own, poses, result.options.time, exact.followed, options);
-        own.groom.simulation.substeps = kConvergedSubsteps;
-        const auto fine = runScene(own, poses, result.options.time, exact.followed, options);
-        if (!as) return tl::unexpected(as.error());
-        if (!fine) return tl::unexpected(fine.error());
-        if (!fine->trajectory.finite) continue;
-        run.stepError = compare(as->trajectory, fine->trajectory);
-        run.modelError = compare(fine->trajectory, exact.trajectory);
+        auto parts = splitter.split(run);
+        if (!parts) return tl::unexpected(parts.error());
+        run.parts = *parts;
     }
     return {};
 }
@@ -375,10 +303,10 @@ Result<WorkPrecision> measureWorkPrecision(const Groom& groom, const HeadMotion&
     if (const auto points = findAxis(options.axes, kPointsAxis)) {
         result.groundTruthPoints = largestCount(options.axes[*points].values);
     }
-    const GridHair hair(std::move(sample), result.options);
+    const GridHair hair(std::move(sample), result.options.axes, result.options.gpuEngine);
 
     // The truth counts as one run; it takes as long as several, but how many depends on the grid.
-    Counted counted(options, 1 + result.runs.size() * (1 + options.repeats));
+    Counted counted(options, 1 + result.runs.size() * (2 + options.repeats));
     const SceneHair finest = hair.finest();
     const auto exact =
         groundTruth.compute(finest, motion, options.time,
@@ -396,11 +324,14 @@ Result<WorkPrecision> measureWorkPrecision(const Groom& groom, const HeadMotion&
     if (auto status = followAll(hair, poses, exact->trajectory, exact->followed, result, counted); !status) {
         return tl::unexpected(status.error());
     }
+    if (auto status = findOtherErrors(hair, groom, poses, exact->followed.strands, result, counted); !status)
+        return tl::unexpected(status.error());
     if (auto status = timeAll(hair, poses, result, counted); !status) return tl::unexpected(status.error());
-    if (auto status = findFront(hair, poses.front(), exact->followed, result); !status)
+    if (auto status = splitErrors(hair, groom, poses, *exact, result); !status)
         return tl::unexpected(status.error());
-    if (auto status = splitErrors(hair, poses, *exact, result); !status)
-        return tl::unexpected(status.error());
+    if (!options.keepTrajectories) {
+        for (WorkPrecisionRun& run : result.runs) run.trajectory = {};
+    }
     noteWhatMatters(result);
     return result;
 }

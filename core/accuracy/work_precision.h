@@ -9,6 +9,7 @@
 
 #include "core/accuracy/grid.h"
 #include "core/accuracy/ground_truth.h"
+#include "core/accuracy/other_errors.h"
 #include "core/accuracy/statistics.h"
 
 namespace hairloom {
@@ -40,15 +41,23 @@ struct WorkPrecisionOptions {
 /// Substeps in 1/60 s that stand for infinitely many.
 inline constexpr std::uint32_t kConvergedSubsteps = 64;
 
+/// What the error of a run is made of, each found by itself: they need not add up.
+struct ErrorParts {
+    TrajectoryError step;    ///< from the same with kConvergedSubsteps
+    TrajectoryError points;  ///< from that one to the same with twice the points of the finest in the grid
+    /// From the rod to the finest strands of this model with kConvergedSubsteps: springs, contact, hair
+    /// against hair, single precision. The rod is the truth, or the engine's where the truth is of springs.
+    TrajectoryError model;
+};
+
 struct WorkPrecisionRun {
     std::vector<double> values;   ///< one for each axis
     bool diverged = false;        ///< then there are no numbers
     Quartiles milliseconds = {};  ///< of the engine, per frame: of the means of the repeated runs
     TrajectoryError error = {};
-    /// Of runs on the front, what `error` is made of; they need not add up. The steps' part: how far the run
-    /// is from one with kConvergedSubsteps. The model's part: how far that one is from the truth, which no
-    /// number of substeps makes good: too few points, another integrator, single precision.
-    TrajectoryError stepError = {}, modelError = {};
+    OtherErrors other = {};
+    /// Of runs on the front and of the groom's own settings, once all is measured.
+    std::optional<ErrorParts> parts = {};
     bool onFront = false;  ///< no other run is both as fast and as exact (median time, root mean square)
     std::uint64_t stateHash = 0;
     Trajectory trajectory = {};  ///< of the compared points, where it was asked for and did not diverge

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "core/accuracy/work_precision_report.h"
@@ -68,9 +69,13 @@ std::string noteUnderPlot(const WorkPrecision& result, const ReportContext& cont
         result.options.time.framesPerSecond, context.motion, result.options.repeats, result.groundTruthName);
 }
 
-std::string tooltipOf(const WorkPrecision& result, const WorkPrecisionRun& run) {
-    return fmt::format("{}: {:.4g} ms, {:.4g} mm rms, {:.4g} mm at most", settingText(result, run),
-                       run.milliseconds.median, run.error.rmsMm, run.error.maxMm);
+std::string tooltipOf(const WorkPrecision& result, const WorkPrecisionRun& run,
+                      Measure measure = Measure::distance) {
+    const std::string of =
+        measure == Measure::distance
+            ? fmt::format("{:.4g} mm rms, {:.4g} mm at most", run.error.rmsMm, run.error.maxMm)
+            : fmt::format("{:.4g} {}", valueOf(run, measure), infoOf(measure).unit);
+    return fmt::format("{}: {:.4g} ms, {}", settingText(result, run), run.milliseconds.median, of);
 }
 
 /// " (3 of 36 diverged)" of the runs with one value of an axis, empty where none did: they have no place.
@@ -138,12 +143,17 @@ std::string settingText(const WorkPrecision& result, const WorkPrecisionRun& run
     return text;
 }
 
-Plot workPrecisionPlot(const WorkPrecision& result, const ReportContext& context) {
+Plot workPrecisionPlot(const WorkPrecision& result, const ReportContext& context, Measure measure) {
+    const MeasureInfo& judged = infoOf(measure);
+    const bool isDistance = measure == Measure::distance;
     Plot plot;
-    plot.title = "Work and precision: time per frame against error";
-    plot.note = noteUnderPlot(result, context);
+    plot.title = isDistance ? "Work and precision: time per frame against error"
+                            : fmt::format("Time per frame against {}", judged.label);
+    plot.note = isDistance ? noteUnderPlot(result, context)
+                           : fmt::format("{} {:g} {} and less at the lower edge.", judged.meaning,
+                                         judged.floor, judged.unit);
     plot.x = {.title = "time per frame", .unit = "ms", .scale = Scale::Logarithmic};
-    plot.y = {.title = "error, root mean square", .unit = "mm", .scale = Scale::Logarithmic};
+    plot.y = {.title = judged.label, .unit = judged.unit, .scale = Scale::Logarithmic};
     plot.width = 860;
     plot.height = 560;
     const auto coloured = colouredAxis(result.options.axes);
@@ -153,17 +163,20 @@ Plot workPrecisionPlot(const WorkPrecision& result, const ReportContext& context
     std::map<std::pair<std::size_t, std::size_t>, Series> series;
     std::vector<PlotPoint> front;
     TimeRange times;
-    for (const WorkPrecisionRun& run : result.runs) {
+    const std::vector<bool> best = frontBy(result, measure);
+    for (std::size_t r = 0; r < result.runs.size(); ++r) {
+        const WorkPrecisionRun& run = result.runs[r];
         if (run.diverged) continue;
+        const double value = std::max(valueOf(run, measure), judged.floor);
         const auto key = std::pair(placeOf(result, run, coloured), placeOf(result, run, points));
         series[key].points.push_back({.x = run.milliseconds.median,
-                                      .y = run.error.rmsMm,
+                                      .y = value,
                                       .xLow = run.milliseconds.q1,
                                       .xHigh = run.milliseconds.q3,
-                                      .label = run.onFront ? shortLabel(result, run) : std::string(),
-                                      .tooltip = tooltipOf(result, run),
-                                      .faint = !run.onFront});
-        if (run.onFront) front.push_back({run.milliseconds.median, run.error.rmsMm});
+                                      .label = best[r] ? shortLabel(result, run) : std::string(),
+                                      .tooltip = tooltipOf(result, run, measure),
+                                      .faint = !best[r]});
+        if (best[r]) front.push_back({run.milliseconds.median, value});
         times.low = std::min(times.low, run.milliseconds.q1);
         times.high = std::max(times.high, run.milliseconds.q3);
     }
@@ -173,12 +186,62 @@ Plot workPrecisionPlot(const WorkPrecision& result, const ReportContext& context
                            .colour = kGrey,
                            .marker = Marker::None,
                            .line = LineStyle::Solid});
-    addUncertainty(result.groundTruthUncertaintyMm, times.low, times.high, plot);
+    if (isDistance) addUncertainty(result.groundTruthUncertaintyMm, times.low, times.high, plot);
     for (auto& [key, one] : series) {
         one.colour = paletteColour(key.first);
         one.marker = kShapes[key.second % std::size(kShapes)];
         plot.series.push_back(std::move(one));
     }
+    return plot;
+}
+
+std::optional<Plot> partsPlot(const WorkPrecision& result) {
+    std::vector<const WorkPrecisionRun*> runs;
+    for (const WorkPrecisionRun& run : result.runs) {
+        if (run.parts) runs.push_back(&run);
+    }
+    if (runs.empty()) return std::nullopt;
+    std::ranges::sort(runs, {}, [](const WorkPrecisionRun* run) { return run->milliseconds.median; });
+    Plot plot;
+    plot.title = "What errors are made of";
+    plot.note = fmt::format(
+        "Steps: from the same with {} substeps. Points: from that to twice the finest strands. Model: "
+        "from the rod to the finest strands of this model with short steps. Each is measured by "
+        "itself; they need not add up. Settings from the fastest to the most exact.",
+        kConvergedSubsteps);
+    std::vector<std::size_t> named;
+    std::string names;
+    for (std::size_t a = 0; a < result.options.axes.size(); ++a) {
+        if (!varies(result.options.axes, a)) continue;
+        named.push_back(a);
+        names += (names.empty() ? "" : " / ") + result.options.axes[a].field;
+    }
+    if (!names.empty()) plot.note = fmt::format("Labels: {}. {}", names, plot.note);
+    plot.bars = true;
+    plot.width = 860;
+    plot.x = {.title = "setting", .low = -0.5, .high = static_cast<double>(runs.size()) - 0.5};
+    plot.y = {.title = "root mean square", .unit = "mm", .scale = Scale::Logarithmic};
+    plot.series = {
+        {.name = "steps"}, {.name = "points"}, {.name = "model"}, {.name = "doubt of the reference"}};
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t r = 0; r < runs.size(); ++r) {
+        const ErrorParts& parts = *runs[r]->parts;
+        std::string label;
+        for (const std::size_t a : named)
+            label += (label.empty() ? "" : "/") + axisValueText(result.options.axes[a], runs[r]->values[a]);
+        plot.x.ticks.push_back({static_cast<double>(r), label.empty() ? "as it is" : label});
+        const double mm[] = {parts.step.rmsMm, parts.points.rmsMm, parts.model.rmsMm,
+                             result.groundTruthUncertaintyMm};
+        for (std::size_t s = 0; s < plot.series.size(); ++s) {
+            if (mm[s] > 0) least = std::min(least, mm[s]);
+            plot.series[s].points.push_back(
+                {.x = static_cast<double>(r),
+                 .y = mm[s],
+                 .tooltip = fmt::format("{}: {} {:.3g} mm", settingText(result, *runs[r]),
+                                        plot.series[s].name, mm[s])});
+        }
+    }
+    if (std::isfinite(least)) plot.y.low = least / 3;
     return plot;
 }
 

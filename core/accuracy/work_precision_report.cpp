@@ -14,6 +14,11 @@ namespace {
 
 using Cells = std::vector<std::string>;
 
+struct NamedDrawing {
+    std::string file;
+    std::string svg;
+};
+
 Cells headOf(const WorkPrecision& result) {
     Cells head;
     for (const GridAxis& axis : result.options.axes) head.push_back(axis.field);
@@ -41,24 +46,48 @@ void append(Cells& cells, const Cells& more) {
     cells.insert(cells.end(), more.begin(), more.end());
 }
 
+using NumberText = std::string (*)(double number);
+std::string forPeople(double number) {
+    return fmt::format("{:.4f}", number);
+}
+std::string forPrograms(double number) {
+    return fmt::format("{:.6g}", number);
+}
+
+/// Of steps, points and model; empty where they are not known.
+Cells partsOf(const WorkPrecisionRun& run, NumberText text) {
+    if (!run.parts) return {"", "", ""};
+    return {text(run.parts->step.rmsMm), text(run.parts->points.rmsMm), text(run.parts->model.rmsMm)};
+}
+
+Cells otherErrorsOf(const WorkPrecisionRun& run, NumberText text) {
+    const OtherErrors& other = run.other;
+    Cells cells;
+    for (const double number :
+         {other.dropMm, other.returnMm, other.headDepthMm, other.sphereDepthMm, 1e3 * other.restSpeed})
+        cells.push_back(text(number));
+    return cells;
+}
+
 Cells rowForPeople(const WorkPrecision& result, const WorkPrecisionRun& run) {
     Cells cells = valuesOf(result, run);
     if (run.diverged) {
-        append(cells, {"", "", "", "", "", "diverged"});
+        cells.resize(cells.size() + 10);
+        cells.push_back("diverged");
         return cells;
     }
     append(cells, {fmt::format("{:.4f}", run.milliseconds.median), fmt::format("{:.4f}", run.milliseconds.q1),
                    fmt::format("{:.4f}", run.milliseconds.q3), fmt::format("{:.4f}", run.error.rmsMm),
-                   fmt::format("{:.3f}", run.error.maxMm),
-                   run.onFront         ? "on the front"
-                   : run.trembling > 0 ? "trembles at rest"
-                                       : ""});
+                   fmt::format("{:.3f}", run.error.maxMm)});
+    append(cells, otherErrorsOf(run, forPeople));
+    cells.push_back(run.onFront ? "on the front" : run.trembling > 0 ? "trembles at rest" : "");
     return cells;
 }
 
 Cells headForPeople(const WorkPrecision& result) {
     Cells head = headOf(result);
-    append(head, {"ms", "first quartile", "third quartile", "error mm rms", "error mm max", ""});
+    append(head, {"ms", "first quartile", "third quartile", "error mm rms", "error mm max", "drop mm",
+                  "after a shake mm", "in the head mm", "in spheres mm", "at rest mm/s", ""});
     return head;
 }
 
@@ -69,22 +98,41 @@ void addFront(const WorkPrecision& result, HtmlReport& page) {
     }
     std::ranges::sort(front, {}, [](const WorkPrecisionRun* run) { return run->milliseconds.median; });
     std::vector<Cells> rows{headForPeople(result)};
-    rows.front().back() = "of steps, mm rms";
-    rows.front().push_back("of the model, mm rms");
+    rows.front().pop_back();
+    append(rows.front(), {"of steps", "of points", "of the model"});
     for (const WorkPrecisionRun* run : front) {
         rows.push_back(rowForPeople(result, *run));
-        rows.back().back() = fmt::format("{:.4f}", run->stepError.rmsMm);
-        rows.back().push_back(fmt::format("{:.4f}", run->modelError.rmsMm));
+        rows.back().pop_back();
+        append(rows.back(), partsOf(*run, forPeople));
     }
     page.heading("The Pareto front");
     page.paragraph(
-        fmt::format("Settings that no other one in this grid beats in both time and error, the fastest "
-                    "first. The part of "
-                    "steps is how far a run is from one with {} substeps; the part of the model, how far "
-                    "that one is from "
-                    "the truth, which shorter steps do not mend: more points do.",
-                    kConvergedSubsteps));
+        "Settings that no other one in this grid beats in both time and error, the fastest first.");
     page.table(rows);
+}
+
+void addParts(const WorkPrecision& result, const std::string& drawing, HtmlReport& page) {
+    page.heading("What the errors are made of");
+    page.drawing(drawing);
+    page.list(
+        {fmt::format("Steps: how far a run is from the same with {} substeps. More substeps mend it.",
+                     kConvergedSubsteps),
+         "Points: how far that one is from strands with twice the points of the finest here. More points "
+         "mend it.",
+         "Model: how far the finest strands of this model are from the rod, with short steps: springs that "
+         "sag, how contacts give and slip, hair against hair, single precision. Neither steps nor points "
+         "mend it.",
+         fmt::format("Doubt of the reference: it moves by {:.3g} mm when its resolution in time is halved. "
+                     "What is below that says little.",
+                     result.groundTruthUncertaintyMm)});
+}
+
+void addMeasures(const std::vector<NamedDrawing>& drawings, HtmlReport& page) {
+    page.heading("Shape held, penetration, rest");
+    for (std::size_t m = 1; m < measures().size(); ++m) {
+        page.paragraph(measures()[m].meaning);
+        page.drawing(drawings[m].svg);
+    }
 }
 
 /// "dampingTime 0.5 s, gravity 0 -9.81 0 m/s²": every setting that no axis varies.
@@ -170,13 +218,16 @@ void addAllRuns(const WorkPrecision& result, HtmlReport& page) {
     page.table(rows, strong);
 }
 
-struct NamedDrawing {
-    std::string file;
-    std::string svg;
-};
+constexpr const char* kPartsDrawing = "error_parts.svg";
 
 std::vector<NamedDrawing> drawingsOf(const WorkPrecision& result, const ReportContext& context) {
-    std::vector<NamedDrawing> drawings{{"work_precision.svg", svg(workPrecisionPlot(result, context))}};
+    std::vector<NamedDrawing> drawings;
+    for (const MeasureInfo& info : measures()) {
+        const char* name = info.measure == Measure::distance ? "work_precision" : info.name;
+        drawings.push_back(
+            {fmt::format("{}.svg", name), svg(workPrecisionPlot(result, context, info.measure))});
+    }
+    if (const auto parts = partsPlot(result)) drawings.push_back({kPartsDrawing, svg(*parts)});
     for (std::size_t a = 0; a < result.options.axes.size(); ++a) {
         if (const auto plot = errorPlot(result, a)) {
             drawings.push_back({fmt::format("error_vs_{}.svg", result.options.axes[a].field), svg(*plot)});
@@ -197,8 +248,12 @@ std::string pageOf(const WorkPrecision& result, const ReportContext& context,
         page.list(result.notes);
     }
     addFront(result, page);
-    if (drawings.size() > 1) page.heading("One setting at a time");
-    for (std::size_t d = 1; d < drawings.size(); ++d) page.drawing(drawings[d].svg);
+    std::size_t next = measures().size();
+    if (next < drawings.size() && drawings[next].file == kPartsDrawing)
+        addParts(result, drawings[next++].svg, page);
+    addMeasures(drawings, page);
+    if (next < drawings.size()) page.heading("One setting at a time");
+    for (; next < drawings.size(); ++next) page.drawing(drawings[next].svg);
     addWhatWasRun(result, context, page);
     addAllRuns(result, page);
     return page.html();
@@ -208,18 +263,22 @@ std::string pageOf(const WorkPrecision& result, const ReportContext& context,
 
 std::string workPrecisionCsv(const WorkPrecision& result) {
     Cells head = headOf(result);
-    append(head, {"ms_median", "ms_q1", "ms_q3", "ms_all_strands", "error_mm_rms", "error_mm_max", "diverged",
-                  "on_front"});
+    append(head, {"ms_median", "ms_q1", "ms_q3", "ms_all_strands", "error_mm_rms", "error_mm_max", "drop_mm",
+                  "after_shake_mm", "head_depth_mm", "sphere_depth_mm", "rest_speed_mm_s", "step_error_mm",
+                  "points_error_mm", "model_error_mm", "diverged", "on_front"});
     std::string text = joined(head);
     for (const WorkPrecisionRun& run : result.runs) {
         Cells cells = valuesOf(result, run);
         if (run.diverged) {
-            append(cells, {"", "", "", "", "", "", "1", "0"});
+            cells.resize(cells.size() + 14);
+            append(cells, {"1", "0"});
         } else {
             for (const double number : {run.milliseconds.median, run.milliseconds.q1, run.milliseconds.q3,
                                         allStrandsMs(result, run), run.error.rmsMm, run.error.maxMm}) {
-                cells.push_back(fmt::format("{:.6g}", number));
+                cells.push_back(forPrograms(number));
             }
+            append(cells, otherErrorsOf(run, forPrograms));
+            append(cells, partsOf(run, forPrograms));
             append(cells, {"0", run.onFront ? "1" : "0"});
         }
         text += joined(cells);

@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "core/accuracy/choice.h"
+#include "core/accuracy/measures.h"
 #include "core/editing/document.h"
 #include "core/editing/records.h"
 #include "core/editing/selection_commands.h"
@@ -20,6 +21,7 @@
 #include "editor/fields/number_box.h"
 #include "editor/panels/accuracy_plot.h"
 #include "editor/panels/certificate_box.h"
+#include "editor/panels/error_bars.h"
 #include "editor/panels/panel.h"
 #include "editor/panels/run_view.h"
 
@@ -46,7 +48,9 @@ class AccuracyPanel : public QWidget {
           messages_(parts.messages),
           viewport_(parts.viewport),
           prices_(parts.prices),
+          measures_(new QComboBox),
           plot_(new AccuracyPlot),
+          parts_(new ErrorBars(parts.preferences)),
           words_(new QLabel),
           measure_(new QPushButton(tr("Measure"))),
           chosenWords_(new QLabel),
@@ -63,6 +67,7 @@ class AccuracyPanel : public QWidget {
         words_->setObjectName("accuracyWords");
         words_->setWordWrap(true);
         layout->addWidget(words_);
+        addMeasures(*layout);
         layout->addWidget(plot_, 1);
         addChoice(*layout, *pixels_, "accuracyPixels", tr("Cheapest within"), "px",
                   tr("Chooses the cheapest setting whose error is at most so many pixels in this view"));
@@ -96,6 +101,7 @@ class AccuracyPanel : public QWidget {
                "document's"));
         connect(beside_, &QComboBox::currentIndexChanged, this, [this] { choose(chosen_); });
         layout->addWidget(chosenWords_);
+        layout->addWidget(parts_);
         auto* row = new QHBoxLayout;
         row->addWidget(show_, 1);
         row->addWidget(beside_, 1);
@@ -127,7 +133,7 @@ class AccuracyPanel : public QWidget {
         });
         connect(&document_, &QtDocument::changed, this, [this](editing::Part changed) {
             if (contains(changed, editing::Part::Physics | editing::kHairParts | editing::Part::Spheres)) {
-                outdated_ = !adopting_;
+                outdated_ = outdated_ || !adopting_;
                 refresh();
             }
         });
@@ -160,6 +166,18 @@ class AccuracyPanel : public QWidget {
         layout.addLayout(row);
     }
 
+    void addMeasures(QVBoxLayout& layout) {
+        measures_->setObjectName("accuracyMeasure");
+        for (const MeasureInfo& measure : measures()) {
+            measures_->addItem(QString::fromUtf8(measure.label));
+            measures_->setItemData(measures_->count() - 1, QString::fromUtf8(measure.meaning),
+                                   Qt::ToolTipRole);
+        }
+        measures_->setToolTip(tr("What the diagram shows upwards; less is better"));
+        connect(measures_, &QComboBox::currentIndexChanged, this, [this] { refresh(); });
+        layout.addWidget(measures_);
+    }
+
     /// Seen side-on, in the middle of the hair.
     double pixelsPerMm() const {
         const Box3f box = document_.groom().bounds();
@@ -178,14 +196,6 @@ class AccuracyPanel : public QWidget {
             .arg(measured.milliseconds.median * timeScale(), 0, 'g', 3)
             .arg(measured.error.rmsMm * pixelsPerMm(), 0, 'g', 2)
             .arg(measured.error.rmsMm, 0, 'g', 2);
-    }
-    /// What the error of a run on the front is made of.
-    QString parts(std::size_t run) const {
-        const WorkPrecisionRun& measured = measured_->runs[run];
-        if (!measured.onFront || !(measured.stepError.rmsMm > 0)) return {};
-        return tr(", of which %1 px by its steps and %2 px by its points")
-            .arg(measured.stepError.rmsMm * pixelsPerMm(), 0, 'g', 2)
-            .arg(measured.modelError.rmsMm * pixelsPerMm(), 0, 'g', 2);
     }
     QString setting(std::size_t run) const { return QString::fromStdString(describeRun(*measured_, run)); }
 
@@ -213,8 +223,10 @@ class AccuracyPanel : public QWidget {
                     control.setProgress(static_cast<float>(done) / static_cast<float>(total));
                 };
                 options.partial = [&](const WorkPrecision& result) {
-                    QMetaObject::invokeMethod(
-                        this, [keep, result] { keep(result); }, Qt::QueuedConnection);
+                    const auto keepUnlessDone = [this, keep, result] {
+                        if (measuring_) keep(result);
+                    };
+                    QMetaObject::invokeMethod(this, keepUnlessDone, Qt::QueuedConnection);
                 };
                 options.cancelled = [&] { return control.isCancelled(); };
                 ReferenceConverged::Options truth;
@@ -223,8 +235,12 @@ class AccuracyPanel : public QWidget {
                 truth.maxSubsteps = kTrueSubsteps;
                 return measureWorkPrecision(*groom, *moves, options, ReferenceConverged(truth));
             },
-            keep);
+            [this, keep](const WorkPrecision& result) {
+                measuring_ = false;
+                keep(result);
+            });
         if (!began) return;
+        measuring_ = true;
         outdated_ = false;
         chosen_.reset();
     }
@@ -343,7 +359,7 @@ class AccuracyPanel : public QWidget {
         QString text;
         const auto now = runOf(*measured_, document_.groom());
         if (now) {
-            text = tr("Now %1: %2%3.").arg(setting(*now), numbers(*now), parts(*now));
+            text = tr("Now %1: %2.").arg(setting(*now), numbers(*now));
             const WorkPrecisionRun& has = measured_->runs[*now];
             if (const auto next = nextStep(*measured_, *now); next && !has.diverged) {
                 text += ' ' + step(has, *next);
@@ -383,6 +399,8 @@ class AccuracyPanel : public QWidget {
         measure_->setEnabled(document_.groom().strandCount() > 0);
         const bool any = measured_ != nullptr;
         plot_->setVisible(any);
+        measures_->setVisible(any);
+        if (!any) parts_->hide();
         for (QWidget* control : {static_cast<QWidget*>(pixels_), static_cast<QWidget*>(milliseconds_)})
             control->setEnabled(any);
         adopt_->setEnabled(any && chosen_);
@@ -391,21 +409,39 @@ class AccuracyPanel : public QWidget {
         worst_->setEnabled(any);
         chosenWords_->setVisible(any);
         if (!any) return;
-        chosenWords_->setText(
-            chosen_ ? tr("Chosen: %1: %2%3.").arg(setting(*chosen_), numbers(*chosen_), parts(*chosen_)) +
-                          besideInWords()
-                    : tr("Click a point, or set a limit"));
+        chosenWords_->setText(chosen_ ? tr("Chosen: %1: %2.").arg(setting(*chosen_), numbers(*chosen_)) +
+                                            besideInWords()
+                                      : tr("Click a point, or set a limit"));
+        showParts();
+        showDiagram();
+        showPrices();
+    }
+
+    /// What the error of the chosen setting, or of the document's, is made of.
+    void showParts() {
+        const auto run = chosen_ ? chosen_ : runOf(*measured_, document_.groom());
+        const bool known = run && measured_->runs[*run].parts;
+        parts_->setVisible(known);
+        if (known)
+            parts_->setParts(*measured_->runs[*run].parts, measured_->groundTruthUncertaintyMm,
+                             pixelsPerMm());
+    }
+
+    void showDiagram() {
+        const MeasureInfo& measure = measures()[static_cast<std::size_t>(measures_->currentIndex())];
+        const std::vector<bool> front = frontBy(*measured_, measure.measure);
+        const double scale = timeScale(), upwards = measure.length ? pixelsPerMm() : 1;
         std::vector<AccuracyPoint> points;
         for (std::size_t r = 0; r < measured_->runs.size(); ++r) {
             const WorkPrecisionRun& run = measured_->runs[r];
-            const double scale = timeScale();
             points.push_back({run.milliseconds.median * scale, run.milliseconds.q1 * scale,
-                              run.milliseconds.q3 * scale, run.error.rmsMm * pixelsPerMm(), run.diverged,
-                              run.onFront, setting(r)});
+                              run.milliseconds.q3 * scale,
+                              run.diverged ? 0 : valueOf(run, measure.measure) * upwards, run.diverged,
+                              front[r], setting(r)});
         }
-        plot_->setPoints(std::move(points), "px");
+        plot_->setAxes(tr("time a frame"), tr("ms"), QString::fromUtf8(measure.label));
+        plot_->setPoints(std::move(points), measure.length ? tr("px") : QString::fromUtf8(measure.unit));
         plot_->setMarked(runOf(*measured_, document_.groom()), chosen_);
-        showPrices();
     }
 
     QtDocument& document_;
@@ -414,7 +450,9 @@ class AccuracyPanel : public QWidget {
     Messages& messages_;
     Viewport& viewport_;
     Prices& prices_;
+    QComboBox* measures_;
     AccuracyPlot* plot_;
+    ErrorBars* parts_;
     QLabel* words_;
     QPushButton* measure_;
     QLabel* chosenWords_;
@@ -429,6 +467,7 @@ class AccuracyPanel : public QWidget {
     std::uint32_t documents_ = 0;  ///< replaced so far
     bool outdated_ = false;        ///< `measured_` is of the document before its last change
     bool adopting_ = false;
+    bool measuring_ = false;  ///< rounds that arrive are newer than what is shown
 };
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "editor/fields/number_box.h"
 #include "editor/fields/price_tag.h"
 #include "editor/panels/accuracy_plot.h"
+#include "editor/panels/error_bars.h"
 #include "tests/editor/window_fixture.h"
 
 namespace hairloom::editor {
@@ -88,6 +89,35 @@ TEST_F(AccuracyTest, APointOfTheDiagramIsChosenByAClick) {
         EXPECT_TRUE(adopt().isEnabled());
         EXPECT_NE(chosen(), none);
     }
+}
+
+TEST_F(AccuracyTest, TheDiagramShowsShapePenetrationAndRestToo) {
+    auto* measure = find<QComboBox>("accuracyMeasure");
+    EXPECT_FALSE(measure->isVisibleTo(measure->parentWidget()));
+    auto* plot = find<AccuracyPlot>("accuracyPlot");
+    this->measure();
+    ASSERT_EQ(measure->count(), 5);
+    plot->resize(300, 220);
+    const QPointF distance = plot->place_px(0);
+    measure->setCurrentIndex(1);
+    EXPECT_NE(plot->place_px(0), distance) << "a drop is no distance";
+    for (int m = 2; m < measure->count(); ++m) {
+        measure->setCurrentIndex(m);
+        EXPECT_TRUE(plot->rect().contains(plot->place_px(0).toPoint()));
+    }
+}
+
+TEST_F(AccuracyTest, WhatAnErrorIsMadeOfIsFourBars) {
+    auto* parts = find<ErrorBars>("accuracyParts");
+    EXPECT_FALSE(parts->isVisibleTo(parts->parentWidget()));
+    measure();
+    ASSERT_TRUE(parts->isVisibleTo(parts->parentWidget())) << "of the document's own setting";
+    const QString own = parts->words();
+    for (const char* name : {"Steps", "Points", "Model", "Doubt"}) EXPECT_TRUE(own.contains(name));
+    find<NumberBox>("accuracyPixels")->spinBox().setValue(100);
+    EXPECT_NE(parts->words(), own) << "fewer points, of the chosen one";
+    openBust();
+    EXPECT_FALSE(parts->isVisibleTo(parts->parentWidget()));
 }
 
 TEST_F(AccuracyTest, ASettingIsPricedWhereItIsSet) {

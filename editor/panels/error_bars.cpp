@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "editor/panels/error_bars.h"
+
+#include <QHelpEvent>
+#include <QPainter>
+#include <QToolTip>
+#include <algorithm>
+
+#include "editor/style/theme.h"
+
+namespace hairloom::editor {
+namespace {
+
+constexpr int kGap_px = 6;
+
+QString pixels(double px) {
+    return QObject::tr("%1 px").arg(px, 0, 'g', 2);
+}
+
+}  // namespace
+
+ErrorBars::ErrorBars(const Preferences& preferences, QWidget* parent)
+    : QWidget(parent), preferences_(preferences) {
+    setObjectName("accuracyParts");
+    bars_[0].name = tr("Steps");
+    bars_[0].meaning = tr("from the same with %1 substeps; more substeps mend it").arg(kConvergedSubsteps);
+    bars_[1].name = tr("Points");
+    bars_[1].meaning =
+        tr("from that to strands with twice the points of the finest that were tried; more points mend it");
+    bars_[2].name = tr("Model");
+    bars_[2].meaning =
+        tr("from the rod to the finest strands of this model: springs that sag, contact, single precision; "
+           "neither steps nor points mend it");
+    bars_[3].name = tr("Doubt");
+    bars_[3].meaning =
+        tr("the reference's own, with half of its steps; what is smaller than this says little");
+}
+
+void ErrorBars::setParts(const ErrorParts& parts, double doubtMm, double pixelsPerMm) {
+    const double mm[kBars] = {parts.step.rmsMm, parts.points.rmsMm, parts.model.rmsMm, doubtMm};
+    for (int b = 0; b < kBars; ++b) {
+        bars_[b].mm = mm[b];
+        bars_[b].px = mm[b] * pixelsPerMm;
+    }
+    setAccessibleDescription(words());
+    update();
+}
+
+QString ErrorBars::words() const {
+    QStringList words;
+    for (const Bar& bar : bars_) words << tr("%1 %2").arg(bar.name, pixels(bar.px));
+    return words.join(", ");
+}
+
+int ErrorBars::rowHeight() const {
+    return fontMetrics().height() + 2;
+}
+
+QSize ErrorBars::sizeHint() const {
+    return {200, kBars * rowHeight()};
+}
+
+void ErrorBars::paintEvent(QPaintEvent*) {
+    QPainter painter(this);
+    const ThemeColours colours = themeColours(preferences_.theme());
+    const QColor fills[kBars] = {colours.accent, colours.caution, colours.bad, colours.dimText};
+    int names = 0, numbers = 0;
+    double longest = 0;
+    for (const Bar& bar : bars_) {
+        names = std::max(names, fontMetrics().horizontalAdvance(bar.name));
+        numbers = std::max(numbers, fontMetrics().horizontalAdvance(pixels(bar.px)));
+        longest = std::max(longest, bar.px);
+    }
+    const int left = names + kGap_px, room = width() - left - numbers - kGap_px;
+    for (int b = 0; b < kBars; ++b) {
+        const Bar& bar = bars_[b];
+        const int top = b * rowHeight();
+        painter.setPen(palette().color(QPalette::Text));
+        painter.drawText(QRect(0, top, names, rowHeight()), Qt::AlignLeft | Qt::AlignVCenter, bar.name);
+        const double wide = longest > 0 ? std::max(1.0, room * bar.px / longest) : 1;
+        painter.fillRect(QRectF(left, top + 3, wide, rowHeight() - 6), fills[b]);
+        painter.drawText(QRectF(left + wide + kGap_px, top, numbers + 1, rowHeight()),
+                         Qt::AlignLeft | Qt::AlignVCenter, pixels(bar.px));
+    }
+}
+
+bool ErrorBars::event(QEvent* event) {
+    if (event->type() != QEvent::ToolTip) return QWidget::event(event);
+    const auto* help = static_cast<QHelpEvent*>(event);
+    const Bar& bar = bars_[std::clamp(help->pos().y() / rowHeight(), 0, kBars - 1)];
+    QToolTip::showText(help->globalPos(),
+                       tr("%1, %2 mm: %3").arg(bar.name).arg(bar.mm, 0, 'g', 3).arg(bar.meaning), this);
+    return true;
+}
+
+}  // namespace hairloom::editor
