@@ -7,7 +7,7 @@ set -euo pipefail
 
 project_only=no
 if [ "${1-}" = --project-only ]; then project_only=yes; shift; fi
-style=${1:?a style: short, shoulder or long}
+style=${1:?a style: short, shoulder, long, bob, afro or braid}
 top=$(cd "$(dirname "$(readlink -f "$0")")/.." && pwd)
 mkdir -p "${2:?a folder for the results}"
 out=$(cd "$2" && pwd)

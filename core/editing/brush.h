@@ -89,6 +89,8 @@ struct StrandUnderBrush {
     }
 
     Random random(std::uint64_t seed) const { return Random(seed, id); }
+    /// Turns each segment by its weight towards its direction in `shape`, which has as many points.
+    void turnTowards(std::span<const Vec3f> shape);
     /// Moves points by `offset` times their weight; what hangs on them towards the tip is carried along, so
     /// that hair bends on the brush's root side only.
     void carry(std::span<const Vec3f> from, const Vec3f& offset) {
@@ -161,6 +163,8 @@ class StrandBrush : public Brush {
     Reached reach(const StrokeTarget& target, const DabContext& dab) const;
     /// Before the strands of a dab; not parallel.
     virtual void beginDab(const StrokeTarget&, const DabContext&) {}
+    /// After that, what the dab reaches; not parallel.
+    virtual void beginStrands(const StrokeTarget&, const Reached&) {}
     /// Moves points. Strands run in parallel, so nothing else may be written. False: left as it was.
     virtual bool edit(const DabContext& dab, StrandUnderBrush& strand) const = 0;
 

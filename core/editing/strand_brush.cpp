@@ -7,7 +7,9 @@
 #include "core/base/parallel.h"
 #include "core/base/profiler.h"
 #include "core/editing/brush.h"
+#include "core/geometry/curve.h"
 #include "core/operations/length_constraint.h"
+#include "core/operations/strand_frames.h"
 
 namespace hairloom::editing {
 namespace {
@@ -58,6 +60,17 @@ bool anyBelow(std::span<const float> values, float limit) {
 }
 
 }  // namespace
+
+void StrandUnderBrush::turnTowards(std::span<const Vec3f> shape) {
+    Vec3f last = points[first - 1];
+    for (std::size_t i = first; i < points.size(); ++i) {
+        const Vec3f own = unitOr(points[i] - last, rootNormal_ss());
+        const Vec3f wanted = unitOr(shape[i] - shape[i - 1], own);
+        const Quatf turn = Quatf::Identity().slerp(weights[i], shortestArc(own, wanted));
+        last = points[i];
+        points[i] = points[i - 1] + (turn * own).normalized() * lengths[i - 1];
+    }
+}
 
 float StrandBrush::weigh(const DabContext& dab, const BrushSettings& settings, std::span<const Vec3f> points,
                          std::span<float> weights) const {
@@ -181,9 +194,12 @@ Change StrandBrush::dab(StrokeTarget& target, const DabContext& dab) {
     if (holdsOn()) {
         Reached& held = held_[dab.isMirror ? 1 : 0];
         if (dab.isFirst) held = reach(target, dab);
+        beginStrands(target, held);
         editReached(target, dab, held);
     } else {
-        editReached(target, dab, reach(target, dab));
+        const Reached reached = reach(target, dab);
+        beginStrands(target, reached);
+        editReached(target, dab, reached);
     }
     if (target.touched.empty()) return {};
     return {Part::Points, target.touched};

@@ -33,24 +33,30 @@ std::span<const Field<S>> fieldsOf(const S&) {
     return kFields;
 }
 
+void curlStrand(std::span<Vec3f> points, std::span<const float> lengths, const CurlSettings& settings,
+                float phase) {
+    float total = 0;
+    for (const float length : lengths) total += length;
+    if (!(total > 0)) return;
+    const float finest = static_cast<float>(lengths.size()) / (kSegmentsPerTurn * total);
+    const float rate = 2 * kPi * std::min(settings.frequency, finest);
+    const auto frames = parallelTransportFrames(points, Vec3f::UnitX());
+    float arc = 0;
+    for (std::size_t i = 1; i < points.size(); ++i) {
+        arc += lengths[i - 1];
+        const float grown = settings.start > 0 ? std::min(arc / settings.start, 1.0f) : 1.0f;
+        const float angle = phase + rate * arc;
+        points[i] += settings.radius * grown *
+                     (std::cos(angle) * frames[i].col(0) + std::sin(angle) * frames[i].col(1));
+    }
+    restoreLengthsByDirection(points, lengths);
+}
+
 Result<std::size_t> curl(Groom& groom, const S& settings, const Region& region) {
     if (auto status = checkFields("curl", settings); !status) return tl::unexpected(status.error());
     return editStrands(groom, region, {settings.clearance}, [&](StrandEdit& strand) {
-        const float total = strand.totalLength();
-        if (!(total > 0)) return;
-        const float finest = static_cast<float>(strand.lengths.size()) / (kSegmentsPerTurn * total);
-        const float rate = 2 * kPi * std::min(settings.frequency, finest);
         const float phase = 2 * kPi * settings.phaseVariation * strand.random(settings.seed).uniform();
-        const auto frames = parallelTransportFrames(strand.points, Vec3f::UnitX());
-        float arc = 0;
-        for (std::size_t i = 1; i < strand.points.size(); ++i) {
-            arc += strand.lengths[i - 1];
-            const float grown = settings.start > 0 ? std::min(arc / settings.start, 1.0f) : 1.0f;
-            const float angle = phase + rate * arc;
-            strand.points[i] += settings.radius * grown *
-                                (std::cos(angle) * frames[i].col(0) + std::sin(angle) * frames[i].col(1));
-        }
-        restoreLengthsByDirection(strand.points, strand.lengths);
+        curlStrand(strand.points, strand.lengths, settings, phase);
     });
 }
 

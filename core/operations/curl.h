@@ -16,6 +16,10 @@ struct CurlSettings {
 };
 std::span<const Field<CurlSettings>> fieldsOf(const CurlSettings&);
 
+/// Winds one strand from the angle `phase` (radians) on; its root and its segments' `lengths` stay.
+void curlStrand(std::span<Vec3f> points, std::span<const float> lengths, const CurlSettings& settings,
+                float phase);
+
 /// Winds strands into helices about their course, lengths kept, so that curled hair reaches less far. Returns
 /// the number of strands touched.
 Result<std::size_t> curl(Groom& groom, const CurlSettings& settings, const Region& region = {});

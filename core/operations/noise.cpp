@@ -30,23 +30,28 @@ std::span<const Field<S>> fieldsOf(const S&) {
     return kFields;
 }
 
+void noiseStrand(std::span<Vec3f> points, std::span<const float> lengths, const NoiseSettings& settings,
+                 std::uint64_t stream) {
+    float total = 0;
+    for (const float length : lengths) total += length;
+    if (!(total > 0)) return;
+    const float finest = static_cast<float>(lengths.size()) / (kSegmentsPerWave * total);
+    const float frequency = std::min(settings.frequency, finest);
+    const Vec3f start = waveAt(stream, 0);
+    float arc = 0;
+    for (std::size_t i = 1; i < points.size(); ++i) {
+        arc += lengths[i - 1];
+        const float share = settings.rootShare + (1 - settings.rootShare) * arc / total;
+        points[i] += settings.amplitude * share * (waveAt(stream, arc * frequency) - start);
+    }
+    restoreLengthsByDirection(points, lengths);
+}
+
 Result<std::size_t> noise(Groom& groom, const S& settings, const Region& region) {
     if (auto status = checkFields("noise", settings); !status) return tl::unexpected(status.error());
     return editStrands(groom, region, {settings.clearance}, [&](StrandEdit& strand) {
-        const float total = strand.totalLength();
-        if (!(total > 0)) return;
-        const float finest = static_cast<float>(strand.lengths.size()) / (kSegmentsPerWave * total);
-        const float frequency = std::min(settings.frequency, finest);
         Random random = strand.random(settings.seed);
-        const std::uint64_t stream = random.next();
-        const Vec3f start = waveAt(stream, 0);
-        float arc = 0;
-        for (std::size_t i = 1; i < strand.points.size(); ++i) {
-            arc += strand.lengths[i - 1];
-            const float share = settings.rootShare + (1 - settings.rootShare) * arc / total;
-            strand.points[i] += settings.amplitude * share * (waveAt(stream, arc * frequency) - start);
-        }
-        restoreLengthsByDirection(strand.points, strand.lengths);
+        noiseStrand(strand.points, strand.lengths, settings, random.next());
     });
 }
 

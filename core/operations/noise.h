@@ -15,6 +15,10 @@ struct NoiseSettings {
 };
 std::span<const Field<NoiseSettings>> fieldsOf(const NoiseSettings&);
 
+/// Bends one strand by the waves of `stream`; its root and its segments' `lengths` stay.
+void noiseStrand(std::span<Vec3f> points, std::span<const float> lengths, const NoiseSettings& settings,
+                 std::uint64_t stream);
+
 /// Bends each strand by smooth random waves of its own, lengths kept: frizz with short waves, an uneven fall
 /// with long ones. Returns the number of strands touched.
 Result<std::size_t> noise(Groom& groom, const NoiseSettings& settings, const Region& region = {});

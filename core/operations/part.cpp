@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/operations/part.h"
+
 #include <cmath>
 
 #include "core/operations/length_constraint.h"
@@ -45,44 +47,51 @@ Vec3f raised(const Vec3f& direction, const Vec3f& axis, float least) {
     return axis * least + rest * std::sqrt(std::max(0.0f, 1 - least * least));
 }
 
-void layAway(StrandEdit& strand, const CurveLine& line, const S& settings) {
-    const CurveLine::Nearest home = line.nearest(strand.points[0]);
-    if (home.distance >= settings.reach) return;
-    const Vec3f outward = strand.outward();
-    const float side = (strand.points[0] - home.point).dot(across(home, outward)) < 0 ? -1.0f : 1.0f;
-    Vec3f last = strand.points[0];
+}  // namespace
+
+bool layAwayFrom(const CurveLine& line, const PartingForce& force, std::span<Vec3f> points,
+                 std::span<const float> lengths, const Vec3f& outward, const SkinQuery* skin) {
+    const CurveLine::Nearest home = line.nearest(points[0]);
+    if (home.distance >= force.reach) return false;
+    const float side = (points[0] - home.point).dot(across(home, outward)) < 0 ? -1.0f : 1.0f;
+    Vec3f last = points[0];
     float arc = 0;
-    for (std::size_t i = 1; i < strand.points.size(); ++i) {
-        arc += strand.lengths[i - 1];
-        Vec3f direction = unitOr(strand.points[i] - last, outward);
-        last = strand.points[i];
-        const Vec3f& from = strand.points[i - 1];
+    for (std::size_t i = 1; i < points.size(); ++i) {
+        arc += lengths[i - 1];
+        Vec3f direction = unitOr(points[i] - last, outward);
+        last = points[i];
+        const Vec3f& from = points[i - 1];
         const CurveLine::Nearest place = line.nearest(from);
         const float weight =
-            settings.strength * (1 - smoothStep(0.3f * settings.reach, settings.reach, place.distance));
+            force.strength * (1 - smoothStep(0.3f * force.reach, force.reach, place.distance));
         if (weight > 0) {
-            const Vec3f normal = strand.skin ? strand.skin->distanceAt(from).outward : outward;
+            const Vec3f normal = skin ? skin->distanceAt(from).outward : outward;
             const Vec3f away = side * across(place, normal);
             const float leads = direction.dot(away);
             direction = raised(direction, away, std::max(leads, leads + weight * (kAway - leads)));
             // The skin is met at the angle that the root leaves it, then along.
-            const float lift = settings.rise > 0 ? std::max(0.0f, 1 - arc / settings.rise) : 0.0f;
-            const float climb = std::sin(radians(settings.liftDegrees)) * lift;
+            const float lift = force.rise > 0 ? std::max(0.0f, 1 - arc / force.rise) : 0.0f;
+            const float climb = std::sin(radians(force.liftDegrees)) * lift;
             const float rises = direction.dot(normal);
             const float wanted = rises + weight * (climb - rises);
             const Vec3f tangent = unitOr(direction - normal * rises, away);
             direction = tangent * std::sqrt(std::max(0.0f, 1 - wanted * wanted)) + normal * wanted;
         }
-        strand.points[i] = from + unitOr(direction, outward) * strand.lengths[i - 1];
+        points[i] = from + unitOr(direction, outward) * lengths[i - 1];
     }
+    return true;
 }
+
+namespace {
 
 Result<std::size_t> part(Groom& groom, const S& settings, const Region& region) {
     if (auto status = checkFields("part", settings); !status) return tl::unexpected(status.error());
     if (!CurveLine::isDrawn(settings.curve)) return std::size_t{0};
     const CurveLine line(settings.curve);
-    return editStrands(groom, region, {settings.clearance, true},
-                       [&](StrandEdit& strand) { layAway(strand, line, settings); });
+    const PartingForce force{settings.strength, settings.reach, settings.liftDegrees, settings.rise};
+    return editStrands(groom, region, {settings.clearance, true}, [&](StrandEdit& strand) {
+        layAwayFrom(line, force, strand.points, strand.lengths, strand.outward(), strand.skin);
+    });
 }
 
 }  // namespace

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/operations/straighten.h"
+
 #include <algorithm>
 #include <vector>
 
@@ -54,18 +56,26 @@ class Course {
     std::vector<float> arcs_;
 };
 
+}  // namespace
+
+void straightenStrand(std::span<Vec3f> points, std::span<const float> lengths, float over, float amount) {
+    const std::vector<Vec3f> before(points.begin(), points.end());
+    const Course course(before, lengths);
+    if (!(over > 0)) over = 2 * course.length();
+    for (std::size_t i = 1; i < before.size(); ++i) {
+        const Vec3f own = unitOr(before[i] - before[i - 1], -Vec3f::UnitY());
+        const Vec3f straight = unitOr(course.around(i, over), own);
+        const Quatf turn = Quatf::Identity().slerp(amount, shortestArc(own, straight));
+        points[i] = points[i - 1] + (turn * own).normalized() * lengths[i - 1];
+    }
+}
+
+namespace {
+
 Result<std::size_t> straighten(Groom& groom, const S& settings, const Region& region) {
     if (auto status = checkFields("straighten", settings); !status) return tl::unexpected(status.error());
     return editStrands(groom, region, {settings.clearance}, [&](StrandEdit& strand) {
-        const std::vector<Vec3f> before(strand.points.begin(), strand.points.end());
-        const Course course(before, strand.lengths);
-        const float over = settings.over > 0 ? settings.over : 2 * course.length();
-        for (std::size_t i = 1; i < before.size(); ++i) {
-            const Vec3f own = unitOr(before[i] - before[i - 1], -Vec3f::UnitY());
-            const Vec3f straight = unitOr(course.around(i, over), own);
-            const Quatf turn = Quatf::Identity().slerp(settings.amount, shortestArc(own, straight));
-            strand.points[i] = strand.points[i - 1] + (turn * own).normalized() * strand.lengths[i - 1];
-        }
+        straightenStrand(strand.points, strand.lengths, settings.over, settings.amount);
     });
 }
 

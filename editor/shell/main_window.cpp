@@ -6,12 +6,14 @@
 #include <QDragEnterEvent>
 #include <QFileDialog>
 #include <QFileInfo>
+#include <QGridLayout>
 #include <QMenuBar>
 #include <QMessageBox>
 #include <QMimeData>
 #include <QScreen>
 #include <QSettings>
 #include <QToolBar>
+#include <QToolButton>
 
 #include "core/base/file.h"
 #include "core/editing/document.h"
@@ -27,6 +29,37 @@ namespace {
 constexpr int kLayoutVersion = 1;
 constexpr const char* kGeometry = "window/geometry";
 constexpr const char* kLayout = "window/layout";
+
+/// Two columns of buttons, of which one would be higher than small windows; tools that belong together by
+/// their order are apart from the others.
+QWidget* toolPalette(const QActionGroup& actions, const ToolBox& tools) {
+    auto* palette = new QWidget;
+    auto* grid = new QGridLayout(palette);
+    grid->setContentsMargins(0, 0, 0, 0);
+    grid->setSpacing(0);
+    int row = 0, column = 0, kind = 0;
+    for (QAction* action : actions.actions()) {
+        const Tool* tool = tools.find(action->objectName().section('.', 1));
+        const int kindOfTool = tool ? tool->info().order / 100 : 0;
+        if (kindOfTool != kind) {
+            auto* line = new QFrame;
+            line->setProperty("role", "line");
+            line->setFixedHeight(1);
+            row += column > 0 ? 1 : 0;
+            grid->setRowMinimumHeight(row, 7);
+            grid->addWidget(line, row++, 0, 1, 2, Qt::AlignVCenter);
+            column = 0;
+            kind = kindOfTool;
+        }
+        auto* button = new QToolButton;
+        button->setIconSize({18, 18});
+        button->setDefaultAction(action);
+        grid->addWidget(button, row, column);
+        row += column;
+        column = 1 - column;
+    }
+    return palette;
+}
 
 }  // namespace
 
@@ -153,9 +186,9 @@ void MainWindow::makeBars() {
 
     auto* tools = new QToolBar(tr("Tools"));
     tools->setObjectName("bar:tools");
-    tools->setIconSize({18, 18});
+    tools->setMovable(false);
     addToolBar(Qt::LeftToolBarArea, tools);
-    tools->addActions(toolGroup_->actions());
+    tools->addWidget(toolPalette(*toolGroup_, tools_));
 }
 
 void MainWindow::restoreLayout() {

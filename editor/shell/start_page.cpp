@@ -74,15 +74,16 @@ StartPage::StartPage(DocumentFiles& files, const Preferences& preferences, QWidg
     page->addWidget(open);
 
     page->addWidget(heading(tr("Samples")));
-    auto* samples = new QHBoxLayout;
+    auto* samples = new QGridLayout;
     samples->setSpacing(8);
+    constexpr int kColumns = 3;
     page->addLayout(samples);
     const auto folder = samplesFolder();
     const auto addSample = [&](const QString& name, const QString& label, const QString& tip) {
         auto* button = card(label, "hairloom", tip);
         button->setObjectName("sample:" + name);
         connect(button, &QPushButton::clicked, this, [this, name] { files_.openSample(name); });
-        samples->addWidget(button);
+        samples->addWidget(button, samples->count() / kColumns, samples->count() % kColumns);
     };
     if (folder.empty()) {
         samples->addWidget(dim(tr("The samples were not found beside the program.")));

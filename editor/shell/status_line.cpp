@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editor/shell/status_line.h"
 
+#include "core/editing/selection_commands.h"
 #include "editor/style/icons.h"
 #include "editor/style/theme.h"
 
@@ -31,7 +32,8 @@ StatusLine::StatusLine(QtDocument& document, const Preferences& preferences, Tas
     cancel_->setIcon(icon("close"));
     cancel_->setIconSize({12, 12});
     cancel_->setToolTip(tr("Stops the work and drops what it found"));
-    counts_->setToolTip(tr("Strands and points of the document"));
+    counts_->setObjectName("counts");
+    counts_->setToolTip(tr("Strands and points of the document, and how many strands are selected"));
     frameTime_->setToolTip(tr("Milliseconds for the last picture, and for the last frame of the simulation"));
     device_->setToolTip(tr("What draws the pictures"));
     addWidget(message_, 1);
@@ -82,7 +84,7 @@ StatusLine::StatusLine(QtDocument& document, const Preferences& preferences, Tas
         if (!problem.isEmpty()) say(problem, true);
     });
     device_->setText(tr("looking for a device"));
-    showCounts();
+    showCounts(editing::Part::Everything);
 }
 
 void StatusLine::say(const QString& text, bool isWarning) {
@@ -104,12 +106,15 @@ void StatusLine::setHint(const QString& hint) {
     message_->setToolTip(hint);
 }
 
-void StatusLine::showCounts() {
+void StatusLine::showCounts(editing::Part changed) {
+    // Not after each dab: the selection of a hundred thousand strands is counted.
+    if (!contains(changed, editing::Part::Strands | editing::Part::StrandFlags)) return;
     const Groom& groom = document_.groom();
-    const std::pair counts(groom.strandCount(), groom.pointCount());
-    if (counts == counted_) return;
-    counted_ = counts;
-    counts_->setText(tr("%L1 strands   %L2 points").arg(groom.strandCount()).arg(groom.pointCount()));
+    const std::size_t selected = editing::strandsWithFlag(groom, attribute::kSelected).size();
+    const QString strands = selected == 0
+                                ? tr("%L1 strands").arg(groom.strandCount())
+                                : tr("%L1 of %L2 strands selected").arg(selected).arg(groom.strandCount());
+    counts_->setText(tr("%1   %L2 points").arg(strands).arg(groom.pointCount()));
 }
 
 void StatusLine::showEngine() {

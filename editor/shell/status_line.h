@@ -32,7 +32,7 @@ class StatusLine : public QStatusBar {
 
   private:
     void say(const QString& text, bool isWarning);
-    void showCounts();
+    void showCounts(editing::Part changed);
     void showEngine();
     void showWork();
 
@@ -52,7 +52,6 @@ class StatusLine : public QStatusBar {
     QTimer poll_;
     QTimer fade_;
     QString hint_;
-    std::optional<std::pair<std::size_t, std::size_t>> counted_;  ///< strands and points as shown
     bool warning_ = false;
 };
 

@@ -35,7 +35,7 @@ bool smoothsItself(const editing::BrushInfo& brush) {
 
 }  // namespace
 
-BrushTool::BrushTool(const ToolParts& parts, std::string_view brush)
+BrushTool::BrushTool(const ToolParts& parts, std::string_view brush, std::shared_ptr<BrushHand> hand)
     : document_(parts.document),
       preferences_(parts.preferences),
       messages_(parts.messages),
@@ -47,7 +47,8 @@ BrushTool::BrushTool(const ToolParts& parts, std::string_view brush)
             iconOf(brush_),
             text(brush_.tip),
             QKeySequence(text(brush_.key)),
-            brush_.order} {
+            brush_.order},
+      hand_(std::move(hand)) {
     for (const editing::BrushParameter& parameter : brush_.parameters) {
         settings_.parameters.emplace(parameter.name, parameter.defaultValue);
     }
@@ -62,6 +63,35 @@ QString BrushTool::hint() const {
 void BrushTool::activate() {
     // Brushes work on the hair as it is authored; while it plays, that is where it comes to rest.
     if (player_.hasFrame() && !player_.isPlaying()) player_.reset();
+    if (!hand_->same || hand_->radius <= 0) return;
+    settings_.radius = hand_->radius;
+    settings_.strength = hand_->strength;
+    radius_px_ = hand_->radius_px;
+    Q_EMIT settingsChanged();
+}
+
+void BrushTool::fitRadius(const BrushPlace& place) {
+    if (!hand_->inPixels) return;
+    const float metres = viewport_.camera().metresPerPixel(place.position_ss, viewport_.viewSize_px());
+    if (radius_px_ <= 0) radius_px_ = settings_.radius / metres;
+    hand_->radius_px = radius_px_;
+    const float radius = std::clamp(radius_px_ * metres, kSmallest, kLargest);
+    if (radius == settings_.radius) return;
+    settings_.radius = radius;
+    Q_EMIT settingsChanged();
+}
+
+float BrushTool::depthAt(const BrushPlace& place) const {
+    if (!hand_->throughHair) return settings_.depth;
+    constexpr float kThick = 0.12f;  // metres of hair where no head is behind it
+    if (!place.skin) return std::max(settings_.depth, kThick);
+    const Vec3f skin = document_.groom().scalp->pointAt(place.skin->triangle, place.skin->barycentric);
+    return std::max(settings_.depth, (skin - place.position_ss).norm());
+}
+
+void BrushTool::handChanged() {
+    radius_px_ = 0;
+    changed();
 }
 
 void BrushTool::hover(const Pointer& pointer) {
@@ -71,6 +101,7 @@ void BrushTool::hover(const Pointer& pointer) {
         return;
     }
     place_ = underPointer(pointer);
+    fitRadius(*place_);
     Q_EMIT updated();
 }
 
@@ -95,10 +126,12 @@ BrushPlace BrushTool::underPointer(const Pointer& pointer) const {
 bool BrushTool::begin(const Pointer& pointer) {
     place_ = underPointer(pointer);
     if (brush_.worksOnSkin && !place_->skin) return false;
+    fitRadius(*place_);
     editing::Stroke header;
     const bool smooths = pointer.modifiers & Qt::ShiftModifier;
     header.tool = smooths && !smoothsItself(brush_) ? "smooth" : brush_.name;
     header.settings = settings_;
+    if (!brush_.worksOnSkin) header.settings.depth = depthAt(*place_);
     if (header.tool != brush_.name) header.settings.parameters.clear();
     if (smooths && header.tool == brush_.name) header.settings.parameters["smooth"] = 1;
     if (pointer.modifiers & Qt::ControlModifier) header.settings.invert = !settings_.invert;
@@ -157,6 +190,7 @@ void BrushTool::cancel() {
 
 void BrushTool::setRadius(float metres) {
     settings_.radius = std::clamp(metres, kSmallest, kLargest);
+    radius_px_ = 0;
     changed();
 }
 
@@ -214,6 +248,9 @@ void BrushTool::resize(const QPointF& to_px) {
 }
 
 void BrushTool::changed() {
+    hand_->radius = settings_.radius;
+    hand_->radius_px = radius_px_;
+    hand_->strength = settings_.strength;
     Q_EMIT settingsChanged();
     Q_EMIT updated();
 }
@@ -247,7 +284,8 @@ OptionForm* BrushTool::makeBasicOptions() {
             [this, member] { return static_cast<double>(settings_.*member); },
             [this, member](double value) {
                 settings_.*member = static_cast<float>(value);
-                Q_EMIT updated();
+                radius_px_ = 0;
+                changed();
             });
     };
     number("brushRadius", tr("Radius"), tr("Reach of the brush. Keys: F and move, or [ and ]"), "m",
@@ -282,9 +320,11 @@ OptionForm* BrushTool::makeBasicOptions() {
                                     : index == 1 ? editing::BrushCurve({0.0f, 1.0f})
                                                  : editing::BrushCurve({1.0f, 0.0f});
             });
-        number("brushDepth", tr("Depth"), tr("How far before and behind its place the brush reaches"), "m", 0,
-               0.3f, &editing::BrushSettings::depth);
+        number("brushDepth", tr("Depth"),
+               tr("How far before and behind its place the brush reaches, at least"), "m", 0, 0.3f,
+               &editing::BrushSettings::depth);
     }
+    hand_->addOptions(*form, brush_.worksOnSkin, [this] { handChanged(); });
     if (brush_.movesHair) {
         number("brushClearance", tr("Clearance"), tr("Distance that hair keeps from the skin"), "m", 0, 0.01f,
                &editing::BrushSettings::clearance);
@@ -334,8 +374,9 @@ QWidget* BrushTool::makeOptions() {
 ToolMaker brushTool() {
     return [](const ToolParts& parts) {
         Tools tools;
+        const auto hand = std::make_shared<BrushHand>();
         for (const std::string_view name : editing::brushNames())
-            tools.push_back(std::make_unique<BrushTool>(parts, name));
+            tools.push_back(std::make_unique<BrushTool>(parts, name, hand));
         return tools;
     };
 }

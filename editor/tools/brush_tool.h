@@ -5,6 +5,7 @@
 
 #include "core/editing/brush_list.h"
 #include "editor/fields/option_form.h"
+#include "editor/tools/brush_hand.h"
 #include "editor/tools/surface_pick.h"
 #include "editor/tools/tool_maker.h"
 
@@ -15,7 +16,7 @@ class BrushTool : public Tool {
 
   public:
     /// `brush` is one of editing::brushNames().
-    BrushTool(const ToolParts& parts, std::string_view brush);
+    BrushTool(const ToolParts& parts, std::string_view brush, std::shared_ptr<BrushHand> hand);
 
     const ToolInfo& info() const override { return info_; }
     QString hint() const override;
@@ -49,6 +50,11 @@ class BrushTool : public Tool {
     bool putDown(const BrushPlace& place, double pressure);
     void resize(const QPointF& to_px);
     void changed();
+    /// Where the size is the view's: the radius that it is there.
+    void fitRadius(const BrushPlace& place);
+    /// Metres before and behind its place that a brush at `place` reaches.
+    float depthAt(const BrushPlace& place) const;
+    void handChanged();
     OptionForm* makeBasicOptions();
 
     QtDocument& document_;
@@ -58,7 +64,9 @@ class BrushTool : public Tool {
     Viewport& viewport_;
     const editing::BrushInfo& brush_;
     ToolInfo info_;
+    std::shared_ptr<BrushHand> hand_;
     editing::BrushSettings settings_;
+    float radius_px_ = 0;  ///< where the size is the view's; 0: that of the radius
     std::string falloff_ = "smooth";
     std::optional<BrushPlace> place_;  ///< under the pointer
     std::optional<BrushPlace> last_;   ///< of the last dab; none outside a stroke

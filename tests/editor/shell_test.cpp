@@ -14,6 +14,7 @@
 #include <QStandardPaths>
 #include <QTabBar>
 #include <QToolBar>
+#include <QToolButton>
 
 #include "core/base/file.h"
 #include "core/groom/file/project_file.h"
@@ -48,6 +49,13 @@ TEST_F(ShellTest, EveryToolAndPanelCanBeReachedAt1280By800) {
             EXPECT_TRUE(isShown(*button, button->rect())) << action->text().toStdString();
         }
     }
+    std::size_t tools = 0;
+    for (const QToolButton* button : find<QToolBar>("bar:tools")->findChildren<QToolButton*>()) {
+        if (!button->defaultAction()) continue;
+        ++tools;
+        EXPECT_TRUE(isShown(*button, button->rect())) << button->toolTip().toStdString();
+    }
+    EXPECT_EQ(tools, parts().tools.all().size() + 1) << "and the one that moves the view";
     for (QTabBar* tabs : window->findChildren<QTabBar*>()) {
         for (int tab = 0; tab < tabs->count() && tabs->isVisible(); ++tab) {
             EXPECT_TRUE(isShown(*tabs, tabs->tabRect(tab))) << tabs->tabText(tab).toStdString();
@@ -63,7 +71,8 @@ TEST_F(ShellTest, AnEmptyWindowSaysWhatToDoFirstAndOffersTheSamples) {
     auto* first = find<QLabel>("firstStep");
     EXPECT_TRUE(first->isVisible());
     EXPECT_FALSE(first->text().contains('\n'));
-    for (const char* name : {"sample:", "sample:long", "sample:short", "sample:shoulder"}) {
+    for (const char* name : {"sample:", "sample:afro", "sample:bob", "sample:braid", "sample:long",
+                             "sample:short", "sample:shoulder"}) {
         EXPECT_TRUE(find<QPushButton>(name)->isVisible()) << name;
     }
     QTest::mouseClick(find<QPushButton>("sample:"), Qt::LeftButton);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Every tool in a person's hand: it changes what it should, undo and redo restore every bit, Esc leaves
 // nothing behind, and hair stays sound.
+#include <QCheckBox>
 #include <QComboBox>
 #include <QLabel>
 #include <QPointingDevice>
@@ -11,6 +12,7 @@
 
 #include "core/base/random.h"
 #include "core/editing/document.h"
+#include "core/editing/selection_commands.h"
 #include "core/groom/point_dye.h"
 #include "editor/fields/number_box.h"
 #include "editor/tools/brush_tool.h"
@@ -80,7 +82,8 @@ TEST_P(BrushToolTest, EscapeCancelsTheStroke) {
 
 INSTANTIATE_TEST_SUITE_P(All, BrushToolTest,
                          testing::Values("comb", "brush", "grab", "smooth", "puff", "pinch", "length", "cut",
-                                         "cut_line", "delete", "dye_paint", "mask_paint", "freeze"),
+                                         "cut_line", "delete", "dye_paint", "mask_paint", "freeze",
+                                         "straighten", "curl", "noise", "twist", "clump", "mirror", "level"),
                          [](const auto& brush) { return std::string(brush.param); });
 
 TEST_F(ToolsTest, KeysChangeSizeAndStrength) {
@@ -169,6 +172,78 @@ TEST_F(ToolsTest, CombingKeepsRootsAndLengths) {
         }
     }
     EXPECT_GT(moved, 10u);
+}
+
+TEST_F(ToolsTest, BrushesShareTheirSizeOrKeepItInTheViewWhereAsked) {
+    auto& comb = dynamic_cast<BrushTool&>(activate("comb"));
+    const auto check = [&](const char* name, bool on) {
+        const auto boxes = window->findChildren<QCheckBox*>(name);
+        const auto box = std::ranges::find_if(boxes, [](const QCheckBox* b) { return b->isVisible(); });
+        ASSERT_NE(box, boxes.end()) << name;
+        if ((*box)->isChecked() != on) (*box)->click();
+    };
+    comb.setRadius(0.031f);
+    auto& grab = dynamic_cast<BrushTool&>(activate("grab"));
+    EXPECT_NE(grab.settings().radius, 0.031f) << "each has its own";
+    activate("comb");
+    check("brushSame", true);
+    activate("grab");
+    EXPECT_EQ(grab.settings().radius, 0.031f);
+    grab.setStrength(0.77f);
+    activate("comb");
+    EXPECT_EQ(comb.settings().strength, 0.77f);
+
+    check("brushInPixels", true);
+    moveTo(crown);
+    const float near = comb.settings().radius;
+    viewport().camera().zoom(0.5f);
+    moveTo(crown + QPoint(3, 0));
+    EXPECT_NEAR(comb.settings().radius, 2 * near, 0.2f * near) << "the ring is as large as it was";
+    check("brushInPixels", false);
+    check("brushSame", false);
+}
+
+TEST_F(ToolsTest, BrushesReachAllHairBeforeTheHeadUnlessADepthIsAskedFor) {
+    auto& tool = dynamic_cast<BrushTool&>(activate("puff"));
+    const auto depthOfAStroke = [&](bool through) {
+        const auto boxes = window->findChildren<QCheckBox*>("brushThroughHair");
+        const auto box = std::ranges::find_if(boxes, [](const QCheckBox* b) { return b->isVisible(); });
+        if ((*box)->isChecked() != through) (*box)->click();
+        press(crown);
+        const float depth = document().editing().stroke()->stroke().settings.depth;
+        release(crown);
+        trigger("edit.undo");
+        return depth;
+    };
+    EXPECT_EQ(depthOfAStroke(false), tool.settings().depth);
+    EXPECT_GE(depthOfAStroke(true), tool.settings().depth);
+    EXPECT_LT(depthOfAStroke(true), 0.15f) << "not the hair behind the head";
+}
+
+TEST_F(ToolsTest, TheStatusLineCountsWhatIsSelected) {
+    auto* counts = find<QLabel>("counts");
+    EXPECT_FALSE(counts->text().contains("selected"));
+    activate("select");
+    drag({crown + QPoint(-30, -30), crown + QPoint(0, -30), crown + QPoint(0, 30), crown + QPoint(-30, 30)});
+    const std::size_t selected = editing::strandsWithFlag(groom(), attribute::kSelected).size();
+    ASSERT_GT(selected, 0u);
+    EXPECT_TRUE(counts->text().startsWith(QStringLiteral("%L1 of ").arg(selected)))
+        << counts->text().toStdString();
+    trigger("edit.undo");
+    EXPECT_FALSE(counts->text().contains("selected"));
+}
+
+TEST_F(ToolsTest, APartingIsBrushedOnTheHead) {
+    auto& tool = dynamic_cast<BrushTool&>(activate("part"));
+    tool.setRadius(0.03f);
+    tool.setStrength(1);
+    Vec3f front = groom().strand(0).front();
+    for (std::size_t s = 1; s < groom().strandCount(); ++s) {
+        const Vec3f& root = groom().strand(s).front();
+        if (root.z() > front.z()) front = root;
+    }
+    crown = at(front);
+    strokeAndBack("part");
 }
 
 TEST_F(ToolsTest, AddGrowsHairOnTheScalp) {

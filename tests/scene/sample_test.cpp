@@ -7,6 +7,7 @@
 #include "core/accuracy/certificate.h"
 #include "core/groom/groom_hash.h"
 #include "core/groom/validate.h"
+#include "core/operations/skin.h"
 #include "core/scene/groom_scene.h"
 #include "core/scene/motions.h"
 #include "tests/support/source_dir.h"
@@ -22,7 +23,8 @@ TEST(SampleTest, TheFolderIsFoundFromBelowAndNotElsewhere) {
 }
 
 TEST(SampleTest, SamplesAreCompleteAndDeterministic) {
-    EXPECT_THAT(sampleNames(kSamples), testing::ElementsAre("long", "short", "shoulder"));
+    EXPECT_THAT(sampleNames(kSamples),
+                testing::ElementsAre("afro", "bob", "braid", "long", "short", "shoulder"));
     const auto made = makeSample(kSamples, "short");
     ASSERT_TRUE(made) << made.error().message();
     EXPECT_EQ(made->strandCount(), 4000u);
@@ -33,6 +35,51 @@ TEST(SampleTest, SamplesAreCompleteAndDeterministic) {
     ASSERT_TRUE(again);
     EXPECT_EQ(contentHash(*again), contentHash(*made));
     EXPECT_FALSE(makeSample(kSamples, "no such style"));
+}
+
+/// Of every seventh strand.
+std::size_t pointsInsideTheHead(const Groom& groom) {
+    const Skin skin(groom.scalp);
+    std::size_t inside = 0;
+    for (std::size_t s = 0; s < groom.strandCount(); s += 7) {
+        for (const Vec3f& point : groom.strand(s).subspan(1)) inside += skin.at(point).distance < 0 ? 1 : 0;
+    }
+    return inside;
+}
+
+TEST(SampleTest, GroomedSamplesKeepTheirStackMasksAndGradedHairline) {
+    for (const char* name : {"afro", "bob", "braid"}) {
+        const auto made = makeSample(kSamples, name);
+        ASSERT_TRUE(made) << name << ": " << made.error().message();
+        EXPECT_FALSE(hasErrors(validate(*made))) << name;
+        EXPECT_GE(made->operators.size(), 7u) << name;
+        EXPECT_TRUE(made->strandAttributes.has("mask.1")) << name << ": its operators have painted masks";
+        EXPECT_FALSE(made->scalpDensity.empty()) << name << ": sparse at the hairline";
+        EXPECT_EQ(pointsInsideTheHead(*made), 0u) << name;
+        const auto again = makeSample(kSamples, name);
+        ASSERT_TRUE(again);
+        EXPECT_EQ(contentHash(*again), contentHash(*made)) << name;
+    }
+}
+
+TEST(SampleTest, TheFringeEndsAboveTheEyesAndTheBobAtTheChin) {
+    const auto made = makeSample(kSamples, "bob");
+    ASSERT_TRUE(made) << made.error().message();
+    const auto fringe = made->strandAttributes.view<float>("mask.1");
+    float lowest = 2, lowestOfFringe = 2;
+    std::size_t ofFringe = 0, ofRest = 0;
+    for (std::size_t s = 0; s < made->strandCount(); ++s) {
+        for (const Vec3f& point : made->strand(s)) {
+            lowest = std::min(lowest, point.y());
+            if (fringe[s] == 1) lowestOfFringe = std::min(lowestOfFringe, point.y());
+        }
+        ++(fringe[s] == 1 ? ofFringe : ofRest);
+    }
+    EXPECT_GT(ofFringe, 150u);
+    EXPECT_GT(ofRest, 2000u);
+    EXPECT_GT(lowestOfFringe, 1.67f) << "eyes are at 1.66 m";
+    EXPECT_GT(lowest, 1.55f);
+    EXPECT_LT(lowest, 1.6f);
 }
 
 TEST(SampleTest, LongHairComesToRestAmongItsSpheresAfterStorms) {

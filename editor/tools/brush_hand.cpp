@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "editor/tools/brush_hand.h"
+
+#include <QCoreApplication>
+#include <QSettings>
+
+namespace hairloom::editor {
+namespace {
+
+constexpr const char* kSame = "brushes/same";
+constexpr const char* kInPixels = "brushes/inPixels";
+constexpr const char* kThroughHair = "brushes/throughHair";
+
+}  // namespace
+
+BrushHand::BrushHand()
+    : same(QSettings().value(kSame, false).toBool()),
+      inPixels(QSettings().value(kInPixels, false).toBool()),
+      throughHair(QSettings().value(kThroughHair, true).toBool()) {}
+
+void BrushHand::addOptions(OptionForm& form, bool worksOnSkin, const std::function<void()>& changed) {
+    const auto add = [&](const char* name, const QString& label, const QString& tip, bool BrushHand::*member,
+                         const char* key) {
+        form.addBool(
+            name, label, tip, [this, member] { return this->*member; },
+            [this, member, key, changed](bool on) {
+                this->*member = on;
+                QSettings().setValue(key, on);
+                changed();
+            });
+    };
+    if (!worksOnSkin)
+        add("brushThroughHair", QObject::tr("Through all hair"),
+            QObject::tr("Reaches all hair that is before the head; without, as deep as Depth says"),
+            &BrushHand::throughHair, kThroughHair);
+    add("brushInPixels", QObject::tr("Size of the view"),
+        QObject::tr("The ring keeps its size in the view: near hair is brushed finer than far hair"),
+        &BrushHand::inPixels, kInPixels);
+    add("brushSame", QObject::tr("One size for all"),
+        QObject::tr("Radius and strength are those of all brushes; without, each brush has its own"),
+        &BrushHand::same, kSame);
+}
+
+}  // namespace hairloom::editor
