@@ -23,8 +23,8 @@ StrandWriter abcUnrealWriter() {
         "what abc carries, and Unreal's groom schema 1.5: widths, closest guides and their weights, "
         "version and tool",
         "Unreal takes units for centimetres",
-        {{"unreal", "Unreal groom", ".abc in centimetres, Y up; turn it by 90° about X in Unreal's import",
-          centimetres}},
+        {{"unreal", "Unreal groom",
+          ".abc in centimetres, Y up; import it with rotation 90, 0, 0 and scale 1, -1, 1", centimetres}},
         write};
     writer.animates = true;
     return writer;

@@ -27,7 +27,7 @@ StrandWriter abcWriter() {
         {{"blender", "Blender, Alembic", ".abc in metres, Y up, as Blender takes every Alembic file", {}},
          {"houdini", "Houdini, Alembic", ".abc in metres, Y up", {}},
          {"maya", "Maya, Alembic", ".abc in centimetres, Y up", centimetres},
-         {"unity", "Unity hair", ".abc in metres, Y up; 3 to 128 points, at most 65,536 strands", unity}},
+         {"unity", "Unity hair", ".abc in metres, Y up; 3 to 128 points, at most 64,000 strands", unity}},
         write};
     writer.animates = true;
     return writer;

@@ -94,7 +94,7 @@ StrandWriter hairWriter() {
         "at most 65,535 segments a strand",
         {{"plain", "Yuksel .hair", ".hair in metres, Y up; strands keep their points", {}},
          {"jolt", "Jolt Physics", ".hair in metres, Y up; 32 points a strand, as Jolt advises", jolt},
-         {"unity", "Unity hair", ".hair in metres, Y up; 3 to 128 points, at most 65,536 strands", unity}},
+         {"unity", "Unity hair", ".hair in metres, Y up; 3 to 128 points, at most 64,000 strands", unity}},
         writeHair};
 }
 

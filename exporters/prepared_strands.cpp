@@ -304,7 +304,7 @@ Result<PreparedStrands> prepareStrands(const Groom& groom, const StrandExportOpt
 }
 
 TargetLimits unityLimits() {
-    return {"Unity", 65536, 128, 3, true};
+    return {"Unity", 64000, 128, 3, true};
 }
 
 std::vector<Vec2f> rootUvs(const Groom& groom, const PreparedStrands& strands) {
