@@ -23,7 +23,7 @@ rm -rf "$root/try"
 mkdir -p "$root/try"
 cp "$packages"/*.deb "$root/try/"
 cp -r "$top/samples/player" "$root/try/player"
-awk '/^```c$/ { inside = 1; next } /^```$/ { inside = 0 } inside' "$top/docs/integrate.md" > "$root/try/game.c"
+awk '/^```c$/ { inside = 1; next } inside && /^```$/ { exit } inside' "$top/docs/integrate.md" > "$root/try/game.c"
 inside apt-get update -qq
 inside sh -c 'apt-get install -y -qq --no-install-recommends /try/hairloom_*.deb' >&2
 echo "ok   the application installs"

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "src/asset_error.h"
+
 namespace hairloom::runtime {
 
 using namespace asset;
@@ -27,18 +29,10 @@ constexpr std::array<std::array<std::uint32_t, 256>, 8> makeTables() {
     return tables;
 }
 
-std::string number(std::uint64_t value) {
-    return std::to_string(value);
-}
-
 std::string kindOf(const Section& section) {
     std::string kind(section.kind.data(), section.kind.size());
     for (char& c : kind) c = c >= ' ' && c <= '~' ? c : '?';
     return kind;
-}
-
-AssetError damaged(std::uint64_t byte, std::string words) {
-    return {AssetError::Kind::damaged, byte, std::move(words)};
 }
 
 }  // namespace

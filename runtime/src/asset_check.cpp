@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "hairloom/asset.h"
+#include "src/asset_error.h"
 
 namespace hairloom::runtime {
 
@@ -12,14 +13,6 @@ using namespace asset;
 namespace {
 
 using Problem = std::optional<AssetError>;
-
-std::string number(std::uint64_t value) {
-    return std::to_string(value);
-}
-
-AssetError damaged(std::uint64_t byte, std::string words) {
-    return {AssetError::Kind::damaged, byte, std::move(words)};
-}
 
 bool allFinite(std::span<const float> values) {
     return std::all_of(std::begin(values), std::end(values),

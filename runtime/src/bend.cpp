@@ -13,7 +13,7 @@ namespace {
 
 /// Stiffness beyond which the matrix of a strand no longer fits single precision, as a multiple of the
 /// masses. There a strand of 32 segments sags by less than a ten-thousandth of what it falls in a substep.
-constexpr double kStiffest = 1e7;
+constexpr double kStiffestSpring = 1e7;
 /// What keeps the fastest waves of curved hair from ringing on, whose pulls are not quite those of an energy.
 constexpr float kMinCurvedRate = 0.25f;
 /// The same where lengths are held by a step of their own, which does not leave the trapezoidal rule its
@@ -177,7 +177,7 @@ void fillBend(const RestShape& shape, const SimulationSettings& settings, float 
     const bool backward = settings.integrator == Integrator::implicitEuler;
     const double share =
         backward ? step : step * (0.25 + static_cast<double>(bendRate(settings, h, bend.targets)));
-    const double stiffest = bend.factored ? kStiffest : 0.0;
+    const double stiffest = bend.factored ? kStiffestSpring : 0.0;
     for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
         StrandBend strand(shape, settings, index, lane);
         strand.fillStiffness(share, stiffest, flexion);

@@ -2,17 +2,15 @@
 // hairloom.h: hands over to Asset and Instance, and lets nothing be thrown across.
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <new>
 
 #include "hairloom/hairloom.h"
+#include "src/crowd.h"
 #include "src/instance.h"
 
 using namespace hairloom::runtime;
-
-struct hl_instance {
-    Instance instance;
-};
 
 namespace {
 
@@ -171,11 +169,13 @@ hl_code hl_asset_numbers(const hl_asset* opened, const char* name, double* value
 hl_code hl_instance_make(const hl_asset* opened, uint32_t what, const hl_jobs* jobs, hl_instance** out,
                          hl_error* error) {
     if (!opened || !out) return nullRefused(error, "no asset or no place for the instance");
-    if (what > HL_HAIRS) return nullRefused(error, "neither HL_GUIDES nor HL_HAIRS");
+    if (what > (HL_HAIRS | HL_LEVELS))
+        return nullRefused(error, "neither HL_GUIDES nor a sum of HL_HAIRS and HL_LEVELS");
     return guarded(error, [&] {
         const Asset& asset = assetOf(opened);
         if (const auto problem = asset.checkContent()) return say(error, *problem);
-        Instance::Result made = Instance::make(asset, what == HL_HAIRS, hostOf(jobs));
+        Instance::Result made =
+            Instance::make(asset, (what & HL_HAIRS) != 0, (what & HL_LEVELS) != 0, hostOf(jobs));
         if (!made.instance) return say(error, HL_DAMAGED, HL_NO_PLACE, made.error);
         *out = new hl_instance{std::move(*made.instance)};
         return say(error, HL_OK, HL_NO_PLACE, "");
@@ -227,6 +227,27 @@ hl_code hl_instance_describe(const hl_instance* instance, hl_instance_info* info
     });
 }
 
+hl_code hl_instance_time(hl_instance* instance, uint64_t (*nanoseconds)(void* user), void* user,
+                         hl_error* error) {
+    if (!instance) return nullRefused(error, "no instance");
+    return guarded(error, [&] {
+        std::function<std::uint64_t()> clock;
+        if (nanoseconds) clock = [nanoseconds, user] { return nanoseconds(user); };
+        instance->instance.setClock(clock);
+        return say(error, HL_OK, HL_NO_PLACE, "");
+    });
+}
+
+hl_code hl_instance_effect(const hl_instance* instance, uint32_t effect, hl_effect* out, hl_error* error) {
+    static_assert(HL_EFFECT_COUNT == kEffectCount + 1);
+    if (!instance || !out) return nullRefused(error, "no instance or no place for the effect");
+    if (effect >= HL_EFFECT_COUNT) return nullRefused(error, "an effect that there is not");
+    return guarded(error, [&] {
+        *out = instance->instance.describeEffect(effect);
+        return say(error, HL_OK, HL_NO_PLACE, "");
+    });
+}
+
 hl_code hl_instance_offsets(const hl_instance* instance, uint32_t* offsets, size_t count, hl_error* error) {
     if (!instance || !offsets) return nullRefused(error, "no instance or no place for offsets");
     return guarded(error, [&] { return say(error, instance->instance.readOffsets({offsets, count})); });
@@ -248,4 +269,41 @@ hl_code hl_instance_read_hairs(hl_instance* instance, hl_out positions, hl_out t
     if (!instance) return nullRefused(error, "no instance");
     return guarded(error,
                    [&] { return say(error, instance->instance.readHairs(positions, tangents, radii)); });
+}
+
+hl_code hl_asset_levels_memory(const hl_asset* opened, size_t* bytes, hl_error* error) {
+    if (!opened || !bytes) return nullRefused(error, "no asset or no place for the bytes");
+    return guarded(error, [&] {
+        const Asset& asset = assetOf(opened);
+        if (const auto problem = asset.checkContent()) return say(error, *problem);
+        *bytes = instanceMemory(asset).levels;
+        return say(error, HL_OK, HL_NO_PLACE, "");
+    });
+}
+
+hl_code hl_instance_level(const hl_instance* instance, uint32_t level, hl_level* out, hl_error* error) {
+    if (!instance || !out) return nullRefused(error, "no instance or no place for the level");
+    if (!instance->instance.hasLevels()) return nullRefused(error, "the instance was made without HL_LEVELS");
+    if (level >= HL_LEVEL_COUNT) return nullRefused(error, "a level that there is not");
+    *out = instance->instance.describeLevel(level);
+    return say(error, HL_OK, HL_NO_PLACE, "");
+}
+
+hl_code hl_instance_set_level(hl_instance* instance, uint32_t level, float hair_share, hl_error* error) {
+    if (!instance) return nullRefused(error, "no instance");
+    return guarded(error, [&] { return say(error, instance->instance.setLevel(level, hair_share)); });
+}
+
+void hl_crowd_limits_init(hl_crowd_limits* limits) {
+    if (!limits) return;
+    *limits = {sizeof(hl_crowd_limits), 0.5f, 0.7f, std::numeric_limits<float>::infinity(), 1};
+}
+
+hl_code hl_crowd_plan(const hl_crowd_limits* limits, hl_viewed* characters, size_t count,
+                      hl_crowd_report* report, hl_error* error) {
+    if (!limits || (!characters && count > 0)) return nullRefused(error, "no limits or no characters");
+    return guarded(error, [&] {
+        hl_crowd_report ignored;
+        return say(error, planCrowd(*limits, {characters, count}, report ? *report : ignored));
+    });
 }

@@ -32,12 +32,25 @@ bool Engine::reset(std::span<const RootFrame> roots_ws) {
     return true;
 }
 
+bool Engine::place(std::span<const RootFrame> roots_ws, std::span<const Float3> positions_ws,
+                   std::span<const Float3> velocities_ws) {
+    if (roots_ws.size() != strandCount() || positions_ws.size() != pointCount() ||
+        velocities_ws.size() != pointCount())
+        return false;
+    impl_->place(roots_ws, positions_ws, velocities_ws);
+    return true;
+}
+
 std::string Engine::setSettings(const SimulationSettings& settings) {
     return impl_->setSettings(settings);
 }
 
 const SimulationSettings& Engine::settings() const {
     return impl_->settings_;
+}
+
+void Engine::setClock(std::function<std::uint64_t()> nanoseconds) {
+    impl_->host_.nanoseconds = std::move(nanoseconds);
 }
 
 bool Engine::step(const FrameInput& input) {

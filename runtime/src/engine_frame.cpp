@@ -68,6 +68,41 @@ void Engine::Impl::reset(std::span<const RootFrame> roots_ws) {
     replan({}, {}, state_.rootsMin_ws, state_.rootsMax_ws, 0.0f);
 }
 
+void Engine::Impl::place(std::span<const RootFrame> roots_ws, std::span<const Float3> positions_ws,
+                         std::span<const Float3> velocities_ws) {
+    reset(roots_ws);
+    state_.substep = kUsualFrame / static_cast<float>(substepsIn(settings_, kUsualFrame));
+    for (std::size_t b = 0; b < shape_->blocks.size(); ++b) {
+        const Block& block = shape_->blocks[b];
+        for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
+            const std::size_t first = shape_->offsets[block.strandOfLane[lane]];
+            const auto finite = [&](std::span<const Float3> values) {
+                const auto strand = values.subspan(first, block.points);
+                return std::all_of(strand.begin(), strand.end(),
+                                   [](Float3 value) { return isFinite(value); });
+            };
+            if (finite(positions_ws) && finite(velocities_ws))
+                placeLane(b, lane, &positions_ws[first], &velocities_ws[first]);
+        }
+    }
+}
+
+void Engine::Impl::placeLane(std::size_t index, std::uint32_t lane, const Float3* positions_ws,
+                             const Float3* velocities_ws) {
+    const Block& block = shape_->blocks[index];
+    const std::size_t size = planeSize(block);
+    const float* const root = state_.roots.data() + index * kRootRows * kBlockLanes + lane;
+    const Float3 root_ws{root[0], root[kBlockLanes], root[2 * kBlockLanes]};
+    float* const moving = state_.planes.data() + block.firstPlane * kStatePlanes;
+    for (std::uint32_t p = 0; p < block.points; ++p) {
+        const std::size_t i = std::size_t{p} * kBlockLanes + lane;
+        const Float3 at = positions_ws[p] - root_ws, before = at - velocities_ws[p] * state_.substep;
+        const float values[] = {at.x, at.y, at.z, before.x, before.y, before.z};
+        for (std::size_t plane = 0; plane < kStatePlanes; ++plane) moving[plane * size + i] = values[plane];
+    }
+    if (!rods_.planes.empty()) placeRodOnPoints(*shape_, rods_, state_, index, lane);
+}
+
 std::string Engine::Impl::setSettings(const SimulationSettings& settings) {
     if (std::string error = validationError(settings); !error.empty()) return error;
     settings_ = settings;

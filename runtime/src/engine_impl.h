@@ -26,6 +26,10 @@ struct Engine::Impl {
     Impl(const StrandsView& strands, const SimulationSettings& settings, Host host);
 
     void reset(std::span<const RootFrame> roots_ws);
+    void place(std::span<const RootFrame> roots_ws, std::span<const Float3> positions_ws,
+               std::span<const Float3> velocities_ws);
+    void placeLane(std::size_t block, std::uint32_t lane, const Float3* positions_ws,
+                   const Float3* velocities_ws);
     std::string setSettings(const SimulationSettings& settings);
     bool setState(const State& state);
     void step(const FrameInput& input);

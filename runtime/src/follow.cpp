@@ -16,12 +16,8 @@ namespace {
 
 constexpr std::size_t kGuidesPerJob = 64;
 constexpr std::size_t kHairsPerJob = 512;
-constexpr std::uint32_t kMaxPoints = 1u << 20u;  // kernels count the floats of 16 guides in 32 bits
+constexpr std::uint32_t kMaxHairPoints = 1u << 20u;  // kernels count the floats of 16 guides in 32 bits
 constexpr float kWeightSumTolerance = 1e-3f;
-
-std::string number(std::size_t value) {
-    return std::to_string(value);
-}
 
 struct Expectation {
     const char* name;
@@ -42,7 +38,8 @@ std::string sizeError(const FollowView& view) {
         {"root shifts", view.rootShifts.size(), hairs},
     };
     for (const Expectation& e : expectations) {
-        if (e.size != e.expected) return number(e.size) + " " + e.name + "; expected " + number(e.expected);
+        if (e.size != e.expected)
+            return std::to_string(e.size) + " " + e.name + "; expected " + std::to_string(e.expected);
     }
     return {};
 }
@@ -51,25 +48,27 @@ std::string guideError(const FollowView& view) {
     if (view.guideOffsets.size() < 2 || view.guideOffsets.front() != 0) {
         return "no guide offsets from 0; expected guide count + 1 of them";
     }
-    if (view.pointsPerHair < 2 || view.pointsPerHair > kMaxPoints) {
-        return number(view.pointsPerHair) + " points per hair; expected 2 to " + number(kMaxPoints);
+    if (view.pointsPerHair < 2 || view.pointsPerHair > kMaxHairPoints) {
+        return std::to_string(view.pointsPerHair) + " points per hair; expected 2 to " +
+               std::to_string(kMaxHairPoints);
     }
     bool resampled = false;
     for (std::size_t g = 0; g + 1 < view.guideOffsets.size(); ++g) {
         const std::uint32_t first = view.guideOffsets[g], end = view.guideOffsets[g + 1];
         if (end < first || end - first < 2) {
-            return "guide " + number(g) + " runs from point " + number(first) + " to " + number(end) +
-                   "; expected two points or more";
+            return "guide " + std::to_string(g) + " runs from point " + std::to_string(first) + " to " +
+                   std::to_string(end) + "; expected two points or more";
         }
         resampled = resampled || end - first != view.pointsPerHair;
     }
     const std::size_t points = view.guideOffsets.back();
     const std::size_t rests = view.guideRestPositions_ss.size();
     if (rests != points && (resampled || rests != 0)) {
-        return number(rests) + " rest positions of guides; expected " + number(points);
+        return std::to_string(rests) + " rest positions of guides; expected " + std::to_string(points);
     }
     for (std::size_t p = 0; p < rests; ++p) {
-        if (!isFinite(view.guideRestPositions_ss[p])) return "rest position " + number(p) + " is not finite";
+        if (!isFinite(view.guideRestPositions_ss[p]))
+            return "rest position " + std::to_string(p) + " is not finite";
     }
     return {};
 }
@@ -86,7 +85,8 @@ bool isPartition(Float3 w) {
 std::string hairError(const FollowView& view, std::size_t hair) {
     const auto guides = static_cast<std::uint32_t>(view.guideOffsets.size() - 1);
     for (const std::uint32_t guide : view.guides[hair]) {
-        if (guide >= guides) return "follows guide " + number(guide) + " of " + number(guides);
+        if (guide >= guides)
+            return "follows guide " + std::to_string(guide) + " of " + std::to_string(guides);
     }
     if (!isPartition(view.weights[hair])) return "has weights that are not shares of 1";
     if (!isPartition(view.rootWeights[hair])) return "has root weights that are not shares of 1";
@@ -103,16 +103,17 @@ std::string validationError(const FollowView& view) {
     for (std::size_t g = 0; g < view.rootPlanes_ss.size(); ++g) {
         const RootPlane& plane = view.rootPlanes_ss[g];
         if (!isFinite(plane.x) || !isFinite(plane.y) || !isFinite(plane.normal)) {
-            return "the root plane of guide " + number(g) + " is not finite";
+            return "the root plane of guide " + std::to_string(g) + " is not finite";
         }
     }
     for (std::size_t p = 0; p < view.radii.size(); ++p) {
         if (!(view.radii[p] >= 0.0f) || !std::isfinite(view.radii[p])) {
-            return "the wisp radius at point " + number(p) + " is not a length";
+            return "the wisp radius at point " + std::to_string(p) + " is not a length";
         }
     }
     for (std::size_t hair = 0; hair < view.guides.size(); ++hair) {
-        if (std::string why = hairError(view, hair); !why.empty()) return "hair " + number(hair) + " " + why;
+        if (std::string why = hairError(view, hair); !why.empty())
+            return "hair " + std::to_string(hair) + " " + why;
     }
     return {};
 }
@@ -288,12 +289,20 @@ std::size_t FollowHairs::bytesFor(std::size_t guides, std::size_t hairs, std::ui
 }
 
 bool FollowHairs::evaluate(const GuideMotion& guides, std::span<Float3> hairs_ws, const Host& host) {
+    const std::uint32_t all = hairCount();
+    return evaluateSome(guides, std::max(all, 1u), all, hairs_ws, host);
+}
+
+bool FollowHairs::evaluateSome(const GuideMotion& guides, std::uint32_t group, std::uint32_t taken,
+                               std::span<Float3> hairs_ws, const Host& host) {
     Impl& impl = *impl_;
     const auto fits = [](std::size_t size, std::size_t wanted) { return size == 0 || size == wanted; };
+    if (group == 0 || impl.hairs.size() % group != 0 || taken > group) return false;
+    const std::size_t groups = impl.hairs.size() / group;
     if (guides.positions_ws.size() != impl.guideOffsets.back() ||
         !fits(guides.velocities_ws.size(), guides.positions_ws.size()) ||
         !fits(guides.rootRotations_ws.size(), impl.guideCount()) ||
-        hairs_ws.size() != impl.hairs.size() * impl.points)
+        hairs_ws.size() != groups * taken * impl.points)
         return false;
     const GuideRows rows{impl.points,           impl.rowFloats,    impl.radii.data(), guides.wispSpread,
                          impl.positions.data(), impl.wisps.data(), impl.frames.data()};
@@ -302,8 +311,16 @@ bool FollowHairs::evaluate(const GuideMotion& guides, std::span<Float3> hairs_ws
     static_assert(sizeof(Float3) == 3 * sizeof(float));
     auto* out = reinterpret_cast<float*>(hairs_ws.data());
     const std::span<const HairBinding> hairs(impl.hairs);
-    forPieces(host, hairs.size(), kHairsPerJob, [&](std::size_t begin, std::size_t end) {
-        followKernels().sumRows(rows, hairs.subspan(begin, end - begin), out + begin * impl.points * 3);
+    const auto sum = [&](std::size_t first, std::size_t count, std::size_t to) {
+        followKernels().sumRows(rows, hairs.subspan(first, count), out + to * impl.points * 3);
+    };
+    if (taken == group) {
+        forPieces(host, hairs.size(), kHairsPerJob,
+                  [&](std::size_t begin, std::size_t end) { sum(begin, end - begin, begin); });
+        return true;
+    }
+    forPieces(host, groups, kGuidesPerJob, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t g = begin; g < end; ++g) sum(g * group, taken, g * taken);
     });
     return true;
 }

@@ -70,46 +70,75 @@ std::size_t ownBytes(std::size_t strands, std::size_t points, std::size_t hairPo
            (points + velocities + hairPoints) * sizeof(Float3);
 }
 
-}  // namespace
-
-InstanceMemory instanceMemory(const Asset& asset) {
+/// Of an engine at most, beside what threads work in; `strandsOf` counts strands by their points.
+std::size_t engineBytes(const std::map<std::uint32_t, std::size_t>& strandsOf) {
     // Strands of one point count fill blocks; straight ones and others are apart, and the last of each has
     // room to spare.
-    std::map<std::uint32_t, std::size_t> strandsOf;
-    std::uint32_t longest = 0;
-    for (const asset::Strand& strand : asset.strands) {
-        ++strandsOf[strand.points];
-        longest = std::max<std::uint32_t>(longest, strand.points);
-    }
-    std::size_t planeFloats = 0, blocks = 0;
-    for (const auto& [points, strands] : strandsOf) {
-        const std::size_t more = strands / kBlockLanes + std::min<std::size_t>(strands, 2);
+    std::size_t planeFloats = 0, blocks = 0, strands = 0;
+    for (const auto& [points, count] : strandsOf) {
+        const std::size_t more = count / kBlockLanes + std::min<std::size_t>(count, 2);
         blocks += more;
         planeFloats += more * (std::size_t{points} * kBlockLanes + kPlanePadding);
+        strands += count;
     }
-    const std::size_t solver =
-        *std::max_element(std::begin(kernels().solverFloats), std::end(kernels().solverFloats)) *
-        std::size_t{longest};
     // Rods take more than springs with any integrator do; of angular springs they have stiffness and targets.
     const std::size_t planes = kRestPlanes + kStatePlanes + kRodRestPlanes + kRodStatePlanes + 4;
     const std::size_t lanes =
         (2 * kRootRows + kRodLaneRows) * kBlockLanes * sizeof(float) + sizeof(Block) + kReportBytes;
+    return planeFloats * planes * sizeof(float) + blocks * lanes +
+           strands * (sizeof(RootFrame) + sizeof(std::uint32_t));
+}
+
+std::map<std::uint32_t, std::size_t> strandsByPoints(const Asset& asset) {
+    std::map<std::uint32_t, std::size_t> strandsOf;
+    for (const asset::Strand& strand : asset.strands) ++strandsOf[strand.points];
+    return strandsOf;
+}
+
+/// What HL_LEVELS adds; strands of a level have at most the points of the longest.
+std::size_t levelBytes(const Asset& asset, std::uint32_t longest, std::size_t thread) {
+    const std::size_t strands = asset.strandCount(), points = asset.pointCount();
+    std::size_t bytes = 2 * points * sizeof(Float3) + 2 * strands * sizeof(RootFrame) +
+                        (strands + 2) * sizeof(std::uint32_t) + sizeof(LevelSet);
+    for (std::uint32_t level = 1; level < HL_LEVEL_RIGID; ++level) {
+        std::map<std::uint32_t, std::size_t> strandsOf;
+        const std::uint32_t guides = guidesOfLevel(level, asset.strandCount());
+        // Whichever guides are taken, they have no more points than as many of the longest.
+        strandsOf[pointsOfLevel(level, longest)] = guides;
+        const std::size_t blocksMore = strandsByPoints(asset).size() * 2;
+        bytes += engineBytes(strandsOf) + thread + blocksMore * engineBytes({{longest, 1}}) +
+                 strands * sizeof(Level::Sources) + guides * 2 * sizeof(std::uint32_t) +
+                 3 * std::size_t{guides} * longest * sizeof(Float3) + sizeof(Level) + sizeof(Engine);
+        bytes += asset.spheres.size() * (sizeof(asset::Sphere) + 4 * sizeof(MovingSphere));
+    }
+    return bytes;
+}
+
+}  // namespace
+
+InstanceMemory instanceMemory(const Asset& asset) {
+    const std::map<std::uint32_t, std::size_t> strandsOf = strandsByPoints(asset);
+    const std::uint32_t longest = strandsOf.empty() ? 0 : strandsOf.rbegin()->first;
+    const std::size_t solver =
+        *std::max_element(std::begin(kernels().solverFloats), std::end(kernels().solverFloats)) *
+        std::size_t{longest};
     const std::size_t thread = sizeof(LaneFrame) + (solver + kSolverPadding) * sizeof(float);
     const std::size_t strands = asset.strandCount(), points = asset.pointCount(), hairs = asset.hairCount();
-    const std::size_t guides = planeFloats * planes * sizeof(float) + blocks * lanes +
-                               strands * (sizeof(RootFrame) + sizeof(std::uint32_t)) + thread +
+    const std::size_t guides = engineBytes(strandsOf) + thread +
                                asset.spheres.size() * (sizeof(asset::Sphere) + 4 * sizeof(MovingSphere)) +
                                ownBytes(strands, points, 0) + asset.radii.size() * sizeof(float) +
                                RootPoses::bytesFor(asset);
-    if (hairs == 0) return {guides, 0, thread};
+    // Speeds are kept for follow hairs and for levels.
+    const std::size_t levels = levelBytes(asset, longest, thread) + points * sizeof(Float3);
+    if (hairs == 0) return {guides, 0, levels, thread};
     const std::uint32_t pointsPerHair = asset.recipe[0].pointsPerHair;
     return {guides,
             FollowHairs::bytesFor(strands, hairs, pointsPerHair) +
                 ownBytes(strands, points, hairs * pointsPerHair) - ownBytes(strands, points, 0),
-            thread};
+            levels, thread};
 }
 
-Instance::Result Instance::make(const Asset& asset, bool wantsHairs, Host host) {
+Instance::Result Instance::make(const Asset& asset, bool wantsHairs, bool wantsLevels, Host host) {
     Asset::Strands strands = asset.strandsAtRest();
     Engine::Result made = Engine::make({strands.offsets, strands.positions_ss}, asset.simulation(), host);
     if (!made.engine) return {std::nullopt, std::move(made.error)};
@@ -128,13 +157,15 @@ Instance::Result Instance::make(const Asset& asset, bool wantsHairs, Host host) 
         FollowHairs::Result hairs = asset.followHairs(strands, instance.host_);
         if (!hairs.hairs) return {std::nullopt, std::move(hairs.error)};
         instance.hairs_ = std::move(hairs.hairs);
+        instance.hairGroups_ = std::max<std::uint32_t>(1, static_cast<std::uint32_t>(asset.guides.size()));
         instance.velocities_.resize(instance.positions_.size());
         instance.hairPositions_.resize(std::size_t{instance.hairs_->hairCount()} *
                                        instance.hairs_->pointsPerHair());
     }
-    instance.offsets_ = std::move(strands.offsets);
     instance.poses_.followHead(kIdentity34, instance.roots_);
     instance.engine_.reset(instance.roots_);
+    instance.offsets_ = strands.offsets;
+    if (wantsLevels) instance.makeLevels(asset, strands);
     return {std::move(instance), {}};
 }
 
@@ -211,6 +242,7 @@ Outcome Instance::reset(const hl_frame& frame) {
     engine_.reset(roots_);
     takeTurns();
     asleep_ = false;
+    if (levels_) resetLevel();
     return std::nullopt;
 }
 
@@ -230,10 +262,14 @@ Outcome Instance::step(const hl_frame& frame) {
     if (asleep_ && asBefore(frame)) return std::nullopt;
     FrameInput input;
     if (Outcome refused = place(frame, input)) return refused;
-    engine_.step(input);
     takeTurns();
+    if (levels_)
+        stepLevel(input);
+    else
+        engine_.step(input);
     remember(frame);
-    asleep_ = engine_.asleep() == engine_.strandCount();
+    const Engine* const engine = engineOfLevel();
+    asleep_ = !(levels_ && levels_->fading) && (!engine || engine->asleep() == engine->strandCount());
     return std::nullopt;
 }
 
@@ -277,6 +313,8 @@ Outcome Instance::set(std::string_view name, std::span<const double> values) {
     }
     if (const std::string why = engine_.setSettings(settings); !why.empty())
         return Refusal{HL_BAD_VALUE, why};
+    if (levels_) setSettingsOfLevels(settings);
+    asleep_ = false;
     return std::nullopt;
 }
 
@@ -285,7 +323,7 @@ Outcome Instance::readGuides(const hl_out& positions, const hl_out& tangents, co
     if (Outcome refused = fits(positions, "positions", points, sizeof(Float3))) return refused;
     if (Outcome refused = fits(tangents, "tangents", points, sizeof(Float3))) return refused;
     if (Outcome refused = fits(radii, "radii", points, sizeof(float))) return refused;
-    engine_.readPositions(positions_);
+    showPositions();
     for (std::size_t s = 0; s + 1 < offsets_.size(); ++s) {
         const std::size_t first = offsets_[s], count = offsets_[s + 1] - first;
         const auto strand = std::span<const Float3>(positions_).subspan(first, count);
@@ -304,13 +342,17 @@ Outcome Instance::readGuides(const hl_out& positions, const hl_out& tangents, co
 Outcome Instance::readHairs(const hl_out& positions, const hl_out& tangents, const hl_out& radii) {
     if (!hairs_)
         return Refusal{HL_BAD_VALUE, "the instance was made without follow hairs, or the asset has none"};
-    const std::size_t count = hairs_->pointsPerHair(), points = hairPositions_.size();
+    const std::uint32_t hairs = hairsRead(), group = hairsOfGuide();
+    const std::size_t count = hairs_->pointsPerHair(), points = hairs * count;
     if (Outcome refused = fits(positions, "positions", points, sizeof(Float3))) return refused;
     if (Outcome refused = fits(tangents, "tangents", points, sizeof(Float3))) return refused;
     if (Outcome refused = fits(radii, "radii", points, sizeof(float))) return refused;
-    engine_.readPositions(positions_);
-    engine_.readVelocities(velocities_);
-    hairs_->evaluate({positions_, velocities_, turns_}, hairPositions_, host_);
+    showPositions();
+    showVelocities();
+    hairs_->evaluateSome({positions_, velocities_, turns_}, group, hairs / hairGroups_,
+                         std::span(hairPositions_).first(points), host_);
+    // Fewer hairs cover what all did.
+    const float wider = static_cast<float>(hairs_->hairCount()) / static_cast<float>(hairs);
     const auto write = [&](std::size_t begin, std::size_t end) {
         for (std::size_t hair = begin; hair < end; ++hair) {
             const auto strand = std::span<const Float3>(hairPositions_).subspan(hair * count, count);
@@ -318,15 +360,15 @@ Outcome Instance::readHairs(const hl_out& positions, const hl_out& tangents, con
                 const std::size_t at = hair * count + p;
                 if (positions.data) store(positions, at, strand[p]);
                 if (tangents.data) store(tangents, at, tangentAt(strand, p));
-                if (radii.data) store(radii, at, between(radii_.root, radii_.tip, p, count));
+                if (radii.data) store(radii, at, between(radii_.root, radii_.tip, p, count) * wider);
             }
         }
     };
     constexpr std::size_t kHairsPerPiece = 512;
     if (host_.parallelFor)
-        host_.parallelFor(hairs_->hairCount(), kHairsPerPiece, std::cref(write));
+        host_.parallelFor(hairs, kHairsPerPiece, std::cref(write));
     else
-        write(0, hairs_->hairCount());
+        write(0, hairs);
     return std::nullopt;
 }
 
@@ -340,18 +382,49 @@ hl_instance_info Instance::describe() const {
     hl_instance_info info{};
     info.guides = static_cast<std::uint32_t>(roots_.size());
     info.guide_points = static_cast<std::uint32_t>(positions_.size());
-    info.hairs = hairs_ ? hairs_->hairCount() : 0;
+    info.hairs = hairsRead();
     info.points_per_hair = hairs_ ? hairs_->pointsPerHair() : 0;
-    const StepReport& report = engine_.lastStep();
-    info.asleep = engine_.asleep();
+    const Engine* const engine = engineOfLevel();
+    const StepReport report = engine ? engine->lastStep() : StepReport{};
+    // At a coarser level the guides that are not simulated sleep when the others do.
+    info.asleep = asleep_ ? info.guides : engine ? engine->asleep() : 0;
     info.restored = report.restoredStrands;
     info.left_roots = report.rejectedRoots;
     info.left_spheres = report.rejectedSpheres;
     info.bytes = sizeof(Instance) + bytesOf(engine_) + poses_.bytes() + (hairs_ ? hairs_->bytes() : 0) +
                  ownBytes(roots_.size(), positions_.size(), hairPositions_.size()) +
                  radii_.own.size() * sizeof(float) + restSpheres_.size() * sizeof(asset::Sphere) +
-                 spheres_.size() * sizeof(Sphere);
+                 spheres_.size() * sizeof(Sphere) + bytesOfLevels();
     return info;
+}
+
+void Instance::setClock(const std::function<std::uint64_t()>& nanoseconds) {
+    engine_.setClock(nanoseconds);
+    if (!levels_) return;
+    for (Engine& engine : levels_->engines) engine.setClock(nanoseconds);
+}
+
+hl_effect Instance::describeEffect(std::uint32_t number) const {
+    hl_effect effect{};
+    const bool strands = number == kEffectCount;
+    effect.name = strands ? "strands" : kEffects[number].name;
+    const Engine* const engine = engineOfLevel();
+    std::string why;
+    if (!engine || asleep_) {
+        why = std::string(effect.name) + (asleep_ ? ": off, all strands at rest" : ": off, hair is rigid");
+    } else {
+        effect.on = strands || engine->plan().on(static_cast<Effect>(number));
+        why = strands ? "strands: on, of every strand" : engine->plan().why(static_cast<Effect>(number));
+        const StepReport& report = engine->lastStep();
+        for (std::uint32_t stage = 0; stage < kStageCount; ++stage) {
+            const auto of = kStages[stage].effect;
+            if (strands ? !of : of == static_cast<Effect>(number))
+                effect.milliseconds += static_cast<float>(report.stageMilliseconds[stage]);
+        }
+    }
+    why.resize(std::min(why.size(), sizeof effect.why - 1));
+    std::memcpy(effect.why, why.c_str(), why.size() + 1);
+    return effect;
 }
 
 }  // namespace hairloom::runtime

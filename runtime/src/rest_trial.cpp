@@ -11,7 +11,7 @@
 namespace hairloom::runtime {
 namespace {
 
-constexpr std::size_t kStrands = 16;  // at most: the most curved ones and others, half of each
+constexpr std::size_t kMostStrands = 16;  // at most: the most curved ones and others, half of each
 /// Points times substeps of a trial: some tenths of a second, so that a window can wait for it.
 constexpr double kMostWork = 4e6;
 constexpr float kDampingTime = 0.5f;  // seconds, at most; what then moves after the trial is fed
@@ -82,7 +82,7 @@ RestTrial tryRest(const StrandsView& strands, const SimulationSettings& settings
         longest = std::max(longest, strands.offsets[s + 1] - strands.offsets[s]);
     const auto frames = static_cast<std::uint32_t>(std::ceil(kTrialSeconds / static_cast<double>(frameTime)));
     const double each = static_cast<double>(longest) * substepsIn(settings, frameTime) * frames;
-    const auto count = std::min(kStrands, static_cast<std::size_t>(kMostWork / each));
+    const auto count = std::min(kMostStrands, static_cast<std::size_t>(kMostWork / each));
     if (count < 2) return trial;
 
     SimulationSettings calm = settings;

@@ -48,7 +48,7 @@ void orderByPosition(std::span<std::uint32_t> strands, std::span<const Float3> p
 }
 
 /// Segments that turn by less, in radians, count as straight.
-constexpr float kStraight = 1e-4f;
+constexpr float kStraightTurn = 1e-4f;
 
 /// Whether the strand bends at rest.
 bool bends(std::span<const Float3> points) {
@@ -58,7 +58,7 @@ bool bends(std::span<const Float3> points) {
         const float size = length(segment);
         if (!(size > 1e-9f)) continue;
         const Float3 direction = segment * (1.0f / size);
-        if (length(before) > 0.5f && length(direction - before) > kStraight) return true;
+        if (length(before) > 0.5f && length(direction - before) > kStraightTurn) return true;
         before = direction;
     }
     return false;

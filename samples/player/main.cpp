@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plays a runtime asset without a window: a nodding head in wind, then a crowd. Written against the installed
-// package alone; what a game does is in play().
-//   player ASSET [--frames N] [--crowd N] [--resting] [--wind METRES_PER_SECOND] [--hairs]
+// Plays a runtime asset without a window, by the installed package alone: a nodding head in wind, a crowd.
+//   player ASSET [--frames N] [--crowd N] [--budget MS] [--resting] [--wind M/S] [--hairs]
 
 #include <hairloom/hairloom.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -18,11 +18,9 @@ namespace {
 
 struct Options {
     const char* file = nullptr;
-    int frames = 120;
-    int crowd = 0;
-    bool resting = false;
-    bool hairs = false;
-    float wind = 3;
+    int frames = 120, crowd = 0;
+    bool resting = false, hairs = false;
+    float wind = 3, budget = 0;
 };
 
 using Clock = std::chrono::steady_clock;
@@ -48,22 +46,17 @@ void nod(double time, const float pivot[3], float head[12]) {
     const double rise = std::min(time * 2.5, 1.0), degree = std::acos(-1.0) / 180;
     const double angle = 20 * degree * rise * rise * (3 - 2 * rise) * std::sin(2.5 * 180 * degree * time);
     const float c = static_cast<float>(std::cos(angle)), s = static_cast<float>(std::sin(angle));
-    const float rows[12] = {1, 0, 0, 0, 0, c, -s, 0, 0, s, c, 0};
+    const float y = pivot[1] - c * pivot[1] + s * pivot[2], z = pivot[2] - s * pivot[1] - c * pivot[2];
+    const float rows[12] = {1, 0, 0, 0, 0, c, -s, y, 0, s, c, z};
     std::memcpy(head, rows, sizeof rows);
-    head[7] = pivot[1] - c * pivot[1] + s * pivot[2];
-    head[11] = pivot[2] - s * pivot[1] - c * pivot[2];
 }
 
-struct Times {
-    double step = 0, read = 0;
-};
-
 /// One character for `frames` frames; false where the library refuses something.
-bool play(hairloom::game::Instance& hair, const hl_asset_info& asset, const Options& options, Times& times,
+bool play(hairloom::game::Instance& hair, const hl_asset_info& asset, const Options& options,
           hl_error& error) {
     std::vector<float> points;
-    const float pivot[3] = {0, asset.bounds_max[1], 0};
-    const float wind[3] = {options.wind, 0, 0};
+    const float pivot[3] = {0, asset.bounds_max[1], 0}, wind[3] = {options.wind, 0, 0};
+    double step = 0, read = 0, sum = 0;
     for (int f = 1; f <= options.frames; ++f) {
         float head[12];
         hairloom::game::Frame frame;
@@ -73,74 +66,103 @@ bool play(hairloom::game::Instance& hair, const hl_asset_info& asset, const Opti
         nod(frame.time, pivot, head);
         auto begin = Clock::now();
         if (!hair.step(frame, &error)) return false;
-        times.step += millisecondsSince(begin);
+        step += millisecondsSince(begin);
         begin = Clock::now();
         if (!(options.hairs ? hair.readHairs(points, &error) : hair.readGuides(points, &error))) return false;
-        times.read += millisecondsSince(begin);
+        read += millisecondsSince(begin);
     }
-    double sum = 0;
     for (const float value : points) sum += static_cast<double>(value);
-    std::printf("state %016llx, mean coordinate %.6f m\n", static_cast<unsigned long long>(hair.hash()),
-                sum / static_cast<double>(points.size()));
+    std::printf("state %016llx, mean coordinate %.6f m\nstep %.3f ms, read-out %.3f ms a frame\n",
+                static_cast<unsigned long long>(hair.hash()), sum / static_cast<double>(points.size()),
+                step / options.frames, read / options.frames);
     return std::isfinite(sum);
 }
 
-/// Characters side by side, each at its own time of the nod, or all at rest until their hair sleeps.
+std::uint64_t nanoseconds(void*) {
+    return static_cast<std::uint64_t>(Clock::now().time_since_epoch().count());
+}
+
+/// Rows of ten, each at its own time of the nod, or at rest; levels within half a pixel and the budget.
 bool playCrowd(const hairloom::game::Asset& asset, const hl_asset_info& info, const Options& options,
                hl_error& error) {
-    std::vector<hairloom::game::Instance> crowd(static_cast<std::size_t>(options.crowd));
+    std::vector<hairloom::game::Instance> hairs(static_cast<std::size_t>(options.crowd));
+    hairloom::game::Crowd crowd;
+    if (options.budget > 0) crowd.limits.milliseconds = options.budget;
     std::size_t bytes = 0;
-    for (hairloom::game::Instance& hair : crowd) {
-        if (!(&hair == &crowd[0] ? hair.make(asset, HL_GUIDES, nullptr, &error)
-                                 : hair.copy(crowd[0], &error)))
+    for (hairloom::game::Instance& hair : hairs) {
+        if (!(&hair == &hairs[0] ? hair.make(asset, HL_GUIDES | HL_LEVELS, nullptr, &error)
+                                 : hair.copy(hairs[0], &error)))
             return false;
         bytes += hair.describe().bytes;
         if (options.resting && !hair.set("windSpeed", 0, &error)) return false;
+        crowd.add(hair);
     }
     const float pivot[3] = {0, info.bounds_max[1], 0};
-    const int before = options.resting ? 300 : 0;
-    double measured = 0;
+    const int before = options.resting ? 600 : 0;  // until they sleep
+    double measured = 0, planned = 0, predicted = 0, effects[HL_EFFECT_COUNT] = {};
+    int timedFrames = 0, levels[HL_LEVEL_COUNT] = {};
     for (int f = 1; f <= before + options.frames; ++f) {
-        const auto begin = Clock::now();
-        for (std::size_t i = 0; i < crowd.size(); ++i) {
+        // A clock around every stage makes steps longer: it runs in every eighth frame, which does not count.
+        const bool counts = f > before, timed = counts && f % 8 == 0;
+        timedFrames += timed;
+        for (std::size_t i = 0; i < hairs.size(); ++i) {
+            hl_instance_time(hairs[i].get(), timed ? nanoseconds : nullptr, nullptr, nullptr);
+            crowd.characters[i].pixels_per_metre =  // 1080 lines of 40 degrees, from 1 m on
+                1480 / (1 + 1.5f * static_cast<float>(i / 10) + 0.002f * static_cast<float>(f));
+        }
+        auto begin = Clock::now();
+        if (!crowd.plan(&error)) return false;
+        planned += counts ? millisecondsSince(begin) : 0;
+        predicted += counts ? static_cast<double>(crowd.report.milliseconds) : 0;
+        begin = Clock::now();
+        for (std::size_t i = 0; i < hairs.size(); ++i) {
             float head[12];
             hairloom::game::Frame frame;
             frame.time = f / 60.0;
             frame.head = head;
             frame.origin[0] = 2 * static_cast<double>(i);  // numbers stay small wherever a character stands
             nod(options.resting ? 0 : frame.time + 0.1 * static_cast<double>(i), pivot, head);
-            if (!crowd[i].step(frame, &error)) return false;
+            if (!hairs[i].step(frame, &error)) return false;
         }
-        if (f > before) measured += millisecondsSince(begin);
+        if (counts && !timed) measured += millisecondsSince(begin);
+        for (std::uint32_t e = 0; timed && e < HL_EFFECT_COUNT; ++e)
+            for (const hairloom::game::Instance& hair : hairs)
+                effects[e] += static_cast<double>(hair.describeEffect(e).milliseconds);
     }
-    std::size_t asleep = 0, guides = 0;
-    for (const hairloom::game::Instance& hair : crowd) {
-        asleep += hair.describe().asleep;
-        guides += hair.describe().guides;
+    unsigned long long asleep = 0, guides = 0, state = 0;
+    for (const hairloom::game::Instance& hair : hairs) {
+        asleep += hair.describe().asleep, guides += hair.describe().guides;
+        state = state * 31 + hair.hash();
     }
-    std::printf("crowd of %d %s: %.4f ms a frame, %.1f KB a character, %zu of %zu guides asleep\n",
-                options.crowd, options.resting ? "at rest" : "nodding", measured / options.frames,
-                static_cast<double>(bytes) / 1e3 / static_cast<double>(options.crowd), asleep, guides);
+    for (const hl_viewed& character : crowd.characters) ++levels[character.level];
+    std::printf("crowd of %d %s: plan %.4f ms, steps %.4f ms a frame, %.3f predicted; %.1f KB a character\n",
+                options.crowd, options.resting ? "at rest" : "nodding", planned / options.frames,
+                measured / std::max(options.frames - timedFrames, 1), predicted / options.frames,
+                static_cast<double>(bytes) / 1e3 / options.crowd);
+    std::printf(
+        "%llu of %llu guides asleep, %d %d %d %d %d at levels 0 to 4, error %.2f pixels, state %016llx\n",
+        asleep, guides, levels[0], levels[1], levels[2], levels[3], levels[4],
+        static_cast<double>(crowd.report.error_pixels), state);
+    for (std::uint32_t e = 0; e < HL_EFFECT_COUNT; ++e)
+        std::printf("  %-20s %.4f ms a frame\n", hairs[0].describeEffect(e).name,
+                    effects[e] / std::max(timedFrames, 1));
     return true;
 }
 
 bool parse(int count, char** words, Options& options) {
     for (int i = 1; i < count; ++i) {
         const std::string word = words[i];
-        const bool more = i + 1 < count;
-        if (word == "--resting")
-            options.resting = true;
-        else if (word == "--hairs")
-            options.hairs = true;
-        else if (word == "--frames" && more)
-            options.frames = std::atoi(words[++i]);
-        else if (word == "--crowd" && more)
-            options.crowd = std::atoi(words[++i]);
-        else if (word == "--wind" && more)
-            options.wind = static_cast<float>(std::atof(words[++i]));
+        const auto number = [&](const char* name, auto& value) {
+            if (word != name || i + 1 >= count) return false;
+            value = static_cast<std::decay_t<decltype(value)>>(std::atof(words[++i]));
+            return true;
+        };
+        if (word == "--resting" || word == "--hairs")
+            (word == "--hairs" ? options.hairs : options.resting) = true;
         else if (!options.file && word.rfind("--", 0) != 0)
             options.file = words[i];
-        else
+        else if (!number("--frames", options.frames) && !number("--crowd", options.crowd) &&
+                 !number("--wind", options.wind) && !number("--budget", options.budget))
             return false;
     }
     return options.file && options.frames > 0 && options.frames <= 100000 && options.crowd >= 0 &&
@@ -152,9 +174,8 @@ bool parse(int count, char** words, Options& options) {
 int main(int count, char** words) {
     Options options;
     if (!parse(count, words, options)) {
-        std::fprintf(
-            stderr,
-            "player ASSET [--frames N] [--crowd N] [--resting] [--wind METRES_PER_SECOND] [--hairs]\n");
+        std::fputs("player ASSET [--frames N] [--crowd N] [--budget MS] [--resting] [--wind M/S] [--hairs]\n",
+                   stderr);
         return 2;
     }
     std::size_t size = 0;
@@ -162,29 +183,16 @@ int main(int count, char** words) {
     hairloom::game::Error error;
     hairloom::game::Asset asset;
     hairloom::game::Instance hair;
-    auto begin = Clock::now();
-    bool good = asset.open(file.data(), size, &error);
-    const double opened = millisecondsSince(begin);
-    begin = Clock::now();
-    good = good && asset.check(&error);
-    const double checked = millisecondsSince(begin);
-    begin = Clock::now();
-    good = good && hair.make(asset, options.hairs ? HL_HAIRS : HL_GUIDES, nullptr, &error);
-    const double made = millisecondsSince(begin);
-    Times times;
+    const auto begin = Clock::now();
+    bool good = asset.open(file.data(), size, &error) && asset.check(&error) &&
+                hair.make(asset, options.hairs ? HL_HAIRS : HL_GUIDES, nullptr, &error);
     if (good) {
         const hl_asset_info info = asset.describe();
-        std::printf(
-            "%u guides of %u points, %u follow hairs; opened in %.3f ms, checked in %.2f ms, made in %.1f "
-            "ms\n",
-            info.guides, info.guide_points, info.hairs, opened, checked, made);
-        std::printf("memory %.1f KB, at most %.1f KB\n", static_cast<double>(hair.describe().bytes) / 1e3,
-                    static_cast<double>(info.guides_memory + (options.hairs ? info.hairs_memory : 0)) / 1e3);
-        good = play(hair, info, options, times, error);
-        if (good)
-            std::printf("step %.3f ms, read-out %.3f ms a frame\n", times.step / options.frames,
-                        times.read / options.frames);
-        if (good && options.crowd > 0) good = playCrowd(asset, info, options, error);
+        std::printf("%u guides of %u points, %u follow hairs; opened and made in %.3f ms, %.1f KB\n",
+                    info.guides, info.guide_points, info.hairs, millisecondsSince(begin),
+                    static_cast<double>(hair.describe().bytes) / 1e3);
+        good = play(hair, info, options, error) &&
+               (options.crowd == 0 || playCrowd(asset, info, options, error));
     }
     if (good) return 0;
     std::fprintf(stderr, "error: %s: %s\n", options.file, error.words);

@@ -75,6 +75,30 @@ TEST(Abi, StructsLieAsTheyDid) {
         MEMBER(hl_instance_info, left_roots, 24, 4),
         MEMBER(hl_instance_info, left_spheres, 28, 4),
         MEMBER(hl_instance_info, bytes, 32, 8),
+        MEMBER(hl_effect, name, 0, 8),
+        MEMBER(hl_effect, on, 8, 4),
+        MEMBER(hl_effect, milliseconds, 12, 4),
+        MEMBER(hl_effect, why, 16, 120),
+        MEMBER(hl_level, guides, 0, 4),
+        MEMBER(hl_level, points, 4, 4),
+        MEMBER(hl_level, substeps, 8, 4),
+        MEMBER(hl_level, error_still, 12, 4),
+        MEMBER(hl_level, error_head, 16, 4),
+        MEMBER(hl_level, error_wind, 20, 4),
+        MEMBER(hl_level, milliseconds, 24, 4),
+        MEMBER(hl_crowd_limits, size, 0, 8),
+        MEMBER(hl_crowd_limits, error_pixels, 8, 4),
+        MEMBER(hl_crowd_limits, hair_pixels, 12, 4),
+        MEMBER(hl_crowd_limits, milliseconds, 16, 4),
+        MEMBER(hl_crowd_limits, speed, 20, 4),
+        MEMBER(hl_viewed, hair, 0, 8),
+        MEMBER(hl_viewed, pixels_per_metre, 8, 4),
+        MEMBER(hl_viewed, level, 12, 4),
+        MEMBER(hl_viewed, error_pixels, 16, 4),
+        MEMBER(hl_viewed, milliseconds, 20, 4),
+        MEMBER(hl_crowd_report, error_pixels, 0, 4),
+        MEMBER(hl_crowd_report, milliseconds, 4, 4),
+        MEMBER(hl_crowd_report, within, 8, 4),
         MEMBER(hl_out, data, 0, 8),
         MEMBER(hl_out, bytes, 8, 8),
         MEMBER(hl_out, stride, 16, 8),
@@ -91,13 +115,19 @@ TEST(Abi, StructsLieAsTheyDid) {
     EXPECT_EQ(sizeof(hl_frame), 128u);
     EXPECT_EQ(sizeof(hl_instance_info), 40u);
     EXPECT_EQ(sizeof(hl_out), 24u);
+    EXPECT_EQ(sizeof(hl_effect), 136u);
+    EXPECT_EQ(sizeof(hl_level), 28u);
+    EXPECT_EQ(sizeof(hl_crowd_limits), 24u);
+    EXPECT_EQ(sizeof(hl_viewed), 24u);
+    EXPECT_EQ(sizeof(hl_crowd_report), 12u);
 }
 #undef MEMBER
 
 TEST(Abi, CodesHaveTheirNumbers) {
-    const int codes[] = {HL_OK,        HL_DAMAGED,   HL_NEWER,  HL_WRONG_SIZE,
-                         HL_BAD_VALUE, HL_NO_MEMORY, HL_GUIDES, HL_HAIRS};
-    const int expected[] = {0, 1, 2, 3, 4, 5, 0, 1};
+    const int codes[] = {HL_OK,          HL_DAMAGED,     HL_NEWER,       HL_WRONG_SIZE, HL_BAD_VALUE,
+                         HL_NO_MEMORY,   HL_GUIDES,      HL_HAIRS,       HL_LEVELS,     HL_LEVEL_FINEST,
+                         HL_LEVEL_RIGID, HL_LEVEL_COUNT, HL_EFFECT_COUNT};
+    const int expected[] = {0, 1, 2, 3, 4, 5, 0, 1, 2, 0, 4, 5, 12};
     for (std::size_t i = 0; i < std::size(codes); ++i) EXPECT_EQ(codes[i], expected[i]) << i;
     EXPECT_EQ(sizeof(hl_code), 4u);
     EXPECT_EQ(HL_NO_PLACE, ~std::uint64_t{0});
@@ -131,6 +161,14 @@ TEST(Abi, FunctionsTakeWhatTheyTook) {
     EXPECT_TRUE((isA<std::uint64_t(ConstHair)>(&hl_instance_hash)));
     EXPECT_TRUE((isA<hl_code(Hair, hl_out, hl_out, hl_out, hl_error*)>(&hl_instance_read_guides)));
     EXPECT_TRUE((isA<hl_code(Hair, hl_out, hl_out, hl_out, hl_error*)>(&hl_instance_read_hairs)));
+    EXPECT_TRUE((isA<hl_code(Hair, std::uint64_t(*)(void*), void*, hl_error*)>(&hl_instance_time)));
+    EXPECT_TRUE((isA<hl_code(ConstHair, std::uint32_t, hl_effect*, hl_error*)>(&hl_instance_effect)));
+    EXPECT_TRUE((isA<hl_code(Asset, size_t*, hl_error*)>(&hl_asset_levels_memory)));
+    EXPECT_TRUE((isA<hl_code(ConstHair, std::uint32_t, hl_level*, hl_error*)>(&hl_instance_level)));
+    EXPECT_TRUE((isA<hl_code(Hair, std::uint32_t, float, hl_error*)>(&hl_instance_set_level)));
+    EXPECT_TRUE((isA<void(hl_crowd_limits*)>(&hl_crowd_limits_init)));
+    EXPECT_TRUE((isA<hl_code(const hl_crowd_limits*, hl_viewed*, size_t, hl_crowd_report*, hl_error*)>(
+        &hl_crowd_plan)));
 }
 
 }  // namespace

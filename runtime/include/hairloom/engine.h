@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -76,10 +77,18 @@ class Engine {
 
     /// Places all strands in their rest shape on these roots, without speed. One root per strand.
     bool reset(std::span<const RootFrame> roots_ws);
+    /// Goes on from strands that something else has moved: points at these positions with these speeds (one
+    /// of each point, in the order of make(); metres and m/s, world), on these roots, without twist beyond
+    /// that at rest. A strand with a value that is not finite is placed at rest.
+    bool place(std::span<const RootFrame> roots_ws, std::span<const Float3> positions_ws,
+               std::span<const Float3> velocities_ws);
     /// Takes other settings from the next step on; empty, or why they are refused. May allocate; step() does
     /// not, but for more spheres than ever before and for effects that it has not met.
     std::string setSettings(const SimulationSettings& settings);
     const SimulationSettings& settings() const;
+
+    /// Host::nanoseconds from the next step on.
+    void setClock(std::function<std::uint64_t()> nanoseconds);
 
     /// Advances by input.dt to the end of the frame. A dt that is not above 0 changes nothing. One root per
     /// strand.

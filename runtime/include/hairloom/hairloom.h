@@ -90,12 +90,12 @@ typedef struct hl_jobs {
                          void (*body)(void* context, size_t begin, size_t end), void* context);
 } hl_jobs;
 
-enum { HL_GUIDES = 0, HL_HAIRS = 1 };
+enum { HL_GUIDES = 0, HL_HAIRS = 1, HL_LEVELS = 2 };
 
-/* A copy of what it needs: the asset may go afterwards. `what` is HL_GUIDES, or HL_HAIRS to read follow hairs
- * as well. `jobs` may be null: all on the calling thread. All memory is asked for here and at the first
- * frames of new effects or more spheres, none by other steps. At rest on the head at rest until it is reset
- * or stepped. */
+/* A copy of what it needs: the asset may go afterwards. `what` is HL_GUIDES, or the sum of HL_HAIRS to read
+ * follow hairs as well and HL_LEVELS to have levels of detail. `jobs` may be null: all on the calling thread.
+ * All memory is asked for here and at the first frames of new effects or more spheres, none by other steps.
+ * At rest on the head at rest until it is reset or stepped. */
 hl_code hl_instance_make(const hl_asset* asset, uint32_t what, const hl_jobs* jobs, hl_instance** out,
                          hl_error* error);
 /* Another character of the same hair, in the same state: running on gives the same bits, so a copy is a
@@ -138,9 +138,11 @@ hl_code hl_instance_set(hl_instance* instance, const char* name, const double* v
                         hl_error* error);
 
 typedef struct hl_instance_info {
-    uint32_t guides, guide_points, hairs, points_per_hair;
-    uint32_t asleep;   /* guides */
-    uint32_t restored; /* guides that the last step put back to rest because they were no numbers */
+    uint32_t guides, guide_points;
+    uint32_t hairs,
+        points_per_hair; /* that hl_instance_read_hairs reads, all unless a level leaves some out */
+    uint32_t asleep;     /* guides */
+    uint32_t restored;   /* guides that the last step put back to rest because they were no numbers */
     uint32_t left_roots, left_spheres; /* of the last step that were not finite */
     size_t bytes;                      /* that the instance holds */
 } hl_instance_info;
@@ -149,6 +151,20 @@ hl_code hl_instance_describe(const hl_instance* instance, hl_instance_info* info
 hl_code hl_instance_offsets(const hl_instance* instance, uint32_t* offsets, size_t count, hl_error* error);
 /* Of all positions and speeds: equal for any number of threads. */
 uint64_t hl_instance_hash(const hl_instance* instance);
+
+/* A steady clock, for hl_effect.milliseconds, from the next step on; it costs a little. Null: none. It is
+ * asked from whatever threads the jobs run on. Copies ask it, too. */
+hl_code hl_instance_time(hl_instance* instance, uint64_t (*nanoseconds)(void* user), void* user,
+                         hl_error* error);
+enum { HL_EFFECT_COUNT = 12 };
+typedef struct hl_effect {
+    const char* name; /* "collision"; the last is "strands", what every strand takes */
+    uint32_t on;      /* in the last step */
+    float milliseconds;
+    char why[120]; /* "collision: off, no sphere within reach of a strand"; ends in 0 */
+} hl_effect;
+/* Of the last step, `effect` below HL_EFFECT_COUNT. Rods solve all forces in one, which counts as strands. */
+hl_code hl_instance_effect(const hl_instance* instance, uint32_t effect, hl_effect* out, hl_error* error);
 
 /* Where a value of each point goes: at data, data + stride, ... Size and stride in bytes. Without data it is
  * left out. */
@@ -162,6 +178,64 @@ hl_code hl_instance_read_guides(hl_instance* instance, hl_out positions, hl_out 
                                 hl_error* error);
 hl_code hl_instance_read_hairs(hl_instance* instance, hl_out positions, hl_out tangents, hl_out radii,
                                hl_error* error);
+
+/* --- Levels of detail and crowds --- */
+
+/* From HL_LEVEL_FINEST, which is the hair as authored, over fewer guides, points and substeps to
+ * HL_LEVEL_RIGID, which simulates nothing: hair goes with the head. Reads give all guides and points at every
+ * level; those that are not simulated follow their neighbours. */
+enum { HL_LEVEL_FINEST = 0, HL_LEVEL_RIGID = 4, HL_LEVEL_COUNT = 5 };
+
+/* Errors are metres, root mean square over the points of all guides, from where the finest level has them;
+ * measured on a nodding head and in wind when the instance was made. That of a frame is error_still +
+ * error_head for each m/s of its roots + error_wind for each m/s of its wind, of the fastest in the last half
+ * second. */
+typedef struct hl_level {
+    uint32_t guides, points, substeps; /* simulated; substeps in 1/60 s */
+    float error_still, error_head, error_wind;
+    float milliseconds; /* of stepping and reading a frame of 1/60 s, with all hairs where the instance has
+                           hairs; by counts and the rates of a machine of docs/integrate.md */
+} hl_level;
+/* Bytes that HL_LEVELS adds to an instance, at most. */
+hl_code hl_asset_levels_memory(const hl_asset* asset, size_t* bytes, hl_error* error);
+hl_code hl_instance_level(const hl_instance* instance, uint32_t level, hl_level* out, hl_error* error);
+/* From the next step on; what is read next is where it was, and goes over within half a second. Of an
+ * instance with HL_LEVELS. `hair_share`, above 0 to 1: that share of each guide's follow hairs is read, one
+ * at least, and as much wider as they are fewer. */
+hl_code hl_instance_set_level(hl_instance* instance, uint32_t level, float hair_share, hl_error* error);
+
+typedef struct hl_crowd_limits {
+    size_t size;        /* sizeof(hl_crowd_limits), set by hl_crowd_limits_init() */
+    float error_pixels; /* no character is given more while the budget allows; 0.5 */
+    float hair_pixels;  /* hairs are left out while those that stay are narrower; 0 leaves out none; 0.7 */
+    float milliseconds; /* of all characters together, predicted; infinite: no budget */
+    float speed;        /* of this machine, where 1 is that of hl_level.milliseconds; 1 */
+} hl_crowd_limits;
+void hl_crowd_limits_init(hl_crowd_limits* limits);
+
+typedef struct hl_viewed {
+    hl_instance* hair;      /* with HL_LEVELS; each stands once in a crowd */
+    float pixels_per_metre; /* on the screen, where the character stands; 0: not seen */
+    /* What it is given: */
+    uint32_t level;
+    float error_pixels, milliseconds; /* predicted; no milliseconds while it sleeps */
+} hl_viewed;
+
+typedef struct hl_crowd_report {
+    float error_pixels; /* greatest of all characters */
+    float milliseconds; /* of all together */
+    uint32_t within;    /* 1 where both limits are kept; 0 where the budget asked for larger errors, or even
+                           rigid hair takes more than the budget */
+} hl_crowd_report;
+
+/* Once a frame, before the steps: gives every character the cheapest level whose predicted error in pixels is
+ * within one limit for all, which is error_pixels or, where these levels take more than the budget, the
+ * smallest that does not. By what the instances were given so far, their levels and `limits` alone, without a
+ * clock: the same frames come to the same levels. Takes no memory. A character goes to a coarser level only
+ * where that has a quarter of the limit to spare, so that it does not go to and fro. Before its first step
+ * nobody knows how it will move: all levels but the finest count as a metre off. */
+hl_code hl_crowd_plan(const hl_crowd_limits* limits, hl_viewed* characters, size_t count,
+                      hl_crowd_report* report, hl_error* error);
 
 #ifdef __cplusplus
 }

@@ -64,7 +64,7 @@ class Asset {
 class Instance {
   public:
     Instance() = default;
-    /// `what` is HL_GUIDES or HL_HAIRS. False where the asset is refused.
+    /// `what` is HL_GUIDES or a sum of HL_HAIRS and HL_LEVELS. False where the asset is refused.
     bool make(const Asset& asset, std::uint32_t what, const hl_jobs* jobs = nullptr,
               hl_error* error = nullptr) {
         hl_instance* made = nullptr;
@@ -93,6 +93,21 @@ class Instance {
         hl_instance_describe(instance_.get(), &info, nullptr);
         return info;
     }
+    bool setLevel(std::uint32_t level, float hairShare = 1, hl_error* error = nullptr) {
+        return hl_instance_set_level(instance_.get(), level, hairShare, error) == HL_OK;
+    }
+    /// All 0 without HL_LEVELS.
+    hl_level describeLevel(std::uint32_t level) const {
+        hl_level described{};
+        hl_instance_level(instance_.get(), level, &described, nullptr);
+        return described;
+    }
+    /// Of the last step, with milliseconds where hl_instance_time() has lent a clock.
+    hl_effect describeEffect(std::uint32_t effect) const {
+        hl_effect described{};
+        hl_instance_effect(instance_.get(), effect, &described, nullptr);
+        return described;
+    }
     std::uint64_t hash() const { return hl_instance_hash(instance_.get()); }
     /// Three floats of each point; resizes.
     bool readGuides(std::vector<float>& positions, hl_error* error = nullptr) {
@@ -113,6 +128,24 @@ class Instance {
         void operator()(hl_instance* instance) const { hl_instance_free(instance); }
     };
     std::unique_ptr<hl_instance, Free> instance_;
+};
+
+/// The characters of a scene, with one budget: hl_crowd_plan().
+class Crowd {
+  public:
+    Crowd() { hl_crowd_limits_init(&limits); }
+    /// The instance, which was made with HL_LEVELS, outlives the crowd and does not move. Its number.
+    std::size_t add(Instance& instance) {
+        characters.push_back({instance.get(), 0, 0, 0, 0});
+        return characters.size() - 1;
+    }
+    /// Once a frame, before the steps, when every pixels_per_metre is set.
+    bool plan(hl_error* error = nullptr) {
+        return hl_crowd_plan(&limits, characters.data(), characters.size(), &report, error) == HL_OK;
+    }
+    hl_crowd_limits limits;
+    std::vector<hl_viewed> characters;
+    hl_crowd_report report{};
 };
 
 }  // namespace hairloom::game

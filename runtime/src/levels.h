@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Levels of detail: which guides a level simulates, with how many points, and where the others are then. A
+// guide that is not simulated keeps its own rest shape and takes over, in the frames of the roots, how far
+// the nearest simulated ones have moved from theirs.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "hairloom/asset.h"
+#include "hairloom/hairloom.h"
+
+namespace hairloom::runtime {
+
+/// Of one level between the finest, which simulates all, and the rigid one, which simulates nothing.
+struct Level {
+    std::uint32_t substeps;
+    std::vector<std::uint32_t> guides;   ///< that are simulated, of all, ascending
+    std::vector<std::uint32_t> offsets;  ///< of their points
+    std::vector<Float3> positions_ss;    ///< of these points at rest
+    struct Sources {
+        std::array<std::uint32_t, 3> guides;  ///< places in Level::guides
+        std::array<float, 3> shares;          ///< sum 1
+    };
+    std::vector<Sources> sources;  ///< of each of all guides
+
+    std::size_t bytes() const;
+};
+
+/// What the error of a level is made of: metres, root mean square over the points of all guides.
+struct LevelError {
+    float still = 0;  ///< of hair at rest
+    float head = 0;   ///< for each m/s of the roots, less `still`
+    float wind = 0;   ///< for each m/s of wind, less `still`
+};
+
+/// Of an asset; immutable, shared by copies of an instance.
+struct LevelSet {
+    std::vector<std::uint32_t> offsets;  ///< of all guides' points
+    std::vector<Float3> rest;            ///< of them, from their guide's root
+    std::vector<Level> coarser;          ///< levels 1 …; one less than the rigid one's number
+    std::array<LevelError, HL_LEVEL_COUNT> errors{};
+
+    LevelSet(const Asset& asset, const Asset::Strands& strands);
+    std::size_t bytes() const;
+};
+
+/// Points and substeps of a level of that asset, for stating its memory: strands by their points.
+std::uint32_t pointsOfLevel(std::uint32_t level, std::uint32_t points);
+std::uint32_t guidesOfLevel(std::uint32_t level, std::uint32_t guides);
+
+/// A quantity of a guide's points at share `p` / (`count` − 1) of it, by the number of points.
+Float3 sampleAt(std::span<const Float3> values, std::size_t p, std::size_t count);
+
+/// Guides by where they are now, all of them: `simulated_ws` are the points of level.guides. Fills
+/// `positions_ws`. `roots_ws` are those of all guides.
+void showGuides(const LevelSet& set, const Level& level, std::span<const RootFrame> roots_ws,
+                std::span<const Float3> simulated_ws, std::span<Float3> moved,
+                std::span<Float3> positions_ws);
+/// Each goes with its root as it is at rest.
+void showRigid(const LevelSet& set, std::span<const RootFrame> roots_ws, std::span<Float3> positions_ws);
+
+}  // namespace hairloom::runtime
