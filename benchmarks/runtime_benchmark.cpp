@@ -185,7 +185,7 @@ class Played {
     }
 
     /// Guides of `kPlannedCrowd` characters in rows of ten, the first 1 m from the eye, at the finest level
-    /// and at those within half a pixel on 1080 lines of 40 degrees.
+    /// and at those within 2 pixels on 1080 lines of 40 degrees.
     void measureLevels() {
         std::vector<game::Instance> hairs(kPlannedCrowd);
         game::Crowd crowd;
@@ -219,7 +219,7 @@ class Played {
         crowd.limits.error_pixels = 0;
         timings_.measure(which + "all at the finest level, " + name_, step);
         crowd.limits = game::Crowd().limits;
-        timings_.measure(which + "within half a pixel, " + name_, step);
+        timings_.measure(which + "within 2 pixels, " + name_, step);
         memory_.push_back(
             {"the same, predicted, " + name_, "ms", {static_cast<double>(crowd.report.milliseconds)}});
         crowd.limits.milliseconds = 5;

@@ -296,7 +296,7 @@ hl_code hl_instance_set_level(hl_instance* instance, uint32_t level, float hair_
 
 void hl_crowd_limits_init(hl_crowd_limits* limits) {
     if (!limits) return;
-    *limits = {sizeof(hl_crowd_limits), 0.5f, 0.7f, std::numeric_limits<float>::infinity(), 1};
+    *limits = {sizeof(hl_crowd_limits), 2, 0.7f, std::numeric_limits<float>::infinity(), 1};
 }
 
 hl_code hl_crowd_plan(const hl_crowd_limits* limits, hl_viewed* characters, size_t count,

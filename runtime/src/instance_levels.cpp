@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "src/checks.h"
 #include "src/instance.h"
 
 namespace hairloom::runtime {
@@ -141,7 +142,7 @@ void Instance::resetLevel() {
     Levels& levels = *levels_;
     for (std::size_t g = 0; g < roots_.size(); ++g) {
         RootFrame root = roots_[g];
-        if (isFinite(root.position) && normalize(root.rotation)) levels.placed[g] = root;
+        if (usableWithin(root, kFarthest)) levels.placed[g] = root;
     }
     levels.origin.reset();
     levels.motion = levels.wind = 0;
@@ -175,7 +176,7 @@ void Instance::holdMotion(const FrameInput& input) {
     float squares = 0, looked = 0;
     for (std::size_t g = 0; g < roots_.size(); ++g) {
         RootFrame root = roots_[g];
-        if (!isFinite(root.position) || !normalize(root.rotation)) continue;
+        if (!usableWithin(root, kFarthest)) continue;
         if (g % step == 0) {
             const Float3 moved = root.position - levels.placed[g].position + shift;
             sum = sum + moved;

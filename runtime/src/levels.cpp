@@ -8,7 +8,7 @@
 namespace hairloom::runtime {
 namespace {
 
-/// Of levels 1, 2 and 3.
+/// Of the levels between the finest and the rigid one.
 struct Thinning {
     std::uint32_t guides, points;  // one in so many
     bool oneSubstep;
@@ -84,7 +84,7 @@ Level makeLevel(const Asset::Strands& strands, std::span<const std::uint32_t> or
     level.substeps = thinning.oneSubstep && settings.strandModel == StrandModel::rods ? 1 : settings.substeps;
     std::vector<bool> taken(order.size());
     for (std::size_t i = thinning.guides / 2; i < order.size(); i += thinning.guides) taken[order[i]] = true;
-    if (order.size() <= thinning.guides / 2) taken[order[0]] = true;
+    if (!order.empty() && order.size() <= thinning.guides / 2) taken[order[0]] = true;
     level.offsets.push_back(0);
     std::vector<std::uint32_t> placeOf(order.size());
     for (std::uint32_t g = 0; g < order.size(); ++g) {

@@ -47,15 +47,15 @@ struct LevelSet {
     std::size_t bytes() const;
 };
 
-/// Points and substeps of a level of that asset, for stating its memory: strands by their points.
+/// Of levels between the finest and the rigid one: points of a guide of so many, and guides of so many.
 std::uint32_t pointsOfLevel(std::uint32_t level, std::uint32_t points);
 std::uint32_t guidesOfLevel(std::uint32_t level, std::uint32_t guides);
 
 /// A quantity of a guide's points at share `p` / (`count` − 1) of it, by the number of points.
 Float3 sampleAt(std::span<const Float3> values, std::size_t p, std::size_t count);
 
-/// Guides by where they are now, all of them: `simulated_ws` are the points of level.guides. Fills
-/// `positions_ws`. `roots_ws` are those of all guides.
+/// Fills `positions_ws`, the points of all guides, by those of level.guides; `roots_ws` are of all guides.
+/// `moved` has room for as many points as are simulated.
 void showGuides(const LevelSet& set, const Level& level, std::span<const RootFrame> roots_ws,
                 std::span<const Float3> simulated_ws, std::span<Float3> moved,
                 std::span<Float3> positions_ws);

@@ -82,7 +82,7 @@ std::uint64_t nanoseconds(void*) {
     return static_cast<std::uint64_t>(Clock::now().time_since_epoch().count());
 }
 
-/// Rows of ten, each at its own time of the nod, or at rest; levels within half a pixel and the budget.
+/// Rows of ten, each at its own time of the nod, or at rest; levels within two pixels and the budget.
 bool playCrowd(const hairloom::game::Asset& asset, const hl_asset_info& info, const Options& options,
                hl_error& error) {
     std::vector<hairloom::game::Instance> hairs(static_cast<std::size_t>(options.crowd));

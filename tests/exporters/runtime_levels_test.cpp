@@ -457,6 +457,11 @@ TEST_F(RuntimeLevels, AnyInputIsSurvivedAtAnyLevel) {
         sound("head");
         ASSERT_TRUE(hair.reset(frame));
         sound("reset");
+        // Finite, and yet nowhere: squares of it are not.
+        const std::array<float, 12> away{1, 0, 0, 1e30f, 0, 1, 0, 0, 0, 0, 1, 0};
+        frame.head = away.data();
+        ASSERT_TRUE(hair.step(frame));
+        sound("a head beyond all numbers");
         frame = Frame();
         frame.roots = none.data();
         frame.root_count = hair.describe().guides;

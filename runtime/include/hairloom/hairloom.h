@@ -206,7 +206,7 @@ hl_code hl_instance_set_level(hl_instance* instance, uint32_t level, float hair_
 
 typedef struct hl_crowd_limits {
     size_t size;        /* sizeof(hl_crowd_limits), set by hl_crowd_limits_init() */
-    float error_pixels; /* no character is given more while the budget allows; 0.5 */
+    float error_pixels; /* no character is given more while the budget allows; 2 */
     float hair_pixels;  /* hairs are left out while those that stay are narrower; 0 leaves out none; 0.7 */
     float milliseconds; /* of all characters together, predicted; infinite: no budget */
     float speed;        /* of this machine, where 1 is that of hl_level.milliseconds; 1 */
