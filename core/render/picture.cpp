@@ -2,24 +2,21 @@
 #include "core/render/picture.h"
 
 #include <algorithm>
-#include <deque>
 
 #include "core/base/profiler.h"
+#include "core/gpu/frames_under_way.h"
 #include "core/render/renderer.h"
 #include "shaders/shared/render_types.h"
 
 namespace hairloom::render {
 namespace {
 
-// Frames that may wait on the device at once; each keeps its command memory.
 constexpr std::size_t kFramesInFlight = 3;
 
 class PassSums {
   public:
-    Status add(gpu::Submission& submission) {
-        const auto times = submission.passTimes();
-        if (!times) return tl::unexpected(times.error());
-        for (const gpu::PassTime& time : *times) {
+    void add(const std::vector<gpu::PassTime>& times) {
+        for (const gpu::PassTime& time : times) {
             const auto same = std::ranges::find(sums_, time.name, &gpu::PassTime::name);
             if (same == sums_.end()) {
                 sums_.push_back(time);
@@ -27,7 +24,6 @@ class PassSums {
                 same->milliseconds += time.milliseconds;
             }
         }
-        return {};
     }
     std::vector<gpu::PassTime> take() { return std::move(sums_); }
 
@@ -38,7 +34,7 @@ class PassSums {
 /// All frames of the average, and with the last one the picture into `target`.
 Status drawAll(gpu::Device& device, Renderer& renderer, const RenderOptions& options,
                const gpu::TexturePtr& target, PassSums& sums) {
-    std::deque<gpu::SubmissionPtr> running;
+    gpu::FramesUnderWay running(kFramesInFlight, [&](const auto& times) { sums.add(times); });
     for (std::uint32_t i = 0; i < options.frames; ++i) {
         const bool last = i + 1 == options.frames;
         auto list = device.createCommandList();
@@ -46,13 +42,9 @@ Status drawAll(gpu::Device& device, Renderer& renderer, const RenderOptions& opt
         if (auto status = renderer.record(**list, options, last ? target : nullptr); !status) return status;
         auto submission = device.submit(std::move(*list));
         if (!submission) return tl::unexpected(submission.error());
-        running.push_back(std::move(*submission));
-        while (running.size() > (last ? 0 : kFramesInFlight)) {
-            if (auto status = sums.add(*running.front()); !status) return status;
-            running.pop_front();
-        }
+        if (auto status = running.add(std::move(*submission)); !status) return status;
     }
-    return {};
+    return running.finish();
 }
 
 Result<gpu::TexturePtr> makeTarget(gpu::Device& device, const RenderOptions& options) {

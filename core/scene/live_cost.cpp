@@ -2,9 +2,9 @@
 #include "core/scene/live_cost.h"
 
 #include <algorithm>
-#include <deque>
 
 #include "core/base/stopwatch.h"
+#include "core/gpu/frames_under_way.h"
 
 namespace hairloom {
 namespace {
@@ -81,7 +81,7 @@ Status LiveLoop::setUp(const GroomScene& groom) {
 }
 
 Status LiveLoop::play(LiveHair& live, std::uint32_t count) {
-    std::deque<gpu::SubmissionPtr> underWay;
+    gpu::FramesUnderWay underWay(kUnderWay, [this](const auto& times) { add(times); });
     for (std::uint32_t frame = 0; frame < count; ++frame) {
         auto list = device_.createCommandList();
         if (!list) return tl::unexpected(list.error());
@@ -92,23 +92,16 @@ Status LiveLoop::play(LiveHair& live, std::uint32_t count) {
         live.submitted(*submission);
         cost_.simulate += live.simulateMilliseconds();
         cost_.follow += live.followMilliseconds();
-        underWay.push_back(std::move(*submission));
-        while (underWay.size() > (frame + 1 == count ? 0 : kUnderWay)) {
-            if (auto status = add(*underWay.front()); !status) return status;
-            underWay.pop_front();
-        }
+        if (auto status = underWay.add(std::move(*submission)); !status) return status;
     }
-    return {};
+    return underWay.finish();
 }
 
-Status LiveLoop::add(gpu::Submission& submission) {
-    const auto times = submission.passTimes();
-    if (!times) return tl::unexpected(times.error());
-    for (const gpu::PassTime& time : *times) {
+void LiveLoop::add(const std::vector<gpu::PassTime>& times) {
+    for (const gpu::PassTime& time : times) {
         sumOf(time.name) += time.milliseconds;
         cost_.passes[time.name] += time.milliseconds;
     }
-    return {};
 }
 
 double& LiveLoop::sumOf(std::string_view pass) {

@@ -36,7 +36,7 @@ class LiveLoop {
   private:
     Status setUp(const GroomScene& groom);
     Status play(LiveHair& live, std::uint32_t count);
-    Status add(gpu::Submission& submission);
+    void add(const std::vector<gpu::PassTime>& times);
     double& sumOf(std::string_view pass);
 
     gpu::Device& device_;

@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <deque>
 #include <map>
 #include <memory>
 
 #include "core/accuracy/scene_run.h"
+#include "core/gpu/frames_under_way.h"
 #include "core/render/flip.h"
 #include "core/render/picture.h"
 #include "core/render/renderer.h"
@@ -274,17 +274,11 @@ class Measuring {
         const bool software = device_.info().type == gpu::DeviceType::Cpu;
         const std::uint32_t warmUp = software ? 0 : kWarmUp;
         std::vector<double> times;
-        std::deque<gpu::SubmissionPtr> underWay;
-        const auto finish = [&](std::size_t left) -> Status {
-            for (; underWay.size() > left; underWay.pop_front()) {
-                const auto passes = underWay.front()->passTimes();
-                if (!passes) return tl::unexpected(passes.error());
-                double ms = 0;
-                for (const gpu::PassTime& pass : *passes) ms += pass.milliseconds;
-                times.push_back(ms);
-            }
-            return {};
-        };
+        gpu::FramesUnderWay underWay(kUnderWay, [&](const std::vector<gpu::PassTime>& passes) {
+            double ms = 0;
+            for (const gpu::PassTime& pass : passes) ms += pass.milliseconds;
+            times.push_back(ms);
+        });
         for (std::uint32_t frame = 0; frame < warmUp + options_.repeats; ++frame) {
             if (auto set = renderer.setLights(lights_); !set) return tl::unexpected(set.error());
             auto list = device_.createCommandList();
@@ -293,10 +287,10 @@ class Measuring {
                 return tl::unexpected(status.error());
             auto submission = device_.submit(std::move(*list));
             if (!submission) return tl::unexpected(submission.error());
-            underWay.push_back(std::move(*submission));
-            if (auto status = finish(kUnderWay); !status) return tl::unexpected(status.error());
+            if (auto status = underWay.add(std::move(*submission)); !status)
+                return tl::unexpected(status.error());
         }
-        if (auto status = finish(0); !status) return tl::unexpected(status.error());
+        if (auto status = underWay.finish(); !status) return tl::unexpected(status.error());
         times.erase(times.begin(), times.begin() + warmUp);
         return quartiles(std::move(times));
     }
