@@ -167,6 +167,14 @@ Result<Certificate> certify(const Groom& groom, const CertificateOptions& option
     return certificate;
 }
 
+std::string inWords(const StormStrength& limits) {
+    return fmt::format(
+        "frames of {:.3g} ms, a head that moves at {:.3g} m/s and turns by {:.3g}° a frame, and wind of "
+        "{:.3g} "
+        "m/s",
+        1000 * limits.step, limits.rootSpeed, limits.turn, limits.wind);
+}
+
 std::string inWords(const Certificate& certificate) {
     const StormStrength& limits = certificate.limits;
     const auto& failed = certificate.failed;
@@ -176,13 +184,10 @@ std::string inWords(const Certificate& certificate) {
         return fmt::format("Withstands nothing that was tried: {} of {} random storms failed{}.",
                            failed.size(), certificate.storms, first);
     return fmt::format(
-        "Withstands frames of {:.3g} ms, a head that moves at {:.3g} m/s and turns by {:.3g}° a frame, and "
-        "wind "
-        "of {:.3g} m/s, all at once and each with {:.0f} % to spare. {} of {} random storms were within "
+        "Withstands {}, all at once and each with {:.0f} % to spare. {} of {} random storms were within "
         "that, "
         "none of which failed; {} failed beyond it{}.",
-        1000 * limits.step, limits.rootSpeed, limits.turn, limits.wind, 100 * kStormMargin,
-        certificate.within, certificate.storms, failed.size(), first);
+        inWords(limits), 100 * kStormMargin, certificate.within, certificate.storms, failed.size(), first);
 }
 
 }  // namespace hairloom

@@ -58,6 +58,8 @@ Result<Certificate> certify(const Groom& groom, const CertificateOptions& option
 /// each is cut off where that costs the least. Nothing where one failed in a calm.
 StormStrength boxWithout(std::span<const FailedStorm> failed);
 
+/// "frames of 33 ms, a head that moves at 2 m/s and turns by 20° a frame, and wind of 30 m/s".
+std::string inWords(const StormStrength& limits);
 /// One paragraph: the limits, how they were found, and what failed beyond them.
 std::string inWords(const Certificate& certificate);
 

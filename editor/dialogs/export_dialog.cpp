@@ -284,17 +284,15 @@ void ExportDialog::showReport() {
         for (int c = 0; c < 3; ++c) item->setToolTip(c, item->text(c));
         findings_->addTopLevelItem(item);
     };
-    if (report_.safeLimits)
-        add(tr("withstands frames of %1 ms, %2 m/s, a turn of %3° a frame, wind of %4 m/s at once")
-                .arg(1000 * static_cast<double>(report_.safeLimits->largestStep), 0, 'g', 3)
-                .arg(static_cast<double>(report_.safeLimits->rootSpeed), 0, 'g', 3)
-                .arg(static_cast<double>(report_.safeLimits->turn), 0, 'g', 3)
-                .arg(static_cast<double>(report_.safeLimits->wind), 0, 'g', 3)
-                .toStdString(),
+    if (const auto& limits = report_.safeLimits)
+        add("withstands " +
+                inWords(StormStrength{static_cast<double>(limits->largestStep),
+                                      static_cast<double>(limits->rootSpeed),
+                                      static_cast<double>(limits->turn), static_cast<double>(limits->wind)}),
             tr("certificate"),
             tr("%1 random storms; %2 broke it beyond these limits")
-                .arg(report_.safeLimits->storms)
-                .arg(report_.safeLimits->failed)
+                .arg(limits->storms)
+                .arg(limits->failed)
                 .toStdString());
     for (const std::string& companion : report_.companions)
         add(companion, tr("beside it"), tr("written with the strands").toStdString());
