@@ -243,7 +243,8 @@ JobRun declare(CLI::App& job) {
     addMotionOptions(job, options->motion);
     job.add_option("-o,--output", options->output, "Folder for report.html, data.csv and the drawings")
         ->required();
-    job.add_option("--strands", options->strands, "Strands to run, drawn from the groom's")
+    job.add_option("--strands", options->strands,
+                   "Strands to run, drawn from the groom's; all of them where guides vary")
         ->check(CLI::Range(1, 1'000'000));
     const auto list = [&](const char* name, std::vector<std::string>& values, const char* does) {
         job.add_option(name, values, does)->delimiter(',');
@@ -259,7 +260,10 @@ JobRun declare(CLI::App& job) {
     job.add_option(
         "--vary", options->vary,
         "Another setting to try, FIELD=VALUE,VALUE,…; may be repeated. A field of the simulation, or "
-        "engine=cpu,gpu, hairHair=0,1 (hair against hair), spheres=0,2,… (the first so many)");
+        "engine=cpu,gpu, hairHair=0,1 (hair against hair), spheres=0,2,… (the first so many), "
+        "guides=50,200,… (so many strands of all are simulated, the others go as their guides do), "
+        "hairsPerGuide=0,20,… (hairs that follow each: time alone). The engines are in single precision, the "
+        "reference is in double; levels of detail are pictures, which lod measures");
     job.add_option("--view", options->view,
                    "View file (docs/cli.md) with a camera and a size: errors in its pixels, too")
         ->type_name("FILE");

@@ -11,6 +11,7 @@
 #include "cli/progress.h"
 #include "core/accuracy/certificate.h"
 #include "core/accuracy/stability_report.h"
+#include "core/accuracy/stable_steps.h"
 #include "core/base/file.h"
 #include "core/base/output_file.h"
 
@@ -159,6 +160,12 @@ Result<Report> certificateOf(const StabilityJobOptions& options) {
     if (!certificate) return tl::unexpected(inFile(certificate.error(), options.groom));
     Report report;
     report["certificate"] = certificateReport(*certificate);
+    report["steps"] = Report::array();
+    for (const StableStep& step : stableSteps(*groom)) {
+        report["steps"].push_back(Report{{"method", step.method},
+                                         {"longest_stable_ms", numberOrNull(1e3 * step.longest)},
+                                         {"now", step.isOfGroom}});
+    }
     report["output"] = options.output;
     const auto files =
         writeFiles(options.output, {{"certificate.json", report["certificate"].dump(2) + "\n"}});

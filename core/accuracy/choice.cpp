@@ -50,6 +50,18 @@ std::optional<std::size_t> pairOf(const WorkPrecision& measured, std::size_t ind
     });
 }
 
+/// Whether the groom, as the CPU moves it, has that value of an axis.
+bool hasValue(const Groom& groom, std::string_view field, double value) {
+    const auto atLeast = [value](std::size_t count) { return value >= static_cast<double>(count); };
+    if (field == kPointsAxis) return value == static_cast<double>(maxPoints(groom));
+    if (field == kEngineAxis || field == kHairHairAxis) return value == 0;
+    if (field == kSpheresAxis) return atLeast(groom.spheres.size());
+    if (field == kGuidesAxis) return atLeast(groom.strandCount());
+    if (field == kHairsPerGuideAxis) return value == groom.interpolation.followPerGuide;
+    const auto* setting = runtime::findField<runtime::SimulationSettings>(field);
+    return !setting || value == runtime::fieldValue(groom.simulation, *setting);
+}
+
 }  // namespace
 
 std::optional<std::size_t> pairOfEqualTime(const WorkPrecision& measured, std::size_t run) {
@@ -64,14 +76,8 @@ std::optional<std::size_t> runOf(const WorkPrecision& measured, const Groom& gro
     const std::vector<GridAxis>& axes = measured.options.axes;
     for (std::size_t r = 0; r < measured.runs.size(); ++r) {
         bool same = true;
-        for (std::size_t a = 0; a < axes.size() && same; ++a) {
-            const double value = measured.runs[r].values[a];
-            if (axes[a].field == kPointsAxis) {
-                same = value == static_cast<double>(maxPoints(groom));
-            } else if (const auto* field = runtime::findField<runtime::SimulationSettings>(axes[a].field)) {
-                same = value == runtime::fieldValue(groom.simulation, *field);
-            }
-        }
+        for (std::size_t a = 0; a < axes.size() && same; ++a)
+            same = hasValue(groom, axes[a].field, measured.runs[r].values[a]);
         if (same) return r;
     }
     return std::nullopt;

@@ -18,7 +18,8 @@ Result<const Trajectory*> ErrorSplitter::converged(const std::vector<double>& va
         points = static_cast<std::uint32_t>(values[*axis]);
     std::vector<double> key = values;
     // What is the same for all of these.
-    for (const std::string_view field : {std::string_view("substeps"), kThreadsAxis, kPointsAxis}) {
+    for (const std::string_view field :
+         {std::string_view("substeps"), kThreadsAxis, kPointsAxis, kHairsPerGuideAxis}) {
         if (const auto axis = findAxis(axes_, field)) key[*axis] = 0;
     }
     key.push_back(points);
@@ -31,6 +32,7 @@ Result<const Trajectory*> ErrorSplitter::converged(const std::vector<double>& va
     auto outcome =
         runScene(some.hair, poses_, time_, {some.strands, exact_.followed.shares}, hair_.optionsAt(values));
     if (!outcome) return tl::unexpected(outcome.error());
+    hair_.moveToOwnRoots(values, exact_.followed, poses_, outcome->trajectory);
     return &made_.emplace(std::move(key), std::move(outcome->trajectory)).first->second;
 }
 

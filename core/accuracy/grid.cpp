@@ -14,10 +14,11 @@
 namespace hairloom {
 namespace {
 
-constexpr double kFewestPoints = 3;  // of which one is free even where two are clamped
+constexpr double kFewestPoints = 2;
 constexpr double kMaxThreads = 1024;
 
 constexpr double kMaxSpheres = 4096;
+constexpr double kMaxGuides = 1'000'000, kMaxHairsPerGuide = 4096;
 
 /// An axis that is no setting: whole numbers, or choices by their index.
 struct OwnAxis {
@@ -30,7 +31,9 @@ const OwnAxis* findOwn(std::string_view field) {
                                           {kThreadsAxis, 0, kMaxThreads},
                                           {kEngineAxis, 0, 1, {"cpu", "gpu"}},
                                           {kHairHairAxis, 0, 1},
-                                          {kSpheresAxis, 0, kMaxSpheres}};
+                                          {kSpheresAxis, 0, kMaxSpheres},
+                                          {kGuidesAxis, 1, kMaxGuides},
+                                          {kHairsPerGuideAxis, 0, kMaxHairsPerGuide}};
     const auto found = std::ranges::find(all, field, &OwnAxis::name);
     return found == all.end() ? nullptr : &*found;
 }
@@ -44,8 +47,9 @@ Status checkValue(const GridAxis& axis, double value) {
     const auto* field = runtime::findField<runtime::SimulationSettings>(axis.field);
     if (!field || field->components() != 1) {
         return fail(fmt::format("there is no setting '{}' of one number", axis.field),
-                    fmt::format("expected {}, {}, {}, {}, {} or a field of the simulation", kPointsAxis,
-                                kThreadsAxis, kEngineAxis, kHairHairAxis, kSpheresAxis));
+                    fmt::format("expected {}, {}, {}, {}, {}, {}, {} or a field of the simulation",
+                                kPointsAxis, kThreadsAxis, kEngineAxis, kHairHairAxis, kSpheresAxis,
+                                kGuidesAxis, kHairsPerGuideAxis));
     }
     runtime::SimulationSettings settings;
     if (runtime::setFieldValue(settings, *field, value)) return {};

@@ -18,7 +18,7 @@ struct GridAxis {
     std::string field;
     std::vector<double> values;
 };
-/// Points per strand, resampled evenly by arc length; 3 … runtime::kMaxPoints.
+/// Points per strand, resampled evenly by arc length; 2 … runtime::kMaxPoints.
 inline constexpr std::string_view kPointsAxis = "points";
 /// Threads that the engine may use, 0 for all.
 inline constexpr std::string_view kThreadsAxis = "threads";
@@ -29,6 +29,10 @@ inline constexpr std::string_view kEngineAxis = "engine";
 inline constexpr std::string_view kHairHairAxis = "hairHair";
 /// Collision spheres that stay, the first of the groom's.
 inline constexpr std::string_view kSpheresAxis = "spheres";
+/// Strands that are simulated, found by clustering; each other one goes as its guide does, from its own root.
+inline constexpr std::string_view kGuidesAxis = "guides";
+/// Hairs that follow each strand that is simulated: they cost time and change no motion.
+inline constexpr std::string_view kHairsPerGuideAxis = "hairsPerGuide";
 
 /// Whether its values are names.
 bool isEnumeration(std::string_view field);

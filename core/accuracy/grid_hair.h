@@ -3,6 +3,7 @@
 // The hair of every combination of a grid of settings, and what runs it.
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -12,38 +13,65 @@
 
 namespace hairloom {
 
-/// Strands are resampled once for each number of points. Axes and engine must outlive it.
+/// Strands are resampled once for each number of points, guides are chosen once for each number of them.
 class GridHair {
   public:
-    GridHair(SceneHair authored, const std::vector<GridAxis>& axes, const MethodMaker& gpuEngine);
+    /// Axes and engine must outlive it. Errors: a groom that cannot be simulated, hairs that cannot follow.
+    static Result<GridHair> make(SceneHair authored, const std::vector<GridAxis>& axes,
+                                 const MethodMaker& gpuEngine);
 
+    /// What is simulated: the guides, where there is an axis of them.
     SceneHair at(const std::vector<double>& values) const;
-    /// The same with another number of points; 0 for those that are authored.
+    /// The same with another number of points, 0 for those that are authored.
     SceneHair at(const std::vector<double>& values, std::uint32_t points) const;
     /// What runs it.
     SimulationOptions optionsAt(const std::vector<double>& values) const;
-    /// The finest strands of the grid with the scene's own settings.
+    /// Hairs that follow what is simulated; null without.
+    const StrandFollow* followersAt(const std::vector<double>& values) const;
+    /// The finest strands of the grid with the scene's own settings, every strand for itself.
     SceneHair finest() const;
     /// Points of the finest strands.
     std::uint32_t finestPoints() const;
+
+    /// What at() gives, without strands that those do not need: for strands of the authored hair.
     struct Some {
         SceneHair hair;
-        std::vector<std::uint32_t> strands;  ///< in `hair`, ascending
+        std::vector<std::uint32_t> strands;  ///< for each of those, what it follows in `hair`
     };
-    /// Those strands and no others, as fast as they can be run; with all others where hair meets hair.
     Some alone(SceneHair hair, const std::vector<std::uint32_t>& strands,
                const std::vector<double>& values) const;
+    /// The same without leaving any out.
+    std::vector<std::uint32_t> followedAt(const std::vector<std::uint32_t>& strands,
+                                          const std::vector<double>& values) const;
+    /// From points of guides to those of `followed`, strands of the authored hair: each at its own root.
+    /// poses[0] is the start, and a frame is one step.
+    void moveToOwnRoots(const std::vector<double>& values, const Followed& followed,
+                        std::span<const HeadPose> poses, Trajectory& trajectory) const;
+
     ThreadLimit limitThreads(const std::vector<double>& values) const;
 
   private:
+    struct Guides {
+        std::vector<std::uint32_t> strands;  ///< of the authored hair, ascending
+        std::vector<std::uint32_t> of;       ///< per strand of the authored hair: its place in `strands`
+    };
+    GridHair(SceneHair authored, const std::vector<GridAxis>& axes, const MethodMaker& gpuEngine);
+    Status bindFollowers();
+    /// Points, guides and hairs of a combination; −1 where no axis says.
+    std::array<double, 3> hairsAt(const std::vector<double>& values) const;
+    const Guides* guidesAt(const std::vector<double>& values) const {
+        return guides_ ? &byGuides_.at(values[*guides_]) : nullptr;
+    }
     bool meetsHair(const std::vector<double>& values) const { return hairHair_ && values[*hairHair_] > 0; }
     SceneHair withSettings(SceneHair hair, const std::vector<double>& values) const;
 
-    const std::vector<GridAxis>& axes_;
-    const MethodMaker& gpuEngine_;
-    std::optional<std::size_t> points_, threads_, engine_, hairHair_, spheres_;
+    const std::vector<GridAxis>* axes_;
+    const MethodMaker* gpuEngine_;
+    std::optional<std::size_t> points_, threads_, engine_, hairHair_, spheres_, guides_, hairsPerGuide_;
     SceneHair authored_;
     std::map<double, SceneHair> byPoints_;
+    std::map<double, Guides> byGuides_;
+    std::map<std::array<double, 3>, std::shared_ptr<const StrandFollow>> followers_;
 };
 
 }  // namespace hairloom

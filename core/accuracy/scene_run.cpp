@@ -6,9 +6,12 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/base/parallel.h"
 #include "core/base/random.h"
+#include "core/base/stopwatch.h"
 #include "core/geometry/curve.h"
 #include "core/groom/strand_subset.h"
+#include "core/interpolation/strand_follow.h"
 
 namespace hairloom {
 namespace {
@@ -37,6 +40,35 @@ void appendShares(std::span<const Vec3f> strand, std::vector<float>& shares) {
         shares.push_back(static_cast<float>(whole > 0 ? std::min(length / whole, 1.0) : even));
     }
 }
+
+/// Hairs that are made frame after frame, for their time.
+class TimedFollowers {
+  public:
+    static Result<TimedFollowers> make(const StrandFollow& follow) {
+        auto made = runtime::FollowHairs::make(follow.view());
+        if (!made.hairs) return fail(made.error);
+        return TimedFollowers(std::move(*made.hairs));
+    }
+
+    void follow(std::span<const Vec3f> guides_ws) {
+        runtime::GuideMotion motion;
+        motion.positions_ws = {reinterpret_cast<const runtime::Float3*>(guides_ws.data()), guides_ws.size()};
+        runtime::Host host;
+        host.parallelFor = parallelFor;
+        const Stopwatch watch;
+        hairs_.evaluate(motion, positions_ws_, host);
+        milliseconds_ += 1e3 * watch.seconds();
+    }
+    double milliseconds() const { return milliseconds_; }
+
+  private:
+    explicit TimedFollowers(runtime::FollowHairs hairs)
+        : hairs_(std::move(hairs)), positions_ws_(std::size_t{hairs_.hairCount()} * hairs_.pointsPerHair()) {}
+
+    runtime::FollowHairs hairs_;
+    std::vector<runtime::Float3> positions_ws_;
+    double milliseconds_ = 0;
+};
 
 }  // namespace
 
@@ -142,11 +174,18 @@ TrajectoryError compare(const Trajectory& run, const Trajectory& groundTruth) {
 }
 
 Result<SceneResult> runScene(const SceneHair& hair, std::span<const HeadPose> poses, const SceneTime& time,
-                             const Followed& followed, const SimulationOptions& options) {
+                             const Followed& followed, const SimulationOptions& options,
+                             const StrandFollow* followers) {
     assert(poses.size() == std::size_t{time.frames} * time.stepsPerFrame + 1);
     auto simulation = Simulation::make(hair.groom, poses[0], options);
     if (!simulation) return tl::unexpected(simulation.error());
     const MaterialPoints points(hair, followed);
+    std::optional<TimedFollowers> following;
+    if (followers) {
+        auto made = TimedFollowers::make(*followers);
+        if (!made) return tl::unexpected(made.error());
+        following.emplace(std::move(*made));
+    }
     SceneResult result;
     Trajectory& trajectory = result.trajectory;
     trajectory.frames = time.frames;
@@ -157,10 +196,12 @@ Result<SceneResult> runScene(const SceneHair& hair, std::span<const HeadPose> po
         for (std::uint32_t step = 1; step <= time.stepsPerFrame; ++step) {
             simulation->step(dt, poses[std::size_t{frame} * time.stepsPerFrame + step]);
         }
+        if (following) following->follow(simulation->positions_ws());
         trajectory.finite = points.read(simulation->positions_ws(), trajectory.points_ws);
     }
     const SimulationStats stats = simulation->stats();
     result.millisecondsPerFrame = stats.millisecondsPerFrame * static_cast<double>(time.stepsPerFrame);
+    if (following) result.millisecondsPerFrame += following->milliseconds() / time.frames;
     result.stateHash = stats.stateHash;
     result.nanCount = stats.nanCount;
     result.restoredStrands = stats.restoredStrands;

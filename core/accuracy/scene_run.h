@@ -11,6 +11,8 @@
 
 namespace hairloom {
 
+class StrandFollow;
+
 /// Hair to run, and where along each strand its points are.
 struct SceneHair {
     Groom groom;
@@ -103,7 +105,9 @@ struct SceneResult {
 
 /// Runs the hair with its groom's settings, from rest. A run that follows points is broken off at the first
 /// that is not finite. Errors: those of Simulation::make.
+/// With `followers`, hairs that follow its strands are made in every frame, and their time counts.
 Result<SceneResult> runScene(const SceneHair& hair, std::span<const HeadPose> poses, const SceneTime& time,
-                             const Followed& followed, const SimulationOptions& options = {});
+                             const Followed& followed, const SimulationOptions& options = {},
+                             const StrandFollow* followers = nullptr);
 
 }  // namespace hairloom

@@ -55,9 +55,11 @@ Status followAll(const GridHair& hair, std::span<const HeadPose> poses, const Tr
     for (WorkPrecisionRun& run : result.runs) {
         if (auto status = unlessCancelled(result.options); !status) return status;
         const ThreadLimit limit = hair.limitThreads(run.values);
-        auto outcome =
-            runScene(hair.at(run.values), poses, result.options.time, followed, hair.optionsAt(run.values));
+        auto outcome = runScene(hair.at(run.values), poses, result.options.time,
+                                {hair.followedAt(followed.strands, run.values), followed.shares},
+                                hair.optionsAt(run.values));
         if (!outcome) return tl::unexpected(outcome.error());
+        hair.moveToOwnRoots(run.values, followed, poses, outcome->trajectory);
         run.stateHash = outcome->stateHash;
         run.diverged = !outcome->trajectory.finite || outcome->nanCount > 0 || outcome->restoredStrands > 0;
         if (!run.diverged) {
@@ -134,8 +136,8 @@ Status timeAll(const GridHair& hair, std::span<const HeadPose> poses, WorkPrecis
             if (auto status = unlessCancelled(result.options); !status) return status;
             const ThreadLimit limit = hair.limitThreads(result.runs[r].values);
             const std::vector<double>& values = result.runs[r].values;
-            const auto outcome =
-                runScene(hair.at(values), poses, result.options.time, {}, hair.optionsAt(values));
+            const auto outcome = runScene(hair.at(values), poses, result.options.time, {},
+                                          hair.optionsAt(values), hair.followersAt(values));
             if (!outcome) return tl::unexpected(outcome.error());
             times[r].push_back(outcome->millisecondsPerFrame);
             counted.add();
@@ -216,7 +218,8 @@ void noteTrembling(WorkPrecision& result) {
 void noteWhatMatters(WorkPrecision& result) {
     noteIntegratorsWithoutBendDamping(result);
     for (std::size_t a = 0; a < result.options.axes.size(); ++a) {
-        if (result.options.axes[a].field != kThreadsAxis) noteValuesWithoutEffect(a, result);
+        const std::string& field = result.options.axes[a].field;
+        if (field != kThreadsAxis && field != kHairsPerGuideAxis) noteValuesWithoutEffect(a, result);
     }
     // An error that is not well above the truth's own tells the truth's as much as the run's.
     constexpr double kClear = 3;
@@ -297,13 +300,17 @@ Result<WorkPrecision> measureWorkPrecision(const Groom& groom, const HeadMotion&
     result.groundTruthDescription = groundTruth.description();
     result.groomStrands = groom.strandCount();
     for (auto& values : combinations(options.axes)) result.runs.push_back({.values = std::move(values)});
-    SceneHair sample = sampleStrands(groom, options.strands, options.seed);
+    // Guides stand for the strands around them: of a sample there would be too many.
+    const bool all = findAxis(options.axes, kGuidesAxis).has_value();
+    SceneHair sample = sampleStrands(groom, all ? groom.strandCount() : options.strands, options.seed);
     result.strands = sample.groom.strandCount();
     if (!(options.divergedAboveMm > 0)) result.options.divergedAboveMm = longestStrandMm(sample.groom) / 4;
     if (const auto points = findAxis(options.axes, kPointsAxis)) {
         result.groundTruthPoints = largestCount(options.axes[*points].values);
     }
-    const GridHair hair(std::move(sample), result.options.axes, result.options.gpuEngine);
+    const auto made = GridHair::make(std::move(sample), result.options.axes, result.options.gpuEngine);
+    if (!made) return tl::unexpected(made.error());
+    const GridHair& hair = *made;
 
     // The truth counts as one run; it takes as long as several, but how many depends on the grid.
     Counted counted(options, 1 + result.runs.size() * (2 + options.repeats));

@@ -23,7 +23,7 @@ struct WorkPrecision;
 struct WorkPrecisionOptions {
     std::vector<GridAxis> axes;         ///< each combination of their values is run
     SceneTime time;                     ///< stepsPerFrame is 1
-    std::uint32_t strands = 200;        ///< ≥ 1; a sample of a larger groom
+    std::uint32_t strands = 200;        ///< ≥ 1; a sample of a larger groom, but for kGuidesAxis
     std::uint32_t repeats = 5;          ///< timed runs of each setting, ≥ 1; the first one is not timed
     std::uint64_t seed = 1;             ///< of the sample
     std::uint32_t pointsCompared = 16;  ///< on each strand, evenly spaced by arc length

@@ -249,7 +249,8 @@ std::optional<Plot> errorPlot(const WorkPrecision& result, std::size_t axisIndex
     const std::vector<GridAxis>& axes = result.options.axes;
     const GridAxis& axis = axes[axisIndex];
     const auto* field = runtime::findField<runtime::SimulationSettings>(axis.field);
-    const bool ofNumbers = axis.field == kPointsAxis || (field && field->choices.empty());
+    const bool ofNumbers = !isEnumeration(axis.field) && axis.field != kThreadsAxis &&
+                           axis.field != kHairHairAxis && axis.field != kHairsPerGuideAxis;
     if (!ofNumbers || !varies(axes, axisIndex)) return std::nullopt;
 
     const auto coloured = colouredAxis(axes);

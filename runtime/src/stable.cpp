@@ -347,6 +347,21 @@ StableRegion stableRegion(const StrandsView& strands, const SimulationSettings& 
     return regionOf(fastestWaves(strands, settings), settings, static_cast<double>(frameTime));
 }
 
+double longestStableStep(const FastestWaves& waves, const SimulationSettings& settings) {
+    S one = settings;
+    one.substeps = 1;
+    const auto isStable = [&](double h) { return regionOf(waves, one, h).stable(); };
+    double unstable = static_cast<double>(kUsualFrame), stable = 1e-6;
+    if (isStable(unstable)) return std::numeric_limits<double>::infinity();
+    if (!isStable(stable)) return 0.0;
+    constexpr int kHalvings = 40;
+    for (int i = 0; i < kHalvings; ++i) {
+        const double middle = std::sqrt(stable * unstable);
+        (isStable(middle) ? stable : unstable) = middle;
+    }
+    return stable;
+}
+
 StableAdvice adviseStability(const StrandsView& strands, const SimulationSettings& settings,
                              float frameTime) {
     const double frame = static_cast<double>(frameTime);

@@ -44,6 +44,14 @@ TEST(Choice, FindsWhereTheGroomIs) {
     EXPECT_FALSE(runOf(measured, groom)) << "other points";
 }
 
+TEST(Choice, TheGroomIsMovedByTheCpuAllStrandsAndAllSpheres) {
+    WorkPrecision measured;
+    measured.options.axes = {{std::string(kEngineAxis), {0, 1}}, {std::string(kGuidesAxis), {3, 9}}};
+    for (auto& values : combinations(measured.options.axes))
+        measured.runs.push_back({.values = std::move(values)});
+    EXPECT_EQ(runOf(measured, straightHair(6, 12)), 1u) << "of 9 guides there are no more than 6";
+}
+
 TEST(Choice, PairsAreAlikeInOneThingAndDifferMostInTheOther) {
     const WorkPrecision measured = grid({{1, 8}, {1.1, 2}, {1.15, 6}, {0.9, 0}, {5, 2.2}, {1.05, 0.5}});
     EXPECT_EQ(pairOfEqualTime(measured, 0), 5u);

@@ -202,6 +202,36 @@ TEST(WorkPrecision, PartsOfTheErrorTellStepsPointsAndModelApart) {
     EXPECT_GT(springs->runs[0].parts->model.rmsMm, 10 * exact->model.rmsMm) << "springs are no rods";
 }
 
+/// Fewer guides are cheaper and lose what makes strands different; who follows goes from its own root.
+TEST(WorkPrecision, GuidesStandForTheStrandsAroundThem) {
+    Groom groom = straightHair(12, 12);
+    groom.simulation.angularStiffness = 0.3f;
+    std::vector<Vec3f> bent(groom.positions().begin(), groom.positions().end());
+    for (std::size_t p = 0; p < bent.size(); ++p) {
+        const float along = bent[p].x(), strand = static_cast<float>(p / 12);
+        bent[p].y() += 0.1f * strand * along * along;  // each a little more than the one before
+    }
+    const auto offsets = groom.offsets.view();
+    const runtime::SimulationSettings settings = groom.simulation;
+    groom = makeGroom({offsets.begin(), offsets.end()}, std::move(bent));
+    groom.simulation = settings;
+    const auto motion = makeRigidMotion("nod", groom);
+    WorkPrecisionOptions options = smallGrid();
+    options.axes = {{"guides", {1, 4, 12}}, {"hairsPerGuide", {0, 4000}}, {"substeps", {8}}};
+    options.strands = 4;  // but all of them run
+    const auto result = measureWorkPrecision(groom, **motion, options, EngineConverged(16));
+    ASSERT_TRUE(result.has_value()) << result.error().message();
+    EXPECT_EQ(result->strands, 12u);
+    const auto& runs = result->runs;
+    ASSERT_EQ(runs.size(), 6u);
+    EXPECT_GT(runs[0].error.rmsMm, 2 * runs[2].error.rmsMm) << "one guide, and four";
+    EXPECT_GT(runs[2].error.rmsMm, 2 * runs[4].error.rmsMm) << "four, and all";
+    EXPECT_LT(runs[0].error.rmsMm, 30) << "at its own root, which are up to 55 mm apart";
+    EXPECT_EQ(runs[0].error.rmsMm, runs[1].error.rmsMm) << "hairs that follow change no motion";
+    EXPECT_GT(runs[5].milliseconds.q1, runs[4].milliseconds.q1) << "but cost time";
+    EXPECT_THAT(result->notes, testing::Not(Contains(HasSubstr("hairsPerGuide"))));
+}
+
 TEST(WorkPrecision, SettingsWithoutEffectAreNamed) {
     WorkPrecisionOptions options = smallGrid();
     options.axes = {{"windFrequency", {1, 2}}};  // there is no wind

@@ -114,6 +114,30 @@ TEST(Stable, OffersSubstepsWhereTheySuffice) {
     EXPECT_GT(stableRegion(strands.view(), fewer, 1.0f / 60.0f).factor, 0.9);
 }
 
+TEST(Stable, FindsTheStepAtWhichEachIntegratorFails) {
+    const Strands strands = straight(16, 0.006f);
+    SimulationSettings s = springSettings();
+    const FastestWaves waves = fastestWaves(strands.view(), s);
+    const auto isStableAt = [&](double h) {
+        SimulationSettings one = s;
+        one.substeps = 1;
+        return stableRegion(strands.view(), one, static_cast<float>(h)).stable();
+    };
+    for (const Integrator integrator : {Integrator::velocityVerlet, Integrator::leapfrog, Integrator::rk4}) {
+        s.integrator = integrator;
+        const double longest = longestStableStep(waves, s);
+        ASSERT_GT(longest, 1e-6);
+        ASSERT_LT(longest, 1.0 / 60);
+        EXPECT_TRUE(isStableAt(0.999 * longest));
+        EXPECT_FALSE(isStableAt(1.001 * longest));
+    }
+    s.integrator = Integrator::verlet;
+    EXPECT_TRUE(std::isinf(longestStableStep(waves, s))) << "solves its bending implicitly";
+    s.integrator = Integrator::explicitEuler;
+    s.dampingTime = 0.0f;
+    EXPECT_EQ(longestStableStep(waves, s), 0.0) << "nothing damps what it amplifies";
+}
+
 TEST(Stable, OffersImplicitMethodsWhereSubstepsDoNotSuffice) {
     for (const Integrator integrator :
          {Integrator::velocityVerlet, Integrator::leapfrog, Integrator::rk4, Integrator::explicitEuler}) {

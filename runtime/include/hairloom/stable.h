@@ -53,6 +53,10 @@ struct StableRegion {
 /// solves implicitly do not count.
 StableRegion stableRegion(const StrandsView& strands, const SimulationSettings& settings, float frameTime);
 
+/// The longest stable substep, seconds: 0 where none is, infinite where 1/60 s is, which is the longest that
+/// there is. `waves` are those of the settings, which may have another integrator.
+double longestStableStep(const FastestWaves& waves, const SimulationSettings& settings);
+
 /// Springs of some strands, the most curved among them, left alone: no wind, no spheres, roots at rest.
 struct RestTrial {
     std::uint32_t strands = 0;  ///< 0 for rods, and where the trial would take long
