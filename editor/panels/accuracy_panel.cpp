@@ -20,7 +20,6 @@
 #include "core/operations/resample.h"
 #include "editor/fields/number_box.h"
 #include "editor/panels/accuracy_plot.h"
-#include "editor/panels/certificate_box.h"
 #include "editor/panels/error_bars.h"
 #include "editor/panels/panel.h"
 #include "editor/panels/run_view.h"
@@ -114,7 +113,6 @@ class AccuracyPanel : public QWidget {
         connect(worst_, &QPushButton::clicked, this, &AccuracyPanel::selectWorst);
         layout->addWidget(worst_);
         layout->addWidget(measure_);
-        layout->addWidget(new CertificateBox(document_, tasks_));
         pixels_->setValue(1);
         milliseconds_->setValue(4);
         connect(measure_, &QPushButton::clicked, this, &AccuracyPanel::measure);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editor/panels/certificate_box.h"
 
+#include <QLocale>
 #include <QVBoxLayout>
 #include <memory>
 
@@ -54,6 +55,7 @@ void CertificateBox::certify() {
         [this, document = documents_](Certificate certificate) {
             if (document != documents_) return;
             certificate_ = std::move(certificate);
+            triedAt_ = QDateTime::currentDateTime();
             refresh();
         });
     if (began) outdated_ = false;
@@ -62,7 +64,10 @@ void CertificateBox::certify() {
 void CertificateBox::refresh() {
     certify_->setEnabled(document_.groom().strandCount() > 0);
     const QString age = outdated_ ? tr("Before the last change: ") : QString();
-    words_->setText(certificate_ ? age + QString::fromStdString(inWords(*certificate_)) : QString());
+    words_->setText(certificate_ ? tr("%1%2 Tried at %3.")
+                                       .arg(age, QString::fromStdString(inWords(*certificate_)),
+                                            QLocale().toString(triedAt_, QLocale::ShortFormat))
+                                 : QString());
     words_->setVisible(certificate_.has_value());
 }
 

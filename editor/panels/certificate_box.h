@@ -2,6 +2,7 @@
 #pragma once
 // What the hair withstands, found by random storms on it in the background.
 
+#include <QDateTime>
 #include <QLabel>
 #include <QPushButton>
 #include <QWidget>
@@ -28,6 +29,7 @@ class CertificateBox : public QWidget {
     QLabel* words_;
     QPushButton* certify_;
     std::optional<Certificate> certificate_;
+    QDateTime triedAt_;
     bool outdated_ = false;
     int documents_ = 0;  ///< that were opened: a certificate is of one
 };

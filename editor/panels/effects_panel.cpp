@@ -4,6 +4,7 @@
 #include <QHeaderView>
 #include <QLabel>
 #include <QPushButton>
+#include <QSettings>
 #include <QTreeWidget>
 #include <QVBoxLayout>
 
@@ -13,6 +14,10 @@
 #include "core/simulation/effect_switch.h"
 #include "editor/document/tasks.h"
 #include "editor/fields/field.h"
+#include "editor/fields/number_box.h"
+#include "editor/panels/certificate_box.h"
+#include "editor/panels/cost_bars.h"
+#include "editor/panels/live_costs.h"
 #include "editor/panels/panel.h"
 #include "editor/panels/stability_gauge.h"
 
@@ -20,22 +25,27 @@ namespace hairloom::editor {
 namespace {
 
 constexpr std::uint32_t kMeasuredFrames = 20, kMeasuredRuns = 5;
+constexpr const char* kBudgetKey = "frameBudget";
+constexpr double kUsualBudget_ms = 4;
 
 enum Column { kName, kMs, kMb, kWhy, kColumns };
 
 class EffectsPanel : public QWidget {
   public:
-    EffectsPanel(QtDocument& document, Player& player, Tasks& tasks)
-        : document_(document),
-          player_(player),
-          tasks_(tasks),
+    explicit EffectsPanel(const PanelParts& parts)
+        : document_(parts.document),
+          player_(parts.player),
+          tasks_(parts.tasks),
+          budget_(new NumberBox(0.1, 100, false)),
           table_(new QTreeWidget),
+          bars_(new CostBars(parts.preferences, table_)),
           note_(new QLabel),
           measure_(new QPushButton(tr("Measure on and off"))),
           trial_(new QWidget) {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(8);
+        makeBudget(*layout);
         makeTable();
         note_->setProperty("role", "dim");
         note_->setWordWrap(true);
@@ -51,12 +61,13 @@ class EffectsPanel : public QWidget {
         connect(&player_, &Player::frameReady, this, refreshSeen);
         connect(&player_, &Player::planPreviewChanged, this, refreshSeen);
         connect(table_, &QTreeWidget::itemChanged, this, &EffectsPanel::takeCheck);
-        connect(&document_, &QtDocument::changed, this, [this](editing::Part parts) {
-            if (contains(parts, editing::Part::Physics | editing::kHairParts | editing::Part::Spheres))
+        connect(&document_, &QtDocument::changed, this, [this](editing::Part changed) {
+            if (contains(changed, editing::Part::Physics | editing::kHairParts | editing::Part::Spheres))
                 outdated_ = true;
         });
         connect(&document_, &QtDocument::replaced, this, [this] {
             costs_.reset();
+            live_.restart();
             ++documents_;
         });
         refresh();
@@ -70,6 +81,24 @@ class EffectsPanel : public QWidget {
     void hideEvent(QHideEvent*) override { player_.setPlanPreviewActive(false); }
 
   private:
+    void makeBudget(QVBoxLayout& layout) {
+        auto* row = new QHBoxLayout;
+        auto* words = new QLabel(tr("Budget of a frame"));
+        words->setBuddy(budget_);
+        budget_->setObjectName("effectsBudget");
+        budget_->setToolTip(tr(
+            "What the simulation may take of a frame: the line through the bars; what is beyond it is red"));
+        budget_->setShown(1, tr("ms"), 1);
+        budget_->setValue(QSettings().value(kBudgetKey, kUsualBudget_ms).toDouble());
+        connect(budget_, &NumberBox::edited, this, [this](double milliseconds) {
+            QSettings().setValue(kBudgetKey, milliseconds);
+            refresh();
+        });
+        row->addWidget(words);
+        row->addWidget(budget_, 1);
+        layout.addLayout(row);
+    }
+
     void makeTable() {
         table_->setObjectName("effects");
         table_->setHeaderLabels({tr("Effect"), tr("ms"), tr("MB"), tr("Why")});
@@ -79,12 +108,13 @@ class EffectsPanel : public QWidget {
         table_->setFocusPolicy(Qt::NoFocus);
         table_->setMinimumHeight(340);
         table_->header()->resizeSection(kName, 104);
-        table_->header()->resizeSection(kMs, 66);
+        table_->header()->resizeSection(kMs, 86);
         table_->header()->resizeSection(kMb, 44);
         table_->header()->setSectionResizeMode(kWhy, QHeaderView::Stretch);
+        table_->setItemDelegateForColumn(kMs, bars_);
         table_->setToolTip(
-            tr("Milliseconds a frame, summed over threads; megabytes of its own; and why it runs or "
-               "does not. Untick an effect to try the hair without it."));
+            tr("What each effect takes of a frame, while it plays of the last half second; megabytes of its "
+               "own; and why it runs or does not. Untick an effect to try the hair without it."));
     }
 
     void makeMeasure() {
@@ -131,21 +161,44 @@ class EffectsPanel : public QWidget {
     void showMilliseconds(QTreeWidgetItem& item, const EffectReport& effect, bool measured) const {
         item.setText(kMs, QStringLiteral("–"));
         item.setToolTip(kMs, {});
+        item.setData(kMs, CostBars::kMilliseconds, {});
         if (!effect.on) return;
+        const double live = live_.millisecondsOf(effect.name);
         if (const EffectCost* cost = costOf(effect.name)) {
             const Quartiles& ms = *cost->costMilliseconds;
             item.setText(kMs, lostInSpread(ms) ? tr("≈ 0") : QString::number(ms.median, 'f', 3));
+            item.setData(kMs, CostBars::kMilliseconds, std::max(ms.median, 0.0));
             item.setToolTip(kMs,
                             tr("%1 ms a frame with it, %2 without; half of the runs lie between %3 and %4")
                                 .arg(costs_->milliseconds.median, 0, 'f', 2)
                                 .arg(cost->millisecondsOff->median, 0, 'f', 2)
                                 .arg(ms.q1, 0, 'f', 3)
                                 .arg(ms.q3, 0, 'f', 3));
-        } else if (measured && effect.milliseconds > 0) {
-            item.setText(kMs, QString::number(effect.milliseconds, 'f', 3));
+        } else if (measured && live > 0) {
+            item.setText(kMs, QString::number(live, 'f', 3));
+            item.setData(kMs, CostBars::kMilliseconds, live);
+            item.setToolTip(kMs, tr("Its share of the frame's time"));
         } else if (measured) {
             item.setToolTip(kMs, tr("Part of the strands' one solve; Measure on and off tells its price"));
         }
+    }
+
+    /// The frame as a whole, against the budget.
+    void showFrame(QTreeWidgetItem& item) const {
+        const double ms = costs_ ? costs_->milliseconds.median : live_.frame();
+        const bool onGpu = player_.engine() && player_.engine()->kind == EngineKind::gpu && !costs_;
+        item.setText(kName, tr("Whole frame"));
+        item.setData(kName, Qt::UserRole, "frame");
+        item.setData(kName, Qt::CheckStateRole, {});
+        item.setFlags(item.flags() & ~Qt::ItemIsUserCheckable);
+        item.setText(kMs, ms > 0 ? QString::number(ms, 'f', 2) : QStringLiteral("–"));
+        item.setData(kMs, CostBars::kMilliseconds, ms > 0 ? QVariant(ms) : QVariant());
+        item.setTextAlignment(kMs, Qt::AlignRight | Qt::AlignVCenter);
+        const QString of = tr("%1 % of the budget").arg(100 * ms / budget_->value(), 0, 'f', 0);
+        item.setText(kWhy, ms > 0 ? (onGpu ? tr("%1, on the GPU").arg(of) : of) : QString());
+        QFont bold = font();
+        bold.setBold(true);
+        for (int c = 0; c < kColumns; ++c) item.setFont(c, bold);
     }
 
     void makeTrial() {
@@ -188,13 +241,14 @@ class EffectsPanel : public QWidget {
         if (nothing) return tr("Place hair to see what its simulation would run.");
         if (costs_) {
             const QString age = outdated_ ? tr(" before the last change") : QString();
-            return tr("On and off, of %1 ms a frame on the processor, measured%2.")
+            return tr("On and off, of %1 ms a frame on the processor, measured%2. Play on to see live times.")
                 .arg(costs_->milliseconds.median, 0, 'f', 2)
                 .arg(age);
         }
-        const auto& frame = player_.frame();
-        return frame ? tr("Mean of %L1 frames").arg(frame->stats.frames)
-                     : tr("What would run; play (Space) to see what it costs.");
+        if (!player_.frame()) return tr("What would run; play (Space) to see what it costs.");
+        const bool onGpu = player_.engine() && player_.engine()->kind == EngineKind::gpu;
+        return onGpu ? tr("Live, on the GPU: one kernel moves the strands with all their effects")
+                     : tr("Live, on the processor: mean of the last half second");
     }
 
     void refresh() {
@@ -203,13 +257,16 @@ class EffectsPanel : public QWidget {
         const auto& frame = player_.frame();
         note_->setText(words(effects.empty()));
         measure_->setVisible(!effects.empty());
-        while (table_->topLevelItemCount() > static_cast<int>(effects.size()))
-            delete table_->takeTopLevelItem(0);
-        while (table_->topLevelItemCount() < static_cast<int>(effects.size()))
-            table_->addTopLevelItem(new QTreeWidgetItem);
+        if (frame) live_.add(*frame);
+        const int rows = effects.empty() ? 0 : static_cast<int>(effects.size()) + 1;
+        while (table_->topLevelItemCount() > rows) delete table_->takeTopLevelItem(rows);
+        while (table_->topLevelItemCount() < rows) table_->addTopLevelItem(new QTreeWidgetItem);
+        bars_->setScale(budget_->value(), costs_ ? costs_->milliseconds.median : live_.frame());
+        if (rows > 0) showFrame(*table_->topLevelItem(0));
         for (std::size_t i = 0; i < effects.size(); ++i) {
-            show(*table_->topLevelItem(static_cast<int>(i)), effects[i], frame != nullptr);
+            show(*table_->topLevelItem(static_cast<int>(i) + 1), effects[i], frame != nullptr);
         }
+        table_->viewport()->update();
         wrapRows(*table_);
         trial_->setVisible(!player_.leftOut().isEmpty());
         filling_ = false;
@@ -247,10 +304,13 @@ class EffectsPanel : public QWidget {
     QtDocument& document_;
     Player& player_;
     Tasks& tasks_;
+    NumberBox* budget_;
     QTreeWidget* table_;
+    CostBars* bars_;
     QLabel* note_;
     QPushButton* measure_;
     QWidget* trial_;
+    LiveCosts live_;
     bool filling_ = false;
     std::optional<EffectCosts> costs_;
     std::uint32_t documents_ = 0;  ///< replaced so far
@@ -269,8 +329,8 @@ PanelInfo effectsPanel() {
             [](const PanelParts& parts) -> QWidget* {
                 return scrolled(column({heading(QObject::tr("Stability")),
                                         new StabilityGauge(parts.document, parts.preferences),
-                                        heading(QObject::tr("Effects")),
-                                        new EffectsPanel(parts.document, parts.player, parts.tasks)}));
+                                        new CertificateBox(parts.document, parts.tasks),
+                                        heading(QObject::tr("Effects")), new EffectsPanel(parts)}));
             }};
 }
 

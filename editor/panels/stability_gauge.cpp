@@ -31,6 +31,7 @@ StabilityGauge::StabilityGauge(QtDocument& document, const Preferences& preferen
       document_(document),
       preferences_(preferences),
       bar_(new QProgressBar),
+      map_(new StepMap(preferences)),
       words_(new QLabel),
       offers_(new QVBoxLayout) {
     auto* layout = new QVBoxLayout(this);
@@ -45,6 +46,7 @@ StabilityGauge::StabilityGauge(QtDocument& document, const Preferences& preferen
     words_->setProperty("role", "dim");
     layout->addWidget(bar_);
     layout->addWidget(words_);
+    layout->addWidget(map_);
     layout->addLayout(offers_);
     soon_.setSingleShot(true);
     soon_.setInterval(80);
@@ -81,6 +83,7 @@ void StabilityGauge::update() {
     isOutdated_ = false;
     const Groom& groom = document_.groom();
     advice_ = adviceFor(groom);
+    map_->setGroom(groom);
     const double factor = advice_.region.factor;
     const double margin = std::isfinite(factor) ? std::clamp(1 - factor, 0.0, 1.0) : 0;
     bar_->setValue(std::max(kMinShown, static_cast<int>(100 * margin)));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// How far the settings are from where the simulation would explode, with what would help a click away.
+// How far the settings are from where the simulation would explode, each integrator's failing step, and what
+// would help a click away.
 
 #include <QLabel>
 #include <QProgressBar>
@@ -10,6 +11,7 @@
 
 #include "editor/document/preferences.h"
 #include "editor/document/qt_document.h"
+#include "editor/panels/step_map.h"
 #include "hairloom/stable.h"
 
 namespace hairloom::editor {
@@ -33,6 +35,7 @@ class StabilityGauge : public QWidget {
     QtDocument& document_;
     const Preferences& preferences_;
     QProgressBar* bar_;
+    StepMap* map_;
     QLabel* words_;
     QVBoxLayout* offers_;
     QTimer soon_;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editor/viewport/live_work.h"
 
+#include <algorithm>
+
 #include "core/simulation/strand_method.h"
 
 namespace hairloom::editor {
@@ -13,6 +15,18 @@ std::size_t drawnPointsOf(const GroomScene& scene) {
 
 std::size_t verticesOf(const GroomScene& scene) {
     return scene.rest().scalp ? scene.rest().scalp->vertexCount() : 0;
+}
+
+/// The row of what is spent in a pass.
+std::string partOf(std::string_view pass) {
+    const auto isOne = [&](std::initializer_list<std::string_view> names) {
+        return std::ranges::find(names, pass) != names.end();
+    };
+    if (isOne({"strands", "roots of slots"})) return "solve";
+    if (isOne({"head", "roots"})) return "head";
+    if (isOne({"wisps", "follow hairs"})) return "followHairs";
+    if (isOne({"hair against hair"})) return "hair-hair";
+    return "measures";
 }
 
 }  // namespace
@@ -33,6 +47,7 @@ Status LiveWork::start(const LiveStart& start) {
     hair_.reset();
     timed_.clear();
     report_ = {};
+    times_.clear();
     const auto scene = GroomScene::make(*start.groom, {}, {});
     if (!scene) return tl::unexpected(scene.error());
     auto made = DeviceHair::make(device_, kernels(), *scene, start.motion->skin(), start.pose);
@@ -68,6 +83,8 @@ Status LiveWork::step(const LiveStep& step) {
         report_.effects.push_back({runtime::effectName(effect), plan.on(effect),
                                    reasonAlone(plan.why(effect)), 0, hair_->engine().effectBytes(effect)});
     }
+    for (const auto& [part, milliseconds] : times_)
+        report_.effects.push_back({part, true, "on, on the GPU", milliseconds, 0});
     return {};
 }
 
@@ -79,10 +96,17 @@ void LiveWork::time(gpu::SubmissionPtr submission) {
         timed_.pop_front();
         if (!times) continue;
         double sum = 0;
-        for (const gpu::PassTime& pass : *times) sum += pass.milliseconds;
-        constexpr double kShare = 0.1;
-        report_.milliseconds =
-            report_.milliseconds > 0 ? report_.milliseconds + kShare * (sum - report_.milliseconds) : sum;
+        std::map<std::string, double> parts;
+        for (const gpu::PassTime& pass : *times) {
+            sum += pass.milliseconds;
+            parts[partOf(pass.name)] += pass.milliseconds;
+        }
+        const auto smooth = [](double& mean, double now) {
+            constexpr double kShare = 0.1;
+            mean = mean > 0 ? mean + kShare * (now - mean) : now;
+        };
+        smooth(report_.milliseconds, sum);
+        for (const auto& [part, milliseconds] : parts) smooth(times_[part], milliseconds);
     }
 }
 

@@ -2,6 +2,8 @@
 #pragma once
 // Hair that is simulated where it is drawn: what the render thread keeps of it. Used on that thread only.
 
+#include <map>
+
 #include "core/scene/device_hair.h"
 #include "core/scene/engine_choice.h"
 #include "core/simulation/simulation.h"
@@ -29,8 +31,10 @@ struct LiveStep {
 /// What has come back of frames, a frame or two late.
 struct LiveReport {
     DeviceFrame frame;
-    std::vector<EffectReport> effects;  ///< without times
-    double milliseconds = 0;            ///< of a frame on the device, mean of the last ones; 0: not known yet
+    /// One kernel moves the strands with all their effects: behind these, which have no times, come the
+    /// "solve", and what else the device does for them.
+    std::vector<EffectReport> effects;
+    double milliseconds = 0;  ///< of a frame on the device, mean of the last ones; 0: not known yet
 };
 
 class LiveWork {
@@ -61,6 +65,7 @@ class LiveWork {
     std::optional<DeviceHair> hair_;
     std::size_t drawnPoints_ = 0, vertices_ = 0;
     std::deque<gpu::SubmissionPtr> timed_;  ///< whose times have not been read
+    std::map<std::string, double> times_;   ///< of what is told apart, ms, mean of the last frames
     LiveReport report_;
 };
 

@@ -199,6 +199,7 @@ TEST_F(AccuracyTest, AThousandStormsSayWhatTheHairWithstands) {
     finishWork();
     EXPECT_TRUE(words->text().startsWith("Withstands frames of")) << words->text().toStdString();
     EXPECT_TRUE(words->text().contains("1000 random storms"));
+    EXPECT_TRUE(words->text().contains("Tried at")) << words->text().toStdString();
     Groom changed = groom();
     changed.simulation.windSpeed = 3;
     change("Wind", changed);

@@ -7,7 +7,9 @@
 #include <QTreeWidget>
 #include <algorithm>
 
+#include "editor/fields/number_box.h"
 #include "editor/fields/stiffness_curve.h"
+#include "editor/panels/cost_bars.h"
 #include "editor/panels/stability_gauge.h"
 #include "tests/editor/window_fixture.h"
 
@@ -102,6 +104,43 @@ TEST_F(EffectsTest, EachEffectIsMeasuredOnAndOff) {
     parts().tasks.cancel();
     parts().tasks.finish();
     EXPECT_FALSE(parts().tasks.isBusy());
+}
+
+TEST_F(EffectsTest, BarsShowWhatAFrameTakesAgainstTheBudget) {
+    ASSERT_TRUE(waitForRow("wind"));
+    const auto milliseconds = [&](const char* effect) {
+        return row(effect)->data(1, CostBars::kMilliseconds);
+    };
+    EXPECT_FALSE(milliseconds("frame").isValid()) << "nothing has played";
+    ASSERT_TRUE(play(0.2));
+    trigger("play.toggle");
+    ASSERT_TRUE(milliseconds("frame").isValid());
+    double sum = 0;
+    for (const EffectReport& effect : parts().player.effects())
+        sum += milliseconds(effect.name.c_str()).toDouble();
+    const double frame = milliseconds("frame").toDouble();
+    EXPECT_GT(frame, 0);
+    EXPECT_NEAR(sum, frame, 0.01 * frame) << "the effects share the frame";
+    auto* budget = find<NumberBox>("effectsBudget");
+    budget->spinBox().setValue(2);
+    const double share = frame / 2;
+    EXPECT_TRUE(row("frame")->text(3).startsWith(QString::number(100 * share, 'f', 0)))
+        << row("frame")->text(3).toStdString();
+}
+
+TEST_F(EffectsTest, EachIntegratorsFailingStepIsShownWithTheSettingAsADot) {
+    auto* map = find<StepMap>("stepMap");
+    ASSERT_TRUE(QTest::qWaitFor([&] { return map->words().contains("now rods at 8.3 ms"); }, 20'000))
+        << map->words().toStdString();
+    EXPECT_TRUE(map->words().contains("rods fails at no step"));
+    Groom springs = groom();
+    springs.simulation.strandModel = runtime::StrandModel::springs;
+    springs.simulation.integrator = runtime::Integrator::rk4;
+    springs.simulation.substeps = 16;
+    change("Springs", springs);
+    ASSERT_TRUE(QTest::qWaitFor([&] { return map->words().contains("now rk4 at 1 ms"); }, 20'000))
+        << map->words().toStdString();
+    EXPECT_TRUE(map->words().contains("rk4 fails beyond a substep of")) << map->words().toStdString();
 }
 
 TEST_F(EffectsTest, TemporaryChangeCanBeApplied) {
