@@ -2,18 +2,24 @@
 #include "core/accuracy/error_parts.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "hairloom/strands.h"
 
 namespace hairloom {
+namespace {
+
+constexpr std::uint32_t kFirstSubsteps = 4;
+
+}  // namespace
 
 ErrorSplitter::ErrorSplitter(const GridHair& hair, const std::vector<GridAxis>& axes,
                              const runtime::SimulationSettings& settings, std::span<const HeadPose> poses,
                              const SceneTime& time, const GroundTruth& exact)
     : hair_(hair), axes_(axes), settings_(settings), poses_(poses), time_(time), exact_(exact) {}
 
-Result<const Trajectory*> ErrorSplitter::converged(const std::vector<double>& values, std::uint32_t points,
-                                                   bool rods) {
+Result<const ErrorSplitter::Converged*> ErrorSplitter::converged(const std::vector<double>& values,
+                                                                 std::uint32_t points, bool rods) {
     if (const auto axis = findAxis(axes_, kPointsAxis); axis && points == 0)
         points = static_cast<std::uint32_t>(values[*axis]);
     std::vector<double> key = values;
@@ -27,13 +33,28 @@ Result<const Trajectory*> ErrorSplitter::converged(const std::vector<double>& va
     if (const auto found = made_.find(key); found != made_.end()) return &found->second;
     GridHair::Some some = hair_.alone(hair_.at(values, points), exact_.followed.strands, values);
     runtime::SimulationSettings& settings = some.hair.groom.simulation;
-    settings.substeps = std::max(settings.substeps, kConvergedSubsteps);
     if (rods) settings.strandModel = runtime::StrandModel::rods;
-    auto outcome =
-        runScene(some.hair, poses_, time_, {some.strands, exact_.followed.shares}, hair_.optionsAt(values));
-    if (!outcome) return tl::unexpected(outcome.error());
-    hair_.moveToOwnRoots(values, exact_.followed, poses_, outcome->trajectory);
-    return &made_.emplace(std::move(key), std::move(outcome->trajectory)).first->second;
+    // Beyond some step single precision rounds away what a shorter one gains: of these the run counts that is
+    // nearest to the one before it.
+    Converged best;
+    best.trajectory.finite = false;
+    best.doubt.rmsMm = std::numeric_limits<double>::infinity();
+    Trajectory before;
+    before.finite = false;
+    for (std::uint32_t substeps = kFirstSubsteps; substeps <= kConvergedSubsteps; substeps *= 2) {
+        settings.substeps = substeps;
+        auto outcome = runScene(some.hair, poses_, time_, {some.strands, exact_.followed.shares},
+                                hair_.optionsAt(values));
+        if (!outcome) return tl::unexpected(outcome.error());
+        Trajectory& now = outcome->trajectory;
+        if (now.finite && before.finite) {
+            const TrajectoryError change = compare(before, now);
+            if (change.rmsMm < best.doubt.rmsMm) best = {now, change};
+        }
+        before = std::move(now);
+    }
+    hair_.moveToOwnRoots(values, exact_.followed, poses_, best.trajectory);
+    return &made_.emplace(std::move(key), std::move(best)).first->second;
 }
 
 Result<std::optional<ErrorParts>> ErrorSplitter::split(const WorkPrecisionRun& run) {
@@ -50,10 +71,17 @@ Result<std::optional<ErrorParts>> ErrorSplitter::split(const WorkPrecisionRun& r
     if (!isRod) {
         const auto rods = converged(run.values, exactPoints, true);
         if (!rods) return tl::unexpected(rods.error());
-        rod = *rods;
+        rod = &(*rods)->trajectory;
     }
-    if (!(*own)->finite || !(*finer)->finite || !(*model)->finite || !rod->finite) return std::nullopt;
-    return ErrorParts{compare(run.trajectory, **own), compare(**own, **finer), compare(**model, *rod)};
+    for (const Trajectory* each : {&(*own)->trajectory, &(*finer)->trajectory, &(*model)->trajectory, rod}) {
+        if (!each->finite) return std::nullopt;
+    }
+    ErrorParts parts{compare(run.trajectory, (*own)->trajectory),
+                     compare((*own)->trajectory, (*finer)->trajectory), compare((*model)->trajectory, *rod)};
+    // No nearer than what it is compared with is known.
+    parts.step.rmsMm = std::max(parts.step.rmsMm, (*own)->doubt.rmsMm);
+    parts.step.maxMm = std::max(parts.step.maxMm, (*own)->doubt.maxMm);
+    return parts;
 }
 
 }  // namespace hairloom

@@ -20,8 +20,12 @@ class ErrorSplitter {
     Result<std::optional<ErrorParts>> split(const WorkPrecisionRun& run);
 
   private:
+    struct Converged {
+        Trajectory trajectory;
+        TrajectoryError doubt;  ///< from the same with half of its steps
+    };
     /// The run with short steps and so many points, 0 for its own; of rods in place of its strands, if so.
-    Result<const Trajectory*> converged(const std::vector<double>& values, std::uint32_t points, bool rods);
+    Result<const Converged*> converged(const std::vector<double>& values, std::uint32_t points, bool rods);
 
     const GridHair& hair_;
     const std::vector<GridAxis>& axes_;
@@ -29,7 +33,7 @@ class ErrorSplitter {
     std::span<const HeadPose> poses_;
     const SceneTime& time_;
     const GroundTruth& exact_;
-    std::map<std::vector<double>, Trajectory> made_;
+    std::map<std::vector<double>, Converged> made_;
 };
 
 }  // namespace hairloom

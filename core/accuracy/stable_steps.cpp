@@ -9,13 +9,21 @@
 #include "hairloom/stable.h"
 
 namespace hairloom {
+namespace {
+
+constexpr std::size_t kMostStrands = 2000;
+
+}  // namespace
 
 std::vector<StableStep> stableSteps(const Groom& groom) {
-    static_assert(sizeof(Vec3f) == sizeof(runtime::Float3));
-    const auto positions = groom.positions();
-    runtime::StrandsView strands;
-    strands.offsets = groom.offsets.view();
-    strands.restPositions_ss = {reinterpret_cast<const runtime::Float3*>(positions.data()), positions.size()};
+    const std::size_t every = (groom.strandCount() + kMostStrands - 1) / kMostStrands;
+    std::vector<std::uint32_t> offsets{0};
+    std::vector<runtime::Float3> positions;
+    for (std::size_t s = 0; s < groom.strandCount(); s += every) {
+        for (const Vec3f& point : groom.strand(s)) positions.push_back({point.x(), point.y(), point.z()});
+        offsets.push_back(static_cast<std::uint32_t>(positions.size()));
+    }
+    const runtime::StrandsView strands{offsets, positions};
     runtime::SimulationSettings settings = groom.simulation;
     const bool rods = settings.strandModel == runtime::StrandModel::rods;
     std::vector<StableStep> steps{{"rods", std::numeric_limits<double>::infinity(), rods}};

@@ -16,7 +16,7 @@ struct StableStep {
 };
 
 /// Rods, then springs with each integrator, with the groom's other settings; by linear theory around the
-/// shape at rest. Looks at every strand.
+/// shape at rest, of up to 2,000 strands spread over all.
 std::vector<StableStep> stableSteps(const Groom& groom);
 
 /// "fails beyond a substep of 3.1 ms", "fails at any step", "fails at no step".

@@ -43,9 +43,9 @@ inline constexpr std::uint32_t kConvergedSubsteps = 64;
 
 /// What the error of a run is made of, each found by itself: they need not add up.
 struct ErrorParts {
-    TrajectoryError step;    ///< from the same with kConvergedSubsteps
+    TrajectoryError step;    ///< from the same converged, up to kConvergedSubsteps; its doubt at least
     TrajectoryError points;  ///< from that one to the same with twice the points of the finest in the grid
-    /// From the rod to the finest strands of this model with kConvergedSubsteps: springs, contact, hair
+    /// From the rod to the finest strands of this model, converged: springs, guides, contact, hair
     /// against hair, single precision. The rod is the truth, or the engine's where the truth is of springs.
     TrajectoryError model;
 };

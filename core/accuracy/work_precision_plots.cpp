@@ -205,7 +205,7 @@ std::optional<Plot> partsPlot(const WorkPrecision& result) {
     Plot plot;
     plot.title = "What errors are made of";
     plot.note = fmt::format(
-        "Steps: from the same with {} substeps. Points: from that to twice the finest strands. Model: "
+        "Steps: from the same with up to {} substeps. Points: from that to twice the finest strands. Model: "
         "from the rod to the finest strands of this model with short steps. Each is measured by "
         "itself; they need not add up. Settings from the fastest to the most exact.",
         kConvergedSubsteps);

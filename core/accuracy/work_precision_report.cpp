@@ -115,7 +115,7 @@ void addParts(const WorkPrecision& result, const std::string& drawing, HtmlRepor
     page.heading("What the errors are made of");
     page.drawing(drawing);
     page.list(
-        {fmt::format("Steps: how far a run is from the same with {} substeps. More substeps mend it.",
+        {fmt::format("Steps: how far a run is from the same with up to {} substeps. More substeps mend it.",
                      kConvergedSubsteps),
          "Points: how far that one is from strands with twice the points of the finest here. More points "
          "mend it.",

@@ -60,6 +60,7 @@ class EffectsPanel : public QWidget {
         };
         connect(&player_, &Player::frameReady, this, refreshSeen);
         connect(&player_, &Player::planPreviewChanged, this, refreshSeen);
+        connect(&player_, &Player::stateChanged, this, refreshSeen);
         connect(table_, &QTreeWidget::itemChanged, this, &EffectsPanel::takeCheck);
         connect(&document_, &QtDocument::changed, this, [this](editing::Part changed) {
             if (contains(changed, editing::Part::Physics | editing::kHairParts | editing::Part::Spheres))
@@ -89,7 +90,7 @@ class EffectsPanel : public QWidget {
         budget_->setToolTip(tr(
             "What the simulation may take of a frame: the line through the bars; what is beyond it is red"));
         budget_->setShown(1, tr("ms"), 1);
-        budget_->setValue(QSettings().value(kBudgetKey, kUsualBudget_ms).toDouble());
+        budget_->setValue(std::clamp(QSettings().value(kBudgetKey, kUsualBudget_ms).toDouble(), 0.1, 100.0));
         connect(budget_, &NumberBox::edited, this, [this](double milliseconds) {
             QSettings().setValue(kBudgetKey, milliseconds);
             refresh();
@@ -151,10 +152,12 @@ class EffectsPanel : public QWidget {
         if (began) outdated_ = false;
     }
 
+    /// What is shown of on and off: not while it plays, when bars are live.
+    const EffectCosts* costs() const { return costs_ && !player_.isPlaying() ? &*costs_ : nullptr; }
     const EffectCost* costOf(const std::string& effect) const {
-        if (!costs_) return nullptr;
-        const auto found = std::ranges::find(costs_->effects, effect, &EffectCost::name);
-        return found != costs_->effects.end() && found->costMilliseconds ? &*found : nullptr;
+        if (!costs()) return nullptr;
+        const auto found = std::ranges::find(costs()->effects, effect, &EffectCost::name);
+        return found != costs()->effects.end() && found->costMilliseconds ? &*found : nullptr;
     }
 
     /// What an effect adds to a frame; else, in a run, what its own stages take.
@@ -185,8 +188,8 @@ class EffectsPanel : public QWidget {
 
     /// The frame as a whole, against the budget.
     void showFrame(QTreeWidgetItem& item) const {
-        const double ms = costs_ ? costs_->milliseconds.median : live_.frame();
-        const bool onGpu = player_.engine() && player_.engine()->kind == EngineKind::gpu && !costs_;
+        const double ms = costs() ? costs()->milliseconds.median : live_.frame();
+        const bool onGpu = player_.engine() && player_.engine()->kind == EngineKind::gpu && !costs();
         item.setText(kName, tr("Whole frame"));
         item.setData(kName, Qt::UserRole, "frame");
         item.setData(kName, Qt::CheckStateRole, {});
@@ -239,10 +242,10 @@ class EffectsPanel : public QWidget {
 
     QString words(bool nothing) const {
         if (nothing) return tr("Place hair to see what its simulation would run.");
-        if (costs_) {
+        if (const EffectCosts* costs = this->costs()) {
             const QString age = outdated_ ? tr(" before the last change") : QString();
-            return tr("On and off, of %1 ms a frame on the processor, measured%2. Play on to see live times.")
-                .arg(costs_->milliseconds.median, 0, 'f', 2)
+            return tr("On and off, of %1 ms a frame on the processor, measured%2.")
+                .arg(costs->milliseconds.median, 0, 'f', 2)
                 .arg(age);
         }
         if (!player_.frame()) return tr("What would run; play (Space) to see what it costs.");
@@ -261,7 +264,7 @@ class EffectsPanel : public QWidget {
         const int rows = effects.empty() ? 0 : static_cast<int>(effects.size()) + 1;
         while (table_->topLevelItemCount() > rows) delete table_->takeTopLevelItem(rows);
         while (table_->topLevelItemCount() < rows) table_->addTopLevelItem(new QTreeWidgetItem);
-        bars_->setScale(budget_->value(), costs_ ? costs_->milliseconds.median : live_.frame());
+        bars_->setScale(budget_->value(), costs() ? costs()->milliseconds.median : live_.frame());
         if (rows > 0) showFrame(*table_->topLevelItem(0));
         for (std::size_t i = 0; i < effects.size(); ++i) {
             show(*table_->topLevelItem(static_cast<int>(i) + 1), effects[i], frame != nullptr);

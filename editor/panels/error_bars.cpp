@@ -23,7 +23,7 @@ ErrorBars::ErrorBars(const Preferences& preferences, QWidget* parent)
     : QWidget(parent), preferences_(preferences) {
     setObjectName("accuracyParts");
     bars_[0].name = tr("Steps");
-    bars_[0].meaning = tr("from the same with %1 substeps; more substeps mend it").arg(kConvergedSubsteps);
+    bars_[0].meaning = tr("from the same with up to %1 substeps; more substeps mend it").arg(kConvergedSubsteps);
     bars_[1].name = tr("Points");
     bars_[1].meaning =
         tr("from that to strands with twice the points of the finest that were tried; more points mend it");

@@ -16,7 +16,6 @@ class StepMap : public QWidget {
 
   public:
     explicit StepMap(const Preferences& preferences, QWidget* parent = nullptr);
-    /// Looks at every strand.
     void setGroom(const Groom& groom);
     /// "rods fails at no step, verlet fails beyond a substep of 3.1 ms, …; now rods at 8.3 ms".
     QString words() const;

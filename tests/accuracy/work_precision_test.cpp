@@ -232,6 +232,17 @@ TEST(WorkPrecision, GuidesStandForTheStrandsAroundThem) {
     EXPECT_THAT(result->notes, testing::Not(Contains(HasSubstr("hairsPerGuide"))));
 }
 
+TEST(WorkPrecision, OneStrandOfTwoPointsIsMeasured) {
+    const Groom groom = straightHair(1, 2);
+    const auto motion = makeRigidMotion("nod", groom);
+    WorkPrecisionOptions options = smallGrid();
+    options.axes = axesToTry(groom);
+    options.repeats = 1;
+    const auto result = measureWorkPrecision(groom, **motion, options, EngineConverged(8));
+    ASSERT_TRUE(result.has_value()) << result.error().message();
+    for (const WorkPrecisionRun& run : result->runs) EXPECT_FALSE(run.diverged);
+}
+
 TEST(WorkPrecision, SettingsWithoutEffectAreNamed) {
     WorkPrecisionOptions options = smallGrid();
     options.axes = {{"windFrequency", {1, 2}}};  // there is no wind

@@ -208,6 +208,33 @@ TEST_F(AccuracyTest, AThousandStormsSayWhatTheHairWithstands) {
     EXPECT_TRUE(words->text().isEmpty());
 }
 
+TEST_F(AccuracyTest, WhatChangesWhileItMeasuresIsTold) {
+    find<QPushButton>("accuracyMeasure")->click();
+    Groom changed = groom();
+    changed.simulation.windSpeed = 3;
+    change("Wind", changed);
+    trigger("edit.undo");
+    finishWork();
+    EXPECT_TRUE(words().contains("before the last change")) << words().toStdString();
+    find<QPushButton>("accuracyMeasure")->click();
+    openFirstStrands(5);
+    finishWork();
+    EXPECT_FALSE(adopt().isEnabled()) << "was of another document";
+    EXPECT_TRUE(words().contains("How far")) << words().toStdString();
+}
+
+TEST_F(AccuracyTest, OneStrandOfTwoPointsIsMeasuredToo) {
+    Groom one = firstStrands(groom(), 1);
+    ASSERT_TRUE(resample(one, {2}));
+    document().open(one, {}, "one");
+    measure();
+    EXPECT_TRUE(words().contains("2 points")) << words().toStdString();
+    find<QComboBox>("accuracyMeasure")->setCurrentIndex(2);
+    find<NumberBox>("accuracyPixels")->spinBox().setValue(100);
+    if (adopt().isEnabled()) adopt().click();
+    expectSound();
+}
+
 TEST_F(AccuracyTest, AnotherDocumentAndACancelledRunLeaveNothing) {
     find<QPushButton>("accuracyMeasure")->click();
     parts().tasks.cancel();
