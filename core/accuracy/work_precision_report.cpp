@@ -120,9 +120,8 @@ void addParts(const WorkPrecision& result, const std::string& drawing, HtmlRepor
          "Points: how far that one is from strands with twice the points of the finest here. More points "
          "mend it.",
          "Model: how far the finest strands of this model are from the rod, with short steps: springs that "
-         "sag, strands that follow a guide, how contacts give and slip, hair against hair, single precision. "
-         "Neither steps nor points "
-         "mend it.",
+         "sag, strands that follow a guide, how contacts give and slip, hair against hair, single precision, "
+         "a head that is seen at the ends of frames only. Neither steps nor points mend it.",
          fmt::format("Doubt of the reference: it moves by {:.3g} mm when its resolution in time is halved. "
                      "What is below that says little.",
                      result.groundTruthUncertaintyMm)});

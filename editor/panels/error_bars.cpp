@@ -23,14 +23,15 @@ ErrorBars::ErrorBars(const Preferences& preferences, QWidget* parent)
     : QWidget(parent), preferences_(preferences) {
     setObjectName("accuracyParts");
     bars_[0].name = tr("Steps");
-    bars_[0].meaning = tr("from the same with up to %1 substeps; more substeps mend it").arg(kConvergedSubsteps);
+    bars_[0].meaning =
+        tr("from the same with up to %1 substeps; more substeps mend it").arg(kConvergedSubsteps);
     bars_[1].name = tr("Points");
     bars_[1].meaning =
         tr("from that to strands with twice the points of the finest that were tried; more points mend it");
     bars_[2].name = tr("Model");
     bars_[2].meaning =
-        tr("from the rod to the finest strands of this model: springs that sag, contact, single precision; "
-           "neither steps nor points mend it");
+        tr("from the rod to the finest strands of this model: springs that sag, contact, single precision, "
+           "a head that is seen at the ends of frames only; neither steps nor points mend it");
     bars_[3].name = tr("Doubt");
     bars_[3].meaning =
         tr("the reference's own, with half of its steps; what is smaller than this says little");
