@@ -33,14 +33,19 @@ std::span<const LengthUnit> lengthUnits() {
     return kUnits;
 }
 
-std::optional<std::string> implausibleSize(double size, double metresPerUnit) {
-    const double metres = size * metresPerUnit;
-    if (plausible(metres)) return std::nullopt;
+const LengthUnit* fittingUnit(double size) {
     const LengthUnit* best = nullptr;
     for (const LengthUnit& unit : kUnits) {
         if (!plausible(size * unit.metres)) continue;
         if (!best || strangeness(size * unit.metres) < strangeness(size * best->metres)) best = &unit;
     }
+    return best;
+}
+
+std::optional<std::string> implausibleSize(double size, double metresPerUnit) {
+    const double metres = size * metresPerUnit;
+    if (plausible(metres)) return std::nullopt;
+    const LengthUnit* best = fittingUnit(size);
     const std::string found = fmt::format("is {:.3g} m large, which is neither a head nor a human", metres);
     if (!best) return found + "; no unit among m, dm, cm, mm and inch fits";
     return found + fmt::format("; with the unit {} it would be {:.3g} m", best->name, size * best->metres);

@@ -15,6 +15,10 @@ struct LengthUnit {
 /// m, dm, cm, mm and inch.
 std::span<const LengthUnit> lengthUnits();
 
+/// That in which `size` units can be a head, a bust or a whole human, and the most usual one; null where
+/// none.
+const LengthUnit* fittingUnit(double size);
+
 /// Empty when `size` units of `metresPerUnit` metres, the largest extent of a mesh, can be a head, a bust or
 /// a whole human (0.12 … 2.6 m). Else a sentence that names the size and the unit (m, dm, cm, mm, inch) that
 /// would fit best.

@@ -5,12 +5,15 @@
 #include "cli/job.h"
 #include "cli/outputs.h"
 #include "core/base/content_kind.h"
+#include "core/base/file.h"
 #include "core/base/log.h"
 #include "core/base/stopwatch.h"
 #include "core/geometry/placement.h"
 #include "core/geometry/selection.h"
 #include "core/groom/file/project_file.h"
 #include "core/groom/groom.h"
+#include "core/scene/head_import.h"
+#include "core/scene/mask_image.h"
 #include "importers/mesh_format.h"
 #include "importers/scene.h"
 
@@ -27,6 +30,8 @@ struct CreateOptions {
     std::uint32_t points = 16;
     std::uint64_t seed = 0;
     std::string unit;
+    std::string up = "y";
+    std::vector<std::string> leaveOut;
     std::string mask;
     std::string output;
 };
@@ -55,9 +60,22 @@ Result<Placement> place(const ScalpMesh& mesh, const FaceSet& faces, const Creat
                                          : placeDarts(mesh, faces, request);
 }
 
+bool isPng(const std::string& path) {
+    return contentKind(readBeginning(path, kContentKindBytes)) == content::kPng;
+}
+Result<std::vector<float>> imageMask(const std::string& path, const ScalpMesh& mesh) {
+    const auto image = MaskImage::read(path);
+    if (!image) return tl::unexpected(image.error());
+    auto values = valuesAtVertices(*image, mesh);
+    if (!values) return tl::unexpected(inFile(values.error(), path));
+    return values;
+}
+
 Result<Report> create(const CreateOptions& options) {
     const Stopwatch watch;
-    auto scene = importSceneWithUnit(options.mesh, options.unit);
+    HeadImportOptions head{0, options.up == "z", options.leaveOut};
+    if (!options.unit.empty()) head.metresPerUnit = static_cast<float>(metresPerUnit(options.unit));
+    auto scene = importHead(options.mesh, head);
     if (!scene) return tl::unexpected(scene.error());
     const auto mesh = std::make_shared<const ScalpMesh>(std::move(scene->mesh));
     auto faces = selectFaces(*mesh, options.scalp);
@@ -65,7 +83,8 @@ Result<Report> create(const CreateOptions& options) {
     const double areaCm2 = selectionArea(*mesh, *faces) * 1e4;
     std::vector<float> mask;
     if (!options.mask.empty()) {
-        auto read = readVertexMask(options.mask, *mesh);
+        auto read =
+            isPng(options.mask) ? imageMask(options.mask, *mesh) : readVertexMask(options.mask, *mesh);
         if (!read) return tl::unexpected(read.error());
         mask = std::move(*read);
     }
@@ -75,7 +94,8 @@ Result<Report> create(const CreateOptions& options) {
     auto groom = growStraight(mesh, std::move(*faces), placement->roots, options.length, options.points);
     if (!groom) return tl::unexpected(groom.error());
     groom->scalpExpression = options.scalp;
-    groom->characterFile = options.mesh;
+    // Skeleton and clips fit no other mesh.
+    if (head.keepsMesh()) groom->characterFile = options.mesh;
     if (!options.unit.empty()) groom->characterMetresPerUnit = metresPerUnit(options.unit);
     groom->interpolation.seed = options.seed;
     groom->placement = settingsOf(options, placement->roots.size());
@@ -116,11 +136,20 @@ JobRun declare(CLI::App& job) {
                    "How roots are placed: random, or poissonDisk (by dart throwing; dart for short), at even "
                    "distances")
         ->check(CLI::IsMember({"random", "poissonDisk", "dart"}));
-    job.add_option("--mask", options->mask, "Text file with a density in [0, 1] per vertex of the mesh file");
+    job.add_option(
+        "--mask", options->mask,
+        "Density of roots: a PNG, read at the UVs of the mesh's vertices, or a text file with a number in "
+        "[0, 1] per vertex of the mesh file");
     job.add_option("--length", options->length, "Strand length, metres")->check(CLI::Range(1e-4, 10.0));
     job.add_option("--points", options->points, "Points per strand")->check(CLI::Range(2, 1024));
     job.add_option("--seed", options->seed, "Seed of every random choice");
     addUnitOption(job, options->unit);
+    job.add_option("--up", options->up, "Axis of the mesh file that points up")
+        ->check(CLI::IsMember({"y", "z"}));
+    job.add_option("--leave-out", options->leaveOut,
+                   "Groups of the mesh to do without, as helpers and joints: NAME or BEGINNING*, with commas "
+                   "between")
+        ->delimiter(',');
     job.add_option("-o,--output", options->output, "Project to write")->required();
     job.final_callback([count, density] {
         if (count->count() + density->count() == 0) throw CLI::RequiredError("--count or --density");

@@ -12,10 +12,13 @@
 #include "core/base/content_kind.h"
 #include "core/base/stopwatch.h"
 #include "core/editing/document.h"
+#include "core/editing/selection_commands.h"
 #include "core/editing/stack_commands.h"
 #include "core/groom/file/operators_json.h"
 #include "core/groom/file/project_file.h"
+#include "core/operations/mask.h"
 #include "core/operations/stack_file.h"
+#include "core/scene/mask_image.h"
 
 namespace hairloom::cli {
 namespace {
@@ -26,6 +29,8 @@ struct StackOptions {
     std::string add;
     std::string keep;
     std::string layer;  ///< name; empty: all
+    std::string maskImage;
+    std::uint32_t mask = 1;
     std::string output;
     std::optional<std::size_t> at, solo, duplicate, remove, only;
     bool bake = false;
@@ -39,6 +44,13 @@ Status perform(const StackOptions& options, editing::Document& document) {
         return {};
     };
     const editing::Model& model = document.model();
+    if (!options.maskImage.empty()) {
+        const auto image = MaskImage::read(options.maskImage);
+        if (!image) return tl::unexpected(image.error());
+        const auto values = valuesAtRoots(*image, model.groom);
+        if (!values) return tl::unexpected(inFile(values.error(), options.input));
+        document.perform(editing::setMask(model, options.mask, *values));
+    }
     if (!options.from.empty()) {
         auto operators = loadOperators(options.from);
         if (!operators) return tl::unexpected(operators.error());
@@ -135,6 +147,12 @@ JobRun declare(CLI::App& job) {
            "--keep", options->keep,
            "File to keep what is shown in, for --from, --add and the editor's presets; sculpts stay out")
         ->excludes(output);
+    auto* image = job.add_option("--mask-image", options->maskImage,
+                                 "PNG whose values at the root UVs become a mask of operators");
+    image->needs(output);
+    job.add_option("--mask", options->mask, "Number of that mask")
+        ->check(CLI::Range(1u, kPaintedMasks))
+        ->needs(image);
     from->needs(output);
     bake->needs(output);
     return [options](const std::string&) {

@@ -14,6 +14,7 @@
 #include "core/editing/stack_commands.h"
 #include "core/editing/take_shape.h"
 #include "core/groom/file/settings_json.h"
+#include "core/operations/mask.h"
 #include "core/operations/stack.h"
 #include "core/operations/strand_edit.h"
 
@@ -98,6 +99,20 @@ MakeCommand readDensity(JsonReader& reader) {
             return fail(fmt::format("{} densities", values.size()),
                         fmt::format("one for each of {} vertices", vertices));
         return setDensity(document.model(), values);
+    };
+}
+
+MakeCommand readMaskValues(JsonReader& reader) {
+    const auto number = static_cast<std::uint32_t>(reader.count("mask", 1, kPaintedMasks));
+    std::vector<float> values;
+    for (const double value : reader.numbers("values", 0, 1, kMaxNumbers))
+        values.push_back(static_cast<float>(value));
+    return [number, values](const Document& document) -> CommandResult {
+        const std::size_t strands = document.groom().strandCount();
+        if (values.size() != strands)
+            return fail(fmt::format("{} values of a mask", values.size()),
+                        fmt::format("one for each of {} strands", strands));
+        return setMask(document.model(), number, values);
     };
 }
 
@@ -202,6 +217,7 @@ constexpr RecordedOperation kOperations[] = {
     {"strands", readStrands},
     {"scalp", readScalp},
     {"density", readDensity},
+    {"mask", readMaskValues},
     {"place", readPlace},
     {"triangulate", readTriangulate},
     {"operators", readWholeStack},

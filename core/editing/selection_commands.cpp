@@ -7,6 +7,7 @@
 
 #include "core/editing/delta_command.h"
 #include "core/editing/records.h"
+#include "core/operations/mask.h"
 
 namespace hairloom::editing {
 namespace {
@@ -138,6 +139,17 @@ std::unique_ptr<Command> setDensity(const Model& model, std::span<const float> d
             values.push_back(density[v]);
         }
         deltas.density.set(groom, vertices, values);
+    });
+}
+
+std::unique_ptr<Command> setMask(const Model& model, std::uint32_t number, std::span<const float> values) {
+    auto recorded = nlohmann::ordered_json::array();
+    for (const float value : values) recorded.push_back(readableDecimal(value));
+    std::string record = recordOf("mask", {{"mask", number}, {"values", std::move(recorded)}});
+    return prepared(model, "Mask", std::move(record), [&](Groom& groom, Deltas& deltas) {
+        deltas.mask.keep(groom, number, allStrands(groom));
+        groom.strandAttributes.set(maskAttribute(number), std::vector<float>(values.begin(), values.end()));
+        deltas.mask.finish(groom);
     });
 }
 

@@ -9,8 +9,7 @@
 
 namespace hairloom {
 
-/// The luminance of a PNG's values (0…1, as they are painted, not made linear) at each strand's root UV; (0,
-/// 0) is the image's lower left corner, and it repeats. Error: no PNG, or strands without root UVs.
+/// A MaskImage's value at each strand's root UV. Error: no PNG, or strands without root UVs.
 Status dyeFromImage(const std::string& path, Groom& groom);
 /// A strand attribute of numbers or flags, clamped to 0…1. Error: no such attribute, or one of another type.
 Status dyeFromAttribute(const std::string& name, Groom& groom);

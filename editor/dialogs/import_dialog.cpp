@@ -7,7 +7,7 @@
 #include <QHBoxLayout>
 #include <QPointer>
 
-#include "editor/dialogs/strand_preview.h"
+#include "editor/viewport/strand_preview.h"
 #include "importers/length_unit.h"
 
 namespace hairloom::editor {

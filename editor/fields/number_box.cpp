@@ -2,6 +2,7 @@
 #include "editor/fields/number_box.h"
 
 #include <QHBoxLayout>
+#include <QKeyEvent>
 #include <QSignalBlocker>
 #include <algorithm>
 #include <cmath>
@@ -42,6 +43,7 @@ NumberBox::NumberBox(double min, double max, bool whole, QWidget* parent)
     spin_->setKeyboardTracking(false);
     spin_->setAlignment(Qt::AlignRight);
     setFocusProxy(spin_);
+    spin_->installEventFilter(this);
     setShown(1, {}, whole ? 0 : 2);
 
     connect(slider_, &QSlider::sliderPressed, this, &NumberBox::begun);
@@ -59,6 +61,24 @@ NumberBox::NumberBox(double min, double max, bool whole, QWidget* parent)
         slider_->setValue(toSlider(value_));
         Q_EMIT edited(value_);
     });
+}
+
+bool NumberBox::eventFilter(QObject* watched, QEvent* event) {
+    if (watched != spin_ || event->type() != QEvent::KeyPress) return QWidget::eventFilter(watched, event);
+    // The keys of tools are theirs again once a number is typed, or given up.
+    switch (static_cast<QKeyEvent*>(event)->key()) {
+        case Qt::Key_Escape:
+            showValue();
+            spin_->clearFocus();
+            return true;
+        case Qt::Key_Return:
+        case Qt::Key_Enter:
+            spin_->interpretText();
+            spin_->clearFocus();
+            return true;
+        default:
+            return QWidget::eventFilter(watched, event);
+    }
 }
 
 void NumberBox::setShown(double factor, const QString& unit, int decimals) {

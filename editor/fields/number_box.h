@@ -28,6 +28,9 @@ class NumberBox : public QWidget {
     void begun();
     void edited(double value);
 
+  protected:
+    bool eventFilter(QObject* watched, QEvent* event) override;
+
   private:
     double fromSlider(int position) const;
     int toSlider(double value) const;

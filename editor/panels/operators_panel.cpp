@@ -10,20 +10,25 @@
 #include <QStandardPaths>
 #include <QToolButton>
 #include <QVBoxLayout>
+#include <QWidgetAction>
 
 #include "core/editing/document.h"
+#include "core/editing/selection_commands.h"
 #include "core/editing/stack_commands.h"
 #include "core/operations/stack_file.h"
 #include "editor/fields/field_form.h"
+#include "editor/fields/image_button.h"
 #include "editor/fields/mask_ramp.h"
 #include "editor/panels/panel.h"
 #include "editor/tools/curve_tool.h"
+#include "editor/viewport/strand_preview.h"
 
 namespace hairloom::editor {
 namespace {
 
 /// What the widest settings need, of vectors: the view must not jump when an operator is chosen.
 constexpr int kWidth_px = 344;
+constexpr int kThumbnail_px = 64;
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
 class OperatorsPanel : public QWidget {
@@ -166,7 +171,22 @@ class OperatorsPanel : public QWidget {
     void fillPresets(QMenu& menu) {
         menu.clear();
         for (const std::string& name : stackPresets(folderOfStacks())) {
-            QAction* action = menu.addAction(QString::fromStdString(name));
+            auto* action = new QWidgetAction(&menu);
+            action->setText(QString::fromStdString(name));
+            auto* shown = new QToolButton;
+            shown->setText(action->text());
+            shown->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+            shown->setIconSize({kThumbnail_px, kThumbnail_px});
+            shown->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+            shown->setToolTip(tr("Adds its operators behind the chosen one"));
+            if (const auto file = stackPresetFile(folderOfStacks(), name))
+                shown->setIcon(QIcon(QString::fromStdString(pictureOf(*file).string())));
+            action->setDefaultWidget(shown);
+            menu.addAction(action);
+            connect(shown, &QToolButton::clicked, action, [&menu, action] {
+                menu.close();
+                action->trigger();
+            });
             connect(action, &QAction::triggered, this, [this, name] {
                 const auto file = stackPresetFile(folderOfStacks(), name);
                 insert(file ? loadOperators(*file) : tl::unexpected(file.error()),
@@ -189,7 +209,18 @@ class OperatorsPanel : public QWidget {
         std::error_code problem;
         std::filesystem::create_directories(folderOfStacks(), problem);
         const Status saved = file ? saveOperators(*file, kept) : tl::unexpected(file.error());
-        if (!saved) messages_.warn(QString::fromStdString(saved.error().message()));
+        if (!saved) return messages_.warn(QString::fromStdString(saved.error().message()));
+        // The hair as it is when they are kept; a preset without its picture is one all the same.
+        StrandPreview preview;
+        preview.resize(preview.minimumSize());
+        preview.show(document_.groom(), document_.groom().scalp);
+        preview.grab()
+            .scaled(2 * kThumbnail_px, 2 * kThumbnail_px, Qt::KeepAspectRatio, Qt::SmoothTransformation)
+            .save(QString::fromStdString(pictureOf(*file).string()));
+    }
+    /// Beside the file of a preset.
+    static std::filesystem::path pictureOf(std::filesystem::path preset) {
+        return preset.replace_extension(".png");
     }
 
     QWidget* curveRow(std::size_t index) {
@@ -294,8 +325,35 @@ class OperatorsPanel : public QWidget {
         rows->setContentsMargins(0, 0, 0, 0);
         rows->addWidget(
             new FieldForm(document_, preferences_, operatorMaskFields(document_.groom(), index, failed)));
+        rows->addWidget(imageButton(
+            "maskImage", tr("Mask from image…"),
+            tr("Fills the painted mask with the values of a PNG at the root UVs; where the map is none of "
+               "the "
+               "four, mask 1, which it becomes"),
+            [this, index](const MaskImage& image) { return takeMask(index, image); }, failed));
         rows->addWidget(new MaskRamp(document_, index, failed));
         return form;
+    }
+
+    /// A first image also makes its mask that of the operator.
+    Status takeMask(std::size_t index, const MaskImage& image) {
+        if (index >= operators().size()) return {};
+        const auto values = valuesAtRoots(image, document_.groom());
+        if (!values) return tl::unexpected(values.error());
+        Operator changed = operators()[index];
+        Mask mask = maskOf(changed);
+        const bool painted = mask.map >= MaskMap::mask1;
+        if (!painted) mask.map = MaskMap::mask1;
+        setMaskOf(changed, mask);
+        const auto number =
+            static_cast<std::uint32_t>(mask.map) - static_cast<std::uint32_t>(MaskMap::mask1) + 1;
+        if (!painted) {
+            auto step = editing::setOperator(model(), index, changed, tr("Mask from image").toStdString());
+            if (!step) return tl::unexpected(step.error());
+            document_.perform(std::move(*step));
+        }
+        document_.perform(editing::setMask(model(), number, *values));
+        return {};
     }
 
     QtDocument& document_;

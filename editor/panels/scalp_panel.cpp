@@ -13,6 +13,7 @@
 #include "core/editing/surface_disc.h"
 #include "core/geometry/selection.h"
 #include "editor/fields/field_form.h"
+#include "editor/fields/image_button.h"
 #include "editor/panels/panel.h"
 
 namespace hairloom::editor {
@@ -160,6 +161,19 @@ class PlacePanel : public QWidget {
         row->addWidget(preview);
         row->addWidget(place);
         layout->addLayout(row);
+        layout->addWidget(imageButton(
+            "densityImage", tr("Density from image…"),
+            tr("Takes the density of roots from a PNG at the UVs of the head's vertices; hair is placed by "
+               "it "
+               "next time"),
+            [this](const MaskImage& image) -> Status {
+                if (!document_.groom().scalp) return fail("there is no head to take densities", "open one");
+                const auto values = valuesAtVertices(image, *document_.groom().scalp);
+                if (!values) return tl::unexpected(values.error());
+                document_.perform(editing::setDensity(document_.editing().model(), *values));
+                return {};
+            },
+            [this](const QString& problem) { messages_.warn(problem); }));
         note_->setProperty("role", "dim");
         note_->setWordWrap(true);
         layout->addWidget(note_);

@@ -24,12 +24,13 @@ constexpr float kNearHair = 0.04f;  // metres: skin that spheres have to cover
 class SpheresPanel : public QWidget {
   public:
     SpheresPanel(QtDocument& document, const Preferences& preferences, Tasks& tasks, Messages& messages,
-                 Player& player)
+                 Player& player, Viewport& viewport)
         : document_(document),
           preferences_(preferences),
           tasks_(tasks),
           messages_(messages),
           player_(player),
+          viewport_(viewport),
           list_(new QTreeWidget),
           bone_(new QComboBox),
           count_(new QSpinBox),
@@ -82,7 +83,17 @@ class SpheresPanel : public QWidget {
             if (contains(parts, editing::Part::Spheres)) refresh();
         });
         connect(&player_, &Player::motionsChanged, this, &SpheresPanel::refresh);
-        connect(list_, &QTreeWidget::currentItemChanged, this, [this] { showNumbers(); });
+        connect(list_, &QTreeWidget::currentItemChanged, this, [this] {
+            showNumbers();
+            viewport_.redraw();
+        });
+        viewport_.addMarks([this](Marks& marks) {
+            // While hair moves, so do the spheres.
+            if (!isVisible() || !selected() || player_.hasFrame()) return;
+            const CollisionSphere& sphere = spheres()[*selected()];
+            marks.circle(sphere.centre, -viewport_.camera().forward_ws(), sphere.radius, QColor(255, 200, 80),
+                         2.5f, Marks::Depth::OnTop);
+        });
         refresh();
     }
 
@@ -128,7 +139,11 @@ class SpheresPanel : public QWidget {
     }
 
     void refresh() {
-        const int row = list_->indexOfTopLevelItem(list_->currentItem());
+        // One that is new is what people go on with.
+        const bool grew = list_->topLevelItemCount() > 0 &&
+                          static_cast<int>(spheres().size()) == list_->topLevelItemCount() + 1;
+        const int row =
+            grew ? static_cast<int>(spheres().size()) - 1 : list_->indexOfTopLevelItem(list_->currentItem());
         const QSignalBlocker quiet(list_);
         list_->clear();
         for (const CollisionSphere& sphere : spheres()) {
@@ -188,6 +203,7 @@ class SpheresPanel : public QWidget {
     Tasks& tasks_;
     Messages& messages_;
     Player& player_;
+    Viewport& viewport_;
     QTreeWidget* list_;
     OptionForm* numbers_ = nullptr;
     QComboBox* bone_;
@@ -206,7 +222,7 @@ PanelInfo spheresPanel() {
             true,
             [](const PanelParts& parts) -> QWidget* {
                 return scrolled(column({new SpheresPanel(parts.document, parts.preferences, parts.tasks,
-                                                         parts.messages, parts.player)}));
+                                                         parts.messages, parts.player, parts.viewport)}));
             }};
 }
 

@@ -11,10 +11,12 @@
 #include "core/groom/file/project_file.h"
 #include "core/operations/stack.h"
 #include "core/scene/hair_import.h"
+#include "core/scene/head_import.h"
 #include "core/scene/head_transfer.h"
 #include "core/scene/motions.h"
 #include "core/scene/open.h"
 #include "core/scene/sample.h"
+#include "editor/document/autosave.h"
 #include "importers/mesh_format.h"
 
 namespace hairloom::editor {
@@ -22,7 +24,8 @@ namespace hairloom::editor {
 struct DocumentFiles::Opened {
     Groom groom;
     std::shared_ptr<const Actor> actor;
-    QString note;  ///< for the status line
+    QString note;            ///< for the status line
+    bool isUnclear = false;  ///< a head whose size, axis or groups look wrong
 };
 
 std::shared_ptr<const Actor> DocumentFiles::actorOf(const Groom& groom) {
@@ -32,12 +35,16 @@ std::shared_ptr<const Actor> DocumentFiles::actorOf(const Groom& groom) {
     return actor ? std::move(*actor) : nullptr;
 }
 
-Result<DocumentFiles::Opened> DocumentFiles::openHead(const std::string& path) {
-    auto scene = importSceneLoud(path, {});
+Result<DocumentFiles::Opened> DocumentFiles::readHead(const std::string& path,
+                                                      const HeadImportOptions& options) {
+    auto scene = importHead(path, options);
     if (!scene) return tl::unexpected(scene.error());
     Opened opened;
+    opened.isUnclear = !guessHead(*scene).isClear();
     opened.groom.scalp = std::make_shared<const ScalpMesh>(std::move(scene->mesh));
-    opened.groom.characterFile = path;
+    // Skeleton and clips fit no other mesh.
+    if (options.keepsMesh()) opened.groom.characterFile = path;
+    opened.groom.characterMetresPerUnit = options.metresPerUnit;
     if (!scene->warnings.empty()) opened.note = QString::fromStdString(scene->warnings.front());
     auto actor = Actor::make(opened.groom.scalp, std::move(scene->skeleton), std::move(scene->clips),
                              std::move(scene->skin));
@@ -127,14 +134,27 @@ void DocumentFiles::open(const QString& path, std::function<void()> done) {
             const std::string file = path.toStdString();
             auto opened = kind == FileKind::Project   ? openProject(file)
                           : kind == FileKind::Strands ? openedStrands(hairloom::importStrands(file))
-                                                      : openHead(file);
+                                                      : readHead(file, {});
             if (!opened) return tl::unexpected(opened.error());
             return std::pair(std::move(*opened), kind);
         },
         [this, path, name, done = std::move(done)](std::pair<Opened, FileKind> opened) {
+            const bool isUnclear = opened.first.isUnclear;
             show(std::move(opened.first), opened.second == FileKind::Project ? path : QString(), name);
             preferences_.addRecentFile(path);
             if (done) done();
+            if (isUnclear && unclearHead_) unclearHead_(path);
+        });
+}
+
+void DocumentFiles::openHead(const QString& path, const HeadImportOptions& options) {
+    const QString name = QFileInfo(path).fileName();
+    tasks_.run<Opened>(
+        QObject::tr("Opening %1").arg(name),
+        [file = path.toStdString(), options](TaskControl&) { return readHead(file, options); },
+        [this, path, name](Opened opened) {
+            show(std::move(opened), {}, name);
+            preferences_.addRecentFile(path);
         });
 }
 
@@ -218,11 +238,19 @@ void DocumentFiles::openRecovered(const QString& file, const QString& documentPa
     tasks_.run<Opened>(
         QObject::tr("Recovering %1").arg(name),
         [file](TaskControl&) { return openProject(file.toStdString()); },
-        [this, documentPath, name](Opened opened) {
+        [this, file, documentPath, name](Opened opened) {
             document_.restore(std::move(opened.groom), documentPath, name);
             player_.setActor(std::move(opened.actor));
             messages_.say(QObject::tr("%1 is back as it was; save it to keep it").arg(name));
+            recovered_ = file;
         });
+}
+
+void DocumentFiles::discardRecovered() {
+    for (const Recovery& recovery : Autosave::recoveries()) {
+        if (recovery.file == recovered_) Autosave::discard(recovery);
+    }
+    recovered_.clear();
 }
 
 }  // namespace hairloom::editor

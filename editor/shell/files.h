@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "core/animation/actor.h"
+#include "core/scene/head_import.h"
 #include "editor/document/messages.h"
 #include "editor/document/preferences.h"
 #include "editor/document/qt_document.h"
@@ -42,6 +43,10 @@ class DocumentFiles {
     /// Project or head, opened as the document; hair as it is, without a head. `done` is called when it is
     /// there.
     void open(const QString& path, std::function<void()> done = {});
+    /// A head taken out of its file by these options.
+    void openHead(const QString& path, const HeadImportOptions& options);
+    /// Called when a head was opened whose size, axis or groups look wrong.
+    void onUnclearHead(std::function<void(const QString& path)> call) { unclearHead_ = std::move(call); }
     /// A sample of samples/hairstyles, or the bare bust where the name is empty.
     void openSample(const QString& name);
     /// Strands with these options, bound to the head of the document if it has one, replacing its strands.
@@ -50,11 +55,15 @@ class DocumentFiles {
     void transferTo(const QString& path);
     /// What a crash left.
     void openRecovered(const QString& file, const QString& documentPath, const QString& name);
+    /// The document was saved: the copy that it came from has served.
+    void discardRecovered();
+    /// Another document is there.
+    void forgetRecovered() { recovered_.clear(); }
 
   private:
     struct Opened;
     static std::shared_ptr<const Actor> actorOf(const Groom& groom);
-    static Result<Opened> openHead(const std::string& path);
+    static Result<Opened> readHead(const std::string& path, const HeadImportOptions& options);
     static Result<Opened> openProject(const std::string& path);
     static Result<Opened> openedStrands(Result<ImportedStrands> imported);
     void show(Opened opened, const QString& path, const QString& name);
@@ -64,6 +73,8 @@ class DocumentFiles {
     Preferences& preferences_;
     Tasks& tasks_;
     Messages& messages_;
+    std::function<void(const QString& path)> unclearHead_;
+    QString recovered_;  ///< copy that the document came from; empty where it came from none
 };
 
 std::filesystem::path samplesFolder();

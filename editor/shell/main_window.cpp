@@ -17,6 +17,7 @@
 
 #include "core/base/file.h"
 #include "core/editing/document.h"
+#include "editor/dialogs/head_dialog.h"
 #include "editor/dialogs/import_dialog.h"
 #include "editor/panels/panel.h"
 #include "editor/shell/files.h"
@@ -98,6 +99,8 @@ MainWindow::MainWindow()
     firstLayout_ = saveState(kLayoutVersion);
     restoreLayout();
 
+    connect(&document_, &QtDocument::replaced, this, [this] { files_.forgetRecovered(); });
+    files_.onUnclearHead([this](const QString& path) { showHeadDialog(path); });
     connect(start_, &StartPage::openRequested, this, &MainWindow::chooseAndOpen);
     connect(&document_, &QtDocument::titleChanged, this, &MainWindow::showTitle);
     connect(&document_, &QtDocument::changed, this, &MainWindow::showPage);
@@ -251,6 +254,15 @@ void MainWindow::open(const QString& path) {
     if (dialog.exec() == QDialog::Accepted) files_.importStrands(path, dialog.options());
 }
 
+void MainWindow::showHeadDialog(const QString& path) {
+    auto* dialog = new HeadDialog(tasks_, preferences_, path, this);
+    dialog->setAttribute(Qt::WA_DeleteOnClose);
+    connect(dialog, &QDialog::accepted, this, [this, dialog, path] {
+        if (mayLeaveDocument()) files_.openHead(path, dialog->options());
+    });
+    dialog->open();
+}
+
 void MainWindow::chooseAndOpen() {
     const QString path = QFileDialog::getOpenFileName(this, tr("Open"), {}, openFilter());
     if (!path.isEmpty()) open(path);
@@ -269,6 +281,7 @@ bool MainWindow::saveTo(const QString& path) {
         return false;
     }
     preferences_.addRecentFile(path);
+    files_.discardRecovered();
     messages_.say(tr("%1 saved").arg(QFileInfo(path).fileName()));
     return true;
 }

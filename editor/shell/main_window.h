@@ -36,6 +36,8 @@ class MainWindow : public QMainWindow {
     void open(const QString& path);
     /// False where the user cancelled or writing failed.
     bool saveTo(const QString& path);
+    /// Shows the head of a file before it is opened; the dialog is window-modal and deletes itself.
+    void showHeadDialog(const QString& path);
     /// Writes the steps since the document was opened as a script. False, with a word in the status line,
     /// where one cannot be in it or writing failed.
     bool saveScriptTo(const QString& path);

@@ -59,6 +59,13 @@ void MainWindow::addFileActions() {
         [this] { newDocument(); });
     add({"file.open", tr("&Open…"), "open", tr("Opens a project, a head or hair"), QKeySequence::Open},
         [this] { chooseAndOpen(); });
+    add({"file.openHead", tr("Open &head…"), "",
+         tr("Opens a head after a look at its size, its unit, its axis and its groups"),
+         QKeySequence("Ctrl+Shift+O")},
+        [this] {
+            const QString path = QFileDialog::getOpenFileName(this, tr("Open a head"), {}, headFilter());
+            if (!path.isEmpty()) showHeadDialog(path);
+        });
     recentMenu_ = menu->addMenu(icon("history"), tr("Open &recent"));
     recentMenu_->setToolTipsVisible(true);
     menu->addSeparator();

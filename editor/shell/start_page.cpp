@@ -104,6 +104,14 @@ StartPage::StartPage(DocumentFiles& files, const Preferences& preferences, QWidg
     fillLeftOvers();
 }
 
+void StartPage::showEvent(QShowEvent* event) {
+    QWidget::showEvent(event);
+    // Work that has been saved since is no longer what a crash left.
+    clear(*recoveries_);
+    fillRecoveries();
+    fillLeftOvers();
+}
+
 void StartPage::fillRecent() {
     clear(*recent_);
     const QStringList files = preferences_.recentFiles();

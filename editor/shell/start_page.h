@@ -21,6 +21,9 @@ class StartPage : public QWidget {
   Q_SIGNALS:
     void openRequested();
 
+  protected:
+    void showEvent(QShowEvent* event) override;
+
   private:
     void fillRecent();
     void fillRecoveries();

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editor/shell/status_line.h"
 
+#include <algorithm>
+
 #include "core/editing/selection_commands.h"
+#include "editor/fields/length_text.h"
 #include "editor/style/icons.h"
 #include "editor/style/theme.h"
+#include "importers/length_unit.h"
 
 namespace hairloom::editor {
 
@@ -18,6 +22,7 @@ StatusLine::StatusLine(QtDocument& document, const Preferences& preferences, Tas
       viewport_(viewport),
       message_(new QLabel),
       counts_(new QLabel),
+      head_(new QLabel),
       frameTime_(new QLabel),
       engine_(new QLabel),
       device_(new QLabel),
@@ -39,6 +44,8 @@ StatusLine::StatusLine(QtDocument& document, const Preferences& preferences, Tas
     addWidget(message_, 1);
     addWidget(progress_);
     addWidget(cancel_);
+    head_->setObjectName("head");
+    addPermanentWidget(head_);
     addPermanentWidget(counts_);
     addPermanentWidget(frameTime_);
     engine_->setObjectName("engine");
@@ -84,6 +91,11 @@ StatusLine::StatusLine(QtDocument& document, const Preferences& preferences, Tas
         if (!problem.isEmpty()) say(problem, true);
     });
     device_->setText(tr("looking for a device"));
+    connect(&document_, &QtDocument::changed, this, [this](editing::Part changed) {
+        if (contains(changed, editing::Part::Head)) showHead();
+    });
+    connect(&preferences_, &Preferences::changed, this, &StatusLine::showHead);
+    showHead();
     showCounts(editing::Part::Everything);
 }
 
@@ -115,6 +127,20 @@ void StatusLine::showCounts(editing::Part changed) {
                                 ? tr("%L1 strands").arg(groom.strandCount())
                                 : tr("%L1 of %L2 strands selected").arg(selected).arg(groom.strandCount());
     counts_->setText(tr("%1   %L2 points").arg(strands).arg(groom.pointCount()));
+}
+
+void StatusLine::showHead() {
+    const Groom& groom = document_.groom();
+    head_->setVisible(groom.scalp != nullptr);
+    if (!groom.scalp) return;
+    head_->setText(tr("head %1").arg(lengthText(groom.scalp->bounds().sizes().y(), preferences_)));
+    const auto units = lengthUnits();
+    const auto unit = std::ranges::find_if(units, [&](const LengthUnit& known) {
+        return static_cast<float>(known.metres) == groom.characterMetresPerUnit;
+    });
+    head_->setToolTip(unit == units.end()
+                          ? tr("Height of the head, in the unit that its file states or in metres")
+                          : tr("Height of the head; its file is in %1").arg(unit->name));
 }
 
 void StatusLine::showEngine() {

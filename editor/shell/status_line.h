@@ -33,6 +33,7 @@ class StatusLine : public QStatusBar {
   private:
     void say(const QString& text, bool isWarning);
     void showCounts(editing::Part changed);
+    void showHead();
     void showEngine();
     void showWork();
 
@@ -44,6 +45,7 @@ class StatusLine : public QStatusBar {
     Viewport& viewport_;
     QLabel* message_;
     QLabel* counts_;
+    QLabel* head_;
     QLabel* frameTime_;
     QLabel* engine_;
     QLabel* device_;

@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "core/render/png.h"
 #include "tests/cli/command.h"
 
 namespace hairloom::test {
@@ -43,6 +44,34 @@ TEST_F(OperatorsCli, StacksAreKeptAndAddedToOtherHair) {
     EXPECT_EQ(outcome.exitCode, 1);
     EXPECT_THAT(outcome.errors, HasSubstr("operator 9 is asked for; there are 3"));
     EXPECT_EQ(run("stack styled.hairloom --solo 0").exitCode, 2) << "needs -o";
+}
+
+TEST_F(OperatorsCli, AnImageBecomesAMaskAndADensity) {
+    // Stripes, so that some roots are on black and some on white, wherever the scalp lies in it.
+    render::Image image{16, 1, {}};
+    for (int x = 0; x < 16; ++x) image.rgba.insert(image.rgba.end(), 4, x % 2 == 0 ? 0 : 255);
+    for (int x = 0; x < 16; ++x) image.rgba[static_cast<std::size_t>(4 * x + 3)] = 255;
+    ASSERT_TRUE(render::writePng(folder / "half.png", image));
+    std::ofstream(folder / "broken.png") << "no picture";
+    std::ofstream(folder / "curl.json") << R"({"operators": [{"op": "curl", "mask": {"map": "mask2"}}]})";
+    const std::string stack = " --from curl.json -o masked.hairloom --force --mask 2 --mask-image ";
+    EXPECT_THAT(run("stack hair.hairloom" + stack + "broken.png").errors, HasSubstr("error: broken.png: "));
+    EXPECT_EQ(run("stack hair.hairloom --mask 2 -o masked.hairloom").exitCode, 2) << "needs an image";
+    runJson("stack hair.hairloom" + stack + "half.png");
+    runJson("stack hair.hairloom --from curl.json -o bare.hairloom");
+    EXPECT_TRUE(readText(folder / "masked.hairloom") != readText(folder / "bare.hairloom"));
+    EXPECT_THAT(run(createArguments("") + " --mask broken.png").errors, HasSubstr("error: broken.png"));
+}
+
+TEST_F(OperatorsCli, AHeadIsTurnedAndTakenWithoutHelpers) {
+    const std::string head =
+        "create --mesh '" + bustFile() + "' --count 20 --length 0.1 -o turned.hairloom --force ";
+    runJson(head + "--up z --leave-out bust_shoulders,bust_neck --scalp group:bust_scalp");
+    const auto turned = runJson("info turned.hairloom")["bounds"];
+    runJson(head + "--scalp group:bust_scalp");
+    EXPECT_NE(turned, runJson("info turned.hairloom")["bounds"]);
+    EXPECT_THAT(run(head + "--leave-out nose").errors, HasSubstr("nose"));
+    EXPECT_EQ(run(head + "--up x").exitCode, 2);
 }
 
 TEST_F(OperatorsCli, OneActsAloneIsDuplicatedAndRemoved) {

@@ -1,11 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The Operators panel: what it shows, what each of its buttons does, strokes on top, undo of all of it.
+#include <QApplication>
 #include <QClipboard>
 #include <QComboBox>
+#include <QFile>
+#include <QFileDialog>
 #include <QGuiApplication>
+#include <QImage>
+#include <QInputDialog>
+#include <QLineEdit>
 #include <QListWidget>
 #include <QMenu>
 #include <QPushButton>
+#include <QTimer>
+#include <QToolButton>
+#include <QWidgetAction>
+#include <set>
 
 #include "core/operations/stack.h"
 #include "editor/fields/number_box.h"
@@ -135,6 +145,40 @@ TEST_F(OperatorsTest, SoloCopyAndPasteDoWhatTheySay) {
     EXPECT_EQ(hash(), before);
 }
 
+TEST_F(OperatorsTest, AStackIsKeptWithAPictureAndUsedAgain) {
+    auto* presets = window->panel("operators")->findChild<QPushButton*>("operatorPresets");
+    ASSERT_TRUE(presets);
+    const auto entry = [&](const QString& name) {
+        Q_EMIT presets->menu()->aboutToShow();
+        for (QAction* action : presets->menu()->actions()) {
+            if (action->text() == name) return action;
+        }
+        return static_cast<QAction*>(nullptr);
+    };
+    QTimer::singleShot(200, window.get(), [] {
+        auto* dialog = qobject_cast<QInputDialog*>(QApplication::activeModalWidget());
+        ASSERT_TRUE(dialog);
+        dialog->setTextValue("Tousled");
+        dialog->accept();
+    });
+    entry("Keep the stack…")->trigger();
+    auto* kept = qobject_cast<QWidgetAction*>(entry("Tousled"));
+    ASSERT_TRUE(kept) << window->statusLine().message().toStdString();
+    auto* button = qobject_cast<QToolButton*>(kept->defaultWidget());
+    ASSERT_TRUE(button);
+    const QImage picture = button->icon().pixmap(64, 64).toImage();
+    ASSERT_FALSE(picture.isNull());
+    std::set<QRgb> colours;
+    for (int y = 0; y < picture.height(); ++y) {
+        for (int x = 0; x < picture.width(); ++x) colours.insert(picture.pixel(x, y));
+    }
+    EXPECT_GT(colours.size(), 50u) << "hair on a head";
+    const std::size_t before = groom().operators.size();
+    button->click();
+    EXPECT_EQ(groom().operators.size(), 2 * before);
+    undoAll();
+}
+
 TEST_F(OperatorsTest, AMaskLimitsAnOperatorAndItsRampIsDrawn) {
     choose(2);
     const auto whole = hash();
@@ -153,6 +197,60 @@ TEST_F(OperatorsTest, AMaskLimitsAnOperatorAndItsRampIsDrawn) {
     expectEvaluated();
     undoAll();
     EXPECT_EQ(hash(), whole);
+}
+
+TEST_F(OperatorsTest, AnImageBecomesAMaskAndTheDensityOfRoots) {
+    QImage image(64, 64, QImage::Format_RGB32);
+    image.fill(Qt::black);
+    // Stripes, so that some roots are on black and some on white, wherever the scalp lies in it.
+    const auto isWhite = [](int x) { return x / 4 % 2 == 1; };
+    for (int y = 0; y < 64; ++y) {
+        for (int x = 0; x < 64; ++x) {
+            if (isWhite(x)) image.setPixel(x, y, qRgb(255, 255, 255));
+        }
+    }
+    ASSERT_TRUE(image.save(inFolder("half.png")));
+    QFile broken(inFolder("broken.png"));
+    ASSERT_TRUE(broken.open(QIODevice::WriteOnly) && broken.write("no picture") > 0);
+    broken.close();
+    // The dialog of the file, as a person answers it.
+    const auto answer = [this](const char* file) {
+        QTimer::singleShot(300, this->window.get(), [path = inFolder(file)] {
+            auto* dialog = qobject_cast<QFileDialog*>(QApplication::activeModalWidget());
+            ASSERT_TRUE(dialog);
+            dialog->findChild<QLineEdit*>("fileNameEdit")->setText(path);
+            QMetaObject::invokeMethod(dialog, "accept");
+        });
+    };
+    choose(2);
+    const auto before = hash();
+    answer("broken.png");
+    window->panel("operators")->findChild<QPushButton*>("maskImage")->click();
+    EXPECT_EQ(hash(), before);
+    EXPECT_TRUE(window->statusLine().message().contains("broken.png"))
+        << window->statusLine().message().toStdString();
+    answer("half.png");
+    window->panel("operators")->findChild<QPushButton*>("maskImage")->click();
+    EXPECT_EQ(maskOf(groom().operators[2]).map, MaskMap::mask1);
+    const auto mask = groom().strandAttributes.view<float>("mask.1");
+    ASSERT_EQ(mask.size(), groom().strandCount());
+    const auto uvs = groom().strandAttributes.view<Vec2f>(attribute::kRootUv);
+    std::size_t white = 0;
+    for (std::size_t s = 0; s < mask.size(); ++s) {
+        ASSERT_NEAR(mask[s], isWhite(static_cast<int>(64 * uvs[s].x())) ? 1.0f : 0.0f, 1e-6f) << s;
+        white += mask[s] > 0.5f ? 1 : 0;
+    }
+    EXPECT_GT(white, 0u);
+    EXPECT_LT(white, mask.size());
+    expectEvaluated();
+    undoAll();
+    EXPECT_EQ(hash(), before);
+    EXPECT_TRUE(groom().scalpDensity.empty());
+    answer("half.png");
+    window->panel("scalp")->findChild<QPushButton*>("densityImage")->click();
+    EXPECT_EQ(groom().scalpDensity.size(), groom().scalp->vertexCount());
+    undoAll();
+    EXPECT_EQ(hash(), before);
 }
 
 TEST_F(OperatorsTest, ThePenOfAPartingGivesItItsCurve) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "editor/dialogs/strand_preview.h"
+#include "editor/viewport/strand_preview.h"
 
 #include <QMouseEvent>
 #include <QPainter>

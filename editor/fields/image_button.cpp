@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "editor/fields/image_button.h"
+
+#include <QFileDialog>
+
+namespace hairloom::editor {
+
+QPushButton* imageButton(const char* name, const QString& text, const QString& tip,
+                         std::function<Status(const MaskImage&)> take,
+                         std::function<void(const QString&)> failed) {
+    auto* button = new QPushButton(text);
+    button->setObjectName(name);
+    button->setToolTip(tip);
+    QObject::connect(button, &QPushButton::clicked, button, [button, take = std::move(take), failed] {
+        const QString path = QFileDialog::getOpenFileName(button, QObject::tr("Image of a mask"), {},
+                                                          QObject::tr("PNG (*.png)"));
+        if (path.isEmpty()) return;
+        const auto image = MaskImage::read(path.toStdString());
+        const Status taken = image ? take(*image) : tl::unexpected(image.error());
+        if (!taken) failed(QString::fromStdString(taken.error().message()));
+    });
+    return button;
+}
+
+}  // namespace hairloom::editor
