@@ -54,11 +54,11 @@ float rootMeanSquare(std::span<const Float3> a, std::span<const Float3> b) {
 }  // namespace
 
 void Instance::makeLevels(const Asset& asset, const Asset::Strands& strands) {
-    auto set = std::make_shared<LevelSet>(asset, strands);
+    auto set = std::make_shared<LevelSet>(strands);
     levels_.emplace();
     for (const Level& level : set->coarser) {
         SimulationSettings settings = asset.simulation();
-        settings.substeps = level.substeps;
+        settings.substeps = level.substepsUnder(settings);
         levels_->engines.push_back(
             std::move(*Engine::make({level.offsets, level.positions_ss}, settings, host_).engine));
     }
@@ -156,8 +156,7 @@ void Instance::resetLevel() {
 void Instance::setSettingsOfLevels(const SimulationSettings& settings) {
     for (std::size_t i = 0; i < levels_->engines.size(); ++i) {
         SimulationSettings coarser = settings;
-        // What a level leaves out it leaves out of whatever is asked for.
-        coarser.substeps = levels_->set->coarser[i].substeps == 1 ? 1 : settings.substeps;
+        coarser.substeps = levels_->set->coarser[i].substepsUnder(settings);
         levels_->engines[i].setSettings(coarser);
     }
 }

@@ -76,12 +76,10 @@ Level::Sources sourcesOf(const Asset::Strands& strands, std::uint32_t guide, con
     return sources;
 }
 
-Level makeLevel(const Asset::Strands& strands, std::span<const std::uint32_t> order, std::uint32_t number,
-                const SimulationSettings& settings) {
+Level makeLevel(const Asset::Strands& strands, std::span<const std::uint32_t> order, std::uint32_t number) {
     const Thinning& thinning = kThinning[number - 1];
     Level level;
-    // Springs need their substeps.
-    level.substeps = thinning.oneSubstep && settings.strandModel == StrandModel::rods ? 1 : settings.substeps;
+    level.oneSubstep = thinning.oneSubstep;
     std::vector<bool> taken(order.size());
     for (std::size_t i = thinning.guides / 2; i < order.size(); i += thinning.guides) taken[order[i]] = true;
     if (!order.empty() && order.size() <= thinning.guides / 2) taken[order[0]] = true;
@@ -139,17 +137,15 @@ std::size_t Level::bytes() const {
            sources.size() * sizeof(Sources);
 }
 
-LevelSet::LevelSet(const Asset& asset, const Asset::Strands& strands)
-    : offsets(strands.offsets), rest(strands.positions_ss) {
+LevelSet::LevelSet(const Asset::Strands& strands) : offsets(strands.offsets), rest(strands.positions_ss) {
     const std::size_t guides = offsets.size() - 1;
     for (std::size_t g = 0; g < guides; ++g) {
         const Float3 root = strands.positions_ss[offsets[g]];
         for (std::size_t p = offsets[g]; p < offsets[g + 1]; ++p) rest[p] = rest[p] - root;
     }
-    const SimulationSettings settings = asset.simulation();
     const std::vector<std::uint32_t> order = alongCurve(strands, guides);
     for (std::uint32_t number = 1; number < HL_LEVEL_RIGID; ++number)
-        coarser.push_back(makeLevel(strands, order, number, settings));
+        coarser.push_back(makeLevel(strands, order, number));
 }
 
 std::size_t LevelSet::bytes() const {

@@ -16,7 +16,7 @@ namespace hairloom::runtime {
 
 /// Of one level between the finest, which simulates all, and the rigid one, which simulates nothing.
 struct Level {
-    std::uint32_t substeps;
+    bool oneSubstep;                     ///< of rods; springs need theirs
     std::vector<std::uint32_t> guides;   ///< that are simulated, of all, ascending
     std::vector<std::uint32_t> offsets;  ///< of their points
     std::vector<Float3> positions_ss;    ///< of these points at rest
@@ -26,6 +26,9 @@ struct Level {
     };
     std::vector<Sources> sources;  ///< of each of all guides
 
+    std::uint32_t substepsUnder(const SimulationSettings& settings) const {
+        return oneSubstep && settings.strandModel == StrandModel::rods ? 1 : settings.substeps;
+    }
     std::size_t bytes() const;
 };
 
@@ -43,7 +46,7 @@ struct LevelSet {
     std::vector<Level> coarser;          ///< levels 1 …; one less than the rigid one's number
     std::array<LevelError, HL_LEVEL_COUNT> errors{};
 
-    LevelSet(const Asset& asset, const Asset::Strands& strands);
+    explicit LevelSet(const Asset::Strands& strands);
     std::size_t bytes() const;
 };
 
