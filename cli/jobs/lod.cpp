@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <memory>
 
 #include "cli/card_options.h"
@@ -7,6 +8,7 @@
 #include "cli/progress.h"
 #include "core/base/stopwatch.h"
 #include "core/scene/level_report.h"
+#include "core/scene/spring_fit.h"
 
 namespace hairloom::cli {
 namespace {
@@ -31,6 +33,11 @@ Result<Report> run(const LodOptions& options, const std::string& commandLine) {
     Report report{{"hairs", chain->strands}, {"directions", chain->views.size()}};
     report["levels"] = Report::array();
     for (const cards::Level& level : chain->levels) report["levels"].push_back(toJson(level));
+    report["largest_light_step"] = std::ranges::max(cards::lightSteps(chain->levels));
+    const IdleCardEdits idle = idleCardEdits(*chain, *groom);
+    report["lost_card_edits"] = idle.lost;
+    report["unmade_card_edits"] = idle.unmade;
+    report["springs"] = chain->springFit ? toJson(*chain->springFit) : Report();
     report["make_seconds"] = chain->makeSeconds;
     report["seconds"] = watch.seconds();
     report["output"] = options.output;

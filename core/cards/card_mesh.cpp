@@ -40,19 +40,34 @@ bool isBent(const Strip& strip, float tolerance) {
     return false;
 }
 
+/// The strip of a card with what was done to it by hand.
+Strip shapedStrip(const Card& card) {
+    Strip strip = card.strip;
+    if (card.width == 1 && card.bend == 0) return strip;
+    for (std::size_t k = 0; k < strip.stations(); ++k) {
+        float& half = strip.halfWidth[k];
+        // Its own bow as a share of half the width stays.
+        strip.bend[k] = (strip.bend[k] * half + card.bend) / (card.width * half);
+        strip.spread[k] *= card.width * card.width;
+        half *= card.width;
+    }
+    return strip;
+}
+
 class Builder {
   public:
     explicit Builder(Cards& cards) : cards_(cards) {}
 
     void add(std::uint32_t c) {
         const Card& card = cards_.cards[c];
+        const Strip strip = shapedStrip(card);
         const std::vector<std::size_t> kept =
-            keptStations(card.strip, card.widen, cards_.tolerance, cards_.segments + 1);
-        const bool bent = isBent(card.strip, cards_.tolerance);
+            keptStations(strip, card.widen, cards_.tolerance, cards_.segments + 1);
+        const bool bent = isBent(strip, cards_.tolerance);
         const std::vector<float> columns = bent ? std::vector<float>{-1, 0, 1} : std::vector<float>{-1, 1};
         const auto first = static_cast<std::uint32_t>(cards_.mesh.vertices.size());
         for (const std::size_t k : kept)
-            for (const float x : columns) cards_.mesh.vertices.push_back(vertex(c, k, x, bent));
+            for (const float x : columns) cards_.mesh.vertices.push_back(vertex(c, strip, k, x, bent));
         const auto count = static_cast<std::uint32_t>(columns.size());
         for (std::uint32_t i = 0; i + 1 < kept.size(); ++i) {
             for (std::uint32_t j = 0; j + 1 < count; ++j) {
@@ -63,9 +78,8 @@ class Builder {
     }
 
   private:
-    CardVertex vertex(std::uint32_t c, std::size_t k, float x, bool bent) const {
+    CardVertex vertex(std::uint32_t c, const Strip& strip, std::size_t k, float x, bool bent) const {
         const Card& card = cards_.cards[c];
-        const Strip& strip = card.strip;
         const Card& painter = cards_.cards[cards_.painters[card.texture]];
         const Rect& rect = cards_.atlas.rects[card.texture];
         CardVertex v;
@@ -96,9 +110,8 @@ class Builder {
 
 }  // namespace
 
-void buildMesh(const Hair& hair, Cards& cards) {
-    Box3f box;
-    for (const Vec3f& point : hair.positions_ws) box.extend(point);
+void buildMesh(Cards& cards) {
+    const Box3f& box = cards.bounds_ws;
     // The middle of what hair lies around: an upright line that ends below the crown.
     const float top = box.max().y() - 0.4f * std::min(box.sizes().y(), box.sizes().x());
     std::vector<float> depth(cards.cards.size());
@@ -112,7 +125,8 @@ void buildMesh(const Hair& hair, Cards& cards) {
     std::ranges::stable_sort(order, [&](std::uint32_t a, std::uint32_t b) { return depth[a] < depth[b]; });
     cards.mesh = {};
     Builder builder(cards);
-    for (const std::uint32_t c : order) builder.add(c);
+    for (const std::uint32_t c : order)
+        if (!cards.cards[c].deleted) builder.add(c);
     std::vector<CardVertex> inOrder(cards.mesh.vertices.size());
     meshopt_optimizeVertexFetch(inOrder.data(), cards.mesh.indices.data(), cards.mesh.indices.size(),
                                 cards.mesh.vertices.data(), inOrder.size(), sizeof(CardVertex));

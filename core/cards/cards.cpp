@@ -106,7 +106,44 @@ Result<Layout> layOut(const Cards& cards, const CardOptions& options) {
         "fewer textures or a larger atlas");
 }
 
+/// Strands of a card.
+struct Bundle {
+    std::vector<std::uint32_t> strands;
+    std::int32_t held = -1;
+};
+/// Those of held cards as they are, all others in what cards are left, at least one; by their first strands.
+Result<std::vector<Bundle>> bundlesOf(const Hair& hair, const CardOptions& options, Cancel cancel) {
+    std::vector<Bundle> bundles;
+    std::vector<bool> isHeld(hair.strandCount(), false);
+    for (std::size_t h = 0; h < options.held.size(); ++h) {
+        bundles.push_back({options.held[h].strands, static_cast<std::int32_t>(h)});
+        for (const std::uint32_t s : options.held[h].strands) isHeld[s] = true;
+    }
+    std::vector<std::uint32_t> others;
+    for (std::uint32_t s = 0; s < isHeld.size(); ++s)
+        if (!isHeld[s]) others.push_back(s);
+    if (!others.empty()) {
+        const auto held = static_cast<std::uint32_t>(options.held.size());
+        const std::uint32_t left = options.cards > held ? options.cards - held : 1;
+        auto clusters = clusterHair(evenHair(hair, kHairStations), std::move(others), hair.rootNormals_ws,
+                                    {left, options.error}, cancel);
+        if (!clusters) return tl::unexpected(clusters.error());
+        for (Cluster& cluster : *clusters) bundles.push_back({std::move(cluster.strands), -1});
+    }
+    std::ranges::sort(bundles, {}, [](const Bundle& bundle) { return bundle.strands.front(); });
+    return bundles;
+}
+
 }  // namespace
+
+void shapeByHand(std::span<const HeldCard> held, Cards& cards) {
+    for (Card& card : cards.cards) {
+        if (card.held < 0) continue;
+        const HeldCard& edit = held[static_cast<std::size_t>(card.held)];
+        card.width = edit.width, card.bend = edit.bend, card.deleted = edit.deleted;
+    }
+    buildMesh(cards);
+}
 
 Status bakeAtlas(const Hair& hair, const HairLight& light, float thickness, Cards& cards, Cancel cancel) {
     std::vector<Picture> pictures(cards.painters.size());
@@ -124,20 +161,27 @@ Status bakeAtlas(const Hair& hair, const HairLight& light, float thickness, Card
 
 Result<Cards> makeCards(const Hair& hair, const HairLight& light, const CardOptions& options, Cancel cancel) {
     if (auto status = check(options); !status) return tl::unexpected(status.error());
-    const EvenHair even = evenHair(hair, kHairStations);
-    auto clusters = clusterHair(even, hair.rootNormals_ws, {options.cards, options.error}, cancel);
-    if (!clusters) return tl::unexpected(clusters.error());
+    auto bundles = bundlesOf(hair, options, cancel);
+    if (!bundles) return tl::unexpected(bundles.error());
     Cards cards;
+    for (const Vec3f& point : hair.positions_ws) cards.bounds_ws.extend(point);
     cards.tolerance = options.tolerance;
     cards.segments = options.segments;
-    cards.cards.resize(clusters->size());
+    cards.cards.resize(bundles->size());
     const EvenHair fine = evenHair(hair, kStations);
-    parallelFor(clusters->size(), 1, [&](std::size_t begin, std::size_t end) {
+    parallelFor(bundles->size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t c = begin; c < end; ++c) {
             Card& card = cards.cards[c];
-            card.strands = std::move((*clusters)[c].strands);
-            const Strip fitted = fitStrip(fine, card.strands, hair.rootNormals_ws);
-            card.strip = finishStrip(fine, card.strands, fitted, kStations, hair.rootNormals_ws);
+            card.strands = std::move((*bundles)[c].strands);
+            card.held = (*bundles)[c].held;
+            card.pinned =
+                card.held >= 0 && options.held[static_cast<std::size_t>(card.held)].strip.has_value();
+            if (card.pinned) {
+                card.strip = *options.held[static_cast<std::size_t>(card.held)].strip;
+            } else {
+                const Strip fitted = fitStrip(fine, card.strands, hair.rootNormals_ws);
+                card.strip = finishStrip(fine, card.strands, fitted, kStations, hair.rootNormals_ws);
+            }
             measure(hair, light, card);
         }
     });
@@ -151,7 +195,7 @@ Result<Cards> makeCards(const Hair& hair, const HairLight& light, const CardOpti
     cards.atlas.levels = {Picture{layout->side, layout->side, {}}};
     if (auto status = bakeAtlas(hair, light, 1, cards, cancel); !status)
         return tl::unexpected(status.error());
-    buildMesh(hair, cards);
+    buildMesh(cards);
     return cards;
 }
 

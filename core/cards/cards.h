@@ -3,11 +3,22 @@
 // Cards: textured strips that stand for bundles of strands.
 
 #include <array>
+#include <optional>
 
 #include "core/cards/clusters.h"
 #include "core/cards/texture.h"
 
 namespace hairloom::cards {
+
+/// A card that somebody shaped by hand.
+struct HeldCard {
+    std::uint32_t level = 200;           ///< the level of so many cards
+    std::vector<std::uint32_t> strands;  ///< ascending, at least one, each in one card of a level
+    std::optional<Strip> strip;          ///< pinned: kStations; nothing: it follows its strands
+    float width = 1;                     ///< factor, > 0
+    float bend = 0;                      ///< added: how far edges lie outwards, as a share of half the width
+    bool deleted = false;
+};
 
 struct CardOptions {
     std::uint32_t cards = 200;    ///< at most, 1 … 4096
@@ -17,17 +28,25 @@ struct CardOptions {
     float tolerance = 0.0005f;    ///< metres that a strip may be off its curve
     std::uint32_t segments = 24;  ///< of a strip, at most, 1 … 24
     std::uint32_t mostSide = 2048;  ///< texels along the atlas, 64 … 8192, a power of two
+    /// Their strands are parted no further; the others share what is left of `cards`.
+    std::vector<HeldCard> held = {};
 };
 
 constexpr std::uint32_t kStations = 25;  ///< of a card's strip: 24 segments at most
 
 struct Card {
-    Strip strip;
+    Strip strip;  ///< as its strands have it, or as it is pinned
     std::vector<std::uint32_t> strands;
     std::array<Vec3f, kStations> albedo;  ///< means of its strands
     std::array<float, kStations> open;
     std::uint32_t texture = 0;
     float widen = 1;  ///< factor on the width, by which a shared texture covers as much as its own strands do
+
+    // By hand.
+    std::int32_t held = -1;  ///< place among CardOptions::held
+    float width = 1, bend = 0;
+    bool pinned = false;   ///< its strip is not by its strands
+    bool deleted = false;  ///< it is not in the mesh
 };
 
 struct CardVertex {
@@ -57,16 +76,21 @@ struct Cards {
     float tolerance = 0;
     std::uint32_t segments = kStations - 1;  ///< of a strip, at most
     float brightness = 1;                    ///< factor on the albedo
+    Box3f bounds_ws;                         ///< of all hair
 };
 
-/// The same for any number of threads. `hair` passed check(). Errors: options out of range, an atlas that
-/// cannot hold the textures at any size, stopped.
+/// The same for any number of threads. Cards by hand have their strands and their place, but not yet width,
+/// bend and deletion, which shapeByHand() gives them. `hair` passed check(). Errors: options out of range, an
+/// atlas that cannot hold the textures at any size, stopped.
 Result<Cards> makeCards(const Hair& hair, const HairLight& light, const CardOptions& options, Cancel cancel);
 
 /// Bakes the textures anew, with strands `thickness` times as thick.
 Status bakeAtlas(const Hair& hair, const HairLight& light, float thickness, Cards& cards, Cancel cancel);
 
-/// The mesh of cards as they are.
-void buildMesh(const Hair& hair, Cards& cards);
+/// Gives held cards their shape and makes the mesh anew.
+void shapeByHand(std::span<const HeldCard> held, Cards& cards);
+
+/// The mesh of cards as they are. Of the atlas it needs the rects and the size.
+void buildMesh(Cards& cards);
 
 }  // namespace hairloom::cards

@@ -95,24 +95,29 @@ bool isGoodEnough(const EvenHair& hair, const Cluster& cluster, float metres) {
     return cluster.error <= weight * static_cast<double>(metres) * static_cast<double>(metres);
 }
 
-/// Every strand to the strip nearest to it; none is left without strands.
+/// Every strand of the bundles to the strip nearest to it; none is left without strands.
 void returnStrands(const EvenHair& hair, std::vector<Cluster>& clusters, std::span<const Vec3f> normals) {
-    std::vector<std::uint32_t> of(hair.strandCount());
+    struct Member {
+        std::uint32_t strand, cluster;
+    };
+    std::vector<Member> members;
     for (std::uint32_t c = 0; c < clusters.size(); ++c)
-        for (const std::uint32_t s : clusters[c].strands) of[s] = c;
-    std::vector<std::uint32_t> nearest = of;
-    parallelFor(hair.strandCount(), 64, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t s = begin; s < end; ++s) {
-            float best = offStrip(clusters[of[s]].strip, hair.strand(s), kAnything);
+        for (const std::uint32_t s : clusters[c].strands) members.push_back({s, c});
+    std::ranges::sort(members, {}, &Member::strand);
+    parallelFor(members.size(), 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto points = hair.strand(members[i].strand);
+            const std::uint32_t own = members[i].cluster;
+            float best = offStrip(clusters[own].strip, points, kAnything);
             for (std::uint32_t c = 0; c < clusters.size(); ++c) {
-                if (c == of[s]) continue;
-                const float distance = offStrip(clusters[c].strip, hair.strand(s), best);
-                if (distance < best) best = distance, nearest[s] = c;
+                if (c == own) continue;
+                const float distance = offStrip(clusters[c].strip, points, best);
+                if (distance < best) best = distance, members[i].cluster = c;
             }
         }
     });
     std::vector<std::vector<std::uint32_t>> strands(clusters.size());
-    for (std::uint32_t s = 0; s < nearest.size(); ++s) strands[nearest[s]].push_back(s);
+    for (const Member& member : members) strands[member.cluster].push_back(member.strand);
     parallelFor(clusters.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t c = begin; c < end; ++c)
             if (!strands[c].empty())
@@ -125,12 +130,11 @@ void returnStrands(const EvenHair& hair, std::vector<Cluster>& clusters, std::sp
 
 }  // namespace
 
-Result<std::vector<Cluster>> clusterHair(const EvenHair& hair, std::span<const Vec3f> rootNormals_ws,
-                                         const ClusterOptions& options, Cancel cancel) {
-    std::vector<std::uint32_t> all(hair.strandCount());
-    std::iota(all.begin(), all.end(), 0u);
+Result<std::vector<Cluster>> clusterHair(const EvenHair& hair, std::vector<std::uint32_t> strands,
+                                         std::span<const Vec3f> rootNormals_ws, const ClusterOptions& options,
+                                         Cancel cancel) {
     std::vector<Cluster> clusters;
-    clusters.push_back(made(hair, std::move(all), rootNormals_ws));
+    clusters.push_back(made(hair, std::move(strands), rootNormals_ws));
     const auto grow = [&](std::size_t most) {
         while (clusters.size() < most && !cancelled(cancel)) {
             Cluster* worst = nullptr;

@@ -18,11 +18,12 @@ struct Cluster {
     double error = 0;                    ///< sum over the strands of weight · m² off the strip
 };
 
-/// The bundle of the most error is split until there are enough: along the direction in which its strands
-/// differ most, off the surface before across it, since a strip can be wide but not thick. Then strands
-/// change over to the strip that they lie nearest to. In order of their first strand. The same for any number
-/// of threads. Errors: stopped.
-Result<std::vector<Cluster>> clusterHair(const EvenHair& hair, std::span<const Vec3f> rootNormals_ws,
-                                         const ClusterOptions& options, Cancel cancel);
+/// Of `strands`, ascending, at least one; others stay out. The bundle of the most error is split until there
+/// are enough: along the direction in which its strands differ most, off the surface before across it, since
+/// a strip can be wide but not thick. Then strands change over to the strip that they lie nearest to. In
+/// order of their first strand. The same for any number of threads. Errors: stopped.
+Result<std::vector<Cluster>> clusterHair(const EvenHair& hair, std::vector<std::uint32_t> strands,
+                                         std::span<const Vec3f> rootNormals_ws, const ClusterOptions& options,
+                                         Cancel cancel);
 
 }  // namespace hairloom::cards

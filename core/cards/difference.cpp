@@ -8,10 +8,6 @@
 namespace hairloom::cards {
 namespace {
 
-double luminance(const Vec3f& rgb) {
-    return static_cast<double>(0.2126f * rgb.x() + 0.7152f * rgb.y() + 0.0722f * rgb.z());
-}
-
 /// Area between the outlines, and the length of the first.
 struct Outline {
     double between = 0, length = 0;
@@ -34,6 +30,14 @@ Outline outline(const Shot& a, const Shot& b) {
 
 }  // namespace
 
+double hairLuminance(std::span<const Shot> shots) {
+    double sum = 0;
+    for (const Shot& shot : shots)
+        for (const Vec3f& rgb : shot.hair)
+            sum += static_cast<double>(0.2126f * rgb.x() + 0.7152f * rgb.y() + 0.0722f * rgb.z());
+    return sum;
+}
+
 render::Image shownAs(const Shot& shot) {
     render::LinearImage linear{shot.width, shot.height, {}};
     for (const Vec3f& light : shot.all)
@@ -44,14 +48,12 @@ render::Image shownAs(const Shot& shot) {
 
 Result<Difference> difference(std::span<const Shot> strands, std::span<const Shot> level) {
     Difference result;
-    double covered = 0, wanted = 0, light = 0, wantedLight = 0;
+    double covered = 0, wanted = 0;
     Outline outlines;
     for (std::size_t i = 0; i < strands.size(); ++i) {
         const Shot &a = strands[i], &b = level[i];
-        for (std::size_t p = 0; p < a.coverage.size(); ++p) {
-            wanted += static_cast<double>(a.coverage[p]), covered += static_cast<double>(b.coverage[p]);
-            wantedLight += luminance(a.hair[p]), light += luminance(b.hair[p]);
-        }
+        for (const float share : a.coverage) wanted += static_cast<double>(share);
+        for (const float share : b.coverage) covered += static_cast<double>(share);
         const auto flip = render::flipDifference(shownAs(a), shownAs(b));
         if (!flip) return tl::unexpected(flip.error());
         result.flip += flip->mean / static_cast<double>(strands.size());
@@ -60,7 +62,8 @@ Result<Difference> difference(std::span<const Shot> strands, std::span<const Sho
         outlines.between += one.between, outlines.length += one.length;
     }
     result.coverage = wanted > 0 ? covered / wanted : 1;
-    result.light = wantedLight > 0 ? light / wantedLight : 1;
+    const double wantedLight = hairLuminance(strands);
+    result.light = wantedLight > 0 ? hairLuminance(level) / wantedLight : 1;
     result.silhouettePx = outlines.length > 0 ? outlines.between / outlines.length : 0;
     return result;
 }

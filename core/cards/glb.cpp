@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/cards/atlas_images.h"
-#include "core/cards/rig.h"
+#include "core/cards/level_arrays.h"
 #include "core/render/png.h"
 
 namespace hairloom::cards {
@@ -18,24 +18,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// What springs are set to; how the strands of the groom move is not in it.
-constexpr double kStiffness = 0.6, kDrag = 0.4, kGravity = 0.2, kHitRadius = 0.008;
-
-constexpr int kFloat = 5126, kUnsignedInt = 5125, kUnsignedShort = 5123;
+constexpr int kFloat = 5126, kUnsignedInt = 5125, kUnsignedShort = 5123, kShort = 5122, kUnsignedByte = 5121,
+              kByte = 5120;
 constexpr int kVertices = 34962, kIndices = 34963;
 
 Json toJson(const Vec3f& v) {
     return Json::array({v.x(), v.y(), v.z()});
 }
-
-/// What a vertex of either kind of level has in the file.
-struct Arrays {
-    std::vector<Vec3f> positions, normals, colours;
-    std::vector<Vec4f> tangents, weights;
-    std::vector<Vec2f> uvs;
-    std::vector<std::array<std::uint16_t, 4>> joints;
-    std::vector<std::uint32_t> indices;
-};
 
 class Writer {
   public:
@@ -52,6 +41,14 @@ class Writer {
         if (target != 0) entry["target"] = target;
         json["bufferViews"].push_back(std::move(entry));
         return json["bufferViews"].size() - 1;
+    }
+    /// Integers that stand for -1 … 1 or 0 … 1; `T` may have more of them than the type, for padding.
+    template <class T>
+    std::size_t packed(const std::vector<T>& values, int component, const char* type) {
+        const std::size_t of = accessor(values, component, type, kVertices);
+        json["accessors"][of]["normalized"] = true;
+        json["bufferViews"].back()["byteStride"] = sizeof(T);
+        return of;
     }
     template <class T>
     std::size_t accessor(const std::vector<T>& values, int component, const char* type, int target) {
@@ -99,47 +96,8 @@ class Writer {
     }
 };
 
-/// The most that the tint of nearly all vertices is: it goes into the texture, for colours of vertices end
-/// at 1.
-float tintScale(const Cards& cards) {
-    std::vector<float> most;
-    for (const CardVertex& v : cards.mesh.vertices) most.push_back(v.tint.maxCoeff());
-    const auto at = most.begin() + static_cast<std::ptrdiff_t>(most.size() * 98 / 100);
-    std::nth_element(most.begin(), at, most.end());
-    return std::max(1.0f, *at);
-}
-
-Arrays arraysOf(const Cards& cards, const Rig& rig, float scale) {
-    Arrays a;
-    for (const CardVertex& v : cards.mesh.vertices) {
-        a.positions.push_back(v.position_ws), a.normals.push_back(v.normal_ws), a.uvs.push_back(v.uv);
-        a.colours.push_back((v.tint / scale).cwiseMin(1.0f));
-        // glTF's tangent is the direction of u, and its bitangent that of -v in images whose rows go down.
-        Vec3f across = v.normal_ws.cross(v.along_ws);
-        across = (across - across.dot(v.normal_ws) * v.normal_ws).normalized();
-        const float hand = v.normal_ws.cross(across).dot(-v.along_ws) < 0 ? -1.0f : 1.0f;
-        a.tangents.emplace_back(across.x(), across.y(), across.z(), hand);
-    }
-    const Binding binding = bind(rig, cards);
-    a.joints = binding.joints, a.weights = binding.weights;
-    a.indices = cards.mesh.indices;
-    return a;
-}
-
-Arrays arraysOf(const Shell& shell) {
-    Arrays a;
-    for (const ShellVertex& v : shell.vertices) {
-        a.positions.push_back(v.position_ws), a.normals.push_back(v.normal_ws);
-        a.colours.push_back((v.open * v.albedo).cwiseMin(1.0f));
-        a.joints.push_back({}), a.weights.emplace_back(1, 0, 0, 0);
-    }
-    a.indices = shell.indices;
-    return a;
-}
-
 Status addCardMaterial(Writer& w, const Level& level, const Cards& cards, float scale) {
-    Picture picture = cards.atlas.levels[0];
-    for (Texel& t : picture.texels) t.albedo = (scale * t.albedo).cwiseMin(1.0f);
+    const Picture picture = brightened(cards.atlas, scale);
     if (auto status = w.image(colourImage(picture, 1), level.name + " colour"); !status) return status;
     const std::size_t colour = w.lastTexture();
     if (auto status = w.image(normalImage(picture), level.name + " normal"); !status) return status;
@@ -157,16 +115,94 @@ Status addCardMaterial(Writer& w, const Level& level, const Cards& cards, float 
     return {};
 }
 
-void addMesh(Writer& w, const Level& level, const Arrays& a) {
-    Json attributes{{"POSITION", w.positions(a.positions)},
-                    {"NORMAL", w.accessor(a.normals, kFloat, "VEC3", kVertices)},
+/// Positions of quantised vertices are -1 … 1 in this cube.
+struct Cube {
+    Vec3f middle_ws = Vec3f::Zero();
+    float half = 1;  ///< metres
+};
+
+Cube cubeAround(const std::vector<LevelArrays>& levels) {
+    Box3f box;
+    for (const LevelArrays& a : levels)
+        for (const Vec3f& p : a.positions_ws) box.extend(p);
+    return {box.center(), std::max(1e-6f, 0.5f * box.sizes().maxCoeff())};
+}
+
+template <class T, int kCount>
+std::array<T, kCount> integers(const auto& values, int count) {
+    std::array<T, kCount> all{};
+    for (int i = 0; i < count; ++i) {
+        const float share = std::clamp(values[i], -1.0f, 1.0f);
+        all[static_cast<std::size_t>(i)] =
+            static_cast<T>(std::lround(share * static_cast<float>(std::numeric_limits<T>::max())));
+    }
+    return all;
+}
+
+/// Of 255; what rounding leaves goes to the largest, so that the sum is that.
+std::array<std::uint8_t, 4> weightsOf(const Vec4f& weights) {
+    auto bytes = integers<std::uint8_t, 4>(weights, 4);
+    int sum = 0;
+    for (const std::uint8_t byte : bytes) sum += byte;
+    auto& largest = *std::ranges::max_element(bytes);
+    largest = static_cast<std::uint8_t>(largest + 255 - sum);
+    return bytes;
+}
+
+Json quantised(Writer& w, const LevelArrays& a, const Cube& cube) {
+    std::vector<std::array<std::int16_t, 4>> positions;
+    std::vector<std::array<std::int8_t, 4>> normals, tangents;
+    std::vector<std::array<std::uint16_t, 4>> colours;
+    std::vector<std::array<std::uint16_t, 2>> uvs;
+    std::vector<std::array<std::uint8_t, 4>> joints, weights;
+    std::array<std::int16_t, 3> low, high;
+    low.fill(std::numeric_limits<std::int16_t>::max()), high.fill(std::numeric_limits<std::int16_t>::min());
+    for (std::size_t v = 0; v < a.positions_ws.size(); ++v) {
+        positions.push_back(
+            integers<std::int16_t, 4>(Vec3f((a.positions_ws[v] - cube.middle_ws) / cube.half), 3));
+        for (std::size_t i = 0; i < 3; ++i) {
+            low[i] = std::min(low[i], positions[v][i]);
+            high[i] = std::max(high[i], positions[v][i]);
+        }
+        normals.push_back(integers<std::int8_t, 4>(a.normals_ws[v], 3));
+        colours.push_back(integers<std::uint16_t, 4>(a.colours[v], 3));
+        if (!a.uvs.empty()) {
+            uvs.push_back(integers<std::uint16_t, 2>(a.uvs[v], 2));
+            tangents.push_back(integers<std::int8_t, 4>(a.tangents_ws[v], 4));
+        }
+        std::array<std::uint8_t, 4> of{};
+        for (std::size_t i = 0; i < 4; ++i) of[i] = static_cast<std::uint8_t>(a.joints[v][i]);
+        joints.push_back(of);
+        weights.push_back(weightsOf(a.weights[v]));
+    }
+    Json attributes{{"POSITION", w.packed(positions, kShort, "VEC3")}};
+    w.json["accessors"].back()["min"] = low, w.json["accessors"].back()["max"] = high;
+    attributes["NORMAL"] = w.packed(normals, kByte, "VEC3");
+    attributes["COLOR_0"] = w.packed(colours, kUnsignedShort, "VEC3");
+    attributes["JOINTS_0"] = w.accessor(joints, kUnsignedByte, "VEC4", kVertices);
+    attributes["WEIGHTS_0"] = w.packed(weights, kUnsignedByte, "VEC4");
+    if (!a.uvs.empty()) {
+        attributes["TEXCOORD_0"] = w.packed(uvs, kUnsignedShort, "VEC2");
+        attributes["TANGENT"] = w.packed(tangents, kByte, "VEC4");
+    }
+    return attributes;
+}
+
+Json floats(Writer& w, const LevelArrays& a) {
+    Json attributes{{"POSITION", w.positions(a.positions_ws)},
+                    {"NORMAL", w.accessor(a.normals_ws, kFloat, "VEC3", kVertices)},
                     {"COLOR_0", w.accessor(a.colours, kFloat, "VEC3", kVertices)},
                     {"JOINTS_0", w.accessor(a.joints, kUnsignedShort, "VEC4", kVertices)},
                     {"WEIGHTS_0", w.accessor(a.weights, kFloat, "VEC4", kVertices)}};
     if (!a.uvs.empty()) {
         attributes["TEXCOORD_0"] = w.accessor(a.uvs, kFloat, "VEC2", kVertices);
-        attributes["TANGENT"] = w.accessor(a.tangents, kFloat, "VEC4", kVertices);
+        attributes["TANGENT"] = w.accessor(a.tangents_ws, kFloat, "VEC4", kVertices);
     }
+    return attributes;
+}
+
+void addMesh(Writer& w, const Level& level, const LevelArrays& a, const std::optional<Cube>& cube) {
+    Json attributes = cube ? quantised(w, a, *cube) : floats(w, a);
     const std::size_t indices = w.accessor(a.indices, kUnsignedInt, "SCALAR", kIndices);
     w.json["meshes"].push_back(
         Json{{"name", level.name},
@@ -176,7 +212,7 @@ void addMesh(Writer& w, const Level& level, const Arrays& a) {
 }
 
 /// Nodes of the joints, the head's first, and the skin.
-void addRig(Writer& w, const Rig& rig) {
+void addRig(Writer& w, const Rig& rig, const Cube& cube) {
     std::vector<Eigen::Matrix4f> inverse;
     Json joints = Json::array();
     for (std::size_t j = 0; j < rig.joints.size(); ++j) {
@@ -189,7 +225,8 @@ void addRig(Writer& w, const Rig& rig) {
         if (joint.parent >= 0)
             w.json["nodes"][static_cast<std::size_t>(joint.parent)]["children"].push_back(j);
         Eigen::Matrix4f bind = Eigen::Matrix4f::Identity();
-        bind.topRightCorner<3, 1>() = -joint.position_ws;
+        bind.topLeftCorner<3, 3>() *= cube.half;
+        bind.topRightCorner<3, 1>() = cube.middle_ws - joint.position_ws;
         inverse.push_back(bind);
         joints.push_back(j);
     }
@@ -199,7 +236,8 @@ void addRig(Writer& w, const Rig& rig) {
 }
 
 /// VRMC_springBone 1.0: a spring for each chain.
-void addSprings(Writer& w, const Rig& rig, std::span<const Collider> colliders) {
+void addSprings(Writer& w, const Rig& rig, std::span<const Spring> fitted,
+                std::span<const Collider> colliders) {
     Json spheres = Json::array(), all = Json::array(), springs = Json::array();
     for (std::size_t c = 0; c < colliders.size(); ++c) {
         spheres.push_back(Json{{"node", 0},
@@ -210,18 +248,19 @@ void addSprings(Writer& w, const Rig& rig, std::span<const Collider> colliders) 
         all.push_back(c);
     }
     for (std::size_t chain = 0; chain < rig.chains(); ++chain) {
+        const Spring& spring = fitted[chain];
         Json joints = Json::array();
         for (std::uint32_t j = 0; j < rig.perChain; ++j) {
             joints.push_back(Json{{"node", 1 + chain * rig.perChain + j},
-                                  {"hitRadius", kHitRadius},
-                                  {"stiffness", kStiffness},
-                                  {"gravityPower", kGravity},
+                                  {"hitRadius", spring.hitRadius},
+                                  {"stiffness", spring.stiffnessAt(j, rig.perChain)},
+                                  {"gravityPower", spring.gravity},
                                   {"gravityDir", Json::array({0, -1, 0})},
-                                  {"dragForce", kDrag}});
+                                  {"dragForce", spring.drag}});
         }
-        Json spring{{"name", fmt::format("hair {}", chain)}, {"joints", std::move(joints)}};
-        if (!colliders.empty()) spring["colliderGroups"] = Json::array({0});
-        springs.push_back(std::move(spring));
+        Json entry{{"name", fmt::format("hair {}", chain)}, {"joints", std::move(joints)}};
+        if (!colliders.empty()) entry["colliderGroups"] = Json::array({0});
+        springs.push_back(std::move(entry));
     }
     Json extension{{"specVersion", "1.0"}};
     if (!colliders.empty()) {
@@ -235,38 +274,36 @@ void addSprings(Writer& w, const Rig& rig, std::span<const Collider> colliders) 
 
 }  // namespace
 
-Result<std::vector<std::byte>> glbOf(const std::vector<const Level*>& levels,
-                                     std::span<const Collider> colliders) {
+Result<std::vector<std::byte>> glbOf(const Chain& chain, std::span<const Collider> colliders,
+                                     GlbNumbers numbers) {
     std::vector<const Level*> held;
-    const Cards* first = nullptr;
-    for (const Level* level : levels) {
-        if (level->spec.kind == LevelKind::strands) continue;
-        held.push_back(level);
-        if (first == nullptr) first = std::get_if<Cards>(&level->content);
-    }
+    for (const Level& level : chain.levels)
+        if (level.spec.kind != LevelKind::strands) held.push_back(&level);
     if (held.empty()) return fail("no level that glTF can hold", "one of cards or a shell");
-    Rig rig{kJointsPerChain, {Joint{Vec3f::Zero(), -1}}, {}};
-    if (first != nullptr) {
-        auto made = makeRig(*first, kChains, kJointsPerChain, nullptr);
-        if (!made) return tl::unexpected(made.error());
-        rig = std::move(*made);
-    }
+    const Rig& rig = chain.rig;
     Writer w;
     w.json = Json{{"asset", {{"version", "2.0"}, {"generator", "Hairloom"}}}, {"scene", 0}};
     w.json["nodes"] = Json::array();
-    addRig(w, rig);
-    for (const Level* level : held) {
+    std::vector<LevelArrays> arrays;
+    for (const Level* level : held) arrays.push_back(arraysOf(*level, rig));
+    std::optional<Cube> cube;
+    if (numbers == GlbNumbers::quantised) {
+        cube = cubeAround(arrays);
+        w.json["extensionsUsed"].push_back("KHR_mesh_quantization");
+        w.json["extensionsRequired"].push_back("KHR_mesh_quantization");
+    }
+    addRig(w, rig, cube.value_or(Cube()));
+    for (std::size_t i = 0; i < held.size(); ++i) {
+        const Level* const level = held[i];
         if (const auto* cards = std::get_if<Cards>(&level->content)) {
-            const float scale = tintScale(*cards);
-            if (auto status = addCardMaterial(w, *level, *cards, scale); !status)
+            if (auto status = addCardMaterial(w, *level, *cards, arrays[i].albedoScale); !status)
                 return tl::unexpected(status.error());
-            addMesh(w, *level, arraysOf(*cards, rig, scale));
         } else {
             w.json["materials"].push_back(
                 Json{{"name", level->name},
                      {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.7}}}});
-            addMesh(w, *level, arraysOf(std::get<Shell>(level->content)));
         }
+        addMesh(w, *level, arrays[i], cube);
         w.json["nodes"].push_back(
             Json{{"name", level->name}, {"mesh", w.json["meshes"].size() - 1}, {"skin", 0}});
     }
@@ -286,7 +323,7 @@ Result<std::vector<std::byte>> glbOf(const std::vector<const Level*>& levels,
         w.json["nodes"][nearest]["extensions"]["MSFT_lod"] = Json{{"ids", std::move(ids)}};
         w.json["nodes"][nearest]["extras"]["MSFT_screencoverage"] = std::move(shares);
     }
-    if (rig.chains() > 0) addSprings(w, rig, colliders);
+    if (rig.chains() > 0) addSprings(w, rig, chain.springs, colliders);
     return w.file();
 }
 

@@ -4,18 +4,18 @@
 // by VRMC_springBone 1.0.
 
 #include "core/cards/levels.h"
+#include "core/cards/springs.h"
 
 namespace hairloom::cards {
 
-/// A sphere that swinging joints keep out of; moves with the head. World space, metres.
-struct Collider {
-    Vec3f centre_ws;
-    float radius = 0;
-};
+/// How vertices are written: as floats, or as integers by KHR_mesh_quantization, 40 bytes each in place of
+/// 88: positions to 1/65534 of the hair's extent, normals to half a degree.
+enum class GlbNumbers { floats, quantised };
 
-/// The levels of cards and shells of a chain, the nearest first; strands are left out. Textures lie in the
-/// file as PNG. The same chain gives the same bytes. Errors: no level that glTF can hold, more than 4 GB.
-Result<std::vector<std::byte>> glbOf(const std::vector<const Level*>& levels,
-                                     std::span<const Collider> colliders);
+/// The levels of cards and shells of a chain, the nearest first, with its rig and springs; strands are left
+/// out. Textures lie in the file as PNG. The same chain gives the same bytes. Errors: no level that glTF can
+/// hold, more than 4 GB.
+Result<std::vector<std::byte>> glbOf(const Chain& chain, std::span<const Collider> colliders,
+                                     GlbNumbers numbers = GlbNumbers::floats);
 
 }  // namespace hairloom::cards

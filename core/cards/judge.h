@@ -65,6 +65,9 @@ class Plate {
     std::vector<std::uint8_t> isHair_;
 };
 
+/// Luminance of hair, summed up over the pixels of pictures.
+double hairLuminance(std::span<const Shot> shots);
+
 /// As people see it.
 render::Image shownAs(const Shot& shot);
 

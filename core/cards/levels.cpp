@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "core/base/parallel.h"
 #include "core/base/stopwatch.h"
@@ -16,6 +18,7 @@
 namespace hairloom::cards {
 namespace {
 
+constexpr std::uint32_t kFarthestPx = 16;    // of a head, 23 m away: as far as levels are looked at
 constexpr std::uint32_t kSamplesAPixel = 4;  // of cards and shells, along each axis
 
 /// All that levels are made from and held against.
@@ -56,11 +59,11 @@ struct Shooting {
     double drawMs = 0;  ///< mean of a direction
 };
 /// Pictures of a level from some directions.
-Shooting shoot(const Work& work, const Level& level, const std::vector<std::size_t>& which) {
+Shooting shoot(const Work& work, const Level& level, const std::vector<std::size_t>& which,
+               std::uint32_t px) {
     Shooting result;
     result.shots.resize(which.size());
     std::vector<double> seconds(which.size());
-    const std::uint32_t px = level.spec.headPx;
     parallelFor(which.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end && !cancelled(work.cancel); ++i) {
             const bool hairs = level.spec.kind == LevelKind::strands;
@@ -89,9 +92,20 @@ std::vector<Shot> chosen(const std::vector<Shot>& shots, const std::vector<std::
 Result<Difference> measured(const Work& work, const Level& level) {
     work.tick();
     const auto which = work.viewsFor(level.spec);
-    const Shooting shooting = shoot(work, level, which);
+    const Shooting shooting = shoot(work, level, which, level.spec.headPx);
     if (cancelled(work.cancel)) return stopped();
     return difference(chosen(work.strands.at(level.spec.headPx), which), shooting.shots);
+}
+
+/// A level's light at a height of the head, times that of all strands, from all directions.
+Result<double> lightAt(const Work& work, const Level& level, std::uint32_t px) {
+    work.tick();
+    const Shooting shooting = shoot(work, level, work.allViews(), px);
+    if (cancelled(work.cancel)) return stopped();
+    const auto area = [](std::uint32_t pixels) { return static_cast<double>(pixels) * pixels; };
+    // Pictures of strands are means of one plate: their light is that of any height.
+    const double wanted = hairLuminance(work.strands.at(level.spec.headPx)) / area(level.spec.headPx);
+    return wanted > 0 ? hairLuminance(shooting.shots) / area(px) / wanted : 1;
 }
 
 constexpr double kFarEnough = 0.004;  // from 1: what coverage and light are set to
@@ -130,16 +144,17 @@ Status calibrate(const Work& work, Cards& made, Level& level) {
             if (auto status = bakeAtlas(work.hair, work.light, thickness, made, work.cancel); !status)
                 return status;
         }
-        buildMesh(work.hair, made);
+        buildMesh(made);
         if (covers && std::abs(off->light - 1) < kFarEnough) break;
     }
-    // What was baked last has a light of its own.
+    // What was baked last has a light of its own. The middle of those where it takes over and where the next
+    // one does, so that neither step is large.
     level.content = made;
-    const auto off = measured(work, level);
-    if (!off) return tl::unexpected(off.error());
-    made.brightness =
-        std::clamp(made.brightness / static_cast<float>(std::max(off->light, 0.25)), 0.25f, 4.0f);
-    buildMesh(work.hair, made);
+    const auto near = lightAt(work, level, level.spec.headPx), far = lightAt(work, level, level.untilPx);
+    if (!near || !far) return tl::unexpected((near ? far : near).error());
+    const double light = std::sqrt(std::max(*near * *far, 0.0625));
+    made.brightness = std::clamp(made.brightness / static_cast<float>(light), 0.25f, 4.0f);
+    buildMesh(made);
     level.content = std::move(made);
     return {};
 }
@@ -154,9 +169,18 @@ Status makeCardLevel(const Work& work, Level& level) {
     options.texel = pixel / 1.5f;
     options.tolerance = pixel / 3;
     options.error = work.options.targetPx * pixel / 2;
+    for (const HeldCard& held : work.options.held)
+        if (held.level == options.cards) options.held.push_back(held);
     auto made = makeCards(work.hair, work.light, options, work.cancel);
     if (!made) return tl::unexpected(made.error());
-    return calibrate(work, *made, level);
+    if (auto status = calibrate(work, *made, level); !status) return status;
+    // Last: the other cards do not make up for what a hand has done.
+    auto& shaped = std::get<Cards>(level.content);
+    if (!options.held.empty()) shapeByHand(options.held, shaped);
+    if (shaped.mesh.indices.empty())
+        return fail(fmt::format("all cards of {} are deleted by hand", level.name),
+                    "at least one that stays");
+    return {};
 }
 
 Status makeShellLevel(const Work& work, Level& level) {
@@ -180,13 +204,17 @@ Status makeShellLevel(const Work& work, Level& level) {
     }
     if (best.indices.empty()) return fail("hair too thin for a shell", "levels without a shell");
     level.content = std::move(best);
-    // More than once: highlights do not grow with the albedo.
+    // Highlights do not grow with the albedo, so that light grows by some power of it, which two rounds tell.
+    double power = 1, last = 0, factor = 1;
     for (int round = 0; round < 2 * kRounds; ++round) {
         const auto off = measured(work, level);
         if (!off) return tl::unexpected(off.error());
         if (std::abs(off->light - 1) < kFarEnough) break;
-        for (ShellVertex& v : std::get<Shell>(level.content).vertices)
-            v.albedo *= static_cast<float>(1 / std::max(off->light, 1e-3));
+        const double light = std::log(std::max(off->light, 1e-3));
+        constexpr double kWeakest = 0.1;
+        if (round > 0) power = std::clamp((light - last) / std::log(factor), kWeakest, 1.0);
+        last = light, factor = std::exp(-light / power);
+        for (ShellVertex& v : std::get<Shell>(level.content).vertices) v.albedo *= static_cast<float>(factor);
     }
     return {};
 }
@@ -240,8 +268,24 @@ std::string nameFor(const LevelSpec& spec) {
     return fmt::format("{}-{:g}", nameOf(spec.kind), spec.amount);
 }
 
+/// Heights of a head in pixels at which one who walks away looks.
+constexpr std::array kWalk{512u, 384u, 256u, 192u, 128u, 96u, 64u, 48u, 32u, 24u, 16u};
+
+/// The lights of a level.
+Status walk(const Work& work, Level& level) {
+    for (const std::uint32_t px : kWalk) {
+        if (px > level.spec.headPx || px < level.untilPx) continue;
+        // Hairs are drawn on one plate for all heights.
+        const bool isKnown = px == level.spec.headPx || level.spec.kind == LevelKind::strands;
+        const Result<double> light = isKnown ? level.difference.light : lightAt(work, level, px);
+        if (!light) return tl::unexpected(light.error());
+        level.lights.push_back({px, *light});
+    }
+    return {};
+}
+
 Status finish(const Work& work, Level& level) {
-    Shooting shooting = shoot(work, level, work.allViews());
+    Shooting shooting = shoot(work, level, work.allViews(), level.spec.headPx);
     if (cancelled(work.cancel)) return stopped();
     level.strands = work.strands.at(level.spec.headPx);
     const auto off = difference(level.strands, shooting.shots);
@@ -255,6 +299,9 @@ Status finish(const Work& work, Level& level) {
                                 level.name, off->silhouettePx, target),
                     fmt::format("a target of {:.2f} pixels, which these cards reach, or more cards",
                                 off->silhouettePx + 0.005));
+    }
+    if (work.options.walk) {
+        if (auto status = walk(work, level); !status) return status;
     }
     return count(work, level);
 }
@@ -279,6 +326,20 @@ Result<std::map<std::uint32_t, std::vector<Shot>>> shootStrands(const Hair& hair
 }
 
 }  // namespace
+
+std::vector<double> lightSteps(const std::vector<Level>& levels) {
+    std::vector<double> steps;
+    std::optional<double> last;
+    for (const Level& level : levels) {
+        double largest = 0;
+        for (const LightAt& at : level.lights) {
+            if (last) largest = std::max(largest, std::abs(at.light / std::max(*last, 1e-9) - 1));
+            last = at.light;
+        }
+        steps.push_back(largest);
+    }
+    return steps;
+}
 
 Hair thinned(const Hair& hair, double share, float widen) {
     std::vector<std::uint32_t> order(hair.strandCount());
@@ -310,6 +371,7 @@ Result<Chain> makeChain(const Hair& hair, const std::vector<LevelSpec>& specs, c
     if (!light) return tl::unexpected(light.error());
     Chain chain;
     chain.strands = hair.strandCount();
+    for (std::size_t s = 0; s < chain.strands; ++s) chain.roots_ws.push_back(hair.strand(s)[0]);
     chain.views = viewsAround(hair, options.directions);
     const StrandLight onStrands = strandLight(hair, *light);
     const auto shots = shootStrands(hair, onStrands, chain.views, specs, cancel);
@@ -326,6 +388,7 @@ Result<Chain> makeChain(const Hair& hair, const std::vector<LevelSpec>& specs, c
         Level level;
         level.spec = specs[i];
         level.name = nameFor(specs[i]);
+        level.untilPx = i + 1 < specs.size() ? specs[i + 1].headPx : kFarthestPx;
         making = level.name;
         progress(making, share = (1 + static_cast<double>(i)) / steps);
         const Stopwatch watch;
@@ -337,6 +400,15 @@ Result<Chain> makeChain(const Hair& hair, const std::vector<LevelSpec>& specs, c
         if (auto finished = finish(work, level); !finished) return tl::unexpected(finished.error());
         chain.levels.push_back(std::move(level));
     }
+    for (const Level& level : chain.levels) {
+        const auto* cards = std::get_if<Cards>(&level.content);
+        if (cards == nullptr) continue;
+        auto rig = makeRig(*cards, kChains, kJointsPerChain, cancel);
+        if (!rig) return tl::unexpected(rig.error());
+        chain.rig = std::move(*rig);
+        break;
+    }
+    chain.springs.resize(chain.rig.chains());
     return chain;
 }
 

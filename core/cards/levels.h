@@ -3,6 +3,7 @@
 // The chain of levels of detail: strands, fewer strands, cards, fewer cards, a shell; each measured against
 // all strands at the distance that it is for.
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <string>
@@ -10,6 +11,7 @@
 #include <variant>
 
 #include "core/cards/judge.h"
+#include "core/cards/springs.h"
 
 namespace hairloom::cards {
 
@@ -37,28 +39,39 @@ struct ChainOptions {
     std::uint32_t directions = 12;  ///< that levels are judged from
     float targetPx = 0;             ///< pixels that outlines of cards may be off; 0: what the budget gives
     double strandsMoveMs = 0;       ///< what moving all hairs takes, as the caller measured it
+    bool walk = false;              ///< Level::lights are measured, too
+    std::vector<HeldCard> held;     ///< cards shaped by hand
 };
 
 /// How far off a level is seen that is for heads so high: in a picture of 1080 lines, 40° from its lower to
 /// its upper edge. Metres.
 double distanceOf(std::uint32_t headPx);
 
+/// The light of a level's hair, times that of all strands, where a head is so many pixels high.
+struct LightAt {
+    std::uint32_t headPx = 0;
+    double light = 1;
+};
+
 struct Level {
     LevelSpec spec;
-    std::string name;           ///< "cards-200"
-    std::size_t hairs = 0;      ///< that are drawn one by one
-    std::size_t triangles = 0;  ///< of hairs two a segment
+    std::string name;            ///< "cards-200"
+    std::uint32_t untilPx = 16;  ///< pixels along the height of a head where the next level takes over
+    std::size_t hairs = 0;       ///< that are drawn one by one
+    std::size_t triangles = 0;   ///< of hairs two a segment
     std::size_t bytes = 0;  ///< of vertices, indices and textures with their mip maps, as they lie on a GPU
     Difference difference;
-    double drawMs = 0;  ///< by the judge, on one core, mean of all directions
-    double moveMs = 0;  ///< on all cores
+    std::vector<LightAt> lights;  ///< from where it takes over to where the next does; empty unless asked for
+    double drawMs = 0;            ///< by the judge, on one core, mean of all directions
+    double moveMs = 0;            ///< on all cores
     std::variant<Hair, Cards, Shell> content;
     std::vector<Shot> shots;    ///< of each direction, at its distance
     std::vector<Shot> strands;  ///< all strands, likewise
 
     std::size_t cards() const {
         const auto* made = std::get_if<Cards>(&content);
-        return made == nullptr ? 0 : made->cards.size();
+        if (made == nullptr) return 0;
+        return static_cast<std::size_t>(std::ranges::count(made->cards, false, &Card::deleted));
     }
 };
 
@@ -66,12 +79,19 @@ struct Chain {
     std::vector<Level> levels;
     std::vector<View> views;
     std::size_t strands = 0;
-    double makeSeconds = 0;  ///< clusters, strips, textures and shells, measuring left out
+    std::vector<Vec3f> roots_ws;         ///< of each strand
+    Rig rig;                             ///< of the nearest cards; no chains where there are none
+    std::vector<Spring> springs;         ///< of each of its chains
+    std::optional<SpringFit> springFit;  ///< nothing: they are as by default
+    double makeSeconds = 0;              ///< clusters, strips, textures and shells, measuring left out
 };
 
-/// Told what is being made and which share is done, every few seconds; work that is stopped looks up then,
-/// too.
+/// Told what is being made and which share is done, every few seconds.
 using Progress = std::function<void(std::string_view, double)>;
+
+/// By levels, the largest change of light when it takes over from the one before and between its own lights
+/// from there on, as a share.
+std::vector<double> lightSteps(const std::vector<Level>& levels);
 
 /// Errors: those of check() and makeCards(), a target in pixels that the cards cannot meet (it says how near
 /// they come), stopped.

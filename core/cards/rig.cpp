@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/base/parallel.h"
 
@@ -46,11 +47,12 @@ Result<Rig> makeRig(const Cards& cards, std::uint32_t chains, std::uint32_t perC
         middles.weights.push_back(card.strip.length());
         normals.push_back(card.strip.normal[0]);
     }
-    const auto clusters = clusterHair(middles, normals, {chains, 0}, cancel);
+    std::vector<std::uint32_t> all(cards.cards.size());
+    std::iota(all.begin(), all.end(), 0u);
+    const auto clusters = clusterHair(middles, std::move(all), normals, {chains, 0}, cancel);
     if (!clusters) return tl::unexpected(clusters.error());
     Rig rig;
     rig.perChain = perChain;
-    rig.joints.push_back({Vec3f::Zero(), -1});
     Vec3f roots = Vec3f::Zero();
     for (std::size_t c = 0; c < clusters->size(); ++c) {
         for (std::uint32_t j = 0; j < perChain; ++j) {

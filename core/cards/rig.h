@@ -16,8 +16,8 @@ struct Joint {
 /// Joint 0 is the head's. Chain c has the joints 1 + c · perChain …, root first; the first of them stays
 /// with the head.
 struct Rig {
-    std::uint32_t perChain = 0;
-    std::vector<Joint> joints;
+    std::uint32_t perChain = 2;
+    std::vector<Joint> joints{Joint{Vec3f::Zero(), -1}};
     std::vector<std::vector<Vec3f>> curves;  ///< of each chain, kStations points
     std::size_t chains() const { return curves.size(); }
 };

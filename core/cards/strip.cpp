@@ -355,6 +355,12 @@ void lift(Strip& strip, const NearPoints& near, const Vec3f& rootNormal) {
 
 }  // namespace
 
+Strip framed(Strip strip) {
+    const Strip given = strip;
+    setFrames(strip, given);
+    return strip;
+}
+
 Strip finishStrip(const EvenHair& hair, std::span<const std::uint32_t> strands, const Strip& fitted,
                   std::uint32_t stations, std::span<const Vec3f> rootNormals_ws) {
     const Vec3f rootNormal = meanNormal(strands, rootNormals_ws);

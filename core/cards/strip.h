@@ -46,6 +46,9 @@ void residual(const Strip& strip, std::span<const Vec3f> points_ws, std::span<fl
 Strip finishStrip(const EvenHair& hair, std::span<const std::uint32_t> strands, const Strip& fitted,
                   std::uint32_t stations, std::span<const Vec3f> rootNormals_ws);
 
+/// The same with `along` and `normal` by its centre and `cross`.
+Strip framed(Strip strip);
+
 /// Where a point is on a strip.
 struct StripPlace {
     float along = 0;          ///< 0 root … 1 tip, by length; beyond for points before or behind it

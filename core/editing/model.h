@@ -36,6 +36,7 @@ enum class Part : std::uint32_t {
     Dye = 1u << 14u,            ///< its mask, as it was painted
     Operators = 1u << 15u,      ///< of the stack, or their settings
     Masks = 1u << 16u,          ///< as they were painted, for operators
+    Cards = 1u << 17u,          ///< levels' cards shaped by hand
     Everything = 0xffffffffu,
 };
 constexpr Part operator|(Part a, Part b) {

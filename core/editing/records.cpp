@@ -13,6 +13,7 @@
 #include "core/editing/settings_commands.h"
 #include "core/editing/stack_commands.h"
 #include "core/editing/take_shape.h"
+#include "core/groom/file/card_edits_json.h"
 #include "core/groom/file/settings_json.h"
 #include "core/operations/mask.h"
 #include "core/operations/stack.h"
@@ -42,6 +43,12 @@ MakeCommand readSpheres(JsonReader& reader) {
     for (JsonReader& entry : reader.objects("spheres")) spheres.push_back(readSphere(entry));
     return [spheres](const Document& document) -> CommandResult {
         return setSpheres(document.model(), spheres, "Spheres");
+    };
+}
+
+MakeCommand readCards(JsonReader& reader) {
+    return [edits = readCardEdits(reader)](const Document& document) {
+        return setCardEdits(document.model(), edits, "Cards");
     };
 }
 
@@ -212,6 +219,7 @@ constexpr RecordedOperation kOperations[] = {
     {"placement", readSettingsStep<PlacementSettings, setPlacementSettings>},
     {"spheres", readSpheres},
     {"layers", readLayers},
+    {"card_edits", readCards},
     {"move_to_layer", readMoveToLayer},
     {"remove_layer", readRemoveLayer},
     {"strands", readStrands},

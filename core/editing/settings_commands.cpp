@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/editing/settings_commands.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <utility>
 
 #include "core/editing/records.h"
+#include "core/groom/file/card_edits_json.h"
 #include "core/groom/file/settings_json.h"
 #include "core/groom/groom_hash.h"
 
@@ -89,6 +92,7 @@ Part differenceOf(const Groom& a, const Groom& b) {
         {Part::Physics, differs(a.simulation, b.simulation)},
         {Part::Material, differs(a.material, b.material)},
         {Part::Interpolation, differs(a.interpolation, b.interpolation)},
+        {Part::Cards, differs(a.cardEdits, b.cardEdits)},
         {Part::Operators, a.operators != b.operators || !a.operators.empty()},
         {Part::Layers, differs(a.layers, b.layers) || a.groupNames != b.groupNames},
         {Part::Triangulation, !sameTriangles(a, b)},
@@ -198,6 +202,24 @@ std::unique_ptr<Command> setLayers(const Model& model, std::vector<Layer> layers
     return valueCommand<std::vector<Layer>>(
         "Layers", Part::Layers, [](Model& m) -> std::vector<Layer>& { return m.groom.layers; },
         std::move(layers), std::move(record), bytes);
+}
+
+Result<std::unique_ptr<Command>> setCardEdits(const Model& model, std::vector<CardEdit> edits,
+                                              std::string name) {
+    std::size_t roots = 0, bytes = 0;
+    for (const CardEdit& edit : edits) {
+        roots += edit.roots.size();
+        bytes +=
+            sizeof(CardEdit) + edit.roots.size() * sizeof(Vec3f) + edit.strip.size() * sizeof(CardStation);
+    }
+    if (edits.size() > kMaxCardEdits || roots > kMaxCardRoots)
+        return fail(fmt::format("{} cards of {} hairs are shaped by hand", edits.size(), roots),
+                    fmt::format("at most {} of {}", kMaxCardEdits, kMaxCardRoots));
+    if (!differs(model.groom.cardEdits, edits)) return nullptr;
+    std::string record = recordOf("card_edits", {{"card_edits", toJson(edits)}});
+    return valueCommand<std::vector<CardEdit>>(
+        std::move(name), Part::Cards, [](Model& m) -> std::vector<CardEdit>& { return m.groom.cardEdits; },
+        std::move(edits), std::move(record), bytes);
 }
 
 std::unique_ptr<Command> setSettings(const Model& model, const Groom& from, std::string name) {

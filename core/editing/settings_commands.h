@@ -6,6 +6,7 @@
 
 #include <memory>
 
+#include "core/base/result.h"
 #include "core/editing/command.h"
 #include "core/groom/groom.h"
 
@@ -24,6 +25,10 @@ std::unique_ptr<Command> setSpheres(const Model& model, std::vector<CollisionSph
                                     std::string name);
 /// As many layers as there are or more, for strands name them by index.
 std::unique_ptr<Command> setLayers(const Model& model, std::vector<Layer> layers);
+
+/// Cards shaped by hand. Errors: more than kMaxCardEdits or kMaxCardRoots.
+Result<std::unique_ptr<Command>> setCardEdits(const Model& model, std::vector<CardEdit> edits,
+                                              std::string name);
 
 /// Of another groom all that the commands above set but the layers: what a preset or a field changes.
 std::unique_ptr<Command> setSettings(const Model& model, const Groom& from, std::string name);

@@ -12,6 +12,7 @@
 #include "core/geometry/root_triangulation.h"
 #include "core/geometry/scalp_mesh.h"
 #include "core/groom/attributes.h"
+#include "core/groom/card_edits.h"
 #include "core/groom/material.h"
 #include "core/groom/operator_stack.h"
 #include "hairloom/settings.h"
@@ -73,6 +74,7 @@ struct Groom {
     runtime::SimulationSettings simulation;
     InterpolationSettings interpolation;
     PlacementSettings placement;
+    std::vector<CardEdit> cardEdits;  ///< of levels of detail
 
     /// The mesh that strands are rooted on; null for hair that came without one. Shared and immutable.
     std::shared_ptr<const ScalpMesh> scalp;

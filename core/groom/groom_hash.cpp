@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/hash.h"
+#include "core/groom/file/card_edits_json.h"
 #include "core/groom/file/fields.h"
 
 namespace hairloom {
@@ -77,6 +78,8 @@ void hashSettings(Hasher& hasher, const Groom& groom) {
         hasher.real(static_cast<double>(sphere.radius));
         hasher.text(sphere.bone);
     }
+    hasher.number(groom.cardEdits.size());
+    for (const CardEdit& edit : groom.cardEdits) hasher.text(toJson(edit).dump());
     hashFields(hasher, groom.material);
     hashFields(hasher, groom.interpolation);
     hashFields(hasher, groom.placement);

@@ -12,6 +12,7 @@
 #include "core/base/output_file.h"
 #include "core/groom/strand_subset.h"
 #include "core/interpolation/follow_hairs.h"
+#include "core/scene/card_meshes.h"
 #include "core/scene/root_rotations.h"
 #include "core/simulation/simulation.h"
 
@@ -87,18 +88,50 @@ Result<Moving> movingHair(const Groom& whole, std::span<const std::uint32_t> str
     return moving;
 }
 
-Result<ExportReport> writeCards(const Groom& groom, const HairToExport& wanted,
+constexpr const char *kQuantised = "gltf-quantised", *kObj = "obj-cards", *kFbx = "fbx";
+
+Result<ExportReport> writeCardFile(const cards::Chain& chain, const Groom& groom, const std::string& format,
+                                   const std::filesystem::path& path) {
+    if (format == kCardFormat || format == kQuantised) {
+        auto file = levelFile(
+            chain, groom, format == kQuantised ? cards::GlbNumbers::quantised : cards::GlbNumbers::floats);
+        if (!file) return tl::unexpected(file.error());
+        if (auto status = writeFileAtomically(path, file->bytes); !status)
+            return tl::unexpected(status.error());
+        return std::move(file->report);
+    }
+    auto companions =
+        writeCardMeshes(chain, format == kFbx ? CardMeshFormat::fbx : CardMeshFormat::obj, path);
+    if (!companions) return tl::unexpected(companions.error());
+    ExportReport report = levelReport(chain, groom);
+    report.companions = std::move(*companions);
+    report.bytes = std::filesystem::file_size(path);
+    std::erase_if(report.findings, [](const Finding& finding) { return finding.where == kSpringsPlace; });
+    report.leftBehind.push_back({"springs, and the distances of levels", "write them as gltf"});
+    if (format == kObj) report.leftBehind.push_back({"joints and weights", "write them as fbx"});
+    return report;
+}
+
+Result<ExportReport> writeCards(const Groom& groom, const HairToExport& wanted, const StrandWriter& writer,
                                 const std::filesystem::path& path, const StrandExportOptions& options) {
     if (options.metresPerUnit != 1 || options.up != UpAxis::Y || options.pointsPerStrand > 0)
         return fail("another unit, axis or number of points is asked for, and cards have none",
-                    "glTF is in metres, Y up");
+                    "glTF and OBJ of cards are in metres, FBX in centimetres, Y up");
     const auto progress = wanted.progress ? wanted.progress : [](std::string_view, double) {};
     const auto chain = makeLevels(groom, wanted.levels, LevelsMade::cardsAndShell, progress, wanted.cancel);
     if (!chain) return tl::unexpected(chain.error());
-    auto file = levelFile(*chain, groom);
-    if (!file) return tl::unexpected(file.error());
-    if (auto status = writeFileAtomically(path, file->bytes); !status) return tl::unexpected(status.error());
-    return std::move(file->report);
+    auto report = writeCardFile(*chain, groom, writer.name, path);
+    if (report) report->format = writer.name;
+    return report;
+}
+
+StrandWriter cardWriter(const char* format, const char* label, const char* carries, ExportTarget target,
+                        const char* suffix) {
+    target.note =
+        "Cards and a shell for far away, each measured against the strands. It takes a minute or so; the "
+        "panel Levels shows them before they leave." +
+        target.note;
+    return {format, label, carries, "cards and a shell, no strands", {std::move(target)}, nullptr, suffix};
 }
 
 /// Of the strands as a game plays them.
@@ -134,18 +167,24 @@ Result<SafeLimits> safeLimits(const Groom& guides, std::uint32_t pointsPerStrand
 const std::vector<StrandWriter>& hairWriters() {
     static const std::vector<StrandWriter> all = [] {
         std::vector<StrandWriter> writers = strandWriters();
-        writers.push_back(
-            {kCardFormat,
-             "Cards as binary glTF 2.0",
-             "textures, a skin, levels (MSFT_lod) and springs (VRMC_springBone)",
-             "cards and a shell, no strands",
-             {{"cards",
-               "Engines without strands: cards (glTF)",
-               "Cards and a shell for far away, each measured against the strands. It takes a minute "
-               "or so; the panel Levels shows them before they leave.",
-               {}}},
-             nullptr,
-             "glb"});
+        constexpr const char* kCarries = "textures, a skin, levels (MSFT_lod) and springs (VRMC_springBone)";
+        writers.push_back(cardWriter(kCardFormat, "Cards as binary glTF 2.0", kCarries,
+                                     {"cards", "Engines without strands: cards (glTF)", "", {}}, "glb"));
+        writers.push_back(cardWriter(kQuantised, "Cards as binary glTF 2.0, quantised",
+                                     "the same with 40 bytes a vertex in place of 88 (KHR_mesh_quantization)",
+                                     {"cards-small",
+                                      "Engines without strands: cards (glTF, quantised)",
+                                      " For readers of KHR_mesh_quantization.",
+                                      {}},
+                                     "glb"));
+        if (canWriteCardMeshes()) {
+            writers.push_back(cardWriter(kFbx, "Cards as FBX", "a skin, and textures beside the file",
+                                         {"cards-fbx", "Engines without strands: cards (FBX)", "", {}},
+                                         "fbx"));
+            writers.push_back(cardWriter(kObj, "Cards as OBJ", "textures and materials beside the file",
+                                         {"cards-obj", "Engines without strands: cards (OBJ)", "", {}},
+                                         "obj"));
+        }
         std::ranges::sort(writers, {}, &StrandWriter::name);
         return writers;
     }();
@@ -200,7 +239,7 @@ Result<ExportReport> exportHair(const Groom& groom, const HairToExport& wanted, 
         if (!limits) return tl::unexpected(limits.error());
         exporting.safeLimits = *limits;
     }
-    auto report = writer.holdsCards() ? writeCards(shown, wanted, path, exporting)
+    auto report = writer.holdsCards() ? writeCards(shown, wanted, writer, path, exporting)
                                       : writer.write(shown, path, exporting);
     if (report) report->safeLimits = exporting.safeLimits;
     if (report && !writer.holdsCards() && perGuide > 0 && !isBaked && !writer.generatesFollowHairs) {

@@ -1,15 +1,43 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/scene/level_chain.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "core/scene/card_hair.h"
+#include "core/scene/held_cards.h"
+#include "core/scene/spring_fit.h"
 
 namespace hairloom {
 namespace {
 
-void addFindings(const Groom& groom, ExportReport& report) {
-    report.findings.push_back({Severity::Info,
-                               "springs of the chains are set, not fitted to how the strands move",
-                               "VRMC_springBone", "tune stiffness and drag where the file is used"});
+void addFindings(const cards::Chain& chain, const Groom& groom, ExportReport& report) {
+    const IdleCardEdits idle = idleCardEdits(chain, groom);
+    if (idle.lost > 0) {
+        report.findings.push_back({Severity::Warning,
+                                   fmt::format("{} cards shaped by hand have lost their hair", idle.lost),
+                                   kCardEditsPlace, "shape the cards that stand there now"});
+    }
+    if (idle.unmade > 0) {
+        report.findings.push_back(
+            {Severity::Warning,
+             fmt::format("{} cards shaped by hand are of levels that are not made", idle.unmade),
+             kCardEditsPlace, "make levels of as many cards as those were shaped in"});
+    }
+    if (chain.springFit) {
+        report.findings.push_back(
+            {Severity::Info,
+             fmt::format(
+                 "while the head nods, springs keep joints {:.1f} mm from where strands would have them, "
+                 "{:.1f} mm at most",
+                 chain.springFit->after.meanMm, chain.springFit->after.largestMm),
+             kSpringsPlace, ""});
+    } else if (chain.rig.chains() > 0) {
+        report.findings.push_back({Severity::Warning,
+                                   "springs are not fitted: strands of this groom cannot be simulated",
+                                   kSpringsPlace, "tune stiffness and drag where the file is used"});
+    }
     if (!groom.spheres.empty()) return;
     report.findings.push_back({Severity::Warning,
                                "there are no collision spheres: chains swing through the head", "spheres",
@@ -32,25 +60,41 @@ Result<cards::Chain> makeLevels(const Groom& groom, const LevelBudget& budget, L
     const auto hair = cardHair(groom);
     if (!hair) return tl::unexpected(hair.error());
     cards::ChainOptions options = budget.chain;
-    if (made == LevelsMade::all) options.strandsMoveMs = followMilliseconds(groom);
-    return cards::makeChain(*hair, *specs, options, progress, cancel);
+    std::vector<Vec3f> roots;
+    for (std::size_t s = 0; s < hair->strandCount(); ++s) roots.push_back(hair->strand(s)[0]);
+    options.held = heldCards(groom.cardEdits, roots).cards;
+    if (made == LevelsMade::all) {
+        options.strandsMoveMs = followMilliseconds(groom);
+        options.walk = true;
+    }
+    auto chain = cards::makeChain(*hair, *specs, options, progress, cancel);
+    if (!chain) return chain;
+    // Where strands cannot be simulated, springs stay as they are set, and a finding says so.
+    (void)fitSpringsOf(groom, *chain, cancel);
+    if (cards::cancelled(cancel)) return cards::stopped();
+    return chain;
 }
 
-std::vector<cards::Collider> collidersOf(const Groom& groom) {
-    std::vector<cards::Collider> colliders;
-    for (const CollisionSphere& sphere : groom.spheres) colliders.push_back({sphere.centre, sphere.radius});
-    return colliders;
+IdleCardEdits idleCardEdits(const cards::Chain& chain, const Groom& groom) {
+    const auto isMade = [&](const CardEdit& edit) {
+        return std::ranges::any_of(chain.levels, [&](const cards::Level& level) {
+            return level.spec.kind == cards::LevelKind::cards && level.spec.amount == edit.level;
+        });
+    };
+    IdleCardEdits idle;
+    idle.unmade =
+        groom.cardEdits.size() - static_cast<std::size_t>(std::ranges::count_if(groom.cardEdits, isMade));
+    for (const std::size_t edit : heldCards(groom.cardEdits, chain.roots_ws).lost)
+        idle.lost += isMade(groom.cardEdits[edit]) ? 1 : 0;
+    return idle;
 }
 
-Result<LevelFile> levelFile(const cards::Chain& chain, const Groom& groom) {
-    LevelFile result;
-    ExportReport& report = result.report;
+ExportReport levelReport(const cards::Chain& chain, const Groom& groom) {
+    ExportReport report;
     report.format = kCardFormat;
     report.strands = chain.strands;
-    std::vector<const cards::Level*> levels;
     for (const cards::Level& level : chain.levels) {
         if (level.spec.kind == cards::LevelKind::strands) continue;
-        levels.push_back(&level);
         if (const auto* made = std::get_if<cards::Cards>(&level.content))
             report.points += made->mesh.vertices.size();
         if (const auto* shell = std::get_if<cards::Shell>(&level.content))
@@ -59,12 +103,16 @@ Result<LevelFile> levelFile(const cards::Chain& chain, const Groom& groom) {
         report.levels.push_back({level.name, level.cards(), level.triangles, level.bytes,
                                  cards::distanceOf(level.spec.headPx), off.coverage, off.flip, off.light});
     }
-    auto bytes = cards::glbOf(levels, collidersOf(groom));
+    addFindings(chain, groom, report);
+    return report;
+}
+
+Result<LevelFile> levelFile(const cards::Chain& chain, const Groom& groom, cards::GlbNumbers numbers) {
+    auto bytes = cards::glbOf(chain, collidersOf(groom), numbers);
     if (!bytes) return tl::unexpected(bytes.error());
-    result.bytes = std::move(*bytes);
-    report.bytes = result.bytes.size();
-    addFindings(groom, report);
-    return result;
+    LevelFile file{std::move(*bytes), levelReport(chain, groom)};
+    file.report.bytes = file.bytes.size();
+    return file;
 }
 
 }  // namespace hairloom

@@ -15,6 +15,10 @@ namespace hairloom {
 
 /// The format of cards.
 inline constexpr const char* kCardFormat = "gltf";
+/// Where findings about cards shaped by hand are.
+inline constexpr const char* kCardEditsPlace = "card_edits";
+/// And about how chains of joints swing.
+inline constexpr const char* kSpringsPlace = "VRMC_springBone";
 
 /// What a chain may cost.
 struct LevelBudget {
@@ -28,12 +32,17 @@ struct LevelBudget {
 enum class LevelsMade { all, cardsAndShell };
 Result<std::vector<cards::LevelSpec>> levelsOf(const LevelBudget& budget, LevelsMade made);
 
-/// Errors: those of levelsOf(), cardHair() and cards::makeChain().
+/// With the groom's cards by hand, and springs that are fitted where its strands can be simulated. Errors:
+/// those of levelsOf(), cardHair() and cards::makeChain(), stopped.
 Result<cards::Chain> makeLevels(const Groom& groom, const LevelBudget& budget, LevelsMade made,
                                 const cards::Progress& progress, cards::Cancel cancel);
 
-/// The groom's collision spheres.
-std::vector<cards::Collider> collidersOf(const Groom& groom);
+/// Cards shaped by hand that do nothing in a chain of this groom.
+struct IdleCardEdits {
+    std::size_t lost = 0;    ///< whose hair is gone
+    std::size_t unmade = 0;  ///< of levels that the chain does not have
+};
+IdleCardEdits idleCardEdits(const cards::Chain& chain, const Groom& groom);
 
 /// A file of cards and shells, binary glTF, before it is written.
 struct LevelFile {
@@ -41,6 +50,10 @@ struct LevelFile {
     ExportReport report;
 };
 /// Of a chain of this groom. Errors: those of cards::glbOf().
-Result<LevelFile> levelFile(const cards::Chain& chain, const Groom& groom);
+Result<LevelFile> levelFile(const cards::Chain& chain, const Groom& groom,
+                            cards::GlbNumbers numbers = cards::GlbNumbers::floats);
+
+/// What a file of the chain's cards and shells holds and what is to be said of it; it has no bytes yet.
+ExportReport levelReport(const cards::Chain& chain, const Groom& groom);
 
 }  // namespace hairloom

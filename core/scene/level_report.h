@@ -16,16 +16,24 @@ namespace hairloom {
 /// silhouette_px, ms_draw, ms_move, and more.
 nlohmann::ordered_json toJson(const cards::Level& level);
 
+/// motion, seconds, error_mm, largest_mm, and the same two of springs that are not fitted.
+nlohmann::ordered_json toJson(const cards::SpringFit& fit);
+
 /// The table as text of Markdown.
 std::string levelTable(const cards::Chain& chain);
 
 /// Strands above, the level below, from some directions.
 render::Image sideBySide(const cards::Level& level);
 
+/// The levels of cards and shells as they are seen from where they take over, in a row: strands left, the
+/// level right of them, from two directions. Empty where there are none.
+render::Image chainPicture(const cards::Chain& chain);
+
 /// Writes all into a folder, which is made where it is missing; names in it, in order. Pictures of a level
-/// are NAME.png; its textures NAME_colour.png (albedo and coverage), NAME_shape.png (flow across and along,
-/// depth, ambient occlusion), NAME_normal.png and NAME_strand.png (root to tip, strand's number), and mip
-/// maps of the first that keep coverage, NAME_colour.1.png and on; levels.glb holds all of cards and shells.
+/// are NAME.png, chain.png that of the chain; its textures NAME_colour.png (albedo and coverage),
+/// NAME_shape.png (flow across and along, depth, ambient occlusion), NAME_normal.png and NAME_strand.png
+/// (root to tip, strand's number), and mip maps of the first that keep coverage, NAME_colour.1.png and on;
+/// NAME.json is a script that holds each of its cards as it is; levels.glb holds all of cards and shells.
 Result<std::vector<std::string>> writeChain(const cards::Chain& chain, const std::string& commandLine,
                                             std::span<const cards::Collider> colliders,
                                             const std::filesystem::path& folder);

@@ -21,6 +21,8 @@ class TaskControl {
     float progress() const { return progress_; }
     /// Work that can stop early looks here; what it then returns is dropped.
     bool isCancelled() const { return cancelled_; }
+    /// The same, for work that takes a flag.
+    const std::atomic<bool>* cancelFlag() const { return &cancelled_; }
     void cancel() { cancelled_ = true; }
 
   private:

@@ -35,11 +35,16 @@ CardMarks::CardMarks(const cards::Cards& cards) {
     }
 }
 
-void CardMarks::draw(Marks& marks) const {
+void CardMarks::draw(Marks& marks, std::optional<std::uint32_t> picked) const {
     constexpr int kFill = 60, kOutline = 200;
     for (const Triangle& triangle : triangles_)
         marks.triangle(triangle.corners_ws, colourOf(triangle.card, kFill));
-    for (const Line& line : outlines_) marks.line(line.a_ws, line.b_ws, colourOf(line.card, kOutline), 1);
+    for (const Line& line : outlines_) {
+        if (line.card == picked)
+            marks.line(line.a_ws, line.b_ws, Qt::white, 2.5f, Marks::Depth::OnTop);
+        else
+            marks.line(line.a_ws, line.b_ws, colourOf(line.card, kOutline), 1);
+    }
 }
 
 }  // namespace hairloom::editor

@@ -3,6 +3,7 @@
 // The cards of a level, drawn over the strands: each a tinted strip with its outline.
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "core/cards/cards.h"
@@ -14,7 +15,8 @@ class CardMarks {
   public:
     CardMarks() = default;
     explicit CardMarks(const cards::Cards& cards);
-    void draw(Marks& marks) const;
+    /// `picked` stands out.
+    void draw(Marks& marks, std::optional<std::uint32_t> picked) const;
 
   private:
     struct Triangle {

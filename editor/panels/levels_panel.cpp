@@ -15,12 +15,12 @@
 namespace hairloom::editor {
 namespace {
 
-enum Column { kName, kCards, kTriangles, kBytes, kFrom, kCoverage, kLight, kFlip, kColumns };
+enum Column { kName, kCards, kTriangles, kBytes, kFrom, kCoverage, kLight, kFlip, kStep, kColumns };
 
 /// All that a level is made from.
 constexpr editing::Part kShown = editing::kHairParts | editing::kScalpParts | editing::Part::Spheres |
                                  editing::Part::Material | editing::Part::Interpolation | editing::Part::Dye |
-                                 editing::Part::Operators;
+                                 editing::Part::Operators | editing::Part::Cards;
 
 /// The height of a head in pixels that is seen from so far, of those that levels can have.
 std::uint32_t headPxAt(double metres) {
@@ -59,12 +59,13 @@ LevelsPanel::LevelsPanel(const PanelParts& parts)
     layout->addWidget(makeBudget());
     table_->setObjectName("levelsTable");
     table_->setRootIsDecorated(false);
-    table_->setHeaderLabels(
-        {tr("Level"), tr("Cards"), tr("Tri."), tr("MB"), tr("m"), tr("Cov."), tr("Light"), tr("FLIP")});
+    table_->setHeaderLabels({tr("Level"), tr("Cards"), tr("Tri."), tr("MB"), tr("m"), tr("Cov."), tr("Light"),
+                             tr("FLIP"), tr("Step")});
     table_->setToolTip(tr(
         "Cards, triangles and memory of each level, the distance from which on it serves, and how far it is "
         "from all strands there: coverage and light of its hair as a share of theirs, FLIP the difference "
-        "that people see, 0 none. Click a level to see it"));
+        "that people see, 0 none. Step: by how much light changes at most, in %, when it takes over from the "
+        "level before and on the way to the next. Click a level to see it"));
     table_->header()->setSectionResizeMode(QHeaderView::ResizeToContents);
     table_->header()->setMinimumSectionSize(24);
     table_->setHorizontalScrollBarPolicy(Qt::ScrollBarAsNeeded);
@@ -72,19 +73,20 @@ LevelsPanel::LevelsPanel(const PanelParts& parts)
     plot_->setObjectName("levelsPlot");
     plot_->setAxes(tr("triangles"), {}, tr("FLIP to all strands"));
     layout->addWidget(plot_);
-    layout->addWidget(makeLook());
+    layout->addWidget(makeLook(parts));
     connect(table_, &QTreeWidget::currentItemChanged, this, &LevelsPanel::showChosen);
     connect(plot_, &AccuracyPlot::clicked, this,
             [this](std::size_t point) { table_->setCurrentItem(table_->topLevelItem(plotted_[point])); });
     connect(&document_, &QtDocument::changed, this, &LevelsPanel::noteChange);
     connect(&document_, &QtDocument::replaced, this, [this] {
+        card_->setLevel(nullptr, nullptr);
         made_.reset();
         ++documents_;
         fillTable();
         refresh();
     });
     viewport_.addMarks([this](Marks& marks) {
-        if (over_->isChecked() && !viewport_.pose()) marks_.draw(marks);
+        if (over_->isChecked() && !viewport_.pose()) marks_.draw(marks, card_->picked());
     });
     refresh();
 }
@@ -142,7 +144,7 @@ QWidget* LevelsPanel::makeBudget() {
     return widget;
 }
 
-QWidget* LevelsPanel::makeLook() {
+QWidget* LevelsPanel::makeLook(const PanelParts& parts) {
     look_ = new QWidget;
     auto* layout = new QVBoxLayout(look_);
     layout->setContentsMargins(0, 0, 0, 0);
@@ -153,6 +155,15 @@ QWidget* LevelsPanel::makeLook() {
         tr("Shows the cards of the level in the viewport, each in a colour, while the hair is at rest"));
     connect(over_, &QCheckBox::toggled, this, [this] { viewport_.redraw(); });
     layout->addWidget(over_);
+    card_ = new CardBox(document_, messages_, parts.tools);
+    connect(card_, &CardBox::changed, this, [this] {
+        if (card_->picked()) over_->setChecked(true);
+        showCards();
+    });
+    connect(&parts.tools, &ToolBox::activeChanged, this, [this](Tool* tool) {
+        if (dynamic_cast<CardTool*>(tool) != nullptr) over_->setChecked(true);
+    });
+    layout->addWidget(card_);
     layout->addWidget(heading(tr("At its distance")));
     viewWords_ = new QLabel;
     viewWords_->setObjectName("levelViewWords");
@@ -203,6 +214,7 @@ void LevelsPanel::make() {
         [groom, budget = budget()](TaskControl& control) { return makeShownLevels(*groom, budget, control); },
         [this, document = documents_, change = changes_](MadeLevels made) {
             if (document != documents_) return;
+            card_->setLevel(nullptr, nullptr);
             made_ = std::move(made);
             madeAt_ = change;
             fillTable();
@@ -236,7 +248,8 @@ void LevelsPanel::exportTo(const QString& path) {
 void LevelsPanel::noteChange(editing::Part changed) {
     if (!contains(changed, kShown)) return;
     ++changes_;
-    refresh();
+    words_->setText(sentence());
+    make_->setEnabled(document_.groom().strandCount() > 0);
 }
 
 QString LevelsPanel::sentence() const {
@@ -246,11 +259,13 @@ QString LevelsPanel::sentence() const {
             "What stands for this hair farther away: fewer strands, cards, a shell, each held against all "
             "strands at its distance.");
     QString text = tr("Of %L1 hairs in %2 s.").arg(made_->strands).arg(made_->seconds, 0, 'f', 1);
+    for (const Finding& finding : made_->file.report.findings)
+        if (finding.where == kCardEditsPlace) text += ' ' + QString::fromStdString(finding.what) + '.';
     if (madeAt_ != changes_) text += ' ' + tr("The hair has changed since: make them anew.");
     return text;
 }
 
-const MadeLevel* LevelsPanel::chosen() const {
+MadeLevel* LevelsPanel::chosen() {
     const int row = table_->indexOfTopLevelItem(table_->currentItem());
     return made_ && row >= 0 ? &made_->levels[static_cast<std::size_t>(row)] : nullptr;
 }
@@ -272,6 +287,7 @@ void LevelsPanel::fillTable() {
         item->setText(kCoverage, QString::number(off.coverage, 'f', 3));
         item->setText(kLight, QString::number(off.light, 'f', 3));
         item->setText(kFlip, QString::number(off.flip, 'f', 3));
+        item->setText(kStep, QString::number(100 * made.lightStep, 'f', 1));
         for (int c = kCards; c < kColumns; ++c) item->setTextAlignment(c, Qt::AlignRight | Qt::AlignVCenter);
         if (firstCards < 0 && level.cards() > 0) firstCards = table_->topLevelItemCount() - 1;
     }
@@ -296,10 +312,10 @@ void LevelsPanel::showPlot() {
 }
 
 void LevelsPanel::showChosen() {
-    const MadeLevel* made = chosen();
-    const auto* cards = made == nullptr ? nullptr : std::get_if<cards::Cards>(&made->level.content);
-    marks_ = cards == nullptr ? CardMarks() : CardMarks(*cards);
-    viewport_.redraw();
+    MadeLevel* made = chosen();
+    const bool hasCards = made != nullptr && made->level.spec.kind == cards::LevelKind::cards;
+    card_->setLevel(hasCards ? made : nullptr, made_ ? &made_->roots_ws : nullptr);
+    showCards();
     if (made == nullptr) return view_->show({}, {});
     const std::size_t side = std::min(made->shots.size(), static_cast<std::size_t>(direction_->value())) - 1;
     view_->show(made->strands[side], made->shots[side]);
@@ -313,6 +329,13 @@ void LevelsPanel::showChosen() {
     map_->setEnabled(!made->textures.empty());
     if (!made->textures.empty()) map_->setCurrentIndex(map);
     showTexture();
+}
+
+void LevelsPanel::showCards() {
+    const MadeLevel* made = chosen();
+    const auto* cards = made == nullptr ? nullptr : std::get_if<cards::Cards>(&made->level.content);
+    marks_ = cards == nullptr ? CardMarks() : CardMarks(*cards);
+    viewport_.redraw();
 }
 
 void LevelsPanel::showTexture() {

@@ -13,6 +13,7 @@
 
 #include "editor/fields/number_box.h"
 #include "editor/panels/accuracy_plot.h"
+#include "editor/panels/card_box.h"
 #include "editor/panels/card_marks.h"
 #include "editor/panels/level_view.h"
 #include "editor/panels/made_levels.h"
@@ -32,17 +33,18 @@ class LevelsPanel : public QWidget {
     NumberBox* addBudget(QFormLayout& form, const char* name, const QString& label, const QString& tip,
                          double min, double max, double value);
     QWidget* makeBudget();
-    QWidget* makeLook();
+    QWidget* makeLook(const PanelParts& parts);
     LevelBudget budget() const;
     void make();
     void choosePath();
     void noteChange(editing::Part changed);
     QString sentence() const;
-    const MadeLevel* chosen() const;
+    MadeLevel* chosen();
     void fillTable();
     void showPlot();
     void showChosen();
     void showTexture();
+    void showCards();
     void refresh();
 
     QtDocument& document_;
@@ -59,6 +61,7 @@ class LevelsPanel : public QWidget {
     QLabel* viewWords_ = nullptr;
     NumberBox* direction_ = nullptr;
     QCheckBox* over_ = nullptr;
+    CardBox* card_ = nullptr;
     QComboBox* map_ = nullptr;
     QLabel* texture_ = nullptr;
     std::optional<MadeLevels> made_;

@@ -2,7 +2,6 @@
 #include "editor/panels/made_levels.h"
 
 #include <algorithm>
-#include <atomic>
 
 #include "core/base/stopwatch.h"
 #include "core/cards/atlas_images.h"
@@ -43,28 +42,28 @@ std::vector<MadeLevel::Texture> texturesOf(const cards::Atlas& atlas) {
 
 Result<MadeLevels> makeShownLevels(const Groom& groom, const LevelBudget& budget, TaskControl& control) {
     const Stopwatch watch;
-    std::atomic<bool> stop = false;
     auto chain = makeLevels(
         groom, budget, LevelsMade::all,
-        [&](std::string_view, double share) {
-            control.setProgress(static_cast<float>(share));
-            stop = control.isCancelled();
-        },
-        &stop);
+        [&](std::string_view, double share) { control.setProgress(static_cast<float>(share)); },
+        control.cancelFlag());
     if (!chain) return tl::unexpected(chain.error());
     auto file = levelFile(*chain, groom);
     if (!file) return tl::unexpected(file.error());
     MadeLevels made;
     made.strands = chain->strands;
+    made.roots_ws = std::move(chain->roots_ws);
     made.file = std::move(*file);
+    const std::vector<double> steps = cards::lightSteps(chain->levels);
     for (cards::Level& level : chain->levels) {
         MadeLevel kept;
+        kept.lightStep = steps[made.levels.size()];
         kept.strands = imagesOf(level.strands);
         kept.shots = imagesOf(level.shots);
         level.strands = {}, level.shots = {};
         if (auto* cards = std::get_if<cards::Cards>(&level.content)) {
             kept.textures = texturesOf(cards->atlas);
-            cards->atlas.levels = {};
+            const std::uint32_t side = cards->atlas.side();
+            cards->atlas.levels = {cards::Picture{side, side, {}}};
         }
         if (auto* hair = std::get_if<cards::Hair>(&level.content)) *hair = {};
         kept.level = std::move(level);

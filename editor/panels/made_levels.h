@@ -13,7 +13,8 @@
 namespace hairloom::editor {
 
 struct MadeLevel {
-    cards::Level level;  ///< without its hair, texels and shots
+    double lightStep = 0;  ///< of cards::lightSteps()
+    cards::Level level;    ///< without its hair and shots; its atlas has a size and no texels
     // By directions, of one size.
     std::vector<QImage> strands, shots;
     struct Texture {
@@ -26,6 +27,7 @@ struct MadeLevel {
 struct MadeLevels {
     std::vector<MadeLevel> levels;
     std::size_t strands = 0;
+    std::vector<Vec3f> roots_ws;  ///< of each strand
     double seconds = 0;
     LevelFile file;
 };

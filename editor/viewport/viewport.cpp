@@ -297,6 +297,7 @@ void Viewport::redraw(bool moving) {
 }
 
 void Viewport::documentChanged(editing::Part parts) {
+    if (parts == editing::Part::Cards) return redraw();  // no picture shows them, at most marks do
     // While points move, the groom that the renderer has stays, and nobody parts from a copy of it.
     if (document_.movedStrands().empty()) {
         handOverAll();

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <numeric>
 #include <set>
 
 #include "core/base/parallel.h"
@@ -18,6 +19,12 @@ using testing::HasSubstr;
 Result<Cards> cardsOf(const Hair& hair, const CardOptions& options) {
     const auto light = HairLight::make(hair, nullptr);
     return makeCards(hair, *light, options, nullptr);
+}
+
+std::vector<std::uint32_t> allOf(const Hair& hair) {
+    std::vector<std::uint32_t> all(hair.strandCount());
+    std::iota(all.begin(), all.end(), 0u);
+    return all;
 }
 
 TEST(Strip, OfARibbonLiesInItsPlaneAndHoldsIt) {
@@ -62,7 +69,7 @@ TEST(Clusters, PartTwoLayersBeforeTheyPartARibbon) {
         hair.offsets.push_back(hair.offsets.back() + 8);
         hair.rootNormals_ws.push_back(above.rootNormals_ws[s]);
     }
-    const auto clusters = clusterHair(evenHair(hair, 9), hair.rootNormals_ws, {2, 0}, nullptr);
+    const auto clusters = clusterHair(evenHair(hair, 9), allOf(hair), hair.rootNormals_ws, {2, 0}, nullptr);
     ASSERT_TRUE(clusters);
     ASSERT_EQ(clusters->size(), 2u);
     for (const Cluster& cluster : *clusters) {
@@ -74,16 +81,113 @@ TEST(Clusters, PartTwoLayersBeforeTheyPartARibbon) {
 TEST(Clusters, HoldEachStrandOnceAndStopWhereTheyAreGoodEnough) {
     const Hair hair = ballHair(2000);
     const EvenHair even = evenHair(hair, 9);
-    const auto many = clusterHair(even, hair.rootNormals_ws, {60, 0}, nullptr);
+    const auto many = clusterHair(even, allOf(hair), hair.rootNormals_ws, {60, 0}, nullptr);
     ASSERT_TRUE(many);
     EXPECT_GT(many->size(), 55u);
     EXPECT_LE(many->size(), 60u);
     std::set<std::uint32_t> seen;
     for (const Cluster& cluster : *many) seen.insert(cluster.strands.begin(), cluster.strands.end());
     EXPECT_EQ(seen.size(), 2000u);
-    const auto few = clusterHair(even, hair.rootNormals_ws, {60, 0.02f}, nullptr);
+    const auto few = clusterHair(even, allOf(hair), hair.rootNormals_ws, {60, 0.02f}, nullptr);
     ASSERT_TRUE(few);
     EXPECT_LT(few->size(), many->size());
+}
+
+TEST(Clusters, LeaveOutOtherStrands) {
+    const Hair hair = ballHair(300);
+    const auto clusters = clusterHair(evenHair(hair, 9), {3, 5, 200}, hair.rootNormals_ws, {2, 0}, nullptr);
+    ASSERT_TRUE(clusters);
+    std::set<std::uint32_t> seen;
+    for (const Cluster& cluster : *clusters) seen.insert(cluster.strands.begin(), cluster.strands.end());
+    EXPECT_EQ(seen, (std::set<std::uint32_t>{3, 5, 200}));
+}
+
+/// Two cards of the hair as a hand has shaped them: one pinned and wider, one deleted.
+std::vector<HeldCard> heldOf(const Cards& cards) {
+    HeldCard wide, gone;
+    wide.level = gone.level = 24;
+    wide.strands = cards.cards[3].strands, gone.strands = cards.cards[7].strands;
+    wide.width = 2, wide.strip = cards.cards[3].strip;
+    gone.deleted = true;
+    return {wide, gone};
+}
+const Card* cardHeldAt(const Cards& cards, std::int32_t place) {
+    const auto found = std::ranges::find(cards.cards, place, &Card::held);
+    return found == cards.cards.end() ? nullptr : &*found;
+}
+
+TEST(HeldCards, KeepTheirHairAndPlaceWhereTheRestIsMadeAnew) {
+    Hair hair = ballHair(1500);
+    const auto first = cardsOf(hair, {.cards = 24, .textures = 6});
+    ASSERT_TRUE(first) << first.error().message();
+    const auto held = heldOf(*first);
+    // All hair is combed aside; roots stay.
+    for (std::size_t s = 0; s < hair.strandCount(); ++s) {
+        const float root = hair.strand(s)[0].y();
+        for (std::size_t p = hair.offsets[s]; p < hair.offsets[s + 1]; ++p)
+            hair.positions_ws[p].x() += 0.5f * (root - hair.positions_ws[p].y());
+    }
+    const auto again = cardsOf(hair, {.cards = 24, .textures = 6, .held = held});
+    ASSERT_TRUE(again) << again.error().message();
+    EXPECT_LE(again->cards.size(), 24u);
+    std::set<std::uint32_t> seen;
+    for (const Card& card : again->cards) {
+        for (const std::uint32_t s : card.strands)
+            EXPECT_TRUE(seen.insert(s).second) << s << " is on two cards";
+    }
+    EXPECT_EQ(seen.size(), hair.strandCount());
+    const Card *pinned = cardHeldAt(*again, 0), *gone = cardHeldAt(*again, 1);
+    ASSERT_TRUE(pinned && gone);
+    EXPECT_EQ(pinned->strands, held[0].strands);
+    EXPECT_EQ(pinned->strip.centre, held[0].strip->centre) << "pinned";
+    EXPECT_EQ(gone->strands, held[1].strands);
+    EXPECT_NE(gone->strip.centre, first->cards[7].strip.centre) << "follows its hair";
+}
+
+TEST(HeldCards, AreShapedByHandAndTheOthersAreNot) {
+    const Hair hair = ballHair(1500);
+    const auto first = cardsOf(hair, {.cards = 24, .textures = 6});
+    ASSERT_TRUE(first);
+    auto held = heldOf(*first);
+    auto made = cardsOf(hair, {.cards = 24, .textures = 6, .held = held});
+    ASSERT_TRUE(made);
+    const CardMesh before = made->mesh;
+    shapeByHand(held, *made);
+    const auto place = [&](const Card* card) {
+        return static_cast<std::uint32_t>(card - made->cards.data());
+    };
+    const std::uint32_t wide = place(cardHeldAt(*made, 0)), gone = place(cardHeldAt(*made, 1));
+    const auto widthOf = [](const CardMesh& mesh, std::uint32_t card) {
+        std::vector<Vec3f> root;
+        for (const CardVertex& v : mesh.vertices)
+            if (v.card == card && v.place.y() == 0) root.push_back(v.position_ws);
+        float width = 0;
+        for (const Vec3f& a : root)
+            for (const Vec3f& b : root) width = std::max(width, (a - b).norm());
+        return width;
+    };
+    EXPECT_NEAR(widthOf(made->mesh, wide) / widthOf(before, wide), 2, 0.1);
+    EXPECT_EQ(widthOf(made->mesh, gone), 0) << "deleted";
+    for (std::uint32_t c = 0; c < made->cards.size(); ++c) {
+        if (c == wide || c == gone) continue;
+        EXPECT_EQ(widthOf(made->mesh, c), widthOf(before, c)) << c;
+    }
+    // Bent until the edges lie half of half the width outwards: no card of a ball's hair is by itself.
+    held[0].bend = 0.5f, held[0].width = 1;
+    shapeByHand(held, *made);
+    bool lifted = false;
+    for (const CardVertex& v : made->mesh.vertices) {
+        if (v.card != wide || v.place.x() != 0) continue;
+        const auto k = static_cast<std::size_t>(v.place.y() * (kStations - 1) + 0.5f);
+        const Strip& strip = made->cards[wide].strip;
+        const float own = strip.bend[k] * strip.halfWidth[k];
+        const float height = (v.position_ws - strip.centre[k]).dot(strip.normal[k]) +
+                             (strip.bend[k] + 0.5f / strip.halfWidth[k]) * strip.spread[k];
+        EXPECT_NEAR(height / strip.halfWidth[k],
+                    (own + 0.5f) * made->cards[wide].widen * made->cards[wide].widen, 0.02f);
+        lifted = true;
+    }
+    EXPECT_TRUE(lifted);
 }
 
 TEST(Cards, AreTheSameForAnyNumberOfThreads) {

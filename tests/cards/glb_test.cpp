@@ -46,17 +46,11 @@ Result<Chain> smallChain(const char* levels) {
         ballHair(600), *parseLevels(levels), options, [](std::string_view, double) {}, nullptr);
 }
 
-std::vector<const Level*> all(const Chain& chain) {
-    std::vector<const Level*> levels;
-    for (const Level& level : chain.levels) levels.push_back(&level);
-    return levels;
-}
-
 TEST(Glb, HoldsMeshesSkinLevelsAndSprings) {
     const auto chain = smallChain("cards:20@64,cards:8@32,shell:200@16");
     ASSERT_TRUE(chain) << chain.error().message();
     const std::vector<Collider> colliders{{Vec3f(0, 0.01f, 0), 0.095f}};
-    const auto file = glbOf(all(*chain), colliders);
+    const auto file = glbOf(*chain, colliders);
     ASSERT_TRUE(file) << file.error().message();
     const Glb glb = parsed(*file);
     const json& head = glb.head;
@@ -87,13 +81,65 @@ TEST(Glb, HoldsMeshesSkinLevelsAndSprings) {
     EXPECT_NEAR(springs["colliders"][0]["shape"]["sphere"]["radius"].get<double>(), 0.095, 1e-6);
     ASSERT_FALSE(springs["springs"].empty());
     EXPECT_EQ(springs["springs"].size() * 5 + 1, joints);
-    EXPECT_EQ(*file, *glbOf(all(*chain), colliders)) << "the same bytes again";
+    EXPECT_EQ(*file, *glbOf(*chain, colliders)) << "the same bytes again";
+}
+
+/// Integers of an accessor whose entries are `stride` bytes apart.
+template <class T>
+T at(const Glb& glb, const json& accessor, std::size_t entry, std::size_t number) {
+    const json& view = glb.head["bufferViews"][accessor["bufferView"].get<std::size_t>()];
+    T value;
+    std::memcpy(&value,
+                glb.bin.data() + view["byteOffset"].get<std::size_t>() +
+                    entry * view["byteStride"].get<std::size_t>() + number * sizeof(T),
+                sizeof(T));
+    return value;
+}
+
+TEST(Glb, IsSmallerWithIntegersAndStandsWhereItStood) {
+    const auto chain = smallChain("cards:20@64,shell:200@16");
+    ASSERT_TRUE(chain) << chain.error().message();
+    const auto file = glbOf(*chain, {}, GlbNumbers::quantised);
+    ASSERT_TRUE(file) << file.error().message();
+    const Glb glb = parsed(*file), whole = parsed(*glbOf(*chain, {}));
+    EXPECT_EQ(glb.head["extensionsRequired"], json{"KHR_mesh_quantization"});
+    EXPECT_FALSE(whole.head.contains("extensionsRequired"));
+    EXPECT_LT(glb.bin.size(), whole.bin.size());
+    const json& attributes = glb.head["meshes"][0]["primitives"][0]["attributes"];
+    const auto accessor = [&](const char* name) {
+        return glb.head["accessors"][attributes[name].get<std::size_t>()];
+    };
+    const json positions = accessor("POSITION"), weights = accessor("WEIGHTS_0"),
+               joints = accessor("JOINTS_0");
+    const auto& vertices = std::get<Cards>(chain->levels[0].content).mesh.vertices;
+    ASSERT_EQ(positions["count"], vertices.size());
+    // The skin brings them back: bind matrix and joint at rest.
+    const json& matrices =
+        glb.head["accessors"][glb.head["skins"][0]["inverseBindMatrices"].get<std::size_t>()];
+    const std::size_t first =
+        glb.head["bufferViews"][matrices["bufferView"].get<std::size_t>()]["byteOffset"].get<std::size_t>();
+    const json& jointView = glb.head["bufferViews"][joints["bufferView"].get<std::size_t>()];
+    for (std::size_t v = 0; v < vertices.size(); ++v) {
+        Vec3f stored;
+        int sum = 0;
+        for (std::size_t i = 0; i < 3; ++i)
+            stored[static_cast<int>(i)] = static_cast<float>(at<std::int16_t>(glb, positions, v, i)) / 32767;
+        for (std::size_t i = 0; i < 4; ++i) sum += at<std::uint8_t>(glb, weights, v, i);
+        ASSERT_EQ(sum, 255);
+        std::uint8_t joint = 0;
+        std::memcpy(&joint, glb.bin.data() + jointView["byteOffset"].get<std::size_t>() + 4 * v, 1);
+        Eigen::Matrix4f bind;
+        std::memcpy(bind.data(), glb.bin.data() + first + 64 * joint, 64);
+        const Vec3f back = bind.topLeftCorner<3, 3>() * stored + bind.topRightCorner<3, 1>() +
+                           chain->rig.joints[joint].position_ws;
+        ASSERT_LT((back - vertices[v].position_ws).norm(), 2e-5f);
+    }
 }
 
 TEST(Glb, RefusesStrandsAlone) {
     const auto chain = smallChain("strands:1@16");
     ASSERT_TRUE(chain) << chain.error().message();
-    const auto file = glbOf(all(*chain), {});
+    const auto file = glbOf(*chain, {});
     ASSERT_FALSE(file);
     EXPECT_THAT(file.error().message(), testing::HasSubstr("one of cards or a shell"));
 }

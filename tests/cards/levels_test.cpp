@@ -89,6 +89,7 @@ TEST(Levels, OfABallComeNearTheStrands) {
     ChainOptions options;
     options.directions = 6;
     options.mostSide = 1024;
+    options.walk = true;
     const auto chain = makeChain(hair, *specs, options, noProgress, nullptr);
     ASSERT_TRUE(chain) << chain.error().message();
     ASSERT_EQ(chain->levels.size(), 5u);
@@ -99,10 +100,35 @@ TEST(Levels, OfABallComeNearTheStrands) {
         EXPECT_LT(level.difference.flip, 0.15) << level.name;
         EXPECT_GT(level.triangles, 0u) << level.name;
     }
+    // Who walks away sees each level from where it takes over to where the next one does.
+    const std::vector<std::vector<std::uint32_t>> heights{
+        {256, 192, 128}, {128}, {128, 96, 64}, {64, 48, 32}, {32, 24, 16}};
+    for (std::size_t i = 0; i < heights.size(); ++i) {
+        std::vector<std::uint32_t> seen;
+        for (const LightAt& at : chain->levels[i].lights) {
+            seen.push_back(at.headPx);
+            EXPECT_NEAR(at.light, 1, 0.05) << chain->levels[i].name << " at " << at.headPx;
+        }
+        EXPECT_EQ(seen, heights[i]) << chain->levels[i].name;
+    }
+    for (const double step : lightSteps(chain->levels)) EXPECT_LT(step, 0.05);
+    EXPECT_EQ(chain->springs.size(), chain->rig.chains());
     EXPECT_EQ(chain->levels[1].hairs, 900u);
     EXPECT_LE(chain->levels[2].cards(), 60u);
     EXPECT_LT(chain->levels[3].triangles, chain->levels[2].triangles);
     EXPECT_LE(chain->levels[4].triangles, 440u);
+}
+
+TEST(Levels, StepsOfLightAreThoseOnTheWay) {
+    std::vector<Level> levels(3);
+    levels[0].lights = {{512, 1.0}, {256, 1.0}};
+    levels[1].lights = {{256, 0.9}, {128, 0.99}};
+    levels[2].lights = {{128, 0.99}};
+    const auto steps = lightSteps(levels);
+    ASSERT_EQ(steps.size(), 3u);
+    EXPECT_EQ(steps[0], 0);
+    EXPECT_NEAR(steps[1], 0.1, 1e-9);
+    EXPECT_EQ(steps[2], 0);
 }
 
 TEST(Levels, OfferTheNearestTargetWhereOneCannotBeMet) {

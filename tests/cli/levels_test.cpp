@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <fstream>
+
 #include "tests/cli/command.h"
 
 namespace hairloom::test {
@@ -32,6 +34,10 @@ TEST_F(LodJob, MakesAndMeasuresAChainThatIsTheSameForAnyThreads) {
             EXPECT_TRUE(level.contains(key)) << key;
         EXPECT_GT(level["triangles"], 0);
     }
+    EXPECT_GT(report["largest_light_step"].get<double>(), 0);
+    EXPECT_EQ(report["levels"][1]["lights"].size(), 3u) << "at 64, 48 and 32 pixels of head height";
+    EXPECT_EQ(report["springs"]["motion"], "nod");
+    EXPECT_LT(report["springs"]["error_mm"], report["springs"]["default_error_mm"]);
     EXPECT_EQ(report["levels"][0]["kind"], "strands");
     EXPECT_EQ(report["levels"][0]["hairs"], 200);
     EXPECT_LE(report["levels"][1]["cards"], 24);
@@ -41,6 +47,39 @@ TEST_F(LodJob, MakesAndMeasuresAChainThatIsTheSameForAnyThreads) {
     for (const char* name : {"levels.glb", "cards-24.png", "cards-24_colour.png", "cards-24_colour.1.png"}) {
         EXPECT_EQ(readText(folder / "one" / name), readText(folder / "three" / name)) << name;
     }
+}
+
+TEST_F(LodJob, CardsAreShapedByHandThroughTheScriptThatItWrites) {
+    makeHair();
+    const std::string levels = " --levels cards:12@32 --directions 1 -o ";
+    EXPECT_EQ(runJson("lod hair.hairloom" + levels + "before")["lost_card_edits"], 0);
+    auto script = nlohmann::json::parse(readText(folder / "before" / "cards-12.json"));
+    auto& edits = script["operations"][0]["card_edits"];
+    ASSERT_LE(edits.size(), 12u);
+    std::size_t roots = 0;
+    for (const auto& edit : edits) roots += edit["roots"].size();
+    EXPECT_EQ(roots, 3u * 400u) << "each hair is of one card";
+    const std::size_t cards = edits.size();
+    while (edits.size() > 2) edits.erase(edits.size() - 1);
+    edits[0]["deleted"] = true, edits[1]["width"] = 2;
+    const auto held = edits[1]["roots"];
+    std::ofstream(folder / "hand.json") << script.dump();
+    runJson("groom hair.hairloom --script hand.json -o shaped.hairloom");
+    const auto after = runJson("lod shaped.hairloom" + levels + "after");
+    EXPECT_EQ(after["levels"][0]["cards"], cards - 1);
+    script = nlohmann::json::parse(readText(folder / "after" / "cards-12.json"));
+    bool isThere = false;
+    for (const auto& edit : script["operations"][0]["card_edits"])
+        isThere = isThere || (edit["roots"] == held && edit["width"] == 2);
+    EXPECT_TRUE(isThere);
+    // Another number of cards is another level.
+    EXPECT_EQ(runJson("lod shaped.hairloom --levels cards:8@32 --directions 1 -o eight")["unmade_card_edits"],
+              2);
+    script["operations"][0]["card_edits"][0]["level"] = 0;
+    std::ofstream(folder / "hand.json") << script.dump();
+    EXPECT_THAT(run("groom hair.hairloom --script hand.json -o bad.hairloom").errors,
+                HasSubstr("level is 0"));
+    EXPECT_FALSE(fs::exists(folder / "bad.hairloom"));
 }
 
 TEST_F(LodJob, SaysWhatCannotBe) {
@@ -78,6 +117,31 @@ TEST_F(LodJob, CardsAreExportedAsGltf) {
     EXPECT_LE(few["levels"][0]["cards"], 8);
     EXPECT_LE(few["levels"][0]["triangles"], 8 * 4) << "one segment of at most two quads a card";
     EXPECT_NEAR(few["levels"][0]["distance_m"], 5.8, 0.01);
+}
+
+TEST_F(LodJob, CardsAreExportedForProgramsThatReadNoGltf) {
+    makeHair();
+    const std::string levels = " --levels cards:12@64,shell:200@32 -o ";
+    const auto fbx = runJson("export hair.hairloom --format fbx" + levels + "hair.fbx");
+    EXPECT_EQ(fbx["format"], "fbx");
+    EXPECT_EQ(fbx["companions"], (nlohmann::json{"hair_cards-12_colour.png", "hair_cards-12_normal.png"}));
+    for (const auto& name : fbx["companions"]) EXPECT_TRUE(fs::exists(folder / name.get<std::string>()));
+    // Our own reader, another one's of FBX: centimetres became metres, and the meshes are there.
+    const auto read = runJson("info hair.fbx");
+    EXPECT_NEAR(read["scalp"]["triangles"].get<int>(),
+                fbx["levels"][0]["triangles"].get<int>() + fbx["levels"][1]["triangles"].get<int>(), 10)
+        << "but for those of no area";
+    EXPECT_NEAR(read["bounds"]["max"][1].get<double>(), 1.9, 0.4) << "metres";
+    fs::create_directory(folder / "again");
+    runJson("export hair.hairloom --format fbx" + levels + "again/hair.fbx");
+    EXPECT_EQ(readText(folder / "again" / "hair.fbx"), readText(folder / "hair.fbx")) << "the same bytes";
+    const auto obj = runJson("export hair.hairloom --target cards-obj" + levels + "hair.obj");
+    EXPECT_EQ(obj["companions"][0], "hair.mtl");
+    EXPECT_THAT(readText(folder / "hair.obj"), HasSubstr("mtllib hair.mtl"));
+    EXPECT_THAT(readText(folder / "hair.mtl"), HasSubstr("hair_cards-12_colour.png"));
+    EXPECT_EQ(runJson("info hair.obj")["scalp"]["triangles"], read["scalp"]["triangles"]);
+    EXPECT_GT(runJson("export hair.hairloom --format gltf" + levels + "hair.glb")["bytes"],
+              runJson("export hair.hairloom --format gltf-quantised" + levels + "small.glb")["bytes"]);
 }
 
 }  // namespace

@@ -117,6 +117,15 @@ std::vector<Action> actions() {
                  if (layers.size() < 5) layers.push_back({"More", true, false});
                  return setLayers(m, std::move(layers));
              }},
+            {"SetCardEdits",
+             [](const Model& m, Random& r) {
+                 std::vector<CardEdit> edits = m.groom.cardEdits;
+                 edits.push_back(anyCardEdit(r));
+                 if (edits.size() > 3) edits.erase(edits.begin());
+                 auto made = setCardEdits(m, std::move(edits), "Cards");
+                 EXPECT_TRUE(made);
+                 return std::move(*made);
+             }},
             {"PlaceSphere",
              [](const Model& m, Random& r) {
                  const SurfacePoint place{r.below(static_cast<std::uint32_t>(m.groom.scalp->triangleCount())),

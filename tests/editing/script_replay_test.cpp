@@ -213,7 +213,7 @@ std::unique_ptr<Command> anySphereCommand(const Model& model, Random& random) {
 
 std::unique_ptr<Command> anySettingsCommand(const Model& model, Random& random) {
     const Groom& groom = model.groom;
-    switch (random.below(6)) {
+    switch (random.below(7)) {
         case 0:
             return setMaterial(model, withAnyField(groom.material, random));
         case 1:
@@ -227,6 +227,11 @@ std::unique_ptr<Command> anySettingsCommand(const Model& model, Random& random) 
             preset.material = withAnyField(preset.material, random);
             preset.simulation = anyPhysics(preset.simulation, random);
             return setSettings(model, preset, "Preset");
+        }
+        case 5: {
+            auto made = setCardEdits(model, {anyCardEdit(random), anyCardEdit(random)}, "Cards");
+            EXPECT_TRUE(made);
+            return std::move(*made);
         }
         default: {
             std::vector<Layer> layers = groom.layers;

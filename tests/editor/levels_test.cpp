@@ -6,7 +6,11 @@
 #include <QLabel>
 #include <QPushButton>
 #include <QTreeWidget>
+#include <algorithm>
 
+#include "core/editing/selection_commands.h"
+#include "core/operations/script.h"
+#include "core/scene/hair_import.h"
 #include "editor/panels/levels_panel.h"
 #include "tests/editor/window_fixture.h"
 
@@ -35,10 +39,50 @@ class LevelsTest : public WindowTest {
         ASSERT_TRUE(parts().tasks.isBusy());
         finishWork();
     }
+    CardTool& tool() { return dynamic_cast<CardTool&>(*parts().tools.find("card")); }
+    QString cardWords() { return find<QLabel>("cardWords")->text(); }
+    double width() { return find<NumberBox>("cardWidth")->value(); }
+    /// Picks card after card in the view until one is as it is wanted; false where none is.
+    bool pick(const std::function<bool()>& isWanted) {
+        find<QPushButton>("cardPick")->click();
+        EXPECT_EQ(parts().tools.active(), &tool());
+        viewport().look(render::View::Front);
+        viewport().frameAll();
+        for (int y = 0; y < viewport().height(); y += 12) {
+            for (int x = 0; x < viewport().width(); x += 12) {
+                if (!tool().cardAt(QPoint(x, y))) continue;
+                press({x, y});
+                release({x, y});
+                if (isWanted()) return true;
+            }
+        }
+        return false;
+    }
+    bool isPicked() { return find<QPushButton>("cardDelete")->isEnabled(); }
     void changeColour() {
         Groom changed = groom();
         changed.material.specular += 0.1f;
         change("Specular", changed);
+    }
+    /// Deletes one in three of the strands that no card shaped by hand stands for, and drapes the others.
+    void changeStrands() {
+        std::vector<std::uint32_t> gone;
+        for (std::uint32_t s = 0; s < groom().strandCount(); s += 3) {
+            const bool isHeld = std::ranges::any_of(groom().cardEdits, [&](const CardEdit& edit) {
+                return std::ranges::find(edit.roots, groom().strand(s)[0]) != edit.roots.end();
+            });
+            if (!isHeld) gone.push_back(s);
+        }
+        document().perform(editing::deleteStrands(document().editing().model(), gone));
+        const std::string drape = R"({"op": "drape"})";
+        const auto script =
+            parseDocumentScript("drape", R"({"hairloom_script": 1, "operations": [)" + drape + "]}");
+        ASSERT_TRUE(script) << script.error().message();
+        Groom draped = groom();
+        const auto touched = runScript(*script, draped);
+        ASSERT_TRUE(touched && touched->touchedStrands > 0);
+        document().perform(
+            editing::replaceGroom(document().editing().model(), std::move(draped), "Drape", drape));
     }
 };
 
@@ -88,6 +132,68 @@ TEST_F(LevelsTest, AChainIsMadeLookedAtMadeAnewAndExported) {
     EXPECT_EQ(file.read(4), "glTF");
     EXPECT_TRUE(window->statusLine().message().contains("4 levels"))
         << window->statusLine().message().toStdString();
+}
+
+TEST_F(LevelsTest, ACardShapedByHandStaysSoWhenTheRestIsMadeAnew) {
+    make();
+    const auto before = hash();
+    EXPECT_FALSE(isPicked());
+    ASSERT_TRUE(pick([this] { return isPicked(); }));
+    EXPECT_TRUE(find<QCheckBox>("levelOver")->isChecked()) << "who picks wants to see";
+    EXPECT_TRUE(cardWords().startsWith("Card ")) << cardWords().toStdString();
+    EXPECT_EQ(hash(), before) << "picking changes nothing";
+    find<NumberBox>("cardWidth")->spinBox().setValue(2);
+    find<NumberBox>("cardBend")->spinBox().setValue(-0.5);
+    find<QPushButton>("cardPin")->click();
+    ASSERT_EQ(groom().cardEdits.size(), 1u);
+    const CardEdit shaped = groom().cardEdits[0];
+    EXPECT_EQ(shaped.level, 24u);
+    EXPECT_FLOAT_EQ(shaped.width, 2);
+    EXPECT_FLOAT_EQ(shaped.bend, -0.5f);
+    EXPECT_EQ(shaped.strip.size(), kCardStations);
+    EXPECT_EQ(document().stepCount(), 3);
+    EXPECT_TRUE(words().contains("changed since")) << words().toStdString();
+    // The strands change, the level is made anew: the card is there as it was shaped.
+    changeStrands();
+    ASSERT_EQ(groom().cardEdits.size(), 1u);
+    make();
+    EXPECT_FALSE(words().contains("changed since"));
+    EXPECT_FALSE(words().contains("lost")) << words().toStdString();
+    ASSERT_TRUE(pick([this] { return width() == 2; }));
+    EXPECT_EQ(find<NumberBox>("cardBend")->value(), -0.5);
+    EXPECT_TRUE(find<QPushButton>("cardPin")->isChecked());
+    EXPECT_TRUE(cardWords().contains(QString("of %1 hairs").arg(shaped.roots.size())))
+        << cardWords().toStdString();
+    // Another is deleted, by the key, and comes back.
+    ASSERT_TRUE(pick([this] { return width() == 1; }));
+    key(Qt::Key_Delete);
+    ASSERT_EQ(groom().cardEdits.size(), 2u);
+    EXPECT_TRUE(groom().cardEdits[1].deleted);
+    EXPECT_FALSE(isPicked()) << "what is deleted is picked no more";
+    trigger("edit.undo");
+    EXPECT_EQ(groom().cardEdits.size(), 1u);
+    find<LevelsPanel>("levels")->exportTo(inFolder("few.glb"));
+    EXPECT_TRUE(window->statusLine().message().contains("few.glb written"))
+        << window->statusLine().message().toStdString();
+    // With other budgets the card is of a level that is not made.
+    find<NumberBox>("levelCards")->spinBox().setValue(20);
+    make();
+    EXPECT_TRUE(words().contains("1 cards shaped by hand are of levels that are not made"))
+        << words().toStdString();
+    EXPECT_FALSE(pick([this] { return width() == 2; }));
+    // Scripts and projects have it.
+    const auto script = document().editing().script();
+    ASSERT_TRUE(script) << script.error().message();
+    EXPECT_NE(script->find("card_edits"), std::string::npos);
+    ASSERT_TRUE(window->saveTo(inFolder("few.hairloom")));
+    find<NumberBox>("levelCards")->spinBox().setValue(24);
+    make();
+    find<QPushButton>("cardForgetAll")->click();
+    EXPECT_TRUE(groom().cardEdits.empty());
+    files().open(inFolder("few.hairloom"));
+    finishWork();
+    ASSERT_EQ(groom().cardEdits.size(), 1u);
+    EXPECT_EQ(groom().cardEdits[0].roots, shaped.roots);
 }
 
 TEST_F(LevelsTest, StoppedWorkAndAnotherDocumentLeaveNothing) {

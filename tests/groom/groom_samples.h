@@ -94,6 +94,22 @@ inline Groom straightHair(const std::shared_ptr<const ScalpMesh>& scalp, std::si
     return groom;
 }
 
+/// A card shaped by hand at random; pinned in one of two cases.
+inline CardEdit anyCardEdit(Random& random) {
+    const auto anywhere = [&] { return Vec3f(random.uniform(), random.uniform(), random.uniform()); };
+    CardEdit edit;
+    edit.level = 1 + random.below(300);
+    edit.roots.resize(1 + random.below(5));
+    for (Vec3f& root : edit.roots) root = anywhere();
+    edit.width = random.uniform(0.5f, 2), edit.bend = random.uniform(-1, 1);
+    edit.deleted = random.below(4) == 0;
+    if (random.below(2) == 0) edit.strip.resize(kCardStations);
+    for (CardStation& station : edit.strip)
+        station = {anywhere(), (anywhere() + Vec3f::Constant(0.1f)).normalized(),
+                   random.uniform(0.001f, 0.02f), random.uniform(-10, 10), random.uniform(0, 1e-4f)};
+    return edit;
+}
+
 /// A small groom in which nothing is at its default.
 inline Groom fullGroom() {
     Groom groom = straightHair(sphereScalp(0.09f, 1), 5, 4, 0.1f);
@@ -118,6 +134,10 @@ inline Groom fullGroom() {
     groom.interpolation.followPerGuide = 12;
     groom.interpolation.seed = 0xfedcba9876543210ull;
     groom.placement = {PlacementMethod::random, 1234, 7.5f, 0.2f, 9, 77};
+    Random random(9);
+    groom.cardEdits = {anyCardEdit(random), anyCardEdit(random)};
+    groom.cardEdits[0].strip.clear();
+    groom.cardEdits[1].strip.assign(kCardStations, {Vec3f(0, 1.7f, 0.1f), Vec3f::UnitX(), 0.01f, -3, 2e-5f});
     groom.scalpDensity.assign(groom.scalp->vertexCount(), 0.25f);
     groom.triangulation.triangles = {{0, 1, 2}, {2, 1, 3}};
     groom.triangulation.coincident = {{4, 0}};

@@ -73,7 +73,8 @@ class OlderProject {
         now_ = ArchiveReader::open("a", readFile(path_).value(), section::kKind, kProjectVersion);
         EXPECT_TRUE(now_);
         head = now_->head();
-        for (const char* member : {"kind", "version", "arrays", "operators"}) head.erase(member);
+        for (const char* member : {"kind", "version", "arrays", "operators", "card_edits"})
+            head.erase(member);
     }
     Result<Groom> load(std::uint32_t version, std::string_view without = {}) {
         ArchiveWriter writer{std::string(section::kKind), version};
@@ -93,12 +94,19 @@ class OlderProject {
     Result<ArchiveReader> now_ = fail("not opened yet");
 };
 
+/// fullGroom() as those versions knew it.
+Groom groomOfBefore() {
+    Groom groom = fullGroom();
+    groom.cardEdits.clear();
+    return groom;
+}
+
 TEST(Project, ReadsVersion1WithoutDensityAndPlacement) {
     OlderProject project;
     project.head.erase("placement");
     const auto loaded = project.load(1, section::kScalpDensity);
     ASSERT_TRUE(loaded) << loaded.error().message();
-    Groom expected = fullGroom();
+    Groom expected = groomOfBefore();
     expected.placement = {};
     expected.scalpDensity.clear();
     EXPECT_TRUE(sameContent(*loaded, expected));
@@ -113,7 +121,7 @@ TEST(Project, ReadsTheStiffnessAtTheTipOfVersion3AsAStraightCurve) {
     project.head["simulation"].erase("angularCurve");
     const auto loaded = project.load(3);
     ASSERT_TRUE(loaded) << loaded.error().message();
-    Groom expected = fullGroom();
+    Groom expected = groomOfBefore();
     expected.simulation.angularCurve = runtime::Ramp::straight(1, 0.35f);
     EXPECT_TRUE(sameContent(*loaded, expected));
 }
@@ -126,7 +134,7 @@ void nameAsBefore(nlohmann::ordered_json& section, const char* name, const char*
 }
 
 TEST(Project, ReadsTheNamesOfVersion4) {
-    Groom expected = fullGroom();
+    Groom expected = groomOfBefore();
     expected.simulation.collisionRadiusRoot = 0.001f;
     expected.simulation.collisionRadiusTip = 0.003f;
     expected.simulation.angularMethod = runtime::AngularMethod::smallAngle;
@@ -255,7 +263,7 @@ TEST(HostileProject, VersionsAndKindsAreNamed) {
     const TemporaryFolder folder;
     Forger newer(folder);
     newer.version = kProjectVersion + 2;
-    EXPECT_THAT(newer.error(), HasSubstr("project is version 10; this program reads versions up to 8"));
+    EXPECT_THAT(newer.error(), HasSubstr("project is version 11; this program reads versions up to 9"));
     Forger other(folder);
     other.kind = "cache";
     EXPECT_THAT(other.error(), HasSubstr("/kind is 'cache'; expected 'project'"));
@@ -298,6 +306,18 @@ TEST(HostileProject, HeadsAreReadStrictly) {
         {[](Json& h) { h["interpolation"]["seed"] = -1; }, "/interpolation/seed is -1"},
         {[](Json& h) { h.erase("placement"); }, "/placement is missing"},
         {[](Json& h) { h["placement"]["points"] = 1; }, "/placement/points is 1"},
+        {[](Json& h) { h.erase("card_edits"); }, "/card_edits is missing"},
+        {[](Json& h) { h["card_edits"][0]["level"] = 0; }, "/card_edits/0/level is 0"},
+        {[](Json& h) {
+             h["card_edits"][0]["roots"] = {1, 2};
+         },
+         "/card_edits/0/roots has 2 numbers"},
+        {[](Json& h) { h["card_edits"][0]["roots"] = Json::array(); }, "/card_edits/0/roots has 0 numbers"},
+        {[](Json& h) { h["card_edits"][0]["width"] = 5; }, "/card_edits/0/width is 5"},
+        {[](Json& h) { h["card_edits"][1]["strip"].erase(8); }, "/card_edits/1/strip has 224 numbers"},
+        {[](Json& h) { h["card_edits"][1]["strip"][6] = 0; },
+         "/card_edits/1/strip has 225 numbers, or one out of"},
+        {[](Json& h) { h["card_edits"][1]["glue"] = 1; }, "/card_edits/1/glue is not known"},
         {[](Json& h) { h["strands"] = 4; }, "has 5 values; expected 4"},
         {[](Json& h) { h["points"] = 4294967296u * 9ull; }, "/points is 38654705664"},
         {[](Json& h) { h["groups"] = {"front"}; }, "1 groups"},

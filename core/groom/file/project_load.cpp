@@ -6,6 +6,7 @@
 #include "core/base/file.h"
 #include "core/base/profiler.h"
 #include "core/groom/file/archive.h"
+#include "core/groom/file/card_edits_json.h"
 #include "core/groom/file/json_reader.h"
 #include "core/groom/file/operators_json.h"
 #include "core/groom/file/project_file.h"
@@ -27,6 +28,7 @@ void readLayers(JsonReader& head, Groom& groom) {
 
 constexpr std::uint64_t kFirstWithPlacement = 2;  ///< version that has density and placement
 constexpr std::uint64_t kFirstWithOperators = 6;
+constexpr std::uint64_t kFirstWithCardEdits = 9;
 
 struct Counts {
     std::uint64_t version;
@@ -48,6 +50,7 @@ Counts readHead(JsonReader& head, Groom& groom, ScalpMeshParts& scalp) {
     readSettings(head.object("simulation"), groom.simulation);
     readSettings(head.object("interpolation"), groom.interpolation);
     if (version >= kFirstWithPlacement) readSettings(head.object("placement"), groom.placement);
+    if (version >= kFirstWithCardEdits) groom.cardEdits = readCardEdits(head);
     groom.characterFile = head.string("character_file");
     groom.characterMetresPerUnit = static_cast<float>(head.number("character_metres_per_unit", 0, 1e6));
     groom.scalpExpression = head.string("scalp_expression");

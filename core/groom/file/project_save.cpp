@@ -4,6 +4,7 @@
 #include "core/base/file.h"
 #include "core/base/profiler.h"
 #include "core/groom/file/archive.h"
+#include "core/groom/file/card_edits_json.h"
 #include "core/groom/file/json_reader.h"
 #include "core/groom/file/operators_json.h"
 #include "core/groom/file/project_file.h"
@@ -45,6 +46,7 @@ Json headOf(const Groom& groom) {
     head["simulation"] = toJson(groom.simulation);
     head["interpolation"] = toJson(groom.interpolation);
     head["placement"] = toJson(groom.placement);
+    head["card_edits"] = toJson(groom.cardEdits);
     head["character_file"] = groom.characterFile;
     head["character_metres_per_unit"] = readableDecimal(groom.characterMetresPerUnit);
     head["scalp_expression"] = groom.scalpExpression;

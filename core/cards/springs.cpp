@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/cards/springs.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/base/parallel.h"
+#include "core/geometry/curve.h"
+
+namespace hairloom::cards {
+namespace {
+
+constexpr float kStep = 1.0f / 60;  // seconds
+
+/// The bones of a chain, from joint to joint, as VRMC_springBone 1.0 moves them.
+class SwingingChain {
+  public:
+    SwingingChain(const Rig& rig, std::size_t chain, const Spring& spring,
+                  std::span<const Collider> colliders)
+        : spring_(spring), colliders_(colliders) {
+        for (std::uint32_t j = 0; j < rig.perChain; ++j)
+            rest_.push_back(rig.joints[1 + chain * rig.perChain + j].position_ws);
+        tails_.assign(rest_.begin() + 1, rest_.end());
+        before_ = tails_;
+    }
+    void step(const Eigen::Isometry3f& head_ws) {
+        Quatf parent(head_ws.linear());
+        Vec3f at = head_ws * rest_[0];
+        const auto joints = static_cast<std::uint32_t>(rest_.size());
+        for (std::uint32_t j = 0; j + 1 < joints; ++j) {
+            const Vec3f bone = rest_[j + 1] - rest_[j];
+            const float length = bone.norm();
+            if (!(length > 0)) continue;
+            const Vec3f axis = parent * (bone / length);
+            Vec3f next = tails_[j] + (1 - spring_.drag) * (tails_[j] - before_[j]);
+            next += kStep * spring_.stiffnessAt(j, joints) * axis - kStep * spring_.gravity * Vec3f::UnitY();
+            next = at + length * directionTo(next, at, axis);
+            for (const Collider& collider : colliders_) {
+                const Vec3f centre = head_ws * collider.centre_ws;
+                const float apart = collider.radius + spring_.hitRadius;
+                const Vec3f away = next - centre;
+                const float distance = away.norm();
+                if (distance >= apart || !(distance > 0)) continue;
+                next = at + length * directionTo(centre + away * (apart / distance), at, axis);
+            }
+            before_[j] = tails_[j], tails_[j] = next;
+            parent = shortestArc(axis, (next - at).normalized()) * parent;
+            at = next;
+        }
+    }
+    /// All joints but the first.
+    std::span<const Vec3f> tails() const { return tails_; }
+    std::vector<Vec3f> joints(const Eigen::Isometry3f& head_ws) const {
+        std::vector<Vec3f> all{head_ws * rest_[0]};
+        all.insert(all.end(), tails_.begin(), tails_.end());
+        return all;
+    }
+
+  private:
+    static Vec3f directionTo(const Vec3f& to, const Vec3f& from, const Vec3f& otherwise) {
+        const Vec3f way = to - from;
+        const float length = way.norm();
+        return length > 0 ? Vec3f(way / length) : otherwise;
+    }
+    Spring spring_;
+    std::span<const Collider> colliders_;
+    std::vector<Vec3f> rest_, tails_, before_;
+};
+
+/// Sum of squares, m².
+double squaresOff(const Rig& rig, std::size_t chain, const Spring& spring, const ChainMotion& wanted,
+                  std::span<const Collider> colliders) {
+    SwingingChain swinging(rig, chain, spring, colliders);
+    double sum = 0;
+    for (std::size_t f = 1; f < wanted.heads_ws.size(); ++f) {
+        swinging.step(wanted.heads_ws[f]);
+        const std::span tails = swinging.tails();
+        for (std::size_t j = 0; j < tails.size(); ++j) {
+            const Vec3f& at = wanted.joints_ws[f][chain * rig.perChain + j + 1];
+            sum += static_cast<double>((tails[j] - at).squaredNorm());
+        }
+    }
+    return sum;
+}
+
+// What is searched: stiffness at the first and at the last bone and gravity by their square roots, which
+// makes small ones as easy to find as large ones, and drag.
+using Point = std::array<float, 4>;
+constexpr Point kLow{0.02f, 0.02f, 0.0f, 0.0f}, kHigh{2.5f, 2.5f, 1.0f, 1.5f};
+
+Spring springOf(const Point& p) {
+    Spring spring;
+    spring.stiffness = p[0] * p[0], spring.tipStiffness = p[1] * p[1];
+    spring.drag = p[2], spring.gravity = p[3] * p[3];
+    return spring;
+}
+
+/// Steps along each axis and on in the direction that those led in, halved where none leads down (Hooke and
+/// Jeeves 1961).
+Spring fitted(const Rig& rig, std::size_t chain, const ChainMotion& wanted,
+              std::span<const Collider> colliders) {
+    const auto errorOf = [&](const Point& p) {
+        return squaresOff(rig, chain, springOf(p), wanted, colliders);
+    };
+    constexpr std::array<Point, 3> kStarts{
+        {{0.77f, 0.77f, 0.4f, 0.45f}, {0.3f, 0.2f, 0.1f, 0.3f}, {1.5f, 1.2f, 0.7f, 0.1f}}};
+    Point best = kStarts[0];
+    double least = errorOf(best);
+    for (const Point& start : kStarts) {
+        Point at = start;
+        double error = errorOf(at);
+        const auto moveTo = [&](Point tried) {
+            for (std::size_t axis = 0; axis < tried.size(); ++axis)
+                tried[axis] = std::clamp(tried[axis], kLow[axis], kHigh[axis]);
+            const double found = errorOf(tried);
+            if (found < error) at = tried, error = found;
+        };
+        constexpr float kFirstStep = 0.3f, kLastStep = 0.002f;
+        for (float step = kFirstStep; step > kLastStep;) {
+            const Point before = at;
+            for (std::size_t axis = 0; axis < at.size(); ++axis) {
+                for (const float way : {step, -step}) {
+                    Point tried = at;
+                    tried[axis] += way;
+                    moveTo(tried);
+                }
+            }
+            Point onward = at;
+            for (std::size_t axis = 0; axis < at.size(); ++axis) onward[axis] += at[axis] - before[axis];
+            if (at == before) {
+                step /= 2;
+            } else {
+                moveTo(onward);
+            }
+        }
+        if (error < least) best = at, least = error;
+    }
+    return springOf(best);
+}
+
+}  // namespace
+
+std::vector<std::vector<Vec3f>> swing(const Rig& rig, std::size_t chain, const Spring& spring,
+                                      std::span<const Eigen::Isometry3f> heads_ws,
+                                      std::span<const Collider> colliders) {
+    SwingingChain swinging(rig, chain, spring, colliders);
+    std::vector<std::vector<Vec3f>> frames;
+    for (std::size_t f = 0; f < heads_ws.size(); ++f) {
+        if (f > 0) swinging.step(heads_ws[f]);
+        frames.push_back(swinging.joints(heads_ws[f]));
+    }
+    return frames;
+}
+
+SpringError springError(const Rig& rig, std::span<const Spring> springs, const ChainMotion& wanted,
+                        std::span<const Collider> colliders) {
+    SpringError error;
+    std::size_t count = 0;
+    for (std::size_t chain = 0; chain < rig.chains(); ++chain) {
+        const auto frames = swing(rig, chain, springs[chain], wanted.heads_ws, colliders);
+        for (std::size_t f = 1; f < frames.size(); ++f) {
+            for (std::size_t j = 1; j < frames[f].size(); ++j) {
+                const Vec3f& at = wanted.joints_ws[f][chain * rig.perChain + j];
+                const double off = 1000 * static_cast<double>((frames[f][j] - at).norm());
+                error.meanMm += off, ++count;
+                error.largestMm = std::max(error.largestMm, off);
+            }
+        }
+    }
+    if (count > 0) error.meanMm /= static_cast<double>(count);
+    return error;
+}
+
+Result<std::vector<Spring>> fitSprings(const Rig& rig, const ChainMotion& wanted,
+                                       std::span<const Collider> colliders, Cancel cancel) {
+    std::vector<Spring> springs(rig.chains());
+    parallelFor(springs.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t chain = begin; chain < end && !cancelled(cancel); ++chain)
+            springs[chain] = fitted(rig, chain, wanted, colliders);
+    });
+    if (cancelled(cancel)) return stopped();
+    return springs;
+}
+
+}  // namespace hairloom::cards

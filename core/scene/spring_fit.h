@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Springs of a chain of levels, fitted to how the groom's strands move.
+
+#include "core/cards/levels.h"
+#include "core/groom/groom.h"
+
+namespace hairloom {
+
+/// The groom's collision spheres.
+std::vector<cards::Collider> collidersOf(const Groom& groom);
+
+/// Simulates the strands that lie nearest to the rig's chains, alone, while the head nods for two seconds,
+/// and fits the chain's springs to them; cards::Chain::springFit says how near they come. Springs stay as
+/// they are set where there are no chains. Errors: those of Simulation::make(), stopped.
+Status fitSpringsOf(const Groom& groom, cards::Chain& chain, cards::Cancel cancel);
+
+}  // namespace hairloom

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/cards/springs.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace hairloom::cards {
+namespace {
+
+/// Two chains of four bones of 5 cm that hang beside a head.
+Rig hangingRig() {
+    Rig rig;
+    rig.perChain = 5;
+    for (const float side : {-0.1f, 0.1f}) {
+        std::vector<Vec3f> curve;
+        for (std::uint32_t k = 0; k < kStations; ++k)
+            curve.emplace_back(side, 1.7f - 0.2f * static_cast<float>(k) / (kStations - 1), 0.0f);
+        for (std::uint32_t j = 0; j < rig.perChain; ++j)
+            rig.joints.push_back(
+                {curve[std::size_t{6} * j], j == 0 ? 0 : static_cast<std::int32_t>(rig.joints.size()) - 1});
+        rig.curves.push_back(std::move(curve));
+    }
+    return rig;
+}
+
+/// Shaken about the axis through the ears.
+std::vector<Eigen::Isometry3f> shaken(int frames) {
+    std::vector<Eigen::Isometry3f> heads;
+    for (int f = 0; f < frames; ++f) {
+        const float angle = 0.4f * std::sin(0.13f * static_cast<float>(f));
+        heads.push_back(Eigen::Translation3f(0, 1.6f, 0) * Eigen::AngleAxisf(angle, Vec3f::UnitX()) *
+                        Eigen::Translation3f(0, -1.6f, 0));
+    }
+    return heads;
+}
+
+ChainMotion motionBy(const Rig& rig, const std::vector<Spring>& springs, int frames) {
+    ChainMotion motion;
+    motion.heads_ws = shaken(frames);
+    motion.joints_ws.resize(motion.heads_ws.size());
+    for (std::size_t chain = 0; chain < rig.chains(); ++chain) {
+        const auto moved = swing(rig, chain, springs[chain], motion.heads_ws, {});
+        for (std::size_t f = 0; f < moved.size(); ++f)
+            motion.joints_ws[f].insert(motion.joints_ws[f].end(), moved[f].begin(), moved[f].end());
+    }
+    return motion;
+}
+
+TEST(Springs, HangStillUnderAHeadThatIsStillAndKeepTheLengthsOfBones) {
+    const Rig rig = hangingRig();
+    const std::vector<Eigen::Isometry3f> still(30, Eigen::Isometry3f::Identity());
+    for (const auto& joints : swing(rig, 0, {}, still, {}))
+        for (std::uint32_t j = 0; j < 5; ++j)
+            EXPECT_LT((joints[j] - rig.joints[1 + j].position_ws).norm(), 1e-5f);
+    const auto moved = swing(rig, 1, {}, shaken(60), {});
+    float farthest = 0;
+    for (const auto& joints : moved) {
+        for (std::uint32_t j = 0; j + 1 < 5; ++j)
+            EXPECT_NEAR((joints[j + 1] - joints[j]).norm(), 0.05f, 1e-4f);
+        farthest = std::max(farthest, (joints[4] - rig.joints[10].position_ws).norm());
+    }
+    EXPECT_GT(farthest, 0.01f);
+}
+
+TEST(Springs, StayOutOfSpheres) {
+    const Rig rig = hangingRig();
+    const std::vector<Collider> colliders{{Vec3f(-0.1f, 1.5f, 0.02f), 0.05f}};
+    const Spring spring;
+    const auto joints =
+        swing(rig, 0, spring, std::vector<Eigen::Isometry3f>(60, Eigen::Isometry3f::Identity()), colliders)
+            .back();
+    EXPECT_GT((joints[4] - colliders[0].centre_ws).norm(), 0.05f);
+}
+
+TEST(Springs, AreFoundByTheMotionThatTheyMade) {
+    const Rig rig = hangingRig();
+    std::vector<Spring> made(2);
+    made[0].stiffness = 0.3f, made[0].tipStiffness = 0.1f, made[0].drag = 0.15f, made[0].gravity = 0.1f;
+    made[1].stiffness = 1.6f, made[1].tipStiffness = 1.2f, made[1].drag = 0.7f, made[1].gravity = 0.4f;
+    const ChainMotion wanted = motionBy(rig, made, 90);
+    const auto found = fitSprings(rig, wanted, {}, nullptr);
+    ASSERT_TRUE(found) << found.error().message();
+    const SpringError before = springError(rig, std::vector<Spring>(2), wanted, {}),
+                      after = springError(rig, *found, wanted, {});
+    EXPECT_GT(before.meanMm, 3);
+    EXPECT_LT(after.meanMm, 0.5);
+    EXPECT_LT(after.largestMm, 3);
+    EXPECT_GT((*found)[1].drag, (*found)[0].drag);
+    EXPECT_EQ(springError(rig, made, wanted, {}).largestMm, 0);
+}
+
+TEST(Springs, StopWhenTheyAreCancelled) {
+    const std::atomic<bool> cancel = true;
+    const Rig rig = hangingRig();
+    EXPECT_FALSE(fitSprings(rig, motionBy(rig, std::vector<Spring>(2), 3), {}, &cancel));
+}
+
+}  // namespace
+}  // namespace hairloom::cards
