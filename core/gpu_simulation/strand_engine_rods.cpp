@@ -20,7 +20,7 @@ static_assert(runtime::kRodLaneRows == 2);
 
 // Planes of runtime::RodRest, in threes and fours as the kernel reads them.
 constexpr std::array<std::size_t, 4> kTangentAndBend{0, 1, 2, 6}, kRestRotation{8, 9, 10, 11};
-constexpr std::array<std::size_t, 3> kAxis{3, 4, 5};
+constexpr std::array<std::size_t, 3> kAxis{3, 4, 5}, kNormal{12, 13, 14};
 constexpr std::array<std::size_t, 1> kMass{7};
 
 }  // namespace
@@ -45,11 +45,12 @@ Status StrandEngine::Impl::takeRods(const runtime::SimulationSettings& settings)
 
 Status StrandEngine::Impl::makeRodBuffers(StrandBatch& batch) const {
     const auto quads = [&](std::span<const std::size_t> which) {
-        return quadsOfBatch(*shape, batch, rodRest.planes, runtime::kRodRestPlanes, which);
+        return quadsOfBatch(*shape, batch, rodRest.planes, rodRest.planeCount, which);
     };
     std::vector<shaders::float4> rest = quads(kTangentAndBend);
-    for (const std::span<const std::size_t> which :
-         {std::span<const std::size_t>(kRestRotation), std::span<const std::size_t>(kAxis)}) {
+    std::vector<std::span<const std::size_t>> others{kRestRotation, kAxis};
+    if (rodRest.planeCount > runtime::kRodRestPlanes) others.emplace_back(kNormal);
+    for (const std::span<const std::size_t> which : others) {
         const std::vector<shaders::float4> more = quads(which);
         rest.insert(rest.end(), more.begin(), more.end());
     }
@@ -108,7 +109,8 @@ shaders::RodConstants StrandEngine::Impl::rodConstants(const runtime::SubstepCon
     c.gravity = {g.x, g.y, g.z, context.air == runtime::Air::none ? 0.0f : context.airDrag};
     c.rootDamping = context.rootDamping;
     c.bendDampingTime = context.bendDampingTime;
-    c.torsionRatio = context.torsionRatio;
+    c.twist = context.twist;
+    c.flat = context.flat;
     c.stepRatio = substep > 0.0f ? context.h / substep : runtime::kRodFirstRatio;
     c.sweeps = context.sweeps ? 1 : 0;
     c.conservative = context.air == runtime::Air::moving ? 0 : context.spheresRest ? 2 : 1;

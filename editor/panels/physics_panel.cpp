@@ -25,7 +25,8 @@ struct Group {
 std::vector<Group> groups() {
     return {
         {QObject::tr("Strands"),
-         {"strandModel", "angularStiffness", "torsionRatio", "bendDampingTime", "restGravity"},
+         {"strandModel", "angularStiffness", "torsionRatio", "sectionRatio", "bendDampingTime",
+          "restGravity"},
          true},
         {QObject::tr("Time"),
          {"substeps", "dampingTime", "teleportDistance", "sleepSpeed", "sleepDelay"},

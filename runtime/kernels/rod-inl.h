@@ -173,20 +173,19 @@ class RodStrip {
             aim(point, node, tangent, position);
             if constexpr (kContacts) meet(point, node, tangent, position, j + 1);
 
-            const V3 strain = load3(rod_.strain, i), wanted = blendStrain(strain, i), axis = axisOf(i);
+            const V3 strain = load3(rod_.strain, i), wanted = blendStrain(strain, i);
             const V4 last = rodOfStrain(strain);
             point.wanted = wanted;
             point.relative = rodRelative(before, point.rotation, last);
             const V bend = hn::Load(D(), rod_.bend + i) * damped_;
+            const RodSection section = sectionOf(i, bend);
             stiffnessSum_ = stiffnessSum_ + bend;
             const V3 off = outer - point.target;
-            objective_ = objective_ +
-                         rodTwiceEnergy(twice(point.relative) - wanted, axis, bend, twistOf(bend)) +
+            objective_ = objective_ + rodTwiceEnergy(twice(point.relative) - wanted, bend, section) +
                          point.weight * dot(off, off);
             const V3 offStart = inDisplacement_ - point.target;
             const V3 strainStart = j == first_ ? twice(rodRelative(inner_, old, last)) : strain;
-            startObjective_ = startObjective_ +
-                              rodTwiceEnergy(strainStart - wanted, axis, bend, twistOf(bend)) +
+            startObjective_ = startObjective_ + rodTwiceEnergy(strainStart - wanted, bend, section) +
                               point.weight * dot(offStart, offStart);
             if constexpr (kContacts) {
                 objective_ = objective_ + point.contact.twiceEnergy;
@@ -201,11 +200,20 @@ class RodStrip {
     static V3 twice(V4 relative) {
         return {relative.x + relative.x, relative.y + relative.y, relative.z + relative.z};
     }
-    V twistOf(V bend) const { return kTwists ? bend * all(context_.torsionRatio - 1.0f) : hn::Zero(D()); }
     V3 restTangent(std::uint32_t j) const { return load3(rod_.tangent, at(j)); }
-    V3 axisOf(std::size_t i) const {
-        if constexpr (kTwists) return load3(rod_.axis, i);
-        return zero3();
+    /// Of a vertex, for its B/l̄.
+    RodSection sectionOf(std::size_t i, V bend) const {
+        RodSection section{zero3(), zero3(), hn::Zero(D()), hn::Zero(D()), kTwists, false};
+        if constexpr (kTwists) {
+            section.axis = load3(rod_.axis, i);
+            section.twist = bend * all(context_.twist);
+            section.isFlat = context_.flat != 0.0f;
+            if (section.isFlat) {
+                section.normal = load3(rod_.normal, i);
+                section.flat = bend * all(context_.flat);
+            }
+        }
+        return section;
     }
 
     /// Damping pulls to the strain extrapolated from the last two substeps (Kelvin-Voigt), elasticity to
@@ -269,8 +277,8 @@ class RodStrip {
             rodAddNode(form, point.weight, r, onlyWhere(kept_, r));
             const V bend = hn::Load(D(), rod_.bend + at(j)) * damped_;
             rodEliminate(form, point.rotation, rodRotate(point.rotation, restTangent(j)), lengthOf(j),
-                         point.relative, twice(point.relative) - point.wanted, axisOf(at(j)), bend,
-                         twistOf(bend), kTwists, point.gains);
+                         point.relative, twice(point.relative) - point.wanted, bend, sectionOf(at(j), bend),
+                         point.gains);
         }
     }
 
@@ -294,7 +302,7 @@ class RodStrip {
             const V4 relative = rodRelative(before, q, point.relative);
             const V bend = hn::Load(D(), rod_.bend + i) * damped_;
             const V3 off = outer - point.target;
-            sum = sum + rodTwiceEnergy(twice(relative) - point.wanted, axisOf(i), bend, twistOf(bend)) +
+            sum = sum + rodTwiceEnergy(twice(relative) - point.wanted, bend, sectionOf(i, bend)) +
                   point.weight * dot(off, off);
             if constexpr (kContacts) sum = sum + point.contact.twiceEnergyAt(x);
             point.newDisplacement = outer;
@@ -334,7 +342,7 @@ class RodStrip {
             turn = hn::Max(turn, dot(increment, increment));
             const V mass = hn::Load(D(), rod_.mass + node), bend = hn::Load(D(), rod_.bend + i);
             stiffness = stiffness + bend;
-            const V elastic = rodTwiceEnergy(strain, axisOf(i), bend, twistOf(bend)) * all(0.5f);
+            const V elastic = rodTwiceEnergy(strain, bend, sectionOf(i, bend)) * all(0.5f);
             const V weight = mass * dot(all3(context_.gravity), position);
             energy = energy + (elastic - weight);
             size = size + (elastic + hn::Abs(weight));

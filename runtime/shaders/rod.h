@@ -6,9 +6,9 @@
 //
 // A segment is a rotation q, from its place in the rest shape, in the root's frame, to the world. A vertex
 // lies between an inner and an outer segment; its strain is ε = 2 vec(p), p = q_inner⁻¹ q_outer, in the
-// root's frame at rest, and its energy ½ (B |ε|² + (C − B) (a·ε)²)/l̄ with its axis a: an even function of p,
-// so smooth for all rotations. u is a small rotation of a segment, world space. Masses are metres of hair,
-// stiffnesses m³/s².
+// root's frame at rest, and its energy ½ (B |ε|² + (C − B) (a·ε)² + (B₂ − B) (n·ε)²)/l̄ with its axis a and
+// the long diameter n of its section: an even function of p, so smooth for all rotations. u is a small
+// rotation of a segment, world space. Masses are metres of hair, stiffnesses m³/s².
 #ifndef HAIRLOOM_ROD_H
 #define HAIRLOOM_ROD_H
 #include "rod_constants.h"
@@ -84,10 +84,41 @@ ROD_FUNCTION Real3 rodTimes(RodMatrix m, Real3 v) {
     return mad3(m.z, v.z, mad3(m.y, v.y, m.x * v.x));
 }
 
-/// Twice the energy of a strain e with `twist` for (C − B)/l̄.
-ROD_FUNCTION Real rodTwiceEnergy(Real3 e, Real3 axis, Real bend, Real twist) {
-    const Real along = dot(e, axis);
-    return mad(bend, dot(e, e), twist * along * along);
+/// How a vertex resists beside B |ε|²/l̄: to twist about its axis, and, where the section is flat, to a bend
+/// about its long diameter, which is softer. Directions in the root's frame at rest.
+struct RodSection {
+    Real3 axis, normal;
+    Real twist, flat;  ///< (C − B)/l̄ and (B₂ − B)/l̄
+    bool twists, isFlat;
+};
+
+/// Twice the energy of a strain e with `bend` for B/l̄.
+ROD_FUNCTION Real rodTwiceEnergy(Real3 e, Real bend, RodSection section) {
+    Real sum = bend * dot(e, e);
+    if (section.twists) {
+        const Real along = dot(e, section.axis);
+        sum = mad(bend, dot(e, e), section.twist * along * along);
+    }
+    if (section.isFlat) {
+        const Real across = dot(e, section.normal);
+        sum = mad(section.flat * across, across, sum);
+    }
+    return sum;
+}
+
+/// A symmetric matrix: xx, xy, xz, yy, yz, zz.
+struct RodSymmetric {
+    Real m[6];
+};
+/// Adds k T Tᵀ.
+ROD_FUNCTION void rodAddOuter(ROD_INOUT(RodSymmetric) S, Real3 T, Real k) {
+    const Real3 kt = T * k;
+    S.m[0] = mad(kt.x, T.x, S.m[0]);
+    S.m[1] = mad(kt.x, T.y, S.m[1]);
+    S.m[2] = mad(kt.x, T.z, S.m[2]);
+    S.m[3] = mad(kt.y, T.y, S.m[3]);
+    S.m[4] = mad(kt.y, T.z, S.m[4]);
+    S.m[5] = mad(kt.z, T.z, S.m[5]);
 }
 
 /// What lies beyond a node, as a quadratic form in the node's displacement x and in the rotation u of the
@@ -128,9 +159,9 @@ ROD_FUNCTION void rodAddContact(ROD_INOUT(RodForm) f, Real h0, Real h1, Real h2,
 
 /// Takes a form from a segment's outer node to its inner one and eliminates the segment's rotation. `q` is
 /// the segment's rotation, t its tangent, `relative` the p of the vertex at its inner node, e the strain
-/// there less what it is pulled to, `twist` (C − B)/l̄, which counts where `twists`.
+/// there less what it is pulled to.
 ROD_FUNCTION void rodEliminate(ROD_INOUT(RodForm) f, Real4 q, Real3 t, Real segment, Real4 relative, Real3 e,
-                               Real3 axis, Real bend, Real twist, bool twists, ROD_OUT(RodGains) gains) {
+                               Real bend, RodSection section, ROD_OUT(RodGains) gains) {
     // Displacements: outer = inner + l u × t.
     const Real3 lt = t * segment;
     const Real3 P0 = real3(f.P[0], f.P[1], f.P[2]), P1 = real3(f.P[1], f.P[3], f.P[4]),
@@ -163,32 +194,31 @@ ROD_FUNCTION void rodEliminate(ROD_INOUT(RodForm) f, Real4 q, Real3 t, Real segm
     const RodMatrix m = rodMatrix(q);
     const Real3 v = xyz(relative);
     Real3 moment = e * bend;
-    if (twists) moment = mad3(axis, twist * dot(axis, e), moment);
+    if (section.twists) moment = mad3(section.axis, section.twist * dot(section.axis, e), moment);
+    if (section.isFlat) moment = mad3(section.normal, section.flat * dot(section.normal, e), moment);
     const Real3 g = rodTimes(m, mad3(moment, relative.w, cross(moment, v)));
     const Real3 swing = rodTimes(m, v), bv = swing * bend;
-    Real S0 = Y0 + negMad(bv.x, swing.x, bend), S1 = negMad(bv.x, swing.y, Y1),
-         S2 = negMad(bv.x, swing.z, Y2);
-    Real S3 = Y3 + negMad(bv.y, swing.y, bend), S4 = negMad(bv.y, swing.z, Y4),
-         S5 = Y5 + negMad(bv.z, swing.z, bend);
-    if (twists) {
-        const Real3 T = rodTimes(m, mad3(axis, relative.w, cross(axis, v))), kt = T * twist;
-        S0 = mad(kt.x, T.x, S0);
-        S1 = mad(kt.x, T.y, S1);
-        S2 = mad(kt.x, T.z, S2);
-        S3 = mad(kt.y, T.y, S3);
-        S4 = mad(kt.y, T.z, S4);
-        S5 = mad(kt.z, T.z, S5);
-    }
+    RodSymmetric S;
+    S.m[0] = Y0 + negMad(bv.x, swing.x, bend);
+    S.m[1] = negMad(bv.x, swing.y, Y1);
+    S.m[2] = negMad(bv.x, swing.z, Y2);
+    S.m[3] = Y3 + negMad(bv.y, swing.y, bend);
+    S.m[4] = negMad(bv.y, swing.z, Y4);
+    S.m[5] = Y5 + negMad(bv.z, swing.z, bend);
+    if (section.twists)
+        rodAddOuter(S, rodTimes(m, mad3(section.axis, relative.w, cross(section.axis, v))), section.twist);
+    if (section.isFlat)
+        rodAddOuter(S, rodTimes(m, mad3(section.normal, relative.w, cross(section.normal, v))), section.flat);
 
     // S = L D Lᵀ, with pivots no smaller than what rounding leaves of them.
-    const Real least =
-        mad(bend, ROD_NUMBER(HAIRLOOM_ROD_LEAST_PIVOT),
-            (absolute(S0) + absolute(S3) + absolute(S5)) * ROD_NUMBER(HAIRLOOM_ROD_PIVOT_ROUNDING));
-    const Real D0 = maximum(S0, least), i0 = ROD_NUMBER(1.0) / D0;
-    const Real l1 = S1 * i0, l2 = S2 * i0;
-    const Real D1 = maximum(negMad(l1, S1, S3), least), i1 = ROD_NUMBER(1.0) / D1;
-    const Real s3 = negMad(l1, S2, S4), l3 = s3 * i1;
-    const Real D2 = maximum(negMad(l3, s3, negMad(l2, S2, S5)), least), i2 = ROD_NUMBER(1.0) / D2;
+    const Real least = mad(
+        bend, ROD_NUMBER(HAIRLOOM_ROD_LEAST_PIVOT),
+        (absolute(S.m[0]) + absolute(S.m[3]) + absolute(S.m[5])) * ROD_NUMBER(HAIRLOOM_ROD_PIVOT_ROUNDING));
+    const Real D0 = maximum(S.m[0], least), i0 = ROD_NUMBER(1.0) / D0;
+    const Real l1 = S.m[1] * i0, l2 = S.m[2] * i0;
+    const Real D1 = maximum(negMad(l1, S.m[1], S.m[3]), least), i1 = ROD_NUMBER(1.0) / D1;
+    const Real s3 = negMad(l1, S.m[2], S.m[4]), l3 = s3 * i1;
+    const Real D2 = maximum(negMad(l3, s3, negMad(l2, S.m[2], S.m[5])), least), i2 = ROD_NUMBER(1.0) / D2;
 
     // Columns of L⁻¹ [Wᵀ Y g], and S⁻¹ of them.
     const Real3 total = gu + g;

@@ -33,7 +33,7 @@ void finishRodStep() {
         const float3 turned = increment(j);
         turn = max(turn, dot(turned, turned));
         stiffness += rest.w;
-        const float elastic = rodTwiceEnergy(bent, twistAxis(j), rest.w, rest.w * gTwist) * 0.5;
+        const float elastic = rodTwiceEnergy(bent, rest.w, section(j, rest.w)) * 0.5;
         const float metres = mass(node), weight = metres * dot(gRod.gravity.xyz, at);
         energy += elastic - weight;
         size += elastic + abs(weight);

@@ -2,7 +2,7 @@
 // Where the numbers of a rod are; laid out as storage.hlsli has it. Those of segment or vertex j stand at j; a
 // vertex stands at its outer segment, the outer node of segment j at j + 1.
 
-StructuredBuffer<float4> gRodRest : register(t2);     // tangent, B/l̄ of the vertex; from the shape without load to that of rest; axis
+StructuredBuffer<float4> gRodRest : register(t2);     // tangent, B/l̄ of the vertex; from the shape without load to that of rest; axis; of flat sections: long diameter
 StructuredBuffer<float> gRodMasses : register(t3);    // of each point, metres of hair
 StructuredBuffer<uint> gCurvedBlocks : register(t9);  // per work group: twist matters
 RWStructuredBuffer<float> gRodState : register(u5);   // as RodView has it: planes, then turn and energy of a strand
@@ -13,10 +13,17 @@ float4 restRotation(uint j) { return gRodRest[slotOf(1, j)]; }
 float mass(uint p) { return gRodMasses[slotOf(0, p)]; }
 
 static bool gCurved;  // alike in the whole work group
-float3 twistAxis(uint j) {
-    float3 axis = float3(0, 0, 0);
-    if (gCurved) axis = gRodRest[slotOf(2, j)].xyz;
-    return axis;
+/// Of vertex j, for its B/l̄.
+RodSection section(uint j, float bend) {
+    RodSection found;
+    found.axis = found.normal = float3(0, 0, 0);
+    found.twists = gCurved;
+    found.isFlat = gRod.flat != 0.0;
+    found.twist = bend * gRod.twist;
+    found.flat = bend * gRod.flat;
+    if (found.twists) found.axis = gRodRest[slotOf(2, j)].xyz;
+    if (found.isFlat) found.normal = gRodRest[slotOf(3, j)].xyz;
+    return found;
 }
 
 #define BUFFER_QUATERNIONS(get, put, buffer, plane) \

@@ -11,7 +11,6 @@ static float gBlend;             // c of the time scheme
 static float gVelocityAhead;     // share of the last change of velocity that is expected again
 static float gTimeStep, gInverseTimeStep;
 static float gDamped, gDampingShare;  // 1 + τ/h, and the part of it that is damping
-static float gTwist;             // (C − B)/B where twist counts
 static float3 gInDisplacement;   // of the first free segment's inner node
 static float4 gInner;            // rotation of the segment before it
 static bool gStill;              // nothing adds energy
@@ -44,7 +43,6 @@ void openRodStep() {
     gInverseTimeStep = 1.0 / gTimeStep;
     gDamped = 1.0 + gRod.bendDampingTime * gInverseTimeStep;
     gDampingShare = (gDamped - 1.0) / gDamped;
-    gTwist = gCurved ? gRod.torsionRatio - 1.0 : 0.0;
     gInner = gRotation;
     gInDisplacement = gRootDisplacement;
 #if HAIR_CLAMPED > 1
@@ -117,16 +115,17 @@ void predict() {
         const float4 aimed = aim(j + 1, tangent, position);
 
         // Damping pulls to the strain extrapolated from the last two substeps (Kelvin-Voigt), elasticity to none.
-        const float3 last = strain(j), axis = twistAxis(j);
+        const float3 last = strain(j);
         const float3 wanted = mad3(last - strainBefore(j), gBlend, last) * gDampingShare;
         const float4 side = rodOfStrain(last), relative = rodRelative(before, q, side);
-        const float bend = rest.w * gDamped, twist = bend * gTwist;
+        const float bend = rest.w * gDamped;
+        const RodSection resists = section(j, bend);
         gStiffnessSum += bend;
         const float3 off = outer - aimed.xyz, offStart = gInDisplacement - aimed.xyz;
-        gObjective += rodTwiceEnergy(twice(relative) - wanted, axis, bend, twist) + aimed.w * dot(off, off);
+        gObjective += rodTwiceEnergy(twice(relative) - wanted, bend, resists) + aimed.w * dot(off, off);
         float3 strainStart = last;
         if (j == FIRST_SEGMENT) strainStart = twice(rodRelative(gInner, old, side));
-        gStartObjective += rodTwiceEnergy(strainStart - wanted, axis, bend, twist) + aimed.w * dot(offStart, offStart);
+        gStartObjective += rodTwiceEnergy(strainStart - wanted, bend, resists) + aimed.w * dot(offStart, offStart);
         setPredictedRotation(j, q);
         setPredictedRelative(j, relative);
         setWantedStrain(j, wanted);
@@ -166,7 +165,7 @@ void eliminate() {
         const float bend = rest.w * gDamped;
         RodGains found;
         rodEliminate(form, q, rodRotate(q, rest.xyz), segmentLength(j), relative, twice(relative) - wantedStrain(j),
-                     twistAxis(j), bend, bend * gTwist, gCurved, found);
+                     bend, section(j, bend), found);
         setGains(j, found);
     }
 }
@@ -190,7 +189,7 @@ float advance(float share) {
         const float4 relative = rodRelative(before, q, predictedRelative(j)), aimed = target(j);
         const float bend = rest.w * gDamped;
         const float3 off = outer - aimed.xyz;
-        sum += rodTwiceEnergy(twice(relative) - wantedStrain(j), twistAxis(j), bend, bend * gTwist) +
+        sum += rodTwiceEnergy(twice(relative) - wantedStrain(j), bend, section(j, bend)) +
                aimed.w * dot(off, off);
 #if HAIR_SPHERES
         if (gReachable != 0u) sum += twiceEnergyAt(contact(j), x);

@@ -22,18 +22,20 @@ struct RodConstants {
     float4 gravity;         ///< m/s²; w: drag of the air, 1/s, 0 without air
     float rootDamping;      ///< 1/s
     float bendDampingTime;  ///< seconds
-    float torsionRatio;     ///< GJ/EI
+    float twist;            ///< (GJ − EI)/EI, of the stiffer bend
     float stepRatio;        ///< the first substep over the one before it
     uint points;            ///< that a strand of the batch may have
     uint sweeps;            ///< not 0: spheres are met where fast points come in
     uint conservative;      ///< not 0: nothing but motion of roots and spheres adds energy; 2: nor do spheres
     uint fresh;             ///< not 0: strands were none before, and go on as rods through their points
+    float flat;             ///< (EI₂ − EI)/EI, of the softer bend; 0 of a round section
+    uint unused0, unused1, unused2;
     float4 windTurns[HAIRLOOM_WIND_MODES];  ///< x: turns of a wave in a substep
 };
 
 #ifdef __cplusplus
-static_assert(offsetof(RodConstants, rootDamping) == 16 && offsetof(RodConstants, windTurns) == 48);
-static_assert(sizeof(RodConstants) == 48 + 16 * HAIRLOOM_WIND_MODES);
+static_assert(offsetof(RodConstants, rootDamping) == 16 && offsetof(RodConstants, windTurns) == 64);
+static_assert(sizeof(RodConstants) == 64 + 16 * HAIRLOOM_WIND_MODES);
 }  // namespace hairloom::shaders
 #endif
 #endif

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "src/rods.h"
 #include "src/state.h"
 
 namespace hairloom::runtime {
@@ -173,7 +174,9 @@ SubstepContext substepContext(const SimulationSettings& settings, const EffectPl
     context.airDrag = settings.airDrag;
     context.rootDamping = settings.dampingTime > 0.0f ? 1.0f / settings.dampingTime : 0.0f;
     context.bendDampingTime = settings.bendDampingTime;
-    context.torsionRatio = settings.torsionRatio;
+    const RodSectionRatios section = rodSectionRatios(settings);
+    context.twist = static_cast<float>(section.twist);
+    context.flat = static_cast<float>(section.flat);
     context.spheresRest = std::all_of(spheres.begin(), spheres.end(),
                                       [](const MovingSphere& sphere) { return sphere.stepLength == 0.0f; });
     context.sweeps = plan.on(Effect::continuousCollision);

@@ -82,7 +82,7 @@ std::size_t engineBytes(const std::map<std::uint32_t, std::size_t>& strandsOf) {
         strands += count;
     }
     // Rods take more than springs with any integrator do; of angular springs they have stiffness and targets.
-    const std::size_t planes = kRestPlanes + kStatePlanes + kRodRestPlanes + kRodStatePlanes + 4;
+    const std::size_t planes = kRestPlanes + kStatePlanes + kRodFlatRestPlanes + kRodStatePlanes + 4;
     const std::size_t lanes =
         (2 * kRootRows + kRodLaneRows) * kBlockLanes * sizeof(float) + sizeof(Block) + kReportBytes;
     return planeFloats * planes * sizeof(float) + blocks * lanes +

@@ -50,6 +50,7 @@ using ConstPlanes = PlanesOf<const float>;
 struct RodView {
     ConstPlanes tangent;          ///< of a segment in the shape without load, in the root's frame
     ConstPlanes axis;             ///< that a vertex twists about there
+    ConstPlanes normal;           ///< long diameter of the section there; null of a round one
     const float* bend = nullptr;  ///< B/l̄ of a vertex, m³/s²
     const float* mass = nullptr;  ///< of each point, metres of hair
     const float* restRotation =
@@ -198,11 +199,12 @@ struct SubstepContext : shaders::SubstepNumbers {
     float airDrag = 0.0f;          ///< 1/s
     float rootDamping = 0.0f;      ///< 1/s
     float bendDampingTime = 0.0f;  ///< seconds
-    float torsionRatio = 1.0f;     ///< GJ/EI
-    float stepRatio = 1.0f;        ///< h over that of the substep before
-    bool sweeps = false;           ///< spheres are met where fast points come in
-    bool conservative = false;     ///< nothing but motion of roots and spheres adds energy
-    bool spheresRest = false;      ///< nor do spheres
+    float twist = 0.0f;            ///< of the section, as RodSectionRatios has them
+    float flat = 0.0f;
+    float stepRatio = 1.0f;     ///< h over that of the substep before
+    bool sweeps = false;        ///< spheres are met where fast points come in
+    bool conservative = false;  ///< nothing but motion of roots and spheres adds energy
+    bool spheresRest = false;   ///< nor do spheres
     const Wind* wind = nullptr;
     const float* windPhases = nullptr;  ///< of the substep's end
 };

@@ -96,15 +96,16 @@ bool eliminate(const Matrix3& sum, const Matrix3& left, const Matrix3& right, Ma
 
 /// How a vertex is bent by a moment on its outer segment.
 struct Couple {
-    double bend;   // B/l̄
-    double ratio;  // GJ/EI
-    Double3 axis;  // of twist, in the outer segment's frame
+    double bend;               // B/l̄ of the stiffer bend
+    RodSectionRatios section;  // beside it
+    Double3 axis, normal;      // of twist, and the long diameter, in the outer segment's frame
 
     /// Moment of the quaternion (v, √(1 − |v|²)).
     Double3 moment(Double3 v) const {
         const double w = std::sqrt(std::max(1.0 - dotOf(v, v), 0.0));
-        const double along = (ratio - 1.0) * dotOf(v, axis);
-        return (v * w + (axis * w + crossOf(axis, v)) * along) * (2.0 * bend);
+        const double along = section.twist * dotOf(v, axis), across = section.flat * dotOf(v, normal);
+        return (v * w + (axis * w + crossOf(axis, v)) * along + (normal * w + crossOf(normal, v)) * across) *
+               (2.0 * bend);
     }
     /// The v of a moment: steps of Newton's method with the derivative of a small one. No more than kLargest.
     Double3 solve(Double3 n) const {
@@ -112,7 +113,8 @@ struct Couple {
         for (int step = 0; step < 24; ++step) {
             const double w = std::sqrt(std::max(1.0 - dotOf(v, v), 0.25));
             const Double3 left = (n - moment(v)) * (0.5 / (bend * w));
-            v = v + left + axis * (dotOf(left, axis) * (1.0 / ratio - 1.0));
+            v = v + left + axis * (dotOf(left, axis) * (1.0 / (1.0 + section.twist) - 1.0)) +
+                normal * (dotOf(left, normal) * (1.0 / (1.0 + section.flat) - 1.0));
             if (dotOf(left, left) < 1e-24) break;
             const double size = lengthOf(v);
             if (size > kLargest) v = v * (kLargest / size);
@@ -127,6 +129,7 @@ class RestRod {
   public:
     RestRod(const RestShape& shape, const SimulationSettings& settings, std::size_t index, std::uint32_t lane)
         : settings_(settings),
+          section_(rodSectionRatios(settings)),
           block_(shape.blocks[index]),
           size_(planeSize(block_)),
           rest_(shape.planes.data() + block_.firstPlane * kRestPlanes),
@@ -135,12 +138,16 @@ class RestRod {
           first_(settings.clampedPoints - 1) {
         for (std::uint32_t j = 0; j + 1 < block_.points; ++j) total_ += segment(j);
         carryFrames();
+        if (isFlat()) layFlat();
         fillBends();
         weigh();
         stiffen();
     }
 
+    bool isFlat() const { return section_.flat != 0.0; }
+    /// Whether twist matters.
     bool curved() const {
+        if (isFlat()) return true;
         for (std::uint32_t j = first_; j + 1 < block_.points; ++j) {
             const Double3 bent = rotate(inverse(inner(free_, j)) * free_[j], kAlong) - kAlong;
             if (lengthOf(bent) > kStraight) return true;
@@ -148,20 +155,22 @@ class RestRod {
         return false;
     }
 
-    void write(float* planes) const {
+    /// `count` planes.
+    void write(float* planes, std::size_t count) const {
         for (std::uint32_t p = 0; p < block_.points; ++p) {
-            Double3 tangent = kAlong, axis = kAlong;
+            Double3 tangent = kAlong, axis = kAlong, normal{};
             Rotation loaded;
             if (p + 1 < block_.points) {
                 tangent = rotate(free_[p], kAlong);
                 axis = tangent + rotate(inner(free_, p), kAlong);
                 axis = axis * (1.0 / std::max(lengthOf(axis), 1e-9));
                 loaded = authored_[p] * inverse(free_[p]);
+                if (isFlat()) normal = across(rotate(free_[p], flat_[p]), axis);
             }
-            const double values[kRodRestPlanes] = {tangent.x,  tangent.y,  tangent.z,  axis.x,
-                                                   axis.y,     axis.z,     bend_[p],   mass(p),
-                                                   loaded.v.x, loaded.v.y, loaded.v.z, loaded.w};
-            for (std::size_t plane = 0; plane < kRodRestPlanes; ++plane)
+            const double values[kRodFlatRestPlanes] = {
+                tangent.x,  tangent.y,  tangent.z,  axis.x,   axis.y,   axis.z,   bend_[p], mass(p),
+                loaded.v.x, loaded.v.y, loaded.v.z, loaded.w, normal.x, normal.y, normal.z};
+            for (std::size_t plane = 0; plane < count; ++plane)
                 planes[plane * size_ + at(p)] = static_cast<float>(values[plane]);
         }
     }
@@ -170,6 +179,7 @@ class RestRod {
     using Frames = std::array<Rotation, kMaxPoints>;
     static constexpr Double3 kAlong{0.0, 0.0, 1.0};  // a segment's tangent in its frame
     static constexpr double kNoLength = 1e-9;        // metres
+    static constexpr double kTurnShare = 50.0;       // a turn of 1/50 counts as much as what is carried on
 
     std::size_t at(std::uint32_t p) const { return std::size_t{p} * kBlockLanes + lane_; }
     double segment(std::uint32_t j) const { return static_cast<double>(rest_[3 * size_ + at(j)]); }
@@ -199,6 +209,29 @@ class RestRod {
         }
     }
 
+    /// The part of a direction across a unit axis, of unit length.
+    static Double3 across(Double3 direction, Double3 axis) {
+        Double3 part = direction - axis * dotOf(direction, axis);
+        if (lengthOf(part) < 1e-6)
+            part = crossOf(axis, std::abs(axis.x) < 0.8 ? Double3{1.0, 0.0, 0.0} : Double3{0.0, 1.0, 0.0});
+        return part * (1.0 / lengthOf(part));
+    }
+
+    /// The long diameter of each segment, in its frame. Flat hair curls about it: where the authored shape
+    /// turns it follows the axis of the turn, elsewhere it is carried on, from the root's x on.
+    void layFlat() {
+        Double3 before = kAlong, normal{1.0, 0.0, 0.0};
+        for (std::uint32_t j = 0; j + 1 < block_.points; ++j) {
+            const Double3 tangent = rotate(authored_[j], kAlong), turn = crossOf(before, tangent);
+            normal = rotate(between(before, tangent), normal);
+            const double side = dotOf(turn, normal) < 0.0 ? -kTurnShare : kTurnShare;
+            if (j > 0) normal = normal + turn * side;
+            normal = across(normal, tangent);
+            flat_[j] = rotate(inverse(authored_[j]), normal);
+            before = tangent;
+        }
+    }
+
     /// B/l̄. The vertex at the clamp stands for the half segment beside it, too.
     void fillBends() {
         const std::uint32_t segments = block_.points - 1;
@@ -211,7 +244,8 @@ class RestRod {
             const double before = j > 0 ? segment(j - 1) : 0.0;
             double own = 0.5 * (before + segment(j));
             if (j == first_ && j > 0) own += 0.5 * before;
-            bend_[j] = std::min(bendingStiffnessOf(share), kStiffest) / std::max(own, std::max(least, 1e-9));
+            bend_[j] = std::min(section_.stiffer * bendingStiffnessOf(share), kStiffest) /
+                       std::max(own, std::max(least, 1e-9));
         }
     }
 
@@ -291,15 +325,18 @@ class RestRod {
             const Double3 both = kAlong + rotate(inverse(turn), kAlong);
             const Double3 v = rotate(authored_[j], strain.v);
             const Double3 a = rotate(authored_[j], both * (1.0 / std::max(lengthOf(both), 1e-9)));
-            const double b = bend_[j], more = b * (static_cast<double>(settings_.torsionRatio) - 1.0);
-            const Double3 m = v * b + a * (more * dotOf(a, v));
-            const Double3 twist = a * strain.w + crossOf(a, v);  // Jᵀ a
+            const Double3 n = isFlat() ? across(rotate(authored_[j], flat_[j]), a) : Double3{};
+            const double b = bend_[j], more = b * section_.twist, softer = b * section_.flat;
+            const Double3 m = v * b + a * (more * dotOf(a, v)) + n * (softer * dotOf(n, v));
+            const Double3 twist = a * strain.w + crossOf(a, v);     // Jᵀ a
+            const Double3 softTurn = n * strain.w + crossOf(n, v);  // Jᵀ n
             const Double3 couple = (m * strain.w + crossOf(v, m)) * 2.0;
             Matrix3 sum = beyond, left = beyond, right = beyond;
             for (int r = 0; r < 3; ++r) {
                 for (int c = 0; c < 3; ++c) {
                     sum(r, c) += (r == c ? b - dotOf(m, v) - kStableShare * b : 0.0) -
-                                 b * part(v, r) * part(v, c) + more * part(twist, r) * part(twist, c);
+                                 b * part(v, r) * part(v, c) + more * part(twist, r) * part(twist, c) +
+                                 softer * part(softTurn, r) * part(softTurn, c);
                 }
             }
             const double half[3][3] = {
@@ -325,8 +362,8 @@ class RestRod {
             // The axis of twist depends on the shape that is sought.
             for (int step = 0; step < 4 && bend_[j] > 0.0 && lengthOf(n) > 0.0; ++step) {
                 const Double3 both = kAlong + rotate(inverse(turn), kAlong);
-                const Couple couple{bend_[j], static_cast<double>(settings_.torsionRatio),
-                                    both * (1.0 / std::max(lengthOf(both), 1e-9))};
+                const Double3 axis = both * (1.0 / std::max(lengthOf(both), 1e-9));
+                const Couple couple{bend_[j], section_, axis, isFlat() ? across(flat_[j], axis) : Double3{}};
                 const Double3 v = couple.solve(n);
                 const Rotation next = loaded * Rotation{v * -1.0, std::sqrt(1.0 - dotOf(v, v))};
                 const bool found = lengthOf(next.v - turn.v) < 1e-9;
@@ -338,6 +375,7 @@ class RestRod {
     }
 
     const SimulationSettings& settings_;
+    RodSectionRatios section_;
     const Block& block_;
     std::size_t size_;
     const float* rest_;
@@ -347,21 +385,31 @@ class RestRod {
     double total_ = 0.0;
     Frames authored_, free_;  // of segments, with the weight and without load
     std::array<Double3, kMaxPoints> moment_;
+    std::array<Double3, kMaxPoints> flat_;  // in segments' frames, of a flat section
     std::array<double, kMaxPoints> bend_;
 };
 
 }  // namespace
 
+RodSectionRatios rodSectionRatios(const SimulationSettings& settings) {
+    // Of an ellipse with the diameters b ≤ a: I₁ = π a³b/64, I₂ = π a b³/64, and J = π a³b³/(16 (a² + b²)).
+    const double ratio = static_cast<double>(settings.sectionRatio);
+    const double torsion =
+        static_cast<double>(settings.torsionRatio) * 2.0 * ratio * ratio / (1.0 + ratio * ratio);
+    return {1.0 / ratio, torsion - 1.0, ratio * ratio - 1.0};
+}
+
 RodRest makeRodRest(const RestShape& shape, const SimulationSettings& settings) {
     RodRest rest;
-    rest.planes.assign(shape.planeFloats * kRodRestPlanes, 0.0f);
+    rest.planeCount = rodSectionRatios(settings).flat != 0.0 ? kRodFlatRestPlanes : kRodRestPlanes;
+    rest.planes.assign(shape.planeFloats * rest.planeCount, 0.0f);
     rest.curved.assign(shape.blocks.size(), 0);
     for (std::size_t b = 0; b < shape.blocks.size(); ++b) {
         for (std::uint32_t lane = 0; lane < kBlockLanes; ++lane) {
             const auto rod =
                 std::make_unique<RestRod>(shape, settings, b, lane);  // too large for a game's stack
             if (rod->curved()) rest.curved[b] = 1;
-            rod->write(rest.planes.data() + shape.blocks[b].firstPlane * kRodRestPlanes);
+            rod->write(rest.planes.data() + shape.blocks[b].firstPlane * rest.planeCount, rest.planeCount);
         }
     }
     return rest;
@@ -479,7 +527,7 @@ RodView rodViewOf(const RestShape& shape, const RodRest& rest, State& state, std
     if (state.rods.empty()) return view;
     const Block& block = shape.blocks[index];
     const std::size_t size = planeSize(block);
-    const float* const fixed = rest.planes.data() + block.firstPlane * kRodRestPlanes;
+    const float* const fixed = rest.planes.data() + block.firstPlane * rest.planeCount;
     float* const moving = state.rods.data() + block.firstPlane * kRodStatePlanes;
     const auto three = [&](std::size_t plane) { return Planes{moving + plane * size, size}; };
     view.tangent = {fixed, size};
@@ -487,6 +535,7 @@ RodView rodViewOf(const RestShape& shape, const RodRest& rest, State& state, std
     view.bend = fixed + 6 * size;
     view.mass = fixed + 7 * size;
     view.restRotation = fixed + 8 * size;
+    if (rest.planeCount == kRodFlatRestPlanes) view.normal = {fixed + kRodRestPlanes * size, size};
     view.rotation = moving;
     view.increment = three(4);
     view.displacement = three(7);

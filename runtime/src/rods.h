@@ -12,14 +12,25 @@ namespace hairloom::runtime {
 
 /// What follows from rest shape and settings; made anew when settings change.
 struct RodRest {
-    Floats planes;                     ///< per block: RodView's tangent, axis, bend, mass, rest rotation
-    std::vector<std::uint8_t> curved;  ///< per block: strands have rest curvature, so twist matters
+    Floats planes;               ///< per block: RodView's tangent, axis, bend, mass, rest rotation, normal
+    std::size_t planeCount = 0;  ///< kRodRestPlanes, or kRodFlatRestPlanes of a flat section
+    std::vector<std::uint8_t> curved;  ///< per block: twist matters, by rest curvature or a flat section
 
     std::size_t bytes() const { return planes.size() * sizeof(float) + curved.size(); }
 };
 inline constexpr std::size_t kRodRestPlanes = 12;
+inline constexpr std::size_t kRodFlatRestPlanes = 15;
 inline constexpr std::size_t kRodStatePlanes = 23;
 inline constexpr std::size_t kRodLaneRows = 2;
+
+/// What a section bends and twists by, as shares of its stiffer bend: an ellipse of the area of the round
+/// fibre that angularStiffness stands for.
+struct RodSectionRatios {
+    double stiffer = 1.0;  ///< EI₁ over EI of the round fibre
+    double twist = 0.0;    ///< (GJ − EI₁)/EI₁
+    double flat = 0.0;     ///< (EI₂ − EI₁)/EI₁, about the long diameter; 0 of a round section
+};
+RodSectionRatios rodSectionRatios(const SimulationSettings& settings);
 
 RodRest makeRodRest(const RestShape& shape, const SimulationSettings& settings);
 

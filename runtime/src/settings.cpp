@@ -38,6 +38,7 @@ constexpr Field<S> kFields[] = {
     field<&S::angularStiffness>("angularStiffness", "", 0, 1, "how strongly hair returns to its shape: 0 is off, 0.5 real hair, 1 rigid"),
     rampField<&S::angularCurve>("angularCurve", "share of the stiffness from root to tip, by keys [place, share]: lower is looser there"),
     field<&S::torsionRatio>("torsionRatio", "", 0.01, 100, "torsional over bending stiffness of rods: 0.75 is a round fibre"),
+    field<&S::sectionRatio>("sectionRatio", "", 0.2, 1, "short over long diameter of the section of rods: 1 is round, 0.6 flat as curly hair"),
     field<&S::bendDampingTime>("bendDampingTime", "s", 0, 1, "waves faster than this fade: 0 rings on"),
     field<&S::restGravity>("restGravity", "", 0, 1, "share of gravity that the authored shape of rods already carries: 0 sags from there"),
     field<&S::gravity>("gravity", "m/s²", -1000, 1000, "acceleration of everything"),

@@ -331,6 +331,7 @@ TEST_F(RodRun, StandsFiftyStorms) {
         s.airDrag = dice.between(0.0f, 50.0f);
         s.angularStiffness = storm % 10 == 0 ? 0.0f : dice.between(0.0f, 0.99f);
         s.torsionRatio = dice.between(0.05f, 10.0f);
+        if (storm % 3 == 0) s.sectionRatio = dice.between(0.2f, 1.0f);
         s.bendDampingTime = storm % 2 == 0 ? 0.0f : dice.between(0.0f, 0.3f);
         s.dampingTime = storm % 5 == 0 ? 0.0f : 0.5f;
         s.restitution = dice.between(0.0f, 1.0f);

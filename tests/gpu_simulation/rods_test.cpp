@@ -47,6 +47,13 @@ const Case kCases[] = {
     {"stiff", [](SimulationSettings& s) { s.angularStiffness = 0.95f; }},
     {"oneClampedPoint", [](SimulationSettings& s) { s.clampedPoints = 1; }},
     {"twistsHard", [](SimulationSettings& s) { s.torsionRatio = 8.0f; }},
+    {"flat", [](SimulationSettings& s) { s.sectionRatio = 0.4f; }},
+    {"flatSpheresInWind",
+     [](SimulationSettings& s) {
+         s.sectionRatio = 0.7f;
+         blow(s, WindKind::turbulent);
+     },
+     true, 5e-5},
     {"withoutWeightAtRest", [](SimulationSettings& s) { s.restGravity = 0.0f; }},
     {"windUniform", [](SimulationSettings& s) { blow(s, WindKind::uniform); }},
     {"windGusting", [](SimulationSettings& s) { blow(s, WindKind::gusting); }},

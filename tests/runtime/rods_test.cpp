@@ -295,6 +295,7 @@ TEST(Rods, NoStormLeavesATrace) {
         s.bendDampingTime = random() % 2 ? 0.03f : 0.0f;
         s.clampedPoints = 1 + random() % 2;
         s.torsionRatio = spread(0.3f, 2.0f);
+        if (storm % 3 == 0) s.sectionRatio = spread(0.2f, 1.0f);
         s.teleportDistance = 10000.0f;
         Engine engine = makeEngine(strand, s);
         std::vector<RootFrame> roots(1);

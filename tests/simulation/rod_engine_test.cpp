@@ -78,6 +78,15 @@ TEST(RodsConverge, SprungRoot) {
     expectConvergence(rodErrors(swing(curl(), 40), sprung), 0.9, 3.4);
 }
 
+TEST(RodsConverge, FlatSections) {
+    runtime::SimulationSettings flat = rods();
+    flat.sectionRatio = 0.4f;
+    expectConvergence(rodErrors(swing(straight(), 40), flat), 1.0, 3.0);
+    expectConvergence(rodErrors(swing(helix(), 40), flat), 2.2, 2.9);
+    flat.restGravity = 1.0f;
+    expectConvergence(rodErrors(swing(curl(), 40), flat), 0.9, 3.0);
+}
+
 /// The angle of the air is that which the prediction has at the substep's end: of second order.
 TEST(RodsConverge, Wind) {
     runtime::SimulationSettings windy = rods();

@@ -31,7 +31,10 @@ double stiffnessOf(const StrandShape& body, const runtime::SimulationSettings& s
     const double total = std::accumulate(body.lengths.begin(), body.lengths.end(), 0.0);
     const double along = static_cast<double>(j) / static_cast<double>(n);
     const double authored = authoredStiffness(settings, along);
-    const double stiff = authored < 1.0 ? std::min(bendingStiffness(authored), kStiffest) : kStiffest;
+    const double stiff =
+        authored < 1.0
+            ? std::min(bendingStiffness(authored) / static_cast<double>(settings.sectionRatio), kStiffest)
+            : kStiffest;
     double span = 0.5 * body.lengths[j];
     // The vertex at the clamp stands for the whole clamped segment.
     if (j > 0) span += (j + 1 == body.firstFree ? 1.0 : 0.5) * body.lengths[j - 1];
@@ -47,14 +50,20 @@ Quaterniond rotationOf(const Vec3d& v) {
 struct Vertex {
     Quaterniond inner;            // of the segment before it
     Vec3d innerTangent, tangent;  // of the segment before it, unloaded, and of its own, authored
-    double stiffness, torsionRatio;
+    Vec3d longDiameter;           // of its own segment, authored
+    double stiffness, torsionRatio, flatRatio;
 
     Vec3d unloadedTangent(const Vec3d& v) const { return (inner * rotationOf(v)).conjugate() * tangent; }
     Vec3d axis(const Vec3d& v) const { return (innerTangent + unloadedTangent(v)).normalized(); }
+    Vec3d normal(const Vec3d& v) const {
+        const Vec3d n = (inner * rotationOf(v)).conjugate() * longDiameter, a = axis(v);
+        return (n - a.dot(n) * a).normalized();
+    }
     /// On its own segment, with p = (√(1 − v²), v), in the frame of the root.
     Vec3d moment(const Vec3d& v) const {
-        const Vec3d a = axis(v), strain = 2.0 * v;
-        const Vec3d m = stiffness * (strain + (torsionRatio - 1.0) * a.dot(strain) * a);
+        const Vec3d a = axis(v), n = normal(v), strain = 2.0 * v;
+        const Vec3d m = stiffness * (strain + (torsionRatio - 1.0) * a.dot(strain) * a +
+                                     (flatRatio - 1.0) * n.dot(strain) * n);
         return inner * Vec3d(rotationOf(v).w() * m + v.cross(m));
     }
     /// v of a moment, by Newton's method with differences.
@@ -77,6 +86,22 @@ struct Vertex {
     }
 };
 
+/// The long diameter of each segment in the authored shape: about the axis that the strand turns about, where
+/// it turns by much more than 1/50, else carried on from the root's x without turning about the strand.
+std::vector<Vec3d> longDiameters(const StrandShape& body) {
+    std::vector<Vec3d> found;
+    Vec3d before = Vec3d::UnitZ(), along = Vec3d::UnitX();
+    for (const Vec3d& edge : body.edges) {
+        const Vec3d tangent = edge.normalized(), turn = before.cross(tangent);
+        along = Quaterniond::FromTwoVectors(before, tangent) * along;
+        if (!found.empty()) along += (turn.dot(along) < 0.0 ? -50.0 : 50.0) * turn;
+        along = (along - tangent.dot(along) * tangent).normalized();
+        found.push_back(along);
+        before = tangent;
+    }
+    return found;
+}
+
 /// What a held shape carries: beyond each segment a weight, about each vertex a moment.
 struct Load {
     std::vector<Vec3d> weight, moment;
@@ -96,18 +121,26 @@ Load loadOf(const StrandShape& body, const Vec3d& gravity) {
 /// Fills what the unloaded shape decides.
 void unload(const StrandShape& body, const Load& load, RodShape& rod) {
     const std::size_t n = body.segments(), first = body.firstFree - 1;
+    const std::vector<Vec3d> flat = longDiameters(body);
     rod.atRest.assign(n, Quaterniond::Identity());
     for (std::size_t j = 0; j < n; ++j) {
         const Vec3d tangent = body.edges[j].normalized();
         rod.tangent[j] = rod.axis[j] = tangent;
+        rod.normal[j] = flat[j];
         if (j < first) continue;
         const Quaterniond inner = j > 0 ? rod.atRest[j - 1] : Quaterniond::Identity();
-        const Vertex vertex{inner, j > 0 ? rod.tangent[j - 1] : tangent, tangent, rod.stiffness[j],
-                            rod.torsionRatio};
+        const Vertex vertex{inner,
+                            j > 0 ? rod.tangent[j - 1] : tangent,
+                            tangent,
+                            flat[j],
+                            rod.stiffness[j],
+                            rod.torsionRatio,
+                            rod.flatRatio};
         const Vec3d v = rod.stiffness[j] > 0.0 ? vertex.bent(load.moment[j]) : Vec3d(Vec3d::Zero());
         rod.atRest[j] = (inner * rotationOf(v)).normalized();
         rod.tangent[j] = vertex.unloadedTangent(v);
         rod.axis[j] = vertex.axis(v);
+        rod.normal[j] = vertex.normal(v);
     }
 }
 
@@ -199,10 +232,13 @@ RodShape makeRodShape(const StrandShape& body, const runtime::SimulationSettings
                       const Vec3d& gravityAtRest) {
     RodShape rod;
     const std::size_t n = body.segments();
-    rod.torsionRatio = static_cast<double>(settings.torsionRatio);
+    const double flat = static_cast<double>(settings.sectionRatio), squared = flat * flat;
+    rod.torsionRatio = static_cast<double>(settings.torsionRatio) * 2.0 * squared / (1.0 + squared);
+    rod.flatRatio = squared;
     rod.dampingTime = static_cast<double>(settings.bendDampingTime);
     rod.tangent.assign(n, Vec3d::Zero());
     rod.axis.assign(n, Vec3d::Zero());
+    rod.normal.assign(n, Vec3d::Zero());
     rod.stiffness.assign(n, 0.0);
     for (std::size_t j = body.firstFree - 1; j < n; ++j) rod.stiffness[j] = stiffnessOf(body, settings, j);
     hold(body, loadOf(body, gravityAtRest * static_cast<double>(settings.restGravity)), rod);

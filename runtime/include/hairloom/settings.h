@@ -91,6 +91,9 @@ struct SimulationSettings {
     Ramp angularCurve = Ramp::straight(1.0f, 0.5f);
     /// GJ/EI of rods; 0.75 is a round section whose Poisson ratio is 1/3.
     float torsionRatio = 0.75f;
+    /// Short over long diameter of the section of rods, an ellipse of the round one's area; its long diameter
+    /// is the axis that hair curls about.
+    float sectionRatio = 1.0f;
     /// Kelvin-Voigt.
     float bendDampingTime = 0.03f;
     /// Of rods and projective equations. At 1 hair keeps its authored shape as far as its stiffness can carry
