@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How the hair moves: presets of measured hair, and all settings of the engine. A change shows in the running
 // simulation at once.
+#include <QCheckBox>
 #include <QComboBox>
 #include <QPushButton>
 #include <QVBoxLayout>
@@ -84,6 +85,37 @@ QWidget* makeHoldButton(QtDocument& document) {
     return button;
 }
 
+/// What the preview moves the hair by, with what it costs in the panel Effects and in the status line.
+QWidget* makeMethods(Player& player) {
+    auto* row = new QWidget;
+    auto* layout = new QVBoxLayout(row);
+    layout->setContentsMargins(0, 0, 0, 0);
+    auto* box = new QComboBox;
+    box->setObjectName("play-method");
+    box->setToolTip(QObject::tr(
+        "What moves the hair while it plays here. Files and games take the strand engine: the others "
+        "are for a look at what they cost and lose"));
+    const std::pair<QString, SimulationMethod> methods[] = {
+        {QObject::tr("Strand engine (rods or springs)"), SimulationMethod::strands},
+        {QObject::tr("Projective equations"), SimulationMethod::projective},
+        {QObject::tr("Lattice, for distant hair"), SimulationMethod::lattice}};
+    for (const auto& [name, method] : methods) box->addItem(name, static_cast<int>(method));
+    auto* hairs = new QCheckBox(QObject::tr("Hair against hair"));
+    hairs->setObjectName("play-hair-hair");
+    hairs->setToolTip(QObject::tr("Hair pushes hair apart through a volume between frames, on the CPU"));
+    const auto choose = [&player, box, hairs] {
+        const auto method = static_cast<SimulationMethod>(box->currentData().toInt());
+        const bool takesVelocities = method == SimulationMethod::strands;
+        hairs->setEnabled(takesVelocities);
+        player.setMethod({method, takesVelocities && hairs->isChecked()});
+    };
+    QObject::connect(box, &QComboBox::currentIndexChanged, row, choose);
+    QObject::connect(hairs, &QCheckBox::toggled, row, choose);
+    layout->addWidget(box);
+    layout->addWidget(hairs);
+    return row;
+}
+
 QWidget* withCurve(QtDocument& document, QWidget* form) {
     auto* widget = new QWidget;
     auto* layout = new QVBoxLayout(widget);
@@ -94,7 +126,8 @@ QWidget* withCurve(QtDocument& document, QWidget* form) {
     return widget;
 }
 
-QWidget* makePanel(QtDocument& document, const Preferences& preferences, const Prices& prices) {
+QWidget* makePanel(QtDocument& document, const Preferences& preferences, const Prices& prices,
+                   Player& player) {
     const std::vector<Field> fields = simulationFields();
     QWidget* const content = column({makePresets(document), makeHoldButton(document)});
     auto* layout = static_cast<QVBoxLayout*>(content->layout());
@@ -105,6 +138,8 @@ QWidget* makePanel(QtDocument& document, const Preferences& preferences, const P
         if (group.fields.contains("angularStiffness")) form = withCurve(document, form);
         layout->insertWidget(layout->count() - 1, collapsible(group.title, form, group.open));
     }
+    layout->insertWidget(layout->count() - 1,
+                         collapsible(QObject::tr("While it plays"), makeMethods(player), false));
     // Fields that the engine has gained since.
     QStringList others;
     for (const Field& field : fields) {
@@ -120,14 +155,15 @@ QWidget* makePanel(QtDocument& document, const Preferences& preferences, const P
 }  // namespace
 
 PanelInfo physicsPanel() {
-    return {
-        "physics",
-        QObject::tr("Physics"),
-        "physics",
-        Qt::RightDockWidgetArea,
-        60,
-        true,
-        [](const PanelParts& parts) { return makePanel(parts.document, parts.preferences, parts.prices); }};
+    return {"physics",
+            QObject::tr("Physics"),
+            "physics",
+            Qt::RightDockWidgetArea,
+            60,
+            true,
+            [](const PanelParts& parts) {
+                return makePanel(parts.document, parts.preferences, parts.prices, parts.player);
+            }};
 }
 
 }  // namespace hairloom::editor

@@ -14,7 +14,8 @@ class CpuEngine final : public LiveEngine {
         : simulation_(std::move(simulation)), parameters_(std::move(parameters)) {}
 
     Status step(float dt, double, LiveChanges changes, HairPose& pose, Status& refused) override {
-        if (changes.settings) refused = setEngineSettings(*parameters_->engine, *changes.settings);
+        if (changes.settings && parameters_->engine)
+            refused = setEngineSettings(*parameters_->engine, *changes.settings);
         if (changes.spheres) parameters_->spheres = std::move(*changes.spheres);
         simulation_.step(dt, pose.head);
         const auto points = simulation_.positions_ws();
@@ -109,13 +110,16 @@ class DeviceEngine final : public LiveEngine {
 
 }  // namespace
 
-Result<std::unique_ptr<LiveEngine>> makeCpuEngine(const LiveStart& start, double time) {
+Result<std::unique_ptr<LiveEngine>> makeCpuEngine(const LiveStart& start, double time,
+                                                  const PlayedMethod& played) {
     const auto parameters = std::make_shared<LiveParameters>();
     SimulationOptions options;
-    options.backend = liveMethod(parameters);
+    options.method = played.method;
+    if (played.hairHair) options.hairHair.emplace();
+    if (played.method == SimulationMethod::strands) options.backend = liveMethod(parameters);
     auto made = Simulation::make(*start.groom, start.pose, options);
     if (!made) return tl::unexpected(made.error());
-    if (start.state && !made->setState(*start.state, time))
+    if (start.state && played.method == SimulationMethod::strands && !made->setState(*start.state, time))
         return fail("the hair has other strands than before");
     return std::make_unique<CpuEngine>(std::move(*made), parameters);
 }

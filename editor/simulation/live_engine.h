@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "editor/simulation/played_method.h"
 #include "editor/viewport/live_link.h"
 #include "editor/viewport/picture_request.h"
 
@@ -32,7 +33,8 @@ class LiveEngine {
 
 /// At rest on `start.pose`, or from its state, `time` seconds after the beginning; the settings are the
 /// groom's. Errors: as for simulations, and what the device says.
-Result<std::unique_ptr<LiveEngine>> makeCpuEngine(const LiveStart& start, double time);
+Result<std::unique_ptr<LiveEngine>> makeCpuEngine(const LiveStart& start, double time,
+                                                  const PlayedMethod& played);
 /// `link` outlives it as far as it has a device.
 Result<std::unique_ptr<LiveEngine>> makeDeviceEngine(std::shared_ptr<LiveLink> link, const LiveStart& start);
 

@@ -12,7 +12,7 @@ namespace hairloom::editor {
 
 /// What a running simulation looks at before each step.
 struct LiveParameters {
-    StrandMethod* engine = nullptr;        ///< set when the simulation has been made
+    StrandMethod* engine = nullptr;        ///< set when the simulation has been made; null of another method
     std::vector<CollisionSphere> spheres;  ///< in place of the groom's
 };
 

@@ -55,6 +55,7 @@ struct Player::WorkerRequests {
     std::shared_ptr<LiveLink> live;
     EngineWish wish = EngineWish::cpu;
     bool wishChanged = false;
+    PlayedMethod method;
     std::shared_ptr<const Groom> groom;
     std::shared_ptr<HeadMotion> motion;
     Eigen::Isometry3f offset = Eigen::Isometry3f::Identity();
@@ -258,6 +259,16 @@ void Player::setEngine(EngineWish wish) {
     });
 }
 
+void Player::setMethod(const PlayedMethod& method) {
+    if (method == method_) return;
+    method_ = method;
+    request([&](WorkerRequests& requests) {
+        requests.method = method;
+        requests.regroomed = true;
+    });
+    outdatePlanPreview();
+}
+
 void Player::setHeadOffset(const Eigen::Isometry3f& offset) {
     request([&](WorkerRequests& requests) { requests.offset = offset; });
 }
@@ -297,6 +308,11 @@ void Player::documentChanged(editing::Part parts) {
         if (auto made = makeMotion(motion_)) motion = std::move(*made);
     }
     request([&](WorkerRequests& requests) {
+        // The other methods are made with what they need.
+        if (method_.method != SimulationMethod::strands) {
+            requests.groom = std::make_shared<const Groom>(groom);
+            requests.regroomed = true;
+        }
         if (contains(parts, editing::Part::Physics)) requests.settings = groom.simulation;
         if (!contains(parts, editing::Part::Spheres)) return;
         requests.spheres = groom.spheres;
@@ -354,6 +370,8 @@ bool Player::prepare(Playing& playing, const WorkerRequests& taken) {
     EngineChoice choice{EngineKind::cpu, "asked for"};
     if (playing.deviceFailed) {
         choice = playing.choice;
+    } else if (const std::string why = taken.method.whyCpu(); !why.empty()) {
+        choice.why = why;
     } else if (taken.wish != EngineWish::cpu) {
         choice = taken.live
                      ->post([&](LiveWork* work) {
@@ -370,7 +388,7 @@ bool Player::prepare(Playing& playing, const WorkerRequests& taken) {
         if (!made) choice = {EngineKind::cpu, made.error().message()};
     }
     if (!playing.engine) {
-        auto made = makeCpuEngine(start, playing.time);
+        auto made = makeCpuEngine(start, playing.time, taken.method);
         if (!made) {
             refuse(made.error());
             return false;

@@ -15,6 +15,7 @@
 #include "core/scene/engine_choice.h"
 #include "core/simulation/simulation.h"
 #include "editor/document/qt_document.h"
+#include "editor/simulation/played_method.h"
 #include "editor/viewport/live_link.h"
 #include "editor/viewport/picture_request.h"
 
@@ -72,6 +73,9 @@ class Player : public QObject {
     void setLive(std::shared_ptr<LiveLink> live);
     /// What moves the hair: from the next frame on, which goes on from where hair is.
     void setEngine(EngineWish wish);
+    /// How the hair moves, from the next frame on; a method that knows no state of another begins at rest.
+    void setMethod(const PlayedMethod& method);
+    const PlayedMethod& method() const { return method_; }
     /// What moves it now or did last, and why; nothing before anything has played.
     const std::optional<EngineChoice>& engine() const { return engine_; }
 
@@ -118,6 +122,7 @@ class Player : public QObject {
     bool captured_ = false;  ///< the thread has the groom as it is now
     std::shared_ptr<const PlayedFrame> frame_;
     std::optional<EngineChoice> engine_;
+    PlayedMethod method_;
     std::vector<std::uint32_t> capturedOffsets_;  ///< of the strands that the thread has
     quint64 epoch_ = 0;                           ///< frames of earlier ones are dropped
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Hair that plays in the window, on either engine.
+#include <QCheckBox>
+#include <QComboBox>
 #include <QDir>
 #include <QLabel>
+#include <algorithm>
 
 #include "core/gpu/validation.h"
 #include "editor/simulation/player.h"
@@ -65,6 +68,53 @@ TEST_F(LiveTest, EnginesChangeWhileItPlays) {
     EXPECT_FALSE(parts().player.effects().empty());
     trigger("play.reset");
     EXPECT_FALSE(viewport().pose());
+}
+
+TEST_F(LiveTest, OtherMethodsMoveTheHairAndSayWhatTheyCost) {
+    ASSERT_TRUE(parts().player.setMotion("nod"));
+    trigger("play.toggle");
+    ASSERT_TRUE(played(0.1));
+    auto* method = window->findChild<QComboBox*>("play-method");
+    auto* hairs = window->findChild<QCheckBox*>("play-hair-hair");
+    ASSERT_TRUE(method && hairs);
+    const auto costs = [&](const std::string& effect) {
+        return QTest::qWaitFor(
+            [&] {
+                const auto effects = parts().player.effects();
+                const auto row = std::ranges::find(effects, effect, &EffectReport::name);
+                return row != effects.end() && row->on && row->milliseconds > 0;
+            },
+            60'000);
+    };
+    const auto goesOn = [&] {
+        if (!played(now() + 0.2)) return false;
+        const auto frame = parts().player.frame();
+        return frame->stats.nanCount == 0 && frame->stats.fastestMmPerSecond > 1;
+    };
+    hairs->setChecked(true);
+    EXPECT_TRUE(costs("hair-hair"));
+    EXPECT_TRUE(goesOn());
+    EXPECT_EQ(parts().player.engine()->why, "hair against hair runs there");
+    method->setCurrentIndex(1);
+    EXPECT_FALSE(hairs->isEnabled()) << "those take no velocities";
+    EXPECT_TRUE(costs("projective equations"));
+    EXPECT_TRUE(goesOn());
+    // Settings, spheres and strokes arrive there, too.
+    Groom windy = document().groom();
+    windy.simulation.windSpeed = 12;
+    document().perform(editing::setPhysics(document().editing().model(), windy.simulation, "wind"));
+    EXPECT_TRUE(goesOn());
+    method->setCurrentIndex(2);
+    EXPECT_TRUE(costs("lattice"));
+    simulateOn(SimulateOn::Gpu);
+    ASSERT_TRUE(played(now() + 0.2));
+    EXPECT_EQ(engine(), EngineKind::cpu) << "lattices are of the CPU";
+    method->setCurrentIndex(0);
+    hairs->setChecked(false);
+    ASSERT_TRUE(played(now() + 0.3));
+    EXPECT_EQ(engine(), EngineKind::gpu);
+    simulateOn(SimulateOn::Cpu);
+    trigger("play.reset");
 }
 
 TEST_F(LiveTest, EditsArriveWhileItPlays) {

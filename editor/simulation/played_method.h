@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// How the hair moves in the preview.
+
+#include <string>
+
+#include "core/simulation/simulation.h"
+
+namespace hairloom::editor {
+
+/// Of the preview alone: what is exported moves by the strand engine.
+struct PlayedMethod {
+    SimulationMethod method = SimulationMethod::strands;
+    bool hairHair = false;  ///< hair pushes hair between frames; of the strand engine
+
+    /// Why nothing but the CPU can run it; empty where a device can.
+    std::string whyCpu() const {
+        if (method == SimulationMethod::projective) return "projective equations run there";
+        if (method == SimulationMethod::lattice) return "lattices run there";
+        return hairHair ? "hair against hair runs there" : "";
+    }
+    friend bool operator==(const PlayedMethod&, const PlayedMethod&) = default;
+};
+
+}  // namespace hairloom::editor
