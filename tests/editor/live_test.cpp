@@ -89,7 +89,8 @@ TEST_F(LiveTest, OtherMethodsMoveTheHairAndSayWhatTheyCost) {
     const auto goesOn = [&] {
         if (!played(now() + 0.2)) return false;
         const auto frame = parts().player.frame();
-        return frame->stats.nanCount == 0 && frame->stats.fastestMmPerSecond > 1;
+        return frame->stats.nanCount == 0 && frame->before &&
+               !std::ranges::equal(frame->pose->positions_ws, frame->before->positions_ws);
     };
     hairs->setChecked(true);
     EXPECT_TRUE(costs("hair-hair"));

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: MIT
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Rods of a flat section: they bend by the two moments of area of their ellipse, and keep what round ones
 // keep.
 #include <gtest/gtest.h>
