@@ -263,7 +263,7 @@ TEST(Grid, WhatIsWrongIsRefusedWithWhatWasExpected) {
     EXPECT_THAT(parseAxis("substeps", {"0"}).error().message(), HasSubstr("1 to 256"));
     EXPECT_THAT(parseAxis("substeps", {"4x"}).error().message(), HasSubstr("number"));
     EXPECT_THAT(parseAxis("substeps", {"1.5"}).error().message(), HasSubstr("1.5"));
-    EXPECT_THAT(parseAxis("points", {"2"}).error().message(), HasSubstr("3 to 512"));
+    EXPECT_THAT(parseAxis("points", {"1"}).error().message(), HasSubstr("2 to 512"));
     EXPECT_THAT(parseAxis("gravity", {"1"}).error().message(), HasSubstr("one number"));
     EXPECT_THAT(parseAxis("beard", {"1"}).error().message(), HasSubstr("beard"));
     EXPECT_FALSE(parseAxis("substeps", {}).has_value());
