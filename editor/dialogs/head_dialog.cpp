@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editor/dialogs/head_dialog.h"
 
-#include <QDialogButtonBox>
 #include <QFileInfo>
 #include <QFormLayout>
 #include <QHBoxLayout>
@@ -10,6 +9,7 @@
 #include <algorithm>
 
 #include "core/scene/open.h"
+#include "editor/fields/blocks.h"
 #include "editor/fields/length_text.h"
 #include "editor/viewport/strand_preview.h"
 #include "importers/length_unit.h"
@@ -80,14 +80,7 @@ HeadDialog::HeadDialog(Tasks& tasks, const Preferences& preferences, const QStri
     groups_->setToolTip(
         tr("Groups that are checked are shown, carry hair and collide with it; the others are left out"));
     side->addWidget(groups_, 1);
-    auto* buttons = new QDialogButtonBox(QDialogButtonBox::Cancel);
-    open_ = buttons->addButton(tr("Open"), QDialogButtonBox::AcceptRole);
-    open_->setDefault(true);
-    open_->setEnabled(false);
-    open_->setToolTip(tr("Opens the head as shown"));
-    side->addWidget(buttons);
-    connect(buttons, &QDialogButtonBox::accepted, this, &QDialog::accept);
-    connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
+    open_ = acceptOrCancel(*this, *side, tr("Open"), tr("Opens the head as shown"));
     connect(search_, &QLineEdit::textChanged, this, &HeadDialog::search);
     connect(unit_, &QButtonGroup::idClicked, this, &HeadDialog::refresh);
     connect(up_, &QButtonGroup::idClicked, this, &HeadDialog::refresh);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editor/dialogs/import_dialog.h"
 
-#include <QDialogButtonBox>
 #include <QFileInfo>
 #include <QFormLayout>
 #include <QHBoxLayout>
 #include <QPointer>
 
+#include "editor/fields/blocks.h"
 #include "editor/viewport/strand_preview.h"
 #include "importers/length_unit.h"
 
@@ -51,14 +51,8 @@ ImportDialog::ImportDialog(QtDocument& document, Tasks& tasks, const QString& pa
     summary_->setFixedWidth(240);
     summary_->setAlignment(Qt::AlignTop);
     side->addWidget(summary_, 1);
-    auto* buttons = new QDialogButtonBox(QDialogButtonBox::Cancel);
-    take_ = buttons->addButton(tr("Import"), QDialogButtonBox::AcceptRole);
-    take_->setDefault(true);
-    take_->setEnabled(false);
-    take_->setToolTip(tr("Takes the strands as shown; on a head they are bound to its scalp"));
-    side->addWidget(buttons);
-    connect(buttons, &QDialogButtonBox::accepted, this, &QDialog::accept);
-    connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
+    take_ = acceptOrCancel(*this, *side, tr("Import"),
+                           tr("Takes the strands as shown; on a head they are bound to its scalp"));
     connect(unit_, &QComboBox::currentIndexChanged, this, &ImportDialog::read);
     connect(up_, &QComboBox::currentIndexChanged, this, &ImportDialog::read);
     connect(segments_, &QSpinBox::valueChanged, this, &ImportDialog::read);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editor/fields/blocks.h"
 
+#include <QDialogButtonBox>
 #include <QHeaderView>
 #include <QLabel>
 #include <QScrollArea>
@@ -27,6 +28,18 @@ QPushButton* pushButton(const char* name, const QString& text, const QString& ti
     return made;
 }
 
+QPushButton* acceptOrCancel(QDialog& dialog, QLayout& layout, const QString& text, const QString& tip) {
+    auto* buttons = new QDialogButtonBox(QDialogButtonBox::Cancel);
+    QPushButton* const accept = buttons->addButton(text, QDialogButtonBox::AcceptRole);
+    accept->setDefault(true);
+    accept->setEnabled(false);
+    accept->setToolTip(tip);
+    layout.addWidget(buttons);
+    QObject::connect(buttons, &QDialogButtonBox::accepted, &dialog, &QDialog::accept);
+    QObject::connect(buttons, &QDialogButtonBox::rejected, &dialog, &QDialog::reject);
+    return accept;
+}
+
 QWidget* scrolled(QWidget* content) {
     auto* area = new QScrollArea;
     area->setWidgetResizable(true);
@@ -35,6 +48,15 @@ QWidget* scrolled(QWidget* content) {
     area->setWidget(content);
     area->setMinimumWidth(content->minimumSizeHint().width() + 12);
     return area;
+}
+
+QWidget* stacked(std::initializer_list<QWidget*> rows) {
+    auto* widget = new QWidget;
+    auto* layout = new QVBoxLayout(widget);
+    layout->setContentsMargins(0, 0, 0, 0);
+    layout->setSpacing(6);
+    for (QWidget* row : rows) layout->addWidget(row);
+    return widget;
 }
 
 QWidget* column(std::initializer_list<QWidget*> rows) {

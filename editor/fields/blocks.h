@@ -2,6 +2,8 @@
 #pragma once
 // Building blocks that panels and dialogs share.
 
+#include <QDialog>
+#include <QLayout>
 #include <QPushButton>
 #include <QTreeWidget>
 #include <QWidget>
@@ -13,10 +15,15 @@ namespace hairloom::editor {
 QWidget* heading(const QString& text);
 /// Does `act` when it is clicked, as long as it lives.
 QPushButton* pushButton(const char* name, const QString& text, const QString& tip, std::function<void()> act);
+/// At the end of `layout`: Cancel, and the dialog's default button, which accepts and which the caller
+/// enables once there is something to take. Returns that one.
+QPushButton* acceptOrCancel(QDialog& dialog, QLayout& layout, const QString& text, const QString& tip);
 /// `content` in a scroll area with the margins of a panel.
 QWidget* scrolled(QWidget* content);
 /// A widget with a vertical layout, margins and spacing of a panel.
 QWidget* column(std::initializer_list<QWidget*> rows);
+/// One below the other without margins, as a row of a column.
+QWidget* stacked(std::initializer_list<QWidget*> rows);
 /// Rows become as high as their words need in columns as wide as they are now, and follow when those change.
 void wrapRows(QTreeWidget& table);
 /// Folds away under its heading; `open` at first.

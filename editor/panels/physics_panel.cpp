@@ -47,9 +47,6 @@ std::vector<Group> groups() {
 }
 
 QWidget* makePresets(QtDocument& document) {
-    auto* row = new QWidget;
-    auto* layout = new QVBoxLayout(row);
-    layout->setContentsMargins(0, 0, 0, 0);
     auto* box = new QComboBox;
     box->setObjectName("preset");
     box->setToolTip(
@@ -68,8 +65,7 @@ QWidget* makePresets(QtDocument& document) {
         document.perform(editing::setSettings(document.editing().model(), groom, step.toStdString()));
         box->setCurrentIndex(0);
     });
-    layout->addWidget(box);
-    return row;
+    return box;
 }
 
 QWidget* makeHoldButton(QtDocument& document) {
@@ -87,9 +83,6 @@ QWidget* makeHoldButton(QtDocument& document) {
 
 /// What the preview moves the hair by, with what it costs in the panel Effects and in the status line.
 QWidget* makeMethods(Player& player) {
-    auto* row = new QWidget;
-    auto* layout = new QVBoxLayout(row);
-    layout->setContentsMargins(0, 0, 0, 0);
     auto* box = new QComboBox;
     box->setObjectName("play-method");
     box->setToolTip(QObject::tr(
@@ -109,21 +102,9 @@ QWidget* makeMethods(Player& player) {
         hairs->setEnabled(takesVelocities);
         player.setMethod({method, takesVelocities && hairs->isChecked()});
     };
-    QObject::connect(box, &QComboBox::currentIndexChanged, row, choose);
-    QObject::connect(hairs, &QCheckBox::toggled, row, choose);
-    layout->addWidget(box);
-    layout->addWidget(hairs);
-    return row;
-}
-
-QWidget* withCurve(QtDocument& document, QWidget* form) {
-    auto* widget = new QWidget;
-    auto* layout = new QVBoxLayout(widget);
-    layout->setContentsMargins(0, 0, 0, 0);
-    layout->setSpacing(6);
-    layout->addWidget(new StiffnessCurve(document));
-    layout->addWidget(form);
-    return widget;
+    QObject::connect(box, &QComboBox::currentIndexChanged, hairs, choose);
+    QObject::connect(hairs, &QCheckBox::toggled, hairs, choose);
+    return stacked({box, hairs});
 }
 
 QWidget* makePanel(QtDocument& document, const Preferences& preferences, const Prices& prices,
@@ -135,7 +116,7 @@ QWidget* makePanel(QtDocument& document, const Preferences& preferences, const P
     for (const Group& group : groups()) {
         shown += group.fields;
         QWidget* form = new FieldForm(document, preferences, pick(fields, group.fields), &prices);
-        if (group.fields.contains("angularStiffness")) form = withCurve(document, form);
+        if (group.fields.contains("angularStiffness")) form = stacked({new StiffnessCurve(document), form});
         layout->insertWidget(layout->count() - 1, collapsible(group.title, form, group.open));
     }
     layout->insertWidget(layout->count() - 1,
