@@ -2,6 +2,7 @@
 #pragma once
 // What runs are compared with.
 
+#include <functional>
 #include <limits>
 #include <memory>
 #include <string>
@@ -65,9 +66,10 @@ class EngineConverged : public GroundTruthSource {
 class ReferenceConverged : public GroundTruthSource {
   public:
     struct Options {
-        std::size_t strands = 16;        ///< see maxStrands()
-        double toleranceMm = 0.01;       ///< above 0
-        std::uint32_t maxSubsteps = 64;  ///< in each quarter of a frame, a power of two from 4
+        std::size_t strands = 16;              ///< see maxStrands()
+        double toleranceMm = 0.01;             ///< above 0
+        std::uint32_t maxSubsteps = 64;        ///< in each quarter of a frame, a power of two from 4
+        std::function<bool()> cancelled = {};  ///< from any thread; true ends it with an error
     };
     ReferenceConverged() : ReferenceConverged(Options{}) {}
     explicit ReferenceConverged(const Options& options) : options_(options) {}

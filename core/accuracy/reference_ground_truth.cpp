@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 
 #include "core/accuracy/ground_truth.h"
 #include "core/base/parallel.h"
@@ -203,7 +204,8 @@ Result<GroundTruth> ReferenceConverged::compute(const SceneHair& hair, const Hea
     SceneTime fine = time;
     fine.stepsPerFrame = kStepsPerFrame;
     const SceneFrames frames = framesOf(*scene, motion, fine);
-    const reference::Goal goal{1e-3 * options_.toleranceMm, kFirstSubsteps, options_.maxSubsteps, 4};
+    const reference::Goal goal{1e-3 * options_.toleranceMm, kFirstSubsteps, options_.maxSubsteps, 4,
+                               options_.cancelled};
     std::vector<StrandGroundTruth> strands(followed.strands.size());
     parallelFor(strands.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
@@ -238,7 +240,11 @@ Result<GroundTruth> ReferenceConverged::compute(const SceneHair& hair, const Hea
             strands.size() - solved.size(), strands.size()));
     }
 
-    const auto engine = EngineConverged(kEngineSubsteps).compute(hair, motion, time, groundTruth.followed);
+    // The others would take most of the time, and strands know nothing of each other here.
+    const SceneHair solvedHair = strandsOf(hair, groundTruth.followed.strands);
+    Followed all{std::vector<std::uint32_t>(solved.size()), followed.shares};
+    std::iota(all.strands.begin(), all.strands.end(), 0u);
+    const auto engine = EngineConverged(kEngineSubsteps).compute(solvedHair, motion, time, all);
     if (!engine) return tl::unexpected(engine.error());
     groundTruth.notes.push_back(
         fmt::format("The engine with its own steps refined until that changed {:.2g} mm is "

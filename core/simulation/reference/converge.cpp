@@ -11,12 +11,13 @@ namespace {
 /// Of a run that has failed somewhere, and that counts as not converged whatever comes.
 constexpr int kHalvingsOnceFailed = 1;
 
-void runFrames(Solver solver, std::span<const Root> start, std::span<const Frame> frames, StepOptions options,
-               Convergence& result) {
+Status runFrames(Solver solver, std::span<const Root> start, std::span<const Frame> frames,
+                 StepOptions options, const Goal& goal, Convergence& result) {
     solver.reset(start);
     result.report = {};
     result.positions_ws.clear();
     for (const Frame& frame : frames) {
+        if (goal.cancelled && goal.cancelled()) return fail("the reference was cancelled");
         if (result.report.failed > 0) options.halvings = kHalvingsOnceFailed;
         const StepReport report = solver.step(frame, options);
         result.report.steps += report.steps;
@@ -36,6 +37,7 @@ void runFrames(Solver solver, std::span<const Root> start, std::span<const Frame
     }
     result.velocities_ws = solver.velocities_ws();
     result.substeps = options.substeps;
+    return {};
 }
 
 /// Infinite where a point is no number.
@@ -61,10 +63,13 @@ Result<Convergence> converged(const Strands& strands, const runtime::SimulationS
     if (!solver) return tl::unexpected(solver.error());
     Convergence result;
     result.change = std::numeric_limits<double>::infinity();
-    runFrames(*solver, start, frames, {goal.firstSubsteps, goal.order}, result);
+    if (auto run = runFrames(*solver, start, frames, {goal.firstSubsteps, goal.order}, goal, result); !run)
+        return tl::unexpected(run.error());
     while (!result.reached && result.substeps <= goal.maxSubsteps / 2) {
         result.coarser_ws = std::move(result.positions_ws);
-        runFrames(*solver, start, frames, {2 * result.substeps, goal.order}, result);
+        const StepOptions finer{2 * result.substeps, goal.order};
+        if (auto run = runFrames(*solver, start, frames, finer, goal, result); !run)
+            return tl::unexpected(run.error());
         result.change = largestDistance(result.coarser_ws, result.positions_ws);
         result.changes.push_back(result.change);
         result.reached = result.change <= goal.tolerance && result.report.failed == 0;

@@ -2,15 +2,18 @@
 #pragma once
 // The reference with as many substeps as its result needs.
 
+#include <functional>
+
 #include "core/simulation/reference/solver.h"
 
 namespace hairloom::reference {
 
 struct Goal {
-    double tolerance = 1e-6;           ///< m, see Convergence::change
-    std::uint32_t firstSubsteps = 4;   ///< per frame
-    std::uint32_t maxSubsteps = 4096;  ///< per frame, never exceeded
-    int order = 4;                     ///< see StepOptions
+    double tolerance = 1e-6;               ///< m, see Convergence::change
+    std::uint32_t firstSubsteps = 4;       ///< per frame
+    std::uint32_t maxSubsteps = 4096;      ///< per frame, never exceeded
+    int order = 4;                         ///< see StepOptions
+    std::function<bool()> cancelled = {};  ///< asked before each frame; true ends it with an error
 };
 
 struct Convergence {
@@ -27,7 +30,8 @@ struct Convergence {
 };
 
 /// Runs all frames from rest on `start`, again and again with twice the substeps, until the change is within
-/// the tolerance. Chaotic motion never gets there; `reached` says so. Errors: as Solver::make.
+/// the tolerance. Chaotic motion never gets there; `reached` says so. Errors: as Solver::make, being
+/// cancelled.
 Result<Convergence> converged(const Strands& strands, const runtime::SimulationSettings& settings,
                               std::span<const Root> start, std::span<const Frame> frames,
                               const Goal& goal = {}, BendingForce bendingForce = BendingForce::framesHeld);
