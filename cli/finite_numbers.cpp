@@ -28,6 +28,9 @@ void refuseNumbersThatAreNone(CLI::App& job) {
             return isFinite(text) ? std::string() : fmt::format("'{}' is no finite number", text);
         },
         "");
+    // Groups of options that exclude each other are jobs of their own to CLI11.
+    for (CLI::App* group : job.get_subcommands([](const CLI::App* app) { return app->get_name().empty(); }))
+        refuseNumbersThatAreNone(*group);
     for (CLI::Option* option : job.get_options()) {
         const std::string type = option->get_type_name();
         const bool number = type.starts_with("FLOAT") || type.starts_with("INT") || type.starts_with("UINT");

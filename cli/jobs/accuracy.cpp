@@ -41,7 +41,7 @@ std::vector<std::string> pointsToTry(const Groom& groom) {
     std::vector<std::string> counts;
     for (const std::uint32_t part : {4u, 2u, 1u}) {
         constexpr std::uint32_t kFewest = 4;
-        counts.push_back(fmt::format("{}", std::max(own / part, kFewest)));
+        counts.push_back(fmt::format("{}", std::max(own / part, std::min(own, kFewest))));
     }
     return counts;
 }

@@ -222,11 +222,11 @@ void noteWhatMatters(WorkPrecision& result) {
         if (field != kThreadsAxis && field != kHairsPerGuideAxis) noteValuesWithoutEffect(a, result);
     }
     // An error that is not well above the truth's own tells the truth's as much as the run's.
-    constexpr double kClear = 3;
+    constexpr double kClear = 3, kNothing_mm = 1e-6;
     const auto unclear = std::ranges::count_if(result.runs, [&](const WorkPrecisionRun& run) {
         return !run.diverged && run.error.rmsMm < kClear * result.groundTruthUncertaintyMm;
     });
-    if (unclear > 0) {
+    if (unclear > 0 && result.groundTruthUncertaintyMm > kNothing_mm) {
         result.notes.push_back(
             fmt::format("The truth itself moves by {:.3g} mm when its resolution in time is halved. The "
                         "errors of {} of {} runs "
