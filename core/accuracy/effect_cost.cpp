@@ -92,7 +92,10 @@ Result<EffectCosts> measureEffectCosts(const Groom& groom, const HeadMotion& mot
     assert(options.repeats >= 1 && options.time.stepsPerFrame == 1);
     const std::vector<HeadPose> poses = posesOf(motion, options.time);
     Variants variants;
-    variants.asIs.hair = sampleStrands(groom, groom.strandCount(), 0);
+    variants.asIs.hair = sampleStrands(groom, std::min(groom.strandCount(), options.strands), 0);
+    const double scale =
+        static_cast<double>(groom.strandCount()) /
+        static_cast<double>(std::max<std::size_t>(variants.asIs.hair.groom.strandCount(), 1));
     // Which effects there are to turn off is known after a first run, which also warms up.
     const auto first = runScene(variants.asIs.hair, poses, options.time, {});
     if (!first) return tl::unexpected(first.error());
@@ -106,7 +109,7 @@ Result<EffectCosts> measureEffectCosts(const Groom& groom, const HeadMotion& mot
         if (options.cancelled && options.cancelled()) return fail("measuring the effects was cancelled");
         auto result = runScene(variant.hair, poses, options.time, {});
         if (!result) return tl::unexpected(result.error());
-        variant.times.push_back(result->millisecondsPerFrame);
+        variant.times.push_back(scale * result->millisecondsPerFrame);
         variant.last = std::move(*result);
         if (options.progress) options.progress(++done, total);
         return {};
@@ -115,7 +118,7 @@ Result<EffectCosts> measureEffectCosts(const Groom& groom, const HeadMotion& mot
     for (std::uint32_t round = 0; round < options.repeats; ++round) {
         if (auto status = runOnce(variants.asIs); !status) return tl::unexpected(status.error());
         for (std::size_t e = 0; e < stageTimes.size(); ++e) {
-            stageTimes[e].push_back(variants.asIs.last.effects[e].milliseconds);
+            stageTimes[e].push_back(scale * variants.asIs.last.effects[e].milliseconds);
             if (!variants.without[e]) continue;
             if (auto status = runOnce(*variants.without[e]); !status) return tl::unexpected(status.error());
         }

@@ -3,6 +3,7 @@
 // What each effect of a scene costs: the scene as it is, and once more without it.
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +16,9 @@ namespace hairloom {
 struct EffectCostOptions {
     SceneTime time;             ///< stepsPerFrame is 1
     std::uint32_t repeats = 5;  ///< timed runs with and without each effect, ≥ 1
+    /// A sample of so many runs of a larger groom; times are those of all in proportion, memory is the
+    /// sample's.
+    std::size_t strands = std::numeric_limits<std::size_t>::max();
     std::function<void(std::size_t done, std::size_t total)> progress;
     std::function<bool()> cancelled;  ///< asked between runs; true ends them with an error
 };

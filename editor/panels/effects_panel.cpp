@@ -25,6 +25,7 @@ namespace hairloom::editor {
 namespace {
 
 constexpr std::uint32_t kMeasuredFrames = 20, kMeasuredRuns = 5;
+constexpr std::size_t kMostStrands = 20'000;  ///< that run; times of more are in proportion
 constexpr const char* kBudgetKey = "frameBudget";
 constexpr double kUsualBudget_ms = 4;
 
@@ -64,7 +65,7 @@ class EffectsPanel : public QWidget {
         connect(table_, &QTreeWidget::itemChanged, this, &EffectsPanel::takeCheck);
         connect(&document_, &QtDocument::changed, this, [this](editing::Part changed) {
             if (contains(changed, editing::Part::Physics | editing::kHairParts | editing::Part::Spheres))
-                outdated_ = true;
+                ++changes_;
         });
         connect(&document_, &QtDocument::replaced, this, [this] {
             costs_.reset();
@@ -132,24 +133,25 @@ class EffectsPanel : public QWidget {
         if (!motion) return;
         const auto groom = std::make_shared<const Groom>(document_.groom());
         const std::shared_ptr<const HeadMotion> moves = std::move(*motion);
-        const bool began = tasks_.run<EffectCosts>(
+        tasks_.run<EffectCosts>(
             tr("Measuring effects"),
             [groom, moves](TaskControl& control) {
                 EffectCostOptions options;
                 options.time.frames = kMeasuredFrames;
                 options.repeats = kMeasuredRuns;
+                options.strands = kMostStrands;
                 options.progress = [&](std::size_t done, std::size_t total) {
                     control.setProgress(static_cast<float>(done) / static_cast<float>(total));
                 };
                 options.cancelled = [&] { return control.isCancelled(); };
                 return measureEffectCosts(*groom, *moves, options);
             },
-            [this, document = documents_](EffectCosts costs) {
+            [this, document = documents_, change = changes_](EffectCosts costs) {
                 if (document != documents_) return;
                 costs_ = std::move(costs);
+                costsChange_ = change;
                 refresh();
             });
-        if (began) outdated_ = false;
     }
 
     /// What is shown of on and off: not while it plays, when bars are live.
@@ -243,7 +245,7 @@ class EffectsPanel : public QWidget {
     QString words(bool nothing) const {
         if (nothing) return tr("Place hair to see what its simulation would run.");
         if (const EffectCosts* costs = this->costs()) {
-            const QString age = outdated_ ? tr(" before the last change") : QString();
+            const QString age = costsChange_ != changes_ ? tr(" before the last change") : QString();
             return tr("On and off, of %1 ms a frame on the processor, measured%2.")
                 .arg(costs->milliseconds.median, 0, 'f', 2)
                 .arg(age);
@@ -316,8 +318,8 @@ class EffectsPanel : public QWidget {
     LiveCosts live_;
     bool filling_ = false;
     std::optional<EffectCosts> costs_;
-    std::uint32_t documents_ = 0;  ///< replaced so far
-    bool outdated_ = false;        ///< `costs_` are of the document before its last change
+    std::uint32_t documents_ = 0;                  ///< replaced so far
+    std::uint32_t changes_ = 0, costsChange_ = 0;  ///< of the document, and when `costs_` began
 };
 
 }  // namespace
