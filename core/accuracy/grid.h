@@ -17,6 +17,7 @@ namespace hairloom {
 struct GridAxis {
     std::string field;
     std::vector<double> values;
+    bool operator==(const GridAxis&) const = default;
 };
 /// Points per strand, resampled evenly by arc length; 2 … runtime::kMaxPoints.
 inline constexpr std::string_view kPointsAxis = "points";

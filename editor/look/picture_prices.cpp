@@ -35,11 +35,11 @@ class PicturePrices : public QWidget {
         layout->addWidget(note_);
         note_->hide();
         connect(measure, &QPushButton::clicked, this, &PicturePrices::measure);
-        connect(&viewport_, &Viewport::lookChanged, this, [this] { prices_.outdate(Prices::Of::Picture); });
+        connect(&viewport_, &Viewport::lookChanged, this, &PicturePrices::outdate);
         connect(&document_, &QtDocument::changed, this, [this](editing::Part parts) {
             if (contains(parts, editing::kHairParts | editing::Part::Material | editing::Part::Interpolation |
                                     editing::Part::Dye))
-                prices_.outdate(Prices::Of::Picture);
+                outdate();
         });
         connect(&document_, &QtDocument::replaced, this, [this] {
             ++documents_;
@@ -48,6 +48,11 @@ class PicturePrices : public QWidget {
     }
 
   private:
+    void outdate() {
+        ++changes_;
+        prices_.outdate(Prices::Of::Picture);
+    }
+
     void measure() {
         const auto groom = std::make_shared<const Groom>(document_.groom());
         const PictureQuality quality = viewport_.quality();
@@ -82,8 +87,10 @@ class PicturePrices : public QWidget {
                 options.cancelled = [&] { return control.isCancelled(); };
                 return measurePictureCost(**device, *groom, options);
             },
-            [this, document = documents_](const PictureCost& cost) {
-                if (document == documents_) show(cost);
+            [this, document = documents_, change = changes_](const PictureCost& cost) {
+                if (document != documents_) return;
+                show(cost);
+                if (change != changes_) prices_.outdate(Prices::Of::Picture);
             });
     }
 
@@ -112,6 +119,7 @@ class PicturePrices : public QWidget {
     Prices& prices_;
     QLabel* note_;
     std::uint32_t documents_ = 0;  ///< replaced so far
+    std::uint32_t changes_ = 0;    ///< of what prices hang on
 };
 
 }  // namespace

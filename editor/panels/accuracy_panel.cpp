@@ -19,6 +19,7 @@
 #include "core/groom/file/settings_json.h"
 #include "core/operations/resample.h"
 #include "editor/fields/number_box.h"
+#include "editor/panels/accuracy_grid.h"
 #include "editor/panels/accuracy_plot.h"
 #include "editor/panels/error_bars.h"
 #include "editor/panels/panel.h"
@@ -27,16 +28,13 @@
 namespace hairloom::editor {
 namespace {
 
-constexpr std::uint32_t kFrames = 30;
-constexpr std::uint32_t kRepeats = 3;
-constexpr std::uint32_t kMostStrands = 4000;  ///< that run; times of more are in proportion
-constexpr std::size_t kTrueStrands = 12;      ///< that the reference solves
-constexpr double kWorstShare = 0.05;          ///< of all strands
-constexpr std::uint32_t kTrueSubsteps = 16;   ///< hair that slides over spheres would take minutes with more
-constexpr double kTolerance_mm = 0.02;
+constexpr double kWorstShare = 0.05;  ///< of all strands
 
 /// What a setting is shown beside, in the order of the list.
 enum class Beside { reference, equalTime, equalError, document };
+
+/// What a setting is chosen by.
+enum class Choice { click, pixels, milliseconds };
 
 class AccuracyPanel : public QWidget {
   public:
@@ -66,6 +64,7 @@ class AccuracyPanel : public QWidget {
         words_->setObjectName("accuracyWords");
         words_->setWordWrap(true);
         layout->addWidget(words_);
+        layout->addWidget(measure_);
         addMeasures(*layout);
         layout->addWidget(plot_, 1);
         addChoice(*layout, *pixels_, "accuracyPixels", tr("Cheapest within"), "px",
@@ -98,7 +97,7 @@ class AccuracyPanel : public QWidget {
                "and "
                "differs most in its error; one that is as exact and differs most in its time; or the "
                "document's"));
-        connect(beside_, &QComboBox::currentIndexChanged, this, [this] { choose(chosen_); });
+        connect(beside_, &QComboBox::currentIndexChanged, this, [this] { choose(by_); });
         layout->addWidget(chosenWords_);
         layout->addWidget(parts_);
         auto* row = new QHBoxLayout;
@@ -112,7 +111,6 @@ class AccuracyPanel : public QWidget {
                "exact one has them"));
         connect(worst_, &QPushButton::clicked, this, &AccuracyPanel::selectWorst);
         layout->addWidget(worst_);
-        layout->addWidget(measure_);
         pixels_->setValue(1);
         milliseconds_->setValue(4);
         connect(measure_, &QPushButton::clicked, this, &AccuracyPanel::measure);
@@ -122,22 +120,22 @@ class AccuracyPanel : public QWidget {
             const QSignalBlocker quiet(show_);
             show_->setChecked(false);
         });
-        connect(plot_, &AccuracyPlot::clicked, this, [this](std::size_t run) { choose(run); });
-        connect(pixels_, &NumberBox::edited, this, [this](double px) {
-            if (measured_) choose(cheapestWithinError(*measured_, px / pixelsPerMm()));
+        connect(plot_, &AccuracyPlot::clicked, this, [this](std::size_t run) {
+            chosen_ = run;
+            choose(Choice::click);
         });
-        connect(milliseconds_, &NumberBox::edited, this, [this](double ms) {
-            if (measured_) choose(mostExactWithinTime(*measured_, ms / timeScale()));
-        });
+        connect(pixels_, &NumberBox::edited, this, [this] { choose(Choice::pixels); });
+        connect(milliseconds_, &NumberBox::edited, this, [this] { choose(Choice::milliseconds); });
         connect(&document_, &QtDocument::changed, this, [this](editing::Part changed) {
             if (contains(changed, editing::Part::Physics | editing::kHairParts | editing::Part::Spheres)) {
-                outdated_ = outdated_ || !adopting_;
+                if (!adopting_) ++changes_;
                 refresh();
             }
         });
         connect(&document_, &QtDocument::replaced, this, [this] {
             measured_.reset();
             chosen_.reset();
+            by_ = Choice::pixels;
             prices_.clear();
             ++documents_;
             refresh();
@@ -147,8 +145,8 @@ class AccuracyPanel : public QWidget {
 
   protected:
     /// The camera may have moved.
-    void showEvent(QShowEvent*) override { refresh(); }
-    void enterEvent(QEnterEvent*) override { refresh(); }
+    void showEvent(QShowEvent*) override { lookAgain(); }
+    void enterEvent(QEnterEvent*) override { lookAgain(); }
 
   private:
     static void addChoice(QVBoxLayout& layout, NumberBox& box, const char* name, const QString& label,
@@ -202,51 +200,51 @@ class AccuracyPanel : public QWidget {
         if (!motion) return messages_.warn(QString::fromStdString(motion.error().message()));
         const auto groom = std::make_shared<const Groom>(document_.groom());
         const std::shared_ptr<const HeadMotion> moves = std::move(*motion);
-        const auto keep = [this, document = documents_](const WorkPrecision& result) {
+        const auto keep = [this, document = documents_, change = changes_](const WorkPrecision& result) {
             if (document != documents_) return;
+            // A point of another diagram is none of this one.
+            if (by_ == Choice::click && (!measured_ || measured_->options.axes != result.options.axes))
+                by_ = Choice::pixels;
             measured_ = std::make_shared<const WorkPrecision>(result);
             measuredAt_ = QDateTime::currentDateTime();
+            measuredChange_ = change;
             refresh();
         };
         const bool began = tasks_.run<WorkPrecision>(
             tr("Measuring accuracy"),
             [this, groom, moves, keep](TaskControl& control) {
-                WorkPrecisionOptions options;
-                options.axes = axesToTry(*groom);
-                options.time.frames = kFrames;
-                options.strands = kMostStrands;
-                options.repeats = kRepeats;
-                options.keepTrajectories = true;
-                options.progress = [&](std::size_t done, std::size_t total) {
-                    control.setProgress(static_cast<float>(done) / static_cast<float>(total));
-                };
-                options.partial = [&](const WorkPrecision& result) {
+                return measureGrid(*groom, *moves, control, [&](const WorkPrecision& result) {
                     const auto keepUnlessDone = [this, keep, result] {
                         if (measuring_) keep(result);
                     };
                     QMetaObject::invokeMethod(this, keepUnlessDone, Qt::QueuedConnection);
-                };
-                options.cancelled = [&] { return control.isCancelled(); };
-                ReferenceConverged::Options truth;
-                truth.strands = kTrueStrands;
-                truth.toleranceMm = kTolerance_mm;
-                truth.maxSubsteps = kTrueSubsteps;
-                return measureWorkPrecision(*groom, *moves, options, ReferenceConverged(truth));
+                });
             },
             [this, keep](const WorkPrecision& result) {
                 measuring_ = false;
                 keep(result);
             });
-        if (!began) return;
-        measuring_ = true;
-        outdated_ = false;
-        chosen_.reset();
+        measuring_ = measuring_ || began;
     }
+    bool isOutdated() const { return measuredChange_ != changes_; }
 
-    void choose(std::optional<std::size_t> run) {
-        chosen_ = run;
+    void choose(Choice by) {
+        by_ = by;
+        if (!measured_) return;
         refresh();
         if (show_->isChecked()) showChosen();
+    }
+    void lookAgain() {
+        const auto before = chosen_;
+        refresh();
+        if (chosen_ != before && show_->isChecked()) showChosen();
+    }
+    /// Pixels are those of the view as it is now, so that a limit may mean another setting than before.
+    void findChosen() {
+        if (by_ == Choice::pixels)
+            chosen_ = cheapestWithinError(*measured_, pixels_->value() / pixelsPerMm());
+        if (by_ == Choice::milliseconds)
+            chosen_ = mostExactWithinTime(*measured_, milliseconds_->value() / timeScale());
     }
 
     void showChosen() {
@@ -367,7 +365,7 @@ class AccuracyPanel : public QWidget {
         }
         if (measured_->strands < measured_->groomStrands)
             text += ' ' + tr("Times are those of %L1 strands in proportion.").arg(measured_->strands);
-        if (outdated_) text += ' ' + tr("Measured before the last change.");
+        if (isOutdated()) text += ' ' + tr("Measured before the last change.");
         return text;
     }
 
@@ -380,7 +378,7 @@ class AccuracyPanel : public QWidget {
             SettingPrices& setting = prices[QString::fromStdString(axes[a].field)];
             setting.unit = tr("px");
             setting.measured = measuredAt_;
-            setting.outdated = outdated_;
+            setting.outdated = isOutdated();
             for (const std::size_t r : runsAlong(*measured_, *now, a)) {
                 const WorkPrecisionRun& run = measured_->runs[r];
                 if (run.diverged || !(run.milliseconds.median > 0)) continue;
@@ -401,18 +399,32 @@ class AccuracyPanel : public QWidget {
         if (!any) parts_->hide();
         for (QWidget* control : {static_cast<QWidget*>(pixels_), static_cast<QWidget*>(milliseconds_)})
             control->setEnabled(any);
-        adopt_->setEnabled(any && chosen_);
+        if (any) findChosen();
+        adopt_->setEnabled(any && chosen_ && chosen_ != runOf(*measured_, document_.groom()));
         show_->setEnabled(any && chosen_);
         beside_->setEnabled(any && chosen_);
         worst_->setEnabled(any);
         chosenWords_->setVisible(any);
         if (!any) return;
-        chosenWords_->setText(chosen_ ? tr("Chosen: %1: %2.").arg(setting(*chosen_), numbers(*chosen_)) +
-                                            besideInWords()
-                                      : tr("Click a point, or set a limit"));
+        chosenWords_->setText(chosenInWords());
         showParts();
         showDiagram();
         showPrices();
+    }
+
+    QString chosenInWords() const {
+        const QString limits[] = {QString(), tr("within %1 px").arg(pixels_->value(), 0, 'g', 3),
+                                  tr("within %1 ms").arg(milliseconds_->value(), 0, 'g', 3)};
+        const QString& limit = limits[static_cast<int>(by_)];
+        if (!chosen_)
+            return by_ == Choice::click ? tr("Click a point, or set a limit")
+                                        : tr("Nothing that was tried is %1.").arg(limit);
+        const QString which = by_ == Choice::pixels         ? tr("Cheapest %1").arg(limit)
+                              : by_ == Choice::milliseconds ? tr("Most exact %1").arg(limit)
+                                                            : tr("Chosen");
+        const QString has =
+            chosen_ == runOf(*measured_, document_.groom()) ? tr(" This hair has it.") : QString();
+        return tr("%1: %2: %3.").arg(which, setting(*chosen_), numbers(*chosen_)) + has + besideInWords();
     }
 
     /// What the error of the chosen setting, or of the document's, is made of.
@@ -462,8 +474,9 @@ class AccuracyPanel : public QWidget {
     std::shared_ptr<const WorkPrecision> measured_;
     QDateTime measuredAt_;
     std::optional<std::size_t> chosen_;
-    std::uint32_t documents_ = 0;  ///< replaced so far
-    bool outdated_ = false;        ///< `measured_` is of the document before its last change
+    Choice by_ = Choice::pixels;
+    std::uint32_t documents_ = 0;                     ///< replaced so far
+    std::uint32_t changes_ = 0, measuredChange_ = 0;  ///< of the document, and when `measured_` began
     bool adopting_ = false;
     bool measuring_ = false;  ///< rounds that arrive are newer than what is shown
 };

@@ -29,7 +29,7 @@ CertificateBox::CertificateBox(QtDocument& document, Tasks& tasks, QWidget* pare
     connect(certify_, &QPushButton::clicked, this, &CertificateBox::certify);
     connect(&document_, &QtDocument::changed, this, [this](editing::Part changed) {
         if (!contains(changed, editing::Part::Physics | editing::kHairParts | editing::Part::Spheres)) return;
-        outdated_ = true;
+        ++changes_;
         refresh();
     });
     connect(&document_, &QtDocument::replaced, this, [this] {
@@ -42,7 +42,7 @@ CertificateBox::CertificateBox(QtDocument& document, Tasks& tasks, QWidget* pare
 
 void CertificateBox::certify() {
     const auto groom = std::make_shared<const Groom>(document_.groom());
-    const bool began = tasks_.run<Certificate>(
+    tasks_.run<Certificate>(
         tr("Certifying"),
         [groom](TaskControl& control) {
             CertificateOptions options;
@@ -52,18 +52,18 @@ void CertificateBox::certify() {
             options.cancelled = [&] { return control.isCancelled(); };
             return hairloom::certify(*groom, options);
         },
-        [this, document = documents_](Certificate certificate) {
+        [this, document = documents_, change = changes_](Certificate certificate) {
             if (document != documents_) return;
             certificate_ = std::move(certificate);
+            triedChange_ = change;
             triedAt_ = QDateTime::currentDateTime();
             refresh();
         });
-    if (began) outdated_ = false;
 }
 
 void CertificateBox::refresh() {
     certify_->setEnabled(document_.groom().strandCount() > 0);
-    const QString age = outdated_ ? tr("Before the last change: ") : QString();
+    const QString age = triedChange_ != changes_ ? tr("Before the last change: ") : QString();
     words_->setText(certificate_ ? tr("%1%2 Tried at %3.")
                                        .arg(age, QString::fromStdString(inWords(*certificate_)),
                                             QLocale().toString(triedAt_, QLocale::ShortFormat))

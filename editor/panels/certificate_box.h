@@ -30,8 +30,8 @@ class CertificateBox : public QWidget {
     QPushButton* certify_;
     std::optional<Certificate> certificate_;
     QDateTime triedAt_;
-    bool outdated_ = false;
-    int documents_ = 0;  ///< that were opened: a certificate is of one
+    std::uint32_t documents_ = 0;                  ///< that were opened: a certificate is of one
+    std::uint32_t changes_ = 0, triedChange_ = 0;  ///< of the document, and when `certificate_` began
 };
 
 }  // namespace hairloom::editor

@@ -14,7 +14,8 @@ namespace {
 constexpr int kGap_px = 6;
 
 QString pixels(double px) {
-    return QObject::tr("%1 px").arg(px, 0, 'g', 2);
+    constexpr double kNothing_px = 0.001;
+    return px < kNothing_px ? QObject::tr("< 0.001 px") : QObject::tr("%1 px").arg(px, 0, 'g', 2);
 }
 
 }  // namespace

@@ -27,11 +27,24 @@ RunView::RunView(const PanelParts& parts, QObject* parent)
     connect(&player_, &Player::stateChanged, this, [this] {
         if (player_.isPlaying()) stop();
     });
+    connect(&tasks_, &Tasks::stopped, this, [this] {
+        if (!simulating_) return;
+        simulating_ = false;
+        // What has come of it is known once the task's end has been handled.
+        const auto stopUnlessShown = [this] {
+            if (!preview_ && !simulating_) stop();
+        };
+        QMetaObject::invokeMethod(this, stopUnlessShown, Qt::QueuedConnection);
+    });
     viewport_.addMarks([this](Marks& marks) { draw(marks); });
 }
 
 void RunView::show(std::shared_ptr<const WorkPrecision> measured, std::size_t run,
                    std::optional<std::size_t> beside) {
+    if (simulating_) {
+        next_ = Wish{std::move(measured), run, beside};
+        return;
+    }
     auto motion = player_.makeMeasuredMotion();
     if (!motion) return messages_.warn(QString::fromStdString(motion.error().message()));
     player_.pause();
@@ -47,8 +60,12 @@ void RunView::show(std::shared_ptr<const WorkPrecision> measured, std::size_t ru
         },
         [this, asked = ++asked_](RunPreview preview) {
             if (asked == asked_) begin(std::move(preview));
+            if (!next_) return;
+            const Wish next = *std::exchange(next_, std::nullopt);
+            show(next.measured, next.run, next.beside);
         });
-    if (!began) stop();
+    if (!began) return stop();
+    simulating_ = true;
 }
 
 void RunView::begin(RunPreview preview) {
@@ -61,6 +78,7 @@ void RunView::begin(RunPreview preview) {
 
 void RunView::stop() {
     ++asked_;
+    next_.reset();
     if (preview_) {
         preview_.reset();
         timer_.stop();

@@ -17,18 +17,25 @@ class RunView : public QObject {
 
   public:
     explicit RunView(const PanelParts& parts, QObject* parent = nullptr);
-    /// From when it is simulated on; in place of what is shown. The measurement has kept trajectories. The
-    /// other strands, in blue, are the reference's where `beside` names no run.
+    /// From when it is simulated on; in place of what is shown. While another is simulated the last one asked
+    /// for waits. The measurement has kept trajectories. The other strands, in blue, are the reference's
+    /// where `beside` names no run.
     void show(std::shared_ptr<const WorkPrecision> measured, std::size_t run,
               std::optional<std::size_t> beside);
     /// The view shows the document again.
     void stop();
 
   Q_SIGNALS:
-    /// By stop(), or because the document has changed or plays.
+    /// By stop(), because the document has changed or plays, or because simulating was cancelled.
     void stopped();
 
   private:
+    struct Wish {
+        std::shared_ptr<const WorkPrecision> measured;
+        std::size_t run;
+        std::optional<std::size_t> beside;
+    };
+
     void begin(RunPreview preview);
     void showFrame();
     void draw(Marks& marks) const;
@@ -45,6 +52,8 @@ class RunView : public QObject {
     std::optional<RunPreview> preview_;  ///< while it is shown
     std::size_t frame_ = 0;
     quint64 asked_ = 0;  ///< previews asked for so far; only the last one is shown
+    bool simulating_ = false;
+    std::optional<Wish> next_;  ///< once that is done
 };
 
 }  // namespace hairloom::editor

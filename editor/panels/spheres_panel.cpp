@@ -88,8 +88,8 @@ class SpheresPanel : public QWidget {
             viewport_.redraw();
         });
         viewport_.addMarks([this](Marks& marks) {
-            // While hair moves, so do the spheres.
-            if (!isVisible() || !selected() || player_.hasFrame()) return;
+            // While hair moves, so do the spheres. A panel behind others in its tab counts as visible to Qt.
+            if (visibleRegion().isEmpty() || !selected() || player_.hasFrame()) return;
             const CollisionSphere& sphere = spheres()[*selected()];
             marks.circle(sphere.centre, -viewport_.camera().forward_ws(), sphere.radius, QColor(255, 200, 80),
                          2.5f, Marks::Depth::OnTop);

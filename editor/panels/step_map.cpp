@@ -97,6 +97,7 @@ void StepMap::paintEvent(QPaintEvent*) {
         top += rowHeight();
     }
     painter.setPen(colours.dimText);
+    painter.drawText(QRect(0, top, names, rowHeight()), Qt::AlignLeft | Qt::AlignVCenter, tr("substep"));
     for (const double tick : {1e-4, 1e-3, 1e-2}) {
         const QString label = milliseconds(tick);
         const double wide = fontMetrics().horizontalAdvance(label);

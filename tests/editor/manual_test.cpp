@@ -94,7 +94,7 @@ TEST_F(ManualTest, ScalpAndRoots) {
     shootWindow("placement");
 }
 
-TEST_F(ManualTest, GroomingSpheresMotionAndLook) {
+TEST_F(ManualTest, GroomingSpheresAndLook) {
     openSampleHair("shoulder");
     // As many hairs as a software device draws in a minute.
     Groom fewer = groom();
@@ -134,28 +134,43 @@ TEST_F(ManualTest, GroomingSpheresMotionAndLook) {
     EXPECT_TRUE(QTest::qWaitFor(drawn, kPatience));
     shootWindow("look");
     find<QPushButton>("compareShow")->setChecked(false);
-    // Wind.
-    raise("effects");
-    trigger("tool.wind");
-    Groom windy = groom();
-    windy.simulation.windSpeed = 7;
-    windy.simulation.windDirection = {-1, 0.1f, 0.1f};
-    change("Wind", windy);
-    trigger("play.toggle");
-    ASSERT_TRUE(QTest::qWaitFor(
-        [this] {
-            const auto& frame = parts().player.frame();
-            return frame && frame->time > 1.2;
-        },
-        kPatience));
-    trigger("play.toggle");
-    shootWindow("wind");
-    trigger("play.reset");
     ExportDialog exporting(document(), parts().tasks, parts().messages, parts().player, window.get());
     exporting.show();
     exporting.exportTo(inFolder("shoulder.tfx"));
     finishWork();
     shoot(exporting, "export");
+}
+
+TEST_F(ManualTest, Effects) {
+    openSampleHair("shoulder");
+    Groom windy = groom();
+    windy.interpolation.followPerGuide = 5;
+    windy.simulation.windSpeed = 7;
+    windy.simulation.windDirection = {-1, 0.1f, 0.1f};
+    document().open(windy, {}, "shoulder");
+    showFromThreeQuarters();
+    raise("effects");
+    find<QPushButton>("certify")->click();
+    finishWork();
+    trigger("tool.wind");
+    trigger("play.toggle");
+    const auto& frame = parts().player.frame();
+    ASSERT_TRUE(QTest::qWaitFor([&] { return frame && frame->time > 1.2; }, kPatience));
+    trigger("play.toggle");
+    shootWindow("wind");
+}
+
+TEST_F(ManualTest, Levels) {
+    openSampleHair("shoulder");
+    Groom fewer = groom();
+    fewer.interpolation.followPerGuide = 5;
+    document().open(fewer, {}, "shoulder");
+    showFromThreeQuarters();
+    raise("levels");
+    find<QPushButton>("levelsMake")->click();
+    finishWork();
+    find<QCheckBox>("levelOver")->click();
+    shootWindow("levels");
 }
 
 TEST_F(ManualTest, Accuracy) {
